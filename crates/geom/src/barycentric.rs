@@ -1,0 +1,46 @@
+/// Barycentric coordinates of `p` in the triangle `a`, `b`, `c`: weights in that order, summing to 1.
+///
+/// All positions in one plane coordinate system, in any unit. A weight is below 0 when `p` lies beyond
+/// the edge opposite that corner. The result is not finite for a triangle without area.
+///
+/// Source: Vaaraniemi, Treib & Westermann 2011, *High-Quality Cartographic Roads on High-Resolution
+/// DEMs*, section 6.1.
+#[must_use]
+pub fn barycentric(p: [f64; 2], a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> [f64; 3] {
+    // Offsets from `p` keep the products small near the triangle, wherever the origin is.
+    let from_p = |q: [f64; 2]| [q[0] - p[0], q[1] - p[1]];
+    let (a, b, c) = (from_p(a), from_p(b), from_p(c));
+    let area = |m: [f64; 2], n: [f64; 2]| m[0] * n[1] - m[1] * n[0];
+    let (wa, wb, wc) = (area(b, c), area(c, a), area(a, b));
+    let total = wa + wb + wc;
+    [wa / total, wb / total, wc / total]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const A: [f64; 2] = [0.0, 0.0];
+    const B: [f64; 2] = [4.0, 0.0];
+    const C: [f64; 2] = [0.0, 2.0];
+
+    #[test]
+    fn corners_are_unit_weights() {
+        assert_eq!(barycentric(A, A, B, C), [1.0, 0.0, 0.0]);
+        assert_eq!(barycentric(B, A, B, C), [0.0, 1.0, 0.0]);
+        assert_eq!(barycentric(C, A, B, C), [0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn centroid_has_equal_weights() {
+        let weights = barycentric([4.0 / 3.0, 2.0 / 3.0], A, B, C);
+        for weight in weights {
+            assert!((weight - 1.0 / 3.0).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn beyond_an_edge_its_weight_is_negative() {
+        assert!(barycentric([1.0, -1.0], A, B, C)[2] < 0.0);
+    }
+}

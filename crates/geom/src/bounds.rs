@@ -1,0 +1,114 @@
+use serde::{Deserialize, Serialize};
+
+use crate::LatticePoint;
+
+/// An axis-parallel rectangle in a plane coordinate system, metres or degrees as the holder says.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Bounds {
+    /// West edge.
+    pub min_x: f64,
+    /// South edge.
+    pub min_y: f64,
+    /// East edge.
+    pub max_x: f64,
+    /// North edge.
+    pub max_y: f64,
+}
+
+impl Bounds {
+    /// The rectangle that holds nothing; [`Bounds::include`] grows it.
+    pub const EMPTY: Self =
+        Self { min_x: f64::INFINITY, min_y: f64::INFINITY, max_x: f64::NEG_INFINITY, max_y: f64::NEG_INFINITY };
+
+    /// Grows to hold `point`.
+    pub fn include(&mut self, point: [f64; 2]) {
+        self.min_x = self.min_x.min(point[0]);
+        self.min_y = self.min_y.min(point[1]);
+        self.max_x = self.max_x.max(point[0]);
+        self.max_y = self.max_y.max(point[1]);
+    }
+
+    /// Whether it holds no point at all.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        !(self.min_x <= self.max_x && self.min_y <= self.max_y)
+    }
+
+    /// Whether the two rectangles share a point, edges included.
+    #[must_use]
+    pub fn intersects(&self, other: &Self) -> bool {
+        self.min_x <= other.max_x
+            && other.min_x <= self.max_x
+            && self.min_y <= other.max_y
+            && other.min_y <= self.max_y
+    }
+
+    /// The middle of the rectangle.
+    #[must_use]
+    pub fn center(&self) -> [f64; 2] {
+        [f64::midpoint(self.min_x, self.max_x), f64::midpoint(self.min_y, self.max_y)]
+    }
+
+    /// West to east.
+    #[must_use]
+    pub fn width(&self) -> f64 {
+        self.max_x - self.min_x
+    }
+
+    /// South to north.
+    #[must_use]
+    pub fn height(&self) -> f64 {
+        self.max_y - self.min_y
+    }
+
+    /// As `[min_x, min_y, max_x, max_y]`.
+    #[must_use]
+    pub fn to_array(self) -> [f64; 4] {
+        [self.min_x, self.min_y, self.max_x, self.max_y]
+    }
+}
+
+/// An axis-parallel rectangle on the lattice, edges included.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LatticeBounds {
+    /// South-west corner.
+    pub min: LatticePoint,
+    /// North-east corner.
+    pub max: LatticePoint,
+}
+
+impl LatticeBounds {
+    /// Whether `point` lies inside or on the edge.
+    #[must_use]
+    pub fn contains(&self, point: LatticePoint) -> bool {
+        (self.min.u..=self.max.u).contains(&point.u) && (self.min.v..=self.max.v).contains(&point.v)
+    }
+
+    /// The same rectangle, larger by `margin` steps on every side.
+    #[must_use]
+    pub fn expanded(&self, margin: i64) -> Self {
+        Self {
+            min: LatticePoint::new(self.min.u - margin, self.min.v - margin),
+            max: LatticePoint::new(self.max.u + margin, self.max.v + margin),
+        }
+    }
+
+    /// The smallest rectangle around `points`; `None` without points.
+    #[must_use]
+    pub fn of(points: &[LatticePoint]) -> Option<Self> {
+        let first = *points.first()?;
+        Some(points.iter().fold(Self { min: first, max: first }, |bounds, p| Self {
+            min: LatticePoint::new(bounds.min.u.min(p.u), bounds.min.v.min(p.v)),
+            max: LatticePoint::new(bounds.max.u.max(p.u), bounds.max.v.max(p.v)),
+        }))
+    }
+
+    /// Whether the two rectangles share a point, edges included.
+    #[must_use]
+    pub fn intersects(&self, other: &Self) -> bool {
+        self.min.u <= other.max.u
+            && other.min.u <= self.max.u
+            && self.min.v <= other.max.v
+            && other.min.v <= self.max.v
+    }
+}

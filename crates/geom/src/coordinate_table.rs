@@ -1,0 +1,272 @@
+use serde::{Deserialize, Serialize};
+
+use crate::{Bounds, ProjectError, Projection};
+
+/// WGS84 positions sampled over the working CRS, from which a reader interpolates both ways without PROJ.
+///
+/// A regular grid of `size × size` samples over `bounds`, interpolated by Lagrange's cubic through the
+/// nearest four samples on each axis: its error falls with the fourth power of the spacing, so that some
+/// dozen samples a side suffice for a country. Backwards by Newton's method on that interpolation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "TableRecord", into = "TableRecord")]
+pub struct CoordinateTable {
+    bounds: Bounds,
+    size: usize,
+    /// `[lon_deg, lat_deg]`, row by row from the south. Longitudes are continuous: past the antimeridian
+    /// they go on beyond ±180.
+    samples_deg: Vec<[f64; 2]>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct TableRecord {
+    bounds: Bounds,
+    size: usize,
+    samples_deg: Vec<[f64; 2]>,
+}
+
+impl From<CoordinateTable> for TableRecord {
+    fn from(CoordinateTable { bounds, size, samples_deg }: CoordinateTable) -> Self {
+        Self { bounds, size, samples_deg }
+    }
+}
+
+impl TryFrom<TableRecord> for CoordinateTable {
+    type Error = CoordinateTableError;
+
+    fn try_from(record: TableRecord) -> Result<Self, CoordinateTableError> {
+        let TableRecord { bounds, size, samples_deg } = record;
+        let usable = (4..=MAX_SIZE).contains(&size)
+            && samples_deg.len() == size * size
+            && bounds.width() > 0.0
+            && bounds.height() > 0.0
+            && bounds.to_array().iter().chain(samples_deg.as_flattened()).all(|value| value.is_finite());
+        if usable {
+            Ok(Self { bounds, size, samples_deg })
+        } else {
+            Err(CoordinateTableError::Damaged)
+        }
+    }
+}
+
+/// Why there is no coordinate table.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CoordinateTableError {
+    /// The projection failed.
+    #[error("the package's corners have no longitude and latitude")]
+    Project(#[from] ProjectError),
+    /// The table as read makes no sense.
+    #[error("the table of longitudes and latitudes is damaged")]
+    Damaged,
+    /// No table of permitted size is exact enough: the extent touches a pole, say.
+    #[error("longitude and latitude cannot be tabulated to {tolerance_m} m: {reached_m} m is the best reached")]
+    TooCurved {
+        /// The error asked for.
+        tolerance_m: f64,
+        /// The error at the largest table tried.
+        reached_m: f64,
+    },
+}
+
+const MAX_SIZE: usize = 129;
+/// Metres to a degree of latitude, near enough to turn a tolerance into degrees.
+const METRES_PER_DEGREE: f64 = 111_320.0;
+
+impl CoordinateTable {
+    /// Tabulates `projection` over `bounds` so that positions interpolated halfway between samples, where a
+    /// cubic is worst, are within `tolerance_m` of the projected ones.
+    ///
+    /// # Errors
+    /// When the projection fails or no table of permitted size is that exact.
+    pub fn sample(
+        projection: &dyn Projection,
+        bounds: Bounds,
+        tolerance_m: f64,
+    ) -> Result<Self, CoordinateTableError> {
+        let mut size = 5;
+        loop {
+            let table = Self::of_size(projection, bounds, size)?;
+            let reached_m = table.error_m(projection)?;
+            if reached_m <= tolerance_m {
+                return Ok(table);
+            }
+            size = 2 * size - 1;
+            if size > MAX_SIZE {
+                return Err(CoordinateTableError::TooCurved { tolerance_m, reached_m });
+            }
+        }
+    }
+
+    fn of_size(projection: &dyn Projection, bounds: Bounds, size: usize) -> Result<Self, CoordinateTableError> {
+        let last = (size - 1) as f64;
+        let mut samples_deg = Vec::with_capacity(size * size);
+        for row in 0..size {
+            for column in 0..size {
+                samples_deg.push([
+                    bounds.min_x + bounds.width() * (column as f64 / last),
+                    bounds.min_y + bounds.height() * (row as f64 / last),
+                ]);
+            }
+        }
+        projection.wgs84_from_working(&mut samples_deg)?;
+        let center_lon = samples_deg[samples_deg.len() / 2][0];
+        for sample in &mut samples_deg {
+            sample[0] = near_longitude(sample[0], center_lon);
+        }
+        TableRecord { bounds, size, samples_deg }.try_into()
+    }
+
+    /// Largest distance between interpolated and projected positions at the midpoints of all samples.
+    fn error_m(&self, projection: &dyn Projection) -> Result<f64, ProjectError> {
+        let last = (self.size - 1) as f64;
+        let mut truth = Vec::new();
+        for row in 0..self.size - 1 {
+            for column in 0..self.size - 1 {
+                truth.push([
+                    self.bounds.min_x + self.bounds.width() * ((column as f64 + 0.5) / last),
+                    self.bounds.min_y + self.bounds.height() * ((row as f64 + 0.5) / last),
+                ]);
+            }
+        }
+        let positions = truth.clone();
+        projection.wgs84_from_working(&mut truth)?;
+        Ok(positions.iter().zip(&truth).fold(0.0, |worst: f64, (position, truth)| {
+            let [lon, lat] = self.wgs84_from_working(*position);
+            let east = (lon - near_longitude(truth[0], lon)) * truth[1].to_radians().cos();
+            let distance_m = east.hypot(lat - truth[1]) * METRES_PER_DEGREE;
+            if distance_m.is_nan() { f64::INFINITY } else { worst.max(distance_m) }
+        }))
+    }
+
+    /// The rectangle the table covers, working CRS.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// `[lon_deg, lat_deg]` of a position in the working CRS. Outside the table's bounds it extrapolates.
+    #[must_use]
+    pub fn wgs84_from_working(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let last = (self.size - 1) as f64;
+        let (column, weights_x) = cubic((x - self.bounds.min_x) / self.bounds.width() * last, self.size);
+        let (row, weights_y) = cubic((y - self.bounds.min_y) / self.bounds.height() * last, self.size);
+        let mut sum = [0.0; 2];
+        for (r, wy) in weights_y.iter().enumerate() {
+            for (c, wx) in weights_x.iter().enumerate() {
+                let sample = self.samples_deg[(row + r) * self.size + column + c];
+                sum[0] += wx * wy * sample[0];
+                sum[1] += wx * wy * sample[1];
+            }
+        }
+        sum
+    }
+
+    /// Position in the working CRS of `[lon_deg, lat_deg]`; `None` where the table knows no way back
+    /// (a position far outside).
+    #[must_use]
+    pub fn working_from_wgs84(&self, [lon, lat]: [f64; 2]) -> Option<[f64; 2]> {
+        let mut at = self.bounds.center();
+        let center_lon = self.wgs84_from_working(at)[0];
+        let target = [near_longitude(lon, center_lon), lat];
+        // Central differences over a hundredth of the table: its cubic is smooth on that scale.
+        let h = [self.bounds.width() / 100.0, self.bounds.height() / 100.0];
+        for _ in 0..30 {
+            let here = self.wgs84_from_working(at);
+            let miss = [target[0] - here[0], target[1] - here[1]];
+            let slope = |step: [f64; 2], span: f64| {
+                let ahead = self.wgs84_from_working([at[0] + step[0], at[1] + step[1]]);
+                let behind = self.wgs84_from_working([at[0] - step[0], at[1] - step[1]]);
+                [(ahead[0] - behind[0]) / span, (ahead[1] - behind[1]) / span]
+            };
+            let (dx, dy) = (slope([h[0], 0.0], 2.0 * h[0]), slope([0.0, h[1]], 2.0 * h[1]));
+            let determinant = dx[0] * dy[1] - dx[1] * dy[0];
+            let step = [
+                (miss[0] * dy[1] - miss[1] * dy[0]) / determinant,
+                (dx[0] * miss[1] - dx[1] * miss[0]) / determinant,
+            ];
+            at = [at[0] + step[0], at[1] + step[1]];
+            if !at[0].is_finite() || !at[1].is_finite() {
+                return None;
+            }
+            if step[0].hypot(step[1]) < 1e-6 {
+                let reach = 2.0;
+                let inside = |value: f64, low: f64, span: f64| {
+                    (low - reach * span..=low + (1.0 + reach) * span).contains(&value)
+                };
+                let known = inside(at[0], self.bounds.min_x, self.bounds.width())
+                    && inside(at[1], self.bounds.min_y, self.bounds.height());
+                return known.then_some(at);
+            }
+        }
+        None
+    }
+}
+
+/// First sample and the four weights of Lagrange's cubic at `t`, in units of the spacing.
+fn cubic(t: f64, size: usize) -> (usize, [f64; 4]) {
+    let first = (t.floor() - 1.0).clamp(0.0, (size - 4) as f64);
+    let s = t - first;
+    let weights = [
+        -(s - 1.0) * (s - 2.0) * (s - 3.0) / 6.0,
+        s * (s - 2.0) * (s - 3.0) / 2.0,
+        -s * (s - 1.0) * (s - 3.0) / 2.0,
+        s * (s - 1.0) * (s - 2.0) / 6.0,
+    ];
+    (first as usize, weights)
+}
+
+/// The longitude equal to `lon` modulo 360 that is nearest to `center`.
+fn near_longitude(lon: f64, center: f64) -> f64 {
+    lon - 360.0 * ((lon - center) / 360.0).round()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sphere in Mercator's projection around longitude 179: curved, and across the antimeridian.
+    struct Mercator;
+    const R: f64 = 6_371_000.0;
+
+    impl Projection for Mercator {
+        fn working_from_wgs84(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
+            for p in points {
+                let lon = near_longitude(p[0], 179.0) - 179.0;
+                *p = [R * lon.to_radians(), R * p[1].to_radians().tan().asinh()];
+            }
+            Ok(())
+        }
+
+        fn wgs84_from_working(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
+            for p in points {
+                *p = [near_longitude(179.0 + (p[0] / R).to_degrees(), 0.0), (p[1] / R).sinh().atan().to_degrees()];
+            }
+            Ok(())
+        }
+    }
+
+    fn table() -> CoordinateTable {
+        let bounds = Bounds { min_x: -2e5, min_y: 5.9e6, max_x: 3e5, max_y: 6.4e6 };
+        CoordinateTable::sample(&Mercator, bounds, 0.01).unwrap()
+    }
+
+    #[test]
+    fn is_within_a_centimetre_both_ways_across_the_antimeridian() {
+        let table = table();
+        for k in 0..200 {
+            let at = [-2e5 + 2500.0 * f64::from(k), 5.9e6 + 2500.0 * f64::from((k * 37) % 200)];
+            let mut truth = [at];
+            Mercator.wgs84_from_working(&mut truth).unwrap();
+            let [lon, lat] = table.wgs84_from_working(at);
+            let east = near_longitude(truth[0][0] - lon, 0.0) * lat.to_radians().cos();
+            assert!(east.hypot(truth[0][1] - lat) * METRES_PER_DEGREE < 0.01);
+            let back = table.working_from_wgs84(truth[0]).unwrap();
+            assert!((back[0] - at[0]).hypot(back[1] - at[1]) < 0.03, "{at:?} came back as {back:?}");
+        }
+    }
+
+    #[test]
+    fn survives_being_written_and_refuses_a_damaged_one() {
+        let record = TableRecord::from(table());
+        assert!(CoordinateTable::try_from(TableRecord { size: 4, ..record }).is_err());
+    }
+}

@@ -1,0 +1,441 @@
+use serde::{Deserialize, Serialize};
+
+use crate::{Bounds, LatticeBounds, LatticePoint, TileId};
+
+/// Cells along one side of a tile.
+pub const TILE_CELLS: i64 = 256;
+/// Nodes along one side of a tile; border nodes are shared with the neighbour.
+pub const TILE_NODES: usize = 257;
+/// Deepest level a package can have. 2^22 tiles of 256 cells keep node indices within 31 bits, and with
+/// them every lattice coordinate well within 62 bits.
+pub const MAX_LEVEL: u8 = 22;
+
+/// A lattice step is at most this long.
+const LATTICE_STEP_M: f64 = 0.001;
+/// Node indices stay below this, so that lattice coordinates (at most 2^24 steps a cell) stay below 2^56.
+const MAX_INDEX: i64 = 1 << 32;
+
+/// A node of the package's global grid at the finest level.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct NodeIndex {
+    /// Nodes east of the frame's origin.
+    pub i: i64,
+    /// Nodes north of the frame's origin.
+    pub j: i64,
+}
+
+/// A rectangle of nodes of one level: north-west node, spacing and count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NodeWindow {
+    /// North-west node.
+    pub corner: NodeIndex,
+    /// Spacing in finest cells: 1 at the finest level, 2 one above.
+    pub stride: i64,
+    /// Nodes from west to east.
+    pub columns: usize,
+    /// Nodes from north to south.
+    pub rows: usize,
+}
+
+impl NodeWindow {
+    /// The node in `column` from the west and `row` from the north.
+    #[must_use]
+    pub fn node(&self, column: usize, row: usize) -> NodeIndex {
+        NodeIndex {
+            i: self.corner.i + column as i64 * self.stride,
+            j: self.corner.j - row as i64 * self.stride,
+        }
+    }
+
+    /// The same window with `halo` more nodes on every side.
+    #[must_use]
+    pub fn with_halo(&self, halo: usize) -> Self {
+        let reach = halo as i64 * self.stride;
+        Self {
+            corner: NodeIndex { i: self.corner.i - reach, j: self.corner.j + reach },
+            stride: self.stride,
+            columns: self.columns + 2 * halo,
+            rows: self.rows + 2 * halo,
+        }
+    }
+}
+
+/// Why numbers do not make a [`Frame`].
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FrameError {
+    /// The cell is not a usable length.
+    #[error("a cell of {cell_m} m is not usable; it must be between 0.001 m and 1000 km")]
+    Cell {
+        /// The cell asked for.
+        cell_m: f64,
+    },
+    /// The origin is not finite.
+    #[error("the grid origin {origin_m:?} is not a position")]
+    Origin {
+        /// The origin asked for.
+        origin_m: [f64; 2],
+    },
+    /// The extent needs more levels than a package can have, or lies too far out.
+    #[error("{columns} × {rows} cells of {cell_m} m are too many for one package; use a larger --cell")]
+    Extent {
+        /// Cells from west to east.
+        columns: i64,
+        /// Cells from south to north.
+        rows: i64,
+        /// Length of a cell.
+        cell_m: f64,
+    },
+    /// The corner of the root is not on a whole tile.
+    #[error("the root tile's corner ({}, {}) is not a multiple of {TILE_CELLS} cells", corner.i, corner.j)]
+    Corner {
+        /// The corner given.
+        corner: NodeIndex,
+    },
+}
+
+/// The global grid of a package, its tiles and its lattice, in the working CRS.
+///
+/// ```text
+///   root corner (node i0, j0)            x = origin_x + cell · i     i grows east
+///     o──────────┬──────────► x          y = origin_y + cell · j     j grows north
+///     │ z/0/0    │ z/1/0                 u = i · 2^bits, v = j · 2^bits
+///     ├──────────┼──────────
+///     │ z/0/1    │ z/1/1                 a tile: 256 cells of its level
+///     ▼ tile row y
+/// ```
+///
+/// Positions come from the global integer indices, by the two formulas above and in no other way:
+/// `tile_min + k · cell` differs in its last bit between neighbours. The origin is the grid's phase (within
+/// one cell of CRS zero), so adjoining regions of one product get the same nodes and the same tile borders.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "FrameRecord", into = "FrameRecord")]
+pub struct Frame {
+    origin_m: [f64; 2],
+    cell_m: f64,
+    root_corner: NodeIndex,
+    max_level: u8,
+    lattice_bits: u8,
+}
+
+/// [`Frame`] as it is written down.
+#[derive(Serialize, Deserialize)]
+struct FrameRecord {
+    origin_m: [f64; 2],
+    cell_m: f64,
+    root_corner: NodeIndex,
+    max_level: u8,
+}
+
+impl From<Frame> for FrameRecord {
+    fn from(frame: Frame) -> Self {
+        let Frame { origin_m, cell_m, root_corner, max_level, .. } = frame;
+        Self { origin_m, cell_m, root_corner, max_level }
+    }
+}
+
+impl TryFrom<FrameRecord> for Frame {
+    type Error = FrameError;
+
+    fn try_from(record: FrameRecord) -> Result<Self, FrameError> {
+        Self::new(record.origin_m, record.cell_m, record.root_corner, record.max_level)
+    }
+}
+
+impl Frame {
+    /// A frame from its parts, as a package records them.
+    ///
+    /// # Errors
+    /// When the parts are out of range or the corner is not on a whole tile.
+    pub fn new(
+        origin_m: [f64; 2],
+        cell_m: f64,
+        root_corner: NodeIndex,
+        max_level: u8,
+    ) -> Result<Self, FrameError> {
+        if !(0.001..=1e6).contains(&cell_m) {
+            return Err(FrameError::Cell { cell_m });
+        }
+        if !origin_m.iter().all(|metres| metres.is_finite()) {
+            return Err(FrameError::Origin { origin_m });
+        }
+        let span = TILE_CELLS << max_level.min(MAX_LEVEL);
+        let reach = root_corner.i.saturating_abs().max(root_corner.j.saturating_abs()).saturating_add(span);
+        if max_level > MAX_LEVEL || reach > MAX_INDEX {
+            return Err(FrameError::Extent { columns: span, rows: span, cell_m });
+        }
+        if root_corner.i % TILE_CELLS != 0 || root_corner.j % TILE_CELLS != 0 {
+            return Err(FrameError::Corner { corner: root_corner });
+        }
+        let mut lattice_bits = 0;
+        while cell_m / f64::from(1_u32 << lattice_bits) > LATTICE_STEP_M {
+            lattice_bits += 1;
+        }
+        Ok(Self { origin_m, cell_m, root_corner, max_level, lattice_bits })
+    }
+
+    /// The smallest frame whose root covers all nodes from `south_west` to `north_east`, both included.
+    ///
+    /// # Errors
+    /// When that takes more levels than a package can have.
+    pub fn covering(
+        origin_m: [f64; 2],
+        cell_m: f64,
+        south_west: NodeIndex,
+        north_east: NodeIndex,
+    ) -> Result<Self, FrameError> {
+        let down = |index: i64| index.div_euclid(TILE_CELLS);
+        // A border node belongs to both tiles; one tile is enough for an extent that ends on a border.
+        let up = |index: i64| index.div_euclid(TILE_CELLS) + i64::from(index.rem_euclid(TILE_CELLS) != 0);
+        let (west, south) = (down(south_west.i), down(south_west.j));
+        let (east, north) = (up(north_east.i).max(west + 1), up(north_east.j).max(south + 1));
+        let tiles = (east - west).max(north - south);
+        let mut max_level = 0;
+        while 1_i64 << max_level < tiles {
+            max_level += 1;
+            if max_level > MAX_LEVEL {
+                let (columns, rows) = (north_east.i - south_west.i, north_east.j - south_west.j);
+                return Err(FrameError::Extent { columns, rows, cell_m });
+            }
+        }
+        Self::new(origin_m, cell_m, NodeIndex { i: west * TILE_CELLS, j: north * TILE_CELLS }, max_level)
+    }
+
+    /// Position of node (0, 0).
+    #[must_use]
+    pub fn origin_m(&self) -> [f64; 2] {
+        self.origin_m
+    }
+
+    /// Spacing of the finest level's nodes.
+    #[must_use]
+    pub fn cell_m(&self) -> f64 {
+        self.cell_m
+    }
+
+    /// The finest level.
+    #[must_use]
+    pub fn max_level(&self) -> u8 {
+        self.max_level
+    }
+
+    /// North-west node of tile 0/0/0.
+    #[must_use]
+    pub fn root_corner(&self) -> NodeIndex {
+        self.root_corner
+    }
+
+    /// A cell is 2^bits lattice steps.
+    #[must_use]
+    pub fn lattice_bits(&self) -> u8 {
+        self.lattice_bits
+    }
+
+    /// Length of a lattice step: at most a millimetre.
+    #[must_use]
+    pub fn lattice_step_m(&self) -> f64 {
+        self.cell_m / (1_u64 << self.lattice_bits) as f64
+    }
+
+    /// Spacing of a level's nodes in finest cells.
+    ///
+    /// # Panics
+    /// When `level` is beyond the finest one.
+    #[must_use]
+    pub fn stride(&self, level: u8) -> i64 {
+        assert!(level <= self.max_level, "level {level} of {}", self.max_level);
+        1 << (self.max_level - level)
+    }
+
+    /// Spacing of a level's nodes.
+    ///
+    /// # Panics
+    /// When `level` is beyond the finest one.
+    #[must_use]
+    pub fn level_cell_m(&self, level: u8) -> f64 {
+        self.cell_m * self.stride(level) as f64
+    }
+
+    /// x of every node with index `i`.
+    #[must_use]
+    pub fn x_m(&self, i: i64) -> f64 {
+        self.origin_m[0] + self.cell_m * i as f64
+    }
+
+    /// y of every node with index `j`.
+    #[must_use]
+    pub fn y_m(&self, j: i64) -> f64 {
+        self.origin_m[1] + self.cell_m * j as f64
+    }
+
+    /// The lattice point under a node.
+    #[must_use]
+    pub fn lattice_of_node(&self, node: NodeIndex) -> LatticePoint {
+        LatticePoint::new(node.i << self.lattice_bits, node.j << self.lattice_bits)
+    }
+
+    /// Position of a lattice point; for a node's point the same bits as [`Frame::x_m`], [`Frame::y_m`].
+    #[must_use]
+    pub fn position_m(&self, point: LatticePoint) -> [f64; 2] {
+        self.position_of_fraction_m([point.u as f64, point.v as f64])
+    }
+
+    /// Position of a point between lattice points, given in lattice steps.
+    #[must_use]
+    pub fn position_of_fraction_m(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        let steps_per_cell = (1_u64 << self.lattice_bits) as f64;
+        [
+            self.origin_m[0] + self.cell_m * (u / steps_per_cell),
+            self.origin_m[1] + self.cell_m * (v / steps_per_cell),
+        ]
+    }
+
+    /// The lattice point nearest to a position; `None` when it is not finite or absurdly far away.
+    #[must_use]
+    pub fn snap(&self, [x, y]: [f64; 2]) -> Option<LatticePoint> {
+        let steps_per_cell = (1_u64 << self.lattice_bits) as f64;
+        let snap = |metres: f64, origin_m: f64| {
+            let steps = ((metres - origin_m) / self.cell_m * steps_per_cell).round();
+            // Not a number fails the comparison too.
+            (steps.abs() < MAX_INDEX as f64 * steps_per_cell).then_some(steps as i64)
+        };
+        Some(LatticePoint::new(snap(x, self.origin_m[0])?, snap(y, self.origin_m[1])?))
+    }
+
+    /// The north-west node of a tile.
+    ///
+    /// # Panics
+    /// When the tile's level is beyond the finest one.
+    #[must_use]
+    pub fn tile_corner(&self, id: TileId) -> NodeIndex {
+        let side = TILE_CELLS * self.stride(id.z());
+        NodeIndex {
+            i: self.root_corner.i + side * i64::from(id.x()),
+            j: self.root_corner.j - side * i64::from(id.y()),
+        }
+    }
+
+    /// The nodes of a tile on its own level: 257 × 257.
+    #[must_use]
+    pub fn tile_window(&self, id: TileId) -> NodeWindow {
+        NodeWindow {
+            corner: self.tile_corner(id),
+            stride: self.stride(id.z()),
+            columns: TILE_NODES,
+            rows: TILE_NODES,
+        }
+    }
+
+    /// A tile's rectangle on the lattice.
+    #[must_use]
+    pub fn tile_lattice_bounds(&self, id: TileId) -> LatticeBounds {
+        let corner = self.tile_corner(id);
+        let side = TILE_CELLS * self.stride(id.z());
+        LatticeBounds {
+            min: self.lattice_of_node(NodeIndex { i: corner.i, j: corner.j - side }),
+            max: self.lattice_of_node(NodeIndex { i: corner.i + side, j: corner.j }),
+        }
+    }
+
+    /// A tile's rectangle in the working CRS.
+    #[must_use]
+    pub fn tile_bounds(&self, id: TileId) -> Bounds {
+        let corner = self.tile_corner(id);
+        let side = TILE_CELLS * self.stride(id.z());
+        Bounds {
+            min_x: self.x_m(corner.i),
+            min_y: self.y_m(corner.j - side),
+            max_x: self.x_m(corner.i + side),
+            max_y: self.y_m(corner.j),
+        }
+    }
+
+    /// Column and row of the tile of `level` that holds a lattice point (the south-eastern one on a border);
+    /// outside 0…2^level − 1 when the point lies outside the root.
+    #[must_use]
+    pub fn tile_column_row(&self, level: u8, point: LatticePoint) -> [i64; 2] {
+        let corner = self.lattice_of_node(self.root_corner);
+        let side = (TILE_CELLS * self.stride(level)) << self.lattice_bits;
+        [(point.u - corner.u).div_euclid(side), (corner.v - point.v).div_euclid(side)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn frame() -> Frame {
+        let node = |i, j| NodeIndex { i, j };
+        Frame::covering([0.5, 0.25], 1.0, node(563_999, 146_000), node(564_998, 146_999)).unwrap()
+    }
+
+    #[test]
+    fn covers_the_extent_with_aligned_tiles() {
+        let frame = frame();
+        assert_eq!(frame.root_corner().i % TILE_CELLS, 0);
+        assert_eq!(frame.root_corner().j % TILE_CELLS, 0);
+        let bounds = frame.tile_bounds(TileId::ROOT);
+        assert!(bounds.min_x <= frame.x_m(563_999) && bounds.max_x >= frame.x_m(564_998));
+        assert!(bounds.min_y <= frame.y_m(146_000) && bounds.max_y >= frame.y_m(146_999));
+        assert_eq!(frame.max_level(), 3, "564 000 / 256 is no whole number, so five columns of tiles");
+    }
+
+    #[test]
+    fn an_extent_of_exactly_one_tile_is_one_tile() {
+        let frame =
+            Frame::covering([0.0, 0.0], 10.0, NodeIndex { i: 256, j: -512 }, NodeIndex { i: 512, j: -256 });
+        let frame = frame.unwrap();
+        assert_eq!((frame.max_level(), frame.root_corner()), (0, NodeIndex { i: 256, j: -256 }));
+    }
+
+    #[test]
+    fn lattice_step_is_at_most_a_millimetre_and_divides_the_cell() {
+        for cell_m in [0.25, 1.0, 5.0, 30.0, 92.7, 5000.0] {
+            let frame = Frame::new([0.0; 2], cell_m, NodeIndex { i: 0, j: 0 }, 2).unwrap();
+            assert!(frame.lattice_step_m() <= 0.001 && frame.lattice_step_m() > 0.000_49);
+        }
+    }
+
+    #[test]
+    fn refuses_what_is_out_of_range() {
+        let corner = NodeIndex { i: 0, j: 0 };
+        assert!(Frame::new([0.0; 2], f64::NAN, corner, 2).is_err());
+        assert!(Frame::new([f64::INFINITY, 0.0], 1.0, corner, 2).is_err());
+        assert!(Frame::new([0.0; 2], 1.0, NodeIndex { i: 3, j: 0 }, 2).is_err());
+        assert!(Frame::new([0.0; 2], 1.0, corner, 23).is_err());
+        assert!(Frame::new([0.0; 2], 1.0, NodeIndex { i: i64::MIN, j: 0 }, 2).is_err());
+    }
+
+    proptest! {
+        /// A node has one position, whichever way it is reached.
+        #[test]
+        fn node_and_lattice_positions_have_the_same_bits(
+            i in -2_000_000_i64..2_000_000, j in -2_000_000_i64..2_000_000, cell_m in 0.1..1000.0_f64,
+        ) {
+            let frame = Frame::new([0.07, 0.03], cell_m, NodeIndex { i: 0, j: 0 }, 4).unwrap();
+            let at = frame.position_m(frame.lattice_of_node(NodeIndex { i, j }));
+            prop_assert_eq!([at[0].to_bits(), at[1].to_bits()], [frame.x_m(i).to_bits(), frame.y_m(j).to_bits()]);
+        }
+
+        /// Snapping moves a point by at most half a step on each axis.
+        #[test]
+        fn snap_is_within_half_a_step(x in 560_000.0..570_000.0_f64, y in 140_000.0..150_000.0_f64) {
+            let frame = frame();
+            let at = frame.position_m(frame.snap([x, y]).unwrap());
+            let half = frame.lattice_step_m() / 2.0 + 1e-9;
+            prop_assert!((at[0] - x).abs() <= half && (at[1] - y).abs() <= half);
+        }
+
+        /// Children share their parent's corners and halve its side.
+        #[test]
+        fn neighbours_share_their_border(x in 0_u32..7, y in 0_u32..8) {
+            let frame = frame();
+            let id = TileId::new(3, x, y).unwrap();
+            let (own, east) = (frame.tile_bounds(id), frame.tile_bounds(id.neighbour(1, 0).unwrap()));
+            prop_assert_eq!(own.max_x.to_bits(), east.min_x.to_bits());
+            prop_assert_eq!(frame.tile_corner(id.parent().unwrap()) == frame.tile_corner(id), x % 2 == 0 && y % 2 == 0);
+            let inside = frame.tile_lattice_bounds(id).min;
+            prop_assert_eq!(frame.tile_column_row(3, LatticePoint::new(inside.u, inside.v + 1)), [i64::from(x), i64::from(y)]);
+        }
+    }
+}

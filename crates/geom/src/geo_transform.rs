@@ -1,0 +1,59 @@
+use serde::{Deserialize, Serialize};
+
+/// Affine map from pixel coordinates (column, row; 0 at the outer corner of the first pixel, row 0 in
+/// the north of a north-up raster) to CRS coordinates, in GDAL's order of coefficients:
+///
+/// ```text
+/// x = c0 + c1 · column + c2 · row
+/// y = c3 + c4 · column + c5 · row
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct GeoTransform {
+    /// `[c0, c1, c2, c3, c4, c5]` as above.
+    pub coefficients: [f64; 6],
+}
+
+impl GeoTransform {
+    /// CRS position of a pixel position; the centre of pixel (0, 0) is `[0.5, 0.5]`.
+    #[must_use]
+    pub fn crs_from_pixel(&self, [column, row]: [f64; 2]) -> [f64; 2] {
+        let c = &self.coefficients;
+        [c[0] + c[1] * column + c[2] * row, c[3] + c[4] * column + c[5] * row]
+    }
+
+    /// Pixel position of a CRS position; `None` when the transform flattens the plane.
+    #[must_use]
+    pub fn pixel_from_crs(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
+        let c = &self.coefficients;
+        let determinant = c[1] * c[5] - c[2] * c[4];
+        if determinant == 0.0 || !determinant.is_finite() {
+            return None;
+        }
+        let (dx, dy) = (x - c[0], y - c[3]);
+        Some([(dx * c[5] - dy * c[2]) / determinant, (dy * c[1] - dx * c[4]) / determinant])
+    }
+
+    /// Whether rows run along x and columns along y, without rotation or shear.
+    #[must_use]
+    pub fn is_axis_parallel(&self) -> bool {
+        self.coefficients[2] == 0.0 && self.coefficients[4] == 0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverse_undoes_a_rotated_transform() {
+        let transform = GeoTransform { coefficients: [1000.0, 3.0, 1.0, 2000.0, 0.5, -4.0] };
+        let pixel = transform.pixel_from_crs(transform.crs_from_pixel([12.5, 7.25])).unwrap();
+        assert!((pixel[0] - 12.5).abs() < 1e-10 && (pixel[1] - 7.25).abs() < 1e-10);
+    }
+
+    #[test]
+    fn a_flat_transform_has_no_inverse() {
+        let flat = GeoTransform { coefficients: [0.0, 1.0, 2.0, 0.0, 2.0, 4.0] };
+        assert_eq!(flat.pixel_from_crs([1.0, 1.0]), None);
+    }
+}

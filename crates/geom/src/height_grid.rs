@@ -1,0 +1,133 @@
+/// A regular grid of heights in metres, row 0 in the north, row by row. A gap holds no height.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeightGrid {
+    columns: usize,
+    rows: usize,
+    /// NaN marks a gap; kept private so that no caller compares with a sentinel.
+    heights_m: Vec<f32>,
+}
+
+impl HeightGrid {
+    /// A grid from its heights, row by row from the north; every value that is not finite becomes a gap.
+    ///
+    /// # Panics
+    /// When `heights_m` does not hold `columns` × `rows` values: that is a bug of the caller.
+    #[must_use]
+    pub fn new(columns: usize, rows: usize, mut heights_m: Vec<f32>) -> Self {
+        assert_eq!(heights_m.len(), columns * rows, "a grid of {columns} × {rows}");
+        for height_m in &mut heights_m {
+            // One NaN for all gaps, and one zero: equal grids have equal bits.
+            *height_m = if height_m.is_finite() { *height_m + 0.0 } else { f32::NAN };
+        }
+        Self { columns, rows, heights_m }
+    }
+
+    /// A grid computed from `height_m(column, row)`.
+    #[must_use]
+    pub fn from_fn(columns: usize, rows: usize, mut height_m: impl FnMut(usize, usize) -> f32) -> Self {
+        let mut heights_m = Vec::with_capacity(columns * rows);
+        for row in 0..rows {
+            for column in 0..columns {
+                heights_m.push(height_m(column, row));
+            }
+        }
+        Self::new(columns, rows, heights_m)
+    }
+
+    /// Nodes from west to east.
+    #[must_use]
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Nodes from north to south.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// The height of a node, `None` in a gap.
+    ///
+    /// # Panics
+    /// When the node is outside the grid.
+    #[must_use]
+    #[inline]
+    pub fn height(&self, column: usize, row: usize) -> Option<f32> {
+        let height_m = self.raw()[row * self.columns + column];
+        (!height_m.is_nan()).then_some(height_m)
+    }
+
+    /// Whether a node has a height.
+    ///
+    /// # Panics
+    /// When the node is outside the grid.
+    #[must_use]
+    #[inline]
+    pub fn has_height(&self, column: usize, row: usize) -> bool {
+        !self.heights_m[row * self.columns + column].is_nan()
+    }
+
+    /// Whether the cell whose north-west node is (`column`, `row`) has ground: all four corners do.
+    ///
+    /// # Panics
+    /// When the cell is outside the grid.
+    #[must_use]
+    #[inline]
+    pub fn cell_has_ground(&self, column: usize, row: usize) -> bool {
+        self.has_height(column, row)
+            && self.has_height(column + 1, row)
+            && self.has_height(column, row + 1)
+            && self.has_height(column + 1, row + 1)
+    }
+
+    /// All heights row by row from the north, NaN in gaps: for bulk work and for storage.
+    #[must_use]
+    pub fn raw(&self) -> &[f32] {
+        &self.heights_m
+    }
+
+    /// How many nodes have a height.
+    #[must_use]
+    pub fn count_heights(&self) -> usize {
+        self.heights_m.iter().filter(|height_m| !height_m.is_nan()).count()
+    }
+
+    /// Lowest and highest height, `None` when all is gap.
+    #[must_use]
+    pub fn range_m(&self) -> Option<[f32; 2]> {
+        let mut heights = self.heights_m.iter().copied().filter(|height_m| !height_m.is_nan());
+        let first = heights.next()?;
+        Some(heights.fold([first, first], |[low, high], h| [low.min(h), high.max(h)]))
+    }
+
+    /// The rectangle of `columns` × `rows` nodes whose north-west node is (`column`, `row`).
+    ///
+    /// # Panics
+    /// When it reaches outside the grid.
+    #[must_use]
+    pub fn window(&self, column: usize, row: usize, columns: usize, rows: usize) -> Self {
+        Self::from_fn(columns, rows, |c, r| self.heights_m[(row + r) * self.columns + column + c])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gaps_are_none_and_not_counted() {
+        let grid = HeightGrid::new(2, 2, vec![1.0, f32::NAN, f32::INFINITY, -4.0]);
+        assert_eq!(grid.height(0, 0), Some(1.0));
+        assert_eq!(grid.height(1, 0), None);
+        assert_eq!(grid.height(0, 1), None);
+        assert_eq!(grid.count_heights(), 2);
+        assert_eq!(grid.range_m(), Some([-4.0, 1.0]));
+        assert!(!grid.cell_has_ground(0, 0));
+    }
+
+    #[test]
+    fn window_keeps_positions() {
+        let grid = HeightGrid::from_fn(5, 4, |c, r| (10 * r + c) as f32);
+        assert_eq!(grid.window(1, 2, 2, 2).raw(), [21.0, 22.0, 31.0, 32.0]);
+    }
+}

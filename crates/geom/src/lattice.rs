@@ -1,0 +1,26 @@
+use serde::{Deserialize, Serialize};
+
+/// A position in plan, in whole lattice steps of a [`Frame`](crate::Frame): `u` east, `v` north.
+///
+/// All plan geometry of a package lies on this lattice, so orientation and side tests are exact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct LatticePoint {
+    /// Steps east of node (0, 0).
+    pub u: i64,
+    /// Steps north of node (0, 0).
+    pub v: i64,
+}
+
+impl LatticePoint {
+    /// The point `u` steps east and `v` steps north of the frame's node (0, 0).
+    #[must_use]
+    pub const fn new(u: i64, v: i64) -> Self {
+        Self { u, v }
+    }
+
+    /// Distance to `other` in lattice steps.
+    #[must_use]
+    pub fn distance_steps(self, other: Self) -> f64 {
+        ((self.u - other.u) as f64).hypot((self.v - other.v) as f64)
+    }
+}

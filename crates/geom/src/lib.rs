@@ -1,0 +1,31 @@
+//! The nouns of space: lattice points, frames, tiles, bounds, polylines and height grids.
+//!
+//! Everything that two tiles must agree on to the last bit is an integer here: nodes of the global
+//! grid ([`NodeIndex`]) and points of the plan lattice ([`LatticePoint`]). Metres come out of a
+//! [`Frame`] and out of nothing else.
+//!
+//! This crate never knows a road, a file or a GPU.
+
+mod barycentric;
+mod bounds;
+mod coordinate_table;
+mod frame;
+mod geo_transform;
+mod height_grid;
+mod lattice;
+mod orientation;
+mod polyline;
+mod projection;
+mod tile_id;
+
+pub use barycentric::barycentric;
+pub use bounds::{Bounds, LatticeBounds};
+pub use coordinate_table::{CoordinateTable, CoordinateTableError};
+pub use frame::{Frame, FrameError, MAX_LEVEL, NodeIndex, NodeWindow, TILE_CELLS, TILE_NODES};
+pub use geo_transform::GeoTransform;
+pub use height_grid::HeightGrid;
+pub use lattice::LatticePoint;
+pub use orientation::{Side, cross, side};
+pub use polyline::{Polyline, PolylineError};
+pub use projection::{ProjectError, Projection};
+pub use tile_id::{TileId, TileIdError};

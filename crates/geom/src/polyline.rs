@@ -1,0 +1,58 @@
+use crate::LatticePoint;
+
+/// Why points do not make a [`Polyline`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("a polyline needs two different points, got {distinct}")]
+pub struct PolylineError {
+    /// How many points were left after equal neighbours were merged.
+    pub distinct: usize,
+}
+
+/// At least two lattice points, no two neighbours equal.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Polyline {
+    points: Vec<LatticePoint>,
+}
+
+impl Polyline {
+    /// Takes the points in order; equal neighbours are merged into one.
+    ///
+    /// # Errors
+    /// When fewer than two points are left.
+    pub fn new(mut points: Vec<LatticePoint>) -> Result<Self, PolylineError> {
+        points.dedup();
+        if points.len() < 2 { Err(PolylineError { distinct: points.len() }) } else { Ok(Self { points }) }
+    }
+
+    /// The points, in order.
+    #[must_use]
+    pub fn points(&self) -> &[LatticePoint] {
+        &self.points
+    }
+
+    /// The points, in order, as their vector.
+    #[must_use]
+    pub fn into_points(self) -> Vec<LatticePoint> {
+        self.points
+    }
+
+    /// Length in plan, in lattice steps.
+    #[must_use]
+    pub fn length_steps(&self) -> f64 {
+        self.points.windows(2).map(|pair| pair[0].distance_steps(pair[1])).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn merges_equal_neighbours_and_refuses_a_single_point() {
+        let p = |u, v| LatticePoint::new(u, v);
+        let line = Polyline::new(vec![p(0, 0), p(0, 0), p(3, 4), p(3, 4), p(0, 0)]).unwrap();
+        assert_eq!(line.points(), [p(0, 0), p(3, 4), p(0, 0)]);
+        assert!((line.length_steps() - 10.0).abs() < 1e-12);
+        assert_eq!(Polyline::new(vec![p(1, 1), p(1, 1)]), Err(PolylineError { distinct: 1 }));
+    }
+}

@@ -1,0 +1,158 @@
+use std::{fmt, str::FromStr};
+
+use crate::MAX_LEVEL;
+
+/// A tile of the quadtree, printed `z/x/y`: level, column from the west, row from the north.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct TileId {
+    z: u8,
+    x: u32,
+    y: u32,
+}
+
+/// Why something is not a tile id.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum TileIdError {
+    /// The level is beyond the deepest one.
+    #[error("level {z} is beyond the deepest level {MAX_LEVEL}")]
+    Level {
+        /// The level asked for.
+        z: u8,
+    },
+    /// Column or row do not exist on the level.
+    #[error("level {z} has columns and rows 0 to {max}; {x}/{y} is not one of them", max = (1_u64 << z) - 1)]
+    Outside {
+        /// Level.
+        z: u8,
+        /// Column.
+        x: u32,
+        /// Row.
+        y: u32,
+    },
+    /// The text is not three numbers.
+    #[error("{text:?} is not a tile id; write Z/X/Y, for example 3/1/4")]
+    Text {
+        /// What was given.
+        text: String,
+    },
+}
+
+impl TileId {
+    /// The tile that covers all.
+    pub const ROOT: Self = Self { z: 0, x: 0, y: 0 };
+
+    /// Tile `z/x/y`.
+    ///
+    /// # Errors
+    /// When the level is too deep or has no such column or row.
+    pub fn new(z: u8, x: u32, y: u32) -> Result<Self, TileIdError> {
+        if z > MAX_LEVEL {
+            return Err(TileIdError::Level { z });
+        }
+        if x >> z != 0 || y >> z != 0 {
+            return Err(TileIdError::Outside { z, x, y });
+        }
+        Ok(Self { z, x, y })
+    }
+
+    /// Level, 0 = root.
+    #[must_use]
+    pub const fn z(self) -> u8 {
+        self.z
+    }
+
+    /// Column, from the west.
+    #[must_use]
+    pub const fn x(self) -> u32 {
+        self.x
+    }
+
+    /// Row, from the north.
+    #[must_use]
+    pub const fn y(self) -> u32 {
+        self.y
+    }
+
+    /// The tile above; `None` for the root.
+    #[must_use]
+    pub fn parent(self) -> Option<Self> {
+        (self.z > 0).then(|| Self { z: self.z - 1, x: self.x / 2, y: self.y / 2 })
+    }
+
+    /// The tile of level `z` (at most its own) that holds this one.
+    #[must_use]
+    pub fn ancestor(self, z: u8) -> Self {
+        let up = self.z - z.min(self.z);
+        Self { z: self.z - up, x: self.x >> up, y: self.y >> up }
+    }
+
+    /// The four tiles beneath: north-west, north-east, south-west, south-east. Empty at the deepest level.
+    pub fn children(self) -> impl Iterator<Item = Self> {
+        let deeper = self.z < MAX_LEVEL;
+        [(0, 0), (1, 0), (0, 1), (1, 1)]
+            .into_iter()
+            .filter(move |_| deeper)
+            .map(move |(dx, dy)| Self { z: self.z + 1, x: self.x * 2 + dx, y: self.y * 2 + dy })
+    }
+
+    /// The tile `dx` columns east and `dy` rows south on the same level, if there is one.
+    #[must_use]
+    pub fn neighbour(self, dx: i32, dy: i32) -> Option<Self> {
+        let x = self.x.checked_add_signed(dx)?;
+        let y = self.y.checked_add_signed(dy)?;
+        Self::new(self.z, x, y).ok()
+    }
+}
+
+impl fmt::Display for TileId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}/{}", self.z, self.x, self.y)
+    }
+}
+
+impl fmt::Debug for TileId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl FromStr for TileId {
+    type Err = TileIdError;
+
+    fn from_str(text: &str) -> Result<Self, TileIdError> {
+        let bad = || TileIdError::Text { text: text.to_owned() };
+        let mut parts = text.split('/');
+        let mut next = || parts.next().and_then(|part| part.parse::<u32>().ok()).ok_or_else(bad);
+        let (z, x, y) = (next()?, next()?, next()?);
+        if parts.next().is_some() {
+            return Err(bad());
+        }
+        Self::new(u8::try_from(z).map_err(|_| bad())?, x, y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_what_it_prints() {
+        let id = TileId::new(5, 31, 7).unwrap();
+        assert_eq!(id.to_string().parse::<TileId>(), Ok(id));
+    }
+
+    #[test]
+    fn refuses_text_and_tiles_that_do_not_exist() {
+        for text in ["", "1/2", "1/2/3/4", "a/b/c", "1/2/0", "40/0/0"] {
+            assert!(text.parse::<TileId>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn children_know_their_parent() {
+        let id = TileId::new(3, 5, 6).unwrap();
+        assert_eq!(id.children().count(), 4);
+        assert!(id.children().all(|child| child.parent() == Some(id) && child.ancestor(3) == id));
+        assert_eq!(TileId::ROOT.parent(), None);
+    }
+}

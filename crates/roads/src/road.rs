@@ -1,0 +1,110 @@
+use std::fmt;
+
+use corniche_geom::Polyline;
+
+/// Functional road class, 0 (motorway) to 7 (least), and 8 for other roads (paths, steps, cycleways).
+///
+/// Lower is more important. Source: OpenLR White Paper v1.5 names 0 to 7; TomTom's products add 8.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct FunctionalRoadClass(u8);
+
+impl FunctionalRoadClass {
+    /// How many classes there are.
+    pub const COUNT: usize = 9;
+
+    /// The class with this number; `None` above 8.
+    #[must_use]
+    pub const fn new(class: u8) -> Option<Self> {
+        if class < 9 { Some(Self(class)) } else { None }
+    }
+
+    /// Its number.
+    #[must_use]
+    pub const fn number(self) -> u8 {
+        self.0
+    }
+
+    /// All classes, most important first.
+    pub fn all() -> impl DoubleEndedIterator<Item = Self> {
+        (0..9).map(Self)
+    }
+}
+
+impl fmt::Display for FunctionalRoadClass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "FRC {}", self.0)
+    }
+}
+
+/// How a road is built, as far as the tags say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub enum Form {
+    /// One carriageway, or unknown.
+    #[default]
+    Ordinary,
+    /// One of two separate carriageways.
+    DualCarriageway,
+    /// A slip road (`*_link`).
+    Link,
+    /// A roundabout.
+    Roundabout,
+}
+
+/// What carries a road where the ground does not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub enum Structure {
+    /// The ground.
+    #[default]
+    Ground,
+    /// A bridge.
+    Bridge,
+    /// A tunnel.
+    Tunnel,
+}
+
+/// Permitted direction relative to the way's own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub enum Oneway {
+    /// Both directions.
+    #[default]
+    No,
+    /// Along the way.
+    Forward,
+    /// Against the way.
+    Backward,
+}
+
+/// What is kept of a way's tags.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct RoadAttributes {
+    /// How it is built.
+    pub form: Form,
+    /// What carries it.
+    pub structure: Structure,
+    /// OSM's `layer`, −5…5 as a rule.
+    pub layer: i8,
+    /// Permitted direction.
+    pub oneway: Oneway,
+    /// `name`, empty without.
+    pub name: String,
+    /// `ref`, empty without.
+    pub reference: String,
+    /// `surface`, empty without.
+    pub surface: String,
+}
+
+/// One OSM way as a road.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Road {
+    /// OSM's id of the way.
+    pub way_id: i64,
+    /// Functional road class.
+    pub class: FunctionalRoadClass,
+    /// What else the tags say.
+    pub attributes: RoadAttributes,
+    /// The centre-line on the package's lattice.
+    pub line: Polyline,
+    /// Indices into the line's points that no simplification may remove: its ends and every node that
+    /// another road shares (junctions). Ascending.
+    pub fixed: Vec<u32>,
+}

@@ -1,0 +1,11 @@
+//! Tile payloads and packages: values to bytes and back.
+//!
+//! This crate never computes geometry. Its reading side has no C dependency and builds for wasm32.
+
+mod manifest;
+mod payload;
+
+pub use manifest::{
+    Counts, GrowthRow, InputRecord, LevelRecord, Manifest, RoadLoss, SampleCounts, SettingsRecord, VerticalRecord,
+};
+pub use payload::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};

@@ -1,0 +1,199 @@
+use corniche_geom::{Bounds, CoordinateTable, Frame};
+use serde::{Deserialize, Serialize};
+
+/// The table of contents of a package: its JSON metadata.
+///
+/// Nothing here depends on threads, memory, dates or paths: inputs are named by file name and hash.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of the encodings; readers refuse any other.
+    pub format_version: u32,
+    /// Program and version that wrote the package, with its GDAL and PROJ.
+    pub generator: String,
+    /// Says that z/x/y is a local quadtree in the working CRS, not the web's.
+    pub tiling: String,
+    /// Working CRS: "EPSG:…" where it has a code, else its name.
+    pub crs: String,
+    /// Working CRS as WKT2.
+    pub crs_wkt: String,
+    /// Length in the working CRS over true length, at the centre.
+    pub point_scale: f64,
+    /// The grid.
+    pub frame: Frame,
+    /// Rectangle of the DEM's nodes in the working CRS.
+    pub data_bounds: Bounds,
+    /// The same in WGS84 degrees.
+    pub wgs84_bounds: Bounds,
+    /// How nodes relate to the DEM's samples, in words: "nodes are the DEM's samples", "bilinear from …".
+    pub resampling: String,
+    /// Heights.
+    pub vertical: VerticalRecord,
+    /// WGS84 ⇄ working CRS without PROJ.
+    pub coordinates: CoordinateTable,
+    /// One record per level, root first.
+    pub levels: Vec<LevelRecord>,
+    /// Settings that determine the bytes.
+    pub settings: SettingsRecord,
+    /// SHA-256 of the settings as JSON.
+    pub settings_sha256: String,
+    /// What was read.
+    pub inputs: Vec<InputRecord>,
+    /// Credits to show wherever the package is shown.
+    pub attribution: Vec<String>,
+    /// What came in, what was kept, what was lost and why.
+    pub counts: Counts,
+    /// What clipping costs, per level and class.
+    pub growth: Vec<GrowthRow>,
+}
+
+/// Heights: step, unit, datum.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct VerticalRecord {
+    /// One step of `height_q`, metres; a power of two.
+    pub quantum_m: f64,
+    /// Always "metre": other units are converted on reading.
+    pub unit: String,
+    /// Vertical datum as far as the inputs name one, else "unknown".
+    pub datum: String,
+}
+
+/// What a level is and how good it came out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LevelRecord {
+    /// Level, 0 = root.
+    pub level: u8,
+    /// Spacing of its nodes.
+    pub cell_m: f64,
+    /// Meshing tolerance against the level's own raster.
+    pub max_error_m: f64,
+    /// Largest stored geometric error of its tiles.
+    pub geometric_error_m: f64,
+    /// Least important class shown on this level; `None` shows no road.
+    pub least_class: Option<u8>,
+    /// Tolerance of the simplification of roads; 0 keeps every point.
+    pub simplify_tolerance_m: f64,
+    /// How far outside a tile its SV lines reach; half widths beyond it must not be drawn.
+    pub width_margin_m: f64,
+    /// Tiles with ground.
+    pub tiles: u64,
+    /// Triangles in them.
+    pub triangles: u64,
+    /// TIN vertices in them.
+    pub vertices: u64,
+    /// Stored bytes of their terrain sections.
+    pub terrain_bytes: u64,
+    /// Full-resolution nodes with data that the level's TINs do not cover, next to voids and data edges.
+    pub uncovered_nodes: u64,
+}
+
+/// Settings that determine the bytes of a package.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SettingsRecord {
+    /// `--max-error`.
+    pub max_error_m: f64,
+    /// `--fill-voids`.
+    pub fill_voids: u32,
+    /// `--nodata`, if given.
+    pub nodata: Option<f64>,
+    /// `--dem-crs`, if given.
+    pub dem_crs: Option<String>,
+    /// `--crs`, if given.
+    pub crs: Option<String>,
+    /// `--cell`, if given.
+    pub cell_m: Option<f64>,
+    /// Name of the FRC table.
+    pub frc_table: String,
+    /// SHA-256 of the FRC table's text.
+    pub frc_table_sha256: String,
+    /// Coarsest cell, metres, at which each class is still shown; by class, 0 first; `None` never shows it.
+    pub class_max_cell_m: Vec<Option<f64>>,
+    /// Simplification tolerance in cells of the level; 0 is off.
+    pub simplify_cells: f64,
+}
+
+/// An input file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct InputRecord {
+    /// "dem" or "osm".
+    pub kind: String,
+    /// File name without folders.
+    pub name: String,
+    /// Size of the file.
+    pub bytes: u64,
+    /// SHA-256 of the file.
+    pub sha256: String,
+}
+
+/// What came in, what was kept, what was lost and why.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Counts {
+    /// Samples of the DEM.
+    pub samples: SampleCounts,
+    /// Roads read from the extract (ways that the FRC table knows).
+    pub roads_in: u64,
+    /// Their length in plan.
+    pub roads_in_m: f64,
+    /// Roads of which anything is kept at the finest level.
+    pub roads_kept: u64,
+    /// Length in plan kept at the finest level.
+    pub roads_kept_m: f64,
+    /// The difference by reason; counts and lengths add up with what is kept to what came in.
+    pub roads_lost: Vec<RoadLoss>,
+    /// Defects met in the extract, by name: missing nodes, one-node ways and so on. Sorted by name.
+    pub defects: Vec<(String, u64)>,
+    /// Ways by `highway` value that the FRC table does not know. Sorted by value.
+    pub unknown_highways: Vec<(String, u64)>,
+    /// Roads per class, 0 first: count and metres in.
+    pub classes: Vec<(u64, f64)>,
+}
+
+/// Nodes of the finest grid over the data's rectangle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct SampleCounts {
+    /// All nodes of the rectangle.
+    pub nodes: u64,
+    /// With a height from the DEM.
+    pub with_data: u64,
+    /// Filled from their surroundings.
+    pub filled: u64,
+    /// Left void.
+    pub void: u64,
+}
+
+/// Roads lost for one reason.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RoadLoss {
+    /// Why, in words.
+    pub reason: String,
+    /// Roads lost altogether for this reason.
+    pub roads: u64,
+    /// Length in plan lost for this reason.
+    pub length_m: f64,
+}
+
+/// What one class costs on one level.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct GrowthRow {
+    /// Level.
+    pub level: u8,
+    /// Functional road class.
+    pub class: u8,
+    /// Points of the source lines of this class (as read, unclipped).
+    pub source_vertices: u64,
+    /// Points of the level's simplified lines, before cutting at tile borders.
+    pub simplified_vertices: u64,
+    /// Vertices of the clipped lines in all tiles of the level.
+    pub geo_vertices: u64,
+    /// Points of the plan lines of the SV sections.
+    pub sv_vertices: u64,
+    /// Bytes of the source lines as plain f64 pairs.
+    pub source_bytes: u64,
+    /// Bytes of the simplified lines as plain f64 pairs.
+    pub simplified_bytes: u64,
+    /// Bytes of the clipped lines as plain f32 triples.
+    pub geo_raw_bytes: u64,
+    /// Bytes of the clipped lines as stored, the section's bytes shared out by each class's encoded length.
+    pub geo_stored_bytes: u64,
+    /// Bytes of the SV lines as stored, shared out likewise.
+    pub sv_stored_bytes: u64,
+}

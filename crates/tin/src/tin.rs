@@ -1,0 +1,131 @@
+/// A vertex of a [`Tin`]: a node of the tile's grid and its quantized height.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct TinVertex {
+    /// Node row, 0 in the north.
+    pub row: u16,
+    /// Node column, 0 in the west.
+    pub column: u16,
+    /// Height in whole steps of the package's height quantum.
+    pub height_q: i32,
+}
+
+/// A triangulated irregular network over the nodes of one tile.
+///
+/// Vertices are sorted by row, then column, and are distinct nodes. Triangles are counter-clockwise seen from
+/// above, each starts with its smallest vertex index, and they are sorted: equal ground has equal bytes.
+/// Topology (`triangles`) and position (`vertices`) are separate; a void is where no triangle is.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Tin {
+    vertices: Vec<TinVertex>,
+    triangles: Vec<[u32; 3]>,
+}
+
+/// Why vertices and triangles do not make a [`Tin`].
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum TinError {
+    /// A triangle names a vertex that does not exist.
+    #[error("triangle {triangle} names vertex {vertex} of {vertices}")]
+    NoSuchVertex {
+        /// Index of the triangle.
+        triangle: usize,
+        /// The vertex it names.
+        vertex: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// A triangle has no area or is clockwise.
+    #[error("triangle {triangle} is not counter-clockwise")]
+    Orientation {
+        /// Index of the triangle.
+        triangle: usize,
+    },
+    /// Vertices or triangles are not in canonical order, or one occurs twice.
+    #[error("{what} are not in canonical order")]
+    Order {
+        /// Which of the two.
+        what: &'static str,
+    },
+}
+
+impl Tin {
+    /// Puts vertices and triangles, in any order and any rotation, into canonical order.
+    ///
+    /// # Errors
+    /// When a triangle names a missing vertex or is not counter-clockwise, or a node or triangle occurs twice.
+    pub fn new(vertices: Vec<TinVertex>, triangles: &[[u32; 3]]) -> Result<Self, TinError> {
+        let mut order: Vec<u32> = (0..vertices.len() as u32).collect();
+        order.sort_unstable_by_key(|&index| vertices[index as usize]);
+        let mut new_index = vec![0_u32; vertices.len()];
+        for (new, &old) in order.iter().enumerate() {
+            new_index[old as usize] = new as u32;
+        }
+        let mut renamed = Vec::with_capacity(triangles.len());
+        for (triangle, corners) in triangles.iter().enumerate() {
+            let mut named = [0; 3];
+            for (slot, &vertex) in named.iter_mut().zip(corners) {
+                *slot = *new_index.get(vertex as usize).ok_or(TinError::NoSuchVertex {
+                    triangle,
+                    vertex,
+                    vertices: vertices.len(),
+                })?;
+            }
+            let smallest = (0..3).min_by_key(|&k| named[k]).unwrap_or(0);
+            named.rotate_left(smallest);
+            renamed.push(named);
+        }
+        renamed.sort_unstable();
+        let sorted = order.iter().map(|&index| vertices[index as usize]).collect();
+        Self::from_canonical(sorted, renamed)
+    }
+
+    /// Takes vertices and triangles that are in canonical order already, as a package stores them.
+    ///
+    /// # Errors
+    /// When they are not, or a triangle names a missing vertex or is not counter-clockwise.
+    pub fn from_canonical(vertices: Vec<TinVertex>, triangles: Vec<[u32; 3]>) -> Result<Self, TinError> {
+        let node = |vertex: &TinVertex| (vertex.row, vertex.column);
+        if !vertices.is_sorted_by(|a, b| node(a) < node(b)) {
+            return Err(TinError::Order { what: "vertices" });
+        }
+        if !triangles.is_sorted_by(|a, b| a < b) {
+            return Err(TinError::Order { what: "triangles" });
+        }
+        for (triangle, corners) in triangles.iter().enumerate() {
+            let mut at = [[0_i64; 2]; 3];
+            for (slot, &vertex) in at.iter_mut().zip(corners) {
+                let found = vertices.get(vertex as usize).ok_or(TinError::NoSuchVertex {
+                    triangle,
+                    vertex,
+                    vertices: vertices.len(),
+                })?;
+                *slot = [i64::from(found.column), -i64::from(found.row)];
+            }
+            let [a, b, c] = at;
+            if (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) <= 0 {
+                return Err(TinError::Orientation { triangle });
+            }
+            if corners[0] > corners[1] || corners[0] > corners[2] {
+                return Err(TinError::Order { what: "a triangle's corners" });
+            }
+        }
+        Ok(Self { vertices, triangles })
+    }
+
+    /// The vertices, sorted by row, then column.
+    #[must_use]
+    pub fn vertices(&self) -> &[TinVertex] {
+        &self.vertices
+    }
+
+    /// The triangles: indices of vertices, counter-clockwise seen from above.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Whether there is no ground at all.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+}
