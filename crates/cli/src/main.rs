@@ -1,1 +1,58 @@
-fn main() {}
+//! The `corniche` command: arguments, presets, progress, exit codes.
+//!
+//! This crate never holds an algorithm.
+
+mod args;
+mod build;
+mod chart;
+mod exit;
+mod failure;
+mod growth;
+mod info;
+mod interrupt;
+mod presets;
+mod progress;
+mod render;
+mod table;
+mod tile;
+mod verify;
+
+use std::process;
+
+use clap::Parser;
+
+use args::{Arguments, Command};
+use exit::ExitCode;
+use failure::Failure;
+
+fn main() -> process::ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are answers, not errors; clap knows which stream each belongs on.
+            let code = if error.use_stderr() { ExitCode::Unusable } else { ExitCode::Done };
+            let _ = error.print();
+            return code.into();
+        }
+    };
+    match run(arguments) {
+        Ok(code) => code.into(),
+        Err(failure) => {
+            if !failure.is_closed_pipe() {
+                eprintln!("corniche: {failure}");
+            }
+            failure.code().into()
+        }
+    }
+}
+
+fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
+    match arguments.command {
+        Command::Build(args) => build::run(args),
+        Command::Info(args) => info::run(&args),
+        Command::Growth(args) => growth::run(&args),
+        Command::Verify(args) => verify::run(&args),
+        Command::Tile(args) => tile::run(&args),
+        Command::Render(args) => render::run(&args),
+    }
+}

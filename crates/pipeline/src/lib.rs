@@ -1,1 +1,20 @@
-//! (skeleton)
+//! Order, parallelism, memory, defects and progress: the stages of Corniche put to work.
+//!
+//! This crate never parses arguments and never prints. It is the only one that spawns threads.
+
+mod build;
+mod defect;
+mod error;
+mod observer;
+mod settings;
+mod storage;
+mod verify;
+mod workers;
+
+pub use build::{BuildSummary, build};
+pub use defect::Defect;
+pub use error::BuildError;
+pub use observer::{Observer, Silent, Stage};
+pub use settings::{BuildSettings, Existing, Resources, RoadSettings, TerrainSettings};
+pub use storage::{DiskStorage, Kind, MemoryStorage, Span, Storage};
+pub use verify::{Check, ErrorFigures, GapFigures, VerifyError, VerifyReport, VerifySettings, verify};

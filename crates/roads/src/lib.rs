@@ -1,7 +1,21 @@
 //! What a road is: its functional class, its attributes, its line, and its simplification per level.
 //!
-//! This crate never sees terrain or a file.
+//! ```text
+//!  tags ──► FrcTable::classify ──► class, or why it is no road
+//!       └─► attributes         ──► form, bridge/tunnel, oneway, names
+//!  Road ──► ClassFilter ──► shown on this level?  ──► simplify ──► Polyline
+//! ```
+//!
+//! This crate never sees terrain or a file, and never joins ways.
 
+mod attributes;
+mod class_filter;
+mod frc_table;
 mod road;
+mod simplify;
 
+pub use attributes::attributes;
+pub use class_filter::{ClassFilter, ClassFilterError};
+pub use frc_table::{Classified, FrcTable, FrcTableError, NotARoad};
 pub use road::{Form, FunctionalRoadClass, Oneway, Road, RoadAttributes, Structure};
+pub use simplify::simplify;

@@ -105,7 +105,7 @@ pub struct SettingsRecord {
     pub frc_table: String,
     /// SHA-256 of the FRC table's text.
     pub frc_table_sha256: String,
-    /// Coarsest cell, metres, at which each class is still shown; by class, 0 first; `None` never shows it.
+    /// Coarsest cell, metres, at which each class is still shown; by class, 0 first; `None`: on every level.
     pub class_max_cell_m: Vec<Option<f64>>,
     /// Simplification tolerance in cells of the level; 0 is off.
     pub simplify_cells: f64,

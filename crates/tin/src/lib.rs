@@ -1,9 +1,26 @@
 //! Height grid → TIN within an error bound.
 //!
-//! This crate never sees a road or a file.
+//! [`triangulate`] turns the heights of one tile into a [`Tin`]; [`normals`] gives its vertices normals;
+//! [`TriangleBuckets`] and [`measure`] compare it with finer heights; [`Surface`] places it on the lattice.
+//!
+//! This crate never sees a road or a file, and never looks at a neighbouring tile's result: what two tiles
+//! share they both compute from the same nodes.
 
-mod surface;
+mod triangulate;
+mod tile_raster;
+mod outline;
+mod refine;
+mod triangle_rows;
 mod tin;
+mod normals;
+mod deviation;
+mod check;
+mod buckets;
+mod surface;
 
+pub use check::check_covers_ground;
+pub use deviation::{Deviation, TriangleBuckets, WindowPlacement, measure};
+pub use normals::{decode_normal, normals};
 pub use surface::{NO_TWIN, Placement, Surface};
 pub use tin::{Tin, TinError, TinVertex};
+pub use triangulate::{TinSpec, TriangulateError, height_quantum_m, triangulate};

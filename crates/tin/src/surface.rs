@@ -1,8 +1,11 @@
-//! A TIN placed on the lattice, with its adjacency and a spatial index. (contract; being filled in)
+//! A TIN placed on the lattice, with its adjacency and a spatial index.
 
-use corniche_geom::{LatticeBounds, LatticePoint};
+mod buckets;
+
+use corniche_geom::{LatticeBounds, LatticePoint, cross};
 
 use crate::Tin;
+use buckets::Buckets;
 
 /// Marks a half-edge without a neighbour in [`Surface::twin`]'s table: it lies on the outline of the ground.
 pub const NO_TWIN: u32 = u32::MAX;
@@ -19,57 +22,252 @@ pub struct Placement {
 }
 
 /// A TIN with positions on the lattice, twins of its half-edges and a grid of buckets to find triangles.
+///
+/// Half-edge `3 · triangle + k` runs from corner k of the triangle to corner k + 1, its triangle on its left:
+///
+/// ```text
+///            corner 2
+///             /    \
+///    3t + 2  /      \  3t + 1        the half-edge on the other side of an edge is its twin;
+///           v        \               where there is none, the edge is part of the outline of the ground
+///     corner 0 ──► corner 1
+///             3t + 0
+/// ```
 #[derive(Debug, Clone)]
 pub struct Surface {
     points: Vec<LatticePoint>,
     heights_m: Vec<f64>,
     triangles: Vec<[u32; 3]>,
     twins: Vec<u32>,
+    /// Half-edges sorted by origin; those of vertex v are `fans[fan_starts[v]..fan_starts[v + 1]]`.
+    fans: Vec<u32>,
+    fan_starts: Vec<u32>,
+    /// Half-edges without a twin, ascending.
+    outline: Vec<u32>,
+    triangle_buckets: Buckets,
+    /// Over indices into `outline`.
+    outline_buckets: Buckets,
 }
 
 impl Surface {
     /// Places `tin` on the lattice.
     #[must_use]
     pub fn new(tin: &Tin, placement: Placement) -> Self {
-        let _ = (tin, placement);
-        todo!()
+        let Placement { corner, node_steps, quantum_m } = placement;
+        let points: Vec<LatticePoint> = tin
+            .vertices()
+            .iter()
+            .map(|vertex| {
+                let (column, row) = (i64::from(vertex.column), i64::from(vertex.row));
+                LatticePoint::new(corner.u + column * node_steps, corner.v - row * node_steps)
+            })
+            .collect();
+        let heights_m = tin.vertices().iter().map(|vertex| f64::from(vertex.height_q) * quantum_m).collect();
+        let triangles = tin.triangles().to_vec();
+        let (fan_starts, fans) = fans(points.len(), &triangles);
+        let mut surface = Self {
+            points,
+            heights_m,
+            triangles,
+            twins: Vec::new(),
+            fans,
+            fan_starts,
+            outline: Vec::new(),
+            triangle_buckets: Buckets::default(),
+            outline_buckets: Buckets::default(),
+        };
+        surface.twins = (0..3 * surface.triangles.len() as u32).map(|h| surface.find_twin(h)).collect();
+        surface.outline =
+            (0..surface.twins.len() as u32).filter(|&h| surface.twins[h as usize] == NO_TWIN).collect();
+        let boxes: Vec<_> = surface.triangles.iter().map(|corners| surface.bounds_of(corners)).collect();
+        surface.triangle_buckets = Buckets::new(&boxes);
+        let boxes: Vec<_> = surface.outline.iter().map(|&h| surface.bounds_of(&surface.ends(h))).collect();
+        surface.outline_buckets = Buckets::new(&boxes);
+        surface
     }
+
     /// Lattice points of the vertices, as indexed by the TIN.
     #[must_use]
     pub fn points(&self) -> &[LatticePoint] {
         &self.points
     }
+
     /// Heights of the vertices.
     #[must_use]
     pub fn heights_m(&self) -> &[f64] {
         &self.heights_m
     }
+
     /// Triangles as in the TIN.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
+
     /// The half-edge on the other side of half-edge `3 · triangle + k` (from corner k to corner k + 1);
     /// [`NO_TWIN`] on the outline of the ground.
     #[must_use]
+    #[inline]
     pub fn twin(&self, half_edge: u32) -> u32 {
         self.twins[half_edge as usize]
     }
+
+    /// The vertices at the start and at the end of a half-edge.
+    #[must_use]
+    #[inline]
+    pub fn ends(&self, half_edge: u32) -> [u32; 2] {
+        let corners = &self.triangles[half_edge as usize / 3];
+        let k = half_edge as usize % 3;
+        [corners[k], corners[(k + 1) % 3]]
+    }
+
+    /// Half-edges that start at `vertex`, ascending: one for each triangle around it.
+    #[must_use]
+    pub fn fan(&self, vertex: u32) -> &[u32] {
+        let v = vertex as usize;
+        &self.fans[self.fan_starts[v] as usize..self.fan_starts[v + 1] as usize]
+    }
+
     /// The triangle with the smallest index that holds `point`, borders included; `None` off the ground.
     #[must_use]
     pub fn locate(&self, point: LatticePoint) -> Option<u32> {
-        let _ = point;
-        todo!()
+        // A bucket lists its triangles in ascending order, and every triangle around `point` is in it.
+        self.triangle_buckets.at(point).iter().copied().find(|&triangle| self.triangle_holds(triangle, point))
     }
+
+    /// Whether `point` lies in `triangle`, its border included, exactly.
+    #[must_use]
+    pub fn triangle_holds(&self, triangle: u32, point: LatticePoint) -> bool {
+        let [a, b, c] = self.triangles[triangle as usize].map(|vertex| self.points[vertex as usize]);
+        cross(a, b, point) >= 0 && cross(b, c, point) >= 0 && cross(c, a, point) >= 0
+    }
+
     /// Height of the plane of `triangle` above a position in (fractional) lattice steps.
+    ///
+    /// Exact at the triangle's corners. For positions beyond 2^53 steps, where f64 has no whole steps any
+    /// more, use [`Surface::height_at_point_m`].
     #[must_use]
     pub fn height_in_triangle_m(&self, triangle: u32, at: [f64; 2]) -> f64 {
-        let _ = (triangle, at);
-        todo!()
+        let a = self.points[self.triangles[triangle as usize][0] as usize];
+        self.height_from_corner_m(triangle, [at[0] - a.u as f64, at[1] - a.v as f64])
     }
-    /// All triangles whose bounding boxes meet `bounds`, in ascending order, without repetition.
+
+    /// Height of the plane of `triangle` above a lattice point; exact at the triangle's corners.
+    #[must_use]
+    pub fn height_at_point_m(&self, triangle: u32, point: LatticePoint) -> f64 {
+        let a = self.points[self.triangles[triangle as usize][0] as usize];
+        self.height_from_corner_m(triangle, [(point.u - a.u) as f64, (point.v - a.v) as f64])
+    }
+
+    /// All triangles whose bounding boxes meet `bounds`, in ascending order, without repetition, appended to
+    /// `out` after clearing it.
     pub fn triangles_near(&self, bounds: LatticeBounds, out: &mut Vec<u32>) {
-        let _ = (bounds, out);
-        todo!()
+        self.triangle_buckets.near(bounds, out);
+        out.retain(|&triangle| self.bounds_of(&self.triangles[triangle as usize]).intersects(&bounds));
+    }
+
+    /// All half-edges without a twin whose bounding boxes meet `bounds`, in ascending order, without
+    /// repetition, appended to `out` after clearing it.
+    pub fn outline_near(&self, bounds: LatticeBounds, out: &mut Vec<u32>) {
+        self.outline_buckets.near(bounds, out);
+        out.iter_mut().for_each(|index| *index = self.outline[*index as usize]);
+        out.retain(|&half_edge| self.bounds_of(&self.ends(half_edge)).intersects(&bounds));
+    }
+
+    /// Height at an offset, in lattice steps, from corner 0 of `triangle`.
+    ///
+    /// Offsets from a corner keep the products small wherever the tile lies; at a corner the weights are
+    /// exactly 0 and 1.
+    fn height_from_corner_m(&self, triangle: u32, [du, dv]: [f64; 2]) -> f64 {
+        let corners = self.triangles[triangle as usize];
+        let [a, b, c] = corners.map(|vertex| self.points[vertex as usize]);
+        let [za, zb, zc] = corners.map(|vertex| self.heights_m[vertex as usize]);
+        let (bu, bv) = ((b.u - a.u) as f64, (b.v - a.v) as f64);
+        let (cu, cv) = ((c.u - a.u) as f64, (c.v - a.v) as f64);
+        let total = bu * cv - bv * cu;
+        let (wb, wc) = ((du * cv - dv * cu) / total, (bu * dv - bv * du) / total);
+        za + (wb * (zb - za) + wc * (zc - za))
+    }
+
+    fn bounds_of(&self, vertices: &[u32]) -> LatticeBounds {
+        let at = |&vertex: &u32| self.points[vertex as usize];
+        let first = at(&vertices[0]);
+        vertices.iter().map(at).fold(LatticeBounds { min: first, max: first }, |bounds, p| LatticeBounds {
+            min: LatticePoint::new(bounds.min.u.min(p.u), bounds.min.v.min(p.v)),
+            max: LatticePoint::new(bounds.max.u.max(p.u), bounds.max.v.max(p.v)),
+        })
+    }
+
+    /// Looks for the twin around that end of the edge which has fewer triangles: linear in all for a
+    /// planar TIN, and far from quadratic even for one that is not.
+    ///
+    /// An edge that more than two triangles share, or two on the same side, has no twins: such a TIN is
+    /// broken, and every use of it must still end.
+    fn find_twin(&self, half_edge: u32) -> u32 {
+        let [a, b] = self.ends(half_edge);
+        let (hub, rim) = if self.fan(a).len() <= self.fan(b).len() { (a, b) } else { (b, a) };
+        let mut found = [NO_TWIN; 2];
+        let mut counts = [0_u32; 2];
+        for &out in self.fan(hub) {
+            let into = previous(out);
+            for (way, candidate, far) in [(0, out, self.ends(out)[1]), (1, into, self.ends(into)[0])] {
+                if far == rim {
+                    found[way] = candidate;
+                    counts[way] += 1;
+                }
+            }
+        }
+        match (counts, found) {
+            ([1, 1], [one, other]) if one == half_edge => other,
+            ([1, 1], [one, _]) => one,
+            _ => NO_TWIN,
+        }
+    }
+
+    /// Asserts what every other method relies on. For tests.
+    ///
+    /// # Panics
+    /// When twins are not mutual, run the same way, or a fan lists a half-edge that starts elsewhere.
+    pub fn check_invariants(&self) {
+        for half_edge in 0..self.twins.len() as u32 {
+            let twin = self.twin(half_edge);
+            if twin != NO_TWIN {
+                assert_eq!(self.twin(twin), half_edge, "twins are mutual");
+                let [a, b] = self.ends(half_edge);
+                assert_eq!(self.ends(twin), [b, a], "twins run opposite ways");
+            }
+        }
+        assert_eq!(self.fans.len(), self.twins.len());
+        for vertex in 0..self.points.len() as u32 {
+            assert!(self.fan(vertex).is_sorted());
+            assert!(self.fan(vertex).iter().all(|&h| self.ends(h)[0] == vertex));
+        }
     }
 }
+
+/// The half-edge before this one in its triangle.
+fn previous(half_edge: u32) -> u32 {
+    if half_edge.is_multiple_of(3) { half_edge + 2 } else { half_edge - 1 }
+}
+
+/// Half-edges by the vertex they start at: count, then fill.
+fn fans(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0_u32; vertices + 1];
+    for &corner in triangles.iter().flatten() {
+        starts[corner as usize + 1] += 1;
+    }
+    for vertex in 0..vertices {
+        starts[vertex + 1] += starts[vertex];
+    }
+    let mut next = starts.clone();
+    let mut fans = vec![0; 3 * triangles.len()];
+    for (half_edge, &corner) in triangles.iter().flatten().enumerate() {
+        fans[next[corner as usize] as usize] = half_edge as u32;
+        next[corner as usize] += 1;
+    }
+    (starts, fans)
+}
+
+#[cfg(test)]
+#[path = "surface_tests.rs"]
+mod tests;

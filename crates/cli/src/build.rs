@@ -1,0 +1,138 @@
+//! `corniche build`: from text to settings once, then the pipeline.
+
+use std::{num::NonZeroUsize, thread};
+
+use corniche_pipeline::{
+    BuildSettings, Existing, Resources, RoadSettings, TerrainSettings,
+};
+use corniche_roads::ClassFilter;
+
+use crate::{
+    args::BuildArgs,
+    exit::ExitCode,
+    failure::Failure,
+    info, interrupt,
+    presets::{self, Config},
+    progress::Progress,
+};
+
+/// Tolerance of the simplification of roads, in cells of the level, unless said otherwise. It matches the
+/// vertical tolerance, a quarter of the cell: what cannot be seen upright cannot be seen in plan.
+const SIMPLIFY_CELLS: f64 = 0.25;
+/// How far voids are filled, in cells, unless said otherwise.
+const FILL_VOIDS: u32 = 32;
+/// Memory for buffers and caches unless said otherwise.
+const MEMORY_BYTES: u64 = 1 << 30;
+/// With less than this the stages cannot hold a tile each.
+const MIN_MEMORY_BYTES: u64 = 64 << 20;
+
+pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
+    interrupt::watch()?;
+    let progress = Progress::new(&args.report);
+    let quiet = args.report.quiet || args.report.json_progress;
+    let settings = settings(*args)?;
+    let summary = corniche_pipeline::build(&settings, &progress)?;
+    if !quiet {
+        eprintln!("\n{}", info::to_text(&summary.manifest, summary.package_bytes));
+        eprintln!("wrote {}", settings.output.display());
+    }
+    Ok(ExitCode::Done)
+}
+
+/// The only way from text to settings: command line before settings file before defaults.
+fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
+    let config = match &args.config {
+        Some(path) => presets::read_config(path)?,
+        None => Config::default(),
+    };
+    let terrain = TerrainSettings {
+        crs: args.terrain.crs.or(config.terrain.crs),
+        dem_crs: args.terrain.dem_crs.or(config.terrain.dem_crs),
+        nodata: args.terrain.nodata.or(config.terrain.nodata),
+        cell_m: positive("--cell", args.terrain.cell.or(config.terrain.cell))?,
+        max_error_m: positive("--max-error", args.terrain.max_error.or(config.terrain.max_error))?,
+        fill_voids: args.terrain.fill_voids.or(config.terrain.fill_voids).unwrap_or(FILL_VOIDS),
+    };
+    let simplify_cells = args.roads.simplify.or(config.roads.simplify).unwrap_or(SIMPLIFY_CELLS);
+    if !(0.0..=64.0).contains(&simplify_cells) {
+        return Err(Failure::unusable(format!("--simplify must be between 0 and 64 cells, not {simplify_cells}")));
+    }
+    let filter = if args.roads.all_classes || config.roads.all_classes {
+        ClassFilter::all()
+    } else {
+        match config.roads.class_max_cell {
+            Some(cells) => presets::class_filter(&cells)?,
+            None => ClassFilter::usual(),
+        }
+    };
+    let table = args.roads.frc_table.or(config.roads.frc_table);
+    let memory = args.resources.memory.or(config.resources.memory);
+    Ok(BuildSettings {
+        dem: args.dem,
+        osm: args.osm,
+        output: args.output,
+        existing: if args.overwrite { Existing::Replace } else { Existing::Keep },
+        terrain,
+        roads: RoadSettings {
+            table: presets::frc_table(table.as_deref().unwrap_or("default"))?,
+            filter,
+            simplify_cells,
+        },
+        resources: Resources {
+            threads: threads(args.resources.threads.or(config.resources.threads)),
+            memory_bytes: memory.as_deref().map_or(Ok(MEMORY_BYTES), parse_memory)?,
+        },
+        generator: format!("corniche {}", env!("CARGO_PKG_VERSION")),
+    })
+}
+
+fn positive(option: &str, value: Option<f64>) -> Result<Option<f64>, Failure> {
+    match value {
+        Some(metres) if !(metres > 0.0 && metres.is_finite()) => {
+            Err(Failure::unusable(format!("{option} must be a positive number of metres, not {metres}")))
+        }
+        value => Ok(value),
+    }
+}
+
+/// As many threads as asked for, else one per processor.
+pub(crate) fn threads(asked: Option<NonZeroUsize>) -> usize {
+    asked.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
+}
+
+/// Bytes from `512M`, `4G`, `1073741824`.
+fn parse_memory(text: &str) -> Result<u64, Failure> {
+    let bad = || {
+        Failure::unusable(format!("--memory {text:?} is not a size of at least 64M; write it like 512M or 4G"))
+    };
+    let (digits, unit) = match text.char_indices().last() {
+        Some((at, 'K' | 'k')) => (&text[..at], 1 << 10),
+        Some((at, 'M' | 'm')) => (&text[..at], 1 << 20),
+        Some((at, 'G' | 'g')) => (&text[..at], 1 << 30),
+        _ => (text, 1),
+    };
+    let size = digits.parse::<u64>().ok().and_then(|number| number.checked_mul(unit)).ok_or_else(bad)?;
+    if size >= MIN_MEMORY_BYTES { Ok(size) } else { Err(bad()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_of_memory() {
+        assert_eq!(parse_memory("512M").unwrap(), 512 << 20);
+        assert_eq!(parse_memory("4G").unwrap(), 4 << 30);
+        assert_eq!(parse_memory("1073741824").unwrap(), 1 << 30);
+        for bad in ["", "G", "-1G", "1T", "1M", "99999999999G", "ä"] {
+            assert!(parse_memory(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn lengths_must_be_lengths() {
+        assert!(positive("--cell", Some(0.0)).is_err());
+        assert!(positive("--cell", Some(f64::NAN)).is_err());
+        assert_eq!(positive("--cell", Some(2.5)).unwrap(), Some(2.5));
+    }
+}

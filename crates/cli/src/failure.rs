@@ -1,0 +1,83 @@
+use std::{fmt, io};
+
+use corniche_pipeline::{BuildError, VerifyError};
+use corniche_tileset::OpenError;
+
+use crate::exit::ExitCode;
+
+/// Why a command failed, and with which exit code the program ends.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    code: ExitCode,
+    error: anyhow::Error,
+}
+
+impl Failure {
+    pub(crate) fn new(code: ExitCode, error: impl Into<anyhow::Error>) -> Self {
+        Self { code, error: error.into() }
+    }
+
+    /// Wrong usage or unusable input, in words.
+    pub(crate) fn unusable(message: impl fmt::Display) -> Self {
+        Self::new(ExitCode::Unusable, anyhow::anyhow!("{message}"))
+    }
+
+    pub(crate) fn code(&self) -> ExitCode {
+        if self.is_closed_pipe() { ExitCode::Done } else { self.code }
+    }
+
+    /// Whether whoever read our output has had enough (`corniche info … | head`): no failure of ours.
+    pub(crate) fn is_closed_pipe(&self) -> bool {
+        self.error
+            .downcast_ref::<io::Error>()
+            .is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
+    }
+}
+
+impl fmt::Display for Failure {
+    /// The error and its causes on one line; a cause that the text before it repeats is left out.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut said = self.error.to_string();
+        for cause in self.error.chain().skip(1) {
+            let cause = cause.to_string();
+            if !said.contains(&cause) {
+                said = format!("{said}: {cause}");
+            }
+        }
+        f.write_str(&said)
+    }
+}
+
+impl From<BuildError> for Failure {
+    fn from(error: BuildError) -> Self {
+        let code = match &error {
+            BuildError::Exists { .. } => ExitCode::Exists,
+            BuildError::Interrupted => ExitCode::Interrupted,
+            other if other.is_unusable_input() => ExitCode::Unusable,
+            _ => ExitCode::Failed,
+        };
+        Self::new(code, error)
+    }
+}
+
+impl From<VerifyError> for Failure {
+    fn from(error: VerifyError) -> Self {
+        let code = match &error {
+            VerifyError::Interrupted => ExitCode::Interrupted,
+            _ => ExitCode::Unusable,
+        };
+        Self::new(code, error)
+    }
+}
+
+impl From<OpenError> for Failure {
+    fn from(error: OpenError) -> Self {
+        Self::new(ExitCode::Unusable, error)
+    }
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        Self::new(ExitCode::Failed, error)
+    }
+}

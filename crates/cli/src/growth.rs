@@ -1,0 +1,191 @@
+//! `corniche growth`: what laying roads on the terrain costs.
+
+use std::{
+    fs,
+    io::{self, Write as _},
+};
+
+use corniche_tileset::{FilePackage, GrowthRow, Manifest};
+use serde_json::json;
+
+use crate::{
+    args::GrowthArgs,
+    chart,
+    exit::ExitCode,
+    failure::Failure,
+    table::{Table, bytes, count},
+};
+
+/// "About ten": Vaaraniemi, Treib & Westermann 2011, for whole data sets without class filter.
+const PAPER_GROWTH: f64 = 10.0;
+
+pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
+    let package = FilePackage::open(&args.package)?;
+    let manifest = package.manifest();
+    if manifest.growth.is_empty() {
+        return Err(Failure::unusable(format!("{} has no roads: it was built without --osm", args.package.display())));
+    }
+    let mut out = io::stdout().lock();
+    if args.json {
+        writeln!(out, "{}", to_json(manifest))?;
+    } else if args.csv {
+        out.write_all(to_csv(manifest).as_bytes())?;
+    } else {
+        out.write_all(to_text(manifest).as_bytes())?;
+    }
+    if let Some(path) = &args.svg {
+        let svg = chart::growth(manifest).map_err(|error| Failure::new(ExitCode::Failed, error))?;
+        fs::write(path, svg).map_err(|error| {
+            Failure::new(ExitCode::Failed, anyhow::Error::new(error).context(format!("cannot write {}", path.display())))
+        })?;
+    }
+    Ok(ExitCode::Done)
+}
+
+/// Rows of a level summed over its classes, or of all levels.
+pub(crate) fn sum<'a>(rows: impl Iterator<Item = &'a GrowthRow>) -> GrowthRow {
+    rows.fold(GrowthRow::default(), |sum, row| GrowthRow {
+        level: row.level,
+        class: 0,
+        source_vertices: sum.source_vertices + row.source_vertices,
+        simplified_vertices: sum.simplified_vertices + row.simplified_vertices,
+        geo_vertices: sum.geo_vertices + row.geo_vertices,
+        sv_vertices: sum.sv_vertices + row.sv_vertices,
+        source_bytes: sum.source_bytes + row.source_bytes,
+        simplified_bytes: sum.simplified_bytes + row.simplified_bytes,
+        geo_raw_bytes: sum.geo_raw_bytes + row.geo_raw_bytes,
+        geo_stored_bytes: sum.geo_stored_bytes + row.geo_stored_bytes,
+        sv_stored_bytes: sum.sv_stored_bytes + row.sv_stored_bytes,
+    })
+}
+
+/// Growth factors of a row, or of a sum of rows.
+pub(crate) struct Factors {
+    /// Clipped vertices over the level's own simplified line.
+    pub(crate) over_simplified: Option<f64>,
+    /// Clipped vertices over the source.
+    pub(crate) over_source: Option<f64>,
+    /// Clipped bytes, raw, over the source's.
+    pub(crate) raw_bytes: Option<f64>,
+    /// Clipped bytes, stored, over the source's.
+    pub(crate) stored_bytes: Option<f64>,
+}
+
+/// All levels together cost the sum of the levels, against one copy of the source.
+pub(crate) fn whole(manifest: &Manifest) -> (GrowthRow, Factors) {
+    let mut all = sum(manifest.growth.iter());
+    let levels = manifest.levels.len().max(1) as u64;
+    all.source_vertices /= levels;
+    all.source_bytes /= levels;
+    let factors = factors(&all);
+    (all, factors)
+}
+
+pub(crate) fn factors(row: &GrowthRow) -> Factors {
+    let ratio = |above: u64, below: u64| (below > 0).then(|| above as f64 / below as f64);
+    Factors {
+        over_simplified: ratio(row.geo_vertices, row.simplified_vertices),
+        over_source: ratio(row.geo_vertices, row.source_vertices),
+        raw_bytes: ratio(row.geo_raw_bytes, row.source_bytes),
+        stored_bytes: ratio(row.geo_stored_bytes, row.source_bytes),
+    }
+}
+
+fn factor(value: Option<f64>) -> String {
+    value.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}"))
+}
+
+fn line(name: String, row: &GrowthRow, factors: &Factors) -> [String; 11] {
+    [
+        name,
+        count(row.source_vertices),
+        count(row.simplified_vertices),
+        count(row.geo_vertices),
+        count(row.sv_vertices),
+        factor(factors.over_simplified),
+        factor(factors.over_source),
+        bytes(row.geo_raw_bytes),
+        bytes(row.geo_stored_bytes),
+        factor(factors.raw_bytes),
+        factor(factors.stored_bytes),
+    ]
+}
+
+fn to_text(manifest: &Manifest) -> String {
+    let headings = [
+        "", "source", "simplified", "clipped", "SV", "/simplified", "/source", "raw", "stored", "raw/source",
+        "stored/source",
+    ];
+    let mut levels = Table::new(headings);
+    for level in &manifest.levels {
+        let row = sum(manifest.growth.iter().filter(|row| row.level == level.level));
+        levels.row(line(format!("level {}", level.level), &row, &factors(&row)));
+    }
+    let (all, all_factors) = whole(manifest);
+    levels.row(line("all levels".to_owned(), &all, &all_factors));
+    let finest = manifest.levels.last().map_or(0, |level| level.level);
+    let mut classes = Table::new(headings);
+    for row in manifest.growth.iter().filter(|row| row.level == finest) {
+        classes.row(line(format!("FRC {}", row.class), row, &factors(row)));
+    }
+    format!(
+        "Vertices and bytes of roads, per level (all classes)\n{}\nThe finest level, per class\n{}\n\
+         All levels together hold {} times the source's vertices and {} times its bytes as f64 pairs \
+         ({} as stored);\nthe paper reports about {PAPER_GROWTH} for whole data sets, all classes on every level, \
+         nothing simplified.\n",
+        levels.to_text(),
+        classes.to_text(),
+        factor(all_factors.over_source),
+        factor(all_factors.raw_bytes),
+        factor(all_factors.stored_bytes),
+    )
+}
+
+fn to_json(manifest: &Manifest) -> serde_json::Value {
+    let (all, all_factors) = whole(manifest);
+    let level = |number: u8| {
+        let row = sum(manifest.growth.iter().filter(|row| row.level == number));
+        let factors = factors(&row);
+        json!({
+            "level": number, "source_vertices": row.source_vertices,
+            "simplified_vertices": row.simplified_vertices, "geo_vertices": row.geo_vertices,
+            "sv_vertices": row.sv_vertices, "geo_raw_bytes": row.geo_raw_bytes,
+            "geo_stored_bytes": row.geo_stored_bytes, "sv_stored_bytes": row.sv_stored_bytes,
+            "growth_over_simplified": factors.over_simplified, "growth_over_source": factors.over_source,
+        })
+    };
+    json!({
+        "rows": manifest.growth,
+        "levels": manifest.levels.iter().map(|record| level(record.level)).collect::<Vec<_>>(),
+        "all_levels": {
+            "source_vertices": all.source_vertices, "geo_vertices": all.geo_vertices,
+            "growth_over_source": all_factors.over_source, "raw_bytes_over_source": all_factors.raw_bytes,
+            "stored_bytes_over_source": all_factors.stored_bytes,
+        },
+        "paper": PAPER_GROWTH,
+    })
+}
+
+fn to_csv(manifest: &Manifest) -> String {
+    let mut text = "level,class,source_vertices,simplified_vertices,geo_vertices,sv_vertices,source_bytes,\
+                    simplified_bytes,geo_raw_bytes,geo_stored_bytes,sv_stored_bytes\n"
+        .to_owned();
+    for row in &manifest.growth {
+        let cells = [
+            u64::from(row.level),
+            u64::from(row.class),
+            row.source_vertices,
+            row.simplified_vertices,
+            row.geo_vertices,
+            row.sv_vertices,
+            row.source_bytes,
+            row.simplified_bytes,
+            row.geo_raw_bytes,
+            row.geo_stored_bytes,
+            row.sv_stored_bytes,
+        ];
+        text.push_str(&cells.map(|cell| cell.to_string()).join(","));
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,113 @@
+//! `corniche info`: what a package holds and what became of its inputs.
+
+use std::{
+    fmt::Write as _,
+    fs,
+    io::{self, Write as _},
+};
+
+use corniche_tileset::{FilePackage, Manifest};
+use serde_json::json;
+
+use crate::{
+    args::InfoArgs,
+    exit::ExitCode,
+    failure::Failure,
+    table::{Table, bytes, count, length},
+};
+
+pub(crate) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
+    let package = FilePackage::open(&args.package)?;
+    let mut out = io::stdout().lock();
+    if args.json {
+        let tiles: Vec<String> = package.tile_ids()?.iter().map(ToString::to_string).collect();
+        let value = json!({ "manifest": package.manifest(), "tiles": tiles });
+        writeln!(out, "{value}")?;
+    } else {
+        let size = fs::metadata(&args.package)?.len();
+        out.write_all(to_text(package.manifest(), size).as_bytes())?;
+    }
+    Ok(ExitCode::Done)
+}
+
+/// A manifest for people.
+pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
+    let mut text = String::new();
+    let mut say = |line: String| {
+        text.push_str(&line);
+        text.push('\n');
+    };
+    let frame = &manifest.frame;
+    let [west, south, east, north] = manifest.wgs84_bounds.to_array();
+    say(format!("package      {}, format {}, by {}", bytes(package_bytes), manifest.format_version, manifest.generator));
+    say(format!("CRS          {}, point scale {:.6}", manifest.crs, manifest.point_scale));
+    say(format!("extent       {west:.5} {south:.5} {east:.5} {north:.5} (west south east north, degrees)"));
+    say(format!("grid         cell {} m, {}", frame.cell_m(), manifest.resampling));
+    say(format!(
+        "heights      quantum {} m, vertical datum {}",
+        manifest.vertical.quantum_m, manifest.vertical.datum
+    ));
+    let samples = &manifest.counts.samples;
+    say(format!(
+        "nodes        {}: {} with data, {} filled, {} void",
+        count(samples.nodes),
+        count(samples.with_data),
+        count(samples.filled),
+        count(samples.void)
+    ));
+    for input in &manifest.inputs {
+        let hash = input.sha256.get(..12).unwrap_or_default();
+        say(format!("input        {} {}, {}, sha256 {hash}…", input.kind, input.name, bytes(input.bytes)));
+    }
+    for credit in &manifest.attribution {
+        say(format!("attribution  {credit}"));
+    }
+    let mut levels = Table::new([
+        "level", "cell m", "tolerance m", "error m", "tiles", "triangles", "terrain", "B/triangle", "roads to FRC",
+        "uncovered",
+    ]);
+    for level in &manifest.levels {
+        levels.row([
+            level.level.to_string(),
+            format!("{}", level.cell_m),
+            format!("{}", level.max_error_m),
+            format!("{:.2}", level.geometric_error_m),
+            count(level.tiles),
+            count(level.triangles),
+            bytes(level.terrain_bytes),
+            format!("{:.2}", level.terrain_bytes as f64 / level.triangles.max(1) as f64),
+            level.least_class.map_or_else(|| "–".to_owned(), |class| class.to_string()),
+            count(level.uncovered_nodes),
+        ]);
+    }
+    say(format!("\n{}", levels.to_text()));
+    text.push_str(&roads(manifest));
+    text
+}
+
+fn roads(manifest: &Manifest) -> String {
+    let counts = &manifest.counts;
+    if counts.roads_in == 0 {
+        return "no roads: built without an extract\n".to_owned();
+    }
+    let mut text = String::new();
+    let mut table = Table::new(["roads", "count", "length"]);
+    table.row(["read".into(), count(counts.roads_in), length(counts.roads_in_m)]);
+    table.row(["kept at the finest level".into(), count(counts.roads_kept), length(counts.roads_kept_m)]);
+    for loss in &counts.roads_lost {
+        table.row([format!("lost {}", loss.reason), count(loss.roads), length(loss.length_m)]);
+    }
+    for (class, &(roads, metres)) in counts.classes.iter().enumerate() {
+        if roads > 0 {
+            table.row([format!("  FRC {class} ({})", manifest.settings.frc_table), count(roads), length(metres)]);
+        }
+    }
+    text.push_str(&table.to_text());
+    for (name, number) in &counts.defects {
+        let _ = writeln!(text, "defect: {name}: {}", count(*number));
+    }
+    for (value, number) in &counts.unknown_highways {
+        let _ = writeln!(text, "highway={value} is in no class: {}", count(*number));
+    }
+    text
+}

@@ -1,0 +1,115 @@
+//! `corniche tile`: one decoded tile, through which outside tools check us.
+
+use std::io::{self, BufWriter, Write as _};
+
+use corniche_tileset::{FilePackage, Sections, TilePayload};
+use corniche_tin::{Placement, Surface};
+use serde_json::{Value, json};
+
+use crate::{
+    args::TileArgs,
+    exit::ExitCode,
+    failure::Failure,
+    table::{Table, count},
+};
+
+pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
+    let package = FilePackage::open(&args.package)?;
+    let unusable = |error| Failure::new(ExitCode::Unusable, error);
+    let Some(payload) = package.payload(args.id, Sections::ALL).map_err(unusable)? else {
+        return Err(Failure::unusable(format!(
+            "{} has no tile {}; corniche info --json lists its tiles",
+            args.package.display(),
+            args.id
+        )));
+    };
+    let mut out = BufWriter::new(io::stdout().lock());
+    if args.json {
+        writeln!(out, "{}", to_json(&package, &payload)?)?;
+    } else {
+        out.write_all(to_text(&payload).as_bytes())?;
+    }
+    out.flush()?;
+    Ok(ExitCode::Done)
+}
+
+fn to_text(payload: &TilePayload) -> String {
+    let mut table = Table::new(["tile", &payload.id.to_string()]);
+    if let Some(terrain) = &payload.terrain {
+        table.row(["vertices".into(), count(terrain.tin.vertices().len() as u64)]);
+        table.row(["triangles".into(), count(terrain.tin.triangles().len() as u64)]);
+        table.row(["geometric error".into(), format!("{:.3} m", terrain.geometric_error_m)]);
+        let [low, high] = terrain.height_range_m;
+        table.row(["heights".into(), format!("{low:.1} to {high:.1} m")]);
+    }
+    table.row(["GEO lines".into(), count(payload.roads_geo.len() as u64)]);
+    let vertices = payload.roads_geo.iter().map(|road| road.line.vertices.len() as u64).sum();
+    table.row(["GEO vertices".into(), count(vertices)]);
+    table.row(["SV lines".into(), count(payload.roads_sv.len() as u64)]);
+    table.row(["ways".into(), count(payload.attributes.len() as u64)]);
+    table.to_text()
+}
+
+/// The schema is a promise to programs: keys are added, never changed.
+fn to_json(package: &FilePackage, payload: &TilePayload) -> Result<Value, Failure> {
+    let manifest = package.manifest();
+    let frame = &manifest.frame;
+    let id = payload.id;
+    let level = manifest.levels.get(usize::from(id.z()));
+    let mut value = json!({
+        "id": id.to_string(),
+        "crs": manifest.crs,
+        "bounds": frame.tile_bounds(id).to_array(),
+        "cell_m": frame.level_cell_m(id.z()),
+        "max_error_m": level.map(|level| level.max_error_m),
+        "geometric_error_m": null,
+        "height_range_m": null,
+        "tin": { "vertices": [], "triangles": [] },
+        "roads_geo": [],
+        "roads_sv": payload.roads_sv.iter().map(|road| json!({
+            "way_id": road.way_id, "part": road.part, "frc": road.class.number(),
+            "line": road.line.points.iter().map(|&point| frame.position_m(point)).collect::<Vec<_>>(),
+            "ground_range_m": road.line.ground_range_m,
+        })).collect::<Vec<_>>(),
+    });
+    let Some(terrain) = &payload.terrain else { return Ok(value) };
+    let corner = frame.tile_corner(id);
+    let stride = frame.stride(id.z());
+    let vertices: Vec<[f64; 3]> = terrain
+        .tin
+        .vertices()
+        .iter()
+        .map(|vertex| {
+            [
+                frame.x_m(corner.i + i64::from(vertex.column) * stride),
+                frame.y_m(corner.j - i64::from(vertex.row) * stride),
+                f64::from(vertex.height_q) * manifest.vertical.quantum_m,
+            ]
+        })
+        .collect();
+    let surface = Surface::new(
+        &terrain.tin,
+        Placement {
+            corner: frame.lattice_of_node(corner),
+            node_steps: stride << frame.lattice_bits(),
+            quantum_m: manifest.vertical.quantum_m,
+        },
+    );
+    let mut roads = Vec::new();
+    for road in &payload.roads_geo {
+        let line = corniche_drape::positions(&road.line, &surface)
+            .map_err(|error| Failure::new(ExitCode::Unusable, error))?
+            .into_iter()
+            .map(|[u, v, z]| {
+                let [x, y] = frame.position_of_fraction_m([u, v]);
+                [x, y, z]
+            })
+            .collect::<Vec<_>>();
+        roads.push(json!({ "way_id": road.way_id, "part": road.part, "frc": road.class.number(), "line": line }));
+    }
+    value["geometric_error_m"] = json!(terrain.geometric_error_m);
+    value["height_range_m"] = json!(terrain.height_range_m);
+    value["tin"] = json!({ "vertices": vertices, "triangles": terrain.tin.triangles() });
+    value["roads_geo"] = Value::Array(roads);
+    Ok(value)
+}

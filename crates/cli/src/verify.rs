@@ -1,0 +1,116 @@
+//! `corniche verify`: whether a package keeps its promises.
+
+use std::io::{self, Write as _};
+
+use corniche_pipeline::{VerifyReport, VerifySettings};
+use serde_json::json;
+
+use crate::{
+    args::VerifyArgs,
+    build::threads,
+    exit::ExitCode,
+    failure::Failure,
+    interrupt,
+    progress::Progress,
+    table::{Table, count},
+};
+
+pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
+    interrupt::watch()?;
+    let settings = VerifySettings {
+        package: args.package.clone(),
+        dem: args.dem.clone(),
+        threads: threads(args.threads),
+    };
+    let report = corniche_pipeline::verify(&settings, &Progress::new(&args.report))?;
+    let mut out = io::stdout().lock();
+    if args.json {
+        writeln!(out, "{}", to_json(&report))?;
+    } else {
+        out.write_all(to_text(&report).as_bytes())?;
+    }
+    Ok(if report.holds() { ExitCode::Done } else { ExitCode::Failed })
+}
+
+fn to_text(report: &VerifyReport) -> String {
+    let mut text = String::new();
+    for check in &report.checks {
+        let verdict = if check.holds() { "holds " } else { "BROKEN" };
+        text.push_str(&format!("{verdict}  {} ({} looked at", check.name, count(check.checked)));
+        if !check.holds() {
+            text.push_str(&format!(", {} broken", count(check.broken)));
+        }
+        text.push_str(")\n");
+        for example in &check.examples {
+            text.push_str(&format!("          {example}\n"));
+        }
+    }
+    let largest_m = report.gaps.iter().map(|gap| gap.largest_m).fold(0.0, f64::max);
+    text.push_str(&format!(
+        "\n{} tiles, {} borders compared; largest gap of a GEO road to its TIN: {largest_m:.3e} m\n",
+        count(report.tiles),
+        count(report.borders),
+    ));
+    if report.gaps.iter().any(|gap| gap.edges > 0) {
+        let mut table = Table::new(["level", "GEO edges", "largest gap m"]);
+        for gap in &report.gaps {
+            table.row([gap.level.to_string(), count(gap.edges), format!("{:.2e}", gap.largest_m)]);
+        }
+        text.push_str(&format!("\n{}", table.to_text()));
+    }
+    if !report.errors.is_empty() {
+        let mut table = Table::new([
+            "level", "tiles", "nodes", "true error m", "stored/true min", "median", "p95", "uncovered nodes",
+        ]);
+        let ratio = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
+        for figures in &report.errors {
+            table.row([
+                figures.level.to_string(),
+                count(figures.tiles),
+                count(figures.nodes),
+                format!("{:.3}", figures.largest_true_m),
+                ratio(figures.smallest_ratio),
+                ratio(figures.median_ratio),
+                ratio(figures.p95_ratio),
+                count(figures.uncovered_nodes),
+            ]);
+        }
+        text.push_str(&format!("\n{}", table.to_text()));
+    }
+    if let Some(samples) = report.samples {
+        text.push_str(&format!(
+            "\nAt the DEM's own {} samples the finest level is off by {:.3} m at most, {:.3} m RMS; {} samples lie off \
+             the TIN\n",
+            count(samples.samples),
+            samples.largest_m,
+            samples.rms_m,
+            count(samples.uncovered),
+        ));
+    }
+    text
+}
+
+fn to_json(report: &VerifyReport) -> serde_json::Value {
+    json!({
+        "holds": report.holds(),
+        "tiles": report.tiles,
+        "borders": report.borders,
+        "checks": report.checks.iter().map(|check| json!({
+            "name": check.name, "holds": check.holds(), "checked": check.checked, "broken": check.broken,
+            "examples": check.examples,
+        })).collect::<Vec<_>>(),
+        "gaps": report.gaps.iter().map(|gap| json!({
+            "level": gap.level, "edges": gap.edges, "largest_m": gap.largest_m,
+        })).collect::<Vec<_>>(),
+        "errors": report.errors.iter().map(|figures| json!({
+            "level": figures.level, "tiles": figures.tiles, "nodes": figures.nodes,
+            "largest_true_m": figures.largest_true_m, "smallest_ratio": figures.smallest_ratio,
+            "median_ratio": figures.median_ratio, "p95_ratio": figures.p95_ratio,
+            "uncovered_nodes": figures.uncovered_nodes,
+        })).collect::<Vec<_>>(),
+        "samples": report.samples.map(|samples| json!({
+            "samples": samples.samples, "uncovered": samples.uncovered, "largest_m": samples.largest_m,
+            "rms_m": samples.rms_m,
+        })),
+    })
+}

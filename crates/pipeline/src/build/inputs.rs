@@ -1,0 +1,53 @@
+//! What was read: names, sizes, hashes.
+
+use std::{
+    fs::File,
+    io::{self, Read},
+    path::Path,
+};
+
+use corniche_tileset::InputRecord;
+use sha2::{Digest, Sha256};
+
+use super::package::hex;
+use crate::{BuildError, BuildSettings, Observer, Stage};
+
+/// Hashes every input file.
+pub(crate) fn hash(settings: &BuildSettings, observer: &dyn Observer) -> Result<Vec<InputRecord>, BuildError> {
+    let files = settings.dem.iter().map(|path| ("dem", path)).chain(settings.osm.iter().map(|path| ("osm", path)));
+    observer.begin(Stage::Hash, Some(files.clone().count() as u64));
+    let mut inputs = Vec::new();
+    for (kind, path) in files {
+        if observer.is_cancelled() {
+            return Err(BuildError::Interrupted);
+        }
+        inputs.push(record(kind, path, observer)?);
+        observer.advance(Stage::Hash, 1);
+    }
+    observer.end(Stage::Hash);
+    Ok(inputs)
+}
+
+fn record(kind: &str, path: &Path, observer: &dyn Observer) -> Result<InputRecord, BuildError> {
+    let failed = |source: io::Error| BuildError::Input { path: path.to_path_buf(), source };
+    let mut file = File::open(path).map_err(failed)?;
+    let mut hasher = Sha256::new();
+    let mut buffer = vec![0; 1 << 20];
+    let mut bytes = 0;
+    loop {
+        if observer.is_cancelled() {
+            return Err(BuildError::Interrupted);
+        }
+        match file.read(&mut buffer) {
+            Ok(0) => break,
+            Ok(read) => {
+                hasher.update(&buffer[..read]);
+                bytes += read as u64;
+            }
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(failed(error)),
+        }
+    }
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    Ok(InputRecord { kind: kind.to_owned(), name, bytes, sha256: hex(&hasher.finalize()) })
+}

@@ -1,0 +1,99 @@
+//! What differs from level to level, worked out once.
+
+use corniche_geom::Frame;
+use corniche_roads::{ClassFilter, FunctionalRoadClass};
+
+use crate::RoadSettings;
+
+/// Half widths up to this many cells of a level can be drawn from its SV lines: at a screen-space error of two
+/// pixels a cell of the level is some sixteen pixels wide, so that is a hundred pixels and more.
+const MARGIN_CELLS: f64 = 8.0;
+/// And never less than this: half the width of any road, on the finest of levels.
+const MIN_MARGIN_M: f64 = 40.0;
+
+/// Tolerances and margins of all levels.
+#[derive(Debug, Clone)]
+pub(crate) struct Levels {
+    frame: Frame,
+    max_error_m: f64,
+    quantum_m: f64,
+    /// Least important class that the FRC table lets in.
+    least_class: FunctionalRoadClass,
+    filter: ClassFilter,
+    simplify_cells: f64,
+}
+
+impl Levels {
+    pub(crate) fn new(frame: Frame, max_error_m: f64, roads: &RoadSettings) -> Self {
+        Self {
+            frame,
+            max_error_m,
+            quantum_m: corniche_tin::height_quantum_m(max_error_m),
+            least_class: roads.table.least_class(),
+            filter: roads.filter.clone(),
+            simplify_cells: roads.simplify_cells,
+        }
+    }
+
+    pub(crate) fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    pub(crate) fn quantum_m(&self) -> f64 {
+        self.quantum_m
+    }
+
+    /// All levels, root first.
+    pub(crate) fn numbers(&self) -> impl DoubleEndedIterator<Item = u8> + use<> {
+        0..=self.frame.max_level()
+    }
+
+    /// Meshing tolerance against the level's own raster.
+    pub(crate) fn max_error_m(&self, level: u8) -> f64 {
+        self.max_error_m * self.frame.stride(level) as f64
+    }
+
+    /// Whether roads of `class` are shown on `level`. The finest level shows every class that was read.
+    pub(crate) fn shows(&self, level: u8, class: FunctionalRoadClass) -> bool {
+        self.least_class(level).is_some_and(|least| class <= least)
+    }
+
+    /// The least important class shown on `level`.
+    pub(crate) fn least_class(&self, level: u8) -> Option<FunctionalRoadClass> {
+        if level == self.frame.max_level() {
+            Some(self.least_class)
+        } else {
+            self.filter.least_class(self.frame.level_cell_m(level)).map(|class| class.min(self.least_class))
+        }
+    }
+
+    /// Simplification tolerance. The finest level keeps every point: what comes in is what lies there.
+    pub(crate) fn simplify_tolerance_m(&self, level: u8) -> f64 {
+        if level == self.frame.max_level() {
+            0.0
+        } else {
+            self.simplify_cells * self.frame.level_cell_m(level)
+        }
+    }
+
+    /// The same in lattice steps.
+    pub(crate) fn simplify_tolerance_steps(&self, level: u8) -> f64 {
+        self.simplify_tolerance_m(level) / self.frame.lattice_step_m()
+    }
+
+    /// How far outside a tile its SV lines reach: whole cells of the finest level.
+    fn margin_cells(&self, level: u8) -> i64 {
+        let wanted_m = (MARGIN_CELLS * self.frame.level_cell_m(level)).max(MIN_MARGIN_M);
+        (wanted_m / self.frame.cell_m()).ceil() as i64
+    }
+
+    /// The same in metres.
+    pub(crate) fn margin_m(&self, level: u8) -> f64 {
+        self.margin_cells(level) as f64 * self.frame.cell_m()
+    }
+
+    /// The same in lattice steps.
+    pub(crate) fn margin_steps(&self, level: u8) -> i64 {
+        self.margin_cells(level) << self.frame.lattice_bits()
+    }
+}

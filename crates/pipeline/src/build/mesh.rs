@@ -1,0 +1,126 @@
+//! Every tile's TIN, meshed by itself and kept in storage.
+
+use std::collections::BTreeMap;
+
+use corniche_geom::{HeightGrid, TileId};
+use corniche_tin::{Tin, TinSpec, TinVertex};
+
+use super::{heights::Pyramid, levels::Levels};
+use crate::{BuildError, Observer, Stage, Storage, storage::Kind, storage::Span, workers};
+
+/// A tile's ground as meshed, before it is measured.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Meshed {
+    pub(crate) tin: Tin,
+    pub(crate) normals: Vec<[i8; 2]>,
+}
+
+/// Where each tile's mesh is kept. Tiles without ground are absent.
+pub(crate) type Meshes = BTreeMap<TileId, Span>;
+
+/// Triangulates all tiles of all levels.
+pub(crate) fn mesh(
+    pyramid: &Pyramid<'_>,
+    levels: &Levels,
+    threads: usize,
+    storage: &dyn Storage,
+    observer: &dyn Observer,
+) -> Result<Meshes, BuildError> {
+    let tiles: Vec<TileId> = levels.numbers().flat_map(|level| pyramid.tiles(level)).collect();
+    observer.begin(Stage::Mesh, Some(tiles.len() as u64));
+    let mut meshes = Meshes::new();
+    workers::in_order(
+        threads,
+        tiles.len(),
+        || Ok(()),
+        |(), index| {
+            if observer.is_cancelled() {
+                return Err(BuildError::Interrupted);
+            }
+            let id = tiles[index];
+            let meshed = mesh_tile(&pyramid.tile(id, 1)?, id, levels);
+            if meshed.tin.is_empty() {
+                return Ok(None);
+            }
+            storage.append(Kind::Tins, &to_bytes(&meshed)).map(Some).map_err(BuildError::Storage)
+        },
+        |index, span| {
+            meshes.extend(span.map(|span| (tiles[index], span)));
+            observer.advance(Stage::Mesh, 1);
+            Ok(())
+        },
+    )?;
+    observer.end(Stage::Mesh);
+    Ok(meshes)
+}
+
+fn mesh_tile(heights_with_halo: &HeightGrid, id: TileId, levels: &Levels) -> Meshed {
+    let spec = TinSpec { max_error_m: levels.max_error_m(id.z()), quantum_m: levels.quantum_m() };
+    let tin = corniche_tin::triangulate(heights_with_halo, spec);
+    let normals = corniche_tin::normals(heights_with_halo, &tin, levels.frame().level_cell_m(id.z()));
+    Meshed { tin, normals }
+}
+
+/// Reads a mesh back.
+pub(crate) fn load(storage: &dyn Storage, id: TileId, span: Span) -> Result<Meshed, BuildError> {
+    let bytes = storage.read(Kind::Tins, span).map_err(BuildError::Storage)?;
+    from_bytes(&bytes).ok_or_else(|| BuildError::Damaged { what: format!("the mesh of tile {id}") })
+}
+
+/// Counts, then vertices (row, column, height), normals, triangles; all little-endian. Only this process
+/// reads it back, so it is neither compressed nor versioned.
+fn to_bytes(Meshed { tin, normals }: &Meshed) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(8 + tin.vertices().len() * 10 + tin.triangles().len() * 12);
+    bytes.extend((tin.vertices().len() as u32).to_le_bytes());
+    bytes.extend((tin.triangles().len() as u32).to_le_bytes());
+    for vertex in tin.vertices() {
+        bytes.extend(vertex.row.to_le_bytes());
+        bytes.extend(vertex.column.to_le_bytes());
+        bytes.extend(vertex.height_q.to_le_bytes());
+    }
+    bytes.extend(normals.iter().flatten().flat_map(|step| step.to_le_bytes()));
+    bytes.extend(tin.triangles().iter().flatten().flat_map(|index| index.to_le_bytes()));
+    bytes
+}
+
+fn from_bytes(bytes: &[u8]) -> Option<Meshed> {
+    let word = |bytes: &[u8]| Some(u32::from_le_bytes(bytes.try_into().ok()?));
+    let half = |bytes: &[u8]| Some(u16::from_le_bytes(bytes.try_into().ok()?));
+    let (counts, rest) = bytes.split_at_checked(8)?;
+    let (vertices, triangles) = (word(&counts[..4])? as usize, word(&counts[4..])? as usize);
+    let (vertex_bytes, rest) = rest.split_at_checked(vertices * 8)?;
+    let (normal_bytes, triangle_bytes) = rest.split_at_checked(vertices * 2)?;
+    if triangle_bytes.len() != triangles * 12 {
+        return None;
+    }
+    let vertices = vertex_bytes
+        .chunks_exact(8)
+        .map(|b| {
+            Some(TinVertex { row: half(&b[..2])?, column: half(&b[2..4])?, height_q: word(&b[4..])?.cast_signed() })
+        })
+        .collect::<Option<Vec<_>>>()?;
+    let normals = normal_bytes.chunks_exact(2).map(|b| [b[0].cast_signed(), b[1].cast_signed()]).collect();
+    let triangles = triangle_bytes
+        .chunks_exact(12)
+        .map(|b| Some([word(&b[..4])?, word(&b[4..8])?, word(&b[8..])?]))
+        .collect::<Option<Vec<_>>>()?;
+    Some(Meshed { tin: Tin::from_canonical(vertices, triangles).ok()?, normals })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_back_what_it_wrote_and_refuses_a_cut() {
+        let node = |row, column, height_q| TinVertex { row, column, height_q };
+        let vertices = vec![node(0, 0, -5), node(0, 256, 7), node(256, 0, 1 << 20), node(256, 256, 0)];
+        let tin = Tin::new(vertices, &[[0, 2, 1], [1, 2, 3]]).unwrap();
+        let meshed = Meshed { tin, normals: vec![[0, 0], [1, -1], [127, -127], [3, 4]] };
+        let bytes = to_bytes(&meshed);
+        assert_eq!(from_bytes(&bytes), Some(meshed));
+        for cut in 0..bytes.len() {
+            assert_eq!(from_bytes(&bytes[..cut]), None);
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! From inputs to a package.
+//!
+//! ```text
+//! heights ─► mesh ─► errors ─┐
+//!                            ├─► tiles ─► package
+//! roads ─────────────────────┘
+//! ```
+//!
+//! Each stage is a module; what one hands to the next is kept in [`Storage`](crate::Storage), in a work folder
+//! beside the target that is gone when the run ends, however it ends.
+
+mod errors;
+mod heights;
+mod inputs;
+mod levels;
+mod mesh;
+mod package;
+mod road_log;
+mod roads;
+mod tiles;
+
+use std::{fs, path::Path};
+
+use corniche_dem::{Dem, OpenOptions, PlanOptions};
+use corniche_tileset::Manifest;
+
+use crate::{BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage};
+
+use levels::Levels;
+
+/// What a build came to.
+#[derive(Debug, Clone)]
+pub struct BuildSummary {
+    /// The package's manifest.
+    pub manifest: Manifest,
+    /// Size of the package.
+    pub package_bytes: u64,
+}
+
+/// Builds a package. At the target there is either what was there before or the complete package.
+///
+/// # Errors
+/// See [`BuildError`].
+pub fn build(settings: &BuildSettings, observer: &dyn Observer) -> Result<BuildSummary, BuildError> {
+    let target = &settings.output;
+    if settings.existing == Existing::Keep && fs::symlink_metadata(target).is_ok() {
+        return Err(BuildError::Exists { path: target.clone() });
+    }
+    let folder = match target.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let unusable = |source| BuildError::Target { folder: folder.to_path_buf(), source };
+    if target.is_dir() || target.file_name().is_none() {
+        return Err(unusable(std::io::Error::other("the package's name is that of a folder")));
+    }
+    let name = target.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    // Beside the target: the same file system, so that the rename at the end is one step.
+    let work = tempfile::Builder::new()
+        .prefix(&format!(".{name}."))
+        .suffix(".work")
+        .tempdir_in(folder)
+        .map_err(unusable)?;
+    let storage = DiskStorage::create(work.path()).map_err(unusable)?;
+    let finished = work.path().join("package");
+    let manifest = run(settings, &finished, &storage, observer)?;
+    let package_bytes = place(&finished, target, settings.existing)?;
+    Ok(BuildSummary { manifest, package_bytes })
+}
+
+/// All stages in order; the package is written to `finished`.
+fn run(
+    settings: &BuildSettings,
+    finished: &Path,
+    storage: &dyn Storage,
+    observer: &dyn Observer,
+) -> Result<Manifest, BuildError> {
+    let threads = settings.resources.threads;
+    let terrain = &settings.terrain;
+    let inputs = inputs::hash(settings, observer)?;
+    let dem = Dem::open(
+        &settings.dem,
+        &OpenOptions { dem_crs: terrain.dem_crs.clone(), nodata: terrain.nodata },
+    )?;
+    let plan = dem.plan(&PlanOptions {
+        crs: terrain.crs.clone(),
+        cell_m: terrain.cell_m,
+        fill_voids: terrain.fill_voids,
+    })?;
+    let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell_m() / 4.0);
+    if !(max_error_m > 0.0 && max_error_m.is_finite()) {
+        return Err(BuildError::MaxError { max_error_m });
+    }
+    let levels = Levels::new(plan.frame, max_error_m, &settings.roads);
+
+    // Roads come before the long work on heights: an extract that is no use is told at once.
+    let mut roads = match &settings.osm {
+        Some(osm) => {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .map_err(|error| BuildError::Storage(std::io::Error::other(error)))?;
+            let input = roads::RoadInput {
+                osm,
+                settings: &settings.roads,
+                dem: &dem,
+                plan: &plan,
+                levels: &levels,
+                pool: &pool,
+                memory_bytes: settings.resources.memory_bytes / 4,
+            };
+            let read = roads::read(&input, storage, observer)?;
+            roads::check_overlap(&read, &input, &plan.data_bounds, &plan.wgs84_bounds)?;
+            Some(read)
+        }
+        None => None,
+    };
+    let pyramid = heights::read(&dem, &plan, threads, storage, observer)?;
+    let meshes = mesh::mesh(&pyramid, &levels, threads, storage, observer)?;
+    if meshes.is_empty() {
+        return Err(BuildError::NoHeights);
+    }
+    let errors = errors::measure(&pyramid, &meshes, &levels, threads, storage, observer)?;
+    let tiles = tiles::make(
+        &tiles::TileInput { levels: &levels, meshes: &meshes, errors: &errors, storage, threads },
+        roads.as_mut(),
+        observer,
+    )?;
+    let manifest = package::manifest(&package::Outcome {
+        settings,
+        max_error_m,
+        dem: &dem,
+        plan: &plan,
+        levels: &levels,
+        inputs,
+        samples: pyramid.samples(),
+        roads: roads.as_ref(),
+        tiles: &tiles,
+    })?;
+    package::write(finished, &manifest, &tiles, storage, observer)?;
+    Ok(manifest)
+}
+
+/// Moves the finished package to its place, its bytes safely on disk first.
+fn place(finished: &Path, target: &Path, existing: Existing) -> Result<u64, BuildError> {
+    let failed = |source| BuildError::Rename { path: target.to_path_buf(), source };
+    let file = fs::File::options().write(true).open(finished).map_err(failed)?;
+    file.sync_all().map_err(failed)?;
+    let bytes = file.metadata().map_err(failed)?.len();
+    match existing {
+        Existing::Replace => fs::rename(finished, target).map_err(failed)?,
+        // A link fails where a rename would replace what someone put there while the build ran.
+        Existing::Keep => match fs::hard_link(finished, target) {
+            Ok(()) => {}
+            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
+                return Err(BuildError::Exists { path: target.to_path_buf() });
+            }
+            // Not every file system has links; there the check at the start must do.
+            Err(_) => fs::rename(finished, target).map_err(failed)?,
+        },
+    }
+    Ok(bytes)
+}

@@ -1,0 +1,215 @@
+//! The manifest and the package file.
+
+use std::path::Path;
+
+use corniche_dem::{Dem, GridPlan};
+use corniche_geom::{Bounds, CoordinateTable};
+use corniche_tileset::{
+    Counts, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest, RoadLoss, SampleCounts, SettingsRecord,
+    VerticalRecord, Writer,
+};
+use sha2::{Digest, Sha256};
+
+use super::{levels::Levels, roads::ReadRoads, tiles::Tiles};
+use crate::{BuildError, BuildSettings, Observer, Stage, Storage, storage::Kind};
+
+/// Positions interpolated from the manifest are this exact.
+const COORDINATE_TOLERANCE_M: f64 = 0.01;
+/// Credit that OpenStreetMap's licence asks for.
+const OSM_ATTRIBUTION: &str = "© OpenStreetMap contributors";
+
+/// Everything that the manifest tells of.
+pub(crate) struct Outcome<'a> {
+    pub(crate) settings: &'a BuildSettings,
+    pub(crate) max_error_m: f64,
+    pub(crate) dem: &'a Dem,
+    pub(crate) plan: &'a GridPlan,
+    pub(crate) levels: &'a Levels,
+    pub(crate) inputs: Vec<InputRecord>,
+    pub(crate) samples: SampleCounts,
+    pub(crate) roads: Option<&'a ReadRoads<'a>>,
+    pub(crate) tiles: &'a Tiles,
+}
+
+/// Puts the manifest together.
+pub(crate) fn manifest(outcome: &Outcome<'_>) -> Result<Manifest, BuildError> {
+    let Outcome { settings, plan, levels, .. } = outcome;
+    let frame = *levels.frame();
+    let record = settings_record(outcome);
+    let settings_json = serde_json::to_vec(&record).map_err(|error| BuildError::Storage(error.into()))?;
+    let projection = outcome.dem.projection(plan)?;
+    let root = frame.tile_bounds(corniche_geom::TileId::ROOT);
+    // The data's rectangle with room around it, but not the root's far corners: they can be a world away.
+    let room = 0.1 * plan.data_bounds.width().max(plan.data_bounds.height()).max(frame.cell_m());
+    let around = Bounds {
+        min_x: (plan.data_bounds.min_x - room).min(root.min_x.max(plan.data_bounds.min_x - 2.0 * room)),
+        min_y: plan.data_bounds.min_y - room,
+        max_x: plan.data_bounds.max_x + room,
+        max_y: plan.data_bounds.max_y + room,
+    };
+    let mut attribution = Vec::new();
+    if outcome.roads.is_some() {
+        attribution.push(OSM_ATTRIBUTION.to_owned());
+    }
+    Ok(Manifest {
+        format_version: FORMAT_VERSION,
+        generator: format!("{}, {}", settings.generator, plan.libraries),
+        tiling: "local quadtree in the working CRS: z from the root, x from the west, y from the north; not the \
+                 web's tile scheme"
+            .to_owned(),
+        crs: plan.crs.clone(),
+        crs_wkt: plan.crs_wkt.clone(),
+        point_scale: plan.point_scale,
+        frame,
+        data_bounds: plan.data_bounds,
+        wgs84_bounds: plan.wgs84_bounds,
+        resampling: plan.resampling.clone(),
+        vertical: VerticalRecord {
+            quantum_m: levels.quantum_m(),
+            unit: "metre".to_owned(),
+            datum: plan.vertical_datum.clone().unwrap_or_else(|| "unknown".to_owned()),
+        },
+        coordinates: CoordinateTable::sample(&projection, around, COORDINATE_TOLERANCE_M)?,
+        levels: level_records(outcome),
+        settings: record,
+        settings_sha256: hex(&Sha256::digest(settings_json)),
+        inputs: outcome.inputs.clone(),
+        attribution,
+        counts: counts(outcome),
+        growth: growth(outcome),
+    })
+}
+
+fn settings_record(outcome: &Outcome<'_>) -> SettingsRecord {
+    let terrain = &outcome.settings.terrain;
+    let roads = &outcome.settings.roads;
+    SettingsRecord {
+        max_error_m: outcome.max_error_m,
+        fill_voids: terrain.fill_voids,
+        nodata: terrain.nodata,
+        dem_crs: terrain.dem_crs.clone(),
+        crs: terrain.crs.clone(),
+        cell_m: terrain.cell_m,
+        frc_table: roads.table.name().to_owned(),
+        frc_table_sha256: hex(&Sha256::digest(roads.table.canonical_text())),
+        class_max_cell_m: roads.filter.class_max_cell_m().to_vec(),
+        simplify_cells: roads.simplify_cells,
+    }
+}
+
+fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
+    let levels = outcome.levels;
+    levels
+        .numbers()
+        .map(|level| {
+            let sums = outcome.tiles.levels.get(&level).copied().unwrap_or_default();
+            LevelRecord {
+                level,
+                cell_m: levels.frame().level_cell_m(level),
+                max_error_m: levels.max_error_m(level),
+                geometric_error_m: sums.geometric_error_m,
+                least_class: levels.least_class(level).map(corniche_roads::FunctionalRoadClass::number),
+                simplify_tolerance_m: levels.simplify_tolerance_m(level),
+                width_margin_m: levels.margin_m(level),
+                tiles: sums.tiles,
+                triangles: sums.triangles,
+                vertices: sums.vertices,
+                terrain_bytes: sums.terrain_bytes,
+                uncovered_nodes: sums.uncovered_nodes,
+            }
+        })
+        .collect()
+}
+
+/// What came in, what was kept, what was lost and why: per road, then summed.
+fn counts(outcome: &Outcome<'_>) -> Counts {
+    let samples = outcome.samples;
+    let Some(roads) = outcome.roads else { return Counts { samples, ..Counts::default() } };
+    let step_m = outcome.levels.frame().lattice_step_m();
+    // A cut moves a point by less than a lattice step; what differs by no more than that was not lost.
+    let rounding_steps = |length_steps: f64| 2.0 + length_steps * 1e-9;
+    let mut counts = Counts {
+        samples,
+        roads_in: roads.lengths_steps.len() as u64,
+        roads_in_m: roads.lengths_steps.iter().sum::<f64>() * step_m,
+        classes: roads.classes.iter().map(|&(count, steps)| (count, steps * step_m)).collect(),
+        defects: roads.defects.iter().map(|(name, &count)| (name.clone(), count)).collect(),
+        unknown_highways: roads.unknown_highways.iter().map(|(value, &count)| (value.clone(), count)).collect(),
+        ..Counts::default()
+    };
+    let mut outside = RoadLoss { reason: "outside the elevation data".to_owned(), roads: 0, length_m: 0.0 };
+    let mut void = RoadLoss { reason: "over a void".to_owned(), roads: 0, length_m: 0.0 };
+    for (&length_steps, fate) in roads.lengths_steps.iter().zip(&outcome.tiles.roads) {
+        let outside_steps = length_steps - fate.kept_steps - fate.void_steps;
+        counts.roads_kept_m += fate.kept_steps * step_m;
+        void.length_m += fate.void_steps * step_m;
+        outside.length_m += outside_steps * step_m;
+        if fate.kept_steps > rounding_steps(length_steps) {
+            counts.roads_kept += 1;
+        } else if fate.void_steps >= outside_steps {
+            void.roads += 1;
+        } else {
+            outside.roads += 1;
+        }
+    }
+    counts.roads_lost = vec![outside, void];
+    counts
+}
+
+fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {
+    let Some(roads) = outcome.roads else { return Vec::new() };
+    roads
+        .line_counts
+        .iter()
+        .filter(|(_, lines)| lines.source_vertices > 0)
+        .map(|(&(level, class), lines)| {
+            let sums = outcome.tiles.classes.get(&(level, class)).copied().unwrap_or_default();
+            GrowthRow {
+                level,
+                class,
+                source_vertices: lines.source_vertices,
+                simplified_vertices: lines.simplified_vertices,
+                geo_vertices: sums.geo_vertices,
+                sv_vertices: sums.sv_vertices,
+                source_bytes: lines.source_vertices * 16,
+                simplified_bytes: lines.simplified_vertices * 16,
+                geo_raw_bytes: sums.geo_vertices * 12,
+                geo_stored_bytes: sums.geo_stored_bytes,
+                sv_stored_bytes: sums.sv_stored_bytes,
+            }
+        })
+        .collect()
+}
+
+/// Writes the package to `path`.
+pub(crate) fn write(
+    path: &Path,
+    manifest: &Manifest,
+    tiles: &Tiles,
+    storage: &dyn Storage,
+    observer: &dyn Observer,
+) -> Result<(), BuildError> {
+    let failed = |source| BuildError::Write { path: path.to_path_buf(), source };
+    observer.begin(Stage::Package, Some(tiles.payloads.len() as u64));
+    let mut writer = Writer::create(path, manifest).map_err(failed)?;
+    for &(id, span) in &tiles.payloads {
+        if observer.is_cancelled() {
+            return Err(BuildError::Interrupted);
+        }
+        let bytes = storage.read(Kind::Payloads, span).map_err(BuildError::Storage)?;
+        writer.add(id, &bytes).map_err(failed)?;
+        observer.advance(Stage::Package, 1);
+    }
+    writer.finish().map_err(failed)?;
+    observer.end(Stage::Package);
+    Ok(())
+}
+
+/// Lower-case hexadecimal.
+pub(crate) fn hex(bytes: &[u8]) -> String {
+    use std::fmt::Write as _;
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}

@@ -1,0 +1,308 @@
+//! One tile's payload from its mesh, its errors and its roads; and the sums over all tiles.
+
+use std::collections::BTreeMap;
+
+use corniche_drape::Ownership;
+use corniche_geom::TileId;
+use corniche_roads::{FunctionalRoadClass, Road};
+use corniche_tileset::{
+    EncodedTile, GeoRoad, PayloadContext, RoadRecord, SvRoad, Terrain, TilePayload, pmtiles_order,
+};
+use corniche_tin::{Placement, Surface};
+
+use super::{
+    errors::TileErrors,
+    levels::Levels,
+    mesh::{self, Meshes},
+    road_log::RoadLog,
+    roads::ReadRoads,
+};
+use crate::{BuildError, Observer, Stage, Storage, storage::Kind, storage::Span, workers};
+
+/// Tiles whose lists of roads are in memory at once.
+const BATCH: usize = 1024;
+
+/// What the tiles of a run came to.
+pub(crate) struct Tiles {
+    /// Payloads in package order.
+    pub(crate) payloads: Vec<(TileId, Span)>,
+    pub(crate) levels: BTreeMap<u8, LevelSums>,
+    pub(crate) classes: BTreeMap<(u8, u8), ClassSums>,
+    /// Per road, at the finest level, in lattice steps.
+    pub(crate) roads: Vec<RoadFate>,
+}
+
+/// Sums over the tiles of a level.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct LevelSums {
+    pub(crate) tiles: u64,
+    pub(crate) vertices: u64,
+    pub(crate) triangles: u64,
+    pub(crate) terrain_bytes: u64,
+    pub(crate) geometric_error_m: f64,
+    pub(crate) uncovered_nodes: u64,
+}
+
+/// Sums over the roads of a class on a level.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct ClassSums {
+    pub(crate) geo_vertices: u64,
+    pub(crate) sv_vertices: u64,
+    pub(crate) geo_stored_bytes: u64,
+    pub(crate) sv_stored_bytes: u64,
+}
+
+/// What became of a road at the finest level.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct RoadFate {
+    /// Length that lies on a TIN.
+    pub(crate) kept_steps: f64,
+    /// Length inside tiles with ground, but where there is none.
+    pub(crate) void_steps: f64,
+}
+
+/// What every tile needs.
+pub(crate) struct TileInput<'a> {
+    pub(crate) levels: &'a Levels,
+    pub(crate) meshes: &'a Meshes,
+    pub(crate) errors: &'a TileErrors,
+    pub(crate) storage: &'a dyn Storage,
+    pub(crate) threads: usize,
+}
+
+/// A tile as a worker made it.
+struct Made {
+    encoded: EncodedTile,
+    span: Span,
+    payload_counts: PayloadCounts,
+    fates: Vec<(u32, RoadFate)>,
+}
+
+struct PayloadCounts {
+    vertices: u64,
+    triangles: u64,
+    classes: BTreeMap<u8, ClassSums>,
+}
+
+/// Makes and keeps all payloads.
+pub(crate) fn make(
+    input: &TileInput<'_>,
+    roads: Option<&mut ReadRoads<'_>>,
+    observer: &dyn Observer,
+) -> Result<Tiles, BuildError> {
+    let mut ids: Vec<TileId> = input.meshes.keys().copied().collect();
+    ids.sort_unstable_by_key(|&id| pmtiles_order(id));
+    observer.begin(Stage::Tiles, Some(ids.len() as u64));
+    let road_count = roads.as_ref().map_or(0, |roads| roads.log.len());
+    let mut tiles = Tiles {
+        payloads: Vec::with_capacity(ids.len()),
+        levels: BTreeMap::new(),
+        classes: BTreeMap::new(),
+        roads: vec![RoadFate::default(); road_count],
+    };
+    let mut roads = roads;
+    // In batches, so that the lists of roads in memory stay few.
+    for batch in ids.chunks(BATCH) {
+        let mut lists = Vec::with_capacity(batch.len());
+        for &id in batch {
+            lists.push(match &mut roads {
+                Some(roads) => roads.by_tile.roads_of(id)?,
+                None => Vec::new(),
+            });
+        }
+        let log = roads.as_ref().map(|roads| &roads.log);
+        workers::in_order(
+            input.threads,
+            batch.len(),
+            || Ok(()),
+            |(), index| {
+                if observer.is_cancelled() {
+                    return Err(BuildError::Interrupted);
+                }
+                make_tile(input, batch[index], log, &lists[index])
+            },
+            |index, made| {
+                tiles.add(batch[index], &made, input);
+                observer.advance(Stage::Tiles, 1);
+                Ok(())
+            },
+        )?;
+    }
+    observer.end(Stage::Tiles);
+    Ok(tiles)
+}
+
+impl Tiles {
+    fn add(&mut self, id: TileId, made: &Made, input: &TileInput<'_>) {
+        self.payloads.push((id, made.span));
+        let errors = input.errors.of(id);
+        let level = self.levels.entry(id.z()).or_default();
+        level.tiles += 1;
+        level.vertices += made.payload_counts.vertices;
+        level.triangles += made.payload_counts.triangles;
+        level.terrain_bytes += made.encoded.terrain.stored;
+        level.geometric_error_m = level.geometric_error_m.max(errors.geometric_error_m);
+        level.uncovered_nodes += errors.uncovered_nodes;
+        for (&class, counted) in &made.payload_counts.classes {
+            let sums = self.classes.entry((id.z(), class)).or_default();
+            sums.geo_vertices += counted.geo_vertices;
+            sums.sv_vertices += counted.sv_vertices;
+            sums.geo_stored_bytes += counted.geo_stored_bytes;
+            sums.sv_stored_bytes += counted.sv_stored_bytes;
+        }
+        for &(ordinal, fate) in &made.fates {
+            let road = &mut self.roads[ordinal as usize];
+            road.kept_steps += fate.kept_steps;
+            road.void_steps += fate.void_steps;
+        }
+    }
+}
+
+fn make_tile(
+    input: &TileInput<'_>,
+    id: TileId,
+    log: Option<&RoadLog<'_>>,
+    ordinals: &[u32],
+) -> Result<Made, BuildError> {
+    let levels = input.levels;
+    let frame = levels.frame();
+    let span = input.meshes.get(&id).ok_or_else(|| BuildError::Damaged { what: format!("tile {id}") })?;
+    let meshed = mesh::load(input.storage, id, *span)?;
+    let surface = Surface::new(
+        &meshed.tin,
+        Placement {
+            corner: frame.lattice_of_node(frame.tile_corner(id)),
+            node_steps: frame.stride(id.z()) << frame.lattice_bits(),
+            quantum_m: levels.quantum_m(),
+        },
+    );
+    let mut laid = Laid::default();
+    for &ordinal in ordinals {
+        if let Some(log) = log {
+            laid.lay(&log.load(ordinal)?, ordinal, id, &surface, levels);
+        }
+    }
+    let fates = std::mem::take(&mut laid.fates);
+    let errors = input.errors.of(id);
+    let counts = (meshed.tin.vertices().len() as u64, meshed.tin.triangles().len() as u64);
+    let terrain = Terrain {
+        tin: meshed.tin,
+        normals: meshed.normals,
+        geometric_error_m: errors.geometric_error_m,
+        height_range_m: errors.height_range_m,
+        uncovered_nodes: errors.uncovered_nodes,
+    };
+    let payload = laid.into_payload(id, terrain);
+    let context = PayloadContext { frame: *frame, quantum_m: levels.quantum_m() };
+    let encoded = corniche_tileset::encode(&payload, &context)?;
+    let classes = class_sums(&payload, &encoded);
+    let span = input.storage.append(Kind::Payloads, &encoded.bytes).map_err(BuildError::Storage)?;
+    let payload_counts = PayloadCounts { vertices: counts.0, triangles: counts.1, classes };
+    Ok(Made { encoded: EncodedTile { bytes: Vec::new(), ..encoded }, span, payload_counts, fates })
+}
+
+/// The roads of one tile as they are laid.
+#[derive(Default)]
+struct Laid {
+    geo: Vec<GeoRoad>,
+    sv: Vec<SvRoad>,
+    attributes: BTreeMap<i64, RoadRecord>,
+    fates: Vec<(u32, RoadFate)>,
+    /// Next part number of each way, GEO and SV.
+    parts: BTreeMap<i64, [u32; 2]>,
+}
+
+impl Laid {
+    fn lay(&mut self, road: &Road, ordinal: u32, id: TileId, surface: &Surface, levels: &Levels) {
+        let frame = levels.frame();
+        let bounds = frame.tile_lattice_bounds(id);
+        let simplified = corniche_roads::simplify(road, levels.simplify_tolerance_steps(id.z()));
+        let mut fate = RoadFate::default();
+        let parts = self.parts.entry(road.way_id).or_default();
+        let mut laid = 0;
+        for part in corniche_drape::clip(&simplified, &bounds, Ownership::of_tile(id)) {
+            let draped = corniche_drape::drape(&part, surface);
+            fate.void_steps += draped.off_ground_steps;
+            fate.kept_steps += part.length_steps() - draped.off_ground_steps;
+            for line in draped.lines {
+                self.geo.push(GeoRoad { way_id: road.way_id, part: parts[0], class: road.class, line });
+                parts[0] += 1;
+                laid += 1;
+            }
+        }
+        let margin = levels.margin_steps(id.z());
+        for part in corniche_drape::clip_closed(&simplified, &bounds.expanded(margin)) {
+            for line in corniche_drape::extrude(&part, surface, margin) {
+                self.sv.push(SvRoad { way_id: road.way_id, part: parts[1], class: road.class, line });
+                parts[1] += 1;
+                laid += 1;
+            }
+        }
+        if laid > 0 {
+            self.attributes
+                .entry(road.way_id)
+                .or_insert_with(|| RoadRecord { way_id: road.way_id, attributes: road.attributes.clone() });
+        }
+        if id.z() == frame.max_level() && fate != RoadFate::default() {
+            self.fates.push((ordinal, fate));
+        }
+    }
+
+    fn into_payload(mut self, id: TileId, terrain: Terrain) -> TilePayload {
+        self.geo.sort_by_key(|road| (road.class, road.way_id, road.part));
+        self.sv.sort_by_key(|road| (road.class, road.way_id, road.part));
+        TilePayload {
+            id,
+            terrain: Some(terrain),
+            roads_geo: self.geo,
+            roads_sv: self.sv,
+            attributes: self.attributes.into_values().collect(),
+        }
+    }
+}
+
+/// Vertices by class, and each section's stored bytes shared out by the classes' encoded lengths.
+fn class_sums(payload: &TilePayload, encoded: &EncodedTile) -> BTreeMap<u8, ClassSums> {
+    let mut classes: BTreeMap<u8, ClassSums> = BTreeMap::new();
+    for road in &payload.roads_geo {
+        classes.entry(road.class.number()).or_default().geo_vertices += road.line.vertices.len() as u64;
+    }
+    for road in &payload.roads_sv {
+        classes.entry(road.class.number()).or_default().sv_vertices += road.line.points.len() as u64;
+    }
+    for class in FunctionalRoadClass::all() {
+        let index = usize::from(class.number());
+        let shares = [
+            share(encoded.roads_geo.stored, &encoded.geo_class_bytes, index),
+            share(encoded.roads_sv.stored, &encoded.sv_class_bytes, index),
+        ];
+        if shares != [0, 0] {
+            let sums = classes.entry(class.number()).or_default();
+            sums.geo_stored_bytes += shares[0];
+            sums.sv_stored_bytes += shares[1];
+        }
+    }
+    classes
+}
+
+/// The share of `total` that falls to `parts[index]`, so that all shares add up to `total` exactly.
+fn share(total: u64, parts: &[u64; FunctionalRoadClass::COUNT], index: usize) -> u64 {
+    let sum: u64 = parts.iter().sum();
+    if sum == 0 {
+        return 0;
+    }
+    let up_to = |end: usize| (u128::from(total) * u128::from(parts[..end].iter().sum::<u64>()) / u128::from(sum)) as u64;
+    up_to(index + 1) - up_to(index)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::share;
+
+    #[test]
+    fn shares_add_up() {
+        let parts = [3, 0, 7, 1, 0, 0, 0, 0, 90];
+        assert_eq!((0..9).map(|index| share(1000, &parts, index)).sum::<u64>(), 1000);
+        assert_eq!(share(1000, &[0; 9], 3), 0);
+    }
+}

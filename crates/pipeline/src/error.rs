@@ -1,0 +1,61 @@
+use std::{io, path::PathBuf};
+
+/// Why a package could not be built.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum BuildError {
+    #[error("{path:?} exists already; give -O to replace it")]
+    Exists { path: PathBuf },
+    #[error("cannot write in {folder:?}; choose another place for the package")]
+    Target { folder: PathBuf, source: io::Error },
+    #[error("cannot read {path:?}")]
+    Input { path: PathBuf, source: io::Error },
+    #[error(transparent)]
+    Dem(#[from] corniche_dem::DemError),
+    #[error(transparent)]
+    Osm(#[from] corniche_osm::ReadOsmError),
+    #[error("the elevation data hold no height at all: every sample is void")]
+    NoHeights,
+    #[error("{osm:?} has no road; is it the right extract, and does its FRC table know its highway values?")]
+    NoRoads { osm: PathBuf },
+    #[error(
+        "{osm:?} and the elevation data do not overlap: roads lie within {roads_deg:?}, heights within \
+         {heights_deg:?} (west, south, east, north in degrees)"
+    )]
+    NoOverlap { osm: PathBuf, roads_deg: [f64; 4], heights_deg: [f64; 4] },
+    #[error("--max-error must be a positive number of metres, not {max_error_m}")]
+    MaxError { max_error_m: f64 },
+    #[error("intermediate results could not be kept beside the package (disk full?)")]
+    Storage(#[source] io::Error),
+    #[error("intermediate results beside the package were damaged while the build ran: {what}")]
+    Damaged { what: String },
+    #[error("a tile could not be encoded")]
+    Encode(#[from] corniche_tileset::EncodeError),
+    #[error("{path:?} could not be written (disk full?)")]
+    Write { path: PathBuf, source: corniche_tileset::WriteError },
+    #[error("{path:?} could not be put in its place")]
+    Rename { path: PathBuf, source: io::Error },
+    #[error("longitudes and latitudes of the package could not be computed")]
+    Coordinates(#[from] corniche_geom::CoordinateTableError),
+    #[error("interrupted; nothing was written, run the same command again")]
+    Interrupted,
+}
+
+impl BuildError {
+    /// Whether the fault lies in what was given rather than in carrying it out.
+    #[must_use]
+    pub fn is_unusable_input(&self) -> bool {
+        matches!(
+            self,
+            Self::Target { .. }
+                | Self::Input { .. }
+                | Self::Dem(_)
+                | Self::Osm(_)
+                | Self::NoHeights
+                | Self::NoRoads { .. }
+                | Self::NoOverlap { .. }
+                | Self::MaxError { .. }
+        )
+    }
+}

@@ -1,0 +1,64 @@
+/// A stage of a run, in the order in which they come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Stage {
+    /// Hash the input files.
+    Hash,
+    /// Read the DEM, reproject it, fill its voids, make the level rasters. Counted in blocks.
+    Heights,
+    /// Triangulate all tiles of all levels. Counted in tiles.
+    Mesh,
+    /// Measure every tile against the full resolution. Counted in finest tiles.
+    Errors,
+    /// Read roads from the extract. Counted in roads; the total is unknown.
+    Roads,
+    /// Clip, drape and encode. Counted in tiles.
+    Tiles,
+    /// Write the package. Counted in tiles.
+    Package,
+    /// Check a package. Counted in tiles.
+    Verify,
+}
+
+impl Stage {
+    /// What the stage does, for people.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Hash => "hashing inputs",
+            Self::Heights => "reading heights",
+            Self::Mesh => "triangulating",
+            Self::Errors => "measuring errors",
+            Self::Roads => "reading roads",
+            Self::Tiles => "draping and encoding",
+            Self::Package => "writing package",
+            Self::Verify => "verifying",
+        }
+    }
+}
+
+/// The one window through which the binaries look into a run, and the one way to stop it.
+pub trait Observer: Sync {
+    /// A stage begins; `total` is how much it will count up to, where that is known.
+    fn begin(&self, stage: Stage, total: Option<u64>);
+
+    /// The stage has done `steps` more.
+    fn advance(&self, stage: Stage, steps: u64);
+
+    /// The stage is over.
+    fn end(&self, stage: Stage);
+
+    /// Whether to stop at the next opportunity; the run then fails with `Interrupted`.
+    fn is_cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// Looks away: nothing is reported, nothing is cancelled.
+#[derive(Debug, Clone, Copy)]
+pub struct Silent;
+
+impl Observer for Silent {
+    fn begin(&self, _: Stage, _: Option<u64>) {}
+    fn advance(&self, _: Stage, _: u64) {}
+    fn end(&self, _: Stage) {}
+}

@@ -1,0 +1,70 @@
+use std::path::PathBuf;
+
+use corniche_roads::{ClassFilter, FrcTable};
+
+/// What to build, from what, and how: checked, ready to run.
+#[derive(Debug, Clone)]
+pub struct BuildSettings {
+    /// Elevation rasters; where they overlap, the first has precedence.
+    pub dem: Vec<PathBuf>,
+    /// OpenStreetMap extract; `None` builds terrain alone.
+    pub osm: Option<PathBuf>,
+    /// The package to write.
+    pub output: PathBuf,
+    /// What to do when the package exists.
+    pub existing: Existing,
+    /// How the ground is made.
+    pub terrain: TerrainSettings,
+    /// How roads are made.
+    pub roads: RoadSettings,
+    /// What the run may use.
+    pub resources: Resources,
+    /// Program and version, for the manifest.
+    pub generator: String,
+}
+
+/// What to do with a package that exists at the target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Existing {
+    /// Refuse to build.
+    Keep,
+    /// Replace it when the new one is complete.
+    Replace,
+}
+
+/// How the ground is made. Determines bytes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TerrainSettings {
+    /// Working CRS; `None` chooses one.
+    pub crs: Option<String>,
+    /// CRS of rasters that name none.
+    pub dem_crs: Option<String>,
+    /// Value that means "no data" beside what the files say.
+    pub nodata: Option<f64>,
+    /// Spacing of the finest level; `None` takes the DEM's.
+    pub cell_m: Option<f64>,
+    /// Largest vertical error of the finest level; `None` takes a quarter of the cell.
+    pub max_error_m: Option<f64>,
+    /// How far, in cells, data may lie in each of eight directions for a void node to be filled.
+    pub fill_voids: u32,
+}
+
+/// How roads are made. Determines bytes.
+#[derive(Debug, Clone)]
+pub struct RoadSettings {
+    /// `highway` value → class.
+    pub table: FrcTable,
+    /// On which levels each class is shown.
+    pub filter: ClassFilter,
+    /// Simplification tolerance, in cells of the level; 0 keeps every point. The finest level always does.
+    pub simplify_cells: f64,
+}
+
+/// What a run may use. Determines no byte.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Resources {
+    /// Worker threads, at least 1.
+    pub threads: usize,
+    /// Memory for buffers and caches, bytes.
+    pub memory_bytes: u64,
+}

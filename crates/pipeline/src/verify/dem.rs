@@ -1,0 +1,235 @@
+//! P2: the stored error is never below the true one, and hardly above it.
+
+use std::{collections::BTreeMap, rc::Rc};
+
+use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions};
+use corniche_geom::{HeightGrid, TileId};
+use corniche_tileset::{FilePackage, Manifest, Sections};
+
+use super::{Check, ErrorFigures, SampleFigures, VerifyError, VerifyReport, VerifySettings, ground::Ground};
+use crate::{Observer, Stage, workers};
+
+/// Slack for comparing two ways of computing the same height, metres.
+const ROUNDING_M: f64 = 1e-6;
+/// P2's tightness: stored ≤ this × true + a quantum, for this share of tiles.
+const TIGHTNESS: f64 = 2.0;
+const TIGHT_SHARE: f64 = 0.95;
+
+/// True error of a tile as far as it is known.
+#[derive(Debug, Clone, Copy, Default)]
+struct Truth {
+    largest_m: f64,
+    nodes: u64,
+    uncovered: u64,
+    /// Uncovered nodes farther than one cell of the level from any void or edge.
+    stray: u64,
+}
+
+impl Truth {
+    fn merge(&mut self, other: Self) {
+        self.largest_m = self.largest_m.max(other.largest_m);
+        self.nodes += other.nodes;
+        self.uncovered += other.uncovered;
+        self.stray += other.stray;
+    }
+}
+
+pub(crate) fn verify(
+    package: &FilePackage,
+    settings: &VerifySettings,
+    report: &mut VerifyReport,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
+    let manifest = package.manifest();
+    let (dem, plan) = open(settings, manifest)?;
+    let max_level = manifest.frame.max_level();
+    let ids = package.tile_ids()?;
+    let finest: Vec<TileId> = ids.iter().copied().filter(|id| id.z() == max_level).collect();
+    observer.begin(Stage::Errors, Some(finest.len() as u64));
+    let mut truths: BTreeMap<TileId, Truth> = BTreeMap::new();
+    let mut samples = SampleSums::default();
+    workers::in_order(
+        settings.threads,
+        finest.len(),
+        || Ok((dem.reader(&plan)?, BTreeMap::<TileId, Rc<Option<Ground>>>::new())),
+        |(reader, cache), index| {
+            if observer.is_cancelled() {
+                return Err(VerifyError::Interrupted);
+            }
+            let id = finest[index];
+            let halo = 1_usize << max_level.min(6);
+            let window = reader.window(manifest.frame.tile_window(id).with_halo(halo))?.heights;
+            // Of the levels above only the latest are kept: tiles come in an order that stays close.
+            cache.retain(|cached, _| *cached == id.ancestor(cached.z()));
+            let mut found = Vec::new();
+            for level in 0..=max_level {
+                let ancestor = id.ancestor(level);
+                let ground = match cache.get(&ancestor) {
+                    Some(ground) => Rc::clone(ground),
+                    None => {
+                        // A tile that cannot be read was reported already; here it has no ground to compare.
+                        let payload = package.payload(ancestor, Sections::TERRAIN).ok().flatten();
+                        let terrain = payload.and_then(|payload| payload.terrain);
+                        let quantum_m = manifest.vertical.quantum_m;
+                        let ground = Rc::new(terrain.map(|terrain| Ground::new(&terrain.tin, quantum_m)));
+                        cache.insert(ancestor, Rc::clone(&ground));
+                        ground
+                    }
+                };
+                if let Some(ground) = &*ground {
+                    found.push((ancestor, compare(ground, [id, ancestor], &window, halo, manifest)));
+                }
+            }
+            Ok(found)
+        },
+        |_, found: Vec<(TileId, Truth)>| {
+            for (id, truth) in found {
+                truths.entry(id).or_default().merge(truth);
+            }
+            observer.advance(Stage::Errors, 1);
+            Ok(())
+        },
+    )?;
+    samples.measure(package, &dem, &plan, observer)?;
+    observer.end(Stage::Errors);
+    judge(package, &truths, report)?;
+    report.samples = Some(samples.figures());
+    Ok(())
+}
+
+/// Opens the DEM as the build did and makes sure that it gives the same grid.
+fn open(settings: &VerifySettings, manifest: &Manifest) -> Result<(Dem, GridPlan), VerifyError> {
+    let record = &manifest.settings;
+    let dem = Dem::open(&settings.dem, &OpenOptions { dem_crs: record.dem_crs.clone(), nodata: record.nodata })?;
+    let plan = dem.plan(&PlanOptions {
+        crs: record.crs.clone(),
+        cell_m: record.cell_m,
+        fill_voids: record.fill_voids,
+    })?;
+    if plan.frame == manifest.frame {
+        Ok((dem, plan))
+    } else {
+        let expected = manifest.inputs.iter().filter(|input| input.kind == "dem");
+        Err(VerifyError::OtherDem { expected: expected.map(|input| input.name.clone()).collect() })
+    }
+}
+
+/// Compares an ancestor's TIN with the full resolution over one finest tile.
+fn compare(
+    ground: &Ground,
+    [finest, ancestor]: [TileId; 2],
+    window: &HeightGrid,
+    halo: usize,
+    manifest: &Manifest,
+) -> Truth {
+    let frame = &manifest.frame;
+    let stride = frame.stride(ancestor.z());
+    let (corner, above) = (frame.tile_corner(finest), frame.tile_corner(ancestor));
+    let side = window.columns() - 2 * halo;
+    let mut truth = Truth::default();
+    for row in 0..side {
+        for column in 0..side {
+            let Some(height_m) = window.height(column + halo, row + halo) else { continue };
+            let at = [
+                (corner.i - above.i + column as i64) as f64 / stride as f64,
+                (above.j - corner.j + row as i64) as f64 / stride as f64,
+            ];
+            match ground.height_m(at) {
+                Some(ground_m) => {
+                    truth.nodes += 1;
+                    truth.largest_m = truth.largest_m.max((ground_m - f64::from(height_m)).abs());
+                }
+                // Border nodes belong to two tiles; the western and northern one counts them here.
+                None if column + 1 < side && row + 1 < side => {
+                    truth.uncovered += 1;
+                    truth.stray += u64::from(!near_void(window, column + halo, row + halo, stride, halo));
+                }
+                None => {}
+            }
+        }
+    }
+    truth
+}
+
+/// Whether a void lies within `stride` cells (a cell of the level) of a node. Strides beyond the halo cannot be
+/// told from here and count as near.
+fn near_void(window: &HeightGrid, column: usize, row: usize, stride: i64, halo: usize) -> bool {
+    let reach = stride as usize;
+    if reach > halo {
+        return true;
+    }
+    (row - reach..=row + reach).any(|r| (column - reach..=column + reach).any(|c| !window.has_height(c, r)))
+}
+
+/// Puts stored errors beside true ones.
+fn judge(
+    package: &FilePackage,
+    truths: &BTreeMap<TileId, Truth>,
+    report: &mut VerifyReport,
+) -> Result<(), VerifyError> {
+    let manifest = package.manifest();
+    let quantum_m = manifest.vertical.quantum_m;
+    let mut bound = Check::new("P2: no stored error is below the true one");
+    let mut finest = Check::new("P2: the finest level stays within --max-error");
+    let mut stray = Check::new("P2: nodes without ground lie within one cell of a void or an edge");
+    let mut tight = Check::new("P2: stored errors are at most twice the true ones, for 95 % of tiles");
+    let mut loose = 0_u64;
+    let mut stored = BTreeMap::new();
+    for id in package.tile_ids()? {
+        let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
+        stored.extend(payload.and_then(|payload| payload.terrain).map(|terrain| (id, terrain.geometric_error_m)));
+    }
+    let mut ratios: BTreeMap<u8, Vec<f64>> = BTreeMap::new();
+    let mut levels: BTreeMap<u8, Truth> = BTreeMap::new();
+    let mut tiles: BTreeMap<u8, u64> = BTreeMap::new();
+    for (&id, &stored_m) in &stored {
+        let truth = truths.get(&id).copied().unwrap_or_default();
+        *tiles.entry(id.z()).or_default() += 1;
+        levels.entry(id.z()).or_default().merge(truth);
+        bound.look(stored_m >= truth.largest_m - ROUNDING_M, || {
+            format!("tile {id} stores {stored_m} m, but is off by {} m", truth.largest_m)
+        });
+        stray.look(truth.stray == 0, || format!("{} nodes of tile {id}", truth.stray));
+        if id.z() == manifest.frame.max_level() {
+            finest.look(truth.largest_m <= manifest.settings.max_error_m + ROUNDING_M, || {
+                format!("tile {id} is off by {} m", truth.largest_m)
+            });
+        }
+        let children_m = id
+            .children()
+            .filter_map(|child| truths.get(&child))
+            .fold(0.0_f64, |largest, child| largest.max(child.largest_m));
+        loose += u64::from(stored_m > TIGHTNESS * truth.largest_m.max(children_m) + quantum_m);
+        if truth.largest_m >= quantum_m {
+            ratios.entry(id.z()).or_default().push(stored_m / truth.largest_m);
+        }
+    }
+    let count = stored.len() as u64;
+    tight.look(loose as f64 <= (1.0 - TIGHT_SHARE) * count as f64, || format!("{loose} of {count} tiles are loose"));
+    report.checks.extend([bound, tight, finest, stray]);
+    for (level, truth) in levels {
+        let mut ratios = ratios.remove(&level).unwrap_or_default();
+        ratios.sort_by(f64::total_cmp);
+        let quantile = |share: f64| ratios.get(((ratios.len().max(1) - 1) as f64 * share).round() as usize).copied();
+        report.errors.push(ErrorFigures {
+            level,
+            tiles: tiles.get(&level).copied().unwrap_or_default(),
+            nodes: truth.nodes,
+            largest_true_m: truth.largest_m,
+            smallest_ratio: quantile(0.0),
+            median_ratio: quantile(0.5),
+            p95_ratio: quantile(0.95),
+            uncovered_nodes: truth.uncovered,
+        });
+    }
+    Ok(())
+}
+
+/// Differences at the DEM's own samples.
+#[derive(Default)]
+struct SampleSums {
+    samples: u64,
+    uncovered: u64,
+    largest_m: f64,
+    squares: f64,
+}

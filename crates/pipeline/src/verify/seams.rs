@@ -1,0 +1,109 @@
+//! P3: two tiles of one level share bit-identical border vertices.
+
+use std::collections::BTreeMap;
+
+use corniche_geom::TileId;
+use corniche_tin::Tin;
+
+/// One of a tile's borders.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Edge {
+    North,
+    South,
+    West,
+    East,
+}
+
+/// What lies on one border of a tile: vertices by position along it (from west or north), and the stretches
+/// between them that triangles stand on.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Border {
+    vertices: BTreeMap<u16, i32>,
+    stretches: Vec<[u16; 2]>,
+}
+
+/// The four borders of a tile, in the order of [`Edge`].
+pub(crate) type Borders = [Border; 4];
+
+const LAST: u16 = 256;
+
+pub(crate) fn borders(tin: &Tin) -> Borders {
+    [Edge::North, Edge::South, Edge::West, Edge::East].map(|edge| border(tin, edge))
+}
+
+fn border(tin: &Tin, edge: Edge) -> Border {
+    let along = |index: u32| {
+        let vertex = &tin.vertices()[index as usize];
+        let (across, along) = match edge {
+            Edge::North | Edge::South => (vertex.row, vertex.column),
+            Edge::West | Edge::East => (vertex.column, vertex.row),
+        };
+        let wanted = if matches!(edge, Edge::North | Edge::West) { 0 } else { LAST };
+        (across == wanted).then_some((along, vertex.height_q))
+    };
+    let mut border = Border::default();
+    for corners in tin.triangles() {
+        for k in 0..3 {
+            if let (Some(a), Some(b)) = (along(corners[k]), along(corners[(k + 1) % 3])) {
+                border.vertices.extend([a, b]);
+                border.stretches.push([a.0.min(b.0), a.0.max(b.0)]);
+            }
+        }
+    }
+    border.stretches.sort_unstable();
+    border
+}
+
+/// Compares the two sides of a border where both have ground: the positions at which they differ.
+pub(crate) fn differences(one: &Border, other: &Border) -> Vec<u16> {
+    let mut positions = Vec::new();
+    let covered = |border: &Border, position: u16| {
+        border.stretches.iter().any(|&[low, high]| (low..=high).contains(&position))
+    };
+    for (own, opposite) in [(one, other), (other, one)] {
+        for (&position, height_q) in &own.vertices {
+            // A vertex matters where both sides have ground around it; at the end of one side's ground the
+            // other must have it too, or a crack could open from there.
+            if covered(opposite, position) && opposite.vertices.get(&position) != Some(height_q) {
+                positions.push(position);
+            }
+        }
+    }
+    positions.sort_unstable();
+    positions.dedup();
+    positions
+}
+
+/// The tiles east and south of `id` and which border of each meets which.
+pub(crate) fn neighbours(id: TileId) -> impl Iterator<Item = (TileId, Edge, Edge)> {
+    [(1, 0, Edge::East, Edge::West), (0, 1, Edge::South, Edge::North)]
+        .into_iter()
+        .filter_map(move |(dx, dy, own, theirs)| Some((id.neighbour(dx, dy)?, own, theirs)))
+}
+
+#[cfg(test)]
+mod tests {
+    use corniche_tin::TinVertex;
+
+    use super::*;
+
+    fn tile(east_heights: &[(u16, i32)]) -> Tin {
+        // A fan from the west border's middle to the vertices on the east border.
+        let mut vertices = vec![TinVertex { row: 128, column: 0, height_q: 0 }];
+        vertices.extend(east_heights.iter().map(|&(row, height_q)| TinVertex { row, column: 256, height_q }));
+        let triangles: Vec<[u32; 3]> = (1..east_heights.len() as u32).map(|k| [0, k + 1, k]).collect();
+        Tin::new(vertices, &triangles).unwrap()
+    }
+
+    #[test]
+    fn sees_a_missing_vertex_and_a_moved_one() {
+        let east = |heights: &[(u16, i32)]| borders(&tile(heights))[Edge::East as usize].clone();
+        let reference = east(&[(0, 1), (100, 5), (256, 3)]);
+        assert!(differences(&reference, &reference).is_empty());
+        assert_eq!(differences(&reference, &east(&[(0, 1), (256, 3)])), [100]);
+        assert_eq!(differences(&reference, &east(&[(0, 1), (100, 6), (256, 3)])), [100]);
+        // Ground that goes on alone on one side needs no partner there, only where the other's ends.
+        assert!(differences(&reference, &east(&[(0, 1), (100, 5)])).is_empty());
+        assert_eq!(differences(&reference, &east(&[(0, 1), (90, 4)])), [90]);
+    }
+}

@@ -1,0 +1,30 @@
+//! P6: nothing is dropped in silence; the manifest's sums add up.
+
+use corniche_tileset::Manifest;
+
+use super::Check;
+
+/// Lengths are sums of millions of floating-point numbers, and every cut moves a point by less than a
+/// millimetre: they agree to this share.
+pub(crate) const LENGTH_SHARE: f64 = 1e-5;
+
+pub(crate) fn verify(manifest: &Manifest) -> Vec<Check> {
+    let counts = &manifest.counts;
+    let mut check = Check::new("P6: what came in is what was kept and what was lost by reason");
+    let samples = &counts.samples;
+    check.look(samples.nodes == samples.with_data + samples.filled + samples.void, || {
+        format!("{} nodes, but {samples:?}", samples.nodes)
+    });
+    let lost: u64 = counts.roads_lost.iter().map(|loss| loss.roads).sum();
+    check.look(counts.roads_in == counts.roads_kept + lost, || {
+        format!("{} roads in, {} kept, {lost} lost", counts.roads_in, counts.roads_kept)
+    });
+    let lost_m: f64 = counts.roads_lost.iter().map(|loss| loss.length_m).sum();
+    check.look(
+        (counts.roads_in_m - counts.roads_kept_m - lost_m).abs() <= LENGTH_SHARE * counts.roads_in_m,
+        || format!("{} m in, {} m kept, {lost_m} m lost", counts.roads_in_m, counts.roads_kept_m),
+    );
+    let by_class: u64 = counts.classes.iter().map(|&(count, _)| count).sum();
+    check.look(by_class == counts.roads_in, || format!("{by_class} roads by class, {} in all", counts.roads_in));
+    vec![check]
+}

@@ -1,0 +1,187 @@
+//! The only place where worker threads are spawned.
+
+use std::{
+    collections::BTreeMap,
+    sync::{Condvar, Mutex, PoisonError},
+    thread,
+};
+
+/// State that workers and the one writer share.
+struct Queue<R, E> {
+    /// Next item to be taken by a worker.
+    next: usize,
+    /// Results that wait for their turn.
+    done: BTreeMap<usize, Result<R, E>>,
+    /// Next result to be handed to the writer.
+    written: usize,
+    /// Set when the run is over early.
+    stop: bool,
+}
+
+/// Works on `count` items with `threads` threads and hands the results to `write` in the order of the items,
+/// on the calling thread.
+///
+/// Each thread makes its own state with `start` (an open dataset, a cache). At most four results a thread wait
+/// for their turn, so memory is bounded however uneven the work. The first error stops everything; which error
+/// that is does not depend on timing, because results are looked at in order.
+///
+/// # Errors
+/// The first error, in the order of the items, of `start`, `work` or `write`.
+pub(crate) fn in_order<S, R: Send, E: Send>(
+    threads: usize,
+    count: usize,
+    start: impl Fn() -> Result<S, E> + Sync,
+    work: impl Fn(&mut S, usize) -> Result<R, E> + Sync,
+    mut write: impl FnMut(usize, R) -> Result<(), E>,
+) -> Result<(), E> {
+    let threads = threads.clamp(1, count.max(1));
+    if threads == 1 {
+        let mut state = None;
+        for index in 0..count {
+            let state = match &mut state {
+                Some(state) => state,
+                empty => empty.insert(start()?),
+            };
+            write(index, work(state, index)?)?;
+        }
+        return Ok(());
+    }
+    let ahead = threads * 4;
+    let queue: Mutex<Queue<R, E>> =
+        Mutex::new(Queue { next: 0, done: BTreeMap::new(), written: 0, stop: false });
+    let changed = Condvar::new();
+    let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
+    let worker = || {
+        let mut state = None;
+        loop {
+            let index = {
+                let mut queue = lock();
+                while !queue.stop && queue.next < count && queue.next >= queue.written + ahead {
+                    queue = changed.wait(queue).unwrap_or_else(PoisonError::into_inner);
+                }
+                if queue.stop || queue.next >= count {
+                    return;
+                }
+                queue.next += 1;
+                queue.next - 1
+            };
+            // A worker that panics must not leave the writer waiting for its result.
+            let guard = StopOnPanic { stop: &|| lock().stop = true, changed: &changed };
+            let ready = match &mut state {
+                Some(_) => Ok(()),
+                empty => start().map(|new| *empty = Some(new)),
+            };
+            let result = ready.and_then(|()| match &mut state {
+                Some(state) => work(state, index),
+                None => unreachable!("the state was made above"),
+            });
+            std::mem::forget(guard);
+            lock().done.insert(index, result);
+            changed.notify_all();
+        }
+    };
+    thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(worker);
+        }
+        for index in 0..count {
+            let result = {
+                let mut queue = lock();
+                loop {
+                    if let Some(result) = queue.done.remove(&index) {
+                        break Some(result);
+                    }
+                    if queue.stop {
+                        break None;
+                    }
+                    queue = changed.wait(queue).unwrap_or_else(PoisonError::into_inner);
+                }
+            };
+            // Without a result a worker has panicked; leaving the scope passes the panic on.
+            let Some(result) = result else { return Ok(()) };
+            let written = result.and_then(|result| write(index, result));
+            let mut queue = lock();
+            queue.written = index + 1;
+            queue.stop |= written.is_err();
+            drop(queue);
+            changed.notify_all();
+            written?;
+        }
+        Ok(())
+    })
+}
+
+struct StopOnPanic<'a> {
+    stop: &'a dyn Fn(),
+    changed: &'a Condvar,
+}
+
+impl Drop for StopOnPanic<'_> {
+    fn drop(&mut self) {
+        (self.stop)();
+        self.changed.notify_all();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(threads: usize, fail_at: Option<usize>) -> (Vec<usize>, Result<(), usize>) {
+        let mut seen = Vec::new();
+        let result = in_order(
+            threads,
+            200,
+            || Ok(0_usize),
+            |_, index| {
+                if index % 7 == 0 {
+                    thread::sleep(std::time::Duration::from_micros(300));
+                }
+                if fail_at.is_some_and(|at| index >= at) { Err(index) } else { Ok(index * 2) }
+            },
+            |index, value| {
+                assert_eq!(value, index * 2);
+                seen.push(index);
+                Ok(())
+            },
+        );
+        (seen, result)
+    }
+
+    #[test]
+    fn results_come_in_order_at_any_thread_count() {
+        for threads in [1, 2, 8] {
+            let (seen, result) = run(threads, None);
+            assert_eq!(seen, (0..200).collect::<Vec<_>>());
+            assert_eq!(result, Ok(()));
+        }
+    }
+
+    #[test]
+    fn the_first_error_in_order_wins() {
+        for threads in [1, 2, 8] {
+            assert_eq!(run(threads, Some(63)).1, Err(63));
+        }
+    }
+
+    #[test]
+    fn nothing_to_do_is_done() {
+        let result = in_order(4, 0, || Ok(()), |(), _| Ok(()), |_, ()| Err("never called"));
+        assert_eq!(result, Ok(()));
+    }
+
+    #[test]
+    #[should_panic(expected = "a scoped thread panicked")]
+    fn a_panic_of_a_worker_is_passed_on() {
+        let _ = in_order(
+            2,
+            10,
+            || Ok::<_, ()>(()),
+            |(), index| {
+                assert!(index != 5, "worker panics");
+                Ok(())
+            },
+            |_, ()| Ok(()),
+        );
+    }
+}

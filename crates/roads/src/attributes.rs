@@ -1,0 +1,163 @@
+use crate::{
+    Form, Oneway, RoadAttributes, Structure,
+    frc_table::{is_yes, tag},
+};
+
+/// What is kept of a way's `(key, value)` tags, besides its class. Of a key that occurs twice the first counts.
+///
+/// - **Form**: `junction=roundabout|circular`, else a link by its `highway` value, else one of two carriageways when
+///   `dual_carriageway=yes` or when a motorway or trunk road is one-way.
+/// - **Structure**: any `bridge` but `no`; any `tunnel` but `no`, `culvert` (the water is in it, not the road) and
+///   `building_passage` (at ground level). `covered` is a roof and changes nothing. Where both are tagged, the way is
+///   a tunnel if its layer is below 0, else a bridge.
+/// - **Oneway**: as tagged; motorways and roundabouts are one-way unless tagged otherwise. Roads open to one direction
+///   at a time (`reversible`, `alternating`) are open to both.
+///
+/// Source: OSM wiki, *Key:oneway*, *Key:junction*, *Key:bridge*, *Key:tunnel*, *Key:layer*.
+#[must_use]
+pub fn attributes(tags: &[(&str, &str)]) -> RoadAttributes {
+    let value = |key| tag(tags, key).map(str::trim).unwrap_or_default();
+    let highway = value("highway");
+    let layer = layer(value("layer"));
+    let is_roundabout = matches!(value("junction"), "roundabout" | "circular");
+    let oneway = oneway(value("oneway"), is_roundabout || highway == "motorway");
+    RoadAttributes {
+        form: if is_roundabout {
+            Form::Roundabout
+        } else if highway.ends_with("_link") {
+            Form::Link
+        } else if is_yes(value("dual_carriageway"))
+            || (oneway != Oneway::No && matches!(highway, "motorway" | "trunk"))
+        {
+            Form::DualCarriageway
+        } else {
+            Form::Ordinary
+        },
+        structure: structure(value("bridge"), value("tunnel"), layer),
+        layer,
+        oneway,
+        name: value("name").to_owned(),
+        reference: value("ref").to_owned(),
+        surface: value("surface").to_owned(),
+    }
+}
+
+fn structure(bridge: &str, tunnel: &str, layer: i8) -> Structure {
+    let is_bridge = !matches!(bridge, "" | "no" | "false" | "0");
+    let is_tunnel = !matches!(tunnel, "" | "no" | "false" | "0" | "culvert" | "building_passage");
+    match (is_bridge, is_tunnel) {
+        (false, false) => Structure::Ground,
+        (true, false) => Structure::Bridge,
+        (false, true) => Structure::Tunnel,
+        (true, true) if layer < 0 => Structure::Tunnel,
+        (true, true) => Structure::Bridge,
+    }
+}
+
+fn oneway(tagged: &str, is_implied: bool) -> Oneway {
+    match tagged {
+        "-1" | "reverse" => Oneway::Backward,
+        "" if is_implied => Oneway::Forward,
+        yes if is_yes(yes) => Oneway::Forward,
+        _ => Oneway::No,
+    }
+}
+
+/// Whole numbers, clamped to what fits; anything else is layer 0, as for a way without the tag.
+fn layer(tagged: &str) -> i8 {
+    let clamped = tagged.parse::<i64>().map(|layer| layer.clamp(i8::MIN.into(), i8::MAX.into()));
+    clamped.map_or(0, |layer| layer as i8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> RoadAttributes {
+        let tags: Vec<(&str, &str)> =
+            text.split_whitespace().map(|tag| tag.split_once('=').unwrap()).collect();
+        attributes(&tags)
+    }
+
+    #[test]
+    fn form_follows_junction_then_link_then_carriageway() {
+        let check = |tags, expected| assert_eq!(of(tags).form, expected, "{tags}");
+        check("highway=primary", Form::Ordinary);
+        check("highway=primary oneway=yes", Form::Ordinary);
+        check("highway=primary oneway=yes dual_carriageway=yes", Form::DualCarriageway);
+        check("highway=motorway", Form::DualCarriageway);
+        check("highway=motorway oneway=no", Form::Ordinary);
+        check("highway=trunk", Form::Ordinary);
+        check("highway=trunk oneway=-1", Form::DualCarriageway);
+        check("highway=trunk_link oneway=yes", Form::Link);
+        check("highway=residential junction=roundabout", Form::Roundabout);
+        check("highway=trunk_link junction=circular", Form::Roundabout);
+        check("highway=residential junction=intersection", Form::Ordinary);
+    }
+
+    #[test]
+    fn oneway_is_as_tagged_or_implied() {
+        let check = |tags, expected| assert_eq!(of(tags).oneway, expected, "{tags}");
+        check("highway=primary", Oneway::No);
+        for yes in ["yes", "true", "1"] {
+            assert_eq!(attributes(&[("oneway", yes)]).oneway, Oneway::Forward);
+        }
+        check("oneway=-1", Oneway::Backward);
+        check("oneway=reverse junction=roundabout", Oneway::Backward);
+        check("highway=motorway", Oneway::Forward);
+        check("highway=motorway_link", Oneway::No);
+        check("highway=motorway oneway=no", Oneway::No);
+        check("highway=motorway oneway=reversible", Oneway::No);
+        check("highway=service junction=roundabout", Oneway::Forward);
+        check("oneway=alternating", Oneway::No);
+    }
+
+    #[test]
+    fn structure_is_what_carries_the_road() {
+        let check = |tags, expected| assert_eq!(of(tags).structure, expected, "{tags}");
+        check("highway=primary covered=yes", Structure::Ground);
+        check("bridge=yes", Structure::Bridge);
+        check("bridge=viaduct", Structure::Bridge);
+        check("bridge=no tunnel=no", Structure::Ground);
+        check("tunnel=yes", Structure::Tunnel);
+        check("tunnel=avalanche_protector", Structure::Tunnel);
+        check("tunnel=culvert", Structure::Ground);
+        check("tunnel=building_passage", Structure::Ground);
+        check("bridge=yes tunnel=yes layer=1", Structure::Bridge);
+        check("bridge=yes tunnel=yes layer=-1", Structure::Tunnel);
+    }
+
+    #[test]
+    fn layers_are_whole_numbers_that_fit() {
+        for (text, expected) in [
+            ("", 0),
+            ("0", 0),
+            ("+2", 2),
+            ("-5", -5),
+            (" 3 ", 3),
+            ("1000", 127),
+            ("-1000", -128),
+            ("1.5", 0),
+            ("1;2", 0),
+            ("99999999999999999999", 0),
+            ("ground", 0),
+        ] {
+            assert_eq!(attributes(&[("layer", text)]).layer, expected, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn keeps_the_names() {
+        let road = attributes(&[
+            ("name", "Hauptstraße"),
+            ("ref", "16"),
+            ("surface", "asphalt"),
+            ("name", "second"),
+        ]);
+        assert_eq!(
+            (&*road.name, &*road.reference, &*road.surface),
+            ("Hauptstraße", "16", "asphalt")
+        );
+        assert_eq!(attributes(&[]), RoadAttributes::default());
+    }
+}

@@ -1,0 +1,146 @@
+use crate::FunctionalRoadClass;
+
+/// From which level on each class is shown, as the coarsest cell at which it still is.
+///
+/// The finest level of a package shows every class that is on, whatever its cell: the caller does not ask there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClassFilter {
+    class_max_cell_m: [Option<f64>; FunctionalRoadClass::COUNT],
+}
+
+/// Why cells do not make a [`ClassFilter`].
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum ClassFilterError {
+    #[error(
+        "{class} is shown up to a cell of {cell_m} m; give a length above 0, or none for always"
+    )]
+    Cell { class: FunctionalRoadClass, cell_m: f64 },
+    #[error(
+        "{class} is shown on coarser levels than the more important class before it; lower its cell"
+    )]
+    Order { class: FunctionalRoadClass },
+}
+
+impl ClassFilter {
+    /// Takes for each class the coarsest cell, in metres, at which it is shown; `None`: always.
+    ///
+    /// # Errors
+    /// When a cell is not a length, or a class outlasts a more important one (a road network that loses its
+    /// motorways before its tracks is a slip, and a level could not name its least class).
+    pub fn new(
+        class_max_cell_m: [Option<f64>; FunctionalRoadClass::COUNT],
+    ) -> Result<Self, ClassFilterError> {
+        let mut coarsest_m = f64::INFINITY;
+        for (class, max_cell_m) in FunctionalRoadClass::all().zip(class_max_cell_m) {
+            let cell_m = max_cell_m.unwrap_or(f64::INFINITY);
+            if max_cell_m.is_some_and(|cell_m| !(cell_m > 0.0 && cell_m.is_finite())) {
+                return Err(ClassFilterError::Cell { class, cell_m });
+            }
+            if cell_m > coarsest_m {
+                return Err(ClassFilterError::Order { class });
+            }
+            coarsest_m = cell_m;
+        }
+        Ok(Self { class_max_cell_m })
+    }
+
+    /// The usual choice: class 0 always, then up to cells of 2000, 1000, 400, 200, 120, 60, 60 and 30 m.
+    ///
+    /// A choice by eye, not a measurement: each step keeps a tile's network about as dense as the level below it.
+    #[must_use]
+    pub const fn usual() -> Self {
+        Self {
+            class_max_cell_m: [
+                None,
+                Some(2000.0),
+                Some(1000.0),
+                Some(400.0),
+                Some(200.0),
+                Some(120.0),
+                Some(60.0),
+                Some(60.0),
+                Some(30.0),
+            ],
+        }
+    }
+
+    /// Every class on every level.
+    #[must_use]
+    pub const fn all() -> Self {
+        Self { class_max_cell_m: [None; FunctionalRoadClass::COUNT] }
+    }
+
+    /// The coarsest cell per class, in metres; `None`: always shown.
+    #[must_use]
+    pub const fn class_max_cell_m(&self) -> &[Option<f64>; FunctionalRoadClass::COUNT] {
+        &self.class_max_cell_m
+    }
+
+    /// Whether a level with this cell shows `class`.
+    #[must_use]
+    pub fn shows(&self, class: FunctionalRoadClass, level_cell_m: f64) -> bool {
+        self.class_max_cell_m[usize::from(class.number())]
+            .is_none_or(|max_cell_m| level_cell_m <= max_cell_m)
+    }
+
+    /// The least important class that a level with this cell shows; all classes above it are shown, too.
+    /// `None` when the level shows no roads.
+    #[must_use]
+    pub fn least_class(&self, level_cell_m: f64) -> Option<FunctionalRoadClass> {
+        FunctionalRoadClass::all().rev().find(|&class| self.shows(class, level_cell_m))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn class(number: u8) -> FunctionalRoadClass {
+        FunctionalRoadClass::new(number).unwrap()
+    }
+
+    #[test]
+    fn usual_is_a_valid_ladder_and_thins_out_with_the_cell() {
+        let usual = ClassFilter::usual();
+        assert_eq!(ClassFilter::new(*usual.class_max_cell_m()), Ok(usual.clone()));
+        for (cell_m, expected) in [
+            (1.0, 8),
+            (30.0, 8),
+            (30.1, 7),
+            (60.0, 7),
+            (61.0, 5),
+            (200.0, 4),
+            (401.0, 2),
+            (2000.0, 1),
+            (1e9, 0),
+        ] {
+            assert_eq!(usual.least_class(cell_m), Some(class(expected)), "{cell_m} m");
+        }
+        assert_eq!(ClassFilter::all().least_class(1e9), Some(class(8)));
+    }
+
+    #[test]
+    fn a_level_may_show_no_roads() {
+        let only_fine = ClassFilter::new([Some(10.0); 9]).unwrap();
+        assert_eq!(only_fine.least_class(10.0), Some(class(8)));
+        assert_eq!(only_fine.least_class(10.5), None);
+    }
+
+    #[test]
+    fn refuses_cells_that_make_no_ladder() {
+        let mut cells = *ClassFilter::usual().class_max_cell_m();
+        cells[5] = Some(300.0);
+        assert_eq!(ClassFilter::new(cells), Err(ClassFilterError::Order { class: class(5) }));
+        cells[5] = None;
+        assert_eq!(ClassFilter::new(cells), Err(ClassFilterError::Order { class: class(5) }));
+        for bad_m in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let cells = [Some(bad_m); 9];
+            assert!(
+                matches!(ClassFilter::new(cells), Err(ClassFilterError::Cell { .. })),
+                "{bad_m}"
+            );
+        }
+    }
+}

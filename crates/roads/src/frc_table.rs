@@ -1,0 +1,190 @@
+use std::{collections::BTreeMap, fmt::Write as _};
+
+use crate::FunctionalRoadClass;
+
+/// Which `highway` value is of which functional class: a checked value, ready to ask.
+///
+/// A table lists every value it knows, those that are *no* road included. A value it does not list is
+/// [`Classified::Unknown`], never guessed; the one rule beyond the list is that `X_link` has the class of `X`
+/// unless it is listed itself.
+///
+/// Source of the classes: OpenLR White Paper v1.5 (names 0–7); no standard says which OSM value is which, hence tables.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FrcTable {
+    name: String,
+    /// `None`: known, and not a road.
+    values: BTreeMap<String, Option<FunctionalRoadClass>>,
+    least_class: FunctionalRoadClass,
+}
+
+/// Why entries do not make an [`FrcTable`].
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum FrcTableError {
+    #[error(
+        "an FRC table needs a name of 1 to 64 characters out of a-z, A-Z, 0-9, '.', '-' and '_', got {name:?}"
+    )]
+    Name { name: String },
+    #[error("FRC table {name:?} lists no highway value with a class")]
+    NoClasses { name: String },
+    #[error("FRC table {name:?} gives highway={value} class {class}; classes are 0 to 8")]
+    Class { name: String, value: String, class: u8 },
+    #[error("FRC table {name:?} has least class {class}; classes are 0 to 8")]
+    LeastClass { name: String, class: u8 },
+    #[error("FRC table {name:?} lists highway={value} twice; keep one of the entries")]
+    Twice { name: String, value: String },
+    #[error(
+        "FRC table {name:?} lists {value:?}, which is not a highway value: it is empty or holds spaces or control characters"
+    )]
+    Value { name: String, value: String },
+}
+
+/// What a table says of a way's tags.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Classified<'t> {
+    /// A road of this class, and the class is on.
+    Road(FunctionalRoadClass),
+    /// A road of this class, and the class is off.
+    NotShown(FunctionalRoadClass),
+    /// Not a road, and the table knows it.
+    NotARoad(NotARoad),
+    /// The table does not list this `highway` value.
+    Unknown(&'t str),
+}
+
+/// Why a way is not a road.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum NotARoad {
+    /// No `highway` tag.
+    NoHighway,
+    /// The table lists its value as no road (`construction`, `platform`, …).
+    Listed,
+    /// A known `highway` value with `area=yes`: the outline of a surface, not an axis.
+    Area,
+}
+
+impl FrcTable {
+    /// Takes the table `name`: `classes` gives `highway` values their class (0–8), `not_roads` lists the values
+    /// known to be none, and classes above `least_class` are off.
+    ///
+    /// # Errors
+    /// When the name cannot stand in a package's metadata, a class is above 8, a value is listed twice or is
+    /// no tag value, or nothing has a class.
+    pub fn new(
+        name: impl Into<String>,
+        classes: Vec<(String, u8)>,
+        not_roads: Vec<String>,
+        least_class: u8,
+    ) -> Result<Self, FrcTableError> {
+        let name = name.into();
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
+        if name.is_empty() || name.len() > 64 || !name.chars().all(is_plain) {
+            return Err(FrcTableError::Name { name });
+        }
+        if classes.is_empty() {
+            return Err(FrcTableError::NoClasses { name });
+        }
+        let Some(least) = FunctionalRoadClass::new(least_class) else {
+            return Err(FrcTableError::LeastClass { name, class: least_class });
+        };
+        let mut entries = Vec::with_capacity(classes.len() + not_roads.len());
+        for (value, number) in classes {
+            match FunctionalRoadClass::new(number) {
+                Some(class) => entries.push((value, Some(class))),
+                None => return Err(FrcTableError::Class { name, value, class: number }),
+            }
+        }
+        entries.extend(not_roads.into_iter().map(|value| (value, None)));
+        let mut values = BTreeMap::new();
+        for (value, class) in entries {
+            if value.is_empty() || value.chars().any(|c| c.is_whitespace() || c.is_control()) {
+                return Err(FrcTableError::Value { name, value });
+            }
+            if values.contains_key(&value) {
+                return Err(FrcTableError::Twice { name, value });
+            }
+            values.insert(value, class);
+        }
+        Ok(Self { name, values, least_class: least })
+    }
+
+    /// Its name, as packages record it.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The least important class that is on.
+    #[must_use]
+    pub const fn least_class(&self) -> FunctionalRoadClass {
+        self.least_class
+    }
+
+    /// The same table with another least class.
+    #[must_use]
+    pub fn with_least_class(self, least_class: FunctionalRoadClass) -> Self {
+        Self { least_class, ..self }
+    }
+
+    /// All listed values with their class, by value; `None` for those that are no roads.
+    pub fn values(&self) -> impl Iterator<Item = (&str, Option<FunctionalRoadClass>)> {
+        self.values.iter().map(|(value, &class)| (value.as_str(), class))
+    }
+
+    /// The whole table as text, one entry a line, sorted: the same for equal tables however they were written
+    /// down, and so the thing to hash.
+    #[must_use]
+    pub fn canonical_text(&self) -> String {
+        let mut text = format!("name={}\nleast_class={}\n", self.name, self.least_class.number());
+        for (value, class) in self.values() {
+            // Writing to a String cannot fail.
+            let _ = match class {
+                Some(class) => writeln!(text, "{value}={}", class.number()),
+                None => writeln!(text, "{value}=not a road"),
+            };
+        }
+        text
+    }
+
+    /// What a way with these `(key, value)` tags is. Of a key that occurs twice the first counts.
+    #[must_use]
+    pub fn classify<'t>(&self, tags: &[(&'t str, &'t str)]) -> Classified<'t> {
+        let Some(highway) = tag(tags, "highway") else {
+            return Classified::NotARoad(NotARoad::NoHighway);
+        };
+        match self.class_of(highway) {
+            None => Classified::Unknown(highway),
+            Some(None) => Classified::NotARoad(NotARoad::Listed),
+            Some(Some(_)) if tag(tags, "area").is_some_and(is_yes) => {
+                Classified::NotARoad(NotARoad::Area)
+            }
+            Some(Some(class)) if class > self.least_class => Classified::NotShown(class),
+            Some(Some(class)) => Classified::Road(class),
+        }
+    }
+
+    /// `None`: not listed; `Some(None)`: listed as no road.
+    fn class_of(&self, highway: &str) -> Option<Option<FunctionalRoadClass>> {
+        if let Some(&listed) = self.values.get(highway) {
+            return Some(listed);
+        }
+        // A link to something that is no road is as unknown as any other word.
+        let parent = self.values.get(highway.strip_suffix("_link")?)?;
+        parent.map(Some)
+    }
+}
+
+/// The value of the first tag with this key.
+pub(crate) fn tag<'t>(tags: &[(&'t str, &'t str)], key: &str) -> Option<&'t str> {
+    tags.iter().find(|(k, _)| *k == key).map(|&(_, value)| value)
+}
+
+/// The three spellings of *yes* that data consumers accept (OSM wiki, *Key:oneway*).
+pub(crate) fn is_yes(value: &str) -> bool {
+    matches!(value, "yes" | "true" | "1")
+}
+
+#[cfg(test)]
+#[path = "frc_table_tests.rs"]
+mod tests;

@@ -1,0 +1,122 @@
+use corniche_geom::{LatticePoint, Polyline, cross};
+
+use crate::Road;
+
+/// The road's line with fewer points: no point of the source lies farther than `tolerance_steps` (lattice steps) from
+/// the segment that replaces its stretch.
+///
+/// Points listed in [`Road::fixed`] and both ends stay. A tolerance of 0 (or below, or NaN) keeps every point. The result
+/// does not depend on the direction of the way: a way and its reverse keep the same points (except where it runs back over
+/// itself point by point and so has no direction). Of a stretch that returns to its start (a ring between junctions) the farthest point always stays, so that the line never vanishes; a ring
+/// smaller than the tolerance becomes a there-and-back of one segment.
+///
+/// Lines may come to cross themselves or others where they did not, as with any simplification by distance alone.
+///
+/// Source: Douglas & Peucker 1973, *Algorithms for the Reduction of the Number of Points Required to Represent a
+/// Digitized Line*. Changed: distance to the *segment*, not to its infinite line, since a stretch may run past its ends;
+/// and run per stretch between fixed points, which `geo`'s implementation cannot.
+#[must_use]
+pub fn simplify(road: &Road, tolerance_steps: f64) -> Polyline {
+    // Written so that NaN keeps everything, too.
+    let reduces = tolerance_steps > 0.0;
+    let points = road.line.points();
+    if !reduces || points.len() <= 2 {
+        return road.line.clone();
+    }
+    let last = points.len() - 1;
+    let mut keep = vec![false; points.len()];
+    keep[0] = true;
+    keep[last] = true;
+    for &index in &road.fixed {
+        if let Some(flag) = keep.get_mut(index as usize) {
+            *flag = true;
+        }
+    }
+    let mut start = 0;
+    for end in 1..=last {
+        if keep[end] {
+            thin_stretch(points, start, end, tolerance_steps, &mut keep);
+            start = end;
+        }
+    }
+    let kept =
+        points.iter().zip(&keep).filter(|&(_, &keep)| keep).map(|(&point, _)| point).collect();
+    // A polyline has two different neighbours somewhere; each stretch keeps one such pair if it has one.
+    Polyline::new(kept).unwrap_or_else(|_| road.line.clone())
+}
+
+/// Marks the points of `points[first..=last]` that stay, its ends being kept already.
+fn thin_stretch(
+    points: &[LatticePoint],
+    first: usize,
+    last: usize,
+    tolerance_steps: f64,
+    keep: &mut [bool],
+) {
+    let is_reversed = is_reversed(&points[first..=last]);
+    let mut pending = vec![(first, last)];
+    while let Some((first, last)) = pending.pop() {
+        let Some((farthest, distance_steps)) = farthest(points, first, last, is_reversed) else {
+            continue;
+        };
+        // Equal ends span no segment: without this point the stretch would shrink to nothing.
+        if distance_steps > tolerance_steps || points[first] == points[last] {
+            keep[farthest] = true;
+            pending.push((first, farthest));
+            pending.push((farthest, last));
+        }
+    }
+}
+
+/// The point strictly between `first` and `last` that lies farthest from the segment between them; among equals the
+/// first in canonical direction.
+fn farthest(
+    points: &[LatticePoint],
+    first: usize,
+    last: usize,
+    is_reversed: bool,
+) -> Option<(usize, f64)> {
+    // Both directions must compute the same numbers, so the segment too runs in canonical direction.
+    let (a, b) =
+        if is_reversed { (points[last], points[first]) } else { (points[first], points[last]) };
+    let mut best = None;
+    for index in first + 1..last {
+        let distance_steps = distance_to_segment_steps(points[index], a, b);
+        let is_farther = best.is_none_or(|(_, best_steps)| {
+            if is_reversed { distance_steps >= best_steps } else { distance_steps > best_steps }
+        });
+        if is_farther {
+            best = Some((index, distance_steps));
+        }
+    }
+    best
+}
+
+/// Whether the canonical direction of this stretch is from its end to its start: that direction whose points come
+/// first in lexicographic order. A stretch that equals its reverse needs none.
+fn is_reversed(stretch: &[LatticePoint]) -> bool {
+    stretch.iter().rev().lt(stretch.iter())
+}
+
+/// Distance from `p` to the segment between `a` and `b`, in lattice steps: products are exact integers, so the result is
+/// off by a few units in the last place at most, however far the points are apart.
+fn distance_to_segment_steps(p: LatticePoint, a: LatticePoint, b: LatticePoint) -> f64 {
+    let along = dot(a, b, p);
+    if along <= 0 {
+        return p.distance_steps(a);
+    }
+    if along >= dot(a, b, b) {
+        return p.distance_steps(b);
+    }
+    cross(a, b, p).unsigned_abs() as f64 / a.distance_steps(b)
+}
+
+/// (to − from) · (p − from), exactly.
+fn dot(from: LatticePoint, to: LatticePoint, p: LatticePoint) -> i128 {
+    i128::from(to.u - from.u) * i128::from(p.u - from.u)
+        + i128::from(to.v - from.v) * i128::from(p.v - from.v)
+}
+
+#[cfg(test)]
+#[path = "simplify_tests.rs"]
+mod tests;

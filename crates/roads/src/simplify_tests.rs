@@ -1,0 +1,175 @@
+use super::*;
+use crate::{FunctionalRoadClass, RoadAttributes};
+use proptest::{collection::vec, prelude::*};
+
+fn road(points: Vec<LatticePoint>, inner_fixed: &[u32]) -> Option<Road> {
+    let line = Polyline::new(points).ok()?;
+    let last = line.points().len() as u32 - 1;
+    let mut fixed: Vec<u32> = inner_fixed.iter().copied().filter(|&i| i > 0 && i < last).collect();
+    fixed.extend([0, last]);
+    fixed.sort_unstable();
+    fixed.dedup();
+    Some(Road {
+        way_id: 1,
+        class: FunctionalRoadClass::new(0).unwrap(),
+        attributes: RoadAttributes::default(),
+        line,
+        fixed,
+    })
+}
+
+fn line(points: &[(i64, i64)], inner_fixed: &[u32]) -> Road {
+    road(points.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect(), inner_fixed).unwrap()
+}
+
+#[track_caller]
+fn check(
+    points: &[(i64, i64)],
+    inner_fixed: &[u32],
+    tolerance_steps: f64,
+    expected: &[(i64, i64)],
+) {
+    let thin = simplify(&line(points, inner_fixed), tolerance_steps);
+    let thin: Vec<(i64, i64)> = thin.points().iter().map(|p| (p.u, p.v)).collect();
+    assert_eq!(thin, expected);
+}
+
+#[test]
+fn drops_points_within_the_tolerance_and_no_others() {
+    check(&[(0, 0), (50, 3), (100, 0)], &[], 3.0, &[(0, 0), (100, 0)]);
+    check(&[(0, 0), (50, 3), (100, 0)], &[], 2.999, &[(0, 0), (50, 3), (100, 0)]);
+    check(&[(0, 0), (50, 0), (100, 0)], &[], 1e-9, &[(0, 0), (100, 0)]);
+}
+
+#[test]
+fn zero_and_senseless_tolerances_keep_every_point() {
+    let points = [(0, 0), (50, 0), (100, 0)];
+    for tolerance_steps in [0.0, -1.0, f64::NAN] {
+        check(&points, &[], tolerance_steps, &points);
+    }
+    check(&points, &[], f64::INFINITY, &[(0, 0), (100, 0)]);
+}
+
+#[test]
+fn measures_to_the_segment_where_a_line_overshoots() {
+    // On the infinite line through both ends nothing sticks out; past the end, 40 steps do.
+    check(&[(0, 0), (140, 0), (100, 0)], &[], 10.0, &[(0, 0), (140, 0), (100, 0)]);
+    check(&[(0, 0), (140, 0), (100, 0)], &[], 40.0, &[(0, 0), (100, 0)]);
+}
+
+#[test]
+fn keeps_fixed_points() {
+    check(&[(0, 0), (25, 0), (50, 0), (100, 0)], &[2], 9.0, &[(0, 0), (50, 0), (100, 0)]);
+}
+
+#[test]
+fn a_ring_never_vanishes() {
+    let ring = [(0, 0), (10, 0), (10, 10), (0, 10), (0, 0)];
+    check(&ring, &[], 1e9, &[(0, 0), (10, 10), (0, 0)]);
+    check(&ring, &[], 5.0, &ring);
+    // A lollipop whose ring hangs between two visits of one junction.
+    let lollipop = [(-100, 0), (0, 0), (5, 5), (9, 0), (5, -5), (0, 0)];
+    check(&lollipop, &[1], 50.0, &[(-100, 0), (0, 0), (9, 0), (0, 0)]);
+}
+
+#[test]
+fn stays_right_for_country_long_segments() {
+    let far = 1_i64 << 44;
+    check(&[(0, 0), (far / 2, 2), (far, 0)], &[], 1.5, &[(0, 0), (far / 2, 2), (far, 0)]);
+    check(&[(0, 0), (far / 2, 2), (far, 0)], &[], 2.0, &[(0, 0), (far, 0)]);
+}
+
+/// Whether p lies within whole `tolerance` of segment a–b, in integers alone: the oracle.
+fn is_within(p: LatticePoint, a: LatticePoint, b: LatticePoint, tolerance: i128) -> bool {
+    let square = |p: LatticePoint, q: LatticePoint| {
+        i128::from(p.u - q.u).pow(2) + i128::from(p.v - q.v).pow(2)
+    };
+    let (ab, along) =
+        (square(a, b), i128::from((b.u - a.u) * (p.u - a.u) + (b.v - a.v) * (p.v - a.v)));
+    let area = i128::from((b.u - a.u) * (p.v - a.v) - (b.v - a.v) * (p.u - a.u));
+    if along <= 0 {
+        square(a, p) <= tolerance.pow(2)
+    } else if along >= ab {
+        square(b, p) <= tolerance.pow(2)
+    } else {
+        area.pow(2) <= tolerance.pow(2) * ab
+    }
+}
+
+/// Indices in `source` of the points of `thin`, matched greedily from the front such that fixed points are hit.
+fn is_subsequence(thin: &[LatticePoint], source: &[LatticePoint]) -> bool {
+    let mut rest = source.iter();
+    thin.iter().all(|point| rest.any(|other| other == point))
+}
+
+/// Whether the source can be cut at its points into stretches, one per segment of `thin`, each within the tolerance of
+/// its segment: dynamic programming over all ways of cutting.
+fn is_near(thin: &[LatticePoint], source: &[LatticePoint], tolerance: i128) -> bool {
+    let mut reached = vec![false; source.len()];
+    reached[0] = thin[0] == source[0];
+    for segment in thin.windows(2) {
+        let mut next = vec![false; source.len()];
+        for start in (0..source.len()).filter(|&i| reached[i]) {
+            for end in start + 1..source.len() {
+                if !is_within(source[end], segment[0], segment[1], tolerance) {
+                    break;
+                }
+                next[end] |= source[end] == segment[1];
+            }
+        }
+        reached = next;
+    }
+    reached[source.len() - 1]
+}
+
+fn points() -> impl Strategy<Value = Vec<LatticePoint>> {
+    // A small range makes equal points, rings, overlaps and collinear runs common.
+    prop_oneof![(-8..=8_i64, 2..40_usize), (-100_000..=100_000_i64, 2..40_usize)].prop_flat_map(
+        |(range, count)| {
+            let range = range.abs().max(2);
+            vec((-range..=range, -range..=range).prop_map(|(u, v)| LatticePoint::new(u, v)), count)
+        },
+    )
+}
+
+proptest! {
+    /// No source point lies farther than the tolerance from the segment that replaces its stretch; ends and fixed
+    /// points stay; the result is made of the source's points in their order.
+    #[test]
+    fn stays_within_the_tolerance(points in points(), fixed in vec(1..40_u32, 0..5), tolerance in 1..50_000_i64) {
+        if let Some(road) = road(points, &fixed) {
+            let source = road.line.points();
+            let thin = simplify(&road, tolerance as f64);
+            prop_assert!(is_subsequence(thin.points(), source));
+            prop_assert!(is_near(thin.points(), source, i128::from(tolerance)));
+            let fixed: Vec<LatticePoint> = road.fixed.iter().map(|&i| source[i as usize]).collect();
+            let mut distinct = fixed.clone();
+            distinct.dedup();
+            prop_assert!(is_subsequence(&distinct, thin.points()));
+        }
+    }
+
+    /// A way and its reverse keep the same points.
+    #[test]
+    fn does_not_depend_on_direction(points in points(), fixed in vec(1..40_u32, 0..5), tolerance in 0.1..50_000.0) {
+        if let Some(there) = road(points, &fixed) {
+            let last = there.line.points().len() as u32 - 1;
+            let back = Road {
+                line: Polyline::new(there.line.points().iter().rev().copied().collect()).unwrap(),
+                fixed: there.fixed.iter().rev().map(|&i| last - i).collect(),
+                ..there.clone()
+            };
+            let mut reversed = simplify(&back, tolerance).into_points();
+            reversed.reverse();
+            prop_assert_eq!(simplify(&there, tolerance).into_points(), reversed);
+        }
+    }
+
+    /// Simplifying again with the same tolerance and the kept junctions never makes the line invalid.
+    #[test]
+    fn always_leaves_a_polyline(points in points(), tolerance in prop_oneof![Just(f64::INFINITY), Just(f64::MAX), 0.0..10.0]) {
+        if let Some(road) = road(points, &[]) {
+            prop_assert!(simplify(&road, tolerance).points().len() >= 2);
+        }
+    }
+}

@@ -1,0 +1,230 @@
+use corniche_geom::HeightGrid;
+
+use crate::Tin;
+use crate::triangle_rows::for_each_row;
+
+/// How far a TIN lies from heights, and how many of them it covers.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Deviation {
+    /// Largest vertical distance between the TIN and a node it covers, metres; 0 when it covers none.
+    pub max_abs_m: f64,
+    /// Nodes with a height that the TIN covers, its outline included.
+    pub covered_nodes: u64,
+    /// Nodes with a height where the TIN has no triangle.
+    pub uncovered_nodes: u64,
+}
+
+impl Deviation {
+    /// Takes the other's nodes in. The order of merging does not matter.
+    pub fn merge(&mut self, other: Self) {
+        self.max_abs_m = self.max_abs_m.max(other.max_abs_m);
+        self.covered_nodes += other.covered_nodes;
+        self.uncovered_nodes += other.uncovered_nodes;
+    }
+}
+
+/// Where a window of finest nodes lies beneath a tile.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WindowPlacement {
+    /// Finest cells from the tile's west edge to the window's first column.
+    pub column: i64,
+    /// Finest cells from the tile's north edge to the window's first row.
+    pub row: i64,
+    /// Finest cells to one cell of the tile: 1 for a finest tile, else a power of two.
+    pub stride: i64,
+}
+
+/// The triangles of a TIN, sorted into squares of nodes, to be measured against many windows.
+#[derive(Debug, Clone)]
+pub struct TriangleBuckets {
+    planes: Vec<Triangle>,
+    /// Buckets from west to east and from north to south.
+    size: [usize; 2],
+    /// Where each bucket begins in `members`, and the end.
+    starts: Vec<u32>,
+    members: Vec<u32>,
+}
+
+/// Nodes on a side of a bucket. A window of a finest tile far beneath lies in one bucket, and some hundred
+/// triangles to look through are few beside its 66 000 nodes.
+const BUCKET_NODES: usize = 16;
+
+/// A triangle and the buckets its bounding box meets.
+#[derive(Debug, Clone, Copy)]
+struct Triangle {
+    /// `[column, row]`.
+    corners: [[u16; 2]; 3],
+    /// Height of the first corner, and rise per cell of the tile to the east and to the south; metres.
+    plane_m: [f64; 3],
+    low: [u16; 2],
+    high: [u16; 2],
+}
+
+impl Triangle {
+    fn new(corners: [[u16; 2]; 3], heights_m: [f64; 3]) -> Self {
+        let [a, b, c] = corners.map(|corner| corner.map(f64::from));
+        let (ab, ac) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
+        let (ab_m, ac_m) = (heights_m[1] - heights_m[0], heights_m[2] - heights_m[0]);
+        let double_area = ab[0] * ac[1] - ab[1] * ac[0];
+        let east_m = (ab_m * ac[1] - ac_m * ab[1]) / double_area;
+        let south_m = (ac_m * ab[0] - ab_m * ac[0]) / double_area;
+        let bucket = |axis: usize, pick: fn(u16, u16) -> u16| {
+            pick(pick(corners[0][axis], corners[1][axis]), corners[2][axis]) / BUCKET_NODES as u16
+        };
+        Self {
+            corners,
+            plane_m: [heights_m[0], east_m, south_m],
+            low: [bucket(0, u16::min), bucket(1, u16::min)],
+            high: [bucket(0, u16::max), bucket(1, u16::max)],
+        }
+    }
+}
+
+impl TriangleBuckets {
+    /// Sorts the triangles of `tin`, whose heights are steps of `quantum_m`.
+    #[must_use]
+    pub fn new(tin: &Tin, quantum_m: f64) -> Self {
+        let planes: Vec<Triangle> = tin
+            .triangles()
+            .iter()
+            .map(|triangle| {
+                let corners = triangle.map(|vertex| tin.vertices()[vertex as usize]);
+                let at = corners.map(|vertex| [vertex.column, vertex.row]);
+                Triangle::new(at, corners.map(|vertex| f64::from(vertex.height_q) * quantum_m))
+            })
+            .collect();
+        let size = planes.iter().fold([0, 0], |[columns, rows]: [usize; 2], triangle| {
+            [columns.max(usize::from(triangle.high[0]) + 1), rows.max(usize::from(triangle.high[1]) + 1)]
+        });
+        let buckets_of = |triangle: &Triangle| {
+            let [low, high] = [triangle.low, triangle.high].map(|bucket| bucket.map(usize::from));
+            (low[1]..=high[1]).flat_map(move |row| (low[0]..=high[0]).map(move |column| row * size[0] + column))
+        };
+        // Count, then fill.
+        let mut starts = vec![0_u32; size[0] * size[1] + 1];
+        for bucket in planes.iter().flat_map(buckets_of) {
+            starts[bucket + 1] += 1;
+        }
+        for bucket in 1..starts.len() {
+            starts[bucket] += starts[bucket - 1];
+        }
+        let mut next = starts.clone();
+        let mut members = vec![0; starts[starts.len() - 1] as usize];
+        for (index, triangle) in planes.iter().enumerate() {
+            for bucket in buckets_of(triangle) {
+                members[next[bucket] as usize] = index as u32;
+                next[bucket] += 1;
+            }
+        }
+        Self { planes, size, starts, members }
+    }
+
+    /// Calls `each` once for every triangle whose bounding box may meet the nodes `low` to `high` of the tile.
+    fn for_each_near(&self, low: [i64; 2], high: [i64; 2], mut each: impl FnMut(&Triangle)) {
+        let bucket = |node: i64, axis: usize| node.div_euclid(BUCKET_NODES as i64).min(self.size[axis] as i64 - 1);
+        let first = [0, 1].map(|axis| bucket(low[axis], axis).max(0) as usize);
+        let last = [0, 1].map(|axis| bucket(high[axis], axis));
+        for row in first[1] as i64..=last[1] {
+            for column in first[0] as i64..=last[0] {
+                let (row, column) = (row as usize, column as usize);
+                let index = row * self.size[0] + column;
+                for &member in &self.members[self.starts[index] as usize..self.starts[index + 1] as usize] {
+                    let triangle = &self.planes[member as usize];
+                    // A triangle is in all buckets it meets: take it in the first that is looked at.
+                    let taken_at = [0, 1].map(|axis| usize::from(triangle.low[axis]).max(first[axis]));
+                    if taken_at == [column, row] {
+                        each(triangle);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Measures a tile's TIN at every node with a height of `window`, a rectangle of the finest raster.
+///
+/// Heights are compared in f64, at the quantized TIN. A node is counted once, also where triangles meet;
+/// `on_uncovered` is told column and row (in the window, in that order of rows) of each node with a height
+/// where there is no triangle.
+///
+/// # Panics
+/// When `placement.stride` is not above 0, or puts the tile's far corner or the window beyond 2^30 finest
+/// cells: a caller's bug, as a quadtree of 256-cell tiles has 22 levels at most.
+pub fn measure(
+    buckets: &TriangleBuckets,
+    window: &HeightGrid,
+    placement: WindowPlacement,
+    mut on_uncovered: impl FnMut(usize, usize),
+) -> Deviation {
+    let WindowPlacement { column: west, row: north, stride } = placement;
+    let (columns, rows) = (window.columns() as i64, window.rows() as i64);
+    let reach = buckets.size.map(|count| (count * BUCKET_NODES) as i64);
+    assert!(
+        stride > 0 && reach[0].max(reach[1]).checked_mul(stride).is_some_and(|far| far <= 17 << 26),
+        "a tile of {reach:?} nodes at a stride of {stride}"
+    );
+    if columns == 0 || rows == 0 {
+        return Deviation::default();
+    }
+    let heights_m = window.raw();
+    let mut covered = vec![false; heights_m.len()];
+    let mut max_abs_m = 0.0_f64;
+    let per_cell = 1.0 / stride as f64;
+    let low = [west.div_euclid(stride), north.div_euclid(stride)];
+    let high = [(west + columns - 1).div_euclid(stride), (north + rows - 1).div_euclid(stride)];
+    buckets.for_each_near(low, high, |triangle| {
+        let corners = triangle.corners.map(|corner| corner.map(|node| i64::from(node) * stride));
+        let [at_m, east_m, south_m] = triangle.plane_m;
+        let [from_column, from_row] = corners[0];
+        let step_m = east_m * per_cell;
+        for_each_row(corners, north..=north + rows - 1, |row, first, last| {
+            let (first, last) = (first.max(west), last.min(west + columns - 1));
+            if last < first {
+                return;
+            }
+            let start = ((row - north) * columns + first - west) as usize;
+            let range = start..=start + (last - first) as usize;
+            let row_m = at_m + south_m * ((row - from_row) as f64 * per_cell) + step_m * (first - from_column) as f64;
+            covered[range.clone()].fill(true);
+            max_abs_m = max_abs_m.max(largest_distance_m(&heights_m[range], row_m, step_m));
+        });
+    });
+    let mut deviation = Deviation { max_abs_m, ..Deviation::default() };
+    for (index, (covered, height_m)) in covered.iter().zip(heights_m).enumerate() {
+        if height_m.is_nan() {
+            continue;
+        }
+        if *covered {
+            deviation.covered_nodes += 1;
+        } else {
+            deviation.uncovered_nodes += 1;
+            on_uncovered(index % window.columns(), index / window.columns());
+        }
+    }
+    deviation
+}
+
+/// Largest distance of heights from a line that starts at `from_m` and rises `step_m` a node; gaps do not count.
+#[inline]
+fn largest_distance_m(heights_m: &[f32], from_m: f64, step_m: f64) -> f64 {
+    // Four maxima side by side, so that the compiler may use vector registers: comparing with NaN is false.
+    let mut largest = [0.0_f64; 4];
+    let mut chunks = heights_m.chunks_exact(4);
+    let mut position = 0.0;
+    for chunk in &mut chunks {
+        for lane in 0..4 {
+            let distance = (f64::from(chunk[lane]) - (from_m + step_m * (position + lane as f64))).abs();
+            largest[lane] = if distance > largest[lane] { distance } else { largest[lane] };
+        }
+        position += 4.0;
+    }
+    for (lane, &height_m) in chunks.remainder().iter().enumerate() {
+        let distance = (f64::from(height_m) - (from_m + step_m * (position + lane as f64))).abs();
+        largest[lane] = if distance > largest[lane] { distance } else { largest[lane] };
+    }
+    largest.into_iter().fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+#[path = "deviation_tests.rs"]
+mod tests;

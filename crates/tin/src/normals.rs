@@ -1,0 +1,99 @@
+use corniche_geom::HeightGrid;
+
+use crate::Tin;
+
+/// Unit normals of the ground at the vertices of `tin`, octahedron-coded; see [`decode_normal`].
+///
+/// From the gradient of `heights`, the tile's raster with one more node on each side, as
+/// [`triangulate`](crate::triangulate) takes it: central differences, one-sided next to a gap, level where
+/// both neighbours are gaps. `cell_m` is the distance of neighbouring nodes. The rule is local, so a node
+/// has the same normal in every tile that holds it.
+///
+/// # Panics
+/// When a vertex lies outside the grid: `tin` was not made from these heights.
+#[must_use]
+pub fn normals(heights: &HeightGrid, tin: &Tin, cell_m: f64) -> Vec<[i8; 2]> {
+    let height_m = |column: usize, row: usize| heights.height(column, row).map(f64::from);
+    tin.vertices()
+        .iter()
+        .map(|vertex| {
+            let (column, row) = (usize::from(vertex.column) + 1, usize::from(vertex.row) + 1);
+            let here = height_m(column, row);
+            let east = slope(height_m(column - 1, row), here, height_m(column + 1, row), cell_m);
+            let north = slope(height_m(column, row + 1), here, height_m(column, row - 1), cell_m);
+            encode_normal([-east, -north, 1.0])
+        })
+        .collect()
+}
+
+/// Metres up per metre from `before` to `after`, nodes on both sides of `here`.
+fn slope(before: Option<f64>, here: Option<f64>, after: Option<f64>, cell_m: f64) -> f64 {
+    match (before, here, after) {
+        (Some(before), _, Some(after)) => (after - before) / (2.0 * cell_m),
+        (Some(before), Some(here), None) => (here - before) / cell_m,
+        (None, Some(here), Some(after)) => (after - here) / cell_m,
+        _ => 0.0,
+    }
+}
+
+/// A direction, of any length, with z at or above 0, as a point of the octahedron's upper half seen from above.
+///
+/// Source: Meyer, Süßmuth, Sußner, Stamminger & Greiner 2010, *On Floating-Point Normal Vectors*, section 3.
+fn encode_normal([x, y, z]: [f64; 3]) -> [i8; 2] {
+    let length = x.abs() + y.abs() + z;
+    [x, y].map(|value| (value / length * STEPS).round() as i8)
+}
+
+/// Steps from the centre of the octahedron's square to its edge.
+const STEPS: f64 = 127.0;
+
+/// The unit normal (x east, y north, z up) of a code from [`normals`]. Codes of −128 count as −127.
+///
+/// Source: Meyer et al. 2010, *On Floating-Point Normal Vectors*, section 3; the lower half of the
+/// octahedron, which terrain never uses, is folded outward.
+#[must_use]
+pub fn decode_normal(code: [i8; 2]) -> [f32; 3] {
+    let [mut x, mut y] = code.map(|value| (f32::from(value) / STEPS as f32).max(-1.0));
+    let z = 1.0 - x.abs() - y.abs();
+    if z < 0.0 {
+        (x, y) = ((1.0 - y.abs()).copysign(x), (1.0 - x.abs()).copysign(y));
+    }
+    let length = (x * x + y * y + z * z).sqrt();
+    [x / length, y / length, z / length]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{TinSpec, triangulate};
+    use proptest::prelude::*;
+
+    proptest! {
+        /// A decoded normal is of unit length and within a degree of the direction encoded.
+        #[test]
+        fn decodes_what_was_encoded(x in -3.0_f64..3.0, y in -3.0_f64..3.0) {
+            let length = (x * x + y * y + 1.0).sqrt();
+            let back = decode_normal(encode_normal([x, y, 1.0])).map(f64::from);
+            let cosine = (back[0] * x + back[1] * y + back[2]) / length;
+            prop_assert!((back.iter().map(|v| v * v).sum::<f64>() - 1.0).abs() < 1e-6);
+            prop_assert!(cosine > 1.0_f64.to_radians().cos(), "{cosine}");
+        }
+    }
+
+    #[test]
+    fn a_plane_has_one_normal_also_beside_gaps() {
+        // Rises 3 m a cell of 10 m to the east, falls 1 m a cell to the south: rises to the north.
+        let heights = HeightGrid::from_fn(9, 9, |c, r| {
+            if (c, r) == (0, 4) || r == 8 { f32::NAN } else { 3.0 * c as f32 - r as f32 }
+        });
+        let tin = triangulate(&heights, TinSpec { max_error_m: 1.0, quantum_m: 1.0 / 32.0 }).unwrap();
+        let codes = normals(&heights, &tin, 10.0);
+        assert_eq!(codes.len(), tin.vertices().len());
+        assert!(codes.iter().all(|&code| code == encode_normal([-0.3, -0.1, 1.0])), "{codes:?}");
+    }
+
+    #[test]
+    fn level_ground_points_up() {
+        assert_eq!(decode_normal([0, 0]), [0.0, 0.0, 1.0]);
+    }
+}

@@ -1,0 +1,100 @@
+//! What is settled before greedy insertion starts: vertices on the tile's border and on outlines of voids.
+
+use crate::tile_raster::TileRaster;
+
+/// A straight stretch of border or outline, simplified: nodes `[column, row]`, west to east or north to south.
+pub(crate) type Stretch = Vec<[usize; 2]>;
+
+/// All stretches of the tile's border and of the outlines of its voids, each simplified on its own.
+///
+/// A grid line is cut where what lies beside it changes. On the border that is seen through the halo:
+///
+/// ```text
+///          outer:  ground   ground   void    void
+///      ●────────┼────────●────────┼────────●         ●: end of a stretch
+///          inner:  ground   ground   ground  ground
+/// ```
+///
+/// The neighbour sees the same two sides with their names exchanged, cuts at the same nodes, and simplifies
+/// the same heights in the same direction: both get the same vertices wherever both have ground. An end of
+/// a stretch is a vertex, so corners of outlines are, and corners of the tile.
+pub(crate) fn stretches(tile: &TileRaster<'_>, max_error_m: f64, quantum_m: f64) -> Vec<Stretch> {
+    let (columns, rows) = (tile.columns(), tile.rows());
+    let mut found = Vec::new();
+    let mut line = |length: usize, sides: &dyn Fn(usize) -> Option<[bool; 2]>, node: &dyn Fn(usize) -> [usize; 2]| {
+        let mut start = 0;
+        while start + 1 < length {
+            let here = sides(start);
+            let mut end = start + 1;
+            while end + 1 < length && sides(end) == here {
+                end += 1;
+            }
+            if here.is_some() {
+                found.push(simplify(tile, start, end, node, max_error_m, quantum_m));
+            }
+            start = end;
+        }
+    };
+    for row in 0..rows {
+        let sides = |column: usize| {
+            let [north, south] = [tile.halo_cell([column + 1, row]), tile.halo_cell([column + 1, row + 1])];
+            let bounds_ground = match row {
+                0 => south,
+                _ if row == rows - 1 => north,
+                _ => north != south,
+            };
+            bounds_ground.then_some([north, south])
+        };
+        line(columns, &sides, &|column| [column, row]);
+    }
+    for column in 0..columns {
+        let sides = |row: usize| {
+            let [west, east] = [tile.halo_cell([column, row + 1]), tile.halo_cell([column + 1, row + 1])];
+            let bounds_ground = match column {
+                0 => east,
+                _ if column == columns - 1 => west,
+                _ => west != east,
+            };
+            bounds_ground.then_some([west, east])
+        };
+        line(rows, &sides, &|row| [column, row]);
+    }
+    found
+}
+
+/// Greedy insertion in one dimension: the node farthest from the line between two kept ones is kept too,
+/// until none is farther than `max_error_m`; of equals the first. The ends are kept.
+///
+/// Source: Garland & Heckbert 1995, *Fast Polygonal Approximation of Terrains and Height Fields*, applied to
+/// one dimension, where it is the algorithm of Ramer 1972 and Douglas & Peucker 1973 with vertical distances.
+fn simplify(
+    tile: &TileRaster<'_>,
+    start: usize,
+    end: usize,
+    node: &dyn Fn(usize) -> [usize; 2],
+    max_error_m: f64,
+    quantum_m: f64,
+) -> Stretch {
+    let stored_m = |index: usize| f64::from(tile.height_q(node(index))) * quantum_m;
+    let mut kept = vec![node(start)];
+    // Spans still to look at, the first on top.
+    let mut spans = vec![[start, end]];
+    while let Some([from, to]) = spans.pop() {
+        let (from_m, to_m, length) = (stored_m(from), stored_m(to), (to - from) as f64);
+        let mut worst = (max_error_m, None);
+        for index in from + 1..to {
+            let on_line_m = from_m + (to_m - from_m) * ((index - from) as f64 / length);
+            let error_m = (tile.height_m(node(index)) - on_line_m).abs();
+            if error_m > worst.0 {
+                worst = (error_m, Some(index));
+            }
+        }
+        if let Some(index) = worst.1 {
+            spans.push([index, to]);
+            spans.push([from, index]);
+        } else {
+            kept.push(node(to));
+        }
+    }
+    kept
+}

@@ -1,0 +1,123 @@
+//! A grid of buckets over bounding boxes.
+
+use corniche_geom::{LatticeBounds, LatticePoint};
+
+/// Indices of boxes by the squares they meet, each square's in ascending order.
+///
+/// The side of a square is a power of two steps, so that finding one is a shift.
+#[derive(Debug, Clone)]
+pub(crate) struct Buckets {
+    bounds: LatticeBounds,
+    shift: u32,
+    columns: usize,
+    rows: usize,
+    /// Bucket b holds `items[starts[b]..starts[b + 1]]`.
+    starts: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl Default for Buckets {
+    fn default() -> Self {
+        // Bounds that hold no point: nothing is ever found.
+        let bounds = LatticeBounds { min: LatticePoint::new(1, 1), max: LatticePoint::new(0, 0) };
+        Self { bounds, shift: 0, columns: 0, rows: 0, starts: vec![0], items: Vec::new() }
+    }
+}
+
+impl Buckets {
+    /// Sorts boxes into about as many squares as there are boxes, or fewer where boxes are large: the
+    /// number of entries stays within eight for each box, whatever the boxes are.
+    pub(crate) fn new(boxes: &[LatticeBounds]) -> Self {
+        let corners: Vec<LatticePoint> = boxes.iter().flat_map(|b| [b.min, b.max]).collect();
+        let Some(bounds) = LatticeBounds::of(&corners) else {
+            return Self::default();
+        };
+        let longest = (bounds.max.u - bounds.min.u).max(bounds.max.v - bounds.min.v);
+        let most = boxes.len().isqrt().max(1) as i64;
+        let mut shift = 0;
+        while longest >> shift >= most {
+            shift += 1;
+        }
+        loop {
+            let mut grid = Self { bounds, shift, ..Self::default() };
+            let [columns, rows] = grid.square(bounds.max);
+            (grid.columns, grid.rows) = (columns + 1, rows + 1);
+            let entries: usize = boxes
+                .iter()
+                .map(|b| {
+                    let ([west, south], [east, north]) = (grid.square(b.min), grid.square(b.max));
+                    (east - west + 1) * (north - south + 1)
+                })
+                .sum();
+            if entries <= 8 * boxes.len() || grid.columns * grid.rows == 1 {
+                grid.fill(boxes);
+                return grid;
+            }
+            shift += 1;
+        }
+    }
+
+    /// The boxes whose square holds `point`, ascending.
+    pub(crate) fn at(&self, point: LatticePoint) -> &[u32] {
+        if !self.bounds.contains(point) {
+            return &[];
+        }
+        let [column, row] = self.square(point);
+        self.bucket(column, row)
+    }
+
+    /// The boxes in squares that meet `near`, ascending, without repetition; `out` is cleared first.
+    pub(crate) fn near(&self, near: LatticeBounds, out: &mut Vec<u32>) {
+        out.clear();
+        if !self.bounds.intersects(&near) {
+            return;
+        }
+        let within = |p: LatticePoint| {
+            let (min, max) = (self.bounds.min, self.bounds.max);
+            self.square(LatticePoint::new(p.u.clamp(min.u, max.u), p.v.clamp(min.v, max.v)))
+        };
+        let ([west, south], [east, north]) = (within(near.min), within(near.max));
+        for row in south..=north {
+            for column in west..=east {
+                out.extend_from_slice(self.bucket(column, row));
+            }
+        }
+        out.sort_unstable();
+        out.dedup();
+    }
+
+    /// Column and row of the square of a point within the bounds.
+    fn square(&self, point: LatticePoint) -> [usize; 2] {
+        [point.u - self.bounds.min.u, point.v - self.bounds.min.v].map(|offset| (offset >> self.shift) as usize)
+    }
+
+    fn bucket(&self, column: usize, row: usize) -> &[u32] {
+        let bucket = row * self.columns + column;
+        &self.items[self.starts[bucket] as usize..self.starts[bucket + 1] as usize]
+    }
+
+    /// Count, then fill.
+    fn fill(&mut self, boxes: &[LatticeBounds]) {
+        let columns = self.columns;
+        let squares = |grid: &Self, b: &LatticeBounds| {
+            let ([west, south], [east, north]) = (grid.square(b.min), grid.square(b.max));
+            (south..=north).flat_map(move |row| (west..=east).map(move |column| row * columns + column))
+        };
+        let mut starts = vec![0_u32; self.columns * self.rows + 1];
+        for b in boxes {
+            squares(self, b).for_each(|square| starts[square + 1] += 1);
+        }
+        for square in 0..self.columns * self.rows {
+            starts[square + 1] += starts[square];
+        }
+        let mut next = starts.clone();
+        self.items = vec![0; starts[self.columns * self.rows] as usize];
+        for (index, b) in boxes.iter().enumerate() {
+            for square in squares(self, b) {
+                self.items[next[square] as usize] = index as u32;
+                next[square] += 1;
+            }
+        }
+        self.starts = starts;
+    }
+}

@@ -1,0 +1,103 @@
+use corniche_geom::HeightGrid;
+
+/// The nodes of one tile, read from a grid that has one more node on each side.
+///
+/// ```text
+///   grid column   0   1   2        columns + 1
+///                 h   h   h   …   h   h          h: halo
+///                 h   n───n   …   n   h          n: node of the tile
+///                     │ g │                      g: cell (0, 0)
+///   node column       0   1
+/// ```
+pub(crate) struct TileRaster<'a> {
+    heights: &'a HeightGrid,
+    quantum_m: f64,
+    /// Whether a cell has ground, halo cells included: (`columns` + 1) × (`rows` + 1), row by row.
+    ground: Vec<bool>,
+}
+
+impl<'a> TileRaster<'a> {
+    pub(crate) fn new(heights: &'a HeightGrid, quantum_m: f64) -> Self {
+        let (columns, rows) = (heights.columns() - 1, heights.rows() - 1);
+        let raw = heights.raw();
+        let width = heights.columns();
+        let mut ground = Vec::with_capacity(columns * rows);
+        for row in 0..rows {
+            let north = &raw[row * width..(row + 1) * width];
+            let south = &raw[(row + 1) * width..(row + 2) * width];
+            ground.extend(north.windows(2).zip(south.windows(2)).map(|(n, s)| {
+                // A sum is NaN iff one of its terms is: heights are finite, and f64 has room for their sum.
+                !(f64::from(n[0]) + f64::from(n[1]) + f64::from(s[0]) + f64::from(s[1])).is_nan()
+            }));
+        }
+        Self { heights, quantum_m, ground }
+    }
+
+    /// Nodes of the tile from west to east.
+    pub(crate) fn columns(&self) -> usize {
+        self.heights.columns() - 2
+    }
+
+    /// Nodes of the tile from north to south.
+    pub(crate) fn rows(&self) -> usize {
+        self.heights.rows() - 2
+    }
+
+    /// Heights of one row of the tile's nodes, NaN in gaps.
+    pub(crate) fn row_m(&self, row: usize) -> &[f32] {
+        let start = (row + 1) * self.heights.columns() + 1;
+        &self.heights.raw()[start..start + self.columns()]
+    }
+
+    /// Height of a node, metres; NaN in a gap.
+    pub(crate) fn height_m(&self, [column, row]: [usize; 2]) -> f64 {
+        f64::from(self.row_m(row)[column])
+    }
+
+    /// Height of a node in whole steps of the quantum. The caller has checked that heights fit.
+    pub(crate) fn height_q(&self, node: [usize; 2]) -> i32 {
+        (self.height_m(node) / self.quantum_m).round() as i32
+    }
+
+    /// Whether the cell south-east of node (`column` − 1, `row` − 1) has ground: `[0, 0]` is the halo cell
+    /// at the north-west corner, `[1, 1]` the tile's first.
+    pub(crate) fn halo_cell(&self, [column, row]: [usize; 2]) -> bool {
+        self.ground[row * (self.columns() + 1) + column]
+    }
+
+    /// Whether the tile's cell whose north-west node is `node` has ground.
+    pub(crate) fn cell(&self, [column, row]: [usize; 2]) -> bool {
+        self.halo_cell([column + 1, row + 1])
+    }
+
+    /// How many of the tile's own cells have ground.
+    pub(crate) fn count_ground_cells(&self) -> usize {
+        let width = self.columns() + 1;
+        (1..self.rows())
+            .map(|row| {
+                let cells = &self.ground[row * width + 1..row * width + self.columns()];
+                cells.iter().filter(|&&ground| ground).count()
+            })
+            .sum()
+    }
+
+    /// Heights of the nodes that may be inserted: those inside the ground. NaN on the tile's border, on
+    /// outlines of voids and off the ground. Row by row, `columns` × `rows`.
+    pub(crate) fn inner_heights_m(&self) -> Vec<f32> {
+        let (columns, rows) = (self.columns(), self.rows());
+        let width = columns + 1;
+        let mut inner = vec![f32::NAN; columns * rows];
+        for row in 1..rows - 1 {
+            let heights = self.row_m(row);
+            let north = &self.ground[row * width..(row + 1) * width];
+            let south = &self.ground[(row + 1) * width..(row + 2) * width];
+            let out = &mut inner[row * columns..(row + 1) * columns];
+            for column in 1..columns - 1 {
+                if north[column] && north[column + 1] && south[column] && south[column + 1] {
+                    out[column] = heights[column];
+                }
+            }
+        }
+        inner
+    }
+}

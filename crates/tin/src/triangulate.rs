@@ -1,0 +1,158 @@
+use corniche_geom::HeightGrid;
+use spade::{ConstrainedDelaunayTriangulation, DelaunayTriangulation, InsertionError, Triangulation};
+
+use crate::outline::{Stretch, stretches};
+use crate::refine::{Node, refine};
+use crate::tile_raster::TileRaster;
+use crate::{Tin, TinError, TinVertex};
+
+/// How closely a TIN follows its heights.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TinSpec {
+    /// No node the TIN covers lies farther from it, vertically; metres, above 0.
+    pub max_error_m: f64,
+    /// Height of one step of [`TinVertex::height_q`], metres; above 0 and at most `max_error_m`.
+    pub quantum_m: f64,
+}
+
+/// Why heights could not be triangulated.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TriangulateError {
+    /// Tolerance and quantum do not fit each other.
+    #[error("a max error of {max_error_m} m needs a height quantum above 0 and at most that, not {quantum_m} m")]
+    Spec {
+        /// The tolerance asked for.
+        max_error_m: f64,
+        /// The quantum asked for.
+        quantum_m: f64,
+    },
+    /// The grid is too small to hold a cell and its halo, or its nodes do not fit the indices of a vertex.
+    #[error("a tile with its halo has 4 to 65538 columns and rows, not {columns} × {rows}")]
+    Size {
+        /// Columns given, halo included.
+        columns: usize,
+        /// Rows given, halo included.
+        rows: usize,
+    },
+    /// A height is beyond what 32-bit steps of the quantum can hold.
+    #[error("a height of {height_m} m does not fit 32-bit steps of {quantum_m} m; is it a nodata value?")]
+    Height {
+        /// The height.
+        height_m: f32,
+        /// The quantum.
+        quantum_m: f64,
+    },
+    /// The triangulation library refused a node. Nodes are small integers, so this does not happen.
+    #[error("a node of the grid could not be inserted")]
+    Insert(#[from] InsertionError),
+    /// The triangles do not make a TIN.
+    #[error("the triangulation is inconsistent")]
+    Tin(#[from] TinError),
+}
+
+/// The largest power of two that is at most `max_error_m` / 32: the height quantum of a package.
+///
+/// 0 for a tolerance that is 0, negative or not a number.
+#[must_use]
+pub fn height_quantum_m(max_error_m: f64) -> f64 {
+    let limit_m = max_error_m / 32.0;
+    if !limit_m.is_normal() || limit_m < 0.0 {
+        return 0.0;
+    }
+    // A float without its mantissa is the largest power of two not above it.
+    f64::from_bits(limit_m.to_bits() & (0x7ff << 52))
+}
+
+/// The TIN of one tile: every node it covers lies within `spec.max_error_m` of it, vertically.
+///
+/// `heights` is the tile's raster with one more node on each side; vertices are counted without that halo.
+/// Ground is where cells have four corners with heights; the TIN covers exactly that, and is empty where
+/// there is none. Vertices on the border depend on the border's own heights and on the cells on both sides
+/// of it, nothing else, so that two tiles share them bit for bit wherever both have ground.
+///
+/// Source: Garland & Heckbert 1995, *Fast Polygonal Approximation of Terrains and Height Fields*, algorithm
+/// III (only changed triangles are rescanned), over a constrained Delaunay triangulation. What we changed:
+/// residuals are taken against quantized vertices, border and outlines are settled first, in one dimension,
+/// and never added to.
+///
+/// # Errors
+/// When `spec` makes no sense, the grid has no cell inside its halo or is too large, or a height does not
+/// fit 32-bit steps of the quantum.
+pub fn triangulate(heights: &HeightGrid, spec: TinSpec) -> Result<Tin, TriangulateError> {
+    let TinSpec { max_error_m, quantum_m } = spec;
+    if !(quantum_m > 0.0 && quantum_m <= max_error_m && max_error_m.is_finite()) {
+        return Err(TriangulateError::Spec { max_error_m, quantum_m });
+    }
+    let (columns, rows) = (heights.columns(), heights.rows());
+    if !(4..=MAX_SIDE).contains(&columns) || !(4..=MAX_SIDE).contains(&rows) {
+        return Err(TriangulateError::Size { columns, rows });
+    }
+    for height_m in heights.range_m().into_iter().flatten() {
+        if (f64::from(height_m) / quantum_m).abs() > f64::from(i32::MAX - 1) {
+            return Err(TriangulateError::Height { height_m, quantum_m });
+        }
+    }
+
+    let tile = TileRaster::new(heights, quantum_m);
+    let ground_cells = tile.count_ground_cells();
+    if ground_cells == 0 {
+        return Ok(Tin::default());
+    }
+    // Room for rounding: whoever measures may use another formula for the same plane.
+    let limit_m = max_error_m * (1.0 - ROUNDING_SHARE);
+    let fixed = stretches(&tile, limit_m, quantum_m);
+    let (nodes, edges) = fixed_graph(&tile, &fixed);
+    if ground_cells == (tile.columns() - 1) * (tile.rows() - 1) {
+        // The hull is the border: nothing needs a constraint.
+        let mut mesh = DelaunayTriangulation::<Node>::bulk_load(nodes)?;
+        refine(&mut mesh, &tile, limit_m, quantum_m)?;
+        to_tin(&mesh, &tile)
+    } else {
+        let mut mesh = ConstrainedDelaunayTriangulation::<Node>::bulk_load_cdt(nodes, edges)?;
+        refine(&mut mesh, &tile, limit_m, quantum_m)?;
+        to_tin(&mesh, &tile)
+    }
+}
+
+/// Nodes of a [`TinVertex`] are 16-bit, and there is a halo on both sides.
+const MAX_SIDE: usize = 65_536 + 2;
+/// Planes through 16-bit nodes and 32-bit heights are evaluated to some 2^-50 of the heights' range, which
+/// is at most 2^32 quanta: far below this share of the tolerance for tolerances of 32 quanta and real heights.
+const ROUNDING_SHARE: f64 = 1.0 / (1 << 30) as f64;
+
+/// The vertices of all stretches, each once, sorted by row and column, and the edges between them.
+fn fixed_graph(tile: &TileRaster<'_>, fixed: &[Stretch]) -> (Vec<Node>, Vec<[usize; 2]>) {
+    let mut keys: Vec<[usize; 2]> = fixed.iter().flatten().map(|&[column, row]| [row, column]).collect();
+    keys.sort_unstable();
+    keys.dedup();
+    let index = |[column, row]: [usize; 2]| keys.partition_point(|&key| key < [row, column]);
+    let edges = fixed.iter().flat_map(|stretch| stretch.windows(2).map(|pair| [index(pair[0]), index(pair[1])]));
+    let edges = edges.collect();
+    (keys.iter().map(|&[row, column]| Node::new(tile, [column, row])).collect(), edges)
+}
+
+/// The faces on the ground, as a TIN.
+fn to_tin<T>(mesh: &T, tile: &TileRaster<'_>) -> Result<Tin, TriangulateError>
+where
+    T: Triangulation<Vertex = Node>,
+{
+    let vertices: Vec<TinVertex> = mesh.vertices().map(|vertex| vertex.data().to_vertex()).collect();
+    let mut triangles = Vec::with_capacity(mesh.num_inner_faces());
+    for face in mesh.inner_faces() {
+        let corners = face.vertices();
+        // Outlines are edges, so a face is all ground or all void, and so is every cell that its inside
+        // meets: the one around its centroid decides, exactly, also when the centroid is on a cell's edge.
+        let (column, row) = corners.iter().fold((0, 0), |(column, row), corner| {
+            (column + usize::from(corner.data().column), row + usize::from(corner.data().row))
+        });
+        if tile.cell([column / 3, row / 3]) {
+            // Rows count to the south: what is counter-clockwise to the mesh is clockwise seen from above.
+            triangles.push([corners[0], corners[2], corners[1]].map(|corner| corner.index() as u32));
+        }
+    }
+    Ok(Tin::new(vertices, &triangles)?)
+}
+
+#[cfg(test)]
+#[path = "triangulate_tests.rs"]
+mod tests;

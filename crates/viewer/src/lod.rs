@@ -1,0 +1,198 @@
+//! Which tiles to draw and which to ask for: a pure function of the tile tree and the camera.
+//!
+//! Refinement by replacement: a tile is drawn, or its children are, never both. A parent stays until every
+//! child that can be in view is loaded, so there is never a hole.
+//!
+//! Source: Cozzi & Ring, *3D Engine Design for Virtual Globes* (2011), ch. 12.
+
+use std::collections::BTreeMap;
+
+use corniche_geom::{Bounds, TileId};
+
+use crate::camera::{Camera, WorldBox};
+
+/// What is known of a tile's ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GroundSummary {
+    /// Error of drawing this tile instead of the full-resolution DEM; never below its children's.
+    pub geometric_error_m: f64,
+    /// Lowest and highest ground beneath, children included.
+    pub height_range_m: [f64; 2],
+}
+
+/// State of one node of the tile tree.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Node {
+    /// Neither the tile nor anything beneath it exists.
+    Absent,
+    /// Exists, but is not loaded.
+    Listed,
+    /// Loaded; `None` has no ground on its own level, though its children may have some.
+    Loaded(Option<GroundSummary>),
+}
+
+/// The tiles of a package as far as they are known.
+pub trait TileTree {
+    /// State of a tile.
+    fn node(&self, id: TileId) -> Node;
+    /// Plan rectangle of a tile in the working CRS.
+    fn plan_bounds(&self, id: TileId) -> Bounds;
+    /// The finest level.
+    fn max_level(&self) -> u8;
+}
+
+/// What decides how fine to draw.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quality {
+    /// A tile is refined while its error looks larger than this, in pixels.
+    pub screen_space_error_px: f64,
+    /// World height of one metre of true height: point scale times exaggeration.
+    pub vertical_scale: f64,
+}
+
+/// A tile to draw.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drawn {
+    /// Which.
+    pub id: TileId,
+    /// Its skirt must reach this far down (true metres, before exaggeration) to meet the neighbours drawn.
+    pub skirt_depth_m: f64,
+}
+
+/// A tile to load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Request {
+    /// Which.
+    pub id: TileId,
+    /// Screen-space error that loading it would mend, in pixels; infinite for the root.
+    pub priority_px: f64,
+}
+
+/// What to do for the next picture.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Selection {
+    /// Tiles to draw, in order of id. No two overlap.
+    pub drawn: Vec<Drawn>,
+    /// Tiles to load, most urgent first.
+    pub requests: Vec<Request>,
+}
+
+/// Screen-space error of a tile, in pixels: how large its geometric error looks from `camera`.
+///
+/// `distance_m` runs from the eye to the nearest point of the tile. At 0 the result is infinite,
+/// so the tile the eye stands in always refines. An error of 0 looks like 0 from anywhere.
+///
+/// Source: Cozzi & Ring, *3D Engine Design for Virtual Globes* (2011), ch. 12.
+#[must_use]
+pub fn screen_space_error_px(geometric_error_m: f64, distance_m: f64, camera: &Camera) -> f64 {
+    if geometric_error_m <= 0.0 { 0.0 } else { geometric_error_m / (distance_m * camera.pixel_at_unit_depth_m()) }
+}
+
+/// Chooses tiles for `camera`.
+#[must_use]
+pub fn select(tree: &dyn TileTree, camera: &Camera, quality: Quality) -> Selection {
+    let mut walk = Walk {
+        tree,
+        camera,
+        quality,
+        frustum: camera.frustum(),
+        errors_m: BTreeMap::new(),
+        requests: Vec::new(),
+    };
+    match tree.node(TileId::ROOT) {
+        Node::Absent => {}
+        Node::Listed => walk.requests.push(Request { id: TileId::ROOT, priority_px: f64::INFINITY }),
+        Node::Loaded(ground) => {
+            let range_m = ground.map_or([f64::NEG_INFINITY, f64::INFINITY], |ground| ground.height_range_m);
+            walk.visit(TileId::ROOT, ground, range_m);
+        }
+    }
+    walk.requests.sort_by(|a, b| b.priority_px.total_cmp(&a.priority_px).then(a.id.cmp(&b.id)));
+    let skirts = skirt_depths_m(&walk.errors_m);
+    let drawn = skirts.into_iter().map(|(id, skirt_depth_m)| Drawn { id, skirt_depth_m }).collect();
+    Selection { drawn, requests: walk.requests }
+}
+
+struct Walk<'a> {
+    tree: &'a dyn TileTree,
+    camera: &'a Camera,
+    quality: Quality,
+    frustum: crate::camera::Frustum,
+    /// Geometric errors of the tiles to draw.
+    errors_m: BTreeMap<TileId, f64>,
+    requests: Vec<Request>,
+}
+
+impl Walk<'_> {
+    /// Draws `id` or what lies beneath it. `range_m` bounds the heights when the tile itself does not.
+    fn visit(&mut self, id: TileId, ground: Option<GroundSummary>, range_m: [f64; 2]) {
+        let range_m = ground.map_or(range_m, |ground| ground.height_range_m);
+        if !self.may_see(id, range_m) {
+            return;
+        }
+        let error_px = ground.map_or(f64::INFINITY, |ground| {
+            let distance_m = self.world_box(id, range_m).distance_m(self.camera.eye_in_world());
+            screen_space_error_px(ground.geometric_error_m * self.quality.vertical_scale, distance_m, self.camera)
+        });
+        let mut children = Vec::new();
+        if error_px > self.quality.screen_space_error_px && id.z() < self.tree.max_level() {
+            // A child not yet loaded lies between its parent's heights, which nest.
+            children.extend(
+                id.children()
+                    .map(|child| (child, self.tree.node(child)))
+                    .filter(|(child, node)| *node != Node::Absent && self.may_see(*child, range_m)),
+            );
+        }
+        let missing: Vec<TileId> =
+            children.iter().filter(|(_, node)| *node == Node::Listed).map(|(child, _)| *child).collect();
+        self.requests.extend(missing.iter().map(|&id| Request { id, priority_px: error_px }));
+        if let Some(ground) = ground
+            && (children.is_empty() || !missing.is_empty())
+        {
+            self.errors_m.insert(id, ground.geometric_error_m);
+            return;
+        }
+        for (child, node) in children {
+            if let Node::Loaded(ground) = node {
+                self.visit(child, ground, range_m);
+            }
+        }
+    }
+
+    fn world_box(&self, id: TileId, range_m: [f64; 2]) -> WorldBox {
+        WorldBox::new(self.tree.plan_bounds(id), range_m.map(|height_m| height_m * self.quality.vertical_scale))
+    }
+
+    fn may_see(&self, id: TileId, range_m: [f64; 2]) -> bool {
+        // Without any known height only the plan can tell, and it cannot tell much: keep the tile.
+        range_m.iter().any(|height_m| height_m.is_infinite()) || self.frustum.may_see(&self.world_box(id, range_m))
+    }
+}
+
+/// How deep each drawn tile's skirt must be so that no crack shows.
+///
+/// Along a border between different levels both TINs are within their own error of the DEM, hence within the
+/// sum of the errors of each other. Tiles of one level share their border vertices and need no skirt there.
+fn skirt_depths_m(errors_m: &BTreeMap<TileId, f64>) -> BTreeMap<TileId, f64> {
+    let mut depths_m: BTreeMap<TileId, f64> = errors_m.keys().map(|&id| (id, 0.0)).collect();
+    let mut deepen = |id: TileId, depth_m: f64| {
+        depths_m.entry(id).and_modify(|known| *known = f64::max(*known, depth_m));
+    };
+    for (&id, &error_m) in errors_m {
+        // Every pair of different levels is met once from its finer side.
+        for (dx, dy) in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
+            let Some(beside) = id.neighbour(dx, dy) else { continue };
+            let coarser = (0..id.z()).rev().map(|z| beside.ancestor(z)).find(|id| errors_m.contains_key(id));
+            if let Some(coarser) = coarser {
+                let gap_m = error_m + errors_m[&coarser];
+                deepen(id, gap_m);
+                deepen(coarser, gap_m);
+            }
+        }
+    }
+    depths_m
+}
+
+#[cfg(test)]
+#[path = "lod_tests.rs"]
+mod tests;

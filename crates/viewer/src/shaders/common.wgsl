@@ -1,0 +1,62 @@
+// What every pass knows of the frame. Mirrors gpu/uniforms.rs, field by field.
+//
+// Positions are relative to the eye, along the world's axes (x east, y north, z up), in metres.
+// Depth is reversed with an infinite far plane: depth_buffer = near / view_depth, 0 where nothing was drawn.
+
+const CLASSES = 9u;
+const TINT_STOPS = 6u;
+
+struct Frame {
+    clip_from_relative: mat4x4<f32>,
+    // xyz: the view's right axis × half width at depth 1; w: width of the picture in pixels.
+    right: vec4<f32>,
+    // xyz: the view's up axis × half height at depth 1; w: height of the picture in pixels.
+    up: vec4<f32>,
+    // xyz: the direction of view; w: depth of the near plane.
+    forward: vec4<f32>,
+    // xyz: towards the light; w: strength of the hillshade.
+    light: vec4<f32>,
+    // rgb; w: distance over which haze grows to two thirds.
+    haze: vec4<f32>,
+    // rgb; w: side of a pixel at depth 1, metres.
+    sky: vec4<f32>,
+    // rgb; w: world height of one metre.
+    background: vec4<f32>,
+    // x: distance up to which road widths are true; y: exponent beyond; z: radius of the outline kernel in
+    // pixels of this target; w: how many of these pixels make one pixel of the final picture.
+    road_scale: vec4<f32>,
+    // x: lowest ground; y: 1 / height range.
+    heights: vec4<f32>,
+    // rgb; w: share of the height range.
+    tint: array<vec4<f32>, TINT_STOPS>,
+    // x: half width in world metres; y: least half width in pixels of this target; z: share of the width that
+    // the centre line takes, 0 without one.
+    road_widths: array<vec4<f32>, CLASSES>,
+    road_fills: array<vec4<f32>, CLASSES>,
+    road_outlines: array<vec4<f32>, CLASSES>,
+    road_centers: array<vec4<f32>, CLASSES>,
+}
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+
+// Direction through a pixel position, scaled to depth 1.
+fn ray_at(pixel: vec2<f32>) -> vec3<f32> {
+    let x = 2.0 * pixel.x / frame.right.w - 1.0;
+    let y = 1.0 - 2.0 * pixel.y / frame.up.w;
+    return frame.forward.xyz + x * frame.right.xyz + y * frame.up.xyz;
+}
+
+fn view_depth_of(depth_buffer: f32) -> f32 {
+    return frame.forward.w / depth_buffer;
+}
+
+// Half width of a road in world metres before it is kept from getting thinner than a pixel.
+fn scaled_half_width_m(road_class: u32, distance_m: f32) -> f32 {
+    let growth = pow(max(distance_m / frame.road_scale.x, 1.0), frame.road_scale.y);
+    return frame.road_widths[road_class].x * growth;
+}
+
+// Least half width in world metres at a depth.
+fn least_half_width_m(road_class: u32, view_depth: f32) -> f32 {
+    return frame.road_widths[road_class].y * frame.sky.w * view_depth;
+}

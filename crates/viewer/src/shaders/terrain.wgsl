@@ -1,0 +1,61 @@
+// Terrain: tile-relative vertices to colour and depth.
+// Alpha says what the pixel is: 1 ground, 0.5 skirt, 0 nothing. Roads are no part of a skirt.
+
+struct Tile {
+    // xyz: the tile's reference point minus the eye; w: depth of the skirt, world metres.
+    offset: vec4<f32>,
+    // x: true height of the reference point.
+    base: vec4<f32>,
+}
+
+@group(1) @binding(0) var<uniform> tile: Tile;
+
+struct VertexIn {
+    @location(0) position_in_tile: vec3<f32>,
+    // xyz: unit normal of the ground; w: 1 at the lower edge of a skirt.
+    @location(1) normal_skirt: vec4<f32>,
+}
+
+struct VertexOut {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) height_m: f32,
+    @location(2) skirt: f32,
+}
+
+@vertex
+fn vertex(in: VertexIn) -> VertexOut {
+    let vertical_scale = frame.background.w;
+    let down = in.normal_skirt.w * tile.offset.w;
+    let in_tile = vec3(in.position_in_tile.xy, in.position_in_tile.z * vertical_scale - down);
+    var out: VertexOut;
+    out.clip = frame.clip_from_relative * vec4(tile.offset.xyz + in_tile, 1.0);
+    // Stretching the ground upwards flattens its normals' vertical part.
+    out.normal = vec3(in.normal_skirt.xy * vertical_scale, in.normal_skirt.z);
+    out.height_m = tile.base.x + in.position_in_tile.z;
+    out.skirt = in.normal_skirt.w;
+    return out;
+}
+
+fn tint_at(height_m: f32) -> vec3<f32> {
+    let share = clamp((height_m - frame.heights.x) * frame.heights.y, 0.0, 1.0);
+    var color = frame.tint[0].rgb;
+    for (var k = 1u; k < TINT_STOPS; k++) {
+        let low = frame.tint[k - 1u].w;
+        let t = clamp((share - low) / (frame.tint[k].w - low), 0.0, 1.0);
+        color = mix(color, frame.tint[k].rgb, t);
+    }
+    return color;
+}
+
+@fragment
+fn fragment(in: VertexOut) -> @location(0) vec4<f32> {
+    // 1 on level ground, below on slopes turned away from the light, above on slopes turned towards it.
+    let lit = max(dot(normalize(in.normal), frame.light.xyz), 0.0) / frame.light.z;
+    let color = tint_at(in.height_m);
+    // Shadows in print are blue rather than black.
+    let shaded = color * vec3(0.36, 0.40, 0.52);
+    let dark = mix(color, shaded, frame.light.w * clamp(1.0 - lit, 0.0, 1.0));
+    let bright = mix(dark, vec3(1.0), frame.light.w * clamp(lit - 1.0, 0.0, 1.0) * 0.9);
+    return vec4(bright, select(1.0, 0.5, in.skirt > 1e-6));
+}

@@ -1,0 +1,161 @@
+//! How the map looks: plain values, no GPU.
+
+use corniche_roads::FunctionalRoadClass;
+
+/// A colour as red, green, blue in sRGB, 0 to 1.
+pub type Rgb = [f32; 3];
+
+/// How the roads of one class are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoadStyle {
+    /// Width on the ground near the eye.
+    pub width_m: f32,
+    /// Never drawn thinner than this.
+    pub min_width_px: f32,
+    /// Fill.
+    pub color: Rgb,
+    /// Edge.
+    pub outline: Rgb,
+    /// A line along the middle, for roads of two colours; drawn as a second, narrower road of the same class
+    /// (the paper, section 6.2).
+    pub center: Option<CenterLine>,
+}
+
+/// The line along the middle of a road of two colours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CenterLine {
+    /// Share of the road's width.
+    pub width_share: f32,
+    /// Its colour.
+    pub color: Rgb,
+}
+
+/// How far roads grow with distance (the paper, section 6.2 and Fig. 10).
+///
+/// Up to `threshold_m` a road has its true width. Beyond, the width is multiplied by
+/// `(distance / threshold_m) ^ exponent`: with exponent 0 it shrinks as everything does, with 1 it keeps its
+/// size in pixels. In between, far roads stay visible and still look far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WidthScaling {
+    /// Distance from the eye up to which widths are true.
+    pub threshold_m: f32,
+    /// 0 to 1.
+    pub exponent: f32,
+}
+
+impl WidthScaling {
+    /// Factor on the width at a distance from the eye.
+    #[must_use]
+    pub fn factor(&self, distance_m: f64) -> f64 {
+        (distance_m / f64::from(self.threshold_m)).max(1.0).powf(f64::from(self.exponent))
+    }
+}
+
+/// A stop of the height tint: share of the package's height range and colour.
+pub type TintStop = (f32, Rgb);
+
+/// How many stops a height tint has.
+pub const TINT_STOPS: usize = 6;
+
+/// How the map looks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Style {
+    /// By class, 0 first.
+    pub roads: [RoadStyle; FunctionalRoadClass::COUNT],
+    /// Growth with distance.
+    pub width_scaling: WidthScaling,
+    /// Width of the edge of roads; the kernel has this radius.
+    pub outline_px: u32,
+    /// Height tint, lowest first, shares ascending from 0 to 1.
+    pub tint: [TintStop; TINT_STOPS],
+    /// Compass direction the light comes from.
+    pub light_azimuth_deg: f64,
+    /// Height of the light above the horizon.
+    pub light_altitude_deg: f64,
+    /// How strongly slopes are shaded, 0 to 1.
+    pub hillshade: f32,
+    /// Colour of far ground and of the sky at the horizon.
+    pub haze: Rgb,
+    /// Colour of the sky far above the horizon.
+    pub sky: Rgb,
+    /// Colour where there is no ground, below the horizon.
+    pub void: Rgb,
+    /// Ground this many times as far as what is looked at has lost two thirds of its colour.
+    pub haze_reach: f32,
+}
+
+impl Style {
+    /// A road atlas: warm roads with dark edges, pale ground.
+    #[must_use]
+    pub fn road_atlas() -> Self {
+        let road = |width_m, min_width_px, color, outline| RoadStyle {
+            width_m,
+            min_width_px,
+            color: rgb(color),
+            outline: rgb(outline),
+            center: None,
+        };
+        let yellow = CenterLine { width_share: 0.3, color: rgb(0xFF_E8_8A) };
+        Self {
+            roads: [
+                RoadStyle { center: Some(yellow), ..road(24.0, 3.0, 0xD9_3A_2B, 0x5E_14_10) },
+                RoadStyle { center: Some(yellow), ..road(20.0, 2.6, 0xE8_6A_33, 0x6B_2A_0F) },
+                road(17.0, 2.2, 0xF4_9B_36, 0x77_42_0C),
+                road(14.0, 1.9, 0xFB_D3_4C, 0x7A_5C_12),
+                road(11.0, 1.5, 0xFF_F0_9C, 0x7D_6C_33),
+                road(8.5, 1.2, 0xFF_FF_FF, 0x74_6F_66),
+                road(7.0, 1.0, 0xFF_FF_FF, 0x80_7B_72),
+                road(5.0, 1.0, 0xF3_EC_E0, 0x8C_85_79),
+                road(3.5, 1.0, 0xE4_D8_C6, 0x97_8D_7F),
+            ],
+            width_scaling: WidthScaling { threshold_m: 1500.0, exponent: 0.75 },
+            outline_px: 1,
+            tint: [
+                (0.0, rgb(0xCB_DD_B4)),
+                (0.15, rgb(0xDD_E6_BF)),
+                (0.35, rgb(0xEE_E8_C6)),
+                (0.6, rgb(0xE2_D0_AE)),
+                (0.8, rgb(0xD3_C3_B4)),
+                (1.0, rgb(0xF4_F3_F1)),
+            ],
+            light_azimuth_deg: 315.0,
+            light_altitude_deg: 45.0,
+            hillshade: 0.75,
+            haze: rgb(0xDC_E6_EE),
+            sky: rgb(0x9F_C1_E0),
+            void: rgb(0xC9_D8_E4),
+            haze_reach: 6.0,
+        }
+    }
+}
+
+/// `0xRR_GG_BB` as shares.
+fn rgb(hex: u32) -> Rgb {
+    [16, 8, 0].map(|shift| (hex >> shift & 0xFF) as f32 / 255.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_atlas_gives_more_important_roads_more_width() {
+        let style = Style::road_atlas();
+        assert!(style.roads.is_sorted_by(|a, b| a.width_m > b.width_m && a.min_width_px >= b.min_width_px));
+        assert!(style.tint.is_sorted_by(|a, b| a.0 < b.0));
+        assert!(style.tint[0].0.abs() < 1e-9 && (style.tint[TINT_STOPS - 1].0 - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn widths_are_true_up_to_the_threshold_and_grow_beyond() {
+        let scaling = WidthScaling { threshold_m: 1000.0, exponent: 0.5 };
+        assert!((scaling.factor(10.0) - 1.0).abs() < 1e-12);
+        assert!((scaling.factor(1000.0) - 1.0).abs() < 1e-12);
+        assert!((scaling.factor(4000.0) - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn hex_is_red_green_blue() {
+        assert_eq!(rgb(0xFF_00_33), [1.0, 0.0, 0.2]);
+    }
+}

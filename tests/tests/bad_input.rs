@@ -1,0 +1,137 @@
+//! Whatever is wrong with the input: a clear message, the right exit code, and nothing at the target.
+
+use std::{fs, path::Path};
+
+use e2e::{Ran, build_pass, corniche, sample};
+
+/// Runs `corniche build` with `arguments` and expects `code`, nothing at the target and no litter beside it.
+fn refuses(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
+    let target = folder.join("out.pmtiles");
+    let mut all = vec!["build", "-o", target.to_str().unwrap()];
+    all.extend(arguments);
+    let ran: Ran = corniche(all);
+    assert_eq!(ran.code, code, "{arguments:?}: {}", ran.err);
+    for word in words {
+        assert!(ran.err.contains(word), "{arguments:?} says {:?}, not {word:?}", ran.err);
+    }
+    assert!(!target.exists(), "{arguments:?} left a package");
+    let litter: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name.contains(".work"))
+        .collect();
+    assert!(litter.is_empty(), "{arguments:?} left {litter:?}");
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+#[test]
+fn refuses_files_that_are_missing_empty_or_something_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = sample("pass/pass.tif");
+    let (empty, prose) = (folder.path().join("empty.tif"), folder.path().join("prose.tif"));
+    fs::write(&empty, b"").unwrap();
+    fs::write(&prose, b"this is not a raster, nor an extract").unwrap();
+    refuses(folder.path(), &["--dem", "/nowhere/dem.tif"], 2, &["/nowhere/dem.tif"]);
+    refuses(folder.path(), &["--dem", text(&empty)], 2, &["empty.tif"]);
+    refuses(folder.path(), &["--dem", text(&prose)], 2, &["prose.tif"]);
+    refuses(folder.path(), &["--dem", text(&dem), "--osm", "/nowhere/a.osm.pbf"], 2, &["a.osm.pbf"]);
+    refuses(folder.path(), &["--dem", text(&dem), "--osm", text(&prose)], 2, &["prose.tif"]);
+    refuses(folder.path(), &["--dem", text(&dem), "--osm", text(&empty)], 2, &["empty.tif"]);
+}
+
+#[test]
+fn refuses_an_extract_that_lies_elsewhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = sample("pass/pass.tif");
+    let osm = sample("liechtenstein/liechtenstein-2013-08-03.osm.pbf");
+    refuses(folder.path(), &["--dem", text(&dem), "--osm", text(&osm)], 2, &["do not overlap"]);
+}
+
+#[test]
+fn refuses_settings_that_make_no_sense() {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = sample("pass/pass.tif");
+    let dem = text(&dem);
+    refuses(folder.path(), &["--dem", dem, "--max-error", "-1"], 2, &["--max-error"]);
+    refuses(folder.path(), &["--dem", dem, "--cell", "0"], 2, &["--cell"]);
+    refuses(folder.path(), &["--dem", dem, "--crs", "EPSG:4326"], 2, &["--crs"]);
+    refuses(folder.path(), &["--dem", dem, "--crs", "nonsense"], 2, &["nonsense"]);
+    refuses(folder.path(), &["--dem", dem, "--frc-table", "nonsense"], 2, &["nonsense"]);
+    refuses(folder.path(), &["--dem", dem, "--resume"], 2, &["--resume"]);
+    refuses(folder.path(), &["--dem", dem, "--photo", dem], 2, &["--photo"]);
+}
+
+#[test]
+fn keeps_what_exists_unless_told_to_replace_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("pass.pmtiles");
+    fs::write(&target, b"precious").unwrap();
+    let dem = sample("pass/pass.tif");
+    let arguments = ["build", "--dem", text(&dem), "-o", text(&target)];
+    let ran = corniche(arguments);
+    assert_eq!(ran.code, 3, "{}", ran.err);
+    assert_eq!(fs::read(&target).unwrap(), b"precious");
+    // A run that fails leaves it as it was, -O or not.
+    let ran = corniche(["build", "--dem", "/nowhere.tif", "-O", "-o", text(&target)]);
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert_eq!(fs::read(&target).unwrap(), b"precious");
+    build_pass(&target, &["-O", "--quiet"]);
+    assert!(fs::metadata(&target).unwrap().len() > 10_000);
+}
+
+#[test]
+fn refuses_a_target_that_cannot_be_written() {
+    let dem = sample("pass/pass.tif");
+    for target in ["/nowhere/out.pmtiles", "/proc/out.pmtiles"] {
+        let ran = corniche(["build", "--dem", text(&dem), "-o", target]);
+        assert_eq!(ran.code, 2, "{}", ran.err);
+    }
+}
+
+#[test]
+fn refuses_packages_that_are_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let prose = folder.path().join("prose.pmtiles");
+    fs::write(&prose, b"PMTiles, one might think, but no").unwrap();
+    for command in ["info", "growth", "verify"] {
+        for package in [text(&prose), "/nowhere/a.pmtiles"] {
+            let ran = corniche([command, package]);
+            assert_eq!(ran.code, 2, "{command} {package}: {}", ran.err);
+            assert!(ran.err.contains(package), "{}", ran.err);
+        }
+    }
+}
+
+/// Interrupted in the middle: exit code 4, nothing at the target, no work folder.
+#[cfg(unix)]
+#[test]
+fn cleans_up_when_interrupted() {
+    use std::{
+        io::{BufRead as _, BufReader},
+        process::{Command, Stdio},
+    };
+
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("out.pmtiles");
+    let (dem, osm) = (sample("pass/pass.tif"), sample("pass/pass.osm.pbf"));
+    // Fine tolerance and one thread: long enough to be caught at work.
+    let mut child = Command::new(e2e::binary())
+        .args(["build", "--dem", text(&dem), "--osm", text(&osm), "-o", text(&target)])
+        .args(["--max-error", "0.05", "--threads", "1", "--json-progress"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+    let meshing = lines.any(|line| line.unwrap().contains("\"mesh\""));
+    assert!(meshing, "the build ended before it meshed");
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    let rest: Vec<String> = lines.map(Result::unwrap).collect();
+    let code = child.wait().unwrap().code();
+    assert_eq!(code, Some(4), "{rest:?}");
+    assert!(rest.iter().any(|line| line.contains("interrupted")), "{rest:?}");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}

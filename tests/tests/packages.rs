@@ -1,0 +1,153 @@
+//! From inputs to a package and back: the whole way, on the bundled samples and, where they are, on real data.
+
+use std::{fs, path::Path, process::Command};
+
+use e2e::{build_pass, corniche, real_data, root, sample};
+use serde_json::Value;
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let ran = corniche(arguments);
+    assert_eq!(ran.code, 0, "{arguments:?}: {}", ran.err);
+    serde_json::from_str(&ran.out).unwrap()
+}
+
+/// P4: the bytes do not depend on threads, memory, time or the target's name.
+#[test]
+fn same_bytes_at_any_number_of_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = |name: &str, threads: &str, memory: &str| {
+        let target = folder.path().join(name);
+        build_pass(&target, &["--quiet", "--threads", threads, "--memory", memory]);
+        fs::read(target).unwrap()
+    };
+    let one = package("one.pmtiles", "1", "64M");
+    assert_eq!(one, package("two.pmtiles", "2", "1G"));
+    assert_eq!(one, package("eight.pmtiles", "8", "256M"));
+}
+
+/// All promises hold on the sample, with the DEM beside it; a flipped byte is found and named.
+#[test]
+fn pass_keeps_its_promises_and_damage_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("pass.pmtiles");
+    build_pass(&package, &["--quiet"]);
+    let dem = sample("pass/pass.tif");
+    let report = json(&["verify", text(&package), "--dem", text(&dem), "--json", "--quiet"]);
+    assert_eq!(report["holds"], true);
+    assert!(report["borders"].as_u64().unwrap() > 10);
+    assert!(report["errors"].as_array().unwrap().iter().all(|level| level["smallest_ratio"].as_f64() >= Some(1.0)));
+
+    let mut bytes = fs::read(&package).unwrap();
+    let middle = bytes.len() * 3 / 4;
+    bytes[middle] ^= 0x10;
+    let damaged = folder.path().join("damaged.pmtiles");
+    fs::write(&damaged, bytes).unwrap();
+    let ran = corniche(["verify", text(&damaged), "--quiet"]);
+    assert_eq!(ran.code, 1, "{}{}", ran.out, ran.err);
+    assert!(ran.out.contains("tile"), "{}", ran.out);
+}
+
+/// P6 on the sample's known truth: every road of the extract is accounted for.
+#[test]
+fn pass_accounts_for_every_road() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("pass.pmtiles");
+    build_pass(&package, &["--quiet"]);
+    let counts = &json(&["info", text(&package), "--json"])["manifest"]["counts"];
+    let number = |value: &Value| value.as_f64().unwrap();
+    let lost = counts["roads_lost"].as_array().unwrap();
+    let (roads, metres) = lost
+        .iter()
+        .fold((0.0, 0.0), |(roads, metres), loss| (roads + number(&loss["roads"]), metres + number(&loss["length_m"])));
+    assert!((number(&counts["roads_in"]) - number(&counts["roads_kept"]) - roads).abs() < 0.5);
+    let in_m = number(&counts["roads_in_m"]);
+    assert!((in_m - number(&counts["roads_kept_m"]) - metres).abs() < 1e-5 * in_m);
+    assert!(number(&counts["roads_in"]) > 20.0);
+    for class in 0..8 {
+        assert!(number(&counts["classes"][class][0]) > 0.0, "class {class} is missing");
+    }
+}
+
+/// The independent check of decoded tiles, in Python, agrees.
+#[test]
+fn independent_check_agrees() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("pass.pmtiles");
+    build_pass(&package, &["--quiet"]);
+    let python = |arguments: &[&str]| Command::new("python3").args(arguments).output();
+    let has_modules = python(&["-c", "import numpy, shapely"]).is_ok_and(|output| output.status.success());
+    if !has_modules {
+        assert!(std::env::var_os("CI").is_none(), "python3 with numpy and shapely is missing");
+        eprintln!("skipped: python3 with numpy and shapely is not here");
+        return;
+    }
+    let script = root().join("tests/check_tile.py");
+    let binary = e2e::binary();
+    let output = python(&[text(&script), "--corniche", text(&binary), text(&package), "--max-tiles", "30"]).unwrap();
+    let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+}
+
+#[test]
+fn growth_is_told_in_four_ways() {
+    let folder = tempfile::tempdir().unwrap();
+    let (package, svg) = (folder.path().join("pass.pmtiles"), folder.path().join("growth.svg"));
+    build_pass(&package, &["--quiet"]);
+    let table = corniche(["growth", text(&package), "--svg", text(&svg)]);
+    assert_eq!(table.code, 0, "{}", table.err);
+    assert!(table.out.contains("all levels") && table.out.contains("FRC 0"));
+    assert!(fs::read_to_string(&svg).unwrap().contains("<svg"));
+    let rows = json(&["growth", text(&package), "--json"])["rows"].as_array().unwrap().len();
+    let csv = corniche(["growth", text(&package), "--csv"]).out;
+    assert_eq!(csv.lines().count(), rows + 1);
+}
+
+#[test]
+fn terrain_alone_is_a_package_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("terrain.pmtiles");
+    let dem = sample("pass/pass.tif");
+    let ran = corniche(["build", "--dem", text(&dem), "-o", text(&package), "--quiet", "--max-error", "10"]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert_eq!(json(&["verify", text(&package), "--json", "--quiet"])["holds"], true);
+    let ran = corniche(["growth", text(&package)]);
+    assert_eq!(ran.code, 2);
+    assert!(ran.err.contains("--osm"), "{}", ran.err);
+}
+
+#[test]
+fn pictures_come_out_or_the_missing_adapter_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let (package, png) = (folder.path().join("pass.pmtiles"), folder.path().join("pass.png"));
+    build_pass(&package, &["--quiet"]);
+    let ran = corniche(["render", text(&package), "-o", text(&png), "--size", "320x240"]);
+    if ran.code != 0 && std::env::var_os("CORNICHE_REQUIRE_GPU").is_none() && ran.err.contains("adapter") {
+        eprintln!("skipped: {}", ran.err);
+        return;
+    }
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert_eq!(&fs::read(&png).unwrap()[..8], b"\x89PNG\r\n\x1a\n");
+}
+
+/// Real rasters that are projected already: nodes are the samples, and the finest level is within the bound.
+#[test]
+fn projected_rasters_are_not_resampled() {
+    for file in ["tirol-5m/avaMal.tif", "slovenia-1m/TM1_564_146.tif"] {
+        let Some(dem) = real_data(file) else { continue };
+        let folder = tempfile::tempdir().unwrap();
+        let package = folder.path().join("real.pmtiles");
+        let ran = corniche(["build", "--dem", text(&dem), "-o", text(&package), "--quiet"]);
+        assert_eq!(ran.code, 0, "{}", ran.err);
+        let report = json(&["verify", text(&package), "--dem", text(&dem), "--json", "--quiet"]);
+        assert_eq!(report["holds"], true, "{file}: {report}");
+        let info = json(&["info", text(&package), "--json"]);
+        let max_error_m = info["manifest"]["settings"]["max_error_m"].as_f64().unwrap();
+        let samples = &report["samples"];
+        assert!(samples["samples"].as_u64().unwrap() > 100_000);
+        assert!(samples["largest_m"].as_f64().unwrap() <= max_error_m + 1e-6, "{file}: {samples}");
+    }
+}
