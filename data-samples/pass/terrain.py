@@ -40,7 +40,7 @@ MAIN_VALLEY = catmull_rom(
 SOUTH_OUTLET = ((9990, 7450), 1390.0)
 WEST_OUTLET = ((10, 7700), 1330.0)
 # Where less uplift makes the saddle.
-PASS_XY = (5150, 5350)
+PASS_XY = (7500, 7000)
 
 
 def centres(side):
@@ -132,22 +132,21 @@ def range_heights():
             c, r = int(ox / EXTENT_M * side), int(oy / EXTENT_M * side)
             fixed[r, c], z[r, c] = True, height
         px, py = PASS_XY
-        dip = 1.0 / (1.0 + ((x - px) / 650) ** 2 + ((y - py) / 1500) ** 2)
-        mass = 1.0 - 0.62 * smoothstep(2500, 6500, abs(y - 5200) + 0.25 * abs(x - 5000))
-        uplift = 2.1 * mass * (1.0 - 0.72 * dip) * (1.0 + 0.35 * fbm(x / 2300, y / 2300, 3, 23))
+        dip = 1.0 / (1.0 + ((x - px) / 1700) ** 2 + ((y - py) / 620) ** 2)
+        mass = 1.0 - 0.82 * smoothstep(2300, 6200, abs(y - 5200) + 0.25 * abs(x - 5000))
+        uplift = 4.6 * mass * (1.0 - 0.68 * dip) * (1.0 + 0.35 * fbm(x / 2300, y / 2300, 3, 23))
         rock = fbm(x / 900, y / 700, 3, 31)
-        steepest = 0.78 + 0.34 * rock
+        steepest = 0.86 + 0.34 * rock
         erodibility = 0.0115 * (1.0 + 0.25 * rock)
         z = erode(z, fixed, uplift, np.clip(steepest, 0.5, 1.3), erodibility, steps, dt)
-    return z
+    return 0.5 * (z + box_blur(z, 1))
 
 
 def fine_heights(coarse):
     """`coarse` at 10 m, bent a little to hide its eight flow directions, with rock and gully detail."""
     x, y = centres(SIDE)
-    bend = 26.0
-    wx = x + bend * fbm(x / 260, y / 260, 3, 51)
-    wy = y + bend * fbm(x / 260, y / 260, 3, 57)
+    wx = x + 70.0 * fbm(x / 800, y / 800, 2, 51) + 16.0 * fbm(x / 150, y / 150, 2, 53)
+    wy = y + 70.0 * fbm(x / 800, y / 800, 2, 57) + 16.0 * fbm(x / 150, y / 150, 2, 59)
     step = EXTENT_M / coarse.shape[0]
     z = sample_cubic(coarse, wx / step - 0.5, wy / step - 0.5)
     gy, gx = np.gradient(box_blur(z, 2), CELL_M)

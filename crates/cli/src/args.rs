@@ -200,8 +200,8 @@ pub(crate) struct RenderArgs {
     /// Direction of view, in degrees clockwise from north
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "look_at", allow_hyphen_values = true)]
     pub(crate) heading: f64,
-    /// Angle of view below the horizon, in degrees: 90 looks straight down
-    #[arg(long, value_name = "DEGREES", default_value_t = 35.0, requires = "look_at")]
+    /// Tilt of the view, in degrees: 0 looks straight down, 90 at the horizon
+    #[arg(long, value_name = "DEGREES", default_value_t = 60.0, requires = "look_at")]
     pub(crate) pitch: f64,
     /// Terrain error that may be seen, in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 2.0)]

@@ -1,7 +1,30 @@
 //! Clip polylines to a tile, lay them on its TIN (GEO), extrude them (SV).
 //!
-//! This crate never knows what a line means.
+//! ```text
+//!   Polyline ──clip──► Polylines in the tile ──drape──► DrapedLines ──positions──► metres above the lattice
+//!      └──clip_closed, tile and margin──► Polylines ──extrude──► SvLines
+//! ```
+//!
+//! Every decision, on which side, which edge first, whether on the ground, is exact integer arithmetic on
+//! the lattice; floating point only measures what has been decided.
+//!
+//! This crate never knows what a line means, and never reads a file.
 
+mod clip;
 mod draped_line;
+mod walk;
+mod fraction;
+mod ray;
+mod positions;
+mod check;
+mod extrude;
 
+pub use check::check;
+pub use clip::{OwnedBorders, clip, clip_closed};
 pub use draped_line::{DrapedLine, DrapedVertex, SvLine};
+pub use extrude::extrude;
+pub use positions::{BadLine, positions};
+pub use walk::{Drape, drape};
+
+#[cfg(test)]
+mod oracle_tests;

@@ -1,1 +1,25 @@
-//! (skeleton)
+//! `OpenStreetMap` extracts (`.osm.pbf`) to roads.
+//!
+//! ```text
+//!  file ──► blobs ──► ways (pass 1) ──► ids of the nodes they need, sorted
+//!                └──► nodes (pass 2) ──► their locations ──► assemble ──► Road, in order of way id
+//! ```
+//!
+//! Both passes decode blobs in parallel inside the pool of the caller. Only what roads need is held: their tags, their
+//! node ids and those nodes' coordinates, whatever the order of the file.
+//!
+//! This crate never judges which road matters at which level, never guesses a class, and starts no threads.
+
+mod assemble;
+mod blobs;
+mod defect;
+mod error;
+mod nodes;
+mod read_roads;
+mod summary;
+mod ways;
+
+pub use defect::Defect;
+pub use error::ReadOsmError;
+pub use read_roads::{Place, ReadRequest, read_roads};
+pub use summary::{ATTRIBUTION, ExtractSummary, HighwayCount, LeftOut};

@@ -30,6 +30,8 @@ pub enum BuildError {
     Storage(#[source] io::Error),
     #[error("intermediate results beside the package were damaged while the build ran: {what}")]
     Damaged { what: String },
+    #[error("tile {id} could not be triangulated")]
+    Triangulate { id: corniche_geom::TileId, source: corniche_tin::TriangulateError },
     #[error("a tile could not be encoded")]
     Encode(#[from] corniche_tileset::EncodeError),
     #[error("{path:?} could not be written (disk full?)")]

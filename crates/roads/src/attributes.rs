@@ -47,10 +47,9 @@ fn structure(bridge: &str, tunnel: &str, layer: i8) -> Structure {
     let is_tunnel = !matches!(tunnel, "" | "no" | "false" | "0" | "culvert" | "building_passage");
     match (is_bridge, is_tunnel) {
         (false, false) => Structure::Ground,
-        (true, false) => Structure::Bridge,
-        (false, true) => Structure::Tunnel,
         (true, true) if layer < 0 => Structure::Tunnel,
-        (true, true) => Structure::Bridge,
+        (true, _) => Structure::Bridge,
+        (false, true) => Structure::Tunnel,
     }
 }
 

@@ -153,25 +153,22 @@ impl FrcTable {
         let Some(highway) = tag(tags, "highway") else {
             return Classified::NotARoad(NotARoad::NoHighway);
         };
-        match self.class_of(highway) {
+        match self.entry(highway) {
             None => Classified::Unknown(highway),
             Some(None) => Classified::NotARoad(NotARoad::Listed),
             Some(Some(_)) if tag(tags, "area").is_some_and(is_yes) => {
                 Classified::NotARoad(NotARoad::Area)
             }
-            Some(Some(class)) if class > self.least_class => Classified::NotShown(class),
-            Some(Some(class)) => Classified::Road(class),
+            Some(&Some(class)) if class > self.least_class => Classified::NotShown(class),
+            Some(&Some(class)) => Classified::Road(class),
         }
     }
 
-    /// `None`: not listed; `Some(None)`: listed as no road.
-    fn class_of(&self, highway: &str) -> Option<Option<FunctionalRoadClass>> {
-        if let Some(&listed) = self.values.get(highway) {
-            return Some(listed);
-        }
+    /// The entry for this value, by itself or by the link rule.
+    fn entry(&self, highway: &str) -> Option<&Option<FunctionalRoadClass>> {
+        let of_parent = || self.values.get(highway.strip_suffix("_link")?);
         // A link to something that is no road is as unknown as any other word.
-        let parent = self.values.get(highway.strip_suffix("_link")?)?;
-        parent.map(Some)
+        self.values.get(highway).or_else(|| of_parent().filter(|class| class.is_some()))
     }
 }
 

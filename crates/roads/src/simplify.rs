@@ -80,8 +80,8 @@ fn farthest(
     let (a, b) =
         if is_reversed { (points[last], points[first]) } else { (points[first], points[last]) };
     let mut best = None;
-    for index in first + 1..last {
-        let distance_steps = distance_to_segment_steps(points[index], a, b);
+    for (index, &point) in points.iter().enumerate().take(last).skip(first + 1) {
+        let distance_steps = distance_to_segment_steps(point, a, b);
         let is_farther = best.is_none_or(|(_, best_steps)| {
             if is_reversed { distance_steps >= best_steps } else { distance_steps > best_steps }
         });

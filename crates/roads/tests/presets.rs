@@ -1,5 +1,7 @@
 //! The presets in `config/frc`, read as the command line reads them, against the published tables.
 
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
 use std::{collections::BTreeMap, fs, path::PathBuf};
 
 use corniche_roads::{Classified, FrcTable, FunctionalRoadClass, NotARoad};

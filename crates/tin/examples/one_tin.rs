@@ -21,7 +21,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     if bytes.len() != columns * rows * 4 {
         return Err(format!("{file} has {} bytes, not {columns} × {rows} × 4", bytes.len()).into());
     }
-    let values: Vec<f32> = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+    let values: Vec<f32> =
+        bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
     // The halo is gap: nothing lies beyond the raster.
     let heights = HeightGrid::from_fn(columns + 2, rows + 2, |column, row| {
         let inside = (1..=columns).contains(&column) && (1..=rows).contains(&row);
@@ -35,6 +36,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         tin = triangulate(&heights, spec)?;
         seconds = seconds.min(start.elapsed().as_secs_f64());
     }
-    println!("{} triangles, {} vertices, {seconds:.3} s", tin.triangles().len(), tin.vertices().len());
+    println!(
+        "{} triangles, {} vertices, {seconds:.3} s",
+        tin.triangles().len(),
+        tin.vertices().len()
+    );
     Ok(())
 }

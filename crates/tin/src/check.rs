@@ -42,7 +42,8 @@ pub fn check_covers_ground(tin: &Tin, heights: &HeightGrid) {
             && row < rows as i64 - 1
             && heights.cell_has_ground(column as usize + 1, row as usize + 1)
     };
-    let cells = (0..rows as i64).flat_map(|row| (0..columns as i64).map(move |column| (column, row)));
+    let cells =
+        (0..rows as i64).flat_map(|row| (0..columns as i64).map(move |column| (column, row)));
     let ground_cells = cells.filter(|&(column, row)| ground(column, row)).count() as i64;
     let at = |vertex: u32| {
         let vertex = tin.vertices()[vertex as usize];

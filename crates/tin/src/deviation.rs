@@ -54,8 +54,11 @@ const BUCKET_NODES: usize = 16;
 struct Triangle {
     /// `[column, row]`.
     corners: [[u16; 2]; 3],
-    /// Height of the first corner, and rise per cell of the tile to the east and to the south; metres.
-    plane_m: [f64; 3],
+    /// Height of the first corner, metres, then its rise per cell of the tile to the east and to the south,
+    /// both times `double_area`: exact, without a division.
+    plane: [f64; 3],
+    /// Twice the area in square cells of the tile, negative when clockwise in columns and rows.
+    double_area: f64,
     low: [u16; 2],
     high: [u16; 2],
 }
@@ -66,14 +69,15 @@ impl Triangle {
         let (ab, ac) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
         let (ab_m, ac_m) = (heights_m[1] - heights_m[0], heights_m[2] - heights_m[0]);
         let double_area = ab[0] * ac[1] - ab[1] * ac[0];
-        let east_m = (ab_m * ac[1] - ac_m * ab[1]) / double_area;
-        let south_m = (ac_m * ab[0] - ab_m * ac[0]) / double_area;
+        let east = ab_m * ac[1] - ac_m * ab[1];
+        let south = ac_m * ab[0] - ab_m * ac[0];
         let bucket = |axis: usize, pick: fn(u16, u16) -> u16| {
             pick(pick(corners[0][axis], corners[1][axis]), corners[2][axis]) / BUCKET_NODES as u16
         };
         Self {
             corners,
-            plane_m: [heights_m[0], east_m, south_m],
+            plane: [heights_m[0], east, south],
+            double_area,
             low: [bucket(0, u16::min), bucket(1, u16::min)],
             high: [bucket(0, u16::max), bucket(1, u16::max)],
         }
@@ -94,11 +98,15 @@ impl TriangleBuckets {
             })
             .collect();
         let size = planes.iter().fold([0, 0], |[columns, rows]: [usize; 2], triangle| {
-            [columns.max(usize::from(triangle.high[0]) + 1), rows.max(usize::from(triangle.high[1]) + 1)]
+            [
+                columns.max(usize::from(triangle.high[0]) + 1),
+                rows.max(usize::from(triangle.high[1]) + 1),
+            ]
         });
         let buckets_of = |triangle: &Triangle| {
             let [low, high] = [triangle.low, triangle.high].map(|bucket| bucket.map(usize::from));
-            (low[1]..=high[1]).flat_map(move |row| (low[0]..=high[0]).map(move |column| row * size[0] + column))
+            (low[1]..=high[1])
+                .flat_map(move |row| (low[0]..=high[0]).map(move |column| row * size[0] + column))
         };
         // Count, then fill.
         let mut starts = vec![0_u32; size[0] * size[1] + 1];
@@ -121,17 +129,22 @@ impl TriangleBuckets {
 
     /// Calls `each` once for every triangle whose bounding box may meet the nodes `low` to `high` of the tile.
     fn for_each_near(&self, low: [i64; 2], high: [i64; 2], mut each: impl FnMut(&Triangle)) {
-        let bucket = |node: i64, axis: usize| node.div_euclid(BUCKET_NODES as i64).min(self.size[axis] as i64 - 1);
+        let bucket = |node: i64, axis: usize| {
+            node.div_euclid(BUCKET_NODES as i64).min(self.size[axis] as i64 - 1)
+        };
         let first = [0, 1].map(|axis| bucket(low[axis], axis).max(0) as usize);
         let last = [0, 1].map(|axis| bucket(high[axis], axis));
         for row in first[1] as i64..=last[1] {
             for column in first[0] as i64..=last[0] {
                 let (row, column) = (row as usize, column as usize);
                 let index = row * self.size[0] + column;
-                for &member in &self.members[self.starts[index] as usize..self.starts[index + 1] as usize] {
+                for &member in
+                    &self.members[self.starts[index] as usize..self.starts[index + 1] as usize]
+                {
                     let triangle = &self.planes[member as usize];
                     // A triangle is in all buckets it meets: take it in the first that is looked at.
-                    let taken_at = [0, 1].map(|axis| usize::from(triangle.low[axis]).max(first[axis]));
+                    let taken_at =
+                        [0, 1].map(|axis| usize::from(triangle.low[axis]).max(first[axis]));
                     if taken_at == [column, row] {
                         each(triangle);
                     }
@@ -169,14 +182,15 @@ pub fn measure(
     let heights_m = window.raw();
     let mut covered = vec![false; heights_m.len()];
     let mut max_abs_m = 0.0_f64;
-    let per_cell = 1.0 / stride as f64;
     let low = [west.div_euclid(stride), north.div_euclid(stride)];
     let high = [(west + columns - 1).div_euclid(stride), (north + rows - 1).div_euclid(stride)];
     buckets.for_each_near(low, high, |triangle| {
         let corners = triangle.corners.map(|corner| corner.map(|node| i64::from(node) * stride));
-        let [at_m, east_m, south_m] = triangle.plane_m;
+        // All times this, so that a finest tile's error is exact before the one division.
+        let scale = triangle.double_area * stride as f64;
+        let [at_m, east, south] = triangle.plane;
         let [from_column, from_row] = corners[0];
-        let step_m = east_m * per_cell;
+        let mut largest = 0.0_f64;
         for_each_row(corners, north..=north + rows - 1, |row, first, last| {
             let (first, last) = (first.max(west), last.min(west + columns - 1));
             if last < first {
@@ -184,10 +198,13 @@ pub fn measure(
             }
             let start = ((row - north) * columns + first - west) as usize;
             let range = start..=start + (last - first) as usize;
-            let row_m = at_m + south_m * ((row - from_row) as f64 * per_cell) + step_m * (first - from_column) as f64;
+            let in_row = at_m * scale
+                + south * (row - from_row) as f64
+                + east * (first - from_column) as f64;
             covered[range.clone()].fill(true);
-            max_abs_m = max_abs_m.max(largest_distance_m(&heights_m[range], row_m, step_m));
+            largest = largest.max(largest_distance(&heights_m[range], scale, in_row, east));
         });
+        max_abs_m = max_abs_m.max(largest / scale.abs());
     });
     let mut deviation = Deviation { max_abs_m, ..Deviation::default() };
     for (index, (covered, height_m)) in covered.iter().zip(heights_m).enumerate() {
@@ -204,22 +221,25 @@ pub fn measure(
     deviation
 }
 
-/// Largest distance of heights from a line that starts at `from_m` and rises `step_m` a node; gaps do not count.
+/// Largest distance of heights, times `scale`, from a line that starts at `from` and rises `rise` a node.
+/// Gaps do not count.
 #[inline]
-fn largest_distance_m(heights_m: &[f32], from_m: f64, step_m: f64) -> f64 {
-    // Four maxima side by side, so that the compiler may use vector registers: comparing with NaN is false.
+fn largest_distance(heights_m: &[f32], scale: f64, from: f64, rise: f64) -> f64 {
+    // Four maxima side by side, so that the compiler may use vector registers. Comparing with NaN is false.
     let mut largest = [0.0_f64; 4];
-    let mut chunks = heights_m.chunks_exact(4);
     let mut position = 0.0;
+    let mut chunks = heights_m.chunks_exact(4);
     for chunk in &mut chunks {
         for lane in 0..4 {
-            let distance = (f64::from(chunk[lane]) - (from_m + step_m * (position + lane as f64))).abs();
+            let distance =
+                (f64::from(chunk[lane]) * scale - (from + rise * (position + lane as f64))).abs();
             largest[lane] = if distance > largest[lane] { distance } else { largest[lane] };
         }
         position += 4.0;
     }
     for (lane, &height_m) in chunks.remainder().iter().enumerate() {
-        let distance = (f64::from(height_m) - (from_m + step_m * (position + lane as f64))).abs();
+        let distance =
+            (f64::from(height_m) * scale - (from + rise * (position + lane as f64))).abs();
         largest[lane] = if distance > largest[lane] { distance } else { largest[lane] };
     }
     largest.into_iter().fold(0.0, f64::max)

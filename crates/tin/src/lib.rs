@@ -6,17 +6,16 @@
 //! This crate never sees a road or a file, and never looks at a neighbouring tile's result: what two tiles
 //! share they both compute from the same nodes.
 
-mod triangulate;
-mod tile_raster;
+mod check;
+mod deviation;
+mod normals;
 mod outline;
 mod refine;
-mod triangle_rows;
-mod tin;
-mod normals;
-mod deviation;
-mod check;
-mod buckets;
 mod surface;
+mod tile_raster;
+mod tin;
+mod triangle_rows;
+mod triangulate;
 
 pub use check::check_covers_ground;
 pub use deviation::{Deviation, TriangleBuckets, WindowPlacement, measure};

@@ -86,7 +86,8 @@ mod tests {
         let heights = HeightGrid::from_fn(9, 9, |c, r| {
             if (c, r) == (0, 4) || r == 8 { f32::NAN } else { 3.0 * c as f32 - r as f32 }
         });
-        let tin = triangulate(&heights, TinSpec { max_error_m: 1.0, quantum_m: 1.0 / 32.0 }).unwrap();
+        let tin =
+            triangulate(&heights, TinSpec { max_error_m: 1.0, quantum_m: 1.0 / 32.0 }).unwrap();
         let codes = normals(&heights, &tin, 10.0);
         assert_eq!(codes.len(), tin.vertices().len());
         assert!(codes.iter().all(|&code| code == encode_normal([-0.3, -0.1, 1.0])), "{codes:?}");

@@ -21,7 +21,9 @@ pub(crate) type Stretch = Vec<[usize; 2]>;
 pub(crate) fn stretches(tile: &TileRaster<'_>, max_error_m: f64, quantum_m: f64) -> Vec<Stretch> {
     let (columns, rows) = (tile.columns(), tile.rows());
     let mut found = Vec::new();
-    let mut line = |length: usize, sides: &dyn Fn(usize) -> Option<[bool; 2]>, node: &dyn Fn(usize) -> [usize; 2]| {
+    let mut line = |length: usize,
+                    sides: &dyn Fn(usize) -> Option<[bool; 2]>,
+                    node: &dyn Fn(usize) -> [usize; 2]| {
         let mut start = 0;
         while start + 1 < length {
             let here = sides(start);
@@ -37,7 +39,8 @@ pub(crate) fn stretches(tile: &TileRaster<'_>, max_error_m: f64, quantum_m: f64)
     };
     for row in 0..rows {
         let sides = |column: usize| {
-            let [north, south] = [tile.halo_cell([column + 1, row]), tile.halo_cell([column + 1, row + 1])];
+            let [north, south] =
+                [tile.halo_cell([column + 1, row]), tile.halo_cell([column + 1, row + 1])];
             let bounds_ground = match row {
                 0 => south,
                 _ if row == rows - 1 => north,
@@ -49,7 +52,8 @@ pub(crate) fn stretches(tile: &TileRaster<'_>, max_error_m: f64, quantum_m: f64)
     }
     for column in 0..columns {
         let sides = |row: usize| {
-            let [west, east] = [tile.halo_cell([column, row + 1]), tile.halo_cell([column + 1, row + 1])];
+            let [west, east] =
+                [tile.halo_cell([column, row + 1]), tile.halo_cell([column + 1, row + 1])];
             let bounds_ground = match column {
                 0 => east,
                 _ if column == columns - 1 => west,
@@ -81,12 +85,13 @@ fn simplify(
     let mut spans = vec![[start, end]];
     while let Some([from, to]) = spans.pop() {
         let (from_m, to_m, length) = (stored_m(from), stored_m(to), (to - from) as f64);
-        let mut worst = (max_error_m, None);
+        // All times the length: exact, as in the triangles' residuals.
+        let mut worst = (max_error_m * length, None);
         for index in from + 1..to {
-            let on_line_m = from_m + (to_m - from_m) * ((index - from) as f64 / length);
-            let error_m = (tile.height_m(node(index)) - on_line_m).abs();
-            if error_m > worst.0 {
-                worst = (error_m, Some(index));
+            let on_line = from_m * length + (to_m - from_m) * (index - from) as f64;
+            let scaled = (tile.height_m(node(index)) * length - on_line).abs();
+            if scaled > worst.0 {
+                worst = (scaled, Some(index));
             }
         }
         if let Some(index) = worst.1 {

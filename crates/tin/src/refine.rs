@@ -2,7 +2,7 @@
 
 use std::collections::BinaryHeap;
 
-use spade::handles::{FixedFaceHandle, InnerTag};
+use spade::handles::FixedVertexHandle;
 use spade::{HasPosition, InsertionError, Point2, Triangulation};
 
 use crate::TinVertex;
@@ -44,8 +44,8 @@ struct Candidate {
     /// node's index, flipped.
     rank: u64,
     face: u32,
-    /// Which insertion made the face: the candidate is stale when the face has been made anew since.
-    made_by: u32,
+    /// The face's apex when it was scanned: the candidate is stale when the face has been made anew since.
+    apex: u32,
 }
 
 impl Candidate {
@@ -70,38 +70,41 @@ where
 {
     let columns = tile.columns();
     let scan = Scan { heights_m: &tile.inner_heights_m(), columns, max_error_m, quantum_m };
-    let mut made_by = vec![0_u32; mesh.num_all_faces()];
+    // The corner a face was made with: the vertex inserted then, or at first any. A face made anew has another
+    // one, so this is at once the counter that tells stale candidates and the hint where to insert.
+    let mut apexes = vec![0_u32; mesh.num_all_faces()];
     let mut first = Vec::new();
     for face in mesh.inner_faces() {
-        let corners = face.vertices().map(|vertex| *vertex.data());
-        let face = face.index() as u32;
-        first.extend(scan.worst_node(corners).map(|rank| Candidate { rank, face, made_by: 0 }));
+        let corners = face.vertices();
+        let (face, apex) = (face.index(), corners[0].index() as u32);
+        apexes[face] = apex;
+        let rank = scan.worst_node(corners.map(|vertex| *vertex.data()));
+        first.extend(rank.map(|rank| Candidate { rank, face: face as u32, apex }));
     }
     let mut candidates = BinaryHeap::from(first);
     let mut star = Vec::new();
-    let mut insertion = 0;
     while let Some(candidate) = candidates.pop() {
-        if made_by[candidate.face as usize] != candidate.made_by {
+        if apexes[candidate.face as usize] != candidate.apex {
             continue;
         }
         let index = candidate.node();
         let node = Node::new(tile, [index % columns, index / columns]);
-        let face = mesh.face(FixedFaceHandle::<InnerTag>::from_index(candidate.face as usize));
-        // Any corner of the face will do as a hint; spade walks on to the nearest.
-        let hint = face.adjacent_edge().from().fix();
-        let vertex = mesh.insert_with_hint(node, hint)?;
+        let vertex =
+            mesh.insert_with_hint(node, FixedVertexHandle::from_index(candidate.apex as usize))?;
 
-        insertion += 1;
-        made_by.resize(mesh.num_all_faces(), 0);
+        let apex = vertex.index() as u32;
+        apexes.resize(mesh.num_all_faces(), 0);
         star.clear();
-        star.extend(mesh.vertex(vertex).out_edges().map(|edge| (edge.face().index(), *edge.to().data())));
+        star.extend(
+            mesh.vertex(vertex).out_edges().map(|edge| (edge.face().index(), *edge.to().data())),
+        );
         for (k, &(face, corner)) in star.iter().enumerate() {
             // Edges come counter-clockwise, each with the face to its left.
             let next = star[(k + 1) % star.len()].1;
-            made_by[face] = insertion;
+            apexes[face] = apex;
             let rank = scan.worst_node([node, corner, next]);
             let face = face as u32;
-            candidates.extend(rank.map(|rank| Candidate { rank, face, made_by: insertion }));
+            candidates.extend(rank.map(|rank| Candidate { rank, face, apex }));
         }
     }
     Ok(())
@@ -128,27 +131,32 @@ impl Scan<'_> {
             return None;
         }
         let [a_m, b_m, c_m] = corners.map(|node| f64::from(node.height_q) * self.quantum_m);
+        // All times the double area: heights are few binary digits each and areas are integers, so every
+        // product and sum below is exact, and a node exactly at the tolerance stays out on every machine.
+        let scale = double_area as f64;
         let (ab_m, ac_m) = (b_m - a_m, c_m - a_m);
-        let scale = 1.0 / double_area as f64;
-        let per_column_m = (ab_m * ac[1] as f64 - ac_m * ab[1] as f64) * scale;
-        let per_row_m = (ac_m * ab[0] as f64 - ab_m * ac[0] as f64) * scale;
-        let mut worst_m = self.max_error_m;
+        let per_column = ab_m * ac[1] as f64 - ac_m * ab[1] as f64;
+        let per_row = ac_m * ab[0] as f64 - ab_m * ac[0] as f64;
+        let mut worst_scaled = self.max_error_m * scale.abs();
         let mut worst = usize::MAX;
         for_each_row(at, i64::MIN..=i64::MAX, |row, first, last| {
             if last < first {
                 return;
             }
             let start = row as usize * self.columns + first as usize;
-            let row_m = a_m + per_row_m * (row - a[1]) as f64 + per_column_m * (first - a[0]) as f64;
+            let in_row =
+                a_m * scale + per_row * (row - a[1]) as f64 + per_column * (first - a[0]) as f64;
             let heights_m = &self.heights_m[start..=start + (last - first) as usize];
             for (step, &height_m) in heights_m.iter().enumerate() {
-                let error_m = (f64::from(height_m) - (row_m + per_column_m * step as f64)).abs();
-                if error_m > worst_m {
-                    worst_m = error_m;
+                let scaled =
+                    (f64::from(height_m) * scale - (in_row + per_column * step as f64)).abs();
+                if scaled > worst_scaled {
+                    worst_scaled = scaled;
                     worst = start + step;
                 }
             }
         });
+        let worst_m = worst_scaled / scale.abs();
         let bits = u64::from((worst_m as f32).to_bits());
         (worst != usize::MAX).then(|| bits << 32 | u64::from(!(worst as u32)))
     }

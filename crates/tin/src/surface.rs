@@ -62,7 +62,8 @@ impl Surface {
                 LatticePoint::new(corner.u + column * node_steps, corner.v - row * node_steps)
             })
             .collect();
-        let heights_m = tin.vertices().iter().map(|vertex| f64::from(vertex.height_q) * quantum_m).collect();
+        let heights_m =
+            tin.vertices().iter().map(|vertex| f64::from(vertex.height_q) * quantum_m).collect();
         let triangles = tin.triangles().to_vec();
         let (fan_starts, fans) = fans(points.len(), &triangles);
         let mut surface = Self {
@@ -76,12 +77,16 @@ impl Surface {
             triangle_buckets: Buckets::default(),
             outline_buckets: Buckets::default(),
         };
-        surface.twins = (0..3 * surface.triangles.len() as u32).map(|h| surface.find_twin(h)).collect();
-        surface.outline =
-            (0..surface.twins.len() as u32).filter(|&h| surface.twins[h as usize] == NO_TWIN).collect();
-        let boxes: Vec<_> = surface.triangles.iter().map(|corners| surface.bounds_of(corners)).collect();
+        surface.twins =
+            (0..3 * surface.triangles.len() as u32).map(|h| surface.find_twin(h)).collect();
+        surface.outline = (0..surface.twins.len() as u32)
+            .filter(|&h| surface.twins[h as usize] == NO_TWIN)
+            .collect();
+        let boxes: Vec<_> =
+            surface.triangles.iter().map(|corners| surface.bounds_of(corners)).collect();
         surface.triangle_buckets = Buckets::new(&boxes);
-        let boxes: Vec<_> = surface.outline.iter().map(|&h| surface.bounds_of(&surface.ends(h))).collect();
+        let boxes: Vec<_> =
+            surface.outline.iter().map(|&h| surface.bounds_of(&surface.ends(h))).collect();
         surface.outline_buckets = Buckets::new(&boxes);
         surface
     }
@@ -132,13 +137,18 @@ impl Surface {
     #[must_use]
     pub fn locate(&self, point: LatticePoint) -> Option<u32> {
         // A bucket lists its triangles in ascending order, and every triangle around `point` is in it.
-        self.triangle_buckets.at(point).iter().copied().find(|&triangle| self.triangle_holds(triangle, point))
+        self.triangle_buckets
+            .at(point)
+            .iter()
+            .copied()
+            .find(|&triangle| self.triangle_holds(triangle, point))
     }
 
     /// Whether `point` lies in `triangle`, its border included, exactly.
     #[must_use]
     pub fn triangle_holds(&self, triangle: u32, point: LatticePoint) -> bool {
-        let [a, b, c] = self.triangles[triangle as usize].map(|vertex| self.points[vertex as usize]);
+        let [a, b, c] =
+            self.triangles[triangle as usize].map(|vertex| self.points[vertex as usize]);
         cross(a, b, point) >= 0 && cross(b, c, point) >= 0 && cross(c, a, point) >= 0
     }
 
@@ -163,7 +173,9 @@ impl Surface {
     /// `out` after clearing it.
     pub fn triangles_near(&self, bounds: LatticeBounds, out: &mut Vec<u32>) {
         self.triangle_buckets.near(bounds, out);
-        out.retain(|&triangle| self.bounds_of(&self.triangles[triangle as usize]).intersects(&bounds));
+        out.retain(|&triangle| {
+            self.bounds_of(&self.triangles[triangle as usize]).intersects(&bounds)
+        });
     }
 
     /// All half-edges without a twin whose bounding boxes meet `bounds`, in ascending order, without
@@ -192,9 +204,11 @@ impl Surface {
     fn bounds_of(&self, vertices: &[u32]) -> LatticeBounds {
         let at = |&vertex: &u32| self.points[vertex as usize];
         let first = at(&vertices[0]);
-        vertices.iter().map(at).fold(LatticeBounds { min: first, max: first }, |bounds, p| LatticeBounds {
-            min: LatticePoint::new(bounds.min.u.min(p.u), bounds.min.v.min(p.v)),
-            max: LatticePoint::new(bounds.max.u.max(p.u), bounds.max.v.max(p.v)),
+        vertices.iter().map(at).fold(LatticeBounds { min: first, max: first }, |bounds, p| {
+            LatticeBounds {
+                min: LatticePoint::new(bounds.min.u.min(p.u), bounds.min.v.min(p.v)),
+                max: LatticePoint::new(bounds.max.u.max(p.u), bounds.max.v.max(p.v)),
+            }
         })
     }
 
@@ -210,7 +224,9 @@ impl Surface {
         let mut counts = [0_u32; 2];
         for &out in self.fan(hub) {
             let into = previous(out);
-            for (way, candidate, far) in [(0, out, self.ends(out)[1]), (1, into, self.ends(into)[0])] {
+            for (way, candidate, far) in
+                [(0, out, self.ends(out)[1]), (1, into, self.ends(into)[0])]
+            {
                 if far == rim {
                     found[way] = candidate;
                     counts[way] += 1;

@@ -102,7 +102,8 @@ proptest! {
 fn a_plane_is_reproduced_at_tile_scale() {
     // 257 nodes of 2^15 steps: 30 m cells; heights rise by 3 and 5 quanta a node.
     let rows = 0..257_u16;
-    let heights: Vec<i32> = rows.flat_map(|row| (0..257).map(move |c| 3 * c - 5 * i32::from(row))).collect();
+    let heights: Vec<i32> =
+        rows.flat_map(|row| (0..257).map(move |c| 3 * c - 5 * i32::from(row))).collect();
     let tin = grid(257, 257, &[true, false, true], &[false], &heights);
     let corner = LatticePoint::new(1 << 33, 1 << 34);
     let surface = Surface::new(&tin, Placement { corner, node_steps: 1 << 15, quantum_m: 0.125 });
@@ -123,7 +124,10 @@ fn a_tin_without_triangles_is_nowhere() {
     let surface = Surface::new(&Tin::default(), placement(10));
     assert_eq!(surface.locate(LatticePoint::new(-7, 1_000_000_007)), None);
     let mut found = vec![1];
-    surface.triangles_near(LatticeBounds { min: LatticePoint::new(-100, 0), max: LatticePoint::new(100, 1 << 40) }, &mut found);
+    surface.triangles_near(
+        LatticeBounds { min: LatticePoint::new(-100, 0), max: LatticePoint::new(100, 1 << 40) },
+        &mut found,
+    );
     assert!(found.is_empty());
 }
 

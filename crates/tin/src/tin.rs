@@ -82,7 +82,10 @@ impl Tin {
     ///
     /// # Errors
     /// When they are not, or a triangle names a missing vertex or is not counter-clockwise.
-    pub fn from_canonical(vertices: Vec<TinVertex>, triangles: Vec<[u32; 3]>) -> Result<Self, TinError> {
+    pub fn from_canonical(
+        vertices: Vec<TinVertex>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Result<Self, TinError> {
         let node = |vertex: &TinVertex| (vertex.row, vertex.column);
         if !vertices.is_sorted_by(|a, b| node(a) < node(b)) {
             return Err(TinError::Order { what: "vertices" });

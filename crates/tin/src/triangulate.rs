@@ -1,5 +1,7 @@
 use corniche_geom::HeightGrid;
-use spade::{ConstrainedDelaunayTriangulation, DelaunayTriangulation, InsertionError, Triangulation};
+use spade::{
+    ConstrainedDelaunayTriangulation, DelaunayTriangulation, InsertionError, Triangulation,
+};
 
 use crate::outline::{Stretch, stretches};
 use crate::refine::{Node, refine};
@@ -19,7 +21,9 @@ pub struct TinSpec {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TriangulateError {
     /// Tolerance and quantum do not fit each other.
-    #[error("a max error of {max_error_m} m needs a height quantum above 0 and at most that, not {quantum_m} m")]
+    #[error(
+        "a max error of {max_error_m} m needs a height quantum above 0 and at most that, not {quantum_m} m"
+    )]
     Spec {
         /// The tolerance asked for.
         max_error_m: f64,
@@ -35,7 +39,9 @@ pub enum TriangulateError {
         rows: usize,
     },
     /// A height is beyond what 32-bit steps of the quantum can hold.
-    #[error("a height of {height_m} m does not fit 32-bit steps of {quantum_m} m; is it a nodata value?")]
+    #[error(
+        "a height of {height_m} m does not fit 32-bit steps of {quantum_m} m; is it a nodata value?"
+    )]
     Height {
         /// The height.
         height_m: f32,
@@ -98,35 +104,33 @@ pub fn triangulate(heights: &HeightGrid, spec: TinSpec) -> Result<Tin, Triangula
     if ground_cells == 0 {
         return Ok(Tin::default());
     }
-    // Room for rounding: whoever measures may use another formula for the same plane.
-    let limit_m = max_error_m * (1.0 - ROUNDING_SHARE);
-    let fixed = stretches(&tile, limit_m, quantum_m);
+    let fixed = stretches(&tile, max_error_m, quantum_m);
     let (nodes, edges) = fixed_graph(&tile, &fixed);
     if ground_cells == (tile.columns() - 1) * (tile.rows() - 1) {
         // The hull is the border: nothing needs a constraint.
         let mut mesh = DelaunayTriangulation::<Node>::bulk_load(nodes)?;
-        refine(&mut mesh, &tile, limit_m, quantum_m)?;
+        refine(&mut mesh, &tile, max_error_m, quantum_m)?;
         to_tin(&mesh, &tile)
     } else {
         let mut mesh = ConstrainedDelaunayTriangulation::<Node>::bulk_load_cdt(nodes, edges)?;
-        refine(&mut mesh, &tile, limit_m, quantum_m)?;
+        refine(&mut mesh, &tile, max_error_m, quantum_m)?;
         to_tin(&mesh, &tile)
     }
 }
 
 /// Nodes of a [`TinVertex`] are 16-bit, and there is a halo on both sides.
 const MAX_SIDE: usize = 65_536 + 2;
-/// Planes through 16-bit nodes and 32-bit heights are evaluated to some 2^-50 of the heights' range, which
-/// is at most 2^32 quanta: far below this share of the tolerance for tolerances of 32 quanta and real heights.
-const ROUNDING_SHARE: f64 = 1.0 / (1 << 30) as f64;
 
 /// The vertices of all stretches, each once, sorted by row and column, and the edges between them.
 fn fixed_graph(tile: &TileRaster<'_>, fixed: &[Stretch]) -> (Vec<Node>, Vec<[usize; 2]>) {
-    let mut keys: Vec<[usize; 2]> = fixed.iter().flatten().map(|&[column, row]| [row, column]).collect();
+    let mut keys: Vec<[usize; 2]> =
+        fixed.iter().flatten().map(|&[column, row]| [row, column]).collect();
     keys.sort_unstable();
     keys.dedup();
     let index = |[column, row]: [usize; 2]| keys.partition_point(|&key| key < [row, column]);
-    let edges = fixed.iter().flat_map(|stretch| stretch.windows(2).map(|pair| [index(pair[0]), index(pair[1])]));
+    let edges = fixed
+        .iter()
+        .flat_map(|stretch| stretch.windows(2).map(|pair| [index(pair[0]), index(pair[1])]));
     let edges = edges.collect();
     (keys.iter().map(|&[row, column]| Node::new(tile, [column, row])).collect(), edges)
 }
@@ -136,7 +140,8 @@ fn to_tin<T>(mesh: &T, tile: &TileRaster<'_>) -> Result<Tin, TriangulateError>
 where
     T: Triangulation<Vertex = Node>,
 {
-    let vertices: Vec<TinVertex> = mesh.vertices().map(|vertex| vertex.data().to_vertex()).collect();
+    let vertices: Vec<TinVertex> =
+        mesh.vertices().map(|vertex| vertex.data().to_vertex()).collect();
     let mut triangles = Vec::with_capacity(mesh.num_inner_faces());
     for face in mesh.inner_faces() {
         let corners = face.vertices();
@@ -147,7 +152,8 @@ where
         });
         if tile.cell([column / 3, row / 3]) {
             // Rows count to the south: what is counter-clockwise to the mesh is clockwise seen from above.
-            triangles.push([corners[0], corners[2], corners[1]].map(|corner| corner.index() as u32));
+            triangles
+                .push([corners[0], corners[2], corners[1]].map(|corner| corner.index() as u32));
         }
     }
     Ok(Tin::new(vertices, &triangles)?)

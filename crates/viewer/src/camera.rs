@@ -53,7 +53,8 @@ impl WorldBox {
     pub fn corners(&self) -> impl Iterator<Item = DVec3> {
         let Self { min, max } = *self;
         (0..8).map(move |bits| {
-            let pick = |bit: usize, low: f64, high: f64| if bits >> bit & 1 == 0 { low } else { high };
+            let pick =
+                |bit: usize, low: f64, high: f64| if bits >> bit & 1 == 0 { low } else { high };
             DVec3::new(pick(0, min.x, max.x), pick(1, min.y, max.y), pick(2, min.z, max.z))
         })
     }
@@ -256,7 +257,8 @@ fn half_extent_at_unit_depth(fov_y_rad: f64, [width, height]: [u32; 2]) -> DVec2
 fn world_from_view(Orientation { heading_deg, pitch_deg }: Orientation) -> DMat3 {
     // Looking straight down with north up, view axes equal world axes. Tilting up turns about the right axis,
     // heading about the vertical, clockwise seen from above.
-    DMat3::from_rotation_z(-heading_deg.to_radians()) * DMat3::from_rotation_x(pitch_deg.to_radians())
+    DMat3::from_rotation_z(-heading_deg.to_radians())
+        * DMat3::from_rotation_x(pitch_deg.to_radians())
 }
 
 #[cfg(test)]

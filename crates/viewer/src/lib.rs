@@ -1,1 +1,26 @@
-//! (skeleton)
+//! Package to pixels.
+//!
+//! ```text
+//!  package ──► tiles ──► lod::select ──► scene ──► gpu: terrain, roads, composite ──► picture
+//!                 ▲            │
+//!                 └─ requests ─┘
+//! ```
+//!
+//! [`render`] makes one picture of a package without a window. Its parts are usable alone: [`camera`], [`lod`]
+//! and [`style`] are values and pure functions; [`tiles`] decodes; [`gpu`] draws what it is handed.
+//!
+//! This crate never depends on `pipeline`, `dem` or `osm`: it learns everything from the package. It never
+//! writes a file.
+
+mod attribution;
+pub mod camera;
+pub mod gpu;
+pub mod lod;
+//mod render;
+pub mod scene;
+pub mod style;
+pub mod tiles;
+
+pub use attribution::draw_attribution;
+//pub use render::{CameraRequest, RenderError, RenderReport, RenderRequest, Rendered, render};
+pub use scene::RoadMethod;

@@ -85,7 +85,11 @@ pub struct Selection {
 /// Source: Cozzi & Ring, *3D Engine Design for Virtual Globes* (2011), ch. 12.
 #[must_use]
 pub fn screen_space_error_px(geometric_error_m: f64, distance_m: f64, camera: &Camera) -> f64 {
-    if geometric_error_m <= 0.0 { 0.0 } else { geometric_error_m / (distance_m * camera.pixel_at_unit_depth_m()) }
+    if geometric_error_m <= 0.0 {
+        0.0
+    } else {
+        geometric_error_m / (distance_m * camera.pixel_at_unit_depth_m())
+    }
 }
 
 /// Chooses tiles for `camera`.
@@ -101,9 +105,12 @@ pub fn select(tree: &dyn TileTree, camera: &Camera, quality: Quality) -> Selecti
     };
     match tree.node(TileId::ROOT) {
         Node::Absent => {}
-        Node::Listed => walk.requests.push(Request { id: TileId::ROOT, priority_px: f64::INFINITY }),
+        Node::Listed => {
+            walk.requests.push(Request { id: TileId::ROOT, priority_px: f64::INFINITY })
+        }
         Node::Loaded(ground) => {
-            let range_m = ground.map_or([f64::NEG_INFINITY, f64::INFINITY], |ground| ground.height_range_m);
+            let range_m =
+                ground.map_or([f64::NEG_INFINITY, f64::INFINITY], |ground| ground.height_range_m);
             walk.visit(TileId::ROOT, ground, range_m);
         }
     }
@@ -132,22 +139,29 @@ impl Walk<'_> {
         }
         let error_px = ground.map_or(f64::INFINITY, |ground| {
             let distance_m = self.world_box(id, range_m).distance_m(self.camera.eye_in_world());
-            screen_space_error_px(ground.geometric_error_m * self.quality.vertical_scale, distance_m, self.camera)
+            screen_space_error_px(
+                ground.geometric_error_m * self.quality.vertical_scale,
+                distance_m,
+                self.camera,
+            )
         });
-        let mut children = Vec::new();
-        if error_px > self.quality.screen_space_error_px && id.z() < self.tree.max_level() {
-            // A child not yet loaded lies between its parent's heights, which nest.
-            children.extend(
-                id.children()
-                    .map(|child| (child, self.tree.node(child)))
-                    .filter(|(child, node)| *node != Node::Absent && self.may_see(*child, range_m)),
-            );
+        let too_coarse = error_px > self.quality.screen_space_error_px && id.z() < self.tree.max_level();
+        let mut children: Vec<(TileId, Node)> = Vec::new();
+        if too_coarse {
+            children.extend(id.children().map(|child| (child, self.tree.node(child))));
+            children.retain(|(_, node)| *node != Node::Absent);
         }
-        let missing: Vec<TileId> =
-            children.iter().filter(|(_, node)| *node == Node::Listed).map(|(child, _)| *child).collect();
+        let is_leaf = children.is_empty();
+        // A child not yet loaded lies between its parent's heights, which nest.
+        children.retain(|(child, _)| self.may_see(*child, range_m));
+        let missing: Vec<TileId> = children
+            .iter()
+            .filter(|(_, node)| *node == Node::Listed)
+            .map(|(child, _)| *child)
+            .collect();
         self.requests.extend(missing.iter().map(|&id| Request { id, priority_px: error_px }));
         if let Some(ground) = ground
-            && (children.is_empty() || !missing.is_empty())
+            && (is_leaf || !missing.is_empty())
         {
             self.errors_m.insert(id, ground.geometric_error_m);
             return;
@@ -160,12 +174,16 @@ impl Walk<'_> {
     }
 
     fn world_box(&self, id: TileId, range_m: [f64; 2]) -> WorldBox {
-        WorldBox::new(self.tree.plan_bounds(id), range_m.map(|height_m| height_m * self.quality.vertical_scale))
+        WorldBox::new(
+            self.tree.plan_bounds(id),
+            range_m.map(|height_m| height_m * self.quality.vertical_scale),
+        )
     }
 
     fn may_see(&self, id: TileId, range_m: [f64; 2]) -> bool {
         // Without any known height only the plan can tell, and it cannot tell much: keep the tile.
-        range_m.iter().any(|height_m| height_m.is_infinite()) || self.frustum.may_see(&self.world_box(id, range_m))
+        range_m.iter().any(|height_m| height_m.is_infinite())
+            || self.frustum.may_see(&self.world_box(id, range_m))
     }
 }
 
@@ -182,7 +200,8 @@ fn skirt_depths_m(errors_m: &BTreeMap<TileId, f64>) -> BTreeMap<TileId, f64> {
         // Every pair of different levels is met once from its finer side.
         for (dx, dy) in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
             let Some(beside) = id.neighbour(dx, dy) else { continue };
-            let coarser = (0..id.z()).rev().map(|z| beside.ancestor(z)).find(|id| errors_m.contains_key(id));
+            let coarser =
+                (0..id.z()).rev().map(|z| beside.ancestor(z)).find(|id| errors_m.contains_key(id));
             if let Some(coarser) = coarser {
                 let gap_m = error_m + errors_m[&coarser];
                 deepen(id, gap_m);

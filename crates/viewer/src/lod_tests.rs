@@ -20,7 +20,10 @@ impl TileTree for Square {
         let error_m = 10.0 * f64::from(1_u32 << (MAX_LEVEL - id.z()));
         match &self.loaded {
             Some(loaded) if !loaded.contains(&id) => Node::Listed,
-            _ => Node::Loaded(Some(GroundSummary { geometric_error_m: error_m, height_range_m: [0.0, 900.0] })),
+            _ => Node::Loaded(Some(GroundSummary {
+                geometric_error_m: error_m,
+                height_range_m: [0.0, 900.0],
+            })),
         }
     }
 
@@ -50,7 +53,11 @@ fn overlap(a: TileId, b: TileId) -> bool {
 
 #[test]
 fn an_unknown_root_is_asked_for_and_nothing_is_drawn() {
-    let selection = select(&Square { loaded: Some(BTreeSet::new()) }, &camera(3e4, 3e4, 1e4, 0.0, 0.0), QUALITY);
+    let selection = select(
+        &Square { loaded: Some(BTreeSet::new()) },
+        &camera(3e4, 3e4, 1e4, 0.0, 0.0),
+        QUALITY,
+    );
     assert!(selection.drawn.is_empty());
     assert_eq!(selection.requests.len(), 1);
     assert_eq!(selection.requests[0].id, TileId::ROOT);
@@ -81,8 +88,11 @@ fn screen_space_error_follows_its_closed_form() {
 }
 
 fn any_camera() -> impl Strategy<Value = Camera> {
-    (0.0..SIDE_M, 0.0..SIDE_M, 500.0..80_000.0_f64, 0.0..360.0_f64, 0.0..80.0_f64)
-        .prop_map(|(x, y, distance_m, heading_deg, pitch_deg)| camera(x, y, distance_m, heading_deg, pitch_deg))
+    (0.0..SIDE_M, 0.0..SIDE_M, 500.0..80_000.0_f64, 0.0..360.0_f64, 0.0..80.0_f64).prop_map(
+        |(x, y, distance_m, heading_deg, pitch_deg)| {
+            camera(x, y, distance_m, heading_deg, pitch_deg)
+        },
+    )
 }
 
 /// The root and whatever descends through loaded parents only, as a loader would leave it.

@@ -141,7 +141,11 @@ mod tests {
     #[test]
     fn the_atlas_gives_more_important_roads_more_width() {
         let style = Style::road_atlas();
-        assert!(style.roads.is_sorted_by(|a, b| a.width_m > b.width_m && a.min_width_px >= b.min_width_px));
+        assert!(
+            style
+                .roads
+                .is_sorted_by(|a, b| a.width_m > b.width_m && a.min_width_px >= b.min_width_px)
+        );
         assert!(style.tint.is_sorted_by(|a, b| a.0 < b.0));
         assert!(style.tint[0].0.abs() < 1e-9 && (style.tint[TINT_STOPS - 1].0 - 1.0).abs() < 1e-9);
     }

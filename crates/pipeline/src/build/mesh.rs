@@ -38,7 +38,7 @@ pub(crate) fn mesh(
                 return Err(BuildError::Interrupted);
             }
             let id = tiles[index];
-            let meshed = mesh_tile(&pyramid.tile(id, 1)?, id, levels);
+            let meshed = mesh_tile(&pyramid.tile(id, 1)?, id, levels)?;
             if meshed.tin.is_empty() {
                 return Ok(None);
             }
@@ -54,11 +54,12 @@ pub(crate) fn mesh(
     Ok(meshes)
 }
 
-fn mesh_tile(heights_with_halo: &HeightGrid, id: TileId, levels: &Levels) -> Meshed {
+fn mesh_tile(heights_with_halo: &HeightGrid, id: TileId, levels: &Levels) -> Result<Meshed, BuildError> {
     let spec = TinSpec { max_error_m: levels.max_error_m(id.z()), quantum_m: levels.quantum_m() };
-    let tin = corniche_tin::triangulate(heights_with_halo, spec);
+    let tin = corniche_tin::triangulate(heights_with_halo, spec)
+        .map_err(|source| BuildError::Triangulate { id, source })?;
     let normals = corniche_tin::normals(heights_with_halo, &tin, levels.frame().level_cell_m(id.z()));
-    Meshed { tin, normals }
+    Ok(Meshed { tin, normals })
 }
 
 /// Reads a mesh back.

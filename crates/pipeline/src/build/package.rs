@@ -15,8 +15,6 @@ use crate::{BuildError, BuildSettings, Observer, Stage, Storage, storage::Kind};
 
 /// Positions interpolated from the manifest are this exact.
 const COORDINATE_TOLERANCE_M: f64 = 0.01;
-/// Credit that OpenStreetMap's licence asks for.
-const OSM_ATTRIBUTION: &str = "© OpenStreetMap contributors";
 
 /// Everything that the manifest tells of.
 pub(crate) struct Outcome<'a> {
@@ -49,7 +47,7 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Result<Manifest, BuildError> {
     };
     let mut attribution = Vec::new();
     if outcome.roads.is_some() {
-        attribution.push(OSM_ATTRIBUTION.to_owned());
+        attribution.push(corniche_osm::ATTRIBUTION.to_owned());
     }
     Ok(Manifest {
         format_version: FORMAT_VERSION,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use corniche_drape::Ownership;
+use corniche_drape::OwnedBorders;
 use corniche_geom::TileId;
 use corniche_roads::{FunctionalRoadClass, Road};
 use corniche_tileset::{
@@ -220,7 +220,7 @@ impl Laid {
         let mut fate = RoadFate::default();
         let parts = self.parts.entry(road.way_id).or_default();
         let mut laid = 0;
-        for part in corniche_drape::clip(&simplified, &bounds, Ownership::of_tile(id)) {
+        for part in corniche_drape::clip(&simplified, &bounds, OwnedBorders::of_tile(id)) {
             let draped = corniche_drape::drape(&part, surface);
             fate.void_steps += draped.off_ground_steps;
             fate.kept_steps += part.length_steps() - draped.off_ground_steps;

@@ -69,7 +69,7 @@ impl Buckets {
     /// The boxes in squares that meet `near`, ascending, without repetition; `out` is cleared first.
     pub(crate) fn near(&self, near: LatticeBounds, out: &mut Vec<u32>) {
         out.clear();
-        if !self.bounds.intersects(&near) {
+        if self.items.is_empty() || !self.bounds.intersects(&near) {
             return;
         }
         let within = |p: LatticePoint| {
@@ -88,7 +88,8 @@ impl Buckets {
 
     /// Column and row of the square of a point within the bounds.
     fn square(&self, point: LatticePoint) -> [usize; 2] {
-        [point.u - self.bounds.min.u, point.v - self.bounds.min.v].map(|offset| (offset >> self.shift) as usize)
+        [point.u - self.bounds.min.u, point.v - self.bounds.min.v]
+            .map(|offset| (offset >> self.shift) as usize)
     }
 
     fn bucket(&self, column: usize, row: usize) -> &[u32] {
@@ -101,7 +102,8 @@ impl Buckets {
         let columns = self.columns;
         let squares = |grid: &Self, b: &LatticeBounds| {
             let ([west, south], [east, north]) = (grid.square(b.min), grid.square(b.max));
-            (south..=north).flat_map(move |row| (west..=east).map(move |column| row * columns + column))
+            (south..=north)
+                .flat_map(move |row| (west..=east).map(move |column| row * columns + column))
         };
         let mut starts = vec![0_u32; self.columns * self.rows + 1];
         for b in boxes {

@@ -22,7 +22,7 @@ fn class_of(label: u32) -> u32 {
 fn background_at(ray: vec3<f32>) -> vec3<f32> {
     let elevation = ray.z / length(ray);
     let above = mix(frame.haze.rgb, frame.sky.rgb, smoothstep(0.0, 0.35, elevation));
-    return mix(above, frame.background.rgb, smoothstep(0.0, -0.25, elevation));
+    return mix(frame.background.rgb, above, smoothstep(-0.25, 0.0, elevation));
 }
 
 // Width of a road at a place in pixels of the final picture, before it is kept from getting too thin.

@@ -1,0 +1,173 @@
+//! Files of one grid as one raster of samples.
+
+use corniche_geom::GeoTransform;
+use gdal::Dataset;
+
+use crate::DemError;
+use crate::crs::Crs;
+use crate::source::{self, Source};
+
+/// Grids are the same when, over the whole extent, their samples are no farther apart than this.
+const SAME_GRID_PX: f64 = 1e-3;
+/// Files that a reader keeps open; each may hold an operating system's handle.
+const OPEN_FILES: usize = 32;
+
+/// Files whose samples lie on one grid, addressed by global sample indices: sample (0, 0) is the first of the
+/// first file, and a position between samples has fractions.
+#[derive(Debug, Clone)]
+pub(crate) struct Mosaic {
+    pub(crate) crs: Crs,
+    /// CRS position of a *sample* (its centre), in the order of [`GeoTransform`].
+    pub(crate) crs_from_sample: GeoTransform,
+    /// First named first: it wins where files overlap.
+    pub(crate) files: Vec<Placed>,
+    /// First and one past the last sample, both axes.
+    pub(crate) extent: SampleRect,
+}
+
+/// A file in its mosaic.
+#[derive(Debug, Clone)]
+pub(crate) struct Placed {
+    /// Its place among all files of the DEM.
+    pub(crate) index: usize,
+    pub(crate) rect: SampleRect,
+}
+
+/// A rectangle of samples: `min` inclusive, `max` exclusive, as `[column, row]`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct SampleRect {
+    pub(crate) min: [i64; 2],
+    pub(crate) max: [i64; 2],
+}
+
+impl SampleRect {
+    pub(crate) fn columns(&self) -> usize {
+        (self.max[0] - self.min[0]).max(0) as usize
+    }
+
+    pub(crate) fn rows(&self) -> usize {
+        (self.max[1] - self.min[1]).max(0) as usize
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.columns() == 0 || self.rows() == 0
+    }
+
+    pub(crate) fn intersection(&self, other: &Self) -> Self {
+        let low = |axis: usize| self.min[axis].max(other.min[axis]);
+        let high = |axis: usize| self.max[axis].min(other.max[axis]);
+        Self { min: [low(0), low(1)], max: [high(0), high(1)] }
+    }
+
+    fn union(&self, other: &Self) -> Self {
+        let low = |axis: usize| self.min[axis].min(other.min[axis]);
+        let high = |axis: usize| self.max[axis].max(other.max[axis]);
+        Self { min: [low(0), low(1)], max: [high(0), high(1)] }
+    }
+}
+
+/// Sorts files into mosaics, in the order in which their grids are first named.
+pub(crate) fn group(sources: &[Source]) -> Vec<Mosaic> {
+    let mut mosaics: Vec<Mosaic> = Vec::new();
+    for (index, source) in sources.iter().enumerate() {
+        let size = [source.columns, source.rows];
+        let place = mosaics.iter_mut().find_map(|mosaic| mosaic.place(source).map(|min| (mosaic, min)));
+        let rect = |min: [i64; 2]| SampleRect { min, max: [min[0] + size[0], min[1] + size[1]] };
+        if let Some((mosaic, min)) = place {
+            mosaic.extent = mosaic.extent.union(&rect(min));
+            mosaic.files.push(Placed { index, rect: rect(min) });
+        } else {
+            mosaics.push(Mosaic {
+                crs: source.crs.clone(),
+                crs_from_sample: from_centres(&source.crs_from_pixel),
+                files: vec![Placed { index, rect: rect([0, 0]) }],
+                extent: rect([0, 0]),
+            });
+        }
+    }
+    mosaics
+}
+
+/// The same map from sample indices: sample (0, 0) lies at the centre of pixel (0, 0), half a pixel in.
+fn from_centres(crs_from_pixel: &GeoTransform) -> GeoTransform {
+    let mut coefficients = crs_from_pixel.coefficients;
+    [coefficients[0], coefficients[3]] = crs_from_pixel.crs_from_pixel([0.5, 0.5]);
+    GeoTransform { coefficients }
+}
+
+impl Mosaic {
+    /// Where the file's first sample lies on this grid; `None` when it is of another one.
+    fn place(&self, source: &Source) -> Option<[i64; 2]> {
+        let own = from_centres(&source.crs_from_pixel);
+        let corner = |c: i64, r: i64| self.crs_from_sample.pixel_from_crs(own.crs_from_pixel([c as f64, r as f64]));
+        let first = corner(0, 0)?;
+        let min = first.map(f64::round);
+        let [columns, rows] = [source.columns, source.rows];
+        for (c, r) in [(0, 0), (columns, 0), (0, rows), (columns, rows)] {
+            let at = corner(c, r)?;
+            let miss = (at[0] - min[0] - c as f64).abs().max((at[1] - min[1] - r as f64).abs());
+            if miss.is_nan() || miss > SAME_GRID_PX || min[0].abs().max(min[1].abs()) > 1e12 {
+                return None;
+            }
+        }
+        self.crs.is_same(&source.crs).then_some([min[0] as i64, min[1] as i64])
+    }
+}
+
+/// Files kept open by one reader, the least lately used closed first.
+pub(crate) struct OpenFiles {
+    open: Vec<(usize, Dataset)>,
+    buffer: Vec<f64>,
+}
+
+impl OpenFiles {
+    pub(crate) fn new() -> Self {
+        Self { open: Vec::new(), buffer: Vec::new() }
+    }
+
+    /// The samples of `rect`, row by row, in metres, NaN where no file has one. A void of the first file falls
+    /// through to the next.
+    pub(crate) fn read(
+        &mut self,
+        sources: &[Source],
+        mosaic: &Mosaic,
+        rect: &SampleRect,
+        heights_m: &mut Vec<f64>,
+    ) -> Result<(), DemError> {
+        heights_m.clear();
+        heights_m.resize(rect.columns() * rect.rows(), f64::NAN);
+        for file in &mosaic.files {
+            let part = rect.intersection(&file.rect);
+            if part.is_empty() {
+                continue;
+            }
+            let source = &sources[file.index];
+            let start = [0, 1].map(|axis| (part.min[axis] - file.rect.min[axis]) as usize);
+            let mut buffer = std::mem::take(&mut self.buffer);
+            let dataset = self.dataset(file.index, source)?;
+            source.read(dataset, start, [part.columns(), part.rows()], &mut buffer)?;
+            let left = (part.min[0] - rect.min[0]) as usize;
+            for (row, line) in buffer.chunks_exact(part.columns()).enumerate() {
+                let at = ((part.min[1] - rect.min[1]) as usize + row) * rect.columns() + left;
+                for (height_m, &found_m) in heights_m[at..at + line.len()].iter_mut().zip(line) {
+                    if height_m.is_nan() {
+                        *height_m = found_m;
+                    }
+                }
+            }
+            self.buffer = buffer;
+        }
+        Ok(())
+    }
+
+    fn dataset(&mut self, index: usize, source: &Source) -> Result<&Dataset, DemError> {
+        if let Some(at) = self.open.iter().position(|(open, _)| *open == index) {
+            self.open[..=at].rotate_right(1);
+        } else {
+            let dataset = source::open_dataset(&source.path)?;
+            self.open.truncate(OPEN_FILES - 1);
+            self.open.insert(0, (index, dataset));
+        }
+        Ok(&self.open[0].1)
+    }
+}

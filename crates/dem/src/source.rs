@@ -1,0 +1,341 @@
+//! One elevation file: what it says about itself, and its samples as metres.
+
+use std::path::{Path, PathBuf};
+
+use corniche_geom::GeoTransform;
+use gdal::Dataset;
+use gdal::errors::GdalError;
+use gdal::raster::{ColorInterpretation, GdalDataType, RasterBand};
+
+use crate::DemError;
+use crate::crs::{Crs, VerticalCrs};
+
+/// Beyond this no value is a height: writers use ±3.4e38 and the like for "nothing here".
+const NO_HEIGHT: f64 = 1e30;
+/// What SRTM's 16-bit files write for "nothing here", declared or not.
+const SRTM_VOID: f64 = -32768.0;
+/// Tie points make a geotransform when it misses none of them by more than this many pixels.
+const TIE_POINT_PX: f64 = 0.01;
+
+/// How an elevation file is to be understood where it does not say so itself.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct OpenOptions {
+    /// CRS, "EPSG:n" or WKT, of the files that name none. A file that names one keeps it.
+    pub dem_crs: Option<String>,
+    /// A stored value that means "no height", besides the one that the file declares.
+    pub nodata: Option<f64>,
+}
+
+/// An elevation file, described but not held open.
+#[derive(Debug, Clone)]
+pub(crate) struct Source {
+    pub(crate) path: PathBuf,
+    pub(crate) columns: i64,
+    pub(crate) rows: i64,
+    /// Pixel to CRS, in metres when projected.
+    pub(crate) crs_from_pixel: GeoTransform,
+    pub(crate) crs: Crs,
+    pub(crate) vertical_datum: Option<String>,
+    values: Values,
+}
+
+/// From stored values to heights.
+#[derive(Debug, Clone)]
+struct Values {
+    nodata: Vec<f64>,
+    /// Stored as 32-bit floats, so that sentinels are compared in that precision.
+    is_f32: bool,
+    scale: f64,
+    offset: f64,
+    unit_m: f64,
+    has_mask: bool,
+}
+
+impl Source {
+    pub(crate) fn open(path: &Path, options: &OpenOptions) -> Result<Self, DemError> {
+        let dataset = open_dataset(path)?;
+        let own = || path.to_path_buf();
+        let broken = |source: GdalError| DemError::Open { path: own(), source };
+        if dataset.raster_count() == 0 {
+            return Err(DemError::NoBand { path: own() });
+        }
+        let band = dataset.rasterband(1).map_err(broken)?;
+        refuse_imagery(path, &dataset, &band)?;
+        let (columns, rows) = dataset.raster_size();
+        let (mut crs_from_pixel, is_tied) = geo_transform(path, &dataset)?;
+        let reference = if is_tied { dataset.gcp_spatial_ref() } else { dataset.spatial_ref().ok() };
+        let (mut crs, vertical) = crs_of(path, reference, options)?;
+        if crs.is_projected() && crs.unit_m != 1.0 {
+            let unit_m = crs.unit_m;
+            // Where the text does not lend itself to a change of unit the plan goes by another CRS.
+            if let Some(metric) = crs.in_metres().filter(|metric| same_places(&crs, metric, &crs_from_pixel)) {
+                crs = metric;
+                crs_from_pixel.coefficients = crs_from_pixel.coefficients.map(|value| value * unit_m);
+            }
+        }
+        if crs_from_pixel.pixel_from_crs([0.0, 0.0]).is_none()
+            || !crs_from_pixel.coefficients.iter().all(|value| value.is_finite())
+        {
+            return Err(DemError::GeoTransform { path: own(), coefficients: crs_from_pixel.coefficients });
+        }
+        Ok(Self {
+            path: own(),
+            columns: columns as i64,
+            rows: rows as i64,
+            crs_from_pixel,
+            crs,
+            values: Values::of(path, &band, &vertical, options)?,
+            vertical_datum: vertical.datum,
+        })
+    }
+
+    /// The samples of a rectangle of pixels as metres, row by row, NaN where there is none.
+    pub(crate) fn read(
+        &self,
+        dataset: &Dataset,
+        [column, row]: [usize; 2],
+        [columns, rows]: [usize; 2],
+        heights_m: &mut Vec<f64>,
+    ) -> Result<(), DemError> {
+        let (start, size) = ((column as isize, row as isize), (columns, rows));
+        let read = || {
+            heights_m.resize(columns * rows, 0.0);
+            let band = dataset.rasterband(1)?;
+            band.read_into_slice(start, size, size, heights_m, None)?;
+            if self.values.has_mask {
+                let mask = band.open_mask_band()?.read_as::<u8>(start, size, size, None)?;
+                for (height_m, &valid) in heights_m.iter_mut().zip(mask.data()) {
+                    if valid == 0 {
+                        *height_m = f64::NAN;
+                    }
+                }
+            }
+            Ok(())
+        };
+        let path = || self.path.clone();
+        read().map_err(|source| DemError::Read { path: path(), column, row, columns, rows, source })?;
+        self.values.convert(heights_m);
+        Ok(())
+    }
+}
+
+/// Opens a file, with an error that says which of the usual things went wrong.
+pub(crate) fn open_dataset(path: &Path) -> Result<Dataset, DemError> {
+    let own = || path.to_path_buf();
+    // GDAL's virtual files and subdatasets ("/vsizip/…", "NETCDF:…") are no names of files.
+    let is_virtual = path.to_str().is_some_and(|text| text.starts_with("/vsi") || text.contains(':'));
+    match std::fs::metadata(path) {
+        Ok(found) if found.is_file() && found.len() == 0 => return Err(DemError::Empty { path: own() }),
+        // Some formats are folders; GDAL says below whether this is one of them.
+        Ok(_) => {}
+        Err(source) if !is_virtual => return Err(DemError::Missing { path: own(), source }),
+        Err(_) => {}
+    }
+    Dataset::open(path).map_err(|source| {
+        if path.is_dir() { DemError::NotAFile { path: own() } } else { DemError::Open { path: own(), source } }
+    })
+}
+
+/// Colour bands are no heights. A palette alone is no reason to refuse: DEMs carry one for display.
+fn refuse_imagery(path: &Path, dataset: &Dataset, band: &RasterBand<'_>) -> Result<(), DemError> {
+    use ColorInterpretation as C;
+    let interpretation = band.color_interpretation();
+    let is_colour = matches!(
+        interpretation,
+        C::RedBand
+            | C::GreenBand
+            | C::BlueBand
+            | C::AlphaBand
+            | C::CyanBand
+            | C::MagentaBand
+            | C::YellowBand
+            | C::BlackBand
+    );
+    if is_colour && dataset.raster_count() >= 3 {
+        return Err(DemError::Imagery {
+            path: path.to_path_buf(),
+            bands: dataset.raster_count(),
+            interpretation: interpretation.name().to_lowercase(),
+        });
+    }
+    Ok(())
+}
+
+/// The geotransform, or the one that tie points agree upon; `true` for the latter.
+///
+/// GDAL refers both to pixel *corners*, whether the file says PixelIsArea or PixelIsPoint.
+fn geo_transform(path: &Path, dataset: &Dataset) -> Result<(GeoTransform, bool), DemError> {
+    if let Ok(coefficients) = dataset.geo_transform() {
+        return Ok((GeoTransform { coefficients }, false));
+    }
+    let ties: Vec<[f64; 4]> = dataset.gcps().iter().map(|tie| [tie.pixel(), tie.line(), tie.x(), tie.y()]).collect();
+    match affine_through(&ties) {
+        Some(transform) => Ok((transform, true)),
+        None => Err(DemError::NoGeoTransform { path: path.to_path_buf() }),
+    }
+}
+
+/// The affine map that best fits `[column, row, x, y]` pairs; `None` unless it fits them all.
+fn affine_through(ties: &[[f64; 4]]) -> Option<GeoTransform> {
+    if ties.len() < 3 {
+        return None;
+    }
+    let mean = |axis: usize| ties.iter().map(|tie| tie[axis]).sum::<f64>() / ties.len() as f64;
+    let center = [mean(0), mean(1), mean(2), mean(3)];
+    // Normal equations of the two planes x(column, row), y(column, row) about the centre.
+    let sum = |a: usize, b: usize| ties.iter().map(|t| (t[a] - center[a]) * (t[b] - center[b])).sum::<f64>();
+    let (cc, cr, rr) = (sum(0, 0), sum(0, 1), sum(1, 1));
+    let determinant = cc * rr - cr * cr;
+    if determinant.abs() <= 1e-9 * cc * rr {
+        return None;
+    }
+    let slopes = |axis: usize| {
+        let (c, r) = (sum(0, axis), sum(1, axis));
+        [(c * rr - r * cr) / determinant, (r * cc - c * cr) / determinant]
+    };
+    let (x, y) = (slopes(2), slopes(3));
+    let coefficients = [
+        center[2] - x[0] * center[0] - x[1] * center[1],
+        x[0],
+        x[1],
+        center[3] - y[0] * center[0] - y[1] * center[1],
+        y[0],
+        y[1],
+    ];
+    let transform = GeoTransform { coefficients };
+    let fits = ties.iter().all(|tie| {
+        transform
+            .pixel_from_crs([tie[2], tie[3]])
+            .is_some_and(|at| (at[0] - tie[0]).hypot(at[1] - tie[1]) <= TIE_POINT_PX)
+    });
+    fits.then_some(transform)
+}
+
+fn crs_of(
+    path: &Path,
+    reference: Option<gdal::spatial_ref::SpatialRef>,
+    options: &OpenOptions,
+) -> Result<(Crs, VerticalCrs), DemError> {
+    let own = || path.to_path_buf();
+    let named = reference.filter(|reference| !reference.is_local());
+    let horizontal = named.as_ref().map(Crs::horizontal).transpose()?.flatten();
+    match (horizontal, &options.dem_crs, named) {
+        (Some(found), _, _) => Ok(found),
+        (None, Some(text), _) => Crs::from_text("--dem-crs", text),
+        (None, None, Some(unusable)) => {
+            Err(DemError::UnusableCrs { path: own(), name: unusable.name().unwrap_or_default() })
+        }
+        (None, None, None) => Err(DemError::NoCrs { path: own() }),
+    }
+}
+
+/// Whether `metric` puts the file's corner where `crs` in its own unit does, to a tenth of a millimetre.
+fn same_places(crs: &Crs, metric: &Crs, crs_from_pixel: &GeoTransform) -> bool {
+    let corners = [[0.0, 0.0], [1000.0, 1000.0]].map(|at| crs_from_pixel.crs_from_pixel(at));
+    let mut moved = corners;
+    let carried = crate::operation::Operation::new(crs, metric, None).apply(&mut moved).is_ok();
+    carried
+        && moved.iter().zip(corners).all(|(got, at)| {
+            (got[0] - at[0] * crs.unit_m).hypot(got[1] - at[1] * crs.unit_m) < 1e-4
+        })
+}
+
+impl Values {
+    fn of(
+        path: &Path,
+        band: &RasterBand<'_>,
+        vertical: &VerticalCrs,
+        options: &OpenOptions,
+    ) -> Result<Self, DemError> {
+        let kind = band.band_type();
+        let type_name = kind.name();
+        if type_name.starts_with('C') || kind == GdalDataType::Unknown {
+            return Err(DemError::SampleType { path: path.to_path_buf(), type_name });
+        }
+        let mut nodata: Vec<f64> = band.no_data_value().into_iter().chain(options.nodata).collect();
+        if kind == GdalDataType::Int16 {
+            nodata.push(SRTM_VOID);
+        }
+        let unit = band.unit();
+        let unit_m = match unit.trim() {
+            "" => vertical.unit_m.unwrap_or(1.0),
+            named => unit_m(named).ok_or_else(|| DemError::Unit { path: path.to_path_buf(), unit: named.to_owned() })?,
+        };
+        let flags = band.mask_flags().map_err(|source| DemError::Open { path: path.to_path_buf(), source })?;
+        Ok(Self {
+            nodata,
+            is_f32: kind == GdalDataType::Float32,
+            scale: band.scale().unwrap_or(1.0),
+            offset: band.offset().unwrap_or(0.0),
+            unit_m,
+            has_mask: flags.is_per_dataset() && !flags.is_all_valid(),
+        })
+    }
+
+    /// Stored values to metres, in place; what is no height becomes NaN.
+    fn convert(&self, values: &mut [f64]) {
+        for value in values {
+            let is_void = !value.is_finite()
+                || value.abs() > NO_HEIGHT
+                || self.nodata.iter().any(|&sentinel| {
+                    // A 32-bit file holds its sentinel rounded to 32 bits; its tag has all digits.
+                    *value == sentinel || self.is_f32 && *value == f64::from(sentinel as f32)
+                });
+            *value = if is_void { f64::NAN } else { (*value * self.scale + self.offset) * self.unit_m };
+        }
+    }
+}
+
+/// Metres to a unit of length as raster bands name it.
+fn unit_m(name: &str) -> Option<f64> {
+    Some(match name.to_lowercase().as_str() {
+        "m" | "metre" | "metres" | "meter" | "meters" => 1.0,
+        "km" | "kilometre" | "kilometer" => 1000.0,
+        "dm" | "decimetre" | "decimeter" => 0.1,
+        "cm" | "centimetre" | "centimeter" | "centimetres" | "centimeters" => 0.01,
+        "mm" | "millimetre" | "millimeter" => 0.001,
+        "ft" | "foot" | "feet" | "international foot" | "international feet" => 0.3048,
+        "us-ft" | "us ft" | "us_ft" | "ftus" | "us survey foot" | "us survey feet" | "us foot" | "us feet"
+        | "foot_us" | "sft" | "survey foot" | "us_survey_foot" => 1200.0 / 3937.0,
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tie_points_give_the_map_they_agree_upon_and_no_other() {
+        let map = GeoTransform { coefficients: [1000.0, 3.0, 1.0, 2000.0, 0.5, -4.0] };
+        let tie = |c: f64, r: f64| {
+            let [x, y] = map.crs_from_pixel([c, r]);
+            [c, r, x, y]
+        };
+        let mut ties = vec![tie(0.0, 0.0), tie(50.0, 0.0), tie(50.0, 40.0), tie(0.0, 40.0)];
+        let found = affine_through(&ties).unwrap();
+        for (a, b) in found.coefficients.iter().zip(map.coefficients) {
+            assert!((a - b).abs() < 1e-9);
+        }
+        ties[2][2] += 1.0;
+        assert!(affine_through(&ties).is_none(), "a bent grid is no affine map");
+        assert!(affine_through(&[tie(0.0, 0.0), tie(1.0, 1.0), tie(2.0, 2.0)]).is_none());
+    }
+
+    #[test]
+    fn sentinels_are_compared_in_the_precision_of_the_file() {
+        let values = Values {
+            nodata: vec![-3.4e38, -9999.9],
+            is_f32: true,
+            scale: 2.0,
+            offset: 10.0,
+            unit_m: 0.3048,
+            has_mask: false,
+        };
+        let mut stored = [f64::from(-3.4e38_f32), f64::from(-9999.9_f32), 5.0, f64::INFINITY, 4e-27];
+        values.convert(&mut stored);
+        let heights: Vec<bool> = stored.iter().map(|height_m| height_m.is_nan()).collect();
+        assert_eq!(heights, [true, true, false, true, false]);
+        assert_eq!(stored[2].to_bits(), (20.0_f64 * 0.3048).to_bits());
+    }
+}

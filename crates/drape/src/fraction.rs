@@ -1,0 +1,113 @@
+//! Exact comparison of where along a segment something lies.
+
+use std::cmp::Ordering;
+
+use corniche_geom::{LatticePoint, cross};
+
+/// A position along a segment p → q as an exact fraction: 0 at p, 1 at q.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Fraction {
+    numerator: i128,
+    /// Above 0.
+    denominator: i128,
+}
+
+impl Fraction {
+    pub(crate) const ZERO: Self = Self { numerator: 0, denominator: 1 };
+    pub(crate) const ONE: Self = Self { numerator: 1, denominator: 1 };
+
+    /// Numerator over denominator; the denominator is not 0.
+    pub(crate) fn new(numerator: i128, denominator: i128) -> Self {
+        if denominator < 0 {
+            Self { numerator: -numerator, denominator: -denominator }
+        } else {
+            Self { numerator, denominator }
+        }
+    }
+
+    /// Where p → q meets the line through `a` and `b`, which it is not parallel to.
+    pub(crate) fn of_crossing([p, q]: [LatticePoint; 2], [a, b]: [LatticePoint; 2]) -> Self {
+        let at_p = cross(a, b, p);
+        Self::new(at_p, at_p - cross(a, b, q))
+    }
+
+    /// Where `point`, which lies on the line through p and q, lies along it.
+    pub(crate) fn of_point([p, q]: [LatticePoint; 2], point: LatticePoint) -> Self {
+        let (du, dv) = (q.u - p.u, q.v - p.v);
+        if du.unsigned_abs() >= dv.unsigned_abs() {
+            Self::new(i128::from(point.u - p.u), i128::from(du))
+        } else {
+            Self::new(i128::from(point.v - p.v), i128::from(dv))
+        }
+    }
+
+    /// The nearest f64, or nearly.
+    pub(crate) fn to_f64(self) -> f64 {
+        self.numerator as f64 / self.denominator as f64
+    }
+}
+
+impl PartialEq for Fraction {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Fraction {}
+
+impl PartialOrd for Fraction {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Fraction {
+    /// Compares whole parts, then the reciprocals of the rests, as Euclid's algorithm goes: the cross
+    /// products of two 2^115 fractions would not fit 128 bits.
+    fn cmp(&self, other: &Self) -> Ordering {
+        let (mut a, mut b) = (*self, *other);
+        loop {
+            let (whole_a, whole_b) =
+                (a.numerator.div_euclid(a.denominator), b.numerator.div_euclid(b.denominator));
+            if whole_a != whole_b {
+                return whole_a.cmp(&whole_b);
+            }
+            let (rest_a, rest_b) =
+                (a.numerator.rem_euclid(a.denominator), b.numerator.rem_euclid(b.denominator));
+            match (rest_a, rest_b) {
+                (0, 0) => return Ordering::Equal,
+                (0, _) => return Ordering::Less,
+                (_, 0) => return Ordering::Greater,
+                // x < y among rests between 0 and 1 when 1/y < 1/x.
+                _ => {
+                    let next_a = Self { numerator: b.denominator, denominator: rest_b };
+                    b = Self { numerator: a.denominator, denominator: rest_a };
+                    a = next_a;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The order is that of cross products, where those fit.
+        #[test]
+        fn order_is_that_of_cross_products(a in -99_i128..99, b in 1_i128..99, c in -99_i128..99, d in 1_i128..99) {
+            prop_assert_eq!(Fraction::new(a, b).cmp(&Fraction::new(c, d)), (a * d).cmp(&(c * b)));
+            prop_assert_eq!(Fraction::new(-a, -b).cmp(&Fraction::new(c, d)), (a * d).cmp(&(c * b)));
+        }
+
+        /// Neighbours too close for 128-bit cross products or for f64 are told apart.
+        #[test]
+        fn huge_fractions_are_told_apart(n in 1_i128 << 113..1 << 114, d in 1_i128 << 114..1 << 115) {
+            prop_assert!(Fraction::new(n, d) < Fraction::new(n + 1, d));
+            prop_assert!(Fraction::new(n, d) > Fraction::new(n, d + 1));
+            prop_assert_eq!(Fraction::new(n, d), Fraction::new(2 * n, 2 * d));
+        }
+    }
+}

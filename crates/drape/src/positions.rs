@@ -1,0 +1,189 @@
+use corniche_geom::{LatticePoint, cross};
+use corniche_tin::Surface;
+
+use crate::{DrapedLine, DrapedVertex};
+
+/// Why a [`DrapedLine`] does not fit its surface: the package it comes from is damaged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BadLine {
+    /// It is not a line.
+    #[error("a draped line has {vertices} vertices and needs two")]
+    TooShort {
+        /// How many it has.
+        vertices: usize,
+    },
+    /// A vertex names a triangle that does not exist.
+    #[error("vertex {at} of a draped line names triangle {triangle}, which does not exist")]
+    NoSuchTriangle {
+        /// Which vertex of the line.
+        at: usize,
+        /// The triangle it names.
+        triangle: u32,
+    },
+    /// A vertex names a TIN vertex that does not exist.
+    #[error("vertex {at} of a draped line names TIN vertex {vertex}, which does not exist")]
+    NoSuchVertex {
+        /// Which vertex of the line.
+        at: usize,
+        /// The TIN vertex it names.
+        vertex: u32,
+    },
+    /// A source point lies farther out than any frame reaches.
+    #[error("source point ({}, {}) of a draped line is out of range", point.u, point.v)]
+    OutOfRange {
+        /// The point.
+        point: LatticePoint,
+    },
+    /// A crossing or passed vertex has no source point (or lead) on one side, or a lead is one too many.
+    #[error("vertex {at} of a draped line does not lie between two source points, or a lead is not needed")]
+    Loose {
+        /// Which vertex of the line.
+        at: usize,
+    },
+    /// The line does not cross the edge that a crossing names.
+    #[error("vertex {at} of a draped line names the edge {a}–{b}, which the line does not cross there")]
+    NoCrossing {
+        /// Which vertex of the line.
+        at: usize,
+        /// The edge's first TIN vertex.
+        a: u32,
+        /// The edge's second TIN vertex.
+        b: u32,
+    },
+    /// The line does not pass through the TIN vertex that it names.
+    #[error("vertex {at} of a draped line names TIN vertex {vertex}, which the line does not pass through")]
+    NotPassed {
+        /// Which vertex of the line.
+        at: usize,
+        /// The TIN vertex it names.
+        vertex: u32,
+    },
+    /// A source point does not lie in the triangle it names.
+    #[error("vertex {at} of a draped line does not lie in triangle {triangle}, which it names")]
+    OutsideTriangle {
+        /// Which vertex of the line.
+        at: usize,
+        /// The triangle it names.
+        triangle: u32,
+    },
+    /// A vertex comes at or before the one it follows, or two source points are the same.
+    #[error("vertex {at} of a draped line does not lie beyond the vertex before it")]
+    Disorder {
+        /// Which vertex of the line.
+        at: usize,
+    },
+    /// A vertex shares no triangle with the one it follows.
+    #[error("vertex {at} of a draped line shares no triangle with the vertex before it")]
+    Apart {
+        /// Which vertex of the line.
+        at: usize,
+    },
+}
+
+/// Where the vertices of `line` lie on `surface`: [u, v] in (fractional) lattice steps, and the height in metres.
+///
+/// A crossing's position and height come from its edge, in one order of the edge's ends, and do not depend on
+/// the direction of travel, nor on the triangles beside it: both pieces that meet there agree to the last bit.
+///
+/// # Errors
+/// When the line is no line, names a triangle or a TIN vertex that does not exist, or says that it crosses what
+/// it does not. A line without an error here may still be wrong in ways that [`check`](crate::check()) finds.
+pub fn positions(line: &DrapedLine, surface: &Surface) -> Result<Vec<[f64; 3]>, BadLine> {
+    let mut positions = Vec::with_capacity(line.vertices.len());
+    for_each_vertex(line, surface, |_, vertex, segment| {
+        positions.push(match vertex {
+            DrapedVertex::Source { point, triangle } => {
+                [point.u as f64, point.v as f64, surface.height_at_point_m(triangle, point)]
+            }
+            DrapedVertex::Crossing { a, b } => crossing(surface, segment, [a, b]),
+            DrapedVertex::Vertex { vertex } => {
+                let point = surface.points()[vertex as usize];
+                [point.u as f64, point.v as f64, surface.heights_m()[vertex as usize]]
+            }
+        });
+        Ok(())
+    })?;
+    Ok(positions)
+}
+
+/// Visits every vertex with its index and the segment it lies on (for a source point twice that point), once
+/// its indices, its range and, for a crossing, the sides of its edge's ends are known to be good.
+pub(crate) fn for_each_vertex(
+    line: &DrapedLine,
+    surface: &Surface,
+    mut visit: impl FnMut(usize, DrapedVertex, [LatticePoint; 2]) -> Result<(), BadLine>,
+) -> Result<(), BadLine> {
+    let vertices = &line.vertices;
+    if vertices.len() < 2 {
+        return Err(BadLine::TooShort { vertices: vertices.len() });
+    }
+    let in_range = |point: LatticePoint| {
+        // Frames keep within 2^56; differences and products of what is within 2^60 are exact.
+        const REACH: u64 = 1 << 60;
+        let fits = point.u.unsigned_abs() < REACH && point.v.unsigned_abs() < REACH;
+        if fits { Ok(point) } else { Err(BadLine::OutOfRange { point }) }
+    };
+    let mut before = line.lead_in.map(in_range).transpose()?;
+    let mut after: Option<(usize, LatticePoint)> = None;
+    for (at, &vertex) in vertices.iter().enumerate() {
+        if let DrapedVertex::Source { point, triangle } = vertex {
+            if triangle as usize >= surface.triangles().len() {
+                return Err(BadLine::NoSuchTriangle { at, triangle });
+            }
+            in_range(point)?;
+            visit(at, vertex, [point; 2])?;
+            before = Some(point);
+            continue;
+        }
+        if after.is_none_or(|(index, _)| index <= at) {
+            let rest = vertices[at..].iter().enumerate();
+            let source = rest.filter_map(|(n, vertex)| match vertex {
+                DrapedVertex::Source { point, .. } => Some((at + n, *point)),
+                _ => None,
+            });
+            after = source.chain(line.lead_out.map(|point| (vertices.len(), point))).next();
+            after.map(|(_, point)| in_range(point)).transpose()?;
+        }
+        let (Some(p), Some((_, q))) = (before, after) else {
+            return Err(BadLine::Loose { at });
+        };
+        match vertex {
+            DrapedVertex::Crossing { a, b } => {
+                let [side_a, side_b] = [side(surface, at, [p, q], a)?, side(surface, at, [p, q], b)?];
+                if a >= b || side_a * side_b != -1 {
+                    return Err(BadLine::NoCrossing { at, a, b });
+                }
+            }
+            DrapedVertex::Vertex { vertex } => {
+                if side(surface, at, [p, q], vertex)? != 0 {
+                    return Err(BadLine::NotPassed { at, vertex });
+                }
+            }
+            DrapedVertex::Source { .. } => {}
+        }
+        visit(at, vertex, [p, q])?;
+    }
+    Ok(())
+}
+
+/// On which side of the segment a TIN vertex lies: -1, 0 or 1.
+fn side(surface: &Surface, at: usize, [p, q]: [LatticePoint; 2], vertex: u32) -> Result<i128, BadLine> {
+    let point = *surface.points().get(vertex as usize).ok_or(BadLine::NoSuchVertex { at, vertex })?;
+    Ok(cross(p, q, point).signum())
+}
+
+/// Where the segment crosses the edge, and how high.
+fn crossing(surface: &Surface, [p, q]: [LatticePoint; 2], ends: [u32; 2]) -> [f64; 3] {
+    let at = ends.map(|vertex| surface.points()[vertex as usize]);
+    let from_line = at.map(|point| cross(p, q, point));
+    // Measured from the nearer end: its offset is small, and turning the segment round negates both numbers.
+    let (near, far) = if from_line[0].abs() <= from_line[1].abs() { (0, 1) } else { (1, 0) };
+    let part = from_line[near] as f64 / (from_line[near] - from_line[far]) as f64;
+    let heights_m = ends.map(|vertex| surface.heights_m()[vertex as usize]);
+    [
+        at[near].u as f64 + part * (at[far].u - at[near].u) as f64,
+        at[near].v as f64 + part * (at[far].v - at[near].v) as f64,
+        heights_m[near] + part * (heights_m[far] - heights_m[near]),
+    ]
+}

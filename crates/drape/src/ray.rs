@@ -1,0 +1,191 @@
+//! One segment's way over the triangles, by exact tests.
+
+use corniche_geom::{LatticePoint, cross};
+use corniche_tin::{NO_TWIN, Surface};
+
+/// Where on the ground a point lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// On no ground.
+    Off,
+    /// In the inside of a triangle.
+    Inside(u32),
+    /// In the inside of the edge of this half-edge.
+    Edge(u32),
+    /// On a TIN vertex.
+    Vertex(u32),
+}
+
+impl Place {
+    pub(crate) fn of(point: LatticePoint, surface: &Surface) -> Self {
+        let Some(triangle) = surface.locate(point) else {
+            return Self::Off;
+        };
+        let corners = surface.triangles()[triangle as usize];
+        let at = corners.map(|vertex| surface.points()[vertex as usize]);
+        let on = [0, 1, 2].map(|k| cross(at[k], at[(k + 1) % 3], point) == 0);
+        match on {
+            [true, _, true] => Self::Vertex(corners[0]),
+            [true, true, _] => Self::Vertex(corners[1]),
+            [_, true, true] => Self::Vertex(corners[2]),
+            [false, false, false] => Self::Inside(triangle),
+            [first, second, _] => Self::Edge(3 * triangle + if first { 0 } else { 2 - u32::from(second) }),
+        }
+    }
+
+    /// The smallest index of the triangles that hold the point; whichever way the place was reached.
+    pub(crate) fn first_triangle(self, surface: &Surface) -> Option<u32> {
+        match self {
+            Self::Off => None,
+            Self::Inside(triangle) => Some(triangle),
+            // NO_TWIN is the largest number.
+            Self::Edge(half_edge) => Some(half_edge.min(surface.twin(half_edge)) / 3),
+            Self::Vertex(vertex) => surface.fan(vertex).first().map(|half_edge| half_edge / 3),
+        }
+    }
+}
+
+/// What a segment meets next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Next {
+    /// Its own end, which lies here.
+    Arrives(Place),
+    /// It leaves a triangle through the inside of this half-edge of it.
+    Crosses(u32),
+    /// It reaches this TIN vertex and has more to go.
+    Passes(u32),
+    /// From where it is no ground leads on.
+    Ends,
+}
+
+/// A segment p → q over a surface.
+///
+/// ```text
+///                 c                 Entered across o–d, the segment leaves across d–c when c lies on its
+///                / \                left, across c–o when on its right, through c when on it. This is the
+///       p ─ ─ ─ /─ ─\─ ─ ► q        smallest positive exit in barycentric coordinates (Vaaraniemi, Treib &
+///              /     \              Westermann 2011, section 6.1), without their division: one orientation
+///             o───────d             tells the edge, a second whether q lies before it.
+/// ```
+#[derive(Clone, Copy)]
+pub(crate) struct Ray<'a> {
+    pub(crate) surface: &'a Surface,
+    pub(crate) p: LatticePoint,
+    pub(crate) q: LatticePoint,
+}
+
+impl Ray<'_> {
+    /// From p.
+    pub(crate) fn from_start(&self, place: Place) -> Next {
+        match place {
+            Place::Off => Next::Ends,
+            Place::Inside(triangle) => self.through(triangle),
+            Place::Edge(half_edge) => self.from_edge(half_edge),
+            Place::Vertex(vertex) => self.from_vertex(vertex),
+        }
+    }
+
+    /// On from a triangle just entered across its own `half_edge`, whose start lies on the left of the
+    /// segment and whose end on the right.
+    #[inline]
+    pub(crate) fn entered(&self, half_edge: u32) -> Next {
+        let triangle = half_edge / 3;
+        let k = half_edge % 3;
+        let (next, previous) = (3 * triangle + (k + 1) % 3, 3 * triangle + (k + 2) % 3);
+        let apex = self.surface.triangles()[triangle as usize][((k + 2) % 3) as usize];
+        match cross(self.p, self.q, self.point(apex)) {
+            0 => self.towards(apex, Place::Inside(triangle)),
+            left if left > 0 => self.out_of(next),
+            _ => self.out_of(previous),
+        }
+    }
+
+    /// On from a TIN vertex that lies on the segment, q beyond it.
+    pub(crate) fn from_vertex(&self, vertex: u32) -> Next {
+        let hub = self.point(vertex);
+        for &out in self.surface.fan(vertex) {
+            let triangle = out / 3;
+            let across = 3 * triangle + (out + 1) % 3;
+            let into = 3 * triangle + (out + 2) % 3;
+            let [right, left] = self.surface.ends(across);
+            let turn_right = cross(hub, self.point(right), self.q);
+            let turn_left = cross(hub, self.point(left), self.q);
+            if turn_right == 0 && self.ahead(hub, self.point(right)) {
+                return self.towards(right, Place::Edge(out));
+            }
+            if turn_left == 0 && self.ahead(hub, self.point(left)) {
+                return self.towards(left, Place::Edge(into));
+            }
+            if turn_right > 0 && turn_left < 0 {
+                return self.out_of(across);
+            }
+        }
+        Next::Ends
+    }
+
+    /// On from p in the inside of an edge.
+    fn from_edge(&self, half_edge: u32) -> Next {
+        let [a, b] = self.surface.ends(half_edge);
+        match cross(self.point(a), self.point(b), self.q) {
+            0 => {
+                let target = if self.ahead(self.p, self.point(b)) { b } else { a };
+                self.towards(target, Place::Edge(half_edge))
+            }
+            left if left > 0 => self.through(half_edge / 3),
+            _ => match self.surface.twin(half_edge) {
+                NO_TWIN => Next::Ends,
+                twin => self.through(twin / 3),
+            },
+        }
+    }
+
+    /// On through the inside of a triangle that holds p in its inside or on an edge.
+    fn through(&self, triangle: u32) -> Next {
+        let corners = self.surface.triangles()[triangle as usize];
+        let sides = corners.map(|vertex| cross(self.p, self.q, self.point(vertex)).signum());
+        for k in 0..3 {
+            let (this, next, previous) = (sides[k], sides[(k + 1) % 3], sides[(k + 2) % 3]);
+            if this < 0 && next > 0 {
+                return self.out_of(3 * triangle + k as u32);
+            }
+            if this == 0 && next > 0 && previous < 0 {
+                return self.towards(corners[k], Place::Inside(triangle));
+            }
+        }
+        Next::Ends
+    }
+
+    /// Towards the inside of `half_edge` of the triangle it is in.
+    #[inline]
+    fn out_of(&self, half_edge: u32) -> Next {
+        let [a, b] = self.surface.ends(half_edge);
+        match cross(self.point(a), self.point(b), self.q) {
+            0 => Next::Arrives(Place::Edge(half_edge)),
+            left if left > 0 => Next::Arrives(Place::Inside(half_edge / 3)),
+            _ => Next::Crosses(half_edge),
+        }
+    }
+
+    /// Towards a TIN vertex ahead on the segment's line, over `place`.
+    fn towards(&self, vertex: u32, place: Place) -> Next {
+        let target = self.point(vertex);
+        if target == self.q {
+            Next::Arrives(Place::Vertex(vertex))
+        } else if self.ahead(target, self.q) {
+            Next::Passes(vertex)
+        } else {
+            Next::Arrives(place)
+        }
+    }
+
+    /// Whether, of two points on the segment's line, `to` lies in its direction from `from`.
+    fn ahead(&self, from: LatticePoint, to: LatticePoint) -> bool {
+        let (du, dv) = (self.q.u - self.p.u, self.q.v - self.p.v);
+        if du == 0 { (to.v - from.v).signum() == dv.signum() } else { (to.u - from.u).signum() == du.signum() }
+    }
+
+    #[inline]
+    pub(crate) fn point(&self, vertex: u32) -> LatticePoint {
+        self.surface.points()[vertex as usize]
+    }
+}

@@ -1,0 +1,171 @@
+use corniche_geom::{LatticeBounds, LatticePoint, Polyline, cross};
+use corniche_tin::{NO_TWIN, Surface};
+
+use crate::{
+    DrapedLine, DrapedVertex,
+    fraction::Fraction,
+    ray::{Next, Place, Ray},
+};
+
+/// A line laid on the ground.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Drape {
+    /// The parts over ground, in order.
+    pub lines: Vec<DrapedLine>,
+    /// Length in plan that is over no ground, in lattice steps.
+    pub off_ground_steps: f64,
+}
+
+/// Lays `line` on `surface`: a vertex at every source point, at every TIN edge crossed in its inside, and at
+/// every TIN vertex passed through. What lies over no ground is cut out and measured.
+///
+/// The outline of the ground is ground: a line along it is kept. A line that only touches ground at a point
+/// leaves nothing. A source point on an edge or a TIN vertex is a source point and nothing else, and names the
+/// triangle with the smallest index of those that hold it.
+///
+/// Source: Vaaraniemi, Treib & Westermann 2011, *High-Quality Cartographic Roads on High-Resolution DEMs*,
+/// section 6.1, decided by exact orientations instead of floating-point barycentric coordinates.
+#[must_use]
+pub fn drape(line: &Polyline, surface: &Surface) -> Drape {
+    let points = line.points();
+    let mut walk = Walk { surface, drape: Drape::default(), part: None, near: Vec::new() };
+    let mut place = Place::of(points[0], surface);
+    walk.arrive(points[0], place);
+    for pair in points.windows(2) {
+        place = walk.follow([pair[0], pair[1]], place);
+    }
+    walk.close(None);
+    walk.drape
+}
+
+struct Walk<'a> {
+    surface: &'a Surface,
+    drape: Drape,
+    /// The part being laid, while on ground.
+    part: Option<DrapedLine>,
+    /// Half-edges found near a gap, kept for its allocation.
+    near: Vec<u32>,
+}
+
+/// Where a segment comes onto the ground.
+#[derive(Clone, Copy)]
+enum Entry {
+    Edge(u32),
+    Vertex(u32),
+}
+
+impl Walk<'_> {
+    /// Follows one segment from p, which lies at `place`; tells where q lies.
+    fn follow(&mut self, [p, q]: [LatticePoint; 2], place: Place) -> Place {
+        let ray = Ray { surface: self.surface, p, q };
+        // Where along the segment the ground was left or a TIN vertex passed, for when it ends there.
+        let mut last = Fraction::ZERO;
+        let mut next = ray.from_start(place);
+        loop {
+            next = match next {
+                Next::Arrives(place) => {
+                    self.arrive(q, place);
+                    return place;
+                }
+                Next::Crosses(half_edge) => {
+                    let [a, b] = self.surface.ends(half_edge);
+                    self.push(DrapedVertex::Crossing { a: a.min(b), b: a.max(b) });
+                    match self.surface.twin(half_edge) {
+                        NO_TWIN => {
+                            last = Fraction::of_crossing([p, q], [ray.point(a), ray.point(b)]);
+                            Next::Ends
+                        }
+                        twin => ray.entered(twin),
+                    }
+                }
+                Next::Passes(vertex) => {
+                    self.push(DrapedVertex::Vertex { vertex });
+                    last = Fraction::of_point([p, q], ray.point(vertex));
+                    ray.from_vertex(vertex)
+                }
+                Next::Ends => {
+                    self.close(Some(q));
+                    let Some((back, entry)) = self.entry_after(&ray, last) else {
+                        self.drape.off_ground_steps += (1.0 - last.to_f64()) * p.distance_steps(q);
+                        // The end may still touch ground, and the next segment go on from there.
+                        let place = Place::of(q, self.surface);
+                        self.arrive(q, place);
+                        return place;
+                    };
+                    self.drape.off_ground_steps += (back.to_f64() - last.to_f64()) * p.distance_steps(q);
+                    last = back;
+                    let (first, next) = match entry {
+                        Entry::Edge(half_edge) => {
+                            let [a, b] = self.surface.ends(half_edge);
+                            (DrapedVertex::Crossing { a: a.min(b), b: a.max(b) }, ray.entered(half_edge))
+                        }
+                        Entry::Vertex(vertex) => (DrapedVertex::Vertex { vertex }, ray.from_vertex(vertex)),
+                    };
+                    self.part = Some(DrapedLine { lead_in: Some(p), vertices: vec![first], lead_out: None });
+                    next
+                }
+            }
+        }
+    }
+
+    /// The first place after `last` where the segment comes onto ground before its end.
+    fn entry_after(&mut self, ray: &Ray, last: Fraction) -> Option<(Fraction, Entry)> {
+        let Ray { p, q, .. } = *ray;
+        let bounds = LatticeBounds::of(&[p, q])?;
+        self.surface.outline_near(bounds, &mut self.near);
+        let mut first: Option<(Fraction, Entry)> = None;
+        for &half_edge in &self.near {
+            let [a, b] = self.surface.ends(half_edge);
+            let (at_a, at_b) = (ray.point(a), ray.point(b));
+            let side_a = cross(p, q, at_a);
+            let (at, entry) = if side_a == 0 {
+                (Fraction::of_point([p, q], at_a), Entry::Vertex(a))
+            } else if side_a > 0 && cross(p, q, at_b) < 0 {
+                (Fraction::of_crossing([p, q], [at_a, at_b]), Entry::Edge(half_edge))
+            } else {
+                continue;
+            };
+            let sooner = at > last && at < Fraction::ONE && first.is_none_or(|(known, _)| at < known);
+            let leads_on = match entry {
+                Entry::Edge(_) => true,
+                Entry::Vertex(vertex) => sooner && ray.from_vertex(vertex) != Next::Ends,
+            };
+            if sooner && leads_on {
+                first = Some((at, entry));
+            }
+        }
+        first
+    }
+
+    /// Adds a source point, if it lies on ground.
+    fn arrive(&mut self, point: LatticePoint, place: Place) {
+        if let Some(triangle) = place.first_triangle(self.surface) {
+            self.push(DrapedVertex::Source { point, triangle });
+        }
+    }
+
+    #[inline]
+    fn push(&mut self, vertex: DrapedVertex) {
+        self.part
+            .get_or_insert_with(|| DrapedLine { lead_in: None, vertices: Vec::new(), lead_out: None })
+            .vertices
+            .push(vertex);
+    }
+
+    /// Ends the part; `towards` is the source point that the line goes on to.
+    fn close(&mut self, towards: Option<LatticePoint>) {
+        let Some(mut part) = self.part.take() else {
+            return;
+        };
+        if !matches!(part.vertices.last(), Some(DrapedVertex::Source { .. })) {
+            part.lead_out = towards;
+        }
+        if part.vertices.len() >= 2 {
+            self.drape.lines.push(part);
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "walk_tests.rs"]
+mod tests;

@@ -1,0 +1,206 @@
+//! Ways and node places to roads.
+
+use corniche_geom::{LatticePoint, Polyline, Side, side};
+use corniche_roads::Road;
+
+use crate::{
+    Defect, ReadOsmError,
+    nodes::{self, NodeTable},
+    read_roads::Place,
+    ways::{RoadWay, Ways},
+};
+
+/// What became of one way.
+#[derive(Debug, Default)]
+pub(crate) struct Assembled {
+    pub(crate) roads: Vec<Road>,
+    pub(crate) defects: Vec<Defect>,
+}
+
+/// Makes roads of some ways, in their order. All their points are placed in one call.
+pub(crate) fn assemble(
+    some: &[RoadWay],
+    ways: &Ways,
+    table: &NodeTable,
+    place: &Place<'_>,
+) -> Result<Vec<Assembled>, ReadOsmError> {
+    let mut positions_deg = Vec::new();
+    let mut stops = Vec::new();
+    for way in some {
+        for &id in ways.node_ids_of(way) {
+            let number = table.number(id);
+            let location = number.map_or(nodes::MISSING, |number| table.location(number));
+            let position_deg = nodes::degrees(location);
+            positions_deg.extend(position_deg);
+            stops.push(Stop {
+                is_fixed: number.is_some_and(|number| table.is_shared(number)),
+                place: match position_deg {
+                    Some(_) => StopPlace::Known,
+                    None if location == nodes::OUT_OF_RANGE => StopPlace::OutOfRange,
+                    None => StopPlace::Missing,
+                },
+            });
+        }
+    }
+    let points = place(&positions_deg);
+    if points.len() != positions_deg.len() {
+        return Err(ReadOsmError::Place { expected: positions_deg.len(), got: points.len() });
+    }
+    let mut points = points.into_iter();
+    let mut rest = stops.as_slice();
+    let mut assembled = Vec::with_capacity(some.len());
+    for way in some {
+        let (own, later) = rest.split_at(way.nodes_end - way.nodes_start);
+        assembled.push(assemble_way(way, own, &mut points));
+        rest = later;
+    }
+    Ok(assembled)
+}
+
+/// A node of a way.
+struct Stop {
+    is_fixed: bool,
+    place: StopPlace,
+}
+
+enum StopPlace {
+    /// It is the next of the placed points.
+    Known,
+    OutOfRange,
+    Missing,
+}
+
+/// Cuts the way where points are missing, merges equal neighbours, and makes a road of each piece.
+///
+/// ```text
+///  nodes   1 ─ 2 ─ ? ─ 4 ─ 5 ─ 5 ─ 6 ─ ?        joining 2 and 4 would draw a road where none may be
+///  roads   1 ─ 2       4 ─ 5 ───── 6
+/// ```
+fn assemble_way(
+    way: &RoadWay,
+    stops: &[Stop],
+    points: &mut impl Iterator<Item = Option<LatticePoint>>,
+) -> Assembled {
+    let way_id = way.way_id;
+    let mut assembled = Assembled::default();
+    let (mut missing, mut out_of_range, mut outside, mut duplicates, mut strays) = (0, 0, 0, 0, 0);
+    let mut pieces: Vec<Vec<(LatticePoint, bool)>> = vec![Vec::new()];
+    for stop in stops {
+        let point = match stop.place {
+            StopPlace::Known => points.next().flatten(),
+            StopPlace::OutOfRange | StopPlace::Missing => None,
+        };
+        match (&stop.place, point, pieces.last_mut()) {
+            (StopPlace::Known, Some(point), Some(piece)) => match piece.last_mut() {
+                Some((last, is_fixed)) if *last == point => {
+                    duplicates += 1;
+                    *is_fixed |= stop.is_fixed;
+                }
+                _ => piece.push((point, stop.is_fixed)),
+            },
+            (StopPlace::Known, ..) => outside += 1,
+            (StopPlace::OutOfRange, ..) => out_of_range += 1,
+            (StopPlace::Missing, ..) => missing += 1,
+        }
+        if point.is_none() {
+            pieces.push(Vec::new());
+        }
+    }
+    if stops.len() < 2 {
+        assembled.defects.push(Defect::TooFewNodes { way_id, nodes: stops.len() as u32 });
+        return assembled;
+    }
+    let mut crossings = 0;
+    for piece in pieces {
+        let count = piece.len() as u32;
+        let road = road(way, piece);
+        crossings += road.as_ref().map_or(0, |road| self_crossings(road.line.points()));
+        strays += if road.is_none() { count } else { 0 };
+        assembled.roads.extend(road);
+    }
+    let roads = assembled.roads.len() as u32;
+    for (count, defect) in [
+        (missing, Defect::MissingNodes { way_id, points: missing }),
+        (out_of_range, Defect::OutOfRange { way_id, points: out_of_range }),
+        (outside, Defect::OutsideProjection { way_id, points: outside }),
+        (duplicates, Defect::DuplicatePoints { way_id, points: duplicates }),
+        (strays.min(roads), Defect::StrayPoints { way_id, points: strays }),
+        (roads.saturating_sub(1), Defect::Split { way_id, roads }),
+        (u32::from(roads == 0), Defect::NoLine { way_id }),
+        (crossings, Defect::SelfCrossing { way_id, crossings }),
+    ] {
+        if count > 0 {
+            assembled.defects.push(defect);
+        }
+    }
+    assembled
+}
+
+/// One road of a piece of a way; `None` when the piece has less than two points.
+fn road(way: &RoadWay, piece: Vec<(LatticePoint, bool)>) -> Option<Road> {
+    let last = piece.len().checked_sub(1)?;
+    let is_kept = |(index, is_fixed): (usize, bool)| {
+        (is_fixed || index == 0 || index == last).then_some(index as u32)
+    };
+    let fixed =
+        piece.iter().map(|&(_, is_fixed)| is_fixed).enumerate().filter_map(is_kept).collect();
+    // Equal neighbours are merged already, so the indices stay true.
+    let line = Polyline::new(piece.into_iter().map(|(point, _)| point).collect()).ok()?;
+    Some(Road {
+        way_id: way.way_id,
+        class: way.class,
+        attributes: way.attributes.clone(),
+        line,
+        fixed,
+    })
+}
+
+/// How many pairs of segments cross strictly inside both. Shared points and overlaps are no crossings: loops and
+/// there-and-back ways are common and right.
+fn self_crossings(points: &[LatticePoint]) -> u32 {
+    let mut segments: Vec<[LatticePoint; 2]> =
+        points.windows(2).map(|pair| [pair[0].min(pair[1]), pair[0].max(pair[1])]).collect();
+    // Swept from west to east, a segment meets only those that begin before it ends.
+    segments.sort_unstable();
+    let mut crossings = 0;
+    for (number, &[a, b]) in segments.iter().enumerate() {
+        for &[c, d] in segments[number + 1..].iter().take_while(|[c, _]| c.u <= b.u) {
+            let is_apart = c.v.max(d.v) < a.v.min(b.v) || a.v.max(b.v) < c.v.min(d.v);
+            if !is_apart && straddles([a, b], [c, d]) && straddles([c, d], [a, b]) {
+                crossings += 1;
+            }
+        }
+    }
+    crossings
+}
+
+/// Whether the ends of `other` lie strictly on different sides of the line through `segment`.
+fn straddles(segment: [LatticePoint; 2], other: [LatticePoint; 2]) -> bool {
+    let [from, to] = other.map(|end| side(segment[0], segment[1], end));
+    from != Side::On && to != Side::On && from != to
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check_crossings(points: &[(i64, i64)], expected: u32) {
+        let points: Vec<LatticePoint> =
+            points.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect();
+        assert_eq!(self_crossings(&points), expected);
+    }
+
+    #[test]
+    fn counts_crossings_but_not_touches() {
+        check_crossings(&[(0, 0), (10, 10), (10, 0), (0, 10)], 1);
+        check_crossings(&[(0, 0), (10, 0), (10, 10), (0, 10), (0, 0)], 0);
+        check_crossings(&[(0, 0), (10, 0), (0, 0)], 0);
+        // A loop through one of its own points, and a T into the middle of a segment.
+        check_crossings(&[(0, 0), (10, 0), (15, 5), (20, 0), (10, 0), (10, -9)], 0);
+        check_crossings(&[(0, 0), (10, 0), (10, 5), (5, 5), (5, 0)], 0);
+        // A five-pointed star.
+        check_crossings(&[(0, 100), (59, -81), (-95, 31), (95, 31), (-59, -81), (0, 100)], 5);
+        check_crossings(&[(5, -5), (5, 5), (0, 0), (10, 0)], 1);
+    }
+}

@@ -1,0 +1,116 @@
+/// Bad input in an extract that was survived: reported with the object's id, and the rest goes on.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Defect {
+    /// The table does not list this `highway` value; the way is left out.
+    UnknownHighway {
+        /// The way.
+        way_id: i64,
+        /// The value.
+        value: String,
+    },
+    /// `area=yes`: the outline of a surface; the way is left out.
+    Area {
+        /// The way.
+        way_id: i64,
+    },
+    /// Several ways of the file have this id; the first stays.
+    DuplicateWay {
+        /// The id.
+        way_id: i64,
+    },
+    /// A tag of the way is not UTF-8; what cannot be read is replaced by U+FFFD.
+    DamagedText {
+        /// The way.
+        way_id: i64,
+    },
+    /// A way of one node or none; it is left out.
+    TooFewNodes {
+        /// The way.
+        way_id: i64,
+        /// How many nodes it has.
+        nodes: u32,
+    },
+    /// Nodes of the way are not in the file: it is cut there.
+    MissingNodes {
+        /// The way.
+        way_id: i64,
+        /// How many of its points are affected.
+        points: u32,
+    },
+    /// Nodes of the way lie beyond ±180° or ±90°: it is cut there.
+    OutOfRange {
+        /// The way.
+        way_id: i64,
+        /// How many of its points are affected.
+        points: u32,
+    },
+    /// Nodes of the way cannot be placed in the working CRS: it is cut there.
+    OutsideProjection {
+        /// The way.
+        way_id: i64,
+        /// How many of its points are affected.
+        points: u32,
+    },
+    /// Cuts left several pieces: each is a road of its own with the same way id.
+    Split {
+        /// The way.
+        way_id: i64,
+        /// How many roads it became.
+        roads: u32,
+    },
+    /// Cuts left single points, which are no line; they are left out.
+    StrayPoints {
+        /// The way.
+        way_id: i64,
+        /// How many points.
+        points: u32,
+    },
+    /// Nothing is left of the way: its points are missing, cannot be placed, or are all the same.
+    NoLine {
+        /// The way.
+        way_id: i64,
+    },
+    /// Neighbouring points of the way are the same; they are merged.
+    DuplicatePoints {
+        /// The way.
+        way_id: i64,
+        /// How many points went.
+        points: u32,
+    },
+    /// The line crosses itself between its points; it is kept as it is.
+    SelfCrossing {
+        /// The way.
+        way_id: i64,
+        /// How many pairs of its segments cross.
+        crossings: u32,
+    },
+    /// The file gives a node several different places; the first stays.
+    ConflictingNode {
+        /// The node.
+        node_id: i64,
+    },
+}
+
+impl Defect {
+    /// What kind of defect it is, in words: the name to count it under.
+    #[must_use]
+    pub const fn reason(&self) -> &'static str {
+        match self {
+            Self::UnknownHighway { .. } => "unknown highway value",
+            Self::Area { .. } => "area",
+            Self::DuplicateWay { .. } => "duplicate way",
+            Self::DamagedText { .. } => "damaged text",
+            Self::TooFewNodes { .. } => "too few nodes",
+            Self::MissingNodes { .. } => "missing nodes",
+            Self::OutOfRange { .. } => "coordinates out of range",
+            Self::OutsideProjection { .. } => "outside the projection",
+            Self::Split { .. } => "split by gaps",
+            Self::StrayPoints { .. } => "stray points",
+            Self::NoLine { .. } => "no line left",
+            Self::DuplicatePoints { .. } => "duplicate points",
+            Self::SelfCrossing { .. } => "self-crossing",
+            Self::ConflictingNode { .. } => "conflicting node",
+        }
+    }
+}

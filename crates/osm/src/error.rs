@@ -1,0 +1,43 @@
+use std::{io, path::PathBuf};
+
+/// Why an extract could not be read.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum ReadOsmError {
+    #[error("cannot open OSM extract {path:?}")]
+    Open { path: PathBuf, source: io::Error },
+    #[error("cannot read OSM extract {path:?}")]
+    Read { path: PathBuf, source: io::Error },
+    #[error("OSM extract {path:?} is empty (0 bytes); fetch it again")]
+    Empty { path: PathBuf },
+    #[error("{path:?} is {found}, not .osm.pbf; {advice}")]
+    NotPbf { path: PathBuf, found: &'static str, advice: &'static str },
+    #[error(
+        "OSM extract {path:?} is cut off: its part at byte {offset} should reach byte {end}, the file ends at {len_bytes}; \
+         fetch it again"
+    )]
+    Truncated { path: PathBuf, offset: u64, end: u64, len_bytes: u64 },
+    #[error(
+        "OSM extract {path:?} is damaged in its part at byte {offset}: {reason}; fetch it again"
+    )]
+    Damaged { path: PathBuf, offset: u64, reason: String },
+    #[error(
+        "OSM extract {path:?} is compressed with {method}, which is not supported; \
+         rewrite it with: osmium cat IN.osm.pbf -o OUT.osm.pbf -f pbf,pbf_compression=zlib"
+    )]
+    Compression { path: PathBuf, method: &'static str },
+    #[error(
+        "OSM extract {path:?} is a history file with all versions of each object; \
+         take one point in time: osmium time-filter IN.osh.pbf 2026-01-01T00:00:00Z -o OUT.osm.pbf"
+    )]
+    History { path: PathBuf },
+    #[error("OSM extract {path:?} asks its readers for {feature:?}, which is not supported")]
+    Feature { path: PathBuf, feature: String },
+    #[error(
+        "positions were handed out to be placed on the lattice, {expected} of them, and {got} came back"
+    )]
+    Place { expected: usize, got: usize },
+    #[error("reading OSM extract {path:?} was stopped")]
+    Stopped { path: PathBuf },
+}

@@ -1,0 +1,194 @@
+//! Pass 2: where the nodes lie that roads need.
+
+use osmpbf::{DenseNodeInfo, PrimitiveBlock};
+use rayon::prelude::*;
+
+use crate::{Defect, ways::Ways};
+
+/// Longitude and latitude in whole 1e-7 degrees, OSM's own resolution, or one of two marks beyond ±180°.
+///
+/// Fixed point as in libosmium's `Location` (`include/osmium/osm/location.hpp`): half the memory of two f64.
+pub(crate) type Location = [i32; 2];
+
+/// No place is known.
+pub(crate) const MISSING: Location = [i32::MIN; 2];
+/// The file gives a place that is not on Earth.
+pub(crate) const OUT_OF_RANGE: Location = [i32::MAX; 2];
+
+/// Rounds nanodegrees to a location.
+pub(crate) fn location_from_nano(lon_nano_deg: i64, lat_nano_deg: i64) -> Location {
+    let is_on_earth = lon_nano_deg.unsigned_abs() <= 180_000_000_000
+        && lat_nano_deg.unsigned_abs() <= 90_000_000_000;
+    let round = |nano_deg: i64| ((nano_deg + 50).div_euclid(100)) as i32;
+    if is_on_earth { [round(lon_nano_deg), round(lat_nano_deg)] } else { OUT_OF_RANGE }
+}
+
+/// Longitude and latitude in degrees; `None` for the marks.
+pub(crate) fn degrees(location: Location) -> Option<[f64; 2]> {
+    // Dividing rounds once; a factor of 1e-7 would round twice.
+    (location != MISSING && location != OUT_OF_RANGE)
+        .then(|| location.map(|part| f64::from(part) / 1e7))
+}
+
+/// The nodes that roads need, sorted by id.
+#[derive(Debug)]
+pub(crate) struct NodeTable {
+    ids: Vec<i64>,
+    /// Named by two roads, or twice by one: a junction.
+    is_shared: Vec<bool>,
+    locations: Vec<Location>,
+    /// Nodes to which the file gives different places.
+    conflicts: Vec<i64>,
+}
+
+impl NodeTable {
+    /// Lists the nodes of all roads, their places still missing.
+    pub(crate) fn new(ways: &Ways, pool: &rayon::ThreadPool) -> Self {
+        let mut all = Vec::with_capacity(ways.node_ids.len());
+        for way in &ways.roads {
+            // A node repeated in a row is one visit, not two.
+            let mut previous = None;
+            all.extend(
+                ways.node_ids_of(way).iter().filter(|&&id| previous.replace(id) != Some(id)),
+            );
+        }
+        pool.install(|| all.par_sort_unstable());
+        let mut ids = Vec::new();
+        let mut is_shared = Vec::new();
+        for visits in all.chunk_by(|a, b| a == b) {
+            ids.push(visits[0]);
+            is_shared.push(visits.len() > 1);
+        }
+        let locations = vec![MISSING; ids.len()];
+        Self { ids, is_shared, locations, conflicts: Vec::new() }
+    }
+
+    /// The needed nodes of a block, as numbers in the table with their places.
+    pub(crate) fn scan(&self, block: &PrimitiveBlock) -> Vec<(usize, Location)> {
+        let mut found = Vec::new();
+        for group in block.groups() {
+            let dense =
+                group.dense_nodes().filter(|node| node.info().is_none_or(DenseNodeInfo::visible));
+            let dense = dense.map(|node| (node.id(), node.nano_lon(), node.nano_lat()));
+            let plain = group.nodes().filter(|node| node.info().visible());
+            let plain = plain.map(|node| (node.id(), node.nano_lon(), node.nano_lat()));
+            let mut search = Search { ids: &self.ids, at: 0 };
+            for (id, lon_nano_deg, lat_nano_deg) in dense.chain(plain) {
+                if let Some(number) = search.find(id) {
+                    found.push((number, location_from_nano(lon_nano_deg, lat_nano_deg)));
+                }
+            }
+        }
+        found
+    }
+
+    /// Takes the place of a node; the first that is on Earth stays.
+    pub(crate) fn set(&mut self, number: usize, location: Location) {
+        let own = &mut self.locations[number];
+        if degrees(*own).is_none() {
+            *own = location;
+        } else if degrees(location).is_some() && *own != location {
+            self.conflicts.push(self.ids[number]);
+        }
+    }
+
+    /// The number of a node in the table.
+    pub(crate) fn number(&self, id: i64) -> Option<usize> {
+        self.ids.binary_search(&id).ok()
+    }
+
+    pub(crate) fn location(&self, number: usize) -> Location {
+        self.locations[number]
+    }
+
+    pub(crate) fn is_shared(&self, number: usize) -> bool {
+        self.is_shared[number]
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// How many nodes have no place.
+    pub(crate) fn missing(&self) -> usize {
+        self.locations.iter().filter(|&&location| location == MISSING).count()
+    }
+
+    /// One defect per node with several places, in order of id.
+    pub(crate) fn conflicts(&mut self) -> impl Iterator<Item = Defect> {
+        self.conflicts.sort_unstable();
+        self.conflicts.dedup();
+        self.conflicts.iter().map(|&node_id| Defect::ConflictingNode { node_id })
+    }
+}
+
+/// Looks up ids that mostly ascend: from where the last one was found, in doubling steps.
+struct Search<'a> {
+    ids: &'a [i64],
+    at: usize,
+}
+
+impl Search<'_> {
+    fn find(&mut self, id: i64) -> Option<usize> {
+        let rest = &self.ids[self.at..];
+        let (mut low, mut step) = (0, 1);
+        if rest.first().is_none_or(|&first| id < first) {
+            // Behind us, or past the end: search everything.
+            let found = self.ids.binary_search(&id);
+            self.at = found.unwrap_or_else(|before| before).min(self.ids.len().saturating_sub(1));
+            return found.ok();
+        }
+        while rest.get(low + step).is_some_and(|&next| next <= id) {
+            low += step;
+            step *= 2;
+        }
+        let high = (low + step).min(rest.len());
+        let found = rest[low..high].binary_search(&id);
+        self.at += low + found.unwrap_or_else(|before| before.saturating_sub(1));
+        found.ok().map(|_| self.at)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounds_to_the_resolution_of_the_data_and_marks_what_is_not_on_earth() {
+        assert_eq!(location_from_nano(9_500_000_049, -47_000_000_050), [95_000_000, -470_000_000]);
+        assert_eq!(location_from_nano(9_500_000_050, -47_000_000_051), [95_000_001, -470_000_001]);
+        assert_eq!(
+            location_from_nano(180_000_000_000, -90_000_000_000),
+            [1_800_000_000, -900_000_000]
+        );
+        assert_eq!(location_from_nano(180_000_000_001, 0), OUT_OF_RANGE);
+        assert_eq!(location_from_nano(0, 90_000_000_001), OUT_OF_RANGE);
+        assert_eq!(location_from_nano(i64::MIN, i64::MAX), OUT_OF_RANGE);
+        assert_eq!(degrees([95_000_001, -470_000_000]), Some([9.500_000_1, -47.0]));
+        assert_eq!((degrees(MISSING), degrees(OUT_OF_RANGE)), (None, None));
+    }
+
+    #[test]
+    fn search_finds_what_plain_search_finds_in_any_order() {
+        // A small linear congruential generator: no pattern that matters, the same every time.
+        let mut state = 1_u64;
+        let mut next = |range: u64| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % range
+        };
+        for count in [0, 1, 2, 7, 100] {
+            let mut ids: Vec<i64> = (0..count).map(|_| next(300) as i64 - 150).collect();
+            ids.sort_unstable();
+            ids.dedup();
+            let mut search = Search { ids: &ids, at: 0 };
+            let mut ascending: Vec<i64> = (0..400).map(|_| next(310) as i64 - 155).collect();
+            let unordered = ascending.clone();
+            ascending.sort_unstable();
+            for id in ascending.into_iter().chain(unordered) {
+                assert_eq!(search.find(id), ids.binary_search(&id).ok(), "{id} in {ids:?}");
+            }
+        }
+    }
+}

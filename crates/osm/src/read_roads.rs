@@ -1,0 +1,156 @@
+use std::path::Path;
+
+use corniche_geom::LatticePoint;
+use corniche_roads::{FrcTable, Road};
+use rayon::prelude::*;
+
+use crate::{
+    Defect, ExtractSummary, ReadOsmError,
+    assemble::{Assembled, assemble},
+    blobs::{BlobFile, Decoding},
+    nodes::NodeTable,
+    ways::Ways,
+};
+
+/// Maps `[longitude, latitude]` (WGS84, degrees) to points of the package's lattice, one for one and each by itself: a
+/// position has the same place in every call. `None` where the projection has none. Called from several threads.
+pub type Place<'a> = dyn Fn(&[[f64; 2]]) -> Vec<Option<LatticePoint>> + Sync + 'a;
+
+/// What to read and how.
+#[derive(Clone, Copy)]
+pub struct ReadRequest<'a> {
+    /// The extract, `.osm.pbf`.
+    pub path: &'a Path,
+    /// Which ways are roads.
+    pub table: &'a FrcTable,
+    /// Where positions lie on the lattice.
+    pub place: &'a Place<'a>,
+    /// Where blobs are decoded and points placed.
+    pub pool: &'a rayon::ThreadPool,
+}
+
+/// Reads the roads of an extract and hands them to `sink`, in ascending order of way id.
+///
+/// - A way is one [`Road`], except where nodes in its middle are missing, out of range or outside the projection: it is cut
+///   there, and each piece of two or more points is a road with the same way id, in the way's order. Gaps are never bridged.
+/// - [`Road::fixed`] holds the ends and every node that two of the roads share or one visits twice.
+/// - What is wrong with the data goes to `on_defect`, in an order that depends on the file alone, as the roads do.
+/// - An extract without roads is no error: the summary says 0.
+///
+/// The file may be in any order, with nodes dense or plain, ids negative, blobs raw or zlib, locations in nodes or in ways
+/// (`LocationsOnWays`). It is read twice: ways, then nodes; of the nodes only those of roads are held (17 bytes each).
+/// `should_stop` is asked every few blobs.
+///
+/// # Errors
+/// When the file cannot be read, is no `.osm.pbf`, is cut off or damaged, is a history file, uses a feature or a
+/// compression that is not supported, or when `should_stop` says so.
+pub fn read_roads(
+    request: &ReadRequest<'_>,
+    sink: &mut dyn FnMut(Road),
+    on_defect: &mut dyn FnMut(Defect),
+    should_stop: &(dyn Fn() -> bool + Sync),
+) -> Result<ExtractSummary, ReadOsmError> {
+    let decoding = Decoding { pool: request.pool, should_stop };
+    let file = BlobFile::open(request.path)?;
+    let (mut ways, blobs_with_nodes) = read_ways(&file, request.table, &decoding)?;
+    ways.defects.drain(..).for_each(&mut *on_defect);
+
+    let mut table = NodeTable::new(&ways, request.pool);
+    locate_nodes(&file, &blobs_with_nodes, &mut ways, &mut table, &decoding)?;
+    table.conflicts().for_each(&mut *on_defect);
+
+    let mut summary = std::mem::take(&mut ways.summary);
+    summary.nodes_needed = table.len() as u64;
+    summary.nodes_missing = table.missing() as u64;
+    summary.header_bounds_deg = file.bounds_deg;
+    summary.generator.clone_from(&file.generator);
+    summary.timestamp_s = file.timestamp_s;
+    emit_roads(request, &ways, &table, should_stop, &mut |assembled| {
+        let roads = assembled.roads.len() as u64;
+        summary.roads += roads;
+        *(if roads > 0 { &mut summary.road_ways } else { &mut summary.left_out.without_line }) += 1;
+        assembled.defects.into_iter().for_each(&mut *on_defect);
+        assembled.roads.into_iter().for_each(&mut *sink);
+    })?;
+    Ok(summary)
+}
+
+/// Pass 1. Says also which blobs hold nodes.
+fn read_ways(
+    file: &BlobFile,
+    table: &FrcTable,
+    decoding: &Decoding<'_>,
+) -> Result<(Ways, Vec<usize>), ReadOsmError> {
+    let mut ways = Ways::default();
+    let mut blobs_with_nodes = Vec::new();
+    let all: Vec<usize> = (0..file.len()).collect();
+    file.for_each(
+        &all,
+        decoding,
+        |block| Ways::scan(block, table),
+        |number, of_block| {
+            if of_block.summary.nodes_seen > 0 {
+                blobs_with_nodes.push(number);
+            }
+            ways.append(of_block);
+        },
+    )?;
+    ways.sort();
+    Ok((ways, blobs_with_nodes))
+}
+
+/// Pass 2.
+fn locate_nodes(
+    file: &BlobFile,
+    blobs_with_nodes: &[usize],
+    ways: &mut Ways,
+    table: &mut NodeTable,
+    decoding: &Decoding<'_>,
+) -> Result<(), ReadOsmError> {
+    if table.len() > 0 {
+        let mut found = Vec::new();
+        file.for_each(
+            blobs_with_nodes,
+            decoding,
+            |block| Ok(table.scan(block)),
+            |_, of_block| found.push(of_block),
+        )?;
+        for (number, location) in found.into_iter().flatten() {
+            table.set(number, location);
+        }
+    }
+    for (id, location) in std::mem::take(&mut ways.located) {
+        if let Some(number) = table.number(id) {
+            table.set(number, location);
+        }
+    }
+    Ok(())
+}
+
+/// Places and assembles the ways a few thousand at a time, so that the roads of a country never lie in memory at once.
+fn emit_roads(
+    request: &ReadRequest<'_>,
+    ways: &Ways,
+    table: &NodeTable,
+    should_stop: &(dyn Fn() -> bool + Sync),
+    take: &mut dyn FnMut(Assembled),
+) -> Result<(), ReadOsmError> {
+    const WAYS_PER_TASK: usize = 256;
+    const TASKS_PER_THREAD: usize = 8;
+    let batch_ways = WAYS_PER_TASK * TASKS_PER_THREAD * request.pool.current_num_threads();
+    for batch in ways.roads.chunks(batch_ways) {
+        if should_stop() {
+            return Err(ReadOsmError::Stopped { path: request.path.to_path_buf() });
+        }
+        let assembled: Vec<_> = request.pool.install(|| {
+            batch
+                .par_chunks(WAYS_PER_TASK)
+                .map(|some| assemble(some, ways, table, request.place))
+                .collect()
+        });
+        for some in assembled {
+            some?.into_iter().for_each(&mut *take);
+        }
+    }
+    Ok(())
+}

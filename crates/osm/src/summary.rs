@@ -1,0 +1,91 @@
+use std::collections::BTreeMap;
+
+use corniche_roads::FunctionalRoadClass;
+
+/// What to show with anything made from an extract (`OpenStreetMap` Foundation, *Attribution Guidelines*, 2021).
+pub const ATTRIBUTION: &str = "© OpenStreetMap contributors, ODbL 1.0";
+
+/// What was in an extract and what became of it.
+///
+/// Nothing goes unnamed: `highway_ways = road_ways + left_out.total()`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ExtractSummary {
+    /// Nodes in the file.
+    pub nodes_seen: u64,
+    /// Different nodes that the roads name.
+    pub nodes_needed: u64,
+    /// Those of them that the file holds no place for.
+    pub nodes_missing: u64,
+    /// Ways in the file, deleted ones not counted.
+    pub ways_seen: u64,
+    /// Ways marked as deleted; they are not looked at.
+    pub ways_deleted: u64,
+    /// Ways with a `highway` tag.
+    pub highway_ways: u64,
+    /// Ways that became roads.
+    pub road_ways: u64,
+    /// Roads handed out: at least one per way of `road_ways`, more where missing nodes cut it.
+    pub roads: u64,
+    /// Why the other ways with a `highway` tag did not become roads.
+    pub left_out: LeftOut,
+    /// Per `highway` value that the table lists: its class and how many ways have it.
+    pub highways: BTreeMap<String, HighwayCount>,
+    /// Per `highway` value that the table does not list: how many ways have it.
+    pub unknown_highways: BTreeMap<String, u64>,
+    /// The box that the file's header gives: west, south, east, north, degrees.
+    pub header_bounds_deg: Option<[f64; 4]>,
+    /// The program that wrote the file, as its header says.
+    pub generator: Option<String>,
+    /// How recent the data is, in seconds since 1970, as its header says.
+    pub timestamp_s: Option<i64>,
+}
+
+/// Ways with one `highway` value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct HighwayCount {
+    /// Their class; `None` when the table lists the value as no road.
+    pub class: Option<FunctionalRoadClass>,
+    /// How many ways.
+    pub ways: u64,
+}
+
+/// Ways with a `highway` tag that did not become roads, by reason.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LeftOut {
+    /// The table lists the value as no road.
+    pub listed: u64,
+    /// The class is off.
+    pub class_off: u64,
+    /// The table does not know the value.
+    pub unknown: u64,
+    /// `area=yes`.
+    pub area: u64,
+    /// Another way of the file has the same id.
+    pub duplicate: u64,
+    /// Too few nodes, or too few that the file holds and the projection can place.
+    pub without_line: u64,
+}
+
+impl LeftOut {
+    /// All reasons together.
+    #[must_use]
+    pub const fn total(&self) -> u64 {
+        self.listed + self.class_off + self.unknown + self.area + self.duplicate + self.without_line
+    }
+}
+
+impl ExtractSummary {
+    /// Asserts what holds of every summary; for tests.
+    ///
+    /// # Panics
+    /// When the counts contradict each other.
+    pub fn check_invariants(&self) {
+        assert_eq!(self.highway_ways, self.road_ways + self.left_out.total(), "a way went unnamed");
+        assert!(self.highway_ways <= self.ways_seen);
+        assert!(self.road_ways <= self.roads);
+        assert!(self.nodes_missing <= self.nodes_needed);
+        assert_eq!(self.left_out.unknown, self.unknown_highways.values().sum::<u64>());
+        let known: u64 = self.highways.values().map(|highway| highway.ways).sum();
+        assert_eq!(self.highway_ways, known + self.left_out.unknown);
+    }
+}

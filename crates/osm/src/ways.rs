@@ -1,0 +1,188 @@
+//! Pass 1: the ways that are roads, what they are, and which nodes they need.
+
+use std::{borrow::Cow, collections::BTreeMap};
+
+use corniche_roads::{
+    Classified, FrcTable, FunctionalRoadClass, NotARoad, RoadAttributes, attributes,
+};
+use osmpbf::{PrimitiveBlock, Way};
+
+use crate::{
+    Defect, ExtractSummary, HighwayCount,
+    nodes::{Location, location_from_nano},
+};
+
+/// A way that is a road, without its nodes.
+#[derive(Debug)]
+pub(crate) struct RoadWay {
+    pub(crate) way_id: i64,
+    pub(crate) class: FunctionalRoadClass,
+    pub(crate) attributes: RoadAttributes,
+    /// Its nodes are `node_ids[nodes_start..nodes_end]` of the [`Ways`] it belongs to.
+    pub(crate) nodes_start: usize,
+    pub(crate) nodes_end: usize,
+}
+
+/// The road ways of a block or of a whole file, with what is known of its other ways.
+#[derive(Debug, Default)]
+pub(crate) struct Ways {
+    pub(crate) roads: Vec<RoadWay>,
+    /// The nodes of all roads, one way after another.
+    pub(crate) node_ids: Vec<i64>,
+    /// Where nodes lie, in files that say so in their ways (`LocationsOnWays`).
+    pub(crate) located: Vec<(i64, Location)>,
+    pub(crate) defects: Vec<Defect>,
+    pub(crate) summary: ExtractSummary,
+}
+
+impl Ways {
+    /// Finds the roads of a block.
+    ///
+    /// Fails when a tag points outside the block's table of strings.
+    pub(crate) fn scan(block: &PrimitiveBlock, table: &FrcTable) -> Result<Self, String> {
+        let mut ways = Self::default();
+        for group in block.groups() {
+            ways.summary.nodes_seen += (group.nodes().len() + group.dense_nodes().len()) as u64;
+            for way in group.ways() {
+                if way.info().deleted() {
+                    ways.summary.ways_deleted += 1;
+                } else {
+                    ways.summary.ways_seen += 1;
+                    ways.look_at(&way, table)?;
+                }
+            }
+        }
+        Ok(ways)
+    }
+
+    fn look_at(&mut self, way: &Way<'_>, table: &FrcTable) -> Result<(), String> {
+        let strings = way.raw_stringtable();
+        let is_highway =
+            |(key, _): (u32, u32)| strings.get(key as usize).is_some_and(|key| key == b"highway");
+        // Most ways are buildings and land cover; their tags need no decoding.
+        if !way.raw_tags().any(is_highway) {
+            return Ok(());
+        }
+        let text = |index: u32| {
+            let bytes = strings.get(index as usize);
+            bytes.map(|bytes| String::from_utf8_lossy(bytes)).ok_or_else(|| {
+                format!(
+                    "a tag of way {} is string {index} of a table of {}",
+                    way.id(),
+                    strings.len()
+                )
+            })
+        };
+        let owned: Vec<(Cow<'_, str>, Cow<'_, str>)> = way
+            .raw_tags()
+            .map(|(key, value)| Ok((text(key)?, text(value)?)))
+            .collect::<Result<_, String>>()?;
+        let tags: Vec<(&str, &str)> = owned.iter().map(|(key, value)| (&**key, &**value)).collect();
+        if owned
+            .iter()
+            .any(|(key, value)| matches!(key, Cow::Owned(_)) || matches!(value, Cow::Owned(_)))
+        {
+            self.defects.push(Defect::DamagedText { way_id: way.id() });
+        }
+        self.judge(way, &tags, table);
+        Ok(())
+    }
+
+    fn judge(&mut self, way: &Way<'_>, tags: &[(&str, &str)], table: &FrcTable) {
+        let way_id = way.id();
+        let highway =
+            tags.iter().find(|(key, _)| *key == "highway").map_or("", |&(_, value)| value);
+        self.summary.highway_ways += 1;
+        let left_out = &mut self.summary.left_out;
+        match table.classify(tags) {
+            Classified::Road(class) => self.take(way, class, attributes(tags)),
+            Classified::NotShown(_) => left_out.class_off += 1,
+            Classified::NotARoad(NotARoad::Area) => {
+                left_out.area += 1;
+                self.defects.push(Defect::Area { way_id });
+            }
+            Classified::NotARoad(NotARoad::Listed | NotARoad::NoHighway) => left_out.listed += 1,
+            Classified::Unknown(value) => {
+                left_out.unknown += 1;
+                *self.summary.unknown_highways.entry(value.to_owned()).or_default() += 1;
+                self.defects.push(Defect::UnknownHighway { way_id, value: value.to_owned() });
+                return;
+            }
+        }
+        let class = match table.classify(&[("highway", highway)]) {
+            Classified::Road(class) | Classified::NotShown(class) => Some(class),
+            Classified::NotARoad(_) | Classified::Unknown(_) => None,
+        };
+        // Only a new value costs a copy of its text.
+        match self.summary.highways.get_mut(highway) {
+            Some(count) => count.ways += 1,
+            None => drop(
+                self.summary.highways.insert(highway.to_owned(), HighwayCount { class, ways: 1 }),
+            ),
+        }
+    }
+
+    fn take(&mut self, way: &Way<'_>, class: FunctionalRoadClass, attributes: RoadAttributes) {
+        let nodes_start = self.node_ids.len();
+        self.node_ids.extend(way.refs());
+        let nodes_end = self.node_ids.len();
+        let locations = way.node_locations();
+        if locations.len() == nodes_end - nodes_start {
+            let locations = locations
+                .map(|location| location_from_nano(location.nano_lon(), location.nano_lat()));
+            self.located.extend(self.node_ids[nodes_start..].iter().copied().zip(locations));
+        }
+        self.roads.push(RoadWay { way_id: way.id(), class, attributes, nodes_start, nodes_end });
+    }
+
+    /// Adds the ways of a later block.
+    pub(crate) fn append(&mut self, later: Self) {
+        let shift = self.node_ids.len();
+        self.node_ids.extend(later.node_ids);
+        self.located.extend(later.located);
+        self.defects.extend(later.defects);
+        self.roads.extend(later.roads.into_iter().map(|way| RoadWay {
+            nodes_start: way.nodes_start + shift,
+            nodes_end: way.nodes_end + shift,
+            ..way
+        }));
+        let (own, other) = (&mut self.summary, later.summary);
+        own.nodes_seen += other.nodes_seen;
+        own.ways_seen += other.ways_seen;
+        own.ways_deleted += other.ways_deleted;
+        own.highway_ways += other.highway_ways;
+        own.left_out.listed += other.left_out.listed;
+        own.left_out.class_off += other.left_out.class_off;
+        own.left_out.unknown += other.left_out.unknown;
+        own.left_out.area += other.left_out.area;
+        add_counts(&mut own.unknown_highways, other.unknown_highways);
+        for (value, count) in other.highways {
+            own.highways.entry(value).and_modify(|own| own.ways += count.ways).or_insert(count);
+        }
+    }
+
+    /// Puts the roads in ascending order of way id; of equal ids the first in the file stays.
+    pub(crate) fn sort(&mut self) {
+        self.roads.sort_by_key(|way| way.way_id);
+        let (defects, left_out) = (&mut self.defects, &mut self.summary.left_out);
+        self.roads.dedup_by(|later, first| {
+            let is_same = later.way_id == first.way_id;
+            if is_same {
+                left_out.duplicate += 1;
+                defects.push(Defect::DuplicateWay { way_id: later.way_id });
+            }
+            is_same
+        });
+    }
+
+    /// The nodes of a road.
+    pub(crate) fn node_ids_of(&self, way: &RoadWay) -> &[i64] {
+        &self.node_ids[way.nodes_start..way.nodes_end]
+    }
+}
+
+fn add_counts(own: &mut BTreeMap<String, u64>, other: BTreeMap<String, u64>) {
+    for (value, count) in other {
+        *own.entry(value).or_default() += count;
+    }
+}

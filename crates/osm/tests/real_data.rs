@@ -1,0 +1,126 @@
+//! Real extracts of the developers' data set, against counts taken with osmium-tool 1.15.0.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+mod common;
+
+use std::collections::BTreeMap;
+
+use common::{Extract, read, read_with, shared_data, to_lattice};
+use corniche_osm::ReadOsmError;
+
+/// Ways per `highway` value, from `osmium tags-filter -R FILE w/highway` and `osmium tags-count`.
+#[track_caller]
+fn check_counts(extract: &Extract, expected: &[(&str, u64)]) {
+    let counts: BTreeMap<&str, u64> = extract
+        .summary
+        .highways
+        .iter()
+        .map(|(value, count)| (value.as_str(), count.ways))
+        .collect();
+    assert_eq!(counts, expected.iter().copied().collect());
+    assert_eq!(extract.summary.unknown_highways, BTreeMap::new());
+    assert_eq!(extract.summary.highway_ways, counts.values().sum::<u64>());
+}
+
+#[test]
+fn liechtenstein_2021_is_counted_as_osmium_counts_it() {
+    let Some(path) = shared_data("liechtenstein/liechtenstein-2021-10-28.osm.pbf") else { return };
+    let extract = read(&path).unwrap();
+    let expected = [
+        ("service", 1637),
+        ("track", 1246),
+        ("residential", 1177),
+        ("path", 950),
+        ("footway", 647),
+        ("secondary", 426),
+        ("unclassified", 298),
+        ("cycleway", 238),
+        ("steps", 156),
+        ("tertiary", 87),
+        ("primary", 79),
+        ("pedestrian", 16),
+        ("platform", 12),
+        ("bridleway", 4),
+        ("living_street", 3),
+        ("secondary_link", 3),
+        ("raceway", 2),
+        ("primary_link", 1),
+        ("rest_area", 1),
+        ("road", 1),
+    ];
+    check_counts(&extract, &expected);
+    let summary = &extract.summary;
+    assert_eq!((summary.nodes_seen, summary.ways_seen), (295_005, 29_874));
+    assert_eq!((summary.highway_ways, summary.nodes_missing), (6984, 0));
+    assert_eq!(summary.roads, summary.road_ways, "no way lacks a node");
+    let bounds_deg = summary.header_bounds_deg.unwrap();
+    for (bound, expected) in
+        bounds_deg.into_iter().zip([9.471_078, 47.047_74, 9.636_217, 47.271_28])
+    {
+        assert!((bound - expected).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn portland_is_read_although_it_is_not_sorted() {
+    let Some(path) = shared_data("portland/portland-central-filtered.osm.pbf") else { return };
+    let extract = read(&path).unwrap();
+    assert_eq!((extract.summary.nodes_seen, extract.summary.ways_seen), (42_293, 7188));
+    assert_eq!(
+        (extract.summary.highways["motorway_link"].ways, extract.summary.highway_ways),
+        (161, 7182)
+    );
+    assert_eq!(extract.summary.nodes_missing, 0);
+}
+
+#[test]
+fn every_number_of_threads_gives_the_same() {
+    for name in [
+        "liechtenstein/liechtenstein-2021-10-28.osm.pbf",
+        "portland/portland-central-filtered.osm.pbf",
+    ] {
+        let Some(path) = shared_data(name) else { return };
+        let alone = read_with(&path, 1, &to_lattice).unwrap();
+        assert_eq!(alone, read_with(&path, 2, &to_lattice).unwrap());
+        assert_eq!(alone, read_with(&path, 8, &to_lattice).unwrap());
+    }
+}
+
+#[test]
+fn an_extract_that_lacks_nodes_is_cut_where_they_are_missing() {
+    let Some(path) = shared_data("nasty/derived-osm/simple-extract-missing-nodes.osm.pbf") else {
+        return;
+    };
+    let extract = read(&path).unwrap();
+    assert!(extract.summary.nodes_missing > 0);
+    assert!(extract.reasons()["missing nodes"] > 0);
+    assert!(extract.summary.roads > 0);
+}
+
+#[test]
+fn awkward_extracts_give_an_answer_or_a_clear_error() {
+    let roads = |name: &str| Some(read(&shared_data(name)?).map(|extract| extract.summary.roads));
+    for (name, expected) in [
+        ("nasty/osm/empty.osm.pbf", 0),
+        ("nasty/osm/loc_on_ways.osm.pbf", 0),
+        ("nasty/osm/nozlib_nodense.osm.pbf", 0),
+    ] {
+        if let Some(roads) = roads(name) {
+            assert_eq!(roads.unwrap(), expected, "{name}");
+        }
+    }
+    let error = |name: &str| Some(read(&shared_data(name)?).unwrap_err());
+    if let Some(error) = error("nasty/osm/deleted_nodes.osh.pbf") {
+        assert!(matches!(error, ReadOsmError::History { .. }), "{error}");
+    }
+    if let Some(error) = error("nasty/osm/monaco-latest.lz4.osm.pbf") {
+        assert!(matches!(error, ReadOsmError::Compression { method: "LZ4", .. }), "{error}");
+    }
+    if let Some(error) = error("nasty/derived-osm/truncated-half.osm.pbf") {
+        assert!(matches!(error, ReadOsmError::Truncated { .. }), "{error}");
+    }
+    if let Some(error) = error("nasty/derived-osm/zero-bytes.osm.pbf") {
+        assert!(matches!(error, ReadOsmError::Empty { .. }), "{error}");
+    }
+}

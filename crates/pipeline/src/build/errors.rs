@@ -1,0 +1,173 @@
+//! True errors: the TINs of all levels against every node of the finest one.
+
+use std::collections::BTreeMap;
+
+use corniche_geom::{HeightGrid, TileId};
+use corniche_tin::{Deviation, TriangleBuckets, WindowPlacement};
+
+use super::{
+    heights::Pyramid,
+    levels::Levels,
+    mesh::{self, Meshes},
+};
+use crate::{BuildError, Observer, Stage, Storage, workers};
+
+/// What a tile stores of its errors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TileError {
+    pub(crate) geometric_error_m: f64,
+    pub(crate) height_range_m: [f64; 2],
+    pub(crate) uncovered_nodes: u64,
+}
+
+/// The errors of all tiles.
+pub(crate) struct TileErrors {
+    by_tile: BTreeMap<TileId, TileError>,
+}
+
+impl TileErrors {
+    /// The error of a tile that has a mesh. A tile of which no node was seen has none: its ground covers nothing
+    /// that could be off.
+    pub(crate) fn of(&self, id: TileId) -> TileError {
+        self.by_tile.get(&id).copied().unwrap_or(TileError {
+            geometric_error_m: 0.0,
+            height_range_m: [0.0, 0.0],
+            uncovered_nodes: 0,
+        })
+    }
+}
+
+/// Levels of finest tiles beneath one item of work: up to 64 of them share the meshes of the levels above.
+const SUBTREE_LEVELS: u8 = 3;
+
+/// What was seen of a tile from one subtree, or from all.
+#[derive(Debug, Clone, Copy, Default)]
+struct Seen {
+    deviation: Deviation,
+    range_m: Option<[f32; 2]>,
+    uncovered_nodes: u64,
+}
+
+impl Seen {
+    /// Maxima, minima and sums: the order of merging does not matter.
+    fn merge(&mut self, other: Self) {
+        self.deviation.merge(other.deviation);
+        self.uncovered_nodes += other.uncovered_nodes;
+        self.range_m = match (self.range_m, other.range_m) {
+            (Some(a), Some(b)) => Some([a[0].min(b[0]), a[1].max(b[1])]),
+            (a, b) => a.or(b),
+        };
+    }
+}
+
+/// Evaluates the TINs of a tile and all its ancestors at every node of every finest tile.
+pub(crate) fn measure(
+    pyramid: &Pyramid<'_>,
+    meshes: &Meshes,
+    levels: &Levels,
+    threads: usize,
+    storage: &dyn Storage,
+    observer: &dyn Observer,
+) -> Result<TileErrors, BuildError> {
+    let max_level = levels.frame().max_level();
+    // All finest tiles with any height, those without ground too: a coarser level may cover their nodes.
+    let finest = pyramid.tiles(max_level);
+    let mut subtrees: BTreeMap<TileId, Vec<TileId>> = BTreeMap::new();
+    for &id in &finest {
+        subtrees.entry(id.ancestor(max_level.saturating_sub(SUBTREE_LEVELS))).or_default().push(id);
+    }
+    let subtrees: Vec<Vec<TileId>> = subtrees.into_values().collect();
+    observer.begin(Stage::Errors, Some(finest.len() as u64));
+    let mut seen: BTreeMap<TileId, Seen> = BTreeMap::new();
+    workers::in_order(
+        threads,
+        subtrees.len(),
+        || Ok(()),
+        |(), index| {
+            let mut subtree = Subtree { meshes, levels, storage, buckets: BTreeMap::new(), seen: BTreeMap::new() };
+            for &id in &subtrees[index] {
+                if observer.is_cancelled() {
+                    return Err(BuildError::Interrupted);
+                }
+                subtree.look_at(id, &pyramid.tile(id, 0)?)?;
+            }
+            Ok(subtree.seen)
+        },
+        |index, found| {
+            for (id, other) in found {
+                seen.entry(id).or_default().merge(other);
+            }
+            observer.advance(Stage::Errors, subtrees[index].len() as u64);
+            Ok(())
+        },
+    )?;
+    observer.end(Stage::Errors);
+    Ok(TileErrors { by_tile: stored(&seen, meshes) })
+}
+
+/// The work on one subtree.
+struct Subtree<'a> {
+    meshes: &'a Meshes,
+    levels: &'a Levels,
+    storage: &'a dyn Storage,
+    buckets: BTreeMap<TileId, Option<TriangleBuckets>>,
+    seen: BTreeMap<TileId, Seen>,
+}
+
+impl Subtree<'_> {
+    fn look_at(&mut self, finest: TileId, window: &HeightGrid) -> Result<(), BuildError> {
+        let frame = self.levels.frame();
+        // Tiles of a subtree come row by row; of the finest levels only the present one is needed again.
+        self.buckets.retain(|&id, _| finest.ancestor(id.z()) == id || id.z() + SUBTREE_LEVELS <= finest.z());
+        for level in self.levels.numbers() {
+            let id = finest.ancestor(level);
+            let buckets = match self.buckets.entry(id) {
+                std::collections::btree_map::Entry::Occupied(entry) => entry.into_mut(),
+                std::collections::btree_map::Entry::Vacant(entry) => entry.insert(match self.meshes.get(&id) {
+                    Some(&span) => {
+                        let meshed = mesh::load(self.storage, id, span)?;
+                        Some(TriangleBuckets::new(&meshed.tin, self.levels.quantum_m()))
+                    }
+                    None => None,
+                }),
+            };
+            let Some(buckets) = buckets else { continue };
+            let (corner, above) = (frame.tile_corner(finest), frame.tile_corner(id));
+            let placement = WindowPlacement {
+                column: corner.i - above.i,
+                row: above.j - corner.j,
+                stride: frame.stride(level),
+            };
+            let last = window.columns() - 1;
+            let mut uncovered_nodes = 0;
+            let deviation = corniche_tin::measure(buckets, window, placement, |column, row| {
+                // Nodes on the east and south border belong to the next tile, which counts them.
+                uncovered_nodes += u64::from(column < last && row < last);
+            });
+            self.seen.entry(id).or_default().merge(Seen { deviation, range_m: window.range_m(), uncovered_nodes });
+        }
+        Ok(())
+    }
+}
+
+/// Stored = max(own, children's stored), from the finest level up.
+fn stored(seen: &BTreeMap<TileId, Seen>, meshes: &Meshes) -> BTreeMap<TileId, TileError> {
+    let mut by_tile: BTreeMap<TileId, TileError> = BTreeMap::new();
+    // Ids sort by level first, so backwards is children before parents.
+    for &id in meshes.keys().rev() {
+        let own = seen.get(&id).copied().unwrap_or_default();
+        let children_m =
+            id.children().filter_map(|child| by_tile.get(&child)).map(|child| child.geometric_error_m);
+        let geometric_error_m = children_m.fold(own.deviation.max_abs_m, f64::max);
+        let [low, high] = own.range_m.unwrap_or([0.0, 0.0]);
+        by_tile.insert(
+            id,
+            TileError {
+                geometric_error_m,
+                height_range_m: [f64::from(low), f64::from(high)],
+                uncovered_nodes: own.uncovered_nodes,
+            },
+        );
+    }
+    by_tile
+}

@@ -1,0 +1,158 @@
+//! The small codes that all sections are made of: varints, zigzag, byte planes.
+
+use super::Damage;
+
+/// Writes little-endian base-128: seven bits a byte, the top bit set on all but the last.
+#[cfg(any(feature = "write", test))]
+pub(super) fn put_varint(out: &mut Vec<u8>, mut value: u64) {
+    while value >= 0x80 {
+        out.push(value as u8 | 0x80);
+        value >>= 7;
+    }
+    out.push(value as u8);
+}
+
+/// 0, −1, 1, −2, 2 … → 0, 1, 2, 3, 4 …
+#[cfg(any(feature = "write", test))]
+pub(super) fn zigzag(value: i64) -> u64 {
+    ((value << 1) ^ (value >> 63)) as u64
+}
+
+/// The inverse of [`zigzag`].
+pub(super) fn unzigzag(value: u64) -> i64 {
+    (value >> 1) as i64 ^ -((value & 1) as i64)
+}
+
+/// Writes the number of bytes that the largest value needs, then the lowest byte of all values, then their
+/// second bytes, and so on: high bytes are nearly all alike and cost nothing once compressed.
+///
+/// ```text
+///   n │ byte 0 of v0 v1 v2 … │ byte 1 of v0 v1 v2 … │ … n planes
+/// ```
+#[cfg(any(feature = "write", test))]
+pub(super) fn put_planes(out: &mut Vec<u8>, values: &[u64]) {
+    let all = values.iter().fold(0, |all, value| all | value);
+    let planes = (64 - all.leading_zeros()).div_ceil(8);
+    out.push(planes as u8);
+    for plane in 0..planes {
+        out.extend(values.iter().map(|value| (value >> (8 * plane)) as u8));
+    }
+}
+
+/// Takes values off the front of a byte slice.
+#[derive(Debug, Clone)]
+pub(super) struct Cursor<'a> {
+    bytes: &'a [u8],
+}
+
+impl<'a> Cursor<'a> {
+    pub(super) fn new(bytes: &'a [u8]) -> Self {
+        Self { bytes }
+    }
+
+    pub(super) fn take(&mut self, length: usize) -> Result<&'a [u8], Damage> {
+        let (head, rest) = self.bytes.split_at_checked(length).ok_or(Damage::TooShort)?;
+        self.bytes = rest;
+        Ok(head)
+    }
+
+    pub(super) fn array<const N: usize>(&mut self) -> Result<[u8; N], Damage> {
+        let (head, rest) = self.bytes.split_first_chunk().ok_or(Damage::TooShort)?;
+        self.bytes = rest;
+        Ok(*head)
+    }
+
+    pub(super) fn byte(&mut self) -> Result<u8, Damage> {
+        self.array().map(|[byte]| byte)
+    }
+
+    pub(super) fn varint(&mut self) -> Result<u64, Damage> {
+        let mut value = 0_u64;
+        for shift in (0..64).step_by(7) {
+            let byte = self.byte()?;
+            let bits = u64::from(byte & 0x7f);
+            if shift == 63 && bits > 1 {
+                break;
+            }
+            value |= bits << shift;
+            if byte < 0x80 {
+                return Ok(value);
+            }
+        }
+        Err(Damage::Invalid { what: "a varint of more than 64 bits" })
+    }
+
+    /// A varint that may not be above `limit`; `what` names it in the error.
+    pub(super) fn bounded(&mut self, limit: usize, what: &'static str) -> Result<usize, Damage> {
+        let value = self.varint()?;
+        usize::try_from(value).ok().filter(|&value| value <= limit).ok_or(Damage::Invalid { what })
+    }
+
+    /// What [`put_planes`] wrote for `count` values. The caller bounds `count`.
+    pub(super) fn planes(&mut self, count: usize) -> Result<Vec<u64>, Damage> {
+        let planes = self.byte()?;
+        if planes > 8 {
+            return Err(Damage::Invalid { what: "more than eight byte planes" });
+        }
+        let bytes = self.take(count * usize::from(planes))?;
+        let mut values = vec![0_u64; count];
+        if count > 0 {
+            for (plane, bytes) in bytes.chunks_exact(count).enumerate() {
+                for (value, &byte) in values.iter_mut().zip(bytes) {
+                    *value |= u64::from(byte) << (8 * plane);
+                }
+            }
+        }
+        Ok(values)
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.bytes.is_empty()
+    }
+
+    /// How many bytes are left.
+    pub(super) fn left(&self) -> usize {
+        self.bytes.len()
+    }
+
+    /// Asserts that everything was taken.
+    pub(super) fn finish(&self) -> Result<(), Damage> {
+        if self.is_empty() { Ok(()) } else { Err(Damage::Invalid { what: "bytes left over at the end" }) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn varints_and_zigzag_come_back(values in prop::collection::vec(any::<i64>(), 0..40)) {
+            let mut bytes = Vec::new();
+            values.iter().for_each(|&value| put_varint(&mut bytes, zigzag(value)));
+            let mut cursor = Cursor::new(&bytes);
+            for value in values {
+                prop_assert_eq!(unzigzag(cursor.varint().unwrap()), value);
+            }
+            prop_assert!(cursor.finish().is_ok());
+        }
+
+        #[test]
+        fn planes_come_back(values in prop::collection::vec(any::<u64>(), 0..40), shift in 0..64_u32) {
+            let values: Vec<u64> = values.iter().map(|value| value >> shift).collect();
+            let mut bytes = Vec::new();
+            put_planes(&mut bytes, &values);
+            let mut cursor = Cursor::new(&bytes);
+            prop_assert_eq!(cursor.planes(values.len()).unwrap(), values);
+            prop_assert!(cursor.finish().is_ok());
+        }
+    }
+
+    #[test]
+    fn overlong_and_cut_varints_are_refused() {
+        assert!(Cursor::new(&[0xff; 10]).varint().is_err());
+        assert!(Cursor::new(&[0x80, 0x80]).varint().is_err());
+        assert_eq!(Cursor::new(&[0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 1]).varint(), Ok(u64::MAX));
+    }
+}

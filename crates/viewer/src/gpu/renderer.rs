@@ -1,0 +1,254 @@
+use corniche_roads::FunctionalRoadClass;
+use wgpu::{
+    BindGroup, BindGroupEntry, BindingResource, CommandEncoder, LoadOp, Operations, StoreOp,
+    util::DeviceExt,
+};
+
+use super::{
+    Gpu,
+    passes::{Layouts, Pipelines},
+    targets::Targets,
+    tile_buffers::TileBuffers,
+    uniforms,
+};
+use crate::{RoadMethod, camera::Camera, style::Style};
+
+/// What a picture shows and how, apart from the tiles.
+#[derive(Debug, Clone, Copy)]
+pub struct FrameView<'a> {
+    /// The eye; its size is the targets'.
+    pub camera: &'a Camera,
+    /// Colours and widths.
+    pub style: &'a Style,
+    /// How roads are drawn.
+    pub roads: RoadMethod,
+    /// Factor on heights.
+    pub exaggeration: f64,
+    /// Length in the working CRS over true length: heights and widths are multiplied by it.
+    pub point_scale: f64,
+    /// True heights that the tint spans.
+    pub height_range_m: [f64; 2],
+    /// Pixels of the targets per pixel of the final picture, along each side.
+    pub supersampling: u32,
+}
+
+impl FrameView<'_> {
+    /// World height of one metre of true height.
+    #[must_use]
+    pub fn vertical_scale(&self) -> f64 {
+        self.exaggeration * self.point_scale
+    }
+}
+
+/// A tile to draw in this frame.
+pub struct DrawTile<'a> {
+    /// The tile.
+    pub buffers: &'a TileBuffers,
+    /// How far its skirt hangs, true metres.
+    pub skirt_depth_m: f64,
+}
+
+/// Knows how to draw tiles; holds nothing of any frame.
+pub struct Renderer {
+    layouts: Layouts,
+    pipelines: Pipelines,
+}
+
+/// What the passes of one frame share.
+struct FrameBindings {
+    frame: BindGroup,
+    tiles: BindGroup,
+    tile_stride: u32,
+    depth: BindGroup,
+    composite: BindGroup,
+}
+
+impl Renderer {
+    /// Builds the pipelines.
+    #[must_use]
+    pub fn new(gpu: &Gpu) -> Self {
+        let layouts = Layouts::new(&gpu.device);
+        let pipelines = Pipelines::new(&gpu.device, &layouts);
+        Self { layouts, pipelines }
+    }
+
+    /// Draws terrain, roads and composite into `targets`.
+    pub fn draw(&self, gpu: &Gpu, view: &FrameView<'_>, tiles: &[DrawTile<'_>], targets: &Targets) {
+        let bindings = self.bind(gpu, view, tiles, targets);
+        let mut encoder = gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+        self.terrain_pass(&mut encoder, &bindings, tiles, targets);
+        self.roads_pass(&mut encoder, &bindings, tiles, view, targets);
+        self.composite_pass(&mut encoder, &bindings, targets);
+        gpu.queue.submit([encoder.finish()]);
+    }
+
+    fn bind(
+        &self,
+        gpu: &Gpu,
+        view: &FrameView<'_>,
+        tiles: &[DrawTile<'_>],
+        targets: &Targets,
+    ) -> FrameBindings {
+        let uniform = |label, contents: &[u8]| {
+            let usage = wgpu::BufferUsages::UNIFORM;
+            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some(label),
+                contents,
+                usage,
+            })
+        };
+        let group = |label, layout, entries: &[BindGroupEntry<'_>]| {
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some(label),
+                layout,
+                entries,
+            })
+        };
+        let frame = uniform("frame", bytemuck::cast_slice(&uniforms::frame_rows(view)));
+
+        let stride = u64::from(gpu.device.limits().min_uniform_buffer_offset_alignment)
+            .max(uniforms::TILE_BYTES);
+        // At least one block, so that there is something to bind without tiles.
+        let mut blocks = vec![0_u8; stride as usize * tiles.len().max(1)];
+        for (tile, block) in tiles.iter().zip(blocks.chunks_exact_mut(stride as usize)) {
+            let rows = uniforms::tile_rows(view, tile.buffers.reference_m, tile.skirt_depth_m);
+            block[..uniforms::TILE_BYTES as usize].copy_from_slice(bytemuck::cast_slice(&rows));
+        }
+        let tiles = uniform("tiles", &blocks);
+        let tile_block = wgpu::BufferBinding {
+            buffer: &tiles,
+            offset: 0,
+            size: std::num::NonZeroU64::new(uniforms::TILE_BYTES),
+        };
+
+        let [ground, depth, labels] =
+            [targets.ground_view(), targets.depth_view(), targets.labels_view()];
+        let texture = |binding, view| BindGroupEntry {
+            binding,
+            resource: BindingResource::TextureView(view),
+        };
+        FrameBindings {
+            frame: group(
+                "frame",
+                &self.layouts.frame,
+                &[BindGroupEntry { binding: 0, resource: frame.as_entire_binding() }],
+            ),
+            tiles: group(
+                "tiles",
+                &self.layouts.tile,
+                &[BindGroupEntry { binding: 0, resource: BindingResource::Buffer(tile_block) }],
+            ),
+            tile_stride: stride as u32,
+            depth: group("depth", &self.layouts.depth, &[texture(0, &depth)]),
+            composite: group(
+                "composite",
+                &self.layouts.composite,
+                &[texture(0, &ground), texture(1, &depth), texture(2, &labels)],
+            ),
+        }
+    }
+
+    fn terrain_pass(
+        &self,
+        encoder: &mut CommandEncoder,
+        bindings: &FrameBindings,
+        tiles: &[DrawTile<'_>],
+        targets: &Targets,
+    ) {
+        let mut pass =
+            begin(encoder, "terrain", &targets.ground_view(), Some(&targets.depth_view()));
+        pass.set_pipeline(&self.pipelines.terrain);
+        pass.set_bind_group(0, &bindings.frame, &[]);
+        for (tile, offset) in tiles.iter().zip((0..).step_by(bindings.tile_stride as usize)) {
+            let Some(ground) = &tile.buffers.ground else { continue };
+            pass.set_bind_group(1, &bindings.tiles, &[offset]);
+            pass.set_vertex_buffer(0, ground.vertices.slice(..));
+            pass.set_index_buffer(ground.indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..ground.index_count, 0, 0..1);
+        }
+    }
+
+    /// Classes outside, tiles inside: a more important road lies above a lesser one across tile borders too.
+    fn roads_pass(
+        &self,
+        encoder: &mut CommandEncoder,
+        bindings: &FrameBindings,
+        tiles: &[DrawTile<'_>],
+        view: &FrameView<'_>,
+        targets: &Targets,
+    ) {
+        // The pass clears the labels even when it draws no road.
+        let mut pass = begin(encoder, "roads", &targets.labels_view(), None);
+        if view.roads == RoadMethod::None {
+            return;
+        }
+        pass.set_bind_group(0, &bindings.frame, &[]);
+        pass.set_bind_group(2, &bindings.depth, &[]);
+        for class in FunctionalRoadClass::all().rev() {
+            let index = usize::from(class.number());
+            let has_center = view.style.roads[index].center.is_some();
+            for pipeline in
+                [Some(&self.pipelines.roads), has_center.then_some(&self.pipelines.centers)]
+            {
+                let Some(pipeline) = pipeline else { continue };
+                pass.set_pipeline(pipeline);
+                for (tile, offset) in tiles.iter().zip((0..).step_by(bindings.tile_stride as usize))
+                {
+                    let range = tile.buffers.class_ranges[index].clone();
+                    let Some(segments) =
+                        tile.buffers.segments.as_ref().filter(|_| !range.is_empty())
+                    else {
+                        continue;
+                    };
+                    pass.set_bind_group(1, &bindings.tiles, &[offset]);
+                    pass.set_vertex_buffer(0, segments.slice(..));
+                    pass.draw(0..4, range);
+                }
+            }
+        }
+    }
+
+    fn composite_pass(
+        &self,
+        encoder: &mut CommandEncoder,
+        bindings: &FrameBindings,
+        targets: &Targets,
+    ) {
+        let mut pass = begin(encoder, "composite", &targets.picture_view(), None);
+        pass.set_pipeline(&self.pipelines.composite);
+        pass.set_bind_group(0, &bindings.frame, &[]);
+        pass.set_bind_group(1, &bindings.composite, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+/// A pass that starts from nothing: colour 0, depth 0 (infinitely far).
+fn begin<'e>(
+    encoder: &'e mut CommandEncoder,
+    label: &str,
+    color: &wgpu::TextureView,
+    depth: Option<&wgpu::TextureView>,
+) -> wgpu::RenderPass<'e> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: color,
+            depth_slice: None,
+            resolve_target: None,
+            ops: Operations {
+                load: LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                store: StoreOp::Store,
+            },
+        })],
+        depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
+            view,
+            depth_ops: Some(Operations { load: LoadOp::Clear(0.0), store: StoreOp::Store }),
+            stencil_ops: None,
+        }),
+        timestamp_writes: None,
+        occlusion_query_set: None,
+        multiview_mask: None,
+    })
+}

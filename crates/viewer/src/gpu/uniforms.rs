@@ -1,0 +1,91 @@
+//! Uniform blocks as the shaders declare them: rows of four f32, in the order of `shaders/common.wgsl`.
+
+use glam::{DVec3, DVec4};
+
+use super::renderer::FrameView;
+
+/// Bytes of a tile's block.
+pub(super) const TILE_BYTES: u64 = 32;
+
+/// The frame's block. Its length follows from the style's arrays and matches `struct Frame`.
+pub(super) fn frame_rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
+    let FrameView { camera, style, .. } = view;
+    let axes = camera.world_from_view();
+    let tan = camera.half_extent_at_unit_depth();
+    let [width_px, height_px] = camera.size_px().map(f64::from);
+    let supersampling = f64::from(view.supersampling);
+    let light = {
+        let (azimuth, altitude) =
+            (style.light_azimuth_deg.to_radians(), style.light_altitude_deg.to_radians());
+        DVec3::new(azimuth.sin() * altitude.cos(), azimuth.cos() * altitude.cos(), altitude.sin())
+    };
+    let scaling = style.width_scaling;
+    let [lowest_m, highest_m] = view.height_range_m;
+
+    let mut rows: Vec<[f32; 4]> = camera
+        .clip_from_relative()
+        .to_cols_array_2d()
+        .map(|column| column.map(|value| value as f32))
+        .to_vec();
+    rows.extend(
+        [
+            (axes.x_axis * tan.x).extend(width_px),
+            (axes.y_axis * tan.y).extend(height_px),
+            (-axes.z_axis).extend(camera.near_m()),
+            light.extend(f64::from(style.hillshade)),
+        ]
+        .map(row),
+    );
+    rows.push(color(style.haze, (f64::from(style.haze_reach) * camera.focus_m()) as f32));
+    rows.push(color(style.sky, camera.pixel_at_unit_depth_m() as f32));
+    rows.push(color(style.void, view.vertical_scale() as f32));
+    rows.push([
+        scaling.threshold_m * view.point_scale as f32,
+        scaling.exponent,
+        (style.outline_px * view.supersampling) as f32,
+        supersampling as f32,
+    ]);
+    rows.push([lowest_m as f32, (1.0 / (highest_m - lowest_m).max(1.0)) as f32, 0.0, 0.0]);
+    rows.extend(style.tint.iter().map(|(share, rgb)| color(*rgb, *share)));
+    rows.extend(style.roads.iter().map(|road| {
+        let center_share = road.center.map_or(0.0, |center| center.width_share);
+        [
+            road.width_m / 2.0 * view.point_scale as f32,
+            road.min_width_px / 2.0 * supersampling as f32,
+            center_share,
+            0.0,
+        ]
+    }));
+    rows.extend(style.roads.iter().map(|road| color(road.color, 1.0)));
+    rows.extend(style.roads.iter().map(|road| color(road.outline, 1.0)));
+    rows.extend(
+        style
+            .roads
+            .iter()
+            .map(|road| color(road.center.map_or(road.color, |center| center.color), 1.0)),
+    );
+    rows
+}
+
+/// A tile's block: the reference point relative to the eye and the skirt's depth, then its true height.
+pub(super) fn tile_rows(
+    view: &FrameView<'_>,
+    reference_m: [f64; 3],
+    skirt_depth_m: f64,
+) -> [[f32; 4]; 2] {
+    let [x, y, height_m] = reference_m;
+    let reference_in_world = DVec3::new(x, y, height_m * view.vertical_scale());
+    let offset = reference_in_world - view.camera.eye_in_world();
+    [
+        row(offset.extend(skirt_depth_m * view.vertical_scale())),
+        row(DVec4::new(height_m, 0.0, 0.0, 0.0)),
+    ]
+}
+
+fn row(values: DVec4) -> [f32; 4] {
+    values.as_vec4().to_array()
+}
+
+fn color([red, green, blue]: [f32; 3], last: f32) -> [f32; 4] {
+    [red, green, blue, last]
+}

@@ -1,0 +1,268 @@
+use std::path::PathBuf;
+
+use corniche_geom::{Bounds, TileId};
+use glam::DVec3;
+use image::RgbaImage;
+
+use crate::{
+    attribution::draw_attribution,
+    camera::{Camera, Orientation, WorldBox},
+    gpu::{DrawTile, FrameView, Gpu, GpuError, ReadBackError, Renderer, Targets, TileBuffers},
+    lod::{Quality, Request},
+    scene::{self, RoadMethod},
+    style::Style,
+    tiles::{LoadTileError, OpenPackageError, PackageSource, TileStore},
+};
+
+/// Where to look from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CameraRequest {
+    /// The whole package, obliquely from the south.
+    FrameAll,
+    /// A place on the ground from a distance.
+    LookAt {
+        /// Longitude of the place, WGS84.
+        lon_deg: f64,
+        /// Latitude of the place, WGS84.
+        lat_deg: f64,
+        /// From the eye to the place.
+        distance_m: f64,
+        /// Direction of view.
+        orientation: Orientation,
+    },
+}
+
+/// What to render.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RenderRequest {
+    /// The package.
+    pub package: PathBuf,
+    /// Width and height of the picture.
+    pub size_px: [u32; 2],
+    /// How roads are drawn.
+    pub roads: RoadMethod,
+    /// Where to look from.
+    pub camera: CameraRequest,
+    /// A tile is refined while its error looks larger than this.
+    pub screen_space_error_px: f64,
+    /// Factor on heights; 1 is true.
+    pub exaggeration: f64,
+    /// Samples per pixel along each side, averaged; 1 takes the pixel's centre alone.
+    pub supersampling: u32,
+    /// Colours and widths.
+    pub style: Style,
+}
+
+/// A picture and what went into it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rendered {
+    /// The picture, credits included.
+    pub picture: RgbaImage,
+    /// Numbers.
+    pub report: RenderReport,
+}
+
+/// What went into a picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RenderReport {
+    /// What drew it.
+    pub adapter: String,
+    /// Tiles drawn.
+    pub tiles: u64,
+    /// Triangles of their ground, skirts not counted.
+    pub triangles: u64,
+    /// Road segments drawn.
+    pub road_segments: u64,
+    /// Tiles drawn per level, coarse levels first.
+    pub levels: Vec<(u8, u64)>,
+    /// Tiles read from the package to get there, drawn or not.
+    pub tiles_loaded: u64,
+    /// The eye in the working CRS and its true height.
+    pub eye_m: [f64; 3],
+}
+
+/// Why there is no picture.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum RenderError {
+    #[error(transparent)]
+    Open(#[from] OpenPackageError),
+    #[error(transparent)]
+    Load(#[from] LoadTileError),
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    #[error(transparent)]
+    ReadBack(#[from] ReadBackError),
+    #[error("{package:?} has no ground to show")]
+    NoGround { package: PathBuf },
+    #[error("longitude {lon_deg}, latitude {lat_deg} is not on the package's ground; it covers {covered:?}")]
+    OffGround { lon_deg: f64, lat_deg: f64, covered: Bounds },
+    #[error("{name} of {value} is out of range; it must be {range}")]
+    Range { name: &'static str, value: f64, range: &'static str },
+}
+
+/// Renders a picture of a package, without a window.
+///
+/// The picture is the same, byte for byte, each time on the same adapter and driver.
+///
+/// # Errors
+/// When the request makes no sense, the package cannot be read, or there is no graphics adapter.
+pub fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
+    check(request)?;
+    let source = PackageSource::open(&request.package)?;
+    let mut store = TileStore::new(&source);
+    let point_scale = source.manifest().point_scale;
+    let quality = Quality {
+        screen_space_error_px: request.screen_space_error_px,
+        vertical_scale: request.exaggeration * point_scale,
+    };
+    let height_range_m = root_height_range(&mut store, request)?;
+    let camera = camera(request, &source, &mut store, height_range_m, quality.vertical_scale)?;
+    let drawn = scene::settle(&mut store, &camera, quality)?;
+
+    let gpu = Gpu::new()?;
+    let camera = camera.supersampled(request.supersampling);
+    let targets = Targets::new(&gpu, camera.size_px())?;
+    let view = FrameView {
+        camera: &camera,
+        style: &request.style,
+        roads: request.roads,
+        exaggeration: request.exaggeration,
+        point_scale,
+        height_range_m,
+        supersampling: request.supersampling,
+    };
+    let uploaded: Vec<(TileBuffers, f64)> = scene::draw_list(&store, &drawn)
+        .map(|(tile, skirt_depth_m)| (TileBuffers::new(&gpu, tile), skirt_depth_m))
+        .collect();
+    let tiles: Vec<DrawTile<'_>> = uploaded
+        .iter()
+        .map(|(buffers, skirt_depth_m)| DrawTile { buffers, skirt_depth_m: *skirt_depth_m })
+        .collect();
+    Renderer::new(&gpu).draw(&gpu, &view, &tiles, &targets);
+
+    let samples = targets.read_picture(&gpu)?;
+    let mut picture = average(&samples, request.size_px, request.supersampling);
+    draw_attribution(&mut picture, &source.manifest().attribution);
+
+    let mut levels: Vec<(u8, u64)> = Vec::new();
+    for tile in &drawn {
+        match levels.last_mut() {
+            Some((level, count)) if *level == tile.id.z() => *count += 1,
+            _ => levels.push((tile.id.z(), 1)),
+        }
+    }
+    let road_segments = match request.roads {
+        RoadMethod::Geometry => uploaded.iter().map(|(buffers, _)| buffers.road_segments()).sum(),
+        RoadMethod::None => 0,
+    };
+    let eye = camera.eye_in_world();
+    let report = RenderReport {
+        adapter: gpu.adapter_name().to_owned(),
+        tiles: drawn.len() as u64,
+        triangles: uploaded.iter().map(|(buffers, _)| buffers.triangles()).sum(),
+        road_segments,
+        levels,
+        tiles_loaded: store.len() as u64,
+        eye_m: [eye.x, eye.y, eye.z / quality.vertical_scale],
+    };
+    Ok(Rendered { picture, report })
+}
+
+fn check(request: &RenderRequest) -> Result<(), RenderError> {
+    let within = |name, value: f64, fits: bool, range| {
+        // Not a number fits nowhere: every test below is false for it.
+        if fits { Ok(()) } else { Err(RenderError::Range { name, value, range }) }
+    };
+    let error_px = request.screen_space_error_px;
+    within("a screen-space error", error_px, error_px > 0.0 && error_px.is_finite(), "above 0 pixels")?;
+    let exaggeration = request.exaggeration;
+    within("an exaggeration", exaggeration, (0.01..=100.0).contains(&exaggeration), "0.01 to 100")?;
+    let samples = f64::from(request.supersampling);
+    within("supersampling", samples, (1..=4).contains(&request.supersampling), "1 to 4")?;
+    if let CameraRequest::LookAt { distance_m, orientation, .. } = request.camera {
+        within("a distance", distance_m, (1.0..=1e8).contains(&distance_m), "1 m to 100 000 km")?;
+        let Orientation { heading_deg, pitch_deg } = orientation;
+        within("a heading", heading_deg, heading_deg.is_finite(), "an angle in degrees")?;
+        within("a pitch", pitch_deg, (0.0..=90.0).contains(&pitch_deg), "0 (straight down) to 90 (level)")?;
+    }
+    Ok(())
+}
+
+/// Loads the root and says between which true heights all ground lies.
+fn root_height_range(store: &mut TileStore<'_>, request: &RenderRequest) -> Result<[f64; 2], RenderError> {
+    let none = || RenderError::NoGround { package: request.package.clone() };
+    if !store.exists(TileId::ROOT) {
+        return Err(none());
+    }
+    store.load(&[Request { id: TileId::ROOT, priority_px: f64::INFINITY }])?;
+    let summary = store.get(TileId::ROOT).and_then(|tile| tile.summary);
+    Ok(summary.ok_or_else(none)?.height_range_m)
+}
+
+fn camera(
+    request: &RenderRequest,
+    source: &PackageSource,
+    store: &mut TileStore<'_>,
+    height_range_m: [f64; 2],
+    vertical_scale: f64,
+) -> Result<Camera, RenderError> {
+    let manifest = source.manifest();
+    match request.camera {
+        CameraRequest::FrameAll => {
+            let subject =
+                WorldBox::new(manifest.data_bounds, height_range_m.map(|height_m| height_m * vertical_scale));
+            let oblique = Orientation { heading_deg: 0.0, pitch_deg: 45.0 };
+            Ok(Camera::framing(subject, oblique, request.size_px))
+        }
+        CameraRequest::LookAt { lon_deg, lat_deg, distance_m, orientation } => {
+            let off_ground = || RenderError::OffGround { lon_deg, lat_deg, covered: manifest.wgs84_bounds };
+            let at = manifest.coordinates.working_from_wgs84([lon_deg, lat_deg]).ok_or_else(off_ground)?;
+            let height_m = store.ground_height_m(at)?.ok_or_else(off_ground)?;
+            let target = DVec3::new(at[0], at[1], height_m * vertical_scale);
+            let distance_in_world_m = distance_m * manifest.point_scale;
+            Ok(Camera::look_at(target, distance_in_world_m, orientation, request.size_px))
+        }
+    }
+}
+
+/// The mean of each square of `factor` × `factor` samples, rounded to the nearest step.
+fn average(samples: &[u8], [width, height]: [u32; 2], factor: u32) -> RgbaImage {
+    let row = (width * factor) as usize * 4;
+    let count = factor * factor;
+    RgbaImage::from_fn(width, height, |x, y| {
+        let mut sums = [count / 2; 4];
+        for dy in 0..factor {
+            let start = (y * factor + dy) as usize * row + (x * factor) as usize * 4;
+            for sample in samples[start..start + factor as usize * 4].chunks_exact(4) {
+                for (sum, channel) in sums.iter_mut().zip(sample) {
+                    *sum += u32::from(*channel);
+                }
+            }
+        }
+        image::Rgba(sums.map(|sum| (sum / count) as u8))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn averaging_takes_the_mean_of_each_square() {
+        let samples = [
+            [0, 0, 0, 255],
+            [4, 0, 0, 255],
+            [8, 8, 8, 255],
+            [8, 8, 8, 255],
+            [8, 0, 0, 255],
+            [12, 2, 0, 255],
+            [8, 8, 8, 255],
+            [8, 8, 8, 255],
+        ];
+        let picture = average(samples.as_flattened(), [2, 1], 2);
+        assert_eq!(picture.get_pixel(0, 0).0, [6, 1, 0, 255]);
+        assert_eq!(picture.get_pixel(1, 0).0, [8, 8, 8, 255]);
+    }
+}

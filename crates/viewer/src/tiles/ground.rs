@@ -1,0 +1,153 @@
+use corniche_geom::{Frame, TILE_CELLS, TileId};
+use corniche_tin::Tin;
+
+/// A vertex of the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GroundVertex {
+    /// Metres from the tile's reference point; z is true height, before exaggeration.
+    pub position_in_tile: [f32; 3],
+    /// Unit normal (east, north, up) in steps of 1/127, and 127 at the lower edge of a skirt.
+    pub normal_skirt: [i8; 4],
+}
+
+/// Triangles of a tile's ground, then those of its skirts.
+///
+/// A skirt hangs from every edge on the tile's border. Its lower vertices have the place and normal of the
+/// upper ones and a flag; the vertex shader lowers them, as deep as the neighbours drawn make necessary.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct GroundMesh {
+    /// Vertices of the TIN in its order, then the lower vertices of the skirts.
+    pub vertices: Vec<GroundVertex>,
+    /// Three per triangle; the ground first.
+    pub indices: Vec<u32>,
+    /// How many of the indices are ground.
+    pub surface_indices: usize,
+}
+
+impl GroundMesh {
+    /// Places `tin`, whose vertices have these octahedron-coded normals, relative to `reference_m`.
+    pub(super) fn new(
+        id: TileId,
+        tin: &Tin,
+        normals: &[[i8; 2]],
+        frame: &Frame,
+        quantum_m: f64,
+        reference_m: [f64; 3],
+    ) -> Self {
+        let window = frame.tile_window(id);
+        let place = |(vertex, normal): (&corniche_tin::TinVertex, &[i8; 2])| {
+            let node = window.node(usize::from(vertex.column), usize::from(vertex.row));
+            let position_m =
+                [frame.x_m(node.i), frame.y_m(node.j), f64::from(vertex.height_q) * quantum_m];
+            let [x, y, z] = decode_normal(*normal);
+            GroundVertex {
+                position_in_tile: relative(position_m, reference_m),
+                normal_skirt: [x, y, z, 0],
+            }
+        };
+        let vertices = tin.vertices().iter().zip(normals).map(place).collect();
+        let indices: Vec<u32> = tin.triangles().iter().flatten().copied().collect();
+        let mut mesh = Self { surface_indices: indices.len(), vertices, indices };
+        mesh.add_skirts(tin);
+        mesh
+    }
+
+    fn add_skirts(&mut self, tin: &Tin) {
+        for corners in tin.triangles() {
+            for k in 0..3 {
+                let (from, to) = (corners[k], corners[(k + 1) % 3]);
+                if on_border(tin, from, to) {
+                    self.hang(from, to);
+                }
+            }
+        }
+    }
+
+    /// Two triangles beneath the edge `from`–`to`.
+    fn hang(&mut self, from: u32, to: u32) {
+        let lower = self.vertices.len() as u32;
+        for upper in [from, to] {
+            let mut vertex = self.vertices[upper as usize];
+            vertex.normal_skirt[3] = 127;
+            self.vertices.push(vertex);
+        }
+        self.indices.extend([from, lower, to, to, lower, lower + 1]);
+    }
+}
+
+/// Whether an edge lies along one side of the tile.
+fn on_border(tin: &Tin, from: u32, to: u32) -> bool {
+    let last = TILE_CELLS as u16;
+    let [a, b] = [from, to].map(|index| tin.vertices()[index as usize]);
+    (a.row == b.row && (a.row == 0 || a.row == last))
+        || (a.column == b.column && (a.column == 0 || a.column == last))
+}
+
+/// Difference in f64, then rounded: the only way from a position in the working CRS to f32.
+pub(super) fn relative(position_m: [f64; 3], reference_m: [f64; 3]) -> [f32; 3] {
+    [0, 1, 2].map(|axis| (position_m[axis] - reference_m[axis]) as f32)
+}
+
+/// Unit vector in steps of 1/127 from its octahedral code.
+///
+/// Source: Meyer et al. 2010, *On Floating-Point Normal Vectors*.
+fn decode_normal(code: [i8; 2]) -> [i8; 3] {
+    let [u, v] = code.map(|steps| f64::from(steps) / 127.0);
+    let z = 1.0 - u.abs() - v.abs();
+    let fold = (-z).max(0.0);
+    let (x, y) = (u - fold.copysign(u), v - fold.copysign(v));
+    let length = (x * x + y * y + z * z).sqrt();
+    [x, y, z].map(|part| (part / length * 127.0).round() as i8)
+}
+
+#[cfg(test)]
+mod tests {
+    use corniche_geom::NodeIndex;
+    use corniche_tin::TinVertex;
+
+    use super::*;
+
+    /// Two triangles over a whole tile of 10 m cells, 256 steps high in the east.
+    fn square() -> GroundMesh {
+        let vertex = |row, column, height_q| TinVertex { row, column, height_q };
+        let corners =
+            vec![vertex(0, 0, 0), vertex(0, 256, 256), vertex(256, 0, 0), vertex(256, 256, 256)];
+        let tin = Tin::new(corners, &[[0, 2, 1], [1, 2, 3]]).unwrap();
+        let frame = Frame::new([0.0; 2], 10.0, NodeIndex { i: 0, j: 256 }, 0).unwrap();
+        GroundMesh::new(TileId::ROOT, &tin, &[[0, 0]; 4], &frame, 0.5, [1280.0, 1280.0, 64.0])
+    }
+
+    #[test]
+    fn vertices_are_relative_to_the_reference_point() {
+        let mesh = square();
+        assert_eq!(mesh.vertices[0].position_in_tile, [-1280.0, 1280.0, -64.0], "north-west");
+        assert_eq!(mesh.vertices[3].position_in_tile, [1280.0, -1280.0, 64.0], "south-east");
+        assert_eq!(mesh.vertices[0].normal_skirt, [0, 0, 127, 0]);
+    }
+
+    #[test]
+    fn skirts_hang_from_the_four_borders_and_not_from_the_diagonal() {
+        let mesh = square();
+        assert_eq!(mesh.surface_indices, 6);
+        assert_eq!(mesh.indices.len(), 6 + 4 * 6);
+        assert_eq!(mesh.vertices.len(), 4 + 4 * 2);
+        assert!(mesh.vertices[4..].iter().all(|vertex| vertex.normal_skirt[3] == 127));
+    }
+
+    #[test]
+    fn normals_survive_octahedral_coding() {
+        assert_eq!(decode_normal([0, 0]), [0, 0, 127]);
+        assert_eq!(decode_normal([127, 0]), [127, 0, 0]);
+        // 45° towards the south: |y| = |z|.
+        assert_eq!(decode_normal([0, -64]), [0, -91, 89]);
+        for code in [[30, 40], [-60, 20], [10, -90], [-63, -63]] {
+            let length = decode_normal(code)
+                .map(f64::from)
+                .iter()
+                .map(|part| part * part)
+                .sum::<f64>()
+                .sqrt();
+            assert!((length - 127.0).abs() < 1.0, "{code:?} has length {length}");
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! Tiles as the renderer wants them, and where they come from.
+//!
+//! [`TileSource::load`] is a pure function of the tile id and `&self`, so that a worker thread may call it;
+//! [`TileStore`] is what the frame loop holds: it takes requests and answers what is known.
+
+mod ground;
+//mod package;
+mod roads;
+
+use std::{collections::BTreeMap, ops::Range};
+
+use corniche_geom::{Bounds, Frame, TileId, barycentric};
+use corniche_roads::FunctionalRoadClass;
+use corniche_tileset::Terrain;
+
+pub use self::{
+    ground::{GroundMesh, GroundVertex},
+    //package::{OpenPackageError, PackageSource},
+    roads::{RoadSegment, RoadSegments},
+};
+use crate::lod::{GroundSummary, Node, Request, TileTree};
+
+/// A tile, decoded to what is uploaded: positions in f32 relative to the tile's reference point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TileGeometry {
+    /// Which tile.
+    pub id: TileId,
+    /// The reference point: x and y in the working CRS, true height. All positions are relative to it.
+    pub reference_m: [f64; 3],
+    /// Errors and heights; `None` without ground.
+    pub summary: Option<GroundSummary>,
+    /// The ground and its skirts.
+    pub ground: GroundMesh,
+    /// The roads on it.
+    pub roads: RoadSegments,
+}
+
+/// A line on the ground: class, then x, y in the working CRS and true height of each vertex.
+pub type GroundLine = (FunctionalRoadClass, Vec<[f64; 3]>);
+
+impl TileGeometry {
+    /// Puts a decoded tile together. `quantum_m` is the height of one step of the TIN's heights.
+    #[must_use]
+    pub fn assemble(
+        id: TileId,
+        terrain: Option<&Terrain>,
+        lines: &[GroundLine],
+        frame: &Frame,
+        quantum_m: f64,
+    ) -> Self {
+        let [x, y] = frame.tile_bounds(id).center();
+        let [low_m, high_m] = terrain.map_or([0.0; 2], |terrain| terrain.height_range_m);
+        let reference_m = [x, y, f64::midpoint(low_m, high_m)];
+        let ground = terrain.map_or_else(GroundMesh::default, |terrain| {
+            GroundMesh::new(id, &terrain.tin, &terrain.normals, frame, quantum_m, reference_m)
+        });
+        let summary = terrain.map(|terrain| GroundSummary {
+            geometric_error_m: terrain.geometric_error_m,
+            height_range_m: terrain.height_range_m,
+        });
+        Self { id, reference_m, summary, ground, roads: RoadSegments::new(lines, reference_m) }
+    }
+
+    /// True height of the ground at a position in the working CRS; `None` where this tile has no ground.
+    #[must_use]
+    pub fn ground_height_m(&self, [x, y]: [f64; 2]) -> Option<f64> {
+        let at = [x - self.reference_m[0], y - self.reference_m[1]];
+        self.ground.indices[..self.ground.surface_indices].chunks_exact(3).find_map(|corners| {
+            let corner = |k: usize| {
+                self.ground.vertices[corners[k] as usize].position_in_tile.map(f64::from)
+            };
+            let [a, b, c] = [corner(0), corner(1), corner(2)];
+            let weights = barycentric(at, [a[0], a[1]], [b[0], b[1]], [c[0], c[1]]);
+            // A millionth of slack: positions were rounded to f32 and the query must not fall between triangles.
+            weights.iter().all(|weight| *weight >= -1e-6).then(|| {
+                self.reference_m[2] + weights[0] * a[2] + weights[1] * b[2] + weights[2] * c[2]
+            })
+        })
+    }
+}
+
+/// Why a tile could not be had.
+#[derive(Debug, thiserror::Error)]
+#[error("tile {id} cannot be read")]
+pub struct LoadTileError {
+    /// Which tile.
+    pub id: TileId,
+    /// What went wrong.
+    pub source: Box<dyn std::error::Error + Send + Sync>,
+}
+
+/// Where tiles come from.
+pub trait TileSource {
+    /// The grid.
+    fn frame(&self) -> &Frame;
+    /// Whether the tile or anything beneath it exists.
+    fn exists(&self, id: TileId) -> bool;
+    /// Reads and decodes a tile that exists.
+    ///
+    /// # Errors
+    /// When it cannot be read or is damaged.
+    fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError>;
+}
+
+/// The tiles loaded so far.
+pub struct TileStore<'a> {
+    source: &'a dyn TileSource,
+    tiles: BTreeMap<TileId, TileGeometry>,
+}
+
+impl<'a> TileStore<'a> {
+    /// Nothing loaded yet.
+    #[must_use]
+    pub fn new(source: &'a dyn TileSource) -> Self {
+        Self { source, tiles: BTreeMap::new() }
+    }
+
+    /// Loads what is asked for, in order.
+    ///
+    /// # Errors
+    /// At the first tile that cannot be had.
+    pub fn load(&mut self, requests: &[Request]) -> Result<(), LoadTileError> {
+        for request in requests {
+            if !self.tiles.contains_key(&request.id) {
+                self.tiles.insert(request.id, self.source.load(request.id)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the tile or anything beneath it exists.
+    #[must_use]
+    pub fn exists(&self, id: TileId) -> bool {
+        self.source.exists(id)
+    }
+
+    /// How many tiles are loaded.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.tiles.len()
+    }
+
+    /// Whether no tile is loaded.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.tiles.is_empty()
+    }
+
+    /// A loaded tile.
+    #[must_use]
+    pub fn get(&self, id: TileId) -> Option<&TileGeometry> {
+        self.tiles.get(&id)
+    }
+
+    /// True height of the ground at a position, from the finest tile there; loads the tiles down to it.
+    ///
+    /// # Errors
+    /// When a tile cannot be had.
+    pub fn ground_height_m(&mut self, at: [f64; 2]) -> Result<Option<f64>, LoadTileError> {
+        let mut found = None;
+        let mut next = self.source.exists(TileId::ROOT).then_some(TileId::ROOT);
+        while let Some(id) = next {
+            self.load(&[Request { id, priority_px: f64::INFINITY }])?;
+            found = self.get(id).and_then(|tile| tile.ground_height_m(at)).or(found);
+            next = (id.z() < self.max_level())
+                .then(|| id.children().find(|child| holds(&self.plan_bounds(*child), at)))
+                .flatten()
+                .filter(|child| self.source.exists(*child));
+        }
+        Ok(found)
+    }
+}
+
+impl TileTree for TileStore<'_> {
+    fn node(&self, id: TileId) -> Node {
+        match self.tiles.get(&id) {
+            Some(tile) => Node::Loaded(tile.summary),
+            None if self.source.exists(id) => Node::Listed,
+            None => Node::Absent,
+        }
+    }
+
+    fn plan_bounds(&self, id: TileId) -> Bounds {
+        self.source.frame().tile_bounds(id)
+    }
+
+    fn max_level(&self) -> u8 {
+        self.source.frame().max_level()
+    }
+}
+
+fn holds(bounds: &Bounds, [x, y]: [f64; 2]) -> bool {
+    (bounds.min_x..=bounds.max_x).contains(&x) && (bounds.min_y..=bounds.max_y).contains(&y)
+}
+
+/// The part of `sorted` that belongs to each class, 0 first. `sorted` is in order of class.
+fn class_ranges(sorted: &[RoadSegment]) -> [Range<u32>; FunctionalRoadClass::COUNT] {
+    let mut ranges = [const { 0..0 }; FunctionalRoadClass::COUNT];
+    for (class, range) in ranges.iter_mut().enumerate() {
+        let start = sorted.partition_point(|segment| usize::from(segment.class.number()) < class);
+        let end = sorted.partition_point(|segment| usize::from(segment.class.number()) <= class);
+        *range = start as u32..end as u32;
+    }
+    ranges
+}

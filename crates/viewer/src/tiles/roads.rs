@@ -1,0 +1,75 @@
+use std::ops::Range;
+
+use corniche_roads::FunctionalRoadClass;
+
+use super::{GroundLine, class_ranges, ground::relative};
+
+/// A straight piece of a road's centre-line on the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoadSegment {
+    /// Metres from the tile's reference point; z is true height, before exaggeration.
+    pub start_in_tile: [f32; 3],
+    /// The other end.
+    pub end_in_tile: [f32; 3],
+    /// Functional road class.
+    pub class: FunctionalRoadClass,
+}
+
+/// All segments of a tile, in order of class.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RoadSegments {
+    segments: Vec<RoadSegment>,
+    ranges: [Range<u32>; FunctionalRoadClass::COUNT],
+}
+
+impl RoadSegments {
+    /// Cuts lines into segments. Positions are x, y in the working CRS and true height.
+    #[must_use]
+    pub fn new(lines: &[GroundLine], reference_m: [f64; 3]) -> Self {
+        let mut segments: Vec<RoadSegment> = lines
+            .iter()
+            .flat_map(|(class, line)| {
+                line.windows(2).map(move |pair| RoadSegment {
+                    start_in_tile: relative(pair[0], reference_m),
+                    end_in_tile: relative(pair[1], reference_m),
+                    class: *class,
+                })
+            })
+            .collect();
+        segments.sort_by_key(|segment| segment.class);
+        let ranges = class_ranges(&segments);
+        Self { segments, ranges }
+    }
+
+    /// The segments, most important class first.
+    #[must_use]
+    pub fn all(&self) -> &[RoadSegment] {
+        &self.segments
+    }
+
+    /// Where the segments of a class are.
+    #[must_use]
+    pub fn range_of(&self, class: FunctionalRoadClass) -> Range<u32> {
+        self.ranges[usize::from(class.number())].clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn segments_are_relative_and_sorted_by_class() {
+        let class = |number| FunctionalRoadClass::new(number).unwrap();
+        let lines = vec![
+            (class(6), vec![[10.0, 20.0, 1.0], [11.0, 20.0, 1.5], [12.0, 20.0, 1.0]]),
+            (class(0), vec![[0.0, 0.0, 0.0], [10.0, 20.0, 1.0]]),
+        ];
+        let roads = RoadSegments::new(&lines, [10.0, 20.0, 1.0]);
+        assert_eq!(roads.range_of(class(0)), 0..1);
+        assert_eq!(roads.range_of(class(6)), 1..3);
+        assert!(roads.range_of(class(3)).is_empty());
+        assert_eq!(roads.all()[0].end_in_tile, [0.0; 3]);
+        assert_eq!(roads.all()[1].end_in_tile, [1.0, 0.0, 0.5]);
+    }
+}

@@ -1,0 +1,263 @@
+//! Scenes made of closed forms, and references that do not use the code under test.
+
+use corniche_geom::{Frame, NodeIndex, TILE_CELLS, TileId};
+use corniche_roads::FunctionalRoadClass;
+use corniche_tileset::Terrain;
+use corniche_tin::{Tin, TinVertex};
+use corniche_viewer::{
+    RoadMethod,
+    camera::Camera,
+    gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers},
+    style::{RoadStyle, Style, WidthScaling},
+    tiles::{GroundLine, TileGeometry},
+};
+use glam::{DVec2, DVec3};
+
+pub const CELL_M: f64 = 10.0;
+pub const QUANTUM_M: f64 = 1.0 / 64.0;
+
+/// A device, or `None` and a line on the terminal; with `CORNICHE_REQUIRE_GPU=1` no device is a failure.
+pub fn gpu() -> Option<Gpu> {
+    match Gpu::new() {
+        Ok(gpu) => Some(gpu),
+        Err(error) => {
+            assert!(std::env::var_os("CORNICHE_REQUIRE_GPU").is_none(), "{error}");
+            println!("skipped: no GPU adapter");
+            None
+        }
+    }
+}
+
+/// Two levels of a grid far from the origin, as real ones are.
+pub fn frame() -> Frame {
+    Frame::new([0.25, 0.75], CELL_M, NodeIndex { i: 51_200, j: 512_000 }, 1).unwrap()
+}
+
+pub fn class(number: u8) -> FunctionalRoadClass {
+    FunctionalRoadClass::new(number).unwrap()
+}
+
+/// A tile's ground from a height function of x and y in the working CRS, with a vertex every `step` nodes.
+pub fn terrain(id: TileId, step: u16, height_m: impl Fn(f64, f64) -> f64) -> Terrain {
+    let (frame, window) = (frame(), frame().tile_window(id));
+    let count = TILE_CELLS as u16 / step + 1;
+    let mut vertices = Vec::new();
+    for row in 0..count {
+        for column in 0..count {
+            let node = window.node(usize::from(column * step), usize::from(row * step));
+            let height_q =
+                (height_m(frame.x_m(node.i), frame.y_m(node.j)) / QUANTUM_M).round() as i32;
+            vertices.push(TinVertex { row: row * step, column: column * step, height_q });
+        }
+    }
+    let mut triangles = Vec::new();
+    for row in 0..u32::from(count) - 1 {
+        for column in 0..u32::from(count) - 1 {
+            let nw = row * u32::from(count) + column;
+            let (ne, sw) = (nw + 1, nw + u32::from(count));
+            triangles.extend([[nw, sw, ne], [ne, sw, sw + 1]]);
+        }
+    }
+    let heights = || vertices.iter().map(|vertex| f64::from(vertex.height_q) * QUANTUM_M);
+    let range =
+        [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)];
+    Terrain {
+        normals: vec![[0, 0]; vertices.len()],
+        tin: Tin::new(vertices.clone(), &triangles).unwrap(),
+        geometric_error_m: 1.0,
+        height_range_m: range,
+        uncovered_nodes: 0,
+    }
+}
+
+/// Triangles of a tile's ground in world space, f64.
+pub fn triangles(id: TileId, terrain: &Terrain) -> Vec<[DVec3; 3]> {
+    let (frame, window) = (frame(), frame().tile_window(id));
+    let place = |index: u32| {
+        let vertex = terrain.tin.vertices()[index as usize];
+        let node = window.node(usize::from(vertex.column), usize::from(vertex.row));
+        DVec3::new(frame.x_m(node.i), frame.y_m(node.j), f64::from(vertex.height_q) * QUANTUM_M)
+    };
+    terrain.tin.triangles().iter().map(|corners| corners.map(place)).collect()
+}
+
+/// Lays the plan segment a–b on triangles: a vertex wherever it crosses an edge, heights from the triangles.
+pub fn lay(a: DVec2, b: DVec2, ground: &[[DVec3; 3]]) -> Vec<[f64; 3]> {
+    let mut at = vec![0.0, 1.0];
+    for corners in ground {
+        for k in 0..3 {
+            let (p, q) = (corners[k].truncate(), corners[(k + 1) % 3].truncate());
+            let (d, e) = (b - a, q - p);
+            let cross = d.perp_dot(e);
+            let (t, s) = ((p - a).perp_dot(e) / cross, (p - a).perp_dot(d) / cross);
+            if cross != 0.0 && (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&s) {
+                at.push(t);
+            }
+        }
+    }
+    at.sort_by(f64::total_cmp);
+    at.dedup_by(|x, y| (*x - *y).abs() < 1e-9);
+    at.iter()
+        .map(|t| a + (b - a) * *t)
+        .map(|p| [p.x, p.y, height_at(p, ground).expect("the line lies on the ground")])
+        .collect()
+}
+
+pub fn height_at(at: DVec2, ground: &[[DVec3; 3]]) -> Option<f64> {
+    ground.iter().find_map(|[a, b, c]| {
+        let area = (b - a).truncate().perp_dot((c - a).truncate());
+        let weight = |p: &DVec3, q: &DVec3| (p.truncate() - at).perp_dot(q.truncate() - at) / area;
+        let (wa, wb, wc) = (weight(b, c), weight(c, a), weight(a, b));
+        (wa.min(wb).min(wc) >= -1e-9).then(|| wa * a.z + wb * b.z + wc * c.z)
+    })
+}
+
+/// Depth at which a ray (of depth 1) first meets a triangle.
+///
+/// Source: Möller & Trumbore 1997, *Fast, Minimum Storage Ray/Triangle Intersection*.
+pub fn cast(eye: DVec3, ray: DVec3, ground: &[[DVec3; 3]]) -> Option<f64> {
+    let mut nearest = None;
+    for [a, b, c] in ground {
+        let (e1, e2) = (b - a, c - a);
+        let p = ray.cross(e2);
+        let determinant = e1.dot(p);
+        if determinant.abs() < 1e-12 {
+            continue;
+        }
+        let t = eye - a;
+        let u = t.dot(p) / determinant;
+        let q = t.cross(e1);
+        let v = ray.dot(q) / determinant;
+        let depth = e2.dot(q) / determinant;
+        if u >= 0.0 && v >= 0.0 && u + v <= 1.0 && depth > 0.0 && nearest.is_none_or(|n| depth < n)
+        {
+            nearest = Some(depth);
+        }
+    }
+    nearest
+}
+
+/// Roads of one width for all classes, without any growth: `half_width_m` is all there is to know.
+pub fn plain_style(width_m: f32) -> Style {
+    let road =
+        RoadStyle { width_m, min_width_px: 0.0, color: [1.0; 3], outline: [0.0; 3], center: None };
+    Style {
+        roads: [road; 9],
+        width_scaling: WidthScaling { threshold_m: 1e9, exponent: 0.0 },
+        ..Style::road_atlas()
+    }
+}
+
+/// What came back from the device.
+pub struct Drawing {
+    pub size_px: [u32; 2],
+    pub picture: Vec<u8>,
+    pub ground: Vec<u8>,
+    pub depth: Vec<f32>,
+    pub labels: Vec<u8>,
+}
+
+impl Drawing {
+    /// Centres of all pixels with their index.
+    pub fn pixels(&self) -> impl Iterator<Item = (usize, DVec2)> + '_ {
+        let width = self.size_px[0] as usize;
+        (0..self.labels.len()).map(move |index| {
+            (index, DVec2::new((index % width) as f64 + 0.5, (index / width) as f64 + 0.5))
+        })
+    }
+
+    /// Centres of the pixels with a label of this class.
+    pub fn pixels_of(&self, number: u8) -> Vec<DVec2> {
+        let label = (9 - number) * 2;
+        self.pixels()
+            .filter(|(index, _)| self.labels[*index] / 2 * 2 == label)
+            .map(|(_, at)| at)
+            .collect()
+    }
+
+    /// Whether the depths around a pixel jump: a silhouette or a border of the ground.
+    pub fn is_at_jump(&self, index: usize) -> bool {
+        let width = self.size_px[0] as i64;
+        let (x, y) = (index as i64 % width, index as i64 / width);
+        let mut range = [f32::INFINITY, 0.0_f32];
+        for dy in -1..=1 {
+            for dx in -1..=1 {
+                let (nx, ny) = (x + dx, y + dy);
+                if (0..width).contains(&nx) && (0..i64::from(self.size_px[1])).contains(&ny) {
+                    let depth = self.depth[(ny * width + nx) as usize];
+                    range = [range[0].min(depth), range[1].max(depth)];
+                }
+            }
+        }
+        range[1] > range[0] * 1.05
+    }
+}
+
+/// A tile to draw: id, ground, lines on it, depth of its skirt.
+pub type SceneTile = (TileId, Terrain, Vec<GroundLine>, f64);
+
+pub fn draw(gpu: &Gpu, camera: &Camera, style: &Style, scene: &[SceneTile]) -> Drawing {
+    draw_exaggerated(gpu, camera, style, scene, 1.0)
+}
+
+pub fn draw_exaggerated(
+    gpu: &Gpu,
+    camera: &Camera,
+    style: &Style,
+    scene: &[SceneTile],
+    exaggeration: f64,
+) -> Drawing {
+    let buffers: Vec<(TileBuffers, f64)> = scene
+        .iter()
+        .map(|(id, terrain, lines, skirt_depth_m)| {
+            let tile = TileGeometry::assemble(*id, Some(terrain), lines, &frame(), QUANTUM_M);
+            (TileBuffers::new(gpu, &tile), *skirt_depth_m)
+        })
+        .collect();
+    let tiles: Vec<DrawTile<'_>> = buffers
+        .iter()
+        .map(|(buffers, depth)| DrawTile { buffers, skirt_depth_m: *depth })
+        .collect();
+    let targets = Targets::new(gpu, camera.size_px()).unwrap();
+    let view = FrameView {
+        camera,
+        style,
+        roads: RoadMethod::Geometry,
+        exaggeration,
+        point_scale: 1.0,
+        height_range_m: [0.0, 1000.0],
+        supersampling: 1,
+    };
+    Renderer::new(gpu).draw(gpu, &view, &tiles, &targets);
+    let drawing = Drawing {
+        size_px: camera.size_px(),
+        picture: targets.read_picture(gpu).unwrap(),
+        ground: targets.read_ground(gpu).unwrap(),
+        depth: targets.read_depth(gpu).unwrap(),
+        labels: targets.read_labels(gpu).unwrap(),
+    };
+    keep(&drawing);
+    drawing
+}
+
+/// With `CORNICHE_KEEP_PICTURES=folder`, writes each picture of the tests there to be looked at.
+fn keep(drawing: &Drawing) {
+    let Some(folder) = std::env::var_os("CORNICHE_KEEP_PICTURES") else { return };
+    let name = std::thread::current().name().unwrap_or("picture").to_owned();
+    let [width, height] = drawing.size_px;
+    let picture = image::RgbaImage::from_raw(width, height, drawing.picture.clone()).unwrap();
+    picture.save(std::path::Path::new(&folder).join(format!("{name}.png"))).unwrap();
+}
+
+/// Distance in plan from a point to the nearest of some lines.
+pub fn plan_distance_m(at: DVec2, lines: &[GroundLine]) -> f64 {
+    let mut nearest = f64::INFINITY;
+    for (_, line) in lines {
+        for pair in line.windows(2) {
+            let (a, b) = (DVec2::new(pair[0][0], pair[0][1]), DVec2::new(pair[1][0], pair[1][1]));
+            let along = ((at - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+            nearest = nearest.min(at.distance(a + (b - a) * along));
+        }
+    }
+    nearest
+}
