@@ -55,7 +55,9 @@ class Ground:
                 return self._trace(came, key)
             for k, (dc, dr) in enumerate(STEPS):
                 rr, cc = r + dr, c + dc
-                if not (0 <= rr < self.side and 0 <= cc < self.side) or self.blocked[rr][cc]:
+                if not (0 <= rr < self.side and 0 <= cc < self.side) or (
+                    self.blocked[rr][cc] and (rr, cc) not in goals
+                ):
                     continue
                 turn = 0
                 if heading >= 0:

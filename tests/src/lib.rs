@@ -20,8 +20,10 @@ pub fn sample(path: &str) -> PathBuf {
 /// The developers' real data, if they are here: `CORNICHE_DATA`, else `../shared/data`. Says so when not.
 #[must_use]
 pub fn real_data(path: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("CORNICHE_DATA")
-        .map_or_else(|| root().parent().map(|up| up.join("shared/data")).unwrap_or_default(), PathBuf::from);
+    let folder = std::env::var_os("CORNICHE_DATA").map_or_else(
+        || root().parent().map(|up| up.join("shared/data")).unwrap_or_default(),
+        PathBuf::from,
+    );
     let file = folder.join(path);
     if file.exists() {
         return Some(file);
@@ -40,7 +42,11 @@ pub fn binary() -> PathBuf {
     let tests = std::env::current_exe().unwrap_or_default();
     let folder = tests.parent().and_then(Path::parent).map(Path::to_path_buf).unwrap_or_default();
     let binary = folder.join(format!("corniche{}", std::env::consts::EXE_SUFFIX));
-    assert!(binary.exists(), "{} is missing; run cargo build -p corniche-cli first", binary.display());
+    assert!(
+        binary.exists(),
+        "{} is missing; run cargo build -p corniche-cli first",
+        binary.display()
+    );
     binary
 }
 

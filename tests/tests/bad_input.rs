@@ -37,7 +37,12 @@ fn refuses_files_that_are_missing_empty_or_something_else() {
     refuses(folder.path(), &["--dem", "/nowhere/dem.tif"], 2, &["/nowhere/dem.tif"]);
     refuses(folder.path(), &["--dem", text(&empty)], 2, &["empty.tif"]);
     refuses(folder.path(), &["--dem", text(&prose)], 2, &["prose.tif"]);
-    refuses(folder.path(), &["--dem", text(&dem), "--osm", "/nowhere/a.osm.pbf"], 2, &["a.osm.pbf"]);
+    refuses(
+        folder.path(),
+        &["--dem", text(&dem), "--osm", "/nowhere/a.osm.pbf"],
+        2,
+        &["a.osm.pbf"],
+    );
     refuses(folder.path(), &["--dem", text(&dem), "--osm", text(&prose)], 2, &["prose.tif"]);
     refuses(folder.path(), &["--dem", text(&dem), "--osm", text(&empty)], 2, &["empty.tif"]);
 }

@@ -39,7 +39,13 @@ fn pass_keeps_its_promises_and_damage_is_named() {
     let report = json(&["verify", text(&package), "--dem", text(&dem), "--json", "--quiet"]);
     assert_eq!(report["holds"], true);
     assert!(report["borders"].as_u64().unwrap() > 10);
-    assert!(report["errors"].as_array().unwrap().iter().all(|level| level["smallest_ratio"].as_f64() >= Some(1.0)));
+    assert!(
+        report["errors"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .all(|level| level["smallest_ratio"].as_f64() >= Some(1.0))
+    );
 
     let mut bytes = fs::read(&package).unwrap();
     let middle = bytes.len() * 3 / 4;
@@ -60,9 +66,9 @@ fn pass_accounts_for_every_road() {
     let counts = &json(&["info", text(&package), "--json"])["manifest"]["counts"];
     let number = |value: &Value| value.as_f64().unwrap();
     let lost = counts["roads_lost"].as_array().unwrap();
-    let (roads, metres) = lost
-        .iter()
-        .fold((0.0, 0.0), |(roads, metres), loss| (roads + number(&loss["roads"]), metres + number(&loss["length_m"])));
+    let (roads, metres) = lost.iter().fold((0.0, 0.0), |(roads, metres), loss| {
+        (roads + number(&loss["roads"]), metres + number(&loss["length_m"]))
+    });
     assert!((number(&counts["roads_in"]) - number(&counts["roads_kept"]) - roads).abs() < 0.5);
     let in_m = number(&counts["roads_in_m"]);
     assert!((in_m - number(&counts["roads_kept_m"]) - metres).abs() < 1e-5 * in_m);
@@ -79,7 +85,8 @@ fn independent_check_agrees() {
     let package = folder.path().join("pass.pmtiles");
     build_pass(&package, &["--quiet"]);
     let python = |arguments: &[&str]| Command::new("python3").args(arguments).output();
-    let has_modules = python(&["-c", "import numpy, shapely"]).is_ok_and(|output| output.status.success());
+    let has_modules =
+        python(&["-c", "import numpy, shapely"]).is_ok_and(|output| output.status.success());
     if !has_modules {
         assert!(std::env::var_os("CI").is_none(), "python3 with numpy and shapely is missing");
         eprintln!("skipped: python3 with numpy and shapely is not here");
@@ -87,8 +94,11 @@ fn independent_check_agrees() {
     }
     let script = root().join("tests/check_tile.py");
     let binary = e2e::binary();
-    let output = python(&[text(&script), "--corniche", text(&binary), text(&package), "--max-tiles", "30"]).unwrap();
-    let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    let output =
+        python(&[text(&script), "--corniche", text(&binary), text(&package), "--max-tiles", "30"])
+            .unwrap();
+    let said = String::from_utf8_lossy(&output.stdout).into_owned()
+        + &String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
 }
 
@@ -111,7 +121,16 @@ fn terrain_alone_is_a_package_too() {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("terrain.pmtiles");
     let dem = sample("pass/pass.tif");
-    let ran = corniche(["build", "--dem", text(&dem), "-o", text(&package), "--quiet", "--max-error", "10"]);
+    let ran = corniche([
+        "build",
+        "--dem",
+        text(&dem),
+        "-o",
+        text(&package),
+        "--quiet",
+        "--max-error",
+        "10",
+    ]);
     assert_eq!(ran.code, 0, "{}", ran.err);
     assert_eq!(json(&["verify", text(&package), "--json", "--quiet"])["holds"], true);
     let ran = corniche(["growth", text(&package)]);
@@ -125,7 +144,10 @@ fn pictures_come_out_or_the_missing_adapter_is_named() {
     let (package, png) = (folder.path().join("pass.pmtiles"), folder.path().join("pass.png"));
     build_pass(&package, &["--quiet"]);
     let ran = corniche(["render", text(&package), "-o", text(&png), "--size", "320x240"]);
-    if ran.code != 0 && std::env::var_os("CORNICHE_REQUIRE_GPU").is_none() && ran.err.contains("adapter") {
+    if ran.code != 0
+        && std::env::var_os("CORNICHE_REQUIRE_GPU").is_none()
+        && ran.err.contains("adapter")
+    {
         eprintln!("skipped: {}", ran.err);
         return;
     }

@@ -198,7 +198,13 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "METRES", default_value_t = 5000.0, requires = "look_at")]
     pub(crate) distance: f64,
     /// Direction of view, in degrees clockwise from north
-    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "look_at", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        default_value_t = 0.0,
+        requires = "look_at",
+        allow_hyphen_values = true
+    )]
     pub(crate) heading: f64,
     /// Tilt of the view, in degrees: 0 looks straight down, 90 at the horizon
     #[arg(long, value_name = "DEGREES", default_value_t = 60.0, requires = "look_at")]
@@ -212,7 +218,9 @@ pub(crate) struct RenderArgs {
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
-    let sides = text.split_once('x').and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
+    let sides = text
+        .split_once('x')
+        .and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
     match sides {
         Some([width @ 1..=8192, height @ 1..=8192]) => Ok([width, height]),
         Some(_) => Err("both sides must be between 1 and 8192 pixels".to_owned()),
@@ -221,10 +229,13 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
 }
 
 fn parse_position(text: &str) -> Result<[f64; 2], String> {
-    let position =
-        text.split_once(',').and_then(|(lon, lat)| Some([lon.trim().parse().ok()?, lat.trim().parse().ok()?]));
+    let position = text
+        .split_once(',')
+        .and_then(|(lon, lat)| Some([lon.trim().parse().ok()?, lat.trim().parse().ok()?]));
     match position {
-        Some([lon, lat]) if (-360.0..=360.0).contains(&lon) && (-90.0..=90.0).contains(&lat) => Ok([lon, lat]),
+        Some([lon, lat]) if (-360.0..=360.0).contains(&lon) && (-90.0..=90.0).contains(&lat) => {
+            Ok([lon, lat])
+        }
         Some(_) => Err("longitude must be within ±360 and latitude within ±90 degrees".to_owned()),
         None => Err("write longitude,latitude like 9.52,47.14".to_owned()),
     }
@@ -243,7 +254,11 @@ mod tests {
     #[test]
     fn sizes_and_positions() {
         assert_eq!(parse_size("640x480"), Ok([640, 480]));
-        assert!(parse_size("640").is_err() && parse_size("0x5").is_err() && parse_size("9000x9000").is_err());
+        assert!(
+            parse_size("640").is_err()
+                && parse_size("0x5").is_err()
+                && parse_size("9000x9000").is_err()
+        );
         assert_eq!(parse_position("-9.5, 47"), Ok([-9.5, 47.0]));
         assert!(parse_position("47").is_err() && parse_position("9,147").is_err());
     }
@@ -254,6 +269,9 @@ mod tests {
             let line = format!("corniche build --dem a.tif -o b {line}");
             assert!(Arguments::try_parse_from(line.split(' ')).is_err(), "{line}");
         }
-        assert!(Arguments::try_parse_from(["corniche", "render", "a", "-o", "b", "--roads", "sv"]).is_err());
+        assert!(
+            Arguments::try_parse_from(["corniche", "render", "a", "-o", "b", "--roads", "sv"])
+                .is_err()
+        );
     }
 }

@@ -2,9 +2,7 @@
 
 use std::{num::NonZeroUsize, thread};
 
-use corniche_pipeline::{
-    BuildSettings, Existing, Resources, RoadSettings, TerrainSettings,
-};
+use corniche_pipeline::{BuildSettings, Existing, Resources, RoadSettings, TerrainSettings};
 use corniche_roads::ClassFilter;
 
 use crate::{
@@ -55,7 +53,9 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
     };
     let simplify_cells = args.roads.simplify.or(config.roads.simplify).unwrap_or(SIMPLIFY_CELLS);
     if !(0.0..=64.0).contains(&simplify_cells) {
-        return Err(Failure::unusable(format!("--simplify must be between 0 and 64 cells, not {simplify_cells}")));
+        return Err(Failure::unusable(format!(
+            "--simplify must be between 0 and 64 cells, not {simplify_cells}"
+        )));
     }
     let filter = if args.roads.all_classes || config.roads.all_classes {
         ClassFilter::all()
@@ -88,9 +88,9 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
 
 fn positive(option: &str, value: Option<f64>) -> Result<Option<f64>, Failure> {
     match value {
-        Some(metres) if !(metres > 0.0 && metres.is_finite()) => {
-            Err(Failure::unusable(format!("{option} must be a positive number of metres, not {metres}")))
-        }
+        Some(metres) if !(metres > 0.0 && metres.is_finite()) => Err(Failure::unusable(format!(
+            "{option} must be a positive number of metres, not {metres}"
+        ))),
         value => Ok(value),
     }
 }
@@ -103,7 +103,9 @@ pub(crate) fn threads(asked: Option<NonZeroUsize>) -> usize {
 /// Bytes from `512M`, `4G`, `1073741824`.
 fn parse_memory(text: &str) -> Result<u64, Failure> {
     let bad = || {
-        Failure::unusable(format!("--memory {text:?} is not a size of at least 64M; write it like 512M or 4G"))
+        Failure::unusable(format!(
+            "--memory {text:?} is not a size of at least 64M; write it like 512M or 4G"
+        ))
     };
     let (digits, unit) = match text.char_indices().last() {
         Some((at, 'K' | 'k')) => (&text[..at], 1 << 10),
@@ -111,7 +113,8 @@ fn parse_memory(text: &str) -> Result<u64, Failure> {
         Some((at, 'G' | 'g')) => (&text[..at], 1 << 30),
         _ => (text, 1),
     };
-    let size = digits.parse::<u64>().ok().and_then(|number| number.checked_mul(unit)).ok_or_else(bad)?;
+    let size =
+        digits.parse::<u64>().ok().and_then(|number| number.checked_mul(unit)).ok_or_else(bad)?;
     if size >= MIN_MEMORY_BYTES { Ok(size) } else { Err(bad()) }
 }
 

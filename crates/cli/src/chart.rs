@@ -2,7 +2,8 @@
 
 use corniche_tileset::Manifest;
 use plotters::prelude::{
-    BLACK, ChartBuilder, Circle, Color as _, IntoDrawingArea as _, LineSeries, RGBColor, SVGBackend, WHITE,
+    BLACK, ChartBuilder, Circle, Color as _, IntoDrawingArea as _, LineSeries, RGBColor,
+    SVGBackend, WHITE,
 };
 
 /// One colour a class, as on a road atlas: red for motorways down to grey for tracks.
@@ -25,14 +26,18 @@ pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
         let area = SVGBackend::with_string(&mut svg, (900, 520)).into_drawing_area();
         area.fill(&WHITE)?;
         let factor = |geo: u64, simplified: u64| geo as f64 / simplified as f64;
-        let rows: Vec<_> = manifest.growth.iter().filter(|row| row.simplified_vertices > 0).collect();
+        let rows: Vec<_> =
+            manifest.growth.iter().filter(|row| row.simplified_vertices > 0).collect();
         let highest = rows
             .iter()
             .map(|row| factor(row.geo_vertices, row.simplified_vertices))
             .fold(1.0_f64, f64::max);
         let last = manifest.levels.last().map_or(0, |level| level.level);
         let mut chart = ChartBuilder::on(&area)
-            .caption("Vertices of clipped roads over the level's simplified lines", ("sans-serif", 20))
+            .caption(
+                "Vertices of clipped roads over the level's simplified lines",
+                ("sans-serif", 20),
+            )
             .margin(16)
             .x_label_area_size(44)
             .y_label_area_size(56)
@@ -48,7 +53,9 @@ pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
             let points: Vec<(f64, f64)> = rows
                 .iter()
                 .filter(|row| row.class == class)
-                .map(|row| (f64::from(row.level), factor(row.geo_vertices, row.simplified_vertices)))
+                .map(|row| {
+                    (f64::from(row.level), factor(row.geo_vertices, row.simplified_vertices))
+                })
                 .collect();
             if points.is_empty() {
                 continue;
@@ -57,9 +64,14 @@ pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
                 .draw_series(LineSeries::new(points.iter().copied(), colour.stroke_width(2)))?
                 .label(format!("FRC {class}"))
                 .legend(move |(x, y)| Circle::new((x + 8, y), 4, colour.filled()));
-            chart.draw_series(points.iter().map(|&point| Circle::new(point, 3, colour.filled())))?;
+            chart
+                .draw_series(points.iter().map(|&point| Circle::new(point, 3, colour.filled())))?;
         }
-        chart.configure_series_labels().background_style(WHITE.mix(0.9)).border_style(BLACK.mix(0.3)).draw()?;
+        chart
+            .configure_series_labels()
+            .background_style(WHITE.mix(0.9))
+            .border_style(BLACK.mix(0.3))
+            .draw()?;
         area.present()?;
     }
     Ok(svg)

@@ -23,7 +23,10 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
     let package = FilePackage::open(&args.package)?;
     let manifest = package.manifest();
     if manifest.growth.is_empty() {
-        return Err(Failure::unusable(format!("{} has no roads: it was built without --osm", args.package.display())));
+        return Err(Failure::unusable(format!(
+            "{} has no roads: it was built without --osm",
+            args.package.display()
+        )));
     }
     let mut out = io::stdout().lock();
     if args.json {
@@ -36,7 +39,10 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
     if let Some(path) = &args.svg {
         let svg = chart::growth(manifest).map_err(|error| Failure::new(ExitCode::Failed, error))?;
         fs::write(path, svg).map_err(|error| {
-            Failure::new(ExitCode::Failed, anyhow::Error::new(error).context(format!("cannot write {}", path.display())))
+            Failure::new(
+                ExitCode::Failed,
+                anyhow::Error::new(error).context(format!("cannot write {}", path.display())),
+            )
         })?;
     }
     Ok(ExitCode::Done)
@@ -113,7 +119,16 @@ fn line(name: String, row: &GrowthRow, factors: &Factors) -> [String; 11] {
 
 fn to_text(manifest: &Manifest) -> String {
     let headings = [
-        "", "source", "simplified", "clipped", "SV", "/simplified", "/source", "raw", "stored", "raw/source",
+        "",
+        "source",
+        "simplified",
+        "clipped",
+        "SV",
+        "/simplified",
+        "/source",
+        "raw",
+        "stored",
+        "raw/source",
         "stored/source",
     ];
     let mut levels = Table::new(headings);
@@ -167,9 +182,10 @@ fn to_json(manifest: &Manifest) -> serde_json::Value {
 }
 
 fn to_csv(manifest: &Manifest) -> String {
-    let mut text = "level,class,source_vertices,simplified_vertices,geo_vertices,sv_vertices,source_bytes,\
+    let mut text =
+        "level,class,source_vertices,simplified_vertices,geo_vertices,sv_vertices,source_bytes,\
                     simplified_bytes,geo_raw_bytes,geo_stored_bytes,sv_stored_bytes\n"
-        .to_owned();
+            .to_owned();
     for row in &manifest.growth {
         let cells = [
             u64::from(row.level),

@@ -39,9 +39,16 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
     };
     let frame = &manifest.frame;
     let [west, south, east, north] = manifest.wgs84_bounds.to_array();
-    say(format!("package      {}, format {}, by {}", bytes(package_bytes), manifest.format_version, manifest.generator));
+    say(format!(
+        "package      {}, format {}, by {}",
+        bytes(package_bytes),
+        manifest.format_version,
+        manifest.generator
+    ));
     say(format!("CRS          {}, point scale {:.6}", manifest.crs, manifest.point_scale));
-    say(format!("extent       {west:.5} {south:.5} {east:.5} {north:.5} (west south east north, degrees)"));
+    say(format!(
+        "extent       {west:.5} {south:.5} {east:.5} {north:.5} (west south east north, degrees)"
+    ));
     say(format!("grid         cell {} m, {}", frame.cell_m(), manifest.resampling));
     say(format!(
         "heights      quantum {} m, vertical datum {}",
@@ -57,13 +64,26 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
     ));
     for input in &manifest.inputs {
         let hash = input.sha256.get(..12).unwrap_or_default();
-        say(format!("input        {} {}, {}, sha256 {hash}…", input.kind, input.name, bytes(input.bytes)));
+        say(format!(
+            "input        {} {}, {}, sha256 {hash}…",
+            input.kind,
+            input.name,
+            bytes(input.bytes)
+        ));
     }
     for credit in &manifest.attribution {
         say(format!("attribution  {credit}"));
     }
     let mut levels = Table::new([
-        "level", "cell m", "tolerance m", "error m", "tiles", "triangles", "terrain", "B/triangle", "roads to FRC",
+        "level",
+        "cell m",
+        "tolerance m",
+        "error m",
+        "tiles",
+        "triangles",
+        "terrain",
+        "B/triangle",
+        "roads to FRC",
         "uncovered",
     ]);
     for level in &manifest.levels {
@@ -93,16 +113,28 @@ fn roads(manifest: &Manifest) -> String {
     let mut text = String::new();
     let mut table = Table::new(["roads", "count", "length"]);
     table.row(["read".into(), count(counts.roads_in), length(counts.roads_in_m)]);
-    table.row(["kept at the finest level".into(), count(counts.roads_kept), length(counts.roads_kept_m)]);
+    table.row([
+        "kept at the finest level".into(),
+        count(counts.roads_kept),
+        length(counts.roads_kept_m),
+    ]);
     for loss in &counts.roads_lost {
         table.row([format!("lost {}", loss.reason), count(loss.roads), length(loss.length_m)]);
     }
     for (class, &(roads, metres)) in counts.classes.iter().enumerate() {
         if roads > 0 {
-            table.row([format!("  FRC {class} ({})", manifest.settings.frc_table), count(roads), length(metres)]);
+            table.row([
+                format!("  FRC {class} ({})", manifest.settings.frc_table),
+                count(roads),
+                length(metres),
+            ]);
         }
     }
     text.push_str(&table.to_text());
+    let _ = writeln!(text, "highway ways in the extract: {}", count(counts.highways_in));
+    for (reason, number) in &counts.highways_left_out {
+        let _ = writeln!(text, "  not taken, {reason}: {}", count(*number));
+    }
     for (name, number) in &counts.defects {
         let _ = writeln!(text, "defect: {name}: {}", count(*number));
     }

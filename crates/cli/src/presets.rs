@@ -42,8 +42,8 @@ pub(crate) fn frc_table(name_or_path: &str) -> Result<FrcTable, Failure> {
 }
 
 fn parse_frc(source: &str, text: &str) -> Result<FrcTable, Failure> {
-    let file: FrcFile =
-        toml::from_str(text).map_err(|error| Failure::unusable(format!("FRC table {source:?}: {error}")))?;
+    let file: FrcFile = toml::from_str(text)
+        .map_err(|error| Failure::unusable(format!("FRC table {source:?}: {error}")))?;
     let classes = file.classes.into_iter().collect();
     FrcTable::new(file.name, classes, file.not_roads, file.least_class)
         .map_err(|error| Failure::unusable(format!("FRC table {source:?}: {error}")))
@@ -88,9 +88,11 @@ pub(crate) struct ResourceConfig {
 
 /// Reads a settings file.
 pub(crate) fn read_config(path: &Path) -> Result<Config, Failure> {
-    let text = fs::read_to_string(path)
-        .map_err(|error| Failure::unusable(format!("cannot read settings {}: {error}", path.display())))?;
-    toml::from_str(&text).map_err(|error| Failure::unusable(format!("settings {}: {error}", path.display())))
+    let text = fs::read_to_string(path).map_err(|error| {
+        Failure::unusable(format!("cannot read settings {}: {error}", path.display()))
+    })?;
+    toml::from_str(&text)
+        .map_err(|error| Failure::unusable(format!("settings {}: {error}", path.display())))
 }
 
 /// A filter from coarsest cells by class number.
@@ -98,10 +100,12 @@ pub(crate) fn class_filter(cells: &BTreeMap<String, f64>) -> Result<ClassFilter,
     let mut class_max_cell_m = [None; FunctionalRoadClass::COUNT];
     for (class, &cell_m) in cells {
         let slot = class.parse::<usize>().ok().and_then(|number| class_max_cell_m.get_mut(number));
-        *slot.ok_or_else(|| Failure::unusable(format!("class-max-cell: {class:?} is no class; classes are 0 to 8")))? =
-            Some(cell_m);
+        *slot.ok_or_else(|| {
+            Failure::unusable(format!("class-max-cell: {class:?} is no class; classes are 0 to 8"))
+        })? = Some(cell_m);
     }
-    ClassFilter::new(class_max_cell_m).map_err(|error| Failure::unusable(format!("class-max-cell: {error}")))
+    ClassFilter::new(class_max_cell_m)
+        .map_err(|error| Failure::unusable(format!("class-max-cell: {error}")))
 }
 
 #[cfg(test)]
@@ -123,7 +127,9 @@ mod tests {
     #[test]
     fn links_keep_their_parents_class_in_the_default_table() {
         let table = frc_table("default").unwrap();
-        for (value, class) in [("motorway_link", 0), ("trunk_link", 1), ("tertiary_link", 4), ("living_street", 6)] {
+        for (value, class) in
+            [("motorway_link", 0), ("trunk_link", 1), ("tertiary_link", 4), ("living_street", 6)]
+        {
             let class = FunctionalRoadClass::new(class).unwrap();
             assert_eq!(table.classify(&[("highway", value)]), Classified::Road(class));
         }

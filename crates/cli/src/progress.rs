@@ -68,8 +68,11 @@ impl Observer for Progress {
     fn begin(&self, stage: Stage, total: Option<u64>) {
         let bar = (self.manner == Manner::Bars).then(|| {
             let bar = total.map_or_else(ProgressBar::new_spinner, ProgressBar::new);
-            let template =
-                if total.is_some() { "{msg:22} {bar:30} {pos}/{len} {eta}" } else { "{msg:22} {spinner} {pos}" };
+            let template = if total.is_some() {
+                "{msg:22} {bar:30} {pos}/{len} {eta}"
+            } else {
+                "{msg:22} {spinner} {pos}"
+            };
             if let Ok(style) = ProgressStyle::with_template(template) {
                 bar.set_style(style);
             }
@@ -98,7 +101,10 @@ impl Observer for Progress {
     }
 
     fn end(&self, stage: Stage) {
-        let Some(running) = self.running.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
+        let Some(running) = self.running.lock().unwrap_or_else(PoisonError::into_inner).take()
+        else {
+            return;
+        };
         if let Some(bar) = &running.bar {
             bar.finish_and_clear();
         }

@@ -7,7 +7,8 @@ use std::{
 };
 
 use corniche_viewer::{
-    CameraRequest, RenderError, RenderRequest, RoadMethod, camera::Orientation, render, style::Style,
+    CameraRequest, RenderError, RenderRequest, RoadMethod, camera::Orientation, render,
+    style::Style,
 };
 
 use crate::{
@@ -65,7 +66,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
 
 /// Writes beside the target and renames: a picture that is cut off never stands at the target.
 fn write(target: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder =
+        target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut file = tempfile::NamedTempFile::new_in(folder)?;
     file.write_all(bytes)?;
     #[cfg(unix)]

@@ -19,7 +19,9 @@ impl Table {
     pub(crate) fn to_text(&self) -> String {
         let columns = self.rows[0].len();
         let widths: Vec<usize> = (0..columns)
-            .map(|column| self.rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0))
+            .map(|column| {
+                self.rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0)
+            })
             .collect();
         let mut text = String::new();
         for row in &self.rows {
@@ -63,7 +65,11 @@ pub(crate) fn bytes(size: u64) -> String {
 
 /// A length for people.
 pub(crate) fn length(metres: f64) -> String {
-    if metres.abs() < 1000.0 { format!("{metres:.1} m") } else { format!("{:.1} km", metres / 1000.0) }
+    if metres.abs() < 1000.0 {
+        format!("{metres:.1} m")
+    } else {
+        format!("{:.1} km", metres / 1000.0)
+    }
 }
 
 #[cfg(test)]

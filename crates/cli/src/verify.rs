@@ -60,9 +60,18 @@ fn to_text(report: &VerifyReport) -> String {
     }
     if !report.errors.is_empty() {
         let mut table = Table::new([
-            "level", "tiles", "nodes", "true error m", "stored/true min", "median", "p95", "uncovered nodes",
+            "level",
+            "tiles",
+            "nodes",
+            "true error m",
+            "stored/true min",
+            "median",
+            "p95",
+            "uncovered nodes",
         ]);
-        let ratio = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
+        let ratio = |value: Option<f64>| {
+            value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"))
+        };
         for figures in &report.errors {
             table.row([
                 figures.level.to_string(),

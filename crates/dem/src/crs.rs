@@ -33,7 +33,8 @@ pub(crate) struct VerticalCrs {
 impl Crs {
     pub(crate) fn from_spatial_ref(reference: &SpatialRef) -> Result<Self, DemError> {
         let name = reference.name().unwrap_or_else(|| "unnamed".to_owned());
-        let wkt = wkt2(reference).map_err(|source| DemError::Wkt { name: name.clone(), source })?;
+        let wkt = wkt2(reference)
+            .map_err(|source| DemError::Wkt { name: name.clone(), source: Box::new(source) })?;
         let proj = reference.to_proj4().unwrap_or_default();
         let projected = reference.is_projected();
         let is_web_mercator = proj.contains("+proj=merc") && proj.contains("+b=6378137")
@@ -49,27 +50,38 @@ impl Crs {
     }
 
     /// From "EPSG:n" or WKT, as `option` gave it.
-    pub(crate) fn from_text(option: &'static str, text: &str) -> Result<(Self, VerticalCrs), DemError> {
-        let reference = SpatialRef::from_definition(text)
-            .map_err(|source| DemError::CrsText { option, text: text.to_owned(), source })?;
+    pub(crate) fn from_text(
+        option: &'static str,
+        text: &str,
+    ) -> Result<(Self, VerticalCrs), DemError> {
+        let reference = SpatialRef::from_definition(text).map_err(|source| DemError::CrsText {
+            option,
+            text: text.to_owned(),
+            source: Box::new(source),
+        })?;
         match Self::horizontal(&reference)? {
             Some(found) => Ok(found),
             None => Err(DemError::CrsText {
                 option,
                 text: text.to_owned(),
-                source: GdalError::BadArgument("neither projected nor geographic".to_owned()),
+                source: Box::new(GdalError::BadArgument(
+                    "neither projected nor geographic".to_owned(),
+                )),
             }),
         }
     }
 
     /// The horizontal part of a system and what it says about heights; `None` when it is neither projected nor
     /// geographic.
-    pub(crate) fn horizontal(reference: &SpatialRef) -> Result<Option<(Self, VerticalCrs)>, DemError> {
+    pub(crate) fn horizontal(
+        reference: &SpatialRef,
+    ) -> Result<Option<(Self, VerticalCrs)>, DemError> {
         let mut reference = reference.clone();
         let mut vertical = VerticalCrs::default();
         if reference.is_compound() {
             let name = reference.name().unwrap_or_default();
-            let wkt = wkt2(&reference).map_err(|source| DemError::Wkt { name: name.clone(), source })?;
+            let wkt = wkt2(&reference)
+                .map_err(|source| DemError::Wkt { name: name.clone(), source: Box::new(source) })?;
             let parts = children(&wkt);
             if let Some(text) = parts.iter().find(|part| part.starts_with("VERT")) {
                 vertical.datum = quoted(text).map(str::to_owned);
@@ -77,10 +89,13 @@ impl Crs {
             }
             // The heights' own system must not take part: it would ask PROJ for geoid grids.
             let horizontal = ["PROJ", "GEOG", "GEOD", "BOUNDCRS"];
-            let Some(text) = parts.iter().find(|part| horizontal.iter().any(|word| part.starts_with(word))) else {
+            let Some(text) =
+                parts.iter().find(|part| horizontal.iter().any(|word| part.starts_with(word)))
+            else {
                 return Ok(None);
             };
-            reference = SpatialRef::from_wkt(text).map_err(|source| DemError::Wkt { name, source })?;
+            reference = SpatialRef::from_wkt(text)
+                .map_err(|source| DemError::Wkt { name, source: Box::new(source) })?;
         }
         if !(reference.is_projected() || reference.is_geographic()) || reference.is_local() {
             return Ok(None);
@@ -92,7 +107,7 @@ impl Crs {
         let reference = SpatialRef::from_epsg(4326).map_err(|source| DemError::CrsText {
             option: "the built-in",
             text: "EPSG:4326".to_owned(),
-            source,
+            source: Box::new(source),
         })?;
         Self::from_spatial_ref(&reference)
     }
@@ -106,6 +121,11 @@ impl Crs {
 
     pub(crate) fn is_projected(&self) -> bool {
         self.turn.is_none()
+    }
+
+    /// Whether its coordinates are metres; meaningful for a projected system.
+    pub(crate) fn is_metric(&self) -> bool {
+        (self.unit_m - 1.0).abs() < 1e-12
     }
 
     /// Whether both describe the same system, whatever they call it.
@@ -139,7 +159,7 @@ impl Crs {
         let text = format!("PROJCS[\"{} (metres)\",{}]", quoted(&wkt)?, parts.join(","));
         let metric = SpatialRef::from_wkt(&text).ok()?;
         let found = Self::from_spatial_ref(&metric).ok()?;
-        (found.unit_m == 1.0).then_some(found)
+        found.is_metric().then_some(found)
     }
 }
 
@@ -217,7 +237,10 @@ mod tests {
         let truth = points.map(|[x, y]| [x * feet.unit_m, y * feet.unit_m]);
         operation.apply(&mut points).unwrap();
         for (point, truth) in points.iter().zip(truth) {
-            assert!((point[0] - truth[0]).hypot(point[1] - truth[1]) < 1e-4, "{point:?} is not {truth:?}");
+            assert!(
+                (point[0] - truth[0]).hypot(point[1] - truth[1]) < 1e-4,
+                "{point:?} is not {truth:?}"
+            );
         }
     }
 

@@ -8,6 +8,8 @@ const ON_SAMPLE: f64 = 1e-6;
 const AVERAGE_FROM: f64 = 2.0;
 /// A node has a height when samples of at least this weight do.
 const LEAST_WEIGHT: f64 = 0.5;
+/// Samples less spread out than this, in samples squared, do not make a plane.
+const LEAST_SPREAD: f64 = 1e-3;
 
 /// How heights at nodes come from samples.
 ///
@@ -48,7 +50,8 @@ impl Samples<'_> {
         let SampleRect { min, max } = self.rect;
         let is_inside = column >= min[0] && column < max[0] && row >= min[1] && row < max[1];
         if is_inside {
-            self.heights_m[(row - min[1]) as usize * self.rect.columns() + (column - min[0]) as usize]
+            self.heights_m
+                [(row - min[1]) as usize * self.rect.columns() + (column - min[0]) as usize]
         } else {
             f64::NAN
         }
@@ -58,11 +61,13 @@ impl Samples<'_> {
 impl Kernel {
     /// For cells that are `samples_per_node` samples wide, along columns and rows.
     pub(crate) fn new(samples_per_node: [f64; 2]) -> Self {
-        Self { width: samples_per_node.map(|width| if width >= AVERAGE_FROM { width } else { 0.0 }) }
+        Self {
+            width: samples_per_node.map(|width| if width >= AVERAGE_FROM { width } else { 0.0 }),
+        }
     }
 
     pub(crate) fn is_average(&self) -> bool {
-        self.width != [0.0; 2]
+        self.width.iter().any(|&width| width > 0.0)
     }
 
     /// Samples on either side that a node's height can depend on, columns and rows.
@@ -71,12 +76,13 @@ impl Kernel {
     }
 
     /// The height at a position among the samples; NaN in a void.
-    pub(crate) fn height_m(&self, samples: &Samples<'_>, at: [f64; 2], scratch: &mut Scratch) -> f64 {
-        if self.is_average() {
-            self.average(samples, at, scratch)
-        } else {
-            bilinear(samples, at)
-        }
+    pub(crate) fn height_m(
+        &self,
+        samples: &Samples<'_>,
+        at: [f64; 2],
+        scratch: &mut Scratch,
+    ) -> f64 {
+        if self.is_average() { self.average(samples, at, scratch) } else { bilinear(samples, at) }
     }
 
     fn average(&self, samples: &Samples<'_>, at: [f64; 2], scratch: &mut Scratch) -> f64 {
@@ -106,7 +112,8 @@ impl Kernel {
 }
 
 fn bilinear(samples: &Samples<'_>, at: [f64; 2]) -> f64 {
-    let ([column, row], [t, s]) = ([at[0], at[1]].map(|x| split(x).0), [at[0], at[1]].map(|x| split(x).1));
+    let ([column, row], [t, s]) =
+        ([at[0], at[1]].map(|x| split(x).0), [at[0], at[1]].map(|x| split(x).1));
     // A sample without weight must not matter: it may be void or outside.
     let along = |row: i64| {
         let from = samples.height_m(column, row);
@@ -118,7 +125,11 @@ fn bilinear(samples: &Samples<'_>, at: [f64; 2]) -> f64 {
 /// The sample at or before a position and the fraction beyond it.
 fn split(at: f64) -> (i64, f64) {
     let nearest = at.round();
-    if (at - nearest).abs() <= ON_SAMPLE { (nearest as i64, 0.0) } else { (at.floor() as i64, at - at.floor()) }
+    if (at - nearest).abs() <= ON_SAMPLE {
+        (nearest as i64, 0.0)
+    } else {
+        (at.floor() as i64, at - at.floor())
+    }
 }
 
 impl AxisWeights {
@@ -151,7 +162,12 @@ fn hat_integral(x: f64) -> f64 {
 }
 
 /// Height at `at` of the plane that fits the samples with data best, by weight.
-fn plane_fit(samples: &Samples<'_>, at: [f64; 2], columns: &AxisWeights, rows: &AxisWeights) -> f64 {
+fn plane_fit(
+    samples: &Samples<'_>,
+    at: [f64; 2],
+    columns: &AxisWeights,
+    rows: &AxisWeights,
+) -> f64 {
     // Sums of w, w·x, w·y, w·xx, w·xy, w·yy, w·h, w·xh, w·yh about the node.
     let mut sums = [0.0_f64; 9];
     for (row, row_weight) in (rows.first..).zip(&rows.weights) {
@@ -170,11 +186,15 @@ fn plane_fit(samples: &Samples<'_>, at: [f64; 2], columns: &AxisWeights, rows: &
     }
     let [w, x, y, xx, xy, yy, h, xh, yh] = sums;
     let (mean_x, mean_y, mean_h) = (x / w, y / w, h / w);
-    let (cxx, cxy, cyy) = (xx / w - mean_x * mean_x, xy / w - mean_x * mean_y, yy / w - mean_y * mean_y);
+    let (cxx, cxy, cyy) =
+        (xx / w - mean_x * mean_x, xy / w - mean_x * mean_y, yy / w - mean_y * mean_y);
     let (cxh, cyh) = (xh / w - mean_x * mean_h, yh / w - mean_y * mean_h);
     let determinant = cxx * cyy - cxy * cxy;
-    if determinant <= 1e-6 * cxx * cyy || determinant.is_nan() {
-        // Samples on one line do not say how the ground tilts.
+    // Samples on one line do not say how the ground tilts; what is left of their spread across it is rounding.
+    if cxx.min(cyy) < LEAST_SPREAD
+        || determinant <= LEAST_SPREAD * cxx * cyy
+        || determinant.is_nan()
+    {
         return f64::NAN;
     }
     let slope_x = (cxh * cyy - cyh * cxy) / determinant;
@@ -215,7 +235,8 @@ mod tests {
     fn a_sample_without_weight_does_not_matter() {
         let (rect, heights_m) = grid(|x, y| if x == 11 { f64::NAN } else { plane(x, y) });
         let samples = Samples { rect, heights_m: &heights_m };
-        let at = |c: f64| Kernel::new([1.0; 2]).height_m(&samples, [c, 7.25], &mut Scratch::default());
+        let at =
+            |c: f64| Kernel::new([1.0; 2]).height_m(&samples, [c, 7.25], &mut Scratch::default());
         assert!((at(10.0) - 115.5).abs() < 1e-9 && (at(12.0 - 1e-9) - 121.5).abs() < 1e-6);
         assert!(at(10.1).is_nan() && at(11.0).is_nan() && at(39.5).is_nan() && !at(39.0).is_nan());
     }

@@ -1,1 +1,37 @@
-//! (skeleton)
+//! Elevation files to windows of heights on a package's global grid.
+//!
+//! ```text
+//!   files ──► Dem::open ──► Dem::plan ──► Dem::reader ──► Reader::window ──► HeightGrid
+//!            (georeference,  (working CRS,                (mosaic, units,
+//!             CRS, units)     cell, extent)                interpolation, voids)
+//! ```
+//!
+//! A node has the same height, bit for bit, whichever window it is read through: its position comes from its
+//! global index, its height from samples around that position, and a filled void from nodes around it.
+//!
+//! This crate never triangulates, never uses GDAL's warper, and never guesses what a sentinel or a unit means.
+
+mod dem;
+mod source;
+
+mod plan;
+mod reader;
+
+mod crs;
+mod fill;
+mod kernel;
+mod mosaic;
+mod operation;
+mod outline;
+mod positions;
+mod projection;
+mod scale;
+
+mod error;
+
+pub use dem::{Dem, limit_block_cache};
+pub use error::DemError;
+pub use plan::{GridPlan, PlanOptions, Resampling};
+pub use projection::DemProjection;
+pub use reader::{DemWindow, Reader, SampleBlock};
+pub use source::OpenOptions;

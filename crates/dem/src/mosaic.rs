@@ -71,7 +71,8 @@ pub(crate) fn group(sources: &[Source]) -> Vec<Mosaic> {
     let mut mosaics: Vec<Mosaic> = Vec::new();
     for (index, source) in sources.iter().enumerate() {
         let size = [source.columns, source.rows];
-        let place = mosaics.iter_mut().find_map(|mosaic| mosaic.place(source).map(|min| (mosaic, min)));
+        let place =
+            mosaics.iter_mut().find_map(|mosaic| mosaic.place(source).map(|min| (mosaic, min)));
         let rect = |min: [i64; 2]| SampleRect { min, max: [min[0] + size[0], min[1] + size[1]] };
         if let Some((mosaic, min)) = place {
             mosaic.extent = mosaic.extent.union(&rect(min));
@@ -99,7 +100,9 @@ impl Mosaic {
     /// Where the file's first sample lies on this grid; `None` when it is of another one.
     fn place(&self, source: &Source) -> Option<[i64; 2]> {
         let own = from_centres(&source.crs_from_pixel);
-        let corner = |c: i64, r: i64| self.crs_from_sample.pixel_from_crs(own.crs_from_pixel([c as f64, r as f64]));
+        let corner = |c: i64, r: i64| {
+            self.crs_from_sample.pixel_from_crs(own.crs_from_pixel([c as f64, r as f64]))
+        };
         let first = corner(0, 0)?;
         let min = first.map(f64::round);
         let [columns, rows] = [source.columns, source.rows];

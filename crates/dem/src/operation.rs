@@ -50,14 +50,15 @@ impl Operation {
         let transform = self.transform().map_err(|source| DemError::Transform {
             from: self.from.label.clone(),
             to: self.to.label.clone(),
-            source,
+            source: Box::new(source),
         })?;
         let mut xs: Vec<f64> = points.iter().map(|point| point[0]).collect();
         let mut ys: Vec<f64> = points.iter().map(|point| point[1]).collect();
         // An error here means that some positions have no image; those come out as infinite.
         let _some_failed = transform.transform_coords(&mut xs, &mut ys, &mut []);
         for ((point, x), y) in points.iter_mut().zip(xs).zip(ys) {
-            let image_exists = x.is_finite() && y.is_finite() && point[0].is_finite() && point[1].is_finite();
+            let image_exists =
+                x.is_finite() && y.is_finite() && point[0].is_finite() && point[1].is_finite();
             *point = if image_exists { [x, y] } else { [f64::NAN; 2] };
         }
         Ok(())

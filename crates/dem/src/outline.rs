@@ -36,7 +36,11 @@ pub(crate) fn positions(mosaic: &Mosaic, rect: &SampleRect) -> Vec<[f64; 2]> {
 
 /// The rectangle around a file's samples in the CRS that `operation` leads to, the bend between rim positions
 /// included; empty where the CRS does not reach.
-pub(crate) fn bounds(mosaic: &Mosaic, rect: &SampleRect, operation: &Operation) -> Result<Bounds, DemError> {
+pub(crate) fn bounds(
+    mosaic: &Mosaic,
+    rect: &SampleRect,
+    operation: &Operation,
+) -> Result<Bounds, DemError> {
     let mut points = positions(mosaic, rect);
     operation.apply(&mut points)?;
     let mut bounds = Bounds::EMPTY;
@@ -65,7 +69,10 @@ pub(crate) fn bounds(mosaic: &Mosaic, rect: &SampleRect, operation: &Operation) 
 
 /// All files' outlines in WGS84 and the rectangle around them. Longitudes are continuous: past the antimeridian
 /// they go on beyond ±180.
-pub(crate) fn wgs84(mosaics: &[Mosaic], operations: &[Operation]) -> Result<(Vec<[f64; 2]>, Bounds), DemError> {
+pub(crate) fn wgs84(
+    mosaics: &[Mosaic],
+    operations: &[Operation],
+) -> Result<(Vec<[f64; 2]>, Bounds), DemError> {
     let mut all = Vec::new();
     let mut bounds = Bounds::EMPTY;
     let mut first_lon = None;
@@ -76,7 +83,8 @@ pub(crate) fn wgs84(mosaics: &[Mosaic], operations: &[Operation]) -> Result<(Vec
             let mut previous = first_lon;
             for point in points.iter_mut().filter(|point| point[0].is_finite()) {
                 if let Some(near) = previous {
-                    point[0] -= 360.0 * ((point[0] - near) / 360.0_f64).round();
+                    let turns: f64 = (point[0] - near) / 360.0;
+                    point[0] -= 360.0 * turns.round();
                 }
                 previous = Some(point[0]);
                 first_lon = first_lon.or(previous);

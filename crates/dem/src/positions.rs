@@ -48,12 +48,19 @@ impl NodePositions {
         [south_west, north_east]: [NodeIndex; 2],
         samples_per_node: f64,
     ) -> Result<Self, DemError> {
-        let middle = [0, 1].map(|axis| (mosaic.extent.min[axis] + mosaic.extent.max[axis] - 1) as f64 / 2.0);
-        let turn = mosaic.crs.turn.map(|turn| [turn, mosaic.crs_from_sample.crs_from_pixel(middle)[0]]);
+        let middle =
+            [0, 1].map(|axis| (mosaic.extent.min[axis] + mosaic.extent.max[axis] - 1) as f64 / 2.0);
+        let turn =
+            mosaic.crs.turn.map(|turn| [turn, mosaic.crs_from_sample.crs_from_pixel(middle)[0]]);
         let crs_from_sample = mosaic.crs_from_sample;
         let scale = samples_per_node.min(1.0);
-        let mut positions =
-            Self { crs_from_working, crs_from_sample, turn, step: 1, tolerance: PLAN_TOLERANCE * scale };
+        let mut positions = Self {
+            crs_from_working,
+            crs_from_sample,
+            turn,
+            step: 1,
+            tolerance: PLAN_TOLERANCE * scale,
+        };
         for step in STEPS {
             positions.step = step;
             if positions.is_smooth(frame, [south_west, north_east])? {
@@ -101,14 +108,17 @@ impl NodePositions {
             exact.extend(0..positions.len());
         } else {
             let first = [west.div_euclid(step), south.div_euclid(step)];
-            let count = [east.div_euclid(step) - first[0] + 1, north.div_euclid(step) - first[1] + 1];
+            let count =
+                [east.div_euclid(step) - first[0] + 1, north.div_euclid(step) - first[1] + 1];
             let lattice = self.lattice(frame, first, count.map(|meshes| meshes as usize))?;
             for mesh_j in 0..count[1] {
                 for mesh_i in 0..count[0] {
                     let [i0, j0] = [(first[0] + mesh_i) * step, (first[1] + mesh_j) * step];
                     let columns = i0.max(west)..(i0 + step).min(east + 1);
                     let rows = j0.max(south)..(j0 + step).min(north + 1);
-                    let at = |i: i64, j: i64| (north - j) as usize * window.columns + (i - west) as usize;
+                    let at = |i: i64, j: i64| {
+                        (north - j) as usize * window.columns + (i - west) as usize
+                    };
                     let (column, row) = (mesh_i as usize, mesh_j as usize);
                     if !lattice.is_smooth(column, row, self.tolerance) {
                         rows.for_each(|j| exact.extend(columns.clone().map(|i| at(i, j))));
@@ -117,7 +127,8 @@ impl NodePositions {
                     let corners = lattice.corners(column, row);
                     for j in rows {
                         let v = (j - j0) as f64 / step as f64;
-                        let (from, to) = (mix(corners[0], corners[2], v), mix(corners[1], corners[3], v));
+                        let (from, to) =
+                            (mix(corners[0], corners[2], v), mix(corners[1], corners[3], v));
                         for i in columns.clone() {
                             positions[at(i, j)] = mix(from, to, (i - i0) as f64 / step as f64);
                         }
@@ -154,13 +165,19 @@ impl NodePositions {
         Ok(())
     }
 
-    fn lattice(&self, frame: &Frame, first: [i64; 2], meshes: [usize; 2]) -> Result<Lattice, DemError> {
+    fn lattice(
+        &self,
+        frame: &Frame,
+        first: [i64; 2],
+        meshes: [usize; 2],
+    ) -> Result<Lattice, DemError> {
         let columns = 2 * meshes[0] + 1;
         let half = self.step / 2;
         let mut halves = Vec::with_capacity(columns * (2 * meshes[1] + 1));
         for row in 0..=2 * meshes[1] as i64 {
             for column in 0..columns as i64 {
-                let (i, j) = (first[0] * self.step + column * half, first[1] * self.step + row * half);
+                let (i, j) =
+                    (first[0] * self.step + column * half, first[1] * self.step + row * half);
                 halves.push([frame.x_m(i), frame.y_m(j)]);
             }
         }

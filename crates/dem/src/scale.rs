@@ -19,9 +19,13 @@ pub(crate) struct Scale {
 }
 
 /// Scale at each of `points_m`; `None` where the CRS ends.
-pub(crate) fn scales(wgs84_from_crs: &Operation, points_m: &[[f64; 2]]) -> Result<Vec<Option<Scale>>, DemError> {
+pub(crate) fn scales(
+    wgs84_from_crs: &Operation,
+    points_m: &[[f64; 2]],
+) -> Result<Vec<Option<Scale>>, DemError> {
     let diagonal = HALF_SPAN_M / std::f64::consts::SQRT_2;
-    let ways = [[HALF_SPAN_M, 0.0], [0.0, HALF_SPAN_M], [diagonal, diagonal], [diagonal, -diagonal]];
+    let ways =
+        [[HALF_SPAN_M, 0.0], [0.0, HALF_SPAN_M], [diagonal, diagonal], [diagonal, -diagonal]];
     let mut ends = Vec::with_capacity(points_m.len() * 8);
     for [x, y] in points_m {
         for [dx, dy] in ways {
@@ -77,7 +81,8 @@ fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 }
 
 fn normal([lon, lat]: [f64; 2]) -> [f64; 3] {
-    let ((sin_lon, cos_lon), (sin_lat, cos_lat)) = (lon.to_radians().sin_cos(), lat.to_radians().sin_cos());
+    let ((sin_lon, cos_lon), (sin_lat, cos_lat)) =
+        (lon.to_radians().sin_cos(), lat.to_radians().sin_cos());
     [cos_lat * cos_lon, cos_lat * sin_lon, sin_lat]
 }
 

@@ -55,7 +55,7 @@ impl Source {
     pub(crate) fn open(path: &Path, options: &OpenOptions) -> Result<Self, DemError> {
         let dataset = open_dataset(path)?;
         let own = || path.to_path_buf();
-        let broken = |source: GdalError| DemError::Open { path: own(), source };
+        let broken = |source: GdalError| DemError::Open { path: own(), source: Box::new(source) };
         if dataset.raster_count() == 0 {
             return Err(DemError::NoBand { path: own() });
         }
@@ -63,20 +63,27 @@ impl Source {
         refuse_imagery(path, &dataset, &band)?;
         let (columns, rows) = dataset.raster_size();
         let (mut crs_from_pixel, is_tied) = geo_transform(path, &dataset)?;
-        let reference = if is_tied { dataset.gcp_spatial_ref() } else { dataset.spatial_ref().ok() };
+        let reference =
+            if is_tied { dataset.gcp_spatial_ref() } else { dataset.spatial_ref().ok() };
         let (mut crs, vertical) = crs_of(path, reference, options)?;
-        if crs.is_projected() && crs.unit_m != 1.0 {
+        if crs.is_projected() && !crs.is_metric() {
             let unit_m = crs.unit_m;
             // Where the text does not lend itself to a change of unit the plan goes by another CRS.
-            if let Some(metric) = crs.in_metres().filter(|metric| same_places(&crs, metric, &crs_from_pixel)) {
+            if let Some(metric) =
+                crs.in_metres().filter(|metric| same_places(&crs, metric, &crs_from_pixel))
+            {
                 crs = metric;
-                crs_from_pixel.coefficients = crs_from_pixel.coefficients.map(|value| value * unit_m);
+                crs_from_pixel.coefficients =
+                    crs_from_pixel.coefficients.map(|value| value * unit_m);
             }
         }
         if crs_from_pixel.pixel_from_crs([0.0, 0.0]).is_none()
             || !crs_from_pixel.coefficients.iter().all(|value| value.is_finite())
         {
-            return Err(DemError::GeoTransform { path: own(), coefficients: crs_from_pixel.coefficients });
+            return Err(DemError::GeoTransform {
+                path: own(),
+                coefficients: crs_from_pixel.coefficients,
+            });
         }
         Ok(Self {
             path: own(),
@@ -98,7 +105,7 @@ impl Source {
         heights_m: &mut Vec<f64>,
     ) -> Result<(), DemError> {
         let (start, size) = ((column as isize, row as isize), (columns, rows));
-        let read = || {
+        let mut read = || {
             heights_m.resize(columns * rows, 0.0);
             let band = dataset.rasterband(1)?;
             band.read_into_slice(start, size, size, heights_m, None)?;
@@ -113,7 +120,14 @@ impl Source {
             Ok(())
         };
         let path = || self.path.clone();
-        read().map_err(|source| DemError::Read { path: path(), column, row, columns, rows, source })?;
+        read().map_err(|source| DemError::Read {
+            path: path(),
+            column,
+            row,
+            columns,
+            rows,
+            source: Box::new(source),
+        })?;
         self.values.convert(heights_m);
         Ok(())
     }
@@ -123,16 +137,22 @@ impl Source {
 pub(crate) fn open_dataset(path: &Path) -> Result<Dataset, DemError> {
     let own = || path.to_path_buf();
     // GDAL's virtual files and subdatasets ("/vsizip/…", "NETCDF:…") are no names of files.
-    let is_virtual = path.to_str().is_some_and(|text| text.starts_with("/vsi") || text.contains(':'));
+    let is_virtual =
+        path.to_str().is_some_and(|text| text.starts_with("/vsi") || text.contains(':'));
     match std::fs::metadata(path) {
-        Ok(found) if found.is_file() && found.len() == 0 => return Err(DemError::Empty { path: own() }),
-        // Some formats are folders; GDAL says below whether this is one of them.
-        Ok(_) => {}
+        Ok(found) if found.is_file() && found.len() == 0 => {
+            return Err(DemError::Empty { path: own() });
+        }
         Err(source) if !is_virtual => return Err(DemError::Missing { path: own(), source }),
-        Err(_) => {}
+        // Some formats are folders; GDAL says below whether this is one of them.
+        Ok(_) | Err(_) => {}
     }
     Dataset::open(path).map_err(|source| {
-        if path.is_dir() { DemError::NotAFile { path: own() } } else { DemError::Open { path: own(), source } }
+        if path.is_dir() {
+            DemError::NotAFile { path: own() }
+        } else {
+            DemError::Open { path: own(), source: Box::new(source) }
+        }
     })
 }
 
@@ -163,12 +183,13 @@ fn refuse_imagery(path: &Path, dataset: &Dataset, band: &RasterBand<'_>) -> Resu
 
 /// The geotransform, or the one that tie points agree upon; `true` for the latter.
 ///
-/// GDAL refers both to pixel *corners*, whether the file says PixelIsArea or PixelIsPoint.
+/// GDAL refers both to pixel *corners*, whether the file says `PixelIsArea` or `PixelIsPoint`.
 fn geo_transform(path: &Path, dataset: &Dataset) -> Result<(GeoTransform, bool), DemError> {
     if let Ok(coefficients) = dataset.geo_transform() {
         return Ok((GeoTransform { coefficients }, false));
     }
-    let ties: Vec<[f64; 4]> = dataset.gcps().iter().map(|tie| [tie.pixel(), tie.line(), tie.x(), tie.y()]).collect();
+    let ties: Vec<[f64; 4]> =
+        dataset.gcps().iter().map(|tie| [tie.pixel(), tie.line(), tie.x(), tie.y()]).collect();
     match affine_through(&ties) {
         Some(transform) => Ok((transform, true)),
         None => Err(DemError::NoGeoTransform { path: path.to_path_buf() }),
@@ -183,7 +204,9 @@ fn affine_through(ties: &[[f64; 4]]) -> Option<GeoTransform> {
     let mean = |axis: usize| ties.iter().map(|tie| tie[axis]).sum::<f64>() / ties.len() as f64;
     let center = [mean(0), mean(1), mean(2), mean(3)];
     // Normal equations of the two planes x(column, row), y(column, row) about the centre.
-    let sum = |a: usize, b: usize| ties.iter().map(|t| (t[a] - center[a]) * (t[b] - center[b])).sum::<f64>();
+    let sum = |a: usize, b: usize| {
+        ties.iter().map(|t| (t[a] - center[a]) * (t[b] - center[b])).sum::<f64>()
+    };
     let (cc, cr, rr) = (sum(0, 0), sum(0, 1), sum(1, 1));
     let determinant = cc * rr - cr * cr;
     if determinant.abs() <= 1e-9 * cc * rr {
@@ -259,9 +282,15 @@ impl Values {
         let unit = band.unit();
         let unit_m = match unit.trim() {
             "" => vertical.unit_m.unwrap_or(1.0),
-            named => unit_m(named).ok_or_else(|| DemError::Unit { path: path.to_path_buf(), unit: named.to_owned() })?,
+            named => unit_m(named).ok_or_else(|| DemError::Unit {
+                path: path.to_path_buf(),
+                unit: named.to_owned(),
+            })?,
         };
-        let flags = band.mask_flags().map_err(|source| DemError::Open { path: path.to_path_buf(), source })?;
+        let flags = band.mask_flags().map_err(|source| DemError::Open {
+            path: path.to_path_buf(),
+            source: Box::new(source),
+        })?;
         Ok(Self {
             nodata,
             is_f32: kind == GdalDataType::Float32,
@@ -273,6 +302,7 @@ impl Values {
     }
 
     /// Stored values to metres, in place; what is no height becomes NaN.
+    #[expect(clippy::float_cmp, reason = "a sentinel is one value, not a neighbourhood")]
     fn convert(&self, values: &mut [f64]) {
         for value in values {
             let is_void = !value.is_finite()
@@ -281,7 +311,8 @@ impl Values {
                     // A 32-bit file holds its sentinel rounded to 32 bits; its tag has all digits.
                     *value == sentinel || self.is_f32 && *value == f64::from(sentinel as f32)
                 });
-            *value = if is_void { f64::NAN } else { (*value * self.scale + self.offset) * self.unit_m };
+            *value =
+                if is_void { f64::NAN } else { (*value * self.scale + self.offset) * self.unit_m };
         }
     }
 }
@@ -295,8 +326,8 @@ fn unit_m(name: &str) -> Option<f64> {
         "cm" | "centimetre" | "centimeter" | "centimetres" | "centimeters" => 0.01,
         "mm" | "millimetre" | "millimeter" => 0.001,
         "ft" | "foot" | "feet" | "international foot" | "international feet" => 0.3048,
-        "us-ft" | "us ft" | "us_ft" | "ftus" | "us survey foot" | "us survey feet" | "us foot" | "us feet"
-        | "foot_us" | "sft" | "survey foot" | "us_survey_foot" => 1200.0 / 3937.0,
+        "us-ft" | "us ft" | "us_ft" | "ftus" | "us survey foot" | "us survey feet" | "us foot"
+        | "us feet" | "foot_us" | "sft" | "survey foot" | "us_survey_foot" => 1200.0 / 3937.0,
         _ => return None,
     })
 }
@@ -332,7 +363,8 @@ mod tests {
             unit_m: 0.3048,
             has_mask: false,
         };
-        let mut stored = [f64::from(-3.4e38_f32), f64::from(-9999.9_f32), 5.0, f64::INFINITY, 4e-27];
+        let mut stored =
+            [f64::from(-3.4e38_f32), f64::from(-9999.9_f32), 5.0, f64::INFINITY, 4e-27];
         values.convert(&mut stored);
         let heights: Vec<bool> = stored.iter().map(|height_m| height_m.is_nan()).collect();
         assert_eq!(heights, [true, true, false, true, false]);

@@ -1,5 +1,7 @@
 //! How many TIN edges a second a line can be laid across, and what clipping and extruding cost.
 
+#![expect(missing_docs, reason = "criterion's macros make public functions without")]
+
 use std::hint::black_box;
 
 use corniche_drape::{DrapedVertex, clip_closed, drape, extrude};

@@ -50,7 +50,8 @@ fn ground_range_m(
 ) -> Option<[f64; 2]> {
     // One step more than asked: rounding to f64 must not lose ground at the rim.
     let margin = margin_steps.max(0) + 1;
-    surface.triangles_near(LatticeBounds::of(&[p, q])?.expanded(margin), near);
+    // A corner of the rectangle is √2 margins from its end.
+    surface.triangles_near(LatticeBounds::of(&[p, q])?.expanded(margin + margin / 2 + 1), near);
     let length = p.distance_steps(q);
     let (east, north) = ((q.u - p.u) as f64 / length, (q.v - p.v) as f64 / length);
     let margin = margin as f64;

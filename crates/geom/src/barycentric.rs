@@ -17,6 +17,7 @@ pub fn barycentric(p: [f64; 2], a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> [f64; 
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "corners are exact")]
 mod tests {
     use super::*;
 

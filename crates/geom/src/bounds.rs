@@ -17,8 +17,12 @@ pub struct Bounds {
 
 impl Bounds {
     /// The rectangle that holds nothing; [`Bounds::include`] grows it.
-    pub const EMPTY: Self =
-        Self { min_x: f64::INFINITY, min_y: f64::INFINITY, max_x: f64::NEG_INFINITY, max_y: f64::NEG_INFINITY };
+    pub const EMPTY: Self = Self {
+        min_x: f64::INFINITY,
+        min_y: f64::INFINITY,
+        max_x: f64::NEG_INFINITY,
+        max_y: f64::NEG_INFINITY,
+    };
 
     /// Grows to hold `point`.
     pub fn include(&mut self, point: [f64; 2]) {

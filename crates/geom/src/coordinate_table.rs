@@ -39,7 +39,11 @@ impl TryFrom<TableRecord> for CoordinateTable {
             && samples_deg.len() == size * size
             && bounds.width() > 0.0
             && bounds.height() > 0.0
-            && bounds.to_array().iter().chain(samples_deg.as_flattened()).all(|value| value.is_finite());
+            && bounds
+                .to_array()
+                .iter()
+                .chain(samples_deg.as_flattened())
+                .all(|value| value.is_finite());
         if usable {
             Ok(Self { bounds, size, samples_deg })
         } else {
@@ -58,7 +62,9 @@ pub enum CoordinateTableError {
     #[error("the table of longitudes and latitudes is damaged")]
     Damaged,
     /// No table of permitted size is exact enough: the extent touches a pole, say.
-    #[error("longitude and latitude cannot be tabulated to {tolerance_m} m: {reached_m} m is the best reached")]
+    #[error(
+        "longitude and latitude cannot be tabulated to {tolerance_m} m: {reached_m} m is the best reached"
+    )]
     TooCurved {
         /// The error asked for.
         tolerance_m: f64,
@@ -96,7 +102,11 @@ impl CoordinateTable {
         }
     }
 
-    fn of_size(projection: &dyn Projection, bounds: Bounds, size: usize) -> Result<Self, CoordinateTableError> {
+    fn of_size(
+        projection: &dyn Projection,
+        bounds: Bounds,
+        size: usize,
+    ) -> Result<Self, CoordinateTableError> {
         let last = (size - 1) as f64;
         let mut samples_deg = Vec::with_capacity(size * size);
         for row in 0..size {
@@ -147,8 +157,10 @@ impl CoordinateTable {
     #[must_use]
     pub fn wgs84_from_working(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let last = (self.size - 1) as f64;
-        let (column, weights_x) = cubic((x - self.bounds.min_x) / self.bounds.width() * last, self.size);
-        let (row, weights_y) = cubic((y - self.bounds.min_y) / self.bounds.height() * last, self.size);
+        let (column, weights_x) =
+            cubic((x - self.bounds.min_x) / self.bounds.width() * last, self.size);
+        let (row, weights_y) =
+            cubic((y - self.bounds.min_y) / self.bounds.height() * last, self.size);
         let mut sum = [0.0; 2];
         for (r, wy) in weights_y.iter().enumerate() {
             for (c, wx) in weights_x.iter().enumerate() {
@@ -238,7 +250,10 @@ mod tests {
 
         fn wgs84_from_working(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
             for p in points {
-                *p = [near_longitude(179.0 + (p[0] / R).to_degrees(), 0.0), (p[1] / R).sinh().atan().to_degrees()];
+                *p = [
+                    near_longitude(179.0 + (p[0] / R).to_degrees(), 0.0),
+                    (p[1] / R).sinh().atan().to_degrees(),
+                ];
             }
             Ok(())
         }
@@ -260,7 +275,10 @@ mod tests {
             let east = near_longitude(truth[0][0] - lon, 0.0) * lat.to_radians().cos();
             assert!(east.hypot(truth[0][1] - lat) * METRES_PER_DEGREE < 0.01);
             let back = table.working_from_wgs84(truth[0]).unwrap();
-            assert!((back[0] - at[0]).hypot(back[1] - at[1]) < 0.03, "{at:?} came back as {back:?}");
+            assert!(
+                (back[0] - at[0]).hypot(back[1] - at[1]) < 0.03,
+                "{at:?} came back as {back:?}"
+            );
         }
     }
 

@@ -76,7 +76,9 @@ pub enum FrameError {
         origin_m: [f64; 2],
     },
     /// The extent needs more levels than a package can have, or lies too far out.
-    #[error("{columns} × {rows} cells of {cell_m} m are too many for one package; use a larger --cell")]
+    #[error(
+        "{columns} × {rows} cells of {cell_m} m are too many for one package; use a larger --cell"
+    )]
     Extent {
         /// Cells from west to east.
         columns: i64,
@@ -159,7 +161,8 @@ impl Frame {
             return Err(FrameError::Origin { origin_m });
         }
         let span = TILE_CELLS << max_level.min(MAX_LEVEL);
-        let reach = root_corner.i.saturating_abs().max(root_corner.j.saturating_abs()).saturating_add(span);
+        let reach =
+            root_corner.i.saturating_abs().max(root_corner.j.saturating_abs()).saturating_add(span);
         if max_level > MAX_LEVEL || reach > MAX_INDEX {
             return Err(FrameError::Extent { columns: span, rows: span, cell_m });
         }
@@ -185,7 +188,9 @@ impl Frame {
     ) -> Result<Self, FrameError> {
         let down = |index: i64| index.div_euclid(TILE_CELLS);
         // A border node belongs to both tiles; one tile is enough for an extent that ends on a border.
-        let up = |index: i64| index.div_euclid(TILE_CELLS) + i64::from(index.rem_euclid(TILE_CELLS) != 0);
+        let up = |index: i64| {
+            index.div_euclid(TILE_CELLS) + i64::from(index.rem_euclid(TILE_CELLS) != 0)
+        };
         let (west, south) = (down(south_west.i), down(south_west.j));
         let (east, north) = (up(north_east.i).max(west + 1), up(north_east.j).max(south + 1));
         let tiles = (east - west).max(north - south);
@@ -197,7 +202,12 @@ impl Frame {
                 return Err(FrameError::Extent { columns, rows, cell_m });
             }
         }
-        Self::new(origin_m, cell_m, NodeIndex { i: west * TILE_CELLS, j: north * TILE_CELLS }, max_level)
+        Self::new(
+            origin_m,
+            cell_m,
+            NodeIndex { i: west * TILE_CELLS, j: north * TILE_CELLS },
+            max_level,
+        )
     }
 
     /// Position of node (0, 0).
@@ -377,13 +387,21 @@ mod tests {
         let bounds = frame.tile_bounds(TileId::ROOT);
         assert!(bounds.min_x <= frame.x_m(563_999) && bounds.max_x >= frame.x_m(564_998));
         assert!(bounds.min_y <= frame.y_m(146_000) && bounds.max_y >= frame.y_m(146_999));
-        assert_eq!(frame.max_level(), 3, "564 000 / 256 is no whole number, so five columns of tiles");
+        assert_eq!(
+            frame.max_level(),
+            3,
+            "564 000 / 256 is no whole number, so five columns of tiles"
+        );
     }
 
     #[test]
     fn an_extent_of_exactly_one_tile_is_one_tile() {
-        let frame =
-            Frame::covering([0.0, 0.0], 10.0, NodeIndex { i: 256, j: -512 }, NodeIndex { i: 512, j: -256 });
+        let frame = Frame::covering(
+            [0.0, 0.0],
+            10.0,
+            NodeIndex { i: 256, j: -512 },
+            NodeIndex { i: 512, j: -256 },
+        );
         let frame = frame.unwrap();
         assert_eq!((frame.max_level(), frame.root_corner()), (0, NodeIndex { i: 256, j: -256 }));
     }

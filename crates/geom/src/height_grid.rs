@@ -24,7 +24,11 @@ impl HeightGrid {
 
     /// A grid computed from `height_m(column, row)`.
     #[must_use]
-    pub fn from_fn(columns: usize, rows: usize, mut height_m: impl FnMut(usize, usize) -> f32) -> Self {
+    pub fn from_fn(
+        columns: usize,
+        rows: usize,
+        mut height_m: impl FnMut(usize, usize) -> f32,
+    ) -> Self {
         let mut heights_m = Vec::with_capacity(columns * rows);
         for row in 0..rows {
             for column in 0..columns {

@@ -16,11 +16,11 @@ pub enum Side {
 #[must_use]
 #[inline]
 pub fn cross(a: LatticePoint, b: LatticePoint, c: LatticePoint) -> i128 {
-    let (abu, abv) = (b.u - a.u, b.v - a.v);
-    let (acu, acv) = (c.u - a.u, c.v - a.v);
     // Two products of 31-bit factors fit an i64 with their difference; this is the common case
     // (a tile of 256 cells at less than 2^22 steps each) and several times faster than i128.
     const SMALL: i64 = 1 << 31;
+    let (abu, abv) = (b.u - a.u, b.v - a.v);
+    let (acu, acv) = (c.u - a.u, c.v - a.v);
     if abu.abs() < SMALL && abv.abs() < SMALL && acu.abs() < SMALL && acv.abs() < SMALL {
         i128::from(abu * acv - abv * acu)
     } else {

@@ -21,7 +21,11 @@ impl Polyline {
     /// When fewer than two points are left.
     pub fn new(mut points: Vec<LatticePoint>) -> Result<Self, PolylineError> {
         points.dedup();
-        if points.len() < 2 { Err(PolylineError { distinct: points.len() }) } else { Ok(Self { points }) }
+        if points.len() < 2 {
+            Err(PolylineError { distinct: points.len() })
+        } else {
+            Ok(Self { points })
+        }
     }
 
     /// The points, in order.

@@ -28,12 +28,12 @@ pub(crate) fn assemble(
     let mut stops = Vec::new();
     for way in some {
         for &id in ways.node_ids_of(way) {
-            let number = table.number(id);
-            let location = number.map_or(nodes::MISSING, |number| table.location(number));
+            let number = table.ids.number(id);
+            let location = number.map_or(nodes::MISSING, |number| table.places.location(number));
             let position_deg = nodes::degrees(location);
             positions_deg.extend(position_deg);
             stops.push(Stop {
-                is_fixed: number.is_some_and(|number| table.is_shared(number)),
+                is_fixed: number.is_some_and(|number| table.ids.is_shared(number)),
                 place: match position_deg {
                     Some(_) => StopPlace::Known,
                     None if location == nodes::OUT_OF_RANGE => StopPlace::OutOfRange,

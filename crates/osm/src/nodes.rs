@@ -30,15 +30,27 @@ pub(crate) fn degrees(location: Location) -> Option<[f64; 2]> {
         .then(|| location.map(|part| f64::from(part) / 1e7))
 }
 
-/// The nodes that roads need, sorted by id.
+/// The nodes that roads need and where they lie.
 #[derive(Debug)]
 pub(crate) struct NodeTable {
+    pub(crate) ids: NodeIds,
+    pub(crate) places: NodePlaces,
+}
+
+/// Ids in ascending order; a node's number is its index here.
+#[derive(Debug)]
+pub(crate) struct NodeIds {
     ids: Vec<i64>,
     /// Named by two roads, or twice by one: a junction.
     is_shared: Vec<bool>,
+}
+
+/// Places by number. Apart from the ids, so that some threads can look up while one fills in.
+#[derive(Debug)]
+pub(crate) struct NodePlaces {
     locations: Vec<Location>,
-    /// Nodes to which the file gives different places.
-    conflicts: Vec<i64>,
+    /// Numbers of nodes to which the file gives different places.
+    conflicts: Vec<usize>,
 }
 
 impl NodeTable {
@@ -60,10 +72,23 @@ impl NodeTable {
             is_shared.push(visits.len() > 1);
         }
         let locations = vec![MISSING; ids.len()];
-        Self { ids, is_shared, locations, conflicts: Vec::new() }
+        Self {
+            ids: NodeIds { ids, is_shared },
+            places: NodePlaces { locations, conflicts: Vec::new() },
+        }
     }
 
-    /// The needed nodes of a block, as numbers in the table with their places.
+    /// One defect per node with several places, in order of id.
+    pub(crate) fn conflicts(&self) -> impl Iterator<Item = Defect> {
+        let mut numbers = self.places.conflicts.clone();
+        numbers.sort_unstable();
+        numbers.dedup();
+        numbers.into_iter().map(|number| Defect::ConflictingNode { node_id: self.ids.ids[number] })
+    }
+}
+
+impl NodeIds {
+    /// The listed nodes of a block, by number, with their places.
     pub(crate) fn scan(&self, block: &PrimitiveBlock) -> Vec<(usize, Location)> {
         let mut found = Vec::new();
         for group in block.groups() {
@@ -82,23 +107,9 @@ impl NodeTable {
         found
     }
 
-    /// Takes the place of a node; the first that is on Earth stays.
-    pub(crate) fn set(&mut self, number: usize, location: Location) {
-        let own = &mut self.locations[number];
-        if degrees(*own).is_none() {
-            *own = location;
-        } else if degrees(location).is_some() && *own != location {
-            self.conflicts.push(self.ids[number]);
-        }
-    }
-
-    /// The number of a node in the table.
+    /// The number of a node.
     pub(crate) fn number(&self, id: i64) -> Option<usize> {
         self.ids.binary_search(&id).ok()
-    }
-
-    pub(crate) fn location(&self, number: usize) -> Location {
-        self.locations[number]
     }
 
     pub(crate) fn is_shared(&self, number: usize) -> bool {
@@ -108,17 +119,26 @@ impl NodeTable {
     pub(crate) fn len(&self) -> usize {
         self.ids.len()
     }
+}
+
+impl NodePlaces {
+    /// Takes the place of a node; the first that is on Earth stays.
+    pub(crate) fn set(&mut self, number: usize, location: Location) {
+        let own = &mut self.locations[number];
+        if degrees(*own).is_none() {
+            *own = location;
+        } else if degrees(location).is_some() && *own != location {
+            self.conflicts.push(number);
+        }
+    }
+
+    pub(crate) fn location(&self, number: usize) -> Location {
+        self.locations[number]
+    }
 
     /// How many nodes have no place.
     pub(crate) fn missing(&self) -> usize {
         self.locations.iter().filter(|&&location| location == MISSING).count()
-    }
-
-    /// One defect per node with several places, in order of id.
-    pub(crate) fn conflicts(&mut self) -> impl Iterator<Item = Defect> {
-        self.conflicts.sort_unstable();
-        self.conflicts.dedup();
-        self.conflicts.iter().map(|&node_id| Defect::ConflictingNode { node_id })
     }
 }
 

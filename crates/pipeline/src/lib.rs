@@ -17,4 +17,6 @@ pub use error::BuildError;
 pub use observer::{Observer, Silent, Stage};
 pub use settings::{BuildSettings, Existing, Resources, RoadSettings, TerrainSettings};
 pub use storage::{DiskStorage, Kind, MemoryStorage, Span, Storage};
-pub use verify::{Check, ErrorFigures, GapFigures, VerifyError, VerifyReport, VerifySettings, verify};
+pub use verify::{
+    Check, ErrorFigures, GapFigures, VerifyError, VerifyReport, VerifySettings, verify,
+};

@@ -76,12 +76,21 @@ impl DiskStorage {
     /// When a file cannot be created.
     pub fn create(folder: &Path) -> io::Result<Self> {
         let open = |name: &str| -> io::Result<(File, Mutex<u64>)> {
-            let file =
-                File::options().read(true).write(true).create(true).truncate(true).open(folder.join(name))?;
+            let file = File::options()
+                .read(true)
+                .write(true)
+                .create(true)
+                .truncate(true)
+                .open(folder.join(name))?;
             Ok((file, Mutex::new(0)))
         };
-        let files =
-            [open("heights")?, open("tins")?, open("roads")?, open("road-tiles")?, open("payloads")?];
+        let files = [
+            open("heights")?,
+            open("tins")?,
+            open("roads")?,
+            open("road-tiles")?,
+            open("payloads")?,
+        ];
         Ok(Self { files })
     }
 }

@@ -8,4 +8,9 @@ mod payload;
 pub use manifest::{
     Counts, GrowthRow, InputRecord, LevelRecord, Manifest, RoadLoss, SampleCounts, SettingsRecord, VerticalRecord,
 };
-pub use payload::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};
+#[cfg(feature = "write")]
+pub use payload::{EncodedTile, PayloadContext, encode};
+pub use payload::{
+    Damage, DecodeError, EncodeError, GeoRoad, MAX_SECTION_BYTES, RoadRecord, SectionSize, Sections, SvRoad, Terrain,
+    TilePayload, decode,
+};

@@ -143,6 +143,10 @@ pub struct Counts {
     pub defects: Vec<(String, u64)>,
     /// Ways by `highway` value that the FRC table does not know. Sorted by value.
     pub unknown_highways: Vec<(String, u64)>,
+    /// Ways with a `highway` tag in the extract.
+    pub highways_in: u64,
+    /// Those of them that are no roads here, by reason. With the ways that became roads they add up.
+    pub highways_left_out: Vec<(String, u64)>,
     /// Roads per class, 0 first: count and metres in.
     pub classes: Vec<(u64, f64)>,
 }

@@ -1,7 +1,31 @@
+//! A tile's payload: what it holds, and its bytes.
+
+mod attributes;
+mod class_table;
+mod codec;
+mod connectivity;
+mod damage;
+mod decode;
+#[cfg(feature = "write")]
+mod encode;
+mod envelope;
+mod nodes;
+mod points;
+mod roads_geo;
+mod roads_sv;
+mod route;
+mod terrain;
+
 use corniche_drape::{DrapedLine, SvLine};
 use corniche_geom::TileId;
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_tin::Tin;
+
+pub use damage::{Damage, DecodeError, EncodeError};
+pub use decode::{Sections, decode};
+#[cfg(feature = "write")]
+pub use encode::{EncodedTile, PayloadContext, encode};
+pub use envelope::{MAX_SECTION_BYTES, SectionSize};
 
 /// All that a tile holds, decoded. A section that is absent from the bytes is empty or `None` here.
 #[derive(Debug, Clone, PartialEq)]

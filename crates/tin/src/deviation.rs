@@ -201,7 +201,9 @@ pub fn measure(
             let in_row = at_m * scale
                 + south * (row - from_row) as f64
                 + east * (first - from_column) as f64;
-            covered[range.clone()].fill(true);
+            for covered in &mut covered[range.clone()] {
+                *covered = true;
+            }
             largest = largest.max(largest_distance(&heights_m[range], scale, in_row, east));
         });
         max_abs_m = max_abs_m.max(largest / scale.abs());

@@ -109,7 +109,7 @@ fn an_empty_tin_covers_nothing() {
     let mut seen = Vec::new();
     let found =
         measure(&buckets, &window, WindowPlacement { column: 5, row: 5, stride: 4 }, |c, r| {
-            seen.push((c, r))
+            seen.push((c, r));
         });
     assert_eq!(found, Deviation { max_abs_m: 0.0, covered_nodes: 0, uncovered_nodes: 4 });
     assert_eq!(seen, [(1, 0), (2, 0), (1, 1), (2, 1)]);

@@ -6,6 +6,7 @@
 //! This crate never sees a road or a file, and never looks at a neighbouring tile's result: what two tiles
 //! share they both compute from the same nodes.
 
+mod candidate_queue;
 mod check;
 mod deviation;
 mod normals;

@@ -95,6 +95,6 @@ mod tests {
 
     #[test]
     fn level_ground_points_up() {
-        assert_eq!(decode_normal([0, 0]), [0.0, 0.0, 1.0]);
+        assert_eq!(decode_normal([0, 0]).map(f32::to_bits), [0.0_f32, 0.0, 1.0].map(f32::to_bits));
     }
 }

@@ -1,11 +1,10 @@
 //! Greedy insertion: the node farthest from the TIN becomes a vertex, until none is too far.
 
-use std::collections::BinaryHeap;
-
 use spade::handles::FixedVertexHandle;
 use spade::{HasPosition, InsertionError, Point2, Triangulation};
 
 use crate::TinVertex;
+use crate::candidate_queue::{Candidate, CandidateQueue};
 use crate::tile_raster::TileRaster;
 use crate::triangle_rows::for_each_row;
 
@@ -36,24 +35,6 @@ impl HasPosition for Node {
     }
 }
 
-/// The node of a face that lies farthest from it. Candidates compare by error, then by node (of equals the
-/// first is the greater), then by face: insertion takes the same way on every run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Candidate {
-    /// The error's bits as f32 (which order like the number, as it is not negative), then the bits of the
-    /// node's index, flipped.
-    rank: u64,
-    face: u32,
-    /// The face's apex when it was scanned: the candidate is stale when the face has been made anew since.
-    apex: u32,
-}
-
-impl Candidate {
-    fn node(self) -> usize {
-        !(self.rank as u32) as usize
-    }
-}
-
 /// Inserts nodes of `tile` into `mesh` until none inside its ground is farther than `max_error_m` from it.
 ///
 /// The mesh holds border and outlines, which insertion never touches. After an insertion, the changed faces
@@ -73,24 +54,23 @@ where
     // The corner a face was made with: the vertex inserted then, or at first any. A face made anew has another
     // one, so this is at once the counter that tells stale candidates and the hint where to insert.
     let mut apexes = vec![0_u32; mesh.num_all_faces()];
-    let mut first = Vec::new();
+    let mut candidates = CandidateQueue::new();
     for face in mesh.inner_faces() {
         let corners = face.vertices();
         let (face, apex) = (face.index(), corners[0].index() as u32);
         apexes[face] = apex;
-        let rank = scan.worst_node(corners.map(|vertex| *vertex.data()));
-        first.extend(rank.map(|rank| Candidate { rank, face: face as u32, apex }));
-    }
-    let mut candidates = BinaryHeap::from(first);
-    let mut star = Vec::new();
-    while let Some(candidate) = candidates.pop() {
-        if apexes[candidate.face as usize] != candidate.apex {
-            continue;
+        if let Some((error_m, worst)) = scan.worst_node(corners.map(|vertex| *vertex.data())) {
+            candidates.push(Candidate::new(error_m, worst, face as u32, apex));
         }
-        let index = candidate.node();
+    }
+    let mut star = Vec::new();
+    while let Some(candidate) =
+        candidates.pop(|candidate| apexes[candidate.face() as usize] == candidate.apex())
+    {
+        let index = candidate.node() as usize;
         let node = Node::new(tile, [index % columns, index / columns]);
         let vertex =
-            mesh.insert_with_hint(node, FixedVertexHandle::from_index(candidate.apex as usize))?;
+            mesh.insert_with_hint(node, FixedVertexHandle::from_index(candidate.apex() as usize))?;
 
         let apex = vertex.index() as u32;
         apexes.resize(mesh.num_all_faces(), 0);
@@ -100,11 +80,11 @@ where
         );
         for (k, &(face, corner)) in star.iter().enumerate() {
             // Edges come counter-clockwise, each with the face to its left.
-            let next = star[(k + 1) % star.len()].1;
+            let next = star.get(k + 1).unwrap_or(&star[0]).1;
             apexes[face] = apex;
-            let rank = scan.worst_node([node, corner, next]);
-            let face = face as u32;
-            candidates.extend(rank.map(|rank| Candidate { rank, face, apex }));
+            if let Some((error_m, worst)) = scan.worst_node([node, corner, next]) {
+                candidates.push(Candidate::new(error_m, worst, face as u32, apex));
+            }
         }
     }
     Ok(())
@@ -120,8 +100,9 @@ struct Scan<'a> {
 }
 
 impl Scan<'_> {
-    /// The rank of the node farthest from the plane through `corners`, if it is farther than allowed.
-    fn worst_node(&self, corners: [Node; 3]) -> Option<u64> {
+    /// The node farthest from the plane through `corners` and its error in metres, if that is more than allowed.
+    /// Of equals the first.
+    fn worst_node(&self, corners: [Node; 3]) -> Option<(f64, u32)> {
         let at = corners.map(|node| [i64::from(node.column), i64::from(node.row)]);
         let [a, b, c] = at;
         let (ab, ac) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
@@ -156,8 +137,6 @@ impl Scan<'_> {
                 }
             }
         });
-        let worst_m = worst_scaled / scale.abs();
-        let bits = u64::from((worst_m as f32).to_bits());
-        (worst != usize::MAX).then(|| bits << 32 | u64::from(!(worst as u32)))
+        (worst != usize::MAX).then(|| (worst_scaled / scale.abs(), worst as u32))
     }
 }

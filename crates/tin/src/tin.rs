@@ -52,7 +52,7 @@ impl Tin {
     ///
     /// # Errors
     /// When a triangle names a missing vertex or is not counter-clockwise, or a node or triangle occurs twice.
-    pub fn new(vertices: Vec<TinVertex>, triangles: &[[u32; 3]]) -> Result<Self, TinError> {
+    pub fn new(mut vertices: Vec<TinVertex>, triangles: &[[u32; 3]]) -> Result<Self, TinError> {
         let mut order: Vec<u32> = (0..vertices.len() as u32).collect();
         order.sort_unstable_by_key(|&index| vertices[index as usize]);
         let mut new_index = vec![0_u32; vertices.len()];
@@ -74,8 +74,8 @@ impl Tin {
             renamed.push(named);
         }
         renamed.sort_unstable();
-        let sorted = order.iter().map(|&index| vertices[index as usize]).collect();
-        Self::from_canonical(sorted, renamed)
+        vertices.sort_unstable();
+        Self::from_canonical(vertices, renamed)
     }
 
     /// Takes vertices and triangles that are in canonical order already, as a package stores them.

@@ -46,45 +46,47 @@ struct Edge {
     from: [i64; 2],
     columns: i64,
     rows: i64,
-    columns_per_row: f64,
+    rows_inverse: f64,
+    in_floats: bool,
 }
+
+/// Below this, floats find columns exactly: see [`Edge::floor`].
+const FLOATS_REACH: i64 = 1 << 24;
 
 impl Edge {
     #[inline]
     fn new(from: [i64; 2], to: [i64; 2]) -> Self {
         let (columns, rows) = (to[0] - from[0], to[1] - from[1]);
-        Self { from, columns, rows, columns_per_row: columns as f64 / rows as f64 }
+        // Of coordinates from 0 up, none has a bit that the reach has not.
+        let in_floats =
+            (from[0] | to[0] | from[1] | to[1]) as u64 >> FLOATS_REACH.trailing_zeros() == 0;
+        Self { from, columns, rows, rows_inverse: 1.0 / rows as f64, in_floats }
     }
 
     /// The last column at or west of the edge.
     #[inline]
     fn floor(&self, row: i64) -> i64 {
-        let down = row - self.from[1];
-        let exact = down * self.columns;
-        // The estimate is off by one at most; integers decide.
-        let mut column = (down as f64 * self.columns_per_row) as i64;
-        while column * self.rows > exact {
-            column -= 1;
-        }
-        while (column + 1) * self.rows <= exact {
-            column += 1;
-        }
-        self.from[0] + column
+        self.column((row - self.from[1]) * self.columns)
     }
 
     /// The first column at or east of the edge.
     #[inline]
     fn ceil(&self, row: i64) -> i64 {
-        let down = row - self.from[1];
-        let exact = down * self.columns;
-        let mut column = (down as f64 * self.columns_per_row) as i64;
-        while column * self.rows < exact {
-            column += 1;
+        self.column((row - self.from[1]) * self.columns + self.rows - 1)
+    }
+
+    /// The first corner's column + `across` / rows, rounded down.
+    ///
+    /// In floats without a branch: half a step more keeps the fraction 0.5 / rows or more away from whole
+    /// numbers, 2^-25 at least, while below 2^24 all rounding together stays under 2^-27; and no column is
+    /// negative, so cutting off the fraction rounds down.
+    #[inline]
+    fn column(&self, across: i64) -> i64 {
+        if self.in_floats {
+            (self.from[0] as f64 + (across as f64 + 0.5) * self.rows_inverse) as i64
+        } else {
+            self.from[0] + across.div_euclid(self.rows)
         }
-        while (column - 1) * self.rows >= exact {
-            column -= 1;
-        }
-        self.from[0] + column
     }
 }
 
@@ -100,15 +102,18 @@ mod tests {
     proptest! {
         /// The rows hold exactly the nodes whose three edge functions do not differ in sign.
         #[test]
-        fn holds_the_nodes_inside(a in corner(), b in corner(), c in corner(), low in -25_i64..25, high in -25_i64..25) {
+        fn holds_the_nodes_inside(
+            shift in prop_oneof![Just(0_i64), Just(25), Just(60_000), Just(FLOATS_REACH - 26), Just(FLOATS_REACH), Just(1 << 29)],
+            a in corner(), b in corner(), c in corner(), low in -25_i64..25, high in -25_i64..25) {
             let turn = |p: [i64; 2], q: [i64; 2], r: [i64; 2]| {
                 (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
             };
             prop_assume!(turn(a, b, c) != 0);
             let mut found = Vec::new();
-            for_each_row([a, b, c], low..=high, |row, first, last| {
+            let shifted = [a, b, c].map(|corner| corner.map(|value| value + shift));
+            for_each_row(shifted, low + shift..=high + shift, |row, first, last| {
                 for column in first..=last {
-                    found.push([column, row]);
+                    found.push([column - shift, row - shift]);
                 }
             });
             let mut wanted = Vec::new();
@@ -122,6 +127,19 @@ mod tests {
                 }
             }
             prop_assert_eq!(found, wanted);
+        }
+
+        /// Floats and integers find the same columns, also of edges as long as floats may take.
+        #[test]
+        fn floats_are_exact(
+            from in (0..FLOATS_REACH, 0..FLOATS_REACH), to in (0..FLOATS_REACH, 0..FLOATS_REACH), at in 0.0_f64..=1.0,
+        ) {
+            prop_assume!(from.1 < to.1);
+            let edge = Edge::new([from.0, from.1], [to.0, to.1]);
+            let row = from.1 + ((to.1 - from.1) as f64 * at) as i64;
+            let exact = Edge { in_floats: false, ..Edge::new([from.0, from.1], [to.0, to.1]) };
+            prop_assert!(edge.in_floats);
+            prop_assert_eq!([edge.floor(row), edge.ceil(row)], [exact.floor(row), exact.ceil(row)]);
         }
     }
 }

@@ -145,7 +145,8 @@ impl Walk<'_> {
                 self.camera,
             )
         });
-        let too_coarse = error_px > self.quality.screen_space_error_px && id.z() < self.tree.max_level();
+        let too_coarse =
+            error_px > self.quality.screen_space_error_px && id.z() < self.tree.max_level();
         let mut children: Vec<(TileId, Node)> = Vec::new();
         if too_coarse {
             children.extend(id.children().map(|child| (child, self.tree.node(child))));

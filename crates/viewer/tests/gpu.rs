@@ -47,10 +47,18 @@ fn scene(
 struct Disagreement {
     /// Pixels that should be covered.
     covered: usize,
-    /// Pixels that disagree although the boundary is farther than the band away.
-    wrong: usize,
+    /// Pixels that are covered although they should not be, the boundary being farther than the band away.
+    extra: usize,
+    /// Pixels that are not covered although they should be, likewise.
+    missing: usize,
     /// Pixels left out because the depth jumps around them.
     excluded: usize,
+}
+
+impl Disagreement {
+    fn wrong(&self) -> usize {
+        self.extra + self.missing
+    }
 }
 
 /// Compares labels with a reference from the device's own depth, unprojected in f64.
@@ -61,7 +69,7 @@ fn compare(
     half_m: f64,
     band_px: f64,
 ) -> Disagreement {
-    let mut sum = Disagreement { covered: 0, wrong: 0, excluded: 0 };
+    let mut sum = Disagreement { covered: 0, extra: 0, missing: 0, excluded: 0 };
     for (index, at) in drawing.pixels() {
         if drawing.depth[index] == 0.0 {
             continue;
@@ -76,9 +84,9 @@ fn compare(
         sum.covered += usize::from(beyond_m <= 0.0);
         // A step of a pixel on the screen moves the plan position by at least this much.
         let band_m = band_px * camera.pixel_at_unit_depth_m() * depth_m;
-        if (drawing.labels[index] != 0) != (beyond_m <= 0.0) && beyond_m.abs() > band_m {
-            sum.wrong += 1;
-        }
+        let drawn = drawing.labels[index] != 0;
+        sum.extra += usize::from(drawn && beyond_m > band_m);
+        sum.missing += usize::from(!drawn && beyond_m < -band_m);
     }
     sum
 }
@@ -145,6 +153,21 @@ fn a_road_grows_beyond_the_threshold_and_never_gets_thinner_than_asked() {
 }
 
 #[test]
+fn a_thin_road_at_a_grazing_angle_does_not_break_into_dashes() {
+    let Some(gpu) = gpu() else { return };
+    let bumps = |x: f64, y: f64| 20.0 + 8.0 * (x / 60.0).sin() * (y / 80.0).cos();
+    let tile = scene(4, bumps, &[(7, [-2400.0, 300.0], [2400.0, 420.0])]);
+    let mut style = plain_style(3.0);
+    style.roads[7].min_width_px = 2.0;
+    let camera = camera(20.0, 2500.0, 0.0, 80.0);
+    let drawing = draw(&gpu, &camera, &style, std::slice::from_ref(&tile));
+    assert_eq!(hidden_centerline_points(&drawing, &camera, &tile), 0);
+    // Level seen, two pixels wide: 1 to 3 in each column.
+    let per_column = drawing.pixels_of(7).len() as f64 / f64::from(SIZE[0]);
+    assert!((1.5..2.5).contains(&per_column), "{per_column} pixels a column");
+}
+
+#[test]
 fn on_flat_ground_every_pixel_outside_the_band_agrees_with_the_reference() {
     let Some(gpu) = gpu() else { return };
     let roads = [
@@ -159,8 +182,8 @@ fn on_flat_ground_every_pixel_outside_the_band_agrees_with_the_reference() {
         let camera = camera(512.0, distance_m, heading_deg, pitch_deg);
         let drawing = draw(&gpu, &camera, &plain_style(40.0), std::slice::from_ref(&tile));
         let found = compare(&drawing, &camera, &tile, 20.0, 0.05);
-        assert!(found.covered > 2000, "{} pixels are no test", found.covered);
-        assert_eq!(found.wrong, 0, "of {} pixels, {} excluded", found.covered, found.excluded);
+        assert!(found.covered > 500, "{} pixels are no test", found.covered);
+        assert_eq!(found.wrong(), 0, "of {} pixels, {} excluded", found.covered, found.excluded);
     }
 }
 
@@ -178,9 +201,9 @@ fn the_reference_notices_wrong_roads() {
         &[(3, [-300.0, -200.0 + 0.3 * pixel_m], [250.0, 180.0 + 0.3 * pixel_m])],
     );
     let drawing = draw(&gpu, &camera, &plain_style(40.0), &[shifted]);
-    assert!(compare(&drawing, &camera, &truth, 20.0, 0.05).wrong > 0, "shifted by 0.3 px");
+    assert!(compare(&drawing, &camera, &truth, 20.0, 0.05).wrong() > 0, "shifted by 0.3 px");
     let drawing = draw(&gpu, &camera, &plain_style(42.0), std::slice::from_ref(&truth));
-    assert!(compare(&drawing, &camera, &truth, 20.0, 0.05).wrong > 0, "5 % wider");
+    assert!(compare(&drawing, &camera, &truth, 20.0, 0.05).wrong() > 0, "5 % wider");
 }
 
 #[test]
@@ -194,23 +217,23 @@ fn on_a_tilted_plane_along_its_slope_every_pixel_agrees_with_the_reference() {
     let drawing = draw(&gpu, &camera, &plain_style(30.0), std::slice::from_ref(&tile));
     let found = compare(&drawing, &camera, &tile, 15.0, 0.05);
     assert!(found.covered > 500);
-    assert_eq!(found.wrong, 0, "of {}", found.covered);
+    assert_eq!(found.wrong(), 0, "of {}", found.covered);
 }
 
 #[test]
 fn nothing_of_a_road_shows_from_behind_a_ridge() {
     let Some(gpu) = gpu() else { return };
-    // A ridge from west to east, 400 m high and 800 m to each side, with a road along its northern foot.
+    // A ridge from west to east, 400 m high and 800 m to each side, with a road on its northern slope.
     let ridge = |_: f64, y: f64| (400.0 - (y - center().y).abs() * 0.5).max(0.0);
     let tile = scene(8, ridge, &[(0, [-1500.0, 500.0], [1500.0, 500.0])]);
-    for pitch_deg in [60.0, 75.0] {
+    let mesh = triangles(TileId::ROOT, &tile.1);
+    for pitch_deg in [78.0, 84.0] {
         let from_south = camera(200.0, 3000.0, 0.0, pitch_deg);
         let drawing = draw(&gpu, &from_south, &plain_style(30.0), std::slice::from_ref(&tile));
         // The reference: which pixels see ground of the road at all, by rays at the triangles.
-        let mesh = triangles(TileId::ROOT, &tile.1);
         let visible = drawing
             .pixels()
-            .filter(|(_, at)| at.y % 8.0 < 1.0 && at.x % 8.0 < 1.0)
+            .filter(|(_, at)| at.y % 2.0 < 1.0 && at.x % 8.0 < 1.0)
             .filter(|(_, at)| {
                 let ray = from_south.ray_in_world(*at);
                 cast(from_south.eye_in_world(), ray, &mesh).is_some_and(|depth_m| {
@@ -222,8 +245,33 @@ fn nothing_of_a_road_shows_from_behind_a_ridge() {
         assert_eq!(drawing.pixels_of(0).len(), 0, "pitch {pitch_deg}");
         let from_north = camera(200.0, 3000.0, 180.0, pitch_deg);
         let drawing = draw(&gpu, &from_north, &plain_style(30.0), std::slice::from_ref(&tile));
-        assert!(drawing.pixels_of(0).len() > 1000, "and is there, seen from the other side");
+        let seen = drawing.pixels_of(0).len();
+        assert!(seen > 500, "{seen} pixels: and is there, seen from the other side");
     }
+}
+
+#[test]
+fn a_road_over_a_ridge_ends_at_its_crest() {
+    let Some(gpu) = gpu() else { return };
+    let ridge = |_: f64, y: f64| (400.0 - (y - center().y).abs() * 0.5).max(0.0);
+    let tile = scene(8, ridge, &[(0, [100.0, -900.0], [-200.0, 900.0])]);
+    let mesh = triangles(TileId::ROOT, &tile.1);
+    let camera = camera(300.0, 1500.0, 0.0, 80.0);
+    let drawing = draw(&gpu, &camera, &plain_style(40.0), std::slice::from_ref(&tile));
+    let mut outside = 0;
+    for at in drawing.pixels_of(0) {
+        // A pixel's breadth of slack at the silhouette, where the centre's ray may pass over the crest.
+        let on_road = [0.0, 0.5, 1.0].iter().any(|down_px| {
+            let ray = camera.ray_in_world(at + DVec2::new(0.0, *down_px));
+            cast(camera.eye_in_world(), ray, &mesh).is_some_and(|depth_m| {
+                let ground = camera.eye_in_world() + ray * depth_m;
+                plan_distance_m(ground.truncate(), &tile.2) <= 20.5
+            })
+        });
+        outside += usize::from(!on_road);
+    }
+    assert!(drawing.pixels_of(0).len() > 1000);
+    assert_eq!(outside, 0, "of {} pixels hang over the crest", drawing.pixels_of(0).len());
 }
 
 #[test]
@@ -235,21 +283,21 @@ fn roads_on_rough_ground_are_neither_buried_nor_floating() {
         hills,
         &[(1, [-900.0, -700.0], [800.0, 600.0]), (4, [-800.0, 500.0], [900.0, -300.0])],
     );
-    let mut worst: f64 = 0.0;
     for (distance_m, pitch_deg) in [(1500.0, 0.0), (2500.0, 45.0), (3000.0, 70.0)] {
         let camera = camera(400.0, distance_m, 25.0, pitch_deg);
-        let drawing = draw(&gpu, &camera, &plain_style(12.0), std::slice::from_ref(&tile));
-        let found = compare(&drawing, &camera, &tile, 6.0, 0.05);
-        worst = worst.max(found.wrong as f64 / found.covered as f64);
+        let drawing = draw(&gpu, &camera, &plain_style(40.0), std::slice::from_ref(&tile));
+        let found = compare(&drawing, &camera, &tile, 20.0, 0.05);
         println!(
-            "GEO on hills at pitch {pitch_deg}: {} of {} pixels disagree, {} excluded",
-            found.wrong, found.covered, found.excluded
+            "GEO on hills at pitch {pitch_deg}: of {} pixels {} are missing, {} too many, {} excluded",
+            found.covered, found.missing, found.extra, found.excluded
         );
+        assert!(found.covered > 1000);
+        assert_eq!(found.extra, 0, "only ground within half the width is painted");
         // The centre-line itself must be drawn wherever it is in view: that is what GEO promises.
         assert_eq!(hidden_centerline_points(&drawing, &camera, &tile), 0);
+        // Flat quads on cross slopes: a measurement, with a bound that notices a change for the worse.
+        assert!((found.missing as f64) < 0.1 * found.covered as f64);
     }
-    // Flat quads on cross slopes: a measurement, with a bound that notices a change for the worse.
-    assert!(worst < 0.12, "{worst}");
 }
 
 /// Points every 2 m along the centre-lines that the depth buffer says are in view, but whose pixel has no road.

@@ -1,17 +1,23 @@
 //! What the tests of this crate share: the default table, a plain projection, a reader that gathers everything.
 
 #![allow(dead_code, reason = "each test binary uses its own part")]
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may unwrap and says what it skips")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test may unwrap and says what it skips"
+)]
 
 use std::{
     collections::BTreeMap,
     fs,
     path::{Path, PathBuf},
+    sync::LazyLock,
 };
 
 use corniche_geom::LatticePoint;
 use corniche_osm::{Defect, ExtractSummary, Place, ReadOsmError, ReadRequest, read_roads};
 use corniche_roads::{FrcTable, Road};
+use rayon::ThreadPool;
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -76,9 +82,13 @@ pub(crate) fn read_with(
     place: &Place<'_>,
 ) -> Result<Extract, ReadOsmError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    read_in(path, &pool, place)
+}
+
+fn read_in(path: &Path, pool: &ThreadPool, place: &Place<'_>) -> Result<Extract, ReadOsmError> {
     let table = default_table();
     let (mut roads, mut defects) = (Vec::new(), Vec::new());
-    let request = ReadRequest { path, table: &table, place, pool: &pool };
+    let request = ReadRequest { path, table: &table, place, pool };
     let summary = read_roads(
         &request,
         &mut |road| roads.push(road),
@@ -90,8 +100,11 @@ pub(crate) fn read_with(
     Ok(extract)
 }
 
+/// Reads with two threads, always the same.
 pub(crate) fn read(path: &Path) -> Result<Extract, ReadOsmError> {
-    read_with(path, 2, &to_lattice)
+    static POOL: LazyLock<ThreadPool> =
+        LazyLock::new(|| rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap());
+    read_in(path, &POOL, &to_lattice)
 }
 
 pub(crate) fn fixture(name: &str) -> PathBuf {

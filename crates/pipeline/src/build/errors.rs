@@ -84,7 +84,13 @@ pub(crate) fn measure(
         subtrees.len(),
         || Ok(()),
         |(), index| {
-            let mut subtree = Subtree { meshes, levels, storage, buckets: BTreeMap::new(), seen: BTreeMap::new() };
+            let mut subtree = Subtree {
+                meshes,
+                levels,
+                storage,
+                buckets: BTreeMap::new(),
+                seen: BTreeMap::new(),
+            };
             for &id in &subtrees[index] {
                 if observer.is_cancelled() {
                     return Err(BuildError::Interrupted);
@@ -118,18 +124,22 @@ impl Subtree<'_> {
     fn look_at(&mut self, finest: TileId, window: &HeightGrid) -> Result<(), BuildError> {
         let frame = self.levels.frame();
         // Tiles of a subtree come row by row; of the finest levels only the present one is needed again.
-        self.buckets.retain(|&id, _| finest.ancestor(id.z()) == id || id.z() + SUBTREE_LEVELS <= finest.z());
+        self.buckets.retain(|&id, _| {
+            finest.ancestor(id.z()) == id || id.z() + SUBTREE_LEVELS <= finest.z()
+        });
         for level in self.levels.numbers() {
             let id = finest.ancestor(level);
             let buckets = match self.buckets.entry(id) {
                 std::collections::btree_map::Entry::Occupied(entry) => entry.into_mut(),
-                std::collections::btree_map::Entry::Vacant(entry) => entry.insert(match self.meshes.get(&id) {
-                    Some(&span) => {
-                        let meshed = mesh::load(self.storage, id, span)?;
-                        Some(TriangleBuckets::new(&meshed.tin, self.levels.quantum_m()))
-                    }
-                    None => None,
-                }),
+                std::collections::btree_map::Entry::Vacant(entry) => {
+                    entry.insert(match self.meshes.get(&id) {
+                        Some(&span) => {
+                            let meshed = mesh::load(self.storage, id, span)?;
+                            Some(TriangleBuckets::new(&meshed.tin, self.levels.quantum_m()))
+                        }
+                        None => None,
+                    })
+                }
             };
             let Some(buckets) = buckets else { continue };
             let (corner, above) = (frame.tile_corner(finest), frame.tile_corner(id));
@@ -144,7 +154,11 @@ impl Subtree<'_> {
                 // Nodes on the east and south border belong to the next tile, which counts them.
                 uncovered_nodes += u64::from(column < last && row < last);
             });
-            self.seen.entry(id).or_default().merge(Seen { deviation, range_m: window.range_m(), uncovered_nodes });
+            self.seen.entry(id).or_default().merge(Seen {
+                deviation,
+                range_m: window.range_m(),
+                uncovered_nodes,
+            });
         }
         Ok(())
     }
@@ -156,8 +170,10 @@ fn stored(seen: &BTreeMap<TileId, Seen>, meshes: &Meshes) -> BTreeMap<TileId, Ti
     // Ids sort by level first, so backwards is children before parents.
     for &id in meshes.keys().rev() {
         let own = seen.get(&id).copied().unwrap_or_default();
-        let children_m =
-            id.children().filter_map(|child| by_tile.get(&child)).map(|child| child.geometric_error_m);
+        let children_m = id
+            .children()
+            .filter_map(|child| by_tile.get(&child))
+            .map(|child| child.geometric_error_m);
         let geometric_error_m = children_m.fold(own.deviation.max_abs_m, f64::max);
         let [low, high] = own.range_m.unwrap_or([0.0, 0.0]);
         by_tile.insert(

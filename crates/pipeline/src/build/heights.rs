@@ -70,7 +70,8 @@ pub(crate) fn read<'a>(
     )?;
     pyramid.blocks = kept.into_inner().unwrap_or_else(PoisonError::into_inner);
     let span = |low: i64, high: i64| (high - low + 1) as u64;
-    let nodes = span(plan.south_west.i, plan.north_east.i) * span(plan.south_west.j, plan.north_east.j);
+    let nodes =
+        span(plan.south_west.i, plan.north_east.i) * span(plan.south_west.j, plan.north_east.j);
     pyramid.samples = SampleCounts {
         nodes,
         with_data: with_height - filled,
@@ -147,7 +148,9 @@ impl Pyramid<'_> {
                 tiles.extend(TileId::new(level, x, y).ok());
             }
         };
-        for &(_, x, y) in self.blocks.range((level, 0, 0)..=(level, u32::MAX, u32::MAX)).map(|(id, _)| id) {
+        for &(_, x, y) in
+            self.blocks.range((level, 0, 0)..=(level, u32::MAX, u32::MAX)).map(|(id, _)| id)
+        {
             // A block's first column and row are also the last ones of the tiles west and north of it.
             add(Some(x), Some(y));
             add(x.checked_sub(1), Some(y));
@@ -171,7 +174,9 @@ impl Pyramid<'_> {
                 let clip = |from: i64| (from.max(0), (from + TILE_CELLS).min(side as i64));
                 let ((c0, c1), (r0, r1)) = (clip(left), clip(top));
                 let neighbour = |at: u32, d: i64| u32::try_from(i64::from(at) + d).ok();
-                let (Some(x), Some(y)) = (neighbour(id.x(), dx), neighbour(id.y(), dy)) else { continue };
+                let (Some(x), Some(y)) = (neighbour(id.x(), dx), neighbour(id.y(), dy)) else {
+                    continue;
+                };
                 if c0 >= c1 || r0 >= r1 {
                     continue;
                 }
@@ -181,13 +186,17 @@ impl Pyramid<'_> {
                 let row_bytes = (BLOCK * 4) as u64;
                 let bytes = self
                     .storage
-                    .read(Kind::Heights, span.part(first_row * row_bytes, (r1 - r0) as u64 * row_bytes))
+                    .read(
+                        Kind::Heights,
+                        span.part(first_row * row_bytes, (r1 - r0) as u64 * row_bytes),
+                    )
                     .map_err(BuildError::Storage)?;
                 for (row, line) in (r0..r1).zip(bytes.chunks_exact(BLOCK * 4)) {
                     for column in c0..c1 {
                         let at = (column - left) as usize * 4;
                         let height = [line[at], line[at + 1], line[at + 2], line[at + 3]];
-                        heights_m[row as usize * side + column as usize] = f32::from_le_bytes(height);
+                        heights_m[row as usize * side + column as usize] =
+                            f32::from_le_bytes(height);
                     }
                 }
             }
@@ -198,12 +207,18 @@ impl Pyramid<'_> {
     fn block(&self, id: BlockId) -> Result<Option<HeightGrid>, BuildError> {
         let Some(&span) = self.blocks.get(&id) else { return Ok(None) };
         let bytes = self.storage.read(Kind::Heights, span).map_err(BuildError::Storage)?;
-        let heights_m = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+        let heights_m =
+            bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
         Ok(Some(HeightGrid::new(BLOCK, BLOCK, heights_m)))
     }
 
     /// Makes the blocks of `level` from every second node of the level below.
-    fn subsample(&mut self, level: u8, threads: usize, observer: &dyn Observer) -> Result<(), BuildError> {
+    fn subsample(
+        &mut self,
+        level: u8,
+        threads: usize,
+        observer: &dyn Observer,
+    ) -> Result<(), BuildError> {
         let below = (level + 1, 0, 0)..=(level + 1, u32::MAX, u32::MAX);
         let mut ids: Vec<BlockId> =
             self.blocks.range(below).map(|(&(_, x, y), _)| (level, x / 2, y / 2)).collect();
@@ -222,16 +237,23 @@ impl Pyramid<'_> {
                 let half = BLOCK / 2;
                 let mut heights_m = vec![f32::NAN; BLOCK * BLOCK];
                 for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                    let Some(child) = self.block((level + 1, 2 * x + dx, 2 * y + dy))? else { continue };
+                    let Some(child) = self.block((level + 1, 2 * x + dx, 2 * y + dy))? else {
+                        continue;
+                    };
                     for row in 0..half {
                         for column in 0..half {
-                            let at = (row + dy as usize * half) * BLOCK + column + dx as usize * half;
+                            let at =
+                                (row + dy as usize * half) * BLOCK + column + dx as usize * half;
                             heights_m[at] = child.raw()[2 * row * BLOCK + 2 * column];
                         }
                     }
                 }
                 let block = HeightGrid::new(BLOCK, BLOCK, heights_m);
-                if block.count_heights() == 0 { Ok(None) } else { put(self.storage, &block).map(Some) }
+                if block.count_heights() == 0 {
+                    Ok(None)
+                } else {
+                    put(self.storage, &block).map(Some)
+                }
             },
             |index, span| {
                 made.extend(span.map(|span| (ids[index], span)));

@@ -13,8 +13,15 @@ use super::package::hex;
 use crate::{BuildError, BuildSettings, Observer, Stage};
 
 /// Hashes every input file.
-pub(crate) fn hash(settings: &BuildSettings, observer: &dyn Observer) -> Result<Vec<InputRecord>, BuildError> {
-    let files = settings.dem.iter().map(|path| ("dem", path)).chain(settings.osm.iter().map(|path| ("osm", path)));
+pub(crate) fn hash(
+    settings: &BuildSettings,
+    observer: &dyn Observer,
+) -> Result<Vec<InputRecord>, BuildError> {
+    let files = settings
+        .dem
+        .iter()
+        .map(|path| ("dem", path))
+        .chain(settings.osm.iter().map(|path| ("osm", path)));
     observer.begin(Stage::Hash, Some(files.clone().count() as u64));
     let mut inputs = Vec::new();
     for (kind, path) in files {

@@ -63,7 +63,9 @@ impl Levels {
         if level == self.frame.max_level() {
             Some(self.least_class)
         } else {
-            self.filter.least_class(self.frame.level_cell_m(level)).map(|class| class.min(self.least_class))
+            self.filter
+                .least_class(self.frame.level_cell_m(level))
+                .map(|class| class.min(self.least_class))
         }
     }
 

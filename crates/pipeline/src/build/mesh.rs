@@ -54,11 +54,16 @@ pub(crate) fn mesh(
     Ok(meshes)
 }
 
-fn mesh_tile(heights_with_halo: &HeightGrid, id: TileId, levels: &Levels) -> Result<Meshed, BuildError> {
+fn mesh_tile(
+    heights_with_halo: &HeightGrid,
+    id: TileId,
+    levels: &Levels,
+) -> Result<Meshed, BuildError> {
     let spec = TinSpec { max_error_m: levels.max_error_m(id.z()), quantum_m: levels.quantum_m() };
     let tin = corniche_tin::triangulate(heights_with_halo, spec)
         .map_err(|source| BuildError::Triangulate { id, source })?;
-    let normals = corniche_tin::normals(heights_with_halo, &tin, levels.frame().level_cell_m(id.z()));
+    let normals =
+        corniche_tin::normals(heights_with_halo, &tin, levels.frame().level_cell_m(id.z()));
     Ok(Meshed { tin, normals })
 }
 
@@ -97,10 +102,15 @@ fn from_bytes(bytes: &[u8]) -> Option<Meshed> {
     let vertices = vertex_bytes
         .chunks_exact(8)
         .map(|b| {
-            Some(TinVertex { row: half(&b[..2])?, column: half(&b[2..4])?, height_q: word(&b[4..])?.cast_signed() })
+            Some(TinVertex {
+                row: half(&b[..2])?,
+                column: half(&b[2..4])?,
+                height_q: word(&b[4..])?.cast_signed(),
+            })
         })
         .collect::<Option<Vec<_>>>()?;
-    let normals = normal_bytes.chunks_exact(2).map(|b| [b[0].cast_signed(), b[1].cast_signed()]).collect();
+    let normals =
+        normal_bytes.chunks_exact(2).map(|b| [b[0].cast_signed(), b[1].cast_signed()]).collect();
     let triangles = triangle_bytes
         .chunks_exact(12)
         .map(|b| Some([word(&b[..4])?, word(&b[4..8])?, word(&b[8..])?]))
@@ -115,7 +125,8 @@ mod tests {
     #[test]
     fn reads_back_what_it_wrote_and_refuses_a_cut() {
         let node = |row, column, height_q| TinVertex { row, column, height_q };
-        let vertices = vec![node(0, 0, -5), node(0, 256, 7), node(256, 0, 1 << 20), node(256, 256, 0)];
+        let vertices =
+            vec![node(0, 0, -5), node(0, 256, 7), node(256, 0, 1 << 20), node(256, 256, 0)];
         let tin = Tin::new(vertices, &[[0, 2, 1], [1, 2, 3]]).unwrap();
         let meshed = Meshed { tin, normals: vec![[0, 0], [1, -1], [127, -127], [3, 4]] };
         let bytes = to_bytes(&meshed);

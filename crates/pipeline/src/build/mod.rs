@@ -41,7 +41,10 @@ pub struct BuildSummary {
 ///
 /// # Errors
 /// See [`BuildError`].
-pub fn build(settings: &BuildSettings, observer: &dyn Observer) -> Result<BuildSummary, BuildError> {
+pub fn build(
+    settings: &BuildSettings,
+    observer: &dyn Observer,
+) -> Result<BuildSummary, BuildError> {
     let target = &settings.output;
     if settings.existing == Existing::Keep && fs::symlink_metadata(target).is_ok() {
         return Err(BuildError::Exists { path: target.clone() });
@@ -54,7 +57,8 @@ pub fn build(settings: &BuildSettings, observer: &dyn Observer) -> Result<BuildS
     if target.is_dir() || target.file_name().is_none() {
         return Err(unusable(std::io::Error::other("the package's name is that of a folder")));
     }
-    let name = target.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let name =
+        target.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     // Beside the target: the same file system, so that the rename at the end is one step.
     let work = tempfile::Builder::new()
         .prefix(&format!(".{name}."))
@@ -78,6 +82,8 @@ fn run(
     let threads = settings.resources.threads;
     let terrain = &settings.terrain;
     let inputs = inputs::hash(settings, observer)?;
+    corniche_dem::limit_block_cache(settings.resources.memory_bytes / 4)
+        .map_err(|error| BuildError::Storage(std::io::Error::other(error)))?;
     let dem = Dem::open(
         &settings.dem,
         &OpenOptions { dem_crs: terrain.dem_crs.clone(), nodata: terrain.nodata },

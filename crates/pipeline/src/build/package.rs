@@ -5,8 +5,8 @@ use std::path::Path;
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{Bounds, CoordinateTable};
 use corniche_tileset::{
-    Counts, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest, RoadLoss, SampleCounts, SettingsRecord,
-    VerticalRecord, Writer,
+    Counts, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest, RoadLoss, SampleCounts,
+    SettingsRecord, VerticalRecord, Writer,
 };
 use sha2::{Digest, Sha256};
 
@@ -34,13 +34,15 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Result<Manifest, BuildError> {
     let Outcome { settings, plan, levels, .. } = outcome;
     let frame = *levels.frame();
     let record = settings_record(outcome);
-    let settings_json = serde_json::to_vec(&record).map_err(|error| BuildError::Storage(error.into()))?;
+    let settings_json =
+        serde_json::to_vec(&record).map_err(|error| BuildError::Storage(error.into()))?;
     let projection = outcome.dem.projection(plan)?;
     let root = frame.tile_bounds(corniche_geom::TileId::ROOT);
     // The data's rectangle with room around it, but not the root's far corners: they can be a world away.
     let room = 0.1 * plan.data_bounds.width().max(plan.data_bounds.height()).max(frame.cell_m());
     let around = Bounds {
-        min_x: (plan.data_bounds.min_x - room).min(root.min_x.max(plan.data_bounds.min_x - 2.0 * room)),
+        min_x: (plan.data_bounds.min_x - room)
+            .min(root.min_x.max(plan.data_bounds.min_x - 2.0 * room)),
         min_y: plan.data_bounds.min_y - room,
         max_x: plan.data_bounds.max_x + room,
         max_y: plan.data_bounds.max_y + room,
@@ -106,7 +108,9 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
                 cell_m: levels.frame().level_cell_m(level),
                 max_error_m: levels.max_error_m(level),
                 geometric_error_m: sums.geometric_error_m,
-                least_class: levels.least_class(level).map(corniche_roads::FunctionalRoadClass::number),
+                least_class: levels
+                    .least_class(level)
+                    .map(corniche_roads::FunctionalRoadClass::number),
                 simplify_tolerance_m: levels.simplify_tolerance_m(level),
                 width_margin_m: levels.margin_m(level),
                 tiles: sums.tiles,
@@ -132,10 +136,18 @@ fn counts(outcome: &Outcome<'_>) -> Counts {
         roads_in_m: roads.lengths_steps.iter().sum::<f64>() * step_m,
         classes: roads.classes.iter().map(|&(count, steps)| (count, steps * step_m)).collect(),
         defects: roads.defects.iter().map(|(name, &count)| (name.clone(), count)).collect(),
-        unknown_highways: roads.unknown_highways.iter().map(|(value, &count)| (value.clone(), count)).collect(),
+        unknown_highways: roads
+            .extract
+            .unknown_highways
+            .iter()
+            .map(|(value, &count)| (value.clone(), count))
+            .collect(),
+        highways_in: roads.extract.highway_ways,
+        highways_left_out: left_out(&roads.extract),
         ..Counts::default()
     };
-    let mut outside = RoadLoss { reason: "outside the elevation data".to_owned(), roads: 0, length_m: 0.0 };
+    let mut outside =
+        RoadLoss { reason: "outside the elevation data".to_owned(), roads: 0, length_m: 0.0 };
     let mut void = RoadLoss { reason: "over a void".to_owned(), roads: 0, length_m: 0.0 };
     for (&length_steps, fate) in roads.lengths_steps.iter().zip(&outcome.tiles.roads) {
         let outside_steps = length_steps - fate.kept_steps - fate.void_steps;
@@ -152,6 +164,23 @@ fn counts(outcome: &Outcome<'_>) -> Counts {
     }
     counts.roads_lost = vec![outside, void];
     counts
+}
+
+/// Ways with a `highway` tag that are no roads here, by reason.
+fn left_out(extract: &corniche_osm::ExtractSummary) -> Vec<(String, u64)> {
+    let left_out = &extract.left_out;
+    [
+        ("listed as no road", left_out.listed),
+        ("class is off", left_out.class_off),
+        ("value in no class", left_out.unknown),
+        ("an area", left_out.area),
+        ("id occurs twice", left_out.duplicate),
+        ("no line is left", left_out.without_line),
+    ]
+    .into_iter()
+    .filter(|&(_, ways)| ways > 0)
+    .map(|(reason, ways)| (reason.to_owned(), ways))
+    .collect()
 }
 
 fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {

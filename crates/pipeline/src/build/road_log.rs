@@ -26,7 +26,8 @@ impl<'a> RoadLog<'a> {
     /// Keeps `road` and says its ordinal.
     pub(crate) fn push(&mut self, road: &Road) -> Result<u32, BuildError> {
         let ordinal = self.spans.len() as u32;
-        self.spans.push(self.storage.append(Kind::Roads, &to_bytes(road)).map_err(BuildError::Storage)?);
+        self.spans
+            .push(self.storage.append(Kind::Roads, &to_bytes(road)).map_err(BuildError::Storage)?);
         Ok(ordinal)
     }
 
@@ -80,7 +81,8 @@ impl<'a> RoadTiles<'a> {
             })
             .collect();
         if !bytes.is_empty() {
-            self.runs.push(self.storage.append(Kind::RoadTiles, &bytes).map_err(BuildError::Storage)?);
+            self.runs
+                .push(self.storage.append(Kind::RoadTiles, &bytes).map_err(BuildError::Storage)?);
         }
         Ok(())
     }
@@ -88,7 +90,8 @@ impl<'a> RoadTiles<'a> {
     /// No more pairs come: gives them back in order.
     pub(crate) fn finish(mut self) -> Result<RoadTileCursor<'a>, BuildError> {
         self.flush()?;
-        let mut cursor = RoadTileCursor { storage: self.storage, runs: Vec::new(), heads: BinaryHeap::new() };
+        let mut cursor =
+            RoadTileCursor { storage: self.storage, runs: Vec::new(), heads: BinaryHeap::new() };
         for span in self.runs {
             cursor.runs.push(Run { span, read: 0, page: Vec::new() });
             cursor.refill(cursor.runs.len() - 1)?;
@@ -235,7 +238,8 @@ mod tests {
     use crate::MemoryStorage;
 
     fn road(way_id: i64) -> Road {
-        let points = vec![LatticePoint::new(-5, 1 << 40), LatticePoint::new(7, 0), LatticePoint::new(8, -1)];
+        let points =
+            vec![LatticePoint::new(-5, 1 << 40), LatticePoint::new(7, 0), LatticePoint::new(8, -1)];
         Road {
             way_id,
             class: FunctionalRoadClass::new(4).unwrap(),
@@ -270,7 +274,8 @@ mod tests {
     fn pairs_come_back_by_tile_through_many_runs() {
         let storage = MemoryStorage::default();
         let mut pairs = RoadTiles::new(&storage, 0);
-        let tiles: Vec<TileId> = (0..8_u32).map(|x| TileId::new(3, x, (x * 5) % 8).unwrap()).collect();
+        let tiles: Vec<TileId> =
+            (0..8_u32).map(|x| TileId::new(3, x, (x * 5) % 8).unwrap()).collect();
         let count = 3 * PAGE_PAIRS as u32 + 17;
         for ordinal in (0..count).rev() {
             pairs.push(tiles[(ordinal * 7 % 8) as usize], ordinal).unwrap();
@@ -280,7 +285,8 @@ mod tests {
         let mut in_order = tiles.clone();
         in_order.sort_by_key(|&id| pmtiles_order(id));
         for id in in_order.into_iter().skip(1) {
-            let expected: Vec<u32> = (0..count).filter(|o| tiles[(o * 7 % 8) as usize] == id).collect();
+            let expected: Vec<u32> =
+                (0..count).filter(|o| tiles[(o * 7 % 8) as usize] == id).collect();
             assert_eq!(cursor.roads_of(id).unwrap(), expected);
         }
     }

@@ -8,6 +8,7 @@ use std::{
 
 use corniche_dem::Dem;
 use corniche_geom::{Bounds, LatticeBounds, LatticePoint, Projection, TileId};
+use corniche_osm::ExtractSummary;
 use corniche_roads::{FunctionalRoadClass, Road};
 
 use super::{
@@ -35,8 +36,8 @@ pub(crate) struct ReadRoads<'a> {
     pub(crate) classes: Vec<(u64, f64)>,
     /// Counted defects by name.
     pub(crate) defects: BTreeMap<String, u64>,
-    /// Ways by `highway` value that the table does not know.
-    pub(crate) unknown_highways: BTreeMap<String, u64>,
+    /// What the extract held and what of it is no road.
+    pub(crate) extract: ExtractSummary,
     /// Where roads lie, on the lattice.
     pub(crate) bounds: Option<LatticeBounds>,
 }
@@ -69,7 +70,7 @@ pub(crate) fn read<'a>(
             line_counts: BTreeMap::new(),
             classes: vec![(0, 0.0); FunctionalRoadClass::COUNT],
             defects: BTreeMap::new(),
-            unknown_highways: BTreeMap::new(),
+            extract: ExtractSummary::default(),
             bounds: None,
         },
         pairs: RoadTiles::new(storage, input.memory_bytes),
@@ -95,7 +96,12 @@ pub(crate) fn read<'a>(
     };
     let defects = RefCell::new(BTreeMap::new());
     let summary = corniche_osm::read_roads(
-        &corniche_osm::ReadRequest { path: input.osm, table: &input.settings.table, place: &place, pool: input.pool },
+        &corniche_osm::ReadRequest {
+            path: input.osm,
+            table: &input.settings.table,
+            place: &place,
+            pool: input.pool,
+        },
         &mut |road| {
             gathered.add(&road);
             observer.advance(Stage::Roads, 1);
@@ -113,7 +119,7 @@ pub(crate) fn read<'a>(
     let mut roads = gathered.roads;
     roads.by_tile = gathered.pairs.finish()?;
     roads.defects = defects.into_inner();
-    roads.unknown_highways = summary.unknown_highways;
+    roads.extract = summary;
     observer.end(Stage::Roads);
     if roads.log.len() == 0 {
         return Err(BuildError::NoRoads { osm: input.osm.to_path_buf() });
@@ -206,8 +212,11 @@ pub(crate) fn check_overlap(
     }
     let mut corners = [min, max];
     let projected = input.dem.projection(input.plan)?.wgs84_from_working(&mut corners);
-    let roads_deg =
-        if projected.is_ok() { [corners[0][0], corners[0][1], corners[1][0], corners[1][1]] } else { [f64::NAN; 4] };
+    let roads_deg = if projected.is_ok() {
+        [corners[0][0], corners[0][1], corners[1][0], corners[1][1]]
+    } else {
+        [f64::NAN; 4]
+    };
     Err(BuildError::NoOverlap {
         osm: input.osm.to_path_buf(),
         roads_deg,

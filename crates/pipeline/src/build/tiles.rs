@@ -166,7 +166,8 @@ fn make_tile(
 ) -> Result<Made, BuildError> {
     let levels = input.levels;
     let frame = levels.frame();
-    let span = input.meshes.get(&id).ok_or_else(|| BuildError::Damaged { what: format!("tile {id}") })?;
+    let span =
+        input.meshes.get(&id).ok_or_else(|| BuildError::Damaged { what: format!("tile {id}") })?;
     let meshed = mesh::load(input.storage, id, *span)?;
     let surface = Surface::new(
         &meshed.tin,
@@ -225,7 +226,12 @@ impl Laid {
             fate.void_steps += draped.off_ground_steps;
             fate.kept_steps += part.length_steps() - draped.off_ground_steps;
             for line in draped.lines {
-                self.geo.push(GeoRoad { way_id: road.way_id, part: parts[0], class: road.class, line });
+                self.geo.push(GeoRoad {
+                    way_id: road.way_id,
+                    part: parts[0],
+                    class: road.class,
+                    line,
+                });
                 parts[0] += 1;
                 laid += 1;
             }
@@ -233,15 +239,21 @@ impl Laid {
         let margin = levels.margin_steps(id.z());
         for part in corniche_drape::clip_closed(&simplified, &bounds.expanded(margin)) {
             for line in corniche_drape::extrude(&part, surface, margin) {
-                self.sv.push(SvRoad { way_id: road.way_id, part: parts[1], class: road.class, line });
+                self.sv.push(SvRoad {
+                    way_id: road.way_id,
+                    part: parts[1],
+                    class: road.class,
+                    line,
+                });
                 parts[1] += 1;
                 laid += 1;
             }
         }
         if laid > 0 {
-            self.attributes
-                .entry(road.way_id)
-                .or_insert_with(|| RoadRecord { way_id: road.way_id, attributes: road.attributes.clone() });
+            self.attributes.entry(road.way_id).or_insert_with(|| RoadRecord {
+                way_id: road.way_id,
+                attributes: road.attributes.clone(),
+            });
         }
         if id.z() == frame.max_level() && fate != RoadFate::default() {
             self.fates.push((ordinal, fate));
@@ -265,10 +277,12 @@ impl Laid {
 fn class_sums(payload: &TilePayload, encoded: &EncodedTile) -> BTreeMap<u8, ClassSums> {
     let mut classes: BTreeMap<u8, ClassSums> = BTreeMap::new();
     for road in &payload.roads_geo {
-        classes.entry(road.class.number()).or_default().geo_vertices += road.line.vertices.len() as u64;
+        classes.entry(road.class.number()).or_default().geo_vertices +=
+            road.line.vertices.len() as u64;
     }
     for road in &payload.roads_sv {
-        classes.entry(road.class.number()).or_default().sv_vertices += road.line.points.len() as u64;
+        classes.entry(road.class.number()).or_default().sv_vertices +=
+            road.line.points.len() as u64;
     }
     for class in FunctionalRoadClass::all() {
         let index = usize::from(class.number());
@@ -291,7 +305,9 @@ fn share(total: u64, parts: &[u64; FunctionalRoadClass::COUNT], index: usize) ->
     if sum == 0 {
         return 0;
     }
-    let up_to = |end: usize| (u128::from(total) * u128::from(parts[..end].iter().sum::<u64>()) / u128::from(sum)) as u64;
+    let up_to = |end: usize| {
+        (u128::from(total) * u128::from(parts[..end].iter().sum::<u64>()) / u128::from(sum)) as u64
+    };
     up_to(index + 1) - up_to(index)
 }
 

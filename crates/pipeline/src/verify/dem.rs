@@ -6,7 +6,9 @@ use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions};
 use corniche_geom::{HeightGrid, TileId};
 use corniche_tileset::{FilePackage, Manifest, Sections};
 
-use super::{Check, ErrorFigures, SampleFigures, VerifyError, VerifyReport, VerifySettings, ground::Ground};
+use super::{
+    Check, ErrorFigures, SampleFigures, VerifyError, VerifyReport, VerifySettings, ground::Ground,
+};
 use crate::{Observer, Stage, workers};
 
 /// Slack for comparing two ways of computing the same height, metres.
@@ -71,13 +73,15 @@ pub(crate) fn verify(
                         let payload = package.payload(ancestor, Sections::TERRAIN).ok().flatten();
                         let terrain = payload.and_then(|payload| payload.terrain);
                         let quantum_m = manifest.vertical.quantum_m;
-                        let ground = Rc::new(terrain.map(|terrain| Ground::new(&terrain.tin, quantum_m)));
+                        let ground =
+                            Rc::new(terrain.map(|terrain| Ground::new(&terrain.tin, quantum_m)));
                         cache.insert(ancestor, Rc::clone(&ground));
                         ground
                     }
                 };
                 if let Some(ground) = &*ground {
-                    found.push((ancestor, compare(ground, [id, ancestor], &window, halo, manifest)));
+                    found
+                        .push((ancestor, compare(ground, [id, ancestor], &window, halo, manifest)));
                 }
             }
             Ok(found)
@@ -100,7 +104,10 @@ pub(crate) fn verify(
 /// Opens the DEM as the build did and makes sure that it gives the same grid.
 fn open(settings: &VerifySettings, manifest: &Manifest) -> Result<(Dem, GridPlan), VerifyError> {
     let record = &manifest.settings;
-    let dem = Dem::open(&settings.dem, &OpenOptions { dem_crs: record.dem_crs.clone(), nodata: record.nodata })?;
+    let dem = Dem::open(
+        &settings.dem,
+        &OpenOptions { dem_crs: record.dem_crs.clone(), nodata: record.nodata },
+    )?;
     let plan = dem.plan(&PlanOptions {
         crs: record.crs.clone(),
         cell_m: record.cell_m,
@@ -142,7 +149,8 @@ fn compare(
                 // Border nodes belong to two tiles; the western and northern one counts them here.
                 None if column + 1 < side && row + 1 < side => {
                     truth.uncovered += 1;
-                    truth.stray += u64::from(!near_void(window, column + halo, row + halo, stride, halo));
+                    truth.stray +=
+                        u64::from(!near_void(window, column + halo, row + halo, stride, halo));
                 }
                 None => {}
             }
@@ -158,7 +166,8 @@ fn near_void(window: &HeightGrid, column: usize, row: usize, stride: i64, halo: 
     if reach > halo {
         return true;
     }
-    (row - reach..=row + reach).any(|r| (column - reach..=column + reach).any(|c| !window.has_height(c, r)))
+    (row - reach..=row + reach)
+        .any(|r| (column - reach..=column + reach).any(|c| !window.has_height(c, r)))
 }
 
 /// Puts stored errors beside true ones.
@@ -172,12 +181,17 @@ fn judge(
     let mut bound = Check::new("P2: no stored error is below the true one");
     let mut finest = Check::new("P2: the finest level stays within --max-error");
     let mut stray = Check::new("P2: nodes without ground lie within one cell of a void or an edge");
-    let mut tight = Check::new("P2: stored errors are at most twice the true ones, for 95 % of tiles");
+    let mut tight =
+        Check::new("P2: stored errors are at most twice the true ones, for 95 % of tiles");
     let mut loose = 0_u64;
     let mut stored = BTreeMap::new();
     for id in package.tile_ids()? {
         let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
-        stored.extend(payload.and_then(|payload| payload.terrain).map(|terrain| (id, terrain.geometric_error_m)));
+        stored.extend(
+            payload
+                .and_then(|payload| payload.terrain)
+                .map(|terrain| (id, terrain.geometric_error_m)),
+        );
     }
     let mut ratios: BTreeMap<u8, Vec<f64>> = BTreeMap::new();
     let mut levels: BTreeMap<u8, Truth> = BTreeMap::new();
@@ -205,12 +219,16 @@ fn judge(
         }
     }
     let count = stored.len() as u64;
-    tight.look(loose as f64 <= (1.0 - TIGHT_SHARE) * count as f64, || format!("{loose} of {count} tiles are loose"));
+    tight.look(loose as f64 <= (1.0 - TIGHT_SHARE) * count as f64, || {
+        format!("{loose} of {count} tiles are loose")
+    });
     report.checks.extend([bound, tight, finest, stray]);
     for (level, truth) in levels {
         let mut ratios = ratios.remove(&level).unwrap_or_default();
         ratios.sort_by(f64::total_cmp);
-        let quantile = |share: f64| ratios.get(((ratios.len().max(1) - 1) as f64 * share).round() as usize).copied();
+        let quantile = |share: f64| {
+            ratios.get(((ratios.len().max(1) - 1) as f64 * share).round() as usize).copied()
+        };
         report.errors.push(ErrorFigures {
             level,
             tiles: tiles.get(&level).copied().unwrap_or_default(),
@@ -232,4 +250,68 @@ struct SampleSums {
     uncovered: u64,
     largest_m: f64,
     squares: f64,
+}
+
+/// Tiles whose ground is kept while samples are looked at. Blocks of samples are compact, so a few rows of tiles
+/// are enough not to load any twice in a row.
+const GROUNDS: usize = 64;
+
+impl SampleSums {
+    /// Compares the finest level with every sample of the DEM.
+    fn measure(
+        &mut self,
+        package: &FilePackage,
+        dem: &Dem,
+        plan: &GridPlan,
+        observer: &dyn Observer,
+    ) -> Result<(), VerifyError> {
+        let manifest = package.manifest();
+        let frame = &manifest.frame;
+        let level = frame.max_level();
+        let last = (1_i64 << level) - 1;
+        let mut grounds: BTreeMap<TileId, Option<Ground>> = BTreeMap::new();
+        dem.reader(plan)?.for_each_sample_block(|block| {
+            if observer.is_cancelled() {
+                return;
+            }
+            for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
+                let Some(point) = frame.snap(position_m) else { continue };
+                let [column, row] =
+                    frame.tile_column_row(level, point).map(|at| at.clamp(0, last) as u32);
+                let Ok(id) = TileId::new(level, column, row) else { continue };
+                if grounds.len() >= GROUNDS && !grounds.contains_key(&id) {
+                    grounds.clear();
+                }
+                let ground = grounds.entry(id).or_insert_with(|| {
+                    let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
+                    let terrain = payload.and_then(|payload| payload.terrain);
+                    terrain.map(|terrain| Ground::new(&terrain.tin, manifest.vertical.quantum_m))
+                });
+                let corner = frame.tile_corner(id);
+                let at = [
+                    (position_m[0] - frame.x_m(corner.i)) / frame.cell_m(),
+                    (frame.y_m(corner.j) - position_m[1]) / frame.cell_m(),
+                ];
+                match ground.as_ref().and_then(|ground| ground.height_m(at)) {
+                    Some(ground_m) => {
+                        let difference_m = (ground_m - f64::from(height_m)).abs();
+                        self.samples += 1;
+                        self.largest_m = self.largest_m.max(difference_m);
+                        self.squares += difference_m * difference_m;
+                    }
+                    None => self.uncovered += 1,
+                }
+            }
+        })?;
+        if observer.is_cancelled() { Err(VerifyError::Interrupted) } else { Ok(()) }
+    }
+
+    fn figures(&self) -> SampleFigures {
+        SampleFigures {
+            samples: self.samples,
+            uncovered: self.uncovered,
+            largest_m: self.largest_m,
+            rms_m: (self.squares / self.samples.max(1) as f64).sqrt(),
+        }
+    }
 }

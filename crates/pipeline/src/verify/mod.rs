@@ -162,7 +162,10 @@ pub enum VerifyError {
 ///
 /// # Errors
 /// When the package or the DEM cannot be read at all; a broken promise is a finding, not an error.
-pub fn verify(settings: &VerifySettings, observer: &dyn Observer) -> Result<VerifyReport, VerifyError> {
+pub fn verify(
+    settings: &VerifySettings,
+    observer: &dyn Observer,
+) -> Result<VerifyReport, VerifyError> {
     let package = FilePackage::open(&settings.package)?;
     let mut report = tiles::verify(&package, settings.threads, observer)?;
     report.checks.extend(sums::verify(package.manifest()));

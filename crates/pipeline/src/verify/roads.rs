@@ -20,7 +20,12 @@ fn allowed_gap_m(max_error_m: f64) -> f64 {
     (max_error_m / 100.0).max(0.01)
 }
 
-pub(crate) fn verify(payload: &TilePayload, frame: &Frame, quantum_m: f64, max_error_m: f64) -> RoadFindings {
+pub(crate) fn verify(
+    payload: &TilePayload,
+    frame: &Frame,
+    quantum_m: f64,
+    max_error_m: f64,
+) -> RoadFindings {
     let id = payload.id;
     let mut findings = RoadFindings {
         on_tin: Check::new("P1: GEO roads lie on their TIN"),
@@ -33,7 +38,9 @@ pub(crate) fn verify(payload: &TilePayload, frame: &Frame, quantum_m: f64, max_e
     findings.order.look(geo.is_sorted_by(|a, b| a < b), || format!("GEO section of tile {id}"));
     findings.order.look(sv.is_sorted_by(|a, b| a < b), || format!("SV section of tile {id}"));
     let Some(terrain) = &payload.terrain else {
-        findings.on_tin.look(payload.roads_geo.is_empty(), || format!("tile {id} has roads but no ground"));
+        findings
+            .on_tin
+            .look(payload.roads_geo.is_empty(), || format!("tile {id} has roads but no ground"));
         return findings;
     };
     let placement = Placement {
@@ -56,17 +63,24 @@ pub(crate) fn verify(payload: &TilePayload, frame: &Frame, quantum_m: f64, max_e
         };
         let in_cells = |p: [f64; 3]| {
             let node_steps = placement.node_steps as f64;
-            [(p[0] - placement.corner.u as f64) / node_steps, (placement.corner.v as f64 - p[1]) / node_steps, p[2]]
+            [
+                (p[0] - placement.corner.u as f64) / node_steps,
+                (placement.corner.v as f64 - p[1]) / node_steps,
+                p[2],
+            ]
         };
         for pair in positions.windows(2) {
             findings.length_m += (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]) * step_m;
             let gap_m = ground.edge_gap_m(in_cells(pair[0]), in_cells(pair[1]));
             findings.gaps.edges += 1;
             findings.gaps.largest_m = findings.gaps.largest_m.max(gap_m.unwrap_or(0.0));
-            findings.on_tin.look(gap_m.is_some_and(|gap_m| gap_m <= allowed_gap_m(max_error_m)), || match gap_m {
-                Some(gap_m) => format!("{} is {gap_m} m off", name()),
-                None => format!("{} has an edge on no single triangle", name()),
-            });
+            findings.on_tin.look(
+                gap_m.is_some_and(|gap_m| gap_m <= allowed_gap_m(max_error_m)),
+                || match gap_m {
+                    Some(gap_m) => format!("{} is {gap_m} m off", name()),
+                    None => format!("{} has an edge on no single triangle", name()),
+                },
+            );
         }
     }
     findings

@@ -90,8 +90,13 @@ mod tests {
     fn tile(east_heights: &[(u16, i32)]) -> Tin {
         // A fan from the west border's middle to the vertices on the east border.
         let mut vertices = vec![TinVertex { row: 128, column: 0, height_q: 0 }];
-        vertices.extend(east_heights.iter().map(|&(row, height_q)| TinVertex { row, column: 256, height_q }));
-        let triangles: Vec<[u32; 3]> = (1..east_heights.len() as u32).map(|k| [0, k + 1, k]).collect();
+        vertices.extend(east_heights.iter().map(|&(row, height_q)| TinVertex {
+            row,
+            column: 256,
+            height_q,
+        }));
+        let triangles: Vec<[u32; 3]> =
+            (1..east_heights.len() as u32).map(|k| [0, k + 1, k]).collect();
         Tin::new(vertices, &triangles).unwrap()
     }
 

@@ -21,10 +21,13 @@ pub(crate) fn verify(manifest: &Manifest) -> Vec<Check> {
     });
     let lost_m: f64 = counts.roads_lost.iter().map(|loss| loss.length_m).sum();
     check.look(
-        (counts.roads_in_m - counts.roads_kept_m - lost_m).abs() <= LENGTH_SHARE * counts.roads_in_m,
+        (counts.roads_in_m - counts.roads_kept_m - lost_m).abs()
+            <= LENGTH_SHARE * counts.roads_in_m,
         || format!("{} m in, {} m kept, {lost_m} m lost", counts.roads_in_m, counts.roads_kept_m),
     );
     let by_class: u64 = counts.classes.iter().map(|&(count, _)| count).sum();
-    check.look(by_class == counts.roads_in, || format!("{by_class} roads by class, {} in all", counts.roads_in));
+    check.look(by_class == counts.roads_in, || {
+        format!("{by_class} roads by class, {} in all", counts.roads_in)
+    });
     vec![check]
 }

@@ -49,7 +49,11 @@ pub(crate) fn verify(
         ids.len(),
         || Ok(()),
         |(), index| {
-            if observer.is_cancelled() { Err(VerifyError::Interrupted) } else { Ok(look_at(package, ids[index])) }
+            if observer.is_cancelled() {
+                Err(VerifyError::Interrupted)
+            } else {
+                Ok(look_at(package, ids[index]))
+            }
         },
         |index, found: Found| {
             let id = ids[index];
@@ -58,7 +62,9 @@ pub(crate) fn verify(
             on_tin.merge(tile_on_tin);
             order.merge(tile_order);
             if found.damage.is_none() {
-                let level = gaps.entry(id.z()).or_insert(GapFigures { level: id.z(), ..GapFigures::default() });
+                let level = gaps
+                    .entry(id.z())
+                    .or_insert(GapFigures { level: id.z(), ..GapFigures::default() });
                 level.edges += found.gaps.edges;
                 level.largest_m = level.largest_m.max(found.gaps.largest_m);
             }
@@ -72,11 +78,13 @@ pub(crate) fn verify(
     )?;
     observer.end(Stage::Verify);
     let (seam_check, borders) = check_seams(&kept);
-    let mut lengths = Check::new("P6: GEO roads of the finest level are as long as the manifest says");
+    let mut lengths =
+        Check::new("P6: GEO roads of the finest level are as long as the manifest says");
     let expected_m = manifest.counts.roads_kept_m;
-    lengths.look((finest_length_m - expected_m).abs() <= LENGTH_SHARE * expected_m.max(1.0), || {
-        format!("{finest_length_m} m lie in the tiles, {expected_m} m are recorded")
-    });
+    lengths
+        .look((finest_length_m - expected_m).abs() <= LENGTH_SHARE * expected_m.max(1.0), || {
+            format!("{finest_length_m} m lie in the tiles, {expected_m} m are recorded")
+        });
     let mut count = Check::new("the tiles are those that the manifest counts");
     for level in &manifest.levels {
         let found = ids.iter().filter(|id| id.z() == level.level).count() as u64;
@@ -101,8 +109,10 @@ fn look_at(package: &FilePackage, id: TileId) -> Found {
         Ok(None) => return Found::damaged(id, format!("tile {id} is listed but not there")),
         Err(error) => return Found::damaged(id, chain(&error)),
     };
-    let max_error_m = manifest.levels.get(usize::from(id.z())).map_or(0.0, |level| level.max_error_m);
-    let findings = roads::verify(&payload, &manifest.frame, manifest.vertical.quantum_m, max_error_m);
+    let max_error_m =
+        manifest.levels.get(usize::from(id.z())).map_or(0.0, |level| level.max_error_m);
+    let findings =
+        roads::verify(&payload, &manifest.frame, manifest.vertical.quantum_m, max_error_m);
     Found {
         kept: payload.terrain.map(|terrain| Kept {
             geometric_error_m: terrain.geometric_error_m,

@@ -9,11 +9,16 @@
 //      └──────────────────────────────────┘  ─ across = −radius
 //   −radius  0                    length  length + radius     = along
 //
-// along and across are metres in plan, so a cap is round on the map. What we changed: the distance to the
-// segment decides (one test for body and caps), and instead of a depth test with a bias the terrain's depth is
-// read. A fragment is kept if it lies in front of the ground, or if the ground that hides it belongs to the
-// road itself: its plan position is within the road's half width. Then the ground never shows through where
-// the flat quad dips below it, and nothing shows from behind a ridge, at any slope and any distance.
+// What we changed: the paper cuts the caps by the fragment's own place in the quad and tests its depth against
+// the terrain's. Here the terrain's depth is read, the ground seen at the pixel is reconstructed, and its
+// distance in plan to the segment decides. One test cuts body and caps, and replaces the depth test with its
+// bias: ground within the road's half width is painted though the flat quad dips below it, and nothing is
+// painted that hangs over a crest or lies behind a ridge. Where a quad on a cross slope does not cover
+// the ground it should, the road is still too narrow, as in the paper's Fig. 15.
+//
+// A road seen at a grazing angle would break into dashes thinner than a pixel. So ground is also painted whose
+// distance to the segment looks smaller than the least half width, measured across the ray of view. That ground
+// may be up to MAX_STRETCH least half widths away in plan, not more, so that a crest does not paint the valley.
 
 struct Tile {
     // xyz: the tile's reference point minus the eye.
@@ -26,8 +31,7 @@ struct Tile {
 
 // 0 draws the road, 1 its centre line.
 override BAND: u32 = 0u;
-// Depths that differ by less than this share are one surface.
-const SAME_DEPTH = 1e-5;
+const MAX_STRETCH = 8.0;
 
 struct SegmentIn {
     @builtin(vertex_index) corner: u32,
@@ -38,37 +42,39 @@ struct SegmentIn {
 
 struct VertexOut {
     @builtin(position) clip: vec4<f32>,
-    // Metres in plan: along the segment from its start, and across.
-    @location(0) along_across: vec2<f32>,
-    @location(1) @interpolate(flat) start: vec3<f32>,
-    // xy: unit direction in plan; z: length in plan.
-    @location(2) @interpolate(flat) direction_length: vec3<f32>,
-    @location(3) @interpolate(flat) road_class: u32,
+    @location(0) @interpolate(flat) start: vec3<f32>,
+    @location(1) @interpolate(flat) start_to_end: vec3<f32>,
+    @location(2) @interpolate(flat) road_class: u32,
 }
 
 fn half_width_share(road_class: u32) -> f32 {
     return select(1.0, frame.road_widths[road_class].z, BAND == 1u);
 }
 
-fn half_width_m(road_class: u32, distance_m: f32, view_depth: f32) -> f32 {
-    let whole = max(scaled_half_width_m(road_class, distance_m), least_half_width_m(road_class, view_depth));
-    return whole * half_width_share(road_class);
+// How many times wider a level road must be in plan to look as wide as one seen from above.
+fn foreshortening(position: vec3<f32>) -> f32 {
+    // Slopes that face away from the eye need some more.
+    return clamp(1.5 * length(position) / max(abs(position.z), 1e-3), 1.0, MAX_STRETCH);
 }
 
 @vertex
 fn vertex(in: SegmentIn) -> VertexOut {
     let vertical_scale = frame.background.w;
-    let stretch = vec3(1.0, 1.0, vertical_scale);
-    let a = tile.offset.xyz + in.start_in_tile * stretch;
-    let ab = (in.end_in_tile - in.start_in_tile) * stretch;
+    let exaggerated = vec3(1.0, 1.0, vertical_scale);
+    let a = tile.offset.xyz + in.start_in_tile * exaggerated;
+    let ab = (in.end_in_tile - in.start_in_tile) * exaggerated;
     let length_m = length(ab.xy);
     let direction = select(vec2(1.0, 0.0), ab.xy / length_m, length_m > 1e-6);
 
     // No fragment of the road is farther away than this, hence none is wider.
     let far_m = max(length(a), length(a + ab));
-    let first = half_width_m(in.road_class, far_m, far_m);
+    let stretch = max(foreshortening(a), foreshortening(a + ab));
+    let first = max(scaled_half_width_m(in.road_class, far_m), stretch * least_half_width_m(in.road_class, far_m));
     let reach_m = far_m + 2.0 * first;
-    let radius_m = half_width_m(in.road_class, reach_m, reach_m);
+    let radius_m = half_width_share(in.road_class) * max(
+        scaled_half_width_m(in.road_class, reach_m),
+        stretch * least_half_width_m(in.road_class, reach_m),
+    );
 
     // Beyond its ends the quad goes on with the segment's slope. The slope of a segment much shorter than the
     // road is wide says nothing about the ground under its caps.
@@ -81,42 +87,37 @@ fn vertex(in: SegmentIn) -> VertexOut {
 
     var out: VertexOut;
     out.clip = frame.clip_from_relative * vec4(position, 1.0);
-    out.along_across = vec2(length_m * at_end + beyond, side * radius_m);
     out.start = a;
-    out.direction_length = vec3(direction, length_m);
+    out.start_to_end = ab;
     out.road_class = in.road_class;
     return out;
 }
 
-// Distance in plan to the segment, from (along, across).
-fn distance_to_segment(along_across: vec2<f32>, length_m: f32) -> f32 {
-    let past_end = max(max(-along_across.x, along_across.x - length_m), 0.0);
-    return length(vec2(past_end, along_across.y));
-}
-
 @fragment
 fn fragment(in: VertexOut) -> @location(0) u32 {
-    let ray = ray_at(in.clip.xy);
-    let depth = view_depth_of(in.clip.z);
-    let radius_m = half_width_m(in.road_class, depth * length(ray), depth);
-    if distance_to_segment(in.along_across, in.direction_length.z) > radius_m {
-        discard;
-    }
     let ground = textureLoad(terrain_depth, vec2<i32>(in.clip.xy), 0);
     if ground == 0.0 {
-        // No ground, no road: caps do not stick out over the silhouette.
         discard;
     }
-    if in.clip.z < ground * (1.0 - SAME_DEPTH) {
-        let ground_depth = view_depth_of(ground);
-        let from_start = (ray * ground_depth - in.start).xy;
-        let direction = in.direction_length.xy;
-        let along = dot(from_start, direction);
-        let across = dot(from_start, vec2(-direction.y, direction.x));
-        let ground_radius_m = half_width_m(in.road_class, ground_depth * length(ray), ground_depth);
-        if distance_to_segment(vec2(along, across), in.direction_length.z) > ground_radius_m {
-            discard;
-        }
+    let depth = view_depth_of(ground);
+    let position = ray_at(in.clip.xy) * depth;
+    let distance_m = length(position);
+
+    // From the nearest point of the segment, nearest in plan, to the ground.
+    let from_start = position - in.start;
+    let length_squared = dot(in.start_to_end.xy, in.start_to_end.xy);
+    let share = clamp(dot(from_start.xy, in.start_to_end.xy) / max(length_squared, 1e-12), 0.0, 1.0);
+    let offset = from_start - share * in.start_to_end;
+    let plan_m = length(offset.xy);
+    let to_eye = position / distance_m;
+    let across_m = length(offset - to_eye * dot(offset, to_eye));
+
+    let band = half_width_share(in.road_class);
+    let least_m = band * least_half_width_m(in.road_class, depth);
+    let is_wide_enough = plan_m <= band * scaled_half_width_m(in.road_class, distance_m);
+    let would_be_too_thin = across_m <= least_m && plan_m <= MAX_STRETCH * least_m;
+    if !(is_wide_enough || would_be_too_thin) {
+        discard;
     }
     // More important classes have larger labels; the centre line of a class lies above its fill.
     return (CLASSES - in.road_class) * 2u + BAND;

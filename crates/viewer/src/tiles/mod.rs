@@ -11,12 +11,12 @@ use std::{collections::BTreeMap, ops::Range};
 
 use corniche_geom::{Bounds, Frame, TileId, barycentric};
 use corniche_roads::FunctionalRoadClass;
-use corniche_tileset::Terrain;
+use corniche_tileset::{Terrain, TilePayload};
 
 pub use self::{
     ground::{GroundMesh, GroundVertex},
     //package::{OpenPackageError, PackageSource},
-    roads::{RoadSegment, RoadSegments},
+    roads::{BadRoad, RoadSegment, RoadSegments},
 };
 use crate::lod::{GroundSummary, Node, Request, TileTree};
 
@@ -59,6 +59,19 @@ impl TileGeometry {
             height_range_m: terrain.height_range_m,
         });
         Self { id, reference_m, summary, ground, roads: RoadSegments::new(lines, reference_m) }
+    }
+
+    /// Decodes a tile's payload: terrain and GEO roads.
+    ///
+    /// # Errors
+    /// When a road does not fit the ground.
+    pub fn from_payload(
+        payload: &TilePayload,
+        frame: &Frame,
+        quantum_m: f64,
+    ) -> Result<Self, BadRoad> {
+        let lines = roads::ground_lines(payload, frame, quantum_m)?;
+        Ok(Self::assemble(payload.id, payload.terrain.as_ref(), &lines, frame, quantum_m))
     }
 
     /// True height of the ground at a position in the working CRS; `None` where this tile has no ground.

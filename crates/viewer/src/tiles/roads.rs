@@ -1,6 +1,10 @@
 use std::ops::Range;
 
+use corniche_drape::BadLine;
+use corniche_geom::Frame;
 use corniche_roads::FunctionalRoadClass;
+use corniche_tileset::TilePayload;
+use corniche_tin::{Placement, Surface};
 
 use super::{GroundLine, class_ranges, ground::relative};
 
@@ -13,6 +17,46 @@ pub struct RoadSegment {
     pub end_in_tile: [f32; 3],
     /// Functional road class.
     pub class: FunctionalRoadClass,
+}
+
+/// Why a road of a tile cannot be drawn: the package is damaged.
+#[derive(Debug, thiserror::Error)]
+#[error("part {part} of way {way_id} does not fit the tile's ground")]
+pub struct BadRoad {
+    /// OSM's id of the way.
+    pub way_id: i64,
+    /// Which piece of it.
+    pub part: u32,
+    /// What is wrong.
+    pub source: BadLine,
+}
+
+/// Recomputes the positions of a tile's clipped roads from its ground.
+pub(super) fn ground_lines(
+    payload: &TilePayload,
+    frame: &Frame,
+    quantum_m: f64,
+) -> Result<Vec<GroundLine>, BadRoad> {
+    let Some(terrain) = payload.terrain.as_ref().filter(|_| !payload.roads_geo.is_empty()) else {
+        return Ok(Vec::new());
+    };
+    let placement = Placement {
+        corner: frame.lattice_of_node(frame.tile_corner(payload.id)),
+        node_steps: frame.stride(payload.id.z()) << frame.lattice_bits(),
+        quantum_m,
+    };
+    let surface = Surface::new(&terrain.tin, placement);
+    let place = |[u, v, height_m]: [f64; 3]| {
+        let [x, y] = frame.position_of_fraction_m([u, v]);
+        [x, y, height_m]
+    };
+    let mut lines = Vec::with_capacity(payload.roads_geo.len());
+    for road in &payload.roads_geo {
+        let positions = corniche_drape::positions(&road.line, &surface)
+            .map_err(|source| BadRoad { way_id: road.way_id, part: road.part, source })?;
+        lines.push((road.class, positions.into_iter().map(place).collect()));
+    }
+    Ok(lines)
 }
 
 /// All segments of a tile, in order of class.

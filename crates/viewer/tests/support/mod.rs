@@ -1,4 +1,5 @@
 //! Scenes made of closed forms, and references that do not use the code under test.
+#![allow(dead_code, reason = "each test binary uses its own part")]
 
 use corniche_geom::{Frame, NodeIndex, TILE_CELLS, TileId};
 use corniche_roads::FunctionalRoadClass;
@@ -13,11 +14,11 @@ use corniche_viewer::{
 };
 use glam::{DVec2, DVec3};
 
-pub const CELL_M: f64 = 10.0;
-pub const QUANTUM_M: f64 = 1.0 / 64.0;
+pub(crate) const CELL_M: f64 = 10.0;
+pub(crate) const QUANTUM_M: f64 = 1.0 / 64.0;
 
 /// A device, or `None` and a line on the terminal; with `CORNICHE_REQUIRE_GPU=1` no device is a failure.
-pub fn gpu() -> Option<Gpu> {
+pub(crate) fn gpu() -> Option<Gpu> {
     match Gpu::new() {
         Ok(gpu) => Some(gpu),
         Err(error) => {
@@ -29,16 +30,16 @@ pub fn gpu() -> Option<Gpu> {
 }
 
 /// Two levels of a grid far from the origin, as real ones are.
-pub fn frame() -> Frame {
+pub(crate) fn frame() -> Frame {
     Frame::new([0.25, 0.75], CELL_M, NodeIndex { i: 51_200, j: 512_000 }, 1).unwrap()
 }
 
-pub fn class(number: u8) -> FunctionalRoadClass {
+pub(crate) fn class(number: u8) -> FunctionalRoadClass {
     FunctionalRoadClass::new(number).unwrap()
 }
 
 /// A tile's ground from a height function of x and y in the working CRS, with a vertex every `step` nodes.
-pub fn terrain(id: TileId, step: u16, height_m: impl Fn(f64, f64) -> f64) -> Terrain {
+pub(crate) fn terrain(id: TileId, step: u16, height_m: impl Fn(f64, f64) -> f64) -> Terrain {
     let (frame, window) = (frame(), frame().tile_window(id));
     let count = TILE_CELLS as u16 / step + 1;
     let mut vertices = Vec::new();
@@ -71,7 +72,7 @@ pub fn terrain(id: TileId, step: u16, height_m: impl Fn(f64, f64) -> f64) -> Ter
 }
 
 /// Triangles of a tile's ground in world space, f64.
-pub fn triangles(id: TileId, terrain: &Terrain) -> Vec<[DVec3; 3]> {
+pub(crate) fn triangles(id: TileId, terrain: &Terrain) -> Vec<[DVec3; 3]> {
     let (frame, window) = (frame(), frame().tile_window(id));
     let place = |index: u32| {
         let vertex = terrain.tin.vertices()[index as usize];
@@ -82,7 +83,7 @@ pub fn triangles(id: TileId, terrain: &Terrain) -> Vec<[DVec3; 3]> {
 }
 
 /// Lays the plan segment a–b on triangles: a vertex wherever it crosses an edge, heights from the triangles.
-pub fn lay(a: DVec2, b: DVec2, ground: &[[DVec3; 3]]) -> Vec<[f64; 3]> {
+pub(crate) fn lay(a: DVec2, b: DVec2, ground: &[[DVec3; 3]]) -> Vec<[f64; 3]> {
     let mut at = vec![0.0, 1.0];
     for corners in ground {
         for k in 0..3 {
@@ -103,7 +104,7 @@ pub fn lay(a: DVec2, b: DVec2, ground: &[[DVec3; 3]]) -> Vec<[f64; 3]> {
         .collect()
 }
 
-pub fn height_at(at: DVec2, ground: &[[DVec3; 3]]) -> Option<f64> {
+pub(crate) fn height_at(at: DVec2, ground: &[[DVec3; 3]]) -> Option<f64> {
     ground.iter().find_map(|[a, b, c]| {
         let area = (b - a).truncate().perp_dot((c - a).truncate());
         let weight = |p: &DVec3, q: &DVec3| (p.truncate() - at).perp_dot(q.truncate() - at) / area;
@@ -115,7 +116,7 @@ pub fn height_at(at: DVec2, ground: &[[DVec3; 3]]) -> Option<f64> {
 /// Depth at which a ray (of depth 1) first meets a triangle.
 ///
 /// Source: Möller & Trumbore 1997, *Fast, Minimum Storage Ray/Triangle Intersection*.
-pub fn cast(eye: DVec3, ray: DVec3, ground: &[[DVec3; 3]]) -> Option<f64> {
+pub(crate) fn cast(eye: DVec3, ray: DVec3, ground: &[[DVec3; 3]]) -> Option<f64> {
     let mut nearest = None;
     for [a, b, c] in ground {
         let (e1, e2) = (b - a, c - a);
@@ -138,7 +139,7 @@ pub fn cast(eye: DVec3, ray: DVec3, ground: &[[DVec3; 3]]) -> Option<f64> {
 }
 
 /// Roads of one width for all classes, without any growth: `half_width_m` is all there is to know.
-pub fn plain_style(width_m: f32) -> Style {
+pub(crate) fn plain_style(width_m: f32) -> Style {
     let road =
         RoadStyle { width_m, min_width_px: 0.0, color: [1.0; 3], outline: [0.0; 3], center: None };
     Style {
@@ -149,17 +150,29 @@ pub fn plain_style(width_m: f32) -> Style {
 }
 
 /// What came back from the device.
-pub struct Drawing {
-    pub size_px: [u32; 2],
-    pub picture: Vec<u8>,
-    pub ground: Vec<u8>,
-    pub depth: Vec<f32>,
-    pub labels: Vec<u8>,
+pub(crate) struct Drawing {
+    pub(crate) size_px: [u32; 2],
+    pub(crate) picture: Vec<u8>,
+    pub(crate) ground: Vec<u8>,
+    pub(crate) depth: Vec<f32>,
+    pub(crate) labels: Vec<u8>,
 }
 
 impl Drawing {
+    pub(crate) fn read(gpu: &Gpu, targets: &Targets) -> Self {
+        let drawing = Self {
+            size_px: targets.size_px(),
+            picture: targets.read_picture(gpu).unwrap(),
+            ground: targets.read_ground(gpu).unwrap(),
+            depth: targets.read_depth(gpu).unwrap(),
+            labels: targets.read_labels(gpu).unwrap(),
+        };
+        keep(&drawing);
+        drawing
+    }
+
     /// Centres of all pixels with their index.
-    pub fn pixels(&self) -> impl Iterator<Item = (usize, DVec2)> + '_ {
+    pub(crate) fn pixels(&self) -> impl Iterator<Item = (usize, DVec2)> + '_ {
         let width = self.size_px[0] as usize;
         (0..self.labels.len()).map(move |index| {
             (index, DVec2::new((index % width) as f64 + 0.5, (index / width) as f64 + 0.5))
@@ -167,7 +180,7 @@ impl Drawing {
     }
 
     /// Centres of the pixels with a label of this class.
-    pub fn pixels_of(&self, number: u8) -> Vec<DVec2> {
+    pub(crate) fn pixels_of(&self, number: u8) -> Vec<DVec2> {
         let label = (9 - number) * 2;
         self.pixels()
             .filter(|(index, _)| self.labels[*index] / 2 * 2 == label)
@@ -176,7 +189,7 @@ impl Drawing {
     }
 
     /// Whether the depths around a pixel jump: a silhouette or a border of the ground.
-    pub fn is_at_jump(&self, index: usize) -> bool {
+    pub(crate) fn is_at_jump(&self, index: usize) -> bool {
         let width = self.size_px[0] as i64;
         let (x, y) = (index as i64 % width, index as i64 / width);
         let mut range = [f32::INFINITY, 0.0_f32];
@@ -194,13 +207,13 @@ impl Drawing {
 }
 
 /// A tile to draw: id, ground, lines on it, depth of its skirt.
-pub type SceneTile = (TileId, Terrain, Vec<GroundLine>, f64);
+pub(crate) type SceneTile = (TileId, Terrain, Vec<GroundLine>, f64);
 
-pub fn draw(gpu: &Gpu, camera: &Camera, style: &Style, scene: &[SceneTile]) -> Drawing {
+pub(crate) fn draw(gpu: &Gpu, camera: &Camera, style: &Style, scene: &[SceneTile]) -> Drawing {
     draw_exaggerated(gpu, camera, style, scene, 1.0)
 }
 
-pub fn draw_exaggerated(
+pub(crate) fn draw_exaggerated(
     gpu: &Gpu,
     camera: &Camera,
     style: &Style,
@@ -229,15 +242,7 @@ pub fn draw_exaggerated(
         supersampling: 1,
     };
     Renderer::new(gpu).draw(gpu, &view, &tiles, &targets);
-    let drawing = Drawing {
-        size_px: camera.size_px(),
-        picture: targets.read_picture(gpu).unwrap(),
-        ground: targets.read_ground(gpu).unwrap(),
-        depth: targets.read_depth(gpu).unwrap(),
-        labels: targets.read_labels(gpu).unwrap(),
-    };
-    keep(&drawing);
-    drawing
+    Drawing::read(gpu, &targets)
 }
 
 /// With `CORNICHE_KEEP_PICTURES=folder`, writes each picture of the tests there to be looked at.
@@ -246,11 +251,13 @@ fn keep(drawing: &Drawing) {
     let name = std::thread::current().name().unwrap_or("picture").to_owned();
     let [width, height] = drawing.size_px;
     let picture = image::RgbaImage::from_raw(width, height, drawing.picture.clone()).unwrap();
-    picture.save(std::path::Path::new(&folder).join(format!("{name}.png"))).unwrap();
+    let next = |k: &u32| std::path::Path::new(&folder).join(format!("{name}-{k}.png"));
+    let free = (0..).map(|k| next(&k)).find(|path| !path.exists()).unwrap();
+    picture.save(free).unwrap();
 }
 
 /// Distance in plan from a point to the nearest of some lines.
-pub fn plan_distance_m(at: DVec2, lines: &[GroundLine]) -> f64 {
+pub(crate) fn plan_distance_m(at: DVec2, lines: &[GroundLine]) -> f64 {
     let mut nearest = f64::INFINITY;
     for (_, line) in lines {
         for pair in line.windows(2) {

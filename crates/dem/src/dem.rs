@@ -1,0 +1,102 @@
+use std::path::PathBuf;
+use std::sync::Once;
+
+use corniche_geom::Bounds;
+
+use crate::crs::Crs;
+use crate::mosaic::{self, Mosaic};
+use crate::operation::Operation;
+use crate::projection::DemProjection;
+use crate::reader::Reader;
+use crate::source::{OpenOptions, Source};
+use crate::{DemError, GridPlan, PlanOptions, outline, plan, scale};
+
+/// Elevation files, described but not held open: may be shared between threads.
+#[derive(Debug, Clone)]
+pub struct Dem {
+    pub(crate) sources: Vec<Source>,
+    /// Never empty.
+    pub(crate) mosaics: Vec<Mosaic>,
+    pub(crate) wgs84_bounds: Bounds,
+    pub(crate) center_deg: [f64; 2],
+}
+
+impl Dem {
+    /// Looks into all files; reads no heights yet.
+    ///
+    /// Files on one grid are read as one raster, so that interpolation crosses their seams; where they overlap
+    /// the first named wins, sample by sample, and a void in it falls through to the next. Files on other grids
+    /// serve the nodes at which the grids named before have no data.
+    ///
+    /// # Errors
+    /// When a file cannot be opened, holds no heights, lacks georeference or CRS, or lies nowhere on earth.
+    pub fn open(files: &[PathBuf], options: &OpenOptions) -> Result<Self, DemError> {
+        quiet();
+        if files.is_empty() {
+            return Err(DemError::NoFiles);
+        }
+        let sources: Vec<Source> =
+            files.iter().map(|path| Source::open(path, options)).collect::<Result<_, _>>()?;
+        let mosaics = mosaic::group(&sources);
+        let wgs84 = Crs::wgs84()?;
+        let to_wgs84: Vec<Operation> =
+            mosaics.iter().map(|mosaic| Operation::new(&mosaic.crs, &wgs84, None)).collect();
+        let (points_deg, wgs84_bounds) = outline::wgs84(&mosaics, &to_wgs84)?;
+        let nowhere = || DemError::OutsideCrs { crs: wgs84.label.clone() };
+        if wgs84_bounds.is_empty() {
+            return Err(nowhere());
+        }
+        // Files all around the earth have no middle; any will do.
+        let center_deg = scale::center_deg(&points_deg).unwrap_or([0.0; 2]);
+        Ok(Self { sources, mosaics, wgs84_bounds, center_deg })
+    }
+
+    /// Chooses working CRS, cell and extent.
+    ///
+    /// - Working CRS: `options.crs`; else the first file's own, in metres, if it is projected, not Web Mercator
+    ///   and at the data's centre true to scale within 1 %; else the UTM zone of the centre, if it is true to
+    ///   scale within 1 % over the data's whole rectangle (some 8° of longitude either side at the equator) and
+    ///   the data lies between 80° S and 84° N; else Lambert's azimuthal equal-area about the centre.
+    /// - Cell: `options.cell_m`; else the finest spacing of the files in the working CRS, rounded to two
+    ///   significant digits where they are in another.
+    /// - Where a file's samples form a square grid of that CRS and cell, nodes coincide with them; otherwise
+    ///   node (0, 0) is the CRS's zero.
+    ///
+    /// # Errors
+    /// When the options are not usable, the files lie outside the CRS, or the grid is too large.
+    pub fn plan(&self, options: &PlanOptions) -> Result<GridPlan, DemError> {
+        plan::plan(self, options)
+    }
+
+    /// A reader of windows, for one thread at a time. It opens files as it needs them.
+    ///
+    /// # Errors
+    /// None at present; files that have gone are found out by reading.
+    pub fn reader<'a>(&'a self, plan: &'a GridPlan) -> Result<Reader<'a>, DemError> {
+        Ok(Reader::new(self, plan))
+    }
+
+    /// WGS84 ⇄ the plan's working CRS. May be sent to and shared between threads.
+    ///
+    /// # Errors
+    /// When PROJ knows no operation.
+    pub fn projection(&self, plan: &GridPlan) -> Result<DemProjection, DemError> {
+        DemProjection::new(&plan.working, plan.wgs84_bounds)
+    }
+}
+
+/// Keeps GDAL and PROJ from writing to standard error: what they say comes back in errors.
+fn quiet() {
+    static QUIET: Once = Once::new();
+    QUIET.call_once(|| gdal::config::set_error_handler(|_, _, _| {}));
+}
+
+/// Limits the memory in which GDAL keeps blocks of rasters, for all threads together; without it GDAL takes up to
+/// 5 % of the machine's. To be called before the first [`Dem::open`].
+///
+/// # Errors
+/// When GDAL refuses.
+pub fn limit_block_cache(bytes: u64) -> Result<(), gdal::errors::GdalError> {
+    // GDAL reads small numbers as megabytes; a megabyte is the least that is sensible anyway.
+    gdal::config::set_config_option("GDAL_CACHEMAX", &bytes.max(1 << 20).to_string())
+}

@@ -1,0 +1,332 @@
+use corniche_geom::{HeightGrid, NodeIndex, NodeWindow};
+
+use crate::kernel::{Kernel, Samples, Scratch};
+use crate::mosaic::{Mosaic, OpenFiles, SampleRect};
+use crate::plan::{Alignment, Method};
+use crate::{Dem, DemError, GridPlan, fill};
+
+/// Samples held in memory at once for one window; larger windows are read in parts. 32 MB.
+const MOST_SAMPLES: usize = 1 << 22;
+/// Side of the blocks in which original samples are handed out.
+const BLOCK_SAMPLES: i64 = 256;
+
+/// Heights of a window of nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DemWindow {
+    /// The heights, metres.
+    pub heights: HeightGrid,
+    /// How many of the nodes were void and are filled from their surroundings.
+    pub filled: u64,
+    /// Per node, row by row from the north, whether it was filled; empty when none was.
+    pub is_filled: Vec<bool>,
+}
+
+/// Original samples of the DEM that have a height.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SampleBlock {
+    /// Which of the DEM's grids they are of: where an earlier one has data, nodes follow that.
+    pub layer: usize,
+    /// Positions in the working CRS, metres; NaN where it does not reach.
+    pub positions_m: Vec<[f64; 2]>,
+    /// Heights, metres, as long as `positions_m`.
+    pub heights_m: Vec<f32>,
+}
+
+/// Reads windows of heights. One per thread: it keeps files open and buffers at hand.
+pub struct Reader<'a> {
+    dem: &'a Dem,
+    plan: &'a GridPlan,
+    files: OpenFiles,
+    samples: Vec<f64>,
+    scratch: Scratch,
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(dem: &'a Dem, plan: &'a GridPlan) -> Self {
+        Self {
+            dem,
+            plan,
+            files: OpenFiles::new(),
+            samples: Vec::new(),
+            scratch: Scratch::default(),
+        }
+    }
+
+    /// The heights of a window of stride 1, voids filled. Nodes outside the data are gaps.
+    ///
+    /// A node has the same bits whichever window it is read through.
+    ///
+    /// # Errors
+    /// When the stride is not 1 or a file cannot be read.
+    pub fn window(&mut self, window: NodeWindow) -> Result<DemWindow, DemError> {
+        if window.stride != 1 {
+            return Err(DemError::Stride { stride: window.stride });
+        }
+        let mut heights_m = self.nodes(window)?;
+        let mut is_filled = Vec::new();
+        let mut filled = 0;
+        let reach = self.plan.fill_voids as usize;
+        // The halo is read only where it can matter; nodes do not depend on it otherwise.
+        if reach > 0 && heights_m.iter().any(|height_m| height_m.is_nan()) {
+            let wide = self.nodes(window.with_halo(reach))?;
+            let columns = window.columns + 2 * reach;
+            for (at, height_m) in fill::fill(&wide, columns, reach) {
+                let inner = (at / columns - reach) * window.columns + at % columns - reach;
+                heights_m[inner] = height_m;
+                is_filled.resize(heights_m.len(), false);
+                is_filled[inner] = true;
+                filled += 1;
+            }
+        }
+        Ok(DemWindow {
+            heights: HeightGrid::new(window.columns, window.rows, heights_m),
+            filled,
+            is_filled,
+        })
+    }
+
+    /// Hands out all original samples that have a height, block by block in a fixed order.
+    ///
+    /// Memory is bounded by a block of 256 × 256 samples.
+    ///
+    /// # Errors
+    /// When a file cannot be read.
+    pub fn for_each_sample_block(
+        &mut self,
+        mut take: impl FnMut(&SampleBlock),
+    ) -> Result<(), DemError> {
+        let (dem, plan) = (self.dem, self.plan);
+        let mut block = SampleBlock::default();
+        for (layer, mosaic) in dem.mosaics.iter().enumerate() {
+            block.layer = layer;
+            let SampleRect { min, max } = mosaic.extent;
+            for row in (min[1]..max[1]).step_by(BLOCK_SAMPLES as usize) {
+                for column in (min[0]..max[0]).step_by(BLOCK_SAMPLES as usize) {
+                    let end = [column + BLOCK_SAMPLES, row + BLOCK_SAMPLES];
+                    let rect =
+                        mosaic.extent.intersection(&SampleRect { min: [column, row], max: end });
+                    if mosaic.files.iter().all(|file| file.rect.intersection(&rect).is_empty()) {
+                        continue;
+                    }
+                    self.files.read(&dem.sources, mosaic, &rect, &mut self.samples)?;
+                    block.positions_m.clear();
+                    block.heights_m.clear();
+                    for (k, height_m) in
+                        self.samples.iter().enumerate().filter(|(_, height_m)| !height_m.is_nan())
+                    {
+                        let (c, r) = (k % rect.columns(), k / rect.columns());
+                        let sample = [(column + c as i64) as f64, (row + r as i64) as f64];
+                        block.positions_m.push(mosaic.crs_from_sample.crs_from_pixel(sample));
+                        block.heights_m.push(*height_m as f32);
+                    }
+                    plan.layers[layer].working_from_crs.apply(&mut block.positions_m)?;
+                    if !block.heights_m.is_empty() {
+                        take(&block);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Heights of nodes as the layers have them, NaN in voids, row by row from the north.
+    fn nodes(&mut self, window: NodeWindow) -> Result<Vec<f32>, DemError> {
+        let (dem, plan) = (self.dem, self.plan);
+        let mut heights_m = vec![f32::NAN; window.columns * window.rows];
+        for (layer, mosaic) in plan.layers.iter().zip(&dem.mosaics) {
+            let Some(part) = layer.nodes.and_then(|nodes| intersection(&window, nodes)) else {
+                continue;
+            };
+            let target = Target::new(&window, &part);
+            match &layer.method {
+                Method::Aligned(alignment) => {
+                    self.copy(mosaic, *alignment, &part, &target, &mut heights_m)?;
+                }
+                Method::Resampled(positions, kernel) => {
+                    let at = positions.of(&plan.frame, &part)?;
+                    let all = Part { column: 0, row: 0, columns: part.columns, rows: part.rows };
+                    self.interpolate(mosaic, kernel, &at, &all, &target, &mut heights_m)?;
+                }
+            }
+        }
+        Ok(heights_m)
+    }
+
+    /// Samples that are nodes.
+    fn copy(
+        &mut self,
+        mosaic: &Mosaic,
+        Alignment { first, way }: Alignment,
+        part: &NodeWindow,
+        target: &Target,
+        heights_m: &mut [f32],
+    ) -> Result<(), DemError> {
+        // Bands of rows, so that a window of any size needs bounded memory.
+        let band = (MOST_SAMPLES / part.columns).max(1);
+        for top in (0..part.rows).step_by(band) {
+            let rows = band.min(part.rows - top);
+            let sample = |column: usize, row: usize| {
+                let node = part.node(column, row);
+                [way[0] * (node.i - first.i), way[1] * (node.j - first.j)]
+            };
+            let (a, b) = (sample(0, top), sample(part.columns - 1, top + rows - 1));
+            let rect = SampleRect {
+                min: [a[0].min(b[0]), a[1].min(b[1])],
+                max: [a[0].max(b[0]) + 1, a[1].max(b[1]) + 1],
+            };
+            self.files.read(&self.dem.sources, mosaic, &rect, &mut self.samples)?;
+            let width = rect.columns();
+            for row in 0..rows {
+                let [start, line] = sample(0, top + row);
+                let from = (line - rect.min[1]) as usize * width;
+                let line = &self.samples[from..from + width];
+                debug_assert!(start == rect.min[0] || way[0] < 0);
+                for column in 0..part.columns {
+                    let found_m = line[if way[0] > 0 { column } else { width - 1 - column }];
+                    let height_m = &mut heights_m[target.at(column, top + row)];
+                    if height_m.is_nan() {
+                        *height_m = found_m as f32;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Nodes between samples: those of `area`, whose positions are in `at`.
+    fn interpolate(
+        &mut self,
+        mosaic: &Mosaic,
+        kernel: &Kernel,
+        at: &[[f64; 2]],
+        area: &Part,
+        target: &Target,
+        heights_m: &mut [f32],
+    ) -> Result<(), DemError> {
+        let open = area.nodes().filter(|&(c, r)| heights_m[target.at(c, r)].is_nan());
+        let Some(rect) =
+            around(open.map(|(c, r)| at[r * target.columns + c]), kernel, &mosaic.extent)
+        else {
+            return Ok(());
+        };
+        if rect.columns() * rect.rows() > MOST_SAMPLES && area.columns * area.rows > 1 {
+            for half in area.halves() {
+                self.interpolate(mosaic, kernel, at, &half, target, heights_m)?;
+            }
+            return Ok(());
+        }
+        self.files.read(&self.dem.sources, mosaic, &rect, &mut self.samples)?;
+        let samples = Samples { rect, heights_m: &self.samples };
+        for (column, row) in area.nodes() {
+            let position = at[row * target.columns + column];
+            let height_m = &mut heights_m[target.at(column, row)];
+            if height_m.is_nan() && position[0].is_finite() {
+                *height_m = kernel.height_m(&samples, position, &mut self.scratch) as f32;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A rectangle of a window's nodes.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    column: usize,
+    row: usize,
+    columns: usize,
+    rows: usize,
+}
+
+impl Part {
+    fn nodes(self) -> impl Iterator<Item = (usize, usize)> {
+        let columns = self.column..self.column + self.columns;
+        (self.row..self.row + self.rows)
+            .flat_map(move |row| columns.clone().map(move |column| (column, row)))
+    }
+
+    /// Cut across the longer side.
+    fn halves(self) -> [Self; 2] {
+        if self.columns >= self.rows {
+            let west = self.columns / 2;
+            [
+                Self { columns: west, ..self },
+                Self { column: self.column + west, columns: self.columns - west, ..self },
+            ]
+        } else {
+            let north = self.rows / 2;
+            [
+                Self { rows: north, ..self },
+                Self { row: self.row + north, rows: self.rows - north, ..self },
+            ]
+        }
+    }
+}
+
+/// Where a part of a window lies in it.
+struct Target {
+    /// Columns of the part.
+    columns: usize,
+    left: usize,
+    top: usize,
+    window_columns: usize,
+}
+
+impl Target {
+    fn new(window: &NodeWindow, part: &NodeWindow) -> Self {
+        Self {
+            columns: part.columns,
+            left: (part.corner.i - window.corner.i) as usize,
+            top: (window.corner.j - part.corner.j) as usize,
+            window_columns: window.columns,
+        }
+    }
+
+    fn at(&self, column: usize, row: usize) -> usize {
+        (self.top + row) * self.window_columns + self.left + column
+    }
+}
+
+/// The part of a window between two nodes, both included.
+fn intersection(
+    window: &NodeWindow,
+    [south_west, north_east]: [NodeIndex; 2],
+) -> Option<NodeWindow> {
+    let corner =
+        NodeIndex { i: window.corner.i.max(south_west.i), j: window.corner.j.min(north_east.j) };
+    let east = (window.corner.i + window.columns as i64 - 1).min(north_east.i);
+    let south = (window.corner.j - window.rows as i64 + 1).max(south_west.j);
+    (corner.i <= east && south <= corner.j).then(|| NodeWindow {
+        corner,
+        stride: 1,
+        columns: (east - corner.i + 1) as usize,
+        rows: (corner.j - south + 1) as usize,
+    })
+}
+
+/// The samples that heights at some positions can depend on; `None` when there are none.
+fn around(
+    positions: impl Iterator<Item = [f64; 2]>,
+    kernel: &Kernel,
+    extent: &SampleRect,
+) -> Option<SampleRect> {
+    let mut low = [f64::INFINITY; 2];
+    let mut high = [f64::NEG_INFINITY; 2];
+    for position in positions {
+        // Not a number leaves both as they are.
+        for axis in 0..2 {
+            low[axis] = low[axis].min(position[axis]);
+            high[axis] = high[axis].max(position[axis]);
+        }
+    }
+    if !(low[0] <= high[0] && low[1] <= high[1]) {
+        return None;
+    }
+    let reach = kernel.reach();
+    let bound = |value: f64| value.clamp(-1e15, 1e15) as i64;
+    let rect = SampleRect {
+        min: [0, 1].map(|axis| bound(low[axis].floor()) - reach[axis]),
+        max: [0, 1].map(|axis| bound(high[axis].ceil()) + reach[axis] + 1),
+    };
+    let rect = rect.intersection(extent);
+    (!rect.is_empty()).then_some(rect)
+}

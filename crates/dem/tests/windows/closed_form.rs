@@ -1,0 +1,357 @@
+use std::path::PathBuf;
+
+use corniche_dem::{Dem, OpenOptions, PlanOptions, Resampling};
+use corniche_geom::{HeightGrid, NodeWindow, Projection};
+use gdal::Metadata;
+
+use crate::fixture::{Raster, all, check, open, options, plan};
+
+/// A plane in UTM 32N that rises 1 m in 10 m eastwards and 1 m in 5 m northwards.
+fn plane([x, y]: [f64; 2]) -> f64 {
+    500.0 + (x - 500_000.0) / 10.0 + (y - 5_200_000.0) / 5.0
+}
+
+/// One hundredth of a 10 m cell on that plane, and what f32 rounds away.
+const HUNDREDTH_M: f64 = 0.1 * 0.224 + 1e-4;
+const UTM: [f64; 6] = [500_003.0, 10.0, 0.0, 5_200_507.0, 0.0, -10.0];
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+#[test]
+fn aligned_nodes_are_the_samples() {
+    let folder = folder();
+    let raster = Raster::new(32632, [60, 50], UTM);
+    let dem = open(&[raster.write(folder.path(), "a.tif", |at| plane(at) as f32)]);
+    let plan = plan(&dem);
+    assert_eq!((plan.case, plan.frame.cell_m()), (Resampling::Aligned, 10.0));
+    assert_eq!((plan.crs.as_str(), plan.frame.origin_m()), ("EPSG:32632", [8.0, 2.0]));
+    assert!((plan.point_scale - 0.9996).abs() < 1e-6);
+    assert!(plan.libraries.starts_with("GDAL 3") && plan.libraries.contains("PROJ "));
+    assert_eq!(plan.data_bounds.to_array(), [500_008.0, 5_200_012.0, 500_598.0, 5_200_502.0]);
+    let mut reader = dem.reader(&plan).unwrap();
+    assert_eq!(check(&mut reader, &plan, 1e-4, plane), 3000);
+    let heights = reader.window(all(&plan)).unwrap().heights;
+    for (column, row) in [(0, 0), (59, 0), (17, 31), (59, 49)] {
+        assert_eq!(heights.height(column, row), Some(plane(raster.sample_at(column, row)) as f32));
+    }
+}
+
+#[test]
+fn south_up_is_turned_over() {
+    let folder = folder();
+    let south_up = Raster::new(32632, [60, 50], [500_003.0, 10.0, 0.0, 5_200_007.0, 0.0, 10.0]);
+    let north_up = Raster::new(32632, [60, 50], UTM);
+    let read = |path: PathBuf| {
+        let dem = open(&[path]);
+        let plan = plan(&dem);
+        assert_eq!(plan.case, Resampling::Aligned);
+        (plan.frame, dem.reader(&plan).unwrap().window(all(&plan)).unwrap())
+    };
+    let a = read(south_up.write(folder.path(), "s.tif", |at| plane(at) as f32));
+    assert_eq!(a, read(north_up.write(folder.path(), "n.tif", |at| plane(at) as f32)));
+}
+
+#[test]
+fn pixel_is_point_lies_where_its_samples_lie() {
+    let folder = folder();
+    // GDAL takes and gives corners in both cases; the file stores the centre of the first pixel for points.
+    let point = Raster::new(32632, [60, 50], UTM)
+        .tagged(|dataset| dataset.set_metadata_item("AREA_OR_POINT", "Point", "").unwrap());
+    let dem = open(&[point.write(folder.path(), "point.tif", |at| plane(at) as f32)]);
+    let plan = plan(&dem);
+    assert_eq!(plan.frame.origin_m(), [8.0, 2.0]);
+    assert_eq!(check(&mut dem.reader(&plan).unwrap(), &plan, 1e-4, plane), 3000);
+}
+
+#[test]
+fn a_rotated_grid_is_interpolated() {
+    let folder = folder();
+    let (sin, cos) = 30_f64.to_radians().sin_cos();
+    let turned = [500_100.0, 10.0 * cos, 10.0 * sin, 5_200_600.0, 10.0 * sin, -10.0 * cos];
+    let dem = open(&[Raster::new(32632, [60, 50], turned).write(folder.path(), "r.tif", plane)]);
+    let plan = plan(&dem);
+    assert_eq!(plan.case, Resampling::Resampled);
+    assert!((plan.frame.cell_m() - 10.0).abs() < 1e-9);
+    let count = check(&mut dem.reader(&plan).unwrap(), &plan, HUNDREDTH_M, plane);
+    assert!((2700..=3000).contains(&count), "{count} nodes within the turned rectangle");
+}
+
+#[test]
+fn feet_scale_and_offset_become_metres() {
+    let folder = folder();
+    let stored = |at: [f64; 2]| ((plane(at) / 0.3048 - 1000.0) / 0.25).round() as i16;
+    let raster = Raster::new(32632, [60, 50], UTM).nodata(-9999.0).tagged(|dataset| {
+        let mut band = dataset.rasterband(1).unwrap();
+        band.set_scale(0.25).unwrap();
+        band.set_offset(1000.0).unwrap();
+    });
+    let path = raster.write(folder.path(), "feet.tif", stored);
+    // The crate `gdal` cannot set a band's unit; a sidecar of GDAL's own can.
+    let aux = "<PAMDataset><PAMRasterBand band=\"1\"><UnitType>ft</UnitType></PAMRasterBand></PAMDataset>";
+    std::fs::write(folder.path().join("feet.tif.aux.xml"), aux).unwrap();
+    let dem = open(&[path]);
+    let plan = plan(&dem);
+    assert_eq!(check(&mut dem.reader(&plan).unwrap(), &plan, 0.13 * 0.3048, plane), 3000);
+}
+
+#[test]
+fn a_grid_in_feet_is_laid_out_in_metres() {
+    let folder = folder();
+    // Pennsylvania South, US survey feet.
+    let raster = Raster::new(2272, [40, 30], [2_690_000.0, 30.0, 0.0, 235_000.0, 0.0, -30.0]);
+    let foot_m = 1200.0 / 3937.0;
+    let dem = open(&[raster.write(folder.path(), "pa.tif", |[x, y]| {
+        (x - 2_690_000.0 + 2.0 * (y - 234_000.0)) as f32
+    })]);
+    let plan = plan(&dem);
+    assert_eq!(plan.case, Resampling::Aligned, "{}", plan.resampling);
+    assert!((plan.frame.cell_m() - 30.0 * foot_m).abs() < 1e-6);
+    let truth = |[x, y]: [f64; 2]| x / foot_m - 2_690_000.0 + 2.0 * (y / foot_m - 234_000.0);
+    assert_eq!(check(&mut dem.reader(&plan).unwrap(), &plan, 0.05, truth), 1200);
+}
+
+/// A plane of UTM seen through longitude and latitude comes back to a hundredth of a cell.
+#[test]
+fn a_reprojected_plane_comes_back() {
+    let folder = folder();
+    let utm = Raster::new(32632, [60, 50], UTM);
+    let helper = open(&[utm.write(folder.path(), "utm.tif", |at| plane(at) as f32)]);
+    let helper_plan = plan(&helper);
+    let projection = helper.projection(&helper_plan).unwrap();
+    let raster = Raster::new(4326, [300, 250], [8.9, 0.0002, 0.0, 46.98, 0.0, -0.00015]);
+    let height = |lonlat: [f64; 2]| {
+        let mut points = [lonlat];
+        projection.working_from_wgs84(&mut points).unwrap();
+        plane(points[0])
+    };
+    let dem = open(&[raster.write(folder.path(), "ll.tif", height)]);
+    for (cell_m, averaged) in [(None, false), (Some(15.0), false), (Some(97.0), true)] {
+        let plan = dem.plan(&PlanOptions { cell_m, ..options() }).unwrap();
+        assert_eq!((plan.crs.as_str(), plan.case), ("EPSG:32632", Resampling::Resampled));
+        assert_eq!(plan.resampling.contains("average"), averaged, "{}", plan.resampling);
+        let cell = plan.frame.cell_m();
+        assert!(cell_m.is_some() || cell == 15.0, "two digits of 15.2 and 16.7, not {cell}");
+        let hundredth_m = 0.01 * cell * 0.224 + 1e-3;
+        let count = check(&mut dem.reader(&plan).unwrap(), &plan, hundredth_m, plane);
+        assert!(count as f64 > 0.9 * 300.0 * 250.0 * 15.2 * 16.7 / (cell * cell), "{count} nodes");
+    }
+}
+
+#[test]
+fn averages_of_a_plane_are_the_plane_also_in_its_own_crs() {
+    let folder = folder();
+    let dem = open(&[Raster::new(32632, [200, 180], UTM).write(folder.path(), "a.tif", plane)]);
+    for cell_m in [20.0, 25.0, 73.0] {
+        let plan = dem.plan(&PlanOptions { cell_m: Some(cell_m), ..options() }).unwrap();
+        let count = check(&mut dem.reader(&plan).unwrap(), &plan, 1e-3, plane);
+        assert!(
+            count as f64 > 0.9 * 200.0 * 180.0 * 100.0 / (cell_m * cell_m) - 60.0,
+            "{count} nodes"
+        );
+    }
+}
+
+/// Interpolation crosses the seam of two files, shared column or not, and the first named wins in the overlap.
+#[test]
+fn files_of_one_grid_are_one_raster() {
+    let folder = folder();
+    let east = |columns: f64| [UTM[0] + 10.0 * columns, 10.0, 0.0, UTM[3], 0.0, -10.0];
+    let left = Raster::new(32632, [30, 50], UTM).write(folder.path(), "left.tif", plane);
+    let right = Raster::new(32632, [30, 50], east(30.0)).write(folder.path(), "right.tif", plane);
+    let over = Raster::new(32632, [30, 50], east(20.0)).nodata(-1.0);
+    let over = over.write(folder.path(), "over.tif", |at| {
+        if (at[1] as i64 / 10) % 2 == 0 { -1.0 } else { plane(at) + 1000.0 }
+    });
+    let whole = Raster::new(32632, [60, 50], UTM).write(folder.path(), "whole.tif", plane);
+    let off_grid = PlanOptions { cell_m: Some(7.0), ..options() };
+    let read = |files: &[PathBuf], options: &PlanOptions| {
+        let dem = open(files);
+        let plan = dem.plan(options).unwrap();
+        let mut reader = dem.reader(&plan).unwrap();
+        reader.window(all(&plan)).unwrap().heights
+    };
+    // Another first file shifts the samples' numbering, and with it the last bit of interpolation.
+    let agree = |a: &HeightGrid, b: &HeightGrid| {
+        let mut pairs = a.raw().iter().zip(b.raw());
+        assert!(
+            a.raw().len() == b.raw().len()
+                && pairs.all(|(a, b)| (a - b).abs() < 1e-4 || a.is_nan() && b.is_nan())
+        );
+    };
+    for options in [options(), off_grid] {
+        let expected = read(std::slice::from_ref(&whole), &options);
+        assert!(expected.count_heights() > 2900);
+        agree(&read(&[left.clone(), right.clone()], &options), &expected);
+        agree(&read(&[right.clone(), left.clone()], &options), &expected);
+        agree(&read(&[whole.clone(), over.clone()], &options), &expected);
+    }
+    let overlaid = read(&[over, whole], &options());
+    let truth = |column: usize, row: usize| {
+        plane([500_008.0 + 10.0 * column as f64, 5_200_502.0 - 10.0 * row as f64]) as f32
+    };
+    for row in 0..50 {
+        let is_void = ((5_200_502.0 - 10.0 * row as f64) as i64 / 10) % 2 == 0;
+        assert_eq!(overlaid.height(10, row), Some(truth(10, row)));
+        let expected =
+            if is_void { truth(35, row) } else { (f64::from(truth(35, row)) + 1000.0) as f32 };
+        assert!(
+            (overlaid.height(35, row).unwrap() - expected).abs() < 1e-3,
+            "a void falls through"
+        );
+    }
+}
+
+#[test]
+fn files_in_different_systems_serve_one_grid() {
+    let folder = folder();
+    let own = Raster::new(32632, [60, 50], UTM).write(folder.path(), "a.tif", plane);
+    let alone = open(std::slice::from_ref(&own));
+    let alone_plan = plan(&alone);
+    let projection = alone.projection(&alone_plan).unwrap();
+    // Twice as wide, in degrees.
+    let degrees = Raster::new(4326, [220, 100], [8.9995, 0.0001, 0.0, 46.9585, 0.0, -0.0001]);
+    let degrees = degrees.write(folder.path(), "b.tif", |lonlat| {
+        let mut points = [lonlat];
+        projection.working_from_wgs84(&mut points).unwrap();
+        plane(points[0])
+    });
+    let dem = open(&[own, degrees]);
+    let plan = plan(&dem);
+    // The degrees are the finer ones; the cell follows them, the CRS the first file.
+    assert_eq!(plan.crs, "EPSG:32632");
+    assert!(
+        plan.frame.cell_m() < 8.0 && plan.resampling.contains("EPSG:4326"),
+        "{}",
+        plan.resampling
+    );
+    let count = check(&mut dem.reader(&plan).unwrap(), &plan, HUNDREDTH_M, plane);
+    assert!(
+        count as f64 > 0.9 * 220.0 * 100.0 * 7.6 * 11.1 / plan.frame.cell_m().powi(2),
+        "{count}"
+    );
+}
+
+#[test]
+fn original_samples_come_with_their_positions() {
+    let folder = folder();
+    let raster = Raster::new(32632, [300, 50], UTM).nodata(-1.0);
+    let dem =
+        open(&[raster
+            .write(folder.path(), "a.tif", |at| if at[0] < 500_100.0 { -1.0 } else { plane(at) })]);
+    let plan = dem.plan(&PlanOptions { cell_m: Some(33.0), ..options() }).unwrap();
+    let mut count = 0;
+    let mut reader = dem.reader(&plan).unwrap();
+    let each = |block: &corniche_dem::SampleBlock| {
+        assert_eq!((block.layer, block.positions_m.len()), (0, block.heights_m.len()));
+        for (&at, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
+            assert!((f64::from(height_m) - plane(at)).abs() < 1e-3);
+            count += 1;
+        }
+    };
+    reader.for_each_sample_block(each).unwrap();
+    assert_eq!(count, 290 * 50);
+}
+
+#[test]
+fn wide_and_polar_extents_get_an_equal_area_projection() {
+    let folder = folder();
+    let europe = Raster::new(4326, [400, 300], [-10.0, 0.1, 0.0, 70.0, 0.0, -0.1]).write(
+        folder.path(),
+        "e.tif",
+        |at| at[0],
+    );
+    let arctic = Raster::new(4326, [360, 50], [-180.0, 1.0, 0.0, 90.0, 0.0, -0.1]).write(
+        folder.path(),
+        "p.tif",
+        |at| at[1],
+    );
+    for (file, name) in [(europe, "about 5"), (arctic, "about 89")] {
+        let dem = open(&[file]);
+        let plan = dem.plan(&PlanOptions { cell_m: Some(10_000.0), ..options() }).unwrap();
+        assert!(plan.crs.starts_with("Lambert") && plan.crs.contains(name), "{}", plan.crs);
+        let window = dem.reader(&plan).unwrap().window(all(&plan)).unwrap();
+        assert!(window.heights.count_heights() > 5000);
+    }
+}
+
+/// Latitudes around the pole, where the lattice of positions cannot be interpolated, are right all the same.
+#[test]
+fn nodes_around_the_pole_are_transformed_one_by_one() {
+    let folder = folder();
+    let file = Raster::new(4326, [361, 61], [-180.5, 1.0, 0.0, 90.05, 0.0, -0.1]).write(
+        folder.path(),
+        "p.tif",
+        |at| at[1],
+    );
+    let dem = open(&[file]);
+    let plan = dem.plan(&PlanOptions { cell_m: Some(12_000.0), ..options() }).unwrap();
+    let projection = dem.projection(&plan).unwrap();
+    let count = check(&mut dem.reader(&plan).unwrap(), &plan, 0.002, |at| {
+        let mut points = [at];
+        projection.wgs84_from_working(&mut points).unwrap();
+        points[0][1]
+    });
+    assert!(count > 8000, "{count}");
+}
+
+#[test]
+fn the_antimeridian_is_no_border() {
+    let folder = folder();
+    let raster = Raster::new(4326, [200, 100], [179.9, 0.001, 0.0, -16.9, 0.0, -0.001]);
+    let dem = open(&[raster.write(folder.path(), "fiji.tif", |at| (at[0] - 180.0) * 1000.0)]);
+    let plan = plan(&dem);
+    assert!(plan.crs == "EPSG:32701" || plan.crs == "EPSG:32760", "{}", plan.crs);
+    assert!(plan.wgs84_bounds.width() < 0.21, "{:?}", plan.wgs84_bounds);
+    let projection = dem.projection(&plan).unwrap();
+    let count = check(&mut dem.reader(&plan).unwrap(), &plan, 0.02, |at| {
+        let mut points = [at];
+        projection.wgs84_from_working(&mut points).unwrap();
+        let lon = points[0][0];
+        (if lon < 0.0 { lon + 180.0 } else { lon - 180.0 }) * 1000.0
+    });
+    assert!(count > 15_000, "{count}");
+}
+
+fn is_send<T: Send + Sync>(_: &T) {}
+
+#[test]
+fn positions_out_of_range_are_not_a_number() {
+    let folder = folder();
+    let dem = open(&[Raster::new(32632, [6, 5], UTM).write(folder.path(), "a.tif", plane)]);
+    let plan = plan(&dem);
+    let projection = dem.projection(&plan).unwrap();
+    let mut points = [[9.0, 47.0], [9.0, 95.0], [f64::NAN, 47.0]];
+    projection.working_from_wgs84(&mut points).unwrap();
+    assert!(
+        (points[0][0] - 500_000.0).abs() < 1e-3 && points[1][0].is_nan() && points[2][1].is_nan()
+    );
+    projection.wgs84_from_working(&mut points).unwrap();
+    assert!((points[0][0] - 9.0).abs() < 1e-9 && points[1][0].is_nan());
+    is_send(&projection);
+    is_send(&dem);
+    is_send(&plan);
+}
+
+#[test]
+fn options_override_and_are_checked() {
+    let folder = folder();
+    let bare = Raster::new(0, [6, 5], UTM).write(folder.path(), "a.tif", plane);
+    let given = OpenOptions { dem_crs: Some("EPSG:32632".to_owned()), nodata: None };
+    let dem = Dem::open(&[bare], &given).unwrap();
+    let plan = |crs: &str| dem.plan(&PlanOptions { crs: Some(crs.to_owned()), ..options() });
+    assert_eq!(plan("EPSG:3035").unwrap().crs, "EPSG:3035");
+    assert!(plan("EPSG:4326").unwrap_err().to_string().contains("projected"));
+    assert!(plan("EPSG:2272").unwrap_err().to_string().contains("metres"));
+    assert!(plan("EPSG:999999").unwrap_err().to_string().contains("--crs"));
+    assert!(dem.plan(&PlanOptions { cell_m: Some(-1.0), ..options() }).is_err());
+    assert!(
+        dem.plan(&PlanOptions { cell_m: Some(1e5), ..options() }).is_err(),
+        "ten thousand samples a side"
+    );
+    assert!(dem.plan(&PlanOptions { fill_voids: 1_000_000, ..options() }).is_err());
+    let own = dem.plan(&options()).unwrap();
+    let coarse = NodeWindow { stride: 2, ..all(&own) };
+    assert!(dem.reader(&own).unwrap().window(coarse).is_err());
+}

@@ -1,0 +1,13 @@
+//! Windows of heights from rasters made by GDAL, against closed forms, and from real data.
+#![expect(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    clippy::float_cmp,
+    reason = "tests: helpers unwrap too, and what is exact is compared exactly"
+)]
+
+mod closed_form;
+mod fixture;
+mod real_data;
+mod refusals;
+mod voids;

@@ -1,0 +1,137 @@
+//! Lines by class: the table in front of both road sections, and what stands before the points of each class.
+
+use corniche_roads::FunctionalRoadClass;
+
+use super::{
+    Damage,
+    codec::{Cursor, unzigzag},
+};
+
+/// A section has no more lines than this in one class.
+const MAX_LINES: usize = 1 << 20;
+/// Nor more points in one class.
+pub(super) const MAX_POINTS: usize = 1 << 22;
+
+/// Class, number of lines and bytes of each class that has any, by class.
+pub(super) fn decode<'a>(
+    cursor: &mut Cursor<'a>,
+) -> Result<Vec<(FunctionalRoadClass, usize, &'a [u8])>, Damage> {
+    let mut counts = Vec::with_capacity(FunctionalRoadClass::COUNT);
+    for class in FunctionalRoadClass::all() {
+        let lines = u32::from_le_bytes(cursor.array()?) as usize;
+        let length = u32::from_le_bytes(cursor.array()?) as usize;
+        if lines > MAX_LINES || (lines == 0) != (length == 0) {
+            return Err(Damage::Invalid { what: "the table of classes" });
+        }
+        counts.push((class, lines, length));
+    }
+    counts.retain(|&(_, lines, _)| lines > 0);
+    counts.into_iter().map(|(class, lines, length)| Ok((class, lines, cursor.take(length)?))).collect()
+}
+
+/// What is told of a line before its points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Head {
+    pub(super) way_id: i64,
+    pub(super) part: u32,
+    /// How many points it has.
+    pub(super) points: usize,
+    /// Two bits, as the section says.
+    pub(super) flags: u8,
+}
+
+/// The heads of a class.
+pub(super) struct Heads {
+    pub(super) heads: Vec<Head>,
+    /// Points of all of them.
+    pub(super) points: usize,
+}
+
+impl Heads {
+    /// Way ids as differences, all of them; then parts; then points and flags.
+    pub(super) fn decode(cursor: &mut Cursor<'_>, lines: usize) -> Result<Self, Damage> {
+        // Each line takes at least three bytes, so the table's count cannot make this large for nothing.
+        if lines > cursor.left() / 3 {
+            return Err(Damage::TooShort);
+        }
+        let mut heads = vec![Head { way_id: 0, part: 0, points: 0, flags: 0 }; lines];
+        let mut way_id = 0_i64;
+        for head in &mut heads {
+            way_id = way_id.wrapping_add(unzigzag(cursor.varint()?));
+            head.way_id = way_id;
+        }
+        for head in &mut heads {
+            head.part = cursor.bounded(u32::MAX as usize, "number of a part")? as u32;
+        }
+        let mut points = 0;
+        for head in &mut heads {
+            let value = cursor.bounded(4 * MAX_POINTS, "number of points")?;
+            (head.points, head.flags) = (value / 4, (value % 4) as u8);
+            points += head.points;
+            if points > MAX_POINTS {
+                return Err(Damage::TooLarge {
+                    what: "points of a class",
+                    length: points as u64,
+                    limit: MAX_POINTS as u64,
+                });
+            }
+        }
+        let order = |head: &Head| (head.way_id, head.part);
+        if !heads.is_sorted_by(|a, b| order(a) < order(b)) {
+            return Err(Damage::Invalid { what: "lines are not sorted" });
+        }
+        Ok(Self { heads, points })
+    }
+}
+
+#[cfg(feature = "write")]
+pub(super) use write::{encode, put_heads};
+
+#[cfg(feature = "write")]
+mod write {
+    use super::{FunctionalRoadClass, Head, MAX_LINES, MAX_POINTS};
+    use crate::payload::codec::{put_varint, zigzag};
+
+    /// Writes the table, and each class's lines by `put`; tells how many bytes each class takes.
+    pub(in super::super) fn encode<R>(
+        roads: &[R],
+        key: impl Fn(&R) -> (FunctionalRoadClass, i64, u32),
+        mut put: impl FnMut(&[R], &mut Vec<u8>) -> Result<(), &'static str>,
+    ) -> Result<(Vec<u8>, [u64; FunctionalRoadClass::COUNT]), &'static str> {
+        if !roads.is_sorted_by(|a, b| key(a) < key(b)) {
+            return Err("lines that are not sorted by class, way id and part, or occur twice");
+        }
+        let (mut table, mut body) = (Vec::new(), Vec::new());
+        let mut class_bytes = [0; FunctionalRoadClass::COUNT];
+        for (class, bytes) in FunctionalRoadClass::all().zip(&mut class_bytes) {
+            let first = roads.partition_point(|road| key(road).0 < class);
+            let end = roads.partition_point(|road| key(road).0 <= class);
+            if end - first > MAX_LINES {
+                return Err("more than a million lines of one class");
+            }
+            let before = body.len();
+            if first < end {
+                put(&roads[first..end], &mut body)?;
+            }
+            *bytes = (body.len() - before) as u64;
+            table.extend(((end - first) as u32).to_le_bytes());
+            table.extend((*bytes as u32).to_le_bytes());
+        }
+        table.extend(body);
+        Ok((table, class_bytes))
+    }
+
+    /// The inverse of [`Heads::decode`](super::Heads::decode).
+    pub(in super::super) fn put_heads(out: &mut Vec<u8>, heads: &[Head]) {
+        let mut previous = 0_i64;
+        for head in heads {
+            put_varint(out, zigzag(head.way_id.wrapping_sub(previous)));
+            previous = head.way_id;
+        }
+        heads.iter().for_each(|head| put_varint(out, u64::from(head.part)));
+        for head in heads {
+            debug_assert!(head.points <= MAX_POINTS);
+            put_varint(out, 4 * head.points as u64 + u64::from(head.flags));
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! Which vertices make triangles, coded as surprises.
+//!
+//! The triangles of a TIN are nearly a Delaunay triangulation of its vertices, so a reader that knows the
+//! vertices can guess them. Writer and reader walk over the triangles in the same order, from edge to edge:
+//!
+//! ```text
+//!            c?                 a gate a ► b: the triangle below it, with corner d, is known;
+//!           . .                 which vertex c makes the triangle above it?
+//!          .   .
+//!        a ─────► b             guess: the c to the left of a ► b that sees it under the largest angle
+//!          \   /                (no vertex lies in the circle through a, b, c above the gate);
+//!           \ /                 a symbol says "yes", "the next best", … or "no triangle"
+//!            d
+//! ```
+//!
+//! The guesses are exact integer arithmetic. Rebuilding the Delaunay triangulation itself would not do: nodes of
+//! a grid are often on one circle, and outlines are constrained edges.
+//!
+//! Source for the walk: Touma & Gotsman 1998, *Triangle Mesh Compression*, and for guessing connectivity from
+//! positions: Lewiner, Lopes, Mello & Velho 2005, *GEncode: Geometry-driven compression for general meshes*.
+//! What we changed: all positions come first, sorted, which is cheaper than positions in walking order.
+
+use std::collections::VecDeque;
+
+use super::{Damage, nodes::Nodes};
+
+/// There is no triangle on the left of the gate.
+pub(super) const NONE: u8 = 0;
+/// Guesses 1 … 6 have their own symbols.
+pub(super) const GUESSES: u8 = 6;
+/// The vertex is named.
+pub(super) const NAMED: u8 = GUESSES + 1;
+
+/// A vertex, and what was known when the walk came to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Reached {
+    pub(super) vertex: u32,
+    /// `[a, b, d]` of the gate; the vertex itself three times where a walk starts.
+    pub(super) gate: [u32; 3],
+}
+
+/// Directed edges with the corner to their left.
+#[derive(Debug)]
+pub(super) struct Edges {
+    first: Vec<u32>,
+    /// Next in the list of the same origin, target, corner.
+    edges: Vec<[u32; 3]>,
+}
+
+const END: u32 = u32::MAX;
+
+impl Edges {
+    pub(super) fn new(vertices: usize) -> Self {
+        Self { first: vec![END; vertices], edges: Vec::new() }
+    }
+
+    pub(super) fn corner(&self, a: u32, b: u32) -> Option<u32> {
+        let mut at = self.first[a as usize];
+        while let Some(&[next, target, corner]) = self.edges.get(at as usize) {
+            if target == b {
+                return Some(corner);
+            }
+            at = next;
+        }
+        None
+    }
+
+    fn add_edge(&mut self, a: u32, b: u32, corner: u32) {
+        let at = self.edges.len() as u32;
+        self.edges.push([self.first[a as usize], b, corner]);
+        self.first[a as usize] = at;
+    }
+
+    /// Adds a triangle; an edge that has a triangle on that side already makes it fail.
+    pub(super) fn add(&mut self, [a, b, c]: [u32; 3]) -> Result<(), Damage> {
+        for [from, to, corner] in [[a, b, c], [b, c, a], [c, a, b]] {
+            if from == to || self.corner(from, to).is_some() {
+                return Err(Damage::Invalid { what: "two triangles on the same side of an edge" });
+            }
+            self.add_edge(from, to, corner);
+        }
+        Ok(())
+    }
+}
+
+/// Who decides what the walk finds: the triangles, when writing, or the symbols, when reading.
+pub(super) trait Guide {
+    /// A triangle to start from, not found yet.
+    fn start(&mut self, found: &Edges) -> Result<[u32; 3], Damage>;
+    /// The vertex to the left of the gate a ► b, if there is a triangle. `guess` takes the vertices
+    /// that are no answer and gives the next best one.
+    fn corner(
+        &mut self,
+        gate: [u32; 2],
+        guess: &dyn Fn(&[u32]) -> Option<u32>,
+    ) -> Result<Option<u32>, Damage>;
+}
+
+/// Walks until `count` triangles are found; gives them and the vertices in the order of the walk.
+pub(super) fn walk(
+    nodes: &Nodes,
+    count: usize,
+    guide: &mut impl Guide,
+) -> Result<(Vec<[u32; 3]>, Vec<Reached>), Damage> {
+    let mut edges = Edges::new(nodes.len());
+    let mut triangles = Vec::with_capacity(count);
+    let mut order = Vec::with_capacity(nodes.len());
+    let mut seen = vec![false; nodes.len()];
+    let mut gates = VecDeque::new();
+    while triangles.len() < count {
+        let (triangle, gate) = match gates.pop_front() {
+            Some([a, b, d]) => {
+                if edges.corner(a, b).is_some() {
+                    continue;
+                }
+                let guess = |no: &[u32]| {
+                    nodes.best_corner([a, b], |c| {
+                        !no.contains(&c) && edges.corner(b, c).is_none() && edges.corner(c, a).is_none()
+                    })
+                };
+                match guide.corner([a, b], &guess)? {
+                    Some(c) => ([a, b, c], Some([a, b, d])),
+                    None => continue,
+                }
+            }
+            None => (guide.start(&edges)?, None),
+        };
+        if triangle.iter().any(|&vertex| vertex as usize >= nodes.len()) {
+            return Err(Damage::Invalid { what: "a triangle's vertex" });
+        }
+        edges.add(triangle)?;
+        triangles.push(triangle);
+        for vertex in triangle {
+            if !std::mem::replace(&mut seen[vertex as usize], true) {
+                order.push(Reached { vertex, gate: gate.unwrap_or([vertex; 3]) });
+            }
+        }
+        let [a, b, c] = triangle;
+        let sides: &[[u32; 3]] =
+            if gate.is_some() { &[[c, b, a], [a, c, b]] } else { &[[b, a, c], [c, b, a], [a, c, b]] };
+        gates.extend(sides);
+    }
+    // Vertices of no triangle, if any.
+    let rest = (0..nodes.len() as u32).filter(|&vertex| !seen[vertex as usize]);
+    order.extend(rest.map(|vertex| Reached { vertex, gate: [vertex; 3] }));
+    Ok((triangles, order))
+}

@@ -1,0 +1,91 @@
+use corniche_geom::Frame;
+use corniche_roads::FunctionalRoadClass;
+use corniche_tin::Surface;
+
+use super::{
+    EncodeError, SectionSize, TilePayload, attributes,
+    decode::Context,
+    envelope::{self, Kind},
+    roads_geo, roads_sv, terrain,
+};
+
+/// What positions and heights are relative to; the package's manifest records it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PayloadContext {
+    /// The package's grid.
+    pub frame: Frame,
+    /// One step of `height_q`, metres; a power of two.
+    pub quantum_m: f64,
+}
+
+/// A payload as bytes, and what its parts take.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct EncodedTile {
+    /// The payload.
+    pub bytes: Vec<u8>,
+    /// The terrain section; 0 where absent, as all that follow.
+    pub terrain: SectionSize,
+    /// The GEO roads section.
+    pub roads_geo: SectionSize,
+    /// The SV roads section.
+    pub roads_sv: SectionSize,
+    /// The road attributes section.
+    pub attributes: SectionSize,
+    /// Bytes of each class in the GEO section before compression, to share out the stored ones.
+    pub geo_class_bytes: [u64; FunctionalRoadClass::COUNT],
+    /// The same for the SV section.
+    pub sv_class_bytes: [u64; FunctionalRoadClass::COUNT],
+}
+
+/// Writes a payload. Empty sections are left out. Equal payloads make equal bytes.
+///
+/// # Errors
+/// When the payload holds what the encoding cannot express: unsorted roads, lines off the TIN, points far from
+/// the tile, more than a reader accepts.
+pub fn encode(payload: &TilePayload, context: &PayloadContext) -> Result<EncodedTile, EncodeError> {
+    let tile = payload.id;
+    let quantum_m = context.quantum_m;
+    let inside = |kind: Kind| move |what| EncodeError::Unencodable { tile, section: kind.name(), what };
+    let Context { corner, placement, scale } = Context::new(tile, &context.frame, quantum_m)
+        .map_err(|_| inside(Kind::Terrain)("a tile beyond the package's finest level or a height quantum of nothing"))?;
+
+    let mut sections = Vec::new();
+    if let Some(terrain) = &payload.terrain {
+        let bytes = terrain::encode(terrain, scale).map_err(inside(Kind::Terrain))?;
+        sections.push((Kind::Terrain, bytes));
+    }
+    let mut geo_class_bytes = [0; FunctionalRoadClass::COUNT];
+    if !payload.roads_geo.is_empty() {
+        let inside = inside(Kind::RoadsGeo);
+        let ground = payload.terrain.as_ref().ok_or_else(|| inside("roads without ground"))?;
+        let surface = Surface::new(&ground.tin, placement);
+        let (bytes, class_bytes) = roads_geo::encode(&payload.roads_geo, corner, &surface).map_err(inside)?;
+        geo_class_bytes = class_bytes;
+        sections.push((Kind::RoadsGeo, bytes));
+    }
+    let mut sv_class_bytes = [0; FunctionalRoadClass::COUNT];
+    if !payload.roads_sv.is_empty() {
+        let coded = roads_sv::encode(&payload.roads_sv, corner, quantum_m);
+        let (bytes, class_bytes) = coded.map_err(inside(Kind::RoadsSv))?;
+        sv_class_bytes = class_bytes;
+        sections.push((Kind::RoadsSv, bytes));
+    }
+    if !payload.attributes.is_empty() {
+        let bytes = attributes::encode(&payload.attributes).map_err(inside(Kind::Attributes))?;
+        sections.push((Kind::Attributes, bytes));
+    }
+
+    let (bytes, sizes) = envelope::seal(tile, &sections)?;
+    let size = |kind: Kind| {
+        sections.iter().zip(&sizes).find(|((of, _), _)| *of == kind).map_or_else(SectionSize::default, |(_, size)| *size)
+    };
+    Ok(EncodedTile {
+        bytes,
+        terrain: size(Kind::Terrain),
+        roads_geo: size(Kind::RoadsGeo),
+        roads_sv: size(Kind::RoadsSv),
+        attributes: size(Kind::Attributes),
+        geo_class_bytes,
+        sv_class_bytes,
+    })
+}

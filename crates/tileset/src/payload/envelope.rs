@@ -1,0 +1,186 @@
+//! Header, section table and sections of a payload: everything but what a section says.
+
+use corniche_geom::TileId;
+use ruzstd::decoding::FrameDecoder;
+
+use super::{Damage, codec::Cursor};
+
+/// First bytes of every payload: "Corniche Tile".
+pub(super) const MAGIC: [u8; 4] = *b"CRNT";
+/// Version of the payload's layout.
+pub(super) const VERSION: u16 = 0;
+/// Bytes before the section table.
+#[cfg(feature = "write")]
+const HEADER_BYTES: usize = 16;
+/// Bytes of one entry of the section table.
+#[cfg(feature = "write")]
+const ENTRY_BYTES: usize = 20;
+/// No section is larger than this before compression; readers refuse what says it is.
+pub const MAX_SECTION_BYTES: usize = 64 << 20;
+/// Stored bytes follow without compression.
+pub(super) const STORED: u8 = 0;
+/// Stored bytes are one zstd frame.
+pub(super) const ZSTD: u8 = 1;
+
+/// The kinds of section that this version knows; a reader skips others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u16)]
+pub(super) enum Kind {
+    Terrain = 1,
+    RoadsGeo = 2,
+    RoadsSv = 3,
+    Attributes = 4,
+}
+
+impl Kind {
+    /// What errors call it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Terrain => "terrain section",
+            Self::RoadsGeo => "GEO roads section",
+            Self::RoadsSv => "SV roads section",
+            Self::Attributes => "road attributes section",
+        }
+    }
+}
+
+/// A section as it lies in the payload.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StoredSection<'a> {
+    kind: u16,
+    compression: u8,
+    raw_length: u32,
+    checksum: u32,
+    bytes: &'a [u8],
+}
+
+/// Takes a payload apart. Sections are not looked into yet, but lie within the bytes.
+pub(super) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, Damage> {
+    let mut cursor = Cursor::new(bytes);
+    if cursor.array::<4>()? != MAGIC {
+        return Err(Damage::Magic);
+    }
+    let version = u16::from_le_bytes(cursor.array()?);
+    if version != VERSION {
+        return Err(Damage::Version { found: version, supported: VERSION });
+    }
+    let [count, z] = cursor.array()?;
+    let (x, y) = (u32::from_le_bytes(cursor.array()?), u32::from_le_bytes(cursor.array()?));
+    let mut sections = Vec::with_capacity(usize::from(count));
+    for _ in 0..count {
+        let kind = u16::from_le_bytes(cursor.array()?);
+        let [compression, reserved] = cursor.array()?;
+        let [offset, length, raw_length, checksum] = [(); 4].map(|()| cursor.array().map(u32::from_le_bytes));
+        let (offset, length) = (offset? as usize, length? as usize);
+        let stored = offset.checked_add(length).and_then(|end| bytes.get(offset..end));
+        if reserved != 0 {
+            return Err(Damage::Invalid { what: "a reserved byte of the section table is not 0" });
+        }
+        sections.push(StoredSection {
+            kind,
+            compression,
+            raw_length: raw_length?,
+            checksum: checksum?,
+            bytes: stored.ok_or(Damage::TooShort)?,
+        });
+    }
+    let table = &bytes[..bytes.len() - cursor.left()];
+    if u32::from_le_bytes(cursor.array()?) != crc32fast::hash(table) {
+        return Err(Damage::Checksum);
+    }
+    // After the checksum: what is reported here is no flipped bit but a payload in the wrong place.
+    if (z, x, y) != (id.z(), id.x(), id.y()) {
+        return Err(Damage::OtherTile { found: format!("{z}/{x}/{y}") });
+    }
+    Ok(sections)
+}
+
+/// The bytes of the section of one kind, decompressed and checked; `None` where it is absent.
+pub(super) fn section(sections: &[StoredSection<'_>], kind: Kind) -> Result<Option<Vec<u8>>, Damage> {
+    let Some(section) = sections.iter().find(|section| section.kind == kind as u16) else {
+        return Ok(None);
+    };
+    let raw_length = section.raw_length as usize;
+    if raw_length > MAX_SECTION_BYTES {
+        return Err(Damage::TooLarge {
+            what: "length of a section",
+            length: raw_length as u64,
+            limit: MAX_SECTION_BYTES as u64,
+        });
+    }
+    if crc32fast::hash(section.bytes) != section.checksum {
+        return Err(Damage::Checksum);
+    }
+    match section.compression {
+        STORED if section.bytes.len() == raw_length => Ok(Some(section.bytes.to_vec())),
+        STORED => Err(Damage::Invalid { what: "the length of an uncompressed section" }),
+        ZSTD => decompress(section.bytes, raw_length).map(Some),
+        _ => Err(Damage::Invalid { what: "an unknown compression" }),
+    }
+}
+
+/// Decompresses a zstd frame that must come to exactly `length` bytes.
+fn decompress(bytes: &[u8], length: usize) -> Result<Vec<u8>, Damage> {
+    let failed = |error: &dyn std::fmt::Display| Damage::Decompress { reason: error.to_string() };
+    let mut decoder = FrameDecoder::new();
+    // A window never needs to be larger than the content; zstd's own smallest window is 1 KiB.
+    decoder.set_max_window_size(length.max(1024) as u64);
+    let mut out = vec![0; length];
+    let written = decoder.decode_all(bytes, &mut out).map_err(|error| failed(&error))?;
+    if written != length {
+        return Err(Damage::Invalid { what: "a section is shorter than it says" });
+    }
+    Ok(out)
+}
+
+/// How large a section is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SectionSize {
+    /// Bytes before compression.
+    pub raw: u64,
+    /// Bytes in the payload.
+    pub stored: u64,
+}
+
+/// zstd's level: beyond it sections of this size gain less than 1 %.
+#[cfg(feature = "write")]
+const COMPRESSION_LEVEL: i32 = 12;
+
+/// Puts header, table and sections together; compresses each section where that makes it smaller.
+#[cfg(feature = "write")]
+pub(super) fn seal(
+    id: TileId,
+    sections: &[(Kind, Vec<u8>)],
+) -> Result<(Vec<u8>, Vec<SectionSize>), super::EncodeError> {
+    use super::EncodeError;
+
+    let mut table = Vec::with_capacity(HEADER_BYTES + sections.len() * ENTRY_BYTES + 4);
+    table.extend(MAGIC);
+    table.extend(VERSION.to_le_bytes());
+    table.extend([sections.len() as u8, id.z()]);
+    table.extend(id.x().to_le_bytes());
+    table.extend(id.y().to_le_bytes());
+    let mut body = Vec::new();
+    let mut sizes = Vec::with_capacity(sections.len());
+    let start = HEADER_BYTES + sections.len() * ENTRY_BYTES + 4;
+    for (kind, raw) in sections {
+        let section = kind.name();
+        if raw.len() > MAX_SECTION_BYTES {
+            return Err(EncodeError::TooLarge { tile: id, section, bytes: raw.len(), limit: MAX_SECTION_BYTES });
+        }
+        let compressed = zstd::bulk::compress(raw, COMPRESSION_LEVEL)
+            .map_err(|error| EncodeError::Compress { tile: id, section, reason: error.to_string() })?;
+        let (compression, stored) = if compressed.len() < raw.len() { (ZSTD, &compressed) } else { (STORED, raw) };
+        table.extend((*kind as u16).to_le_bytes());
+        table.extend([compression, 0]);
+        for number in [start + body.len(), stored.len(), raw.len()] {
+            table.extend((number as u32).to_le_bytes());
+        }
+        table.extend(crc32fast::hash(stored).to_le_bytes());
+        body.extend(stored);
+        sizes.push(SectionSize { raw: raw.len() as u64, stored: stored.len() as u64 });
+    }
+    table.extend(crc32fast::hash(&table).to_le_bytes());
+    table.extend(body);
+    Ok((table, sizes))
+}

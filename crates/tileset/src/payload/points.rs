@@ -1,0 +1,61 @@
+//! Lattice points as differences from one to the next.
+
+use corniche_geom::LatticePoint;
+
+use super::{
+    Damage,
+    codec::{Cursor, unzigzag},
+};
+
+/// Points lie within this many lattice steps of the tile's corner, so that orientations stay exact.
+const REACH_STEPS: i64 = 1 << 55;
+
+/// `count` points, the first relative to `corner`.
+pub(super) fn decode_points(
+    cursor: &mut Cursor<'_>,
+    count: usize,
+    corner: LatticePoint,
+) -> Result<Vec<LatticePoint>, Damage> {
+    let (east, north) = (cursor.planes(count)?, cursor.planes(count)?);
+    let mut at = corner;
+    let mut points = Vec::with_capacity(count);
+    for (du, dv) in east.into_iter().zip(north) {
+        let step = |from: i64, by: u64, corner: i64| {
+            let to = from.checked_add(unzigzag(by))?;
+            (to.checked_sub(corner)?.checked_abs()? <= REACH_STEPS).then_some(to)
+        };
+        let moved = step(at.u, du, corner.u).zip(step(at.v, dv, corner.v));
+        let (u, v) = moved.ok_or(Damage::Invalid { what: "a point far away from its tile" })?;
+        at = LatticePoint::new(u, v);
+        points.push(at);
+    }
+    Ok(points)
+}
+
+/// The inverse of [`decode_points`].
+#[cfg(feature = "write")]
+pub(super) fn put_points(
+    out: &mut Vec<u8>,
+    points: &[LatticePoint],
+    corner: LatticePoint,
+) -> Result<(), &'static str> {
+    use super::{
+        class_table::MAX_POINTS,
+        codec::{put_planes, zigzag},
+    };
+
+    if points.len() > MAX_POINTS {
+        return Err("more than four million points in one class");
+    }
+    let far = |at: i64, corner: i64| i128::from(at).abs_diff(i128::from(corner)) > REACH_STEPS as u128;
+    if points.iter().any(|point| far(point.u, corner.u) || far(point.v, corner.v)) {
+        return Err("a point far away from the tile");
+    }
+    let steps = |of: fn(&LatticePoint) -> i64| -> Vec<u64> {
+        let before = std::iter::once(&corner).chain(points);
+        points.iter().zip(before).map(|(point, before)| zigzag(of(point) - of(before))).collect()
+    };
+    put_planes(out, &steps(|point| point.u));
+    put_planes(out, &steps(|point| point.v));
+    Ok(())
+}

@@ -1,0 +1,179 @@
+//! Where a line goes next over a TIN, guessed from its source points.
+//!
+//! The vertices of a draped line follow from its source points and the TIN, nearly always: go straight from one
+//! point to the next and list the edges crossed. Writer and reader guess every vertex by the same exact
+//! integer tests, and the section lists only the vertices where the guess is wrong (and where a line ends
+//! early): a crossing costs no bits.
+//!
+//! ```text
+//!              c                 From half-edge x ► y (the line p ► q came in over it) or from inside:
+//!            /   \               q in the triangle      → the source point q
+//!      ────/───────\──► q        c on the line, ahead   → through the vertex c
+//!        /  p ► q    \           an edge with its start to the right of p ► q
+//!      y ◄──────────── x         and its end to the left → across that edge
+//! ```
+
+use corniche_drape::DrapedVertex;
+use corniche_geom::{LatticePoint, cross};
+use corniche_tin::{NO_TWIN, Surface};
+
+/// Follows one line; asked for a guess, then told the truth, vertex by vertex.
+pub(super) struct Route<'a> {
+    surface: &'a Surface,
+    /// All points: lead-in, source points, lead-out.
+    points: &'a [LatticePoint],
+    /// Index of the next source point to be reached.
+    next: usize,
+    /// Source points end here; what follows is the lead-out.
+    end: usize,
+    place: Place,
+}
+
+#[derive(Clone, Copy)]
+enum Place {
+    /// Nothing yet.
+    Start,
+    /// At a source point, in this triangle or on its border.
+    Triangle(u32),
+    /// On an edge, about to enter the triangle of this half-edge.
+    HalfEdge(u32),
+    /// At a TIN vertex.
+    Vertex(u32),
+    /// On the outline, going out.
+    Outside,
+}
+
+impl<'a> Route<'a> {
+    /// `leads` tells whether the first and the last of `points` are lead-in and lead-out.
+    pub(super) fn new(surface: &'a Surface, points: &'a [LatticePoint], leads: [bool; 2]) -> Self {
+        let end = points.len() - usize::from(leads[1]);
+        Self { surface, points, next: usize::from(leads[0]), end, place: Place::Start }
+    }
+
+    /// The TIN it goes over.
+    #[cfg(feature = "write")]
+    pub(super) fn surface(&self) -> &'a Surface {
+        self.surface
+    }
+
+    /// The next source point to be reached.
+    pub(super) fn next_source(&self) -> Option<LatticePoint> {
+        self.points[..self.end].get(self.next).copied()
+    }
+
+    /// The next vertex, as far as the points tell; `None` where they say that the line ends.
+    pub(super) fn guess(&self) -> Option<DrapedVertex> {
+        if let Place::Start = self.place {
+            // A line with a lead-in starts on the outline; finding where would be a search.
+            let point = if self.next == 0 { self.next_source()? } else { return None };
+            return self.surface.locate(point).map(|triangle| DrapedVertex::Source { point, triangle });
+        }
+        let (p, q) = (*self.points.get(self.next.checked_sub(1)?)?, *self.points.get(self.next)?);
+        let line = Line { surface: self.surface, p, q };
+        let vertex = match self.place {
+            Place::Triangle(triangle) => line.from_point(triangle),
+            Place::HalfEdge(half_edge) => line.ahead(half_edge / 3, p, None),
+            Place::Vertex(vertex) => line.from_vertex(vertex),
+            Place::Start | Place::Outside => None,
+        }?;
+        // The lead-out is a direction, never reached.
+        (self.next < self.end || !matches!(vertex, DrapedVertex::Source { .. })).then_some(vertex)
+    }
+
+    /// Goes to `vertex`, whatever the guess was. Indices must be within the TIN.
+    pub(super) fn go(&mut self, vertex: DrapedVertex) {
+        self.place = match vertex {
+            DrapedVertex::Source { triangle, .. } => {
+                self.next += 1;
+                Place::Triangle(triangle)
+            }
+            DrapedVertex::Crossing { a, b } => self.entering(a, b).map_or(Place::Outside, Place::HalfEdge),
+            DrapedVertex::Vertex { vertex } => Place::Vertex(vertex),
+        };
+    }
+
+    /// The half-edge between a and b over which the line comes in: it starts to the left of p ► q.
+    fn entering(&self, a: u32, b: u32) -> Option<u32> {
+        let (p, q) = (*self.points.get(self.next.checked_sub(1)?)?, *self.points.get(self.next)?);
+        let left_start = cross(p, q, self.surface.points()[a as usize]) > 0;
+        let [from, to] = if left_start { [a, b] } else { [b, a] };
+        let from_fan = self.surface.fan(from).iter().find(|&&half_edge| self.surface.ends(half_edge)[1] == to);
+        from_fan.copied()
+    }
+}
+
+/// The segment from p to q.
+struct Line<'a> {
+    surface: &'a Surface,
+    p: LatticePoint,
+    q: LatticePoint,
+}
+
+impl Line<'_> {
+    fn corners(&self, triangle: u32) -> [LatticePoint; 3] {
+        self.surface.triangles()[triangle as usize].map(|vertex| self.surface.points()[vertex as usize])
+    }
+
+    /// The next vertex within `triangle`, seen from `here`, which is the TIN vertex `at` if that is given.
+    fn ahead(&self, triangle: u32, here: LatticePoint, at: Option<u32>) -> Option<DrapedVertex> {
+        let Self { surface, p, q } = *self;
+        let corners = self.corners(triangle);
+        let sides = [0, 1, 2].map(|k| cross(corners[k], corners[(k + 1) % 3], q));
+        if sides.iter().all(|&side| side > 0) {
+            return Some(DrapedVertex::Source { point: q, triangle });
+        }
+        if sides.iter().all(|&side| side >= 0) {
+            // On a border several triangles hold it; the one with the smallest index counts.
+            return Some(DrapedVertex::Source { point: q, triangle: surface.locate(q)? });
+        }
+        let names = surface.triangles()[triangle as usize];
+        let sides = corners.map(|corner| cross(p, q, corner));
+        for k in 0..3 {
+            let to = (k + 1) % 3;
+            if sides[k] < 0 && sides[to] > 0 {
+                let (a, b) = (names[k].min(names[to]), names[k].max(names[to]));
+                return Some(DrapedVertex::Crossing { a, b });
+            }
+        }
+        let is_ahead = |corner: LatticePoint| {
+            let along = |from: i64, to: i64, low: i64, high: i64| i128::from(to - from) * i128::from(high - low);
+            along(p.u, q.u, here.u, corner.u) + along(p.v, q.v, here.v, corner.v) > 0
+        };
+        (0..3)
+            .find(|&k| sides[k] == 0 && Some(names[k]) != at && is_ahead(corners[k]))
+            .map(|k| DrapedVertex::Vertex { vertex: names[k] })
+    }
+
+    /// Whether the line, standing at `here` in the triangle, goes on inside it or along its border.
+    fn goes_into(&self, triangle: u32, here: LatticePoint) -> bool {
+        let corners = self.corners(triangle);
+        (0..3).all(|k| {
+            let (a, b) = (corners[k], corners[(k + 1) % 3]);
+            cross(a, b, here) != 0 || cross(a, b, self.q) >= 0
+        })
+    }
+
+    /// From the source point p in `triangle`.
+    fn from_point(&self, triangle: u32) -> Option<DrapedVertex> {
+        let corners = self.corners(triangle);
+        if let Some(k) = corners.iter().position(|&corner| corner == self.p) {
+            return self.from_vertex(self.surface.triangles()[triangle as usize][k]);
+        }
+        if self.goes_into(triangle, self.p) {
+            return self.ahead(triangle, self.p, None);
+        }
+        let on = (0..3).find(|&k| cross(corners[k], corners[(k + 1) % 3], self.p) == 0)?;
+        match self.surface.twin(3 * triangle + on as u32) {
+            NO_TWIN => None,
+            twin => self.ahead(twin / 3, self.p, None),
+        }
+    }
+
+    /// From a TIN vertex on the line.
+    fn from_vertex(&self, vertex: u32) -> Option<DrapedVertex> {
+        let here = self.surface.points()[vertex as usize];
+        let mut around = self.surface.fan(vertex).iter().map(|half_edge| half_edge / 3);
+        let triangle = around.find(|&triangle| self.goes_into(triangle, here))?;
+        self.ahead(triangle, here, Some(vertex))
+    }
+}

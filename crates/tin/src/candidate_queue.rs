@@ -1,0 +1,133 @@
+use std::collections::BinaryHeap;
+
+/// The node of a face that lies farthest from it. Candidates compare by error, then by node (of equals the
+/// first is the greater), then by face: insertion takes the same way on every run.
+///
+/// ```text
+///   bits  127 … 96        95 … 64          63 … 32    31 … 0
+///         error as f32    node, flipped    face       apex
+/// ```
+/// An error is not negative, and such floats order like their bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Candidate(u128);
+
+impl Candidate {
+    pub(crate) fn new(error_m: f64, node: u32, face: u32, apex: u32) -> Self {
+        let error = (error_m as f32).to_bits();
+        Self(
+            u128::from(error) << 96
+                | u128::from(!node) << 64
+                | u128::from(face) << 32
+                | u128::from(apex),
+        )
+    }
+
+    /// Index of the node, row by row.
+    pub(crate) fn node(self) -> u32 {
+        !((self.0 >> 64) as u32)
+    }
+
+    /// Index of the face it was found in.
+    pub(crate) fn face(self) -> u32 {
+        (self.0 >> 32) as u32
+    }
+
+    /// The face's apex then: the candidate is stale when the face has been made anew since.
+    pub(crate) fn apex(self) -> u32 {
+        self.0 as u32
+    }
+
+    /// Exponent and upper bits of the mantissa: errors of one band differ by at most an eighth.
+    fn band(self) -> usize {
+        (self.0 >> (96 + 20)) as usize
+    }
+}
+
+/// Candidates, the greatest first.
+///
+/// Most wait long and are stale before their turn. So only the uppermost band of errors is a heap; the bands
+/// below are unsorted, and whoever asks for the next band names what is still worth sorting. The order is that
+/// of one heap over all; the heap that is left is small enough for the processor's caches.
+pub(crate) struct CandidateQueue {
+    heap: BinaryHeap<Candidate>,
+    /// Candidates below the heap's band, by band.
+    waiting: Vec<Vec<Candidate>>,
+    /// The lowest band in the heap.
+    band: usize,
+}
+
+impl CandidateQueue {
+    pub(crate) fn new() -> Self {
+        Self { heap: BinaryHeap::new(), waiting: Vec::new(), band: usize::MAX }
+    }
+
+    pub(crate) fn push(&mut self, candidate: Candidate) {
+        let band = candidate.band();
+        if band >= self.band {
+            self.heap.push(candidate);
+            return;
+        }
+        if self.waiting.len() <= band {
+            self.waiting.resize_with(band + 1, Vec::new);
+        }
+        self.waiting[band].push(candidate);
+    }
+
+    /// Takes the greatest candidate that is `fresh`.
+    pub(crate) fn pop(&mut self, fresh: impl Fn(Candidate) -> bool) -> Option<Candidate> {
+        loop {
+            while let Some(candidate) = self.heap.pop() {
+                if fresh(candidate) {
+                    return Some(candidate);
+                }
+            }
+            self.band = self.band.min(self.waiting.len()).checked_sub(1)?;
+            let mut next = std::mem::take(&mut self.waiting[self.band]);
+            next.retain(|&candidate| fresh(candidate));
+            self.heap = BinaryHeap::from(next);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The order is that of one heap, also when candidates arrive in between.
+        #[test]
+        fn pops_like_one_heap(errors in prop::collection::vec((0.0_f64..1e4, any::<bool>()), 0..300)) {
+            let (mut queue, mut heap) = (CandidateQueue::new(), BinaryHeap::new());
+            let fresh = |candidate: Candidate| !candidate.node().is_multiple_of(5);
+            let pop_fresh = |heap: &mut BinaryHeap<Candidate>| loop {
+                match heap.pop() {
+                    Some(candidate) if !fresh(candidate) => {}
+                    other => return other,
+                }
+            };
+            for (index, &(error_m, pop)) in errors.iter().enumerate() {
+                let candidate = Candidate::new(error_m, index as u32, 7 * index as u32, 3);
+                queue.push(candidate);
+                heap.push(candidate);
+                if pop {
+                    prop_assert_eq!(queue.pop(fresh), pop_fresh(&mut heap));
+                }
+            }
+            while let Some(candidate) = pop_fresh(&mut heap) {
+                prop_assert_eq!(queue.pop(fresh), Some(candidate));
+            }
+            prop_assert_eq!(queue.pop(fresh), None);
+        }
+    }
+
+    #[test]
+    fn holds_what_it_was_made_of() {
+        let candidate = Candidate::new(2.5, 1_000_000, u32::MAX, 17);
+        assert_eq!(
+            (candidate.node(), candidate.face(), candidate.apex()),
+            (1_000_000, u32::MAX, 17)
+        );
+        assert!(Candidate::new(2.5, 3, 0, 0) > Candidate::new(2.5, 4, 9, 9));
+    }
+}

@@ -1,0 +1,246 @@
+//! From heights and roads to a settled picture: triangulated, draped, selected, drawn; no package in between.
+
+mod support;
+
+use corniche_drape::{OwnedBorders, clip, drape};
+use corniche_geom::{Frame, HeightGrid, NodeIndex, Polyline, TILE_NODES, TileId};
+use corniche_tileset::{GeoRoad, Terrain, TilePayload};
+use corniche_tin::{Placement, Surface, TinSpec, normals, triangulate};
+use corniche_viewer::{
+    RoadMethod,
+    camera::{Camera, Orientation},
+    gpu::{DrawTile, FrameView, Renderer, Targets, TileBuffers},
+    lod::Quality,
+    scene,
+    style::Style,
+    tiles::{LoadTileError, TileGeometry, TileSource, TileStore},
+};
+use glam::{DVec2, DVec3};
+use support::{Drawing, class, gpu};
+
+const CELL_M: f64 = 25.0;
+const MAX_LEVEL: u8 = 4;
+const MAX_ERROR_M: f64 = 4.0;
+const QUANTUM_M: f64 = 1.0 / 16.0;
+const SIZE: [u32; 2] = [640, 480];
+
+/// Mountains of three wavelengths over 102 km, with roads; tiles are made when they are asked for.
+struct Country {
+    frame: Frame,
+    roads: Vec<(u8, Polyline)>,
+}
+
+/// Amplitude in metres and wave number in 1/m along x and y.
+const WAVES: [[f64; 3]; 3] = [
+    [700.0, 1.0 / 2400.0, 1.0 / 3100.0],
+    [180.0, 1.0 / 700.0, 1.0 / 520.0],
+    [25.0, 1.0 / 160.0, 1.0 / 210.0],
+];
+
+fn height_m(x: f64, y: f64) -> f64 {
+    1000.0
+        + WAVES.iter().map(|[height, kx, ky]| height * (x * kx).sin() * (y * ky).cos()).sum::<f64>()
+}
+
+/// Error of interpolating `height_m` linearly over right triangles with legs `cell_m`: by Taylor's theorem at
+/// most cell² / 8 · (|f_xx| + 2 |f_xy| + |f_yy|), and never more than twice the amplitude.
+fn interpolation_error_m(cell_m: f64) -> f64 {
+    let error = |[height, kx, ky]: [f64; 3]| {
+        (height * cell_m * cell_m / 8.0 * (kx + ky).powi(2)).min(2.0 * height)
+    };
+    WAVES.map(error).iter().sum()
+}
+
+impl Country {
+    fn new() -> Self {
+        let frame =
+            Frame::new([0.0; 2], CELL_M, NodeIndex { i: 25_600, j: 204_800 }, MAX_LEVEL).unwrap();
+        let [cx, cy] = frame.tile_bounds(TileId::ROOT).center();
+        let road = |points: &[[f64; 2]]| {
+            let points =
+                points.iter().map(|[x, y]| frame.snap([cx + x, cy + y]).unwrap()).collect();
+            Polyline::new(points).unwrap()
+        };
+        let bends: Vec<[f64; 2]> = (0..=80)
+            .map(|k| [-8000.0 + 200.0 * f64::from(k), 900.0 * (f64::from(k) / 4.0).sin()])
+            .collect();
+        let roads = vec![
+            (0, road(&[[-20_000.0, -1500.0], [-3000.0, 700.0], [22_000.0, 2600.0]])),
+            (3, road(&bends)),
+            (6, road(&[[500.0, -9000.0], [0.0, 0.0], [-1200.0, 9000.0]])),
+        ];
+        Self { frame, roads }
+    }
+
+    fn payload(&self, id: TileId) -> TilePayload {
+        let (frame, stride) = (&self.frame, self.frame.stride(id.z()));
+        let window = frame.tile_window(id).with_halo(1);
+        let heights = HeightGrid::from_fn(TILE_NODES + 2, TILE_NODES + 2, |column, row| {
+            let node = window.node(column, row);
+            height_m(frame.x_m(node.i), frame.y_m(node.j)) as f32
+        });
+        let max_error_m = MAX_ERROR_M * stride as f64;
+        let tin = triangulate(&heights, TinSpec { max_error_m, quantum_m: QUANTUM_M }).unwrap();
+        let placement = Placement {
+            corner: frame.lattice_of_node(frame.tile_corner(id)),
+            node_steps: stride << frame.lattice_bits(),
+            quantum_m: QUANTUM_M,
+        };
+        let surface = Surface::new(&tin, placement);
+        let mut roads_geo = Vec::new();
+        for (way_id, (number, line)) in self.roads.iter().enumerate() {
+            for part in clip(line, &frame.tile_lattice_bounds(id), OwnedBorders::of_tile(id)) {
+                for line in drape(&part, &surface).lines {
+                    roads_geo.push(GeoRoad {
+                        way_id: way_id as i64,
+                        part: 0,
+                        class: class(*number),
+                        line,
+                    });
+                }
+            }
+        }
+        let terrain = Terrain {
+            normals: normals(&heights, &tin, frame.level_cell_m(id.z())),
+            tin,
+            geometric_error_m: max_error_m + interpolation_error_m(frame.level_cell_m(id.z())),
+            height_range_m: [90.0, 1910.0],
+            uncovered_nodes: 0,
+        };
+        TilePayload {
+            id,
+            terrain: Some(terrain),
+            roads_geo,
+            roads_sv: Vec::new(),
+            attributes: Vec::new(),
+        }
+    }
+}
+
+impl TileSource for Country {
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn exists(&self, id: TileId) -> bool {
+        id.z() <= MAX_LEVEL
+    }
+
+    fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
+        TileGeometry::from_payload(&self.payload(id), &self.frame, QUANTUM_M)
+            .map_err(|error| LoadTileError { id, source: error.into() })
+    }
+}
+
+fn target(country: &Country) -> DVec3 {
+    let [x, y] = country.frame.tile_bounds(TileId::ROOT).center();
+    DVec3::new(x, y, height_m(x, y))
+}
+
+/// What was drawn, the screen-space error asked for, and how many tiles of each level it took.
+fn picture(
+    country: &Country,
+    camera: &Camera,
+    error_px: f64,
+    style: &Style,
+) -> Option<(Drawing, [u32; 5])> {
+    let gpu = gpu()?;
+    let mut store = TileStore::new(country);
+    let quality = Quality { screen_space_error_px: error_px, vertical_scale: 1.0 };
+    let drawn = scene::settle(&mut store, camera, quality).unwrap();
+    let mut levels = [0; 5];
+    for tile in &drawn {
+        levels[usize::from(tile.id.z())] += 1;
+    }
+    let buffers: Vec<_> = scene::draw_list(&store, &drawn)
+        .map(|(tile, depth)| (TileBuffers::new(&gpu, tile), depth))
+        .collect();
+    let tiles: Vec<_> = buffers
+        .iter()
+        .map(|(buffers, depth)| DrawTile { buffers, skirt_depth_m: *depth })
+        .collect();
+    let targets = Targets::new(&gpu, camera.size_px()).unwrap();
+    let view = FrameView {
+        camera,
+        style,
+        roads: RoadMethod::Geometry,
+        exaggeration: 1.0,
+        point_scale: 1.0,
+        height_range_m: [90.0, 1910.0],
+        supersampling: 1,
+    };
+    Renderer::new(&gpu).draw(&gpu, &view, &tiles, &targets);
+    Some((Drawing::read(&gpu, &targets), levels))
+}
+
+#[test]
+fn levels_meet_without_holes_and_within_the_error_asked_for() {
+    let country = Country::new();
+    // Low over the ground and looking far: several levels at once.
+    for (heading_deg, pitch_deg) in [(10.0, 55.0), (135.0, 60.0)] {
+        let camera =
+            Camera::look_at(target(&country), 6000.0, Orientation { heading_deg, pitch_deg }, SIZE);
+        let error_px = 1.5;
+        let Some((drawing, levels)) = picture(&country, &camera, error_px, &Style::road_atlas())
+        else {
+            return;
+        };
+        assert!(
+            levels.iter().filter(|count| **count > 0).count() > 1,
+            "{levels:?} is one level only"
+        );
+        assert_eq!(drawing.depth.iter().filter(|depth| **depth == 0.0).count(), 0, "holes");
+        let finest_m = MAX_ERROR_M + interpolation_error_m(CELL_M);
+        let (mut worst_px, mut worst_share): (f64, f64) = (0.0, 0.0);
+        for (index, at) in drawing.pixels() {
+            let depth_m = camera.near_m() / f64::from(drawing.depth[index]);
+            let ground = camera.eye_in_world() + camera.ray_in_world(at) * depth_m;
+            // Skirts hang below the ground by design; everything else is within the error of its tile.
+            if drawing.ground[index * 4 + 3] == 255 {
+                let off_m = (ground.z - height_m(ground.x, ground.y)).abs();
+                let pixel_m = camera.pixel_at_unit_depth_m() * depth_m;
+                worst_px = worst_px.max(off_m / pixel_m);
+                // Where the finest level is coarser than what was asked for, it is as good as it gets.
+                worst_share = worst_share.max(off_m / finest_m.max(error_px * pixel_m));
+            }
+        }
+        let skirts = drawing.ground.chunks_exact(4).filter(|pixel| pixel[3] == 128).count();
+        println!(
+            "levels {levels:?}: {worst_px:.2} px off at most, {worst_share:.2} of what is allowed, {skirts} pixels of skirts"
+        );
+        assert!(worst_share <= 1.0, "{worst_share} of the error allowed");
+    }
+}
+
+#[test]
+fn draped_roads_show_on_every_level() {
+    let country = Country::new();
+    for (error_px, distance_m) in [(2.0, 9000.0), (16.0, 9000.0), (4.0, 40_000.0)] {
+        let orientation = Orientation { heading_deg: 0.0, pitch_deg: 40.0 };
+        let camera = Camera::look_at(target(&country), distance_m, orientation, SIZE);
+        let Some((drawing, levels)) = picture(&country, &camera, error_px, &Style::road_atlas())
+        else {
+            return;
+        };
+        // The roads meet at the target; the least important one goes north from there.
+        let center = 240 * SIZE[0] as usize + 320;
+        let near = |at: usize| drawing.labels[at - 3..at + 4].iter().any(|label| *label != 0);
+        assert!(near(center) || near(center - 640) || near(center + 640), "levels {levels:?}");
+        for number in [0, 3, 6] {
+            let seen = drawing.pixels_of(number).len();
+            assert!(seen > 150, "{seen} pixels of class {number} on levels {levels:?}");
+        }
+    }
+}
+
+#[test]
+fn the_height_under_a_position_comes_from_the_finest_tile() {
+    let country = Country::new();
+    let mut store = TileStore::new(&country);
+    let at = target(&country).truncate() + DVec2::new(1234.5, -678.9);
+    let found_m = store.ground_height_m(at.to_array()).unwrap().unwrap();
+    let bound_m = MAX_ERROR_M + interpolation_error_m(CELL_M);
+    assert!((found_m - height_m(at.x, at.y)).abs() <= bound_m);
+    assert_eq!(store.len(), usize::from(MAX_LEVEL) + 1);
+    assert_eq!(store.ground_height_m([0.0, 0.0]).unwrap(), None);
+}
