@@ -59,7 +59,7 @@ class Tile:
         self.z, self.x, self.y = (int(part) for part in self.id.split("/"))
         self.bounds = [float(v) for v in record["bounds"]]
         self.cell_m = float(record["cell_m"])
-        self.max_error_m = float(record["max_error_m"])
+        self.max_error_m = float(record.get("max_error_m") or 0.0)
         self.error_m = record.get("geometric_error_m")
         tin = record.get("tin") or {"vertices": [], "triangles": []}
         self.vertices = np.array(tin["vertices"], dtype=np.float64).reshape(-1, 3)
@@ -326,6 +326,7 @@ def main():
     parser.add_argument("--self-test", action="store_true", help="show that broken tiles are caught")
     args = parser.parse_args()
     if args.self_test:
+        sys.dont_write_bytecode = True
         import check_tile_selftest
 
         sys.exit(check_tile_selftest.run())

@@ -75,12 +75,12 @@ def overlap(tiles):
 
 
 def hole(tiles):
-    del tiles[0]["tin"]["triangles"][8]
+    del tiles[0]["tin"]["triangles"][10]
 
 
 def move_border_up(tiles):
     vertex = next(v for v in tiles[0]["tin"]["vertices"] if v[0] == tiles[0]["bounds"][2] and v[1] == Y0)
-    vertex[2] += 1e-9 * 1e3
+    vertex[2] += 1e-6
 
 
 def move_inner(tiles):

@@ -18,6 +18,9 @@ from collections import Counter
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
+# Nothing is left beside the sources.
+sys.dont_write_bytecode = True
+
 import numpy as np
 from osgeo import gdal, osr
 
@@ -133,7 +136,7 @@ def void_record(mask, both):
     }
 
 
-def truth(z, whole, lake, small, large, nodes, ways, lines):
+def truth(z, lake, small, large, nodes, ways, lines):
     """What tests may rely on."""
     kinds, metres, points = Counter(), Counter(), Counter()
     for (tags, line), (_, refs, _) in zip(lines, ways):
@@ -146,7 +149,7 @@ def truth(z, whole, lake, small, large, nodes, ways, lines):
     data = z != terrain.NODATA
     xy = np.array(list(nodes.values())) / 1e7
     return {
-        "comment": "Synthetic. Lengths are plan lengths in EPSG:32632, cut at nothing; counts are of OSM objects.",
+        "comment": "Synthetic. Lengths are plan lengths in EPSG:32632, before rounding to 1e-7 degrees; counts are of OSM objects.",
         "dem": {
             "epsg": EPSG, "columns": terrain.SIDE, "rows": terrain.SIDE, "cell_m": terrain.CELL_M,
             "pixel_is": "area", "corner_m": [WEST_M, NORTH_M], "nodata": terrain.NODATA,
@@ -221,7 +224,7 @@ def main():
     lines = roads.build(whole.astype(np.float64), lake).roads
     nodes, ways = osm_objects(lines)
     text = osm_text(nodes, ways)
-    facts = json.dumps(truth(z, whole, lake, small, large, nodes, ways, lines), indent=1) + "\n"
+    facts = json.dumps(truth(z, lake, small, large, nodes, ways, lines), indent=1) + "\n"
     if sys.argv[1:] == ["--check"]:
         wrong = check(z, text)
         if TRUTH.read_text(encoding="utf-8") != facts:

@@ -1,13 +1,16 @@
 """Road lines that meet in shared points: joining, crossing, bridges and tunnels."""
 
 import bisect
+import math
 
 
 def length_of(points):
     """Length of a polyline in metres."""
-    return sum(
-        ((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2) ** 0.5 for a, b in zip(points[:-1], points[1:])
-    )
+    total = 0.0
+    for a, b in zip(points[:-1], points[1:]):
+        dx, dy = b[0] - a[0], b[1] - a[1]
+        total += math.sqrt(dx * dx + dy * dy)
+    return total
 
 
 def crossing(a, b, c, d):
@@ -28,7 +31,7 @@ def offset(points, by_m):
         ax, ay = points[max(k - 1, 0)]
         bx, by = points[min(k + 1, len(points) - 1)]
         dx, dy = bx - ax, by - ay
-        length = (dx * dx + dy * dy) ** 0.5
+        length = math.sqrt(dx * dx + dy * dy)
         out.append((x - dy / length * by_m, y + dx / length * by_m))
     return out
 
@@ -56,7 +59,7 @@ class Network:
                 t = ((point[0] - a[0]) * dx + (point[1] - a[1]) * dy) / (dx * dx + dy * dy)
                 t = min(max(t, 0.0), 1.0)
                 x, y = a[0] + t * dx, a[1] + t * dy
-                d = (x - point[0]) ** 2 + (y - point[1]) ** 2
+                d = (x - point[0]) * (x - point[0]) + (y - point[1]) * (y - point[1])
                 if best is None or d < best[0]:
                     best = (d, r, k, (x, y))
         _, r, k, at = best

@@ -5,6 +5,7 @@ straight up then makes few long hairpins instead of many short zigzags.
 """
 
 import heapq
+import math
 
 import numpy as np
 
@@ -65,7 +66,7 @@ class Ground:
                     turn = min(turn, 16 - turn)
                     if turn > 7:
                         continue
-                length = GRID_M * (dc * dc + dr * dr) ** 0.5
+                length = GRID_M * math.sqrt(dc * dc + dr * dr)
                 grade = abs(self.flat[rr][cc] - self.flat[r][c]) / length
                 price = 1.0 + (grade / easy_grade) * (grade / easy_grade) + 0.6 * self.slope[rr][cc]
                 if grade > max_grade:
@@ -77,7 +78,7 @@ class Ground:
                     rest = 0.0
                     if aim is not None:
                         ex, ey = (cc + 0.5) * GRID_M - aim[0], (rr + 0.5) * GRID_M - aim[1]
-                        rest = 1.2 * (ex * ex + ey * ey) ** 0.5
+                        rest = 1.2 * math.sqrt(ex * ex + ey * ey)
                     heapq.heappush(heap, (total + rest, total, rr, cc, k))
         raise ValueError(f"no way from {start}")
 
@@ -107,14 +108,14 @@ def simplify(points, tolerance_m):
     while stack:
         a, b = stack.pop()
         (ax, ay), (bx, by) = points[a], points[b]
-        length = ((bx - ax) ** 2 + (by - ay) ** 2) ** 0.5
+        length = math.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay))
         worst, at = tolerance_m, None
         for k in range(a + 1, b):
             px, py = points[k]
             if length > 0:
                 off = abs((bx - ax) * (py - ay) - (by - ay) * (px - ax)) / length
             else:
-                off = ((px - ax) ** 2 + (py - ay) ** 2) ** 0.5
+                off = math.sqrt((px - ax) * (px - ax) + (py - ay) * (py - ay))
             if off > worst:
                 worst, at = off, k
         if at is not None:

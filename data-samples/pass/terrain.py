@@ -4,6 +4,7 @@ Positions are metres east (x) and south (y) of the north-west corner of the rast
 """
 
 import heapq
+import math
 
 import numpy as np
 
@@ -90,7 +91,7 @@ def erode(z, fixed, uplift, steepest, erodibility, steps, dt):
     """
     side = z.shape[0]
     dx = EXTENT_M / side
-    diagonal = dx * 2.0**0.5
+    diagonal = dx * math.sqrt(2.0)
     up, cap, keep = (uplift * dt).ravel().tolist(), steepest.ravel().tolist(), fixed.ravel().tolist()
     strength = (erodibility * dt).ravel().tolist()
     for _ in range(steps):
@@ -105,7 +106,7 @@ def erode(z, fixed, uplift, steepest, erodibility, steps, dt):
                 continue
             to = receiver[cell]
             d = dx if abs(cell - to) in (1, side) else diagonal
-            f = strength[cell] * area[cell] ** 0.5 / d
+            f = strength[cell] * math.sqrt(area[cell]) / d
             h = (flat[cell] + up[cell] + f * flat[to]) / (1.0 + f)
             highest = flat[to] + cap[cell] * d
             flat[cell] = highest if h > highest else h

@@ -88,7 +88,7 @@ pub fn corniche<I: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = I
 /// # Panics
 /// When the build fails.
 pub fn build_pass(package: &Path, options: &[&str]) {
-    let [dem, osm] = [sample("pass/pass.tif"), sample("pass/pass.osm.pbf")];
+    let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
     let mut arguments = vec![
         "build".into(),
         "--dem".into(),

@@ -30,7 +30,7 @@ fn text(path: &Path) -> &str {
 #[test]
 fn refuses_files_that_are_missing_empty_or_something_else() {
     let folder = tempfile::tempdir().unwrap();
-    let dem = sample("pass/pass.tif");
+    let dem = sample("pass/pass-dem.tif");
     let (empty, prose) = (folder.path().join("empty.tif"), folder.path().join("prose.tif"));
     fs::write(&empty, b"").unwrap();
     fs::write(&prose, b"this is not a raster, nor an extract").unwrap();
@@ -50,7 +50,7 @@ fn refuses_files_that_are_missing_empty_or_something_else() {
 #[test]
 fn refuses_an_extract_that_lies_elsewhere() {
     let folder = tempfile::tempdir().unwrap();
-    let dem = sample("pass/pass.tif");
+    let dem = sample("pass/pass-dem.tif");
     let osm = sample("liechtenstein/liechtenstein-2013-08-03.osm.pbf");
     refuses(folder.path(), &["--dem", text(&dem), "--osm", text(&osm)], 2, &["do not overlap"]);
 }
@@ -58,7 +58,7 @@ fn refuses_an_extract_that_lies_elsewhere() {
 #[test]
 fn refuses_settings_that_make_no_sense() {
     let folder = tempfile::tempdir().unwrap();
-    let dem = sample("pass/pass.tif");
+    let dem = sample("pass/pass-dem.tif");
     let dem = text(&dem);
     refuses(folder.path(), &["--dem", dem, "--max-error", "-1"], 2, &["--max-error"]);
     refuses(folder.path(), &["--dem", dem, "--cell", "0"], 2, &["--cell"]);
@@ -74,7 +74,7 @@ fn keeps_what_exists_unless_told_to_replace_it() {
     let folder = tempfile::tempdir().unwrap();
     let target = folder.path().join("pass.pmtiles");
     fs::write(&target, b"precious").unwrap();
-    let dem = sample("pass/pass.tif");
+    let dem = sample("pass/pass-dem.tif");
     let arguments = ["build", "--dem", text(&dem), "-o", text(&target)];
     let ran = corniche(arguments);
     assert_eq!(ran.code, 3, "{}", ran.err);
@@ -89,7 +89,7 @@ fn keeps_what_exists_unless_told_to_replace_it() {
 
 #[test]
 fn refuses_a_target_that_cannot_be_written() {
-    let dem = sample("pass/pass.tif");
+    let dem = sample("pass/pass-dem.tif");
     for target in ["/nowhere/out.pmtiles", "/proc/out.pmtiles"] {
         let ran = corniche(["build", "--dem", text(&dem), "-o", target]);
         assert_eq!(ran.code, 2, "{}", ran.err);
@@ -121,7 +121,7 @@ fn cleans_up_when_interrupted() {
 
     let folder = tempfile::tempdir().unwrap();
     let target = folder.path().join("out.pmtiles");
-    let (dem, osm) = (sample("pass/pass.tif"), sample("pass/pass.osm.pbf"));
+    let (dem, osm) = (sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf"));
     // Fine tolerance and one thread: long enough to be caught at work.
     let mut child = Command::new(e2e::binary())
         .args(["build", "--dem", text(&dem), "--osm", text(&osm), "-o", text(&target)])

@@ -35,7 +35,7 @@ fn pass_keeps_its_promises_and_damage_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("pass.pmtiles");
     build_pass(&package, &["--quiet"]);
-    let dem = sample("pass/pass.tif");
+    let dem = sample("pass/pass-dem.tif");
     let report = json(&["verify", text(&package), "--dem", text(&dem), "--json", "--quiet"]);
     assert_eq!(report["holds"], true);
     assert!(report["borders"].as_u64().unwrap() > 10);
@@ -120,7 +120,7 @@ fn growth_is_told_in_four_ways() {
 fn terrain_alone_is_a_package_too() {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("terrain.pmtiles");
-    let dem = sample("pass/pass.tif");
+    let dem = sample("pass/pass-dem.tif");
     let ran = corniche([
         "build",
         "--dem",

@@ -46,7 +46,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let mut png = Cursor::new(Vec::new());
     rendered
         .picture
-        .write_to(&mut png, corniche_viewer::ImageFormat::Png)
+        .write_to(&mut png, image::ImageFormat::Png)
         .map_err(|error| Failure::new(ExitCode::Failed, error))?;
     write(&args.output, png.get_ref()).map_err(|error| {
         let context = format!("cannot write {}", args.output.display());

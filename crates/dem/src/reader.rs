@@ -68,7 +68,7 @@ impl<'a> Reader<'a> {
         let reach = self.plan.fill_voids as usize;
         // The halo is read only where it can matter; nodes do not depend on it otherwise.
         if reach > 0 && heights_m.iter().any(|height_m| height_m.is_nan()) {
-            let wide = self.nodes(window.with_halo(reach))?;
+            let wide = self.with_halo(window, &heights_m, reach)?;
             let columns = window.columns + 2 * reach;
             for (at, height_m) in fill::fill(&wide, columns, reach) {
                 let inner = (at / columns - reach) * window.columns + at % columns - reach;
@@ -127,6 +127,36 @@ impl<'a> Reader<'a> {
             }
         }
         Ok(())
+    }
+
+    /// The heights of a window widened by `reach` nodes on every side, of which the inside is known.
+    fn with_halo(
+        &mut self,
+        window: NodeWindow,
+        inside_m: &[f32],
+        reach: usize,
+    ) -> Result<Vec<f32>, DemError> {
+        let wide = window.with_halo(reach);
+        let mut heights_m = vec![f32::NAN; wide.columns * wide.rows];
+        let mut put = |[left, top]: [usize; 2], columns: usize, part_m: &[f32]| {
+            for (row, line) in part_m.chunks_exact(columns).enumerate() {
+                let at = (top + row) * wide.columns + left;
+                heights_m[at..at + columns].copy_from_slice(line);
+            }
+        };
+        put([reach, reach], window.columns, inside_m);
+        // North and south over the whole width, west and east between them.
+        let (right, bottom) = (reach + window.columns, reach + window.rows);
+        for ([left, top], columns, rows) in [
+            ([0, 0], wide.columns, reach),
+            ([0, bottom], wide.columns, reach),
+            ([0, reach], reach, window.rows),
+            ([right, reach], reach, window.rows),
+        ] {
+            let strip = NodeWindow { corner: wide.node(left, top), stride: 1, columns, rows };
+            put([left, top], columns, &self.nodes(strip)?);
+        }
+        Ok(heights_m)
     }
 
     /// Heights of nodes as the layers have them, NaN in voids, row by row from the north.

@@ -10,7 +10,8 @@ use crate::{BadLine, DrapedLine, DrapedVertex, fraction::Fraction, positions::fo
 /// # Errors
 /// The first thing that is wrong.
 pub fn check(line: &DrapedLine, surface: &Surface) -> Result<(), BadLine> {
-    let is_source = |vertex: Option<&DrapedVertex>| matches!(vertex, Some(DrapedVertex::Source { .. }));
+    let is_source =
+        |vertex: Option<&DrapedVertex>| matches!(vertex, Some(DrapedVertex::Source { .. }));
     if line.lead_in.is_some() && is_source(line.vertices.first()) {
         return Err(BadLine::Loose { at: 0 });
     }
@@ -63,9 +64,12 @@ fn triangles_at(vertex: DrapedVertex, surface: &Surface, out: &mut Vec<u32>) {
     match vertex {
         DrapedVertex::Vertex { vertex } => out.extend(surface.fan(vertex).iter().map(|h| h / 3)),
         DrapedVertex::Crossing { a, b } => {
-            let (hub, rim) = if surface.fan(a).len() <= surface.fan(b).len() { (a, b) } else { (b, a) };
+            let (hub, rim) =
+                if surface.fan(a).len() <= surface.fan(b).len() { (a, b) } else { (b, a) };
             let around = surface.fan(hub).iter().map(|h| h / 3);
-            out.extend(around.filter(|&triangle| surface.triangles()[triangle as usize].contains(&rim)));
+            out.extend(
+                around.filter(|&triangle| surface.triangles()[triangle as usize].contains(&rim)),
+            );
         }
         DrapedVertex::Source { point, triangle } => {
             out.push(triangle);

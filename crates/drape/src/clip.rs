@@ -71,14 +71,19 @@ struct Inside {
     whole_end: bool,
 }
 
-fn inside([p, q]: [LatticePoint; 2], bounds: &LatticeBounds, owned: OwnedBorders) -> Option<Inside> {
+fn inside(
+    [p, q]: [LatticePoint; 2],
+    bounds: &LatticeBounds,
+    owned: OwnedBorders,
+) -> Option<Inside> {
     let (min, max) = (bounds.min, bounds.max);
     let along_east = p.u == q.u && p.u == max.u && !owned.east;
     let along_south = p.v == q.v && p.v == min.v && !owned.south;
     if along_east || along_south {
         return None;
     }
-    let (mut start, mut end) = (Cut { at: Fraction::ZERO, point: p }, Cut { at: Fraction::ONE, point: q });
+    let (mut start, mut end) =
+        (Cut { at: Fraction::ZERO, point: p }, Cut { at: Fraction::ONE, point: q });
     let (mut whole_start, mut whole_end) = (true, true);
     for axis in [Axis::U, Axis::V] {
         let (from, to) = (axis.of(p), axis.of(q));

@@ -53,12 +53,17 @@ fn expected(line: &Polyline, column: i64, row: i64) -> Vec<Polyline> {
         }
         cuts.sort_unstable();
         cuts.dedup();
-        let round = |from: i64, d: i128, cut: i128| from + (2 * d * cut + whole).div_euclid(2 * whole) as i64;
+        let round = |from: i64, d: i128, cut: i128| {
+            from + (2 * d * cut + whole).div_euclid(2 * whole) as i64
+        };
         let at = |cut: i128| point(round(p.u, du, cut), round(p.v, dv, cut));
         let mut inside_before = false;
         for pair in cuts.windows(2) {
             let middle = pair[0] + pair[1];
-            let (u, v) = (i128::from(p.u) * 2 * whole + du * middle, i128::from(p.v) * 2 * whole + dv * middle);
+            let (u, v) = (
+                i128::from(p.u) * 2 * whole + du * middle,
+                i128::from(p.v) * 2 * whole + dv * middle,
+            );
             let inside = owner(u, v, 2 * whole) == Some((column, row));
             if inside && inside_before {
                 // A border elsewhere cuts nothing here.
@@ -80,7 +85,9 @@ fn expected(line: &Polyline, column: i64, row: i64) -> Vec<Polyline> {
 fn any_line() -> impl Strategy<Value = Polyline> {
     let number = || prop_oneof![4 => -5_i64..35, 3 => (0_i64..=3).prop_map(|n| n * SIDE), 1 => -4000_i64..4000];
     prop::collection::vec((number(), number().prop_map(|v| -v)), 2..8)
-        .prop_filter_map("a point", |points| Polyline::new(points.into_iter().map(|(u, v)| point(u, v)).collect()).ok())
+        .prop_filter_map("a point", |points| {
+            Polyline::new(points.into_iter().map(|(u, v)| point(u, v)).collect()).ok()
+        })
 }
 
 proptest! {
@@ -145,7 +152,11 @@ fn the_edge_of_the_root_is_kept() {
 fn touching_the_border_at_a_point_leaves_nothing() {
     let bounds = tile(1, 1).0;
     assert_eq!(clip_closed(&line(&[(5, -15), (10, -15), (5, -18)]), &bounds), []);
-    assert_eq!(clip_closed(&line(&[(5, -15), (15, -5)]), &bounds), [], "through the corner (10, -10)");
+    assert_eq!(
+        clip_closed(&line(&[(5, -15), (15, -5)]), &bounds),
+        [],
+        "through the corner (10, -10)"
+    );
 }
 
 #[test]

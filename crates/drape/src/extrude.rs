@@ -20,9 +20,8 @@ const PAD: f64 = 1e-6;
 pub fn extrude(line: &Polyline, surface: &Surface, margin_steps: i64) -> Vec<SvLine> {
     let mut lines = Vec::new();
     let mut current = SvLine { points: Vec::new(), ground_range_m: Vec::new() };
-    let mut near = Vec::new();
     for pair in line.points().windows(2) {
-        if let Some(range_m) = ground_range_m([pair[0], pair[1]], surface, margin_steps, &mut near) {
+        if let Some(range_m) = ground_range_m([pair[0], pair[1]], surface, margin_steps) {
             if current.points.is_empty() {
                 current.points.push(pair[0]);
             }
@@ -46,35 +45,51 @@ fn ground_range_m(
     [p, q]: [LatticePoint; 2],
     surface: &Surface,
     margin_steps: i64,
-    near: &mut Vec<u32>,
 ) -> Option<[f64; 2]> {
     // One step more than asked: rounding to f64 must not lose ground at the rim.
     let margin = margin_steps.max(0) + 1;
     // A corner of the rectangle is √2 margins from its end.
-    surface.triangles_near(LatticeBounds::of(&[p, q])?.expanded(margin + margin / 2 + 1), near);
+    let around = LatticeBounds::of(&[p, q])?.expanded(margin + margin / 2 + 1);
     let length = p.distance_steps(q);
     let (east, north) = ((q.u - p.u) as f64 / length, (q.v - p.v) as f64 / length);
     let margin = margin as f64;
     let (mut lowest_m, mut highest_m) = (f64::INFINITY, f64::NEG_INFINITY);
-    for &triangle in near.iter() {
-        let corners = surface.triangles()[triangle as usize].map(|vertex| {
+    surface.visit_triangles_near(around, |triangle| {
+        let vertices = surface.triangles()[triangle as usize];
+        let heights_m = vertices.map(|vertex| surface.heights_m()[vertex as usize]);
+        if heights_m.iter().all(|height_m| (lowest_m..=highest_m).contains(height_m)) {
+            return;
+        }
+        let mut k = 0;
+        let corners = vertices.map(|vertex| {
             let point = surface.points()[vertex as usize];
             let (du, dv) = ((point.u - p.u) as f64, (point.v - p.v) as f64);
-            [du * east + dv * north, dv * east - du * north, surface.heights_m()[vertex as usize]]
+            k += 1;
+            [du * east + dv * north, dv * east - du * north, heights_m[k - 1]]
         });
-        if corners.iter().all(|&[.., height_m]| (lowest_m..=highest_m).contains(&height_m)) {
-            continue;
+        // Most triangles lie wholly inside, or wholly beyond one side.
+        let range = |axis: usize| {
+            let [a, b, c] = corners.map(|corner| corner[axis]);
+            [a.min(b).min(c), a.max(b).max(c)]
+        };
+        let ([along_min, along_max], [across_min, across_max]) = (range(0), range(1));
+        let (last, first) = (length + margin, -margin);
+        if along_max < first || along_min > last || across_max < -margin || across_min > margin {
+            return;
         }
-        let polygon = Polygon::of(corners)
-            .cut(|[along, ..]| along + margin)
-            .cut(|[along, ..]| length + margin - along)
-            .cut(|[_, across, _]| across + margin)
-            .cut(|[_, across, _]| margin - across);
+        let mut polygon = Polygon::of(corners);
+        if along_min < first || along_max > last {
+            polygon = polygon.cut(|[along, ..]| along - first).cut(|[along, ..]| last - along);
+        }
+        if across_min < -margin || across_max > margin {
+            polygon =
+                polygon.cut(|[_, across, _]| across + margin).cut(|[_, across, _]| margin - across);
+        }
         for &[.., height_m] in polygon.corners() {
             lowest_m = lowest_m.min(height_m);
             highest_m = highest_m.max(height_m);
         }
-    }
+    });
     let pad_m = PAD * lowest_m.abs().max(highest_m.abs()).max(highest_m - lowest_m);
     (lowest_m <= highest_m).then_some([lowest_m - pad_m, highest_m + pad_m])
 }

@@ -18,7 +18,8 @@ fn ground(height_q: impl Fn(i32, i32) -> i32, hole: impl Fn(u32, u32) -> bool) -
             }
         }
     }
-    let placement = Placement { corner: LatticePoint::new(0, 16 * STEPS), node_steps: STEPS, quantum_m: 0.5 };
+    let placement =
+        Placement { corner: LatticePoint::new(0, 16 * STEPS), node_steps: STEPS, quantum_m: 0.5 };
     Surface::new(&Tin::new(vertices, &triangles).unwrap(), placement)
 }
 
@@ -91,9 +92,17 @@ proptest! {
 #[test]
 fn segments_without_ground_split_the_line() {
     let surface = ground(|_, _| 10, |column, _| (6..10).contains(&column));
-    let across = line(&[(1000, 8000), (5000, 8000), (7000, 8000), (9000, 8000), (11000, 8000), (15000, 8000)]);
+    let across = line(&[
+        (1000, 8000),
+        (5000, 8000),
+        (7000, 8000),
+        (9000, 8000),
+        (11000, 8000),
+        (15000, 8000),
+    ]);
     let lines = extrude(&across, &surface, 500);
-    let ends: Vec<_> = lines.iter().map(|line| (line.points[0].u, line.points[line.points.len() - 1].u)).collect();
+    let ends: Vec<_> =
+        lines.iter().map(|line| (line.points[0].u, line.points[line.points.len() - 1].u)).collect();
     assert_eq!(ends, [(1000, 7000), (9000, 15000)]);
     for line in &lines {
         assert_eq!(line.points.len(), line.ground_range_m.len() + 1);
@@ -101,7 +110,11 @@ fn segments_without_ground_split_the_line() {
             assert!((low - 5.0).abs() < 1e-4 && (high - 5.0).abs() < 1e-4 && low < high);
         }
     }
-    assert_eq!(extrude(&across, &surface, 1500).len(), 1, "a wider margin reaches ground everywhere");
+    assert_eq!(
+        extrude(&across, &surface, 1500).len(),
+        1,
+        "a wider margin reaches ground everywhere"
+    );
 }
 
 #[test]

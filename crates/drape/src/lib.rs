@@ -10,14 +10,14 @@
 //!
 //! This crate never knows what a line means, and never reads a file.
 
+mod check;
 mod clip;
 mod draped_line;
-mod walk;
-mod fraction;
-mod ray;
-mod positions;
-mod check;
 mod extrude;
+mod fraction;
+mod positions;
+mod ray;
+mod walk;
 
 pub use check::check;
 pub use clip::{OwnedBorders, clip, clip_closed};

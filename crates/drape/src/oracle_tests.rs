@@ -48,7 +48,11 @@ fn area(a: LatticePoint, b: LatticePoint, c: LatticePoint) -> i128 {
 }
 
 /// The part of p → q in a closed triangle, if it is more than a point.
-fn part_in_triangle(corners: [LatticePoint; 3], p: LatticePoint, q: LatticePoint) -> Option<[Along; 2]> {
+fn part_in_triangle(
+    corners: [LatticePoint; 3],
+    p: LatticePoint,
+    q: LatticePoint,
+) -> Option<[Along; 2]> {
     let (mut from, mut to) = (START, END);
     for k in 0..3 {
         let (a, b) = (corners[k], corners[(k + 1) % 3]);
@@ -66,8 +70,11 @@ fn part_in_triangle(corners: [LatticePoint; 3], p: LatticePoint, q: LatticePoint
 /// Where p → q is over ground: disjoint, in order.
 fn ground(surface: &Surface, p: LatticePoint, q: LatticePoint) -> Vec<[Along; 2]> {
     let at = |v: u32| surface.points()[v as usize];
-    let mut parts: Vec<_> =
-        surface.triangles().iter().filter_map(|corners| part_in_triangle(corners.map(at), p, q)).collect();
+    let mut parts: Vec<_> = surface
+        .triangles()
+        .iter()
+        .filter_map(|corners| part_in_triangle(corners.map(at), p, q))
+        .collect();
     parts.sort();
     let mut merged: Vec<[Along; 2]> = Vec::new();
     for [from, to] in parts {
@@ -219,7 +226,10 @@ impl Case {
         let (lines, off_steps) = expected(line, &surface);
         assert_eq!(draped.lines, lines);
         let total = line.length_steps();
-        assert!((draped.off_ground_steps - off_steps).abs() <= 1e-9 * total, "{draped:?} {off_steps}");
+        assert!(
+            (draped.off_ground_steps - off_steps).abs() <= 1e-9 * total,
+            "{draped:?} {off_steps}"
+        );
 
         let mut on_steps = 0.0;
         for part in &draped.lines {
@@ -293,9 +303,13 @@ fn random_tin(random: &mut Random) -> Tin {
             let nw = (row * columns + column) as u32;
             let (ne, sw) = (nw + 1, nw + columns as u32);
             let se = sw + 1;
-            let pair =
-                if random.below(2) == 0 { [[nw, sw, se], [nw, se, ne]] } else { [[nw, sw, ne], [sw, se, ne]] };
-            triangles.extend(pair.into_iter().filter(|_| missing == 0 || random.below(missing) != 0));
+            let pair = if random.below(2) == 0 {
+                [[nw, sw, se], [nw, se, ne]]
+            } else {
+                [[nw, sw, ne], [sw, se, ne]]
+            };
+            triangles
+                .extend(pair.into_iter().filter(|_| missing == 0 || random.below(missing) != 0));
         }
     }
     Tin::new(vertices, &triangles).unwrap()
@@ -322,9 +336,10 @@ fn random_points(random: &mut Random, surface: &Surface, steps: i64) -> Vec<Latt
             // A hairpin.
             7 if points.len() >= 2 => points[points.len() - 2],
             // Far away.
-            8 if random.below(4) == 0 => {
-                LatticePoint::new(last.u + 50 * (vertex.u - other.u), last.v + 50 * (vertex.v - other.v))
-            }
+            8 if random.below(4) == 0 => LatticePoint::new(
+                last.u + 50 * (vertex.u - other.u),
+                last.v + 50 * (vertex.v - other.v),
+            ),
             _ => LatticePoint::new(
                 corner.u - 2 * steps + random.below(reach),
                 corner.v + 2 * steps - random.below(reach),

@@ -36,13 +36,17 @@ pub enum BadLine {
         point: LatticePoint,
     },
     /// A crossing or passed vertex has no source point (or lead) on one side, or a lead is one too many.
-    #[error("vertex {at} of a draped line does not lie between two source points, or a lead is not needed")]
+    #[error(
+        "vertex {at} of a draped line does not lie between two source points, or a lead is not needed"
+    )]
     Loose {
         /// Which vertex of the line.
         at: usize,
     },
     /// The line does not cross the edge that a crossing names.
-    #[error("vertex {at} of a draped line names the edge {a}–{b}, which the line does not cross there")]
+    #[error(
+        "vertex {at} of a draped line names the edge {a}–{b}, which the line does not cross there"
+    )]
     NoCrossing {
         /// Which vertex of the line.
         at: usize,
@@ -52,7 +56,9 @@ pub enum BadLine {
         b: u32,
     },
     /// The line does not pass through the TIN vertex that it names.
-    #[error("vertex {at} of a draped line names TIN vertex {vertex}, which the line does not pass through")]
+    #[error(
+        "vertex {at} of a draped line names TIN vertex {vertex}, which the line does not pass through"
+    )]
     NotPassed {
         /// Which vertex of the line.
         at: usize,
@@ -150,7 +156,8 @@ pub(crate) fn for_each_vertex(
         };
         match vertex {
             DrapedVertex::Crossing { a, b } => {
-                let [side_a, side_b] = [side(surface, at, [p, q], a)?, side(surface, at, [p, q], b)?];
+                let [side_a, side_b] =
+                    [side(surface, at, [p, q], a)?, side(surface, at, [p, q], b)?];
                 if a >= b || side_a * side_b != -1 {
                     return Err(BadLine::NoCrossing { at, a, b });
                 }
@@ -168,8 +175,14 @@ pub(crate) fn for_each_vertex(
 }
 
 /// On which side of the segment a TIN vertex lies: -1, 0 or 1.
-fn side(surface: &Surface, at: usize, [p, q]: [LatticePoint; 2], vertex: u32) -> Result<i128, BadLine> {
-    let point = *surface.points().get(vertex as usize).ok_or(BadLine::NoSuchVertex { at, vertex })?;
+fn side(
+    surface: &Surface,
+    at: usize,
+    [p, q]: [LatticePoint; 2],
+    vertex: u32,
+) -> Result<i128, BadLine> {
+    let point =
+        *surface.points().get(vertex as usize).ok_or(BadLine::NoSuchVertex { at, vertex })?;
     Ok(cross(p, q, point).signum())
 }
 

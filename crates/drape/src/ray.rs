@@ -29,7 +29,9 @@ impl Place {
             [true, true, _] => Self::Vertex(corners[1]),
             [_, true, true] => Self::Vertex(corners[2]),
             [false, false, false] => Self::Inside(triangle),
-            [first, second, _] => Self::Edge(3 * triangle + if first { 0 } else { 2 - u32::from(second) }),
+            [first, second, _] => {
+                Self::Edge(3 * triangle + if first { 0 } else { 2 - u32::from(second) })
+            }
         }
     }
 
@@ -50,8 +52,8 @@ impl Place {
 pub(crate) enum Next {
     /// Its own end, which lies here.
     Arrives(Place),
-    /// It leaves a triangle through the inside of this half-edge of it.
-    Crosses(u32),
+    /// It leaves a triangle through the inside of this half-edge of it, which runs from a to b.
+    Crosses { half_edge: u32, a: u32, b: u32 },
     /// It reaches this TIN vertex and has more to go.
     Passes(u32),
     /// From where it is no ground leads on.
@@ -76,12 +78,12 @@ pub(crate) struct Ray<'a> {
 
 impl Ray<'_> {
     /// From p.
-    pub(crate) fn from_start(&self, place: Place) -> Next {
+    pub(crate) fn leave_start(&self, place: Place) -> Next {
         match place {
             Place::Off => Next::Ends,
             Place::Inside(triangle) => self.through(triangle),
-            Place::Edge(half_edge) => self.from_edge(half_edge),
-            Place::Vertex(vertex) => self.from_vertex(vertex),
+            Place::Edge(half_edge) => self.leave_edge(half_edge),
+            Place::Vertex(vertex) => self.leave_vertex(vertex),
         }
     }
 
@@ -101,7 +103,7 @@ impl Ray<'_> {
     }
 
     /// On from a TIN vertex that lies on the segment, q beyond it.
-    pub(crate) fn from_vertex(&self, vertex: u32) -> Next {
+    pub(crate) fn leave_vertex(&self, vertex: u32) -> Next {
         let hub = self.point(vertex);
         for &out in self.surface.fan(vertex) {
             let triangle = out / 3;
@@ -124,7 +126,7 @@ impl Ray<'_> {
     }
 
     /// On from p in the inside of an edge.
-    fn from_edge(&self, half_edge: u32) -> Next {
+    fn leave_edge(&self, half_edge: u32) -> Next {
         let [a, b] = self.surface.ends(half_edge);
         match cross(self.point(a), self.point(b), self.q) {
             0 => {
@@ -162,7 +164,7 @@ impl Ray<'_> {
         match cross(self.point(a), self.point(b), self.q) {
             0 => Next::Arrives(Place::Edge(half_edge)),
             left if left > 0 => Next::Arrives(Place::Inside(half_edge / 3)),
-            _ => Next::Crosses(half_edge),
+            _ => Next::Crosses { half_edge, a, b },
         }
     }
 
@@ -181,7 +183,11 @@ impl Ray<'_> {
     /// Whether, of two points on the segment's line, `to` lies in its direction from `from`.
     fn ahead(&self, from: LatticePoint, to: LatticePoint) -> bool {
         let (du, dv) = (self.q.u - self.p.u, self.q.v - self.p.v);
-        if du == 0 { (to.v - from.v).signum() == dv.signum() } else { (to.u - from.u).signum() == du.signum() }
+        if du == 0 {
+            (to.v - from.v).signum() == dv.signum()
+        } else {
+            (to.u - from.u).signum() == du.signum()
+        }
     }
 
     #[inline]

@@ -60,15 +60,14 @@ impl Walk<'_> {
         let ray = Ray { surface: self.surface, p, q };
         // Where along the segment the ground was left or a TIN vertex passed, for when it ends there.
         let mut last = Fraction::ZERO;
-        let mut next = ray.from_start(place);
+        let mut next = ray.leave_start(place);
         loop {
             next = match next {
                 Next::Arrives(place) => {
                     self.arrive(q, place);
                     return place;
                 }
-                Next::Crosses(half_edge) => {
-                    let [a, b] = self.surface.ends(half_edge);
+                Next::Crosses { half_edge, a, b } => {
                     self.push(DrapedVertex::Crossing { a: a.min(b), b: a.max(b) });
                     match self.surface.twin(half_edge) {
                         NO_TWIN => {
@@ -81,7 +80,7 @@ impl Walk<'_> {
                 Next::Passes(vertex) => {
                     self.push(DrapedVertex::Vertex { vertex });
                     last = Fraction::of_point([p, q], ray.point(vertex));
-                    ray.from_vertex(vertex)
+                    ray.leave_vertex(vertex)
                 }
                 Next::Ends => {
                     self.close(Some(q));
@@ -92,16 +91,26 @@ impl Walk<'_> {
                         self.arrive(q, place);
                         return place;
                     };
-                    self.drape.off_ground_steps += (back.to_f64() - last.to_f64()) * p.distance_steps(q);
+                    self.drape.off_ground_steps +=
+                        (back.to_f64() - last.to_f64()) * p.distance_steps(q);
                     last = back;
                     let (first, next) = match entry {
                         Entry::Edge(half_edge) => {
                             let [a, b] = self.surface.ends(half_edge);
-                            (DrapedVertex::Crossing { a: a.min(b), b: a.max(b) }, ray.entered(half_edge))
+                            (
+                                DrapedVertex::Crossing { a: a.min(b), b: a.max(b) },
+                                ray.entered(half_edge),
+                            )
                         }
-                        Entry::Vertex(vertex) => (DrapedVertex::Vertex { vertex }, ray.from_vertex(vertex)),
+                        Entry::Vertex(vertex) => {
+                            (DrapedVertex::Vertex { vertex }, ray.leave_vertex(vertex))
+                        }
                     };
-                    self.part = Some(DrapedLine { lead_in: Some(p), vertices: vec![first], lead_out: None });
+                    self.part = Some(DrapedLine {
+                        lead_in: Some(p),
+                        vertices: vec![first],
+                        lead_out: None,
+                    });
                     next
                 }
             }
@@ -125,10 +134,11 @@ impl Walk<'_> {
             } else {
                 continue;
             };
-            let sooner = at > last && at < Fraction::ONE && first.is_none_or(|(known, _)| at < known);
+            let sooner =
+                at > last && at < Fraction::ONE && first.is_none_or(|(known, _)| at < known);
             let leads_on = match entry {
                 Entry::Edge(_) => true,
-                Entry::Vertex(vertex) => sooner && ray.from_vertex(vertex) != Next::Ends,
+                Entry::Vertex(vertex) => sooner && ray.leave_vertex(vertex) != Next::Ends,
             };
             if sooner && leads_on {
                 first = Some((at, entry));
@@ -147,7 +157,11 @@ impl Walk<'_> {
     #[inline]
     fn push(&mut self, vertex: DrapedVertex) {
         self.part
-            .get_or_insert_with(|| DrapedLine { lead_in: None, vertices: Vec::new(), lead_out: None })
+            .get_or_insert_with(|| DrapedLine {
+                lead_in: None,
+                vertices: Vec::new(),
+                lead_out: None,
+            })
             .vertices
             .push(vertex);
     }

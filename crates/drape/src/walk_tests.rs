@@ -18,10 +18,15 @@ use corniche_tin::{Placement, Surface, Tin, TinVertex};
 use crate::{BadLine, Drape, DrapedLine, DrapedVertex, check, drape, positions};
 
 fn surface() -> Surface {
-    let vertices = (0..9_u16).map(|n| TinVertex { row: n / 3, column: n % 3, height_q: i32::from(n) }).collect();
+    let vertices = (0..9_u16)
+        .map(|n| TinVertex { row: n / 3, column: n % 3, height_q: i32::from(n) })
+        .collect();
     let triangles = [[0, 3, 4], [0, 4, 1], [1, 4, 2], [4, 5, 2], [3, 6, 4], [6, 7, 4]];
     let tin = Tin::new(vertices, &triangles).unwrap();
-    Surface::new(&tin, Placement { corner: LatticePoint::new(0, 0), node_steps: 10, quantum_m: 1.0 })
+    Surface::new(
+        &tin,
+        Placement { corner: LatticePoint::new(0, 0), node_steps: 10, quantum_m: 1.0 },
+    )
 }
 
 fn line(points: &[(i64, i64)]) -> Polyline {
@@ -49,7 +54,11 @@ fn assert_drapes(points: &[(i64, i64)], parts: &[&str], off_ground_steps: f64) {
     let surface = surface();
     let draped = drape(&line(points), &surface);
     assert_eq!(spell(&draped), parts);
-    assert!((draped.off_ground_steps - off_ground_steps).abs() < 1e-9, "{} off", draped.off_ground_steps);
+    assert!(
+        (draped.off_ground_steps - off_ground_steps).abs() < 1e-9,
+        "{} off",
+        draped.off_ground_steps
+    );
     for part in &draped.lines {
         assert_eq!(check(part, &surface), Ok(()));
         assert_eq!(positions(part, &surface).unwrap().len(), part.vertices.len());
@@ -148,13 +157,19 @@ fn damaged_lines_are_refused_without_panic() {
     };
     let source = |u, v, triangle| DrapedVertex::Source { point: LatticePoint::new(u, v), triangle };
     let cases = [
-        (with(1, DrapedVertex::Crossing { a: 0, b: 99 }), BadLine::NoSuchVertex { at: 1, vertex: 99 }),
+        (
+            with(1, DrapedVertex::Crossing { a: 0, b: 99 }),
+            BadLine::NoSuchVertex { at: 1, vertex: 99 },
+        ),
         (with(1, DrapedVertex::Crossing { a: 4, b: 0 }), BadLine::NoCrossing { at: 1, a: 4, b: 0 }),
         (with(1, DrapedVertex::Crossing { a: 3, b: 4 }), BadLine::NoCrossing { at: 1, a: 3, b: 4 }),
         (with(1, DrapedVertex::Vertex { vertex: 1 }), BadLine::NotPassed { at: 1, vertex: 1 }),
         (with(0, DrapedVertex::Crossing { a: 0, b: 3 }), BadLine::Loose { at: 0 }),
         (with(0, source(2, -4, 77)), BadLine::NoSuchTriangle { at: 0, triangle: 77 }),
-        (with(0, source(i64::MIN, 0, 0)), BadLine::OutOfRange { point: LatticePoint::new(i64::MIN, 0) }),
+        (
+            with(0, source(i64::MIN, 0, 0)),
+            BadLine::OutOfRange { point: LatticePoint::new(i64::MIN, 0) },
+        ),
     ];
     for (bad, error) in cases {
         assert_eq!(positions(&bad, &surface), Err(error));
@@ -165,7 +180,10 @@ fn damaged_lines_are_refused_without_panic() {
         (with(0, source(2, -4, 1)), BadLine::OutsideTriangle { at: 0, triangle: 1 }),
         (with(1, DrapedVertex::Crossing { a: 1, b: 4 }), BadLine::Apart { at: 1 }),
         (with(2, DrapedVertex::Crossing { a: 0, b: 4 }), BadLine::Disorder { at: 2 }),
-        (DrapedLine { lead_in: Some(LatticePoint::new(0, 0)), ..good.clone() }, BadLine::Loose { at: 0 }),
+        (
+            DrapedLine { lead_in: Some(LatticePoint::new(0, 0)), ..good.clone() },
+            BadLine::Loose { at: 0 },
+        ),
     ];
     for (bad, error) in subtle {
         assert_eq!(check(&bad, &surface), Err(error));

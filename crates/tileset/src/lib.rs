@@ -1,13 +1,29 @@
 //! Tile payloads and packages: values to bytes and back.
 //!
-//! This crate never computes geometry. Its reading side has no C dependency and builds for wasm32.
+//! ```text
+//!   TilePayload ── encode ──► bytes ── Writer ──► package.pmtiles ── Package ──► bytes ── decode ──► TilePayload
+//!                  (feature "write")                                  (always; no C dependency, also wasm32)
+//! ```
+//!
+//! `FORMAT.md` beside this crate specifies every byte.
+//!
+//! This crate never computes geometry: what it guesses of triangles, heights and roads is coding, and a wrong guess
+//! costs bytes, never truth. Its reading side has no C dependency and builds for wasm32.
 
 mod manifest;
+mod package;
 mod payload;
 
 pub use manifest::{
     Counts, GrowthRow, InputRecord, LevelRecord, Manifest, RoadLoss, SampleCounts, SettingsRecord, VerticalRecord,
 };
+pub use package::{
+    ByteSource, FORMAT_VERSION, MemorySource, OpenError, Package, ReadError, SourceError, pmtiles_order,
+};
+#[cfg(not(target_arch = "wasm32"))]
+pub use package::{FilePackage, FileSource};
+#[cfg(feature = "write")]
+pub use package::{WriteError, Writer};
 #[cfg(feature = "write")]
 pub use payload::{EncodedTile, PayloadContext, encode};
 pub use payload::{

@@ -92,3 +92,6 @@ pub struct RoadRecord {
     /// What its tags say.
     pub attributes: RoadAttributes,
 }
+
+#[cfg(all(test, feature = "write"))]
+mod tests;

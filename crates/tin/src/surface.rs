@@ -169,8 +169,8 @@ impl Surface {
         self.height_from_corner_m(triangle, [(point.u - a.u) as f64, (point.v - a.v) as f64])
     }
 
-    /// All triangles whose bounding boxes meet `bounds`, in ascending order, without repetition, appended to
-    /// `out` after clearing it.
+    /// All triangles whose bounding boxes meet `bounds`, in ascending order, without repetition, put
+    /// into `out` in place of what it held.
     pub fn triangles_near(&self, bounds: LatticeBounds, out: &mut Vec<u32>) {
         self.triangle_buckets.near(bounds, out);
         out.retain(|&triangle| {
@@ -178,11 +178,19 @@ impl Surface {
         });
     }
 
+    /// Visits all triangles whose bounding boxes meet `bounds`, and perhaps others, perhaps more than once, in a
+    /// fixed order: several times faster than [`Surface::triangles_near`] where that does not matter.
+    pub fn visit_triangles_near(&self, bounds: LatticeBounds, visit: impl FnMut(u32)) {
+        self.triangle_buckets.visit(bounds, visit);
+    }
+
     /// All half-edges without a twin whose bounding boxes meet `bounds`, in ascending order, without
-    /// repetition, appended to `out` after clearing it.
+    /// repetition, put into `out` in place of what it held.
     pub fn outline_near(&self, bounds: LatticeBounds, out: &mut Vec<u32>) {
         self.outline_buckets.near(bounds, out);
-        out.iter_mut().for_each(|index| *index = self.outline[*index as usize]);
+        for index in out.iter_mut() {
+            *index = self.outline[*index as usize];
+        }
         out.retain(|&half_edge| self.bounds_of(&self.ends(half_edge)).intersects(&bounds));
     }
 

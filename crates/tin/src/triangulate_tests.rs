@@ -161,8 +161,11 @@ fn ground_in_awkward_shapes_is_covered_exactly() {
     );
     // Ground on the border only.
     check(&drawn(&["##....", "##....", "##..##", "##..##"]), SPEC);
-    // An island in a lake on an island.
-    check(&drawn(&["........", ".######.", ".######.", "........"]), SPEC);
+    // An island of one cell in a lake, in an island.
+    let island =
+        ["..........", ".########.", ".########.", ".##....##.", ".##.##.##.", ".##.##.##."];
+    let shore = [".##....##.", ".########.", ".########.", ".........."];
+    check(&drawn(&[&island[..], &shore[..]].concat()), SPEC);
 }
 
 #[test]

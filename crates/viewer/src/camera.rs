@@ -197,8 +197,8 @@ impl Camera {
         let clip = self.clip_from_relative() * (point_in_world - self.eye_in_world).extend(1.0);
         let [width, height] = self.size_px.map(f64::from);
         (clip.w >= self.near_m).then(|| {
-            let x_px = (clip.x / clip.w + 1.0) / 2.0 * width;
-            let y_px = (1.0 - clip.y / clip.w) / 2.0 * height;
+            let x_px = (0.5 + 0.5 * clip.x / clip.w) * width;
+            let y_px = (0.5 - 0.5 * clip.y / clip.w) * height;
             (DVec2::new(x_px, y_px), clip.w)
         })
     }

@@ -16,11 +16,11 @@ mod attribution;
 pub mod camera;
 pub mod gpu;
 pub mod lod;
-//mod render;
+mod render;
 pub mod scene;
 pub mod style;
 pub mod tiles;
 
 pub use attribution::draw_attribution;
-//pub use render::{CameraRequest, RenderError, RenderReport, RenderRequest, Rendered, render};
+pub use render::{CameraRequest, RenderError, RenderReport, RenderRequest, Rendered, render};
 pub use scene::RoadMethod;

@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
 use corniche_geom::{Bounds, TileId};
+use corniche_tileset::OpenError;
 use glam::DVec3;
 use image::RgbaImage;
 
@@ -11,7 +12,7 @@ use crate::{
     lod::{Quality, Request},
     scene::{self, RoadMethod},
     style::Style,
-    tiles::{LoadTileError, OpenPackageError, PackageSource, TileStore},
+    tiles::{LoadTileError, PackageSource, TileStore},
 };
 
 /// Where to look from.
@@ -87,7 +88,7 @@ pub struct RenderReport {
 #[non_exhaustive]
 pub enum RenderError {
     #[error(transparent)]
-    Open(#[from] OpenPackageError),
+    Open(#[from] OpenError),
     #[error(transparent)]
     Load(#[from] LoadTileError),
     #[error(transparent)]
@@ -96,7 +97,9 @@ pub enum RenderError {
     ReadBack(#[from] ReadBackError),
     #[error("{package:?} has no ground to show")]
     NoGround { package: PathBuf },
-    #[error("longitude {lon_deg}, latitude {lat_deg} is not on the package's ground; it covers {covered:?}")]
+    #[error(
+        "longitude {lon_deg}, latitude {lat_deg} is not on the package's ground; it covers {covered:?}"
+    )]
     OffGround { lon_deg: f64, lat_deg: f64, covered: Bounds },
     #[error("{name} of {value} is out of range; it must be {range}")]
     Range { name: &'static str, value: f64, range: &'static str },
@@ -176,7 +179,12 @@ fn check(request: &RenderRequest) -> Result<(), RenderError> {
         if fits { Ok(()) } else { Err(RenderError::Range { name, value, range }) }
     };
     let error_px = request.screen_space_error_px;
-    within("a screen-space error", error_px, error_px > 0.0 && error_px.is_finite(), "above 0 pixels")?;
+    within(
+        "a screen-space error",
+        error_px,
+        error_px > 0.0 && error_px.is_finite(),
+        "above 0 pixels",
+    )?;
     let exaggeration = request.exaggeration;
     within("an exaggeration", exaggeration, (0.01..=100.0).contains(&exaggeration), "0.01 to 100")?;
     let samples = f64::from(request.supersampling);
@@ -185,13 +193,21 @@ fn check(request: &RenderRequest) -> Result<(), RenderError> {
         within("a distance", distance_m, (1.0..=1e8).contains(&distance_m), "1 m to 100 000 km")?;
         let Orientation { heading_deg, pitch_deg } = orientation;
         within("a heading", heading_deg, heading_deg.is_finite(), "an angle in degrees")?;
-        within("a pitch", pitch_deg, (0.0..=90.0).contains(&pitch_deg), "0 (straight down) to 90 (level)")?;
+        within(
+            "a pitch",
+            pitch_deg,
+            (0.0..=90.0).contains(&pitch_deg),
+            "0 (straight down) to 90 (level)",
+        )?;
     }
     Ok(())
 }
 
 /// Loads the root and says between which true heights all ground lies.
-fn root_height_range(store: &mut TileStore<'_>, request: &RenderRequest) -> Result<[f64; 2], RenderError> {
+fn root_height_range(
+    store: &mut TileStore<'_>,
+    request: &RenderRequest,
+) -> Result<[f64; 2], RenderError> {
     let none = || RenderError::NoGround { package: request.package.clone() };
     if !store.exists(TileId::ROOT) {
         return Err(none());
@@ -211,14 +227,20 @@ fn camera(
     let manifest = source.manifest();
     match request.camera {
         CameraRequest::FrameAll => {
-            let subject =
-                WorldBox::new(manifest.data_bounds, height_range_m.map(|height_m| height_m * vertical_scale));
+            let subject = WorldBox::new(
+                manifest.data_bounds,
+                height_range_m.map(|height_m| height_m * vertical_scale),
+            );
             let oblique = Orientation { heading_deg: 0.0, pitch_deg: 45.0 };
             Ok(Camera::framing(subject, oblique, request.size_px))
         }
         CameraRequest::LookAt { lon_deg, lat_deg, distance_m, orientation } => {
-            let off_ground = || RenderError::OffGround { lon_deg, lat_deg, covered: manifest.wgs84_bounds };
-            let at = manifest.coordinates.working_from_wgs84([lon_deg, lat_deg]).ok_or_else(off_ground)?;
+            let off_ground =
+                || RenderError::OffGround { lon_deg, lat_deg, covered: manifest.wgs84_bounds };
+            let at = manifest
+                .coordinates
+                .working_from_wgs84([lon_deg, lat_deg])
+                .ok_or_else(off_ground)?;
             let height_m = store.ground_height_m(at)?.ok_or_else(off_ground)?;
             let target = DVec3::new(at[0], at[1], height_m * vertical_scale);
             let distance_in_world_m = distance_m * manifest.point_scale;

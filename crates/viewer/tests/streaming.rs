@@ -2,10 +2,7 @@
 
 mod support;
 
-use corniche_drape::{OwnedBorders, clip, drape};
-use corniche_geom::{Frame, HeightGrid, NodeIndex, Polyline, TILE_NODES, TileId};
-use corniche_tileset::{GeoRoad, Terrain, TilePayload};
-use corniche_tin::{Placement, Surface, TinSpec, normals, triangulate};
+use corniche_geom::TileId;
 use corniche_viewer::{
     RoadMethod,
     camera::{Camera, Orientation},
@@ -13,124 +10,16 @@ use corniche_viewer::{
     lod::Quality,
     scene,
     style::Style,
-    tiles::{LoadTileError, TileGeometry, TileSource, TileStore},
+    tiles::TileStore,
 };
 use glam::{DVec2, DVec3};
-use support::{Drawing, class, gpu};
+use support::{
+    Drawing,
+    country::{CELL_M, Country, MAX_ERROR_M, MAX_LEVEL, height_m, interpolation_error_m},
+    gpu,
+};
 
-const CELL_M: f64 = 25.0;
-const MAX_LEVEL: u8 = 4;
-const MAX_ERROR_M: f64 = 4.0;
-const QUANTUM_M: f64 = 1.0 / 16.0;
 const SIZE: [u32; 2] = [640, 480];
-
-/// Mountains of three wavelengths over 102 km, with roads; tiles are made when they are asked for.
-struct Country {
-    frame: Frame,
-    roads: Vec<(u8, Polyline)>,
-}
-
-/// Amplitude in metres and wave number in 1/m along x and y.
-const WAVES: [[f64; 3]; 3] = [
-    [700.0, 1.0 / 2400.0, 1.0 / 3100.0],
-    [180.0, 1.0 / 700.0, 1.0 / 520.0],
-    [25.0, 1.0 / 160.0, 1.0 / 210.0],
-];
-
-fn height_m(x: f64, y: f64) -> f64 {
-    1000.0
-        + WAVES.iter().map(|[height, kx, ky]| height * (x * kx).sin() * (y * ky).cos()).sum::<f64>()
-}
-
-/// Error of interpolating `height_m` linearly over right triangles with legs `cell_m`: by Taylor's theorem at
-/// most cell² / 8 · (|f_xx| + 2 |f_xy| + |f_yy|), and never more than twice the amplitude.
-fn interpolation_error_m(cell_m: f64) -> f64 {
-    let error = |[height, kx, ky]: [f64; 3]| {
-        (height * cell_m * cell_m / 8.0 * (kx + ky).powi(2)).min(2.0 * height)
-    };
-    WAVES.map(error).iter().sum()
-}
-
-impl Country {
-    fn new() -> Self {
-        let frame =
-            Frame::new([0.0; 2], CELL_M, NodeIndex { i: 25_600, j: 204_800 }, MAX_LEVEL).unwrap();
-        let [cx, cy] = frame.tile_bounds(TileId::ROOT).center();
-        let road = |points: &[[f64; 2]]| {
-            let points =
-                points.iter().map(|[x, y]| frame.snap([cx + x, cy + y]).unwrap()).collect();
-            Polyline::new(points).unwrap()
-        };
-        let bends: Vec<[f64; 2]> = (0..=80)
-            .map(|k| [-8000.0 + 200.0 * f64::from(k), 900.0 * (f64::from(k) / 4.0).sin()])
-            .collect();
-        let roads = vec![
-            (0, road(&[[-20_000.0, -1500.0], [-3000.0, 700.0], [22_000.0, 2600.0]])),
-            (3, road(&bends)),
-            (6, road(&[[500.0, -9000.0], [0.0, 0.0], [-1200.0, 9000.0]])),
-        ];
-        Self { frame, roads }
-    }
-
-    fn payload(&self, id: TileId) -> TilePayload {
-        let (frame, stride) = (&self.frame, self.frame.stride(id.z()));
-        let window = frame.tile_window(id).with_halo(1);
-        let heights = HeightGrid::from_fn(TILE_NODES + 2, TILE_NODES + 2, |column, row| {
-            let node = window.node(column, row);
-            height_m(frame.x_m(node.i), frame.y_m(node.j)) as f32
-        });
-        let max_error_m = MAX_ERROR_M * stride as f64;
-        let tin = triangulate(&heights, TinSpec { max_error_m, quantum_m: QUANTUM_M }).unwrap();
-        let placement = Placement {
-            corner: frame.lattice_of_node(frame.tile_corner(id)),
-            node_steps: stride << frame.lattice_bits(),
-            quantum_m: QUANTUM_M,
-        };
-        let surface = Surface::new(&tin, placement);
-        let mut roads_geo = Vec::new();
-        for (way_id, (number, line)) in self.roads.iter().enumerate() {
-            for part in clip(line, &frame.tile_lattice_bounds(id), OwnedBorders::of_tile(id)) {
-                for line in drape(&part, &surface).lines {
-                    roads_geo.push(GeoRoad {
-                        way_id: way_id as i64,
-                        part: 0,
-                        class: class(*number),
-                        line,
-                    });
-                }
-            }
-        }
-        let terrain = Terrain {
-            normals: normals(&heights, &tin, frame.level_cell_m(id.z())),
-            tin,
-            geometric_error_m: max_error_m + interpolation_error_m(frame.level_cell_m(id.z())),
-            height_range_m: [90.0, 1910.0],
-            uncovered_nodes: 0,
-        };
-        TilePayload {
-            id,
-            terrain: Some(terrain),
-            roads_geo,
-            roads_sv: Vec::new(),
-            attributes: Vec::new(),
-        }
-    }
-}
-
-impl TileSource for Country {
-    fn frame(&self) -> &Frame {
-        &self.frame
-    }
-
-    fn exists(&self, id: TileId) -> bool {
-        id.z() <= MAX_LEVEL
-    }
-
-    fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
-        TileGeometry::from_payload(&self.payload(id), &self.frame, QUANTUM_M)
-            .map_err(|error| LoadTileError { id, source: error.into() })
-    }
-}
 
 fn target(country: &Country) -> DVec3 {
     let [x, y] = country.frame.tile_bounds(TileId::ROOT).center();

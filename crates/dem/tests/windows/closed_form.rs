@@ -315,6 +315,7 @@ fn the_antimeridian_is_no_border() {
 }
 
 fn is_send<T: Send + Sync>(_: &T) {}
+fn fits_another_thread<T: Send>(_: &T) {}
 
 #[test]
 fn positions_out_of_range_are_not_a_number() {
@@ -329,6 +330,7 @@ fn positions_out_of_range_are_not_a_number() {
     );
     projection.wgs84_from_working(&mut points).unwrap();
     assert!((points[0][0] - 9.0).abs() < 1e-9 && points[1][0].is_nan());
+    fits_another_thread(&dem.reader(&plan).unwrap());
     is_send(&projection);
     is_send(&dem);
     is_send(&plan);

@@ -90,6 +90,44 @@ fn tirol_is_aligned() {
     assert!((range[0] - 1328.6).abs() < 0.1 && (range[1] - 2896.1).abs() < 0.1, "{range:?}");
 }
 
+/// With several PROJ operations to choose from, a node's bits depend on the window no more than with one.
+#[test]
+fn tirol_in_another_datum_is_the_same_through_every_window() {
+    let Some((dem, _)) = open(&["tirol-5m/avaMal.tif"], None) else { return };
+    let asked = PlanOptions { crs: Some("EPSG:25832".to_owned()), fill_voids: 8, ..options() };
+    let plan = dem.plan(&asked).unwrap();
+    assert_eq!(
+        (plan.crs.as_str(), plan.case, plan.frame.cell_m()),
+        ("EPSG:25832", Resampling::Resampled, 5.0)
+    );
+    let whole = all(&plan);
+    let mut reader = dem.reader(&plan).unwrap();
+    let reference = reader.window(whole).unwrap().heights;
+    assert!(reference.count_heights() > 250_000);
+    for (left, top) in [(0, 0), (101, 37), (333, 401), (256, 512)] {
+        let corner = NodeIndex { i: whole.corner.i + left as i64, j: whole.corner.j - top as i64 };
+        let window = NodeWindow { corner, stride: 1, columns: 150, rows: 200 };
+        let seen = dem.reader(&plan).unwrap().window(window).unwrap().heights;
+        let expected = reference.window(left, top, 150, 200);
+        assert!(seen.raw().iter().zip(expected.raw()).all(|(a, b)| a.to_bits() == b.to_bits()));
+    }
+}
+
+#[test]
+fn the_zone_follows_the_hemisphere_and_the_datum_is_no_obstacle() {
+    let check = |name: &str, crs: &str, cell_m: f64, highest_m: f32| {
+        let Some((dem, plan)) = open(&[name], None) else { return };
+        assert_eq!((plan.crs.as_str(), plan.frame.cell_m()), (crs, cell_m));
+        let (nodes, heights, _, range) = read_all(&dem, &plan);
+        assert!(
+            heights > nodes * 9 / 10 && range[1] <= highest_m && range[1] > 0.98 * highest_m,
+            "{range:?}"
+        );
+    };
+    check("swellendam/srtm_41_19_4326.tif", "EPSG:32734", 77.0, 1699.0);
+    check("portland/portland-ned.tif", "EPSG:32610", 7.2, 328.1);
+}
+
 #[test]
 fn slovenia_is_aligned_to_whole_metres() {
     let Some((dem, plan)) = open(&["slovenia-1m/TM1_564_146.tif"], None) else { return };

@@ -7,7 +7,7 @@ use crate::fixture::{Raster, all, open, options};
 /// Holes of all sizes and lone voids, by a hash of the position.
 fn holed(column: usize, row: usize) -> bool {
     let blob = (column as f64 / 9.0).sin() * (row as f64 / 7.0).cos() > 0.75;
-    let speck = (column * 7919 + row * 104_729) % 31 == 0;
+    let speck = (column * 7919 + row * 104_729).is_multiple_of(31);
     blob || speck
 }
 

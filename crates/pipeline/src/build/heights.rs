@@ -23,7 +23,6 @@ type BlockId = (u8, u32, u32);
 
 /// The level rasters of a run.
 pub(crate) struct Pyramid<'a> {
-    frame: Frame,
     storage: &'a dyn Storage,
     blocks: BTreeMap<BlockId, Span>,
     samples: SampleCounts,
@@ -39,7 +38,7 @@ pub(crate) fn read<'a>(
 ) -> Result<Pyramid<'a>, BuildError> {
     let frame = plan.frame;
     let mut pyramid =
-        Pyramid { frame, storage, blocks: BTreeMap::new(), samples: SampleCounts::default() };
+        Pyramid { storage, blocks: BTreeMap::new(), samples: SampleCounts::default() };
     let areas = areas(plan);
     observer.begin(Stage::Heights, Some(areas.len() as u64));
     let mut with_height = 0;

@@ -56,7 +56,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
             length: MAX_SECTION_BYTES as u64 + 1,
             limit: MAX_SECTION_BYTES as u64,
         })?;
-        Ok(text.clone())
+        Ok::<String, Damage>(text.clone())
     };
     let known = Damage::Invalid { what: "a value that this version does not know" };
     let mut way_id = 0_i64;

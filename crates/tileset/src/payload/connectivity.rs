@@ -106,7 +106,7 @@ pub(super) fn walk(
     let mut triangles = Vec::with_capacity(count);
     let mut order = Vec::with_capacity(nodes.len());
     let mut seen = vec![false; nodes.len()];
-    let mut gates = VecDeque::new();
+    let mut gates: VecDeque<[u32; 3]> = VecDeque::new();
     while triangles.len() < count {
         let (triangle, gate) = match gates.pop_front() {
             Some([a, b, d]) => {

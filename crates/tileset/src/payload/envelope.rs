@@ -160,7 +160,7 @@ pub(super) fn seal(
     table.extend([sections.len() as u8, id.z()]);
     table.extend(id.x().to_le_bytes());
     table.extend(id.y().to_le_bytes());
-    let mut body = Vec::new();
+    let mut body: Vec<u8> = Vec::new();
     let mut sizes = Vec::with_capacity(sections.len());
     let start = HEADER_BYTES + sections.len() * ENTRY_BYTES + 4;
     for (kind, raw) in sections {

@@ -11,6 +11,9 @@ pub(super) struct Nodes {
     row_starts: Vec<u32>,
 }
 
+/// Stands for the limit of a search, which no vertex has reached.
+const NO_VERTEX: u32 = u32::MAX;
+
 /// A candidate and how it sees the gate: cot of the angle = dot / cross.
 #[derive(Clone, Copy)]
 struct Best {
@@ -40,11 +43,23 @@ impl Nodes {
     ///
     /// Rows are searched outwards from the gate until they leave the circle through the best vertex so far.
     /// Floating point only bounds the search, by more than its error; decisions are exact.
-    pub(super) fn best_corner(&self, [a, b]: [u32; 2], allowed: impl Fn(u32) -> bool) -> Option<u32> {
+    pub(super) fn best_corner(&self, gate: [u32; 2], allowed: impl Fn(u32) -> bool) -> Option<u32> {
+        // Nearly every corner sees its gate under more than 27° or 4°: try small circles before the half-plane.
+        let within = |cot| self.best_corner_within(gate, cot, &allowed);
+        within(Some(2)).or_else(|| within(Some(16))).or_else(|| within(None))
+    }
+
+    /// The same among vertices that see the gate under an angle with at most this cotangent.
+    fn best_corner_within(
+        &self,
+        [a, b]: [u32; 2],
+        limit_cot: Option<i64>,
+        allowed: &impl Fn(u32) -> bool,
+    ) -> Option<u32> {
         let ([ac, ar], [bc, br]) = (self.at[a as usize], self.at[b as usize]);
         let middle = i64::midpoint(ar, br);
         let last_row = TILE_NODES as i64 - 1;
-        let mut best: Option<Best> = None;
+        let mut best = limit_cot.map(|cot| circle(NO_VERTEX, cot, 1, [[ac, ar], [bc, br]]));
         for away in 0..=last_row {
             let (north, south) = (middle - away, middle + away);
             let reach = |row: i64| {
@@ -57,11 +72,11 @@ impl Nodes {
             }
             for (row, go) in [(north, go_north), (south, go_south)] {
                 if go {
-                    self.search_row(row, [[ac, ar], [bc, br]], &allowed, &mut best);
+                    self.search_row(row, [[ac, ar], [bc, br]], allowed, &mut best);
                 }
             }
         }
-        best.map(|best| best.vertex)
+        best.map(|best| best.vertex).filter(|&vertex| vertex != NO_VERTEX)
     }
 
     fn search_row(

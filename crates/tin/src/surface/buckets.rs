@@ -69,6 +69,13 @@ impl Buckets {
     /// The boxes in squares that meet `near`, ascending, without repetition; `out` is cleared first.
     pub(crate) fn near(&self, near: LatticeBounds, out: &mut Vec<u32>) {
         out.clear();
+        self.visit(near, |item| out.push(item));
+        out.sort_unstable();
+        out.dedup();
+    }
+
+    /// Visits the boxes in squares that meet `near`, square by square.
+    pub(crate) fn visit(&self, near: LatticeBounds, mut visit: impl FnMut(u32)) {
         if self.items.is_empty() || !self.bounds.intersects(&near) {
             return;
         }
@@ -79,11 +86,9 @@ impl Buckets {
         let ([west, south], [east, north]) = (within(near.min), within(near.max));
         for row in south..=north {
             for column in west..=east {
-                out.extend_from_slice(self.bucket(column, row));
+                self.bucket(column, row).iter().for_each(|&item| visit(item));
             }
         }
-        out.sort_unstable();
-        out.dedup();
     }
 
     /// Column and row of the square of a point within the bounds.

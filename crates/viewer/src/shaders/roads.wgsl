@@ -93,6 +93,14 @@ fn vertex(in: SegmentIn) -> VertexOut {
     return out;
 }
 
+// From the segment's nearest point to a point, both as seen along a unit direction: without their parts along it.
+fn from_segment(from_start: vec3<f32>, start_to_end: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
+    let point = from_start - direction * dot(direction, from_start);
+    let end = start_to_end - direction * dot(direction, start_to_end);
+    let share = clamp(dot(point, end) / max(dot(end, end), 1e-12), 0.0, 1.0);
+    return point - share * end;
+}
+
 @fragment
 fn fragment(in: VertexOut) -> @location(0) u32 {
     let ground = textureLoad(terrain_depth, vec2<i32>(in.clip.xy), 0);
@@ -103,21 +111,20 @@ fn fragment(in: VertexOut) -> @location(0) u32 {
     let position = ray_at(in.clip.xy) * depth;
     let distance_m = length(position);
 
-    // From the nearest point of the segment, nearest in plan, to the ground.
     let from_start = position - in.start;
-    let length_squared = dot(in.start_to_end.xy, in.start_to_end.xy);
-    let share = clamp(dot(from_start.xy, in.start_to_end.xy) / max(length_squared, 1e-12), 0.0, 1.0);
-    let offset = from_start - share * in.start_to_end;
-    let plan_m = length(offset.xy);
-    let to_eye = position / distance_m;
-    let across_m = length(offset - to_eye * dot(offset, to_eye));
+    let plan_m = length(from_segment(from_start, in.start_to_end, vec3(0.0, 0.0, 1.0)));
 
     let band = half_width_share(in.road_class);
     let least_m = band * least_half_width_m(in.road_class, depth);
     let is_wide_enough = plan_m <= band * scaled_half_width_m(in.road_class, distance_m);
-    let would_be_too_thin = across_m <= least_m && plan_m <= MAX_STRETCH * least_m;
-    if !(is_wide_enough || would_be_too_thin) {
-        discard;
+    if !is_wide_enough {
+        if plan_m > MAX_STRETCH * least_m {
+            discard;
+        }
+        let seen_m = length(from_segment(from_start, in.start_to_end, position / distance_m));
+        if seen_m > least_m {
+            discard;
+        }
     }
     // More important classes have larger labels; the centre line of a class lies above its fill.
     return (CLASSES - in.road_class) * 2u + BAND;

@@ -4,7 +4,7 @@
 //! [`TileStore`] is what the frame loop holds: it takes requests and answers what is known.
 
 mod ground;
-//mod package;
+mod package;
 mod roads;
 
 use std::{collections::BTreeMap, ops::Range};
@@ -15,7 +15,7 @@ use corniche_tileset::{Terrain, TilePayload};
 
 pub use self::{
     ground::{GroundMesh, GroundVertex},
-    //package::{OpenPackageError, PackageSource},
+    package::PackageSource,
     roads::{BadRoad, RoadSegment, RoadSegments},
 };
 use crate::lod::{GroundSummary, Node, Request, TileTree};

@@ -1,5 +1,12 @@
 //! Scenes made of closed forms, and references that do not use the code under test.
 #![allow(dead_code, reason = "each test binary uses its own part")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "this is test code, though no test itself"
+)]
+
+pub(crate) mod country;
 
 use corniche_geom::{Frame, NodeIndex, TILE_CELLS, TileId};
 use corniche_roads::FunctionalRoadClass;
@@ -109,7 +116,7 @@ pub(crate) fn height_at(at: DVec2, ground: &[[DVec3; 3]]) -> Option<f64> {
         let area = (b - a).truncate().perp_dot((c - a).truncate());
         let weight = |p: &DVec3, q: &DVec3| (p.truncate() - at).perp_dot(q.truncate() - at) / area;
         let (wa, wb, wc) = (weight(b, c), weight(c, a), weight(a, b));
-        (wa.min(wb).min(wc) >= -1e-9).then(|| wa * a.z + wb * b.z + wc * c.z)
+        (wa.min(wb).min(wc) >= -1e-9).then_some(wa * a.z + wb * b.z + wc * c.z)
     })
 }
 
@@ -190,7 +197,7 @@ impl Drawing {
 
     /// Whether the depths around a pixel jump: a silhouette or a border of the ground.
     pub(crate) fn is_at_jump(&self, index: usize) -> bool {
-        let width = self.size_px[0] as i64;
+        let width = i64::from(self.size_px[0]);
         let (x, y) = (index as i64 % width, index as i64 / width);
         let mut range = [f32::INFINITY, 0.0_f32];
         for dy in -1..=1 {
@@ -202,7 +209,7 @@ impl Drawing {
                 }
             }
         }
-        range[1] > range[0] * 1.05
+        range[1] > range[0] * 1.08
     }
 }
 
@@ -252,8 +259,8 @@ fn keep(drawing: &Drawing) {
     let [width, height] = drawing.size_px;
     let picture = image::RgbaImage::from_raw(width, height, drawing.picture.clone()).unwrap();
     let next = |k: &u32| std::path::Path::new(&folder).join(format!("{name}-{k}.png"));
-    let free = (0..).map(|k| next(&k)).find(|path| !path.exists()).unwrap();
-    picture.save(free).unwrap();
+    let free = (0..1000).map(|k| next(&k)).find(|path| !path.exists());
+    picture.save(free.expect("a free name")).expect("a folder to write to");
 }
 
 /// Distance in plan from a point to the nearest of some lines.

@@ -1,0 +1,102 @@
+//! PMTiles directories: where the tiles are.
+
+use std::io::Read;
+
+use flate2::read::GzDecoder;
+
+/// Directories and metadata are no larger than this, decompressed.
+const MAX_BYTES: usize = 64 << 20;
+/// A directory has no more entries than this; writers make leaves of some thousands.
+const MAX_ENTRIES: usize = 1 << 17;
+/// A directory in the file as stored is no larger than this.
+pub(super) const MAX_STORED_BYTES: u32 = 64 << 20;
+
+/// One tile, `first`, with a `run` of 1; or, with a `run` of 0, a leaf directory of the tiles from `first` on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Entry {
+    pub(super) first: u64,
+    pub(super) run: u32,
+    /// Relative to the data, or to the leaves.
+    pub(super) offset: u64,
+    pub(super) length: u32,
+}
+
+/// Entries by ascending tile.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Directory {
+    pub(super) entries: Vec<Entry>,
+}
+
+impl Directory {
+    /// Reads a directory as it is stored; `None` when the bytes are none.
+    ///
+    /// Source: PMTiles version 3 specification, section 4.2: four columns of varints, tile ids as differences,
+    /// offset 0 for "right after the entry before".
+    pub(super) fn parse(stored: &[u8]) -> Option<Self> {
+        let bytes = gunzip(stored)?;
+        let mut bytes = bytes.as_slice();
+        let count = usize::try_from(varint(&mut bytes)?).ok()?;
+        // Every entry has four varints of at least a byte.
+        if count > MAX_ENTRIES.min(bytes.len() / 4) {
+            return None;
+        }
+        let mut entries = vec![Entry { first: 0, run: 0, offset: 0, length: 0 }; count];
+        let mut first = 0_u64;
+        for (index, entry) in entries.iter_mut().enumerate() {
+            let step = varint(&mut bytes)?;
+            if index > 0 && step == 0 {
+                return None;
+            }
+            first = first.checked_add(step)?;
+            entry.first = first;
+        }
+        for entry in &mut entries {
+            // A payload names its tile, so no two are alike and no run is longer; nor does a run of four thousand
+            // million tiles fit in memory.
+            entry.run = u32::try_from(varint(&mut bytes)?).ok().filter(|&run| run <= 1)?;
+        }
+        for entry in &mut entries {
+            entry.length = u32::try_from(varint(&mut bytes)?).ok().filter(|&length| length > 0)?;
+        }
+        let mut after = None;
+        for entry in &mut entries {
+            entry.offset = match varint(&mut bytes)? {
+                0 => after?,
+                offset => offset - 1,
+            };
+            after = Some(entry.offset.checked_add(u64::from(entry.length))?);
+        }
+        bytes.is_empty().then_some(Self { entries })
+    }
+
+    /// The entry that holds a tile, or the leaf that might.
+    pub(super) fn find(&self, order: u64) -> Option<Entry> {
+        let after = self.entries.partition_point(|entry| entry.first <= order);
+        let entry = *self.entries.get(after.checked_sub(1)?)?;
+        (entry.run == 0 || order == entry.first).then_some(entry)
+    }
+}
+
+/// Decompresses gzip, up to the limit; `None` when it is damaged, unfinished or larger.
+pub(super) fn gunzip(stored: &[u8]) -> Option<Vec<u8>> {
+    let mut bytes = Vec::new();
+    GzDecoder::new(stored).take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes).ok()?;
+    (bytes.len() <= MAX_BYTES).then_some(bytes)
+}
+
+fn varint(bytes: &mut &[u8]) -> Option<u64> {
+    let mut value = 0_u64;
+    for shift in (0..64).step_by(7) {
+        let (&byte, rest) = bytes.split_first()?;
+        *bytes = rest;
+        let bits = u64::from(byte & 0x7f);
+        if shift == 63 && bits > 1 {
+            return None;
+        }
+        value |= bits << shift;
+        if byte < 0x80 {
+            return Some(value);
+        }
+    }
+    None
+}

@@ -1,0 +1,70 @@
+//! The fixed header of a PMTiles file.
+
+use super::OpenError;
+
+/// Bytes of the header.
+pub(super) const HEADER_BYTES: usize = 127;
+/// Header and root directory lie within the first bytes of the file.
+pub(super) const INITIAL_BYTES: usize = 16_384;
+/// Largest metadata or directory as stored.
+const MAX_STORED_BYTES: u64 = 64 << 20;
+
+/// Bytes of the file, from and how many.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Span {
+    pub(super) offset: u64,
+    pub(super) length: u64,
+}
+
+/// What a reader needs of the header.
+///
+/// ```text
+///   0 "PMTiles" 7 version 8 root 24 metadata 40 leaves 56 data (offset, length: u64 each)
+///   72 three counts 96 clustered 97 compression of directories, 98 of tiles 99 tile type 100 levels 102 bounds …
+/// ```
+///
+/// Source: PMTiles version 3 specification, section 3.
+#[derive(Debug, Clone)]
+pub(super) struct Header {
+    pub(super) root: Span,
+    pub(super) metadata: Span,
+    pub(super) leaves: Span,
+    pub(super) data: Span,
+}
+
+impl Header {
+    /// Reads the header of a file of `file_length` bytes from its first bytes.
+    pub(super) fn parse(bytes: &[u8], file_length: u64) -> Result<Self, OpenError> {
+        if !bytes.starts_with(b"PMTiles") {
+            return Err(OpenError::NotPmtiles);
+        }
+        let Some(bytes) = bytes.first_chunk::<HEADER_BYTES>() else {
+            return Err(OpenError::Truncated { needed: HEADER_BYTES as u64, actual: file_length });
+        };
+        if bytes[7] != 3 {
+            return Err(OpenError::PmtilesVersion { found: bytes[7] });
+        }
+        let number = |at: usize| {
+            let mut eight = [0; 8];
+            eight.copy_from_slice(&bytes[at..at + 8]);
+            u64::from_le_bytes(eight)
+        };
+        let span = |at: usize| Span { offset: number(at), length: number(at + 8) };
+        let header = Self { root: span(8), metadata: span(24), leaves: span(40), data: span(56) };
+        let [internal, tiles, kind] = [bytes[97], bytes[98], bytes[99]];
+        // 2 is gzip, 1 none; kind 0 is "other".
+        if (internal, tiles, kind) != (2, 1, 0) {
+            return Err(OpenError::OrdinaryPmtiles);
+        }
+        for Span { offset, length } in [header.root, header.metadata, header.leaves, header.data] {
+            let end = offset.checked_add(length).ok_or(OpenError::Damaged { what: "the header" })?;
+            if end > file_length {
+                return Err(OpenError::Truncated { needed: end, actual: file_length });
+            }
+        }
+        if header.root.length > MAX_STORED_BYTES || header.metadata.length > MAX_STORED_BYTES {
+            return Err(OpenError::Damaged { what: "the header: directory or metadata of more than 64 MiB" });
+        }
+        Ok(header)
+    }
+}

@@ -1,0 +1,260 @@
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex, PoisonError},
+};
+
+use corniche_geom::TileId;
+
+use super::{
+    FORMAT_VERSION, Metadata, SourceError,
+    directory::{self, Directory, Entry},
+    header::{HEADER_BYTES, Header, INITIAL_BYTES, Span},
+    pmtiles_order,
+    source::ByteSource,
+    tile_at,
+};
+use crate::{DecodeError, MAX_SECTION_BYTES, Manifest, Sections, TilePayload, decode};
+
+/// A payload has no more bytes than this: a few full sections.
+const MAX_PAYLOAD_BYTES: u32 = 4 * MAX_SECTION_BYTES as u32;
+/// A package lists no more tiles than this.
+const MAX_TILES: usize = 1 << 26;
+/// Directories may be nested this deep.
+const MAX_DEPTH: usize = 4;
+/// So many leaf directories are kept.
+const KEPT_LEAVES: usize = 64;
+
+/// Why a package could not be opened or listed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum OpenError {
+    /// The file's name, around what is wrong with it.
+    #[error("cannot use package {path:?}")]
+    File {
+        /// The file.
+        path: std::path::PathBuf,
+        /// What is wrong.
+        source: Box<OpenError>,
+    },
+    /// Its bytes cannot be read.
+    #[error(transparent)]
+    Source(#[from] SourceError),
+    /// It is something else.
+    #[error("this is not a PMTiles file, hence no Corniche package")]
+    NotPmtiles,
+    /// It is of another version of PMTiles.
+    #[error("PMTiles version {found} is not supported; Corniche packages are version 3")]
+    PmtilesVersion {
+        /// The version it says.
+        found: u8,
+    },
+    /// It holds something other than Corniche's tiles.
+    #[error("this is an ordinary PMTiles file, not a Corniche package; build one with `corniche build`")]
+    OrdinaryPmtiles,
+    /// It was written by another version of this program.
+    #[error("format version {found} is not supported; this program reads version {FORMAT_VERSION}: build the package again")]
+    Version {
+        /// The version it says.
+        found: u64,
+    },
+    /// It ends too early.
+    #[error("the file is cut off: it needs {needed} bytes and has {actual}; fetch or build it again")]
+    Truncated {
+        /// Bytes that the header speaks of.
+        needed: u64,
+        /// Bytes that there are.
+        actual: u64,
+    },
+    /// A part of it makes no sense.
+    #[error("the file is damaged: {what}; fetch or build it again")]
+    Damaged {
+        /// Which part.
+        what: &'static str,
+    },
+    /// The manifest cannot be read.
+    #[error("the package's manifest is damaged: {reason}; fetch or build it again")]
+    Manifest {
+        /// What is wrong.
+        reason: String,
+    },
+}
+
+/// Why a tile could not be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// Its bytes cannot be read.
+    #[error("tile {tile}")]
+    Source {
+        /// Which tile.
+        tile: TileId,
+        /// Why not.
+        source: SourceError,
+    },
+    /// The directory does not tell where it is.
+    #[error("tile {tile}: {source}")]
+    Directory {
+        /// Which tile.
+        tile: TileId,
+        /// What is wrong.
+        source: OpenError,
+    },
+    /// Its bytes are damaged.
+    #[error(transparent)]
+    Decode(#[from] DecodeError),
+}
+
+/// A package open for reading.
+///
+/// Reads are range requests: header, root directory and manifest when it is opened, then a leaf directory now and
+/// then and one range for each tile. It can be shared between threads when its source can.
+#[derive(Debug)]
+pub struct Package<S> {
+    source: S,
+    header: Header,
+    manifest: Manifest,
+    root: Directory,
+    leaves: Mutex<BTreeMap<u64, Arc<Directory>>>,
+}
+
+impl<S: ByteSource> Package<S> {
+    /// Reads header, root directory and manifest.
+    ///
+    /// # Errors
+    /// When the source cannot be read, is no Corniche package of this version, is cut off or damaged.
+    pub async fn open(source: S) -> Result<Self, OpenError> {
+        let length = source.length().await?;
+        let initial = source.read(0, length.min(INITIAL_BYTES as u64) as usize).await?;
+        let header = Header::parse(&initial, length)?;
+        let root_in_initial = usize::try_from(header.root.offset)
+            .ok()
+            .filter(|&from| from >= HEADER_BYTES)
+            .and_then(|from| initial.get(from..from.checked_add(header.root.length as usize)?));
+        let root = match root_in_initial {
+            Some(bytes) => Directory::parse(bytes),
+            None => Directory::parse(&read_span(&source, header.root).await?),
+        };
+        let root = root.ok_or(OpenError::Damaged { what: "the root directory" })?;
+        let metadata = directory::gunzip(&read_span(&source, header.metadata).await?)
+            .ok_or(OpenError::Damaged { what: "the metadata" })?;
+        let manifest = parse_manifest(&metadata)?;
+        Ok(Self { source, header, manifest, root, leaves: Mutex::default() })
+    }
+
+    /// The table of contents.
+    #[must_use]
+    pub fn manifest(&self) -> &Manifest {
+        &self.manifest
+    }
+
+    /// All tiles, in the order in which they are stored: by level, then along a Hilbert curve.
+    ///
+    /// # Errors
+    /// When a leaf directory cannot be read or is damaged.
+    pub async fn tile_ids(&self) -> Result<Vec<TileId>, OpenError> {
+        const DAMAGED: OpenError = OpenError::Damaged { what: "a directory" };
+        let mut ids = Vec::new();
+        // Directories still to be listed, the next one last.
+        let mut open: Vec<(Arc<Directory>, usize)> = vec![(Arc::new(self.root.clone()), 0)];
+        let mut last: Option<TileId> = None;
+        while let Some((directory, at)) = open.pop() {
+            let Some(&entry) = directory.entries.get(at) else { continue };
+            open.push((directory, at + 1));
+            // Every entry leads on to later tiles, so the listing ends whatever leaf a leaf points to.
+            if last.is_some_and(|last| entry.first <= pmtiles_order(last)) || ids.len() >= MAX_TILES {
+                return Err(DAMAGED);
+            }
+            if entry.run == 0 {
+                let leaf = self.leaf(entry).await?;
+                if open.len() >= MAX_DEPTH || leaf.entries.is_empty() {
+                    return Err(DAMAGED);
+                }
+                open.push((leaf, 0));
+                continue;
+            }
+            let id = tile_at(entry.first).filter(|id| id.z() <= self.manifest.frame.max_level()).ok_or(DAMAGED)?;
+            ids.push(id);
+            last = Some(id);
+        }
+        Ok(ids)
+    }
+
+    /// The payload of a tile as bytes; `None` when the package has no such tile.
+    ///
+    /// # Errors
+    /// When it cannot be read, or the directory is damaged.
+    pub async fn tile(&self, id: TileId) -> Result<Option<Vec<u8>>, ReadError> {
+        let damaged = |what| ReadError::Directory { tile: id, source: OpenError::Damaged { what } };
+        let order = pmtiles_order(id);
+        let mut found = self.root.find(order);
+        for _ in 0..MAX_DEPTH {
+            let Some(entry) = found else { return Ok(None) };
+            if entry.run > 0 {
+                let Span { offset, length } = self.header.data;
+                let end = entry.offset.checked_add(u64::from(entry.length));
+                if end.is_none_or(|end| end > length) || entry.length > MAX_PAYLOAD_BYTES {
+                    return Err(damaged("a directory points outside the tiles"));
+                }
+                let bytes = self.source.read(offset + entry.offset, entry.length as usize).await;
+                return bytes.map(Some).map_err(|source| ReadError::Source { tile: id, source });
+            }
+            let leaf = self.leaf(entry).await.map_err(|source| ReadError::Directory { tile: id, source })?;
+            found = leaf.find(order);
+        }
+        Err(damaged("directories are nested too deep"))
+    }
+
+    /// The wanted sections of a tile, decoded; `None` when the package has no such tile.
+    ///
+    /// # Errors
+    /// When it cannot be read or is damaged; the error names the tile and the section.
+    pub async fn payload(&self, id: TileId, wanted: Sections) -> Result<Option<TilePayload>, ReadError> {
+        let Some(bytes) = self.tile(id).await? else { return Ok(None) };
+        let Manifest { frame, vertical, .. } = &self.manifest;
+        Ok(Some(decode(&bytes, id, frame, vertical.quantum_m, wanted)?))
+    }
+
+    /// A leaf directory, read once and kept for a while.
+    async fn leaf(&self, entry: Entry) -> Result<Arc<Directory>, OpenError> {
+        // A poisoned lock only means that another thread panicked between two whole directories.
+        let kept = self.leaves.lock().unwrap_or_else(PoisonError::into_inner).get(&entry.offset).cloned();
+        if let Some(leaf) = kept {
+            return Ok(leaf);
+        }
+        let Span { offset, length } = self.header.leaves;
+        let end = entry.offset.checked_add(u64::from(entry.length));
+        if end.is_none_or(|end| end > length) || entry.length > directory::MAX_STORED_BYTES {
+            return Err(OpenError::Damaged { what: "a directory points outside the leaf directories" });
+        }
+        let bytes = self.source.read(offset + entry.offset, entry.length as usize).await?;
+        let leaf = Directory::parse(&bytes).ok_or(OpenError::Damaged { what: "a leaf directory" })?;
+        let leaf = Arc::new(leaf);
+        let mut leaves = self.leaves.lock().unwrap_or_else(PoisonError::into_inner);
+        if leaves.len() >= KEPT_LEAVES {
+            leaves.clear();
+        }
+        leaves.insert(entry.offset, Arc::clone(&leaf));
+        Ok(leaf)
+    }
+}
+
+async fn read_span(source: &impl ByteSource, span: Span) -> Result<Vec<u8>, SourceError> {
+    // The header's limits keep lengths far below what a usize holds.
+    source.read(span.offset, span.length as usize).await
+}
+
+fn parse_manifest(metadata: &[u8]) -> Result<Manifest, OpenError> {
+    let failed = |error: serde_json::Error| OpenError::Manifest { reason: error.to_string() };
+    let metadata: Metadata<Option<serde_json::Value>> =
+        serde_json::from_slice(metadata).map_err(|error| {
+            // Any object will do for an ordinary file; ours are told apart by their key.
+            if error.is_data() { OpenError::OrdinaryPmtiles } else { failed(error) }
+        })?;
+    let manifest = metadata.corniche.ok_or(OpenError::OrdinaryPmtiles)?;
+    match manifest.get("format_version").and_then(serde_json::Value::as_u64) {
+        Some(version) if version == u64::from(FORMAT_VERSION) => {}
+        Some(found) => return Err(OpenError::Version { found }),
+        None => return Err(OpenError::Manifest { reason: "it names no format_version".to_owned() }),
+    }
+    serde_json::from_value(manifest).map_err(failed)
+}

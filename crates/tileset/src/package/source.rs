@@ -1,0 +1,129 @@
+use std::future::Future;
+
+/// Why bytes could not be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("cannot read {length} bytes at {offset} of {name}: {reason}")]
+pub struct SourceError {
+    /// What is read: a path or an address.
+    pub name: String,
+    /// First byte asked for.
+    pub offset: u64,
+    /// How many.
+    pub length: usize,
+    /// What went wrong.
+    pub reason: String,
+}
+
+/// Where the bytes of a package come from: a file, memory, a server that answers range requests.
+///
+/// Futures need not be `Send`, so that a browser's can be used; adapters that are used from several threads
+/// make them so.
+pub trait ByteSource {
+    /// How many bytes there are.
+    fn length(&self) -> impl Future<Output = Result<u64, SourceError>>;
+
+    /// Exactly `length` bytes from `offset` on; fewer are an error. The reader asks for no more than 64 MiB at
+    /// once plus what a section may hold, and never past [`ByteSource::length`].
+    fn read(&self, offset: u64, length: usize) -> impl Future<Output = Result<Vec<u8>, SourceError>>;
+}
+
+/// A package in memory.
+#[derive(Debug, Clone)]
+pub struct MemorySource {
+    bytes: Vec<u8>,
+}
+
+impl MemorySource {
+    /// Reads from `bytes`.
+    #[must_use]
+    pub fn new(bytes: Vec<u8>) -> Self {
+        Self { bytes }
+    }
+}
+
+impl ByteSource for MemorySource {
+    async fn length(&self) -> Result<u64, SourceError> {
+        Ok(self.bytes.len() as u64)
+    }
+
+    async fn read(&self, offset: u64, length: usize) -> Result<Vec<u8>, SourceError> {
+        let range = usize::try_from(offset).ok().and_then(|from| Some(from..from.checked_add(length)?));
+        range.and_then(|range| self.bytes.get(range)).map(<[u8]>::to_vec).ok_or_else(|| SourceError {
+            name: "memory".to_owned(),
+            offset,
+            length,
+            reason: format!("there are only {} bytes", self.bytes.len()),
+        })
+    }
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+pub use file::FileSource;
+
+#[cfg(not(target_arch = "wasm32"))]
+mod file {
+    use std::{
+        fs::File,
+        io,
+        path::{Path, PathBuf},
+    };
+
+    use super::{ByteSource, SourceError};
+
+    /// A package on disk, read at positions: several threads may read at once.
+    #[derive(Debug)]
+    pub struct FileSource {
+        file: File,
+        path: PathBuf,
+    }
+
+    impl FileSource {
+        /// Opens a file for reading.
+        ///
+        /// # Errors
+        /// When it cannot be opened.
+        pub fn open(path: &Path) -> Result<Self, SourceError> {
+            let failed = |error: io::Error| failure(path, 0, 0, &error);
+            let file = File::open(path).map_err(failed)?;
+            if file.metadata().map_err(failed)?.is_dir() {
+                return Err(failed(io::ErrorKind::IsADirectory.into()));
+            }
+            Ok(Self { file, path: path.to_path_buf() })
+        }
+    }
+
+    fn failure(path: &Path, offset: u64, length: usize, error: &io::Error) -> SourceError {
+        SourceError { name: path.display().to_string(), offset, length, reason: error.to_string() }
+    }
+
+    #[cfg(unix)]
+    fn read_exact_at(file: &File, buffer: &mut [u8], offset: u64) -> io::Result<()> {
+        std::os::unix::fs::FileExt::read_exact_at(file, buffer, offset)
+    }
+
+    #[cfg(windows)]
+    fn read_exact_at(file: &File, mut buffer: &mut [u8], mut offset: u64) -> io::Result<()> {
+        while !buffer.is_empty() {
+            let read = std::os::windows::fs::FileExt::seek_read(file, buffer, offset)?;
+            if read == 0 {
+                return Err(io::ErrorKind::UnexpectedEof.into());
+            }
+            buffer = &mut buffer[read..];
+            offset += read as u64;
+        }
+        Ok(())
+    }
+
+    impl ByteSource for FileSource {
+        async fn length(&self) -> Result<u64, SourceError> {
+            self.file.metadata().map(|metadata| metadata.len()).map_err(|error| failure(&self.path, 0, 0, &error))
+        }
+
+        async fn read(&self, offset: u64, length: usize) -> Result<Vec<u8>, SourceError> {
+            let mut buffer = vec![0; length];
+            read_exact_at(&self.file, &mut buffer, offset)
+                .map_err(|error| failure(&self.path, offset, length, &error))?;
+            Ok(buffer)
+        }
+    }
+}

@@ -1,0 +1,277 @@
+use std::{fs, io::Cursor};
+
+use corniche_geom::{Bounds, CoordinateTable, Frame, NodeIndex, ProjectError, Projection, TileId};
+use corniche_tin::{Tin, TinVertex};
+
+use super::{
+    FORMAT_VERSION, FilePackage, MemorySource, OpenError, Package, ReadError, WriteError, Writer,
+    directory::Directory, pmtiles_order,
+};
+use crate::{
+    Counts, Manifest, PayloadContext, Sections, SettingsRecord, Terrain, TilePayload, VerticalRecord, encode,
+};
+
+/// Degrees that are metres / 100 km.
+struct Flat;
+
+impl Projection for Flat {
+    fn working_from_wgs84(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
+        points.iter_mut().flatten().for_each(|value| *value *= 1e5);
+        Ok(())
+    }
+
+    fn wgs84_from_working(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
+        points.iter_mut().flatten().for_each(|value| *value /= 1e5);
+        Ok(())
+    }
+}
+
+fn manifest(max_level: u8) -> Manifest {
+    let frame = Frame::new([0.1, 0.7], 1.0 / 3.0, NodeIndex { i: 0, j: 256 << max_level }, max_level).unwrap();
+    let data_bounds = frame.tile_bounds(TileId::ROOT);
+    Manifest {
+        format_version: FORMAT_VERSION,
+        generator: "corniche test".to_owned(),
+        tiling: "local quadtree".to_owned(),
+        crs: "EPSG:32632".to_owned(),
+        crs_wkt: "PROJCRS[…]".to_owned(),
+        point_scale: 0.999_7,
+        frame,
+        data_bounds,
+        wgs84_bounds: Bounds { min_x: 9.4, min_y: 47.0, max_x: 9.7, max_y: 47.3 },
+        resampling: "nodes are the DEM's samples".to_owned(),
+        vertical: VerticalRecord { quantum_m: 0.125, unit: "metre".to_owned(), datum: "unknown".to_owned() },
+        coordinates: CoordinateTable::sample(&Flat, data_bounds, 1.0).unwrap(),
+        levels: vec![],
+        settings: SettingsRecord {
+            max_error_m: 0.1 + 0.2,
+            fill_voids: 32,
+            nodata: None,
+            dem_crs: None,
+            crs: None,
+            cell_m: Some(1.0 / 3.0),
+            frc_table: "default".to_owned(),
+            frc_table_sha256: String::new(),
+            class_max_cell_m: vec![None; 9],
+            simplify_cells: 0.5,
+        },
+        settings_sha256: String::new(),
+        inputs: vec![],
+        attribution: vec!["© OpenStreetMap contributors".to_owned(), "SRTM".to_owned()],
+        counts: Counts::default(),
+        growth: vec![],
+    }
+}
+
+fn tile(text: &str) -> TileId {
+    text.parse().unwrap()
+}
+
+fn payload(id: TileId) -> TilePayload {
+    let vertex = |row, column| TinVertex { row, column, height_q: 8 * id.x() as i32 };
+    let tin = Tin::new(vec![vertex(0, 0), vertex(0, 256), vertex(256, 0)], &[[0, 2, 1]]).unwrap();
+    let normals = vec![[0, 0]; 3];
+    let terrain = Terrain { tin, normals, geometric_error_m: 0.0, height_range_m: [0.0, 8.0], uncovered_nodes: 0 };
+    TilePayload { id, terrain: Some(terrain), roads_geo: vec![], roads_sv: vec![], attributes: vec![] }
+}
+
+/// A package with three tiles.
+fn package() -> Vec<u8> {
+    let manifest = manifest(2);
+    let context = PayloadContext { frame: manifest.frame, quantum_m: manifest.vertical.quantum_m };
+    let mut bytes = Cursor::new(Vec::new());
+    let mut writer = Writer::new(&mut bytes, &manifest).unwrap();
+    for id in ["0/0/0", "1/1/0", "2/3/1"].map(tile) {
+        writer.add(id, &encode(&payload(id), &context).unwrap().bytes).unwrap();
+    }
+    writer.finish().unwrap();
+    bytes.into_inner()
+}
+
+fn open(bytes: Vec<u8>) -> Result<Package<MemorySource>, OpenError> {
+    pollster::block_on(Package::open(MemorySource::new(bytes)))
+}
+
+#[test]
+fn three_tiles_come_back_from_memory_and_from_a_file() {
+    let bytes = package();
+    let from_memory = open(bytes.clone()).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("three.pmtiles");
+    fs::write(&path, bytes).unwrap();
+    let from_file = FilePackage::open(&path).unwrap();
+    assert_eq!(*from_memory.manifest(), manifest(2));
+    assert_eq!(*from_file.manifest(), manifest(2));
+    let ids = ["0/0/0", "1/1/0", "2/3/1"].map(tile);
+    assert_eq!(pollster::block_on(from_memory.tile_ids()).unwrap(), ids);
+    assert_eq!(from_file.tile_ids().unwrap(), ids);
+    for id in ids {
+        let read = pollster::block_on(from_memory.payload(id, Sections::ALL)).unwrap();
+        assert_eq!(read, Some(payload(id)));
+        assert_eq!(from_file.payload(id, Sections::ALL).unwrap(), read);
+    }
+    for absent in ["1/0/0", "2/0/0", "9/0/0"].map(tile) {
+        assert_eq!(from_file.payload(absent, Sections::ALL).unwrap(), None);
+    }
+}
+
+#[test]
+fn a_created_file_is_what_is_written_to_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("three.pmtiles");
+    let manifest = manifest(2);
+    let context = PayloadContext { frame: manifest.frame, quantum_m: manifest.vertical.quantum_m };
+    let mut writer = Writer::create(&path, &manifest).unwrap();
+    for id in ["0/0/0", "1/1/0", "2/3/1"].map(tile) {
+        writer.add(id, &encode(&payload(id), &context).unwrap().bytes).unwrap();
+    }
+    assert!(FilePackage::open(&path).is_err(), "it is no package before it is finished");
+    writer.finish().unwrap();
+    assert_eq!(fs::read(&path).unwrap(), package());
+}
+
+#[test]
+fn a_package_is_a_clustered_pmtiles_file_with_true_bounds() {
+    let bytes = package();
+    let header = pmtiles::Header::try_from_bytes(bytes[..127].to_vec().into()).unwrap();
+    assert!(header.clustered());
+    assert_eq!(header.tile_type, pmtiles::TileType::Unknown);
+    assert_eq!(header.tile_compression, pmtiles::Compression::None);
+    assert_eq!((header.min_zoom, header.max_zoom), (0, 2));
+    assert!((header.min_longitude - 9.4).abs() < 1e-7 && (header.max_latitude - 47.3).abs() < 1e-7);
+    assert_eq!(header.n_addressed_tiles().map(std::num::NonZero::get), Some(3));
+}
+
+#[test]
+fn many_tiles_need_leaf_directories_and_are_all_found() {
+    let manifest = manifest(8);
+    let mut bytes = Cursor::new(Vec::new());
+    let mut writer = Writer::new(&mut bytes, &manifest).unwrap();
+    let every = (0..256).flat_map(|x| (0..256).map(move |y| TileId::new(8, x, y).unwrap()));
+    let mut ids: Vec<TileId> = every.filter(|id| (id.x() * 31 + id.y() * 17) % 3 != 0).collect();
+    ids.sort_by_key(|&id| pmtiles_order(id));
+    for id in &ids {
+        // Lengths differ, so that the directory does not compress to nothing.
+        let length = 1 + (id.x() * 7919 + id.y() * 104_729) % 37;
+        writer.add(*id, &id.to_string().repeat(length as usize).into_bytes()).unwrap();
+    }
+    writer.finish().unwrap();
+    let package = open(bytes.into_inner()).unwrap();
+    assert_eq!(pollster::block_on(package.tile_ids()).unwrap(), ids);
+    for id in ids.iter().step_by(997) {
+        let bytes = pollster::block_on(package.tile(*id)).unwrap().unwrap();
+        assert!(bytes.starts_with(id.to_string().as_bytes()));
+        let error = pollster::block_on(package.payload(*id, Sections::ALL)).unwrap_err();
+        assert!(error.to_string().contains(&format!("tile {id}")), "{error}");
+    }
+    assert!(pollster::block_on(package.tile(tile("8/0/0"))).unwrap().is_none());
+}
+
+#[test]
+fn order_is_level_then_hilbert_curve() {
+    // From the PMTiles specification's table of tile ids.
+    for (text, order) in [("0/0/0", 0), ("1/0/0", 1), ("1/0/1", 2), ("1/1/1", 3), ("1/1/0", 4), ("2/0/0", 5)] {
+        assert_eq!(pmtiles_order(tile(text)), order);
+    }
+}
+
+#[test]
+fn tiles_out_of_order_or_beyond_the_levels_are_refused() {
+    let mut bytes = Cursor::new(Vec::new());
+    let mut writer = Writer::new(&mut bytes, &manifest(2)).unwrap();
+    writer.add(tile("1/1/1"), b"x").unwrap();
+    assert!(matches!(writer.add(tile("1/0/0"), b"x"), Err(WriteError::Order { .. })));
+    assert!(matches!(writer.add(tile("1/1/1"), b"x"), Err(WriteError::Order { .. })));
+    assert!(matches!(writer.add(tile("3/0/0"), b"x"), Err(WriteError::Tile { .. })));
+    assert!(matches!(writer.add(tile("2/3/3"), b""), Err(WriteError::Tile { .. })));
+    let mut bad = manifest(2);
+    bad.point_scale = f64::NAN;
+    assert!(matches!(Writer::new(Cursor::new(Vec::new()), &bad), Err(WriteError::Manifest { .. })));
+}
+
+#[test]
+fn ordinary_pmtiles_and_other_files_are_refused() {
+    let ordinary = |kind, metadata: &str| {
+        let mut bytes = Cursor::new(Vec::new());
+        let mut writer = pmtiles::PmTilesWriter::new(kind).metadata(metadata).create(&mut bytes).unwrap();
+        writer.add_tile(pmtiles::TileCoord::new(0, 0, 0).unwrap(), b"tile").unwrap();
+        writer.finalize().unwrap();
+        open(bytes.into_inner()).map(|_| ()).unwrap_err()
+    };
+    assert!(matches!(ordinary(pmtiles::TileType::Png, "{}"), OpenError::OrdinaryPmtiles));
+    assert!(matches!(ordinary(pmtiles::TileType::Unknown, "{}"), OpenError::OrdinaryPmtiles));
+    assert!(matches!(ordinary(pmtiles::TileType::Unknown, r#"{"name":7}"#), OpenError::OrdinaryPmtiles));
+    let newer = ordinary(pmtiles::TileType::Unknown, r#"{"corniche":{"format_version":7}}"#);
+    assert!(matches!(newer, OpenError::Version { found: 7 }), "{newer}");
+    let broken = ordinary(pmtiles::TileType::Unknown, r#"{"corniche":{"format_version":0}}"#);
+    assert!(matches!(broken, OpenError::Manifest { .. }), "{broken}");
+    assert!(matches!(open(Vec::new()), Err(OpenError::NotPmtiles)));
+    assert!(matches!(open(b"\x89PNG and so on".to_vec()), Err(OpenError::NotPmtiles)));
+    let missing = FilePackage::open("no/such.pmtiles".as_ref()).unwrap_err();
+    assert!(missing.to_string().contains("no/such.pmtiles"));
+}
+
+#[test]
+fn every_cut_is_noticed_when_opening() {
+    let bytes = package();
+    // The last bytes of the file are tiles, which only the header knows of.
+    for length in (0..bytes.len()).rev().step_by(7).chain(0..200) {
+        let error = open(bytes[..length].to_vec()).map(|_| ()).expect_err("a cut file");
+        let clear = matches!(error, OpenError::NotPmtiles | OpenError::Truncated { .. });
+        assert!(clear, "cut to {length} bytes: {error}");
+    }
+}
+
+#[test]
+fn a_flipped_bit_in_a_tile_is_an_error_that_names_it() {
+    let mut bytes = package();
+    let last = bytes.len() - 1;
+    bytes[last] ^= 4;
+    let package = open(bytes).unwrap();
+    let id = tile("2/3/1");
+    let error = pollster::block_on(package.payload(id, Sections::ALL)).unwrap_err();
+    assert!(matches!(error, ReadError::Decode(_)));
+    assert!(error.to_string().contains("tile 2/3/1, terrain section"), "{error}");
+    assert!(pollster::block_on(package.payload(tile("1/1/0"), Sections::ALL)).unwrap().is_some());
+}
+
+/// Every bit of header and root directory: an error, or something that still ends.
+#[test]
+fn no_flipped_bit_of_header_or_directory_panics() {
+    let bytes = package();
+    for bit in 0..8 * 260 {
+        let mut damaged = bytes.clone();
+        damaged[bit / 8] ^= 1 << (bit % 8);
+        if let Ok(package) = open(damaged) {
+            let ids = pollster::block_on(package.tile_ids()).unwrap_or_default();
+            for id in ids.iter().take(10) {
+                let _ = pollster::block_on(package.payload(*id, Sections::ALL));
+            }
+        }
+    }
+}
+
+#[test]
+fn hostile_directories_are_refused() {
+    use std::io::Write;
+    let gzip = |bytes: &[u8]| {
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+        encoder.write_all(bytes).unwrap();
+        encoder.finish().unwrap()
+    };
+    assert!(Directory::parse(&gzip(&[0])).is_some_and(|directory| directory.entries.is_empty()));
+    assert!(Directory::parse(&gzip(&[1, 5, 1, 9, 1])).is_some());
+    for bytes in [
+        &[][..],
+        // A count of 2^63 entries, with one entry.
+        &[0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x7f, 0, 1, 1, 1],
+        // A length of 0; the first offset "after the one before"; a byte too many; the same tile twice.
+        &[1, 5, 1, 0, 1],
+        &[1, 5, 1, 9, 0],
+        &[1, 5, 1, 9, 1, 0],
+        &[2, 5, 0, 1, 1, 9, 9, 1, 0],
+    ] {
+        assert_eq!(Directory::parse(&gzip(bytes)), None, "{bytes:?}");
+    }
+    assert_eq!(Directory::parse(b"no gzip"), None);
+}

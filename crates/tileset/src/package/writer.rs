@@ -1,0 +1,150 @@
+use std::{
+    fs::File,
+    io::{self, Seek, Write},
+    path::Path,
+    sync::Arc,
+};
+
+use corniche_geom::TileId;
+use pmtiles::{Compression, PmTilesStreamWriter, PmTilesWriter, PmtError, TileCoord, TileType};
+
+use super::{FORMAT_VERSION, Metadata, pmtiles_order};
+use crate::Manifest;
+
+/// Why a package could not be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// The file cannot be created, written or flushed.
+    #[error("cannot write the package")]
+    Io(#[from] io::Error),
+    /// The PMTiles writer failed.
+    #[error("cannot write the package")]
+    Pmtiles(#[source] PmtError),
+    /// The manifest does not survive being written as JSON.
+    #[error("the manifest cannot be written: {reason}")]
+    Manifest {
+        /// Why not.
+        reason: String,
+    },
+    /// Tiles come in another order than they are stored in.
+    #[error("tile {tile} comes after {previous}, but tiles are written in ascending pmtiles_order, each once")]
+    Order {
+        /// The tile added.
+        tile: TileId,
+        /// The tile added before.
+        previous: TileId,
+    },
+    /// A tile lies beyond the finest level, or has no bytes.
+    #[error("tile {tile} is no tile of this package: it has no bytes or lies beyond level {max_level}")]
+    Tile {
+        /// The tile added.
+        tile: TileId,
+        /// The package's finest level.
+        max_level: u8,
+    },
+}
+
+impl From<PmtError> for WriteError {
+    fn from(error: PmtError) -> Self {
+        match error {
+            PmtError::Reading(error) => Self::Io(error),
+            other => Self::Pmtiles(other),
+        }
+    }
+}
+
+/// Writes a package: PMTiles version 3 of type "other", tiles as they are, directories and metadata gzip.
+///
+/// The header comes last: until [`Writer::finish`] the file begins with zeros, and no reader takes it for a package.
+pub struct Writer<W: Write + Seek> {
+    tiles: PmTilesStreamWriter<W>,
+    file: Option<Arc<File>>,
+    max_level: u8,
+    previous: Option<TileId>,
+}
+
+impl Writer<Arc<File>> {
+    /// Creates a file, or empties it.
+    ///
+    /// # Errors
+    /// When that fails, or the manifest cannot be written.
+    pub fn create(path: &Path, manifest: &Manifest) -> Result<Self, WriteError> {
+        let file = Arc::new(File::create(path)?);
+        let mut writer = Self::new(Arc::clone(&file), manifest)?;
+        writer.file = Some(file);
+        Ok(writer)
+    }
+}
+
+impl<W: Write + Seek> Writer<W> {
+    /// Writes to `out`, which is empty.
+    ///
+    /// # Errors
+    /// When that fails, or the manifest cannot be written.
+    pub fn new(out: W, manifest: &Manifest) -> Result<Self, WriteError> {
+        let bounds = manifest.wgs84_bounds;
+        let [lon, lat] = bounds.center();
+        let max_level = manifest.frame.max_level();
+        let tiles = PmTilesWriter::new(TileType::Unknown)
+            .internal_compression(Compression::Gzip)
+            .tile_compression(Compression::None)
+            .min_zoom(0)
+            .max_zoom(max_level)
+            .bounds(bounds.min_x, bounds.min_y, bounds.max_x, bounds.max_y)
+            .center(lon, lat)
+            .center_zoom(0)
+            .metadata(to_json(manifest)?)
+            .create(out)?;
+        Ok(Self { tiles, file: None, max_level, previous: None })
+    }
+
+    /// Adds the payload of a tile. Tiles come in ascending [`pmtiles_order`], each once.
+    ///
+    /// # Errors
+    /// When they do not, or writing fails.
+    pub fn add(&mut self, id: TileId, payload: &[u8]) -> Result<(), WriteError> {
+        if let Some(previous) = self.previous.filter(|&previous| pmtiles_order(previous) >= pmtiles_order(id)) {
+            return Err(WriteError::Order { tile: id, previous });
+        }
+        if payload.is_empty() || id.z() > self.max_level {
+            return Err(WriteError::Tile { tile: id, max_level: self.max_level });
+        }
+        self.tiles.add_tile(TileCoord::new(id.z(), id.x(), id.y())?, payload)?;
+        self.previous = Some(id);
+        Ok(())
+    }
+
+    /// Writes directories and header, and has a file's bytes put on disk.
+    ///
+    /// # Errors
+    /// When that fails; the file is then no package.
+    pub fn finish(self) -> Result<(), WriteError> {
+        self.tiles.finalize()?;
+        if let Some(file) = self.file {
+            file.sync_all()?;
+        }
+        Ok(())
+    }
+}
+
+/// The metadata, checked to read back as the same manifest: JSON knows neither infinity nor not-a-number.
+fn to_json(manifest: &Manifest) -> Result<String, WriteError> {
+    if manifest.format_version != FORMAT_VERSION {
+        let reason = format!("its format version is {}, not {FORMAT_VERSION}", manifest.format_version);
+        return Err(WriteError::Manifest { reason });
+    }
+    let failed = |error: serde_json::Error| WriteError::Manifest { reason: error.to_string() };
+    let metadata = Metadata {
+        name: "Corniche package".to_owned(),
+        description: format!("Terrain and roads by {}; z/x/y is a local quadtree in {}", manifest.generator, manifest.crs),
+        attribution: manifest.attribution.join(", "),
+        corniche: manifest,
+    };
+    let json = serde_json::to_string(&metadata).map_err(failed)?;
+    let back: Metadata<Manifest> = serde_json::from_str(&json).map_err(failed)?;
+    if back.corniche != *manifest {
+        return Err(WriteError::Manifest { reason: "a number in it is infinite or not a number".to_owned() });
+    }
+    Ok(json)
+}

@@ -1,0 +1,415 @@
+use corniche_drape::{DrapedLine, DrapedVertex, SvLine, drape};
+use corniche_geom::{Frame, LatticePoint, NodeIndex, Polyline, TileId};
+use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
+use corniche_tin::{Surface, Tin, TinVertex};
+use proptest::prelude::*;
+
+use super::{
+    Damage, EncodeError, GeoRoad, PayloadContext, RoadRecord, Sections, SvRoad, Terrain, TilePayload, decode,
+    decode::Context, encode,
+};
+
+const QUANTUM_M: f64 = 0.25;
+
+fn frame() -> Frame {
+    Frame::new([0.5, 0.25], 10.0, NodeIndex { i: -512, j: 1024 }, 2).unwrap()
+}
+
+fn context() -> PayloadContext {
+    PayloadContext { frame: frame(), quantum_m: QUANTUM_M }
+}
+
+fn id() -> TileId {
+    TileId::new(1, 1, 0).unwrap()
+}
+
+fn class(number: u8) -> FunctionalRoadClass {
+    FunctionalRoadClass::new(number).unwrap()
+}
+
+/// A grid of `side` × `side` nodes, `gap` apart, without the cells of `holes`; diagonals as `diagonal` says.
+fn grid_tin(
+    side: usize,
+    gap: u16,
+    height_q: impl Fn(usize, usize) -> i32,
+    hole: impl Fn(usize, usize) -> bool,
+    diagonal: impl Fn(usize, usize) -> bool,
+) -> Tin {
+    let mut vertices = Vec::new();
+    for row in 0..side {
+        for column in 0..side {
+            let at = |k: usize| k as u16 * gap;
+            vertices.push(TinVertex { row: at(row), column: at(column), height_q: height_q(column, row) });
+        }
+    }
+    let mut triangles = Vec::new();
+    for row in 0..side - 1 {
+        for column in 0..side - 1 {
+            if hole(column, row) {
+                continue;
+            }
+            let nw = (row * side + column) as u32;
+            let (ne, sw, se) = (nw + 1, nw + side as u32, nw + side as u32 + 1);
+            if diagonal(column, row) {
+                triangles.extend([[nw, sw, ne], [ne, sw, se]]);
+            } else {
+                triangles.extend([[nw, sw, se], [nw, se, ne]]);
+            }
+        }
+    }
+    Tin::new(vertices, &triangles).unwrap()
+}
+
+fn terrain(tin: Tin) -> Terrain {
+    let normals = (0..tin.vertices().len()).map(|k| [(k * 37) as i8, (k * 11) as i8]).collect();
+    Terrain {
+        tin,
+        normals,
+        geometric_error_m: 1.75,
+        height_range_m: [-3.5, 812.25],
+        uncovered_nodes: 7,
+    }
+}
+
+fn surface(tin: &Tin) -> Surface {
+    Surface::new(tin, Context::new(id(), &frame(), QUANTUM_M).unwrap().placement)
+}
+
+/// Lays lines, given by points in thousandths of the tile's side from its north-west corner, on the ground.
+fn geo_roads(tin: &Tin, lines: &[Vec<[i64; 2]>]) -> Vec<GeoRoad> {
+    let bounds = frame().tile_lattice_bounds(id());
+    let side = bounds.max.u - bounds.min.u;
+    let surface = surface(tin);
+    let mut roads = Vec::new();
+    for (number, line) in lines.iter().enumerate() {
+        let point = |&[x, y]: &[i64; 2]| LatticePoint::new(bounds.min.u + side * x / 1024, bounds.max.v - side * y / 1024);
+        let Ok(line) = Polyline::new(line.iter().map(point).collect()) else { continue };
+        for (part, line) in drape(&line, &surface).lines.into_iter().enumerate() {
+            let class = class((number % 3 * 4) as u8);
+            roads.push(GeoRoad { way_id: 1000 - 7 * number as i64, part: part as u32, class, line });
+        }
+    }
+    roads.sort_by_key(|road| (road.class, road.way_id, road.part));
+    roads
+}
+
+/// One tile with all sections, small enough to try every damage.
+fn sample() -> TilePayload {
+    let tin = grid_tin(5, 64, |c, r| (c * c * 10 + r * 30) as i32, |c, r| (c, r) == (2, 2), |c, r| (c + r) % 2 == 0);
+    let roads_geo = geo_roads(
+        &tin,
+        &[
+            vec![[0, 0], [1024, 1024], [1024, 0]],
+            vec![[30, 400], [700, 450], [900, 640], [256, 512]],
+            vec![[512, 3], [516, 1000]],
+            vec![[256, 256], [256, 768]],
+        ],
+    );
+    let at = LatticePoint::new;
+    let sv = |way_id, number, points: Vec<LatticePoint>, ground_range_m| SvRoad {
+        way_id,
+        part: 0,
+        class: class(number),
+        line: SvLine { points, ground_range_m },
+    };
+    let roads_sv = vec![
+        sv(5, 2, vec![at(3_000_000, 1_000_000), at(3_000_010, 999_000)], vec![[1.0, 2.5]]),
+        sv(-9, 7, vec![at(0, 0), at(-5, 7), at(100, 7)], vec![[-1.25, -0.5], [-0.5, 100.0]]),
+    ];
+    let attributes = vec![
+        RoadRecord { way_id: -9, attributes: RoadAttributes::default() },
+        RoadRecord {
+            way_id: 5,
+            attributes: RoadAttributes {
+                form: Form::Roundabout,
+                structure: Structure::Tunnel,
+                layer: -2,
+                oneway: Oneway::Backward,
+                name: "Großglockner-Hochalpenstraße".to_owned(),
+                reference: "B 107".to_owned(),
+                surface: "asphalt".to_owned(),
+            },
+        },
+    ];
+    TilePayload { id: id(), terrain: Some(terrain(tin)), roads_geo, roads_sv, attributes }
+}
+
+fn read(bytes: &[u8], wanted: Sections) -> Result<TilePayload, super::DecodeError> {
+    decode(bytes, id(), &frame(), QUANTUM_M, wanted)
+}
+
+#[test]
+fn a_tile_comes_back_whole() {
+    let payload = sample();
+    assert!(payload.roads_geo.iter().any(|road| road.line.lead_in.is_some()), "the sample has a road over a void");
+    let encoded = encode(&payload, &context()).unwrap();
+    assert_eq!(read(&encoded.bytes, Sections::ALL), Ok(payload.clone()));
+    assert_eq!(encoded.geo_class_bytes.iter().filter(|&&bytes| bytes > 0).count(), 3);
+    let sections = [encoded.terrain, encoded.roads_geo, encoded.roads_sv, encoded.attributes];
+    let stored: u64 = sections.iter().map(|size| size.stored).sum();
+    assert_eq!(encoded.bytes.len() as u64, 16 + 4 * 20 + 4 + stored);
+    assert_eq!(encode(&payload, &context()).unwrap(), encoded, "equal payloads make equal bytes");
+}
+
+#[test]
+fn a_reader_takes_only_what_it_wants() {
+    let payload = sample();
+    let bytes = encode(&payload, &context()).unwrap().bytes;
+    let sv = read(&bytes, Sections::ROADS_SV | Sections::ATTRIBUTES).unwrap();
+    assert_eq!((sv.terrain, sv.roads_geo.len()), (None, 0));
+    assert_eq!((sv.roads_sv, sv.attributes), (payload.roads_sv, payload.attributes));
+    let geo = read(&bytes, Sections::ROADS_GEO).unwrap();
+    assert_eq!((geo.terrain, geo.roads_geo), (payload.terrain, payload.roads_geo));
+}
+
+#[test]
+fn an_empty_tile_is_a_header() {
+    let payload = TilePayload { id: id(), terrain: None, roads_geo: vec![], roads_sv: vec![], attributes: vec![] };
+    let bytes = encode(&payload, &context()).unwrap().bytes;
+    assert_eq!(bytes.len(), 20);
+    assert_eq!(read(&bytes, Sections::ALL), Ok(payload));
+}
+
+#[test]
+fn ground_ranges_are_rounded_outwards() {
+    let mut payload = sample();
+    payload.roads_sv[0].line.ground_range_m = vec![[1.01, 2.49]];
+    let bytes = encode(&payload, &context()).unwrap().bytes;
+    assert_eq!(read(&bytes, Sections::ROADS_SV).unwrap().roads_sv[0].line.ground_range_m, [[1.0, 2.5]]);
+}
+
+#[test]
+fn every_cut_and_every_flipped_bit_is_noticed() {
+    let payload = sample();
+    let bytes = encode(&payload, &context()).unwrap().bytes;
+    for length in 0..bytes.len() {
+        assert!(read(&bytes[..length], Sections::ALL).is_err(), "cut to {length} bytes");
+    }
+    for bit in 0..8 * bytes.len() {
+        let mut damaged = bytes.clone();
+        damaged[bit / 8] ^= 1 << (bit % 8);
+        let error = read(&damaged, Sections::ALL).expect_err("a flipped bit");
+        assert!(error.to_string().starts_with("tile 1/1/0, "), "{error}");
+    }
+}
+
+/// Damage behind a right checksum: what a hostile writer could do. No panic, and an error or some tile.
+#[test]
+fn hostile_sections_do_not_panic() {
+    let payload = sample();
+    let mut reached = [0_u32; 2];
+    let surface = surface(&payload.terrain.as_ref().unwrap().tin);
+    let Context { corner, scale, .. } = Context::new(id(), &frame(), QUANTUM_M).unwrap();
+    let sections = [
+        super::terrain::encode(payload.terrain.as_ref().unwrap(), scale).unwrap(),
+        super::roads_geo::encode(&payload.roads_geo, corner, &surface).unwrap().0,
+        super::roads_sv::encode(&payload.roads_sv, corner, QUANTUM_M).unwrap().0,
+        super::attributes::encode(&payload.attributes).unwrap(),
+    ];
+    let mut try_one = |kind: usize, bytes: &[u8]| {
+        let whole = match kind {
+            0 => super::terrain::decode(bytes, scale).is_ok(),
+            1 => super::roads_geo::decode(bytes, corner, &surface).is_ok(),
+            2 => super::roads_sv::decode(bytes, corner, QUANTUM_M).is_ok(),
+            _ => super::attributes::decode(bytes).is_ok(),
+        };
+        reached[usize::from(whole)] += 1;
+    };
+    for (kind, raw) in sections.iter().enumerate() {
+        for length in 0..raw.len() {
+            try_one(kind, &raw[..length]);
+        }
+        for at in 0..raw.len() {
+            for value in [0, 1, 2, 3, 7, 8, 0x7f, 0x80, 0xfe, 0xff, raw[at] ^ 1, raw[at] ^ 0x10] {
+                let mut damaged = raw.clone();
+                damaged[at] = value;
+                try_one(kind, &damaged);
+                // Two bytes at once reach counts of more than one byte.
+                if let Some(next) = damaged.get_mut(at + 1) {
+                    *next = 0xff;
+                    try_one(kind, &damaged);
+                }
+            }
+        }
+    }
+    assert!(reached.iter().all(|&count| count > 100), "both ends were reached: {reached:?}");
+}
+
+#[test]
+fn bombs_and_foreign_bytes_are_refused() {
+    let payload = sample();
+    let bytes = encode(&payload, &context()).unwrap().bytes;
+    let part = |bytes: &[u8], sections| read(bytes, sections).map_err(|error| (error.part, error.damage));
+    let resealed = |at: usize, value: &[u8]| {
+        let mut bytes = bytes.clone();
+        bytes[at..at + value.len()].copy_from_slice(value);
+        let sum = crc32fast::hash(&bytes[..96]);
+        bytes[96..100].copy_from_slice(&sum.to_le_bytes());
+        bytes
+    };
+    assert!(matches!(part(b"PNG", Sections::ALL), Err(("header", Damage::TooShort))));
+    assert!(matches!(part(b"PNG, or what", Sections::ALL), Err(("header", Damage::Magic))));
+    let newer = part(&resealed(4, &[1]), Sections::ALL);
+    assert_eq!(newer, Err(("header", Damage::Version { found: 1, supported: 0 })));
+    let other = TileId::new(1, 0, 0).unwrap();
+    let error = decode(&bytes, other, &frame(), QUANTUM_M, Sections::NONE).unwrap_err();
+    assert_eq!(error.damage, Damage::OtherTile { found: "1/1/0".to_owned() });
+    // The first entry of the table is the terrain section; its raw length is at 16 + 12.
+    let huge = part(&resealed(28, &u32::MAX.to_le_bytes()), Sections::TERRAIN);
+    assert!(matches!(huge, Err(("terrain section", Damage::TooLarge { .. }))), "{huge:?}");
+    let large = part(&resealed(28, &(1_u32 << 20).to_le_bytes()), Sections::TERRAIN);
+    assert!(large.is_err(), "{large:?}");
+    let small = part(&resealed(28, &100_u32.to_le_bytes()), Sections::TERRAIN);
+    assert!(matches!(small, Err(("terrain section", Damage::Decompress { .. }))), "{small:?}");
+    // A section of a kind that this version does not know is passed over.
+    let unknown = part(&resealed(16, &99_u16.to_le_bytes()), Sections::TERRAIN).unwrap();
+    assert_eq!(unknown.terrain, None);
+    assert!(part(&resealed(16, &99_u16.to_le_bytes()), Sections::ROADS_GEO).is_err());
+    let deep = TileId::new(3, 0, 0).unwrap();
+    assert!(decode(&bytes, deep, &frame(), QUANTUM_M, Sections::ALL).is_err());
+}
+
+#[test]
+fn what_cannot_be_encoded_is_an_error() {
+    let check = |damage: &dyn Fn(&mut TilePayload)| {
+        let mut payload = sample();
+        damage(&mut payload);
+        let error = encode(&payload, &context()).expect_err("it cannot be encoded");
+        assert!(matches!(error, EncodeError::Unencodable { .. }), "{error}");
+    };
+    check(&|payload| payload.roads_geo.reverse());
+    check(&|payload| payload.roads_sv.reverse());
+    check(&|payload| payload.attributes.reverse());
+    check(&|payload| payload.terrain = None);
+    check(&|payload| payload.roads_sv[0].line.ground_range_m[0][0] = f64::NAN);
+    check(&|payload| payload.roads_sv[0].line.ground_range_m.clear());
+    check(&|payload| payload.roads_sv[0].line.points[0].u = i64::MAX);
+    check(&|payload| payload.roads_geo[0].line.vertices.truncate(1));
+    check(&|payload| payload.roads_geo[0].line.vertices[0] = DrapedVertex::Vertex { vertex: 99 });
+    check(&|payload| payload.terrain.as_mut().unwrap().normals.clear());
+}
+
+/// A line need not be what the guesses say, only what a line can be.
+#[test]
+fn lines_against_all_guesses_come_back() {
+    let mut payload = sample();
+    let bounds = frame().tile_lattice_bounds(id());
+    let point = |du: i64, dv: i64| LatticePoint::new(bounds.min.u + du, bounds.max.v - dv);
+    let surface = surface(&payload.terrain.as_ref().unwrap().tin);
+    let start = point(1000, 2000);
+    let triangle = surface.locate(start).unwrap();
+    payload.roads_geo[0].line = DrapedLine {
+        lead_in: None,
+        vertices: vec![
+            DrapedVertex::Source { point: start, triangle },
+            DrapedVertex::Crossing { a: 3, b: 20 },
+            DrapedVertex::Vertex { vertex: 24 },
+            DrapedVertex::Crossing { a: 0, b: 1 },
+        ],
+        lead_out: Some(point(-5, 80)),
+    };
+    let bytes = encode(&payload, &context()).unwrap().bytes;
+    assert_eq!(read(&bytes, Sections::ALL), Ok(payload));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Any ground with holes, either diagonal and any heights, with lines along, through and off it.
+    #[test]
+    fn tiles_come_back(
+        gap in 1..32_u16,
+        heights in prop::collection::vec(any::<i32>(), 81),
+        holes in prop::collection::vec(prop::bool::weighted(0.2), 64),
+        diagonals in prop::collection::vec(any::<bool>(), 64),
+        shift in 0..31_u32,
+        lines in prop::collection::vec(prop::collection::vec([0..=32_i64, 0..=32_i64], 2..8), 0..6),
+        fine in prop::collection::vec(prop::collection::vec([0..=1024_i64, 0..=1024_i64], 2..8), 0..6),
+    ) {
+        let tin = grid_tin(
+            9,
+            gap,
+            |c, r| heights[9 * r + c] >> shift << (shift / 2),
+            |c, r| holes[8 * r + c],
+            |c, r| diagonals[8 * r + c],
+        );
+        // Coarse lines run through vertices and along edges.
+        let coarse = lines.iter().map(|line| line.iter().map(|p| p.map(|k| k * 4 * i64::from(gap))).collect());
+        let lines: Vec<Vec<[i64; 2]>> = coarse.chain(fine).collect();
+        let roads_geo = geo_roads(&tin, &lines);
+        let terrain = Some(terrain(tin));
+        let payload = TilePayload { id: id(), terrain, roads_geo, roads_sv: vec![], attributes: vec![] };
+        let bytes = encode(&payload, &context()).unwrap().bytes;
+        prop_assert_eq!(read(&bytes, Sections::ALL), Ok(payload));
+    }
+
+    /// Roads for shadow volumes and their attributes come back; ranges hold what they held.
+    #[test]
+    fn plan_lines_come_back(
+        lines in prop::collection::btree_map(
+            (0..9_u8, any::<i32>(), 0..3_u32),
+            prop::collection::vec(([-1_i64 << 40..1 << 40, -1_i64 << 40..1 << 40], -1e6..1e6_f64, 0.0..1e4_f64), 2..6),
+            0..8,
+        ),
+    ) {
+        let roads_sv: Vec<SvRoad> = lines
+            .iter()
+            .filter_map(|(&(number, way_id, part), line)| {
+                let points = line.iter().map(|(p, ..)| LatticePoint::new(p[0], p[1])).collect();
+                let points = Polyline::new(points).ok()?.into_points();
+                let ground_range_m = line[..points.len() - 1].iter().map(|&(_, low, span)| [low, low + span]).collect();
+                let line = SvLine { points, ground_range_m };
+                Some(SvRoad { way_id: i64::from(way_id), part, class: class(number), line })
+            })
+            .collect();
+        let payload =
+            TilePayload { id: id(), terrain: None, roads_geo: vec![], roads_sv: roads_sv.clone(), attributes: vec![] };
+        let decoded = read(&encode(&payload, &context()).unwrap().bytes, Sections::ALL).unwrap();
+        prop_assert_eq!(decoded.roads_sv.len(), roads_sv.len());
+        for (read, written) in decoded.roads_sv.iter().zip(&roads_sv) {
+            prop_assert_eq!(&read.line.points, &written.line.points);
+            for (outer, inner) in read.line.ground_range_m.iter().zip(&written.line.ground_range_m) {
+                prop_assert!(outer[0] <= inner[0] && inner[0] - outer[0] < QUANTUM_M);
+                prop_assert!(outer[1] >= inner[1] && outer[1] - inner[1] < QUANTUM_M);
+            }
+        }
+    }
+
+    /// Bytes of any kind: an error, not a panic.
+    #[test]
+    fn any_bytes_are_survived(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        prop_assert!(read(&bytes, Sections::ALL).is_err());
+        let Context { corner, scale, .. } = Context::new(id(), &frame(), QUANTUM_M).unwrap();
+        let _ = super::terrain::decode(&bytes, scale);
+        let _ = super::roads_sv::decode(&bytes, corner, QUANTUM_M);
+        let _ = super::attributes::decode(&bytes);
+    }
+}
+
+/// One triangle and one road over it, byte by byte: what `FORMAT.md` shows. When this fails, the format has
+/// changed: say so in the changelog, raise the version, and put the new bytes into the page.
+#[test]
+fn the_smallest_tile_has_these_bytes() {
+    let vertex = |row, column, height_q| TinVertex { row, column, height_q };
+    let tin = Tin::new(vec![vertex(0, 0, 400), vertex(0, 256, 480), vertex(256, 0, 360)], &[[0, 2, 1]]).unwrap();
+    let roads_geo = geo_roads(&tin, &[vec![[64, 64], [128, 256]]]);
+    let terrain = Terrain {
+        tin,
+        normals: vec![[-1, -1]; 3],
+        geometric_error_m: 1.5,
+        height_range_m: [90.0, 120.0],
+        uncovered_nodes: 0,
+    };
+    let payload =
+        TilePayload { id: id(), terrain: Some(terrain), roads_geo, roads_sv: vec![], attributes: vec![] };
+    let Context { corner, scale, .. } = Context::new(id(), &frame(), QUANTUM_M).unwrap();
+    let ground = payload.terrain.as_ref().unwrap();
+    let geo = super::roads_geo::encode(&payload.roads_geo, corner, &surface(&ground.tin)).unwrap().0;
+    let raw = super::terrain::encode(ground, scale).unwrap();
+    let page = include_str!("../../FORMAT.md");
+    for bytes in [encode(&payload, &context()).unwrap().bytes, raw, geo] {
+        let line = |bytes: &[u8]| bytes.iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().join(" ");
+        let dump = bytes.chunks(32).map(line).collect::<Vec<_>>().join("\n");
+        assert!(page.contains(&dump), "FORMAT.md does not show these bytes:\n{dump}");
+    }
+}

@@ -1,0 +1,99 @@
+# Sourced by scripts/demo, scripts/test and .ci/run: finds out what is missing and installs it.
+# shellcheck shell=bash
+
+say() { printf '%s\n' "$*" >&2; }
+
+fail() {
+    local code=$1
+    shift
+    say "error: $*"
+    exit "$code"
+}
+
+# The GDAL library and its headers, to build; a Vulkan driver, to draw.
+missing_for_build() {
+    command -v cc >/dev/null || { echo gcc; echo libc6-dev; }
+    command -v pkg-config >/dev/null || echo pkg-config
+    pkg-config --exists gdal 2>/dev/null || echo libgdal-dev
+    has_vulkan_driver || echo mesa-vulkan-drivers
+    has_vulkan_loader || echo libvulkan1
+}
+
+# A python3 with numpy and shapely, for the independent check.
+missing_for_check() {
+    python_with numpy >/dev/null || echo python3-numpy
+    python_with shapely >/dev/null || echo python3-shapely
+}
+
+missing_for_download() {
+    command -v curl >/dev/null || { echo curl; echo ca-certificates; }
+}
+
+has_vulkan_loader() {
+    local libraries
+    [ "$(uname -s)" != Linux ] && return 0
+    libraries=$(PATH=$PATH:/sbin:/usr/sbin ldconfig -p 2>/dev/null) || return 1
+    grep -qF libvulkan.so.1 <<<"$libraries"
+}
+
+has_vulkan_driver() {
+    [ "$(uname -s)" != Linux ] && return 0 # macOS draws with Metal
+    local folder file
+    for folder in /usr/share/vulkan/icd.d /etc/vulkan/icd.d /usr/local/share/vulkan/icd.d; do
+        for file in "$folder"/*.json; do
+            [ -e "$file" ] && return 0
+        done
+    done
+    return 1
+}
+
+# Prints the first Python interpreter that can import all the named modules. Debian's own comes first:
+# its packages belong to that one, whatever else is called python3.
+python_with() {
+    local candidate modules
+    modules=$(IFS=,; echo "$*")
+    for candidate in /usr/bin/python3 python3; do
+        if command -v "$candidate" >/dev/null && "$candidate" -c "import $modules" 2>/dev/null; then
+            echo "$candidate"
+            return 0
+        fi
+    done
+    return 1
+}
+
+# Installs what the functions named print. Does nothing, not even `apt-get update`, when all is there.
+install_missing() {
+    local packages=() probe line as_root=()
+    command -v cargo >/dev/null || fail 2 "cargo is missing; install Rust (https://rustup.rs)"
+    for probe in "$@"; do
+        while IFS= read -r line; do packages+=("$line"); done < <("$probe")
+    done
+    [ ${#packages[@]} -eq 0 ] && return 0
+    if ! command -v apt-get >/dev/null; then
+        say "missing, by Debian's names: ${packages[*]}"
+        say "install their like by hand: macOS: brew install gdal pkg-config; pip install numpy shapely"
+        say "                            Fedora: dnf install gcc gdal-devel pkgconf mesa-vulkan-drivers vulkan-loader python3-numpy python3-shapely"
+        exit 2
+    fi
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null || fail 2 "run as root: apt-get install ${packages[*]}"
+        as_root=(sudo)
+    fi
+    say "installing from Debian's packages: ${packages[*]}"
+    # `env` carries the setting through sudo, which drops the environment.
+    ${as_root[@]+"${as_root[@]}"} apt-get update -qq >&2 || fail 1 "apt-get update failed; see above"
+    ${as_root[@]+"${as_root[@]}"} env DEBIAN_FRONTEND=noninteractive \
+        apt-get install -y -qq --no-install-recommends "${packages[@]}" >&2 ||
+        fail 1 "could not install ${packages[*]}; see above"
+    for probe in "$@"; do
+        line=$("$probe" | tr '\n' ' ')
+        [ -z "$line" ] || fail 1 "still missing after installing: $line"
+    done
+}
+
+# Builds the program and sets `corniche` to its path.
+build_corniche() {
+    cargo build --locked -p corniche-cli
+    corniche=${CARGO_TARGET_DIR:-target}/debug/corniche
+    [ -x "$corniche" ] || fail 1 "the build left no $corniche"
+}
