@@ -12,7 +12,7 @@ mod info;
 mod interrupt;
 mod presets;
 mod progress;
-//mod render;
+mod render;
 mod table;
 mod tile;
 mod verify;
@@ -53,6 +53,6 @@ fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
         Command::Growth(args) => growth::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Tile(args) => tile::run(&args),
-        Command::Render(_) => todo!(),
+        Command::Render(args) => render::run(&args),
     }
 }

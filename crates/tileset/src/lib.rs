@@ -15,18 +15,20 @@ mod package;
 mod payload;
 
 pub use manifest::{
-    Counts, GrowthRow, InputRecord, LevelRecord, Manifest, RoadLoss, SampleCounts, SettingsRecord, VerticalRecord,
+    Counts, GrowthRow, InputRecord, LevelRecord, Manifest, RoadLoss, SampleCounts, SettingsRecord,
+    VerticalRecord,
 };
 pub use package::{
-    ByteSource, FORMAT_VERSION, MemorySource, OpenError, Package, ReadError, SourceError, pmtiles_order,
+    ByteSource, FORMAT_VERSION, MemorySource, OpenError, Package, ReadError, SourceError,
+    pmtiles_order,
 };
 #[cfg(not(target_arch = "wasm32"))]
 pub use package::{FilePackage, FileSource};
 #[cfg(feature = "write")]
 pub use package::{WriteError, Writer};
+pub use payload::{
+    Damage, DecodeError, EncodeError, GeoRoad, MAX_SECTION_BYTES, RoadRecord, SectionSize,
+    Sections, SvRoad, Terrain, TilePayload, decode,
+};
 #[cfg(feature = "write")]
 pub use payload::{EncodedTile, PayloadContext, encode};
-pub use payload::{
-    Damage, DecodeError, EncodeError, GeoRoad, MAX_SECTION_BYTES, RoadRecord, SectionSize, Sections, SvRoad, Terrain,
-    TilePayload, decode,
-};

@@ -44,7 +44,8 @@ struct Metadata<M> {
 #[must_use]
 pub fn pmtiles_order(id: TileId) -> u64 {
     // A tile id is valid from construction, and PMTiles knows more levels than we do.
-    pmtiles::TileCoord::new(id.z(), id.x(), id.y()).map_or(u64::MAX, |coord| pmtiles::TileId::from(coord).value())
+    pmtiles::TileCoord::new(id.z(), id.x(), id.y())
+        .map_or(u64::MAX, |coord| pmtiles::TileId::from(coord).value())
 }
 
 /// The tile at a place; `None` for places beyond the deepest level.

@@ -13,8 +13,9 @@ const CELL_M: f64 = 90.0;
 
 /// One of the squares of an SRTM file, with a halo: 259 × 259 nodes; `None` without the data.
 fn heights(column: usize, row: usize) -> Option<HeightGrid> {
-    let data = std::env::var("CORNICHE_DATA")
-        .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data").to_owned());
+    let data = std::env::var("CORNICHE_DATA").unwrap_or_else(|_| {
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data").to_owned()
+    });
     let bytes = fs::read(Path::new(&data).join("liechtenstein/N47E009.hgt")).ok()?;
     let height = |c: usize, r: usize| {
         let at = 2 * ((row + r) * 1201 + column + c);
@@ -33,7 +34,8 @@ fn road(seed: u64, min: LatticePoint, side: i64, step: f64) -> Polyline {
         state ^= state << 17;
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
-    let (mut x, mut y, mut heading) = (random() * side as f64, random() * side as f64, random() * 6.3);
+    let (mut x, mut y, mut heading) =
+        (random() * side as f64, random() * side as f64, random() * 6.3);
     let points = (0..20).map(|_| {
         heading += random() - 0.5;
         x = (x + step * heading.cos()).clamp(0.0, side as f64);
@@ -69,13 +71,24 @@ fn real_ground_and_roads_come_out_small_and_whole() {
         }
         roads.sort_by_key(|road| (road.class, road.way_id, road.part));
         let crossings = roads.iter().flat_map(|road| &road.line.vertices);
-        let crossings = crossings.filter(|vertex| matches!(vertex, DrapedVertex::Crossing { .. })).count();
+        let crossings =
+            crossings.filter(|vertex| matches!(vertex, DrapedVertex::Crossing { .. })).count();
         let normals = normals(&grid, &tin, CELL_M);
         let (vertices, triangles) = (tin.vertices().len() as f64, tin.triangles().len() as f64);
-        let terrain =
-            Terrain { tin, normals, geometric_error_m: 22.0, height_range_m: [400.0, 2900.0], uncovered_nodes: 3 };
-        let payload =
-            TilePayload { id, terrain: Some(terrain), roads_geo: roads, roads_sv: vec![], attributes: vec![] };
+        let terrain = Terrain {
+            tin,
+            normals,
+            geometric_error_m: 22.0,
+            height_range_m: [400.0, 2900.0],
+            uncovered_nodes: 3,
+        };
+        let payload = TilePayload {
+            id,
+            terrain: Some(terrain),
+            roads_geo: roads,
+            roads_sv: vec![],
+            attributes: vec![],
+        };
         let context = PayloadContext { frame, quantum_m };
         let start = std::time::Instant::now();
         let encoded = encode(&payload, &context).unwrap();
@@ -89,7 +102,10 @@ fn real_ground_and_roads_come_out_small_and_whole() {
             decode(&encoded.bytes, id, &frame, quantum_m, Sections::TERRAIN).unwrap();
             start.elapsed().as_secs_f64() * 1e3
         });
-        println!("terrain alone: {:.2} ms to decode at best", terrain_ms.fold(f64::INFINITY, f64::min));
+        println!(
+            "terrain alone: {:.2} ms to decode at best",
+            terrain_ms.fold(f64::INFINITY, f64::min)
+        );
 
         // The same roads reduced to their source points: the difference is what crossings cost.
         let points = payload.roads_geo.iter().flat_map(|road| &road.line.vertices);
@@ -107,6 +123,9 @@ fn real_ground_and_roads_come_out_small_and_whole() {
         );
         assert!((encoded.terrain.stored as f64) < 3.0 * triangles, "terrain is no longer compact");
         // A lattice point alone is worth about five bytes; crossings must cost next to nothing beside.
-        assert!((encoded.roads_geo.stored as f64) < 6.5 * points as f64, "roads are no longer compact");
+        assert!(
+            (encoded.roads_geo.stored as f64) < 6.5 * points as f64,
+            "roads are no longer compact"
+        );
     }
 }

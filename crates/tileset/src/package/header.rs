@@ -57,13 +57,16 @@ impl Header {
             return Err(OpenError::OrdinaryPmtiles);
         }
         for Span { offset, length } in [header.root, header.metadata, header.leaves, header.data] {
-            let end = offset.checked_add(length).ok_or(OpenError::Damaged { what: "the header" })?;
+            let end =
+                offset.checked_add(length).ok_or(OpenError::Damaged { what: "the header" })?;
             if end > file_length {
                 return Err(OpenError::Truncated { needed: end, actual: file_length });
             }
         }
         if header.root.length > MAX_STORED_BYTES || header.metadata.length > MAX_STORED_BYTES {
-            return Err(OpenError::Damaged { what: "the header: directory or metadata of more than 64 MiB" });
+            return Err(OpenError::Damaged {
+                what: "the header: directory or metadata of more than 64 MiB",
+            });
         }
         Ok(header)
     }

@@ -49,16 +49,22 @@ pub enum OpenError {
         found: u8,
     },
     /// It holds something other than Corniche's tiles.
-    #[error("this is an ordinary PMTiles file, not a Corniche package; build one with `corniche build`")]
+    #[error(
+        "this is an ordinary PMTiles file, not a Corniche package; build one with `corniche build`"
+    )]
     OrdinaryPmtiles,
     /// It was written by another version of this program.
-    #[error("format version {found} is not supported; this program reads version {FORMAT_VERSION}: build the package again")]
+    #[error(
+        "format version {found} is not supported; this program reads version {FORMAT_VERSION}: build the package again"
+    )]
     Version {
         /// The version it says.
         found: u64,
     },
     /// It ends too early.
-    #[error("the file is cut off: it needs {needed} bytes and has {actual}; fetch or build it again")]
+    #[error(
+        "the file is cut off: it needs {needed} bytes and has {actual}; fetch or build it again"
+    )]
     Truncated {
         /// Bytes that the header speaks of.
         needed: u64,
@@ -84,7 +90,7 @@ pub enum OpenError {
 #[non_exhaustive]
 pub enum ReadError {
     /// Its bytes cannot be read.
-    #[error("tile {tile}")]
+    #[error("tile {tile}: {source}")]
     Source {
         /// Which tile.
         tile: TileId,
@@ -161,7 +167,8 @@ impl<S: ByteSource> Package<S> {
             let Some(&entry) = directory.entries.get(at) else { continue };
             open.push((directory, at + 1));
             // Every entry leads on to later tiles, so the listing ends whatever leaf a leaf points to.
-            if last.is_some_and(|last| entry.first <= pmtiles_order(last)) || ids.len() >= MAX_TILES {
+            if last.is_some_and(|last| entry.first <= pmtiles_order(last)) || ids.len() >= MAX_TILES
+            {
                 return Err(DAMAGED);
             }
             if entry.run == 0 {
@@ -172,7 +179,9 @@ impl<S: ByteSource> Package<S> {
                 open.push((leaf, 0));
                 continue;
             }
-            let id = tile_at(entry.first).filter(|id| id.z() <= self.manifest.frame.max_level()).ok_or(DAMAGED)?;
+            let id = tile_at(entry.first)
+                .filter(|id| id.z() <= self.manifest.frame.max_level())
+                .ok_or(DAMAGED)?;
             ids.push(id);
             last = Some(id);
         }
@@ -198,7 +207,10 @@ impl<S: ByteSource> Package<S> {
                 let bytes = self.source.read(offset + entry.offset, entry.length as usize).await;
                 return bytes.map(Some).map_err(|source| ReadError::Source { tile: id, source });
             }
-            let leaf = self.leaf(entry).await.map_err(|source| ReadError::Directory { tile: id, source })?;
+            let leaf = self
+                .leaf(entry)
+                .await
+                .map_err(|source| ReadError::Directory { tile: id, source })?;
             found = leaf.find(order);
         }
         Err(damaged("directories are nested too deep"))
@@ -208,7 +220,11 @@ impl<S: ByteSource> Package<S> {
     ///
     /// # Errors
     /// When it cannot be read or is damaged; the error names the tile and the section.
-    pub async fn payload(&self, id: TileId, wanted: Sections) -> Result<Option<TilePayload>, ReadError> {
+    pub async fn payload(
+        &self,
+        id: TileId,
+        wanted: Sections,
+    ) -> Result<Option<TilePayload>, ReadError> {
         let Some(bytes) = self.tile(id).await? else { return Ok(None) };
         let Manifest { frame, vertical, .. } = &self.manifest;
         Ok(Some(decode(&bytes, id, frame, vertical.quantum_m, wanted)?))
@@ -217,17 +233,21 @@ impl<S: ByteSource> Package<S> {
     /// A leaf directory, read once and kept for a while.
     async fn leaf(&self, entry: Entry) -> Result<Arc<Directory>, OpenError> {
         // A poisoned lock only means that another thread panicked between two whole directories.
-        let kept = self.leaves.lock().unwrap_or_else(PoisonError::into_inner).get(&entry.offset).cloned();
+        let kept =
+            self.leaves.lock().unwrap_or_else(PoisonError::into_inner).get(&entry.offset).cloned();
         if let Some(leaf) = kept {
             return Ok(leaf);
         }
         let Span { offset, length } = self.header.leaves;
         let end = entry.offset.checked_add(u64::from(entry.length));
         if end.is_none_or(|end| end > length) || entry.length > directory::MAX_STORED_BYTES {
-            return Err(OpenError::Damaged { what: "a directory points outside the leaf directories" });
+            return Err(OpenError::Damaged {
+                what: "a directory points outside the leaf directories",
+            });
         }
         let bytes = self.source.read(offset + entry.offset, entry.length as usize).await?;
-        let leaf = Directory::parse(&bytes).ok_or(OpenError::Damaged { what: "a leaf directory" })?;
+        let leaf =
+            Directory::parse(&bytes).ok_or(OpenError::Damaged { what: "a leaf directory" })?;
         let leaf = Arc::new(leaf);
         let mut leaves = self.leaves.lock().unwrap_or_else(PoisonError::into_inner);
         if leaves.len() >= KEPT_LEAVES {
@@ -254,7 +274,9 @@ fn parse_manifest(metadata: &[u8]) -> Result<Manifest, OpenError> {
     match manifest.get("format_version").and_then(serde_json::Value::as_u64) {
         Some(version) if version == u64::from(FORMAT_VERSION) => {}
         Some(found) => return Err(OpenError::Version { found }),
-        None => return Err(OpenError::Manifest { reason: "it names no format_version".to_owned() }),
+        None => {
+            return Err(OpenError::Manifest { reason: "it names no format_version".to_owned() });
+        }
     }
     serde_json::from_value(manifest).map_err(failed)
 }

@@ -24,7 +24,11 @@ pub trait ByteSource {
 
     /// Exactly `length` bytes from `offset` on; fewer are an error. The reader asks for no more than 64 MiB at
     /// once plus what a section may hold, and never past [`ByteSource::length`].
-    fn read(&self, offset: u64, length: usize) -> impl Future<Output = Result<Vec<u8>, SourceError>>;
+    fn read(
+        &self,
+        offset: u64,
+        length: usize,
+    ) -> impl Future<Output = Result<Vec<u8>, SourceError>>;
 }
 
 /// A package in memory.
@@ -47,12 +51,15 @@ impl ByteSource for MemorySource {
     }
 
     async fn read(&self, offset: u64, length: usize) -> Result<Vec<u8>, SourceError> {
-        let range = usize::try_from(offset).ok().and_then(|from| Some(from..from.checked_add(length)?));
-        range.and_then(|range| self.bytes.get(range)).map(<[u8]>::to_vec).ok_or_else(|| SourceError {
-            name: "memory".to_owned(),
-            offset,
-            length,
-            reason: format!("there are only {} bytes", self.bytes.len()),
+        let range =
+            usize::try_from(offset).ok().and_then(|from| Some(from..from.checked_add(length)?));
+        range.and_then(|range| self.bytes.get(range)).map(<[u8]>::to_vec).ok_or_else(|| {
+            SourceError {
+                name: "memory".to_owned(),
+                offset,
+                length,
+                reason: format!("there are only {} bytes", self.bytes.len()),
+            }
         })
     }
 }
@@ -116,7 +123,10 @@ mod file {
 
     impl ByteSource for FileSource {
         async fn length(&self) -> Result<u64, SourceError> {
-            self.file.metadata().map(|metadata| metadata.len()).map_err(|error| failure(&self.path, 0, 0, &error))
+            self.file
+                .metadata()
+                .map(|metadata| metadata.len())
+                .map_err(|error| failure(&self.path, 0, 0, &error))
         }
 
         async fn read(&self, offset: u64, length: usize) -> Result<Vec<u8>, SourceError> {

@@ -8,7 +8,8 @@ use super::{
     directory::Directory, pmtiles_order,
 };
 use crate::{
-    Counts, Manifest, PayloadContext, Sections, SettingsRecord, Terrain, TilePayload, VerticalRecord, encode,
+    Counts, Manifest, PayloadContext, Sections, SettingsRecord, Terrain, TilePayload,
+    VerticalRecord, encode,
 };
 
 /// Degrees that are metres / 100 km.
@@ -27,7 +28,9 @@ impl Projection for Flat {
 }
 
 fn manifest(max_level: u8) -> Manifest {
-    let frame = Frame::new([0.1, 0.7], 1.0 / 3.0, NodeIndex { i: 0, j: 256 << max_level }, max_level).unwrap();
+    let frame =
+        Frame::new([0.1, 0.7], 1.0 / 3.0, NodeIndex { i: 0, j: 256 << max_level }, max_level)
+            .unwrap();
     let data_bounds = frame.tile_bounds(TileId::ROOT);
     Manifest {
         format_version: FORMAT_VERSION,
@@ -40,7 +43,11 @@ fn manifest(max_level: u8) -> Manifest {
         data_bounds,
         wgs84_bounds: Bounds { min_x: 9.4, min_y: 47.0, max_x: 9.7, max_y: 47.3 },
         resampling: "nodes are the DEM's samples".to_owned(),
-        vertical: VerticalRecord { quantum_m: 0.125, unit: "metre".to_owned(), datum: "unknown".to_owned() },
+        vertical: VerticalRecord {
+            quantum_m: 0.125,
+            unit: "metre".to_owned(),
+            datum: "unknown".to_owned(),
+        },
         coordinates: CoordinateTable::sample(&Flat, data_bounds, 1.0).unwrap(),
         levels: vec![],
         settings: SettingsRecord {
@@ -71,8 +78,20 @@ fn payload(id: TileId) -> TilePayload {
     let vertex = |row, column| TinVertex { row, column, height_q: 8 * id.x() as i32 };
     let tin = Tin::new(vec![vertex(0, 0), vertex(0, 256), vertex(256, 0)], &[[0, 2, 1]]).unwrap();
     let normals = vec![[0, 0]; 3];
-    let terrain = Terrain { tin, normals, geometric_error_m: 0.0, height_range_m: [0.0, 8.0], uncovered_nodes: 0 };
-    TilePayload { id, terrain: Some(terrain), roads_geo: vec![], roads_sv: vec![], attributes: vec![] }
+    let terrain = Terrain {
+        tin,
+        normals,
+        geometric_error_m: 0.0,
+        height_range_m: [0.0, 8.0],
+        uncovered_nodes: 0,
+    };
+    TilePayload {
+        id,
+        terrain: Some(terrain),
+        roads_geo: vec![],
+        roads_sv: vec![],
+        attributes: vec![],
+    }
 }
 
 /// A package with three tiles.
@@ -170,7 +189,9 @@ fn many_tiles_need_leaf_directories_and_are_all_found() {
 #[test]
 fn order_is_level_then_hilbert_curve() {
     // From the PMTiles specification's table of tile ids.
-    for (text, order) in [("0/0/0", 0), ("1/0/0", 1), ("1/0/1", 2), ("1/1/1", 3), ("1/1/0", 4), ("2/0/0", 5)] {
+    for (text, order) in
+        [("0/0/0", 0), ("1/0/0", 1), ("1/0/1", 2), ("1/1/1", 3), ("1/1/0", 4), ("2/0/0", 5)]
+    {
         assert_eq!(pmtiles_order(tile(text)), order);
     }
 }
@@ -193,14 +214,18 @@ fn tiles_out_of_order_or_beyond_the_levels_are_refused() {
 fn ordinary_pmtiles_and_other_files_are_refused() {
     let ordinary = |kind, metadata: &str| {
         let mut bytes = Cursor::new(Vec::new());
-        let mut writer = pmtiles::PmTilesWriter::new(kind).metadata(metadata).create(&mut bytes).unwrap();
+        let mut writer =
+            pmtiles::PmTilesWriter::new(kind).metadata(metadata).create(&mut bytes).unwrap();
         writer.add_tile(pmtiles::TileCoord::new(0, 0, 0).unwrap(), b"tile").unwrap();
         writer.finalize().unwrap();
         open(bytes.into_inner()).map(|_| ()).unwrap_err()
     };
     assert!(matches!(ordinary(pmtiles::TileType::Png, "{}"), OpenError::OrdinaryPmtiles));
     assert!(matches!(ordinary(pmtiles::TileType::Unknown, "{}"), OpenError::OrdinaryPmtiles));
-    assert!(matches!(ordinary(pmtiles::TileType::Unknown, r#"{"name":7}"#), OpenError::OrdinaryPmtiles));
+    assert!(matches!(
+        ordinary(pmtiles::TileType::Unknown, r#"{"name":7}"#),
+        OpenError::OrdinaryPmtiles
+    ));
     let newer = ordinary(pmtiles::TileType::Unknown, r#"{"corniche":{"format_version":7}}"#);
     assert!(matches!(newer, OpenError::Version { found: 7 }), "{newer}");
     let broken = ordinary(pmtiles::TileType::Unknown, r#"{"corniche":{"format_version":0}}"#);

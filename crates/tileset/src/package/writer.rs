@@ -28,7 +28,9 @@ pub enum WriteError {
         reason: String,
     },
     /// Tiles come in another order than they are stored in.
-    #[error("tile {tile} comes after {previous}, but tiles are written in ascending pmtiles_order, each once")]
+    #[error(
+        "tile {tile} comes after {previous}, but tiles are written in ascending pmtiles_order, each once"
+    )]
     Order {
         /// The tile added.
         tile: TileId,
@@ -36,7 +38,9 @@ pub enum WriteError {
         previous: TileId,
     },
     /// A tile lies beyond the finest level, or has no bytes.
-    #[error("tile {tile} is no tile of this package: it has no bytes or lies beyond level {max_level}")]
+    #[error(
+        "tile {tile} is no tile of this package: it has no bytes or lies beyond level {max_level}"
+    )]
     Tile {
         /// The tile added.
         tile: TileId,
@@ -104,7 +108,9 @@ impl<W: Write + Seek> Writer<W> {
     /// # Errors
     /// When they do not, or writing fails.
     pub fn add(&mut self, id: TileId, payload: &[u8]) -> Result<(), WriteError> {
-        if let Some(previous) = self.previous.filter(|&previous| pmtiles_order(previous) >= pmtiles_order(id)) {
+        if let Some(previous) =
+            self.previous.filter(|&previous| pmtiles_order(previous) >= pmtiles_order(id))
+        {
             return Err(WriteError::Order { tile: id, previous });
         }
         if payload.is_empty() || id.z() > self.max_level {
@@ -131,20 +137,26 @@ impl<W: Write + Seek> Writer<W> {
 /// The metadata, checked to read back as the same manifest: JSON knows neither infinity nor not-a-number.
 fn to_json(manifest: &Manifest) -> Result<String, WriteError> {
     if manifest.format_version != FORMAT_VERSION {
-        let reason = format!("its format version is {}, not {FORMAT_VERSION}", manifest.format_version);
+        let reason =
+            format!("its format version is {}, not {FORMAT_VERSION}", manifest.format_version);
         return Err(WriteError::Manifest { reason });
     }
     let failed = |error: serde_json::Error| WriteError::Manifest { reason: error.to_string() };
     let metadata = Metadata {
         name: "Corniche package".to_owned(),
-        description: format!("Terrain and roads by {}; z/x/y is a local quadtree in {}", manifest.generator, manifest.crs),
+        description: format!(
+            "Terrain and roads by {}; z/x/y is a local quadtree in {}",
+            manifest.generator, manifest.crs
+        ),
         attribution: manifest.attribution.join(", "),
         corniche: manifest,
     };
     let json = serde_json::to_string(&metadata).map_err(failed)?;
     let back: Metadata<Manifest> = serde_json::from_str(&json).map_err(failed)?;
     if back.corniche != *manifest {
-        return Err(WriteError::Manifest { reason: "a number in it is infinite or not a number".to_owned() });
+        return Err(WriteError::Manifest {
+            reason: "a number in it is infinite or not a number".to_owned(),
+        });
     }
     Ok(json)
 }

@@ -50,7 +50,10 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
     // A long text named by every way would be copied for each: a small section must not become a large tile.
     let mut room = MAX_SECTION_BYTES;
     let mut text = |index: u32| {
-        let text = record.texts.get(index as usize).ok_or(Damage::Invalid { what: "a text that does not exist" })?;
+        let text = record
+            .texts
+            .get(index as usize)
+            .ok_or(Damage::Invalid { what: "a text that does not exist" })?;
         room = room.checked_sub(text.len()).ok_or(Damage::TooLarge {
             what: "texts of all ways",
             length: MAX_SECTION_BYTES as u64 + 1,
@@ -89,7 +92,9 @@ pub(super) fn encode(roads: &[RoadRecord]) -> Result<Vec<u8>, &'static str> {
     }
     let mut texts: Vec<&str> = roads
         .iter()
-        .flat_map(|road| [&road.attributes.name, &road.attributes.reference, &road.attributes.surface])
+        .flat_map(|road| {
+            [&road.attributes.name, &road.attributes.reference, &road.attributes.surface]
+        })
         .map(String::as_str)
         .collect();
     texts.sort_unstable();
@@ -98,10 +103,13 @@ pub(super) fn encode(roads: &[RoadRecord]) -> Result<Vec<u8>, &'static str> {
         return Err("more texts than 32 bits can number");
     }
     let index = |text: &str| texts.partition_point(|&other| other < text) as u32;
-    let mut record = Record { texts: texts.iter().map(|&text| text.to_owned()).collect(), ..Record::default() };
+    let mut record =
+        Record { texts: texts.iter().map(|&text| text.to_owned()).collect(), ..Record::default() };
     let mut previous = 0_i64;
     for RoadRecord { way_id, attributes } in roads {
-        record.way_id_steps.push(way_id.checked_sub(previous).ok_or("way ids that are too far apart")?);
+        record
+            .way_id_steps
+            .push(way_id.checked_sub(previous).ok_or("way ids that are too far apart")?);
         previous = *way_id;
         // Discriminants are the numbers that the tables above are indexed with.
         record.forms.push(attributes.form as u8);
@@ -112,5 +120,6 @@ pub(super) fn encode(roads: &[RoadRecord]) -> Result<Vec<u8>, &'static str> {
         record.references.push(index(&attributes.reference));
         record.surfaces.push(index(&attributes.surface));
     }
-    bincode::serde::encode_to_vec(&record, bincode::config::legacy()).map_err(|_| "the records of the section")
+    bincode::serde::encode_to_vec(&record, bincode::config::legacy())
+        .map_err(|_| "the records of the section")
 }

@@ -12,10 +12,11 @@ const MAX_LINES: usize = 1 << 20;
 /// Nor more points in one class.
 pub(super) const MAX_POINTS: usize = 1 << 22;
 
-/// Class, number of lines and bytes of each class that has any, by class.
-pub(super) fn decode<'a>(
-    cursor: &mut Cursor<'a>,
-) -> Result<Vec<(FunctionalRoadClass, usize, &'a [u8])>, Damage> {
+/// Class, number of lines, and their bytes.
+pub(super) type ClassBlob<'a> = (FunctionalRoadClass, usize, &'a [u8]);
+
+/// The lines of each class that has any, by class.
+pub(super) fn decode<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<ClassBlob<'a>>, Damage> {
     let mut counts = Vec::with_capacity(FunctionalRoadClass::COUNT);
     for class in FunctionalRoadClass::all() {
         let lines = u32::from_le_bytes(cursor.array()?) as usize;
@@ -26,7 +27,10 @@ pub(super) fn decode<'a>(
         counts.push((class, lines, length));
     }
     counts.retain(|&(_, lines, _)| lines > 0);
-    counts.into_iter().map(|(class, lines, length)| Ok((class, lines, cursor.take(length)?))).collect()
+    counts
+        .into_iter()
+        .map(|(class, lines, length)| Ok((class, lines, cursor.take(length)?)))
+        .collect()
 }
 
 /// What is told of a line before its points.
@@ -128,7 +132,9 @@ mod write {
             put_varint(out, zigzag(head.way_id.wrapping_sub(previous)));
             previous = head.way_id;
         }
-        heads.iter().for_each(|head| put_varint(out, u64::from(head.part)));
+        for head in heads {
+            put_varint(out, u64::from(head.part));
+        }
         for head in heads {
             debug_assert!(head.points <= MAX_POINTS);
             put_varint(out, 4 * head.points as u64 + u64::from(head.flags));

@@ -117,7 +117,11 @@ impl<'a> Cursor<'a> {
 
     /// Asserts that everything was taken.
     pub(super) fn finish(&self) -> Result<(), Damage> {
-        if self.is_empty() { Ok(()) } else { Err(Damage::Invalid { what: "bytes left over at the end" }) }
+        if self.is_empty() {
+            Ok(())
+        } else {
+            Err(Damage::Invalid { what: "bytes left over at the end" })
+        }
     }
 }
 
@@ -153,6 +157,9 @@ mod tests {
     fn overlong_and_cut_varints_are_refused() {
         assert!(Cursor::new(&[0xff; 10]).varint().is_err());
         assert!(Cursor::new(&[0x80, 0x80]).varint().is_err());
-        assert_eq!(Cursor::new(&[0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 1]).varint(), Ok(u64::MAX));
+        assert_eq!(
+            Cursor::new(&[0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 1]).varint(),
+            Ok(u64::MAX)
+        );
     }
 }

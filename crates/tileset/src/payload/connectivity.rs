@@ -17,7 +17,7 @@
 //! a grid are often on one circle, and outlines are constrained edges.
 //!
 //! Source for the walk: Touma & Gotsman 1998, *Triangle Mesh Compression*, and for guessing connectivity from
-//! positions: Lewiner, Lopes, Mello & Velho 2005, *GEncode: Geometry-driven compression for general meshes*.
+//! positions: Lewiner, Lopes, Mello & Velho 2005, *`GEncode`: Geometry-driven compression for general meshes*.
 //! What we changed: all positions come first, sorted, which is cheaper than positions in walking order.
 
 use std::collections::VecDeque;
@@ -115,7 +115,9 @@ pub(super) fn walk(
                 }
                 let guess = |no: &[u32]| {
                     nodes.best_corner([a, b], |c| {
-                        !no.contains(&c) && edges.corner(b, c).is_none() && edges.corner(c, a).is_none()
+                        !no.contains(&c)
+                            && edges.corner(b, c).is_none()
+                            && edges.corner(c, a).is_none()
                     })
                 };
                 match guide.corner([a, b], &guess)? {
@@ -136,8 +138,11 @@ pub(super) fn walk(
             }
         }
         let [a, b, c] = triangle;
-        let sides: &[[u32; 3]] =
-            if gate.is_some() { &[[c, b, a], [a, c, b]] } else { &[[b, a, c], [c, b, a], [a, c, b]] };
+        let sides: &[[u32; 3]] = if gate.is_some() {
+            &[[c, b, a], [a, c, b]]
+        } else {
+            &[[b, a, c], [c, b, a], [a, c, b]]
+        };
         gates.extend(sides);
     }
     // Vertices of no triangle, if any.

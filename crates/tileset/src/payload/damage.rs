@@ -88,7 +88,9 @@ pub enum EncodeError {
         what: &'static str,
     },
     /// A section is larger than readers accept.
-    #[error("tile {tile}, {section}: {bytes} bytes are more than readers accept ({limit}); use smaller classes or a larger --max-error")]
+    #[error(
+        "tile {tile}, {section}: {bytes} bytes are more than readers accept ({limit}); show fewer roads on this level or use a larger --max-error"
+    )]
     TooLarge {
         /// Which tile.
         tile: TileId,

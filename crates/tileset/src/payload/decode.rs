@@ -91,7 +91,11 @@ pub fn decode(
         if !wanted.contains(section) {
             return Ok(None);
         }
-        envelope::section(&sections, kind).map_err(|damage| DecodeError { tile: id, part: kind.name(), damage })
+        envelope::section(&sections, kind).map_err(|damage| DecodeError {
+            tile: id,
+            part: kind.name(),
+            damage,
+        })
     };
     let inside = |kind: Kind| move |damage| DecodeError { tile: id, part: kind.name(), damage };
 
@@ -99,7 +103,10 @@ pub fn decode(
     let needs_terrain = wanted.contains(Sections::TERRAIN) || roads_geo.is_some();
     let ground = if needs_terrain {
         let bytes = envelope::section(&sections, Kind::Terrain).map_err(inside(Kind::Terrain))?;
-        bytes.map(|bytes| terrain::decode(&bytes, context.scale)).transpose().map_err(inside(Kind::Terrain))?
+        bytes
+            .map(|bytes| terrain::decode(&bytes, context.scale))
+            .transpose()
+            .map_err(inside(Kind::Terrain))?
     } else {
         None
     };
@@ -109,7 +116,9 @@ pub fn decode(
             roads_geo::decode(&bytes, context.corner, &surface).map_err(inside(Kind::RoadsGeo))?
         }
         (Some(_), None) => {
-            return Err(inside(Kind::RoadsGeo)(Damage::Invalid { what: "roads without the ground they lie on" }));
+            return Err(inside(Kind::RoadsGeo)(Damage::Invalid {
+                what: "roads without the ground they lie on",
+            }));
         }
         (None, _) => Vec::new(),
     };

@@ -45,9 +45,14 @@ pub struct EncodedTile {
 pub fn encode(payload: &TilePayload, context: &PayloadContext) -> Result<EncodedTile, EncodeError> {
     let tile = payload.id;
     let quantum_m = context.quantum_m;
-    let inside = |kind: Kind| move |what| EncodeError::Unencodable { tile, section: kind.name(), what };
+    let inside =
+        |kind: Kind| move |what| EncodeError::Unencodable { tile, section: kind.name(), what };
     let Context { corner, placement, scale } = Context::new(tile, &context.frame, quantum_m)
-        .map_err(|_| inside(Kind::Terrain)("a tile beyond the package's finest level or a height quantum of nothing"))?;
+        .map_err(|_| {
+            inside(Kind::Terrain)(
+                "a tile beyond the package's finest level or a height quantum of nothing",
+            )
+        })?;
 
     let mut sections = Vec::new();
     if let Some(terrain) = &payload.terrain {
@@ -59,7 +64,8 @@ pub fn encode(payload: &TilePayload, context: &PayloadContext) -> Result<Encoded
         let inside = inside(Kind::RoadsGeo);
         let ground = payload.terrain.as_ref().ok_or_else(|| inside("roads without ground"))?;
         let surface = Surface::new(&ground.tin, placement);
-        let (bytes, class_bytes) = roads_geo::encode(&payload.roads_geo, corner, &surface).map_err(inside)?;
+        let (bytes, class_bytes) =
+            roads_geo::encode(&payload.roads_geo, corner, &surface).map_err(inside)?;
         geo_class_bytes = class_bytes;
         sections.push((Kind::RoadsGeo, bytes));
     }
@@ -77,7 +83,11 @@ pub fn encode(payload: &TilePayload, context: &PayloadContext) -> Result<Encoded
 
     let (bytes, sizes) = envelope::seal(tile, &sections)?;
     let size = |kind: Kind| {
-        sections.iter().zip(&sizes).find(|((of, _), _)| *of == kind).map_or_else(SectionSize::default, |(_, size)| *size)
+        sections
+            .iter()
+            .zip(&sizes)
+            .find(|((of, _), _)| *of == kind)
+            .map_or_else(SectionSize::default, |(_, size)| *size)
     };
     Ok(EncodedTile {
         bytes,

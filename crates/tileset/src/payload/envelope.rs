@@ -70,7 +70,8 @@ pub(super) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, D
     for _ in 0..count {
         let kind = u16::from_le_bytes(cursor.array()?);
         let [compression, reserved] = cursor.array()?;
-        let [offset, length, raw_length, checksum] = [(); 4].map(|()| cursor.array().map(u32::from_le_bytes));
+        let [offset, length, raw_length, checksum] =
+            [(); 4].map(|()| cursor.array().map(u32::from_le_bytes));
         let (offset, length) = (offset? as usize, length? as usize);
         let stored = offset.checked_add(length).and_then(|end| bytes.get(offset..end));
         if reserved != 0 {
@@ -96,7 +97,10 @@ pub(super) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, D
 }
 
 /// The bytes of the section of one kind, decompressed and checked; `None` where it is absent.
-pub(super) fn section(sections: &[StoredSection<'_>], kind: Kind) -> Result<Option<Vec<u8>>, Damage> {
+pub(super) fn section(
+    sections: &[StoredSection<'_>],
+    kind: Kind,
+) -> Result<Option<Vec<u8>>, Damage> {
     let Some(section) = sections.iter().find(|section| section.kind == kind as u16) else {
         return Ok(None);
     };
@@ -166,11 +170,18 @@ pub(super) fn seal(
     for (kind, raw) in sections {
         let section = kind.name();
         if raw.len() > MAX_SECTION_BYTES {
-            return Err(EncodeError::TooLarge { tile: id, section, bytes: raw.len(), limit: MAX_SECTION_BYTES });
+            return Err(EncodeError::TooLarge {
+                tile: id,
+                section,
+                bytes: raw.len(),
+                limit: MAX_SECTION_BYTES,
+            });
         }
-        let compressed = zstd::bulk::compress(raw, COMPRESSION_LEVEL)
-            .map_err(|error| EncodeError::Compress { tile: id, section, reason: error.to_string() })?;
-        let (compression, stored) = if compressed.len() < raw.len() { (ZSTD, &compressed) } else { (STORED, raw) };
+        let compressed = zstd::bulk::compress(raw, COMPRESSION_LEVEL).map_err(|error| {
+            EncodeError::Compress { tile: id, section, reason: error.to_string() }
+        })?;
+        let (compression, stored) =
+            if compressed.len() < raw.len() { (ZSTD, &compressed) } else { (STORED, raw) };
         table.extend((*kind as u16).to_le_bytes());
         table.extend([compression, 0]);
         for number in [start + body.len(), stored.len(), raw.len()] {

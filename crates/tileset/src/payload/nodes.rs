@@ -29,8 +29,9 @@ impl Nodes {
     /// `at` holds columns and rows below [`TILE_NODES`], sorted by row, then column.
     pub(super) fn new(at: impl Iterator<Item = [u16; 2]>) -> Self {
         let at: Vec<[i64; 2]> = at.map(|node| node.map(i64::from)).collect();
-        let row_starts =
-            (0..=TILE_NODES as i64).map(|row| at.partition_point(|node| node[1] < row) as u32).collect();
+        let row_starts = (0..=TILE_NODES as i64)
+            .map(|row| at.partition_point(|node| node[1] < row) as u32)
+            .collect();
         Self { at, row_starts }
     }
 
@@ -65,7 +66,8 @@ impl Nodes {
             let reach = |row: i64| {
                 best.is_none_or(|best| (row as f64 - best.center[1]).abs() <= best.radius + 1.0)
             };
-            let (go_north, go_south) = (north >= 0 && reach(north), away > 0 && south <= last_row && reach(south));
+            let (go_north, go_south) =
+                (north >= 0 && reach(north), away > 0 && south <= last_row && reach(south));
             // The circle is convex and meets the gate's rows: once outside on both sides, always outside.
             if away > (ar - br).abs() && !go_north && !go_south {
                 break;
@@ -106,7 +108,8 @@ impl Nodes {
         if low > high {
             return;
         }
-        let range = self.row_starts[row as usize] as usize..self.row_starts[row as usize + 1] as usize;
+        let range =
+            self.row_starts[row as usize] as usize..self.row_starts[row as usize + 1] as usize;
         let first = range.start + self.at[range.clone()].partition_point(|node| node[0] < low);
         for vertex in first..range.end {
             let [c, r] = self.at[vertex];
@@ -118,11 +121,12 @@ impl Nodes {
                 continue;
             }
             let dot = (ac - c) * (bc - c) + (ar - r) * (br - r);
-            let better = best.is_none_or(|best| match (dot * best.cross).cmp(&(best.dot * cross)) {
-                std::cmp::Ordering::Less => true,
-                std::cmp::Ordering::Equal => (vertex as u32) < best.vertex,
-                std::cmp::Ordering::Greater => false,
-            });
+            let better =
+                best.is_none_or(|best| match (dot * best.cross).cmp(&(best.dot * cross)) {
+                    std::cmp::Ordering::Less => true,
+                    std::cmp::Ordering::Equal => (vertex as u32) < best.vertex,
+                    std::cmp::Ordering::Greater => false,
+                });
             if better && allowed(vertex as u32) {
                 *best = Some(circle(vertex as u32, dot, cross, [[ac, ar], [bc, br]]));
             }

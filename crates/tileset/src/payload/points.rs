@@ -47,7 +47,8 @@ pub(super) fn put_points(
     if points.len() > MAX_POINTS {
         return Err("more than four million points in one class");
     }
-    let far = |at: i64, corner: i64| i128::from(at).abs_diff(i128::from(corner)) > REACH_STEPS as u128;
+    let far =
+        |at: i64, corner: i64| i128::from(at).abs_diff(i128::from(corner)) > REACH_STEPS as u128;
     if points.iter().any(|point| far(point.u, corner.u) || far(point.v, corner.v)) {
         return Err("a point far away from the tile");
     }

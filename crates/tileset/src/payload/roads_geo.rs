@@ -21,7 +21,11 @@ const SOURCE: u8 = 1;
 const CROSSING: u8 = 2;
 const VERTEX: u8 = 3;
 
-pub(super) fn decode(bytes: &[u8], corner: LatticePoint, surface: &Surface) -> Result<Vec<GeoRoad>, Damage> {
+pub(super) fn decode(
+    bytes: &[u8],
+    corner: LatticePoint,
+    surface: &Surface,
+) -> Result<Vec<GeoRoad>, Damage> {
     let mut cursor = Cursor::new(bytes);
     let mut roads = Vec::new();
     let mut room = MAX_VERTICES;
@@ -98,7 +102,11 @@ fn decode_surprise(
     surface: &Surface,
     route: &Route<'_>,
 ) -> Result<Option<DrapedVertex>, Damage> {
-    let last_vertex = surface.points().len().checked_sub(1).ok_or(Damage::Invalid { what: "a road without ground" })?;
+    let last_vertex = surface
+        .points()
+        .len()
+        .checked_sub(1)
+        .ok_or(Damage::Invalid { what: "a road without ground" })?;
     let last_triangle = surface.triangles().len().saturating_sub(1);
     let kind = surprises.byte()?;
     let mut index = |last: usize, what| surprises.bounded(last, what).map(|index| index as u32);
@@ -106,20 +114,26 @@ fn decode_surprise(
         END => None,
         SOURCE => {
             let triangle = index(last_triangle, "a triangle under a road")?;
-            let point = route.next_source().ok_or(Damage::Invalid { what: "a source point too many" })?;
+            let point =
+                route.next_source().ok_or(Damage::Invalid { what: "a source point too many" })?;
             if !surface.triangle_holds(triangle, point) {
                 return Err(Damage::Invalid { what: "a source point outside its triangle" });
             }
             Some(DrapedVertex::Source { point, triangle })
         }
         CROSSING => {
-            let (a, b) = (index(last_vertex, "an edge under a road")?, index(last_vertex, "an edge under a road")?);
+            let (a, b) = (
+                index(last_vertex, "an edge under a road")?,
+                index(last_vertex, "an edge under a road")?,
+            );
             if a >= b {
                 return Err(Damage::Invalid { what: "an edge under a road" });
             }
             Some(DrapedVertex::Crossing { a, b })
         }
-        VERTEX => Some(DrapedVertex::Vertex { vertex: index(last_vertex, "a vertex under a road")? }),
+        VERTEX => {
+            Some(DrapedVertex::Vertex { vertex: index(last_vertex, "a vertex under a road")? })
+        }
         _ => return Err(Damage::Invalid { what: "a kind of surprise" }),
     })
 }
@@ -130,14 +144,10 @@ pub(super) use write::encode;
 #[cfg(feature = "write")]
 mod write {
     use super::{
-        CROSSING, DrapedLine, DrapedVertex, END, FunctionalRoadClass, GeoRoad, LatticePoint, MAX_VERTICES, Route,
-        SOURCE, Surface, VERTEX, class_table,
+        CROSSING, DrapedLine, DrapedVertex, END, FunctionalRoadClass, GeoRoad, LatticePoint,
+        MAX_VERTICES, Route, SOURCE, Surface, VERTEX, class_table,
     };
-    use crate::payload::{
-        class_table::Head,
-        codec::put_varint,
-        points::put_points,
-    };
+    use crate::payload::{class_table::Head, codec::put_varint, points::put_points};
 
     /// The section's bytes and how many of them each class takes, or what of the roads cannot be encoded.
     pub(in super::super) fn encode(
@@ -148,35 +158,47 @@ mod write {
         if roads.iter().map(|road| road.line.vertices.len()).sum::<usize>() > MAX_VERTICES {
             return Err("more than four million vertices of lines");
         }
-        class_table::encode(roads, |road| (road.class, road.way_id, road.part), |of_class, out| {
-            let mut heads = Vec::with_capacity(of_class.len());
-            let mut points = Vec::new();
-            let mut surprises = Vec::new();
-            for road in of_class {
-                let first = points.len();
-                points.extend(road.line.lead_in);
-                points.extend(road.line.vertices.iter().filter_map(|vertex| match vertex {
-                    DrapedVertex::Source { point, .. } => Some(*point),
-                    _ => None,
-                }));
-                points.extend(road.line.lead_out);
-                let leads = [road.line.lead_in.is_some(), road.line.lead_out.is_some()];
-                heads.push(Head {
-                    way_id: road.way_id,
-                    part: road.part,
-                    points: points.len() - first,
-                    flags: u8::from(leads[0]) | u8::from(leads[1]) << 1,
-                });
-                put_surprises(&mut surprises, &road.line, Route::new(surface, &points[first..], leads))?;
-            }
-            class_table::put_heads(out, &heads);
-            put_points(out, &points, corner)?;
-            out.extend(surprises);
-            Ok(())
-        })
+        class_table::encode(
+            roads,
+            |road| (road.class, road.way_id, road.part),
+            |of_class, out| {
+                let mut heads = Vec::with_capacity(of_class.len());
+                let mut points = Vec::new();
+                let mut surprises = Vec::new();
+                for road in of_class {
+                    let first = points.len();
+                    points.extend(road.line.lead_in);
+                    points.extend(road.line.vertices.iter().filter_map(|vertex| match vertex {
+                        DrapedVertex::Source { point, .. } => Some(*point),
+                        _ => None,
+                    }));
+                    points.extend(road.line.lead_out);
+                    let leads = [road.line.lead_in.is_some(), road.line.lead_out.is_some()];
+                    heads.push(Head {
+                        way_id: road.way_id,
+                        part: road.part,
+                        points: points.len() - first,
+                        flags: u8::from(leads[0]) | u8::from(leads[1]) << 1,
+                    });
+                    put_surprises(
+                        &mut surprises,
+                        &road.line,
+                        Route::new(surface, &points[first..], leads),
+                    )?;
+                }
+                class_table::put_heads(out, &heads);
+                put_points(out, &points, corner)?;
+                out.extend(surprises);
+                Ok(())
+            },
+        )
     }
 
-    fn put_surprises(out: &mut Vec<u8>, line: &DrapedLine, mut route: Route<'_>) -> Result<(), &'static str> {
+    fn put_surprises(
+        out: &mut Vec<u8>,
+        line: &DrapedLine,
+        mut route: Route<'_>,
+    ) -> Result<(), &'static str> {
         let surface = route.surface();
         let (vertex_count, triangle_count) = (surface.points().len(), surface.triangles().len());
         if line.vertices.len() < 2 {

@@ -13,7 +13,11 @@ use super::{
 /// Heights stay below this many quanta, where f64 knows every whole number.
 const REACH_Q: f64 = (1_u64 << 53) as f64;
 
-pub(super) fn decode(bytes: &[u8], corner: LatticePoint, quantum_m: f64) -> Result<Vec<SvRoad>, Damage> {
+pub(super) fn decode(
+    bytes: &[u8],
+    corner: LatticePoint,
+    quantum_m: f64,
+) -> Result<Vec<SvRoad>, Damage> {
     let mut cursor = Cursor::new(bytes);
     let mut roads = Vec::new();
     for (class, lines, blob) in class_table::decode(&mut cursor)? {
@@ -43,7 +47,8 @@ pub(super) fn decode(bytes: &[u8], corner: LatticePoint, quantum_m: f64) -> Resu
             if of_line.0.windows(2).any(|pair| pair[0] == pair[1]) {
                 return Err(Damage::Invalid { what: "a segment without length" });
             }
-            let line = SvLine { points: of_line.0.to_vec(), ground_range_m: of_segments.0.to_vec() };
+            let line =
+                SvLine { points: of_line.0.to_vec(), ground_range_m: of_segments.0.to_vec() };
             roads.push(SvRoad { way_id: head.way_id, part: head.part, class, line });
         }
     }
@@ -71,37 +76,49 @@ mod write {
         corner: LatticePoint,
         quantum_m: f64,
     ) -> Result<(Vec<u8>, [u64; FunctionalRoadClass::COUNT]), &'static str> {
-        class_table::encode(roads, |road| (road.class, road.way_id, road.part), |of_class, out| {
-            let mut heads = Vec::with_capacity(of_class.len());
-            let mut points = Vec::new();
-            let (mut lows, mut spans) = (Vec::new(), Vec::new());
-            let mut previous = 0;
-            for SvRoad { way_id, part, line, .. } in of_class {
-                if line.points.len() < 2 || line.points.windows(2).any(|pair| pair[0] == pair[1]) {
-                    return Err("a line without length");
-                }
-                if line.ground_range_m.len() != line.points.len() - 1 {
-                    return Err("ground ranges that are not one for each segment");
-                }
-                heads.push(Head { way_id: *way_id, part: *part, points: line.points.len(), flags: 0 });
-                points.extend(&line.points);
-                for &[low_m, high_m] in &line.ground_range_m {
-                    // Outwards; a quantum is a power of two, so dividing by it loses nothing.
-                    let (low, high) = ((low_m / quantum_m).floor(), (high_m / quantum_m).ceil());
-                    if !(low.abs() < REACH_Q && high.abs() < REACH_Q && low <= high) {
-                        return Err("a ground range that is none");
+        class_table::encode(
+            roads,
+            |road| (road.class, road.way_id, road.part),
+            |of_class, out| {
+                let mut heads = Vec::with_capacity(of_class.len());
+                let mut points = Vec::new();
+                let (mut lows, mut spans) = (Vec::new(), Vec::new());
+                let mut previous = 0;
+                for SvRoad { way_id, part, line, .. } in of_class {
+                    if line.points.len() < 2
+                        || line.points.windows(2).any(|pair| pair[0] == pair[1])
+                    {
+                        return Err("a line without length");
                     }
-                    let (low, high) = (low as i64, high as i64);
-                    lows.push(zigzag(low - previous));
-                    spans.push((high - low) as u64);
-                    previous = low;
+                    if line.ground_range_m.len() != line.points.len() - 1 {
+                        return Err("ground ranges that are not one for each segment");
+                    }
+                    heads.push(Head {
+                        way_id: *way_id,
+                        part: *part,
+                        points: line.points.len(),
+                        flags: 0,
+                    });
+                    points.extend(&line.points);
+                    for &[low_m, high_m] in &line.ground_range_m {
+                        // Outwards; a quantum is a power of two, so dividing by it loses nothing.
+                        let (low, high) =
+                            ((low_m / quantum_m).floor(), (high_m / quantum_m).ceil());
+                        if !(low.abs() < REACH_Q && high.abs() < REACH_Q && low <= high) {
+                            return Err("a ground range that is none");
+                        }
+                        let (low, high) = (low as i64, high as i64);
+                        lows.push(zigzag(low - previous));
+                        spans.push((high - low) as u64);
+                        previous = low;
+                    }
                 }
-            }
-            class_table::put_heads(out, &heads);
-            put_points(out, &points, corner)?;
-            put_planes(out, &lows);
-            put_planes(out, &spans);
-            Ok(())
-        })
+                class_table::put_heads(out, &heads);
+                put_points(out, &points, corner)?;
+                put_planes(out, &lows);
+                put_planes(out, &spans);
+                Ok(())
+            },
+        )
     }
 }

@@ -66,14 +66,17 @@ impl<'a> Route<'a> {
         if let Place::Start = self.place {
             // A line with a lead-in starts on the outline; finding where would be a search.
             let point = if self.next == 0 { self.next_source()? } else { return None };
-            return self.surface.locate(point).map(|triangle| DrapedVertex::Source { point, triangle });
+            return self
+                .surface
+                .locate(point)
+                .map(|triangle| DrapedVertex::Source { point, triangle });
         }
         let (p, q) = (*self.points.get(self.next.checked_sub(1)?)?, *self.points.get(self.next)?);
         let line = Line { surface: self.surface, p, q };
         let vertex = match self.place {
-            Place::Triangle(triangle) => line.from_point(triangle),
+            Place::Triangle(triangle) => line.after_point(triangle),
             Place::HalfEdge(half_edge) => line.ahead(half_edge / 3, p, None),
-            Place::Vertex(vertex) => line.from_vertex(vertex),
+            Place::Vertex(vertex) => line.after_vertex(vertex),
             Place::Start | Place::Outside => None,
         }?;
         // The lead-out is a direction, never reached.
@@ -87,7 +90,9 @@ impl<'a> Route<'a> {
                 self.next += 1;
                 Place::Triangle(triangle)
             }
-            DrapedVertex::Crossing { a, b } => self.entering(a, b).map_or(Place::Outside, Place::HalfEdge),
+            DrapedVertex::Crossing { a, b } => {
+                self.entering(a, b).map_or(Place::Outside, Place::HalfEdge)
+            }
             DrapedVertex::Vertex { vertex } => Place::Vertex(vertex),
         };
     }
@@ -97,7 +102,8 @@ impl<'a> Route<'a> {
         let (p, q) = (*self.points.get(self.next.checked_sub(1)?)?, *self.points.get(self.next)?);
         let left_start = cross(p, q, self.surface.points()[a as usize]) > 0;
         let [from, to] = if left_start { [a, b] } else { [b, a] };
-        let from_fan = self.surface.fan(from).iter().find(|&&half_edge| self.surface.ends(half_edge)[1] == to);
+        let from_fan =
+            self.surface.fan(from).iter().find(|&&half_edge| self.surface.ends(half_edge)[1] == to);
         from_fan.copied()
     }
 }
@@ -111,7 +117,8 @@ struct Line<'a> {
 
 impl Line<'_> {
     fn corners(&self, triangle: u32) -> [LatticePoint; 3] {
-        self.surface.triangles()[triangle as usize].map(|vertex| self.surface.points()[vertex as usize])
+        self.surface.triangles()[triangle as usize]
+            .map(|vertex| self.surface.points()[vertex as usize])
     }
 
     /// The next vertex within `triangle`, seen from `here`, which is the TIN vertex `at` if that is given.
@@ -136,7 +143,9 @@ impl Line<'_> {
             }
         }
         let is_ahead = |corner: LatticePoint| {
-            let along = |from: i64, to: i64, low: i64, high: i64| i128::from(to - from) * i128::from(high - low);
+            let along = |from: i64, to: i64, low: i64, high: i64| {
+                i128::from(to - from) * i128::from(high - low)
+            };
             along(p.u, q.u, here.u, corner.u) + along(p.v, q.v, here.v, corner.v) > 0
         };
         (0..3)
@@ -154,10 +163,10 @@ impl Line<'_> {
     }
 
     /// From the source point p in `triangle`.
-    fn from_point(&self, triangle: u32) -> Option<DrapedVertex> {
+    fn after_point(&self, triangle: u32) -> Option<DrapedVertex> {
         let corners = self.corners(triangle);
         if let Some(k) = corners.iter().position(|&corner| corner == self.p) {
-            return self.from_vertex(self.surface.triangles()[triangle as usize][k]);
+            return self.after_vertex(self.surface.triangles()[triangle as usize][k]);
         }
         if self.goes_into(triangle, self.p) {
             return self.ahead(triangle, self.p, None);
@@ -170,7 +179,7 @@ impl Line<'_> {
     }
 
     /// From a TIN vertex on the line.
-    fn from_vertex(&self, vertex: u32) -> Option<DrapedVertex> {
+    fn after_vertex(&self, vertex: u32) -> Option<DrapedVertex> {
         let here = self.surface.points()[vertex as usize];
         let mut around = self.surface.fan(vertex).iter().map(|half_edge| half_edge / 3);
         let triangle = around.find(|&triangle| self.goes_into(triangle, here))?;

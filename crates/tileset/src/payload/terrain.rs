@@ -44,8 +44,9 @@ pub(super) struct Scale {
 pub(super) fn decode(bytes: &[u8], scale: Scale) -> Result<Terrain, Damage> {
     let mut cursor = Cursor::new(bytes);
     let config = bincode::config::legacy().with_limit::<RECORD_BYTES>();
-    let (record, _): (Record, usize) = bincode::serde::decode_from_slice(cursor.take(RECORD_BYTES)?, config)
-        .map_err(|_| Damage::Invalid { what: "the record of the section" })?;
+    let (record, _): (Record, usize) =
+        bincode::serde::decode_from_slice(cursor.take(RECORD_BYTES)?, config)
+            .map_err(|_| Damage::Invalid { what: "the record of the section" })?;
     let count = at_most(record.vertices, MAX_VERTICES, "number of vertices")?;
     let triangle_count = at_most(record.triangles, MAX_TRIANGLES, "number of triangles")?;
     let at = decode_nodes(&mut cursor, count)?;
@@ -73,7 +74,11 @@ pub(super) fn decode(bytes: &[u8], scale: Scale) -> Result<Terrain, Damage> {
     let vertices: Vec<TinVertex> = at
         .iter()
         .zip(&heights)
-        .map(|(&[column, row], &height)| TinVertex { row, column, height_q: height << record.height_shift })
+        .map(|(&[column, row], &height)| TinVertex {
+            row,
+            column,
+            height_q: height << record.height_shift,
+        })
         .collect();
     let normals = guess_normals(&vertices, &triangles, scale);
     let tin = Tin::new(vertices, &triangles)?;
@@ -148,7 +153,11 @@ impl Guide for Player<'_> {
         Ok([a, a + 1 + self.vertex()?, a + 1 + self.vertex()?])
     }
 
-    fn corner(&mut self, _: [u32; 2], guess: &dyn Fn(&[u32]) -> Option<u32>) -> Result<Option<u32>, Damage> {
+    fn corner(
+        &mut self,
+        _: [u32; 2],
+        guess: &dyn Fn(&[u32]) -> Option<u32>,
+    ) -> Result<Option<u32>, Damage> {
         let Some(first) = guess(&[]) else { return Ok(None) };
         match self.symbols.byte()? {
             NONE => Ok(None),
@@ -156,7 +165,8 @@ impl Guide for Player<'_> {
             rank @ 2..=GUESSES => {
                 let mut no = vec![first];
                 loop {
-                    let next = guess(&no).ok_or(Damage::Invalid { what: "a guess that does not exist" })?;
+                    let next = guess(&no)
+                        .ok_or(Damage::Invalid { what: "a guess that does not exist" })?;
                     no.push(next);
                     if no.len() == usize::from(rank) {
                         return Ok(Some(next));
@@ -197,7 +207,8 @@ fn guess_normals(vertices: &[TinVertex], triangles: &[[u32; 3]], scale: Scale) -
         });
         let edge = |p: [i64; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
         let (p, q) = (edge(b), edge(c));
-        let normal = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+        let normal =
+            [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
         for &vertex in triangle {
             for (sum, part) in sums[vertex as usize].iter_mut().zip(normal) {
                 *sum += part;
@@ -221,13 +232,16 @@ pub(super) use write::encode;
 #[cfg(feature = "write")]
 mod write {
     use super::{
-        Damage, Edges, GUESSES, Guide, MAX_TRIANGLES, MAX_VERTICES, NAMED, NONE, Nodes, Record, Scale,
-        TILE_NODES, Terrain, guess_height, guess_normals, walk,
+        Damage, Edges, GUESSES, Guide, MAX_TRIANGLES, MAX_VERTICES, NAMED, NONE, Nodes, Record,
+        Scale, TILE_NODES, Terrain, guess_height, guess_normals, walk,
     };
     use crate::payload::codec::{put_planes, put_varint, zigzag};
 
     /// The section's bytes, or what of the ground cannot be encoded.
-    pub(in super::super) fn encode(terrain: &Terrain, scale: Scale) -> Result<Vec<u8>, &'static str> {
+    pub(in super::super) fn encode(
+        terrain: &Terrain,
+        scale: Scale,
+    ) -> Result<Vec<u8>, &'static str> {
         let vertices = terrain.tin.vertices();
         if vertices.len() != terrain.normals.len() {
             return Err("normals that are not one for each vertex");
@@ -241,9 +255,10 @@ mod write {
         }
         let at: Vec<[u16; 2]> = vertices.iter().map(|v| [v.column, v.row]).collect();
         let nodes = Nodes::new(at.iter().copied());
-        let mut recorder = Recorder::new(vertices.len(), triangles).map_err(|_| "an edge with several triangles on one side")?;
-        let (found, order) =
-            walk(&nodes, triangles.len(), &mut recorder).map_err(|_| "an edge with several triangles on one side")?;
+        let mut recorder = Recorder::new(vertices.len(), triangles)
+            .map_err(|_| "an edge with several triangles on one side")?;
+        let (found, order) = walk(&nodes, triangles.len(), &mut recorder)
+            .map_err(|_| "an edge with several triangles on one side")?;
         let factors = vertices.iter().fold(0, |all, vertex| all | vertex.height_q);
         let height_shift = if factors == 0 { 0 } else { factors.trailing_zeros() as u8 };
         let record = Record {
@@ -275,7 +290,9 @@ mod write {
         put_planes(&mut out, &residuals);
         let guesses = guess_normals(vertices, &found, scale);
         for axis in 0..2 {
-            let residual = |(normal, guess): (&[i8; 2], &[i8; 2])| normal[axis].wrapping_sub(guess[axis]) as u8;
+            let residual = |(normal, guess): (&[i8; 2], &[i8; 2])| {
+                normal[axis].wrapping_sub(guess[axis]) as u8
+            };
             out.extend(terrain.normals.iter().zip(&guesses).map(residual));
         }
         Ok(out)
@@ -283,8 +300,12 @@ mod write {
 
     fn put_nodes(out: &mut Vec<u8>, at: &[[u16; 2]]) {
         let mut per_row = [0; TILE_NODES];
-        at.iter().for_each(|node| per_row[usize::from(node[1])] += 1);
-        per_row.iter().for_each(|&count| put_varint(out, count));
+        for node in at {
+            per_row[usize::from(node[1])] += 1;
+        }
+        for count in per_row {
+            put_varint(out, count);
+        }
         let mut next = [0, 0];
         for &[column, row] in at {
             let expected = if next[1] == row { next[0] } else { 0 };
@@ -356,5 +377,4 @@ mod write {
             Ok(corner)
         }
     }
-
 }

@@ -83,7 +83,7 @@ impl Country {
                 for line in drape(&part, &surface).lines {
                     roads_geo.push(GeoRoad {
                         way_id: way_id as i64,
-                        part: 0,
+                        part: parts.next().unwrap(),
                         class: class(*number),
                         line,
                     });
