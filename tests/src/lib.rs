@@ -19,6 +19,7 @@ pub fn sample(path: &str) -> PathBuf {
 
 /// The developers' real data, if they are here: `CORNICHE_DATA`, else `../shared/data`. Says so when not.
 #[must_use]
+#[expect(clippy::print_stderr, reason = "a test that is skipped says so")]
 pub fn real_data(path: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("CORNICHE_DATA").map_or_else(
         || root().parent().map(|up| up.join("shared/data")).unwrap_or_default(),
@@ -81,6 +82,12 @@ pub fn corniche<I: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = I
         Ok(output) => output.into(),
         Err(error) => panic!("the binary does not start: {error}"),
     }
+}
+
+/// Says that a test was skipped, and why.
+#[expect(clippy::print_stderr, reason = "a test that is skipped says so")]
+pub fn skipped(why: &str) {
+    eprintln!("skipped: {why}");
 }
 
 /// Builds the `pass` sample into `package` with more `options`.

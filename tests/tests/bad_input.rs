@@ -24,7 +24,7 @@ fn refuses(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
 }
 
 fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
+    path.to_str().expect("paths of these tests are UTF-8")
 }
 
 #[test]

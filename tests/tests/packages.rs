@@ -2,17 +2,17 @@
 
 use std::{fs, path::Path, process::Command};
 
-use e2e::{build_pass, corniche, real_data, root, sample};
+use e2e::{build_pass, corniche, real_data, root, sample, skipped};
 use serde_json::Value;
 
 fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
+    path.to_str().expect("paths of these tests are UTF-8")
 }
 
 fn json(arguments: &[&str]) -> Value {
     let ran = corniche(arguments);
     assert_eq!(ran.code, 0, "{arguments:?}: {}", ran.err);
-    serde_json::from_str(&ran.out).unwrap()
+    serde_json::from_str(&ran.out).expect("what is meant for programs is JSON")
 }
 
 /// P4: the bytes do not depend on threads, memory, time or the target's name.
@@ -89,7 +89,7 @@ fn independent_check_agrees() {
         python(&["-c", "import numpy, shapely"]).is_ok_and(|output| output.status.success());
     if !has_modules {
         assert!(std::env::var_os("CI").is_none(), "python3 with numpy and shapely is missing");
-        eprintln!("skipped: python3 with numpy and shapely is not here");
+        skipped("python3 with numpy and shapely is not here");
         return;
     }
     let script = root().join("tests/check_tile.py");
@@ -148,7 +148,7 @@ fn pictures_come_out_or_the_missing_adapter_is_named() {
         && std::env::var_os("CORNICHE_REQUIRE_GPU").is_none()
         && ran.err.contains("adapter")
     {
-        eprintln!("skipped: {}", ran.err);
+        skipped(&ran.err);
         return;
     }
     assert_eq!(ran.code, 0, "{}", ran.err);

@@ -2,6 +2,8 @@
 //!
 //! This crate never holds an algorithm.
 
+#![expect(clippy::print_stderr, reason = "the command talks to people on standard error")]
+
 mod args;
 mod build;
 mod chart;

@@ -1,6 +1,9 @@
 //! `corniche verify`: whether a package keeps its promises.
 
-use std::io::{self, Write as _};
+use std::{
+    fmt::Write as _,
+    io::{self, Write as _},
+};
 
 use corniche_pipeline::{VerifyReport, VerifySettings};
 use serde_json::json;
@@ -36,27 +39,28 @@ fn to_text(report: &VerifyReport) -> String {
     let mut text = String::new();
     for check in &report.checks {
         let verdict = if check.holds() { "holds " } else { "BROKEN" };
-        text.push_str(&format!("{verdict}  {} ({} looked at", check.name, count(check.checked)));
+        let _ = write!(text, "{verdict}  {} ({} looked at", check.name, count(check.checked));
         if !check.holds() {
-            text.push_str(&format!(", {} broken", count(check.broken)));
+            let _ = write!(text, ", {} broken", count(check.broken));
         }
         text.push_str(")\n");
         for example in &check.examples {
-            text.push_str(&format!("          {example}\n"));
+            let _ = write!(text, "          {example}\n");
         }
     }
     let largest_m = report.gaps.iter().map(|gap| gap.largest_m).fold(0.0, f64::max);
-    text.push_str(&format!(
+    let _ = write!(
+        text,
         "\n{} tiles, {} borders compared; largest gap of a GEO road to its TIN: {largest_m:.3e} m\n",
         count(report.tiles),
         count(report.borders),
-    ));
+    );
     if report.gaps.iter().any(|gap| gap.edges > 0) {
         let mut table = Table::new(["level", "GEO edges", "largest gap m"]);
         for gap in &report.gaps {
             table.row([gap.level.to_string(), count(gap.edges), format!("{:.2e}", gap.largest_m)]);
         }
-        text.push_str(&format!("\n{}", table.to_text()));
+        let _ = write!(text, "\n{}", table.to_text());
     }
     if !report.errors.is_empty() {
         let mut table = Table::new([
@@ -84,17 +88,18 @@ fn to_text(report: &VerifyReport) -> String {
                 count(figures.uncovered_nodes),
             ]);
         }
-        text.push_str(&format!("\n{}", table.to_text()));
+        let _ = write!(text, "\n{}", table.to_text());
     }
     if let Some(samples) = report.samples {
-        text.push_str(&format!(
+        let _ = write!(
+            text,
             "\nAt the DEM's own {} samples the finest level is off by {:.3} m at most, {:.3} m RMS; {} samples lie off \
              the TIN\n",
             count(samples.samples),
             samples.largest_m,
             samples.rms_m,
             count(samples.uncovered),
-        ));
+        );
     }
     text
 }

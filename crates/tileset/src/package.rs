@@ -54,5 +54,5 @@ fn tile_at(order: u64) -> Option<TileId> {
     TileId::new(coord.z(), coord.x(), coord.y()).ok()
 }
 
-#[cfg(all(test, feature = "write"))]
+#[cfg(test)]
 mod tests;

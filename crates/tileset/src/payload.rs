@@ -93,5 +93,5 @@ pub struct RoadRecord {
     pub attributes: RoadAttributes,
 }
 
-#[cfg(all(test, feature = "write"))]
+#[cfg(test)]
 mod tests;

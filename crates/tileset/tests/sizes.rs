@@ -1,5 +1,9 @@
 //! How small tiles come out on real ground. Prints figures; run with `--nocapture`.
-#![expect(clippy::print_stdout, reason = "figures are what this test is for")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test may unwrap, and this one prints figures"
+)]
 
 use std::{fs, path::Path};
 

@@ -105,9 +105,7 @@ pub fn select(tree: &dyn TileTree, camera: &Camera, quality: Quality) -> Selecti
     };
     match tree.node(TileId::ROOT) {
         Node::Absent => {}
-        Node::Listed => {
-            walk.requests.push(Request { id: TileId::ROOT, priority_px: f64::INFINITY })
-        }
+        Node::Listed => walk.request(TileId::ROOT, f64::INFINITY),
         Node::Loaded(ground) => {
             let range_m =
                 ground.map_or([f64::NEG_INFINITY, f64::INFINITY], |ground| ground.height_range_m);
@@ -160,7 +158,9 @@ impl Walk<'_> {
             .filter(|(_, node)| *node == Node::Listed)
             .map(|(child, _)| *child)
             .collect();
-        self.requests.extend(missing.iter().map(|&id| Request { id, priority_px: error_px }));
+        for id in &missing {
+            self.request(*id, error_px);
+        }
         if let Some(ground) = ground
             && (is_leaf || !missing.is_empty())
         {
@@ -172,6 +172,10 @@ impl Walk<'_> {
                 self.visit(child, ground, range_m);
             }
         }
+    }
+
+    fn request(&mut self, id: TileId, priority_px: f64) {
+        self.requests.push(Request { id, priority_px });
     }
 
     fn world_box(&self, id: TileId, range_m: [f64; 2]) -> WorldBox {

@@ -135,6 +135,7 @@ fn rgb(hex: u32) -> Rgb {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
 mod tests {
     use super::*;
 

@@ -1,6 +1,7 @@
 //! What the graphics card draws, against references computed in f64 on the CPU.
 //!
 //! Software Vulkan is enough. Without any adapter each test reports itself skipped.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
 mod support;
 

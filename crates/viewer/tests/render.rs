@@ -1,4 +1,5 @@
 //! A package on disk to a picture: the whole way of `corniche render`.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
 mod support;
 

@@ -1,4 +1,5 @@
 //! From heights and roads to a settled picture: triangulated, draped, selected, drawn; no package in between.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
 mod support;
 

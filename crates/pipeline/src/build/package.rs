@@ -37,12 +37,10 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Result<Manifest, BuildError> {
     let settings_json =
         serde_json::to_vec(&record).map_err(|error| BuildError::Storage(error.into()))?;
     let projection = outcome.dem.projection(plan)?;
-    let root = frame.tile_bounds(corniche_geom::TileId::ROOT);
     // The data's rectangle with room around it, but not the root's far corners: they can be a world away.
     let room = 0.1 * plan.data_bounds.width().max(plan.data_bounds.height()).max(frame.cell_m());
     let around = Bounds {
-        min_x: (plan.data_bounds.min_x - room)
-            .min(root.min_x.max(plan.data_bounds.min_x - 2.0 * room)),
+        min_x: plan.data_bounds.min_x - room,
         min_y: plan.data_bounds.min_y - room,
         max_x: plan.data_bounds.max_x + room,
         max_y: plan.data_bounds.max_y + room,

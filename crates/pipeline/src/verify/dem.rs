@@ -66,19 +66,13 @@ pub(crate) fn verify(
             let mut found = Vec::new();
             for level in 0..=max_level {
                 let ancestor = id.ancestor(level);
-                let ground = match cache.get(&ancestor) {
-                    Some(ground) => Rc::clone(ground),
-                    None => {
-                        // A tile that cannot be read was reported already; here it has no ground to compare.
-                        let payload = package.payload(ancestor, Sections::TERRAIN).ok().flatten();
-                        let terrain = payload.and_then(|payload| payload.terrain);
-                        let quantum_m = manifest.vertical.quantum_m;
-                        let ground =
-                            Rc::new(terrain.map(|terrain| Ground::new(&terrain.tin, quantum_m)));
-                        cache.insert(ancestor, Rc::clone(&ground));
-                        ground
-                    }
-                };
+                // A tile that cannot be read was reported already; here it has no ground to compare.
+                let ground = Rc::clone(cache.entry(ancestor).or_insert_with(|| {
+                    let payload = package.payload(ancestor, Sections::TERRAIN).ok().flatten();
+                    let terrain = payload.and_then(|payload| payload.terrain);
+                    let quantum_m = manifest.vertical.quantum_m;
+                    Rc::new(terrain.map(|terrain| Ground::new(&terrain.tin, quantum_m)))
+                }));
                 if let Some(ground) = &*ground {
                     found
                         .push((ancestor, compare(ground, [id, ancestor], &window, halo, manifest)));

@@ -134,7 +134,9 @@ mod tests {
         #[test]
         fn varints_and_zigzag_come_back(values in prop::collection::vec(any::<i64>(), 0..40)) {
             let mut bytes = Vec::new();
-            values.iter().for_each(|&value| put_varint(&mut bytes, zigzag(value)));
+            for &value in &values {
+                put_varint(&mut bytes, zigzag(value));
+            }
             let mut cursor = Cursor::new(&bytes);
             for value in values {
                 prop_assert_eq!(unzigzag(cursor.varint().unwrap()), value);

@@ -2,7 +2,6 @@
 
 use corniche_drape::{DrapedLine, DrapedVertex};
 use corniche_geom::LatticePoint;
-use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
 
 use super::{
@@ -143,9 +142,11 @@ pub(super) use write::encode;
 
 #[cfg(feature = "write")]
 mod write {
+    use corniche_roads::FunctionalRoadClass;
+
     use super::{
-        CROSSING, DrapedLine, DrapedVertex, END, FunctionalRoadClass, GeoRoad, LatticePoint,
-        MAX_VERTICES, Route, SOURCE, Surface, VERTEX, class_table,
+        CROSSING, DrapedLine, DrapedVertex, END, GeoRoad, LatticePoint, MAX_VERTICES, Route,
+        SOURCE, Surface, VERTEX, class_table,
     };
     use crate::payload::{class_table::Head, codec::put_varint, points::put_points};
 

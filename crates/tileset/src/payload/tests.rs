@@ -299,6 +299,32 @@ fn bombs_and_foreign_bytes_are_refused() {
     assert!(decode(&bytes, deep, &frame(), QUANTUM_M, Sections::ALL).is_err());
 }
 
+/// The decompressor, too, meets bytes that no compressor wrote.
+#[test]
+fn hostile_compressed_bytes_do_not_panic() {
+    let raw: Vec<u8> = (0..3000_u32).map(|k| (k * k / 1000) as u8 & 0x1f).collect();
+    let sealed =
+        super::envelope::seal(id(), &[(super::envelope::Kind::Terrain, raw.clone())]).unwrap().0;
+    let open = |bytes: &[u8]| {
+        let mut bytes = bytes.to_vec();
+        // Offset, stored length, raw length, checksum: the table's only entry, made right again.
+        let sum = crc32fast::hash(&bytes[40..]);
+        bytes[32..36].copy_from_slice(&sum.to_le_bytes());
+        let sum = crc32fast::hash(&bytes[..36]);
+        bytes[36..40].copy_from_slice(&sum.to_le_bytes());
+        let sections = super::envelope::open(&bytes, id()).unwrap();
+        super::envelope::section(&sections, super::envelope::Kind::Terrain)
+    };
+    assert_eq!(open(&sealed), Ok(Some(raw)));
+    let mut refused = 0;
+    for bit in 8 * 40..8 * sealed.len() {
+        let mut damaged = sealed.clone();
+        damaged[bit / 8] ^= 1 << (bit % 8);
+        refused += usize::from(open(&damaged).is_err());
+    }
+    assert!(refused > 100, "{refused}");
+}
+
 #[test]
 fn what_cannot_be_encoded_is_an_error() {
     let check = |damage: &dyn Fn(&mut TilePayload)| {

@@ -89,6 +89,7 @@ pub(super) fn relative(position_m: [f64; 3], reference_m: [f64; 3]) -> [f32; 3] 
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
 mod tests {
     use corniche_geom::NodeIndex;
     use corniche_tin::TinVertex;

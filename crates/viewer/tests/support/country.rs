@@ -32,7 +32,7 @@ pub(crate) fn height_m(x: f64, y: f64) -> f64 {
 }
 
 /// Error of interpolating `height_m` linearly over right triangles with legs `cell_m`: by Taylor's theorem at
-/// most cell² / 8 · (|f_xx| + 2 |f_xy| + |f_yy|), and never more than twice the amplitude.
+/// most cell² / 8 · (`|f_xx| + 2 |f_xy| + |f_yy|`), and never more than twice the amplitude.
 pub(crate) fn interpolation_error_m(cell_m: f64) -> f64 {
     let error = |[height, kx, ky]: [f64; 3]| {
         (height * cell_m * cell_m / 8.0 * (kx + ky).powi(2)).min(2.0 * height)
