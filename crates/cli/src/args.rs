@@ -69,10 +69,10 @@ pub(crate) struct TerrainArgs {
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub(crate) nodata: Option<f64>,
     /// Spacing of the finest level, in metres [default: the DEM's]
-    #[arg(long, value_name = "METRES")]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub(crate) cell: Option<f64>,
     /// Largest vertical error of the finest level, in metres [default: a quarter of the cell]
-    #[arg(long, value_name = "METRES")]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub(crate) max_error: Option<f64>,
     /// Fill voids that have data within this many cells in each of eight directions [default: 32]
     #[arg(long, value_name = "CELLS")]

@@ -66,7 +66,7 @@ pub(crate) fn in_order<S, R: Send, E: Send>(
                 queue.next - 1
             };
             // A worker that panics must not leave the writer waiting for its result.
-            let guard = StopOnPanic { stop: &|| lock().stop = true, changed: &changed };
+            let guard = StopOnDrop { stop: &|| lock().stop = true, changed: &changed };
             let ready = match &mut state {
                 Some(_) => Ok(()),
                 empty => start().map(|new| *empty = Some(new)),
@@ -81,6 +81,8 @@ pub(crate) fn in_order<S, R: Send, E: Send>(
         }
     };
     thread::scope(|scope| {
+        // However the writer leaves, workers that wait must go home: the scope waits for them.
+        let _guard = StopOnDrop { stop: &|| lock().stop = true, changed: &changed };
         for _ in 0..threads {
             scope.spawn(worker);
         }
@@ -111,12 +113,12 @@ pub(crate) fn in_order<S, R: Send, E: Send>(
     })
 }
 
-struct StopOnPanic<'a> {
+struct StopOnDrop<'a> {
     stop: &'a dyn Fn(),
     changed: &'a Condvar,
 }
 
-impl Drop for StopOnPanic<'_> {
+impl Drop for StopOnDrop<'_> {
     fn drop(&mut self) {
         (self.stop)();
         self.changed.notify_all();
@@ -168,6 +170,15 @@ mod tests {
     fn nothing_to_do_is_done() {
         let result = in_order(4, 0, || Ok(()), |(), _| Ok(()), |_, ()| Err("never called"));
         assert_eq!(result, Ok(()));
+    }
+
+    #[test]
+    #[should_panic(expected = "writer panics")]
+    fn a_panic_of_the_writer_does_not_leave_workers_waiting() {
+        let _ = in_order(2, 100, || Ok::<_, ()>(()), |(), index| Ok(index), |index, _| {
+            assert!(index != 3, "writer panics");
+            Ok(())
+        });
     }
 
     #[test]

@@ -113,19 +113,46 @@ impl Camera {
         }
     }
 
-    /// Looks at the middle of `subject` from just so far away that all of it is in the picture.
+    /// Looks at `subject` from just so far away that all of it is in the picture, in the middle of it.
     #[must_use]
     pub fn framing(subject: WorldBox, orientation: Orientation, size_px: [u32; 2]) -> Self {
-        let view_from_world = world_from_view(orientation).transpose();
+        let world_from_view = world_from_view(orientation);
+        let view_from_world = world_from_view.transpose();
         let tan = half_extent_at_unit_depth(FOV_Y_RAD, size_px);
-        // A corner (x, y, z) in view axes around the centre is inside iff |x| ≤ tan.x · (distance − z), and
-        // likewise for y: each asks for a least distance.
-        let least_m = subject.corners().fold(0.0_f64, |least, corner| {
-            let corner = view_from_world * (corner - subject.center());
-            least.max(corner.x.abs() / tan.x + corner.z).max(corner.y.abs() / tan.y + corner.z)
-        });
-        let distance_m = (least_m * (1.0 + FRAME_MARGIN)).max(1.0);
-        Self::look_at(subject.center(), distance_m, orientation, size_px)
+        let corners: Vec<DVec3> =
+            subject.corners().map(|corner| view_from_world * (corner - subject.center())).collect();
+        // With the eye at (ox, oy, d) in view axes around the centre, a corner (x, y, z) is inside iff
+        // |x − ox| ≤ tan.x · (d − z), that is d ≥ z + (x − ox) / tan.x and d ≥ z − (x − ox) / tan.x; likewise for
+        // y. The least distance for which some ox, oy will do is where both bounds are equal.
+        let reach = |sign: f64| {
+            let bounds = corners.iter().map(|corner| sign * corner.truncate() / tan + corner.z);
+            bounds.reduce(DVec2::max).unwrap_or_default()
+        };
+        let least_m = ((reach(1.0) + reach(-1.0)) / 2.0).max_element();
+        let distance_m = least_m.max(1.0) * (1.0 + FRAME_MARGIN);
+        // In the middle is where the picture's free borders are equal. Moving the eye right moves everything
+        // left, so halving an interval finds it.
+        let middle = |axis: usize| {
+            let far = corners.iter().fold(0.0_f64, |far, corner| far.max(corner[axis].abs()));
+            let (mut low, mut high) = (-far, far);
+            for _ in 0..60 {
+                let offset = f64::midpoint(low, high);
+                let places =
+                    corners.iter().map(|corner| (corner[axis] - offset) / (distance_m - corner.z));
+                let [least, most] = places
+                    .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], place| {
+                        [least.min(place), most.max(place)]
+                    });
+                if least + most > 0.0 {
+                    low = offset;
+                } else {
+                    high = offset;
+                }
+            }
+            f64::midpoint(low, high)
+        };
+        let target = subject.center() + world_from_view * DVec3::new(middle(0), middle(1), 0.0);
+        Self::look_at(target, distance_m, orientation, size_px)
     }
 
     /// The eye, world metres.

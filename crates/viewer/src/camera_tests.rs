@@ -61,15 +61,15 @@ fn framing_holds_every_corner_and_touches_the_border() {
     let subject = WorldBox::new(plan, [200.0, 3000.0]);
     for heading_deg in [0.0, 30.0, 200.0] {
         let camera = Camera::framing(subject, Orientation { heading_deg, pitch_deg: 55.0 }, SIZE);
-        let mut widest: f64 = 0.0;
+        let (mut low, mut high) = (DVec2::ONE, DVec2::NEG_ONE);
         for corner in subject.corners() {
             let (at, _) = camera.project(corner).unwrap();
-            let reach =
-                ((at - DVec2::new(320.0, 240.0)) / DVec2::new(320.0, 240.0)).abs().max_element();
-            assert!(reach < 1.0, "{corner} at {at}");
-            widest = widest.max(reach);
+            let share = (at - DVec2::new(320.0, 240.0)) / DVec2::new(320.0, 240.0);
+            assert!(share.abs().max_element() < 1.0, "{corner} at {at}");
+            (low, high) = (low.min(share), high.max(share));
         }
-        assert!(widest > 0.85, "{widest}: too far away");
+        assert!((low + high).abs().max_element() < 1e-6, "{low} to {high} is not in the middle");
+        assert!((high - low).max_element() > 1.85, "{low} to {high}: too far away");
     }
 }
 

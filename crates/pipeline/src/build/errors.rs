@@ -23,9 +23,16 @@ pub(crate) struct TileError {
 /// The errors of all tiles.
 pub(crate) struct TileErrors {
     by_tile: BTreeMap<TileId, TileError>,
+    /// Per level, nodes with data under tiles without ground.
+    under_absent: BTreeMap<u8, u64>,
 }
 
 impl TileErrors {
+    /// Nodes with data that no tile of the level covers because there is no tile above them.
+    pub(crate) fn under_absent(&self, level: u8) -> u64 {
+        self.under_absent.get(&level).copied().unwrap_or_default()
+    }
+
     /// The error of a tile that has a mesh. A tile of which no node was seen has none: its ground covers nothing
     /// that could be off.
     pub(crate) fn of(&self, id: TileId) -> TileError {
@@ -79,6 +86,7 @@ pub(crate) fn measure(
     let subtrees: Vec<Vec<TileId>> = subtrees.into_values().collect();
     observer.begin(Stage::Errors, Some(finest.len() as u64));
     let mut seen: BTreeMap<TileId, Seen> = BTreeMap::new();
+    let mut under_absent: BTreeMap<u8, u64> = BTreeMap::new();
     workers::in_order(
         threads,
         subtrees.len(),
@@ -101,14 +109,18 @@ pub(crate) fn measure(
         },
         |index, found| {
             for (id, other) in found {
-                seen.entry(id).or_default().merge(other);
+                if meshes.contains_key(&id) {
+                    seen.entry(id).or_default().merge(other);
+                } else {
+                    *under_absent.entry(id.z()).or_default() += other.uncovered_nodes;
+                }
             }
             observer.advance(Stage::Errors, subtrees[index].len() as u64);
             Ok(())
         },
     )?;
     observer.end(Stage::Errors);
-    Ok(TileErrors { by_tile: stored(&seen, meshes) })
+    Ok(TileErrors { by_tile: stored(&seen, meshes), under_absent })
 }
 
 /// The work on one subtree.
@@ -141,7 +153,13 @@ impl Subtree<'_> {
                     })
                 }
             };
-            let Some(buckets) = buckets else { continue };
+            let Some(buckets) = buckets else {
+                let side = window.columns() - 1;
+                let uncovered_nodes = window.window(0, 0, side, side).count_heights() as u64;
+                let seen = Seen { uncovered_nodes, ..Seen::default() };
+                self.seen.entry(id).or_default().merge(seen);
+                continue;
+            };
             let (corner, above) = (frame.tile_corner(finest), frame.tile_corner(id));
             let placement = WindowPlacement {
                 column: corner.i - above.i,
@@ -164,17 +182,23 @@ impl Subtree<'_> {
     }
 }
 
-/// Stored = max(own, children's stored), from the finest level up.
+/// Stored = max(own, all beneath), from the finest level up.
+///
+/// A tile may lack ground where its children have some (an island too small for a cell of its level), so what is
+/// beneath counts for the nearest tile above that exists.
 fn stored(seen: &BTreeMap<TileId, Seen>, meshes: &Meshes) -> BTreeMap<TileId, TileError> {
     let mut by_tile: BTreeMap<TileId, TileError> = BTreeMap::new();
+    let mut beneath_m: BTreeMap<TileId, f64> = BTreeMap::new();
     // Ids sort by level first, so backwards is children before parents.
     for &id in meshes.keys().rev() {
         let own = seen.get(&id).copied().unwrap_or_default();
-        let children_m = id
-            .children()
-            .filter_map(|child| by_tile.get(&child))
-            .map(|child| child.geometric_error_m);
-        let geometric_error_m = children_m.fold(own.deviation.max_abs_m, f64::max);
+        let geometric_error_m =
+            beneath_m.get(&id).copied().unwrap_or_default().max(own.deviation.max_abs_m);
+        let above = (0..id.z()).rev().map(|level| id.ancestor(level)).find(|above| meshes.contains_key(above));
+        if let Some(above) = above {
+            let largest_m = beneath_m.entry(above).or_default();
+            *largest_m = largest_m.max(geometric_error_m);
+        }
         let [low, high] = own.range_m.unwrap_or([0.0, 0.0]);
         by_tile.insert(
             id,

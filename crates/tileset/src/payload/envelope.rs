@@ -146,9 +146,10 @@ pub struct SectionSize {
     pub stored: u64,
 }
 
-/// zstd's level: beyond it sections of this size gain less than 1 %.
+/// zstd's level: from 16 on it splits blocks where the statistics change, which suits streams laid end to end; 19
+/// saves less than 1 % more at twice the time.
 #[cfg(feature = "write")]
-const COMPRESSION_LEVEL: i32 = 12;
+const COMPRESSION_LEVEL: i32 = 16;
 
 /// Puts header, table and sections together; compresses each section where that makes it smaller.
 #[cfg(feature = "write")]

@@ -52,20 +52,10 @@ impl Gpu {
     /// # Errors
     /// When there is no adapter at all or it gives no device.
     pub fn new() -> Result<Self, GpuError> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-        let options = wgpu::RequestAdapterOptions {
-            power_preference: wgpu::PowerPreference::HighPerformance,
-            ..Default::default()
-        };
-        let fallback =
-            wgpu::RequestAdapterOptions { force_fallback_adapter: true, ..Default::default() };
-        let adapter = pollster::block_on(async {
-            match instance.request_adapter(&options).await {
-                Ok(adapter) => Ok(adapter),
-                Err(_) => instance.request_adapter(&fallback).await,
-            }
-        })
-        .map_err(|source| GpuError::NoAdapter { source })?;
+        // OpenGL only if there is nothing better.
+        let adapter = request_adapter(wgpu::Backends::PRIMARY)
+            .or_else(|_| request_adapter(wgpu::Backends::SECONDARY))
+            .map_err(|source| GpuError::NoAdapter { source })?;
         let info = adapter.get_info();
         let adapter_name = format!("{} ({})", info.name, info.backend);
         let descriptor = wgpu::DeviceDescriptor { label: Some("corniche"), ..Default::default() };
@@ -85,4 +75,19 @@ impl Gpu {
     pub fn max_side_px(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
     }
+}
+
+fn request_adapter(backends: wgpu::Backends) -> Result<wgpu::Adapter, wgpu::RequestAdapterError> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends,
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let fastest = wgpu::RequestAdapterOptions {
+        power_preference: wgpu::PowerPreference::HighPerformance,
+        ..Default::default()
+    };
+    let software =
+        wgpu::RequestAdapterOptions { force_fallback_adapter: true, ..Default::default() };
+    pollster::block_on(instance.request_adapter(&fastest))
+        .or_else(|_| pollster::block_on(instance.request_adapter(&software)))
 }
