@@ -75,14 +75,22 @@ pub(crate) struct Factors {
     pub(crate) raw_bytes: Option<f64>,
     /// Clipped bytes, stored, over the source's.
     pub(crate) stored_bytes: Option<f64>,
+    /// Clipped bytes, raw, over the level's own simplified line's.
+    pub(crate) raw_over_simplified: Option<f64>,
+    /// Clipped bytes, stored, over the level's own simplified line's.
+    pub(crate) stored_over_simplified: Option<f64>,
 }
 
-/// All levels together cost the sum of the levels, against one copy of the source.
+/// All levels together cost the sum of the levels, against one copy of the source: what the finest level, which
+/// shows every class, has of it.
 pub(crate) fn whole(manifest: &Manifest) -> (GrowthRow, Factors) {
-    let mut all = sum(manifest.growth.iter());
-    let levels = manifest.levels.len().max(1) as u64;
-    all.source_vertices /= levels;
-    all.source_bytes /= levels;
+    let finest = manifest.levels.last().map_or(0, |level| level.level);
+    let source = sum(manifest.growth.iter().filter(|row| row.level == finest));
+    let all = GrowthRow {
+        source_vertices: source.source_vertices,
+        source_bytes: source.source_bytes,
+        ..sum(manifest.growth.iter())
+    };
     let factors = factors(&all);
     (all, factors)
 }
@@ -94,6 +102,8 @@ pub(crate) fn factors(row: &GrowthRow) -> Factors {
         over_source: ratio(row.geo_vertices, row.source_vertices),
         raw_bytes: ratio(row.geo_raw_bytes, row.source_bytes),
         stored_bytes: ratio(row.geo_stored_bytes, row.source_bytes),
+        raw_over_simplified: ratio(row.geo_raw_bytes, row.simplified_bytes),
+        stored_over_simplified: ratio(row.geo_stored_bytes, row.simplified_bytes),
     }
 }
 
@@ -101,7 +111,7 @@ fn factor(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}"))
 }
 
-fn line(name: String, row: &GrowthRow, factors: &Factors) -> [String; 11] {
+fn line(name: String, row: &GrowthRow, factors: &Factors) -> [String; 13] {
     [
         name,
         count(row.source_vertices),
@@ -114,6 +124,8 @@ fn line(name: String, row: &GrowthRow, factors: &Factors) -> [String; 11] {
         bytes(row.geo_stored_bytes),
         factor(factors.raw_bytes),
         factor(factors.stored_bytes),
+        factor(factors.raw_over_simplified),
+        factor(factors.stored_over_simplified),
     ]
 }
 
@@ -130,6 +142,8 @@ fn to_text(manifest: &Manifest) -> String {
         "stored",
         "raw/source",
         "stored/source",
+        "raw/simplified",
+        "stored/simplified",
     ];
     let mut levels = Table::new(headings);
     for level in &manifest.levels {
@@ -138,13 +152,13 @@ fn to_text(manifest: &Manifest) -> String {
     }
     let (all, all_factors) = whole(manifest);
     levels.row(line("all levels".to_owned(), &all, &all_factors));
-    let finest = manifest.levels.last().map_or(0, |level| level.level);
     let mut classes = Table::new(headings);
-    for row in manifest.growth.iter().filter(|row| row.level == finest) {
-        classes.row(line(format!("FRC {}", row.class), row, &factors(row)));
+    for row in &manifest.growth {
+        let name = format!("level {} FRC {}", row.level, row.class);
+        classes.row(line(name, row, &factors(row)));
     }
     format!(
-        "Vertices and bytes of roads, per level (all classes)\n{}\nThe finest level, per class\n{}\n\
+        "Vertices and bytes of roads, per level (all classes)\n{}\nPer level and class\n{}\n\
          All levels together hold {} times the source's vertices and {} times its bytes as f64 pairs \
          ({} as stored);\nthe paper reports about {PAPER_GROWTH} for whole data sets, all classes on every level, \
          nothing simplified.\n",
@@ -167,6 +181,9 @@ fn to_json(manifest: &Manifest) -> serde_json::Value {
             "sv_vertices": row.sv_vertices, "geo_raw_bytes": row.geo_raw_bytes,
             "geo_stored_bytes": row.geo_stored_bytes, "sv_stored_bytes": row.sv_stored_bytes,
             "growth_over_simplified": factors.over_simplified, "growth_over_source": factors.over_source,
+            "raw_bytes_over_simplified": factors.raw_over_simplified,
+            "stored_bytes_over_simplified": factors.stored_over_simplified,
+            "raw_bytes_over_source": factors.raw_bytes, "stored_bytes_over_source": factors.stored_bytes,
         })
     };
     json!({

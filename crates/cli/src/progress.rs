@@ -1,7 +1,7 @@
 //! Progress: bars on a terminal, plain lines elsewhere, JSON lines on request, or nothing.
 
 use std::{
-    io::{IsTerminal as _, stderr},
+    io::{IsTerminal as _, Write as _, stderr},
     sync::{Mutex, PoisonError},
     time::{Duration, Instant},
 };
@@ -60,7 +60,8 @@ impl Running {
             "stage": format!("{:?}", self.stage).to_lowercase(), "state": state, "done": self.done,
             "total": self.total, "seconds": self.since.elapsed().as_secs_f64(),
         });
-        eprintln!("{line}");
+        // Whoever watched may have gone; the work goes on.
+        let _ = writeln!(stderr(), "{line}");
     }
 }
 
@@ -113,7 +114,12 @@ impl Observer for Progress {
             Manner::Json => running.tell_json("end"),
             Manner::Bars | Manner::Lines => {
                 let seconds = running.since.elapsed().as_secs_f64();
-                eprintln!("{:22} {:>8} in {seconds:.2} s", stage.title(), running.done);
+                let _ = writeln!(
+                    stderr(),
+                    "{:22} {:>8} in {seconds:.2} s",
+                    stage.title(),
+                    running.done
+                );
             }
         }
     }

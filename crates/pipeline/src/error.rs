@@ -9,6 +9,10 @@ pub enum BuildError {
     Exists { path: PathBuf },
     #[error("cannot write in {folder:?}; choose another place for the package")]
     Target { folder: PathBuf, source: io::Error },
+    #[error(
+        "{path:?} is both an input and the package to write; choose another name for the package"
+    )]
+    TargetIsInput { path: PathBuf },
     #[error("cannot read {path:?}")]
     Input { path: PathBuf, source: io::Error },
     #[error(transparent)]
@@ -26,6 +30,14 @@ pub enum BuildError {
          {heights_deg:?} (west, south, east, north in degrees)"
     )]
     NoOverlap { osm: PathBuf, roads_deg: [f64; 4], heights_deg: [f64; 4] },
+    #[error(
+        "no road of {osm:?} lies on ground: all are beside the elevation data or over its voids"
+    )]
+    NoGround { osm: PathBuf },
+    #[error("the roads could not be projected into the working CRS")]
+    Project(#[source] corniche_geom::ProjectError),
+    #[error("the run could not be set up: {what}")]
+    Start { what: String },
     #[error("--max-error must be a positive number of metres, not {max_error_m}")]
     MaxError { max_error_m: f64 },
     #[error("intermediate results could not be kept beside the package (disk full?)")]
@@ -53,12 +65,14 @@ impl BuildError {
         matches!(
             self,
             Self::Target { .. }
+                | Self::TargetIsInput { .. }
                 | Self::Input { .. }
                 | Self::Dem(_)
                 | Self::Osm(_)
                 | Self::NoHeights
                 | Self::NoRoads { .. }
                 | Self::NoOverlap { .. }
+                | Self::NoGround { .. }
                 | Self::MaxError { .. }
         )
     }

@@ -175,10 +175,16 @@ mod tests {
     #[test]
     #[should_panic(expected = "writer panics")]
     fn a_panic_of_the_writer_does_not_leave_workers_waiting() {
-        let _ = in_order(2, 100, || Ok::<_, ()>(()), |(), index| Ok(index), |index, _| {
-            assert!(index != 3, "writer panics");
-            Ok(())
-        });
+        let _ = in_order(
+            2,
+            100,
+            || Ok::<_, ()>(()),
+            |(), index| Ok(index),
+            |index, _| {
+                assert!(index != 3, "writer panics");
+                Ok(())
+            },
+        );
     }
 
     #[test]

@@ -182,9 +182,9 @@ pub struct GrowthRow {
     pub level: u8,
     /// Functional road class.
     pub class: u8,
-    /// Points of the source lines of this class (as read, unclipped).
+    /// Points of the source lines of this class that lie in tiles with ground.
     pub source_vertices: u64,
-    /// Points of the level's simplified lines, before cutting at tile borders.
+    /// Points of the level's simplified lines, before cutting at tile borders, that lie in tiles with ground.
     pub simplified_vertices: u64,
     /// Vertices of the clipped lines in all tiles of the level.
     pub geo_vertices: u64,
@@ -194,7 +194,7 @@ pub struct GrowthRow {
     pub source_bytes: u64,
     /// Bytes of the simplified lines as plain f64 pairs.
     pub simplified_bytes: u64,
-    /// Bytes of the clipped lines as plain f32 triples.
+    /// Bytes of the clipped lines as plain f64 triples.
     pub geo_raw_bytes: u64,
     /// Bytes of the clipped lines as stored, the section's bytes shared out by each class's encoded length.
     pub geo_stored_bytes: u64,

@@ -194,7 +194,10 @@ fn stored(seen: &BTreeMap<TileId, Seen>, meshes: &Meshes) -> BTreeMap<TileId, Ti
         let own = seen.get(&id).copied().unwrap_or_default();
         let geometric_error_m =
             beneath_m.get(&id).copied().unwrap_or_default().max(own.deviation.max_abs_m);
-        let above = (0..id.z()).rev().map(|level| id.ancestor(level)).find(|above| meshes.contains_key(above));
+        let above = (0..id.z())
+            .rev()
+            .map(|level| id.ancestor(level))
+            .find(|above| meshes.contains_key(above));
         if let Some(above) = above {
             let largest_m = beneath_m.entry(above).or_default();
             *largest_m = largest_m.max(geometric_error_m);

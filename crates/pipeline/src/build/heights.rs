@@ -7,7 +7,9 @@
 use std::{collections::BTreeMap, sync::Mutex, sync::PoisonError};
 
 use corniche_dem::{Dem, GridPlan};
-use corniche_geom::{Frame, HeightGrid, NodeIndex, NodeWindow, TILE_CELLS, TileId};
+use corniche_geom::{
+    Frame, HeightGrid, LatticeBounds, LatticePoint, NodeIndex, NodeWindow, TILE_CELLS, TileId,
+};
 use corniche_tileset::SampleCounts;
 
 use crate::{BuildError, Observer, Stage, Storage, storage::Kind, storage::Span, workers};
@@ -87,13 +89,40 @@ pub(crate) fn read<'a>(
 /// A rectangle of blocks of the finest level that is read at once: first column, first row, columns, rows.
 type Area = (u32, u32, u32, u32);
 
-/// The rectangles of blocks that cover the data.
-fn areas(plan: &GridPlan) -> Vec<Area> {
+/// First and last column and first and last row of the blocks that hold the data's rectangle.
+fn block_range(plan: &GridPlan) -> [[u32; 2]; 2] {
     let corner = plan.frame.root_corner();
     let column = |i: i64| ((i - corner.i).div_euclid(TILE_CELLS)) as u32;
     let row = |j: i64| ((corner.j - j).div_euclid(TILE_CELLS)) as u32;
-    let (west, east) = (column(plan.south_west.i), column(plan.north_east.i));
-    let (north, south) = (row(plan.north_east.j), row(plan.south_west.j));
+    [
+        [column(plan.south_west.i), column(plan.north_east.i)],
+        [row(plan.north_east.j), row(plan.south_west.j)],
+    ]
+}
+
+/// The finest tiles on which the data's rectangle lies.
+pub(crate) fn data_tiles(plan: &GridPlan) -> Vec<TileId> {
+    let level = plan.frame.max_level();
+    let [[west, east], [north, south]] = block_range(plan);
+    (north..=south)
+        .flat_map(|y| (west..=east).filter_map(move |x| TileId::new(level, x, y).ok()))
+        .collect()
+}
+
+/// The rectangle of those tiles.
+pub(crate) fn data_tile_bounds(plan: &GridPlan) -> LatticeBounds {
+    let tiles = data_tiles(plan).into_iter().map(|id| plan.frame.tile_lattice_bounds(id));
+    tiles
+        .reduce(|a, b| LatticeBounds {
+            min: LatticePoint::new(a.min.u.min(b.min.u), a.min.v.min(b.min.v)),
+            max: LatticePoint::new(a.max.u.max(b.max.u), a.max.v.max(b.max.v)),
+        })
+        .unwrap_or(plan.frame.tile_lattice_bounds(TileId::ROOT))
+}
+
+/// The rectangles of blocks that cover the data.
+fn areas(plan: &GridPlan) -> Vec<Area> {
+    let [[west, east], [north, south]] = block_range(plan);
     let mut areas = Vec::new();
     for y in (north..=south).step_by(READ_BLOCKS as usize) {
         for x in (west..=east).step_by(READ_BLOCKS as usize) {

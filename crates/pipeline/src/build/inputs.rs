@@ -36,6 +36,16 @@ pub(crate) fn hash(
 }
 
 fn record(kind: &str, path: &Path, observer: &dyn Observer) -> Result<InputRecord, BuildError> {
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    if !path.exists() && path.starts_with("/vsi") {
+        // A name that only GDAL understands (inside an archive, on a server) has no bytes of its own to hash.
+        return Ok(InputRecord {
+            kind: kind.to_owned(),
+            name,
+            bytes: 0,
+            sha256: "not hashed: virtual".to_owned(),
+        });
+    }
     let failed = |source: io::Error| BuildError::Input { path: path.to_path_buf(), source };
     let mut file = File::open(path).map_err(failed)?;
     let mut hasher = Sha256::new();
@@ -55,6 +65,5 @@ fn record(kind: &str, path: &Path, observer: &dyn Observer) -> Result<InputRecor
             Err(error) => return Err(failed(error)),
         }
     }
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     Ok(InputRecord { kind: kind.to_owned(), name, bytes, sha256: hex(&hasher.finalize()) })
 }

@@ -26,6 +26,7 @@ use corniche_tileset::Manifest;
 
 use crate::{BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage};
 
+pub(crate) use heights::data_tiles;
 use levels::Levels;
 
 /// What a build came to.
@@ -57,6 +58,7 @@ pub fn build(
     if target.is_dir() || target.file_name().is_none() {
         return Err(unusable(std::io::Error::other("the package's name is that of a folder")));
     }
+    refuse_inputs_as_target(settings)?;
     let name =
         target.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     // Beside the target: the same file system, so that the rename at the end is one step.
@@ -72,6 +74,17 @@ pub fn build(
     Ok(BuildSummary { manifest, package_bytes })
 }
 
+/// Fails when the package would replace what it is made from.
+fn refuse_inputs_as_target(settings: &BuildSettings) -> Result<(), BuildError> {
+    let Ok(target) = fs::canonicalize(&settings.output) else { return Ok(()) };
+    for input in settings.dem.iter().chain(&settings.osm) {
+        if fs::canonicalize(input).is_ok_and(|input| input == target) {
+            return Err(BuildError::TargetIsInput { path: input.clone() });
+        }
+    }
+    Ok(())
+}
+
 /// All stages in order; the package is written to `finished`.
 fn run(
     settings: &BuildSettings,
@@ -81,9 +94,9 @@ fn run(
 ) -> Result<Manifest, BuildError> {
     let threads = settings.resources.threads;
     let terrain = &settings.terrain;
-    let inputs = inputs::hash(settings, observer)?;
+    let start = |error: &dyn std::fmt::Display| BuildError::Start { what: error.to_string() };
     corniche_dem::limit_block_cache(settings.resources.memory_bytes / 4)
-        .map_err(|error| BuildError::Storage(std::io::Error::other(error)))?;
+        .map_err(|error| start(&error))?;
     let dem = Dem::open(
         &settings.dem,
         &OpenOptions { dem_crs: terrain.dem_crs.clone(), nodata: terrain.nodata },
@@ -98,25 +111,28 @@ fn run(
         return Err(BuildError::MaxError { max_error_m });
     }
     let levels = Levels::new(plan.frame, max_error_m, &settings.roads);
+    let inputs = inputs::hash(settings, observer)?;
 
     // Roads come before the long work on heights: an extract that is no use is told at once.
+    let data_tiles = heights::data_tiles(&plan);
     let mut roads = match &settings.osm {
         Some(osm) => {
             let pool = rayon::ThreadPoolBuilder::new()
                 .num_threads(threads)
                 .build()
-                .map_err(|error| BuildError::Storage(std::io::Error::other(error)))?;
+                .map_err(|error| start(&error))?;
             let input = roads::RoadInput {
                 osm,
                 settings: &settings.roads,
                 dem: &dem,
                 plan: &plan,
                 levels: &levels,
+                data_bounds: heights::data_tile_bounds(&plan),
                 pool: &pool,
                 memory_bytes: settings.resources.memory_bytes / 4,
             };
             let read = roads::read(&input, storage, observer)?;
-            roads::check_overlap(&read, &input, &plan.data_bounds, &plan.wgs84_bounds)?;
+            roads::check_overlap(&read, &input)?;
             Some(read)
         }
         None => None,
@@ -128,7 +144,14 @@ fn run(
     }
     let errors = errors::measure(&pyramid, &meshes, &levels, threads, storage, observer)?;
     let tiles = tiles::make(
-        &tiles::TileInput { levels: &levels, meshes: &meshes, errors: &errors, storage, threads },
+        &tiles::TileInput {
+            levels: &levels,
+            meshes: &meshes,
+            errors: &errors,
+            data_tiles: &data_tiles,
+            storage,
+            threads,
+        },
         roads.as_mut(),
         observer,
     )?;
@@ -142,8 +165,12 @@ fn run(
         samples: pyramid.samples(),
         roads: roads.as_ref(),
         tiles: &tiles,
+        errors: &errors,
     })?;
-    package::write(finished, &manifest, &tiles, storage, observer)?;
+    if let (Some(osm), 0) = (&settings.osm, manifest.counts.roads_kept) {
+        return Err(BuildError::NoGround { osm: osm.clone() });
+    }
+    package::write(finished, &settings.output, &manifest, &tiles, storage, observer)?;
     Ok(manifest)
 }
 

@@ -10,7 +10,7 @@ use corniche_tileset::{
 };
 use sha2::{Digest, Sha256};
 
-use super::{levels::Levels, roads::ReadRoads, tiles::Tiles};
+use super::{errors::TileErrors, levels::Levels, roads::ReadRoads, tiles::Tiles};
 use crate::{BuildError, BuildSettings, Observer, Stage, Storage, storage::Kind};
 
 /// Positions interpolated from the manifest are this exact.
@@ -27,6 +27,7 @@ pub(crate) struct Outcome<'a> {
     pub(crate) samples: SampleCounts,
     pub(crate) roads: Option<&'a ReadRoads<'a>>,
     pub(crate) tiles: &'a Tiles,
+    pub(crate) errors: &'a TileErrors,
 }
 
 /// Puts the manifest together.
@@ -115,7 +116,7 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
                 triangles: sums.triangles,
                 vertices: sums.vertices,
                 terrain_bytes: sums.terrain_bytes,
-                uncovered_nodes: sums.uncovered_nodes,
+                uncovered_nodes: sums.uncovered_nodes + outcome.errors.under_absent(level),
             }
         })
         .collect()
@@ -147,8 +148,8 @@ fn counts(outcome: &Outcome<'_>) -> Counts {
     let mut outside =
         RoadLoss { reason: "outside the elevation data".to_owned(), roads: 0, length_m: 0.0 };
     let mut void = RoadLoss { reason: "over a void".to_owned(), roads: 0, length_m: 0.0 };
-    for (&length_steps, fate) in roads.lengths_steps.iter().zip(&outcome.tiles.roads) {
-        let outside_steps = length_steps - fate.kept_steps - fate.void_steps;
+    let lengths = roads.lengths_steps.iter().zip(&roads.outside_steps);
+    for ((&length_steps, &outside_steps), fate) in lengths.zip(&outcome.tiles.roads) {
         counts.roads_kept_m += fate.kept_steps * step_m;
         void.length_m += fate.void_steps * step_m;
         outside.length_m += outside_steps * step_m;
@@ -182,26 +183,23 @@ fn left_out(extract: &corniche_osm::ExtractSummary) -> Vec<(String, u64)> {
 }
 
 fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {
-    let Some(roads) = outcome.roads else { return Vec::new() };
-    roads
-        .line_counts
+    outcome
+        .tiles
+        .classes
         .iter()
-        .filter(|(_, lines)| lines.source_vertices > 0)
-        .map(|(&(level, class), lines)| {
-            let sums = outcome.tiles.classes.get(&(level, class)).copied().unwrap_or_default();
-            GrowthRow {
-                level,
-                class,
-                source_vertices: lines.source_vertices,
-                simplified_vertices: lines.simplified_vertices,
-                geo_vertices: sums.geo_vertices,
-                sv_vertices: sums.sv_vertices,
-                source_bytes: lines.source_vertices * 16,
-                simplified_bytes: lines.simplified_vertices * 16,
-                geo_raw_bytes: sums.geo_vertices * 12,
-                geo_stored_bytes: sums.geo_stored_bytes,
-                sv_stored_bytes: sums.sv_stored_bytes,
-            }
+        .filter(|(_, sums)| sums.source_vertices > 0)
+        .map(|(&(level, class), sums)| GrowthRow {
+            level,
+            class,
+            source_vertices: sums.source_vertices,
+            simplified_vertices: sums.simplified_vertices,
+            geo_vertices: sums.geo_vertices,
+            sv_vertices: sums.sv_vertices,
+            source_bytes: sums.source_vertices * 16,
+            simplified_bytes: sums.simplified_vertices * 16,
+            geo_raw_bytes: sums.geo_vertices * 24,
+            geo_stored_bytes: sums.geo_stored_bytes,
+            sv_stored_bytes: sums.sv_stored_bytes,
         })
         .collect()
 }
@@ -209,12 +207,13 @@ fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {
 /// Writes the package to `path`.
 pub(crate) fn write(
     path: &Path,
+    target: &Path,
     manifest: &Manifest,
     tiles: &Tiles,
     storage: &dyn Storage,
     observer: &dyn Observer,
 ) -> Result<(), BuildError> {
-    let failed = |source| BuildError::Write { path: path.to_path_buf(), source };
+    let failed = |source| BuildError::Write { path: target.to_path_buf(), source };
     observer.begin(Stage::Package, Some(tiles.payloads.len() as u64));
     let mut writer = Writer::create(path, manifest).map_err(failed)?;
     for &(id, span) in &tiles.payloads {

@@ -17,21 +17,14 @@ use super::{
 };
 use crate::{BuildError, Defect, Observer, RoadSettings, Stage, Storage};
 
-/// Vertices of one class on one level, before clipping.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) struct LineCounts {
-    pub(crate) source_vertices: u64,
-    pub(crate) simplified_vertices: u64,
-}
-
 /// All that later stages need to know of the roads.
 pub(crate) struct ReadRoads<'a> {
     pub(crate) log: RoadLog<'a>,
     pub(crate) by_tile: RoadTileCursor<'a>,
     /// Per road: its length in lattice steps.
     pub(crate) lengths_steps: Vec<f64>,
-    /// Per level and class.
-    pub(crate) line_counts: BTreeMap<(u8, u8), LineCounts>,
+    /// Per road: how much of that lies outside the tiles of the data's rectangle, measured by itself.
+    pub(crate) outside_steps: Vec<f64>,
     /// Per class: roads and lattice steps.
     pub(crate) classes: Vec<(u64, f64)>,
     /// Counted defects by name.
@@ -49,6 +42,8 @@ pub(crate) struct RoadInput<'a> {
     pub(crate) dem: &'a Dem,
     pub(crate) plan: &'a corniche_dem::GridPlan,
     pub(crate) levels: &'a Levels,
+    /// The finest tiles on which the data's rectangle lies, all together.
+    pub(crate) data_bounds: LatticeBounds,
     pub(crate) pool: &'a rayon::ThreadPool,
     pub(crate) memory_bytes: u64,
 }
@@ -62,12 +57,13 @@ pub(crate) fn read<'a>(
     observer.begin(Stage::Roads, None);
     let mut gathered = Gathered {
         levels: input.levels,
+        data_bounds: input.data_bounds,
         roads: ReadRoads {
             log: RoadLog::new(storage),
             // Filled at the end; an empty list of pairs has an empty cursor.
             by_tile: RoadTiles::new(storage, 0).finish()?,
             lengths_steps: Vec::new(),
-            line_counts: BTreeMap::new(),
+            outside_steps: Vec::new(),
             classes: vec![(0, 0.0); FunctionalRoadClass::COUNT],
             defects: BTreeMap::new(),
             extract: ExtractSummary::default(),
@@ -77,21 +73,17 @@ pub(crate) fn read<'a>(
         failed: None,
     };
     let frame = *input.levels.frame();
-    // A projection is dear to make and serves one thread at a time: idle ones wait here.
-    let idle = Mutex::new(vec![input.dem.projection(input.plan)?]);
-    let lock = || idle.lock().unwrap_or_else(PoisonError::into_inner);
+    let projection = input.dem.projection(input.plan)?;
+    let unprojected = Mutex::new(None);
     let place = |positions_deg: &[[f64; 2]]| -> Vec<Option<LatticePoint>> {
-        let waiting = lock().pop();
-        let Some(projection) = waiting.or_else(|| input.dem.projection(input.plan).ok()) else {
-            // Without a projection no point has a place; the reader counts each as a defect.
-            return vec![None; positions_deg.len()];
-        };
         let mut positions = positions_deg.to_vec();
-        let projected = projection.working_from_wgs84(&mut positions);
-        lock().push(projection);
-        match projected {
+        match projection.working_from_wgs84(&mut positions) {
             Ok(()) => positions.into_iter().map(|position_m| frame.snap(position_m)).collect(),
-            Err(_) => vec![None; positions_deg.len()],
+            // Not these points' fault: the run fails for it in the end.
+            Err(error) => {
+                *unprojected.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+                vec![None; positions_deg.len()]
+            }
         }
     };
     let defects = RefCell::new(BTreeMap::new());
@@ -113,6 +105,9 @@ pub(crate) fn read<'a>(
         return Err(BuildError::Interrupted);
     }
     let summary = summary?;
+    if let Some(error) = unprojected.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        return Err(BuildError::Project(error));
+    }
     if let Some(error) = gathered.failed {
         return Err(error);
     }
@@ -130,6 +125,7 @@ pub(crate) fn read<'a>(
 /// Roads as they come in.
 struct Gathered<'a, 'l> {
     levels: &'l Levels,
+    data_bounds: LatticeBounds,
     roads: ReadRoads<'a>,
     pairs: RoadTiles<'a>,
     /// The reader's sink cannot fail; the first failure is kept and everything after it ignored.
@@ -151,14 +147,14 @@ impl Gathered<'_, '_> {
         self.roads.lengths_steps.push(length_steps);
         let class = &mut self.roads.classes[usize::from(road.class.number())];
         *class = (class.0 + 1, class.1 + length_steps);
+        let inside = corniche_drape::clip_closed(&road.line, &self.data_bounds);
+        let inside_steps: f64 = inside.iter().map(corniche_geom::Polyline::length_steps).sum();
+        self.roads.outside_steps.push(length_steps - inside_steps);
         for level in self.levels.numbers() {
-            let counts = self.roads.line_counts.entry((level, road.class.number())).or_default();
-            counts.source_vertices += road.line.points().len() as u64;
             if !self.levels.shows(level, road.class) {
                 continue;
             }
             let line = corniche_roads::simplify(road, self.levels.simplify_tolerance_steps(level));
-            counts.simplified_vertices += line.points().len() as u64;
             for id in tiles_of(line.points(), level, self.levels) {
                 self.pairs.push(id, ordinal)?;
             }
@@ -174,18 +170,28 @@ impl Gathered<'_, '_> {
     }
 }
 
-/// The tiles of `level` whose margin the line's segments may meet: by each segment's bounding box, so a long
-/// diagonal names a few tiles too many, which clipping finds empty.
+/// The tiles of `level` whose margin the line's segments may meet. Row by row of tiles, so that one endless
+/// segment (a misplaced node) names the tiles along it and not all those of its bounding box.
 fn tiles_of(points: &[LatticePoint], level: u8, levels: &Levels) -> Vec<TileId> {
+    let frame = levels.frame();
     let margin = levels.margin_steps(level);
     let last = (1_i64 << level) - 1;
     let mut tiles = Vec::new();
     for pair in points.windows(2) {
         let Some(bounds) = LatticeBounds::of(pair) else { continue };
         let bounds = bounds.expanded(margin);
-        let [west, south] = levels.frame().tile_column_row(level, bounds.min);
-        let [east, north] = levels.frame().tile_column_row(level, bounds.max);
+        let [_, south] = frame.tile_column_row(level, bounds.min);
+        let [_, north] = frame.tile_column_row(level, bounds.max);
         for y in north.max(0)..=south.min(last) {
+            let Ok(row) = TileId::new(level, 0, y as u32) else { continue };
+            let row = frame.tile_lattice_bounds(row);
+            // The stretch of the segment between the row's borders, margins and a step of rounding included.
+            let reach = [row.min.v - margin - 1, row.max.v + margin + 1];
+            let [low, high] = stretch_u([pair[0], pair[1]], reach);
+            let west =
+                frame.tile_column_row(level, LatticePoint::new(low - margin - 1, row.min.v))[0];
+            let east =
+                frame.tile_column_row(level, LatticePoint::new(high + margin + 1, row.min.v))[0];
             for x in west.max(0)..=east.min(last) {
                 tiles.extend(TileId::new(level, x as u32, y as u32).ok());
             }
@@ -196,30 +202,59 @@ fn tiles_of(points: &[LatticePoint], level: u8, levels: &Levels) -> Vec<TileId> 
     tiles
 }
 
+/// Smallest and largest u of the part of a segment whose v lies within `reach`, rounded outwards.
+fn stretch_u([a, b]: [LatticePoint; 2], reach: [i64; 2]) -> [i64; 2] {
+    if a.v == b.v {
+        return [a.u.min(b.u), a.u.max(b.u)];
+    }
+    let at = |v: i64| {
+        let v = v.clamp(a.v.min(b.v), a.v.max(b.v));
+        let share = (v - a.v) as f64 / (b.v - a.v) as f64;
+        a.u as f64 + share * (b.u - a.u) as f64
+    };
+    let [one, other] = reach.map(at);
+    // f64 holds lattice coordinates to 2^53; a step of slack per 2^50 covers what it rounds away.
+    let slack = (one.abs().max(other.abs()) / (1_i64 << 50) as f64).ceil() + 1.0;
+    [(one.min(other) - slack) as i64, (one.max(other) + slack) as i64]
+}
+
 /// Fails when no road lies on the elevation data's rectangle.
 pub(crate) fn check_overlap(
     roads: &ReadRoads<'_>,
     input: &RoadInput<'_>,
-    data_bounds: &Bounds,
-    wgs84_bounds: &Bounds,
 ) -> Result<(), BuildError> {
+    let (data_m, data_deg) = (&input.plan.data_bounds, &input.plan.wgs84_bounds);
     let Some(bounds) = roads.bounds else { return Ok(()) };
     let frame = input.levels.frame();
     let [min, max] = [frame.position_m(bounds.min), frame.position_m(bounds.max)];
     let roads_m = Bounds { min_x: min[0], min_y: min[1], max_x: max[0], max_y: max[1] };
-    if roads_m.intersects(data_bounds) {
+    if roads_m.intersects(data_m) {
         return Ok(());
     }
     let mut corners = [min, max];
-    let projected = input.dem.projection(input.plan)?.wgs84_from_working(&mut corners);
-    let roads_deg = if projected.is_ok() {
-        [corners[0][0], corners[0][1], corners[1][0], corners[1][1]]
-    } else {
-        [f64::NAN; 4]
-    };
+    input
+        .dem
+        .projection(input.plan)?
+        .wgs84_from_working(&mut corners)
+        .map_err(BuildError::Project)?;
     Err(BuildError::NoOverlap {
         osm: input.osm.to_path_buf(),
-        roads_deg,
-        heights_deg: wgs84_bounds.to_array(),
+        roads_deg: [corners[0][0], corners[0][1], corners[1][0], corners[1][1]],
+        heights_deg: data_deg.to_array(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stretch_holds_the_segment_between_two_heights() {
+        let point = LatticePoint::new;
+        let [low, high] = stretch_u([point(0, 0), point(1000, 100)], [40, 60]);
+        assert!((398..=400).contains(&low) && (600..=602).contains(&high));
+        assert_eq!(stretch_u([point(7, 5), point(-3, 5)], [0, 9]), [-3, 7]);
+        let [low, high] = stretch_u([point(1 << 40, 1 << 40), point(0, 0)], [-9, 1 << 41]);
+        assert!(low <= 0 && high >= 1 << 40);
+    }
 }

@@ -46,6 +46,10 @@ pub(crate) struct LevelSums {
 /// Sums over the roads of a class on a level.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct ClassSums {
+    /// Points of the source lines that lie in tiles with ground.
+    pub(crate) source_vertices: u64,
+    /// The same of the level's simplified lines.
+    pub(crate) simplified_vertices: u64,
     pub(crate) geo_vertices: u64,
     pub(crate) sv_vertices: u64,
     pub(crate) geo_stored_bytes: u64,
@@ -57,7 +61,7 @@ pub(crate) struct ClassSums {
 pub(crate) struct RoadFate {
     /// Length that lies on a TIN.
     pub(crate) kept_steps: f64,
-    /// Length inside tiles with ground, but where there is none.
+    /// Length on the data's tiles, but where there is no ground.
     pub(crate) void_steps: f64,
 }
 
@@ -66,21 +70,25 @@ pub(crate) struct TileInput<'a> {
     pub(crate) levels: &'a Levels,
     pub(crate) meshes: &'a Meshes,
     pub(crate) errors: &'a TileErrors,
+    /// The finest tiles on which the data's rectangle lies.
+    pub(crate) data_tiles: &'a [TileId],
     pub(crate) storage: &'a dyn Storage,
     pub(crate) threads: usize,
 }
 
 /// A tile as a worker made it.
 struct Made {
-    encoded: EncodedTile,
-    span: Span,
-    payload_counts: PayloadCounts,
+    /// `None` where there is no ground, and so no payload.
+    kept: Option<Kept>,
     fates: Vec<(u32, RoadFate)>,
 }
 
-struct PayloadCounts {
+/// A payload in storage and what it came to.
+struct Kept {
+    span: Span,
     vertices: u64,
     triangles: u64,
+    terrain_bytes: u64,
     classes: BTreeMap<u8, ClassSums>,
 }
 
@@ -91,6 +99,10 @@ pub(crate) fn make(
     observer: &dyn Observer,
 ) -> Result<Tiles, BuildError> {
     let mut ids: Vec<TileId> = input.meshes.keys().copied().collect();
+    if roads.is_some() {
+        // Roads on tiles of the data without any ground are lost there, and counted there.
+        ids.extend(input.data_tiles.iter().filter(|id| !input.meshes.contains_key(id)));
+    }
     ids.sort_unstable_by_key(|&id| pmtiles_order(id));
     observer.begin(Stage::Tiles, Some(ids.len() as u64));
     let road_count = roads.as_ref().map_or(0, |roads| roads.log.len());
@@ -134,21 +146,25 @@ pub(crate) fn make(
 
 impl Tiles {
     fn add(&mut self, id: TileId, made: &Made, input: &TileInput<'_>) {
-        self.payloads.push((id, made.span));
-        let errors = input.errors.of(id);
-        let level = self.levels.entry(id.z()).or_default();
-        level.tiles += 1;
-        level.vertices += made.payload_counts.vertices;
-        level.triangles += made.payload_counts.triangles;
-        level.terrain_bytes += made.encoded.terrain.stored;
-        level.geometric_error_m = level.geometric_error_m.max(errors.geometric_error_m);
-        level.uncovered_nodes += errors.uncovered_nodes;
-        for (&class, counted) in &made.payload_counts.classes {
-            let sums = self.classes.entry((id.z(), class)).or_default();
-            sums.geo_vertices += counted.geo_vertices;
-            sums.sv_vertices += counted.sv_vertices;
-            sums.geo_stored_bytes += counted.geo_stored_bytes;
-            sums.sv_stored_bytes += counted.sv_stored_bytes;
+        if let Some(kept) = &made.kept {
+            self.payloads.push((id, kept.span));
+            let errors = input.errors.of(id);
+            let level = self.levels.entry(id.z()).or_default();
+            level.tiles += 1;
+            level.vertices += kept.vertices;
+            level.triangles += kept.triangles;
+            level.terrain_bytes += kept.terrain_bytes;
+            level.geometric_error_m = level.geometric_error_m.max(errors.geometric_error_m);
+            level.uncovered_nodes += errors.uncovered_nodes;
+            for (&class, counted) in &kept.classes {
+                let sums = self.classes.entry((id.z(), class)).or_default();
+                sums.source_vertices += counted.source_vertices;
+                sums.simplified_vertices += counted.simplified_vertices;
+                sums.geo_vertices += counted.geo_vertices;
+                sums.sv_vertices += counted.sv_vertices;
+                sums.geo_stored_bytes += counted.geo_stored_bytes;
+                sums.sv_stored_bytes += counted.sv_stored_bytes;
+            }
         }
         for &(ordinal, fate) in &made.fates {
             let road = &mut self.roads[ordinal as usize];
@@ -166,8 +182,9 @@ fn make_tile(
 ) -> Result<Made, BuildError> {
     let levels = input.levels;
     let frame = levels.frame();
-    let span =
-        input.meshes.get(&id).ok_or_else(|| BuildError::Damaged { what: format!("tile {id}") })?;
+    let Some(span) = input.meshes.get(&id) else {
+        return lost_roads(id, log, ordinals, levels);
+    };
     let meshed = mesh::load(input.storage, id, *span)?;
     let surface = Surface::new(
         &meshed.tin,
@@ -184,6 +201,7 @@ fn make_tile(
         }
     }
     let fates = std::mem::take(&mut laid.fates);
+    let laid_classes = std::mem::take(&mut laid.classes);
     let errors = input.errors.of(id);
     let counts = (meshed.tin.vertices().len() as u64, meshed.tin.triangles().len() as u64);
     let terrain = Terrain {
@@ -196,10 +214,30 @@ fn make_tile(
     let payload = laid.into_payload(id, terrain);
     let context = PayloadContext { frame: *frame, quantum_m: levels.quantum_m() };
     let encoded = corniche_tileset::encode(&payload, &context)?;
-    let classes = class_sums(&payload, &encoded);
+    let classes = class_sums(laid_classes, &payload, &encoded);
     let span = input.storage.append(Kind::Payloads, &encoded.bytes).map_err(BuildError::Storage)?;
-    let payload_counts = PayloadCounts { vertices: counts.0, triangles: counts.1, classes };
-    Ok(Made { encoded: EncodedTile { bytes: Vec::new(), ..encoded }, span, payload_counts, fates })
+    let (vertices, triangles) = counts;
+    let kept = Kept { span, vertices, triangles, terrain_bytes: encoded.terrain.stored, classes };
+    Ok(Made { kept: Some(kept), fates })
+}
+
+/// What a finest tile without ground costs the roads on it.
+fn lost_roads(
+    id: TileId,
+    log: Option<&RoadLog<'_>>,
+    ordinals: &[u32],
+    levels: &Levels,
+) -> Result<Made, BuildError> {
+    let bounds = levels.frame().tile_lattice_bounds(id);
+    let mut fates = Vec::new();
+    for &ordinal in ordinals {
+        let Some(log) = log else { continue };
+        let parts =
+            corniche_drape::clip(&log.load(ordinal)?.line, &bounds, OwnedBorders::of_tile(id));
+        let void_steps = parts.iter().map(corniche_geom::Polyline::length_steps).sum();
+        fates.push((ordinal, RoadFate { kept_steps: 0.0, void_steps }));
+    }
+    Ok(Made { kept: None, fates })
 }
 
 /// The roads of one tile as they are laid.
@@ -209,6 +247,7 @@ struct Laid {
     sv: Vec<SvRoad>,
     attributes: BTreeMap<i64, RoadRecord>,
     fates: Vec<(u32, RoadFate)>,
+    classes: BTreeMap<u8, ClassSums>,
     /// Next part number of each way, GEO and SV.
     parts: BTreeMap<i64, [u32; 2]>,
 }
@@ -219,6 +258,9 @@ impl Laid {
         let bounds = frame.tile_lattice_bounds(id);
         let simplified = corniche_roads::simplify(road, levels.simplify_tolerance_steps(id.z()));
         let mut fate = RoadFate::default();
+        let sums = self.classes.entry(road.class.number()).or_default();
+        sums.source_vertices += points_of_tile(&road.line, id, levels);
+        sums.simplified_vertices += points_of_tile(&simplified, id, levels);
         let parts = self.parts.entry(road.way_id).or_default();
         let mut laid = 0;
         for part in corniche_drape::clip(&simplified, &bounds, OwnedBorders::of_tile(id)) {
@@ -273,9 +315,25 @@ impl Laid {
     }
 }
 
-/// Vertices by class, and each section's stored bytes shared out by the classes' encoded lengths.
-fn class_sums(payload: &TilePayload, encoded: &EncodedTile) -> BTreeMap<u8, ClassSums> {
-    let mut classes: BTreeMap<u8, ClassSums> = BTreeMap::new();
+/// How many of a line's points belong to a tile: each point belongs to one tile of a level.
+fn points_of_tile(line: &corniche_geom::Polyline, id: TileId, levels: &Levels) -> u64 {
+    let last = (1_i64 << id.z()) - 1;
+    let own = [i64::from(id.x()), i64::from(id.y())];
+    let is_own = |&&point: &&corniche_geom::LatticePoint| {
+        // The root's own east and south border belong to its last tiles.
+        let at = levels.frame().tile_column_row(id.z(), point);
+        let outer = levels.frame().tile_lattice_bounds(TileId::ROOT);
+        outer.contains(point) && at.map(|index| index.min(last)) == own
+    };
+    line.points().iter().filter(is_own).count() as u64
+}
+
+/// Adds vertices by class, and each section's stored bytes shared out by the classes' encoded lengths.
+fn class_sums(
+    mut classes: BTreeMap<u8, ClassSums>,
+    payload: &TilePayload,
+    encoded: &EncodedTile,
+) -> BTreeMap<u8, ClassSums> {
     for road in &payload.roads_geo {
         classes.entry(road.class.number()).or_default().geo_vertices +=
             road.line.vertices.len() as u64;

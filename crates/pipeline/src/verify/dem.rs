@@ -2,8 +2,8 @@
 
 use std::{collections::BTreeMap, rc::Rc};
 
-use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions};
-use corniche_geom::{HeightGrid, TileId};
+use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions, Reader};
+use corniche_geom::{HeightGrid, NodeIndex, NodeWindow, TileId};
 use corniche_tileset::{FilePackage, Manifest, Sections};
 
 use super::{
@@ -45,8 +45,8 @@ pub(crate) fn verify(
     let manifest = package.manifest();
     let (dem, plan) = open(settings, manifest)?;
     let max_level = manifest.frame.max_level();
-    let ids = package.tile_ids()?;
-    let finest: Vec<TileId> = ids.iter().copied().filter(|id| id.z() == max_level).collect();
+    // All finest tiles of the data, those without ground too: a coarser level may cover their nodes.
+    let finest = crate::build::data_tiles(&plan);
     observer.begin(Stage::Errors, Some(finest.len() as u64));
     let mut truths: BTreeMap<TileId, Truth> = BTreeMap::new();
     let mut samples = SampleSums::default();
@@ -59,8 +59,7 @@ pub(crate) fn verify(
                 return Err(VerifyError::Interrupted);
             }
             let id = finest[index];
-            let halo = 1_usize << max_level.min(6);
-            let window = reader.window(manifest.frame.tile_window(id).with_halo(halo))?.heights;
+            let window = reader.window(manifest.frame.tile_window(id))?.heights;
             // Of the levels above only the latest are kept: tiles come in an order that stays close.
             cache.retain(|cached, _| *cached == id.ancestor(cached.z()));
             let mut found = Vec::new();
@@ -74,8 +73,13 @@ pub(crate) fn verify(
                     Rc::new(terrain.map(|terrain| Ground::new(&terrain.tin, quantum_m)))
                 }));
                 if let Some(ground) = &*ground {
-                    found
-                        .push((ancestor, compare(ground, [id, ancestor], &window, halo, manifest)));
+                    let (mut truth, bare) = compare(ground, [id, ancestor], &window, manifest);
+                    for (cell, nodes) in bare {
+                        let stride = manifest.frame.stride(level);
+                        truth.stray +=
+                            if has_void_corner(cell, stride, reader)? { 0 } else { nodes };
+                    }
+                    found.push((ancestor, truth));
                 }
             }
             Ok(found)
@@ -115,53 +119,56 @@ fn open(settings: &VerifySettings, manifest: &Manifest) -> Result<(Dem, GridPlan
     }
 }
 
-/// Compares an ancestor's TIN with the full resolution over one finest tile.
+/// Compares an ancestor's TIN with the full resolution over one finest tile. Also gives the cells of the
+/// ancestor's level, by north-west node, in which nodes with data are not covered, and how many each has.
 fn compare(
     ground: &Ground,
     [finest, ancestor]: [TileId; 2],
     window: &HeightGrid,
-    halo: usize,
     manifest: &Manifest,
-) -> Truth {
+) -> (Truth, BTreeMap<NodeIndex, u64>) {
     let frame = &manifest.frame;
     let stride = frame.stride(ancestor.z());
     let (corner, above) = (frame.tile_corner(finest), frame.tile_corner(ancestor));
-    let side = window.columns() - 2 * halo;
     let mut truth = Truth::default();
-    for row in 0..side {
-        for column in 0..side {
-            let Some(height_m) = window.height(column + halo, row + halo) else { continue };
-            let at = [
-                (corner.i - above.i + column as i64) as f64 / stride as f64,
-                (above.j - corner.j + row as i64) as f64 / stride as f64,
-            ];
-            match ground.height_m(at) {
+    let mut bare: BTreeMap<NodeIndex, u64> = BTreeMap::new();
+    for row in 0..window.rows() {
+        for column in 0..window.columns() {
+            let Some(height_m) = window.height(column, row) else { continue };
+            let cells = [corner.i - above.i + column as i64, above.j - corner.j + row as i64];
+            match ground.height_m(cells.map(|cells| cells as f64 / stride as f64)) {
                 Some(ground_m) => {
                     truth.nodes += 1;
                     truth.largest_m = truth.largest_m.max((ground_m - f64::from(height_m)).abs());
                 }
-                // Border nodes belong to two tiles; the western and northern one counts them here.
-                None if column + 1 < side && row + 1 < side => {
+                // Border nodes belong to the tile east or south of them, which counts them.
+                None if column + 1 < window.columns() && row + 1 < window.rows() => {
                     truth.uncovered += 1;
-                    truth.stray +=
-                        u64::from(!near_void(window, column + halo, row + halo, stride, halo));
+                    let [i, j] = cells.map(|cells| cells.div_euclid(stride) * stride);
+                    *bare.entry(NodeIndex { i: above.i + i, j: above.j - j }).or_default() += 1;
                 }
                 None => {}
             }
         }
     }
-    truth
+    (truth, bare)
 }
 
-/// Whether a void lies within `stride` cells (a cell of the level) of a node. Strides beyond the halo cannot be
-/// told from here and count as near.
-fn near_void(window: &HeightGrid, column: usize, row: usize, stride: i64, halo: usize) -> bool {
-    let reach = stride as usize;
-    if reach > halo {
-        return true;
+/// Whether a cell of a level lacks ground because one of its corners is void or beyond the data: then every node
+/// in it lies within one cell of that level from a void or an edge.
+fn has_void_corner(
+    cell: NodeIndex,
+    stride: i64,
+    reader: &mut Reader<'_>,
+) -> Result<bool, VerifyError> {
+    for (i, j) in [(0, 0), (stride, 0), (0, stride), (stride, stride)] {
+        let corner = NodeIndex { i: cell.i + i, j: cell.j - j };
+        let node = reader.window(NodeWindow { corner, stride: 1, columns: 1, rows: 1 })?;
+        if !node.heights.has_height(0, 0) {
+            return Ok(true);
+        }
     }
-    (row - reach..=row + reach)
-        .any(|r| (column - reach..=column + reach).any(|c| !window.has_height(c, r)))
+    Ok(false)
 }
 
 /// Puts stored errors beside true ones.
@@ -178,14 +185,15 @@ fn judge(
     let mut tight =
         Check::new("P2: stored errors are at most twice the true ones, for 95 % of tiles");
     let mut loose = 0_u64;
+    let mut counted = Check::new("P2: uncovered nodes are as many as the tiles say");
     let mut stored = BTreeMap::new();
+    let mut stored_uncovered = BTreeMap::new();
     for id in package.tile_ids()? {
         let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
-        stored.extend(
-            payload
-                .and_then(|payload| payload.terrain)
-                .map(|terrain| (id, terrain.geometric_error_m)),
-        );
+        if let Some(terrain) = payload.and_then(|payload| payload.terrain) {
+            stored.insert(id, terrain.geometric_error_m);
+            stored_uncovered.insert(id, terrain.uncovered_nodes);
+        }
     }
     let mut ratios: BTreeMap<u8, Vec<f64>> = BTreeMap::new();
     let mut levels: BTreeMap<u8, Truth> = BTreeMap::new();
@@ -196,6 +204,10 @@ fn judge(
         levels.entry(id.z()).or_default().merge(truth);
         bound.look(stored_m >= truth.largest_m - ROUNDING_M, || {
             format!("tile {id} stores {stored_m} m, but is off by {} m", truth.largest_m)
+        });
+        let said = stored_uncovered.get(&id).copied().unwrap_or_default();
+        counted.look(said == truth.uncovered, || {
+            format!("tile {id} says {said}, {} were found", truth.uncovered)
         });
         stray.look(truth.stray == 0, || format!("{} nodes of tile {id}", truth.stray));
         if id.z() == manifest.frame.max_level() {
@@ -216,7 +228,7 @@ fn judge(
     tight.look(loose as f64 <= (1.0 - TIGHT_SHARE) * count as f64, || {
         format!("{loose} of {count} tiles are loose")
     });
-    report.checks.extend([bound, tight, finest, stray]);
+    report.checks.extend([bound, tight, finest, stray, counted]);
     for (level, truth) in levels {
         let mut ratios = ratios.remove(&level).unwrap_or_default();
         ratios.sort_by(f64::total_cmp);

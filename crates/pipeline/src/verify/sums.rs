@@ -25,6 +25,10 @@ pub(crate) fn verify(manifest: &Manifest) -> Vec<Check> {
             <= LENGTH_SHARE * counts.roads_in_m,
         || format!("{} m in, {} m kept, {lost_m} m lost", counts.roads_in_m, counts.roads_kept_m),
     );
+    check.look(
+        counts.roads_lost.iter().all(|loss| loss.length_m >= -LENGTH_SHARE * counts.roads_in_m),
+        || format!("a loss is negative: {:?}", counts.roads_lost),
+    );
     let by_class: u64 = counts.classes.iter().map(|&(count, _)| count).sum();
     check.look(by_class == counts.roads_in, || {
         format!("{by_class} roads by class, {} in all", counts.roads_in)

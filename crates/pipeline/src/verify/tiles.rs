@@ -173,11 +173,12 @@ fn check_seams(kept: &BTreeMap<TileId, Kept>) -> (Check, u64) {
 fn check_nesting(kept: &BTreeMap<TileId, Kept>) -> Check {
     let mut check = Check::new("a parent's error and height range are never below its children's");
     for (&id, tile) in kept {
-        let Some(parent) = id.parent() else { continue };
-        let Some(above) = kept.get(&parent) else {
-            check.look(false, || format!("tile {id} has ground, its parent {parent} has none"));
-            continue;
-        };
+        // An island too small for a cell of the parent leaves it without ground; the next tile above counts.
+        let above = (0..id.z()).rev().find_map(|level| {
+            let above = id.ancestor(level);
+            kept.get(&above).map(|tile| (above, tile))
+        });
+        let Some((parent, above)) = above else { continue };
         let nested = above.geometric_error_m >= tile.geometric_error_m
             && above.height_range_m[0] <= tile.height_range_m[0]
             && above.height_range_m[1] >= tile.height_range_m[1];

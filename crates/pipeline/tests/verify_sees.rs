@@ -1,0 +1,548 @@
+//! `verify` sees each kind of broken promise: a sound package is taken apart, one thing in it is made wrong, and
+//! it is put together again with checksums that fit. What breaks is then the one promise meant, and no other.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    sync::LazyLock,
+};
+
+use corniche_drape::DrapedVertex;
+use corniche_geom::{Frame, TileId};
+use corniche_pipeline::{
+    BuildSettings, Existing, Resources, RoadSettings, Silent, TerrainSettings, VerifyReport,
+    VerifySettings, build, verify,
+};
+use corniche_roads::{ClassFilter, FrcTable};
+use corniche_tileset::{
+    EncodeError, FilePackage, Manifest, PayloadContext, Sections, Terrain, TilePayload, Writer,
+    encode,
+};
+use corniche_tin::{Placement, Surface, Tin, TinVertex};
+
+/// Coarse, so that the sample is built and verified in seconds.
+const MAX_ERROR_M: f64 = 10.0;
+/// The last row and column of a tile's nodes.
+const LAST_NODE: u16 = 256;
+
+const WHOLE: &str = "every tile's sections are whole";
+const COUNT: &str = "the tiles are those that the manifest counts";
+const ON_TIN: &str = "P1: GEO roads lie on their TIN";
+const BOUND: &str = "P2: no stored error is below the true one";
+const FINEST: &str = "P2: the finest level stays within --max-error";
+const STRAY: &str = "P2: nodes without ground lie within one cell of a void or an edge";
+const UNCOVERED: &str = "P2: uncovered nodes are as many as the tiles say";
+const SEAMS: &str = "P3: neighbours of one level share bit-identical border vertices";
+const NESTING: &str = "a parent's error and height range are never below its children's";
+const LENGTH: &str = "P6: GEO roads of the finest level";
+const SUMS: &str = "P6: what came in is what was kept";
+
+/// The sample's package, built once.
+static SOUND: LazyLock<Sound> = LazyLock::new(build_sample);
+
+struct Sound {
+    bytes: Vec<u8>,
+    parts: Parts,
+}
+
+/// A package taken apart; its tiles in the order of the file.
+#[derive(Clone)]
+struct Parts {
+    manifest: Manifest,
+    tiles: Vec<TilePayload>,
+}
+
+/// Whether the DEM is there to verify against.
+#[derive(Clone, Copy)]
+enum Against {
+    Itself,
+    Dem,
+}
+
+fn sample(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data-samples/pass").join(name)
+}
+
+fn build_sample() -> Sound {
+    let classes = [
+        ("motorway", 0),
+        ("trunk", 1),
+        ("primary", 2),
+        ("secondary", 3),
+        ("tertiary", 4),
+        ("unclassified", 5),
+        ("residential", 6),
+        ("living_street", 6),
+        ("service", 7),
+        ("track", 7),
+    ];
+    let classes = classes.map(|(value, class)| (value.to_owned(), class)).to_vec();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("sound.pmtiles");
+    let settings = BuildSettings {
+        dem: vec![sample("pass-dem.tif")],
+        osm: Some(sample("pass.osm.pbf")),
+        output: path.clone(),
+        existing: Existing::Keep,
+        terrain: TerrainSettings {
+            crs: None,
+            dem_crs: None,
+            nodata: None,
+            cell_m: None,
+            max_error_m: Some(MAX_ERROR_M),
+            fill_voids: 32,
+        },
+        roads: RoadSettings {
+            table: FrcTable::new("test", classes, vec![], 7).expect("a good table"),
+            filter: ClassFilter::usual(),
+            simplify_cells: 0.5,
+        },
+        resources: Resources { threads: 2, memory_bytes: 256 << 20 },
+        generator: "verify_sees".to_owned(),
+    };
+    build(&settings, &Silent).expect("the sample can be built");
+    let package = FilePackage::open(&path).expect("the package can be opened");
+    let payload = |id| package.payload(id, Sections::ALL).expect("a whole tile");
+    let ids = package.tile_ids().expect("a list of tiles");
+    let parts = Parts {
+        manifest: package.manifest().clone(),
+        tiles: ids.into_iter().map(|id| payload(id).expect("a listed tile")).collect(),
+    };
+    Sound { bytes: fs::read(&path).expect("the package can be read"), parts }
+}
+
+fn encode_in(manifest: &Manifest, tile: &TilePayload) -> Result<Vec<u8>, EncodeError> {
+    let context = PayloadContext { frame: manifest.frame, quantum_m: manifest.vertical.quantum_m };
+    encode(tile, &context).map(|encoded| encoded.bytes)
+}
+
+fn write(path: &Path, manifest: &Manifest, tiles: &[(TileId, Vec<u8>)]) {
+    let mut writer = Writer::create(path, manifest).expect("a file for the package");
+    for (id, bytes) in tiles {
+        writer.add(*id, bytes).expect("tiles in their order");
+    }
+    writer.finish().expect("a finished package");
+}
+
+fn report_on(path: &Path, against: Against) -> VerifyReport {
+    let dem = match against {
+        Against::Itself => vec![],
+        Against::Dem => vec![sample("pass-dem.tif")],
+    };
+    verify(&VerifySettings { package: path.to_path_buf(), dem, threads: 2 }, &Silent)
+        .expect("the package can be verified")
+}
+
+/// Asserts that exactly the checks whose names begin so are broken, and returns the report.
+fn assert_broken(report: VerifyReport, expected: &[&str]) -> VerifyReport {
+    let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
+    let as_expected = broken.len() == expected.len()
+        && expected.iter().all(|name| broken.iter().any(|check| check.name.starts_with(name)));
+    assert!(as_expected, "expected {expected:?} to be broken, but it is {broken:#?}");
+    assert_eq!(report.holds(), expected.is_empty());
+    report
+}
+
+impl Parts {
+    fn sound() -> Self {
+        SOUND.parts.clone()
+    }
+
+    fn frame(&self) -> &Frame {
+        &self.manifest.frame
+    }
+
+    fn encoded(&self) -> Vec<(TileId, Vec<u8>)> {
+        let encoded = |tile| encode_in(&self.manifest, tile).expect("a tile that can be encoded");
+        self.tiles.iter().map(|tile| (tile.id, encoded(tile))).collect()
+    }
+
+    /// Verifies the package that these parts make, and asserts that exactly these checks are broken.
+    fn assert_breaks(&self, against: Against, expected: &[&str]) -> VerifyReport {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("changed.pmtiles");
+        write(&path, &self.manifest, &self.encoded());
+        assert_broken(report_on(&path, against), expected)
+    }
+
+    fn index_of(&self, id: TileId) -> Option<usize> {
+        self.tiles.iter().position(|tile| tile.id == id)
+    }
+
+    fn terrain(&self, id: TileId) -> Option<&Terrain> {
+        self.tiles[self.index_of(id)?].terrain.as_ref()
+    }
+
+    fn terrain_mut(&mut self, id: TileId) -> &mut Terrain {
+        let index = self.index_of(id).expect("a tile of the package");
+        self.tiles[index].terrain.as_mut().expect("a tile with ground")
+    }
+
+    /// Tiles `above` levels above the finest.
+    fn tiles_above(&self, above: u8) -> impl Iterator<Item = &TilePayload> {
+        let level = self.frame().max_level() - above;
+        self.tiles.iter().filter(move |tile| tile.id.z() == level)
+    }
+
+    /// The finest tile with the largest stored error.
+    fn worst_finest(&self) -> TileId {
+        self.tiles_above(0)
+            .filter_map(|tile| Some((tile.terrain.as_ref()?.geometric_error_m, tile.id)))
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .expect("a finest tile with ground")
+            .1
+    }
+
+    /// The first finest tile that no road meets.
+    fn finest_without_roads(&self) -> TileId {
+        self.tiles_above(0)
+            .find(|tile| tile.roads_geo.is_empty() && tile.roads_sv.is_empty())
+            .expect("a corner without roads")
+            .id
+    }
+
+    /// Lifts a vertex of a tile's TIN.
+    fn lift(&mut self, id: TileId, vertex: usize, steps: i32) {
+        let tin = &mut self.terrain_mut(id).tin;
+        let mut vertices = tin.vertices().to_vec();
+        vertices[vertex].height_q += steps;
+        *tin = Tin::from_canonical(vertices, tin.triangles().to_vec()).expect("the same triangles");
+    }
+
+    /// The tile's ground as lines are laid on it.
+    fn surface(&self, id: TileId) -> Surface {
+        let frame = self.frame();
+        let placement = Placement {
+            corner: frame.lattice_of_node(frame.tile_corner(id)),
+            node_steps: frame.stride(id.z()) << frame.lattice_bits(),
+            quantum_m: self.manifest.vertical.quantum_m,
+        };
+        Surface::new(&self.terrain(id).expect("ground").tin, placement)
+    }
+}
+
+#[test]
+fn nothing_broken_when_nothing_was_changed() {
+    let parts = Parts::sound();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("same.pmtiles");
+    write(&path, &parts.manifest, &parts.encoded());
+    // Whatever the other tests find is then due to their one change.
+    assert!(
+        fs::read(&path).unwrap() == SOUND.bytes,
+        "taking apart and putting together changes bytes"
+    );
+    let report = assert_broken(report_on(&path, Against::Dem), &[]);
+    assert_eq!(report.tiles, parts.tiles.len() as u64);
+    assert!(report.checks.iter().all(|check| check.checked > 0), "{:#?}", report.checks);
+}
+
+#[test]
+fn a_stored_error_below_the_true_one() {
+    let mut parts = Parts::sound();
+    let id = parts.worst_finest();
+    parts.terrain_mut(id).geometric_error_m /= 2.0;
+    parts.assert_breaks(Against::Dem, &[BOUND]);
+}
+
+#[test]
+fn a_border_vertex_that_the_neighbour_has_elsewhere() {
+    let mut parts = Parts::sound();
+    let on_border = |vertex: &TinVertex, column| {
+        vertex.column == column && (1..LAST_NODE).contains(&vertex.row)
+    };
+    // A vertex inside an eastern border, so that one neighbour alone shares it.
+    let (id, east, vertex) = parts
+        .tiles_above(0)
+        .find_map(|tile| {
+            let east = tile.id.neighbour(1, 0)?;
+            let theirs = parts.terrain(east)?.tin.vertices();
+            let own = tile.terrain.as_ref()?.tin.vertices();
+            let vertex = own.iter().position(|vertex| {
+                let same = TinVertex { column: 0, ..*vertex };
+                on_border(vertex, LAST_NODE) && theirs.contains(&same)
+            })?;
+            Some((tile.id, east, vertex))
+        })
+        .unwrap();
+    parts.lift(id, vertex, 3);
+    let report = parts.assert_breaks(Against::Itself, &[SEAMS]);
+    let seams = report.checks.iter().find(|check| check.name.starts_with(SEAMS)).unwrap();
+    assert_eq!(seams.broken, 1);
+    let named = |id: TileId| seams.examples[0].contains(&id.to_string());
+    assert!(named(id) && named(east), "{:?}", seams.examples);
+}
+
+#[test]
+fn a_child_with_a_larger_error_than_its_parent() {
+    let mut parts = Parts::sound();
+    let id = parts.worst_finest();
+    let parent = id.parent().unwrap();
+    let above_m = parts.terrain(parent).unwrap().geometric_error_m;
+    parts.terrain_mut(id).geometric_error_m = 2.0 * above_m;
+    parts.assert_breaks(Against::Itself, &[NESTING]);
+}
+
+#[test]
+fn a_child_that_reaches_above_its_parent() {
+    let mut parts = Parts::sound();
+    let id = parts.worst_finest();
+    let top_m = parts.terrain(id.parent().unwrap()).unwrap().height_range_m[1];
+    parts.terrain_mut(id).height_range_m[1] = top_m + 1.0;
+    parts.assert_breaks(Against::Itself, &[NESTING]);
+}
+
+/// Roads out of order never come into a package: the encoding refuses them.
+#[test]
+fn roads_out_of_order_cannot_be_encoded() {
+    let mut parts = Parts::sound();
+    let tile = parts.tiles.iter_mut().find(|tile| tile.roads_geo.len() > 1).unwrap();
+    tile.roads_geo.swap(0, 1);
+    let id = tile.id;
+    let refused = encode_in(&parts.manifest, &parts.tiles[parts.index_of(id).unwrap()]);
+    assert!(
+        matches!(&refused, Err(EncodeError::Unencodable { tile, what, .. })
+            if *tile == id && what.contains("not sorted")),
+        "{refused:?}"
+    );
+}
+
+#[test]
+fn a_road_dropped_from_a_finest_tile() {
+    let mut parts = Parts::sound();
+    let id = parts.tiles_above(0).max_by_key(|tile| tile.roads_geo.len()).unwrap().id;
+    let index = parts.index_of(id).unwrap();
+    parts.tiles[index].roads_geo.pop();
+    parts.assert_breaks(Against::Itself, &[LENGTH]);
+}
+
+#[test]
+fn sums_that_do_not_add_up() {
+    let mut roads = Parts::sound();
+    roads.manifest.counts.roads_kept += 1;
+    roads.assert_breaks(Against::Itself, &[SUMS]);
+
+    let mut samples = Parts::sound();
+    samples.manifest.counts.samples.filled += 1;
+    samples.assert_breaks(Against::Itself, &[SUMS]);
+}
+
+#[test]
+fn a_tile_left_out() {
+    let mut parts = Parts::sound();
+    let id = parts.finest_without_roads();
+    parts.tiles.retain(|tile| tile.id != id);
+    parts.assert_breaks(Against::Itself, &[COUNT]);
+}
+
+#[test]
+fn a_parent_left_out_over_its_children() {
+    let mut parts = Parts::sound();
+    let parent = parts.worst_finest().parent().unwrap();
+    parts.tiles.retain(|tile| tile.id != parent);
+    parts.assert_breaks(Against::Itself, &[COUNT]);
+}
+
+#[test]
+fn a_hole_in_the_ground() {
+    let mut parts = Parts::sound();
+    let id = parts.finest_without_roads();
+    let inside = |node: u16| (1..LAST_NODE).contains(&node);
+    let tin = &mut parts.terrain_mut(id).tin;
+    let vertices = tin.vertices().to_vec();
+    let mut triangles = tin.triangles().to_vec();
+    let (triangle, hole) = triangles
+        .iter()
+        .map(|corners| corners.map(|corner| vertices[corner as usize]))
+        .enumerate()
+        .filter(|(_, corners)| corners.iter().all(|v| inside(v.row) && inside(v.column)))
+        .max_by_key(|(_, corners)| doubled_area(corners))
+        .unwrap();
+    triangles.remove(triangle);
+    *tin = Tin::from_canonical(vertices, triangles).unwrap();
+    parts.assert_breaks(Against::Dem, &[STRAY, UNCOVERED]);
+
+    // Owning up to the hole does not close it. Nodes on its outline still have the ground beside it.
+    parts.terrain_mut(id).uncovered_nodes += nodes_inside(&hole);
+    parts.assert_breaks(Against::Dem, &[STRAY]);
+}
+
+/// Twice a triangle's area in cells.
+fn doubled_area(corners: &[TinVertex; 3]) -> i64 {
+    let [a, b, c] = corners.map(|v| [i64::from(v.column), i64::from(v.row)]);
+    ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs()
+}
+
+/// Nodes strictly inside a triangle: Pick 1899, area = inside + outline / 2 - 1.
+fn nodes_inside(corners: &[TinVertex; 3]) -> u64 {
+    let outline: u64 = (0..3)
+        .map(|k| {
+            let (a, b) = (&corners[k], &corners[(k + 1) % 3]);
+            let [mut d, mut e] = [a.column.abs_diff(b.column), a.row.abs_diff(b.row)];
+            while e > 0 {
+                (d, e) = (e, d % e);
+            }
+            u64::from(d)
+        })
+        .sum();
+    (doubled_area(corners) as u64 + 2 - outline) / 2
+}
+
+#[test]
+fn uncovered_nodes_that_are_not_counted() {
+    let mut parts = Parts::sound();
+    let id = parts.tiles_above(0).max_by_key(|tile| {
+        tile.terrain.as_ref().map(|terrain| terrain.uncovered_nodes)
+    });
+    let id = id.unwrap().id;
+    let uncovered = &mut parts.terrain_mut(id).uncovered_nodes;
+    assert!(*uncovered > 0, "the sample has voids and data edges");
+    *uncovered -= 1;
+    parts.assert_breaks(Against::Dem, &[UNCOVERED]);
+}
+
+#[test]
+fn a_finest_tile_off_by_more_than_the_bound() {
+    let mut parts = Parts::sound();
+    let id = parts.worst_finest();
+    let inside = 1..LAST_NODE;
+    let vertices = parts.terrain(id).unwrap().tin.vertices();
+    let vertex = vertices
+        .iter()
+        .position(|v| inside.contains(&v.row) && inside.contains(&v.column))
+        .unwrap();
+    let steps = (3.0 * MAX_ERROR_M / parts.manifest.vertical.quantum_m).ceil() as i32;
+    parts.lift(id, vertex, steps);
+    parts.assert_breaks(Against::Dem, &[BOUND, FINEST]);
+
+    // Owning up to the error does not make it a smaller one.
+    let mut above = Some(id);
+    while let Some(ancestor) = above {
+        let stored_m = &mut parts.terrain_mut(ancestor).geometric_error_m;
+        *stored_m = stored_m.max(4.5 * MAX_ERROR_M);
+        above = ancestor.parent();
+    }
+    parts.assert_breaks(Against::Dem, &[FINEST]);
+}
+
+/// The tile, road and vertex of the first vertex inside a line that is as wanted, `above` the finest level.
+fn find_vertex(
+    parts: &Parts,
+    above: u8,
+    wanted: impl Fn(&DrapedVertex) -> bool,
+) -> (TileId, usize, usize) {
+    parts
+        .tiles_above(above)
+        .find_map(|tile| {
+            tile.roads_geo.iter().enumerate().find_map(|(road, geo)| {
+                let inner = &geo.line.vertices[1..geo.line.vertices.len() - 1];
+                Some((tile.id, road, inner.iter().position(&wanted)? + 1))
+            })
+        })
+        .expect("a line with such a vertex")
+}
+
+#[test]
+fn a_line_that_skips_the_edge_it_crosses() {
+    let mut parts = Parts::sound();
+    let is_crossing = |vertex: &DrapedVertex| matches!(vertex, DrapedVertex::Crossing { .. });
+    let (id, road, vertex) = find_vertex(&parts, 0, is_crossing);
+    let index = parts.index_of(id).unwrap();
+    // The line goes straight on, so that its length in plan stays what it was.
+    parts.tiles[index].roads_geo[road].line.vertices.remove(vertex);
+    parts.assert_breaks(Against::Itself, &[ON_TIN]);
+}
+
+#[test]
+fn a_line_with_a_point_moved_far_away() {
+    let mut parts = Parts::sound();
+    let is_source = |vertex: &DrapedVertex| matches!(vertex, DrapedVertex::Source { .. });
+    // Above the finest level, where lengths are not counted.
+    let (id, road, vertex) = find_vertex(&parts, 1, is_source);
+    let surface = parts.surface(id);
+    let index = parts.index_of(id).unwrap();
+    let moved = &mut parts.tiles[index].roads_geo[road].line.vertices[vertex];
+    let DrapedVertex::Source { point: from, .. } = *moved else { unreachable!("it was found so") };
+    let corner = |triangle: usize| surface.points()[surface.triangles()[triangle][0] as usize];
+    let far = (0..surface.triangles().len())
+        .max_by(|&a, &b| {
+            let away_steps = |triangle| corner(triangle).distance_steps(from);
+            away_steps(a).total_cmp(&away_steps(b))
+        })
+        .unwrap();
+
+    // Naming the old triangle with the new point, or the new one with the old point, is no line at all.
+    let DrapedVertex::Source { triangle: near, .. } = *moved else {
+        unreachable!("it was found so")
+    };
+    for (point, triangle) in [(corner(far), near), (from, far as u32)] {
+        parts.tiles[index].roads_geo[road].line.vertices[vertex] =
+            DrapedVertex::Source { point, triangle };
+        let refused = encode_in(&parts.manifest, &parts.tiles[index]);
+        assert!(matches!(refused, Err(EncodeError::Unencodable { .. })), "{refused:?}");
+    }
+
+    parts.tiles[index].roads_geo[road].line.vertices[vertex] =
+        DrapedVertex::Source { point: corner(far), triangle: far as u32 };
+    parts.assert_breaks(Against::Itself, &[ON_TIN]);
+}
+
+#[test]
+fn a_tile_with_a_flipped_bit() {
+    let parts = Parts::sound();
+    let id = parts.finest_without_roads();
+    let mut tiles = parts.encoded();
+    let (_, bytes) = tiles.iter_mut().find(|(tile, _)| *tile == id).unwrap();
+    *bytes.last_mut().unwrap() ^= 1;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("damaged.pmtiles");
+    write(&path, &parts.manifest, &tiles);
+    assert_broken(report_on(&path, Against::Itself), &[WHOLE]);
+}
+
+#[test]
+fn probe() {
+    fn show(name: &str, against: Against, change: impl FnOnce(&mut Parts)) {
+        let mut parts = Parts::sound();
+        change(&mut parts);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("p.pmtiles");
+        let mut tiles = vec![];
+        for t in &parts.tiles { match encode_in(&parts.manifest, t) { Ok(b) => tiles.push((t.id, b)), Err(e) => { println!("PROBE {name}: encode refuses {e}"); return; } } }
+        write(&path, &parts.manifest, &tiles);
+        let dem = match against { Against::Itself => vec![], Against::Dem => vec![sample("pass-dem.tif")] };
+        match verify(&VerifySettings { package: path, dem, threads: 2 }, &Silent) {
+            Ok(r) => println!("PROBE {name}: {:?}", r.checks.iter().filter(|c| !c.holds()).map(|c| c.name).collect::<Vec<_>>()),
+            Err(e) => println!("PROBE {name}: error {e}"),
+        }
+    }
+    let s = Parts::sound();
+    println!("PROBE levels {:?}", s.manifest.levels.iter().map(|l| (l.level, l.tiles, l.least_class)).collect::<Vec<_>>());
+    println!("PROBE kept_m {} roads_in {}", s.manifest.counts.roads_kept_m, s.manifest.counts.roads_in);
+    let d = Against::Dem; let i = Against::Itself;
+    show("sv dropped all, one tile", d, |p| { let t = p.tiles.iter_mut().rev().find(|t| !t.roads_sv.is_empty()).unwrap(); t.roads_sv.clear(); });
+    show("attributes dropped all tiles", d, |p| for t in &mut p.tiles { t.attributes.clear(); });
+    show("coarse geo roads dropped", d, |p| { let z = p.frame().max_level(); for t in &mut p.tiles { if t.id.z() < z { t.roads_geo.clear(); } } });
+    show("leaf left out, count adjusted", d, |p| { let id = p.finest_without_roads(); p.tiles.retain(|t| t.id != id); p.manifest.levels.last_mut().unwrap().tiles -= 1; });
+    show("parent left out, count adjusted", d, |p| { let id = p.worst_finest().parent().unwrap(); p.tiles.retain(|t| t.id != id); p.manifest.levels[usize::from(id.z())].tiles -= 1; });
+    show("all terrain of a roadless leaf", d, |p| { let id = p.finest_without_roads(); let k = p.index_of(id).unwrap(); p.tiles[k].terrain = None; p.tiles[k].roads_sv.clear(); });
+    show("level triangles/vertices/bytes +1", d, |p| { let l = p.manifest.levels.last_mut().unwrap(); l.triangles += 1; l.vertices += 1; l.terrain_bytes += 1; });
+    show("level geometric_error_m halved", d, |p| { p.manifest.levels.last_mut().unwrap().geometric_error_m /= 2.0; });
+    show("level uncovered +1", d, |p| { p.manifest.levels.last_mut().unwrap().uncovered_nodes += 1; });
+    show("height range of leaf narrowed to nothing", d, |p| { let id = p.worst_finest(); let r = &mut p.terrain_mut(id).height_range_m; r[1] = r[0]; });
+    show("sv ground range zeroed", d, |p| for t in &mut p.tiles { for r in &mut t.roads_sv { for g in &mut r.line.ground_range_m { *g = [0.0, 0.0]; } } });
+    show("settings max_error_m * 100", d, |p| p.manifest.settings.max_error_m *= 100.0);
+    show("level max_error_m * 100", d, |p| for l in &mut p.manifest.levels { l.max_error_m *= 100.0; });
+    show("roads_in+1 roads_kept+1 classes+1", d, |p| { let c = &mut p.manifest.counts; c.roads_in += 1; c.roads_kept += 1; c.classes[7].0 += 1; });
+    show("samples with_data+1 nodes+1", d, |p| { let c = &mut p.manifest.counts.samples; c.nodes += 1; c.with_data += 1; });
+    show("samples filled+1 with_data-1", d, |p| { let c = &mut p.manifest.counts.samples; c.filled += 1; c.with_data -= 1; });
+    show("normals zeroed", d, |p| for t in &mut p.tiles { if let Some(t) = &mut t.terrain { for n in &mut t.normals { *n = [0, 0]; } } });
+    show("geo road replaced by other way's id", d, |p| { let t = p.tiles.iter_mut().rev().find(|t| !t.roads_geo.is_empty()).unwrap(); t.roads_geo.last_mut().unwrap().way_id += 1_000_000; });
+    show("short geo road (2 vertices) dropped in finest", d, |p| { let id = p.tiles_above(0).find(|t| t.roads_geo.iter().any(|r| r.line.vertices.len() == 2)).map(|t| t.id); if let Some(id) = id { let k = p.index_of(id).unwrap(); let r = p.tiles[k].roads_geo.iter().position(|r| r.line.vertices.len() == 2).unwrap(); p.tiles[k].roads_geo.remove(r); } else { println!("PROBE (none)"); } });
+    show("highways_in + 1", d, |p| p.manifest.counts.highways_in += 1);
+    show("dem sha wrong", d, |p| p.manifest.inputs[0].sha256 = "0".repeat(64));
+    show("growth row + 1", d, |p| p.manifest.growth[0].geo_vertices += 1);
+    show("leaf heights lifted by 3 q everywhere incl border with neighbours (dem)", d, |p| { let ids: Vec<_> = p.tiles_above(0).map(|t| t.id).collect(); let dq = (3.0 * MAX_ERROR_M / p.manifest.vertical.quantum_m) as i32; for id in ids { let n = p.terrain(id).unwrap().tin.vertices().len(); for v in 0..n { p.lift(id, v, dq); } } });
+    show("root dropped", d, |p| { p.tiles.remove(0); });
+    show("dangling border vertex west-edge of neighbourless", i, |p| { let _ = p; });
+}
