@@ -250,11 +250,10 @@ impl Case {
         }
 
         // Far larger numbers, far away, take the 128-bit paths and must decide the same.
-        const WIDER: i64 = 1 << 24;
-        const FAR: i64 = 1 << 55;
-        let widen = |p: LatticePoint| LatticePoint::new(FAR + p.u * WIDER, p.v * WIDER - FAR);
+        let (wider, far) = (1_i64 << 24, 1_i64 << 55);
+        let widen = |p: LatticePoint| LatticePoint::new(far + p.u * wider, p.v * wider - far);
         let corner = widen(placement.corner);
-        let wide = Placement { corner, node_steps: placement.node_steps * WIDER, ..*placement };
+        let wide = Placement { corner, node_steps: placement.node_steps * wider, ..*placement };
         let points = line.points().iter().copied().map(widen).collect();
         let wide = drape(&Polyline::new(points).unwrap(), &Surface::new(tin, wide));
         let widened = draped.lines.iter().map(|part| DrapedLine {

@@ -1,0 +1,131 @@
+//! Terrain with known answers, from rasters that the tests write themselves (ASCII grids, which GDAL reads).
+
+use std::{
+    fmt::Write as _,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use e2e::{corniche, sample};
+use serde_json::Value;
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("paths of these tests are UTF-8")
+}
+
+/// Writes an ASCII grid of 10 m cells whose south-western sample lies at a node that is a tile corner.
+fn write_grid(folder: &Path, side: usize, height_m: impl Fn(usize, usize) -> f64) -> PathBuf {
+    let corner_m = 256.0 * 10.0 * 100.0 - 5.0;
+    let mut grid = format!(
+        "ncols {side}\nnrows {side}\nxllcorner {corner_m}\nyllcorner {corner_m}\ncellsize 10\nNODATA_value -9999\n"
+    );
+    for row in 0..side {
+        for column in 0..side {
+            let _ = write!(grid, "{} ", height_m(column, row));
+        }
+        grid.push('\n');
+    }
+    let path = folder.join("grid.asc");
+    fs::write(&path, grid).expect("the folder is this test's own");
+    path
+}
+
+fn build(folder: &Path, dem: &Path, options: &[&str]) -> PathBuf {
+    let package = folder.join("grid.pmtiles");
+    let mut arguments = vec!["build", "--dem", text(dem), "-o", text(&package), "--quiet"];
+    arguments.extend(["--dem-crs", "EPSG:32632"]);
+    arguments.extend(options);
+    let ran = corniche(arguments);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    package
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let ran = corniche(arguments);
+    assert_eq!(ran.code, 0, "{arguments:?}: {}{}", ran.out, ran.err);
+    serde_json::from_str(&ran.out).expect("what is meant for programs is JSON")
+}
+
+#[test]
+fn a_raster_without_crs_is_refused_with_the_option_that_helps() {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = write_grid(folder.path(), 20, |_, _| 5.0);
+    let package = folder.path().join("grid.pmtiles");
+    let ran = corniche(["build", "--dem", text(&dem), "-o", text(&package)]);
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("--dem-crs") && ran.err.contains("grid.asc"), "{}", ran.err);
+    assert!(!package.exists());
+}
+
+#[test]
+fn a_flat_tile_has_four_vertices_and_two_triangles() {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = write_grid(folder.path(), 257, |_, _| 1234.5);
+    let package = build(folder.path(), &dem, &[]);
+    let tile = json(&["tile", text(&package), "0/0/0", "--json"]);
+    assert_eq!(tile["tin"]["vertices"].as_array().unwrap().len(), 4);
+    assert_eq!(tile["tin"]["triangles"].as_array().unwrap().len(), 2);
+    assert_eq!(tile["geometric_error_m"], 0.0);
+    assert_eq!(tile["bounds"], serde_json::json!([256_000.0, 256_000.0, 258_560.0, 258_560.0]));
+    for vertex in tile["tin"]["vertices"].as_array().unwrap() {
+        assert_eq!(vertex[2], 1234.5);
+    }
+}
+
+/// A plane is its own TIN on every level: no error anywhere, and the corner heights are the plane's.
+#[test]
+fn a_plane_is_reproduced_on_every_level() {
+    let folder = tempfile::tempdir().unwrap();
+    let plane = |column: usize, row: usize| 500.0 + 0.5 * column as f64 - 0.25 * row as f64;
+    let dem = write_grid(folder.path(), 513, plane);
+    let package = build(folder.path(), &dem, &["--max-error", "1"]);
+    let report = json(&["verify", text(&package), "--dem", text(&dem), "--json", "--quiet"]);
+    assert_eq!(report["holds"], true, "{report}");
+    for level in report["errors"].as_array().unwrap() {
+        assert!(level["largest_true_m"].as_f64() < Some(0.02), "{level}");
+    }
+}
+
+/// Data that ends one cell past a tile: the coarser level has no cell there, and nothing breaks.
+#[test]
+fn ground_that_no_coarser_tile_covers_is_still_accounted_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let waves = |column: usize, row: usize| {
+        900.0 + 40.0 * (column as f64 * 0.07).sin() * (row as f64 * 0.05).cos()
+    };
+    for side in [514, 258] {
+        let dem = write_grid(folder.path(), side, waves);
+        let package = build(folder.path(), &dem, &["-O"]);
+        let report = json(&["verify", text(&package), "--dem", text(&dem), "--json", "--quiet"]);
+        assert_eq!(report["holds"], true, "{side}: {report}");
+    }
+}
+
+/// A target that cannot grow past 100 kB, as on a full disk: exit code 1, and nothing is left.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("out.pmtiles");
+    let dem = sample("pass/pass-dem.tif");
+    let script = "trap '' XFSZ; ulimit -f 200; exec \"$0\" build --dem \"$1\" -o \"$2\" --quiet";
+    let output = std::process::Command::new("sh")
+        .args(["-c", script, text(&e2e::binary()), text(&dem), text(&package)])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("disk full?"), "{said}");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn an_input_is_never_replaced_by_the_package() {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = write_grid(folder.path(), 40, |_, _| 5.0);
+    let before = fs::read(&dem).unwrap();
+    let ran =
+        corniche(["build", "--dem", text(&dem), "-o", text(&dem), "-O", "--dem-crs", "EPSG:32632"]);
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert_eq!(fs::read(&dem).unwrap(), before);
+}
