@@ -26,15 +26,17 @@ const MAX_ERROR_M: f64 = 10.0;
 const LAST_NODE: u16 = 256;
 
 const WHOLE: &str = "every tile's sections are whole";
-const COUNT: &str = "the tiles are those that the manifest counts";
+const COUNT: &str = "tiles and their sums are those that the manifest counts";
 const ON_TIN: &str = "P1: GEO roads lie on their TIN";
 const BOUND: &str = "P2: no stored error is below the true one";
 const FINEST: &str = "P2: the finest level stays within --max-error";
 const STRAY: &str = "P2: nodes without ground lie within one cell of a void or an edge";
-const UNCOVERED: &str = "P2: uncovered nodes are as many as the tiles say";
+const UNCOVERED: &str = "P2: uncovered nodes are as many as tiles and levels say";
 const SEAMS: &str = "P3: neighbours of one level share bit-identical border vertices";
 const NESTING: &str = "a parent's error and height range are never below its children's";
 const LENGTH: &str = "P6: GEO roads of the finest level";
+const SETTINGS: &str = "tolerances follow from the settings";
+const RANGES: &str = "height ranges hold every node beneath";
 const SUMS: &str = "P6: what came in is what was kept";
 
 /// The sample's package, built once.
@@ -280,7 +282,7 @@ fn a_child_with_a_larger_error_than_its_parent() {
     let parent = id.parent().unwrap();
     let above_m = parts.terrain(parent).unwrap().geometric_error_m;
     parts.terrain_mut(id).geometric_error_m = 2.0 * above_m;
-    parts.assert_breaks(Against::Itself, &[NESTING]);
+    parts.assert_breaks(Against::Itself, &[COUNT, NESTING]);
 }
 
 #[test]
@@ -361,11 +363,11 @@ fn a_hole_in_the_ground() {
         .unwrap();
     triangles.remove(triangle);
     *tin = Tin::from_canonical(vertices, triangles).unwrap();
-    parts.assert_breaks(Against::Dem, &[STRAY, UNCOVERED]);
+    parts.assert_breaks(Against::Dem, &[COUNT, STRAY, UNCOVERED]);
 
     // Owning up to the hole does not close it.
     parts.terrain_mut(id).uncovered_nodes += nodes_inside(&hole);
-    parts.assert_breaks(Against::Dem, &[STRAY]);
+    parts.assert_breaks(Against::Dem, &[COUNT, STRAY, UNCOVERED]);
 }
 
 /// Twice a triangle's area in cells.
@@ -423,7 +425,7 @@ fn a_finest_tile_off_by_more_than_the_bound() {
         *stored_m = stored_m.max(4.5 * MAX_ERROR_M);
         above = ancestor.parent();
     }
-    parts.assert_breaks(Against::Dem, &[FINEST]);
+    parts.assert_breaks(Against::Dem, &[COUNT, FINEST]);
 }
 
 /// The tile, road and vertex of the first vertex inside a line that is as wanted, `above` the finest level.
@@ -462,8 +464,11 @@ fn a_line_with_a_point_moved_far_away() {
     let (id, road, vertex) = find_vertex(&parts, 1, is_source);
     let surface = parts.surface(id);
     let index = parts.index_of(id).unwrap();
-    let moved = &mut parts.tiles[index].roads_geo[road].line.vertices[vertex];
-    let DrapedVertex::Source { point: from, .. } = *moved else { unreachable!("it was found so") };
+    let DrapedVertex::Source { point: from, triangle: near } =
+        parts.tiles[index].roads_geo[road].line.vertices[vertex]
+    else {
+        unreachable!("it was found so")
+    };
     let corner = |triangle: usize| surface.points()[surface.triangles()[triangle][0] as usize];
     let far = (0..surface.triangles().len())
         .max_by(|&a, &b| {
@@ -473,9 +478,6 @@ fn a_line_with_a_point_moved_far_away() {
         .unwrap();
 
     // Naming the old triangle with the new point, or the new one with the old point, is no line at all.
-    let DrapedVertex::Source { triangle: near, .. } = *moved else {
-        unreachable!("it was found so")
-    };
     for (point, triangle) in [(corner(far), near), (from, far as u32)] {
         parts.tiles[index].roads_geo[road].line.vertices[vertex] =
             DrapedVertex::Source { point, triangle };
@@ -498,5 +500,35 @@ fn a_tile_with_a_flipped_bit() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("damaged.pmtiles");
     write(&path, &parts.manifest, &tiles);
-    assert_broken(report_on(&path, Against::Itself), &[WHOLE]);
+    assert_broken(report_on(&path, Against::Itself), &[WHOLE, COUNT]);
+}
+
+#[test]
+fn tolerances_that_were_loosened() {
+    let mut settings = Parts::sound();
+    settings.manifest.settings.max_error_m *= 100.0;
+    settings.assert_breaks(Against::Itself, &[SETTINGS]);
+
+    let mut level = Parts::sound();
+    level.manifest.levels[0].max_error_m *= 100.0;
+    level.assert_breaks(Against::Itself, &[SETTINGS]);
+}
+
+#[test]
+fn ground_that_was_taken_away_with_its_count() {
+    let mut parts = Parts::sound();
+    let id = parts.finest_without_roads();
+    parts.tiles.retain(|tile| tile.id != id);
+    let level = parts.manifest.levels.last_mut().unwrap();
+    level.tiles -= 1;
+    parts.assert_breaks(Against::Dem, &[COUNT, STRAY, UNCOVERED]);
+}
+
+#[test]
+fn a_height_range_that_leaves_nodes_out() {
+    let mut parts = Parts::sound();
+    let id = parts.finest_without_roads();
+    let range_m = &mut parts.terrain_mut(id).height_range_m;
+    range_m[1] = range_m[0];
+    parts.assert_breaks(Against::Dem, &[RANGES]);
 }

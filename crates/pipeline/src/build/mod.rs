@@ -28,6 +28,7 @@ use crate::{BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage}
 
 pub(crate) use heights::data_tiles;
 use levels::Levels;
+pub(crate) use package::settings_sha256;
 
 /// What a build came to.
 #[derive(Debug, Clone)]

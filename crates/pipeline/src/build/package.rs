@@ -35,8 +35,6 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Result<Manifest, BuildError> {
     let Outcome { settings, plan, levels, .. } = outcome;
     let frame = *levels.frame();
     let record = settings_record(outcome);
-    let settings_json =
-        serde_json::to_vec(&record).map_err(|error| BuildError::Storage(error.into()))?;
     let projection = outcome.dem.projection(plan)?;
     // The data's rectangle with room around it, but not the root's far corners: they can be a world away.
     let room = 0.1 * plan.data_bounds.width().max(plan.data_bounds.height()).max(frame.cell_m());
@@ -70,8 +68,8 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Result<Manifest, BuildError> {
         },
         coordinates: CoordinateTable::sample(&projection, around, COORDINATE_TOLERANCE_M)?,
         levels: level_records(outcome),
+        settings_sha256: settings_sha256(&record),
         settings: record,
-        settings_sha256: hex(&Sha256::digest(settings_json)),
         inputs: outcome.inputs.clone(),
         attribution,
         counts: counts(outcome),
@@ -227,6 +225,13 @@ pub(crate) fn write(
     writer.finish().map_err(failed)?;
     observer.end(Stage::Package);
     Ok(())
+}
+
+/// SHA-256 of settings as JSON.
+pub(crate) fn settings_sha256(settings: &SettingsRecord) -> String {
+    // A record of numbers and texts has no way to fail to be JSON; the text of its debugging form is as unique.
+    let json = serde_json::to_string(settings).unwrap_or_else(|_| format!("{settings:?}"));
+    hex(&Sha256::digest(json))
 }
 
 /// Lower-case hexadecimal.

@@ -23,6 +23,8 @@ struct Truth {
     largest_m: f64,
     nodes: u64,
     uncovered: u64,
+    /// Lowest and highest node with data beneath.
+    range_m: Option<[f32; 2]>,
     /// Uncovered nodes farther than one cell of the level from any void or edge.
     stray: u64,
 }
@@ -33,6 +35,10 @@ impl Truth {
         self.nodes += other.nodes;
         self.uncovered += other.uncovered;
         self.stray += other.stray;
+        self.range_m = match (self.range_m, other.range_m) {
+            (Some(a), Some(b)) => Some([a[0].min(b[0]), a[1].max(b[1])]),
+            (a, b) => a.or(b),
+        };
     }
 }
 
@@ -53,7 +59,7 @@ pub(crate) fn verify(
     workers::in_order(
         settings.threads,
         finest.len(),
-        || Ok((dem.reader(&plan)?, BTreeMap::<TileId, Rc<Option<Ground>>>::new())),
+        || Ok((dem.reader(&plan)?, BTreeMap::<TileId, Rc<Ground>>::new())),
         |(reader, cache), index| {
             if observer.is_cancelled() {
                 return Err(VerifyError::Interrupted);
@@ -65,22 +71,19 @@ pub(crate) fn verify(
             let mut found = Vec::new();
             for level in 0..=max_level {
                 let ancestor = id.ancestor(level);
-                // A tile that cannot be read was reported already; here it has no ground to compare.
                 let ground = Rc::clone(cache.entry(ancestor).or_insert_with(|| {
+                    // A tile that is not there, or cannot be read, covers nothing: all its nodes are bare.
                     let payload = package.payload(ancestor, Sections::TERRAIN).ok().flatten();
-                    let terrain = payload.and_then(|payload| payload.terrain);
-                    let quantum_m = manifest.vertical.quantum_m;
-                    Rc::new(terrain.map(|terrain| Ground::new(&terrain.tin, quantum_m)))
+                    let tin =
+                        payload.and_then(|payload| payload.terrain).map(|terrain| terrain.tin);
+                    Rc::new(Ground::new(&tin.unwrap_or_default(), manifest.vertical.quantum_m))
                 }));
-                if let Some(ground) = &*ground {
-                    let (mut truth, bare) = compare(ground, [id, ancestor], &window, manifest);
-                    for (cell, nodes) in bare {
-                        let stride = manifest.frame.stride(level);
-                        truth.stray +=
-                            if has_void_corner(cell, stride, reader)? { 0 } else { nodes };
-                    }
-                    found.push((ancestor, truth));
+                let (mut truth, bare) = compare(&ground, [id, ancestor], &window, manifest);
+                for (cell, nodes) in bare {
+                    let stride = manifest.frame.stride(level);
+                    truth.stray += if has_void_corner(cell, stride, reader)? { 0 } else { nodes };
                 }
+                found.push((ancestor, truth));
             }
             Ok(found)
         },
@@ -130,7 +133,7 @@ fn compare(
     let frame = &manifest.frame;
     let stride = frame.stride(ancestor.z());
     let (corner, above) = (frame.tile_corner(finest), frame.tile_corner(ancestor));
-    let mut truth = Truth::default();
+    let mut truth = Truth { range_m: window.range_m(), ..Truth::default() };
     let mut bare: BTreeMap<NodeIndex, u64> = BTreeMap::new();
     for row in 0..window.rows() {
         for column in 0..window.columns() {
@@ -185,31 +188,47 @@ fn judge(
     let mut tight =
         Check::new("P2: stored errors are at most twice the true ones, for 95 % of tiles");
     let mut loose = 0_u64;
-    let mut counted = Check::new("P2: uncovered nodes are as many as the tiles say");
+    let mut counted = Check::new("P2: uncovered nodes are as many as tiles and levels say");
+    let mut ranges = Check::new("height ranges hold every node beneath");
     let mut stored = BTreeMap::new();
-    let mut stored_uncovered = BTreeMap::new();
     for id in package.tile_ids()? {
         let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
         if let Some(terrain) = payload.and_then(|payload| payload.terrain) {
+            let said = terrain.uncovered_nodes;
+            let truth = truths.get(&id).copied().unwrap_or_default();
+            counted.look(said == truth.uncovered, || {
+                format!("tile {id} says {said}, {} were found", truth.uncovered)
+            });
+            let [low, high] = terrain.height_range_m;
+            let holds = truth
+                .range_m
+                .is_none_or(|range| low <= f64::from(range[0]) && f64::from(range[1]) <= high);
+            ranges.look(holds, || {
+                format!("tile {id} says {low} to {high} m, nodes beneath: {:?}", truth.range_m)
+            });
             stored.insert(id, terrain.geometric_error_m);
-            stored_uncovered.insert(id, terrain.uncovered_nodes);
         }
     }
     let mut ratios: BTreeMap<u8, Vec<f64>> = BTreeMap::new();
     let mut levels: BTreeMap<u8, Truth> = BTreeMap::new();
     let mut tiles: BTreeMap<u8, u64> = BTreeMap::new();
+    for (&id, truth) in truths {
+        // Tiles that are not there count too: what lies beneath them must lie at a void or an edge.
+        stray.look(truth.stray == 0, || format!("{} nodes of tile {id}", truth.stray));
+        levels.entry(id.z()).or_default().merge(*truth);
+    }
+    for level in &manifest.levels {
+        let found = levels.get(&level.level).map_or(0, |truth| truth.uncovered);
+        counted.look(found == level.uncovered_nodes, || {
+            format!("level {} says {}, {found} were found", level.level, level.uncovered_nodes)
+        });
+    }
     for (&id, &stored_m) in &stored {
         let truth = truths.get(&id).copied().unwrap_or_default();
         *tiles.entry(id.z()).or_default() += 1;
-        levels.entry(id.z()).or_default().merge(truth);
         bound.look(stored_m >= truth.largest_m - ROUNDING_M, || {
             format!("tile {id} stores {stored_m} m, but is off by {} m", truth.largest_m)
         });
-        let said = stored_uncovered.get(&id).copied().unwrap_or_default();
-        counted.look(said == truth.uncovered, || {
-            format!("tile {id} says {said}, {} were found", truth.uncovered)
-        });
-        stray.look(truth.stray == 0, || format!("{} nodes of tile {id}", truth.stray));
         if id.z() == manifest.frame.max_level() {
             finest.look(truth.largest_m <= manifest.settings.max_error_m + ROUNDING_M, || {
                 format!("tile {id} is off by {} m", truth.largest_m)
@@ -228,7 +247,7 @@ fn judge(
     tight.look(loose as f64 <= (1.0 - TIGHT_SHARE) * count as f64, || {
         format!("{loose} of {count} tiles are loose")
     });
-    report.checks.extend([bound, tight, finest, stray, counted]);
+    report.checks.extend([bound, tight, finest, stray, counted, ranges]);
     for (level, truth) in levels {
         let mut ratios = ratios.remove(&level).unwrap_or_default();
         ratios.sort_by(f64::total_cmp);

@@ -3,6 +3,7 @@
 use corniche_tileset::Manifest;
 
 use super::Check;
+use crate::build::settings_sha256;
 
 /// Lengths are sums of millions of floating-point numbers, and every cut moves a point by less than a
 /// millimetre: they agree to this share.
@@ -33,5 +34,31 @@ pub(crate) fn verify(manifest: &Manifest) -> Vec<Check> {
     check.look(by_class == counts.roads_in, || {
         format!("{by_class} roads by class, {} in all", counts.roads_in)
     });
-    vec![check]
+    vec![check, settings(manifest)]
+}
+
+/// Tolerances are what the settings say, and the settings are those that were hashed: else every check that rests
+/// on them could be loosened.
+fn settings(manifest: &Manifest) -> Check {
+    let mut check = Check::new("tolerances follow from the settings, and those match their hash");
+    let hash = settings_sha256(&manifest.settings);
+    check.look(hash == manifest.settings_sha256, || {
+        "the settings do not match their hash".to_owned()
+    });
+    for (level, record) in (0_u8..).zip(&manifest.levels) {
+        let sound = record.level == level && level <= manifest.frame.max_level();
+        let tolerance_m = if sound {
+            manifest.settings.max_error_m * manifest.frame.stride(level) as f64
+        } else {
+            f64::NAN
+        };
+        // The build computes it so: equal to the last bit.
+        check.look(record.max_error_m.to_bits() == tolerance_m.to_bits(), || {
+            format!(
+                "level {level} has a tolerance of {} m, not {tolerance_m} m",
+                record.max_error_m
+            )
+        });
+    }
+    check
 }

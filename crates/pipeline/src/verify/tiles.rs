@@ -15,6 +15,8 @@ use crate::{Observer, Stage, workers};
 
 /// What is kept of a tile to compare it with others.
 struct Kept {
+    vertices: u64,
+    triangles: u64,
     geometric_error_m: f64,
     height_range_m: [f64; 2],
     borders: Borders,
@@ -85,11 +87,24 @@ pub(crate) fn verify(
         .look((finest_length_m - expected_m).abs() <= LENGTH_SHARE * expected_m.max(1.0), || {
             format!("{finest_length_m} m lie in the tiles, {expected_m} m are recorded")
         });
-    let mut count = Check::new("the tiles are those that the manifest counts");
+    let mut count = Check::new("tiles and their sums are those that the manifest counts");
     for level in &manifest.levels {
         let found = ids.iter().filter(|id| id.z() == level.level).count() as u64;
         count.look(found == level.tiles, || {
             format!("level {} has {found} tiles, {} are recorded", level.level, level.tiles)
+        });
+    }
+    for level in &manifest.levels {
+        let tiles = || kept.iter().filter(|(id, _)| id.z() == level.level).map(|(_, tile)| tile);
+        let triangles: u64 = tiles().map(|tile| tile.triangles).sum();
+        let vertices: u64 = tiles().map(|tile| tile.vertices).sum();
+        let error_m = tiles().map(|tile| tile.geometric_error_m).fold(0.0, f64::max);
+        let said = (level.triangles, level.vertices, level.geometric_error_m.to_bits());
+        count.look((triangles, vertices, error_m.to_bits()) == said, || {
+            format!(
+                "level {} has {triangles} triangles, {vertices} vertices, error {error_m} m",
+                level.level
+            )
         });
     }
     Ok(VerifyReport {
@@ -115,6 +130,8 @@ fn look_at(package: &FilePackage, id: TileId) -> Found {
         roads::verify(&payload, &manifest.frame, manifest.vertical.quantum_m, max_error_m);
     Found {
         kept: payload.terrain.map(|terrain| Kept {
+            vertices: terrain.tin.vertices().len() as u64,
+            triangles: terrain.tin.triangles().len() as u64,
             geometric_error_m: terrain.geometric_error_m,
             height_range_m: terrain.height_range_m,
             borders: seams::borders(&terrain.tin),
