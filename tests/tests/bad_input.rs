@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-use e2e::{Ran, build_pass, corniche, sample};
+use e2e::{Ran, build_pass, corniche, real_data, sample};
 
 /// Runs `corniche build` with `arguments` and expects `code`, nothing at the target and no litter beside it.
 fn refuses(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
@@ -139,4 +139,22 @@ fn cleans_up_when_interrupted() {
     assert_eq!(code, Some(4), "{rest:?}");
     assert!(rest.iter().any(|line| line.contains("interrupted")), "{rest:?}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+/// Real extracts that cannot be used: each is refused with its reason before any long work.
+#[test]
+fn refuses_broken_and_foreign_extracts() {
+    let cases = [
+        ("nasty/osm/empty.osm.pbf", "no road"),
+        ("nasty/derived-osm/truncated-half.osm.pbf", "truncated-half"),
+        ("nasty/derived-osm/zero-bytes.osm.pbf", "zero-bytes"),
+        ("nasty/osm/monaco-latest.lz4.osm.pbf", "LZ4"),
+        ("nasty/osm/deleted_nodes.osh.pbf", "history"),
+    ];
+    for (file, word) in cases {
+        let Some(osm) = real_data(file) else { continue };
+        let folder = tempfile::tempdir().unwrap();
+        let dem = sample("pass/pass-dem.tif");
+        refuses(folder.path(), &["--dem", text(&dem), "--osm", text(&osm)], 2, &[word]);
+    }
 }
