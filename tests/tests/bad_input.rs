@@ -132,7 +132,9 @@ fn cleans_up_when_interrupted() {
     let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
     let meshing = lines.any(|line| line.unwrap().contains("\"mesh\""));
     assert!(meshing, "the build ended before it meshed");
-    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    // The shell's own kill: a bare machine has no program of that name.
+    let signal = format!("kill -INT {}", child.id());
+    let killed = Command::new("sh").args(["-c", &signal]).status().unwrap();
     assert!(killed.success());
     let rest: Vec<String> = lines.map(Result::unwrap).collect();
     let code = child.wait().unwrap().code();
