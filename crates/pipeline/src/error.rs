@@ -52,7 +52,9 @@ pub enum BuildError {
     Write { path: PathBuf, source: corniche_tileset::WriteError },
     #[error("{path:?} could not be put in its place")]
     Rename { path: PathBuf, source: io::Error },
-    #[error("longitudes and latitudes of the package could not be computed")]
+    #[error(
+        "the data do not fit one package; are the files of one region, and is --crs right for it?"
+    )]
     Coordinates(#[from] corniche_geom::CoordinateTableError),
     #[error("interrupted; nothing was written, run the same command again")]
     Interrupted,
@@ -73,6 +75,7 @@ impl BuildError {
                 | Self::NoRoads { .. }
                 | Self::NoOverlap { .. }
                 | Self::NoGround { .. }
+                | Self::Coordinates(_)
                 | Self::MaxError { .. }
         )
     }

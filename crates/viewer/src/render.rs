@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use corniche_geom::{Bounds, TileId};
+use corniche_geom::TileId;
 use corniche_tileset::OpenError;
 use glam::DVec3;
 use image::RgbaImage;
@@ -98,9 +98,14 @@ pub enum RenderError {
     #[error("{package:?} has no ground to show")]
     NoGround { package: PathBuf },
     #[error(
-        "longitude {lon_deg}, latitude {lat_deg} is not on the package's ground; it covers {covered:?}"
+        "longitude {lon_deg}, latitude {lat_deg} has no ground: it lies in a void, at the data's edge or outside the \
+         package, which covers {covered_deg:?} (west, south, east, north in degrees)"
     )]
-    OffGround { lon_deg: f64, lat_deg: f64, covered: Bounds },
+    OffGround { lon_deg: f64, lat_deg: f64, covered_deg: [f64; 4] },
+    #[error(
+        "the eye would be {depth_m:.0} m under the ground; look from farther away, from another side or more steeply down"
+    )]
+    EyeUnderGround { depth_m: f64 },
     #[error("{name} of {value} is out of range; it must be {range}")]
     Range { name: &'static str, value: f64, range: &'static str },
 }
@@ -217,6 +222,9 @@ fn root_height_range(
     Ok(summary.ok_or_else(none)?.height_range_m)
 }
 
+/// The eye stays at least so far above the ground: nearer it would see through the TIN's skirts.
+const MIN_CLEARANCE_M: f64 = 2.0;
+
 fn camera(
     request: &RenderRequest,
     source: &PackageSource,
@@ -235,8 +243,11 @@ fn camera(
             Ok(Camera::framing(subject, oblique, request.size_px))
         }
         CameraRequest::LookAt { lon_deg, lat_deg, distance_m, orientation } => {
-            let off_ground =
-                || RenderError::OffGround { lon_deg, lat_deg, covered: manifest.wgs84_bounds };
+            let off_ground = || RenderError::OffGround {
+                lon_deg,
+                lat_deg,
+                covered_deg: manifest.wgs84_bounds.to_array(),
+            };
             let at = manifest
                 .coordinates
                 .working_from_wgs84([lon_deg, lat_deg])
@@ -244,7 +255,15 @@ fn camera(
             let height_m = store.ground_height_m(at)?.ok_or_else(off_ground)?;
             let target = DVec3::new(at[0], at[1], height_m * vertical_scale);
             let distance_in_world_m = distance_m * manifest.point_scale;
-            Ok(Camera::look_at(target, distance_in_world_m, orientation, request.size_px))
+            let camera = Camera::look_at(target, distance_in_world_m, orientation, request.size_px);
+            let eye = camera.eye_in_world();
+            if let Some(ground_m) = store.ground_height_m([eye.x, eye.y])? {
+                let depth_m = ground_m * vertical_scale + MIN_CLEARANCE_M - eye.z;
+                if depth_m > 0.0 {
+                    return Err(RenderError::EyeUnderGround { depth_m });
+                }
+            }
+            Ok(camera)
         }
     }
 }

@@ -48,9 +48,6 @@ pub fn build(
     observer: &dyn Observer,
 ) -> Result<BuildSummary, BuildError> {
     let target = &settings.output;
-    if settings.existing == Existing::Keep && fs::symlink_metadata(target).is_ok() {
-        return Err(BuildError::Exists { path: target.clone() });
-    }
     let folder = match target.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -58,6 +55,9 @@ pub fn build(
     let unusable = |source| BuildError::Target { folder: folder.to_path_buf(), source };
     if target.is_dir() || target.file_name().is_none() {
         return Err(unusable(std::io::Error::other("the package's name is that of a folder")));
+    }
+    if settings.existing == Existing::Keep && fs::symlink_metadata(target).is_ok() {
+        return Err(BuildError::Exists { path: target.clone() });
     }
     refuse_inputs_as_target(settings)?;
     let name =
@@ -112,6 +112,8 @@ fn run(
         return Err(BuildError::MaxError { max_error_m });
     }
     let levels = Levels::new(plan.frame, max_error_m, &settings.roads);
+    // Files too far apart for one package are found out here, before the long work.
+    let coordinates = package::coordinates(&dem, &plan)?;
     let inputs = inputs::hash(settings, observer)?;
 
     // Roads come before the long work on heights: an extract that is no use is told at once.
@@ -159,15 +161,15 @@ fn run(
     let manifest = package::manifest(&package::Outcome {
         settings,
         max_error_m,
-        dem: &dem,
         plan: &plan,
         levels: &levels,
+        coordinates,
         inputs,
         samples: pyramid.samples(),
         roads: roads.as_ref(),
         tiles: &tiles,
         errors: &errors,
-    })?;
+    });
     if let (Some(osm), 0) = (&settings.osm, manifest.counts.roads_kept) {
         return Err(BuildError::NoGround { osm: osm.clone() });
     }

@@ -20,9 +20,9 @@ const COORDINATE_TOLERANCE_M: f64 = 0.01;
 pub(crate) struct Outcome<'a> {
     pub(crate) settings: &'a BuildSettings,
     pub(crate) max_error_m: f64,
-    pub(crate) dem: &'a Dem,
     pub(crate) plan: &'a GridPlan,
     pub(crate) levels: &'a Levels,
+    pub(crate) coordinates: CoordinateTable,
     pub(crate) inputs: Vec<InputRecord>,
     pub(crate) samples: SampleCounts,
     pub(crate) roads: Option<&'a ReadRoads<'a>>,
@@ -30,25 +30,31 @@ pub(crate) struct Outcome<'a> {
     pub(crate) errors: &'a TileErrors,
 }
 
+/// Longitudes and latitudes over the data's rectangle, for readers without PROJ.
+pub(crate) fn coordinates(dem: &Dem, plan: &GridPlan) -> Result<CoordinateTable, BuildError> {
+    let projection = dem.projection(plan)?;
+    // With room around it, but not as far as the root's far corners: they can be a world away.
+    let room_m =
+        0.1 * plan.data_bounds.width().max(plan.data_bounds.height()).max(plan.frame.cell_m());
+    let around = Bounds {
+        min_x: plan.data_bounds.min_x - room_m,
+        min_y: plan.data_bounds.min_y - room_m,
+        max_x: plan.data_bounds.max_x + room_m,
+        max_y: plan.data_bounds.max_y + room_m,
+    };
+    Ok(CoordinateTable::sample(&projection, around, COORDINATE_TOLERANCE_M)?)
+}
+
 /// Puts the manifest together.
-pub(crate) fn manifest(outcome: &Outcome<'_>) -> Result<Manifest, BuildError> {
+pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
     let Outcome { settings, plan, levels, .. } = outcome;
     let frame = *levels.frame();
     let record = settings_record(outcome);
-    let projection = outcome.dem.projection(plan)?;
-    // The data's rectangle with room around it, but not the root's far corners: they can be a world away.
-    let room = 0.1 * plan.data_bounds.width().max(plan.data_bounds.height()).max(frame.cell_m());
-    let around = Bounds {
-        min_x: plan.data_bounds.min_x - room,
-        min_y: plan.data_bounds.min_y - room,
-        max_x: plan.data_bounds.max_x + room,
-        max_y: plan.data_bounds.max_y + room,
-    };
     let mut attribution = Vec::new();
     if outcome.roads.is_some() {
         attribution.push(corniche_osm::ATTRIBUTION.to_owned());
     }
-    Ok(Manifest {
+    Manifest {
         format_version: FORMAT_VERSION,
         generator: format!("{}, {}", settings.generator, plan.libraries),
         tiling: "local quadtree in the working CRS: z from the root, x from the west, y from the north; not the \
@@ -66,7 +72,7 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Result<Manifest, BuildError> {
             unit: "metre".to_owned(),
             datum: plan.vertical_datum.clone().unwrap_or_else(|| "unknown".to_owned()),
         },
-        coordinates: CoordinateTable::sample(&projection, around, COORDINATE_TOLERANCE_M)?,
+        coordinates: outcome.coordinates.clone(),
         levels: level_records(outcome),
         settings_sha256: settings_sha256(&record),
         settings: record,
@@ -74,7 +80,7 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Result<Manifest, BuildError> {
         attribution,
         counts: counts(outcome),
         growth: growth(outcome),
-    })
+    }
 }
 
 fn settings_record(outcome: &Outcome<'_>) -> SettingsRecord {
@@ -145,7 +151,11 @@ fn counts(outcome: &Outcome<'_>) -> Counts {
     };
     let mut outside =
         RoadLoss { reason: "outside the elevation data".to_owned(), roads: 0, length_m: 0.0 };
-    let mut void = RoadLoss { reason: "over a void".to_owned(), roads: 0, length_m: 0.0 };
+    let mut void = RoadLoss {
+        reason: "where the data have no ground (void or edge)".to_owned(),
+        roads: 0,
+        length_m: 0.0,
+    };
     let lengths = roads.lengths_steps.iter().zip(&roads.outside_steps);
     for ((&length_steps, &outside_steps), fate) in lengths.zip(&outcome.tiles.roads) {
         counts.roads_kept_m += fate.kept_steps * step_m;
