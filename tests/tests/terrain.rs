@@ -129,3 +129,15 @@ fn an_input_is_never_replaced_by_the_package() {
     assert_eq!(ran.code, 2, "{}", ran.err);
     assert_eq!(fs::read(&dem).unwrap(), before);
 }
+
+/// Another raster on the same grid is told from a broken package.
+#[test]
+fn verify_refuses_other_heights_than_those_it_was_made_from() {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = write_grid(folder.path(), 257, |_, _| 5.0);
+    let package = build(folder.path(), &dem, &[]);
+    let other = write_grid(folder.path(), 257, |_, _| 6.0);
+    let ran = corniche(["verify", text(&package), "--dem", text(&other), "--quiet"]);
+    assert_eq!(ran.code, 2, "{}{}", ran.out, ran.err);
+    assert!(ran.err.contains("grid.asc"), "{}", ran.err);
+}

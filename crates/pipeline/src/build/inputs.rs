@@ -35,7 +35,12 @@ pub(crate) fn hash(
     Ok(inputs)
 }
 
-fn record(kind: &str, path: &Path, observer: &dyn Observer) -> Result<InputRecord, BuildError> {
+/// Name, size and hash of one file.
+pub(crate) fn record(
+    kind: &str,
+    path: &Path,
+    observer: &dyn Observer,
+) -> Result<InputRecord, BuildError> {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     if !path.exists() && path.starts_with("/vsi") {
         // A name that only GDAL understands (inside an archive, on a server) has no bytes of its own to hash.

@@ -27,6 +27,7 @@ use corniche_tileset::Manifest;
 use crate::{BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage};
 
 pub(crate) use heights::data_tiles;
+pub(crate) use inputs::record as input_record;
 use levels::Levels;
 pub(crate) use package::settings_sha256;
 

@@ -4,12 +4,12 @@ use std::{collections::BTreeMap, rc::Rc};
 
 use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions, Reader};
 use corniche_geom::{HeightGrid, NodeIndex, NodeWindow, TileId};
-use corniche_tileset::{FilePackage, Manifest, Sections};
+use corniche_tileset::{FilePackage, InputRecord, Manifest, Sections};
 
 use super::{
     Check, ErrorFigures, SampleFigures, VerifyError, VerifyReport, VerifySettings, ground::Ground,
 };
-use crate::{Observer, Stage, workers};
+use crate::{BuildError, Observer, Stage, build::input_record, workers};
 
 /// Slack for comparing two ways of computing the same height, metres.
 const ROUNDING_M: f64 = 1e-6;
@@ -49,7 +49,7 @@ pub(crate) fn verify(
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
     let manifest = package.manifest();
-    let (dem, plan) = open(settings, manifest)?;
+    let (dem, plan) = open(settings, manifest, observer)?;
     let max_level = manifest.frame.max_level();
     // All finest tiles of the data, those without ground too: a coarser level may cover their nodes.
     let finest = crate::build::data_tiles(&plan);
@@ -102,24 +102,40 @@ pub(crate) fn verify(
     Ok(())
 }
 
-/// Opens the DEM as the build did and makes sure that it gives the same grid.
-fn open(settings: &VerifySettings, manifest: &Manifest) -> Result<(Dem, GridPlan), VerifyError> {
+/// Opens the DEM as the build did and makes sure that it is the same one and gives the same grid.
+fn open(
+    settings: &VerifySettings,
+    manifest: &Manifest,
+    observer: &dyn Observer,
+) -> Result<(Dem, GridPlan), VerifyError> {
+    let expected: Vec<&InputRecord> =
+        manifest.inputs.iter().filter(|input| input.kind == "dem").collect();
+    let other = || VerifyError::OtherDem {
+        expected: expected.iter().map(|input| input.name.clone()).collect(),
+    };
     let record = &manifest.settings;
     let dem = Dem::open(
         &settings.dem,
         &OpenOptions { dem_crs: record.dem_crs.clone(), nodata: record.nodata },
     )?;
+    let mut hashes = Vec::new();
+    for path in &settings.dem {
+        let given = input_record("dem", path, observer).map_err(|error| match error {
+            BuildError::Input { path, source } => VerifyError::Input { path, source },
+            _ => VerifyError::Interrupted,
+        })?;
+        hashes.push(given.sha256);
+    }
+    // By content, not by name: a file may have been moved or renamed since.
+    if !hashes.iter().eq(expected.iter().map(|input| &input.sha256)) {
+        return Err(other());
+    }
     let plan = dem.plan(&PlanOptions {
         crs: record.crs.clone(),
         cell_m: record.cell_m,
         fill_voids: record.fill_voids,
     })?;
-    if plan.frame == manifest.frame {
-        Ok((dem, plan))
-    } else {
-        let expected = manifest.inputs.iter().filter(|input| input.kind == "dem");
-        Err(VerifyError::OtherDem { expected: expected.map(|input| input.name.clone()).collect() })
-    }
+    if plan.frame == manifest.frame { Ok((dem, plan)) } else { Err(other()) }
 }
 
 /// Compares an ancestor's TIN with the full resolution over one finest tile. Also gives the cells of the

@@ -149,10 +149,12 @@ pub enum VerifyError {
     #[error(transparent)]
     Dem(#[from] corniche_dem::DemError),
     #[error(
-        "these elevation files do not give the package's grid; it was made from {expected:?} — give the same files \
-         in the same order"
+        "these are not the elevation files that the package was made from; give {expected:?}, the same files in the \
+         same order"
     )]
     OtherDem { expected: Vec<String> },
+    #[error("cannot read {path:?}")]
+    Input { path: PathBuf, source: std::io::Error },
     #[error("interrupted")]
     Interrupted,
 }
