@@ -87,14 +87,8 @@ fn to_json(package: &FilePackage, payload: &TilePayload) -> Result<Value, Failur
             ]
         })
         .collect();
-    let surface = Surface::new(
-        &terrain.tin,
-        Placement {
-            corner: frame.lattice_of_node(corner),
-            node_steps: stride << frame.lattice_bits(),
-            quantum_m: manifest.vertical.quantum_m,
-        },
-    );
+    let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
+    let surface = Surface::new(&terrain.tin, placement);
     let mut roads = Vec::new();
     for road in &payload.roads_geo {
         let line = corniche_drape::positions(&road.line, &surface)

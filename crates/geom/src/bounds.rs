@@ -100,11 +100,17 @@ impl LatticeBounds {
     /// The smallest rectangle around `points`; `None` without points.
     #[must_use]
     pub fn of(points: &[LatticePoint]) -> Option<Self> {
-        let first = *points.first()?;
-        Some(points.iter().fold(Self { min: first, max: first }, |bounds, p| Self {
-            min: LatticePoint::new(bounds.min.u.min(p.u), bounds.min.v.min(p.v)),
-            max: LatticePoint::new(bounds.max.u.max(p.u), bounds.max.v.max(p.v)),
-        }))
+        let alone = |&point: &LatticePoint| Self { min: point, max: point };
+        points.iter().map(alone).reduce(|bounds, point| bounds.union(&point))
+    }
+
+    /// The smallest rectangle around both.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        Self {
+            min: LatticePoint::new(self.min.u.min(other.min.u), self.min.v.min(other.min.v)),
+            max: LatticePoint::new(self.max.u.max(other.max.u), self.max.v.max(other.max.v)),
+        }
     }
 
     /// Whether the two rectangles share a point, edges included.

@@ -2,7 +2,7 @@
 
 mod buckets;
 
-use corniche_geom::{LatticeBounds, LatticePoint, cross};
+use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId, cross};
 
 use crate::Tin;
 use buckets::Buckets;
@@ -19,6 +19,21 @@ pub struct Placement {
     pub node_steps: i64,
     /// Height of one step of `height_q`, metres; a power of two, so heights in f64 are exact.
     pub quantum_m: f64,
+}
+
+impl Placement {
+    /// Where the TIN of tile `id` lies, its heights in steps of `quantum_m`.
+    ///
+    /// # Panics
+    /// When the tile's level is beyond the frame's finest one.
+    #[must_use]
+    pub fn of_tile(frame: &Frame, id: TileId, quantum_m: f64) -> Self {
+        Self {
+            corner: frame.lattice_of_node(frame.tile_corner(id)),
+            node_steps: frame.stride(id.z()) << frame.lattice_bits(),
+            quantum_m,
+        }
+    }
 }
 
 /// A TIN with positions on the lattice, twins of its half-edges and a grid of buckets to find triangles.

@@ -7,9 +7,7 @@
 use std::{collections::BTreeMap, sync::Mutex, sync::PoisonError};
 
 use corniche_dem::{Dem, GridPlan};
-use corniche_geom::{
-    Frame, HeightGrid, LatticeBounds, LatticePoint, NodeIndex, NodeWindow, TILE_CELLS, TileId,
-};
+use corniche_geom::{Frame, HeightGrid, LatticeBounds, NodeIndex, NodeWindow, TILE_CELLS, TileId};
 use corniche_tileset::SampleCounts;
 
 use crate::{BuildError, Observer, Stage, Storage, storage::Kind, storage::Span, workers};
@@ -111,13 +109,11 @@ pub(crate) fn data_tiles(plan: &GridPlan) -> Vec<TileId> {
 
 /// The rectangle of those tiles.
 pub(crate) fn data_tile_bounds(plan: &GridPlan) -> LatticeBounds {
-    let tiles = data_tiles(plan).into_iter().map(|id| plan.frame.tile_lattice_bounds(id));
-    tiles
-        .reduce(|a, b| LatticeBounds {
-            min: LatticePoint::new(a.min.u.min(b.min.u), a.min.v.min(b.min.v)),
-            max: LatticePoint::new(a.max.u.max(b.max.u), a.max.v.max(b.max.v)),
-        })
-        .unwrap_or(plan.frame.tile_lattice_bounds(TileId::ROOT))
+    let tiles = data_tiles(plan);
+    // They come row by row, so the first and the last are opposite corners.
+    let corner =
+        |id: Option<&TileId>| plan.frame.tile_lattice_bounds(id.copied().unwrap_or(TileId::ROOT));
+    corner(tiles.first()).union(&corner(tiles.last()))
 }
 
 /// The rectangles of blocks that cover the data.

@@ -161,10 +161,7 @@ impl Gathered<'_, '_> {
         }
         if let Some(own) = LatticeBounds::of(road.line.points()) {
             let all = self.roads.bounds.get_or_insert(own);
-            *all = LatticeBounds {
-                min: LatticePoint::new(all.min.u.min(own.min.u), all.min.v.min(own.min.v)),
-                max: LatticePoint::new(all.max.u.max(own.max.u), all.max.v.max(own.max.v)),
-            };
+            *all = all.union(&own);
         }
         Ok(())
     }

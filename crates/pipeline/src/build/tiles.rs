@@ -186,14 +186,7 @@ fn make_tile(
         return lost_roads(id, log, ordinals, levels);
     };
     let meshed = mesh::load(input.storage, id, *span)?;
-    let surface = Surface::new(
-        &meshed.tin,
-        Placement {
-            corner: frame.lattice_of_node(frame.tile_corner(id)),
-            node_steps: frame.stride(id.z()) << frame.lattice_bits(),
-            quantum_m: levels.quantum_m(),
-        },
-    );
+    let surface = Surface::new(&meshed.tin, Placement::of_tile(frame, id, levels.quantum_m()));
     let mut laid = Laid::default();
     for &ordinal in ordinals {
         if let Some(log) = log {
@@ -319,10 +312,10 @@ impl Laid {
 fn points_of_tile(line: &corniche_geom::Polyline, id: TileId, levels: &Levels) -> u64 {
     let last = (1_i64 << id.z()) - 1;
     let own = [i64::from(id.x()), i64::from(id.y())];
+    let outer = levels.frame().tile_lattice_bounds(TileId::ROOT);
     let is_own = |&&point: &&corniche_geom::LatticePoint| {
         // The root's own east and south border belong to its last tiles.
         let at = levels.frame().tile_column_row(id.z(), point);
-        let outer = levels.frame().tile_lattice_bounds(TileId::ROOT);
         outer.contains(point) && at.map(|index| index.min(last)) == own
     };
     line.points().iter().filter(is_own).count() as u64

@@ -43,11 +43,7 @@ pub(crate) fn verify(
             .look(payload.roads_geo.is_empty(), || format!("tile {id} has roads but no ground"));
         return findings;
     };
-    let placement = Placement {
-        corner: frame.lattice_of_node(frame.tile_corner(id)),
-        node_steps: frame.stride(id.z()) << frame.lattice_bits(),
-        quantum_m,
-    };
+    let placement = Placement::of_tile(frame, id, quantum_m);
     // The surface turns stored lines into positions, as a reader does; the ground judges them by itself.
     let surface = Surface::new(&terrain.tin, placement);
     let ground = Ground::new(&terrain.tin, quantum_m);

@@ -59,11 +59,10 @@ impl Context {
         if !(quantum_m.is_normal() && quantum_m > 0.0) {
             return Err(Damage::Invalid { what: "the height quantum" });
         }
-        let corner = frame.lattice_of_node(frame.tile_corner(id));
-        let node_steps = frame.stride(id.z()) << frame.lattice_bits();
+        let placement = Placement::of_tile(frame, id, quantum_m);
         Ok(Self {
-            corner,
-            placement: Placement { corner, node_steps, quantum_m },
+            corner: placement.corner,
+            placement,
             scale: Scale { quantum_m, cell_m: frame.level_cell_m(id.z()) },
         })
     }

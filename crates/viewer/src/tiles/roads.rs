@@ -40,12 +40,7 @@ pub(super) fn ground_lines(
     let Some(terrain) = payload.terrain.as_ref().filter(|_| !payload.roads_geo.is_empty()) else {
         return Ok(Vec::new());
     };
-    let placement = Placement {
-        corner: frame.lattice_of_node(frame.tile_corner(payload.id)),
-        node_steps: frame.stride(payload.id.z()) << frame.lattice_bits(),
-        quantum_m,
-    };
-    let surface = Surface::new(&terrain.tin, placement);
+    let surface = Surface::new(&terrain.tin, Placement::of_tile(frame, payload.id, quantum_m));
     let place = |[u, v, height_m]: [f64; 3]| {
         let [x, y] = frame.position_of_fraction_m([u, v]);
         [x, y, height_m]
