@@ -3,15 +3,11 @@
 use std::{num::NonZeroUsize, thread};
 
 use corniche_pipeline::{BuildSettings, Existing, Resources, RoadSettings, TerrainSettings};
+use corniche_presets::{Config, class_filter};
 use corniche_roads::ClassFilter;
 
 use crate::{
-    args::BuildArgs,
-    exit::ExitCode,
-    failure::Failure,
-    info, interrupt,
-    presets::{self, Config},
-    progress::Progress,
+    args::BuildArgs, exit::ExitCode, failure::Failure, info, interrupt, presets, progress::Progress,
 };
 
 /// Tolerance of the simplification of roads, in cells of the level, unless said otherwise. It matches the
@@ -61,7 +57,9 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
         ClassFilter::all()
     } else {
         match config.roads.class_max_cell {
-            Some(cells) => presets::class_filter(&cells)?,
+            Some(cells) => {
+                class_filter(&cells).map_err(|error| presets::refuse("settings", &error))?
+            }
             None => ClassFilter::usual(),
         }
     };

@@ -1,33 +1,14 @@
-//! The presets in `config/frc`, read as the command line reads them, against the published tables.
+//! The presets in `config/frc` against the published tables.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-use std::{collections::BTreeMap, fs, path::PathBuf};
-
+use corniche_presets::{frc_preset, frc_preset_names, parse_frc_table};
 use corniche_roads::{Classified, FrcTable, FunctionalRoadClass, NotARoad};
-use serde::Deserialize;
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Preset {
-    name: String,
-    least_class: u8,
-    not_roads: Vec<String>,
-    classes: BTreeMap<String, u8>,
-}
 
 fn preset(name: &str) -> FrcTable {
-    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/frc"));
-    let text = fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap();
-    let preset: Preset = toml::from_str(&text).unwrap();
-    assert_eq!(preset.name, name, "a preset is named as its file");
-    FrcTable::new(
-        preset.name,
-        preset.classes.into_iter().collect(),
-        preset.not_roads,
-        preset.least_class,
-    )
-    .unwrap()
+    let table = parse_frc_table(frc_preset(name).unwrap()).unwrap();
+    assert_eq!(table.name(), name, "a preset is named as its file");
+    table
 }
 
 const ALL: [&str; 5] = ["default", "valhalla", "fraunhofer", "itinero", "here5"];
@@ -69,6 +50,20 @@ fn presets_say_what_their_sources_say() {
             assert_eq!(table.classify(&[("highway", value)]), expected, "{name}: {value}");
         }
     }
+}
+
+#[test]
+fn all_presets_are_compared() {
+    assert_eq!(frc_preset_names().collect::<Vec<_>>(), ALL);
+}
+
+#[test]
+fn a_living_street_is_residential_in_the_default_table() {
+    let class = FunctionalRoadClass::new(6).unwrap();
+    assert_eq!(
+        preset("default").classify(&[("highway", "living_street")]),
+        Classified::Road(class)
+    );
 }
 
 #[test]

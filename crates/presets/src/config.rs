@@ -1,0 +1,94 @@
+use std::{collections::BTreeMap, num::NonZeroUsize};
+
+use serde::Deserialize;
+
+use crate::{PresetError, error::bounded};
+
+/// A settings file: what the command line can say, by section. What it leaves out is decided elsewhere.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Config {
+    /// `[terrain]`
+    pub terrain: TerrainConfig,
+    /// `[roads]`
+    pub roads: RoadConfig,
+    /// `[resources]`
+    pub resources: ResourceConfig,
+}
+
+/// How the ground is made: the options of the same names.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+#[expect(missing_docs, reason = "each field is the option of its name, documented there")]
+pub struct TerrainConfig {
+    pub crs: Option<String>,
+    pub dem_crs: Option<String>,
+    pub vertical_crs: Option<String>,
+    pub dem_vertical_crs: Option<String>,
+    pub vertical_shift: Option<f64>,
+    pub nodata: Option<f64>,
+    pub cell: Option<f64>,
+    pub max_error: Option<f64>,
+    pub fill_voids: Option<u32>,
+    pub attribution: Vec<String>,
+}
+
+/// How roads are made: the options of the same names.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+#[expect(missing_docs, reason = "each field is the option of its name, documented there")]
+pub struct RoadConfig {
+    pub frc_table: Option<String>,
+    pub all_classes: bool,
+    pub simplify: Option<f64>,
+    /// Coarsest cell, metres, at which each class is shown; a class left out is shown on every level.
+    pub class_max_cell: Option<BTreeMap<String, f64>>,
+}
+
+/// What a run may use: the options of the same names.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+#[expect(missing_docs, reason = "each field is the option of its name, documented there")]
+pub struct ResourceConfig {
+    pub threads: Option<NonZeroUsize>,
+    pub memory: Option<String>,
+}
+
+impl Config {
+    /// Reads a settings file's text. Unknown sections and names are refused.
+    ///
+    /// # Errors
+    /// When it is no TOML, or says what no setting is.
+    pub fn parse(text: &str) -> Result<Self, PresetError> {
+        Ok(toml::from_str(bounded(text)?)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_files_are_read_whole_or_refused() {
+        let config = Config::parse(
+            "[terrain]\nmax-error = 5.0\nvertical-shift = -1.5\n[roads]\nsimplify = 0.5\n[resources]\nthreads = 2\n",
+        )
+        .unwrap();
+        assert_eq!(config.terrain.max_error, Some(5.0));
+        assert_eq!(config.terrain.vertical_shift, Some(-1.5));
+        assert_eq!(config.roads.simplify, Some(0.5));
+        assert_eq!(config.resources.threads, NonZeroUsize::new(2));
+        for bad in ["[terrain]\nmaxerror = 5.0\n", "[terain]\n", "[resources]\nthreads = 0\n", "a"]
+        {
+            assert!(matches!(Config::parse(bad), Err(PresetError::Toml(_))), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_text_that_is_no_settings_is_not_even_parsed() {
+        let long = "#".repeat(crate::error::MAX_TEXT_BYTES + 1);
+        assert!(matches!(Config::parse(&long), Err(PresetError::TooLong { .. })));
+        let deep = format!("a = {}{}", "[".repeat(100_000), "]".repeat(100_000));
+        assert!(matches!(Config::parse(&deep), Err(PresetError::Toml(_))));
+    }
+}
