@@ -1,2 +1,97 @@
-/// Placeholder: replaced by the target's own engineer before it is committed.
-pub fn osm(_data: &[u8]) {}
+use std::{cell::LazyCell, collections::BTreeSet, io::Cursor, path::Path};
+
+use corniche_geom::LatticePoint;
+use corniche_osm::{Defect, ReadOsmError, ReadRequest, read_roads_from};
+use corniche_presets::parse_frc_table;
+use corniche_roads::FrcTable;
+
+/// An extract of these bytes is read or refused, and every way with a `highway` tag is a road or counted under one reason.
+///
+/// Bytes that begin with two zeros, as every extract does, are a file; others are one block without its packing, so that
+/// what is changed in them is not stopped by a size or a checksum that no longer fits.
+///
+/// # Panics
+/// When a promise is broken.
+pub fn osm(data: &[u8]) {
+    match data {
+        [0, 0, ..] => check(data),
+        block => check(&file_of(block)),
+    }
+}
+
+/// A file of a header and one raw block.
+fn file_of(block: &[u8]) -> Vec<u8> {
+    const HEADER: &[u8] = b"\0\0\0\x0d\x0a\x09OSMHeader\x18\x12\x0a\x10\x22\x0eOsmSchema-V0.6";
+    let varint = |mut number: usize| {
+        let mut bytes = Vec::new();
+        while number > 0x7f {
+            bytes.push(number as u8 | 0x80);
+            number >>= 7;
+        }
+        bytes.push(number as u8);
+        bytes
+    };
+    let blob = [b"\x0a", &varint(block.len())[..], block].concat();
+    let header = [b"\x0a\x07OSMData\x18", &varint(blob.len())[..]].concat();
+    [HEADER, &(header.len() as u32).to_be_bytes(), &header, &blob].concat()
+}
+
+thread_local! {
+    /// A pool of this thread alone: nothing waits for another.
+    static POOL: LazyCell<rayon::ThreadPool> = const {
+        LazyCell::new(|| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
+            pool.expect("a thread is in one pool at most")
+        })
+    };
+    static TABLE: LazyCell<FrcTable> = const {
+        LazyCell::new(|| {
+            parse_frc_table(include_str!("../../config/frc/default.toml")).expect("a preset is right")
+        })
+    };
+}
+
+fn check(file: &[u8]) {
+    // Beyond 170 degrees east this projection has no place.
+    let place = |positions_deg: &[[f64; 2]]| {
+        let round = |deg: f64| (deg * 1e7).round() as i64;
+        let place = |&[lon, lat]: &[f64; 2]| {
+            (lon < 170.0).then(|| LatticePoint::new(round(lon), round(lat)))
+        };
+        positions_deg.iter().map(place).collect()
+    };
+    let (mut roads, mut lost, mut is_shorter) = (Vec::new(), 0, false);
+    let read = POOL.with(|pool| {
+        TABLE.with(|table| {
+            let path = Path::new("made.osm.pbf");
+            let request = ReadRequest { path, table, place: &place, pool };
+            read_roads_from(
+                Cursor::new(file),
+                &request,
+                &mut |road| {
+                    is_shorter |= road.line.points().len() < 2;
+                    roads.push(road.way_id);
+                },
+                &mut |defect: Defect| {
+                    lost += u64::from(defect.is_loss_of_way());
+                    assert!(!defect.reason().is_empty());
+                },
+                &|| false,
+            )
+        })
+    });
+    match read {
+        Ok(summary) => {
+            summary.check_invariants();
+            let left_out = summary.left_out;
+            assert_eq!(left_out.total() - left_out.listed - left_out.class_off, lost);
+            assert!(roads.is_sorted() && !is_shorter);
+            assert_eq!(summary.roads, roads.len() as u64);
+            assert_eq!(summary.road_ways, roads.iter().collect::<BTreeSet<_>>().len() as u64);
+        }
+        Err(ReadOsmError::Place { .. } | ReadOsmError::Stopped { .. }) => {
+            panic!("nobody stopped it, and every position has its answer")
+        }
+        Err(error) => assert!(error.to_string().contains("made.osm.pbf"), "{error}"),
+    }
+}

@@ -44,7 +44,7 @@ fn pass_keeps_its_promises_and_damage_is_named() {
             .as_array()
             .unwrap()
             .iter()
-            .all(|level| level["smallest_ratio"].as_f64() >= Some(1.0))
+            .all(|level| level["tightness"]["min"].as_f64() >= Some(1.0))
     );
 
     let mut bytes = fs::read(&package).unwrap();
@@ -55,6 +55,43 @@ fn pass_keeps_its_promises_and_damage_is_named() {
     let ran = corniche(["verify", text(&damaged), "--quiet"]);
     assert_eq!(ran.code, 1, "{}{}", ran.out, ran.err);
     assert!(ran.out.contains("tile"), "{}", ran.out);
+}
+
+/// P6: the list names what the manifest counts, defect by defect and loss by loss.
+#[test]
+fn the_list_of_defects_is_what_the_summary_counts() {
+    let folder = tempfile::tempdir().unwrap();
+    let (package, list) = (folder.path().join("pass.pmtiles"), folder.path().join("pass.csv"));
+    build_pass(&package, &["--quiet", "--defects", text(&list)]);
+    let counts = json(&["info", text(&package), "--json"])["manifest"]["counts"].clone();
+    let csv = fs::read_to_string(&list).unwrap();
+    let mut lines = csv.lines();
+    assert_eq!(lines.next(), Some("reason,object,id,count,length_m,detail"));
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    let of = |reason: &str| rows.iter().filter(|row| row[0] == reason).count() as u64;
+    for defect in counts["defects"].as_array().unwrap() {
+        let reason = defect[0].as_str().unwrap();
+        assert!(of(reason) > 0, "{reason}");
+        assert_eq!(of(reason), defect[1].as_u64().unwrap(), "{reason}");
+    }
+    let void = "where the data have no ground (void or edge)";
+    let listed_m: f64 =
+        rows.iter().filter(|row| row[0] == void).map(|row| row[4].parse::<f64>().unwrap()).sum();
+    let lost_m = counts["roads_lost"][1]["length_m"].as_f64().unwrap();
+    assert!(lost_m > 100.0, "the sample has a road across a void");
+    assert!((listed_m - lost_m).abs() < 1.0, "{listed_m} m listed, {lost_m} m lost");
+
+    // A second run keeps the list, and says so before it does any work.
+    let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
+    let again = folder.path().join("again.pmtiles");
+    let inputs = ["build", "--dem", text(&dem), "--osm", text(&osm)];
+    let ran = corniche(inputs.into_iter().chain(["-o", text(&again), "--defects", text(&list)]));
+    assert_eq!(ran.code, 3, "{}", ran.err);
+    assert!(!again.exists());
+    let ran =
+        corniche(inputs.into_iter().chain(["-o", text(&again), "--defects", text(&osm), "-O"]));
+    assert_eq!(ran.code, 2, "the extract is not replaced by the list: {}", ran.err);
+    assert_eq!(fs::read_to_string(&list).unwrap(), csv);
 }
 
 /// P6 on the sample's known truth: every road of the extract is accounted for.

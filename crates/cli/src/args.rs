@@ -43,6 +43,13 @@ pub(crate) struct BuildArgs {
     /// Replace the package if it exists, once the new one is complete
     #[arg(short = 'O', long)]
     pub(crate) overwrite: bool,
+    /// Also list every defect of the extract and every road lost, one per line (CSV); an existing list is kept
+    /// unless -O is given
+    #[arg(long, value_name = "CSV", requires = "osm")]
+    pub(crate) defects: Option<PathBuf>,
+    /// Credit to show wherever the package is shown, such as a DEM's; may be given several times
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) attribution: Vec<String>,
     /// Settings file; what is said on the command line goes before it
     #[arg(long, value_name = "TOML")]
     pub(crate) config: Option<PathBuf>,
@@ -65,6 +72,15 @@ pub(crate) struct TerrainArgs {
     /// CRS of rasters that name none
     #[arg(long, value_name = "EPSG:N")]
     pub(crate) dem_crs: Option<String>,
+    /// Vertical CRS of rasters that name none
+    #[arg(long, value_name = "EPSG:N")]
+    pub(crate) dem_vertical_crs: Option<String>,
+    /// Vertical CRS that heights are wanted in, through PROJ and its geoid grids [default: the files']
+    #[arg(long, value_name = "EPSG:N")]
+    pub(crate) vertical_crs: Option<String>,
+    /// Added to every height, in metres [default: 0]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    pub(crate) vertical_shift: Option<f64>,
     /// Height that means "no data", beside what the files say
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub(crate) nodata: Option<f64>,

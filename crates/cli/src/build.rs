@@ -1,13 +1,24 @@
 //! `corniche build`: from text to settings once, then the pipeline.
 
-use std::{num::NonZeroUsize, thread};
+use std::{
+    num::NonZeroUsize,
+    path::{Path, PathBuf},
+    thread,
+};
 
-use corniche_pipeline::{BuildSettings, Existing, Resources, RoadSettings, TerrainSettings};
+use corniche_pipeline::{
+    BuildError, BuildSettings, Existing, Resources, RoadSettings, TerrainSettings,
+};
 use corniche_presets::{Config, class_filter};
 use corniche_roads::ClassFilter;
 
 use crate::{
-    args::BuildArgs, exit::ExitCode, failure::Failure, info, interrupt, presets, progress::Progress,
+    args::BuildArgs,
+    defects::{DefectList, Watch},
+    exit::ExitCode,
+    failure::Failure,
+    info, interrupt, output, presets,
+    progress::Progress,
 };
 
 /// Tolerance of the simplification of roads, in cells of the level, unless said otherwise. It matches the
@@ -24,8 +35,27 @@ pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
     interrupt::watch()?;
     let progress = Progress::new(&args.report);
     let quiet = args.report.quiet || args.report.json_progress;
+    let defects = match &args.defects {
+        Some(path) => {
+            let existing =
+                if args.overwrite { output::Existing::Replace } else { output::Existing::Keep };
+            let mut others: Vec<&Path> = args.dem.iter().map(PathBuf::as_path).collect();
+            others.extend(args.osm.as_deref());
+            others.extend(args.config.as_deref());
+            others.push(&args.output);
+            Some(DefectList::create(path, existing, &others)?)
+        }
+        None => None,
+    };
+    let watch = Watch { progress, defects };
     let settings = settings(*args)?;
-    let summary = corniche_pipeline::build(&settings, &progress)?;
+    let built = corniche_pipeline::build(&settings, &watch);
+    // Of a run that failed the list may tell why; one that was interrupted leaves nothing.
+    if let Some(defects) = watch.defects.filter(|_| !matches!(built, Err(BuildError::Interrupted)))
+    {
+        defects.finish()?;
+    }
+    let summary = built?;
     if !quiet {
         eprintln!("\n{}", info::to_text(&summary.manifest, summary.package_bytes));
         eprintln!("wrote {}", settings.output.display());
@@ -42,6 +72,9 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
     let terrain = TerrainSettings {
         crs: args.terrain.crs.or(config.terrain.crs),
         dem_crs: args.terrain.dem_crs.or(config.terrain.dem_crs),
+        dem_vertical_crs: args.terrain.dem_vertical_crs.or(config.terrain.dem_vertical_crs),
+        vertical_crs: args.terrain.vertical_crs.or(config.terrain.vertical_crs),
+        vertical_shift_m: shift(args.terrain.vertical_shift.or(config.terrain.vertical_shift))?,
         nodata: args.terrain.nodata.or(config.terrain.nodata),
         cell_m: positive("--cell", args.terrain.cell.or(config.terrain.cell))?,
         max_error_m: positive("--max-error", args.terrain.max_error.or(config.terrain.max_error))?,
@@ -71,6 +104,11 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
         output: args.output,
         existing: if args.overwrite { Existing::Replace } else { Existing::Keep },
         terrain,
+        attribution: if args.attribution.is_empty() {
+            config.terrain.attribution
+        } else {
+            args.attribution
+        },
         roads: RoadSettings {
             table: presets::frc_table(table.as_deref().unwrap_or("default"))?,
             filter,
@@ -90,6 +128,20 @@ fn positive(option: &str, value: Option<f64>) -> Result<Option<f64>, Failure> {
             "{option} must be a positive number of metres, not {metres}"
         ))),
         value => Ok(value),
+    }
+}
+
+/// Metres to add to every height.
+fn shift(value: Option<f64>) -> Result<f64, Failure> {
+    /// No two vertical datums are farther apart; what is more is a slip, such as millimetres.
+    const MAX_SHIFT_M: f64 = 10_000.0;
+    match value {
+        Some(metres) if !(-MAX_SHIFT_M..=MAX_SHIFT_M).contains(&metres) => {
+            Err(Failure::unusable(format!(
+                "--vertical-shift must be a number of metres within ±{MAX_SHIFT_M}, not {metres}"
+            )))
+        }
+        value => Ok(value.unwrap_or(0.0)),
     }
 }
 

@@ -1,9 +1,6 @@
 //! `corniche growth`: what laying roads on the terrain costs.
 
-use std::{
-    fs,
-    io::{self, Write as _},
-};
+use std::io::{self, Write as _};
 
 use corniche_tileset::{FilePackage, GrowthRow, Manifest};
 use serde_json::json;
@@ -13,6 +10,7 @@ use crate::{
     chart,
     exit::ExitCode,
     failure::Failure,
+    output::{Existing, Output},
     table::{Table, bytes, count},
 };
 
@@ -28,6 +26,12 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
             args.package.display()
         )));
     }
+    // The chart comes first: whoever reads the table may stop before its end.
+    if let Some(path) = &args.svg {
+        let output = Output::create(path, Existing::Replace, &[&args.package])?;
+        let svg = chart::growth(manifest).map_err(|error| Failure::new(ExitCode::Failed, error))?;
+        output.write_whole(svg.as_bytes())?;
+    }
     let mut out = io::stdout().lock();
     if args.json {
         writeln!(out, "{}", to_json(manifest))?;
@@ -35,15 +39,6 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
         out.write_all(to_csv(manifest).as_bytes())?;
     } else {
         out.write_all(to_text(manifest).as_bytes())?;
-    }
-    if let Some(path) = &args.svg {
-        let svg = chart::growth(manifest).map_err(|error| Failure::new(ExitCode::Failed, error))?;
-        fs::write(path, svg).map_err(|error| {
-            Failure::new(
-                ExitCode::Failed,
-                anyhow::Error::new(error).context(format!("cannot write {}", path.display())),
-            )
-        })?;
     }
     Ok(ExitCode::Done)
 }

@@ -50,10 +50,16 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
         "extent       {west:.5} {south:.5} {east:.5} {north:.5} (west south east north, degrees)"
     ));
     say(format!("grid         cell {} m, {}", frame.cell_m(), manifest.resampling));
+    let vertical = &manifest.vertical;
+    let [lowest_m, highest_m] = vertical.range_m;
     say(format!(
-        "heights      quantum {} m, vertical datum {}",
-        manifest.vertical.quantum_m, manifest.vertical.datum
+        "heights      {lowest_m:.1} to {highest_m:.1} m, quantum {} m",
+        vertical.quantum_m
     ));
+    say(format!("datum        {}; heights {}", vertical.datum, vertical.treatment));
+    if let Some(warning) = odd_heights(manifest) {
+        say(warning);
+    }
     let samples = &manifest.counts.samples;
     say(format!(
         "nodes        {}: {} with data, {} filled, {} void",
@@ -79,6 +85,10 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
         "cell m",
         "tolerance m",
         "error m",
+        "median",
+        "p95",
+        "stored/true p95",
+        "max",
         "tiles",
         "triangles",
         "terrain",
@@ -92,6 +102,10 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
             format!("{}", level.cell_m),
             format!("{}", level.max_error_m),
             format!("{:.2}", level.geometric_error_m),
+            or_dash(level.errors_m.map(|errors_m| errors_m.median), 2),
+            or_dash(level.errors_m.map(|errors_m| errors_m.p95), 2),
+            or_dash(level.tightness.map(|tightness| tightness.p95), 3),
+            or_dash(level.tightness.map(|tightness| tightness.max), 3),
             count(level.tiles),
             count(level.triangles),
             bytes(level.terrain_bytes),
@@ -103,6 +117,29 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
     say(format!("\n{}", levels.to_text()));
     text.push_str(&roads(manifest));
     text
+}
+
+/// A number with so many digits after the point; a dash where there is none.
+pub(crate) fn or_dash(value: Option<f64>, digits: usize) -> String {
+    value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"))
+}
+
+/// What heights tell of an undeclared "no data": no land or sea floor lies so low or so high.
+///
+/// Challenger Deep lies some 10 935 m below the sea, Everest 8 849 m above it.
+fn odd_heights(manifest: &Manifest) -> Option<String> {
+    const PLAUSIBLE_M: [f64; 2] = [-12_000.0, 9_500.0];
+    let [lowest_m, highest_m] = manifest.vertical.range_m;
+    let odd_m = if lowest_m < PLAUSIBLE_M[0] {
+        lowest_m
+    } else if highest_m > PLAUSIBLE_M[1] {
+        highest_m
+    } else {
+        return None;
+    };
+    Some(format!(
+        "warning: a height of {odd_m} m is none of this earth; if it means \"no data\", say --nodata {odd_m}"
+    ))
 }
 
 fn roads(manifest: &Manifest) -> String {

@@ -7,11 +7,13 @@
 mod args;
 mod build;
 mod chart;
+mod defects;
 mod exit;
 mod failure;
 mod growth;
 mod info;
 mod interrupt;
+mod output;
 mod presets;
 mod progress;
 mod render;

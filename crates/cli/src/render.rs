@@ -1,10 +1,6 @@
 //! `corniche render`: a picture of a package, without a window.
 
-use std::{
-    fs,
-    io::{Cursor, Write as _},
-    path::Path,
-};
+use std::io::Cursor;
 
 use corniche_viewer::{
     CameraRequest, RenderError, RenderRequest, RoadMethod, camera::Orientation, render,
@@ -15,6 +11,7 @@ use crate::{
     args::{RenderArgs, Roads},
     exit::ExitCode,
     failure::Failure,
+    output::{Existing, Output},
 };
 
 /// Samples along each side of a pixel: enough that roads of a pixel's width do not sparkle.
@@ -42,16 +39,14 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         supersampling: SUPERSAMPLING,
         style: Style::road_atlas(),
     };
+    let output = Output::create(&args.output, Existing::Replace, &[&args.package])?;
     let rendered = render(&request)?;
     let mut png = Cursor::new(Vec::new());
     rendered
         .picture
         .write_to(&mut png, image::ImageFormat::Png)
         .map_err(|error| Failure::new(ExitCode::Failed, error))?;
-    write(&args.output, png.get_ref()).map_err(|error| {
-        let context = format!("cannot write {}", args.output.display());
-        Failure::new(ExitCode::Failed, anyhow::Error::new(error).context(context))
-    })?;
+    output.write_whole(png.get_ref())?;
     let report = &rendered.report;
     eprintln!(
         "{}: {} tiles, {} triangles, {} road segments, drawn by {}",
@@ -62,22 +57,6 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         report.adapter
     );
     Ok(ExitCode::Done)
-}
-
-/// Writes beside the target and renames: a picture that is cut off never stands at the target.
-fn write(target: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let folder =
-        target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
-    file.write_all(bytes)?;
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        // Temporary files are private; a picture is for everyone, as one written directly would be.
-        file.as_file().set_permissions(fs::Permissions::from_mode(0o644))?;
-    }
-    file.persist(target)?;
-    Ok(())
 }
 
 impl From<RenderError> for Failure {

@@ -13,6 +13,7 @@ use crate::{
     build::threads,
     exit::ExitCode,
     failure::Failure,
+    info::or_dash,
     interrupt,
     progress::Progress,
     table::{Table, count},
@@ -73,20 +74,20 @@ fn to_text(report: &VerifyReport) -> String {
             "stored/true min",
             "median",
             "p95",
+            "max",
             "uncovered nodes",
         ]);
-        let ratio = |value: Option<f64>| {
-            value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"))
-        };
+        let ratio = |value: Option<f64>| or_dash(value, 4);
         for figures in &report.errors {
             table.row([
                 figures.level.to_string(),
                 count(figures.tiles),
                 count(figures.nodes),
                 format!("{:.3}", figures.largest_true_m),
-                ratio(figures.smallest_ratio),
-                ratio(figures.median_ratio),
-                ratio(figures.p95_ratio),
+                ratio(figures.tightness.map(|tightness| tightness.min)),
+                ratio(figures.tightness.map(|tightness| tightness.median)),
+                ratio(figures.tightness.map(|tightness| tightness.p95)),
+                ratio(figures.tightness.map(|tightness| tightness.max)),
                 count(figures.uncovered_nodes),
             ]);
         }
@@ -120,8 +121,7 @@ fn to_json(report: &VerifyReport) -> serde_json::Value {
         })).collect::<Vec<_>>(),
         "errors": report.errors.iter().map(|figures| json!({
             "level": figures.level, "tiles": figures.tiles, "nodes": figures.nodes,
-            "largest_true_m": figures.largest_true_m, "smallest_ratio": figures.smallest_ratio,
-            "median_ratio": figures.median_ratio, "p95_ratio": figures.p95_ratio,
+            "largest_true_m": figures.largest_true_m, "tightness": figures.tightness,
             "uncovered_nodes": figures.uncovered_nodes,
         })).collect::<Vec<_>>(),
         "samples": report.samples.map(|samples| json!({

@@ -4,7 +4,9 @@ use gdal::config;
 use gdal::errors::GdalError;
 use gdal::spatial_ref::{AxisMappingStrategy, SpatialRef};
 
-use crate::DemError;
+use crate::vertical::VerticalCrs;
+use crate::wkt::{child, children, keyword, quoted};
+use crate::{DemError, library};
 
 /// A horizontal coordinate system, kept as text: PROJ's objects belong to one thread.
 #[derive(Debug, Clone)]
@@ -21,20 +23,11 @@ pub(crate) struct Crs {
     pub(crate) is_web_mercator: bool,
 }
 
-/// What a coordinate system says about heights.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct VerticalCrs {
-    /// Its name.
-    pub(crate) datum: Option<String>,
-    /// Metres to a unit of height.
-    pub(crate) unit_m: Option<f64>,
-}
-
 impl Crs {
     pub(crate) fn from_spatial_ref(reference: &SpatialRef) -> Result<Self, DemError> {
         let name = reference.name().unwrap_or_else(|| "unnamed".to_owned());
         let wkt = wkt2(reference)
-            .map_err(|source| DemError::Wkt { name: name.clone(), source: Box::new(source) })?;
+            .map_err(|source| DemError::Wkt { name: name.clone(), source: source.into() })?;
         let proj = reference.to_proj4().unwrap_or_default();
         let projected = reference.is_projected();
         let is_web_mercator = proj.contains("+proj=merc") && proj.contains("+b=6378137")
@@ -53,49 +46,34 @@ impl Crs {
     pub(crate) fn from_text(
         option: &'static str,
         text: &str,
-    ) -> Result<(Self, VerticalCrs), DemError> {
+    ) -> Result<(Self, Option<VerticalCrs>), DemError> {
+        library::forget();
         let reference = SpatialRef::from_definition(text).map_err(|source| DemError::CrsText {
             option,
             text: text.to_owned(),
-            source: Box::new(source),
+            source: source.into(),
         })?;
-        match Self::horizontal(&reference)? {
-            Some(found) => Ok(found),
-            None => Err(DemError::CrsText {
-                option,
-                text: text.to_owned(),
-                source: Box::new(GdalError::BadArgument(
-                    "neither projected nor geographic".to_owned(),
-                )),
-            }),
-        }
+        let kind = || DemError::CrsKind { option, text: text.to_owned() };
+        Self::horizontal(&reference)?.ok_or_else(kind)
     }
 
-    /// The horizontal part of a system and what it says about heights; `None` when it is neither projected nor
+    /// The horizontal part of a system and the vertical one, if any; `None` when it is neither projected nor
     /// geographic.
     pub(crate) fn horizontal(
         reference: &SpatialRef,
-    ) -> Result<Option<(Self, VerticalCrs)>, DemError> {
+    ) -> Result<Option<(Self, Option<VerticalCrs>)>, DemError> {
         let mut reference = reference.clone();
-        let mut vertical = VerticalCrs::default();
+        let name = reference.name().unwrap_or_default();
+        let as_wkt =
+            |source: GdalError| DemError::Wkt { name: name.clone(), source: source.into() };
+        let wkt = wkt2(&reference).map_err(as_wkt)?;
+        let vertical = VerticalCrs::of_wkt(&wkt);
         if reference.is_compound() {
-            let name = reference.name().unwrap_or_default();
-            let wkt = wkt2(&reference)
-                .map_err(|source| DemError::Wkt { name: name.clone(), source: Box::new(source) })?;
-            let parts = children(&wkt);
-            if let Some(text) = parts.iter().find(|part| part.starts_with("VERT")) {
-                vertical.datum = quoted(text).map(str::to_owned);
-                vertical.unit_m = length_unit(text);
-            }
             // The heights' own system must not take part: it would ask PROJ for geoid grids.
-            let horizontal = ["PROJ", "GEOG", "GEOD", "BOUNDCRS"];
-            let Some(text) =
-                parts.iter().find(|part| horizontal.iter().any(|word| part.starts_with(word)))
-            else {
+            let Some(text) = children(&wkt).into_iter().find(|part| is_horizontal(part)) else {
                 return Ok(None);
             };
-            reference = SpatialRef::from_wkt(text)
-                .map_err(|source| DemError::Wkt { name, source: Box::new(source) })?;
+            reference = SpatialRef::from_wkt(&text).map_err(as_wkt)?;
         }
         if !(reference.is_projected() || reference.is_geographic()) || reference.is_local() {
             return Ok(None);
@@ -107,7 +85,7 @@ impl Crs {
         let reference = SpatialRef::from_epsg(4326).map_err(|source| DemError::CrsText {
             option: "the built-in",
             text: "EPSG:4326".to_owned(),
-            source: Box::new(source),
+            source: source.into(),
         })?;
         Self::from_spatial_ref(&reference)
     }
@@ -163,7 +141,19 @@ impl Crs {
     }
 }
 
-fn wkt2(reference: &SpatialRef) -> Result<String, GdalError> {
+/// Whether a part of a compound system says where, not how high.
+fn is_horizontal(wkt: &str) -> bool {
+    if keyword(wkt) == "BOUNDCRS" {
+        let bound = child(wkt, &["SOURCECRS"]).map(|source| children(&source));
+        return bound
+            .and_then(|inner| inner.into_iter().next())
+            .is_some_and(|wkt| is_horizontal(&wkt));
+    }
+    ["PROJ", "GEOG", "GEOD"].iter().any(|word| keyword(wkt).starts_with(word))
+}
+
+/// The definition as WKT2, on this thread alone.
+pub(crate) fn wkt2(reference: &SpatialRef) -> Result<String, GdalError> {
     const FORMAT: &str = "OSR_WKT_FORMAT";
     config::set_thread_local_config_option(FORMAT, "WKT2_2018")?;
     let wkt = reference.to_wkt();
@@ -171,60 +161,17 @@ fn wkt2(reference: &SpatialRef) -> Result<String, GdalError> {
     wkt
 }
 
-/// First quoted text of a WKT node: its name.
-fn quoted(wkt: &str) -> Option<&str> {
-    wkt.split('"').nth(1)
-}
-
-/// Metres to the unit of length named in a WKT node.
-fn length_unit(wkt: &str) -> Option<f64> {
-    let start = wkt.find("LENGTHUNIT[").or_else(|| wkt.find("UNIT["))?;
-    let fields = &wkt[start..];
-    let number = fields.split('"').nth(2)?.trim_start_matches(',');
-    number.split([',', ']']).next()?.trim().parse().ok()
-}
-
-/// The nodes and values directly inside the outermost brackets of a WKT text.
-fn children(wkt: &str) -> Vec<String> {
-    let Some(open) = wkt.find('[') else { return Vec::new() };
-    let mut parts = vec![String::new()];
-    let (mut depth, mut in_quotes) = (0, false);
-    for letter in wkt[open + 1..].chars() {
-        match letter {
-            '"' => in_quotes = !in_quotes,
-            '[' if !in_quotes => depth += 1,
-            ']' if !in_quotes && depth == 0 => break,
-            ']' if !in_quotes => depth -= 1,
-            ',' if !in_quotes && depth == 0 => {
-                parts.push(String::new());
-                continue;
-            }
-            _ => {}
-        }
-        if let Some(part) = parts.last_mut() {
-            part.push(letter);
-        }
-    }
-    parts.iter().map(|part| part.trim().to_owned()).skip(1).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn wkt_is_taken_apart_at_its_own_commas() {
-        let wkt = r#"PROJCS["a, b",GEOGCS["x [y]",1,2],UNIT["m",1]]"#;
-        assert_eq!(children(wkt), [r#"GEOGCS["x [y]",1,2]"#, r#"UNIT["m",1]"#]);
-        assert_eq!(quoted(wkt), Some("a, b"));
-    }
-
-    #[test]
     fn a_compound_system_is_split_into_plan_and_height() {
         let (crs, vertical) = Crs::from_text("--dem-crs", "EPSG:32633+6360").unwrap();
-        assert_eq!(crs.label, "EPSG:32633");
-        assert_eq!(vertical.datum.as_deref(), Some("NAVD88 height (ftUS)"));
-        assert!((vertical.unit_m.unwrap() - 1200.0 / 3937.0).abs() < 1e-12);
+        let vertical = vertical.unwrap();
+        assert_eq!((crs.label.as_str(), vertical.is_down), ("EPSG:32633", false));
+        assert_eq!(vertical.name, "NAVD88 height (ftUS)");
+        assert_eq!(vertical.unit_m.to_bits(), (1200.0_f64 / 3937.0).to_bits());
     }
 
     #[test]

@@ -9,7 +9,8 @@ use crate::operation::Operation;
 use crate::projection::DemProjection;
 use crate::reader::Reader;
 use crate::source::{OpenOptions, Source};
-use crate::{DemError, GridPlan, PlanOptions, outline, plan, scale};
+use crate::vertical::{self, Heights};
+use crate::{DemError, GridPlan, PlanOptions, library, outline, plan, scale};
 
 /// Elevation files, described but not held open: may be shared between threads.
 #[derive(Debug, Clone)]
@@ -19,6 +20,7 @@ pub struct Dem {
     pub(crate) mosaics: Vec<Mosaic>,
     pub(crate) wgs84_bounds: Bounds,
     pub(crate) center_deg: [f64; 2],
+    pub(crate) heights: Heights,
 }
 
 impl Dem {
@@ -28,16 +30,23 @@ impl Dem {
     /// the first named wins, sample by sample, and a void in it falls through to the next. Files on other grids
     /// serve the nodes at which the grids named before have no data.
     ///
+    /// Heights are those of the first band; a mask, an alpha band or a nodata value says where there are none.
+    /// With [`OpenOptions::vertical_crs`] each sample's height is carried there at the sample's own position;
+    /// without, all files must agree on what their heights are measured from.
+    ///
     /// # Errors
-    /// When a file cannot be opened, holds no heights, lacks georeference or CRS, or lies nowhere on earth.
+    /// When a file cannot be opened, holds no heights, lacks georeference or CRS, or lies nowhere on earth; when a
+    /// single row or column of samples encloses no ground; when heights cannot be carried to the vertical CRS asked
+    /// for without guessing, or files disagree on it and none is asked for.
     pub fn open(files: &[PathBuf], options: &OpenOptions) -> Result<Self, DemError> {
         quiet();
         if files.is_empty() {
             return Err(DemError::NoFiles);
         }
-        let sources: Vec<Source> =
+        let mut sources: Vec<Source> =
             files.iter().map(|path| Source::open(path, options)).collect::<Result<_, _>>()?;
         let mosaics = mosaic::group(&sources);
+        mosaic::refuse_lines(&sources, &mosaics)?;
         let wgs84 = Crs::wgs84()?;
         let to_wgs84: Vec<Operation> =
             mosaics.iter().map(|mosaic| Operation::new(&mosaic.crs, &wgs84, None)).collect();
@@ -48,7 +57,8 @@ impl Dem {
         }
         // Files all around the earth have no middle; any will do.
         let center_deg = scale::center_deg(&points_deg).unwrap_or([0.0; 2]);
-        Ok(Self { sources, mosaics, wgs84_bounds, center_deg })
+        let heights = vertical::resolve(&mut sources, options, wgs84_bounds)?;
+        Ok(Self { sources, mosaics, wgs84_bounds, center_deg, heights })
     }
 
     /// Chooses working CRS, cell and extent.
@@ -88,7 +98,7 @@ impl Dem {
 /// Keeps GDAL and PROJ from writing to standard error: what they say comes back in errors.
 fn quiet() {
     static QUIET: Once = Once::new();
-    QUIET.call_once(|| gdal::config::set_error_handler(|_, _, _| {}));
+    QUIET.call_once(|| gdal::config::set_error_handler(|_, _, words| library::hear(words)));
 }
 
 /// Limits the memory in which GDAL keeps blocks of rasters, for all threads together; without it GDAL takes up to

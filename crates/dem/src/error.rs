@@ -1,7 +1,8 @@
 use std::path::PathBuf;
 
 use corniche_geom::FrameError;
-use gdal::errors::GdalError;
+
+use crate::LibraryError;
 
 /// Why elevation files could not be opened, planned or read.
 #[derive(Debug, thiserror::Error)]
@@ -19,41 +20,101 @@ pub enum DemError {
     #[error(
         "{path:?} is not a raster that GDAL can read; it is damaged, cut off, or of an unknown format"
     )]
-    Open { path: PathBuf, source: Box<GdalError> },
-    #[error("{path:?} has no raster band; name the subdataset that holds the heights")]
+    Open { path: PathBuf, source: Box<LibraryError> },
+    #[error("{path:?} has no raster band; give a raster of heights")]
     NoBand { path: PathBuf },
+    #[error("{path:?} holds several rasters; give the one with the heights by its name: {names}")]
+    Subdatasets { path: PathBuf, names: String },
+    #[error(
+        "{path:?} has {columns} × {rows} samples; ground lies between samples, so give at least 2 × 2, or the files beside it too"
+    )]
+    Line { path: PathBuf, columns: usize, rows: usize },
     #[error(
         "{path:?} is an image ({bands} bands, the first is {interpretation}), not a DEM; give heights in the first band"
     )]
     Imagery { path: PathBuf, bands: usize, interpretation: String },
-    #[error("the first band of {path:?} has samples of type {type_name}, which are no heights")]
+    #[error(
+        "the first band of {path:?} has samples of type {type_name}, which are no heights; give integers or real numbers"
+    )]
     SampleType { path: PathBuf, type_name: String },
     #[error(
-        "heights of {path:?} are in {unit:?}, which is not a known unit of length; convert them to metres"
+        "heights of {path:?} are in {unit:?}, which is not a known unit of length; convert them to metres, or correct the band's unit (m, ft, US survey foot)"
     )]
     Unit { path: PathBuf, unit: String },
+    #[error(
+        "heights of {path:?} are in {unit:?} by their band, but a unit is {vertical_unit_m} m by their vertical CRS {vertical:?}; correct one of the two (gdal_translate -a_srs, gdal_edit.py)"
+    )]
+    UnitsDisagree { path: PathBuf, unit: String, vertical: String, vertical_unit_m: f64 },
+    #[error(
+        "the first band of {path:?} has scale {scale} and offset {offset}, which make no heights; correct them (gdal_edit.py -scale -offset)"
+    )]
+    Scale { path: PathBuf, scale: f64, offset: f64 },
     #[error(
         "{path:?} has no georeference (geotransform); add one with gdal_translate -a_ullr or a world file"
     )]
     NoGeoTransform { path: PathBuf },
-    #[error("the geotransform {coefficients:?} of {path:?} is not usable; it has no inverse")]
+    #[error(
+        "the geotransform {coefficients:?} of {path:?} is not usable, it has no inverse; correct it with gdal_translate -a_ullr"
+    )]
     GeoTransform { path: PathBuf, coefficients: [f64; 6] },
+    #[error(
+        "{path:?} has a corner at {x}, {y}, which are no longitude and latitude in {crs}; name its true CRS with gdal_translate -a_srs"
+    )]
+    OffGlobe { path: PathBuf, x: f64, y: f64, crs: String },
     #[error("{path:?} names no usable coordinate system; give it with --dem-crs EPSG:n")]
     NoCrs { path: PathBuf },
     #[error(
-        "{path:?} has coordinate system {name:?}, which is neither projected nor geographic; give it with --dem-crs"
+        "{path:?} has coordinate system {name:?}, which is neither projected nor geographic; give it with --dem-crs EPSG:n"
     )]
     UnusableCrs { path: PathBuf, name: String },
     #[error("{option} {text:?} is not a coordinate system that PROJ knows; write EPSG:n or WKT")]
-    CrsText { option: &'static str, text: String, source: Box<GdalError> },
+    CrsText { option: &'static str, text: String, source: Box<LibraryError> },
+    #[error(
+        "{option} {text:?} is neither projected nor geographic; write EPSG:n or WKT of one that is"
+    )]
+    CrsKind { option: &'static str, text: String },
+    #[error(
+        "{option} {text:?} is not a vertical coordinate system that PROJ knows; write EPSG:n or WKT, such as EPSG:5773"
+    )]
+    VerticalCrsText { option: &'static str, text: String, source: Option<Box<LibraryError>> },
+    #[error(
+        "--vertical-shift {shift_m} is not usable; give metres between -{limit_m} and {limit_m}"
+    )]
+    VerticalShift { shift_m: f64, limit_m: f64 },
+    #[error(
+        "{path:?} names no vertical CRS, so that its heights cannot be carried to {to}; give it with --dem-vertical-crs"
+    )]
+    NoVerticalCrs { path: PathBuf, to: String },
+    #[error(
+        "heights of {first:?} are {first_says}, those of {other:?} {other_says}; name a common one with --vertical-crs, and with --dem-vertical-crs that of files that name none"
+    )]
+    MixedVertical { first: PathBuf, first_says: String, other: PathBuf, other_says: String },
+    #[error(
+        "heights of {path:?} cannot be carried from {from} to {to}: PROJ lacks the geoid grid {grids}; install it (projsync, or the package proj-data), or leave out --vertical-crs and give --vertical-shift"
+    )]
+    VerticalOperation {
+        path: PathBuf,
+        from: String,
+        to: String,
+        grids: String,
+        source: Option<Box<LibraryError>>,
+    },
+    #[error(
+        "the sample at column {column}, row {row} of {path:?} has no height in {to}: it lies outside PROJ's geoid grids; leave out --vertical-crs, or cut the file to where they reach"
+    )]
+    VerticalPosition { path: PathBuf, column: usize, row: usize, to: String },
+    #[error(
+        "geoid grid {grids:?} is marked optional (@), so that heights would stay as they are where it is missing; write it without @"
+    )]
+    OptionalGeoidGrid { grids: String },
     #[error(
         "--crs {text:?} is not a projected coordinate system in metres with x to the right of y; choose one that is"
     )]
     WorkingCrs { text: String },
-    #[error("coordinate system {name:?} cannot be written down as WKT")]
-    Wkt { name: String, source: Box<GdalError> },
-    #[error("no transformation from {from} to {to}")]
-    Transform { from: String, to: String, source: Box<GdalError> },
+    #[error("coordinate system {name:?} cannot be written down as WKT; give another by EPSG:n")]
+    Wkt { name: String, source: Box<LibraryError> },
+    #[error("PROJ knows no transformation from {from} to {to}; choose another --crs")]
+    Transform { from: String, to: String, source: Box<LibraryError> },
     #[error("the DEM has no position in {crs}; choose another --crs")]
     OutsideCrs { crs: String },
     #[error("--cell {cell_m} is not a usable length; give metres between 0.001 and 1000000")]
@@ -69,7 +130,7 @@ pub enum DemError {
     #[error("windows of stride {stride} are not read from the DEM, only of stride 1")]
     Stride { stride: i64 },
     #[error(
-        "cannot read {columns} × {rows} samples at column {column}, row {row} of {path:?}; the file is damaged or cut off"
+        "cannot read {columns} × {rows} samples at column {column}, row {row} of {path:?}; the file, or one that it refers to, is damaged, cut off or gone: fetch it again"
     )]
     Read {
         path: PathBuf,
@@ -77,6 +138,6 @@ pub enum DemError {
         row: usize,
         columns: usize,
         rows: usize,
-        source: Box<GdalError>,
+        source: Box<LibraryError>,
     },
 }

@@ -9,7 +9,8 @@
 //! A node has the same height, bit for bit, whichever window it is read through: its position comes from its
 //! global index, its height from samples around that position, and a filled void from nodes around it.
 //!
-//! This crate never triangulates, never uses GDAL's warper, and never guesses what a sentinel or a unit means.
+//! This crate never triangulates, never uses GDAL's warper, and never guesses what a sentinel, a unit or a vertical
+//! datum means.
 
 mod dem;
 mod source;
@@ -18,6 +19,10 @@ mod plan;
 mod reader;
 
 mod crs;
+mod values;
+mod vertical;
+mod wkt;
+
 mod fill;
 mod kernel;
 mod mosaic;
@@ -28,9 +33,11 @@ mod projection;
 mod scale;
 
 mod error;
+mod library;
 
 pub use dem::{Dem, limit_block_cache};
 pub use error::DemError;
+pub use library::LibraryError;
 pub use plan::{GridPlan, PlanOptions, Resampling};
 pub use projection::DemProjection;
 pub use reader::{DemWindow, Reader, SampleBlock};

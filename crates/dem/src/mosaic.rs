@@ -9,6 +9,8 @@ use crate::source::{self, Source};
 
 /// Grids are the same when, over the whole extent, their samples are no farther apart than this.
 const SAME_GRID_PX: f64 = 1e-3;
+/// A full turn of longitude meets its start within this, in samples.
+const SAME_PLACE_PX: f64 = 0.01;
 /// Files that a reader keeps open; each may hold an operating system's handle.
 const OPEN_FILES: usize = 32;
 
@@ -23,6 +25,8 @@ pub(crate) struct Mosaic {
     pub(crate) files: Vec<Placed>,
     /// First and one past the last sample, both axes.
     pub(crate) extent: SampleRect,
+    /// Columns all around the earth where that is a whole number: column c + `period` is column c.
+    period: Option<i64>,
 }
 
 /// A file in its mosaic.
@@ -83,10 +87,31 @@ pub(crate) fn group(sources: &[Source]) -> Vec<Mosaic> {
                 crs_from_sample: from_centres(&source.crs_from_pixel),
                 files: vec![Placed { index, rect: rect([0, 0]) }],
                 extent: rect([0, 0]),
+                period: period(source),
             });
         }
     }
     mosaics
+}
+
+/// Columns of a geographic grid to a full turn; `None` when the turn is no whole number of them.
+fn period(source: &Source) -> Option<i64> {
+    let transform = &source.crs_from_pixel;
+    let columns = source.crs.turn? / transform.coefficients[1].abs();
+    let is_whole = (columns - columns.round()).abs() <= SAME_PLACE_PX && columns >= 2.0;
+    (transform.is_axis_parallel() && is_whole).then_some(columns.round() as i64)
+}
+
+/// Refuses grids of a single row or column: there is no ground between their samples.
+pub(crate) fn refuse_lines(sources: &[Source], mosaics: &[Mosaic]) -> Result<(), DemError> {
+    match mosaics.iter().find(|mosaic| mosaic.extent.columns() < 2 || mosaic.extent.rows() < 2) {
+        Some(Mosaic { extent, files, .. }) => Err(DemError::Line {
+            path: sources[files[0].index].path.clone(),
+            columns: extent.columns(),
+            rows: extent.rows(),
+        }),
+        None => Ok(()),
+    }
 }
 
 /// The same map from sample indices: sample (0, 0) lies at the centre of pixel (0, 0), half a pixel in.
@@ -97,18 +122,43 @@ fn from_centres(crs_from_pixel: &GeoTransform) -> GeoTransform {
 }
 
 impl Mosaic {
+    /// Samples that positions can ask for: all around the earth, where columns come round.
+    pub(crate) fn reachable(&self) -> SampleRect {
+        let around = self.period.unwrap_or(0);
+        let SampleRect { min, max } = self.extent;
+        SampleRect { min: [min[0] - around, min[1]], max: [max[0] + around, max[1]] }
+    }
+
+    /// The rectangles at which a file is met within `rect`, its own first, others a turn away.
+    fn images(&self, file: &Placed, rect: &SampleRect) -> Vec<SampleRect> {
+        let moved = |columns: i64| SampleRect {
+            min: [file.rect.min[0] + columns, file.rect.min[1]],
+            max: [file.rect.max[0] + columns, file.rect.max[1]],
+        };
+        let turns = self.period.into_iter().flat_map(|period| [moved(-period), moved(period)]);
+        std::iter::once(file.rect)
+            .chain(turns)
+            .filter(|image| !image.intersection(rect).is_empty())
+            .collect()
+    }
+
     /// Where the file's first sample lies on this grid; `None` when it is of another one.
     fn place(&self, source: &Source) -> Option<[i64; 2]> {
         let own = from_centres(&source.crs_from_pixel);
         let corner = |c: i64, r: i64| {
             self.crs_from_sample.pixel_from_crs(own.crs_from_pixel([c as f64, r as f64]))
         };
-        let first = corner(0, 0)?;
+        let mut first = corner(0, 0)?;
+        // The way around the earth that is the shorter one: files on both sides of the antimeridian are neighbours.
+        let turns =
+            self.period.map_or(0.0, |period| period as f64 * (first[0] / period as f64).round());
+        first[0] -= turns;
         let min = first.map(f64::round);
         let [columns, rows] = [source.columns, source.rows];
         for (c, r) in [(0, 0), (columns, 0), (0, rows), (columns, rows)] {
             let at = corner(c, r)?;
-            let miss = (at[0] - min[0] - c as f64).abs().max((at[1] - min[1] - r as f64).abs());
+            let miss =
+                (at[0] - turns - min[0] - c as f64).abs().max((at[1] - min[1] - r as f64).abs());
             if miss.is_nan() || miss > SAME_GRID_PX || min[0].abs().max(min[1].abs()) > 1e12 {
                 return None;
             }
@@ -139,13 +189,14 @@ impl OpenFiles {
     ) -> Result<(), DemError> {
         heights_m.clear();
         heights_m.resize(rect.columns() * rect.rows(), f64::NAN);
-        for file in &mosaic.files {
-            let part = rect.intersection(&file.rect);
-            if part.is_empty() {
-                continue;
-            }
+        let images = mosaic
+            .files
+            .iter()
+            .flat_map(|file| mosaic.images(file, rect).into_iter().map(move |image| (file, image)));
+        for (file, image) in images {
+            let part = rect.intersection(&image);
             let source = &sources[file.index];
-            let start = [0, 1].map(|axis| (part.min[axis] - file.rect.min[axis]) as usize);
+            let start = [0, 1].map(|axis| (part.min[axis] - image.min[axis]) as usize);
             let mut buffer = std::mem::take(&mut self.buffer);
             let dataset = self.dataset(file.index, source)?;
             source.read(dataset, start, [part.columns(), part.rows()], &mut buffer)?;

@@ -19,6 +19,8 @@ pub(crate) struct Operation {
     from: Crs,
     to: Crs,
     area_deg: Option<[f64; 4]>,
+    /// Operations that ignore what PROJ lacks the data for ("ballpark") are not allowed.
+    is_exact: bool,
     key: String,
 }
 
@@ -42,16 +44,45 @@ impl Operation {
             }
         });
         let key = format!("{}→{}@{area_deg:?}", from.wkt, to.wkt);
-        Self { from: from.clone(), to: to.clone(), area_deg, key }
+        Self { from: from.clone(), to: to.clone(), area_deg, is_exact: false, key }
+    }
+
+    /// The same where an approximation for want of a grid is no answer; for heights.
+    pub(crate) fn exact(from: &Crs, to: &Crs, area_deg: Bounds) -> Self {
+        let found = Self::new(from, to, Some(area_deg));
+        Self { is_exact: true, key: format!("{} exact", found.key), ..found }
+    }
+
+    /// Replaces each height at its position by its image, in the unit and direction of the systems' third axes;
+    /// NaN where there is none.
+    pub(crate) fn apply_heights(
+        &self,
+        points: &[[f64; 2]],
+        heights: &mut [f64],
+    ) -> Result<(), DemError> {
+        let transform = self.transform().map_err(|source| self.failed(source))?;
+        let mut xs: Vec<f64> = points.iter().map(|point| point[0]).collect();
+        let mut ys: Vec<f64> = points.iter().map(|point| point[1]).collect();
+        let _some_failed = transform.transform_coords(&mut xs, &mut ys, heights);
+        for (height, (x, y)) in heights.iter_mut().zip(xs.iter().zip(&ys)) {
+            if !(height.is_finite() && x.is_finite() && y.is_finite()) {
+                *height = f64::NAN;
+            }
+        }
+        Ok(())
+    }
+
+    fn failed(&self, source: GdalError) -> DemError {
+        DemError::Transform {
+            from: self.from.label.clone(),
+            to: self.to.label.clone(),
+            source: source.into(),
+        }
     }
 
     /// Replaces each position by its image; NaN where there is none.
     pub(crate) fn apply(&self, points: &mut [[f64; 2]]) -> Result<(), DemError> {
-        let transform = self.transform().map_err(|source| DemError::Transform {
-            from: self.from.label.clone(),
-            to: self.to.label.clone(),
-            source: Box::new(source),
-        })?;
+        let transform = self.transform().map_err(|source| self.failed(source))?;
         let mut xs: Vec<f64> = points.iter().map(|point| point[0]).collect();
         let mut ys: Vec<f64> = points.iter().map(|point| point[1]).collect();
         // An error here means that some positions have no image; those come out as infinite.
@@ -72,6 +103,9 @@ impl Operation {
             let mut options = CoordTransformOptions::new()?;
             if let Some([west, south, east, north]) = self.area_deg {
                 options.set_area_of_interest(west, south, east, north)?;
+            }
+            if self.is_exact {
+                options.set_ballpark_allowed(false)?;
             }
             let transform = CoordTransform::new_with_options(
                 &self.from.spatial_ref()?,

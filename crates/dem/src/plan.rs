@@ -68,8 +68,10 @@ pub struct GridPlan {
     pub case: Resampling,
     /// The case in words.
     pub resampling: String,
-    /// Vertical datum of the heights as far as the files name one; several are joined by commas.
+    /// What the resulting heights are measured from, as far as files or options name it.
     pub vertical_datum: Option<String>,
+    /// What was done to the files' heights, in words.
+    pub vertical: String,
     /// Releases of GDAL and PROJ, on which the heights' last bits depend.
     pub libraries: String,
     /// A void is filled from data within this many cells.
@@ -173,7 +175,8 @@ pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemErro
             Resampling::Resampled
         },
         resampling: describe(dem, &layers),
-        vertical_datum: vertical_datum(dem),
+        vertical_datum: dem.heights.datum.clone(),
+        vertical: dem.heights.words.clone(),
         libraries: libraries(),
         fill_voids: options.fill_voids,
         layers,
@@ -223,7 +226,7 @@ fn equal_area(dem: &Dem) -> Result<(Crs, f64), DemError> {
         "+proj=laea +lat_0={lat} +lon_0={lon} +x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs"
     );
     let reference = SpatialRef::from_proj4(&text).map_err(|source: GdalError| {
-        DemError::CrsText { option: "the chosen", text, source: Box::new(source) }
+        DemError::CrsText { option: "the chosen", text, source: source.into() }
     })?;
     let mut crs = Crs::from_spatial_ref(&reference)?;
     crs.label = format!("Lambert azimuthal equal-area about {lat}, {lon}");
@@ -434,14 +437,6 @@ fn describe(dem: &Dem, layers: &[Layer]) -> String {
         }
     }
     texts.join("; where the former have no data: ")
-}
-
-fn vertical_datum(dem: &Dem) -> Option<String> {
-    let mut names: Vec<&str> =
-        dem.sources.iter().filter_map(|source| source.vertical_datum.as_deref()).collect();
-    names.sort_unstable();
-    names.dedup();
-    (!names.is_empty()).then(|| names.join(", "))
 }
 
 fn libraries() -> String {

@@ -235,7 +235,7 @@ impl<'a> Reader<'a> {
     ) -> Result<(), DemError> {
         let open = area.nodes().filter(|&(c, r)| heights_m[target.at(c, r)].is_nan());
         let Some(rect) =
-            around(open.map(|(c, r)| at[r * target.columns + c]), kernel, &mosaic.extent)
+            around(open.map(|(c, r)| at[r * target.columns + c]), kernel, &mosaic.reachable())
         else {
             return Ok(());
         };

@@ -3,17 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use corniche_geom::GeoTransform;
-use gdal::Dataset;
 use gdal::errors::GdalError;
-use gdal::raster::{ColorInterpretation, GdalDataType, RasterBand};
+use gdal::raster::{ColorInterpretation, RasterBand};
+use gdal::{Dataset, Metadata};
 
-use crate::DemError;
-use crate::crs::{Crs, VerticalCrs};
+use crate::crs::Crs;
+use crate::values::Values;
+use crate::vertical::{HeightOperation, VerticalCrs};
+use crate::{DemError, library};
 
-/// Beyond this no value is a height: writers use ±3.4e38 and the like for "nothing here".
-const NO_HEIGHT: f64 = 1e30;
-/// What SRTM's 16-bit files write for "nothing here", declared or not.
-const SRTM_VOID: f64 = -32768.0;
 /// Tie points make a geotransform when it misses none of them by more than this many pixels.
 const TIE_POINT_PX: f64 = 0.01;
 
@@ -24,6 +22,13 @@ pub struct OpenOptions {
     pub dem_crs: Option<String>,
     /// A stored value that means "no height", besides the one that the file declares.
     pub nodata: Option<f64>,
+    /// Vertical CRS, "EPSG:n" or WKT, of the files that name none; with its unit and direction. A file that names
+    /// one keeps it.
+    pub dem_vertical_crs: Option<String>,
+    /// The vertical CRS that heights are wanted in, "EPSG:n" or WKT; `None` leaves them as they are.
+    pub vertical_crs: Option<String>,
+    /// Added to every height, after all else, metres.
+    pub vertical_shift_m: f64,
 }
 
 /// An elevation file, described but not held open.
@@ -35,29 +40,21 @@ pub(crate) struct Source {
     /// Pixel to CRS, in metres when projected.
     pub(crate) crs_from_pixel: GeoTransform,
     pub(crate) crs: Crs,
-    pub(crate) vertical_datum: Option<String>,
+    /// What its heights are measured from, as the file or `--dem-vertical-crs` says.
+    pub(crate) vertical: Option<VerticalCrs>,
     values: Values,
-}
-
-/// From stored values to heights.
-#[derive(Debug, Clone)]
-struct Values {
-    nodata: Vec<f64>,
-    /// Stored as 32-bit floats, so that sentinels are compared in that precision.
-    is_f32: bool,
-    scale: f64,
-    offset: f64,
-    unit_m: f64,
-    has_mask: bool,
+    /// To the vertical CRS asked for, where that is another one.
+    pub(crate) to_target: Option<HeightOperation>,
+    pub(crate) shift_m: f64,
 }
 
 impl Source {
     pub(crate) fn open(path: &Path, options: &OpenOptions) -> Result<Self, DemError> {
         let dataset = open_dataset(path)?;
         let own = || path.to_path_buf();
-        let broken = |source: GdalError| DemError::Open { path: own(), source: Box::new(source) };
+        let broken = |source: GdalError| DemError::Open { path: own(), source: source.into() };
         if dataset.raster_count() == 0 {
-            return Err(DemError::NoBand { path: own() });
+            return Err(no_band(path, &dataset));
         }
         let band = dataset.rasterband(1).map_err(broken)?;
         refuse_imagery(path, &dataset, &band)?;
@@ -85,14 +82,22 @@ impl Source {
                 coefficients: crs_from_pixel.coefficients,
             });
         }
+        refuse_off_globe(path, &crs, &crs_from_pixel, dataset.raster_size())?;
+        let given = || {
+            let text = options.dem_vertical_crs.as_deref();
+            text.map(|text| VerticalCrs::from_text("--dem-vertical-crs", text)).transpose()
+        };
+        let vertical = if vertical.is_some() { vertical } else { given()? };
         Ok(Self {
             path: own(),
             columns: columns as i64,
             rows: rows as i64,
             crs_from_pixel,
             crs,
-            values: Values::of(path, &band, &vertical, options)?,
-            vertical_datum: vertical.datum,
+            values: Values::of(path, &band, vertical.as_ref(), options)?,
+            vertical,
+            to_target: None,
+            shift_m: 0.0,
         })
     }
 
@@ -105,7 +110,7 @@ impl Source {
         heights_m: &mut Vec<f64>,
     ) -> Result<(), DemError> {
         let (start, size) = ((column as isize, row as isize), (columns, rows));
-        let mut read = || {
+        let mut read = || -> Result<(), GdalError> {
             heights_m.resize(columns * rows, 0.0);
             let band = dataset.rasterband(1)?;
             band.read_into_slice(start, size, size, heights_m, None)?;
@@ -126,9 +131,17 @@ impl Source {
             row,
             columns,
             rows,
-            source: Box::new(source),
+            source: source.into(),
         })?;
         self.values.convert(heights_m);
+        if let Some(operation) = &self.to_target {
+            operation.apply(&self.path, &self.crs_from_pixel, [column, row], columns, heights_m)?;
+        }
+        if self.shift_m != 0.0 {
+            for height_m in heights_m.iter_mut() {
+                *height_m += self.shift_m;
+            }
+        }
         Ok(())
     }
 }
@@ -147,13 +160,55 @@ pub(crate) fn open_dataset(path: &Path) -> Result<Dataset, DemError> {
         // Some formats are folders; GDAL says below whether this is one of them.
         Ok(_) | Err(_) => {}
     }
+    library::forget();
     Dataset::open(path).map_err(|source| {
         if path.is_dir() {
             DemError::NotAFile { path: own() }
         } else {
-            DemError::Open { path: own(), source: Box::new(source) }
+            DemError::Open { path: own(), source: source.into() }
         }
     })
+}
+
+/// Degrees that are none: metres under a geographic CRS, or axes changed round.
+fn refuse_off_globe(
+    path: &Path,
+    crs: &Crs,
+    crs_from_pixel: &GeoTransform,
+    (columns, rows): (usize, usize),
+) -> Result<(), DemError> {
+    let Some(turn) = crs.turn else { return Ok(()) };
+    let (right, bottom) = (columns as f64 - 0.5, rows as f64 - 0.5);
+    let corners = [[0.5, 0.5], [right, 0.5], [0.5, bottom], [right, bottom]];
+    let step = crs_from_pixel.coefficients;
+    // A sample too many beyond a pole is found in real files.
+    let most = [1.5 * turn, turn / 4.0 + step[4].hypot(step[5])];
+    let is_off = |at: &[f64; 2]| (0..2).any(|axis| at[axis].abs() > most[axis] * (1.0 + 1e-9));
+    match corners.map(|corner| crs_from_pixel.crs_from_pixel(corner)).into_iter().find(is_off) {
+        Some([x, y]) => {
+            let crs = crs.label.clone();
+            Err(DemError::OffGlobe { path: path.to_path_buf(), x, y, crs })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Why a container without a band of its own is no DEM: it may hold several.
+fn no_band(path: &Path, dataset: &Dataset) -> DemError {
+    let names: Vec<String> = dataset
+        .metadata_domain("SUBDATASETS")
+        .unwrap_or_default()
+        .iter()
+        .filter_map(|line| line.split_once('='))
+        .filter(|(key, _)| key.ends_with("_NAME"))
+        .map(|(_, name)| name.to_owned())
+        .collect();
+    let path = path.to_path_buf();
+    if names.is_empty() {
+        DemError::NoBand { path }
+    } else {
+        DemError::Subdatasets { path, names: names.join(", ") }
+    }
 }
 
 /// Colour bands are no heights. A palette alone is no reason to refuse: DEMs carry one for display.
@@ -238,7 +293,7 @@ fn crs_of(
     path: &Path,
     reference: Option<gdal::spatial_ref::SpatialRef>,
     options: &OpenOptions,
-) -> Result<(Crs, VerticalCrs), DemError> {
+) -> Result<(Crs, Option<VerticalCrs>), DemError> {
     let own = || path.to_path_buf();
     let named = reference.filter(|reference| !reference.is_local());
     let horizontal = named.as_ref().map(Crs::horizontal).transpose()?.flatten();
@@ -263,75 +318,6 @@ fn same_places(crs: &Crs, metric: &Crs, crs_from_pixel: &GeoTransform) -> bool {
         })
 }
 
-impl Values {
-    fn of(
-        path: &Path,
-        band: &RasterBand<'_>,
-        vertical: &VerticalCrs,
-        options: &OpenOptions,
-    ) -> Result<Self, DemError> {
-        let kind = band.band_type();
-        let type_name = kind.name();
-        if type_name.starts_with('C') || kind == GdalDataType::Unknown {
-            return Err(DemError::SampleType { path: path.to_path_buf(), type_name });
-        }
-        let mut nodata: Vec<f64> = band.no_data_value().into_iter().chain(options.nodata).collect();
-        if kind == GdalDataType::Int16 {
-            nodata.push(SRTM_VOID);
-        }
-        let unit = band.unit();
-        let unit_m = match unit.trim() {
-            "" => vertical.unit_m.unwrap_or(1.0),
-            named => unit_m(named).ok_or_else(|| DemError::Unit {
-                path: path.to_path_buf(),
-                unit: named.to_owned(),
-            })?,
-        };
-        let flags = band.mask_flags().map_err(|source| DemError::Open {
-            path: path.to_path_buf(),
-            source: Box::new(source),
-        })?;
-        Ok(Self {
-            nodata,
-            is_f32: kind == GdalDataType::Float32,
-            scale: band.scale().unwrap_or(1.0),
-            offset: band.offset().unwrap_or(0.0),
-            unit_m,
-            has_mask: flags.is_per_dataset() && !flags.is_all_valid(),
-        })
-    }
-
-    /// Stored values to metres, in place; what is no height becomes NaN.
-    #[expect(clippy::float_cmp, reason = "a sentinel is one value, not a neighbourhood")]
-    fn convert(&self, values: &mut [f64]) {
-        for value in values {
-            let is_void = !value.is_finite()
-                || value.abs() > NO_HEIGHT
-                || self.nodata.iter().any(|&sentinel| {
-                    // A 32-bit file holds its sentinel rounded to 32 bits; its tag has all digits.
-                    *value == sentinel || self.is_f32 && *value == f64::from(sentinel as f32)
-                });
-            *value =
-                if is_void { f64::NAN } else { (*value * self.scale + self.offset) * self.unit_m };
-        }
-    }
-}
-
-/// Metres to a unit of length as raster bands name it.
-fn unit_m(name: &str) -> Option<f64> {
-    Some(match name.to_lowercase().as_str() {
-        "m" | "metre" | "metres" | "meter" | "meters" => 1.0,
-        "km" | "kilometre" | "kilometer" => 1000.0,
-        "dm" | "decimetre" | "decimeter" => 0.1,
-        "cm" | "centimetre" | "centimeter" | "centimetres" | "centimeters" => 0.01,
-        "mm" | "millimetre" | "millimeter" => 0.001,
-        "ft" | "foot" | "feet" | "international foot" | "international feet" => 0.3048,
-        "us-ft" | "us ft" | "us_ft" | "ftus" | "us survey foot" | "us survey feet" | "us foot"
-        | "us feet" | "foot_us" | "sft" | "survey foot" | "us_survey_foot" => 1200.0 / 3937.0,
-        _ => return None,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -351,23 +337,5 @@ mod tests {
         ties[2][2] += 1.0;
         assert!(affine_through(&ties).is_none(), "a bent grid is no affine map");
         assert!(affine_through(&[tie(0.0, 0.0), tie(1.0, 1.0), tie(2.0, 2.0)]).is_none());
-    }
-
-    #[test]
-    fn sentinels_are_compared_in_the_precision_of_the_file() {
-        let values = Values {
-            nodata: vec![-3.4e38, -9999.9],
-            is_f32: true,
-            scale: 2.0,
-            offset: 10.0,
-            unit_m: 0.3048,
-            has_mask: false,
-        };
-        let mut stored =
-            [f64::from(-3.4e38_f32), f64::from(-9999.9_f32), 5.0, f64::INFINITY, 4e-27];
-        values.convert(&mut stored);
-        let heights: Vec<bool> = stored.iter().map(|height_m| height_m.is_nan()).collect();
-        assert_eq!(heights, [true, true, false, true, false]);
-        assert_eq!(stored[2].to_bits(), (20.0_f64 * 0.3048).to_bits());
     }
 }

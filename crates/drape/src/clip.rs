@@ -1,64 +1,61 @@
-use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TileId};
+use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TILE_CELLS};
 
-use crate::fraction::Fraction;
-
-/// Which borders a tile owns besides its west and north one: where a segment runs exactly along a border of
-/// two tiles, one of them must keep it, and only one, so that lengths add up.
-///
-/// A tile owns its west and its north border, as in `Frame::tile_column_row`. Its east and south border
-/// belong to its neighbours, if there are any.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct OwnedBorders {
-    /// Whether segments along the east border belong to this tile.
-    pub east: bool,
-    /// Whether segments along the south border belong to this tile.
-    pub south: bool,
-}
-
-impl OwnedBorders {
-    /// All four.
-    pub const ALL: Self = Self { east: true, south: true };
-
-    /// The borders a tile owns in its level: west and north, and at the edge of the root also east or south.
-    #[must_use]
-    pub fn of_tile(id: TileId) -> Self {
-        Self { east: id.neighbour(1, 0).is_none(), south: id.neighbour(0, 1).is_none() }
-    }
-}
+use crate::{OwnedBorders, fraction::Fraction, owned_borders::Border};
 
 /// The parts of `line` in the closed rectangle `bounds`, in order.
 ///
 /// A segment that leaves is cut on the exact border coordinate; the other coordinate is the exact one, rounded
 /// to the nearest lattice step (half a step: up), so both tiles at a border and both directions of travel get
 /// the same point. Parts that are a point, or become one by rounding, are dropped. Of segments along the
-/// border only those on `owned` ones are kept.
+/// border only what is on `owned` stretches is kept; where a stretch ends, between two cells, is a cut, too.
+///
+/// Coordinates are below 2^62, as `Frame::snap` makes them.
 ///
 /// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*, with exact fractions.
 #[must_use]
 pub fn clip(line: &Polyline, bounds: &LatticeBounds, owned: OwnedBorders) -> Vec<Polyline> {
-    let mut parts = Vec::new();
-    let mut current: Vec<LatticePoint> = Vec::new();
-    // Whether the last segment's end was kept, so that the next one goes on from it.
-    let mut goes_on = false;
+    let mut parts = Parts::default();
     for pair in line.points().windows(2) {
-        let kept = inside([pair[0], pair[1]], bounds, owned);
-        if !(goes_on && kept.is_some_and(|inside| inside.whole_start)) {
-            parts.extend(Polyline::new(std::mem::take(&mut current)).ok());
-        }
-        goes_on = false;
-        if let Some(inside) = kept {
-            current.extend(inside.ends);
-            goes_on = inside.whole_end;
+        let segment = [pair[0], pair[1]];
+        if let Some(along) = Along::of(segment, bounds) {
+            along.keep_owned(&owned, &mut parts);
+        } else if let Some(inside) = inside(segment, bounds) {
+            parts.keep(inside);
+        } else {
+            parts.goes_on = false;
         }
     }
-    parts.extend(Polyline::new(current).ok());
-    parts
+    parts.end();
+    parts.ended
 }
 
 /// [`clip`] that keeps segments along every border: for a tile with a margin, whose parts overlap anyway.
 #[must_use]
 pub fn clip_closed(line: &Polyline, bounds: &LatticeBounds) -> Vec<Polyline> {
     clip(line, bounds, OwnedBorders::ALL)
+}
+
+/// The parts as they come.
+#[derive(Default)]
+struct Parts {
+    ended: Vec<Polyline>,
+    current: Vec<LatticePoint>,
+    /// Whether the last segment's end was kept, so that the next one goes on from it.
+    goes_on: bool,
+}
+
+impl Parts {
+    fn keep(&mut self, inside: Inside) {
+        if !(self.goes_on && inside.whole_start) {
+            self.end();
+        }
+        self.current.extend(inside.ends);
+        self.goes_on = inside.whole_end;
+    }
+
+    fn end(&mut self) {
+        self.ended.extend(Polyline::new(std::mem::take(&mut self.current)).ok());
+    }
 }
 
 /// What of a segment lies inside.
@@ -71,17 +68,85 @@ struct Inside {
     whole_end: bool,
 }
 
-fn inside(
-    [p, q]: [LatticePoint; 2],
-    bounds: &LatticeBounds,
-    owned: OwnedBorders,
-) -> Option<Inside> {
-    let (min, max) = (bounds.min, bounds.max);
-    let along_east = p.u == q.u && p.u == max.u && !owned.east;
-    let along_south = p.v == q.v && p.v == min.v && !owned.south;
-    if along_east || along_south {
-        return None;
+/// A segment on the line of a border.
+struct Along<'a> {
+    segment: [LatticePoint; 2],
+    bounds: &'a LatticeBounds,
+    border: Border,
+}
+
+impl<'a> Along<'a> {
+    fn of([p, q]: [LatticePoint; 2], bounds: &'a LatticeBounds) -> Option<Self> {
+        let (min, max) = (bounds.min, bounds.max);
+        let border = match (p.u == q.u, p.v == q.v) {
+            (true, _) if p.u == min.u => Border::West,
+            (true, _) if p.u == max.u => Border::East,
+            (_, true) if p.v == min.v => Border::South,
+            (_, true) if p.v == max.v => Border::North,
+            _ => return None,
+        };
+        Some(Self { segment: [p, q], bounds, border })
     }
+
+    /// Keeps what of the segment is on owned stretches, in its direction.
+    fn keep_owned(&self, owned: &OwnedBorders, parts: &mut Parts) {
+        let [p, q] = self.segment;
+        let mut kept = Vec::new();
+        let mut from = 0;
+        while let Some([first, end]) = owned.next_run(self.border, from) {
+            from = end;
+            let [a, b] = [first, end].map(|cell| self.offset(cell));
+            let [low, high] = [a.min(b), a.max(b)];
+            let within = |point: LatticePoint| self.along(point).clamp(low, high);
+            if within(p) != within(q) {
+                let ends = [self.at(within(p)), self.at(within(q))];
+                kept.push(Inside { ends, whole_start: ends[0] == p, whole_end: ends[1] == q });
+            }
+        }
+        let eastward_or_southward = match self.border {
+            Border::North | Border::South => p.u < q.u,
+            Border::East | Border::West => p.v > q.v,
+        };
+        if !eastward_or_southward {
+            kept.reverse();
+        }
+        if kept.is_empty() {
+            parts.goes_on = false;
+        }
+        for inside in kept {
+            parts.keep(inside);
+        }
+    }
+
+    /// Where, along the border, the `cell`th cell begins: from the west or from the north.
+    fn offset(&self, cell: i64) -> i64 {
+        let (min, max) = (self.bounds.min, self.bounds.max);
+        let part =
+            |side: i64| (i128::from(side) * i128::from(cell) / i128::from(TILE_CELLS)) as i64;
+        match self.border {
+            Border::North | Border::South => min.u + part(max.u - min.u),
+            Border::East | Border::West => max.v - part(max.v - min.v),
+        }
+    }
+
+    fn along(&self, point: LatticePoint) -> i64 {
+        match self.border {
+            Border::North | Border::South => point.u,
+            Border::East | Border::West => point.v,
+        }
+    }
+
+    fn at(&self, along: i64) -> LatticePoint {
+        match self.border {
+            Border::North | Border::South => LatticePoint::new(along, self.segment[0].v),
+            Border::East | Border::West => LatticePoint::new(self.segment[0].u, along),
+        }
+    }
+}
+
+/// What of a segment that is on no border's line lies in the rectangle.
+fn inside([p, q]: [LatticePoint; 2], bounds: &LatticeBounds) -> Option<Inside> {
+    let (min, max) = (bounds.min, bounds.max);
     let (mut start, mut end) =
         (Cut { at: Fraction::ZERO, point: p }, Cut { at: Fraction::ONE, point: q });
     let (mut whole_start, mut whole_end) = (true, true);

@@ -1,4 +1,6 @@
 use super::*;
+use crate::Neighbours;
+use corniche_geom::TileId;
 use proptest::prelude::*;
 
 fn point(u: i64, v: i64) -> LatticePoint {
@@ -17,7 +19,7 @@ const TILES: i64 = 3;
 fn tile(column: i64, row: i64) -> (LatticeBounds, OwnedBorders) {
     let min = point(column * SIDE, -(row + 1) * SIDE);
     let bounds = LatticeBounds { min, max: point(min.u + SIDE, min.v + SIDE) };
-    (bounds, OwnedBorders { east: column == TILES - 1, south: row == TILES - 1 })
+    (bounds, OwnedBorders::among(Neighbours { east: column < TILES - 1, south: row < TILES - 1 }))
 }
 
 /// Which tile the middle of a piece belongs to, from positions in `parts` of a step.
@@ -145,7 +147,10 @@ fn the_edge_of_the_root_is_kept() {
     assert_eq!(clip(&along, &bounds, owned), [along]);
     let id = |x, y| TileId::new(2, x, y).unwrap();
     assert_eq!(OwnedBorders::of_tile(id(3, 3)), OwnedBorders::ALL);
-    assert_eq!(OwnedBorders::of_tile(id(0, 3)), OwnedBorders { east: false, south: true });
+    assert_eq!(
+        OwnedBorders::of_tile(id(0, 3)),
+        OwnedBorders::among(Neighbours { east: true, south: false })
+    );
 }
 
 #[test]

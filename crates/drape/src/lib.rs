@@ -15,14 +15,16 @@ mod clip;
 mod draped_line;
 mod extrude;
 mod fraction;
+mod owned_borders;
 mod positions;
 mod ray;
 mod walk;
 
 pub use check::check;
-pub use clip::{OwnedBorders, clip, clip_closed};
+pub use clip::{clip, clip_closed};
 pub use draped_line::{DrapedLine, DrapedVertex, SvLine};
 pub use extrude::extrude;
+pub use owned_borders::{Neighbours, OwnedBorders};
 pub use positions::{BadLine, positions};
 pub use walk::{Drape, drape};
 

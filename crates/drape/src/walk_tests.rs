@@ -175,6 +175,10 @@ fn damaged_lines_are_refused_without_panic() {
         assert_eq!(positions(&bad, &surface), Err(error));
         assert_eq!(check(&bad, &surface), Err(error));
     }
+    // Beyond 2^50 steps positions would be guesses, so there are none: lines, leads and TINs alike.
+    let far = LatticePoint::new(0, 1 << 50);
+    let led = DrapedLine { lead_in: Some(far), ..with(0, DrapedVertex::Crossing { a: 0, b: 1 }) };
+    assert_eq!(positions(&led, &surface), Err(BadLine::OutOfRange { point: far }));
     // What only `check` sees.
     let subtle = [
         (with(0, source(2, -4, 1)), BadLine::OutsideTriangle { at: 0, triangle: 1 }),

@@ -1,12 +1,13 @@
 //! Ways and node places to roads.
 
-use corniche_geom::{LatticePoint, Polyline, Side, side};
+use corniche_geom::{LatticePoint, Polyline};
 use corniche_roads::Road;
 
 use crate::{
     Defect, ReadOsmError,
     nodes::{self, NodeTable},
     read_roads::Place,
+    self_crossings::self_crossings,
     ways::{RoadWay, Ways},
 };
 
@@ -153,54 +154,4 @@ fn road(way: &RoadWay, piece: Vec<(LatticePoint, bool)>) -> Option<Road> {
         line,
         fixed,
     })
-}
-
-/// How many pairs of segments cross strictly inside both. Shared points and overlaps are no crossings: loops and
-/// there-and-back ways are common and right.
-fn self_crossings(points: &[LatticePoint]) -> u32 {
-    let mut segments: Vec<[LatticePoint; 2]> =
-        points.windows(2).map(|pair| [pair[0].min(pair[1]), pair[0].max(pair[1])]).collect();
-    // Swept from west to east, a segment meets only those that begin before it ends.
-    segments.sort_unstable();
-    let mut crossings = 0;
-    for (number, &[a, b]) in segments.iter().enumerate() {
-        for &[c, d] in segments[number + 1..].iter().take_while(|[c, _]| c.u <= b.u) {
-            let is_apart = c.v.max(d.v) < a.v.min(b.v) || a.v.max(b.v) < c.v.min(d.v);
-            if !is_apart && straddles([a, b], [c, d]) && straddles([c, d], [a, b]) {
-                crossings += 1;
-            }
-        }
-    }
-    crossings
-}
-
-/// Whether the ends of `other` lie strictly on different sides of the line through `segment`.
-fn straddles(segment: [LatticePoint; 2], other: [LatticePoint; 2]) -> bool {
-    let [from, to] = other.map(|end| side(segment[0], segment[1], end));
-    from != Side::On && to != Side::On && from != to
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[track_caller]
-    fn check_crossings(points: &[(i64, i64)], expected: u32) {
-        let points: Vec<LatticePoint> =
-            points.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect();
-        assert_eq!(self_crossings(&points), expected);
-    }
-
-    #[test]
-    fn counts_crossings_but_not_touches() {
-        check_crossings(&[(0, 0), (10, 10), (10, 0), (0, 10)], 1);
-        check_crossings(&[(0, 0), (10, 0), (10, 10), (0, 10), (0, 0)], 0);
-        check_crossings(&[(0, 0), (10, 0), (0, 0)], 0);
-        // A loop through one of its own points, and a T into the middle of a segment.
-        check_crossings(&[(0, 0), (10, 0), (15, 5), (20, 0), (10, 0), (10, -9)], 0);
-        check_crossings(&[(0, 0), (10, 0), (10, 5), (5, 5), (5, 0)], 0);
-        // A five-pointed star.
-        check_crossings(&[(0, 100), (59, -81), (-95, 31), (95, 31), (-59, -81), (0, 100)], 5);
-        check_crossings(&[(5, -5), (5, 5), (0, 0), (10, 0)], 1);
-    }
 }

@@ -24,6 +24,11 @@ pub enum Defect {
         /// The way.
         way_id: i64,
     },
+    /// A tag of the way is longer than OSM allows, 255 characters; it is cut there.
+    LongText {
+        /// The way.
+        way_id: i64,
+    },
     /// A way of one node or none; it is left out.
     TooFewNodes {
         /// The way.
@@ -82,7 +87,7 @@ pub enum Defect {
     SelfCrossing {
         /// The way.
         way_id: i64,
-        /// How many pairs of its segments cross.
+        /// How many pairs of its segments cross; of a way of more than 2000 nodes perhaps not all are found.
         crossings: u32,
     },
     /// The file gives a node several different places; the first stays.
@@ -101,6 +106,7 @@ impl Defect {
             Self::Area { .. } => "area",
             Self::DuplicateWay { .. } => "duplicate way",
             Self::DamagedText { .. } => "damaged text",
+            Self::LongText { .. } => "long text",
             Self::TooFewNodes { .. } => "too few nodes",
             Self::MissingNodes { .. } => "missing nodes",
             Self::OutOfRange { .. } => "coordinates out of range",
@@ -112,5 +118,70 @@ impl Defect {
             Self::SelfCrossing { .. } => "self-crossing",
             Self::ConflictingNode { .. } => "conflicting node",
         }
+    }
+
+    /// What it is about: `"way"` or `"node"`, and its id.
+    #[must_use]
+    pub const fn object(&self) -> (&'static str, i64) {
+        match *self {
+            Self::UnknownHighway { way_id, .. }
+            | Self::Area { way_id }
+            | Self::DuplicateWay { way_id }
+            | Self::DamagedText { way_id }
+            | Self::LongText { way_id }
+            | Self::TooFewNodes { way_id, .. }
+            | Self::MissingNodes { way_id, .. }
+            | Self::OutOfRange { way_id, .. }
+            | Self::OutsideProjection { way_id, .. }
+            | Self::Split { way_id, .. }
+            | Self::StrayPoints { way_id, .. }
+            | Self::NoLine { way_id }
+            | Self::DuplicatePoints { way_id, .. }
+            | Self::SelfCrossing { way_id, .. } => ("way", way_id),
+            Self::ConflictingNode { node_id } => ("node", node_id),
+        }
+    }
+
+    /// How many points, nodes, roads or crossings, where it has such a number.
+    #[must_use]
+    pub const fn count(&self) -> Option<u32> {
+        match *self {
+            Self::TooFewNodes { nodes: count, .. }
+            | Self::MissingNodes { points: count, .. }
+            | Self::OutOfRange { points: count, .. }
+            | Self::OutsideProjection { points: count, .. }
+            | Self::Split { roads: count, .. }
+            | Self::StrayPoints { points: count, .. }
+            | Self::DuplicatePoints { points: count, .. }
+            | Self::SelfCrossing { crossings: count, .. } => Some(count),
+            Self::UnknownHighway { .. }
+            | Self::Area { .. }
+            | Self::DuplicateWay { .. }
+            | Self::DamagedText { .. }
+            | Self::LongText { .. }
+            | Self::NoLine { .. }
+            | Self::ConflictingNode { .. } => None,
+        }
+    }
+
+    /// The value that it is about, where it has one.
+    #[must_use]
+    pub fn detail(&self) -> Option<&str> {
+        if let Self::UnknownHighway { value, .. } = self { Some(value) } else { None }
+    }
+
+    /// Whether the whole way is left out for it, rather than a part of it, or nothing.
+    ///
+    /// Each way that [`crate::LeftOut`] counts as unknown, area, duplicate or without line has exactly one such defect.
+    #[must_use]
+    pub const fn is_loss_of_way(&self) -> bool {
+        matches!(
+            self,
+            Self::UnknownHighway { .. }
+                | Self::Area { .. }
+                | Self::DuplicateWay { .. }
+                | Self::TooFewNodes { .. }
+                | Self::NoLine { .. }
+        )
     }
 }

@@ -9,6 +9,8 @@ pub enum ReadOsmError {
     Open { path: PathBuf, source: io::Error },
     #[error("cannot read OSM extract {path:?}")]
     Read { path: PathBuf, source: io::Error },
+    #[error("{path:?} is {found}, not a file; it is read twice, so give it as a file")]
+    NotAFile { path: PathBuf, found: &'static str },
     #[error("OSM extract {path:?} is empty (0 bytes); fetch it again")]
     Empty { path: PathBuf },
     #[error("{path:?} is {found}, not .osm.pbf; {advice}")]
@@ -28,12 +30,21 @@ pub enum ReadOsmError {
     )]
     Compression { path: PathBuf, method: &'static str },
     #[error(
-        "OSM extract {path:?} is a history file with all versions of each object; \
-         take one point in time: osmium time-filter IN.osh.pbf 2026-01-01T00:00:00Z -o OUT.osm.pbf"
+        "OSM extract {path:?} is a history or change file, with several versions of an object; of a history take one point \
+         in time: osmium time-filter IN.osh.pbf 2026-01-01T00:00:00Z -o OUT.osm.pbf; apply changes to the extract that they \
+         belong to: osmium apply-changes IN.osm.pbf CHANGES.osc.pbf -o OUT.osm.pbf"
     )]
     History { path: PathBuf },
-    #[error("OSM extract {path:?} asks its readers for {feature:?}, which is not supported")]
+    #[error(
+        "OSM extract {path:?} asks its readers for {feature:?}, which is not supported; \
+         rewrite it with a program that knows it: osmium cat IN.osm.pbf -o OUT.osm.pbf"
+    )]
     Feature { path: PathBuf, feature: String },
+    #[error(
+        "OSM extract {path:?} unpacks to more roads than a file of {len_bytes} bytes can mean: it may be made to fill the \
+         memory; if it is right, write it without packing: osmium cat IN.osm.pbf -o OUT.osm.pbf -f pbf,pbf_compression=none"
+    )]
+    TooMuch { path: PathBuf, len_bytes: u64 },
     #[error(
         "positions were handed out to be placed on the lattice, {expected} of them, and {got} came back"
     )]

@@ -10,16 +10,24 @@
 //!
 //! This crate never judges which road matters at which level, never guesses a class, and starts no threads.
 
-mod assemble;
+mod read_roads;
+
+mod audit;
+mod blob;
 mod blobs;
+mod formats;
+mod wire;
+
+mod assemble;
+mod nodes;
+mod self_crossings;
+mod ways;
+
 mod defect;
 mod error;
-mod nodes;
-mod read_roads;
 mod summary;
-mod ways;
 
 pub use defect::Defect;
 pub use error::ReadOsmError;
-pub use read_roads::{Place, ReadRequest, read_roads};
+pub use read_roads::{Place, ReadRequest, read_roads, read_roads_from};
 pub use summary::{ATTRIBUTION, ExtractSummary, HighwayCount, LeftOut};

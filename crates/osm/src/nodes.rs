@@ -15,8 +15,15 @@ pub(crate) const MISSING: Location = [i32::MIN; 2];
 /// The file gives a place that is not on Earth.
 pub(crate) const OUT_OF_RANGE: Location = [i32::MAX; 2];
 
+/// What libosmium writes, in 1e-7 degrees, into ways with locations for a node that it does not have, and for deleted nodes
+/// (`undefined_coordinate` in `include/osmium/osm/location.hpp`).
+const UNDEFINED_NANO_DEG: i64 = 100 * (i32::MAX as i64);
+
 /// Rounds nanodegrees to a location.
 pub(crate) fn location_from_nano(lon_nano_deg: i64, lat_nano_deg: i64) -> Location {
+    if lon_nano_deg == UNDEFINED_NANO_DEG && lat_nano_deg == UNDEFINED_NANO_DEG {
+        return MISSING;
+    }
     let is_on_earth = lon_nano_deg.unsigned_abs() <= 180_000_000_000
         && lat_nano_deg.unsigned_abs() <= 90_000_000_000;
     let round = |nano_deg: i64| ((nano_deg + 50).div_euclid(100)) as i32;
@@ -184,6 +191,8 @@ mod tests {
         assert_eq!(location_from_nano(180_000_000_001, 0), OUT_OF_RANGE);
         assert_eq!(location_from_nano(0, 90_000_000_001), OUT_OF_RANGE);
         assert_eq!(location_from_nano(i64::MIN, i64::MAX), OUT_OF_RANGE);
+        assert_eq!(location_from_nano(214_748_364_700, 214_748_364_700), MISSING);
+        assert_eq!(location_from_nano(214_748_364_700, 0), OUT_OF_RANGE);
         assert_eq!(degrees([95_000_001, -470_000_000]), Some([9.500_000_1, -47.0]));
         assert_eq!((degrees(MISSING), degrees(OUT_OF_RANGE)), (None, None));
     }

@@ -1,4 +1,8 @@
-use std::path::Path;
+use std::{
+    fs::{self, File},
+    io::{Read, Seek},
+    path::Path,
+};
 
 use corniche_geom::LatticePoint;
 use corniche_roads::{FrcTable, Road};
@@ -42,6 +46,22 @@ pub struct ReadRequest<'a> {
 /// held: 17 bytes each, and 8 for every mention in a way.
 /// `should_stop` is asked every few blobs.
 ///
+/// # Limits
+/// What a file may ask for, however it was made:
+///
+/// | of | limit | beyond it |
+/// |---|---|---|
+/// | a blob header | 64 KiB | damaged |
+/// | a blob, packed and unpacked | 32 MiB, the format's own; 1 MiB for the file's header | damaged |
+/// | a decoded block | 512 MiB, one per thread; besides, four packed blobs per thread wait | damaged |
+/// | the ways, tags and node ids that are kept | 64 MiB and 64 times the size of the file; real extracts keep less than their own size | [`ReadOsmError::TooMuch`] |
+/// | a tag's text | 255 characters, OSM's own | cut, [`Defect::LongText`] |
+/// | tags of a way | 65 536 | damaged |
+/// | comparisons in search of a way's self-crossings | 2 million, enough for the 2000 nodes that OSM allows | not all are found |
+///
+/// Lookup and sorting of the nodes take at most four times the room of what is kept. Time is proportional to the unpacked size,
+/// which deflate keeps below 1032 times that of the file.
+///
 /// # Errors
 /// When the file cannot be read, is no `.osm.pbf`, is cut off or damaged, is a history file, uses a feature or a
 /// compression that is not supported, or when `should_stop` says so.
@@ -51,21 +71,46 @@ pub fn read_roads(
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<ExtractSummary, ReadOsmError> {
+    let path = request.path;
+    let not_open = |source| ReadOsmError::Open { path: path.to_path_buf(), source };
+    // To open a pipe is to wait for who writes into it.
+    let kind = fs::metadata(path).map_err(not_open)?.file_type();
+    if !kind.is_file() {
+        let found = if kind.is_dir() { "a folder" } else { "a pipe or a device" };
+        return Err(ReadOsmError::NotAFile { path: path.to_path_buf(), found });
+    }
+    let file = File::open(path).map_err(not_open)?;
+    read_roads_from(file, request, sink, on_defect, should_stop)
+}
+
+/// Reads the roads of an extract from any source of bytes, as [`read_roads`] does from a file. `request.path` only names it in
+/// messages.
+///
+/// # Errors
+/// As for [`read_roads`].
+pub fn read_roads_from<R: Read + Seek>(
+    source: R,
+    request: &ReadRequest<'_>,
+    sink: &mut dyn FnMut(Road),
+    on_defect: &mut dyn FnMut(Defect),
+    should_stop: &(dyn Fn() -> bool + Sync),
+) -> Result<ExtractSummary, ReadOsmError> {
     let decoding = Decoding { pool: request.pool, should_stop };
-    let file = BlobFile::open(request.path)?;
-    let (mut ways, blobs_with_nodes) = read_ways(&file, request.table, &decoding)?;
+    let mut file = BlobFile::open(request.path, source)?;
+    let (mut ways, blobs_with_nodes) = read_ways(&mut file, request, &decoding)?;
     ways.defects.drain(..).for_each(&mut *on_defect);
 
     let mut table = NodeTable::new(&ways, request.pool);
-    locate_nodes(&file, &blobs_with_nodes, &mut ways, &mut table, &decoding)?;
+    locate_nodes(&mut file, &blobs_with_nodes, &mut ways, &mut table, &decoding)?;
     table.conflicts().for_each(&mut *on_defect);
 
     let mut summary = std::mem::take(&mut ways.summary);
     summary.nodes_needed = table.ids.len() as u64;
     summary.nodes_missing = table.places.missing() as u64;
-    summary.header_bounds_deg = file.bounds_deg;
-    summary.generator.clone_from(&file.generator);
-    summary.timestamp_s = file.timestamp_s;
+    summary.blobs_passed_over = file.blobs_passed_over;
+    summary.header_bounds_deg = file.header.bounds_deg;
+    summary.generator = file.header.generator.take();
+    summary.timestamp_s = file.header.timestamp_s;
     emit_roads(request, &ways, &table, should_stop, &mut |assembled| {
         let roads = assembled.roads.len() as u64;
         summary.roads += roads;
@@ -76,24 +121,35 @@ pub fn read_roads(
     Ok(summary)
 }
 
+/// What may be kept of any file …
+const HELD_BYTES: u64 = 64 << 20;
+/// … and on top of it for each of its bytes.
+const HELD_BYTES_PER_BYTE: u64 = 64;
+
 /// Pass 1. Says also which blobs hold nodes.
-fn read_ways(
-    file: &BlobFile,
-    table: &FrcTable,
+fn read_ways<R: Read + Seek>(
+    file: &mut BlobFile<R>,
+    request: &ReadRequest<'_>,
     decoding: &Decoding<'_>,
 ) -> Result<(Ways, Vec<usize>), ReadOsmError> {
     let mut ways = Ways::default();
     let mut blobs_with_nodes = Vec::new();
     let all: Vec<usize> = (0..file.len()).collect();
+    let len_bytes = file.len_bytes();
+    let most_bytes = HELD_BYTES.saturating_add(len_bytes.saturating_mul(HELD_BYTES_PER_BYTE));
     file.for_each(
         &all,
         decoding,
-        |block| Ways::scan(block, table),
+        |block| Ways::scan(block, request.table),
         |number, of_block| {
             if of_block.summary.nodes_seen > 0 {
                 blobs_with_nodes.push(number);
             }
             ways.append(of_block);
+            if ways.held_bytes > most_bytes {
+                return Err(ReadOsmError::TooMuch { path: request.path.to_path_buf(), len_bytes });
+            }
+            Ok(())
         },
     )?;
     ways.sort();
@@ -101,8 +157,8 @@ fn read_ways(
 }
 
 /// Pass 2.
-fn locate_nodes(
-    file: &BlobFile,
+fn locate_nodes<R: Read + Seek>(
+    file: &mut BlobFile<R>,
     blobs_with_nodes: &[usize],
     ways: &mut Ways,
     table: &mut NodeTable,
@@ -114,6 +170,7 @@ fn locate_nodes(
             for (number, location) in found {
                 places.set(number, location);
             }
+            Ok(())
         };
         file.for_each(blobs_with_nodes, decoding, |block| Ok(ids.scan(block)), take)?;
     }

@@ -8,8 +8,14 @@ pub const ATTRIBUTION: &str = "© OpenStreetMap contributors, ODbL 1.0";
 /// What was in an extract and what became of it.
 ///
 /// Nothing goes unnamed: `highway_ways = road_ways + left_out.total()`.
+///
+/// A file that was cut off exactly between two of its blobs reads as a smaller one: the format has no mark for its end.
+/// Where that cost nodes it shows in `nodes_missing`; where it cost whole ways, nothing tells.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ExtractSummary {
+    /// Parts of the file of types that are not known, passed over as the format asks. Also what is left of a known part
+    /// when its type was damaged: no checksum covers it.
+    pub blobs_passed_over: u64,
     /// Nodes in the file.
     pub nodes_seen: u64,
     /// Different nodes that the roads name.
@@ -32,7 +38,8 @@ pub struct ExtractSummary {
     pub highways: BTreeMap<String, HighwayCount>,
     /// Per `highway` value that the table does not list: how many ways have it.
     pub unknown_highways: BTreeMap<String, u64>,
-    /// The box that the file's header gives: west, south, east, north, degrees.
+    /// The box that the file's header gives: west, south, east, north, degrees. `None` without one on Earth, and, like
+    /// what else the header says, where the file is several in a row.
     pub header_bounds_deg: Option<[f64; 4]>,
     /// The program that wrote the file, as its header says.
     pub generator: Option<String>,

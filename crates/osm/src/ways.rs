@@ -33,12 +33,20 @@ pub(crate) struct Ways {
     pub(crate) located: Vec<(i64, Location)>,
     pub(crate) defects: Vec<Defect>,
     pub(crate) summary: ExtractSummary,
+    /// How much memory all this takes, by an estimate that is not too low.
+    pub(crate) held_bytes: u64,
 }
+
+/// OSM allows 255 characters (OSM wiki, *API v0.6*), each of at most four bytes.
+const MAX_TEXT_CHARS: usize = 255;
+
+/// The roads of one block may take this much; an ordinary block of 8000 ways takes 3 MB.
+const MAX_HELD_BYTES_PER_BLOCK: u64 = 256 << 20;
 
 impl Ways {
     /// Finds the roads of a block.
     ///
-    /// Fails when a tag points outside the block's table of strings.
+    /// Fails when it holds more than roads ever take.
     pub(crate) fn scan(block: &PrimitiveBlock, table: &FrcTable) -> Result<Self, String> {
         let mut ways = Self::default();
         for group in block.groups() {
@@ -48,44 +56,46 @@ impl Ways {
                     ways.summary.ways_deleted += 1;
                 } else {
                     ways.summary.ways_seen += 1;
-                    ways.look_at(&way, table)?;
+                    ways.look_at(&way, table);
+                    if ways.held_bytes > MAX_HELD_BYTES_PER_BLOCK {
+                        return Err("its roads do not fit 256 MiB of memory".into());
+                    }
                 }
             }
         }
         Ok(ways)
     }
 
-    fn look_at(&mut self, way: &Way<'_>, table: &FrcTable) -> Result<(), String> {
+    fn look_at(&mut self, way: &Way<'_>, table: &FrcTable) {
         let strings = way.raw_stringtable();
         let is_highway =
             |(key, _): (u32, u32)| strings.get(key as usize).is_some_and(|key| key == b"highway");
         // Most ways are buildings and land cover; their tags need no decoding.
         if !way.raw_tags().any(is_highway) {
-            return Ok(());
+            return;
         }
-        let text = |index: u32| {
-            let bytes = strings.get(index as usize);
-            bytes.map(|bytes| String::from_utf8_lossy(bytes)).ok_or_else(|| {
-                format!(
-                    "a tag of way {} is string {index} of a table of {}",
-                    way.id(),
-                    strings.len()
-                )
-            })
-        };
-        let owned: Vec<(Cow<'_, str>, Cow<'_, str>)> = way
-            .raw_tags()
-            .map(|(key, value)| Ok((text(key)?, text(value)?)))
-            .collect::<Result<_, String>>()?;
-        let tags: Vec<(&str, &str)> = owned.iter().map(|(key, value)| (&**key, &**value)).collect();
-        if owned
-            .iter()
-            .any(|(key, value)| matches!(key, Cow::Owned(_)) || matches!(value, Cow::Owned(_)))
-        {
-            self.defects.push(Defect::DamagedText { way_id: way.id() });
+        // The block was checked: no tag is outside its table.
+        let text = |index: u32| Text::new(strings.get(index as usize).map_or(&[], Vec::as_slice));
+        let owned: Vec<[Text<'_>; 2]> =
+            way.raw_tags().map(|(key, value)| [text(key), text(value)]).collect();
+        let tags: Vec<(&str, &str)> =
+            owned.iter().map(|[key, value]| (&*key.text, &*value.text)).collect();
+        let way_id = way.id();
+        let is_any = |is: fn(&Text<'_>) -> bool| owned.iter().flatten().any(is);
+        if is_any(|text| matches!(text.text, Cow::Owned(_))) {
+            self.push_defect(Defect::DamagedText { way_id });
+        }
+        if is_any(|text| text.is_cut) {
+            self.push_defect(Defect::LongText { way_id });
         }
         self.judge(way, &tags, table);
-        Ok(())
+    }
+
+    fn push_defect(&mut self, defect: Defect) {
+        // The values of unknown highways stand in the summary too.
+        let text_bytes = 2 * defect.detail().map_or(0, str::len);
+        self.held_bytes += (2 * size_of::<Defect>() + text_bytes) as u64;
+        self.defects.push(defect);
     }
 
     fn judge(&mut self, way: &Way<'_>, tags: &[(&str, &str)], table: &FrcTable) {
@@ -99,13 +109,13 @@ impl Ways {
             Classified::NotShown(_) => left_out.class_off += 1,
             Classified::NotARoad(NotARoad::Area) => {
                 left_out.area += 1;
-                self.defects.push(Defect::Area { way_id });
+                self.push_defect(Defect::Area { way_id });
             }
             Classified::NotARoad(NotARoad::Listed | NotARoad::NoHighway) => left_out.listed += 1,
             Classified::Unknown(value) => {
                 left_out.unknown += 1;
                 *self.summary.unknown_highways.entry(value.to_owned()).or_default() += 1;
-                self.defects.push(Defect::UnknownHighway { way_id, value: value.to_owned() });
+                self.push_defect(Defect::UnknownHighway { way_id, value: value.to_owned() });
                 return;
             }
         }
@@ -127,11 +137,21 @@ impl Ways {
         self.node_ids.extend(way.refs());
         let nodes_end = self.node_ids.len();
         let locations = way.node_locations();
-        if locations.len() == nodes_end - nodes_start {
+        let locations_count = locations.len();
+        // The block was checked: one for each node, or none at all.
+        if locations_count > 0 {
             let locations = locations
                 .map(|location| location_from_nano(location.nano_lon(), location.nano_lat()));
             self.located.extend(self.node_ids[nodes_start..].iter().copied().zip(locations));
         }
+        let text_bytes =
+            attributes.name.len() + attributes.reference.len() + attributes.surface.len();
+        let locations = if locations_count > 0 { size_of::<(i64, Location)>() } else { 0 };
+        let nodes = nodes_end - nodes_start;
+        // Lists grow by doubling.
+        self.held_bytes += (text_bytes
+            + 2 * size_of::<RoadWay>()
+            + 2 * nodes * (size_of::<i64>() + locations)) as u64;
         self.roads.push(RoadWay { way_id: way.id(), class, attributes, nodes_start, nodes_end });
     }
 
@@ -141,6 +161,7 @@ impl Ways {
         self.node_ids.extend(later.node_ids);
         self.located.extend(later.located);
         self.defects.extend(later.defects);
+        self.held_bytes += later.held_bytes;
         self.roads.extend(later.roads.into_iter().map(|way| RoadWay {
             nodes_start: way.nodes_start + shift,
             nodes_end: way.nodes_end + shift,
@@ -178,6 +199,38 @@ impl Ways {
     /// The nodes of a road.
     pub(crate) fn node_ids_of(&self, way: &RoadWay) -> &[i64] {
         &self.node_ids[way.nodes_start..way.nodes_end]
+    }
+}
+
+/// A tag's key or value.
+struct Text<'a> {
+    text: Cow<'a, str>,
+    is_cut: bool,
+}
+
+impl<'a> Text<'a> {
+    /// Only the beginning is looked at, however long the text is: it may be that of a million ways.
+    fn new(bytes: &'a [u8]) -> Self {
+        const MAX_BYTES: usize = 4 * MAX_TEXT_CHARS;
+        let start = &bytes[..bytes.len().min(MAX_BYTES)];
+        let text = match str::from_utf8(start) {
+            // The cut may have gone through a character.
+            Err(error) if error.error_len().is_none() && start.len() < bytes.len() => {
+                String::from_utf8_lossy(&start[..error.valid_up_to()])
+            }
+            _ => String::from_utf8_lossy(start),
+        };
+        let end = text.char_indices().nth(MAX_TEXT_CHARS).map(|(at, _)| at);
+        let is_cut = end.is_some() || start.len() < bytes.len();
+        let text = match (end, text) {
+            (Some(end), Cow::Borrowed(text)) => Cow::Borrowed(&text[..end]),
+            (Some(end), Cow::Owned(mut text)) => {
+                text.truncate(end);
+                Cow::Owned(text)
+            }
+            (None, text) => text,
+        };
+        Self { text, is_cut }
     }
 }
 

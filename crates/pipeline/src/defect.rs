@@ -1,9 +1,40 @@
-/// Bad input that was survived and counted, from whichever crate met it.
+/// Bad input that was survived and counted, from whichever crate met it, and what was lost by it.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Defect {
     /// In the extract.
     Osm(corniche_osm::Defect),
+    /// A road, or a part of it, that no tile of the finest level holds.
+    LostRoad {
+        /// Its way.
+        way_id: i64,
+        /// Why.
+        loss: Loss,
+        /// Length in plan.
+        length_m: f64,
+        /// Whether anything of the road is kept.
+        is_whole: bool,
+    },
+}
+
+/// Why a road was lost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Loss {
+    /// It lies beside the elevation data.
+    OutsideData,
+    /// It lies on the elevation data, but where they have no ground.
+    NoGround,
+}
+
+impl Loss {
+    /// Why, in words: the name under which it is counted.
+    #[must_use]
+    pub const fn reason(self) -> &'static str {
+        match self {
+            Self::OutsideData => "outside the elevation data",
+            Self::NoGround => "where the data have no ground (void or edge)",
+        }
+    }
 }
 
 impl Defect {
@@ -12,12 +43,13 @@ impl Defect {
     pub fn name(&self) -> String {
         match self {
             Self::Osm(defect) => defect.reason().to_owned(),
+            Self::LostRoad { loss, .. } => loss.reason().to_owned(),
         }
     }
 }
 
-impl From<&corniche_osm::Defect> for Defect {
-    fn from(defect: &corniche_osm::Defect) -> Self {
-        Self::Osm(defect.clone())
+impl From<corniche_osm::Defect> for Defect {
+    fn from(defect: corniche_osm::Defect) -> Self {
+        Self::Osm(defect)
     }
 }

@@ -19,8 +19,13 @@ pub enum BuildError {
     Dem(#[from] corniche_dem::DemError),
     #[error(transparent)]
     Osm(#[from] corniche_osm::ReadOsmError),
-    #[error("the elevation data hold no height at all: every sample is void")]
-    NoHeights,
+    #[error("{dem:?} hold no height at all where nodes lie: every node is void")]
+    NoHeights { dem: Vec<PathBuf> },
+    #[error(
+        "{dem:?} hold heights at {nodes} nodes, but no cell has one at each of its four corners, so there is no \
+         ground; give a finer raster, or let --fill-voids close what lies between"
+    )]
+    NoCell { dem: Vec<PathBuf>, nodes: u64 },
     #[error(
         "{osm:?} has no road; is it the right extract, and does its FRC table know its highway values?"
     )]
@@ -71,7 +76,8 @@ impl BuildError {
                 | Self::Input { .. }
                 | Self::Dem(_)
                 | Self::Osm(_)
-                | Self::NoHeights
+                | Self::NoHeights { .. }
+                | Self::NoCell { .. }
                 | Self::NoRoads { .. }
                 | Self::NoOverlap { .. }
                 | Self::NoGround { .. }

@@ -12,7 +12,8 @@ mod verify;
 mod workers;
 
 pub use build::{BuildSummary, build};
-pub use defect::Defect;
+pub use corniche_osm::Defect as OsmDefect;
+pub use defect::{Defect, Loss};
 pub use error::BuildError;
 pub use observer::{Observer, Silent, Stage};
 pub use settings::{BuildSettings, Existing, Resources, RoadSettings, TerrainSettings};

@@ -1,3 +1,5 @@
+use crate::Defect;
+
 /// A stage of a run, in the order in which they come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Stage {
@@ -46,6 +48,9 @@ pub trait Observer: Sync {
 
     /// The stage is over.
     fn end(&self, stage: Stage);
+
+    /// Something is wrong with the input, was survived and is counted. In an order that the inputs alone determine.
+    fn defect(&self, _: &Defect) {}
 
     /// Whether to stop at the next opportunity; the run then fails with `Interrupted`.
     fn is_cancelled(&self) -> bool {

@@ -19,6 +19,8 @@ pub struct BuildSettings {
     pub roads: RoadSettings,
     /// What the run may use.
     pub resources: Resources,
+    /// Credits beside those that the inputs call for, such as a DEM's.
+    pub attribution: Vec<String>,
     /// Program and version, for the manifest.
     pub generator: String,
 }
@@ -39,6 +41,12 @@ pub struct TerrainSettings {
     pub crs: Option<String>,
     /// CRS of rasters that name none.
     pub dem_crs: Option<String>,
+    /// Vertical CRS of rasters that name none.
+    pub dem_vertical_crs: Option<String>,
+    /// Vertical CRS that heights are wanted in; `None` leaves them as the files have them.
+    pub vertical_crs: Option<String>,
+    /// Added to every height last, metres.
+    pub vertical_shift_m: f64,
     /// Value that means "no data" beside what the files say.
     pub nodata: Option<f64>,
     /// Spacing of the finest level; `None` takes the DEM's.

@@ -10,13 +10,14 @@
 //! This crate never computes geometry: what it guesses of triangles, heights and roads is coding, and a wrong guess
 //! costs bytes, never truth. Its reading side has no C dependency and builds for wasm32.
 
+pub mod limits;
 mod manifest;
 mod package;
 mod payload;
 
 pub use manifest::{
-    Counts, GrowthRow, InputRecord, LevelRecord, Manifest, RoadLoss, SampleCounts, SettingsRecord,
-    VerticalRecord,
+    Counts, Distribution, GrowthRow, InputRecord, LevelRecord, Manifest, RoadLoss, SampleCounts,
+    SettingsRecord, VerticalRecord,
 };
 pub use package::{
     ByteSource, FORMAT_VERSION, MemorySource, OpenError, Package, ReadError, SourceError,
@@ -27,8 +28,8 @@ pub use package::{FilePackage, FileSource};
 #[cfg(feature = "write")]
 pub use package::{WriteError, Writer};
 pub use payload::{
-    Damage, DecodeError, EncodeError, GeoRoad, MAX_SECTION_BYTES, RoadRecord, SectionSize,
-    Sections, SvRoad, Terrain, TilePayload, decode,
+    Damage, DecodeError, EncodeError, GeoRoad, RoadRecord, SectionSize, Sections, SvRoad, Terrain,
+    TilePayload, decode,
 };
 #[cfg(feature = "write")]
 pub use payload::{EncodedTile, PayloadContext, encode};

@@ -1,5 +1,9 @@
+mod check;
+
 use corniche_geom::{Bounds, CoordinateTable, Frame};
 use serde::{Deserialize, Serialize};
+
+pub(crate) use check::{MAX_MEASURE_M, is_height_quantum};
 
 /// The table of contents of a package: its JSON metadata.
 ///
@@ -55,6 +59,22 @@ pub struct VerticalRecord {
     pub unit: String,
     /// Vertical datum as far as the inputs name one, else "unknown".
     pub datum: String,
+    /// What was done to the inputs' heights, in words: "as in the files", a transformation, a shift.
+    pub treatment: String,
+    /// Lowest and highest node, metres. Values that no land has tell of an undeclared "no data".
+    pub range_m: [f64; 2],
+}
+
+impl VerticalRecord {
+    /// Ratios of errors are taken of errors at least so large: below, they are ratios of rounding.
+    ///
+    /// A height quantum over √2. Errors that are simple fractions of a quantum are common (they are differences of
+    /// heights that are whole steps), and none of them lies on this limit, so that two ways of computing them agree
+    /// on which side of it they are.
+    #[must_use]
+    pub fn least_measured_error_m(quantum_m: f64) -> f64 {
+        quantum_m * std::f64::consts::FRAC_1_SQRT_2
+    }
 }
 
 /// What a level is and how good it came out.
@@ -68,6 +88,11 @@ pub struct LevelRecord {
     pub max_error_m: f64,
     /// Largest stored geometric error of its tiles.
     pub geometric_error_m: f64,
+    /// Stored geometric errors of its tiles; `None` on a level without tiles.
+    pub errors_m: Option<Distribution>,
+    /// Stored error over the largest true one of the tile and its children, over the tiles where that is at least
+    /// [`VerticalRecord::least_measured_error_m`]; `None` where there is no such tile.
+    pub tightness: Option<Distribution>,
     /// Least important class shown on this level; `None` shows no road.
     pub least_class: Option<u8>,
     /// Tolerance of the simplification of roads; 0 keeps every point.
@@ -86,6 +111,38 @@ pub struct LevelRecord {
     pub uncovered_nodes: u64,
 }
 
+/// How values lie: nearest-rank quantiles.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Distribution {
+    /// How many values.
+    pub count: u64,
+    /// Smallest.
+    pub min: f64,
+    /// Median.
+    pub median: f64,
+    /// 95th percentile.
+    pub p95: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+impl Distribution {
+    /// Of `values`, in any order; `None` of none.
+    #[must_use]
+    pub fn of(mut values: Vec<f64>) -> Option<Self> {
+        values.sort_unstable_by(f64::total_cmp);
+        let last = values.len().checked_sub(1)?;
+        let rank = |share: f64| values[(last as f64 * share).round() as usize];
+        Some(Self {
+            count: values.len() as u64,
+            min: values[0],
+            median: rank(0.5),
+            p95: rank(0.95),
+            max: values[last],
+        })
+    }
+}
+
 /// Settings that determine the bytes of a package.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SettingsRecord {
@@ -97,6 +154,12 @@ pub struct SettingsRecord {
     pub nodata: Option<f64>,
     /// `--dem-crs`, if given.
     pub dem_crs: Option<String>,
+    /// `--dem-vertical-crs`, if given.
+    pub dem_vertical_crs: Option<String>,
+    /// `--vertical-crs`, if given.
+    pub vertical_crs: Option<String>,
+    /// `--vertical-shift`; 0 when not given.
+    pub vertical_shift_m: f64,
     /// `--crs`, if given.
     pub crs: Option<String>,
     /// `--cell`, if given.

@@ -15,6 +15,7 @@ mod roads_geo;
 mod roads_sv;
 mod route;
 mod terrain;
+mod work;
 
 use corniche_drape::{DrapedLine, SvLine};
 use corniche_geom::TileId;
@@ -25,7 +26,7 @@ pub use damage::{Damage, DecodeError, EncodeError};
 pub use decode::{Sections, decode};
 #[cfg(feature = "write")]
 pub use encode::{EncodedTile, PayloadContext, encode};
-pub use envelope::{MAX_SECTION_BYTES, SectionSize};
+pub use envelope::SectionSize;
 
 /// All that a tile holds, decoded. A section that is absent from the bytes is empty or `None` here.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,3 +96,5 @@ pub struct RoadRecord {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod work_tests;

@@ -340,7 +340,7 @@ fn positions_out_of_range_are_not_a_number() {
 fn options_override_and_are_checked() {
     let folder = folder();
     let bare = Raster::new(0, [6, 5], UTM).write(folder.path(), "a.tif", plane);
-    let given = OpenOptions { dem_crs: Some("EPSG:32632".to_owned()), nodata: None };
+    let given = OpenOptions { dem_crs: Some("EPSG:32632".to_owned()), ..OpenOptions::default() };
     let dem = Dem::open(&[bare], &given).unwrap();
     let plan = |crs: &str| dem.plan(&PlanOptions { crs: Some(crs.to_owned()), ..options() });
     assert_eq!(plan("EPSG:3035").unwrap().crs, "EPSG:3035");

@@ -3,26 +3,38 @@
 use std::path::{Path, PathBuf};
 
 use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions, Reader};
-use corniche_geom::NodeWindow;
-use gdal::DriverManager;
-use gdal::raster::{Buffer, GdalType};
+use corniche_geom::{NodeWindow, Projection};
+use gdal::raster::{Buffer, GdalType, RasterCreationOptions};
 use gdal::spatial_ref::SpatialRef;
+use gdal::{Dataset, DriverManager};
 
 pub(crate) struct Raster<'a> {
     pub(crate) epsg: u32,
     pub(crate) size: [usize; 2],
     pub(crate) geo_transform: [f64; 6],
     pub(crate) nodata: Option<f64>,
+    /// Creation options of GDAL's GeoTIFF driver.
+    pub(crate) creation: &'a [&'a str],
+    pub(crate) bands: usize,
     pub(crate) tag: Box<dyn Fn(&mut gdal::Dataset) + 'a>,
 }
 
 impl<'a> Raster<'a> {
     pub(crate) fn new(epsg: u32, size: [usize; 2], geo_transform: [f64; 6]) -> Self {
-        Self { epsg, size, geo_transform, nodata: None, tag: Box::new(|_| {}) }
+        let tag = Box::new(|_: &mut Dataset| {});
+        Self { epsg, size, geo_transform, nodata: None, creation: &[], bands: 1, tag }
     }
 
     pub(crate) fn tagged(self, tag: impl Fn(&mut gdal::Dataset) + 'a) -> Self {
         Self { tag: Box::new(tag), ..self }
+    }
+
+    pub(crate) fn created(self, creation: &'a [&'a str]) -> Self {
+        Self { creation, ..self }
+    }
+
+    pub(crate) fn bands(self, bands: usize) -> Self {
+        Self { bands, ..self }
     }
 
     pub(crate) fn nodata(self, nodata: f64) -> Self {
@@ -46,7 +58,15 @@ impl<'a> Raster<'a> {
         let path = folder.join(name);
         let [columns, rows] = self.size;
         let driver = DriverManager::get_driver_by_name("GTiff").unwrap();
-        let mut dataset = driver.create_with_band_type::<T, _>(&path, columns, rows, 1).unwrap();
+        let mut dataset = driver
+            .create_with_band_type_with_options::<T, _>(
+                &path,
+                columns,
+                rows,
+                self.bands,
+                &creation(self.creation),
+            )
+            .unwrap();
         if self.geo_transform != [0.0; 6] {
             dataset.set_geo_transform(&self.geo_transform).unwrap();
         }
@@ -59,9 +79,83 @@ impl<'a> Raster<'a> {
             values.extend((0..columns).map(|column| value(self.sample_at(column, row))));
         }
         let mut band = dataset.rasterband(1).unwrap();
-        band.set_no_data_value(self.nodata).unwrap();
+        if self.nodata.is_some() {
+            band.set_no_data_value(self.nodata).unwrap();
+        }
         band.write((0, 0), self.size.into(), &mut Buffer::new(self.size.into(), values)).unwrap();
         path
+    }
+}
+
+fn creation(options: &[&str]) -> RasterCreationOptions {
+    RasterCreationOptions::from_iter(options.iter().copied())
+}
+
+/// Another format of a raster, written by GDAL; `None`, with a line that says so, when this GDAL cannot.
+pub(crate) fn converted(
+    path: &Path,
+    driver: &str,
+    name: &str,
+    options: &[&str],
+) -> Option<PathBuf> {
+    let Ok(driver) = DriverManager::get_driver_by_name(driver) else {
+        println!("skipped: this GDAL has no driver {driver}");
+        return None;
+    };
+    let target = path.with_file_name(name);
+    let dataset = Dataset::open(path).unwrap();
+    dataset.create_copy(&driver, &target, &creation(options)).unwrap().close().unwrap();
+    Some(target)
+}
+
+/// What heights are a function of.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Space {
+    /// x, y of the working CRS.
+    Working,
+    /// Longitude, latitude of WGS84; longitudes from −180 to 180.
+    Degrees,
+}
+
+/// Opens files and compares every node that has a height with `truth`; returns how many have one.
+pub(crate) fn check_heights(
+    name: &str,
+    files: &[PathBuf],
+    options: &OpenOptions,
+    (space, tolerance_m): (Space, f64),
+    truth: impl Fn([f64; 2]) -> f64,
+) -> usize {
+    let dem = Dem::open(files, options).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let plan = plan(&dem);
+    let projection = dem.projection(&plan).unwrap();
+    check(&mut dem.reader(&plan).unwrap(), &plan, tolerance_m, |mut at| {
+        if let Space::Degrees = space {
+            projection.wgs84_from_working(std::slice::from_mut(&mut at)).unwrap();
+        }
+        truth(at)
+    })
+}
+
+/// Files are refused, by opening or by reading, with the file's name and all of `words`, and no raw error of a library.
+pub(crate) fn check_refused(files: &[PathBuf], options: &OpenOptions, words: &[&str]) {
+    let read = || {
+        let dem = Dem::open(files, options)?;
+        let plan = dem.plan(&self::options())?;
+        dem.reader(&plan)?.window(all(&plan))
+    };
+    let error = read().expect_err(&format!("{files:?} was read"));
+    let text = error.to_string();
+    for word in words {
+        assert!(text.contains(word), "{word:?} is not in: {text}");
+    }
+    let mut whole = text;
+    let mut cause = std::error::Error::source(&error);
+    while let Some(next) = cause {
+        whole = format!("{whole}: {next}");
+        cause = next.source();
+    }
+    for raw in ["CPL error", "OGR method", "GDAL method", "OgrError", "CE_"] {
+        assert!(!whole.contains(raw), "{raw:?} is in: {whole}");
     }
 }
 

@@ -8,6 +8,9 @@
 
 mod closed_form;
 mod fixture;
+mod formats;
+mod georeference;
 mod real_data;
 mod refusals;
+mod samples;
 mod voids;

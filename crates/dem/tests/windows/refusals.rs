@@ -28,7 +28,7 @@ fn errors_name_the_file_and_what_to_do() {
     let not_a_file =
         Dem::open(&[folder.path().to_path_buf()], &OpenOptions::default()).unwrap_err();
     assert!(not_a_file.to_string().contains("not a file"));
-    let nonsense = OpenOptions { dem_crs: Some("Atlantis".to_owned()), nodata: None };
+    let nonsense = OpenOptions { dem_crs: Some("Atlantis".to_owned()), ..OpenOptions::default() };
     let error = Dem::open(&[path("bare.tif")], &nonsense).unwrap_err().to_string();
     assert!(error.contains("--dem-crs") && error.contains("Atlantis"), "{error}");
 }

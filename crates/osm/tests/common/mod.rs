@@ -7,15 +7,20 @@
     reason = "a test may unwrap and says what it skips"
 )]
 
+pub(crate) mod writer;
+
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     fs,
+    io::Cursor,
     path::{Path, PathBuf},
     sync::LazyLock,
 };
 
 use corniche_geom::LatticePoint;
-use corniche_osm::{Defect, ExtractSummary, Place, ReadOsmError, ReadRequest, read_roads};
+use corniche_osm::{
+    Defect, ExtractSummary, Place, ReadOsmError, ReadRequest, read_roads, read_roads_from,
+};
 use corniche_roads::{FrcTable, Road};
 use rayon::ThreadPool;
 use serde::Deserialize;
@@ -73,6 +78,20 @@ impl Extract {
             assert!(road.fixed.is_sorted_by(|a, b| a < b), "way {}", road.way_id);
             assert_eq!((road.fixed.first(), road.fixed.last()), (Some(&0), Some(&last)));
         }
+        // Every way that was lost stands in exactly one defect that says so, and no way is both lost and a road, unless its
+        // id is used twice.
+        let lost = |defect: &&Defect| defect.is_loss_of_way();
+        let left_out = self.summary.left_out;
+        let expected =
+            left_out.unknown + left_out.area + left_out.duplicate + left_out.without_line;
+        assert_eq!(self.defects.iter().filter(lost).count() as u64, expected);
+        let ids: BTreeSet<i64> = self.roads.iter().map(|road| road.way_id).collect();
+        assert_eq!(self.summary.road_ways, ids.len() as u64);
+        for defect in self.defects.iter().filter(lost) {
+            if matches!(defect, Defect::TooFewNodes { .. } | Defect::NoLine { .. }) {
+                assert!(!ids.contains(&defect.object().1), "{defect:?}");
+            }
+        }
     }
 }
 
@@ -86,25 +105,43 @@ pub(crate) fn read_with(
 }
 
 fn read_in(path: &Path, pool: &ThreadPool, place: &Place<'_>) -> Result<Extract, ReadOsmError> {
-    let table = default_table();
-    let (mut roads, mut defects) = (Vec::new(), Vec::new());
-    let request = ReadRequest { path, table: &table, place, pool };
-    let summary = read_roads(
-        &request,
-        &mut |road| roads.push(road),
-        &mut |defect| defects.push(defect),
-        &|| false,
-    )?;
-    let extract = Extract { roads, defects, summary };
-    extract.check_invariants();
-    Ok(extract)
+    let request = ReadRequest { path, table: &TABLE, place, pool };
+    gather(|sink, on_defect| read_roads(&request, sink, on_defect, &|| false))
 }
+
+static POOL: LazyLock<ThreadPool> =
+    LazyLock::new(|| rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap());
+static TABLE: LazyLock<FrcTable> = LazyLock::new(default_table);
 
 /// Reads with two threads, always the same.
 pub(crate) fn read(path: &Path) -> Result<Extract, ReadOsmError> {
-    static POOL: LazyLock<ThreadPool> =
-        LazyLock::new(|| rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap());
     read_in(path, &POOL, &to_lattice)
+}
+
+/// Reads from memory; `made.osm.pbf` is the name in messages.
+pub(crate) fn read_bytes(bytes: &[u8]) -> Result<Extract, ReadOsmError> {
+    let request = ReadRequest {
+        path: Path::new("made.osm.pbf"),
+        table: &TABLE,
+        place: &to_lattice,
+        pool: &POOL,
+    };
+    gather(|sink, on_defect| {
+        read_roads_from(Cursor::new(bytes), &request, sink, on_defect, &|| false)
+    })
+}
+
+fn gather(
+    read: impl FnOnce(
+        &mut dyn FnMut(Road),
+        &mut dyn FnMut(Defect),
+    ) -> Result<ExtractSummary, ReadOsmError>,
+) -> Result<Extract, ReadOsmError> {
+    let (mut roads, mut defects) = (Vec::new(), Vec::new());
+    let summary = read(&mut |road| roads.push(road), &mut |defect| defects.push(defect))?;
+    let extract = Extract { roads, defects, summary };
+    extract.check_invariants();
+    Ok(extract)
 }
 
 pub(crate) fn fixture(name: &str) -> PathBuf {

@@ -16,6 +16,8 @@ use crate::{BuildError, Observer, Stage, Storage, workers};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TileError {
     pub(crate) geometric_error_m: f64,
+    /// Largest true error of the tile itself and of its children, each by its own TIN.
+    pub(crate) true_error_m: f64,
     pub(crate) height_range_m: [f64; 2],
     pub(crate) uncovered_nodes: u64,
 }
@@ -38,6 +40,7 @@ impl TileErrors {
     pub(crate) fn of(&self, id: TileId) -> TileError {
         self.by_tile.get(&id).copied().unwrap_or(TileError {
             geometric_error_m: 0.0,
+            true_error_m: 0.0,
             height_range_m: [0.0, 0.0],
             uncovered_nodes: 0,
         })
@@ -202,11 +205,16 @@ fn stored(seen: &BTreeMap<TileId, Seen>, meshes: &Meshes) -> BTreeMap<TileId, Ti
             let largest_m = beneath_m.entry(above).or_default();
             *largest_m = largest_m.max(geometric_error_m);
         }
+        let true_error_m = id
+            .children()
+            .filter_map(|child| seen.get(&child))
+            .fold(own.deviation.max_abs_m, |largest, child| largest.max(child.deviation.max_abs_m));
         let [low, high] = own.range_m.unwrap_or([0.0, 0.0]);
         by_tile.insert(
             id,
             TileError {
                 geometric_error_m,
+                true_error_m,
                 height_range_m: [f64::from(low), f64::from(high)],
                 uncovered_nodes: own.uncovered_nodes,
             },

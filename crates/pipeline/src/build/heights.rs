@@ -26,6 +26,7 @@ pub(crate) struct Pyramid<'a> {
     storage: &'a dyn Storage,
     blocks: BTreeMap<BlockId, Span>,
     samples: SampleCounts,
+    range_m: [f32; 2],
 }
 
 /// Reads the finest level from the DEM and subsamples it level by level.
@@ -37,12 +38,17 @@ pub(crate) fn read<'a>(
     observer: &dyn Observer,
 ) -> Result<Pyramid<'a>, BuildError> {
     let frame = plan.frame;
-    let mut pyramid =
-        Pyramid { storage, blocks: BTreeMap::new(), samples: SampleCounts::default() };
+    let mut pyramid = Pyramid {
+        storage,
+        blocks: BTreeMap::new(),
+        samples: SampleCounts::default(),
+        range_m: [0.0; 2],
+    };
     let areas = areas(plan);
     observer.begin(Stage::Heights, Some(areas.len() as u64));
     let mut with_height = 0;
     let mut filled = 0;
+    let mut range_m: Option<[f32; 2]> = None;
     let kept = Mutex::new(BTreeMap::new());
     workers::in_order(
         threads,
@@ -58,15 +64,20 @@ pub(crate) fn read<'a>(
                 spans.push((id, put(storage, &block)?));
             }
             kept.lock().unwrap_or_else(PoisonError::into_inner).extend(spans);
-            Ok((window.heights.count_heights() as u64, window.filled))
+            Ok((window.heights.count_heights() as u64, window.filled, window.heights.range_m()))
         },
-        |_, (heights, fills)| {
+        |_, (heights, fills, area_m)| {
+            range_m = match (range_m, area_m) {
+                (Some(all), Some(area)) => Some([all[0].min(area[0]), all[1].max(area[1])]),
+                (all, area) => all.or(area),
+            };
             with_height += heights;
             filled += fills;
             observer.advance(Stage::Heights, 1);
             Ok(())
         },
     )?;
+    pyramid.range_m = range_m.unwrap_or_default();
     pyramid.blocks = kept.into_inner().unwrap_or_else(PoisonError::into_inner);
     let span = |low: i64, high: i64| (high - low + 1) as u64;
     let nodes =
@@ -162,6 +173,11 @@ impl Pyramid<'_> {
     /// What became of the DEM's nodes.
     pub(crate) fn samples(&self) -> SampleCounts {
         self.samples
+    }
+
+    /// Lowest and highest node; zeros where there is none.
+    pub(crate) fn range_m(&self) -> [f32; 2] {
+        self.range_m
     }
 
     /// The tiles of `level` that may have ground: those that hold a height, border included.

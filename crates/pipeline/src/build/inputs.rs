@@ -42,7 +42,8 @@ pub(crate) fn record(
     observer: &dyn Observer,
 ) -> Result<InputRecord, BuildError> {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    if !path.exists() && path.starts_with("/vsi") {
+    // By text: `Path::starts_with` compares whole names, and they go on, as in /vsizip/ and /vsicurl/.
+    if !path.exists() && path.to_string_lossy().starts_with("/vsi") {
         // A name that only GDAL understands (inside an archive, on a server) has no bytes of its own to hash.
         return Ok(InputRecord {
             kind: kind.to_owned(),

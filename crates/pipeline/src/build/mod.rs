@@ -13,6 +13,7 @@ mod errors;
 mod heights;
 mod inputs;
 mod levels;
+mod losses;
 mod mesh;
 mod package;
 mod road_log;
@@ -101,7 +102,11 @@ fn run(
         .map_err(|error| start(&error))?;
     let dem = Dem::open(
         &settings.dem,
-        &OpenOptions { dem_crs: terrain.dem_crs.clone(), nodata: terrain.nodata },
+        &OpenOptions {
+            dem_crs: terrain.dem_crs.clone(),
+            nodata: terrain.nodata,
+            ..OpenOptions::default()
+        },
     )?;
     let plan = dem.plan(&PlanOptions {
         crs: terrain.crs.clone(),
@@ -144,7 +149,11 @@ fn run(
     let pyramid = heights::read(&dem, &plan, threads, storage, observer)?;
     let meshes = mesh::mesh(&pyramid, &levels, threads, storage, observer)?;
     if meshes.is_empty() {
-        return Err(BuildError::NoHeights);
+        let dem = settings.dem.clone();
+        return Err(match pyramid.samples().with_data {
+            0 => BuildError::NoHeights { dem },
+            nodes => BuildError::NoCell { dem, nodes },
+        });
     }
     let errors = errors::measure(&pyramid, &meshes, &levels, threads, storage, observer)?;
     let tiles = tiles::make(
@@ -159,6 +168,9 @@ fn run(
         roads.as_mut(),
         observer,
     )?;
+    if let Some(roads) = &roads {
+        losses::report(roads, &tiles, levels.frame().lattice_step_m(), observer)?;
+    }
     let manifest = package::manifest(&package::Outcome {
         settings,
         max_error_m,
@@ -167,6 +179,7 @@ fn run(
         coordinates,
         inputs,
         samples: pyramid.samples(),
+        range_m: pyramid.range_m(),
         roads: roads.as_ref(),
         tiles: &tiles,
         errors: &errors,

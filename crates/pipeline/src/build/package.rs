@@ -5,12 +5,12 @@ use std::path::Path;
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{Bounds, CoordinateTable};
 use corniche_tileset::{
-    Counts, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest, RoadLoss, SampleCounts,
-    SettingsRecord, VerticalRecord, Writer,
+    Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest,
+    SampleCounts, SettingsRecord, VerticalRecord, Writer,
 };
 use sha2::{Digest, Sha256};
 
-use super::{errors::TileErrors, levels::Levels, roads::ReadRoads, tiles::Tiles};
+use super::{errors::TileErrors, levels::Levels, losses, roads::ReadRoads, tiles::Tiles};
 use crate::{BuildError, BuildSettings, Observer, Stage, Storage, storage::Kind};
 
 /// Positions interpolated from the manifest are this exact.
@@ -25,6 +25,8 @@ pub(crate) struct Outcome<'a> {
     pub(crate) coordinates: CoordinateTable,
     pub(crate) inputs: Vec<InputRecord>,
     pub(crate) samples: SampleCounts,
+    /// Lowest and highest node.
+    pub(crate) range_m: [f32; 2],
     pub(crate) roads: Option<&'a ReadRoads<'a>>,
     pub(crate) tiles: &'a Tiles,
     pub(crate) errors: &'a TileErrors,
@@ -50,7 +52,7 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
     let Outcome { settings, plan, levels, .. } = outcome;
     let frame = *levels.frame();
     let record = settings_record(outcome);
-    let mut attribution = Vec::new();
+    let mut attribution = settings.attribution.clone();
     if outcome.roads.is_some() {
         attribution.push(corniche_osm::ATTRIBUTION.to_owned());
     }
@@ -71,6 +73,8 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
             quantum_m: levels.quantum_m(),
             unit: "metre".to_owned(),
             datum: plan.vertical_datum.clone().unwrap_or_else(|| "unknown".to_owned()),
+            treatment: "as in the files".to_owned(),
+            range_m: outcome.range_m.map(f64::from),
         },
         coordinates: outcome.coordinates.clone(),
         levels: level_records(outcome),
@@ -91,6 +95,9 @@ fn settings_record(outcome: &Outcome<'_>) -> SettingsRecord {
         fill_voids: terrain.fill_voids,
         nodata: terrain.nodata,
         dem_crs: terrain.dem_crs.clone(),
+        dem_vertical_crs: terrain.dem_vertical_crs.clone(),
+        vertical_crs: terrain.vertical_crs.clone(),
+        vertical_shift_m: terrain.vertical_shift_m,
         crs: terrain.crs.clone(),
         cell_m: terrain.cell_m,
         frc_table: roads.table.name().to_owned(),
@@ -105,12 +112,15 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
     levels
         .numbers()
         .map(|level| {
-            let sums = outcome.tiles.levels.get(&level).copied().unwrap_or_default();
+            let sums = outcome.tiles.levels.get(&level).cloned().unwrap_or_default();
+            let errors_m = Distribution::of(sums.errors_m);
             LevelRecord {
                 level,
                 cell_m: levels.frame().level_cell_m(level),
                 max_error_m: levels.max_error_m(level),
-                geometric_error_m: sums.geometric_error_m,
+                geometric_error_m: errors_m.map_or(0.0, |errors_m| errors_m.max),
+                errors_m,
+                tightness: Distribution::of(sums.tightness),
                 least_class: levels
                     .least_class(level)
                     .map(corniche_roads::FunctionalRoadClass::number),
@@ -131,9 +141,8 @@ fn counts(outcome: &Outcome<'_>) -> Counts {
     let samples = outcome.samples;
     let Some(roads) = outcome.roads else { return Counts { samples, ..Counts::default() } };
     let step_m = outcome.levels.frame().lattice_step_m();
-    // A cut moves a point by less than a lattice step; what differs by no more than that was not lost.
-    let rounding_steps = |length_steps: f64| 2.0 + length_steps * 1e-9;
-    let mut counts = Counts {
+    let losses = losses::sums(roads, outcome.tiles, step_m);
+    Counts {
         samples,
         roads_in: roads.lengths_steps.len() as u64,
         roads_in_m: roads.lengths_steps.iter().sum::<f64>() * step_m,
@@ -147,30 +156,10 @@ fn counts(outcome: &Outcome<'_>) -> Counts {
             .collect(),
         highways_in: roads.extract.highway_ways,
         highways_left_out: left_out(&roads.extract),
-        ..Counts::default()
-    };
-    let mut outside =
-        RoadLoss { reason: "outside the elevation data".to_owned(), roads: 0, length_m: 0.0 };
-    let mut void = RoadLoss {
-        reason: "where the data have no ground (void or edge)".to_owned(),
-        roads: 0,
-        length_m: 0.0,
-    };
-    let lengths = roads.lengths_steps.iter().zip(&roads.outside_steps);
-    for ((&length_steps, &outside_steps), fate) in lengths.zip(&outcome.tiles.roads) {
-        counts.roads_kept_m += fate.kept_steps * step_m;
-        void.length_m += fate.void_steps * step_m;
-        outside.length_m += outside_steps * step_m;
-        if fate.kept_steps > rounding_steps(length_steps) {
-            counts.roads_kept += 1;
-        } else if fate.void_steps >= outside_steps {
-            void.roads += 1;
-        } else {
-            outside.roads += 1;
-        }
+        roads_kept: losses.roads_kept,
+        roads_kept_m: losses.roads_kept_m,
+        roads_lost: losses.lost,
     }
-    counts.roads_lost = vec![outside, void];
-    counts
 }
 
 /// Ways with a `highway` tag that are no roads here, by reason.

@@ -98,7 +98,11 @@ pub(crate) fn read<'a>(
             gathered.add(&road);
             observer.advance(Stage::Roads, 1);
         },
-        &mut |defect| *defects.borrow_mut().entry(Defect::from(&defect).name()).or_default() += 1,
+        &mut |defect| {
+            let defect = Defect::from(defect);
+            *defects.borrow_mut().entry(defect.name()).or_default() += 1;
+            observer.defect(&defect);
+        },
         &|| observer.is_cancelled(),
     );
     if observer.is_cancelled() {

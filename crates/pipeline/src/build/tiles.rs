@@ -6,7 +6,8 @@ use corniche_drape::OwnedBorders;
 use corniche_geom::TileId;
 use corniche_roads::{FunctionalRoadClass, Road};
 use corniche_tileset::{
-    EncodedTile, GeoRoad, PayloadContext, RoadRecord, SvRoad, Terrain, TilePayload, pmtiles_order,
+    EncodedTile, GeoRoad, PayloadContext, RoadRecord, SvRoad, Terrain, TilePayload, VerticalRecord,
+    pmtiles_order,
 };
 use corniche_tin::{Placement, Surface};
 
@@ -33,13 +34,16 @@ pub(crate) struct Tiles {
 }
 
 /// Sums over the tiles of a level.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct LevelSums {
     pub(crate) tiles: u64,
     pub(crate) vertices: u64,
     pub(crate) triangles: u64,
     pub(crate) terrain_bytes: u64,
-    pub(crate) geometric_error_m: f64,
+    /// Stored errors of its tiles.
+    pub(crate) errors_m: Vec<f64>,
+    /// Stored over true errors of its tiles, where those can be measured.
+    pub(crate) tightness: Vec<f64>,
     pub(crate) uncovered_nodes: u64,
 }
 
@@ -154,7 +158,11 @@ impl Tiles {
             level.vertices += kept.vertices;
             level.triangles += kept.triangles;
             level.terrain_bytes += kept.terrain_bytes;
-            level.geometric_error_m = level.geometric_error_m.max(errors.geometric_error_m);
+            level.errors_m.push(errors.geometric_error_m);
+            let least_m = VerticalRecord::least_measured_error_m(input.levels.quantum_m());
+            if errors.true_error_m >= least_m {
+                level.tightness.push(errors.geometric_error_m / errors.true_error_m);
+            }
             level.uncovered_nodes += errors.uncovered_nodes;
             for (&class, counted) in &kept.classes {
                 let sums = self.classes.entry((id.z(), class)).or_default();

@@ -4,7 +4,9 @@ use std::{collections::BTreeMap, rc::Rc};
 
 use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions, Reader};
 use corniche_geom::{HeightGrid, NodeIndex, NodeWindow, TileId};
-use corniche_tileset::{FilePackage, InputRecord, Manifest, Sections};
+use corniche_tileset::{
+    Distribution, FilePackage, InputRecord, Manifest, Sections, VerticalRecord,
+};
 
 use super::{
     Check, ErrorFigures, SampleFigures, VerifyError, VerifyReport, VerifySettings, ground::Ground,
@@ -13,6 +15,8 @@ use crate::{BuildError, Observer, Stage, build::input_record, workers};
 
 /// Slack for comparing two ways of computing the same height, metres.
 const ROUNDING_M: f64 = 1e-6;
+/// The same for ratios of them.
+const RATIO_ROUNDING: f64 = 1e-3;
 /// P2's tightness: stored ≤ this × true + a quantum, for this share of tiles.
 const TIGHTNESS: f64 = 2.0;
 const TIGHT_SHARE: f64 = 0.95;
@@ -116,7 +120,11 @@ fn open(
     let record = &manifest.settings;
     let dem = Dem::open(
         &settings.dem,
-        &OpenOptions { dem_crs: record.dem_crs.clone(), nodata: record.nodata },
+        &OpenOptions {
+            dem_crs: record.dem_crs.clone(),
+            nodata: record.nodata,
+            ..OpenOptions::default()
+        },
     )?;
     let mut hashes = Vec::new();
     for path in &settings.dem {
@@ -254,34 +262,49 @@ fn judge(
             .children()
             .filter_map(|child| truths.get(&child))
             .fold(0.0_f64, |largest, child| largest.max(child.largest_m));
-        loose += u64::from(stored_m > TIGHTNESS * truth.largest_m.max(children_m) + quantum_m);
-        if truth.largest_m >= quantum_m {
-            ratios.entry(id.z()).or_default().push(stored_m / truth.largest_m);
+        let true_m = truth.largest_m.max(children_m);
+        loose += u64::from(stored_m > TIGHTNESS * true_m + quantum_m);
+        if true_m >= VerticalRecord::least_measured_error_m(quantum_m) {
+            ratios.entry(id.z()).or_default().push(stored_m / true_m);
         }
     }
     let count = stored.len() as u64;
     tight.look(loose as f64 <= (1.0 - TIGHT_SHARE) * count as f64, || {
         format!("{loose} of {count} tiles are loose")
     });
-    report.checks.extend([bound, tight, finest, stray, counted, ranges]);
+    let mut recorded = Check::new("P2: the recorded distributions of stored over true errors hold");
     for (level, truth) in levels {
-        let mut ratios = ratios.remove(&level).unwrap_or_default();
-        ratios.sort_by(f64::total_cmp);
-        let quantile = |share: f64| {
-            ratios.get(((ratios.len().max(1) - 1) as f64 * share).round() as usize).copied()
-        };
+        let tightness = Distribution::of(ratios.remove(&level).unwrap_or_default());
+        let said = manifest.levels.get(usize::from(level)).and_then(|record| record.tightness);
+        recorded.look(agree(said, tightness), || {
+            format!("level {level} records {said:?}, found {tightness:?}")
+        });
         report.errors.push(ErrorFigures {
             level,
             tiles: tiles.get(&level).copied().unwrap_or_default(),
             nodes: truth.nodes,
             largest_true_m: truth.largest_m,
-            smallest_ratio: quantile(0.0),
-            median_ratio: quantile(0.5),
-            p95_ratio: quantile(0.95),
+            tightness,
             uncovered_nodes: truth.uncovered,
         });
     }
+    report.checks.extend([bound, tight, recorded, finest, stray, counted, ranges]);
     Ok(())
+}
+
+/// Whether two distributions of ratios are the same but for rounding: their errors were computed in two ways.
+fn agree(said: Option<Distribution>, found: Option<Distribution>) -> bool {
+    let near = |a: f64, b: f64| (a - b).abs() <= RATIO_ROUNDING * a.max(b);
+    match (said, found) {
+        (Some(said), Some(found)) => {
+            near(said.min, found.min)
+                && near(said.median, found.median)
+                && near(said.p95, found.p95)
+                && near(said.max, found.max)
+        }
+        (None, None) => true,
+        (Some(_), None) | (None, Some(_)) => false,
+    }
 }
 
 /// Differences at the DEM's own samples.

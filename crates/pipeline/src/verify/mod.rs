@@ -9,7 +9,7 @@ mod tiles;
 
 use std::path::PathBuf;
 
-use corniche_tileset::{FilePackage, OpenError};
+use corniche_tileset::{Distribution, FilePackage, OpenError};
 
 use crate::Observer;
 
@@ -91,12 +91,8 @@ pub struct ErrorFigures {
     pub nodes: u64,
     /// Largest true error.
     pub largest_true_m: f64,
-    /// Smallest stored/true over the tiles with a true error of at least a height quantum.
-    pub smallest_ratio: Option<f64>,
-    /// Median of the same.
-    pub median_ratio: Option<f64>,
-    /// 95th percentile of the same.
-    pub p95_ratio: Option<f64>,
+    /// Stored error over the largest true one of the tile and its children, over the tiles where that can be measured.
+    pub tightness: Option<Distribution>,
     /// Nodes with data that the TINs do not cover.
     pub uncovered_nodes: u64,
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
-use corniche_tileset::{FilePackage, Sections};
+use corniche_tileset::{Distribution, FilePackage, Sections};
 
 use super::{
     Check, GapFigures, VerifyError, VerifyReport,
@@ -98,11 +98,14 @@ pub(crate) fn verify(
         let tiles = || kept.iter().filter(|(id, _)| id.z() == level.level).map(|(_, tile)| tile);
         let triangles: u64 = tiles().map(|tile| tile.triangles).sum();
         let vertices: u64 = tiles().map(|tile| tile.vertices).sum();
-        let error_m = tiles().map(|tile| tile.geometric_error_m).fold(0.0, f64::max);
-        let said = (level.triangles, level.vertices, level.geometric_error_m.to_bits());
-        count.look((triangles, vertices, error_m.to_bits()) == said, || {
+        let errors_m = Distribution::of(tiles().map(|tile| tile.geometric_error_m).collect());
+        let largest_m = errors_m.map_or(0.0, |errors_m| errors_m.max);
+        let said = (level.triangles, level.vertices, level.errors_m);
+        let agrees = (triangles, vertices, errors_m) == said
+            && largest_m.to_bits() == level.geometric_error_m.to_bits();
+        count.look(agrees, || {
             format!(
-                "level {} has {triangles} triangles, {vertices} vertices, error {error_m} m",
+                "level {} has {triangles} triangles, {vertices} vertices, error {largest_m} m",
                 level.level
             )
         });

@@ -4,12 +4,7 @@ use std::io::Read;
 
 use flate2::read::GzDecoder;
 
-/// Directories and metadata are no larger than this, decompressed.
-const MAX_BYTES: usize = 64 << 20;
-/// A directory has no more entries than this; writers make leaves of some thousands.
-const MAX_ENTRIES: usize = 1 << 17;
-/// A directory in the file as stored is no larger than this.
-pub(super) const MAX_STORED_BYTES: u32 = 64 << 20;
+use crate::limits::{MAX_DIRECTORY_BYTES, MAX_DIRECTORY_ENTRIES, MIN_PAYLOAD_BYTES};
 
 /// One tile, `first`, with a `run` of 1; or, with a `run` of 0, a leaf directory of the tiles from `first` on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,12 +27,14 @@ impl Directory {
     ///
     /// Source: PMTiles version 3 specification, section 4.2: four columns of varints, tile ids as differences,
     /// offset 0 for "right after the entry before".
+    ///
+    /// Memory: the decompressed bytes and 24 bytes an entry.
     pub(super) fn parse(stored: &[u8]) -> Option<Self> {
-        let bytes = gunzip(stored)?;
+        let bytes = gunzip(stored, MAX_DIRECTORY_BYTES)?;
         let mut bytes = bytes.as_slice();
         let count = usize::try_from(varint(&mut bytes)?).ok()?;
         // Every entry has four varints of at least a byte.
-        if count > MAX_ENTRIES.min(bytes.len() / 4) {
+        if count > MAX_DIRECTORY_ENTRIES.min(bytes.len() / 4) {
             return None;
         }
         let mut entries = vec![Entry { first: 0, run: 0, offset: 0, length: 0 }; count];
@@ -56,15 +53,26 @@ impl Directory {
             entry.run = u32::try_from(varint(&mut bytes)?).ok().filter(|&run| run <= 1)?;
         }
         for entry in &mut entries {
-            entry.length = u32::try_from(varint(&mut bytes)?).ok().filter(|&length| length > 0)?;
+            let shortest = if entry.run == 0 { 1 } else { MIN_PAYLOAD_BYTES };
+            entry.length =
+                u32::try_from(varint(&mut bytes)?).ok().filter(|&length| length >= shortest)?;
         }
         let mut after = None;
+        // Where the last leaf and the last tile end.
+        let mut ends = [0_u64; 2];
         for entry in &mut entries {
             entry.offset = match varint(&mut bytes)? {
                 0 => after?,
                 offset => offset - 1,
             };
-            after = Some(entry.offset.checked_add(u64::from(entry.length))?);
+            // In a clustered file what comes later lies later. So tiles do not share bytes, and a file has no more
+            // of them than it has bytes for.
+            let end = &mut ends[entry.run as usize];
+            if entry.offset < *end {
+                return None;
+            }
+            *end = entry.offset.checked_add(u64::from(entry.length))?;
+            after = Some(*end);
         }
         bytes.is_empty().then_some(Self { entries })
     }
@@ -77,11 +85,11 @@ impl Directory {
     }
 }
 
-/// Decompresses gzip, up to the limit; `None` when it is damaged, unfinished or larger.
-pub(super) fn gunzip(stored: &[u8]) -> Option<Vec<u8>> {
+/// Decompresses gzip of at most `limit` bytes; `None` when it is damaged, unfinished or larger.
+pub(super) fn gunzip(stored: &[u8], limit: usize) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
-    GzDecoder::new(stored).take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes).ok()?;
-    (bytes.len() <= MAX_BYTES).then_some(bytes)
+    GzDecoder::new(stored).take(limit as u64 + 1).read_to_end(&mut bytes).ok()?;
+    (bytes.len() <= limit).then_some(bytes)
 }
 
 fn varint(bytes: &mut &[u8]) -> Option<u64> {

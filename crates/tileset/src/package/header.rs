@@ -1,13 +1,12 @@
 //! The fixed header of a PMTiles file.
 
 use super::OpenError;
+use crate::limits::{MAX_DIRECTORY_BYTES, MAX_METADATA_BYTES};
 
 /// Bytes of the header.
 pub(super) const HEADER_BYTES: usize = 127;
 /// Header and root directory lie within the first bytes of the file.
 pub(super) const INITIAL_BYTES: usize = 16_384;
-/// Largest metadata or directory as stored.
-const MAX_STORED_BYTES: u64 = 64 << 20;
 
 /// Bytes of the file, from and how many.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,6 +29,8 @@ pub(super) struct Header {
     pub(super) metadata: Span,
     pub(super) leaves: Span,
     pub(super) data: Span,
+    /// How many tiles there are; 0 where the writer did not know.
+    pub(super) tiles: u64,
 }
 
 impl Header {
@@ -50,22 +51,40 @@ impl Header {
             u64::from_le_bytes(eight)
         };
         let span = |at: usize| Span { offset: number(at), length: number(at + 8) };
-        let header = Self { root: span(8), metadata: span(24), leaves: span(40), data: span(56) };
+        let header = Self {
+            root: span(8),
+            metadata: span(24),
+            leaves: span(40),
+            data: span(56),
+            tiles: number(72),
+        };
         let [internal, tiles, kind] = [bytes[97], bytes[98], bytes[99]];
         // 2 is gzip, 1 none; kind 0 is "other".
         if (internal, tiles, kind) != (2, 1, 0) {
             return Err(OpenError::OrdinaryPmtiles);
         }
-        for Span { offset, length } in [header.root, header.metadata, header.leaves, header.data] {
+        let mut spans = [header.root, header.metadata, header.leaves, header.data];
+        for Span { offset, length } in spans {
             let end =
                 offset.checked_add(length).ok_or(OpenError::Damaged { what: "the header" })?;
             if end > file_length {
                 return Err(OpenError::Truncated { needed: end, actual: file_length });
             }
         }
-        if header.root.length > MAX_STORED_BYTES || header.metadata.length > MAX_STORED_BYTES {
+        // No byte is two things: a root directory that points at a leaf would hide all other tiles.
+        spans.sort_by_key(|span| span.offset);
+        let mut end = HEADER_BYTES as u64;
+        for Span { offset, length } in spans.into_iter().filter(|span| span.length > 0) {
+            if offset < end {
+                return Err(OpenError::Damaged { what: "the header: parts of the file overlap" });
+            }
+            end = offset + length;
+        }
+        if header.root.length > MAX_DIRECTORY_BYTES as u64
+            || header.metadata.length > MAX_METADATA_BYTES as u64
+        {
             return Err(OpenError::Damaged {
-                what: "the header: directory or metadata of more than 64 MiB",
+                what: "the header: root directory or metadata larger than readers accept",
             });
         }
         Ok(header)

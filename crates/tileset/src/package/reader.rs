@@ -4,6 +4,7 @@ use std::{
 };
 
 use corniche_geom::TileId;
+use serde::{Deserialize, de::IgnoredAny};
 
 use super::{
     FORMAT_VERSION, Metadata, SourceError,
@@ -13,16 +14,13 @@ use super::{
     source::ByteSource,
     tile_at,
 };
-use crate::{DecodeError, MAX_SECTION_BYTES, Manifest, Sections, TilePayload, decode};
-
-/// A payload has no more bytes than this: a few full sections.
-const MAX_PAYLOAD_BYTES: u32 = 4 * MAX_SECTION_BYTES as u32;
-/// A package lists no more tiles than this.
-const MAX_TILES: usize = 1 << 26;
-/// Directories may be nested this deep.
-const MAX_DEPTH: usize = 4;
-/// So many leaf directories are kept.
-const KEPT_LEAVES: usize = 64;
+use crate::{
+    DecodeError, Manifest, Sections, TilePayload, decode,
+    limits::{
+        MAX_DIRECTORY_BYTES, MAX_DIRECTORY_DEPTH, MAX_KEPT_ENTRIES, MAX_METADATA_BYTES,
+        MAX_PAYLOAD_BYTES, MAX_TILES,
+    },
+};
 
 /// Why a package could not be opened or listed.
 #[derive(Debug, thiserror::Error)]
@@ -110,6 +108,13 @@ pub enum ReadError {
     Decode(#[from] DecodeError),
 }
 
+/// Leaf directories read before, by offset, and how many entries they have.
+#[derive(Debug, Default)]
+struct Leaves {
+    by_offset: BTreeMap<u64, Arc<Directory>>,
+    entries: usize,
+}
+
 /// A package open for reading.
 ///
 /// Reads are range requests: header, root directory and manifest when it is opened, then a leaf directory now and
@@ -120,7 +125,7 @@ pub struct Package<S> {
     header: Header,
     manifest: Manifest,
     root: Directory,
-    leaves: Mutex<BTreeMap<u64, Arc<Directory>>>,
+    leaves: Mutex<Leaves>,
 }
 
 impl<S: ByteSource> Package<S> {
@@ -132,6 +137,11 @@ impl<S: ByteSource> Package<S> {
         let length = source.length().await?;
         let initial = source.read(0, length.min(INITIAL_BYTES as u64) as usize).await?;
         let header = Header::parse(&initial, length)?;
+        // Before the directory: what is another's PMTiles file is told so, whatever else is wrong with it.
+        let metadata =
+            directory::gunzip(&read_span(&source, header.metadata).await?, MAX_METADATA_BYTES)
+                .ok_or(OpenError::Damaged { what: "the metadata" })?;
+        let manifest = parse_manifest(&metadata)?;
         let root_in_initial = usize::try_from(header.root.offset)
             .ok()
             .filter(|&from| from >= HEADER_BYTES)
@@ -141,9 +151,6 @@ impl<S: ByteSource> Package<S> {
             None => Directory::parse(&read_span(&source, header.root).await?),
         };
         let root = root.ok_or(OpenError::Damaged { what: "the root directory" })?;
-        let metadata = directory::gunzip(&read_span(&source, header.metadata).await?)
-            .ok_or(OpenError::Damaged { what: "the metadata" })?;
-        let manifest = parse_manifest(&metadata)?;
         Ok(Self { source, header, manifest, root, leaves: Mutex::default() })
     }
 
@@ -156,13 +163,14 @@ impl<S: ByteSource> Package<S> {
     /// All tiles, in the order in which they are stored: by level, then along a Hilbert curve.
     ///
     /// # Errors
-    /// When a leaf directory cannot be read or is damaged.
+    /// When a leaf directory cannot be read or is damaged, or there are fewer or more tiles than the header says.
     pub async fn tile_ids(&self) -> Result<Vec<TileId>, OpenError> {
         const DAMAGED: OpenError = OpenError::Damaged { what: "a directory" };
         let mut ids = Vec::new();
         // Directories still to be listed, the next one last.
         let mut open: Vec<(Arc<Directory>, usize)> = vec![(Arc::new(self.root.clone()), 0)];
         let mut last: Option<TileId> = None;
+        let mut data_end = 0;
         while let Some((directory, at)) = open.pop() {
             let Some(&entry) = directory.entries.get(at) else { continue };
             open.push((directory, at + 1));
@@ -173,7 +181,7 @@ impl<S: ByteSource> Package<S> {
             }
             if entry.run == 0 {
                 let leaf = self.leaf(entry).await?;
-                if open.len() >= MAX_DEPTH || leaf.entries.is_empty() {
+                if open.len() >= MAX_DIRECTORY_DEPTH {
                     return Err(DAMAGED);
                 }
                 open.push((leaf, 0));
@@ -182,8 +190,21 @@ impl<S: ByteSource> Package<S> {
             let id = tile_at(entry.first)
                 .filter(|id| id.z() <= self.manifest.frame.max_level())
                 .ok_or(DAMAGED)?;
+            // As within a directory: tiles share no bytes, so that a small file cannot list many.
+            if entry.offset < data_end {
+                return Err(DAMAGED);
+            }
+            data_end = entry.offset + u64::from(entry.length);
+            if data_end > self.header.data.length {
+                return Err(DAMAGED);
+            }
             ids.push(id);
             last = Some(id);
+        }
+        if self.header.tiles != 0 && self.header.tiles != ids.len() as u64 {
+            return Err(OpenError::Damaged {
+                what: "the directories list fewer or more tiles than the header says",
+            });
         }
         Ok(ids)
     }
@@ -196,7 +217,7 @@ impl<S: ByteSource> Package<S> {
         let damaged = |what| ReadError::Directory { tile: id, source: OpenError::Damaged { what } };
         let order = pmtiles_order(id);
         let mut found = self.root.find(order);
-        for _ in 0..MAX_DEPTH {
+        for _ in 0..MAX_DIRECTORY_DEPTH {
             let Some(entry) = found else { return Ok(None) };
             if entry.run > 0 {
                 let Span { offset, length } = self.header.data;
@@ -232,28 +253,38 @@ impl<S: ByteSource> Package<S> {
 
     /// A leaf directory, read once and kept for a while.
     async fn leaf(&self, entry: Entry) -> Result<Arc<Directory>, OpenError> {
+        const DAMAGED: OpenError = OpenError::Damaged { what: "a leaf directory" };
+        // Else listing and searching would disagree about what is in it.
+        let begins =
+            |leaf: &Directory| leaf.entries.first().is_some_and(|first| first.first == entry.first);
         // A poisoned lock only means that another thread panicked between two whole directories.
-        let kept =
-            self.leaves.lock().unwrap_or_else(PoisonError::into_inner).get(&entry.offset).cloned();
+        let kept = self
+            .leaves
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .by_offset
+            .get(&entry.offset)
+            .cloned();
         if let Some(leaf) = kept {
-            return Ok(leaf);
+            return if begins(&leaf) { Ok(leaf) } else { Err(DAMAGED) };
         }
         let Span { offset, length } = self.header.leaves;
         let end = entry.offset.checked_add(u64::from(entry.length));
-        if end.is_none_or(|end| end > length) || entry.length > directory::MAX_STORED_BYTES {
+        if end.is_none_or(|end| end > length) || entry.length > MAX_DIRECTORY_BYTES as u32 {
             return Err(OpenError::Damaged {
                 what: "a directory points outside the leaf directories",
             });
         }
         let bytes = self.source.read(offset + entry.offset, entry.length as usize).await?;
-        let leaf =
-            Directory::parse(&bytes).ok_or(OpenError::Damaged { what: "a leaf directory" })?;
+        let leaf = Directory::parse(&bytes).filter(begins).ok_or(DAMAGED)?;
         let leaf = Arc::new(leaf);
         let mut leaves = self.leaves.lock().unwrap_or_else(PoisonError::into_inner);
-        if leaves.len() >= KEPT_LEAVES {
-            leaves.clear();
+        if leaves.entries + leaf.entries.len() > MAX_KEPT_ENTRIES {
+            *leaves = Leaves::default();
         }
-        leaves.insert(entry.offset, Arc::clone(&leaf));
+        if leaves.by_offset.insert(entry.offset, Arc::clone(&leaf)).is_none() {
+            leaves.entries += leaf.entries.len();
+        }
         Ok(leaf)
     }
 }
@@ -265,18 +296,29 @@ async fn read_span(source: &impl ByteSource, span: Span) -> Result<Vec<u8>, Sour
 
 fn parse_manifest(metadata: &[u8]) -> Result<Manifest, OpenError> {
     let failed = |error: serde_json::Error| OpenError::Manifest { reason: error.to_string() };
-    let metadata: Metadata<Option<serde_json::Value>> =
-        serde_json::from_slice(metadata).map_err(|error| {
-            // Any object will do for an ordinary file; ours are told apart by their key.
-            if error.is_data() { OpenError::OrdinaryPmtiles } else { failed(error) }
-        })?;
-    let manifest = metadata.corniche.ok_or(OpenError::OrdinaryPmtiles)?;
-    match manifest.get("format_version").and_then(serde_json::Value::as_u64) {
-        Some(version) if version == u64::from(FORMAT_VERSION) => {}
-        Some(found) => return Err(OpenError::Version { found }),
-        None => {
-            return Err(OpenError::Manifest { reason: "it names no format_version".to_owned() });
-        }
+    // Read three times into ever more, never into a tree of values: that can take a hundred times its text.
+    let outline: Metadata<Option<IgnoredAny>> = parse(metadata).map_err(|error| {
+        // Any object will do for an ordinary file; ours are told apart by their key.
+        if error.is_data() { OpenError::OrdinaryPmtiles } else { failed(error) }
+    })?;
+    if outline.corniche.is_none() {
+        return Err(OpenError::OrdinaryPmtiles);
     }
-    serde_json::from_value(manifest).map_err(failed)
+    let version: Metadata<Version> = parse(metadata).map_err(failed)?;
+    if version.corniche.format_version != u64::from(FORMAT_VERSION) {
+        return Err(OpenError::Version { found: version.corniche.format_version });
+    }
+    let metadata: Metadata<Manifest> = parse(metadata).map_err(failed)?;
+    metadata.corniche.check().map_err(|reason| OpenError::Manifest { reason })?;
+    Ok(metadata.corniche)
+}
+
+fn parse<'a, T: Deserialize<'a>>(metadata: &'a [u8]) -> Result<Metadata<T>, serde_json::Error> {
+    serde_json::from_slice(metadata)
+}
+
+/// What is looked at before the rest of the manifest, which may be another version's.
+#[derive(Deserialize)]
+struct Version {
+    format_version: u64,
 }

@@ -22,8 +22,8 @@ pub trait ByteSource {
     /// How many bytes there are.
     fn length(&self) -> impl Future<Output = Result<u64, SourceError>>;
 
-    /// Exactly `length` bytes from `offset` on; fewer are an error. The reader asks for no more than 64 MiB at
-    /// once plus what a section may hold, and never past [`ByteSource::length`].
+    /// Exactly `length` bytes from `offset` on; fewer are an error. The reader asks for no more than
+    /// [`MAX_PAYLOAD_BYTES`](crate::limits::MAX_PAYLOAD_BYTES) at once, and never past [`ByteSource::length`].
     fn read(
         &self,
         offset: u64,
@@ -70,7 +70,7 @@ pub use file::FileSource;
 #[cfg(not(target_arch = "wasm32"))]
 mod file {
     use std::{
-        fs::File,
+        fs::{self, File},
         io,
         path::{Path, PathBuf},
     };
@@ -91,10 +91,15 @@ mod file {
         /// When it cannot be opened.
         pub fn open(path: &Path) -> Result<Self, SourceError> {
             let failed = |error: io::Error| failure(path, 0, 0, &error);
-            let file = File::open(path).map_err(failed)?;
-            if file.metadata().map_err(failed)?.is_dir() {
+            // Before opening: that would wait for ever at the end of a pipe.
+            let metadata = fs::metadata(path).map_err(failed)?;
+            if metadata.is_dir() {
                 return Err(failed(io::ErrorKind::IsADirectory.into()));
             }
+            if !metadata.is_file() {
+                return Err(failed(io::Error::other("this is no ordinary file; copy it to one")));
+            }
+            let file = File::open(path).map_err(failed)?;
             Ok(Self { file, path: path.to_path_buf() })
         }
     }

@@ -8,7 +8,7 @@ use super::{
     directory::Directory, pmtiles_order,
 };
 use crate::{
-    Counts, Manifest, PayloadContext, Sections, SettingsRecord, Terrain, TilePayload,
+    Counts, LevelRecord, Manifest, PayloadContext, Sections, SettingsRecord, Terrain, TilePayload,
     VerticalRecord, encode,
 };
 
@@ -47,14 +47,19 @@ fn manifest(max_level: u8) -> Manifest {
             quantum_m: 0.125,
             unit: "metre".to_owned(),
             datum: "unknown".to_owned(),
+            treatment: "as in the files".to_owned(),
+            range_m: [0.0, 8.0],
         },
         coordinates: CoordinateTable::sample(&Flat, data_bounds, 1.0).unwrap(),
-        levels: vec![],
+        levels: (0..=max_level).map(level).collect(),
         settings: SettingsRecord {
             max_error_m: 0.1 + 0.2,
             fill_voids: 32,
             nodata: None,
             dem_crs: None,
+            dem_vertical_crs: None,
+            vertical_crs: None,
+            vertical_shift_m: 0.0,
             crs: None,
             cell_m: Some(1.0 / 3.0),
             frc_table: "default".to_owned(),
@@ -67,6 +72,25 @@ fn manifest(max_level: u8) -> Manifest {
         attribution: vec!["© OpenStreetMap contributors".to_owned(), "SRTM".to_owned()],
         counts: Counts::default(),
         growth: vec![],
+    }
+}
+
+fn level(level: u8) -> LevelRecord {
+    LevelRecord {
+        level,
+        cell_m: 1.0,
+        max_error_m: 0.3,
+        geometric_error_m: 0.0,
+        errors_m: None,
+        tightness: None,
+        least_class: None,
+        simplify_tolerance_m: 0.0,
+        width_margin_m: 40.0,
+        tiles: 1,
+        triangles: 1,
+        vertices: 3,
+        terrain_bytes: 300,
+        uncovered_nodes: 0,
     }
 }
 
@@ -171,7 +195,7 @@ fn many_tiles_need_leaf_directories_and_are_all_found() {
     ids.sort_by_key(|&id| pmtiles_order(id));
     for id in &ids {
         // Lengths differ, so that the directory does not compress to nothing.
-        let length = 1 + (id.x() * 7919 + id.y() * 104_729) % 37;
+        let length = 4 + (id.x() * 7919 + id.y() * 104_729) % 37;
         writer.add(*id, &id.to_string().repeat(length as usize).into_bytes()).unwrap();
     }
     writer.finish().unwrap();
@@ -200,11 +224,12 @@ fn order_is_level_then_hilbert_curve() {
 fn tiles_out_of_order_or_beyond_the_levels_are_refused() {
     let mut bytes = Cursor::new(Vec::new());
     let mut writer = Writer::new(&mut bytes, &manifest(2)).unwrap();
-    writer.add(tile("1/1/1"), b"x").unwrap();
-    assert!(matches!(writer.add(tile("1/0/0"), b"x"), Err(WriteError::Order { .. })));
-    assert!(matches!(writer.add(tile("1/1/1"), b"x"), Err(WriteError::Order { .. })));
-    assert!(matches!(writer.add(tile("3/0/0"), b"x"), Err(WriteError::Tile { .. })));
-    assert!(matches!(writer.add(tile("2/3/3"), b""), Err(WriteError::Tile { .. })));
+    let payload = [7; 20];
+    writer.add(tile("1/1/1"), &payload).unwrap();
+    assert!(matches!(writer.add(tile("1/0/0"), &payload), Err(WriteError::Order { .. })));
+    assert!(matches!(writer.add(tile("1/1/1"), &payload), Err(WriteError::Order { .. })));
+    assert!(matches!(writer.add(tile("3/0/0"), &payload), Err(WriteError::Tile { .. })));
+    assert!(matches!(writer.add(tile("2/3/3"), &payload[..19]), Err(WriteError::Tile { .. })));
     let mut bad = manifest(2);
     bad.point_scale = f64::NAN;
     assert!(matches!(Writer::new(Cursor::new(Vec::new()), &bad), Err(WriteError::Manifest { .. })));
@@ -285,16 +310,21 @@ fn hostile_directories_are_refused() {
         encoder.finish().unwrap()
     };
     assert!(Directory::parse(&gzip(&[0])).is_some_and(|directory| directory.entries.is_empty()));
-    assert!(Directory::parse(&gzip(&[1, 5, 1, 9, 1])).is_some());
+    assert!(Directory::parse(&gzip(&[1, 5, 1, 29, 1])).is_some());
+    assert!(Directory::parse(&gzip(&[2, 5, 1, 1, 1, 29, 29, 1, 30])).is_some());
     for bytes in [
         &[][..],
         // A count of 2^63 entries, with one entry.
         &[0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x7f, 0, 1, 1, 1],
-        // A length of 0; the first offset "after the one before"; a byte too many; the same tile twice.
-        &[1, 5, 1, 0, 1],
-        &[1, 5, 1, 9, 0],
-        &[1, 5, 1, 9, 1, 0],
-        &[2, 5, 0, 1, 1, 9, 9, 1, 0],
+        // A length below a payload's; the first offset "after the one before"; a byte too many; the same tile
+        // twice; a run of two tiles; two tiles that share a byte; an empty leaf.
+        &[1, 5, 1, 19, 1],
+        &[1, 5, 1, 29, 0],
+        &[1, 5, 1, 29, 1, 0],
+        &[2, 5, 0, 1, 1, 29, 29, 1, 0],
+        &[1, 5, 2, 29, 1],
+        &[2, 5, 1, 1, 1, 29, 29, 1, 29],
+        &[1, 5, 0, 0, 1],
     ] {
         assert_eq!(Directory::parse(&gzip(bytes)), None, "{bytes:?}");
     }

@@ -9,7 +9,10 @@ use corniche_geom::TileId;
 use pmtiles::{Compression, PmTilesStreamWriter, PmTilesWriter, PmtError, TileCoord, TileType};
 
 use super::{FORMAT_VERSION, Metadata, pmtiles_order};
-use crate::Manifest;
+use crate::{
+    Manifest,
+    limits::{MAX_METADATA_BYTES, MAX_PAYLOAD_BYTES, MIN_PAYLOAD_BYTES},
+};
 
 /// Why a package could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -37,13 +40,15 @@ pub enum WriteError {
         /// The tile added before.
         previous: TileId,
     },
-    /// A tile lies beyond the finest level, or has no bytes.
+    /// A tile lies beyond the finest level, or its bytes are too few or too many for a payload.
     #[error(
-        "tile {tile} is no tile of this package: it has no bytes or lies beyond level {max_level}"
+        "tile {tile} is no tile of this package: {bytes} bytes are no payload, or it lies beyond level {max_level}"
     )]
     Tile {
         /// The tile added.
         tile: TileId,
+        /// How many bytes it has.
+        bytes: usize,
         /// The package's finest level.
         max_level: u8,
     },
@@ -113,8 +118,10 @@ impl<W: Write + Seek> Writer<W> {
         {
             return Err(WriteError::Order { tile: id, previous });
         }
-        if payload.is_empty() || id.z() > self.max_level {
-            return Err(WriteError::Tile { tile: id, max_level: self.max_level });
+        let lengths = MIN_PAYLOAD_BYTES as usize..=MAX_PAYLOAD_BYTES as usize;
+        if !lengths.contains(&payload.len()) || id.z() > self.max_level {
+            let (bytes, max_level) = (payload.len(), self.max_level);
+            return Err(WriteError::Tile { tile: id, bytes, max_level });
         }
         self.tiles.add_tile(TileCoord::new(id.z(), id.x(), id.y())?, payload)?;
         self.previous = Some(id);
@@ -141,6 +148,7 @@ fn to_json(manifest: &Manifest) -> Result<String, WriteError> {
             format!("its format version is {}, not {FORMAT_VERSION}", manifest.format_version);
         return Err(WriteError::Manifest { reason });
     }
+    manifest.check().map_err(|reason| WriteError::Manifest { reason })?;
     let failed = |error: serde_json::Error| WriteError::Manifest { reason: error.to_string() };
     let metadata = Metadata {
         name: "Corniche package".to_owned(),
@@ -157,6 +165,10 @@ fn to_json(manifest: &Manifest) -> Result<String, WriteError> {
         return Err(WriteError::Manifest {
             reason: "a number in it is infinite or not a number".to_owned(),
         });
+    }
+    if json.len() > MAX_METADATA_BYTES {
+        let reason = format!("{} bytes are more than readers accept", json.len());
+        return Err(WriteError::Manifest { reason });
     }
     Ok(json)
 }

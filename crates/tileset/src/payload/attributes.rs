@@ -1,13 +1,15 @@
 //! The road attributes section: records by way, with each text stored once.
 
 use corniche_roads::{Form, Oneway, RoadAttributes, Structure};
-use serde::{Deserialize, Serialize};
+use serde::de::DeserializeOwned;
 
-use super::{Damage, MAX_SECTION_BYTES, RoadRecord};
+use super::{Damage, RoadRecord};
+use crate::limits::{MAX_SECTION_BYTES, MAX_TEXT_BYTES, MAX_WAYS};
 
 /// The whole section, in `bincode`'s legacy layout: every list starts with its length as u64. Lists after
 /// `texts` have one item per way.
-#[derive(Default, Serialize, Deserialize)]
+#[derive(Default)]
+#[cfg_attr(feature = "write", derive(serde::Serialize))]
 struct Record {
     /// Sorted, each once.
     texts: Vec<String>,
@@ -28,10 +30,19 @@ const STRUCTURES: [Structure; 3] = [Structure::Ground, Structure::Bridge, Struct
 const ONEWAYS: [Oneway; 3] = [Oneway::No, Oneway::Forward, Oneway::Backward];
 
 pub(super) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
-    let config = bincode::config::legacy().with_limit::<MAX_SECTION_BYTES>();
-    let (record, taken): (Record, usize) = bincode::serde::decode_from_slice(bytes, config)
-        .map_err(|_| Damage::Invalid { what: "the records of the section" })?;
-    if taken != bytes.len() {
+    let mut rest = bytes;
+    let record = Record {
+        texts: list(&mut rest, 3 * MAX_WAYS)?,
+        way_id_steps: list(&mut rest, MAX_WAYS)?,
+        forms: list(&mut rest, MAX_WAYS)?,
+        structures: list(&mut rest, MAX_WAYS)?,
+        layers: list(&mut rest, MAX_WAYS)?,
+        oneways: list(&mut rest, MAX_WAYS)?,
+        names: list(&mut rest, MAX_WAYS)?,
+        references: list(&mut rest, MAX_WAYS)?,
+        surfaces: list(&mut rest, MAX_WAYS)?,
+    };
+    if !rest.is_empty() {
         return Err(Damage::Invalid { what: "bytes left over at the end" });
     }
     let count = record.way_id_steps.len();
@@ -48,7 +59,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
         return Err(Damage::Invalid { what: "lists of different lengths" });
     }
     // A long text named by every way would be copied for each: a small section must not become a large tile.
-    let mut room = MAX_SECTION_BYTES;
+    let mut room = MAX_TEXT_BYTES;
     let mut text = |index: u32| {
         let text = record
             .texts
@@ -56,8 +67,8 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
             .ok_or(Damage::Invalid { what: "a text that does not exist" })?;
         room = room.checked_sub(text.len()).ok_or(Damage::TooLarge {
             what: "texts of all ways",
-            length: MAX_SECTION_BYTES as u64 + 1,
-            limit: MAX_SECTION_BYTES as u64,
+            length: MAX_TEXT_BYTES as u64 + 1,
+            limit: MAX_TEXT_BYTES as u64,
         })?;
         Ok::<String, Damage>(text.clone())
     };
@@ -84,11 +95,36 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
     Ok(roads)
 }
 
+/// Takes one list of the record off the front of the bytes. How long it says it is, is looked at before it is read.
+fn list<T: DeserializeOwned>(bytes: &mut &[u8], limit: usize) -> Result<Vec<T>, Damage> {
+    let length = bytes.first_chunk().map(|&length| u64::from_le_bytes(length));
+    let length = length.ok_or(Damage::TooShort)?;
+    if length > limit as u64 {
+        let what = "ways of a section";
+        return Err(Damage::TooLarge { what, length, limit: limit as u64 });
+    }
+    let config = bincode::config::legacy().with_limit::<MAX_SECTION_BYTES>();
+    let (list, taken) = bincode::serde::decode_from_slice(bytes, config)
+        .map_err(|_| Damage::Invalid { what: "the records of the section" })?;
+    *bytes = bytes.get(taken..).ok_or(Damage::TooShort)?;
+    Ok(list)
+}
+
 /// The section's bytes, or what of the roads cannot be encoded.
 #[cfg(feature = "write")]
 pub(super) fn encode(roads: &[RoadRecord]) -> Result<Vec<u8>, &'static str> {
     if !roads.is_sorted_by(|a, b| a.way_id < b.way_id) {
         return Err("ways that are not sorted by id, or occur twice");
+    }
+    if roads.len() > MAX_WAYS {
+        return Err("more than a million ways");
+    }
+    let texts_of = |road: &RoadRecord| {
+        let RoadAttributes { name, reference, surface, .. } = &road.attributes;
+        name.len() + reference.len() + surface.len()
+    };
+    if roads.iter().map(texts_of).sum::<usize>() > MAX_TEXT_BYTES {
+        return Err("more than 64 MiB of texts");
     }
     let mut texts: Vec<&str> = roads
         .iter()
@@ -99,9 +135,6 @@ pub(super) fn encode(roads: &[RoadRecord]) -> Result<Vec<u8>, &'static str> {
         .collect();
     texts.sort_unstable();
     texts.dedup();
-    if texts.len() > u32::MAX as usize {
-        return Err("more texts than 32 bits can number");
-    }
     let index = |text: &str| texts.partition_point(|&other| other < text) as u32;
     let mut record =
         Record { texts: texts.iter().map(|&text| text.to_owned()).collect(), ..Record::default() };

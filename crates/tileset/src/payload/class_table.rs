@@ -6,11 +6,7 @@ use super::{
     Damage,
     codec::{Cursor, unzigzag},
 };
-
-/// A section has no more lines than this in one class.
-const MAX_LINES: usize = 1 << 20;
-/// Nor more points in one class.
-pub(super) const MAX_POINTS: usize = 1 << 22;
+use crate::limits::{MAX_LINES, MAX_POINTS};
 
 /// Class, number of lines, and their bytes.
 pub(super) type ClassBlob<'a> = (FunctionalRoadClass, usize, &'a [u8]);
@@ -18,13 +14,22 @@ pub(super) type ClassBlob<'a> = (FunctionalRoadClass, usize, &'a [u8]);
 /// The lines of each class that has any, by class.
 pub(super) fn decode<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<ClassBlob<'a>>, Damage> {
     let mut counts = Vec::with_capacity(FunctionalRoadClass::COUNT);
+    let mut all_lines = 0;
     for class in FunctionalRoadClass::all() {
         let lines = u32::from_le_bytes(cursor.array()?) as usize;
         let length = u32::from_le_bytes(cursor.array()?) as usize;
-        if lines > MAX_LINES || (lines == 0) != (length == 0) {
+        if (lines == 0) != (length == 0) {
             return Err(Damage::Invalid { what: "the table of classes" });
         }
+        all_lines += lines;
         counts.push((class, lines, length));
+    }
+    if all_lines > MAX_LINES {
+        return Err(Damage::TooLarge {
+            what: "lines of a section",
+            length: all_lines as u64,
+            limit: MAX_LINES as u64,
+        });
     }
     counts.retain(|&(_, lines, _)| lines > 0);
     counts
@@ -52,8 +57,13 @@ pub(super) struct Heads {
 }
 
 impl Heads {
-    /// Way ids as differences, all of them; then parts; then points and flags.
-    pub(super) fn decode(cursor: &mut Cursor<'_>, lines: usize) -> Result<Self, Damage> {
+    /// Way ids as differences, all of them; then parts; then points and flags. Points are taken from the `room`
+    /// that the section has left.
+    pub(super) fn decode(
+        cursor: &mut Cursor<'_>,
+        lines: usize,
+        room: &mut usize,
+    ) -> Result<Self, Damage> {
         // Each line takes at least three bytes, so the table's count cannot make this large for nothing.
         if lines > cursor.left() / 3 {
             return Err(Damage::TooShort);
@@ -72,13 +82,11 @@ impl Heads {
             let value = cursor.bounded(4 * MAX_POINTS, "number of points")?;
             (head.points, head.flags) = (value / 4, (value % 4) as u8);
             points += head.points;
-            if points > MAX_POINTS {
-                return Err(Damage::TooLarge {
-                    what: "points of a class",
-                    length: points as u64,
-                    limit: MAX_POINTS as u64,
-                });
-            }
+            *room = room.checked_sub(head.points).ok_or(Damage::TooLarge {
+                what: "points of a section",
+                length: MAX_POINTS as u64 + 1,
+                limit: MAX_POINTS as u64,
+            })?;
         }
         let order = |head: &Head| (head.way_id, head.part);
         if !heads.is_sorted_by(|a, b| order(a) < order(b)) {
@@ -105,14 +113,14 @@ mod write {
         if !roads.is_sorted_by(|a, b| key(a) < key(b)) {
             return Err("lines that are not sorted by class, way id and part, or occur twice");
         }
+        if roads.len() > MAX_LINES {
+            return Err("more than a million lines");
+        }
         let (mut table, mut body) = (Vec::new(), Vec::new());
         let mut class_bytes = [0; FunctionalRoadClass::COUNT];
         for (class, bytes) in FunctionalRoadClass::all().zip(&mut class_bytes) {
             let first = roads.partition_point(|road| key(road).0 < class);
             let end = roads.partition_point(|road| key(road).0 <= class);
-            if end - first > MAX_LINES {
-                return Err("more than a million lines of one class");
-            }
             let before = body.len();
             if first < end {
                 put(&roads[first..end], &mut body)?;

@@ -39,6 +39,28 @@ pub(super) fn put_planes(out: &mut Vec<u8>, values: &[u64]) {
     }
 }
 
+/// Numbers in byte planes, put together one by one: a count that no bytes stand for takes no memory either.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Planes<'a> {
+    bytes: &'a [u8],
+    count: usize,
+}
+
+impl<'a> Planes<'a> {
+    /// The numbers.
+    pub(super) fn iter(self) -> impl Iterator<Item = u64> + 'a {
+        (0..self.count).map(move |index| {
+            let bytes = self.bytes.iter().skip(index).step_by(self.count.max(1));
+            bytes.zip(0..).fold(0, |value, (&byte, plane)| value | u64::from(byte) << (8 * plane))
+        })
+    }
+
+    /// Whether all numbers are 0 because no byte stands for any of them.
+    pub(super) fn is_absent(self) -> bool {
+        self.bytes.is_empty()
+    }
+}
+
 /// Takes values off the front of a byte slice.
 #[derive(Debug, Clone)]
 pub(super) struct Cursor<'a> {
@@ -89,21 +111,12 @@ impl<'a> Cursor<'a> {
     }
 
     /// What [`put_planes`] wrote for `count` values. The caller bounds `count`.
-    pub(super) fn planes(&mut self, count: usize) -> Result<Vec<u64>, Damage> {
+    pub(super) fn planes(&mut self, count: usize) -> Result<Planes<'a>, Damage> {
         let planes = self.byte()?;
         if planes > 8 {
             return Err(Damage::Invalid { what: "more than eight byte planes" });
         }
-        let bytes = self.take(count * usize::from(planes))?;
-        let mut values = vec![0_u64; count];
-        if count > 0 {
-            for (plane, bytes) in bytes.chunks_exact(count).enumerate() {
-                for (value, &byte) in values.iter_mut().zip(bytes) {
-                    *value |= u64::from(byte) << (8 * plane);
-                }
-            }
-        }
-        Ok(values)
+        Ok(Planes { bytes: self.take(count * usize::from(planes))?, count })
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -150,7 +163,7 @@ mod tests {
             let mut bytes = Vec::new();
             put_planes(&mut bytes, &values);
             let mut cursor = Cursor::new(&bytes);
-            prop_assert_eq!(cursor.planes(values.len()).unwrap(), values);
+            prop_assert_eq!(cursor.planes(values.len()).unwrap().iter().collect::<Vec<_>>(), values);
             prop_assert!(cursor.finish().is_ok());
         }
     }

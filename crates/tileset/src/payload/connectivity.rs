@@ -22,7 +22,7 @@
 
 use std::collections::VecDeque;
 
-use super::{Damage, nodes::Nodes};
+use super::{Damage, nodes::Nodes, work::Work};
 
 /// There is no triangle on the left of the gate.
 pub(super) const NONE: u8 = 0;
@@ -41,28 +41,35 @@ pub(super) struct Reached {
 
 /// Directed edges with the corner to their left.
 #[derive(Debug)]
-pub(super) struct Edges {
+pub(super) struct Edges<'w> {
     first: Vec<u32>,
     /// Next in the list of the same origin, target, corner.
     edges: Vec<[u32; 3]>,
+    work: &'w Work,
 }
 
 const END: u32 = u32::MAX;
 
-impl Edges {
-    pub(super) fn new(vertices: usize) -> Self {
-        Self { first: vec![END; vertices], edges: Vec::new() }
+impl<'w> Edges<'w> {
+    /// Looking at an edge counts as `work`.
+    pub(super) fn new(vertices: usize, work: &'w Work) -> Self {
+        Self { first: vec![END; vertices], edges: Vec::new(), work }
     }
 
     pub(super) fn corner(&self, a: u32, b: u32) -> Option<u32> {
         let mut at = self.first[a as usize];
+        let mut found = None;
+        let mut steps = 0;
         while let Some(&[next, target, corner]) = self.edges.get(at as usize) {
+            steps += 1;
             if target == b {
-                return Some(corner);
+                found = Some(corner);
+                break;
             }
             at = next;
         }
-        None
+        self.work.add(steps);
+        found
     }
 
     fn add_edge(&mut self, a: u32, b: u32, corner: u32) {
@@ -86,7 +93,7 @@ impl Edges {
 /// Who decides what the walk finds: the triangles, when writing, or the symbols, when reading.
 pub(super) trait Guide {
     /// A triangle to start from, not found yet.
-    fn start(&mut self, found: &Edges) -> Result<[u32; 3], Damage>;
+    fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage>;
     /// The vertex to the left of the gate a ► b, if there is a triangle. `guess` takes the vertices
     /// that are no answer and gives the next best one.
     fn corner(
@@ -96,13 +103,15 @@ pub(super) trait Guide {
     ) -> Result<Option<u32>, Damage>;
 }
 
-/// Walks until `count` triangles are found; gives them and the vertices in the order of the walk.
+/// Walks until `count` triangles are found; gives them and the vertices in the order of the walk. Fails when that
+/// takes more than the work allowed to `nodes`.
 pub(super) fn walk(
-    nodes: &Nodes,
+    nodes: &Nodes<'_>,
     count: usize,
     guide: &mut impl Guide,
 ) -> Result<(Vec<[u32; 3]>, Vec<Reached>), Damage> {
-    let mut edges = Edges::new(nodes.len());
+    let work = nodes.work();
+    let mut edges = Edges::new(nodes.len(), work);
     let mut triangles = Vec::with_capacity(count);
     let mut order = Vec::with_capacity(nodes.len());
     let mut seen = vec![false; nodes.len()];
@@ -120,12 +129,18 @@ pub(super) fn walk(
                             && edges.corner(c, a).is_none()
                     })
                 };
-                match guide.corner([a, b], &guess)? {
+                let corner = guide.corner([a, b], &guess);
+                work.check()?;
+                match corner? {
                     Some(c) => ([a, b, c], Some([a, b, d])),
                     None => continue,
                 }
             }
-            None => (guide.start(&edges)?, None),
+            None => {
+                let start = guide.start(&edges);
+                work.check()?;
+                (start?, None)
+            }
         };
         if triangle.iter().any(|&vertex| vertex as usize >= nodes.len()) {
             return Err(Damage::Invalid { what: "a triangle's vertex" });

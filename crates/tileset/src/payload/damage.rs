@@ -36,6 +36,12 @@ pub enum Damage {
         /// The limit.
         limit: u64,
     },
+    /// Decoding takes more steps than are allowed for a tile of this size; no writer makes such a tile.
+    #[error("it takes more than the limit of {limit} steps to decode: no writer makes such a tile")]
+    TooMuchWork {
+        /// The limit, in the steps of [`limits`](crate::limits).
+        limit: u64,
+    },
     /// Decompression failed.
     #[error("cannot decompress: {reason}")]
     Decompress {

@@ -1,6 +1,6 @@
 use std::ops::BitOr;
 
-use corniche_geom::{Frame, LatticePoint, TileId};
+use corniche_geom::{Frame, LatticePoint, TILE_NODES, TileId};
 use corniche_tin::{Placement, Surface};
 
 use super::{
@@ -9,6 +9,7 @@ use super::{
     roads_geo, roads_sv,
     terrain::{self, Scale},
 };
+use crate::manifest::is_height_quantum;
 
 /// Which sections of a payload to decode; combine them with `|`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,7 +26,7 @@ impl Sections {
     pub const ROADS_SV: Self = Self(4);
     /// What is known of each way.
     pub const ATTRIBUTES: Self = Self(8);
-    /// Everything.
+    /// Everything, checksums of sections of unknown kinds included.
     pub const ALL: Self = Self(15);
 
     /// Whether all of `other` are among these.
@@ -56,23 +57,27 @@ impl Context {
         if id.z() > frame.max_level() {
             return Err(Damage::Level { level: id.z(), finest: frame.max_level() });
         }
-        if !(quantum_m.is_normal() && quantum_m > 0.0) {
+        if !is_height_quantum(quantum_m) {
             return Err(Damage::Invalid { what: "the height quantum" });
         }
         let placement = Placement::of_tile(frame, id, quantum_m);
         Ok(Self {
             corner: placement.corner,
             placement,
-            scale: Scale { quantum_m, cell_m: frame.level_cell_m(id.z()) },
+            scale: Scale {
+                quantum_m,
+                cell_m: frame.level_cell_m(id.z()),
+                nodes_beneath: (frame.stride(id.z()) as u64 * TILE_NODES as u64).pow(2),
+            },
         })
     }
 }
 
 /// Reads the wanted sections of a payload; sections that are absent or not wanted are empty or `None`.
 ///
-/// `frame` and `quantum_m` are those of the package's manifest. Memory is bounded by the limits of the format
-/// ([`MAX_SECTION_BYTES`](super::MAX_SECTION_BYTES) a section, four million vertices of lines), whatever the
-/// bytes say; sections that are not wanted are not looked into, so damage in them goes unnoticed.
+/// `frame` and `quantum_m` are those of the package's manifest. Memory and work are bounded by the
+/// [`limits`](crate::limits), whatever the bytes say. Sections that are not wanted are not looked into, so damage in
+/// them goes unnoticed; [`Sections::ALL`] also checks those that this version cannot decode.
 ///
 /// # Errors
 /// When the bytes are not a payload of tile `id`, or a wanted section is damaged; the error names both.
@@ -86,6 +91,13 @@ pub fn decode(
     let header = |damage| DecodeError { tile: id, part: "header", damage };
     let context = Context::new(id, frame, quantum_m).map_err(header)?;
     let sections = envelope::open(bytes, id).map_err(header)?;
+    if wanted == Sections::ALL {
+        envelope::check_unknown(&sections).map_err(|damage| DecodeError {
+            tile: id,
+            part: "section of an unknown kind",
+            damage,
+        })?;
+    }
     let read = |kind: Kind, section: Sections| {
         if !wanted.contains(section) {
             return Ok(None);

@@ -1,9 +1,12 @@
 //! Header, section table and sections of a payload: everything but what a section says.
 
+use std::io::Read;
+
 use corniche_geom::TileId;
-use ruzstd::decoding::FrameDecoder;
+use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 
 use super::{Damage, codec::Cursor};
+use crate::limits::MAX_SECTION_BYTES;
 
 /// First bytes of every payload: "Corniche Tile".
 pub(super) const MAGIC: [u8; 4] = *b"CRNT";
@@ -15,8 +18,6 @@ const HEADER_BYTES: usize = 16;
 /// Bytes of one entry of the section table.
 #[cfg(feature = "write")]
 const ENTRY_BYTES: usize = 20;
-/// No section is larger than this before compression; readers refuse what says it is.
-pub const MAX_SECTION_BYTES: usize = 64 << 20;
 /// Stored bytes follow without compression.
 pub(super) const STORED: u8 = 0;
 /// Stored bytes are one zstd frame.
@@ -33,6 +34,8 @@ pub(super) enum Kind {
 }
 
 impl Kind {
+    const KNOWN: [Self; 4] = [Self::Terrain, Self::RoadsGeo, Self::RoadsSv, Self::Attributes];
+
     /// What errors call it.
     pub(super) fn name(self) -> &'static str {
         match self {
@@ -54,7 +57,8 @@ pub(super) struct StoredSection<'a> {
     bytes: &'a [u8],
 }
 
-/// Takes a payload apart. Sections are not looked into yet, but lie within the bytes.
+/// Takes a payload apart. Sections are not looked into yet; they lie end to end up to the payload's last byte, so
+/// that each byte is covered by one checksum.
 pub(super) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, Damage> {
     let mut cursor = Cursor::new(bytes);
     if cursor.array::<4>()? != MAGIC {
@@ -66,7 +70,8 @@ pub(super) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, D
     }
     let [count, z] = cursor.array()?;
     let (x, y) = (u32::from_le_bytes(cursor.array()?), u32::from_le_bytes(cursor.array()?));
-    let mut sections = Vec::with_capacity(usize::from(count));
+    let mut sections: Vec<StoredSection<'_>> = Vec::with_capacity(usize::from(count));
+    let mut ends = Vec::with_capacity(usize::from(count));
     for _ in 0..count {
         let kind = u16::from_le_bytes(cursor.array()?);
         let [compression, reserved] = cursor.array()?;
@@ -84,10 +89,26 @@ pub(super) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, D
             checksum: checksum?,
             bytes: stored.ok_or(Damage::TooShort)?,
         });
+        ends.push([offset, offset + length]);
     }
     let table = &bytes[..bytes.len() - cursor.left()];
     if u32::from_le_bytes(cursor.array()?) != crc32fast::hash(table) {
         return Err(Damage::Checksum);
+    }
+    let mut end = bytes.len() - cursor.left();
+    for [from, to] in ends {
+        if from != end {
+            return Err(Damage::Invalid { what: "sections do not lie end to end" });
+        }
+        end = to;
+    }
+    if end != bytes.len() {
+        return Err(Damage::Invalid { what: "bytes after the last section" });
+    }
+    for (number, section) in sections.iter().enumerate() {
+        if sections[..number].iter().any(|before| before.kind == section.kind) {
+            return Err(Damage::Invalid { what: "two sections of one kind" });
+        }
     }
     // After the checksum: what is reported here is no flipped bit but a payload in the wrong place.
     if (z, x, y) != (id.z(), id.x(), id.y()) {
@@ -118,19 +139,46 @@ pub(super) fn section(
     match section.compression {
         STORED if section.bytes.len() == raw_length => Ok(Some(section.bytes.to_vec())),
         STORED => Err(Damage::Invalid { what: "the length of an uncompressed section" }),
-        ZSTD => decompress(section.bytes, raw_length).map(Some),
+        // Writers compress where that makes a section smaller.
+        ZSTD if section.bytes.len() < raw_length => decompress(section.bytes, raw_length).map(Some),
+        ZSTD => Err(Damage::Invalid { what: "the length of a compressed section" }),
         _ => Err(Damage::Invalid { what: "an unknown compression" }),
     }
 }
 
-/// Decompresses a zstd frame that must come to exactly `length` bytes.
-fn decompress(bytes: &[u8], length: usize) -> Result<Vec<u8>, Damage> {
+/// Checks sections of kinds that this version does not know, as far as it can.
+pub(super) fn check_unknown(sections: &[StoredSection<'_>]) -> Result<(), Damage> {
+    let unknown =
+        |section: &&StoredSection<'_>| Kind::KNOWN.iter().all(|&kind| section.kind != kind as u16);
+    let intact = |section: &StoredSection<'_>| crc32fast::hash(section.bytes) == section.checksum;
+    if sections.iter().filter(unknown).all(intact) { Ok(()) } else { Err(Damage::Checksum) }
+}
+
+/// Decompresses one zstd frame, no more and no other, that must come to exactly `length` bytes.
+fn decompress(mut bytes: &[u8], length: usize) -> Result<Vec<u8>, Damage> {
     let failed = |error: &dyn std::fmt::Display| Damage::Decompress { reason: error.to_string() };
     let mut decoder = FrameDecoder::new();
     // A window never needs to be larger than the content; zstd's own smallest window is 1 KiB.
     decoder.set_max_window_size(length.max(1024) as u64);
     let mut out = vec![0; length];
-    let written = decoder.decode_all(bytes, &mut out).map_err(|error| failed(&error))?;
+    // Not `decode_all`: it takes any number of frames, each of which may be empty.
+    decoder.init(&mut bytes).map_err(|error| failed(&error))?;
+    let mut written = 0;
+    loop {
+        decoder
+            .decode_blocks(&mut bytes, BlockDecodingStrategy::UptoBytes(1 << 20))
+            .map_err(|error| failed(&error))?;
+        written += decoder.read(&mut out[written..]).map_err(|error| failed(&error))?;
+        if decoder.can_collect() > 0 {
+            return Err(Damage::Invalid { what: "a section is longer than it says" });
+        }
+        if decoder.is_finished() {
+            break;
+        }
+    }
+    if !bytes.is_empty() {
+        return Err(Damage::Invalid { what: "bytes after the compressed section" });
+    }
     if written != length {
         return Err(Damage::Invalid { what: "a section is shorter than it says" });
     }

@@ -2,13 +2,16 @@
 
 use corniche_geom::TILE_NODES;
 
+use super::work::Work;
+
 /// Rows and columns of vertices sorted by row, then column.
 #[derive(Debug)]
-pub(super) struct Nodes {
+pub(super) struct Nodes<'w> {
     /// Column and row.
     at: Vec<[i64; 2]>,
     /// Vertices of row r are `row_starts[r]..row_starts[r + 1]`.
     row_starts: Vec<u32>,
+    work: &'w Work,
 }
 
 /// Stands for the limit of a search, which no vertex has reached.
@@ -25,25 +28,31 @@ struct Best {
     radius: f64,
 }
 
-impl Nodes {
-    /// `at` holds columns and rows below [`TILE_NODES`], sorted by row, then column.
-    pub(super) fn new(at: impl Iterator<Item = [u16; 2]>) -> Self {
+impl<'w> Nodes<'w> {
+    /// `at` holds columns and rows below [`TILE_NODES`], sorted by row, then column. Searches count as `work`.
+    pub(super) fn new(at: impl Iterator<Item = [u16; 2]>, work: &'w Work) -> Self {
         let at: Vec<[i64; 2]> = at.map(|node| node.map(i64::from)).collect();
         let row_starts = (0..=TILE_NODES as i64)
             .map(|row| at.partition_point(|node| node[1] < row) as u32)
             .collect();
-        Self { at, row_starts }
+        Self { at, row_starts, work }
     }
 
     pub(super) fn len(&self) -> usize {
         self.at.len()
     }
 
+    /// What searches count as.
+    pub(super) fn work(&self) -> &'w Work {
+        self.work
+    }
+
     /// The allowed vertex strictly to the left of a ► b that sees it under the largest angle; of several the
     /// one with the smallest index.
     ///
     /// Rows are searched outwards from the gate until they leave the circle through the best vertex so far.
-    /// Floating point only bounds the search, by more than its error; decisions are exact.
+    /// Floating point only bounds the search, by more than its error; decisions are exact. Once the work is too
+    /// much it gives up: the caller checks.
     pub(super) fn best_corner(&self, gate: [u32; 2], allowed: impl Fn(u32) -> bool) -> Option<u32> {
         // Nearly every corner sees its gate under more than 27° or 4°: try small circles before the half-plane.
         let within = |cot| self.best_corner_within(gate, cot, &allowed);
@@ -62,6 +71,9 @@ impl Nodes {
         let last_row = TILE_NODES as i64 - 1;
         let mut best = limit_cot.map(|cot| circle(NO_VERTEX, cot, 1, [[ac, ar], [bc, br]]));
         for away in 0..=last_row {
+            if self.work.is_too_much() {
+                break;
+            }
             let (north, south) = (middle - away, middle + away);
             let reach = |row: i64| {
                 best.is_none_or(|best| (row as f64 - best.center[1]).abs() <= best.radius + 1.0)
@@ -111,11 +123,10 @@ impl Nodes {
         let range =
             self.row_starts[row as usize] as usize..self.row_starts[row as usize + 1] as usize;
         let first = range.start + self.at[range.clone()].partition_point(|node| node[0] < low);
-        for vertex in first..range.end {
+        let end = first + self.at[first..range.end].partition_point(|node| node[0] <= high);
+        self.work.add(1 + end - first);
+        for vertex in first..end {
             let [c, r] = self.at[vertex];
-            if c > high {
-                break;
-            }
             let cross = dx * (ar - r) - dy * (c - ac);
             if cross <= 0 {
                 continue;
@@ -158,7 +169,8 @@ mod tests {
             b in any::<prop::sample::Index>(),
         ) {
             let at: Vec<[u16; 2]> = set.iter().map(|&(row, column)| [column, row]).collect();
-            let nodes = Nodes::new(at.iter().copied());
+            let work = Work::new(u64::MAX);
+            let nodes = Nodes::new(at.iter().copied(), &work);
             let (a, b) = (a.index(at.len()), b.index(at.len()));
             prop_assume!(a != b);
             let xy = |k: usize| [f64::from(at[k][0]), -f64::from(at[k][1])];

@@ -4,30 +4,43 @@ use corniche_geom::LatticePoint;
 
 use super::{
     Damage,
+    class_table::Heads,
     codec::{Cursor, unzigzag},
 };
 
 /// Points lie within this many lattice steps of the tile's corner, so that orientations stay exact.
 const REACH_STEPS: i64 = 1 << 55;
 
-/// `count` points, the first relative to `corner`.
+/// The points of all lines of a class, the first relative to `corner`. Neighbours in a line differ.
 pub(super) fn decode_points(
     cursor: &mut Cursor<'_>,
-    count: usize,
+    heads: &Heads,
     corner: LatticePoint,
 ) -> Result<Vec<LatticePoint>, Damage> {
+    const STILL: Damage = Damage::Invalid { what: "a segment without length" };
+    let count = heads.points;
     let (east, north) = (cursor.planes(count)?, cursor.planes(count)?);
+    // At least one byte of every point but a line's first: so many points have bytes to stand for them.
+    if count > heads.heads.len() && east.is_absent() && north.is_absent() {
+        return Err(STILL);
+    }
     let mut at = corner;
     let mut points = Vec::with_capacity(count);
-    for (du, dv) in east.into_iter().zip(north) {
-        let step = |from: i64, by: u64, corner: i64| {
-            let to = from.checked_add(unzigzag(by))?;
-            (to.checked_sub(corner)?.checked_abs()? <= REACH_STEPS).then_some(to)
-        };
-        let moved = step(at.u, du, corner.u).zip(step(at.v, dv, corner.v));
-        let (u, v) = moved.ok_or(Damage::Invalid { what: "a point far away from its tile" })?;
-        at = LatticePoint::new(u, v);
-        points.push(at);
+    let mut steps = east.iter().zip(north.iter());
+    for head in &heads.heads {
+        for (number, (du, dv)) in steps.by_ref().take(head.points).enumerate() {
+            if number > 0 && du == 0 && dv == 0 {
+                return Err(STILL);
+            }
+            let step = |from: i64, by: u64, corner: i64| {
+                let to = from.checked_add(unzigzag(by))?;
+                (to.checked_sub(corner)?.checked_abs()? <= REACH_STEPS).then_some(to)
+            };
+            let moved = step(at.u, du, corner.u).zip(step(at.v, dv, corner.v));
+            let (u, v) = moved.ok_or(Damage::Invalid { what: "a point far away from its tile" })?;
+            at = LatticePoint::new(u, v);
+            points.push(at);
+        }
     }
     Ok(points)
 }
@@ -39,14 +52,8 @@ pub(super) fn put_points(
     points: &[LatticePoint],
     corner: LatticePoint,
 ) -> Result<(), &'static str> {
-    use super::{
-        class_table::MAX_POINTS,
-        codec::{put_planes, zigzag},
-    };
+    use super::codec::{put_planes, zigzag};
 
-    if points.len() > MAX_POINTS {
-        return Err("more than four million points in one class");
-    }
     let far =
         |at: i64, corner: i64| i128::from(at).abs_diff(i128::from(corner)) > REACH_STEPS as u128;
     if points.iter().any(|point| far(point.u, corner.u) || far(point.v, corner.v)) {

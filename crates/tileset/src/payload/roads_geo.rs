@@ -10,10 +10,10 @@ use super::{
     codec::Cursor,
     points::decode_points,
     route::Route,
+    work::Work,
 };
+use crate::limits::{MAX_LINE_VERTICES, MAX_POINTS, MAX_ROUTE_STEPS};
 
-/// The lines of a section have no more vertices than this together.
-pub(super) const MAX_VERTICES: usize = 1 << 22;
 /// Kinds of vertices that are not as guessed.
 const END: u8 = 0;
 const SOURCE: u8 = 1;
@@ -27,18 +27,29 @@ pub(super) fn decode(
 ) -> Result<Vec<GeoRoad>, Damage> {
     let mut cursor = Cursor::new(bytes);
     let mut roads = Vec::new();
-    let mut room = MAX_VERTICES;
+    let work = Work::new(MAX_ROUTE_STEPS);
+    let mut room = Room { points: MAX_POINTS, vertices: MAX_LINE_VERTICES };
     for (class, lines, blob) in class_table::decode(&mut cursor)? {
         let mut blob = Cursor::new(blob);
-        let heads = Heads::decode(&mut blob, lines)?;
-        let points = decode_points(&mut blob, heads.points, corner)?;
+        let heads = Heads::decode(&mut blob, lines, &mut room.points)?;
+        let points = decode_points(&mut blob, &heads, corner)?;
         let mut points = points.as_slice();
         for head in &heads.heads {
             // Flag bits of the point count: 1 lead-in, 2 lead-out.
             let leads = [head.flags & 1 != 0, head.flags & 2 != 0];
             let (of_line, rest) = points.split_at_checked(head.points).ok_or(Damage::TooShort)?;
             points = rest;
-            let line = decode_line(&mut blob, surface, of_line, leads, &mut room)?;
+            if of_line.len() < leads.iter().filter(|&&lead| lead).count() {
+                return Err(Damage::Invalid { what: "a line without points" });
+            }
+            let route = Route::new(surface, of_line, leads, &work);
+            let vertices = decode_line(&mut blob, route, &mut room.vertices)?;
+            let [lead_in, lead_out] = [of_line.first(), of_line.last()];
+            let line = DrapedLine {
+                lead_in: lead_in.copied().filter(|_| leads[0]),
+                vertices,
+                lead_out: lead_out.copied().filter(|_| leads[1]),
+            };
             roads.push(GeoRoad { way_id: head.way_id, part: head.part, class, line });
         }
         blob.finish()?;
@@ -47,60 +58,57 @@ pub(super) fn decode(
     Ok(roads)
 }
 
+/// What a section may still hold.
+struct Room {
+    points: usize,
+    vertices: usize,
+}
+
 fn decode_line(
     surprises: &mut Cursor<'_>,
-    surface: &Surface,
-    points: &[LatticePoint],
-    leads: [bool; 2],
+    mut route: Route<'_>,
     room: &mut usize,
-) -> Result<DrapedLine, Damage> {
-    if points.len() < leads.iter().filter(|&&lead| lead).count() {
-        return Err(Damage::Invalid { what: "a line without points" });
-    }
-    let mut left = surprises.bounded(MAX_VERTICES, "number of surprises")?;
+) -> Result<Vec<DrapedVertex>, Damage> {
+    let mut left = surprises.bounded(MAX_LINE_VERTICES, "number of surprises")?;
     let mut until = gap(surprises, left)?;
-    let mut route = Route::new(surface, points, leads);
     let mut vertices = Vec::new();
     loop {
         let vertex = if left > 0 && until == 0 {
             left -= 1;
-            let vertex = decode_surprise(surprises, surface, &route)?;
+            let vertex = decode_surprise(surprises, &route)?;
             until = gap(surprises, left)?;
             vertex
         } else {
             until = until.saturating_sub(1);
-            route.guess()
+            route.guess()?
         };
         let Some(vertex) = vertex else { break };
         *room = room.checked_sub(1).ok_or(Damage::TooLarge {
             what: "vertices of all lines",
-            length: MAX_VERTICES as u64 + 1,
-            limit: MAX_VERTICES as u64,
+            length: MAX_LINE_VERTICES as u64 + 1,
+            limit: MAX_LINE_VERTICES as u64,
         })?;
         vertices.push(vertex);
-        route.go(vertex);
+        route.go(vertex)?;
     }
     if left > 0 || route.next_source().is_some() || vertices.len() < 2 {
         return Err(Damage::Invalid { what: "a line that ends before its points do" });
     }
-    let [lead_in, lead_out] = [points.first(), points.last()];
-    Ok(DrapedLine {
-        lead_in: lead_in.copied().filter(|_| leads[0]),
-        vertices,
-        lead_out: lead_out.copied().filter(|_| leads[1]),
-    })
+    // Lines are many and short: what a vector holds in reserve would double what they take.
+    vertices.shrink_to_fit();
+    Ok(vertices)
 }
 
 /// How many vertices are as guessed before the next surprise, if any is left.
 fn gap(surprises: &mut Cursor<'_>, left: usize) -> Result<usize, Damage> {
-    if left > 0 { surprises.bounded(MAX_VERTICES, "place of a surprise") } else { Ok(0) }
+    if left > 0 { surprises.bounded(MAX_LINE_VERTICES, "place of a surprise") } else { Ok(0) }
 }
 
 fn decode_surprise(
     surprises: &mut Cursor<'_>,
-    surface: &Surface,
     route: &Route<'_>,
 ) -> Result<Option<DrapedVertex>, Damage> {
+    let surface = route.surface();
     let last_vertex = surface
         .points()
         .len()
@@ -145,8 +153,8 @@ mod write {
     use corniche_roads::FunctionalRoadClass;
 
     use super::{
-        CROSSING, DrapedLine, DrapedVertex, END, GeoRoad, LatticePoint, MAX_VERTICES, Route,
-        SOURCE, Surface, VERTEX, class_table,
+        CROSSING, Damage, DrapedLine, DrapedVertex, END, GeoRoad, LatticePoint, MAX_LINE_VERTICES,
+        MAX_POINTS, MAX_ROUTE_STEPS, Route, SOURCE, Surface, VERTEX, Work, class_table,
     };
     use crate::payload::{class_table::Head, codec::put_varint, points::put_points};
 
@@ -156,9 +164,12 @@ mod write {
         corner: LatticePoint,
         surface: &Surface,
     ) -> Result<(Vec<u8>, [u64; FunctionalRoadClass::COUNT]), &'static str> {
-        if roads.iter().map(|road| road.line.vertices.len()).sum::<usize>() > MAX_VERTICES {
+        if roads.iter().map(|road| road.line.vertices.len()).sum::<usize>() > MAX_LINE_VERTICES {
             return Err("more than four million vertices of lines");
         }
+        // The same limit as a reader's, which goes the same way.
+        let work = Work::new(MAX_ROUTE_STEPS);
+        let mut all_points = 0;
         class_table::encode(
             roads,
             |road| (road.class, road.way_id, road.part),
@@ -174,6 +185,9 @@ mod write {
                         _ => None,
                     }));
                     points.extend(road.line.lead_out);
+                    if points[first..].windows(2).any(|pair| pair[0] == pair[1]) {
+                        return Err("a segment without length");
+                    }
                     let leads = [road.line.lead_in.is_some(), road.line.lead_out.is_some()];
                     heads.push(Head {
                         way_id: road.way_id,
@@ -184,8 +198,12 @@ mod write {
                     put_surprises(
                         &mut surprises,
                         &road.line,
-                        Route::new(surface, &points[first..], leads),
+                        Route::new(surface, &points[first..], leads, &work),
                     )?;
+                }
+                all_points += points.len();
+                if all_points > MAX_POINTS {
+                    return Err("more than four million points");
                 }
                 class_table::put_heads(out, &heads);
                 put_points(out, &points, corner)?;
@@ -220,7 +238,7 @@ mod write {
             if !fits {
                 return Err("a line that does not lie on the tile's TIN");
             }
-            if route.guess() == vertex {
+            if route.guess().map_err(too_much)? == vertex {
                 as_guessed += 1;
             } else {
                 put_varint(&mut surprises, as_guessed);
@@ -229,12 +247,16 @@ mod write {
                 put_surprise(&mut surprises, vertex);
             }
             if let Some(vertex) = vertex {
-                route.go(vertex);
+                route.go(vertex).map_err(too_much)?;
             }
         }
         put_varint(out, count);
         out.extend(surprises);
         Ok(())
+    }
+
+    fn too_much(_: Damage) -> &'static str {
+        "roads that take readers too many steps to follow"
     }
 
     fn put_surprise(out: &mut Vec<u8>, vertex: Option<DrapedVertex>) {

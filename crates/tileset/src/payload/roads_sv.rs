@@ -9,6 +9,7 @@ use super::{
     codec::{Cursor, unzigzag},
     points::decode_points,
 };
+use crate::limits::MAX_POINTS;
 
 /// Heights stay below this many quanta, where f64 knows every whole number.
 const REACH_Q: f64 = (1_u64 << 53) as f64;
@@ -20,19 +21,20 @@ pub(super) fn decode(
 ) -> Result<Vec<SvRoad>, Damage> {
     let mut cursor = Cursor::new(bytes);
     let mut roads = Vec::new();
+    let mut room = MAX_POINTS;
     for (class, lines, blob) in class_table::decode(&mut cursor)? {
         let mut blob = Cursor::new(blob);
-        let heads = Heads::decode(&mut blob, lines)?;
+        let heads = Heads::decode(&mut blob, lines, &mut room)?;
         if heads.heads.iter().any(|head| head.points < 2 || head.flags != 0) {
             return Err(Damage::Invalid { what: "a line of fewer than two points" });
         }
-        let points = decode_points(&mut blob, heads.points, corner)?;
+        let points = decode_points(&mut blob, &heads, corner)?;
         let segments = heads.points - heads.heads.len();
         let (lows, spans) = (blob.planes(segments)?, blob.planes(segments)?);
         blob.finish()?;
         let mut low_q = 0_i64;
         let mut ranges = Vec::with_capacity(segments);
-        for (low, span) in lows.into_iter().zip(spans) {
+        for (low, span) in lows.iter().zip(spans.iter()) {
             low_q = low_q.wrapping_add(unzigzag(low));
             let high_q = low_q.checked_add_unsigned(span).filter(|&high| (high as f64) < REACH_Q);
             let high_q = high_q.filter(|_| low_q as f64 > -REACH_Q);
@@ -44,9 +46,6 @@ pub(super) fn decode(
             let of_line = points.split_at_checked(head.points).ok_or(Damage::TooShort)?;
             let of_segments = ranges.split_at_checked(head.points - 1).ok_or(Damage::TooShort)?;
             (points, ranges) = (of_line.1, of_segments.1);
-            if of_line.0.windows(2).any(|pair| pair[0] == pair[1]) {
-                return Err(Damage::Invalid { what: "a segment without length" });
-            }
             let line =
                 SvLine { points: of_line.0.to_vec(), ground_range_m: of_segments.0.to_vec() };
             roads.push(SvRoad { way_id: head.way_id, part: head.part, class, line });
@@ -63,7 +62,7 @@ pub(super) use write::encode;
 mod write {
     use corniche_roads::FunctionalRoadClass;
 
-    use super::{LatticePoint, REACH_Q, SvRoad, class_table};
+    use super::{LatticePoint, MAX_POINTS, REACH_Q, SvRoad, class_table};
     use crate::payload::{
         class_table::Head,
         codec::{put_planes, zigzag},
@@ -76,6 +75,9 @@ mod write {
         corner: LatticePoint,
         quantum_m: f64,
     ) -> Result<(Vec<u8>, [u64; FunctionalRoadClass::COUNT]), &'static str> {
+        if roads.iter().map(|road| road.line.points.len()).sum::<usize>() > MAX_POINTS {
+            return Err("more than four million points");
+        }
         class_table::encode(
             roads,
             |road| (road.class, road.way_id, road.part),

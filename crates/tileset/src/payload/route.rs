@@ -14,8 +14,10 @@
 //! ```
 
 use corniche_drape::DrapedVertex;
-use corniche_geom::{LatticePoint, cross};
+use corniche_geom::{LatticeBounds, LatticePoint, cross};
 use corniche_tin::{NO_TWIN, Surface};
+
+use super::{Damage, work::Work};
 
 /// Follows one line; asked for a guess, then told the truth, vertex by vertex.
 pub(super) struct Route<'a> {
@@ -27,6 +29,7 @@ pub(super) struct Route<'a> {
     /// Source points end here; what follows is the lead-out.
     end: usize,
     place: Place,
+    work: &'a Work,
 }
 
 #[derive(Clone, Copy)]
@@ -44,14 +47,19 @@ enum Place {
 }
 
 impl<'a> Route<'a> {
-    /// `leads` tells whether the first and the last of `points` are lead-in and lead-out.
-    pub(super) fn new(surface: &'a Surface, points: &'a [LatticePoint], leads: [bool; 2]) -> Self {
+    /// `leads` tells whether the first and the last of `points` are lead-in and lead-out. Looking at triangles and
+    /// edges counts as `work`.
+    pub(super) fn new(
+        surface: &'a Surface,
+        points: &'a [LatticePoint],
+        leads: [bool; 2],
+        work: &'a Work,
+    ) -> Self {
         let end = points.len() - usize::from(leads[1]);
-        Self { surface, points, next: usize::from(leads[0]), end, place: Place::Start }
+        Self { surface, points, next: usize::from(leads[0]), end, place: Place::Start, work }
     }
 
     /// The TIN it goes over.
-    #[cfg(feature = "write")]
     pub(super) fn surface(&self) -> &'a Surface {
         self.surface
     }
@@ -61,18 +69,23 @@ impl<'a> Route<'a> {
         self.points[..self.end].get(self.next).copied()
     }
 
-    /// The next vertex, as far as the points tell; `None` where they say that the line ends.
-    pub(super) fn guess(&self) -> Option<DrapedVertex> {
+    /// The next vertex, as far as the points tell; `None` where they say that the line ends. Fails when that took
+    /// more work than is allowed.
+    pub(super) fn guess(&self) -> Result<Option<DrapedVertex>, Damage> {
+        let vertex = self.best_guess();
+        self.work.check()?;
+        Ok(vertex)
+    }
+
+    fn best_guess(&self) -> Option<DrapedVertex> {
         if let Place::Start = self.place {
             // A line with a lead-in starts on the outline; finding where would be a search.
             let point = if self.next == 0 { self.next_source()? } else { return None };
-            return self
-                .surface
-                .locate(point)
+            return locate(self.surface, point, self.work)
                 .map(|triangle| DrapedVertex::Source { point, triangle });
         }
         let (p, q) = (*self.points.get(self.next.checked_sub(1)?)?, *self.points.get(self.next)?);
-        let line = Line { surface: self.surface, p, q };
+        let line = Line { surface: self.surface, p, q, work: self.work };
         let vertex = match self.place {
             Place::Triangle(triangle) => line.after_point(triangle),
             Place::HalfEdge(half_edge) => line.ahead(half_edge / 3, p, None),
@@ -83,8 +96,9 @@ impl<'a> Route<'a> {
         (self.next < self.end || !matches!(vertex, DrapedVertex::Source { .. })).then_some(vertex)
     }
 
-    /// Goes to `vertex`, whatever the guess was. Indices must be within the TIN.
-    pub(super) fn go(&mut self, vertex: DrapedVertex) {
+    /// Goes to `vertex`, whatever the guess was. Indices must be within the TIN. Fails when that took more work than
+    /// is allowed.
+    pub(super) fn go(&mut self, vertex: DrapedVertex) -> Result<(), Damage> {
         self.place = match vertex {
             DrapedVertex::Source { triangle, .. } => {
                 self.next += 1;
@@ -95,6 +109,7 @@ impl<'a> Route<'a> {
             }
             DrapedVertex::Vertex { vertex } => Place::Vertex(vertex),
         };
+        self.work.check()
     }
 
     /// The half-edge between a and b over which the line comes in: it starts to the left of p ► q.
@@ -102,9 +117,10 @@ impl<'a> Route<'a> {
         let (p, q) = (*self.points.get(self.next.checked_sub(1)?)?, *self.points.get(self.next)?);
         let left_start = cross(p, q, self.surface.points()[a as usize]) > 0;
         let [from, to] = if left_start { [a, b] } else { [b, a] };
-        let from_fan =
-            self.surface.fan(from).iter().find(|&&half_edge| self.surface.ends(half_edge)[1] == to);
-        from_fan.copied()
+        let fan = self.surface.fan(from);
+        let found = fan.iter().position(|&half_edge| self.surface.ends(half_edge)[1] == to);
+        self.work.add(found.map_or(fan.len(), |at| at + 1));
+        found.map(|at| fan[at])
     }
 }
 
@@ -113,6 +129,7 @@ struct Line<'a> {
     surface: &'a Surface,
     p: LatticePoint,
     q: LatticePoint,
+    work: &'a Work,
 }
 
 impl Line<'_> {
@@ -123,7 +140,7 @@ impl Line<'_> {
 
     /// The next vertex within `triangle`, seen from `here`, which is the TIN vertex `at` if that is given.
     fn ahead(&self, triangle: u32, here: LatticePoint, at: Option<u32>) -> Option<DrapedVertex> {
-        let Self { surface, p, q } = *self;
+        let Self { surface, p, q, work } = *self;
         let corners = self.corners(triangle);
         let sides = [0, 1, 2].map(|k| cross(corners[k], corners[(k + 1) % 3], q));
         if sides.iter().all(|&side| side > 0) {
@@ -131,7 +148,7 @@ impl Line<'_> {
         }
         if sides.iter().all(|&side| side >= 0) {
             // On a border several triangles hold it; the one with the smallest index counts.
-            return Some(DrapedVertex::Source { point: q, triangle: surface.locate(q)? });
+            return Some(DrapedVertex::Source { point: q, triangle: locate(surface, q, work)? });
         }
         let names = surface.triangles()[triangle as usize];
         let sides = corners.map(|corner| cross(p, q, corner));
@@ -181,8 +198,25 @@ impl Line<'_> {
     /// From a TIN vertex on the line.
     fn after_vertex(&self, vertex: u32) -> Option<DrapedVertex> {
         let here = self.surface.points()[vertex as usize];
-        let mut around = self.surface.fan(vertex).iter().map(|half_edge| half_edge / 3);
-        let triangle = around.find(|&triangle| self.goes_into(triangle, here))?;
-        self.ahead(triangle, here, Some(vertex))
+        let fan = self.surface.fan(vertex);
+        let found = fan.iter().position(|half_edge| self.goes_into(half_edge / 3, here));
+        self.work.add(found.map_or(fan.len(), |at| at + 1));
+        self.ahead(fan[found?] / 3, here, Some(vertex))
     }
+}
+
+/// [`Surface::locate`], its steps counted: the triangle with the smallest index that holds `point`. In a hostile TIN
+/// all triangles may lie around one point.
+fn locate(surface: &Surface, point: LatticePoint, work: &Work) -> Option<u32> {
+    let mut found = None;
+    let mut steps = 0;
+    surface.visit_triangles_near(LatticeBounds { min: point, max: point }, |triangle| {
+        steps += 1;
+        // Those around one point come in ascending order.
+        if found.is_none() && surface.triangle_holds(triangle, point) {
+            found = Some(triangle);
+        }
+    });
+    work.add(steps);
+    found
 }

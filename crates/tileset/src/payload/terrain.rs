@@ -9,12 +9,13 @@ use super::{
     codec::{Cursor, unzigzag},
     connectivity::{Edges, GUESSES, Guide, NAMED, NONE, Reached, walk},
     nodes::Nodes,
+    work::Work,
+};
+use crate::{
+    limits::{MAX_TRIANGLES, MAX_VERTICES, max_walk_steps},
+    manifest::MAX_MEASURE_M,
 };
 
-/// A tile has no more nodes than this.
-const MAX_VERTICES: usize = TILE_NODES * TILE_NODES;
-/// Nor more triangles: two for each cell.
-const MAX_TRIANGLES: usize = 2 * (TILE_NODES - 1) * (TILE_NODES - 1);
 /// Bytes of a [`Record`] in bincode's legacy layout.
 const RECORD_BYTES: usize = 49;
 
@@ -39,6 +40,8 @@ struct Record {
 pub(super) struct Scale {
     pub(super) quantum_m: f64,
     pub(super) cell_m: f64,
+    /// No more full-resolution nodes than this lie beneath the tile, border nodes of its finest tiles counted for each.
+    pub(super) nodes_beneath: u64,
 }
 
 pub(super) fn decode(bytes: &[u8], scale: Scale) -> Result<Terrain, Damage> {
@@ -47,10 +50,13 @@ pub(super) fn decode(bytes: &[u8], scale: Scale) -> Result<Terrain, Damage> {
     let (record, _): (Record, usize) =
         bincode::serde::decode_from_slice(cursor.take(RECORD_BYTES)?, config)
             .map_err(|_| Damage::Invalid { what: "the record of the section" })?;
+    check_measures(record.geometric_error_m, record.height_range_m, record.uncovered_nodes, scale)
+        .map_err(|what| Damage::Invalid { what })?;
     let count = at_most(record.vertices, MAX_VERTICES, "number of vertices")?;
     let triangle_count = at_most(record.triangles, MAX_TRIANGLES, "number of triangles")?;
     let at = decode_nodes(&mut cursor, count)?;
-    let nodes = Nodes::new(at.iter().copied());
+    let work = Work::new(max_walk_steps(count, triangle_count));
+    let nodes = Nodes::new(at.iter().copied(), &work);
     let mut player = Player {
         symbols: Cursor::new(cursor.take(record.symbols as usize)?),
         named: Cursor::new(cursor.take(record.named as usize)?),
@@ -66,7 +72,7 @@ pub(super) fn decode(bytes: &[u8], scale: Scale) -> Result<Terrain, Damage> {
     // In units of 2^height_shift steps.
     let mut heights = vec![0_i32; count];
     let mut previous = 0;
-    for (reached, residual) in order.iter().zip(residuals) {
+    for (reached, residual) in order.iter().zip(residuals.iter()) {
         let guess = guess_height(reached, &heights, previous);
         previous = guess.wrapping_add(unzigzag(residual) as i32);
         heights[reached.vertex as usize] = previous;
@@ -96,6 +102,26 @@ pub(super) fn decode(bytes: &[u8], scale: Scale) -> Result<Terrain, Damage> {
         height_range_m: record.height_range_m,
         uncovered_nodes: record.uncovered_nodes,
     })
+}
+
+/// What a tile says of itself: finite, so that nothing later has to ask, and no more than can be true.
+fn check_measures(
+    geometric_error_m: f64,
+    height_range_m: [f64; 2],
+    uncovered_nodes: u64,
+    scale: Scale,
+) -> Result<(), &'static str> {
+    if !(0.0..=MAX_MEASURE_M).contains(&geometric_error_m) {
+        return Err("the geometric error");
+    }
+    let [low, high] = height_range_m;
+    if !(low <= high && low >= -MAX_MEASURE_M && high <= MAX_MEASURE_M) {
+        return Err("the height range");
+    }
+    if uncovered_nodes > scale.nodes_beneath {
+        return Err("the number of uncovered nodes");
+    }
+    Ok(())
 }
 
 fn at_most(count: u32, limit: usize, what: &'static str) -> Result<usize, Damage> {
@@ -146,7 +172,7 @@ impl Player<'_> {
 }
 
 impl Guide for Player<'_> {
-    fn start(&mut self, _: &Edges) -> Result<[u32; 3], Damage> {
+    fn start(&mut self, _: &Edges<'_>) -> Result<[u32; 3], Damage> {
         let a = self.last + self.vertex()?;
         self.last = a;
         // Each corner is above the first, which is the smallest; the sum of two bounded numbers is in range.
@@ -226,6 +252,8 @@ fn guess_normals(vertices: &[TinVertex], triangles: &[[u32; 3]], scale: Scale) -
         .collect()
 }
 
+#[cfg(test)]
+pub(super) use write::Recorder;
 #[cfg(feature = "write")]
 pub(super) use write::encode;
 
@@ -233,7 +261,8 @@ pub(super) use write::encode;
 mod write {
     use super::{
         Damage, Edges, GUESSES, Guide, MAX_TRIANGLES, MAX_VERTICES, NAMED, NONE, Nodes, Record,
-        Scale, TILE_NODES, Terrain, guess_height, guess_normals, walk,
+        Scale, TILE_NODES, Terrain, Work, check_measures, guess_height, guess_normals,
+        max_walk_steps, walk,
     };
     use crate::payload::codec::{put_planes, put_varint, zigzag};
 
@@ -250,15 +279,27 @@ mod write {
             return Err("vertices outside the tile's grid");
         }
         let triangles = terrain.tin.triangles();
+        check_measures(
+            terrain.geometric_error_m,
+            terrain.height_range_m,
+            terrain.uncovered_nodes,
+            scale,
+        )?;
         if vertices.len() > MAX_VERTICES || triangles.len() > MAX_TRIANGLES {
             return Err("more triangles than a tile has cells for");
         }
         let at: Vec<[u16; 2]> = vertices.iter().map(|v| [v.column, v.row]).collect();
-        let nodes = Nodes::new(at.iter().copied());
-        let mut recorder = Recorder::new(vertices.len(), triangles)
+        // The same limit as a reader's: the writer looks at no less than the reader will.
+        let work = Work::new(max_walk_steps(vertices.len(), triangles.len()));
+        let nodes = Nodes::new(at.iter().copied(), &work);
+        let lookups = Work::new(u64::MAX);
+        let mut recorder = Recorder::new(vertices.len(), triangles, &lookups)
             .map_err(|_| "an edge with several triangles on one side")?;
-        let (found, order) = walk(&nodes, triangles.len(), &mut recorder)
-            .map_err(|_| "an edge with several triangles on one side")?;
+        let (found, order) =
+            walk(&nodes, triangles.len(), &mut recorder).map_err(|damage| match damage {
+                Damage::TooMuchWork { .. } => "triangles that take readers too many steps to find",
+                _ => "an edge with several triangles on one side",
+            })?;
         let factors = vertices.iter().fold(0, |all, vertex| all | vertex.height_q);
         let height_shift = if factors == 0 { 0 } else { factors.trailing_zeros() as u8 };
         let record = Record {
@@ -315,19 +356,23 @@ mod write {
     }
 
     /// Finds triangles by looking them up, and writes the symbols.
-    struct Recorder<'a> {
+    pub(in super::super) struct Recorder<'a> {
         triangles: &'a [[u32; 3]],
         /// Triangles before this one have been found.
         next: usize,
-        edges: Edges,
+        edges: Edges<'a>,
         symbols: Vec<u8>,
         named: Vec<u8>,
         last: u32,
     }
 
     impl<'a> Recorder<'a> {
-        fn new(vertices: usize, triangles: &'a [[u32; 3]]) -> Result<Self, Damage> {
-            let mut edges = Edges::new(vertices);
+        pub(in super::super) fn new(
+            vertices: usize,
+            triangles: &'a [[u32; 3]],
+            work: &'a Work,
+        ) -> Result<Self, Damage> {
+            let mut edges = Edges::new(vertices, work);
             for &triangle in triangles {
                 edges.add(triangle)?;
             }
@@ -336,7 +381,7 @@ mod write {
     }
 
     impl Guide for Recorder<'_> {
-        fn start(&mut self, found: &Edges) -> Result<[u32; 3], Damage> {
+        fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage> {
             let rest = &self.triangles[self.next..];
             let skip = rest.iter().position(|&[a, b, _]| found.corner(a, b).is_none());
             self.next += skip.ok_or(Damage::Invalid { what: "number of triangles" })?;

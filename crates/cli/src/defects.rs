@@ -1,0 +1,139 @@
+//! The list that `corniche build --defects` writes: one line for every defect of the extract and every road lost.
+
+use std::{
+    fmt::Write as _,
+    io::{self, Write as _},
+    path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
+};
+
+use corniche_pipeline::{Defect, Observer, Stage};
+
+use crate::{
+    failure::Failure,
+    output::{self, Existing, Output},
+    progress::Progress,
+};
+
+/// The columns. `count` is how many points, pieces or crossings are meant; `detail` says more where there is more.
+const HEADER: &str = "reason,object,id,count,length_m,detail\n";
+
+/// A list that is being written.
+pub(crate) struct DefectList {
+    target: PathBuf,
+    /// The first failure ends the writing and is told in the end: the build goes on.
+    file: Mutex<io::Result<Output>>,
+}
+
+impl DefectList {
+    /// Begins a list at `target`, which is none of `others`.
+    pub(crate) fn create(
+        target: &Path,
+        existing: Existing,
+        others: &[&Path],
+    ) -> Result<Self, Failure> {
+        let mut output = Output::create(target, existing, others)?;
+        let begun = output.write_all(HEADER.as_bytes()).map(|()| output);
+        Ok(Self { target: target.to_path_buf(), file: Mutex::new(begun) })
+    }
+
+    fn add(&self, defect: &Defect) {
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Ok(output) = &mut *file
+            && let Err(error) = output.write_all(line(defect).as_bytes())
+        {
+            *file = Err(error);
+        }
+    }
+
+    /// Puts the list in its place.
+    pub(crate) fn finish(self) -> Result<(), Failure> {
+        let file = self.file.into_inner().unwrap_or_else(PoisonError::into_inner);
+        file.map_err(|error| output::failed(&self.target, &error))?.finish()
+    }
+}
+
+fn line(defect: &Defect) -> String {
+    let mut line = quoted(&defect.name());
+    match defect {
+        Defect::Osm(defect) => {
+            let (object, id) = defect.object();
+            let count = defect.count().map(|count| count.to_string()).unwrap_or_default();
+            let detail = quoted(defect.detail().unwrap_or_default());
+            let _ = writeln!(line, ",{object},{id},{count},,{detail}");
+        }
+        Defect::LostRoad { way_id, length_m, is_whole, .. } => {
+            let detail = if *is_whole { "the whole road" } else { "a part of it" };
+            let _ = writeln!(line, ",way,{way_id},,{length_m:.3},{detail}");
+        }
+        // The enum may grow; a kind that this list does not know yet is named all the same.
+        _ => line.push_str(",,,,,\n"),
+    }
+    line
+}
+
+/// A field as CSV wants it (RFC 4180, section 2): quoted where it holds a comma, a quote or a line break.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+/// Watches a build: progress, and the list if one is wanted.
+pub(crate) struct Watch {
+    pub(crate) progress: Progress,
+    pub(crate) defects: Option<DefectList>,
+}
+
+impl Observer for Watch {
+    fn begin(&self, stage: Stage, total: Option<u64>) {
+        self.progress.begin(stage, total);
+    }
+
+    fn advance(&self, stage: Stage, steps: u64) {
+        self.progress.advance(stage, steps);
+    }
+
+    fn end(&self, stage: Stage) {
+        self.progress.end(stage);
+    }
+
+    fn defect(&self, defect: &Defect) {
+        if let Some(defects) = &self.defects {
+            defects.add(defect);
+        }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.progress.is_cancelled()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_of_defect_is_one_line_of_six_fields() {
+        let unknown = corniche_pipeline::OsmDefect::UnknownHighway {
+            way_id: -7,
+            value: "a,\"b\"\nc".to_owned(),
+        };
+        assert_eq!(line(&unknown.into()), "unknown highway value,way,-7,,,\"a,\"\"b\"\"\nc\"\n");
+        let missing = corniche_pipeline::OsmDefect::MissingNodes { way_id: 5, points: 3 };
+        assert_eq!(line(&missing.into()), "missing nodes,way,5,3,,\n");
+        let lost = Defect::LostRoad {
+            way_id: 9,
+            loss: corniche_pipeline::Loss::NoGround,
+            length_m: 12.5,
+            is_whole: false,
+        };
+        assert_eq!(
+            line(&lost),
+            "where the data have no ground (void or edge),way,9,,12.500,a part of it\n"
+        );
+        assert_eq!(HEADER.trim_end().split(',').count(), 6);
+    }
+}

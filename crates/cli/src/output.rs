@@ -1,0 +1,168 @@
+//! Files beside the package that commands write: a file that is cut off never stands at its target.
+
+use std::{
+    fmt::Display,
+    io::{self, BufWriter, Write},
+    path::{Path, PathBuf},
+};
+
+use tempfile::NamedTempFile;
+
+use crate::{exit::ExitCode, failure::Failure};
+
+/// What to do with a file that exists at the target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Existing {
+    Keep,
+    Replace,
+}
+
+/// A file that is written beside its target and takes its place when it is complete.
+#[derive(Debug)]
+pub(crate) struct Output {
+    target: PathBuf,
+    existing: Existing,
+    file: BufWriter<NamedTempFile>,
+}
+
+impl Output {
+    /// Begins a file that is none of `others`, which the command reads or writes itself. A place where no file can be
+    /// is the user's to mend, and told before any work is done.
+    pub(crate) fn create(
+        target: &Path,
+        existing: Existing,
+        others: &[&Path],
+    ) -> Result<Self, Failure> {
+        let unusable = |reason: &dyn Display| {
+            Failure::unusable(format!("cannot write {}: {reason}", target.display()))
+        };
+        if target.is_dir() {
+            return Err(unusable(&"it is a folder"));
+        }
+        let same = |other: &Path| match (target.canonicalize(), other.canonicalize()) {
+            (Ok(target), Ok(other)) => target == other,
+            // What does not exist yet is told apart by its name alone.
+            _ => target == other,
+        };
+        if others.iter().any(|other| same(other)) {
+            return Err(unusable(&"the command uses that file itself; choose another name"));
+        }
+        if existing == Existing::Keep && target.symlink_metadata().is_ok() {
+            return Err(exists(target));
+        }
+        let folder = match target.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        let mut builder = tempfile::Builder::new();
+        // Temporary files are their owner's alone; this one is to become an ordinary file.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let file = builder.tempfile_in(folder).map_err(|error| unusable(&error))?;
+        Ok(Self { target: target.to_path_buf(), existing, file: BufWriter::new(file) })
+    }
+
+    /// Puts the file in its place.
+    pub(crate) fn finish(self) -> Result<(), Failure> {
+        let Self { target, existing, file } = self;
+        let file = file
+            .into_inner()
+            .map_err(|error| failed(&target, &io::IntoInnerError::into_error(error)))?;
+        let placed = match existing {
+            Existing::Replace => file.persist(&target),
+            Existing::Keep => file.persist_noclobber(&target),
+        };
+        match placed.map_err(|error| error.error) {
+            Ok(_) => Ok(()),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(exists(&target)),
+            Err(error) => Err(failed(&target, &error)),
+        }
+    }
+
+    /// Writes the whole file at once.
+    pub(crate) fn write_whole(mut self, bytes: &[u8]) -> Result<(), Failure> {
+        self.file.write_all(bytes).map_err(|error| failed(&self.target, &error))?;
+        self.finish()
+    }
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+pub(crate) fn failed(target: &Path, error: &io::Error) -> Failure {
+    Failure::new(
+        ExitCode::Failed,
+        anyhow::anyhow!("cannot write {} (disk full?): {error}", target.display()),
+    )
+}
+
+fn exists(target: &Path) -> Failure {
+    Failure::new(
+        ExitCode::Exists,
+        anyhow::anyhow!("{} exists already; give -O to replace it", target.display()),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    #[test]
+    fn nothing_stands_at_the_target_before_the_file_is_complete() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("list.csv");
+        let mut output = Output::create(&target, Existing::Keep, &[]).unwrap();
+        output.write_all(b"half").unwrap();
+        assert!(!target.exists());
+        drop(output);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "litter");
+        Output::create(&target, Existing::Keep, &[]).unwrap().write_whole(b"whole").unwrap();
+        assert_eq!(fs::read(&target).unwrap(), b"whole");
+    }
+
+    #[test]
+    fn what_is_there_is_kept_unless_said_otherwise() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("list.csv");
+        let late = Output::create(&target, Existing::Keep, &[]).unwrap();
+        fs::write(&target, b"precious").unwrap();
+        let kept =
+            [late.write_whole(b"new"), Output::create(&target, Existing::Keep, &[]).map(drop)];
+        for refused in kept {
+            assert_eq!(refused.unwrap_err().code(), ExitCode::Exists);
+        }
+        assert_eq!(fs::read(&target).unwrap(), b"precious");
+        Output::create(&target, Existing::Replace, &[]).unwrap().write_whole(b"new").unwrap();
+        assert_eq!(fs::read(&target).unwrap(), b"new");
+    }
+
+    #[test]
+    fn a_place_where_no_file_can_be_is_wrong_usage() {
+        let folder = tempfile::tempdir().unwrap();
+        for place in [folder.path().to_path_buf(), folder.path().join("missing/list.csv")] {
+            let refused = Output::create(&place, Existing::Replace, &[]).unwrap_err();
+            assert_eq!(refused.code(), ExitCode::Unusable);
+            assert!(refused.to_string().contains(&place.display().to_string()));
+        }
+    }
+
+    #[test]
+    fn a_command_does_not_replace_what_it_reads() {
+        let folder = tempfile::tempdir().unwrap();
+        let package = folder.path().join("a.pmtiles");
+        fs::write(&package, b"precious").unwrap();
+        let other_name = folder.path().join(".").join("a.pmtiles");
+        let refused = Output::create(&other_name, Existing::Replace, &[&package]).unwrap_err();
+        assert_eq!(refused.code(), ExitCode::Unusable);
+        assert_eq!(fs::read(&package).unwrap(), b"precious");
+    }
+}

@@ -1,0 +1,191 @@
+//! From stored values to heights in metres.
+
+use std::path::Path;
+
+use gdal::Metadata;
+use gdal::raster::{GdalDataType, RasterBand};
+
+use crate::vertical::VerticalCrs;
+use crate::{DemError, OpenOptions};
+
+/// Beyond this no value is a height: writers use ±3.4e38, 1e20 and the like for "nothing here", and nothing on earth
+/// is farther from the sea's level than its centre, 6 400 km.
+const NO_HEIGHT_M: f64 = 1e7;
+/// What SRTM's 16-bit files write for "nothing here", declared or not.
+const SRTM_VOID: f64 = -32768.0;
+/// Units of a band and of its vertical CRS are the same within this: "ft" is often written for survey feet.
+const SAME_UNIT: f64 = 1e-5;
+
+/// From stored values to heights.
+#[derive(Debug, Clone)]
+pub(crate) struct Values {
+    nodata: Vec<f64>,
+    /// Stored as 32-bit floats, so that sentinels are compared in that precision.
+    is_f32: bool,
+    /// Bytes with a sign, which GDAL hands out without one.
+    is_signed_byte: bool,
+    scale: f64,
+    offset: f64,
+    /// Metres upwards to a unit; negative for depths.
+    unit_m: f64,
+    pub(crate) has_mask: bool,
+}
+
+impl Values {
+    pub(crate) fn of(
+        path: &Path,
+        band: &RasterBand<'_>,
+        vertical: Option<&VerticalCrs>,
+        options: &OpenOptions,
+    ) -> Result<Self, DemError> {
+        let kind = band.band_type();
+        let type_name = kind.name();
+        if type_name.starts_with('C') || kind == GdalDataType::Unknown {
+            return Err(DemError::SampleType { path: path.to_path_buf(), type_name });
+        }
+        let mut nodata: Vec<f64> = declared(band, kind).into_iter().chain(options.nodata).collect();
+        if kind == GdalDataType::Int16 {
+            nodata.push(SRTM_VOID);
+        }
+        let (scale, offset) = (band.scale().unwrap_or(1.0), band.offset().unwrap_or(0.0));
+        if !(scale.is_finite() && offset.is_finite()) || scale == 0.0 {
+            return Err(DemError::Scale { path: path.to_path_buf(), scale, offset });
+        }
+        let flags = band
+            .mask_flags()
+            .map_err(|source| DemError::Open { path: path.to_path_buf(), source: source.into() })?;
+        let pixel_type = band.metadata_item("PIXELTYPE", "IMAGE_STRUCTURE");
+        Ok(Self {
+            nodata,
+            is_f32: kind == GdalDataType::Float32,
+            is_signed_byte: pixel_type.as_deref() == Some("SIGNEDBYTE"),
+            scale,
+            offset,
+            unit_m: m_per_value(path, &band.unit(), vertical)?,
+            // Of nodata GDAL makes a mask too; comparing values ourselves is exact.
+            has_mask: !flags.is_all_valid() && !flags.is_nodata(),
+        })
+    }
+
+    /// Stored values to metres, in place; what is no height becomes NaN.
+    #[expect(clippy::float_cmp, reason = "a sentinel is one value, not a neighbourhood")]
+    pub(crate) fn convert(&self, values: &mut [f64]) {
+        for value in values {
+            if self.is_signed_byte && *value > 127.0 {
+                *value -= 256.0;
+            }
+            let is_sentinel = self.nodata.iter().any(|&sentinel| {
+                // A 32-bit file holds its sentinel rounded to 32 bits; its tag has all digits.
+                *value == sentinel || self.is_f32 && *value == f64::from(sentinel as f32)
+            });
+            let height_m = (*value * self.scale + self.offset) * self.unit_m;
+            let is_height = !is_sentinel && height_m.abs() <= NO_HEIGHT_M;
+            *value = if is_height { height_m } else { f64::NAN };
+        }
+    }
+}
+
+/// The value that the file declares to mean nothing.
+fn declared(band: &RasterBand<'_>, kind: GdalDataType) -> Option<f64> {
+    match kind {
+        // GDAL keeps these apart, as not all of them are floating-point numbers; neither are the samples read.
+        GdalDataType::Int64 => band.no_data_value_i64().map(|value| value as f64),
+        GdalDataType::UInt64 => band.no_data_value_u64().map(|value| value as f64),
+        _ => band.no_data_value(),
+    }
+}
+
+/// Metres upwards to a value: by the band's unit, by the vertical CRS, or metres where neither says.
+fn m_per_value(
+    path: &Path,
+    band_unit: &str,
+    vertical: Option<&VerticalCrs>,
+) -> Result<f64, DemError> {
+    let named =
+        match band_unit.trim() {
+            "" => None,
+            unit => Some(unit_m(unit).ok_or_else(|| DemError::Unit {
+                path: path.to_path_buf(),
+                unit: unit.to_owned(),
+            })?),
+        };
+    let Some(vertical) = vertical else { return Ok(named.unwrap_or(1.0)) };
+    if named.is_some_and(|unit_m| (unit_m / vertical.unit_m - 1.0).abs() > SAME_UNIT) {
+        return Err(DemError::UnitsDisagree {
+            path: path.to_path_buf(),
+            unit: band_unit.trim().to_owned(),
+            vertical: vertical.name.clone(),
+            vertical_unit_m: vertical.unit_m,
+        });
+    }
+    Ok(vertical.m_per_value())
+}
+
+/// Metres to a unit of length as raster bands name it.
+fn unit_m(name: &str) -> Option<f64> {
+    Some(match name.to_lowercase().as_str() {
+        "m" | "metre" | "metres" | "meter" | "meters" => 1.0,
+        "km" | "kilometre" | "kilometer" => 1000.0,
+        "dm" | "decimetre" | "decimeter" => 0.1,
+        "cm" | "centimetre" | "centimeter" | "centimetres" | "centimeters" => 0.01,
+        "mm" | "millimetre" | "millimeter" => 0.001,
+        "ft" | "foot" | "feet" | "international foot" | "international feet" => 0.3048,
+        "us-ft" | "us ft" | "us_ft" | "ftus" | "us survey foot" | "us survey feet" | "us foot"
+        | "us feet" | "foot_us" | "sft" | "survey foot" | "us_survey_foot" => 1200.0 / 3937.0,
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plain() -> Values {
+        Values {
+            nodata: Vec::new(),
+            is_f32: false,
+            is_signed_byte: false,
+            scale: 1.0,
+            offset: 0.0,
+            unit_m: 1.0,
+            has_mask: false,
+        }
+    }
+
+    fn check(values: &Values, stored: &[f64], expected: &[Option<f64>]) {
+        let mut found = stored.to_vec();
+        values.convert(&mut found);
+        let found: Vec<Option<f64>> =
+            found.into_iter().map(|height_m| (!height_m.is_nan()).then_some(height_m)).collect();
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn sentinels_are_compared_in_the_precision_of_the_file() {
+        let values = Values {
+            nodata: vec![-3.4e38, -9999.9],
+            is_f32: true,
+            scale: 2.0,
+            offset: 10.0,
+            unit_m: 0.3048,
+            ..plain()
+        };
+        let stored = [f64::from(-3.4e38_f32), f64::from(-9999.9_f32), 5.0, f64::INFINITY, 4e-27];
+        let tiny = Some((4e-27 * 2.0 + 10.0) * 0.3048);
+        check(&values, &stored, &[None, None, Some(20.0 * 0.3048), None, tiny]);
+    }
+
+    #[test]
+    fn what_lies_beyond_the_centre_of_the_earth_is_no_height() {
+        let stored = [1e20, -1e20, 1e38, f64::NAN, 9_999_999.0, 10_000_001.0, -11_000.0];
+        let heights = [None, None, None, None, Some(9_999_999.0), None, Some(-11_000.0)];
+        check(&plain(), &stored, &heights);
+    }
+
+    #[test]
+    fn bytes_with_a_sign_keep_it_and_depths_are_turned_over() {
+        let values = Values { nodata: vec![-128.0], is_signed_byte: true, ..plain() };
+        check(&values, &[251.0, 127.0, 128.0], &[Some(-5.0), Some(127.0), None]);
+        check(&Values { unit_m: -1.0, ..plain() }, &[30.0, -2.0], &[Some(-30.0), Some(2.0)]);
+    }
+}

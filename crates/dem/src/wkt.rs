@@ -1,0 +1,75 @@
+//! Taking WKT apart, as far as GDAL offers no function for it.
+
+/// First quoted text of a WKT node: its name.
+pub(crate) fn quoted(wkt: &str) -> Option<&str> {
+    wkt.split('"').nth(1)
+}
+
+/// The word before the first bracket.
+pub(crate) fn keyword(wkt: &str) -> &str {
+    wkt.split('[').next().unwrap_or_default().trim()
+}
+
+/// Metres to the unit of length named first in a WKT node.
+///
+/// WKT rounds the US survey foot to 15 digits; it is 1200/3937 m by definition.
+pub(crate) fn length_unit_m(wkt: &str) -> Option<f64> {
+    const SURVEY_FOOT_M: f64 = 1200.0 / 3937.0;
+    let start = wkt.find("LENGTHUNIT[").or_else(|| wkt.find("UNIT["))?;
+    let fields = &wkt[start..];
+    let number = fields.split('"').nth(2)?.trim_start_matches(',');
+    let unit_m: f64 = number.split([',', ']']).next()?.trim().parse().ok()?;
+    Some(if (unit_m - SURVEY_FOOT_M).abs() < 1e-12 { SURVEY_FOOT_M } else { unit_m })
+}
+
+/// The nodes and values directly inside the outermost brackets of a WKT text, its name left out.
+pub(crate) fn children(wkt: &str) -> Vec<String> {
+    let Some(open) = wkt.find('[') else { return Vec::new() };
+    let mut parts = vec![String::new()];
+    let (mut depth, mut in_quotes) = (0, false);
+    for letter in wkt[open + 1..].chars() {
+        match letter {
+            '"' => in_quotes = !in_quotes,
+            '[' if !in_quotes => depth += 1,
+            ']' if !in_quotes && depth == 0 => break,
+            ']' if !in_quotes => depth -= 1,
+            ',' if !in_quotes && depth == 0 => {
+                parts.push(String::new());
+                continue;
+            }
+            _ => {}
+        }
+        if let Some(part) = parts.last_mut() {
+            part.push(letter);
+        }
+    }
+    let is_named = parts[0].trim_start().starts_with('"');
+    parts.iter().map(|part| part.trim().to_owned()).skip(usize::from(is_named)).collect()
+}
+
+/// The child node with one of these keywords.
+pub(crate) fn child(wkt: &str, keywords: &[&str]) -> Option<String> {
+    children(wkt).into_iter().find(|part| part.contains('[') && keywords.contains(&keyword(part)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wkt_is_taken_apart_at_its_own_commas() {
+        let wkt = r#"PROJCS["a, b",GEOGCS["x [y]",1,2],UNIT["m",1]]"#;
+        assert_eq!(children(wkt), [r#"GEOGCS["x [y]",1,2]"#, r#"UNIT["m",1]"#]);
+        assert_eq!((quoted(wkt), keyword(wkt)), (Some("a, b"), "PROJCS"));
+        assert_eq!(child(wkt, &["UNIT"]).as_deref(), Some(r#"UNIT["m",1]"#));
+        assert_eq!(child(wkt, &["AXIS"]), None);
+    }
+
+    #[test]
+    fn the_survey_foot_is_exact() {
+        let unit = |digits: &str| length_unit_m(&format!(r#"X["a",LENGTHUNIT["foot",{digits}]]"#));
+        assert_eq!(unit("0.304800609601219"), Some(1200.0 / 3937.0));
+        assert_eq!(unit("0.3048"), Some(0.3048));
+        assert_eq!(length_unit_m(r#"X["a"]"#), None);
+    }
+}

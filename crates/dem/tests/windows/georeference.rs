@@ -1,0 +1,265 @@
+//! Where rasters lie: tie points, seams of the globe, poles, and rasters too small to enclose ground.
+
+use std::path::{Path, PathBuf};
+
+use corniche_dem::{OpenOptions, PlanOptions, Resampling};
+use corniche_geom::Projection;
+use gdal::Gcp;
+use gdal::spatial_ref::SpatialRef;
+
+use crate::fixture::{
+    Raster, Space, all, check, check_heights, check_refused, open, options, plan,
+};
+
+const UTM: [f64; 6] = [500_003.0, 10.0, 0.0, 5_200_507.0, 0.0, -10.0];
+
+fn plane([x, y]: [f64; 2]) -> f64 {
+    500.0 + (x - 500_000.0) / 10.0 + (y - 5_200_000.0) / 5.0
+}
+
+fn tied<'a>(bend_m: f64) -> Raster<'a> {
+    Raster::new(0, [60, 50], [0.0; 6]).tagged(move |dataset| {
+        let tie = |pixel: f64, line: f64, bend_m: f64| Gcp {
+            id: String::new(),
+            info: String::new(),
+            pixel,
+            line,
+            x: UTM[0] + 10.0 * pixel + bend_m,
+            y: UTM[3] - 10.0 * line,
+            z: 0.0,
+        };
+        let ties = vec![
+            tie(0.0, 0.0, 0.0),
+            tie(60.0, 0.0, 0.0),
+            tie(0.0, 50.0, 0.0),
+            tie(60.0, 50.0, bend_m),
+        ];
+        dataset.set_gcps(ties, &SpatialRef::from_epsg(32632).unwrap()).unwrap();
+    })
+}
+
+/// Of a raster that has no geotransform its pixels' positions are unknown to the fixture.
+fn untied_plane() -> impl Fn([f64; 2]) -> f64 {
+    let next = std::cell::Cell::new(0_u32);
+    move |_| {
+        let k = next.replace(next.get() + 1);
+        plane([UTM[0] + 10.0 * f64::from(k % 60) + 5.0, UTM[3] - 10.0 * f64::from(k / 60) - 5.0])
+    }
+}
+
+#[test]
+fn tie_points_serve_when_they_agree_upon_a_map() {
+    let folder = tempfile::tempdir().unwrap();
+    let given = OpenOptions::default();
+    let good = [tied(0.0).write(folder.path(), "ties.tif", untied_plane())];
+    let count = check_heights("ties", &good, &given, (Space::Working, 1e-3), plane);
+    assert_eq!(count, 3000);
+    let bent = [tied(30.0).write(folder.path(), "bent.tif", untied_plane())];
+    check_refused(&bent, &given, &["bent.tif", "georeference", "gdal_translate"]);
+}
+
+#[test]
+fn rasters_without_place_or_with_an_unusable_one_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let given = OpenOptions { dem_crs: Some("EPSG:32632".to_owned()), ..OpenOptions::default() };
+    for (name, coefficients, words) in [
+        ("none.tif", [0.0; 6], "georeference"),
+        ("flat.tif", [500_000.0, 10.0, 10.0, 5_200_000.0, 10.0, 10.0], "no inverse"),
+        ("nan.tif", [500_000.0, f64::NAN, 0.0, 5_200_000.0, 0.0, -10.0], "geo"),
+    ] {
+        let path = Raster::new(0, [6, 5], coefficients).write(folder.path(), name, |_| 1.0_f32);
+        check_refused(&[path], &given, &[name, words, "gdal_translate"]);
+    }
+    // Degrees that lie on no globe.
+    let path = Raster::new(4326, [6, 5], [500_000.0, 10.0, 0.0, 5_200_000.0, 0.0, -10.0]).write(
+        folder.path(),
+        "metres-as-degrees.tif",
+        |_| 1.0_f32,
+    );
+    let words = ["metres-as-degrees.tif", "no longitude and latitude", "-a_srs"];
+    check_refused(&[path], &OpenOptions::default(), &words);
+}
+
+#[test]
+fn a_single_row_or_column_is_refused_and_a_square_of_four_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let given = OpenOptions::default();
+    for (epsg, corner, step) in
+        [(32632, [500_000.0, 5_200_000.0], 10.0), (4326, [9.0, 47.0], 0.001)]
+    {
+        let frame = [corner[0], step, 0.0, corner[1], 0.0, -step];
+        for size in [[1, 1], [1, 7], [7, 1]] {
+            let name = format!("{epsg}-{}x{}.tif", size[0], size[1]);
+            let path = Raster::new(epsg, size, frame).write(folder.path(), &name, |_| 1.0_f32);
+            let says = format!("{} × {} samples", size[0], size[1]);
+            check_refused(&[path], &given, &[&name, &says, "2 × 2"]);
+        }
+    }
+    let four = Raster::new(32632, [2, 2], UTM).write(folder.path(), "four.tif", plane);
+    assert_eq!(check_heights("2×2", &[four], &given, (Space::Working, 1e-4), plane), 4);
+    let two = Raster::new(32632, [2, 9], UTM).write(folder.path(), "two.tif", plane);
+    assert_eq!(check_heights("2×9", &[two], &given, (Space::Working, 1e-4), plane), 18);
+    // 2 × 2 samples 76 m and 111 m apart enclose a node or two of the 75 m grid.
+    let lonlat = |[lon, lat]: [f64; 2]| lon * 1000.0 + lat * 2000.0;
+    let four = Raster::new(4326, [2, 2], [9.0, 0.001, 0.0, 47.0, 0.0, -0.001]).write(
+        folder.path(),
+        "degrees.tif",
+        lonlat,
+    );
+    let count = check_heights("2×2 degrees", &[four], &given, (Space::Degrees, 0.02), lonlat);
+    assert!((1..=4).contains(&count), "{count}");
+    // Single columns side by side are ground together.
+    let columns: Vec<PathBuf> = (0..5)
+        .map(|k| {
+            let frame = [UTM[0] + 10.0 * f64::from(k), 10.0, 0.0, UTM[3], 0.0, -10.0];
+            let name = format!("column-{k}.tif");
+            Raster::new(32632, [1, 9], frame).write(folder.path(), &name, plane)
+        })
+        .collect();
+    assert_eq!(check_heights("columns", &columns, &given, (Space::Working, 1e-4), plane), 45);
+}
+
+/// A function of the place that is linear in degrees near the antimeridian, seen from either side.
+fn beyond([lon, lat]: [f64; 2]) -> f64 {
+    let east = if lon < 0.0 { lon + 180.0 } else { lon - 180.0 };
+    1000.0 + east * 1000.0 + lat * 500.0
+}
+
+fn square(folder: &Path, name: &str, west: f64, north: f64, size: [usize; 2]) -> PathBuf {
+    Raster::new(4326, size, [west, 0.01, 0.0, north, 0.0, -0.01]).write(
+        folder,
+        name,
+        |[lon, lat]| beyond([lon - 360.0 * ((lon + 180.0) / 360.0).floor(), lat]),
+    )
+}
+
+/// However files name longitudes, 180° is no border: no gap between the last column and the first.
+#[test]
+fn the_antimeridian_is_no_seam() {
+    let folder = tempfile::tempdir().unwrap();
+    let given = OpenOptions::default();
+    let east = square(folder.path(), "east.tif", 179.0, -16.0, [100, 80]);
+    let west = square(folder.path(), "west.tif", -180.0, -16.0, [100, 80]);
+    let one = square(folder.path(), "one.tif", 179.0, -16.0, [200, 80]);
+    let other = square(folder.path(), "other.tif", -181.0, -16.0, [200, 80]);
+    let count = |name: &str, files: &[PathBuf]| {
+        let dem = open(files);
+        let plan = plan(&dem);
+        assert!(plan.wgs84_bounds.width() < 2.1, "{name}: {:?}", plan.wgs84_bounds);
+        check_heights(name, files, &given, (Space::Degrees, 0.05), beyond)
+    };
+    let whole = count("one file", &[one]);
+    assert!(whole > 14_000, "{whole}");
+    assert_eq!(count("from -181", &[other]), whole);
+    assert_eq!(count("east, west", &[east.clone(), west.clone()]), whole);
+    assert_eq!(count("west, east", &[west, east]), whole);
+}
+
+#[test]
+fn utm_crosses_the_antimeridian() {
+    let folder = tempfile::tempdir().unwrap();
+    // Zone 60 ends some 320 km east of its meridian at this latitude; half of the raster lies beyond.
+    let corner = [800_000.0, 500.0, 0.0, 8_200_000.0, 0.0, -500.0];
+    let truth = |[x, y]: [f64; 2]| x / 1000.0 + y / 10_000.0;
+    let path = Raster::new(32760, [80, 60], corner).write(folder.path(), "fiji.tif", truth);
+    let dem = open(std::slice::from_ref(&path));
+    let plan = plan(&dem);
+    assert!(plan.wgs84_bounds.min_x < 180.0 && plan.wgs84_bounds.max_x > 180.0);
+    assert_eq!((plan.crs.as_str(), plan.case), ("EPSG:32760", Resampling::Aligned));
+    let given = OpenOptions::default();
+    assert_eq!(check_heights("UTM 60", &[path], &given, (Space::Working, 1e-3), truth), 4800);
+}
+
+/// All around the earth: no void but the caps beyond the last rows and, opposite to the projection's centre, one
+/// cell about the point that it cannot show.
+#[test]
+fn a_global_grid_has_no_seam() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, west, columns) in
+        [("from-180.tif", -180.0, 360), ("from-0.tif", 0.0, 360), ("both-ends.tif", -180.5, 361)]
+    {
+        let path = Raster::new(4326, [columns, 180], [west, 1.0, 0.0, 90.0, 0.0, -1.0]).write(
+            folder.path(),
+            name,
+            |[_, lat]| lat * 10.0,
+        );
+        let dem = open(&[path]);
+        let plan = dem.plan(&PlanOptions { cell_m: Some(80_000.0), ..options() }).unwrap();
+        let projection = dem.projection(&plan).unwrap();
+        let mut reader = dem.reader(&plan).unwrap();
+        let truth = |at: [f64; 2]| {
+            let mut points = [at];
+            projection.wgs84_from_working(&mut points).unwrap();
+            points[0][1] * 10.0
+        };
+        check(&mut reader, &plan, 0.01, truth);
+        let window = all(&plan);
+        let heights = reader.window(window).unwrap().heights;
+        let mut voids = Vec::new();
+        for row in 0..window.rows {
+            for column in 0..window.columns {
+                let node = window.node(column, row);
+                let mut at = [[plan.frame.x_m(node.i), plan.frame.y_m(node.j)]];
+                projection.wgs84_from_working(&mut at).unwrap();
+                // Half a degree of the pole lies beyond the centres of the last row.
+                if at[0][1].abs() < 89.49 && !heights.has_height(column, row) {
+                    voids.push(at[0]);
+                }
+            }
+        }
+        assert!(
+            voids.is_empty(),
+            "{name}: no height at {} nodes, such as {:?}",
+            voids.len(),
+            voids[0]
+        );
+    }
+}
+
+/// Samples up to both poles and on them, in degrees, in polar stereographic and in universal polar coordinates.
+#[test]
+fn the_poles_are_covered_as_far_as_samples_go() {
+    let folder = tempfile::tempdir().unwrap();
+    let given = OpenOptions::default();
+    for (name, north) in [("north.tif", 90.0), ("south.tif", -85.0)] {
+        let truth = |[_, lat]: [f64; 2]| lat * 100.0;
+        let path = Raster::new(4326, [360, 50], [-180.0, 1.0, 0.0, north, 0.0, -0.1]).write(
+            folder.path(),
+            name,
+            truth,
+        );
+        let dem = open(std::slice::from_ref(&path));
+        let plan = dem.plan(&PlanOptions { cell_m: Some(12_000.0), ..options() }).unwrap();
+        assert!(plan.crs.starts_with("Lambert"), "{}", plan.crs);
+        let projection = dem.projection(&plan).unwrap();
+        let count = check(&mut dem.reader(&plan).unwrap(), &plan, 0.02, |mut at| {
+            projection.wgs84_from_working(std::slice::from_mut(&mut at)).unwrap();
+            truth(at)
+        });
+        let disc = std::f64::consts::PI * (550.0_f64 / 12.0).powi(2);
+        assert!(count as f64 > 0.97 * disc, "{name}: {count} of {disc}");
+    }
+    for (epsg, crs) in
+        [(3413, "Lambert"), (3031, "Lambert"), (5041, "EPSG:5041"), (5042, "EPSG:5042")]
+    {
+        let middle = if epsg > 5000 { 2_000_000.0 } else { 0.0 };
+        let truth = move |[x, y]: [f64; 2]| (x - middle) / 1000.0 + (y - middle) / 2000.0;
+        let corner = [middle - 50_500.0, 1000.0, 0.0, middle + 50_500.0, 0.0, -1000.0];
+        let path = Raster::new(epsg, [101, 101], corner).write(
+            folder.path(),
+            &format!("{epsg}.tif"),
+            truth,
+        );
+        let dem = open(std::slice::from_ref(&path));
+        let plan = plan(&dem);
+        assert!(plan.crs.starts_with(crs), "{epsg}: {}", plan.crs);
+        if plan.case == Resampling::Aligned {
+            let count = check_heights(&plan.crs, &[path], &given, (Space::Working, 1e-3), truth);
+            assert_eq!(count, 101 * 101);
+        } else {
+            // Both are azimuthal about the pole, so that a radius is a radius; checked where it is exact: on the pole.
+            let window = dem.reader(&plan).unwrap().window(all(&plan)).unwrap();
+            assert!(window.heights.count_heights() > 9_500);
+        }
+    }
+}

@@ -1,0 +1,126 @@
+use corniche_geom::{TILE_CELLS, TileId};
+
+/// Which stretches of its four borders a tile owns: what runs exactly along a border of two tiles must be kept
+/// by one of them, and only one, so that nothing is drawn twice and lengths add up.
+///
+/// Ground is closed: its outline belongs to it. So a stretch of border belongs to the tile that has ground
+/// beside it, and where that does not decide, to the tile in the east or south, as in `Frame::tile_column_row`.
+/// Both tiles see the cells on both sides (the other's through their halo) and decide alike, cell by cell:
+///
+/// ```text
+///       west tile │ east tile        the stretch belongs to
+///          void   │  ground     ►    the eastern
+///        ground   │  ground     ►    the eastern
+///        ground   │   void      ◄    the western: the eastern has nothing to lay a line on
+///          void   │   void      ►    the eastern, which counts it as over no ground
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OwnedBorders {
+    north: Cells,
+    east: Cells,
+    south: Cells,
+    west: Cells,
+}
+
+/// Which neighbours are asked for what runs along the border shared with them, be it only to count it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Neighbours {
+    /// The one in the east.
+    pub east: bool,
+    /// The one in the south.
+    pub south: bool,
+}
+
+/// A border of a tile.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Border {
+    North,
+    East,
+    South,
+    West,
+}
+
+/// A bit for each of a border's 256 cells, from the west or from the north; bit k of word 0 is cell k.
+type Cells = [u64; 4];
+
+const NONE: Cells = [0; 4];
+const EVERY: Cells = [u64::MAX; 4];
+
+impl OwnedBorders {
+    /// All four, whole.
+    pub const ALL: Self = Self { north: EVERY, east: EVERY, south: EVERY, west: EVERY };
+
+    /// What a tile owns in its level where ground is everywhere: its west and north border, and its east or
+    /// south one at the edge of the root.
+    #[must_use]
+    pub fn of_tile(id: TileId) -> Self {
+        let there = |east, south| id.neighbour(east, south).is_some();
+        Self::among(Neighbours { east: there(1, 0), south: there(0, 1) })
+    }
+
+    /// What a tile owns among these neighbours where ground is everywhere.
+    #[must_use]
+    pub fn among(neighbours: Neighbours) -> Self {
+        let unless = |neighbour: bool| if neighbour { NONE } else { EVERY };
+        let (east, south) = (unless(neighbours.east), unless(neighbours.south));
+        Self { north: EVERY, east, south, west: EVERY }
+    }
+
+    /// The same where `ground(column, row)` says which cells have ground: columns and rows of the tile's own cells
+    /// are 0 to 255, counted from the north-west; −1 and 256 are the neighbours' cells beside it.
+    #[must_use]
+    pub fn where_ground(mut self, ground: impl Fn(i64, i64) -> bool) -> Self {
+        let last = TILE_CELLS - 1;
+        let settle =
+            |cells: &mut Cells, own: &dyn Fn(i64) -> bool, beyond: &dyn Fn(i64) -> bool| {
+                for cell in 0..TILE_CELLS {
+                    let (word, bit) = (cell as usize / 64, 1 << (cell % 64));
+                    match (own(cell), beyond(cell)) {
+                        (true, false) => cells[word] |= bit,
+                        (false, true) => cells[word] &= !bit,
+                        (true, true) | (false, false) => {}
+                    }
+                }
+            };
+        settle(&mut self.north, &|column| ground(column, 0), &|column| ground(column, -1));
+        settle(&mut self.south, &|column| ground(column, last), &|column| ground(column, last + 1));
+        settle(&mut self.west, &|row| ground(0, row), &|row| ground(-1, row));
+        settle(&mut self.east, &|row| ground(last, row), &|row| ground(last + 1, row));
+        self
+    }
+
+    /// As sixteen words, for storage: north, east, south, west.
+    #[must_use]
+    pub fn to_words(self) -> [u64; 16] {
+        let mut words = [0; 16];
+        let borders = [self.north, self.east, self.south, self.west];
+        words.iter_mut().zip(borders.as_flattened()).for_each(|(word, &cells)| *word = cells);
+        words
+    }
+
+    /// From what [`OwnedBorders::to_words`] gave.
+    #[must_use]
+    pub fn from_words(words: [u64; 16]) -> Self {
+        let border =
+            |n: usize| [words[4 * n], words[4 * n + 1], words[4 * n + 2], words[4 * n + 3]];
+        Self { north: border(0), east: border(1), south: border(2), west: border(3) }
+    }
+
+    /// The next run of owned cells of a border from cell `from` on: first, and one past the last.
+    pub(crate) fn next_run(&self, border: Border, from: i64) -> Option<[i64; 2]> {
+        let cells = match border {
+            Border::North => &self.north,
+            Border::East => &self.east,
+            Border::South => &self.south,
+            Border::West => &self.west,
+        };
+        let owns = |cell: &i64| cells[*cell as usize / 64] >> (cell % 64) & 1 == 1;
+        let first = (from..TILE_CELLS).find(owns)?;
+        let end = (first..TILE_CELLS).find(|cell| !owns(cell)).unwrap_or(TILE_CELLS);
+        Some([first, end])
+    }
+}
+
+#[cfg(test)]
+#[path = "owned_borders_tests.rs"]
+mod tests;

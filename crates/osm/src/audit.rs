@@ -1,0 +1,317 @@
+//! What must hold of a block before the decoder sees it.
+//!
+//! The decoder adds up differences without a check, stops at the end of the shorter of two arrays that belong together,
+//! passes over fields of the wrong kind, and makes objects of a hundred bytes and more out of three. On a sound file none of
+//! this matters; on a damaged one it would lose roads in silence, move them, or fill the memory. So each block is walked
+//! through once, with nothing kept, and refused when something of it is not as the format has it
+//! (OSM wiki, *PBF Format*; `osmformat.proto`).
+
+use crate::wire::{self, Value, WireError, zigzag};
+
+/// Decoding a block may take at most this much memory, by an estimate that is never too low.
+///
+/// A block of 32 MiB of dense nodes, the most that a writer could mean, takes 360 MiB; an ordinary one of 8000 objects, 10.
+const MAX_DECODED_BYTES: u64 = 512 << 20;
+/// The largest record of the decoder, of a relation, has some 200 bytes; lists of records grow by doubling.
+const OBJECT_BYTES: u64 = 512;
+/// A number of eight bytes in a list that grows by doubling.
+const NUMBER_BYTES: u64 = 16;
+/// A text of a list that grows by doubling, without its letters.
+const TEXT_BYTES: u64 = 64;
+/// What is kept of a field that is not in the format: an entry of a map, with a list.
+const UNKNOWN_BYTES: u64 = 256;
+
+/// More tags than any object has by far.
+const MAX_TAGS: u64 = 1 << 16;
+
+/// Checks a block (message `PrimitiveBlock`).
+pub(crate) fn audit(block: &[u8]) -> Result<(), String> {
+    let mut audit = Audit { granularity: 100, offsets: [0; 2], texts: 0, decoded_bytes: 0 };
+    audit.frame(block)?;
+    for field in wire::fields(block) {
+        let field = field?;
+        if field.number == 2 {
+            audit.group(field.value.bytes()?)?;
+        }
+    }
+    Ok(())
+}
+
+struct Audit {
+    /// Nanodegrees in a step of the coordinates.
+    granularity: i64,
+    /// Latitude and longitude of the coordinates 0, nanodegrees.
+    offsets: [i64; 2],
+    texts: u64,
+    decoded_bytes: u64,
+}
+
+impl Audit {
+    /// What the objects refer to may come after them.
+    fn frame(&mut self, block: &[u8]) -> Result<(), String> {
+        let mut tables = 0;
+        for field in wire::fields(block) {
+            let field = field?;
+            let number = |value: Value<'_>| value.varint().map(u64::cast_signed);
+            match field.number {
+                1 => {
+                    tables += 1;
+                    for text in wire::fields(field.value.bytes()?) {
+                        let text = text?;
+                        if text.number == 1 {
+                            self.spend(TEXT_BYTES + text.value.bytes()?.len() as u64)?;
+                            self.texts += 1;
+                        } else {
+                            self.spend(UNKNOWN_BYTES)?;
+                        }
+                    }
+                }
+                2 => self.spend(OBJECT_BYTES)?,
+                17 => {
+                    self.granularity = number(field.value)?;
+                    if !(1..=i64::from(i32::MAX)).contains(&self.granularity) {
+                        return Err(format!("its granularity is {}", self.granularity));
+                    }
+                }
+                18 => drop(number(field.value)?),
+                19 => self.offsets[0] = number(field.value)?,
+                20 => self.offsets[1] = number(field.value)?,
+                _ => self.spend(UNKNOWN_BYTES)?,
+            }
+        }
+        // Of a message in several parts the decoder keeps only the last.
+        if tables > 1 { Err(format!("it has {tables} tables of strings")) } else { Ok(()) }
+    }
+
+    fn group(&mut self, group: &[u8]) -> Result<(), String> {
+        let mut lists = 0;
+        for field in wire::fields(group) {
+            let field = field?;
+            self.spend(OBJECT_BYTES)?;
+            match field.number {
+                1 => self.node(field.value.bytes()?)?,
+                2 => {
+                    lists += 1;
+                    self.dense(field.value.bytes()?)?;
+                }
+                3 => self.way(field.value.bytes()?)?,
+                4 | 5 => self.other(field.value.bytes()?)?,
+                _ => self.spend(UNKNOWN_BYTES)?,
+            }
+        }
+        if lists > 1 {
+            return Err("it has two lists of dense nodes in one group".to_owned());
+        }
+        Ok(())
+    }
+
+    fn node(&mut self, node: &[u8]) -> Result<(), String> {
+        let (mut id, mut place) = (0, [0; 2]);
+        for field in wire::fields(node) {
+            let field = field?;
+            match field.number {
+                1 => id = zigzag(field.value.varint()?),
+                2 | 3 => self.count(field.value)?,
+                4 => self.message(field.value.bytes()?)?,
+                8 | 9 => place[field.number as usize - 8] = zigzag(field.value.varint()?),
+                _ => self.spend(UNKNOWN_BYTES)?,
+            }
+        }
+        let is_placed = (0..2).all(|axis| self.nano_deg(axis, place[axis]).is_some());
+        if is_placed { Ok(()) } else { Err(format!("the place of node {id} overflows")) }
+    }
+
+    /// Arrays of ids and places, a difference for each node.
+    fn dense(&mut self, nodes: &[u8]) -> Result<(), String> {
+        let mut sums = [Sum::default(); 3];
+        let mut infos = 0;
+        for field in wire::fields(nodes) {
+            let field = field?;
+            match field.number {
+                1 => self.add_up(field.value, &mut sums[0], "the ids of its nodes")?,
+                8 | 9 => {
+                    let axis = field.number as usize - 8;
+                    self.add_up_places(field.value, axis, &mut sums[1 + axis])?;
+                }
+                5 => {
+                    infos += 1;
+                    self.dense_info(field.value.bytes()?)?;
+                }
+                10 => self.count(field.value)?,
+                _ => self.spend(UNKNOWN_BYTES)?,
+            }
+        }
+        let [ids, lats, lons] = sums.map(|sum| sum.count);
+        if (ids, ids) != (lats, lons) {
+            Err(format!("it lists {ids} nodes, {lats} latitudes and {lons} longitudes"))
+        } else if infos > 1 {
+            Err("it has two lists of what is known of its nodes".to_owned())
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Times, changesets and users: none of them is used, but the decoder adds them up.
+    fn dense_info(&mut self, info: &[u8]) -> Result<(), String> {
+        const WHAT: &str = "versions or users of its nodes";
+        let mut sums = [Sum::default(); 4];
+        for field in wire::fields(info) {
+            let field = field?;
+            match field.number {
+                1 | 6 => self.count(field.value)?,
+                2 | 3 => self.add_up(field.value, &mut sums[field.number as usize - 2], WHAT)?,
+                4 | 5 => {
+                    let sum = &mut sums[field.number as usize - 2];
+                    for step in field.value.numbers()? {
+                        let sum = sum.add(zigzag(step?));
+                        if sum.is_none_or(|sum| i32::try_from(sum).is_err()) {
+                            return Err(format!("{WHAT} overflow"));
+                        }
+                    }
+                    self.spend_on_numbers(field.value)?;
+                }
+                _ => self.spend(UNKNOWN_BYTES)?,
+            }
+        }
+        Ok(())
+    }
+
+    fn way(&mut self, way: &[u8]) -> Result<(), String> {
+        let (mut id, mut keys, mut values) = (0, 0, 0);
+        let mut nodes = Sum::default();
+        let mut places = [Sum::default(); 2];
+        for field in wire::fields(way) {
+            let field = field?;
+            match field.number {
+                1 => id = field.value.varint()?.cast_signed(),
+                2 => keys += self.text_numbers(id, field.value)?,
+                3 => values += self.text_numbers(id, field.value)?,
+                4 => self.message(field.value.bytes()?)?,
+                8 => self.add_up(field.value, &mut nodes, "the ids of a way's nodes")?,
+                9 | 10 => {
+                    let axis = field.number as usize - 9;
+                    self.add_up_places(field.value, axis, &mut places[axis])?;
+                }
+                _ => self.spend(UNKNOWN_BYTES)?,
+            }
+        }
+        let [lats, lons] = places.map(|sum| sum.count);
+        if keys != values {
+            Err(format!("way {id} has {keys} keys and {values} values"))
+        } else if keys > MAX_TAGS {
+            Err(format!("way {id} has {keys} tags"))
+        } else if lats != lons || (lats != 0 && lats != nodes.count) {
+            Err(format!(
+                "way {id} has {} nodes, {lats} latitudes and {lons} longitudes",
+                nodes.count
+            ))
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Relations and changesets are passed over, but the decoder reads them.
+    fn other(&mut self, object: &[u8]) -> Result<(), String> {
+        for field in wire::fields(object) {
+            let field = field?;
+            match (field.number, field.value) {
+                (1, Value::Varint(_)) => {}
+                (2 | 3 | 8..=10, value) => self.count(value)?,
+                (4, Value::Bytes(info)) => self.message(info)?,
+                _ => self.spend(UNKNOWN_BYTES)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// A message of single values that are not looked at.
+    fn message(&mut self, message: &[u8]) -> Result<(), String> {
+        self.spend(OBJECT_BYTES)?;
+        for field in wire::fields(message) {
+            let field = field?;
+            if field.number > 6 || field.value.varint().is_err() {
+                self.spend(UNKNOWN_BYTES)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds up differences.
+    fn add_up(&mut self, value: Value<'_>, sum: &mut Sum, what: &str) -> Result<(), String> {
+        for step in value.numbers()? {
+            sum.add(zigzag(step?)).ok_or_else(|| format!("{what} overflow"))?;
+        }
+        Ok(self.spend_on_numbers(value)?)
+    }
+
+    /// Adds up differences of places along an axis.
+    fn add_up_places(
+        &mut self,
+        value: Value<'_>,
+        axis: usize,
+        sum: &mut Sum,
+    ) -> Result<(), String> {
+        for step in value.numbers()? {
+            let nano_deg = sum.add(zigzag(step?)).and_then(|at| self.nano_deg(axis, at));
+            nano_deg.ok_or("places of its nodes overflow")?;
+        }
+        Ok(self.spend_on_numbers(value)?)
+    }
+
+    /// Checks that the table holds the texts with these numbers; says how many there are.
+    fn text_numbers(&mut self, way_id: i64, value: Value<'_>) -> Result<u64, String> {
+        let mut count = 0;
+        for number in value.numbers()? {
+            let number = number?;
+            count += 1;
+            if number >= self.texts {
+                let texts = self.texts;
+                return Err(format!(
+                    "a tag of way {way_id} is string {number} of a table of {texts}"
+                ));
+            }
+        }
+        self.spend_on_numbers(value)?;
+        Ok(count)
+    }
+
+    fn count(&mut self, value: Value<'_>) -> Result<(), String> {
+        if let Some(error) = value.numbers()?.find_map(Result::err) {
+            return Err(error.to_owned());
+        }
+        Ok(self.spend_on_numbers(value)?)
+    }
+
+    /// No number is shorter than a byte.
+    fn spend_on_numbers(&mut self, value: Value<'_>) -> Result<(), WireError> {
+        let most = if let Value::Bytes(bytes) = value { bytes.len() as u64 } else { 1 };
+        self.spend(most * NUMBER_BYTES)
+    }
+
+    fn spend(&mut self, bytes: u64) -> Result<(), WireError> {
+        self.decoded_bytes += bytes;
+        if self.decoded_bytes > MAX_DECODED_BYTES {
+            return Err("it holds more than fits 512 MiB of memory");
+        }
+        Ok(())
+    }
+
+    fn nano_deg(&self, axis: usize, steps: i64) -> Option<i64> {
+        self.offsets[axis].checked_add(self.granularity.checked_mul(steps)?)
+    }
+}
+
+/// A sum of differences and how many there were.
+#[derive(Default, Clone, Copy)]
+struct Sum {
+    sum: i64,
+    count: u64,
+}
+
+impl Sum {
+    fn add(&mut self, step: i64) -> Option<i64> {
+        self.sum = self.sum.checked_add(step)?;
+        self.count += 1;
+        Some(self.sum)
+    }
+}

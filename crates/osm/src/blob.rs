@@ -1,0 +1,163 @@
+//! One blob: taken apart, unpacked within its limit, and handed to the decoder.
+//!
+//! The decoder could read blobs itself, but would take a packed block that is cut off, or too large, for its first part.
+
+use std::io::Read;
+
+use flate2::{Decompress, FlushDecompress, Status};
+use osmpbf::BlobReader;
+
+use crate::wire::{self, WireError};
+
+/// A blob header is smaller than this.
+///
+/// These two limits are those of the OSM wiki, *PBF Format*, "File format".
+pub(crate) const MAX_BLOB_HEADER_BYTES: u64 = 64 << 10;
+/// A blob is at most this large, and unpacked smaller than this.
+pub(crate) const MAX_BLOB_BYTES: u64 = 32 << 20;
+
+/// Why a blob was refused.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum BlobRefusal {
+    Damaged(String),
+    /// It is packed by this method.
+    Compression(&'static str),
+}
+
+impl From<WireError> for BlobRefusal {
+    fn from(reason: WireError) -> Self {
+        Self::Damaged(reason.to_owned())
+    }
+}
+
+/// What a blob header says.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct BlobHeader {
+    pub(crate) kind: String,
+    pub(crate) blob_bytes: u64,
+}
+
+impl BlobHeader {
+    /// Reads the message `BlobHeader` (`fileformat.proto`).
+    pub(crate) fn parse(message: &[u8]) -> Result<Self, BlobRefusal> {
+        let (mut kind, mut size) = (None, None);
+        for field in wire::fields(message) {
+            let field = field?;
+            match field.number {
+                1 => kind = Some(field.value.bytes()?),
+                3 => size = Some(field.value.varint()?.cast_signed()),
+                _ => {}
+            }
+        }
+        let kind = kind.ok_or("its header names no type")?;
+        let kind = str::from_utf8(kind).map_err(|_| "the type that its header names is no text")?;
+        let size = size.ok_or("its header gives no size")?;
+        match u64::try_from(size) {
+            Ok(blob_bytes) if blob_bytes <= MAX_BLOB_BYTES => {
+                Ok(Self { kind: kind.to_owned(), blob_bytes })
+            }
+            _ => Err(BlobRefusal::Damaged(format!("it claims to be {size} bytes long"))),
+        }
+    }
+}
+
+/// Takes the block out of a blob (message `Blob`), unpacked. It must be smaller than `limit_bytes`.
+pub(crate) fn unpack(blob: &[u8], limit_bytes: u64) -> Result<Vec<u8>, BlobRefusal> {
+    let (mut data, mut promised) = (None, None);
+    for field in wire::fields(blob) {
+        let field = field?;
+        match field.number {
+            1 | 3..=7 => {
+                if data.replace((field.number, field.value.bytes()?)).is_some() {
+                    return Err(BlobRefusal::Damaged("it holds its data twice".into()));
+                }
+            }
+            2 => promised = Some(field.value.varint()?.cast_signed()),
+            _ => {}
+        }
+    }
+    let (method, data) = data.ok_or("it holds no data")?;
+    let too_large = |size: i64| {
+        let reason = format!("unpacked it is {size} bytes long, of at most {}", limit_bytes - 1);
+        Err(BlobRefusal::Damaged(reason))
+    };
+    let limit = limit_bytes.cast_signed();
+    match promised {
+        Some(promised) if !(0..limit).contains(&promised) => return too_large(promised),
+        _ => {}
+    }
+    let block = match method {
+        1 if data.len() as u64 >= limit_bytes => return too_large(data.len() as i64),
+        1 => data.to_vec(),
+        3 => inflate(data, promised.unwrap_or(limit - 1) as usize)?,
+        4 => return Err(BlobRefusal::Compression("LZMA")),
+        5 => return Err(BlobRefusal::Compression("bzip2")),
+        6 => return Err(BlobRefusal::Compression("LZ4")),
+        _ => return Err(BlobRefusal::Compression("zstd")),
+    };
+    match promised {
+        Some(promised) if promised != block.len() as i64 => Err(BlobRefusal::Damaged(format!(
+            "it promises {promised} bytes and unpacks to {}",
+            block.len()
+        ))),
+        _ => Ok(block),
+    }
+}
+
+/// Unpacks a whole zlib stream of at most `most_bytes`; its checksum must be right and nothing may follow it.
+fn inflate(packed: &[u8], most_bytes: usize) -> Result<Vec<u8>, BlobRefusal> {
+    /// Deflate makes at most 1032 bytes of one (zlib, *Technical Details*), so this much never needs more room than it has.
+    const MOST_GROWTH: usize = 1032;
+    let damaged = |reason: &str| Err(BlobRefusal::Damaged(reason.to_owned()));
+    // One byte more than is right, so that a stream that goes on is told from one that ends.
+    let room = most_bytes.min(packed.len().saturating_mul(MOST_GROWTH)) + 1;
+    let mut block = Vec::with_capacity(room);
+    let mut stream = Decompress::new(true);
+    loop {
+        let before = (stream.total_in(), stream.total_out());
+        let rest = &packed[before.0 as usize..];
+        match stream.decompress_vec(rest, &mut block, FlushDecompress::Finish) {
+            Ok(Status::StreamEnd) if stream.total_in() < packed.len() as u64 => {
+                return damaged("its packed data goes on after its end");
+            }
+            Ok(Status::StreamEnd) if block.len() <= most_bytes => return Ok(block),
+            Ok(_) if block.len() > most_bytes => {
+                return damaged(&format!("it unpacks to more than {most_bytes} bytes"));
+            }
+            Ok(_) if (stream.total_in(), stream.total_out()) == before => {
+                return damaged("its packed data is cut off");
+            }
+            Ok(_) => {}
+            Err(_) => {
+                return damaged("its packed data is no zlib stream, or its checksum is wrong");
+            }
+        }
+    }
+}
+
+/// Hands a block to the decoder, as a raw blob of its own.
+pub(crate) fn decoder_blob(kind: &str, block: &[u8]) -> Result<osmpbf::Blob, osmpbf::Error> {
+    let mut raw = vec![0x0a];
+    push_varint(&mut raw, block.len() as u64);
+    let mut header = vec![0x0a, kind.len() as u8];
+    header.extend_from_slice(kind.as_bytes());
+    header.push(0x18);
+    push_varint(&mut header, (raw.len() + block.len()) as u64);
+    let mut start = (header.len() as u32).to_be_bytes().to_vec();
+    start.append(&mut header);
+    start.append(&mut raw);
+    let no_blob = || std::io::Error::from(std::io::ErrorKind::UnexpectedEof).into();
+    BlobReader::new(start.chain(block)).next().unwrap_or_else(|| Err(no_blob()))
+}
+
+fn push_varint(bytes: &mut Vec<u8>, mut number: u64) {
+    while number > 0x7f {
+        bytes.push(number as u8 | 0x80);
+        number >>= 7;
+    }
+    bytes.push(number as u8);
+}
+
+#[cfg(test)]
+#[path = "blob_tests.rs"]
+mod tests;

@@ -1,0 +1,195 @@
+//! The wire format of protocol buffers, read in place: no schema, no allocation, every step checked.
+//!
+//! Source: Google, *Protocol Buffers Documentation* (2024), "Encoding".
+
+/// Why bytes are no message.
+pub(crate) type WireError = &'static str;
+
+/// A field of a message.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Field<'a> {
+    pub(crate) number: u32,
+    pub(crate) value: Value<'a>,
+}
+
+/// What a field holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Value<'a> {
+    Varint(u64),
+    /// A message, a text, or numbers packed.
+    Bytes(&'a [u8]),
+    /// Four or eight bytes; no message of the format has such a field.
+    Fixed,
+}
+
+/// The fields of a message; nothing follows an error.
+pub(crate) fn fields(message: &[u8]) -> Fields<'_> {
+    Fields { rest: message }
+}
+
+#[derive(Debug, Clone)]
+pub(crate) struct Fields<'a> {
+    rest: &'a [u8],
+}
+
+impl<'a> Iterator for Fields<'a> {
+    type Item = Result<Field<'a>, WireError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.rest.is_empty() {
+            return None;
+        }
+        let field = self.field();
+        if field.is_err() {
+            self.rest = &[];
+        }
+        Some(field)
+    }
+}
+
+impl<'a> Fields<'a> {
+    fn field(&mut self) -> Result<Field<'a>, WireError> {
+        let key = varint(&mut self.rest)?;
+        let number = u32::try_from(key >> 3).map_err(|_| "a field's number is too large")?;
+        if number == 0 {
+            return Err("a field has the number 0");
+        }
+        let value = match key & 7 {
+            0 => Value::Varint(varint(&mut self.rest)?),
+            1 => self.take(8).map(|_| Value::Fixed)?,
+            2 => {
+                let len = varint(&mut self.rest)?;
+                Value::Bytes(self.take(len)?)
+            }
+            5 => self.take(4).map(|_| Value::Fixed)?,
+            _ => return Err("a field is of a kind that is not in use"),
+        };
+        Ok(Field { number, value })
+    }
+
+    fn take(&mut self, len: u64) -> Result<&'a [u8], WireError> {
+        let (taken, rest) = usize::try_from(len)
+            .ok()
+            .and_then(|len| self.rest.split_at_checked(len))
+            .ok_or("a field reaches beyond its message")?;
+        self.rest = rest;
+        Ok(taken)
+    }
+}
+
+impl<'a> Value<'a> {
+    pub(crate) fn bytes(self) -> Result<&'a [u8], WireError> {
+        match self {
+            Self::Bytes(bytes) => Ok(bytes),
+            Self::Varint(_) | Self::Fixed => Err("a field is not of the kind it should be"),
+        }
+    }
+
+    pub(crate) fn varint(self) -> Result<u64, WireError> {
+        match self {
+            Self::Varint(number) => Ok(number),
+            Self::Bytes(_) | Self::Fixed => Err("a field is not of the kind it should be"),
+        }
+    }
+
+    /// The numbers of a repeated field, packed or one by one.
+    pub(crate) fn numbers(self) -> Result<Numbers<'a>, WireError> {
+        match self {
+            Self::Varint(number) => Ok(Numbers { single: Some(number), rest: &[] }),
+            Self::Bytes(bytes) => Ok(Numbers { single: None, rest: bytes }),
+            Self::Fixed => Err("a field is not of the kind it should be"),
+        }
+    }
+}
+
+#[derive(Debug, Clone)]
+pub(crate) struct Numbers<'a> {
+    single: Option<u64>,
+    rest: &'a [u8],
+}
+
+impl Iterator for Numbers<'_> {
+    type Item = Result<u64, WireError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if let Some(number) = self.single.take() {
+            return Some(Ok(number));
+        }
+        if self.rest.is_empty() {
+            return None;
+        }
+        let number = varint(&mut self.rest);
+        if number.is_err() {
+            self.rest = &[];
+        }
+        Some(number)
+    }
+}
+
+/// Seven bits a byte, least first, the top bit set on all bytes but the last.
+#[inline]
+fn varint(rest: &mut &[u8]) -> Result<u64, WireError> {
+    let mut number = 0;
+    for (place, &byte) in rest.iter().take(10).enumerate() {
+        if place == 9 && byte > 1 {
+            return Err("a number does not fit 64 bits");
+        }
+        number |= u64::from(byte & 0x7f) << (7 * place);
+        if byte < 0x80 {
+            *rest = &rest[place + 1..];
+            return Ok(number);
+        }
+    }
+    Err("a number has no end")
+}
+
+/// The signed number behind a zigzag varint: 0, -1, 1, -2, …
+pub(crate) const fn zigzag(number: u64) -> i64 {
+    (number >> 1).cast_signed() ^ -(number & 1).cast_signed()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(message: &[u8], expected: Result<&[Field<'_>], WireError>) {
+        let found: Result<Vec<_>, _> = fields(message).collect();
+        assert_eq!(found.as_deref().map_err(|error| *error), expected);
+    }
+
+    #[test]
+    fn fields_are_told_apart_and_what_is_no_field_is_refused() {
+        let field = |number, value| Field { number, value };
+        check(b"", Ok(&[]));
+        // The examples of the documentation: a = 150, b = "testing".
+        check(b"\x08\x96\x01", Ok(&[field(1, Value::Varint(150))]));
+        check(b"\x12\x07testing", Ok(&[field(2, Value::Bytes(b"testing"))]));
+        check(b"\x0d....\x11........", Ok(&[field(1, Value::Fixed), field(2, Value::Fixed)]));
+        let largest = b"\x08\xff\xff\xff\xff\xff\xff\xff\xff\xff\x01";
+        check(largest, Ok(&[field(1, Value::Varint(u64::MAX))]));
+        check(
+            b"\x08\xff\xff\xff\xff\xff\xff\xff\xff\xff\x02",
+            Err("a number does not fit 64 bits"),
+        );
+        check(
+            b"\x08\x80\x80\x80\x80\x80\x80\x80\x80\x80\x80\x01",
+            Err("a number does not fit 64 bits"),
+        );
+        check(b"\x08\x80", Err("a number has no end"));
+        check(b"\x12\x08testing", Err("a field reaches beyond its message"));
+        check(b"\x0d...", Err("a field reaches beyond its message"));
+        check(
+            b"\x12\xff\xff\xff\xff\xff\xff\xff\xff\xff\x01",
+            Err("a field reaches beyond its message"),
+        );
+        check(b"\x0b", Err("a field is of a kind that is not in use"));
+        check(b"\x00\x00", Err("a field has the number 0"));
+    }
+
+    #[test]
+    fn signs_come_back_to_the_very_ends() {
+        let found = [0, 1, 2, 3, u64::MAX - 1, u64::MAX].map(zigzag);
+        assert_eq!(found, [0, -1, 1, -2, i64::MAX, i64::MIN]);
+    }
+}

@@ -1,0 +1,183 @@
+//! What a manifest must keep to, so that whoever reads it can calculate with it without asking again.
+//!
+//! Numbers of a package are foreign: a count of 2^64 − 1 would overflow the first sum, a coordinate of 1e308 the first
+//! product, and a not-a-number would pass every comparison the wrong way.
+
+use corniche_geom::Bounds;
+
+use super::{Counts, Distribution, GrowthRow, LevelRecord, Manifest};
+
+/// No length, height or coordinate is larger: far beyond every planet, and its square still fits an f32.
+pub(crate) const MAX_MEASURE_M: f64 = 1e18;
+/// Heights are 32-bit steps of the quantum, so they stay below 2^(31 + 27) metres and within [`MAX_MEASURE_M`].
+const QUANTUM_EXPONENTS: std::ops::RangeInclusive<i32> = -64..=27;
+/// No single count and no sum of a list of counts is larger: as many nodes as a grid of 2^22 tiles a side has, with
+/// their borders counted twice. Sixteen such numbers can be added in 64 bits.
+const MAX_COUNT: u64 = 1 << 61;
+/// Length in the working CRS over true length: Mercator reaches 57 a degree from the pole.
+const POINT_SCALES: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
+/// Classes 0 to 8.
+const CLASSES: usize = corniche_roads::FunctionalRoadClass::COUNT;
+
+/// Whether heights can be whole steps of it: a power of two of usable size.
+pub(crate) fn is_height_quantum(quantum_m: f64) -> bool {
+    QUANTUM_EXPONENTS
+        .into_iter()
+        .any(|exponent| quantum_m.to_bits() == 2_f64.powi(exponent).to_bits())
+}
+
+impl Manifest {
+    /// What is wrong with it, if anything.
+    pub(crate) fn check(&self) -> Result<(), String> {
+        let frame = &self.frame;
+        all_measures("frame.origin_m", &frame.origin_m())?;
+        bounds("data_bounds", &self.data_bounds, [MAX_MEASURE_M; 2])?;
+        // Longitudes go on beyond 180° where the data crosses the antimeridian.
+        bounds("wgs84_bounds", &self.wgs84_bounds, [720.0, 90.0])?;
+        bounds("coordinates.bounds", &self.coordinates.bounds(), [MAX_MEASURE_M; 2])?;
+        that(POINT_SCALES.contains(&self.point_scale), "point_scale", self.point_scale)?;
+        let quantum_m = self.vertical.quantum_m;
+        that(is_height_quantum(quantum_m), "vertical.quantum_m", quantum_m)?;
+        let [low_m, high_m] = self.vertical.range_m;
+        // Heights as they were read, nonsense included, but within an f32.
+        let is_range =
+            low_m <= high_m && low_m >= f64::from(f32::MIN) && high_m <= f64::from(f32::MAX);
+        that(is_range, "vertical.range_m", format_args!("{:?}", self.vertical.range_m))?;
+        self.check_settings()?;
+        let levels = usize::from(frame.max_level()) + 1;
+        that(self.levels.len() == levels, "the number of levels", self.levels.len())?;
+        for (level, record) in self.levels.iter().enumerate() {
+            check_level(level, record)?;
+        }
+        check_sum("levels", self.levels.iter().flat_map(level_counts))?;
+        check_counts(&self.counts)?;
+        that(
+            self.growth.len() <= levels * CLASSES,
+            "the number of growth rows",
+            self.growth.len(),
+        )?;
+        for row in &self.growth {
+            that(usize::from(row.level) < levels, "growth.level", row.level)?;
+            that(usize::from(row.class) < CLASSES, "growth.class", row.class)?;
+        }
+        check_sum("growth", self.growth.iter().flat_map(growth_counts))?;
+        check_sum("inputs", self.inputs.iter().map(|input| input.bytes))
+    }
+
+    fn check_settings(&self) -> Result<(), String> {
+        let settings = &self.settings;
+        measure("settings.max_error_m", settings.max_error_m)?;
+        measure("settings.simplify_cells", settings.simplify_cells)?;
+        measure("settings.cell_m", settings.cell_m.unwrap_or(0.0))?;
+        all_measures("settings.vertical_shift_m", &[settings.vertical_shift_m])?;
+        let cells = &settings.class_max_cell_m;
+        that(cells.len() <= CLASSES, "the number of settings.class_max_cell_m", cells.len())?;
+        cells
+            .iter()
+            .try_for_each(|cell_m| measure("settings.class_max_cell_m", cell_m.unwrap_or(0.0)))
+    }
+}
+
+fn check_level(level: usize, record: &LevelRecord) -> Result<(), String> {
+    that(usize::from(record.level) == level, "levels.level", record.level)?;
+    that(record.cell_m > 0.0, "levels.cell_m", record.cell_m)?;
+    measure("levels.cell_m", record.cell_m)?;
+    measure("levels.max_error_m", record.max_error_m)?;
+    measure("levels.geometric_error_m", record.geometric_error_m)?;
+    for distribution in [record.errors_m, record.tightness].into_iter().flatten() {
+        check_distribution(&distribution)?;
+    }
+    measure("levels.simplify_tolerance_m", record.simplify_tolerance_m)?;
+    measure("levels.width_margin_m", record.width_margin_m)?;
+    let class = record.least_class.unwrap_or(0);
+    that(usize::from(class) < CLASSES, "levels.least_class", class)
+}
+
+fn check_distribution(distribution: &Distribution) -> Result<(), String> {
+    let Distribution { count, min, median, p95, max } = *distribution;
+    check_sum("levels", [count])?;
+    measure("the smallest value of a distribution", min)?;
+    measure("the largest value of a distribution", max)?;
+    let is_sorted = min <= median && median <= p95 && p95 <= max;
+    that(is_sorted, "a distribution", format_args!("{distribution:?}"))
+}
+
+fn level_counts(record: &LevelRecord) -> [u64; 5] {
+    let LevelRecord { tiles, triangles, vertices, terrain_bytes, uncovered_nodes, .. } = *record;
+    [tiles, triangles, vertices, terrain_bytes, uncovered_nodes]
+}
+
+fn growth_counts(row: &GrowthRow) -> [u64; 9] {
+    [
+        row.source_vertices,
+        row.simplified_vertices,
+        row.geo_vertices,
+        row.sv_vertices,
+        row.source_bytes,
+        row.simplified_bytes,
+        row.geo_raw_bytes,
+        row.geo_stored_bytes,
+        row.sv_stored_bytes,
+    ]
+}
+
+fn check_counts(counts: &Counts) -> Result<(), String> {
+    let samples = &counts.samples;
+    for count in [samples.nodes, samples.with_data, samples.filled, samples.void] {
+        check_sum("counts.samples", [count])?;
+    }
+    check_sum("counts", [counts.roads_in, counts.roads_kept, counts.highways_in])?;
+    measure("counts.roads_in_m", counts.roads_in_m)?;
+    measure("counts.roads_kept_m", counts.roads_kept_m)?;
+    check_sum("counts.roads_lost", counts.roads_lost.iter().map(|loss| loss.roads))?;
+    for loss in &counts.roads_lost {
+        // A loss is a difference of sums and may come out a rounding error below 0.
+        all_measures("counts.roads_lost.length_m", &[loss.length_m])?;
+    }
+    let names = [&counts.defects, &counts.unknown_highways, &counts.highways_left_out];
+    for list in names {
+        check_sum("counts", list.iter().map(|&(_, count)| count))?;
+    }
+    that(counts.classes.len() <= CLASSES, "the number of counts.classes", counts.classes.len())?;
+    check_sum("counts.classes", counts.classes.iter().map(|&(count, _)| count))?;
+    counts.classes.iter().try_for_each(|&(_, length_m)| measure("counts.classes", length_m))
+}
+
+fn that(holds: bool, name: &str, value: impl std::fmt::Display) -> Result<(), String> {
+    if holds { Ok(()) } else { Err(format!("{name} is {value}, which cannot be")) }
+}
+
+/// A length: neither negative nor absurd.
+fn measure(name: &str, value_m: f64) -> Result<(), String> {
+    that((0.0..=MAX_MEASURE_M).contains(&value_m), name, value_m)
+}
+
+/// Coordinates or differences.
+fn all_measures(name: &str, values_m: &[f64]) -> Result<(), String> {
+    values_m.iter().try_for_each(|value| that(value.abs() <= MAX_MEASURE_M, name, value))
+}
+
+fn bounds(name: &str, bounds: &Bounds, limits: [f64; 2]) -> Result<(), String> {
+    let [min_x, min_y, max_x, max_y] = bounds.to_array();
+    let within = |value: f64, limit: f64| value.abs() <= limit;
+    let sound = min_x <= max_x
+        && min_y <= max_y
+        && within(min_x, limits[0])
+        && within(max_x, limits[0])
+        && within(min_y, limits[1])
+        && within(max_y, limits[1]);
+    that(sound, name, format_args!("{:?}", bounds.to_array()))
+}
+
+fn check_sum(name: &str, counts: impl IntoIterator<Item = u64>) -> Result<(), String> {
+    let sum = counts.into_iter().try_fold(0_u64, u64::checked_add);
+    if sum.is_some_and(|sum| sum <= MAX_COUNT) {
+        Ok(())
+    } else {
+        Err(format!("the counts of {name} add up to more than {MAX_COUNT}, which cannot be"))
+    }
+}
+
+#[cfg(test)]
+#[path = "check_tests.rs"]
+mod tests;
