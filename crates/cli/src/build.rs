@@ -74,7 +74,11 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
         dem_crs: args.terrain.dem_crs.or(config.terrain.dem_crs),
         dem_vertical_crs: args.terrain.dem_vertical_crs.or(config.terrain.dem_vertical_crs),
         vertical_crs: args.terrain.vertical_crs.or(config.terrain.vertical_crs),
-        vertical_shift_m: shift(args.terrain.vertical_shift.or(config.terrain.vertical_shift))?,
+        vertical_shift_m: args
+            .terrain
+            .vertical_shift
+            .or(config.terrain.vertical_shift)
+            .unwrap_or(0.0),
         nodata: args.terrain.nodata.or(config.terrain.nodata),
         cell_m: positive("--cell", args.terrain.cell.or(config.terrain.cell))?,
         max_error_m: positive("--max-error", args.terrain.max_error.or(config.terrain.max_error))?,
@@ -128,20 +132,6 @@ fn positive(option: &str, value: Option<f64>) -> Result<Option<f64>, Failure> {
             "{option} must be a positive number of metres, not {metres}"
         ))),
         value => Ok(value),
-    }
-}
-
-/// Metres to add to every height.
-fn shift(value: Option<f64>) -> Result<f64, Failure> {
-    /// No two vertical datums are farther apart; what is more is a slip, such as millimetres.
-    const MAX_SHIFT_M: f64 = 10_000.0;
-    match value {
-        Some(metres) if !(-MAX_SHIFT_M..=MAX_SHIFT_M).contains(&metres) => {
-            Err(Failure::unusable(format!(
-                "--vertical-shift must be a number of metres within ±{MAX_SHIFT_M}, not {metres}"
-            )))
-        }
-        value => Ok(value.unwrap_or(0.0)),
     }
 }
 

@@ -50,11 +50,7 @@ impl Dem {
         let wgs84 = Crs::wgs84()?;
         let to_wgs84: Vec<Operation> =
             mosaics.iter().map(|mosaic| Operation::new(&mosaic.crs, &wgs84, None)).collect();
-        let (points_deg, wgs84_bounds) = outline::wgs84(&mosaics, &to_wgs84)?;
-        let nowhere = || DemError::OutsideCrs { crs: wgs84.label.clone() };
-        if wgs84_bounds.is_empty() {
-            return Err(nowhere());
-        }
+        let (points_deg, wgs84_bounds) = outline::wgs84(&sources, &mosaics, &to_wgs84)?;
         // Files all around the earth have no middle; any will do.
         let center_deg = scale::center_deg(&points_deg).unwrap_or([0.0; 2]);
         let heights = vertical::resolve(&mut sources, options, wgs84_bounds)?;

@@ -34,9 +34,9 @@ pub enum DemError {
     )]
     Imagery { path: PathBuf, bands: usize, interpretation: String },
     #[error(
-        "the first band of {path:?} has samples of type {type_name}, which are no heights; give integers or real numbers"
+        "the first band of {path:?} has complex numbers or another type of samples that are no heights; give integers or real numbers"
     )]
-    SampleType { path: PathBuf, type_name: String },
+    SampleType { path: PathBuf },
     #[error(
         "heights of {path:?} are in {unit:?}, which is not a known unit of length; convert them to metres, or correct the band's unit (m, ft, US survey foot)"
     )]
@@ -113,10 +113,18 @@ pub enum DemError {
     WorkingCrs { text: String },
     #[error("coordinate system {name:?} cannot be written down as WKT; give another by EPSG:n")]
     Wkt { name: String, source: Box<LibraryError> },
-    #[error("PROJ knows no transformation from {from} to {to}; choose another --crs")]
+    #[error(
+        "PROJ knows no transformation from {from} to {to}; choose another --crs, or correct the files' CRS with gdal_translate -a_srs"
+    )]
     Transform { from: String, to: String, source: Box<LibraryError> },
-    #[error("the DEM has no position in {crs}; choose another --crs")]
+    #[error("the DEM's centre has no position in {crs}; choose another --crs")]
     OutsideCrs { crs: String },
+    #[error("{path:?} has no position in {crs}; choose another --crs, or leave the file out")]
+    FileOutsideCrs { path: PathBuf, crs: String },
+    #[error(
+        "{path:?} lies nowhere on earth by its coordinate system {crs}; name its true CRS with gdal_translate -a_srs"
+    )]
+    Nowhere { path: PathBuf, crs: String },
     #[error("--cell {cell_m} is not a usable length; give metres between 0.001 and 1000000")]
     Cell { cell_m: f64 },
     #[error(

@@ -5,6 +5,7 @@ use corniche_geom::Bounds;
 use crate::DemError;
 use crate::mosaic::{Mosaic, SampleRect};
 use crate::operation::Operation;
+use crate::source::Source;
 
 /// Positions along each side of a file. Between two of them a side bends by 1/4096 of its whole sagitta.
 const SIDE_POSITIONS: usize = 65;
@@ -68,8 +69,9 @@ pub(crate) fn bounds(
 }
 
 /// All files' outlines in WGS84 and the rectangle around them. Longitudes are continuous: past the antimeridian
-/// they go on beyond ±180.
+/// they go on beyond ±180. Refuses a file of which no position is on earth.
 pub(crate) fn wgs84(
+    sources: &[Source],
     mosaics: &[Mosaic],
     operations: &[Operation],
 ) -> Result<(Vec<[f64; 2]>, Bounds), DemError> {
@@ -90,7 +92,12 @@ pub(crate) fn wgs84(
                 first_lon = first_lon.or(previous);
                 bounds.include(*point);
             }
+            let known = all.len();
             all.extend(points.into_iter().filter(|point| point[0].is_finite()));
+            if all.len() == known {
+                let path = sources[file.index].path.clone();
+                return Err(DemError::Nowhere { path, crs: mosaic.crs.label.clone() });
+            }
         }
     }
     Ok((all, bounds))

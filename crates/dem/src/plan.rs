@@ -84,8 +84,8 @@ pub struct GridPlan {
 /// How one mosaic serves nodes.
 #[derive(Debug, Clone)]
 pub(crate) struct Layer {
-    /// Nodes at which it can have data; `None` when it lies outside the working CRS.
-    pub(crate) nodes: Option<[NodeIndex; 2]>,
+    /// South-western and north-eastern node between which it can have data.
+    pub(crate) nodes: [NodeIndex; 2],
     pub(crate) method: Method,
     /// From the mosaic's CRS to the working one.
     pub(crate) working_from_crs: Operation,
@@ -124,15 +124,14 @@ pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemErro
     let origin_m =
         dem.mosaics.iter().find_map(|mosaic| phase_m(mosaic, &working, cell_m)).unwrap_or([0.0; 2]);
     let grid = Grid { working: &working, origin_m, cell_m };
-    let extents: Vec<Option<[NodeIndex; 2]>> = dem
+    let extents: Vec<[NodeIndex; 2]> = dem
         .mosaics
         .iter()
         .zip(&operations)
-        .map(|(mosaic, operation)| grid.nodes(mosaic, operation))
+        .map(|(mosaic, operation)| grid.nodes(dem, mosaic, operation))
         .collect::<Result<_, _>>()?;
     let [south_west, north_east] = extents
         .iter()
-        .flatten()
         .copied()
         .reduce(|[sw, ne], [low, high]| {
             [
@@ -148,9 +147,7 @@ pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemErro
     {
         let method = match grid.alignment(mosaic) {
             Some(alignment) => Method::Aligned(alignment),
-            None => {
-                resample(dem, mosaic, &frame, &working, nodes.unwrap_or([south_west; 2]), spacing)?
-            }
+            None => resample(dem, mosaic, &frame, &working, nodes, spacing)?,
         };
         layers.push(Layer { nodes, method, working_from_crs });
     }
@@ -363,9 +360,10 @@ impl Grid<'_> {
     /// South-western and north-eastern node between which a mosaic can have data.
     fn nodes(
         &self,
+        dem: &Dem,
         mosaic: &Mosaic,
         operation: &Operation,
-    ) -> Result<Option<[NodeIndex; 2]>, DemError> {
+    ) -> Result<[NodeIndex; 2], DemError> {
         if let Some(Alignment { first, way }) = self.alignment(mosaic) {
             let (low, high) = (mosaic.extent.min, mosaic.extent.max.map(|index| index - 1));
             let ends = |axis: usize, first: i64| {
@@ -373,25 +371,25 @@ impl Grid<'_> {
                 (a.min(b), a.max(b))
             };
             let ((west, east), (south, north)) = (ends(0, first.i), ends(1, first.j));
-            return Ok(Some([NodeIndex { i: west, j: south }, NodeIndex { i: east, j: north }]));
+            return Ok([NodeIndex { i: west, j: south }, NodeIndex { i: east, j: north }]);
         }
         let mut bounds = Bounds::EMPTY;
         for file in &mosaic.files {
             let found = outline::bounds(mosaic, &file.rect, operation)?;
-            if !found.is_empty() {
-                bounds.include([found.min_x, found.min_y]);
-                bounds.include([found.max_x, found.max_y]);
+            if found.is_empty() {
+                // Leaving it out would lose its heights in silence.
+                let path = dem.sources[file.index].path.clone();
+                return Err(DemError::FileOutsideCrs { path, crs: self.working.label.clone() });
             }
-        }
-        if bounds.is_empty() {
-            return Ok(None);
+            bounds.include([found.min_x, found.min_y]);
+            bounds.include([found.max_x, found.max_y]);
         }
         let cells = |metres: f64, axis: usize| (metres - self.origin_m[axis]) / self.cell_m;
         let corner = |x: f64, y: f64| NodeIndex { i: x as i64, j: y as i64 };
-        Ok(Some([
+        Ok([
             corner(cells(bounds.min_x, 0).floor(), cells(bounds.min_y, 1).floor()),
             corner(cells(bounds.max_x, 0).ceil(), cells(bounds.max_y, 1).ceil()),
-        ]))
+        ])
     }
 }
 

@@ -164,7 +164,7 @@ impl<'a> Reader<'a> {
         let (dem, plan) = (self.dem, self.plan);
         let mut heights_m = vec![f32::NAN; window.columns * window.rows];
         for (layer, mosaic) in plan.layers.iter().zip(&dem.mosaics) {
-            let Some(part) = layer.nodes.and_then(|nodes| intersection(&window, nodes)) else {
+            let Some(part) = intersection(&window, layer.nodes) else {
                 continue;
             };
             let target = Target::new(&window, &part);

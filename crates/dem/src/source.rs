@@ -43,6 +43,8 @@ pub(crate) struct Source {
     /// What its heights are measured from, as the file or `--dem-vertical-crs` says.
     pub(crate) vertical: Option<VerticalCrs>,
     values: Values,
+    /// Number of the band in which 0 means that there is no sample.
+    alpha_band: Option<usize>,
     /// To the vertical CRS asked for, where that is another one.
     pub(crate) to_target: Option<HeightOperation>,
     pub(crate) shift_m: f64,
@@ -96,6 +98,7 @@ impl Source {
             crs,
             values: Values::of(path, &band, vertical.as_ref(), options)?,
             vertical,
+            alpha_band: alpha_band(&dataset),
             to_target: None,
             shift_m: 0.0,
         })
@@ -116,11 +119,11 @@ impl Source {
             band.read_into_slice(start, size, size, heights_m, None)?;
             if self.values.has_mask {
                 let mask = band.open_mask_band()?.read_as::<u8>(start, size, size, None)?;
-                for (height_m, &valid) in heights_m.iter_mut().zip(mask.data()) {
-                    if valid == 0 {
-                        *height_m = f64::NAN;
-                    }
-                }
+                masked(heights_m, mask.data().iter().map(|&valid| valid == 0));
+            }
+            if let Some(alpha) = self.alpha_band {
+                let alpha = dataset.rasterband(alpha)?.read_as::<f64>(start, size, size, None)?;
+                masked(heights_m, alpha.data().iter().map(|&opacity| opacity == 0.0));
             }
             Ok(())
         };
@@ -144,6 +147,21 @@ impl Source {
         }
         Ok(())
     }
+}
+
+/// Takes away values.
+fn masked(values: &mut [f64], is_void: impl Iterator<Item = bool>) {
+    for (value, _) in values.iter_mut().zip(is_void).filter(|(_, is_void)| *is_void) {
+        *value = f64::NAN;
+    }
+}
+
+fn alpha_band(dataset: &Dataset) -> Option<usize> {
+    (2..=dataset.raster_count()).find(|&index| {
+        dataset
+            .rasterband(index)
+            .is_ok_and(|band| band.color_interpretation() == ColorInterpretation::AlphaBand)
+    })
 }
 
 /// Opens a file, with an error that says which of the usual things went wrong.

@@ -28,6 +28,7 @@ pub(crate) struct Values {
     offset: f64,
     /// Metres upwards to a unit; negative for depths.
     unit_m: f64,
+    /// GDAL gives a mask that says more than the sentinels.
     pub(crate) has_mask: bool,
 }
 
@@ -39,9 +40,9 @@ impl Values {
         options: &OpenOptions,
     ) -> Result<Self, DemError> {
         let kind = band.band_type();
-        let type_name = kind.name();
-        if type_name.starts_with('C') || kind == GdalDataType::Unknown {
-            return Err(DemError::SampleType { path: path.to_path_buf(), type_name });
+        // Complex numbers of all kinds are among the unknown here.
+        if kind == GdalDataType::Unknown {
+            return Err(DemError::SampleType { path: path.to_path_buf() });
         }
         let mut nodata: Vec<f64> = declared(band, kind).into_iter().chain(options.nodata).collect();
         if kind == GdalDataType::Int16 {
@@ -62,8 +63,8 @@ impl Values {
             scale,
             offset,
             unit_m: m_per_value(path, &band.unit(), vertical)?,
-            // Of nodata GDAL makes a mask too; comparing values ourselves is exact.
-            has_mask: !flags.is_all_valid() && !flags.is_nodata(),
+            // Of nodata and of some alpha bands GDAL makes masks too; looking ourselves is exact, and covers all types.
+            has_mask: !flags.is_all_valid() && !flags.is_nodata() && !flags.is_alpha(),
         })
     }
 

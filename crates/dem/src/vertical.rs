@@ -35,6 +35,8 @@ pub(crate) struct VerticalCrs {
 /// Carries heights of one file to the vertical CRS asked for, sample by sample.
 #[derive(Debug, Clone)]
 pub(crate) struct HeightOperation {
+    /// From the file's horizontal system to that of the ellipsoidal heights, when that is another one.
+    place: Option<Operation>,
     operation: Operation,
     /// Value in the source system for a metre upwards.
     values_per_m: f64,
@@ -195,8 +197,11 @@ impl HeightOperation {
                 return Err(DemError::OptionalGeoidGrid { grids });
             }
         }
+        let place = (from.is_ellipsoidal && from.wkt != source.crs.wkt)
+            .then(|| Operation::new(&source.crs, &from.with(&source.crs), Some(area_deg)));
         let operation = Operation::exact(&from.with(&source.crs), &to.with(&source.crs), area_deg);
         let found = Self {
+            place,
             operation,
             values_per_m: 1.0 / from.m_per_value(),
             m_per_value: to.m_per_value(),
@@ -223,12 +228,20 @@ impl HeightOperation {
             })
             .collect();
         let mut heights_m = vec![0.0; points.len()];
-        match found.operation.apply_heights(&points, &mut heights_m) {
+        match found.carry(points, &mut heights_m) {
             Err(DemError::Transform { source: reason, .. }) => Err(missing(Some(reason))),
             Err(other) => Err(other),
             Ok(()) if heights_m.iter().all(|height_m| height_m.is_nan()) => Err(missing(None)),
             Ok(()) => Ok(found),
         }
+    }
+
+    /// Values of the source system, at positions in the file's horizontal one, to those of the target.
+    fn carry(&self, mut points: Vec<[f64; 2]>, values: &mut [f64]) -> Result<(), DemError> {
+        if let Some(place) = &self.place {
+            place.apply(&mut points)?;
+        }
+        self.operation.apply_heights(&points, values)
     }
 
     /// Carries heights in metres, in place; voids (NaN) stay.
@@ -252,7 +265,7 @@ impl HeightOperation {
             .collect();
         let mut values: Vec<f64> =
             places.iter().map(|&at| heights_m[at] * self.values_per_m).collect();
-        self.operation.apply_heights(&points, &mut values)?;
+        self.carry(points, &mut values)?;
         for (&at, value) in places.iter().zip(values) {
             if value.is_nan() {
                 let (column, row) = (column + at % columns, row + at / columns);

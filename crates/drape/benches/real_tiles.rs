@@ -1,108 +1,139 @@
-//! How many TIN edges a second real roads are laid across on real tiles, level by level, and what extruding them costs:
-//! `CORNICHE_PACKAGE=FILE.pmtiles cargo bench -p corniche-drape --bench real_tiles`.
+//! How many TIN edges a second real roads are laid across on real tiles, level by level, and what extruding them
+//! costs. The tiles come as `corniche tile PACKAGE Z/X/Y --json` prints them, a file each:
+//! `CORNICHE_TILES=FOLDER cargo bench -p corniche-drape --bench real_tiles`.
 
 #![expect(missing_docs, reason = "criterion's macros make public functions without")]
 #![expect(clippy::print_stderr, reason = "says why nothing is timed")]
 
-use std::{collections::BTreeMap, hint::black_box, path::Path};
+use std::{collections::BTreeMap, fs, hint::black_box, path::Path};
 
-use corniche_drape::{DrapedLine, DrapedVertex, drape, extrude, positions};
-use corniche_geom::Polyline;
-use corniche_tileset::{FilePackage, Sections};
-use corniche_tin::{Placement, Surface};
+use corniche_drape::{DrapedLine, DrapedVertex, clip_closed, drape, extrude, positions};
+use corniche_geom::{LatticeBounds, LatticePoint, Polyline};
+use corniche_tin::{Placement, Surface, Tin, TinVertex};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use serde_json::Value;
+
+/// Heights of any package are whole steps of this.
+const QUANTUM_M: f64 = 1.0 / 1024.0;
 
 /// A tile with roads.
 struct Tile {
     surface: Surface,
-    /// Its centre-lines before they were laid.
-    centre_lines: Vec<Polyline>,
-    /// Its plan lines for shadow volumes.
+    /// The level's plan lines within the tile.
+    lines: Vec<Polyline>,
+    /// The same with their margin, for shadow volumes.
     sv_lines: Vec<Polyline>,
     margin_steps: i64,
 }
 
-/// The source points of a laid line, those beyond its ends included.
-fn source(line: &DrapedLine) -> Option<Polyline> {
-    let own = line.vertices.iter().filter_map(|vertex| match *vertex {
-        DrapedVertex::Source { point, .. } => Some(point),
-        _ => None,
-    });
-    Polyline::new(line.lead_in.into_iter().chain(own).chain(line.lead_out).collect()).ok()
+fn numbers(list: &Value) -> Vec<f64> {
+    list.as_array().into_iter().flatten().filter_map(Value::as_f64).collect()
 }
 
-fn tiles(package: &Path) -> BTreeMap<u8, Vec<Tile>> {
-    let package = FilePackage::open(package).expect("a package");
-    let manifest = package.manifest();
+fn rows(list: &Value) -> impl Iterator<Item = Vec<f64>> {
+    list.as_array().into_iter().flatten().map(numbers)
+}
+
+/// A tile from its JSON; its own corner is the lattice's origin.
+fn tile(json: &Value) -> Tile {
+    let cell_m = json["cell_m"].as_f64().expect("a cell");
+    let bounds_m = numbers(&json["bounds"]);
+    let (west_m, north_m) = (bounds_m[0], bounds_m[3]);
+    let node_steps = 1_i64 << (cell_m / 0.001).log2().ceil() as u32;
+    let vertex = |at: Vec<f64>| TinVertex {
+        row: ((north_m - at[1]) / cell_m).round() as u16,
+        column: ((at[0] - west_m) / cell_m).round() as u16,
+        height_q: (at[2] / QUANTUM_M).round() as i32,
+    };
+    let corners = |at: Vec<f64>| [at[0] as u32, at[1] as u32, at[2] as u32];
+    let triangles: Vec<[u32; 3]> = rows(&json["tin"]["triangles"]).map(corners).collect();
+    let vertices = rows(&json["tin"]["vertices"]).map(vertex).collect();
+    let tin = Tin::new(vertices, &triangles).expect("a stored TIN");
+    let placement = Placement { corner: LatticePoint::new(0, 0), node_steps, quantum_m: QUANTUM_M };
+    let steps = |metres: f64| (metres / cell_m * node_steps as f64).round() as i64;
+    let sv_lines: Vec<Polyline> = json["roads_sv"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .map(|road| {
+            rows(&road["line"])
+                .map(|at| LatticePoint::new(steps(at[0] - west_m), steps(at[1] - north_m)))
+        })
+        .filter_map(|points| Polyline::new(points.collect()).ok())
+        .collect();
+    let side = 256 * node_steps;
+    let bounds =
+        LatticeBounds { min: LatticePoint::new(0, -side), max: LatticePoint::new(side, 0) };
+    let lines = sv_lines.iter().flat_map(|line| clip_closed(line, &bounds)).collect();
+    // As the pipeline has it: eight cells, at least 40 m.
+    let margin_steps = steps((8.0 * cell_m).max(40.0));
+    Tile { surface: Surface::new(&tin, placement), lines, sv_lines, margin_steps }
+}
+
+/// Tiles with roads in a folder, by level.
+fn tiles(folder: &Path) -> BTreeMap<u8, Vec<Tile>> {
+    let mut paths: Vec<_> = fs::read_dir(folder)
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
+    paths.sort();
     let mut levels: BTreeMap<u8, Vec<Tile>> = BTreeMap::new();
-    for id in package.tile_ids().expect("a directory") {
-        let payload = package.payload(id, Sections::ALL).expect("a good tile").expect("a tile");
-        let Some(terrain) = payload.terrain.filter(|_| !payload.roads_geo.is_empty()) else {
-            continue;
-        };
-        let placement = Placement::of_tile(&manifest.frame, id, manifest.vertical.quantum_m);
-        let level = manifest.levels.iter().find(|level| level.level == id.z()).expect("its level");
-        levels.entry(id.z()).or_default().push(Tile {
-            surface: Surface::new(&terrain.tin, placement),
-            centre_lines: payload.roads_geo.iter().filter_map(|road| source(&road.line)).collect(),
-            sv_lines: payload
-                .roads_sv
-                .into_iter()
-                .filter_map(|road| Polyline::new(road.line.points).ok())
-                .collect(),
-            margin_steps: (level.width_margin_m / manifest.frame.lattice_step_m()) as i64,
-        });
+    for path in paths {
+        let json: Value = serde_json::from_slice(&fs::read(path).expect("a file")).expect("JSON");
+        let level = json["id"].as_str().and_then(|id| id.split('/').next()?.parse().ok());
+        let tile = tile(&json);
+        if !tile.lines.is_empty() {
+            levels.entry(level.expect("an id")).or_default().push(tile);
+        }
     }
     levels
 }
 
 fn bench(c: &mut Criterion) {
-    let Some(package) = std::env::var_os("CORNICHE_PACKAGE") else {
-        eprintln!("skipped: set CORNICHE_PACKAGE to a package with roads");
+    let Some(folder) = std::env::var_os("CORNICHE_TILES") else {
+        eprintln!("skipped: set CORNICHE_TILES to a folder of tiles as JSON");
         return;
     };
-    for (level, tiles) in tiles(Path::new(&package)) {
-        let laid = |tile: &Tile| {
-            tile.centre_lines
-                .iter()
-                .flat_map(|line| drape(line, &tile.surface).lines)
-                .collect::<Vec<_>>()
+    for (level, tiles) in tiles(Path::new(&folder)) {
+        let lay = |tile: &Tile| -> Vec<DrapedLine> {
+            tile.lines.iter().flat_map(|line| drape(line, &tile.surface).lines).collect()
         };
-        let vertices: Vec<DrapedVertex> =
-            tiles.iter().flat_map(laid).flat_map(|line| line.vertices).collect();
-        let crossings =
-            vertices.iter().filter(|vertex| !matches!(vertex, DrapedVertex::Source { .. })).count();
-        let name = |count: usize| format!("{} tiles, {count}", tiles.len());
-        let mut group = c.benchmark_group(format!("level {level}"));
-        for (what, count) in [("crossings", crossings), ("vertices", vertices.len())] {
+        let laid: Vec<Vec<DrapedLine>> = tiles.iter().map(lay).collect();
+        let vertices = || laid.iter().flatten().flat_map(|line| &line.vertices);
+        let is_crossing = |vertex: &&DrapedVertex| !matches!(vertex, DrapedVertex::Source { .. });
+        let (crossings, all) = (vertices().filter(is_crossing).count(), vertices().count());
+        let sv_lines = || tiles.iter().flat_map(|tile| &tile.sv_lines);
+        let segments: usize = sv_lines().map(|line| line.points().len() - 1).sum();
+
+        let mut group = c.benchmark_group(format!("level {level}, {} tiles", tiles.len()));
+        for (what, count) in [("crossings", crossings), ("vertices", all)] {
             group.throughput(Throughput::Elements(count as u64));
-            group.bench_function(BenchmarkId::new(format!("drape, {what}"), name(count)), |b| {
+            group.bench_function(BenchmarkId::new("drape", format!("{count} {what}")), |b| {
                 b.iter(|| {
                     for tile in &tiles {
-                        tile.centre_lines
-                            .iter()
-                            .for_each(|line| drop(black_box(drape(line, &tile.surface))));
+                        for line in &tile.lines {
+                            black_box(drape(black_box(line), &tile.surface));
+                        }
                     }
                 });
             });
         }
-        let lines: Vec<Vec<DrapedLine>> = tiles.iter().map(laid).collect();
-        group.bench_function(BenchmarkId::new("positions, vertices", name(vertices.len())), |b| {
+        group.bench_function(BenchmarkId::new("positions", format!("{all} vertices")), |b| {
             b.iter(|| {
-                for (tile, lines) in tiles.iter().zip(&lines) {
-                    lines.iter().for_each(|line| drop(black_box(positions(line, &tile.surface))));
+                for (tile, lines) in tiles.iter().zip(&laid) {
+                    for line in lines {
+                        black_box(positions(black_box(line), &tile.surface).expect("a laid line"));
+                    }
                 }
             });
         });
-        let segments: usize =
-            tiles.iter().flat_map(|tile| &tile.sv_lines).map(|line| line.points().len() - 1).sum();
         group.throughput(Throughput::Elements(segments as u64));
-        group.bench_function(BenchmarkId::new("extrude, segments", name(segments)), |b| {
+        group.bench_function(BenchmarkId::new("extrude", format!("{segments} segments")), |b| {
             b.iter(|| {
                 for tile in &tiles {
-                    tile.sv_lines.iter().for_each(|line| {
-                        drop(black_box(extrude(line, &tile.surface, tile.margin_steps)))
-                    });
+                    for line in &tile.sv_lines {
+                        black_box(extrude(black_box(line), &tile.surface, tile.margin_steps));
+                    }
                 }
             });
         });

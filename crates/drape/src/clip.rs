@@ -9,7 +9,7 @@ use crate::{OwnedBorders, fraction::Fraction, owned_borders::Border};
 /// the same point. Parts that are a point, or become one by rounding, are dropped. Of segments along the
 /// border only what is on `owned` stretches is kept; where a stretch ends, between two cells, is a cut, too.
 ///
-/// Coordinates are below 2^62, as `Frame::snap` makes them.
+/// Coordinates are below 2^60, so that products of their differences fit 128 bits.
 ///
 /// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*, with exact fractions.
 #[must_use]

@@ -110,6 +110,24 @@ proptest! {
         }
     }
 
+    /// No point of a part is farther than half a step from the segment that it was cut from.
+    #[test]
+    fn a_part_stays_within_half_a_step_of_its_source(line in any_line()) {
+        let (bounds, owned) = tile(1, 1);
+        for part in clip(&line, &bounds, owned) {
+            for &at in part.points() {
+                let near = |p: LatticePoint, q: LatticePoint| {
+                    let (du, dv) = (q.u - p.u, q.v - p.v);
+                    let (across, along) = (du * (at.v - p.v) - dv * (at.u - p.u), du * (at.u - p.u) + dv * (at.v - p.v));
+                    let length_squared = du * du + dv * dv;
+                    // Half a step along a border is less across a segment, and less than one along it.
+                    4 * across * across <= length_squared && (-length_squared..=2 * length_squared).contains(&along)
+                };
+                prop_assert!(line.points().windows(2).any(|pair| near(pair[0], pair[1])), "{at:?}");
+            }
+        }
+    }
+
     /// Backwards the same parts, backwards.
     #[test]
     fn direction_does_not_matter(line in any_line(), scale in prop_oneof![Just(1_i64), Just(1 << 40)]) {
@@ -166,7 +184,7 @@ fn touching_the_border_at_a_point_leaves_nothing() {
 
 #[test]
 fn a_line_far_longer_than_the_tile_is_cut_exactly() {
-    let far = 1 << 56;
+    let far = (1 << 60) - 2;
     let bounds = tile(1, 1).0;
     let parts = clip_closed(&line(&[(-far, -15), (far, -15)]), &bounds);
     assert_eq!(parts, [line(&[(10, -15), (20, -15)])]);

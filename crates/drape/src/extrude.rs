@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use corniche_geom::{LatticeBounds, LatticePoint, Polyline};
 use corniche_tin::Surface;
 
@@ -18,10 +20,18 @@ const PAD: f64 = 1e-6;
 /// segment in place of the tile's is ours (Vaaraniemi, Treib & Westermann 2011, section 5, take the tile's).
 #[must_use]
 pub fn extrude(line: &Polyline, surface: &Surface, margin_steps: i64) -> Vec<SvLine> {
+    // One step more than asked: rounding to f64 must not lose ground at the rim.
+    let margin = margin_steps.max(0) + 1;
     let mut lines = Vec::new();
     let mut current = SvLine { points: Vec::new(), ground_range_m: Vec::new() };
-    for pair in line.points().windows(2) {
-        if let Some(range_m) = ground_range_m([pair[0], pair[1]], surface, margin_steps) {
+    let mut near = Near { surface, lowest_first: Vec::new(), highest_first: Vec::new() };
+    let points = line.points();
+    let mut searched = 0..0;
+    for (index, pair) in points.windows(2).enumerate() {
+        if !searched.contains(&index) {
+            searched = near.search(points, index, margin);
+        }
+        if let Some(range_m) = near.ground_range_m([pair[0], pair[1]], margin) {
             if current.points.is_empty() {
                 current.points.push(pair[0]);
             }
@@ -40,32 +50,121 @@ pub fn extrude(line: &Polyline, surface: &Surface, margin_steps: i64) -> Vec<SvL
     lines
 }
 
-/// Lowest and highest ground around one segment; `None` without ground there.
-fn ground_range_m(
-    [p, q]: [LatticePoint; 2],
-    surface: &Surface,
-    margin_steps: i64,
-) -> Option<[f64; 2]> {
-    // One step more than asked: rounding to f64 must not lose ground at the rim.
-    let margin = margin_steps.max(0) + 1;
-    // A corner of the rectangle is √2 margins from its end.
-    let around = LatticeBounds::of(&[p, q])?.expanded(margin + margin / 2 + 1);
-    let length = p.distance_steps(q);
-    let (east, north) = ((q.u - p.u) as f64 / length, (q.v - p.v) as f64 / length);
-    let margin = margin as f64;
-    let (mut lowest_m, mut highest_m) = (f64::INFINITY, f64::NEG_INFINITY);
-    surface.visit_triangles_near(around, |triangle| {
-        let vertices = surface.triangles()[triangle as usize];
-        let heights_m = vertices.map(|vertex| surface.heights_m()[vertex as usize]);
-        if heights_m.iter().all(|height_m| (lowest_m..=highest_m).contains(height_m)) {
-            return;
+/// The triangles near some segments of a line, so sorted that few have to be looked at for each.
+///
+/// ```text
+///     height │    ╷   ╷                 A triangle whose lowest corner is above what has been found cannot
+///            │ ╷  │ ╷ │ ╷               lower it, nor can any after it: the search for the lowest ground
+///            │ │╷ │ │ ╵ │               ends there. The other way round for the highest. Neighbouring
+///            │ ╵│ ╵ │   ╵               segments have nearly the same triangles within their margins, so
+///            │  ╵   ╵                   these are collected and sorted once for a stretch of the line.
+///            └────────────► lowest first
+/// ```
+struct Near<'a> {
+    surface: &'a Surface,
+    /// Each triangle with its lowest corner.
+    lowest_first: Vec<(f64, u32)>,
+    /// Each triangle with its highest corner.
+    highest_first: Vec<(f64, u32)>,
+}
+
+impl Near<'_> {
+    /// Collects the triangles near segment `first` and near those after it that add little; tells which.
+    fn search(&mut self, points: &[LatticePoint], first: usize, margin: i64) -> Range<usize> {
+        let ends = |index: usize| {
+            let (p, q) = (points[index], points[index + 1]);
+            LatticeBounds { min: p, max: p }.union(&LatticeBounds { min: q, max: q })
+        };
+        let mut bounds = ends(first);
+        let mut end = first + 1;
+        while end + 1 < points.len() {
+            let wider = bounds.union(&ends(end));
+            let longer = (wider.max.u - wider.min.u).max(wider.max.v - wider.min.v);
+            if longer > margin {
+                break;
+            }
+            (bounds, end) = (wider, end + 1);
         }
-        let mut k = 0;
+        // A corner of a segment's rectangle is √2 margins from its end.
+        let around = bounds.expanded(margin + margin / 2 + 1);
+        let mut triangles = Vec::new();
+        self.surface.visit_triangles_near(around, |triangle| triangles.push(triangle));
+        triangles.sort_unstable();
+        triangles.dedup();
+        let surface = self.surface;
+        let by = |pick: fn(f64, f64) -> f64| -> Vec<(f64, u32)> {
+            let corner_m = |&triangle: &u32| {
+                let [a, b, c] = heights_m(surface, triangle);
+                (pick(pick(a, b), c), triangle)
+            };
+            triangles.iter().map(corner_m).collect()
+        };
+        (self.lowest_first, self.highest_first) = (by(f64::min), by(f64::max));
+        self.lowest_first.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        self.highest_first.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
+        first..end
+    }
+
+    /// Lowest and highest ground around one of the segments; `None` without ground there.
+    fn ground_range_m(&self, [p, q]: [LatticePoint; 2], margin: i64) -> Option<[f64; 2]> {
+        let around = Around::new([p, q], margin);
+        let (mut lowest_m, mut highest_m) = (f64::INFINITY, f64::NEG_INFINITY);
+        let look = |triangle: u32, [lowest_m, highest_m]: [&mut f64; 2]| {
+            for &[.., height_m] in around.part_of(triangle, self.surface).corners() {
+                *lowest_m = lowest_m.min(height_m);
+                *highest_m = highest_m.max(height_m);
+            }
+        };
+        for &(corner_m, triangle) in &self.lowest_first {
+            if corner_m >= lowest_m {
+                break;
+            }
+            look(triangle, [&mut lowest_m, &mut highest_m]);
+        }
+        if lowest_m > highest_m {
+            // All have been looked at.
+            return None;
+        }
+        for &(corner_m, triangle) in &self.highest_first {
+            if corner_m <= highest_m {
+                break;
+            }
+            look(triangle, [&mut lowest_m, &mut highest_m]);
+        }
+        let pad_m = PAD * lowest_m.abs().max(highest_m.abs()).max(highest_m - lowest_m);
+        Some([lowest_m - pad_m, highest_m + pad_m])
+    }
+}
+
+fn heights_m(surface: &Surface, triangle: u32) -> [f64; 3] {
+    surface.triangles()[triangle as usize].map(|vertex| surface.heights_m()[vertex as usize])
+}
+
+/// The rectangle around a segment, in coordinates along and across it.
+struct Around {
+    p: LatticePoint,
+    east: f64,
+    north: f64,
+    length: f64,
+    margin: f64,
+}
+
+impl Around {
+    fn new([p, q]: [LatticePoint; 2], margin: i64) -> Self {
+        let length = p.distance_steps(q);
+        let (east, north) = ((q.u - p.u) as f64 / length, (q.v - p.v) as f64 / length);
+        Self { p, east, north, length, margin: margin as f64 }
+    }
+
+    /// What of a triangle lies in the rectangle.
+    fn part_of(&self, triangle: u32, surface: &Surface) -> Polygon {
+        let Self { p, east, north, length, margin } = *self;
+        let vertices = surface.triangles()[triangle as usize];
         let corners = vertices.map(|vertex| {
             let point = surface.points()[vertex as usize];
             let (du, dv) = ((point.u - p.u) as f64, (point.v - p.v) as f64);
-            k += 1;
-            [du * east + dv * north, dv * east - du * north, heights_m[k - 1]]
+            let height_m = surface.heights_m()[vertex as usize];
+            [du * east + dv * north, dv * east - du * north, height_m]
         });
         // Most triangles lie wholly inside, or wholly beyond one side.
         let range = |axis: usize| {
@@ -75,7 +174,7 @@ fn ground_range_m(
         let ([along_min, along_max], [across_min, across_max]) = (range(0), range(1));
         let (last, first) = (length + margin, -margin);
         if along_max < first || along_min > last || across_max < -margin || across_min > margin {
-            return;
+            return Polygon::NONE;
         }
         let mut polygon = Polygon::of(corners);
         if along_min < first || along_max > last {
@@ -85,13 +184,8 @@ fn ground_range_m(
             polygon =
                 polygon.cut(|[_, across, _]| across + margin).cut(|[_, across, _]| margin - across);
         }
-        for &[.., height_m] in polygon.corners() {
-            lowest_m = lowest_m.min(height_m);
-            highest_m = highest_m.max(height_m);
-        }
-    });
-    let pad_m = PAD * lowest_m.abs().max(highest_m.abs()).max(highest_m - lowest_m);
-    (lowest_m <= highest_m).then_some([lowest_m - pad_m, highest_m + pad_m])
+        polygon
+    }
 }
 
 /// A convex polygon of a triangle cut by up to four lines: at most seven corners, in place.
@@ -103,6 +197,8 @@ struct Polygon {
 }
 
 impl Polygon {
+    const NONE: Self = Self { corners: [[0.0; 3]; 8], count: 0 };
+
     fn of([a, b, c]: [[f64; 3]; 3]) -> Self {
         let mut corners = [[0.0; 3]; 8];
         corners[..3].copy_from_slice(&[a, b, c]);
@@ -115,7 +211,7 @@ impl Polygon {
 
     /// What lies where `inside`, an affine function, is at least 0.
     fn cut(&self, inside: impl Fn([f64; 3]) -> f64) -> Self {
-        let mut kept = Self { corners: [[0.0; 3]; 8], count: 0 };
+        let mut kept = Self::NONE;
         for (k, &this) in self.corners().iter().enumerate() {
             let next = self.corners[(k + 1) % self.count];
             let (here, there) = (inside(this), inside(next));
@@ -124,7 +220,10 @@ impl Polygon {
             }
             if (here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0) {
                 let part = here / (here - there);
-                kept.push([0, 1, 2].map(|axis| this[axis] + part * (next[axis] - this[axis])));
+                let mut cut = [0, 1, 2].map(|axis| this[axis] + part * (next[axis] - this[axis]));
+                // Rounding must not lift a cut above its edge: the order of the search would show.
+                cut[2] = cut[2].clamp(this[2].min(next[2]), this[2].max(next[2]));
+                kept.push(cut);
             }
         }
         kept

@@ -89,6 +89,39 @@ proptest! {
     }
 }
 
+proptest! {
+    /// Looking at few triangles finds, to the last bit, what looking at all of them finds.
+    #[test]
+    fn ranges_are_those_of_all_triangles(
+        points in prop::collection::vec((-3000_i64..19_000, -3000_i64..19_000), 2..12),
+        shrink in 1_i64..40, margin in 0_i64..6000, seed in 0_i32..1000, holes in 1_u32..8,
+    ) {
+        let rough = |column: i32, row: i32| (column * 7919 + row * 104_729 + seed * 31).rem_euclid(997);
+        let surface = ground(rough, |column, row| (column * 5 + row * 3) % holes == 1);
+        // Long segments, or many short ones that share a search.
+        let points = points.iter().map(|&(u, v)| LatticePoint::new(8000 + u / shrink, 8000 + v / shrink));
+        let Ok(line) = Polyline::new(points.collect()) else { return Ok(()) };
+        let mut expected = Vec::new();
+        for pair in line.points().windows(2) {
+            let around = Around::new([pair[0], pair[1]], margin + 1);
+            let parts = (0..surface.triangles().len() as u32).map(|t| around.part_of(t, &surface));
+            let heights_m: Vec<f64> = parts.flat_map(|part| part.corners().iter().map(|c| c[2]).collect::<Vec<_>>()).collect();
+            let low = heights_m.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = heights_m.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            if low <= high {
+                let pad = PAD * low.abs().max(high.abs()).max(high - low);
+                expected.push(([pair[0], pair[1]], [low - pad, high + pad]));
+            }
+        }
+        let lines = extrude(&line, &surface, margin);
+        let found: Vec<_> = lines
+            .iter()
+            .flat_map(|line| line.points.windows(2).map(|pair| [pair[0], pair[1]]).zip(line.ground_range_m.iter().copied()))
+            .collect();
+        prop_assert_eq!(found, expected);
+    }
+}
+
 #[test]
 fn segments_without_ground_split_the_line() {
     let surface = ground(|_, _| 10, |column, _| (6..10).contains(&column));

@@ -12,7 +12,7 @@ use corniche_tin::{Placement, Surface, Tin};
 use proptest::prelude::*;
 
 use self::{
-    exact::{crossing, expected},
+    exact::{crossing, expected, height},
     lines::Course,
     random::Random,
     terrains::Terrain,
@@ -27,7 +27,8 @@ fn turned(line: &DrapedLine) -> DrapedLine {
     DrapedLine { lead_in: line.lead_out, vertices, lead_out: line.lead_in }
 }
 
-/// Length in plan, and that every edge lies on the TIN: its middle has the height of the triangle beneath.
+/// Length in plan, and that every edge lies on the TIN: its middle has the height of the triangle beneath, as near
+/// as f64 can tell where that is. (Over a sliver the ground may rise by a million metres a step.)
 fn length_on_tin(line: &DrapedLine, surface: &Surface) -> f64 {
     let at = positions(line, surface).unwrap();
     let mut length = 0.0;
@@ -35,6 +36,14 @@ fn length_on_tin(line: &DrapedLine, surface: &Surface) -> f64 {
         let [[u0, v0, z0], [u1, v1, z1]] = [pair[0], pair[1]];
         let middle = [f64::midpoint(u0, u1), f64::midpoint(v0, v1)];
         // Along an edge rounding puts the middle on either side of it, so every triangle that near is tried.
+        let beyond_rounding_m = |t: u32| {
+            let height_m = |east: f64, north: f64| {
+                surface.height_in_triangle_m(t, [middle[0] + east, middle[1] + north])
+            };
+            let here_m = height_m(0.0, 0.0);
+            let slope = (height_m(1.0, 0.0) - here_m).abs() + (height_m(0.0, 1.0) - here_m).abs();
+            (here_m - f64::midpoint(z0, z1)).abs() - 1e-10 * slope
+        };
         let gap_m = (0..surface.triangles().len() as u32)
             .filter(|&t| {
                 let corners = surface.triangles()[t as usize].map(|v| surface.points()[v as usize]);
@@ -42,7 +51,7 @@ fn length_on_tin(line: &DrapedLine, surface: &Surface) -> f64 {
                 let weights = corniche_geom::barycentric(middle, a, b, c);
                 weights.iter().all(|&weight| weight > -1e-6)
             })
-            .map(|t| (surface.height_in_triangle_m(t, middle) - f64::midpoint(z0, z1)).abs())
+            .map(beyond_rounding_m)
             .fold(f64::INFINITY, f64::min);
         assert!(gap_m < 1e-6, "edge {k} is {gap_m} m off the ground");
         length += (u1 - u0).hypot(v1 - v0);
@@ -115,7 +124,7 @@ impl Case {
     }
 
     /// Positions and heights are those of exact arithmetic: in plan to 2^-20 of a step, the line's own points
-    /// and the TIN's vertices exactly, heights to 2^-40 of a quantum.
+    /// and the TIN's vertices exactly, heights on edges to 2^-40 of a quantum, in triangles to 2^-36.
     fn check_positions(&self, part: &DrapedLine, surface: &Surface) {
         let near = |point: LatticePoint| [point.u as f64, point.v as f64];
         let height_q = |vertex: u32| i64::from(self.tin.vertices()[vertex as usize].height_q);
@@ -129,9 +138,16 @@ impl Case {
         let mut before = usize::from(part.lead_in.is_some());
         for (vertex, at) in part.vertices.iter().zip(positions(part, surface).unwrap()) {
             match *vertex {
-                DrapedVertex::Source { point, .. } => {
+                DrapedVertex::Source { point, triangle } => {
                     before += 1;
                     assert_eq!(at[..2], near(point));
+                    let corners = surface.triangles()[triangle as usize];
+                    let off =
+                        at[2] / QUANTUM_M - height(surface, corners, point, corners.map(height_q));
+                    assert!(
+                        off.abs() <= 1.0 / (1_u64 << 36) as f64,
+                        "{off} quanta off at {vertex:?}"
+                    );
                 }
                 DrapedVertex::Vertex { vertex } => {
                     assert_eq!(at[..2], near(surface.points()[vertex as usize]));

@@ -21,7 +21,8 @@ pub struct Drape {
 ///
 /// The outline of the ground is ground: a line along it is kept. A line that only touches ground at a point
 /// leaves nothing. A source point on an edge or a TIN vertex is a source point and nothing else, and names the
-/// triangle with the smallest index of those that hold it.
+/// triangle with the smallest index of those that hold it. Coordinates are below 2^60, so that products of their
+/// differences fit 128 bits.
 ///
 /// Source: Vaaraniemi, Treib & Westermann 2011, *High-Quality Cartographic Roads on High-Resolution DEMs*,
 /// section 6.1, decided by exact orientations instead of floating-point barycentric coordinates.

@@ -51,8 +51,17 @@ fn spell(drape: &Drape) -> Vec<String> {
 
 #[track_caller]
 fn assert_drapes(points: &[(i64, i64)], parts: &[&str], off_ground_steps: f64) {
-    let surface = surface();
-    let draped = drape(&line(points), &surface);
+    assert_drapes_on(&surface(), points, parts, off_ground_steps);
+}
+
+#[track_caller]
+fn assert_drapes_on(
+    surface: &Surface,
+    points: &[(i64, i64)],
+    parts: &[&str],
+    off_ground_steps: f64,
+) {
+    let draped = drape(&line(points), surface);
     assert_eq!(spell(&draped), parts);
     assert!(
         (draped.off_ground_steps - off_ground_steps).abs() < 1e-9,
@@ -60,8 +69,8 @@ fn assert_drapes(points: &[(i64, i64)], parts: &[&str], off_ground_steps: f64) {
         draped.off_ground_steps
     );
     for part in &draped.lines {
-        assert_eq!(check(part, &surface), Ok(()));
-        assert_eq!(positions(part, &surface).unwrap().len(), part.vertices.len());
+        assert_eq!(check(part, surface), Ok(()));
+        assert_eq!(positions(part, surface).unwrap().len(), part.vertices.len());
     }
 }
 
@@ -139,6 +148,66 @@ fn source_points_on_edges_and_vertices_are_only_source_points() {
 #[test]
 fn hairpins_return_over_the_same_edges() {
     assert_drapes(&[(8, -2), (12, -2), (8, -2)], &["s8,-2 1×4 s12,-2 1×4 s8,-2"], 0.0);
+}
+
+#[test]
+fn along_several_edges_in_part_both_ways() {
+    assert_drapes(&[(10, -3), (10, -17)], &["s10,-3 @4 s10,-17"], 0.0);
+    assert_drapes(&[(10, -17), (10, -3)], &["s10,-17 @4 s10,-3"], 0.0);
+    assert_drapes(&[(10, 7), (10, -17)], &["(10 7) @1 @4 s10,-17"], 7.0);
+}
+
+#[test]
+fn hairpins_along_an_edge_return_in_part() {
+    let back_and_forth = [(10, -2), (10, -9), (10, -5), (10, -12)];
+    assert_drapes(&back_and_forth, &["s10,-2 s10,-9 s10,-5 @4 s10,-12"], 0.0);
+}
+
+#[test]
+fn pieces_without_length_and_of_one_step_add_nothing() {
+    assert_drapes(&[(5, -2), (5, -2), (6, -2), (6, -2)], &["s5,-2 s6,-2"], 0.0);
+    assert_drapes(&[(9, -5), (10, -5), (11, -5)], &["s9,-5 s10,-5 s11,-5"], 0.0);
+}
+
+#[test]
+fn rings_close_and_lines_may_cross_themselves() {
+    assert_drapes(&[(8, -2), (12, -2), (10, -8), (8, -2)], &["s8,-2 1×4 s12,-2 s10,-8 s8,-2"], 0.0);
+    assert_drapes(
+        &[(8, -2), (12, -4), (12, -2), (8, -4)],
+        &["s8,-2 1×4 s12,-4 s12,-2 1×4 s8,-4"],
+        0.0,
+    );
+}
+
+/// ```text
+///     0 ── 1            Two squares that touch at a corner.
+///     │ ╱  │
+///     2 ── 3 ── 4
+///          │ ╱  │
+///          5 ── 6
+/// ```
+#[test]
+fn islands_that_touch_at_a_corner_are_connected_there() {
+    let nodes = [(0, 0), (0, 1), (1, 0), (1, 1), (1, 2), (2, 1), (2, 2)];
+    let vertices =
+        nodes.iter().map(|&(row, column)| TinVertex { row, column, height_q: 3 }).collect();
+    let tin = Tin::new(vertices, &[[0, 2, 1], [1, 2, 3], [3, 5, 4], [4, 5, 6]]).unwrap();
+    let corner = LatticePoint::new(0, 0);
+    let surface = Surface::new(&tin, Placement { corner, node_steps: 10, quantum_m: 1.0 });
+    let across = ["s2,-2 1×2 @3 4×5 s18,-18"];
+    assert_drapes_on(&surface, &[(2, -2), (18, -18)], &across, 0.0);
+    assert_drapes_on(&surface, &[(0, -10), (20, -10)], &["s0,-10 @3 s20,-10"], 0.0);
+    assert_drapes_on(&surface, &[(5, -15), (15, -5)], &[], 200_f64.sqrt());
+}
+
+#[test]
+fn at_the_ends_of_the_lattice_nothing_overflows() {
+    let end = (1_i64 << 60) - 1;
+    let across = drape(&line(&[(-end, -5), (end, -5)]), &surface());
+    let name = |west: i64, east: i64| format!("({west} -5) 0×3 0×4 1×4 2×4 2×5 ({east} -5)");
+    assert_eq!(spell(&across), [name(-end, end)]);
+    let diagonal = drape(&line(&[(-end, end), (end, -end)]), &surface());
+    assert_eq!(spell(&diagonal), [format!("({} {end}) @0 @4 ({end} {})", -end, -end)]);
 }
 
 #[test]

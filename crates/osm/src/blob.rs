@@ -68,7 +68,8 @@ pub(crate) fn unpack(blob: &[u8], limit_bytes: u64) -> Result<Vec<u8>, BlobRefus
         let field = field?;
         match field.number {
             1 | 3..=7 => {
-                if data.replace((field.number, field.value.bytes()?)).is_some() {
+                let earlier = data.replace((field.number, field.value.bytes()?));
+                if earlier.is_some() {
                     return Err(BlobRefusal::Damaged("it holds its data twice".into()));
                 }
             }

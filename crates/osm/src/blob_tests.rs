@@ -89,7 +89,6 @@ fn a_packed_stream_cut_anywhere_or_with_any_bit_flipped_never_passes_for_another
 
 #[test]
 fn a_header_names_a_type_and_a_size_within_the_limit() {
-    let kind = field(1, b"OSMData");
     #[track_caller]
     fn check(header: &[Vec<u8>], expected: Result<u64, &str>) {
         match (BlobHeader::parse(&header.concat()), expected) {
@@ -100,6 +99,7 @@ fn a_header_names_a_type_and_a_size_within_the_limit() {
             (found, expected) => panic!("{found:?}, not {expected:?}"),
         }
     }
+    let kind = field(1, b"OSMData");
     check(&[kind.clone(), number(3, 0)], Ok(0));
     check(&[number(3, 7), field(2, b"index"), kind.clone()], Ok(7));
     check(&[kind.clone(), number(3, 32 << 20)], Ok(32 << 20));

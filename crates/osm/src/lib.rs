@@ -3,10 +3,13 @@
 //! ```text
 //!  file ──► blobs ──► ways (pass 1) ──► ids of the nodes they need, sorted
 //!                └──► nodes (pass 2) ──► their locations ──► assemble ──► Road, in order of way id
+//!
+//!  blob ──► unpack, within its limit ──► audit ──► osmpbf ──► objects
 //! ```
 //!
-//! Both passes decode blobs in parallel inside the pool of the caller. Only what roads need is held: their tags, their
-//! node ids and those nodes' coordinates, whatever the order of the file.
+//! Both passes decode blobs in parallel inside the pool of the caller. No block reaches the decoder before it was checked: what
+//! contradicts itself, would overflow or would fill the memory is refused with its reason. Only what roads need is held: their
+//! tags, their node ids and those nodes' coordinates, whatever the order of the file.
 //!
 //! This crate never judges which road matters at which level, never guesses a class, and starts no threads.
 

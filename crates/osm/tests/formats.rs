@@ -117,7 +117,7 @@ fn a_path_that_is_no_file_is_refused_and_nothing_waits() {
 fn a_file_that_may_not_be_read_is_said_to_be_so() {
     use std::os::unix::fs::PermissionsExt;
     let (_folder, path) = written("locked.osm.pbf", b"x");
-    fs::set_permissions(&path, fs::Permissions::from_mode(0)).unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o000)).unwrap();
     if fs::File::open(&path).is_ok() {
         println!("skipped: this user may read everything");
         return;
@@ -170,9 +170,6 @@ fn what_a_file_asks_of_its_readers_is_granted_or_named() {
 
 #[test]
 fn a_file_begins_with_its_header() {
-    let block = Block::new().bytes();
-    let data = raw(b"OSMData", &block);
-    let other = frame(b"_thumbnail", b"\xff\xff");
     #[track_caller]
     fn check(blobs: &[&[u8]], expected: Result<(), &str>) {
         match (read_bytes(&blobs.concat()), expected) {
@@ -181,6 +178,9 @@ fn a_file_begins_with_its_header() {
             (found, _) => panic!("{found:?}"),
         }
     }
+    let block = Block::new().bytes();
+    let data = raw(b"OSMData", &block);
+    let other = frame(b"_thumbnail", b"\xff\xff");
     check(&[&plain_header()], Ok(()));
     check(&[&plain_header(), &data], Ok(()));
     check(&[&packed_blob(b"OSMHeader", b""), &packed_blob(b"OSMData", &block)], Ok(()));

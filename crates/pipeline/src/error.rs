@@ -23,7 +23,7 @@ pub enum BuildError {
     NoHeights { dem: Vec<PathBuf> },
     #[error(
         "{dem:?} hold heights at {nodes} nodes, but no cell has one at each of its four corners, so there is no \
-         ground; give a finer raster, or let --fill-voids close what lies between"
+         ground; give rasters with heights side by side"
     )]
     NoCell { dem: Vec<PathBuf>, nodes: u64 },
     #[error(
@@ -43,7 +43,7 @@ pub enum BuildError {
     Project(#[source] corniche_geom::ProjectError),
     #[error("the run could not be set up: {what}")]
     Start { what: String },
-    #[error("--max-error must be a positive number of metres, not {max_error_m}")]
+    #[error("--max-error must be from 1e-9 to 1e9 metres, not {max_error_m}")]
     MaxError { max_error_m: f64 },
     #[error("intermediate results could not be kept beside the package (disk full?)")]
     Storage(#[source] io::Error),
@@ -83,6 +83,7 @@ impl BuildError {
                 | Self::NoGround { .. }
                 | Self::Coordinates(_)
                 | Self::MaxError { .. }
+                | Self::Triangulate { source: corniche_tin::TriangulateError::Height { .. }, .. }
         )
     }
 }

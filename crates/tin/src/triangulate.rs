@@ -40,7 +40,8 @@ pub enum TriangulateError {
     },
     /// A height is beyond what 32-bit steps of the quantum can hold.
     #[error(
-        "a height of {height_m} m does not fit 32-bit steps of {quantum_m} m; is it a nodata value?"
+        "a height of {height_m} m does not fit 32-bit steps of {quantum_m} m; is it a nodata value, or the \
+         tolerance too small?"
     )]
     Height {
         /// The height.

@@ -178,19 +178,20 @@ fn dted_gives_the_plane() {
 }
 
 fn vrt(sources: &[(&str, usize)]) -> String {
-    let mut text = format!(
-        "<VRTDataset rasterXSize=\"60\" rasterYSize=\"50\"><SRS>EPSG:32632</SRS>\
-         <GeoTransform>{}</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\">",
-        UTM.map(|value| value.to_string()).join(", ")
-    );
-    for (name, left) in sources {
-        text += &format!(
+    let parts = sources.iter().map(|(name, left)| {
+        format!(
             "<SimpleSource><SourceFilename relativeToVRT=\"1\">{name}</SourceFilename>\
              <SourceBand>1</SourceBand><SrcRect xOff=\"0\" yOff=\"0\" xSize=\"30\" ySize=\"50\"/>\
              <DstRect xOff=\"{left}\" yOff=\"0\" xSize=\"30\" ySize=\"50\"/></SimpleSource>"
-        );
-    }
-    text + "</VRTRasterBand></VRTDataset>"
+        )
+    });
+    format!(
+        "<VRTDataset rasterXSize=\"60\" rasterYSize=\"50\"><SRS>EPSG:32632</SRS>\
+         <GeoTransform>{}</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\">{}\
+         </VRTRasterBand></VRTDataset>",
+        UTM.map(|value| value.to_string()).join(", "),
+        parts.collect::<String>()
+    )
 }
 
 #[test]

@@ -6,11 +6,14 @@
     reason = "tests: helpers unwrap too, and what is exact is compared exactly"
 )]
 
+mod all_real_data;
 mod closed_form;
+mod fill_rule;
 mod fixture;
 mod formats;
 mod georeference;
 mod real_data;
 mod refusals;
 mod samples;
+mod vertical;
 mod voids;

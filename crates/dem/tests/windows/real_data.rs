@@ -7,7 +7,7 @@ use corniche_geom::{NodeIndex, NodeWindow};
 use crate::fixture::{all, options};
 
 /// Files of the real data, or `None` with a line that says so.
-fn data(names: &[&str]) -> Option<Vec<PathBuf>> {
+pub(crate) fn data(names: &[&str]) -> Option<Vec<PathBuf>> {
     let folder = std::env::var_os("CORNICHE_DATA").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
         PathBuf::from,

@@ -1,8 +1,8 @@
 use std::fs;
 
-use corniche_dem::{Dem, DemError, OpenOptions};
+use corniche_dem::{Dem, DemError, OpenOptions, PlanOptions};
 
-use crate::fixture::{Raster, all, open, options};
+use crate::fixture::{Raster, all, check_refused, check_words, open, options};
 
 const UTM: [f64; 6] = [500_000.0, 10.0, 0.0, 5_200_000.0, 0.0, -10.0];
 
@@ -44,4 +44,56 @@ fn a_file_cut_off_behind_our_back_is_named() {
     fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
     let error = dem.reader(&plan).unwrap().window(all(&plan)).unwrap_err().to_string();
     assert!(error.contains("cut.tif"), "{error}");
+}
+
+#[test]
+fn names_of_coordinate_systems_are_refused_in_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = Raster::new(32632, [6, 5], UTM).write(folder.path(), "a.tif", |_| 1.0_f32);
+    let dem = open(&[file]);
+    for (text, words) in [
+        ("nonsense", "EPSG:n or WKT"),
+        ("EPSG:999999", "EPSG:n or WKT"),
+        ("", "EPSG:n or WKT"),
+        ("PROJCS[\"half a", "EPSG:n or WKT"),
+        ("EPSG:5773", "neither projected nor geographic"),
+        ("EPSG:4326", "projected coordinate system in metres"),
+        ("EPSG:2272", "metres"),
+    ] {
+        let asked = PlanOptions { crs: Some(text.to_owned()), ..options() };
+        let error = dem.plan(&asked).unwrap_err();
+        check_words(&error, &["--crs", words]);
+    }
+    // Far from where the projection reaches.
+    let asked = PlanOptions { crs: Some("EPSG:5042".to_owned()), ..options() };
+    assert!(
+        dem.plan(&asked).is_ok(),
+        "the south polar stereographic reaches all but the north pole"
+    );
+}
+
+#[test]
+fn a_file_that_lies_nowhere_is_named_also_among_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = Raster::new(32632, [6, 5], UTM).write(folder.path(), "here.tif", |_| 1.0_f32);
+    let nowhere = Raster::new(32632, [6, 5], [1e12, 10.0, 0.0, 1e12, 0.0, -10.0]).write(
+        folder.path(),
+        "nowhere.tif",
+        |_| 1.0_f32,
+    );
+    let words = ["nowhere.tif", "nowhere on earth", "EPSG:32632", "-a_srs"];
+    check_refused(std::slice::from_ref(&nowhere), &OpenOptions::default(), &words);
+    check_refused(&[here, nowhere], &OpenOptions::default(), &words);
+    // On earth, but where a gnomonic projection about the other file does not reach.
+    let square = |west: f64, name: &str| {
+        Raster::new(4326, [6, 5], [west, 0.1, 0.0, 0.0, 0.0, -0.1]).write(
+            folder.path(),
+            name,
+            |_| 1.0_f32,
+        )
+    };
+    let dem = open(&[square(9.0, "near.tif"), square(119.0, "far.tif")]);
+    let gnomonic = "+proj=gnom +lat_0=0 +lon_0=9 +datum=WGS84 +units=m +type=crs";
+    let asked = PlanOptions { crs: Some(gnomonic.to_owned()), cell_m: Some(10_000.0), ..options() };
+    check_words(&dem.plan(&asked).unwrap_err(), &["far.tif", "no position in", "--crs"]);
 }

@@ -76,7 +76,7 @@ fn complex_samples_are_refused() {
              </VRTDataset>"
         );
         fs::write(&path, text).unwrap();
-        check_refused(&[path], &OpenOptions::default(), &[kind, "no heights"]);
+        check_refused(&[path], &OpenOptions::default(), &[kind, "complex", "no heights"]);
     }
 }
 
@@ -185,15 +185,27 @@ fn masks_take_samples_away() {
         check(name, path, &given, &[Some(5.0), None, Some(7.0)]);
     }
     gdal::config::clear_thread_local_config_option("GDAL_TIFF_INTERNAL_MASK").unwrap();
-    let alpha =
-        Raster { size: [3, 5], ..raster() }.bands(2).created(&["ALPHA=YES"]).tagged(|dataset| {
+    alpha(folder.path(), "u8.tif", [5_u8, 6, 7], [255, 1, 0]);
+    alpha(folder.path(), "u16.tif", [5_u16, 6, 7], [65_535, 1, 0]);
+    // Of other types GDAL makes no mask; its own warper writes such files.
+    alpha(folder.path(), "i16.tif", [5_i16, 6, 7], [32_767, 1, 0]);
+    alpha(folder.path(), "f32.tif", [5.0_f32, 6.0, 7.0], [255.0, 1.0, 0.0]);
+}
+
+/// The last of three samples is transparent, and so is the second once it is also nodata.
+fn alpha<T: GdalType + Copy>(folder: &Path, name: &str, values: [T; 3], opacity: [T; 3]) {
+    for nodata in [None, Some(6.0)] {
+        let raster = Raster { size: [3, 5], nodata, ..raster() };
+        let raster = raster.bands(2).created(&["ALPHA=YES"]).tagged(|dataset| {
             let mut band = dataset.rasterband(2).unwrap();
             assert_eq!(band.color_interpretation(), ColorInterpretation::AlphaBand);
-            band.write((0, 0), (3, 5), &mut Buffer::new((3, 5), [255_i16, 1, 0].repeat(5)))
-                .unwrap();
+            let mut opacity = Buffer::new((3, 5), opacity.repeat(5));
+            band.write((0, 0), (3, 5), &mut opacity).unwrap();
         });
-    let path = row(folder.path(), "alpha.tif", alpha, &[5_i16, 6, 7]);
-    check("alpha", path, &given, &[Some(5.0), Some(6.0), None]);
+        let path = row(folder, &format!("{nodata:?}-{name}"), raster, &values);
+        let second = if nodata.is_some() { None } else { Some(6.0) };
+        check(name, path, &OpenOptions::default(), &[Some(5.0), second, None]);
+    }
 }
 
 #[test]

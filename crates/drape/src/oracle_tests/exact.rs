@@ -196,6 +196,19 @@ pub(super) fn crossing(
     [on(a.u, b.u), on(a.v, b.v), on(heights_q[0], heights_q[1])]
 }
 
+/// Height of a triangle's plane above a point, in quanta.
+pub(super) fn height(
+    surface: &Surface,
+    corners: [u32; 3],
+    point: LatticePoint,
+    heights_q: [i64; 3],
+) -> f64 {
+    let [a, b, c] = corners.map(|vertex| surface.points()[vertex as usize]);
+    let [za, zb, zc] = heights_q.map(i128::from);
+    let rise = area(a, point, c) * (zb - za) + area(a, b, point) * (zc - za);
+    Along::new(rise, area(a, b, c)).between(za, 1)
+}
+
 #[test]
 fn wide_products_are_ordered_as_products() {
     let numbers = [0, 1, -1, 2, -3, 1 << 64, -(1 << 64) - 1, 1 << 120, -(1 << 121), i128::MAX];

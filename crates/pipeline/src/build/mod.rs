@@ -32,6 +32,10 @@ pub(crate) use inputs::record as input_record;
 use levels::Levels;
 pub(crate) use package::settings_sha256;
 
+/// Tolerances of the finest level that can be used. Beyond them, the root's or the height quantum is no number that a
+/// package can hold.
+const MAX_ERRORS_M: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+
 /// What a build came to.
 #[derive(Debug, Clone)]
 pub struct BuildSummary {
@@ -105,7 +109,9 @@ fn run(
         &OpenOptions {
             dem_crs: terrain.dem_crs.clone(),
             nodata: terrain.nodata,
-            ..OpenOptions::default()
+            dem_vertical_crs: terrain.dem_vertical_crs.clone(),
+            vertical_crs: terrain.vertical_crs.clone(),
+            vertical_shift_m: terrain.vertical_shift_m,
         },
     )?;
     let plan = dem.plan(&PlanOptions {
@@ -114,7 +120,7 @@ fn run(
         fill_voids: terrain.fill_voids,
     })?;
     let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell_m() / 4.0);
-    if !(max_error_m > 0.0 && max_error_m.is_finite()) {
+    if !MAX_ERRORS_M.contains(&max_error_m) {
         return Err(BuildError::MaxError { max_error_m });
     }
     let levels = Levels::new(plan.frame, max_error_m, &settings.roads);

@@ -73,7 +73,7 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
             quantum_m: levels.quantum_m(),
             unit: "metre".to_owned(),
             datum: plan.vertical_datum.clone().unwrap_or_else(|| "unknown".to_owned()),
-            treatment: "as in the files".to_owned(),
+            treatment: plan.vertical.clone(),
             range_m: outcome.range_m.map(f64::from),
         },
         coordinates: outcome.coordinates.clone(),

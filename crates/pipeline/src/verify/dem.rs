@@ -123,7 +123,9 @@ fn open(
         &OpenOptions {
             dem_crs: record.dem_crs.clone(),
             nodata: record.nodata,
-            ..OpenOptions::default()
+            dem_vertical_crs: record.dem_vertical_crs.clone(),
+            vertical_crs: record.vertical_crs.clone(),
+            vertical_shift_m: record.vertical_shift_m,
         },
     )?;
     let mut hashes = Vec::new();

@@ -12,7 +12,7 @@ pub(crate) const MAX_MEASURE_M: f64 = 1e18;
 /// Heights are 32-bit steps of the quantum, so they stay below 2^(31 + 27) metres and within [`MAX_MEASURE_M`].
 const QUANTUM_EXPONENTS: std::ops::RangeInclusive<i32> = -64..=27;
 /// No single count and no sum of a list of counts is larger: as many nodes as a grid of 2^22 tiles a side has, with
-/// their borders counted twice. Sixteen such numbers can be added in 64 bits.
+/// their borders counted twice. Seven such numbers can be added in 64 bits.
 const MAX_COUNT: u64 = 1 << 61;
 /// Length in the working CRS over true length: Mercator reaches 57 a degree from the pole.
 const POINT_SCALES: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
@@ -32,8 +32,8 @@ impl Manifest {
         let frame = &self.frame;
         all_measures("frame.origin_m", &frame.origin_m())?;
         bounds("data_bounds", &self.data_bounds, [MAX_MEASURE_M; 2])?;
-        // Longitudes go on beyond 180° where the data crosses the antimeridian.
-        bounds("wgs84_bounds", &self.wgs84_bounds, [720.0, 90.0])?;
+        // Longitudes go on beyond 180° where the data crosses the antimeridian, and half a pixel may lie beyond a pole.
+        bounds("wgs84_bounds", &self.wgs84_bounds, [720.0, 91.0])?;
         bounds("coordinates.bounds", &self.coordinates.bounds(), [MAX_MEASURE_M; 2])?;
         that(POINT_SCALES.contains(&self.point_scale), "point_scale", self.point_scale)?;
         let quantum_m = self.vertical.quantum_m;
@@ -42,7 +42,7 @@ impl Manifest {
         // Heights as they were read, nonsense included, but within an f32.
         let is_range =
             low_m <= high_m && low_m >= f64::from(f32::MIN) && high_m <= f64::from(f32::MAX);
-        that(is_range, "vertical.range_m", format_args!("{:?}", self.vertical.range_m))?;
+        that(is_range, "vertical.range_m", self.vertical.range_m)?;
         self.check_settings()?;
         let levels = usize::from(frame.max_level()) + 1;
         that(self.levels.len() == levels, "the number of levels", self.levels.len())?;
@@ -99,7 +99,7 @@ fn check_distribution(distribution: &Distribution) -> Result<(), String> {
     measure("the smallest value of a distribution", min)?;
     measure("the largest value of a distribution", max)?;
     let is_sorted = min <= median && median <= p95 && p95 <= max;
-    that(is_sorted, "a distribution", format_args!("{distribution:?}"))
+    that(is_sorted, "a distribution", distribution)
 }
 
 fn level_counts(record: &LevelRecord) -> [u64; 5] {
@@ -143,8 +143,8 @@ fn check_counts(counts: &Counts) -> Result<(), String> {
     counts.classes.iter().try_for_each(|&(_, length_m)| measure("counts.classes", length_m))
 }
 
-fn that(holds: bool, name: &str, value: impl std::fmt::Display) -> Result<(), String> {
-    if holds { Ok(()) } else { Err(format!("{name} is {value}, which cannot be")) }
+fn that(holds: bool, name: &str, value: impl std::fmt::Debug) -> Result<(), String> {
+    if holds { Ok(()) } else { Err(format!("{name} is {value:?}, which cannot be")) }
 }
 
 /// A length: neither negative nor absurd.
@@ -166,7 +166,7 @@ fn bounds(name: &str, bounds: &Bounds, limits: [f64; 2]) -> Result<(), String> {
         && within(max_x, limits[0])
         && within(min_y, limits[1])
         && within(max_y, limits[1]);
-    that(sound, name, format_args!("{:?}", bounds.to_array()))
+    that(sound, name, bounds.to_array())
 }
 
 fn check_sum(name: &str, counts: impl IntoIterator<Item = u64>) -> Result<(), String> {

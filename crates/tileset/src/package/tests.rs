@@ -257,6 +257,13 @@ fn ordinary_pmtiles_and_other_files_are_refused() {
     assert!(matches!(broken, OpenError::Manifest { .. }), "{broken}");
     assert!(matches!(open(Vec::new()), Err(OpenError::NotPmtiles)));
     assert!(matches!(open(b"\x89PNG and so on".to_vec()), Err(OpenError::NotPmtiles)));
+    // A device or a pipe has no length to be read by; a pipe would even make the reader wait.
+    #[cfg(unix)]
+    {
+        let source = FilePackage::open("/dev/null".as_ref()).unwrap_err();
+        let source = std::error::Error::source(&source).unwrap().to_string();
+        assert!(source.contains("no ordinary file"), "{source}");
+    }
     let missing = FilePackage::open("no/such.pmtiles".as_ref()).unwrap_err();
     assert!(missing.to_string().contains("no/such.pmtiles"));
 }

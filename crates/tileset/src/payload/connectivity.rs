@@ -39,43 +39,59 @@ pub(super) struct Reached {
     pub(super) gate: [u32; 3],
 }
 
-/// Directed edges with the corner to their left.
+/// Directed edges with the corner to their left: a hash table by open addressing, so that a vertex of a thousand
+/// triangles costs no more than any other.
 #[derive(Debug)]
 pub(super) struct Edges<'w> {
-    first: Vec<u32>,
-    /// Next in the list of the same origin, target, corner.
-    edges: Vec<[u32; 3]>,
+    /// Origin, target, corner; [`FREE`] as origin where there is no edge. A power of two of them.
+    slots: Vec<[u32; 3]>,
+    count: usize,
     work: &'w Work,
 }
 
-const END: u32 = u32::MAX;
+/// No vertex has this number.
+const FREE: u32 = u32::MAX;
 
 impl<'w> Edges<'w> {
-    /// Looking at an edge counts as `work`.
-    pub(super) fn new(vertices: usize, work: &'w Work) -> Self {
-        Self { first: vec![END; vertices], edges: Vec::new(), work }
+    /// Looking at a slot counts as `work`: a writer's edges hardly ever share one, a hostile one's may.
+    pub(super) fn new(work: &'w Work) -> Self {
+        Self { slots: vec![[FREE; 3]; 64], count: 0, work }
     }
 
     pub(super) fn corner(&self, a: u32, b: u32) -> Option<u32> {
-        let mut at = self.first[a as usize];
-        let mut found = None;
-        let mut steps = 0;
-        while let Some(&[next, target, corner]) = self.edges.get(at as usize) {
+        let [origin, _, corner] = self.slots[self.slot(a, b)];
+        (origin != FREE).then_some(corner)
+    }
+
+    /// Where the edge is, or would be.
+    fn slot(&self, a: u32, b: u32) -> usize {
+        let last = self.slots.len() - 1;
+        let key = u64::from(a) << 32 | u64::from(b);
+        // Fibonacci hashing: Knuth 1998, *The Art of Computer Programming* 3, section 6.4.
+        let hash = key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
+        let mut at = hash as usize & last;
+        let mut steps = 1;
+        while self.slots[at][0] != FREE && self.slots[at][..2] != [a, b] {
+            at = (at + 1) & last;
             steps += 1;
-            if target == b {
-                found = Some(corner);
-                break;
-            }
-            at = next;
         }
         self.work.add(steps);
-        found
+        at
     }
 
     fn add_edge(&mut self, a: u32, b: u32, corner: u32) {
-        let at = self.edges.len() as u32;
-        self.edges.push([self.first[a as usize], b, corner]);
-        self.first[a as usize] = at;
+        // Half full at most, so that a search soon meets a free slot.
+        if 2 * self.count >= self.slots.len() {
+            let doubled = vec![[FREE; 3]; 2 * self.slots.len()];
+            let known = std::mem::replace(&mut self.slots, doubled);
+            for [a, b, corner] in known.into_iter().filter(|slot| slot[0] != FREE) {
+                let at = self.slot(a, b);
+                self.slots[at] = [a, b, corner];
+            }
+        }
+        let at = self.slot(a, b);
+        self.slots[at] = [a, b, corner];
+        self.count += 1;
     }
 
     /// Adds a triangle; an edge that has a triangle on that side already makes it fail.
@@ -111,36 +127,30 @@ pub(super) fn walk(
     guide: &mut impl Guide,
 ) -> Result<(Vec<[u32; 3]>, Vec<Reached>), Damage> {
     let work = nodes.work();
-    let mut edges = Edges::new(nodes.len(), work);
+    let mut edges = Edges::new(work);
     let mut triangles = Vec::with_capacity(count);
     let mut order = Vec::with_capacity(nodes.len());
     let mut seen = vec![false; nodes.len()];
     let mut gates: VecDeque<[u32; 3]> = VecDeque::new();
     while triangles.len() < count {
-        let (triangle, gate) = match gates.pop_front() {
-            Some([a, b, d]) => {
-                if edges.corner(a, b).is_some() {
-                    continue;
-                }
-                let guess = |no: &[u32]| {
-                    nodes.best_corner([a, b], |c| {
-                        !no.contains(&c)
-                            && edges.corner(b, c).is_none()
-                            && edges.corner(c, a).is_none()
-                    })
-                };
-                let corner = guide.corner([a, b], &guess);
-                work.check()?;
-                match corner? {
-                    Some(c) => ([a, b, c], Some([a, b, d])),
-                    None => continue,
-                }
+        let (triangle, gate) = if let Some([a, b, d]) = gates.pop_front() {
+            if edges.corner(a, b).is_some() {
+                continue;
             }
-            None => {
-                let start = guide.start(&edges);
-                work.check()?;
-                (start?, None)
-            }
+            let guess = |no: &[u32]| {
+                nodes.best_corner([a, b], |c| {
+                    !no.contains(&c) && edges.corner(b, c).is_none() && edges.corner(c, a).is_none()
+                })
+            };
+            let corner = guide.corner([a, b], &guess);
+            // Before the answer: a search that gave up has found nothing true.
+            work.check()?;
+            let Some(c) = corner? else { continue };
+            ([a, b, c], Some([a, b, d]))
+        } else {
+            let start = guide.start(&edges);
+            work.check()?;
+            (start?, None)
         };
         if triangle.iter().any(|&vertex| vertex as usize >= nodes.len()) {
             return Err(Damage::Invalid { what: "a triangle's vertex" });
@@ -164,4 +174,33 @@ pub(super) fn walk(
     let rest = (0..nodes.len() as u32).filter(|&vertex| !seen[vertex as usize]);
     order.extend(rest.map(|vertex| Reached { vertex, gate: [vertex; 3] }));
     Ok((triangles, order))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// Edges are found, whatever was added before, and no others.
+        #[test]
+        fn edges_are_what_was_added(triangles in prop::collection::vec([0..40_u32, 0..40, 0..40], 0..300)) {
+            let work = Work::new(u64::MAX);
+            let (mut edges, mut expected) = (Edges::new(&work), BTreeMap::new());
+            for [a, b, c] in triangles {
+                let sides = [([a, b], c), ([b, c], a), ([c, a], b)];
+                if a == b || b == c || c == a || sides.iter().any(|(side, _)| expected.contains_key(side)) {
+                    continue;
+                }
+                prop_assert!(edges.add([a, b, c]).is_ok());
+                expected.extend(sides);
+            }
+            for (a, b) in (0..40).flat_map(|a| (0..40).map(move |b| (a, b))) {
+                prop_assert_eq!(edges.corner(a, b), expected.get(&[a, b]).copied());
+            }
+        }
+    }
 }

@@ -5,7 +5,7 @@ use std::{fs, path::Path};
 
 use corniche_drape::{DrapedVertex, drape};
 use corniche_geom::{Frame, HeightGrid, LatticePoint, NodeIndex, Polyline, TileId};
-use corniche_tin::{Placement, Surface, Tin, TinSpec, height_quantum_m, triangulate};
+use corniche_tin::{Placement, Surface, Tin, TinSpec, TinVertex, height_quantum_m, triangulate};
 
 use super::{connectivity::walk, nodes::Nodes, route::Route, terrain::Recorder, work::Work};
 use crate::limits::{MAX_ROUTE_STEPS, max_walk_steps};
@@ -15,7 +15,7 @@ fn walk_steps(tin: &Tin) -> [u64; 2] {
     let (vertices, triangles) = (tin.vertices(), tin.triangles());
     let (work, lookups) = (Work::new(u64::MAX), Work::new(u64::MAX));
     let nodes = Nodes::new(vertices.iter().map(|v| [v.column, v.row]), &work);
-    let mut recorder = Recorder::new(vertices.len(), triangles, &lookups).expect("a TIN");
+    let mut recorder = Recorder::new(triangles, &lookups).expect("a TIN");
     let (found, _) = walk(&nodes, triangles.len(), &mut recorder).expect("a TIN");
     assert_eq!(found.len(), triangles.len());
     [work.done(), max_walk_steps(vertices.len(), triangles.len())]
@@ -61,6 +61,20 @@ fn noise(column: usize, row: usize) -> f32 {
     (state >> 16) as f32 / 655.36 - 50.0
 }
 
+/// A corner of the tile that all vertices of the two far borders share triangles with.
+#[test]
+fn a_fan_of_the_whole_border_stays_below_the_limit() {
+    let rim =
+        (0..=256_u16).map(|row| (row, 256)).chain((0..256_u16).rev().map(|column| (256, column)));
+    let at = [(0, 0)].into_iter().chain(rim);
+    let vertices: Vec<TinVertex> =
+        at.map(|(row, column)| TinVertex { row, column, height_q: 0 }).collect();
+    let triangles: Vec<[u32; 3]> = (1..vertices.len() as u32 - 1).map(|k| [0, k + 1, k]).collect();
+    let [steps, allowed] = walk_steps(&Tin::new(vertices, &triangles).expect("a TIN"));
+    println!("fan: {steps} steps, 1/{} of the limit", allowed / steps);
+    assert!(10 * steps <= allowed, "{steps} steps of {allowed}");
+}
+
 #[test]
 fn real_tiles_stay_far_below_the_limits() {
     for (column, row) in [(0, 0), (300, 500), (700, 100), (900, 900)] {
@@ -97,6 +111,16 @@ fn hard_outlines_stay_below_the_limits() {
         check(name, &HeightGrid::from_fn(259, 259, ramp), 5.0, 10);
         check(name, &HeightGrid::from_fn(259, 259, rough), 30.0, 10);
     }
+    // Few vertices that all see each other: on the border alone, and around a peak.
+    let is_border = |c: usize, r: usize| c <= 1 || r <= 1 || c >= 257 || r >= 257;
+    let frame = |c: usize, r: usize| if is_border(c, r) { noise(c, r) } else { 0.0 };
+    check("rough border", &HeightGrid::from_fn(259, 259, frame), 60.0, 10);
+    check("rough border", &HeightGrid::from_fn(259, 259, frame), 5.0, 10);
+    let cone = |c: usize, r: usize| {
+        let distance = (c as f32 - 129.0).hypot(r as f32 - 129.0);
+        frame(c, r) + 10.0 * (129.0 - distance).max(0.0)
+    };
+    check("peak", &HeightGrid::from_fn(259, 259, cone), 5.0, 10);
     // As many triangles as a tile can have.
     check("every node", &HeightGrid::from_fn(259, 259, noise), 0.01, 10);
     // Rims that share no row with anything but each other.

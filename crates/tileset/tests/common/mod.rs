@@ -1,0 +1,179 @@
+//! A small package, and what it is made of, for tests that damage it.
+#![allow(dead_code, reason = "each test binary takes what it needs")]
+
+use std::io::{Cursor, Write};
+
+use corniche_drape::{SvLine, drape};
+use corniche_geom::{
+    Bounds, CoordinateTable, Frame, LatticePoint, NodeIndex, Polyline, ProjectError, Projection,
+    TileId,
+};
+use corniche_roads::{FunctionalRoadClass, RoadAttributes};
+use corniche_tileset::{
+    Counts, FORMAT_VERSION, GeoRoad, GrowthRow, LevelRecord, Manifest, PayloadContext, RoadRecord,
+    SettingsRecord, SvRoad, Terrain, TilePayload, VerticalRecord, Writer, encode, pmtiles_order,
+};
+use corniche_tin::{Placement, Surface, Tin, TinVertex};
+
+pub(crate) const QUANTUM_M: f64 = 0.25;
+pub(crate) const MAX_LEVEL: u8 = 2;
+
+/// Degrees that are metres / 100 km.
+struct Flat;
+
+impl Projection for Flat {
+    fn working_from_wgs84(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
+        points.iter_mut().flatten().for_each(|value| *value *= 1e5);
+        Ok(())
+    }
+
+    fn wgs84_from_working(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
+        points.iter_mut().flatten().for_each(|value| *value /= 1e5);
+        Ok(())
+    }
+}
+
+pub(crate) fn frame() -> Frame {
+    Frame::new([0.5, 0.25], 10.0, NodeIndex { i: -512, j: 1024 }, MAX_LEVEL).unwrap()
+}
+
+pub(crate) fn context() -> PayloadContext {
+    PayloadContext { frame: frame(), quantum_m: QUANTUM_M }
+}
+
+/// The tiles of the package, in its order.
+pub(crate) fn ids() -> Vec<TileId> {
+    let mut ids: Vec<TileId> =
+        ["0/0/0", "1/1/0", "2/3/1", "2/2/1"].map(|text| text.parse().unwrap()).to_vec();
+    ids.sort_by_key(|&id| pmtiles_order(id));
+    ids
+}
+
+fn level(level: u8) -> LevelRecord {
+    LevelRecord {
+        level,
+        cell_m: frame().level_cell_m(level),
+        max_error_m: 8.0,
+        geometric_error_m: 2.0,
+        errors_m: None,
+        tightness: None,
+        least_class: Some(7),
+        simplify_tolerance_m: 0.0,
+        width_margin_m: 40.0,
+        tiles: 1,
+        triangles: 24,
+        vertices: 25,
+        terrain_bytes: 300,
+        uncovered_nodes: 0,
+    }
+}
+
+pub(crate) fn manifest() -> Manifest {
+    let frame = frame();
+    let data_bounds = frame.tile_bounds(TileId::ROOT);
+    Manifest {
+        format_version: FORMAT_VERSION,
+        generator: "corniche test".to_owned(),
+        tiling: "local quadtree".to_owned(),
+        crs: "EPSG:32632".to_owned(),
+        crs_wkt: "PROJCRS[…]".to_owned(),
+        point_scale: 0.9996,
+        frame,
+        data_bounds,
+        wgs84_bounds: Bounds { min_x: 9.4, min_y: 47.0, max_x: 9.7, max_y: 47.3 },
+        resampling: "nodes are the DEM's samples".to_owned(),
+        vertical: VerticalRecord {
+            quantum_m: QUANTUM_M,
+            unit: "metre".to_owned(),
+            datum: "unknown".to_owned(),
+            treatment: "as in the files".to_owned(),
+            range_m: [0.0, 400.0],
+        },
+        coordinates: CoordinateTable::sample(&Flat, data_bounds, 1.0).unwrap(),
+        levels: (0..=MAX_LEVEL).map(level).collect(),
+        settings: SettingsRecord {
+            max_error_m: 8.0,
+            fill_voids: 32,
+            nodata: None,
+            dem_crs: None,
+            dem_vertical_crs: None,
+            vertical_crs: None,
+            vertical_shift_m: 0.0,
+            crs: None,
+            cell_m: Some(10.0),
+            frc_table: "default".to_owned(),
+            frc_table_sha256: String::new(),
+            class_max_cell_m: vec![None; 9],
+            simplify_cells: 0.5,
+        },
+        settings_sha256: String::new(),
+        inputs: vec![],
+        attribution: vec!["© OpenStreetMap contributors".to_owned()],
+        counts: Counts { roads_in: 2, roads_kept: 2, ..Counts::default() },
+        growth: vec![GrowthRow::default()],
+    }
+}
+
+/// A tile with all sections.
+pub(crate) fn payload(id: TileId) -> TilePayload {
+    let mut vertices = Vec::new();
+    for (row, column) in (0..5_u16).flat_map(|row| (0..5_u16).map(move |column| (row, column))) {
+        let height_q = i32::from(column * column * 10 + row * 30);
+        vertices.push(TinVertex { row: 64 * row, column: 64 * column, height_q });
+    }
+    let cells = (0..4_u32).flat_map(|row| (0..4_u32).map(move |column| (row, column)));
+    let triangles: Vec<[u32; 3]> = cells
+        .filter(|&cell| cell != (2, 2))
+        .flat_map(|(row, column)| {
+            let nw = 5 * row + column;
+            [[nw, nw + 5, nw + 6], [nw, nw + 6, nw + 1]]
+        })
+        .collect();
+    let tin = Tin::new(vertices, &triangles).unwrap();
+    let surface = Surface::new(&tin, Placement::of_tile(&frame(), id, QUANTUM_M));
+    let bounds = frame().tile_lattice_bounds(id);
+    let side = bounds.max.u - bounds.min.u;
+    let point = |x: i64, y: i64| {
+        LatticePoint::new(bounds.min.u + side * x / 1024, bounds.max.v - side * y / 1024)
+    };
+    let class = FunctionalRoadClass::new(3).unwrap();
+    let points = vec![point(30, 400), point(700, 450), point(900, 640), point(256, 512)];
+    let lines = drape(&Polyline::new(points.clone()).unwrap(), &surface).lines;
+    let roads_geo = (0..).zip(lines).map(|(part, line)| GeoRoad { way_id: 7, part, class, line });
+    let line = SvLine { ground_range_m: vec![[0.25, 90.0]; points.len() - 1], points };
+    let attributes = RoadAttributes { name: "Corniche".to_owned(), ..RoadAttributes::default() };
+    TilePayload {
+        id,
+        roads_geo: roads_geo.collect(),
+        roads_sv: vec![SvRoad { way_id: 7, part: 0, class, line }],
+        attributes: vec![RoadRecord { way_id: 7, attributes }],
+        terrain: Some(Terrain {
+            normals: vec![[3, -4]; tin.vertices().len()],
+            tin,
+            geometric_error_m: 1.75,
+            height_range_m: [-3.5, 812.25],
+            uncovered_nodes: 7,
+        }),
+    }
+}
+
+pub(crate) fn encoded(id: TileId) -> Vec<u8> {
+    encode(&payload(id), &context()).unwrap().bytes
+}
+
+/// The package as the writer writes it.
+pub(crate) fn written() -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    let mut writer = Writer::new(&mut bytes, &manifest()).unwrap();
+    for id in ids() {
+        writer.add(id, &encoded(id)).unwrap();
+    }
+    writer.finish().unwrap();
+    bytes.into_inner()
+}
+
+pub(crate) fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
+}

@@ -1,0 +1,276 @@
+//! Road sections and road attributes.
+
+use corniche_drape::{DrapedLine, DrapedVertex};
+use corniche_roads::FunctionalRoadClass;
+use corniche_tileset::{GeoRoad, Terrain, TilePayload, encode};
+use corniche_tin::{Placement, Surface, Tin, TinVertex};
+
+use crate::{
+    Case, Outcome,
+    common::{self, context, frame},
+    parts::{Section, payload, raw_sections, varint},
+    refused,
+    tile_cases::{with_sections, with_tile},
+};
+
+const GEO: u16 = 2;
+const SV: u16 = 3;
+const ATTRIBUTES: u16 = 4;
+/// Bytes of the table of classes.
+const TABLE: usize = 72;
+
+/// A road section with lines of class 0 alone.
+fn road_section(lines: u32, blob: &[u8]) -> Vec<u8> {
+    let mut raw = lines.to_le_bytes().to_vec();
+    raw.extend((blob.len() as u32).to_le_bytes());
+    raw.resize(TABLE, 0);
+    raw.extend(blob);
+    raw
+}
+
+/// Way ids 1, 2, 3 …, part 0, and for each the same number of points.
+fn heads(lines: usize, points: u64) -> Vec<u8> {
+    let mut blob = vec![2; lines];
+    blob.resize(2 * lines, 0);
+    (0..lines).for_each(|_| varint(&mut blob, 4 * points));
+    blob
+}
+
+/// `count` numbers in planes of which every byte is `byte`.
+fn planes(blob: &mut Vec<u8>, planes: u8, count: usize, byte: u8) {
+    blob.push(planes);
+    blob.resize(blob.len() + usize::from(planes) * count, byte);
+}
+
+/// An SV section of lines that go east by two steps a point.
+fn sv_lines(lines: usize, points: usize) -> Vec<u8> {
+    let mut blob = heads(lines, points as u64);
+    planes(&mut blob, 1, lines * points, 4);
+    planes(&mut blob, 0, 0, 0);
+    planes(&mut blob, 0, 0, 0);
+    planes(&mut blob, 0, 0, 0);
+    road_section(lines as u32, &blob)
+}
+
+/// Lists of the attributes section: texts, then one list of eight bytes and seven of `widths` bytes an item.
+fn attributes(texts: &[&[u8]], ways: usize, name: u32) -> Vec<u8> {
+    let mut raw = (texts.len() as u64).to_le_bytes().to_vec();
+    for text in texts {
+        raw.extend((text.len() as u64).to_le_bytes());
+        raw.extend(*text);
+    }
+    let mut list = |item: &[u8]| {
+        raw.extend((ways as u64).to_le_bytes());
+        (0..ways).for_each(|_| raw.extend(item));
+    };
+    list(&1_i64.to_le_bytes());
+    (0..4).for_each(|_| list(&[0]));
+    (0..3).for_each(|_| list(&name.to_le_bytes()));
+    raw
+}
+
+/// A fan of 512 triangles around the tile's corner, and a line that is said to cross one edge of it after another.
+///
+/// Going over an edge means finding it among all those around the corner.
+fn around_a_hub(crossings: usize) -> Vec<u8> {
+    let rim =
+        (0..=256_u16).map(|row| (row, 256)).chain((0..256_u16).rev().map(|column| (256, column)));
+    let at: Vec<(u16, u16)> = [(0, 0)].into_iter().chain(rim).collect();
+    let vertices = at.iter().map(|&(row, column)| TinVertex { row, column, height_q: 0 }).collect();
+    let triangles: Vec<[u32; 3]> = (1..at.len() as u32 - 1).map(|k| [0, k + 1, k]).collect();
+    let tin = Tin::new(vertices, &triangles).unwrap();
+    let id = "0/0/0".parse().unwrap();
+    let surface = Surface::new(&tin, Placement::of_tile(&frame(), id, common::QUANTUM_M));
+    let bounds = frame().tile_lattice_bounds(id);
+    let side = bounds.max.u - bounds.min.u;
+    // From the east to the west, south of the corner: the corner is on the right, the far ends on the left.
+    let point = |k: i64| {
+        corniche_geom::LatticePoint::new(bounds.max.u - side * k / 8, bounds.max.v - side / 2)
+    };
+    let source = |k: i64| {
+        let point = point(k);
+        DrapedVertex::Source { point, triangle: surface.locate(point).unwrap() }
+    };
+    // The rim's vertices by their numbers in the TIN; the last in the fan has no edge that starts at the corner.
+    let hub_ends: Vec<u32> = surface.fan(0).iter().map(|&edge| surface.ends(edge)[1]).collect();
+    let last = (1..at.len() as u32).find(|vertex| !hub_ends.contains(vertex)).unwrap();
+    let crossing = DrapedVertex::Crossing { a: 0, b: last };
+    let mut line = vec![source(6)];
+    line.extend(vec![crossing; crossings]);
+    line.push(source(1));
+    let line = DrapedLine { lead_in: None, vertices: line, lead_out: None };
+    let class = FunctionalRoadClass::new(0).unwrap();
+    let terrain = Terrain {
+        normals: vec![[0, 0]; tin.vertices().len()],
+        tin,
+        geometric_error_m: 0.0,
+        height_range_m: [0.0, 0.0],
+        uncovered_nodes: 0,
+    };
+    let tile = TilePayload {
+        id,
+        terrain: Some(terrain),
+        roads_geo: vec![GeoRoad { way_id: 1, part: 0, class, line }],
+        roads_sv: vec![],
+        attributes: vec![],
+    };
+    encode(&tile, &context()).unwrap().bytes
+}
+
+/// The same with so many crossings that the writer would refuse it: a short one's, its line made longer.
+fn around_a_hub_for_ever() -> Vec<u8> {
+    let short = around_a_hub(4);
+    let number = |at: usize| u32::from_le_bytes(short[at..at + 4].try_into().unwrap()) as usize;
+    let section = |entry: usize| {
+        let at = 16 + 20 * entry;
+        let stored = &short[number(at + 4)..number(at + 4) + number(at + 8)];
+        match short[at + 2] {
+            0 => stored.to_vec(),
+            _ => zstd::bulk::decompress(stored, number(at + 12)).unwrap(),
+        }
+    };
+    let (terrain, geo) = (section(0), section(1));
+    let blob = &geo[TABLE..];
+    // A crossing that is not as guessed: none before it, its kind, its ends 0 and `last`. Four of them stand here.
+    let surprises = (0..blob.len())
+        .find(|&at| {
+            let Some(&[count, 1, 2, 0, ..]) = blob.get(at..) else { return false };
+            count >= 4
+        })
+        .unwrap();
+    let end = surprises + 2 + 2 + varint_length(&blob[surprises + 4..]);
+    let one = [&[0][..], &blob[surprises + 2..end]].concat();
+    let count = 600_000;
+    let mut longer = blob[..surprises].to_vec();
+    varint(&mut longer, count);
+    longer.push(1);
+    longer.extend(&one[1..]);
+    (1..count).for_each(|_| longer.extend(&one));
+    payload(&[Section::zstd(1, &terrain), Section::zstd(GEO, &road_section(1, &longer))])
+}
+
+fn varint_length(bytes: &[u8]) -> usize {
+    1 + bytes.iter().take_while(|&&byte| byte >= 0x80).count()
+}
+
+pub(crate) fn all() -> Vec<Case> {
+    let limited = |limit_mib, case: Case| Case { limit_mib, ..case };
+    let read = |name, limit_mib, bytes| Case { name, bytes, outcome: Outcome::Read, limit_mib };
+    let raws = raw_sections();
+    let alone = |kind: u16, raw: &[u8]| with_sections(&[Section::zstd(kind, raw)]);
+    let over_ground = |raw: &[u8]| {
+        with_sections(&[Section::plain(1, raws[0].clone()), Section::plain(GEO, raw.to_vec())])
+    };
+    let plain = |kind: u16, raw: Vec<u8>| with_sections(&[Section::plain(kind, raw)]);
+    let with_list = |at: usize, length: u64| {
+        let mut raw = attributes(&[b""], 3, 0);
+        raw[at..at + 8].copy_from_slice(&length.to_le_bytes());
+        plain(ATTRIBUTES, raw)
+    };
+    // Two points a line, all of them in the same place: they take no bytes.
+    let mut still = heads(1, 1 << 22);
+    (0..2).for_each(|_| planes(&mut still, 0, 0, 0));
+    let mut far = heads(1, 2);
+    (0..2).for_each(|_| planes(&mut far, 8, 2, 0xff));
+    let mut too_many = heads(2, 1 << 21);
+    too_many.extend(heads(1, 5));
+    let mut unsorted = vec![2, 1, 0, 0, 8, 8];
+    planes(&mut unsorted, 1, 4, 4);
+    let table = |lines: u32, length: u32| {
+        let mut raw = [lines.to_le_bytes(), length.to_le_bytes()].concat();
+        raw.resize(TABLE + 64, 0);
+        plain(SV, raw)
+    };
+    let surprises = |count: u64| {
+        let mut blob = heads(1, 2);
+        planes(&mut blob, 1, 2, 4);
+        planes(&mut blob, 0, 2, 0);
+        varint(&mut blob, count);
+        over_ground(&road_section(1, &blob))
+    };
+    let long_text = vec![b'x'; 1 << 20];
+    vec![
+        refused("4 billion lines", table(u32::MAX, 64), "lines of a section"),
+        refused("a line too many", table((1 << 20) + 1, 64), "lines of a section"),
+        refused("a million lines, 64 bytes", table(1 << 20, 64), "end too early"),
+        refused("a class of 4 GiB", table(1, u32::MAX), "end too early"),
+        refused("lines without bytes", table(1, 0), "table of classes"),
+        refused(
+            "four million points in one place",
+            plain(SV, road_section(1, &still)),
+            "segment without length",
+        ),
+        refused(
+            "the same over ground",
+            over_ground(&road_section(1, &still)),
+            "segment without length",
+        ),
+        refused(
+            "more points than may be",
+            plain(SV, road_section(1, &heads(1, (1 << 22) + 1))),
+            "number of points",
+        ),
+        refused(
+            "more points than may be, in two lines",
+            plain(SV, road_section(2, &heads(2, (1 << 21) + 1))),
+            "points of a section",
+        ),
+        refused("points beyond the lattice", plain(SV, road_section(1, &far)), "far away"),
+        refused("ways in disorder", plain(SV, road_section(2, &unsorted)), "not sorted"),
+        refused(
+            "nine byte planes",
+            plain(SV, {
+                let mut blob = heads(1, 2);
+                blob.push(9);
+                road_section(1, &blob)
+            }),
+            "byte planes",
+        ),
+        refused(
+            "roads without ground",
+            with_sections(&[Section::plain(GEO, raws[1].clone())]),
+            "without the ground",
+        ),
+        refused(
+            "four million surprises, no bytes",
+            surprises(1 << 22),
+            "GEO roads section: the bytes end too early",
+        ),
+        refused("2^64 - 1 surprises", surprises(u64::MAX), "number of surprises"),
+        limited(
+            48,
+            refused(
+                "600 000 crossings at a hub",
+                with_tile(around_a_hub_for_ever()),
+                "GEO roads section: it takes more than the limit",
+            ),
+        ),
+        read("300 000 crossings at a hub", 64, with_tile(around_a_hub(300_000))),
+        read("a million lines of four points", 400, alone(SV, &sv_lines(1 << 20, 4))),
+        read("one line of four million points", 400, alone(SV, &sv_lines(1, 1 << 22))),
+        read("a million ways", 300, alone(ATTRIBUTES, &attributes(&[b""], 1 << 20, 0))),
+        refused("2^64 - 1 texts", with_list(0, u64::MAX), "ways of a section"),
+        refused("three million texts, no bytes", with_list(0, 3 << 20), "the records"),
+        refused("2^64 - 1 ways", with_list(16, u64::MAX), "ways of a section"),
+        refused("a million and one ways", with_list(16, (1 << 20) + 1), "ways of a section"),
+        refused("a million ways, no bytes", with_list(16, 1 << 20), "the records"),
+        refused(
+            "a text that is not",
+            plain(ATTRIBUTES, attributes(&[b""], 3, 1)),
+            "a text that does not exist",
+        ),
+        refused(
+            "a text that is no UTF-8",
+            plain(ATTRIBUTES, attributes(&[&[0xff]], 3, 0)),
+            "the records",
+        ),
+        limited(
+            72,
+            refused(
+                "a text of 1 MiB for each of 100 ways",
+                alone(ATTRIBUTES, &attributes(&[&long_text], 100, 0)),
+                "texts of all ways",
+            ),
+        ),
+    ]
+}
