@@ -169,6 +169,13 @@ fn roads(manifest: &Manifest) -> String {
     }
     text.push_str(&table.to_text());
     let _ = writeln!(text, "highway ways in the extract: {}", count(counts.highways_in));
+    if counts.blobs_passed_over > 0 {
+        let _ = writeln!(
+            text,
+            "blobs of the extract of an unknown type, passed over: {}",
+            count(counts.blobs_passed_over)
+        );
+    }
     for (reason, number) in &counts.highways_left_out {
         let _ = writeln!(text, "  not taken, {reason}: {}", count(*number));
     }

@@ -70,6 +70,17 @@ fn tile(json: &Value) -> Tile {
     Tile { surface: Surface::new(&tin, placement), lines, sv_lines, margin_steps }
 }
 
+/// Straight lines from the west to the east of a tile: nearly all of their vertices are crossings.
+fn straight_lines(surface: &Surface) -> Vec<Polyline> {
+    let Some(LatticeBounds { min, max }) = LatticeBounds::of(surface.points()) else {
+        return Vec::new();
+    };
+    let at = |part: i64| min.v + (max.v - min.v) * part / 256;
+    let ends =
+        |n: i64| vec![LatticePoint::new(min.u, at(n)), LatticePoint::new(max.u, at(n * 97 % 256))];
+    (0..256).filter_map(|n| Polyline::new(ends(n)).ok()).collect()
+}
+
 /// Tiles with roads in a folder, by level.
 fn tiles(folder: &Path) -> BTreeMap<u8, Vec<Tile>> {
     let mut paths: Vec<_> = fs::read_dir(folder)
@@ -118,6 +129,30 @@ fn bench(c: &mut Criterion) {
                 });
             });
         }
+        let straight: Vec<Vec<Polyline>> =
+            tiles.iter().map(|tile| straight_lines(&tile.surface)).collect();
+        let count = |(tile, lines): (&Tile, &Vec<Polyline>)| -> usize {
+            lines
+                .iter()
+                .flat_map(|line| drape(line, &tile.surface).lines)
+                .map(|line| line.vertices.iter().filter(is_crossing).count())
+                .sum()
+        };
+        let crossings: usize = tiles.iter().zip(&straight).map(count).sum();
+        group.throughput(Throughput::Elements(crossings as u64));
+        group.bench_function(
+            BenchmarkId::new("drape, straight across", format!("{crossings} crossings")),
+            |b| {
+                b.iter(|| {
+                    for (tile, lines) in tiles.iter().zip(&straight) {
+                        for line in lines {
+                            black_box(drape(black_box(line), &tile.surface));
+                        }
+                    }
+                });
+            },
+        );
+        group.throughput(Throughput::Elements(all as u64));
         group.bench_function(BenchmarkId::new("positions", format!("{all} vertices")), |b| {
             b.iter(|| {
                 for (tile, lines) in tiles.iter().zip(&laid) {

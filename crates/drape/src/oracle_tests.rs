@@ -151,7 +151,7 @@ impl Case {
                 }
                 DrapedVertex::Vertex { vertex } => {
                     assert_eq!(at[..2], near(surface.points()[vertex as usize]));
-                    assert!(at[2] == height_q(vertex) as f64 * QUANTUM_M);
+                    assert_eq!(at[2..], [height_q(vertex) as f64 * QUANTUM_M]);
                 }
                 DrapedVertex::Crossing { a, b } => {
                     let ends: Vec<_> = sources().skip(before - 1).take(2).collect();
@@ -197,7 +197,7 @@ impl Case {
             for (here, there) in here.unwrap().iter().zip(there.unwrap()) {
                 let off = [there[0] + far as f64 - here[0], there[1] - far as f64 - here[1]];
                 assert!(off.iter().all(|off| off.abs() <= 0.126), "{off:?} steps off, far out");
-                assert!(there[2] == here[2]);
+                assert_eq!(there[2..], here[2..]);
             }
         }
     }

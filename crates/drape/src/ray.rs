@@ -1,5 +1,7 @@
 //! One segment's way over the triangles, by exact tests.
 
+use std::cmp::Ordering;
+
 use corniche_geom::{LatticePoint, cross};
 use corniche_tin::{NO_TWIN, Surface};
 
@@ -44,6 +46,20 @@ impl Place {
             Self::Edge(half_edge) => Some(half_edge.min(surface.twin(half_edge)) / 3),
             Self::Vertex(vertex) => surface.fan(vertex).first().map(|half_edge| half_edge / 3),
         }
+    }
+}
+
+/// On which side of the line from `a` to `b` the point `c` lies, exactly: `Greater` on its left. The sign of
+/// [`cross`], without making the number: for a tile's own triangles products fit 64 bits.
+#[inline]
+fn turn(a: LatticePoint, b: LatticePoint, c: LatticePoint) -> Ordering {
+    const SMALL: i64 = 1 << 31;
+    let (abu, abv) = (b.u - a.u, b.v - a.v);
+    let (acu, acv) = (c.u - a.u, c.v - a.v);
+    if abu.abs() | abv.abs() | acu.abs() | acv.abs() < SMALL {
+        (abu * acv).cmp(&(abv * acu))
+    } else {
+        cross(a, b, c).cmp(&0)
     }
 }
 
@@ -95,10 +111,10 @@ impl Ray<'_> {
         let k = half_edge % 3;
         let (next, previous) = (3 * triangle + (k + 1) % 3, 3 * triangle + (k + 2) % 3);
         let apex = self.surface.triangles()[triangle as usize][((k + 2) % 3) as usize];
-        match cross(self.p, self.q, self.point(apex)) {
-            0 => self.towards(apex, Place::Inside(triangle)),
-            left if left > 0 => self.out_of(next),
-            _ => self.out_of(previous),
+        match turn(self.p, self.q, self.point(apex)) {
+            Ordering::Equal => self.towards(apex, Place::Inside(triangle)),
+            Ordering::Greater => self.out_of(next),
+            Ordering::Less => self.out_of(previous),
         }
     }
 
@@ -110,15 +126,15 @@ impl Ray<'_> {
             let across = 3 * triangle + (out + 1) % 3;
             let into = 3 * triangle + (out + 2) % 3;
             let [right, left] = self.surface.ends(across);
-            let turn_right = cross(hub, self.point(right), self.q);
-            let turn_left = cross(hub, self.point(left), self.q);
-            if turn_right == 0 && self.ahead(hub, self.point(right)) {
+            let turn_right = turn(hub, self.point(right), self.q);
+            let turn_left = turn(hub, self.point(left), self.q);
+            if turn_right.is_eq() && self.ahead(hub, self.point(right)) {
                 return self.towards(right, Place::Edge(out));
             }
-            if turn_left == 0 && self.ahead(hub, self.point(left)) {
+            if turn_left.is_eq() && self.ahead(hub, self.point(left)) {
                 return self.towards(left, Place::Edge(into));
             }
-            if turn_right > 0 && turn_left < 0 {
+            if turn_right.is_gt() && turn_left.is_lt() {
                 return self.out_of(across);
             }
         }
@@ -128,13 +144,13 @@ impl Ray<'_> {
     /// On from p in the inside of an edge.
     fn leave_edge(&self, half_edge: u32) -> Next {
         let [a, b] = self.surface.ends(half_edge);
-        match cross(self.point(a), self.point(b), self.q) {
-            0 => {
+        match turn(self.point(a), self.point(b), self.q) {
+            Ordering::Equal => {
                 let target = if self.ahead(self.p, self.point(b)) { b } else { a };
                 self.towards(target, Place::Edge(half_edge))
             }
-            left if left > 0 => self.through(half_edge / 3),
-            _ => match self.surface.twin(half_edge) {
+            Ordering::Greater => self.through(half_edge / 3),
+            Ordering::Less => match self.surface.twin(half_edge) {
                 NO_TWIN => Next::Ends,
                 twin => self.through(twin / 3),
             },
@@ -144,13 +160,13 @@ impl Ray<'_> {
     /// On through the inside of a triangle that holds p in its inside or on an edge.
     fn through(&self, triangle: u32) -> Next {
         let corners = self.surface.triangles()[triangle as usize];
-        let sides = corners.map(|vertex| cross(self.p, self.q, self.point(vertex)).signum());
+        let sides = corners.map(|vertex| turn(self.p, self.q, self.point(vertex)));
         for k in 0..3 {
             let (this, next, previous) = (sides[k], sides[(k + 1) % 3], sides[(k + 2) % 3]);
-            if this < 0 && next > 0 {
+            if this.is_lt() && next.is_gt() {
                 return self.out_of(3 * triangle + k as u32);
             }
-            if this == 0 && next > 0 && previous < 0 {
+            if this.is_eq() && next.is_gt() && previous.is_lt() {
                 return self.towards(corners[k], Place::Inside(triangle));
             }
         }
@@ -161,10 +177,10 @@ impl Ray<'_> {
     #[inline]
     fn out_of(&self, half_edge: u32) -> Next {
         let [a, b] = self.surface.ends(half_edge);
-        match cross(self.point(a), self.point(b), self.q) {
-            0 => Next::Arrives(Place::Edge(half_edge)),
-            left if left > 0 => Next::Arrives(Place::Inside(half_edge / 3)),
-            _ => Next::Crosses { half_edge, a, b },
+        match turn(self.point(a), self.point(b), self.q) {
+            Ordering::Equal => Next::Arrives(Place::Edge(half_edge)),
+            Ordering::Greater => Next::Arrives(Place::Inside(half_edge / 3)),
+            Ordering::Less => Next::Crosses { half_edge, a, b },
         }
     }
 

@@ -29,7 +29,8 @@ pub struct Drape {
 #[must_use]
 pub fn drape(line: &Polyline, surface: &Surface) -> Drape {
     let points = line.points();
-    let mut walk = Walk { surface, drape: Drape::default(), part: None, near: Vec::new() };
+    let room = 2 * points.len();
+    let mut walk = Walk { surface, drape: Drape::default(), part: None, room, near: Vec::new() };
     let mut place = Place::of(points[0], surface);
     walk.arrive(points[0], place);
     for pair in points.windows(2) {
@@ -44,6 +45,8 @@ struct Walk<'a> {
     drape: Drape,
     /// The part being laid, while on ground.
     part: Option<DrapedLine>,
+    /// Vertices that a part is made for; it may get more.
+    room: usize,
     /// Half-edges found near a gap, kept for its allocation.
     near: Vec<u32>,
 }
@@ -160,7 +163,7 @@ impl Walk<'_> {
         self.part
             .get_or_insert_with(|| DrapedLine {
                 lead_in: None,
-                vertices: Vec::new(),
+                vertices: Vec::with_capacity(self.room),
                 lead_out: None,
             })
             .vertices

@@ -206,6 +206,8 @@ pub struct Counts {
     pub defects: Vec<(String, u64)>,
     /// Ways by `highway` value that the FRC table does not know. Sorted by value.
     pub unknown_highways: Vec<(String, u64)>,
+    /// Blobs of the extract of a type that readers pass over, as its format asks; 0 in the extracts of common tools.
+    pub blobs_passed_over: u64,
     /// Ways with a `highway` tag in the extract.
     pub highways_in: u64,
     /// Those of them that are no roads here, by reason. With the ways that became roads they add up.

@@ -154,6 +154,7 @@ fn counts(outcome: &Outcome<'_>) -> Counts {
             .iter()
             .map(|(value, &count)| (value.clone(), count))
             .collect(),
+        blobs_passed_over: roads.extract.blobs_passed_over,
         highways_in: roads.extract.highway_ways,
         highways_left_out: left_out(&roads.extract),
         roads_kept: losses.roads_kept,

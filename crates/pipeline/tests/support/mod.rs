@@ -1,0 +1,233 @@
+//! What the tests of this crate share: rasters with known heights, packages built from them by the true pipeline and
+//! taken apart, and plain arithmetic on what is found.
+
+#![allow(dead_code, reason = "each test binary uses its own part")]
+#![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
+
+pub(crate) mod extract;
+pub(crate) mod rays;
+pub(crate) mod terrain;
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use corniche_geom::{Frame, NodeIndex, TileId};
+use corniche_pipeline::{
+    BuildError, BuildSettings, Existing, Resources, RoadSettings, Silent, TerrainSettings, build,
+};
+use corniche_roads::{ClassFilter, FrcTable};
+use corniche_tileset::{FilePackage, Manifest, Sections, Terrain, TilePayload};
+use corniche_tin::Tin;
+use gdal::{DriverManager, raster::Buffer, spatial_ref::SpatialRef};
+
+/// Spacing of the tests' rasters.
+pub(crate) const CELL_M: f64 = 10.0;
+/// Cells on a side of a tile.
+pub(crate) const TILE: i64 = 256;
+/// UTM 32 N: the rasters' CRS.
+pub(crate) const EPSG: u32 = 32632;
+
+/// A raster of heights whose sample (column, row) is the global node (`west` + column, `north` − row).
+pub(crate) struct Raster {
+    pub(crate) columns: usize,
+    pub(crate) rows: usize,
+    /// Global index of the first column.
+    pub(crate) west: i64,
+    /// Global index of the first row.
+    pub(crate) north: i64,
+    /// Row by row from the north, NaN where there is no data.
+    pub(crate) heights_m: Vec<f32>,
+}
+
+impl Raster {
+    /// A raster whose north-west sample lies `shift` cells east and south of a corner of tiles.
+    pub(crate) fn new(
+        [columns, rows]: [usize; 2],
+        shift: [i64; 2],
+        height_m: impl Fn(i64, i64) -> f32,
+    ) -> Self {
+        // In the middle of the zone and of Europe.
+        let (west, north) = (200 * TILE + shift[0], 2080 * TILE - shift[1]);
+        let heights_m = (0..rows as i64)
+            .flat_map(|row| (0..columns as i64).map(move |column| (column, row)))
+            .map(|(column, row)| height_m(column, row))
+            .collect();
+        Self { columns, rows, west, north, heights_m }
+    }
+
+    /// The height of a global node, `None` in voids and outside.
+    pub(crate) fn height_m(&self, node: NodeIndex) -> Option<f32> {
+        let (column, row) = (node.i - self.west, self.north - node.j);
+        let inside =
+            (0..self.columns as i64).contains(&column) && (0..self.rows as i64).contains(&row);
+        let height_m =
+            inside.then(|| self.heights_m[row as usize * self.columns + column as usize])?;
+        (!height_m.is_nan()).then_some(height_m)
+    }
+
+    /// Writes a GeoTIFF.
+    pub(crate) fn write(&self, path: &Path) {
+        let (x_m, y_m) = (self.west as f64 * CELL_M, self.north as f64 * CELL_M);
+        let values = self.heights_m.iter().map(|h| if h.is_nan() { -9999.0 } else { *h }).collect();
+        write_samples(path, (self.columns, self.rows), (EPSG, [x_m, y_m], CELL_M), values);
+    }
+}
+
+/// Writes a GeoTIFF of `side` × `side` samples in WGS84, the first at `north_west`, heights by longitude and latitude.
+pub(crate) fn write_degrees(
+    path: &Path,
+    side: usize,
+    north_west: [f64; 2],
+    step_deg: f64,
+    height_m: impl Fn([f64; 2]) -> f64,
+) {
+    let at = |row: usize, column: usize| {
+        [north_west[0] + column as f64 * step_deg, north_west[1] - row as f64 * step_deg]
+    };
+    let values = (0..side * side).map(|k| height_m(at(k / side, k % side)) as f32).collect();
+    write_samples(path, (side, side), (4326, north_west, step_deg), values);
+}
+
+/// Writes samples of a grid: EPSG code, position of the first sample, spacing. −9999 is nodata.
+fn write_samples(
+    path: &Path,
+    size: (usize, usize),
+    (epsg, first, spacing): (u32, [f64; 2], f64),
+    values: Vec<f32>,
+) {
+    let driver = DriverManager::get_driver_by_name("GTiff").unwrap();
+    let mut dataset = driver.create_with_band_type::<f32, _>(path, size.0, size.1, 1).unwrap();
+    // Pixels are areas: a sample is the centre of its pixel.
+    let [x, y] = [first[0] - spacing / 2.0, first[1] + spacing / 2.0];
+    dataset.set_geo_transform(&[x, spacing, 0.0, y, 0.0, -spacing]).unwrap();
+    dataset.set_spatial_ref(&SpatialRef::from_epsg(epsg).unwrap()).unwrap();
+    let mut band = dataset.rasterband(1).unwrap();
+    band.set_no_data_value(Some(-9999.0)).unwrap();
+    band.write((0, 0), size, &mut Buffer::new(size, values)).unwrap();
+}
+
+/// How a package is built.
+#[derive(Clone, Copy)]
+pub(crate) struct Options {
+    pub(crate) cell_m: Option<f64>,
+    pub(crate) max_error_m: f64,
+    pub(crate) fill_voids: u32,
+    pub(crate) threads: usize,
+}
+
+impl Options {
+    /// The raster's own cell, nothing filled.
+    pub(crate) fn plain(max_error_m: f64) -> Self {
+        Self { cell_m: None, max_error_m, fill_voids: 0, threads: 2 }
+    }
+}
+
+/// A package and all that is in it.
+pub(crate) struct Built {
+    pub(crate) bytes: Vec<u8>,
+    pub(crate) manifest: Manifest,
+    pub(crate) tiles: BTreeMap<TileId, TilePayload>,
+}
+
+/// The one place where the tests of this crate say all that can be set.
+pub(crate) fn settings(
+    dem: PathBuf,
+    osm: Option<PathBuf>,
+    output: PathBuf,
+    options: Options,
+) -> BuildSettings {
+    let classes = [
+        ("motorway", 0),
+        ("trunk", 1),
+        ("primary", 2),
+        ("secondary", 3),
+        ("tertiary", 4),
+        ("unclassified", 5),
+        ("residential", 6),
+        ("living_street", 6),
+        ("service", 7),
+        ("track", 7),
+    ];
+    let classes = classes.map(|(value, class)| (value.to_owned(), class)).to_vec();
+    BuildSettings {
+        dem: vec![dem],
+        osm,
+        output,
+        existing: Existing::Keep,
+        terrain: TerrainSettings {
+            crs: None,
+            dem_crs: None,
+            dem_vertical_crs: None,
+            vertical_crs: None,
+            vertical_shift_m: 0.0,
+            nodata: None,
+            cell_m: options.cell_m,
+            max_error_m: Some(options.max_error_m),
+            fill_voids: options.fill_voids,
+        },
+        roads: RoadSettings {
+            table: FrcTable::new("test", classes, vec![], 7).unwrap(),
+            filter: ClassFilter::usual(),
+            simplify_cells: 0.25,
+        },
+        resources: Resources { threads: options.threads, memory_bytes: 256 << 20 },
+        attribution: Vec::new(),
+        generator: "tests".to_owned(),
+    }
+}
+
+/// Builds a package from files.
+pub(crate) fn build_files(
+    dem: &Path,
+    osm: Option<&Path>,
+    options: Options,
+) -> Result<Built, BuildError> {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("built.pmtiles");
+    let osm = osm.map(Path::to_path_buf);
+    build(&settings(dem.to_path_buf(), osm, output.clone(), options), &Silent)?;
+    let package = FilePackage::open(&output).unwrap();
+    let payload = |id| package.payload(id, Sections::ALL).unwrap().unwrap();
+    let tiles = package.tile_ids().unwrap().into_iter().map(|id| (id, payload(id))).collect();
+    Ok(Built { bytes: fs::read(&output).unwrap(), manifest: package.manifest().clone(), tiles })
+}
+
+/// Builds terrain from a raster.
+pub(crate) fn build_raster(raster: &Raster, options: Options) -> Result<Built, BuildError> {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = folder.path().join("dem.tif");
+    raster.write(&dem);
+    build_files(&dem, None, options)
+}
+
+impl Built {
+    pub(crate) fn frame(&self) -> &Frame {
+        &self.manifest.frame
+    }
+
+    pub(crate) fn quantum_m(&self) -> f64 {
+        self.manifest.vertical.quantum_m
+    }
+
+    /// The tiles with ground, by id.
+    pub(crate) fn grounds(&self) -> impl DoubleEndedIterator<Item = (TileId, &Terrain)> {
+        self.tiles.iter().filter_map(|(&id, tile)| Some((id, tile.terrain.as_ref()?)))
+    }
+
+    pub(crate) fn ground(&self, id: TileId) -> Option<&Terrain> {
+        self.tiles.get(&id)?.terrain.as_ref()
+    }
+
+    /// The global node under each vertex of a tile's TIN.
+    pub(crate) fn nodes(&self, id: TileId, tin: &Tin) -> Vec<NodeIndex> {
+        let (corner, stride) = (self.frame().tile_corner(id), self.frame().stride(id.z()));
+        let node = |column: u16, row: u16| NodeIndex {
+            i: corner.i + i64::from(column) * stride,
+            j: corner.j - i64::from(row) * stride,
+        };
+        tin.vertices().iter().map(|vertex| node(vertex.column, vertex.row)).collect()
+    }
+}

@@ -1,0 +1,40 @@
+//! Made-up terrains, as heights by column and row.
+
+/// A terrain by name.
+pub(crate) type Terrain = (&'static str, fn(i64, i64) -> f32);
+
+/// From nothing to the roughest: what is hard differs.
+pub(crate) const TERRAINS: [Terrain; 6] = [
+    ("constant", |_, _| 812.3),
+    ("ramp", |c, r| 3.0 * c as f32 - 0.5 * r as f32),
+    ("plateaus", |c, r| (waves(c, r) * 5.0).floor() * 80.0),
+    ("cliffs", |c, r| if (2 * c + r).rem_euclid(97) < 48 { 400.0 } else { 10.0 * noise(c, r) }),
+    ("spikes", |c, r| if bits(c, r, 1) % 400 == 0 { 300.0 * noise(c, r) } else { 0.0 }),
+    ("noise", |c, r| 120.0 * noise(c, r) + 60.0 * waves(c, r)),
+];
+
+/// Hills some forty cells wide, −1 to 1.
+pub(crate) fn waves(column: i64, row: i64) -> f32 {
+    (column as f32 * 0.16).sin() * (row as f32 * 0.13).cos()
+}
+
+/// −1 to 1 for each node, unlike its neighbours.
+pub(crate) fn noise(column: i64, row: i64) -> f32 {
+    (bits(column, row, 0) >> 40) as f32 / (1 << 23) as f32 - 1.0
+}
+
+/// Bits that look random: the finisher of Splitmix64 (Steele, Lea & Flood 2014, *Fast Splittable Pseudorandom
+/// Number Generators*).
+pub(crate) fn bits(column: i64, row: i64, seed: u64) -> u64 {
+    let mut value = (column as u64) << 32 ^ (row as u64 & 0xffff_ffff) ^ seed << 57;
+    value = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    value = (value ^ value >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    value = (value ^ value >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    value ^ value >> 31
+}
+
+/// Random voids: single nodes, and blocks of many sizes.
+pub(crate) fn scattered_void(column: i64, row: i64) -> bool {
+    let block = |side: i64, seed| bits(column.div_euclid(side), row.div_euclid(side), seed) % 100;
+    bits(column, row, 2) % 500 == 0 || block(5, 3) < 2 || block(37, 4) < 6
+}
