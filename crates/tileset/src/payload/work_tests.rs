@@ -7,7 +7,9 @@ use corniche_drape::{DrapedVertex, drape};
 use corniche_geom::{Frame, HeightGrid, LatticePoint, NodeIndex, Polyline, TileId};
 use corniche_tin::{Placement, Surface, Tin, TinSpec, TinVertex, height_quantum_m, triangulate};
 
-use super::{connectivity::walk, nodes::Nodes, route::Route, terrain::Recorder, work::Work};
+use super::{
+    Damage, connectivity::walk, nodes::Nodes, route::Route, terrain::Recorder, work::Work,
+};
 use crate::limits::{MAX_ROUTE_STEPS, max_walk_steps};
 
 /// Steps of the writer's walk, which looks at no less than a reader's, and what it may take.
@@ -73,6 +75,24 @@ fn a_fan_of_the_whole_border_stays_below_the_limit() {
     let [steps, allowed] = walk_steps(&Tin::new(vertices, &triangles).expect("a TIN"));
     println!("fan: {steps} steps, 1/{} of the limit", allowed / steps);
     assert!(10 * steps <= allowed, "{steps} steps of {allowed}");
+}
+
+/// Neither wrong triangles nor a wrong "no triangle" come of a search that gave up.
+#[test]
+fn a_walk_beyond_its_limit_is_refused() {
+    let tin = triangulate(
+        &HeightGrid::from_fn(259, 259, noise),
+        TinSpec { max_error_m: 40.0, quantum_m: 1.0 },
+    );
+    let tin = tin.expect("usable heights");
+    let [whole, _] = walk_steps(&tin);
+    for limit in [0, whole / 2, whole - 1] {
+        let (work, lookups) = (Work::new(limit), Work::new(u64::MAX));
+        let nodes = Nodes::new(tin.vertices().iter().map(|v| [v.column, v.row]), &work);
+        let mut recorder = Recorder::new(tin.triangles(), &lookups).expect("a TIN");
+        let outcome = walk(&nodes, tin.triangles().len(), &mut recorder).map(|_| ());
+        assert_eq!(outcome, Err(Damage::TooMuchWork { limit }));
+    }
 }
 
 #[test]
