@@ -265,7 +265,20 @@ fn agrees_with_brute_force() {
 #[ignore = "takes minutes"]
 fn agrees_with_brute_force_a_million_times() {
     let count = std::env::var("CORNICHE_DRAPE_CASES").ok().and_then(|text| text.parse().ok());
-    let counts = run(1_000_000, count.unwrap_or(1_200_000));
+    let threads = std::thread::available_parallelism().map_or(1, |threads| threads.get() as u64);
+    let share = count.unwrap_or(1_200_000_u64).div_ceil(threads);
+    let mut counts = Counts::new();
+    std::thread::scope(|scope| {
+        let run = |n: u64| scope.spawn(move || run(1_000_000 + n * share, share));
+        for part in (0..threads).map(run).collect::<Vec<_>>() {
+            for (kind, [cases, parts, vertices]) in part.join().unwrap() {
+                let [all_cases, all_parts, all_vertices] = counts.entry(kind).or_default();
+                *all_cases += cases;
+                *all_parts += parts;
+                *all_vertices += vertices;
+            }
+        }
+    });
     println!("{:12} {:17} {:>8} {:>8} {:>9}", "terrain", "course", "cases", "parts", "vertices");
     for ((terrain, course), [cases, parts, vertices]) in &counts {
         let (terrain, course) = (format!("{terrain:?}"), format!("{course:?}"));

@@ -100,7 +100,8 @@ fn scene(built: &Built, depths_m: &BTreeMap<TileId, f64>, share: f64) -> (Scene,
                 let ends = [corners[k], corners[(k + 1) % 3]].map(place);
                 // Along a line of the tile's border: x or y is the same whole number of sides at both ends.
                 let line = (0..2).find(|&axis| {
-                    ends[0][axis] == ends[1][axis] && (ends[0][axis] as i64) % side == 0
+                    ends[0][axis].to_bits() == ends[1][axis].to_bits()
+                        && (ends[0][axis] as i64) % side == 0
                 });
                 let Some(axis) = line else { continue };
                 let low = ends.map(|[x, y, z]| [x, y, z - depth_m * share]);
@@ -246,7 +247,8 @@ fn rough(shift: [i64; 2], column: i64, row: i64) -> f32 {
     if on_border(0) || on_border(1) {
         return 500.0;
     }
-    let spike = if bits(column, row, 6) % 300 == 0 { 150.0 * noise(column, row) } else { 0.0 };
+    let spike =
+        if bits(column, row, 6).is_multiple_of(300) { 150.0 * noise(column, row) } else { 0.0 };
     let cliff = if (column + 3 * row).rem_euclid(409) < 150 { 90.0 } else { 0.0 };
     80.0 * waves(column / 4, row / 3) + cliff + spike
 }
@@ -282,14 +284,14 @@ fn is_west(id: TileId) -> bool {
 }
 
 fn random(id: TileId) -> bool {
-    id.z() == 0 || bits(i64::from(id.x()), i64::from(id.y()), u64::from(id.z())) % 3 > 0
+    id.z() == 0 || !bits(i64::from(id.x()), i64::from(id.y()), u64::from(id.z())).is_multiple_of(3)
 }
 
 #[test]
 fn no_hole_between_levels_up_to_two_apart() {
     let raster = Raster::new([2049, 513], [0, 0], |c, r| rough([0, 0], c, r));
     // Level 1 beside level 3; every second tile of a level one finer; anything.
-    let chequered = |id: TileId| id.z() < 2 || id.z() == 2 && (id.x() + id.y()) % 2 == 0;
+    let chequered = |id: TileId| id.z() < 2 || id.z() == 2 && (id.x() + id.y()).is_multiple_of(2);
     check(&raster, &[&|id| !is_west(id), &chequered, &random], 6000);
 }
 
@@ -308,7 +310,7 @@ fn is_west_or_root(id: TileId) -> bool {
 fn no_hole_on_ground_with_voids() {
     let raster = Raster::new([1700, 490], [90, 33], |column, row| {
         let block = bits(column.div_euclid(23), row.div_euclid(19), 4) % 100 < 3;
-        if block || bits(column, row, 5) % 4000 == 0 {
+        if block || bits(column, row, 5).is_multiple_of(4000) {
             f32::NAN
         } else {
             rough([90, 33], column, row)

@@ -249,8 +249,8 @@ fn checkerboards_stripes_and_scattered_nodes() {
     check("pairs of columns with data", &|c, _| c % 3 == 2, 0);
     check("every column of a border void", &|c, _| c == CORNER, 0);
     check("all but two columns beside a border void", &|c, _| c != CORNER && c != CORNER + 1, 0);
-    check("scattered", &|c, r| bits(c, r, 1) % 50 == 0, 0);
-    check("scattered, filled within 3", &|c, r| bits(c, r, 1) % 3 == 0, 3);
+    check("scattered", &|c, r| bits(c, r, 1).is_multiple_of(50), 0);
+    check("scattered, filled within 3", &|c, r| bits(c, r, 1).is_multiple_of(3), 3);
 }
 
 #[test]
@@ -363,7 +363,7 @@ fn roads_end_where_the_ground_ends() {
     let is_void = |c: i64, r: i64| {
         in_square([c, r], ANCHORS[0], 40)
             || in_square([c, r], ANCHORS[1], 9)
-            || bits(c.div_euclid(13), r.div_euclid(11), 1) % 20 == 0
+            || bits(c.div_euclid(13), r.div_euclid(11), 1).is_multiple_of(20)
             || c + r > 1000
     };
     let raster = raster(&is_void);

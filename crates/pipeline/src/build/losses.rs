@@ -8,7 +8,8 @@ use super::{
 };
 use crate::{BuildError, Defect, Loss, Observer};
 
-/// A road's length at the finest level, by what became of it; each part measured by itself. In lattice steps.
+/// A road's length at the finest level, by what became of it; each part measured by itself.
+#[expect(clippy::struct_field_names, reason = "the unit is part of every name")]
 struct Lengths {
     length_steps: f64,
     kept_steps: f64,

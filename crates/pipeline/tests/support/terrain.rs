@@ -9,8 +9,8 @@ pub(crate) const TERRAINS: [Terrain; 6] = [
     ("ramp", |c, r| 3.0 * c as f32 - 0.5 * r as f32),
     ("plateaus", |c, r| (waves(c, r) * 5.0).floor() * 80.0),
     ("cliffs", |c, r| if (2 * c + r).rem_euclid(97) < 48 { 400.0 } else { 10.0 * noise(c, r) }),
-    ("spikes", |c, r| if bits(c, r, 1) % 400 == 0 { 300.0 * noise(c, r) } else { 0.0 }),
-    ("noise", |c, r| 120.0 * noise(c, r) + 60.0 * waves(c, r)),
+    ("spikes", |c, r| if bits(c, r, 1).is_multiple_of(400) { 300.0 * noise(c, r) } else { 0.0 }),
+    ("noise", |c, r| 40.0 * noise(c, r) + 60.0 * waves(c, r)),
 ];
 
 /// Hills some forty cells wide, −1 to 1.
@@ -36,5 +36,5 @@ pub(crate) fn bits(column: i64, row: i64, seed: u64) -> u64 {
 /// Random voids: single nodes, and blocks of many sizes.
 pub(crate) fn scattered_void(column: i64, row: i64) -> bool {
     let block = |side: i64, seed| bits(column.div_euclid(side), row.div_euclid(side), seed) % 100;
-    bits(column, row, 2) % 500 == 0 || block(5, 3) < 2 || block(37, 4) < 6
+    bits(column, row, 2).is_multiple_of(500) || block(5, 3) < 2 || block(37, 4) < 6
 }

@@ -62,7 +62,7 @@ fn across_each_other() -> Vec<u8> {
         }
         last = a;
     }
-    grid(&[0, 0, 253, 0], 10_200, &[0; 30_600], &names)
+    grid(&[0, 0, 253, 0], 10_200, &vec![0; 30_600], &names)
 }
 
 /// Gates across the whole tile, six guesses asked for at each.
