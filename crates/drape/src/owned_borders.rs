@@ -89,23 +89,6 @@ impl OwnedBorders {
         self
     }
 
-    /// As sixteen words, for storage: north, east, south, west.
-    #[must_use]
-    pub fn to_words(self) -> [u64; 16] {
-        let mut words = [0; 16];
-        let borders = [self.north, self.east, self.south, self.west];
-        words.iter_mut().zip(borders.as_flattened()).for_each(|(word, &cells)| *word = cells);
-        words
-    }
-
-    /// From what [`OwnedBorders::to_words`] gave.
-    #[must_use]
-    pub fn from_words(words: [u64; 16]) -> Self {
-        let border =
-            |n: usize| [words[4 * n], words[4 * n + 1], words[4 * n + 2], words[4 * n + 3]];
-        Self { north: border(0), east: border(1), south: border(2), west: border(3) }
-    }
-
     /// The next run of owned cells of a border from cell `from` on: first, and one past the last.
     pub(crate) fn next_run(&self, border: Border, from: i64) -> Option<[i64; 2]> {
         let cells = match border {

@@ -318,10 +318,3 @@ fn the_corner_of_four_tiles_splits_a_line_along_borders() {
         [&[], &[], &[&[(8, 8), (4, 8)]], &[&[(8, 10), (8, 8)]]],
     );
 }
-
-#[test]
-fn words_keep_what_is_owned() {
-    let owned = Level { gaps: vec![(9, 4), (4, 9), (8, 3)] }.tile(0, 0).owned;
-    assert_ne!(owned, OwnedBorders::among(Neighbours { east: true, south: true }));
-    assert_eq!(OwnedBorders::from_words(owned.to_words()), owned);
-}

@@ -1,12 +1,12 @@
-use corniche_geom::{LatticePoint, cross};
+use corniche_geom::{LatticePoint, MAX_LATTICE_STEPS, cross};
 use corniche_tin::Surface;
 
 use crate::{DrapedLine, DrapedVertex};
 
-/// Coordinates stay below this many steps: up to there f64 has quarters of a step, so that a crossing's position
+/// Coordinates stay within the lattice: up to its ends f64 has quarters of a step, so that a crossing's position
 /// is off by no more than an eighth of a step on either axis (and differences and their products are exact
-/// in 128 bits). At half a millimetre a step this is some 500 million kilometres.
-const REACH_STEPS: u64 = 1 << 50;
+/// in 128 bits).
+const REACH_STEPS: u64 = MAX_LATTICE_STEPS.unsigned_abs();
 
 /// Why a [`DrapedLine`] does not fit its surface: the package it comes from is damaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

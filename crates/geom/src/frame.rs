@@ -12,8 +12,11 @@ pub const MAX_LEVEL: u8 = 22;
 
 /// A lattice step is at most this long.
 const LATTICE_STEP_M: f64 = 0.001;
-/// Node indices stay below this, so that lattice coordinates (at most 2^24 steps a cell) stay below 2^56.
+/// Node indices stay below this, so that they and their differences fit what is stored of them.
 const MAX_INDEX: i64 = 1 << 32;
+/// Lattice coordinates stay below this, some 500 million km: an f64 then still tells an eighth of a step, which the
+/// positions of crossings need, and products of two differences fit 128 bits many times over.
+pub const MAX_LATTICE_STEPS: i64 = 1 << 50;
 
 /// A node of the package's global grid at the finest level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -173,6 +176,9 @@ impl Frame {
         while cell_m / f64::from(1_u32 << lattice_bits) > LATTICE_STEP_M {
             lattice_bits += 1;
         }
+        if reach > MAX_LATTICE_STEPS >> lattice_bits {
+            return Err(FrameError::Extent { columns: span, rows: span, cell_m });
+        }
         Ok(Self { origin_m, cell_m, root_corner, max_level, lattice_bits })
     }
 
@@ -306,7 +312,7 @@ impl Frame {
         let snap = |metres: f64, origin_m: f64| {
             let steps = ((metres - origin_m) / self.cell_m * steps_per_cell).round();
             // Not a number fails the comparison too.
-            (steps.abs() < MAX_INDEX as f64 * steps_per_cell).then_some(steps as i64)
+            (steps.abs() < MAX_LATTICE_STEPS as f64).then_some(steps as i64)
         };
         Some(LatticePoint::new(snap(x, self.origin_m[0])?, snap(y, self.origin_m[1])?))
     }
@@ -422,6 +428,19 @@ mod tests {
         assert!(Frame::new([0.0; 2], 1.0, NodeIndex { i: 3, j: 0 }, 2).is_err());
         assert!(Frame::new([0.0; 2], 1.0, corner, 23).is_err());
         assert!(Frame::new([0.0; 2], 1.0, NodeIndex { i: i64::MIN, j: 0 }, 2).is_err());
+    }
+
+    #[test]
+    fn what_lies_beyond_the_lattice_has_no_place_on_it() {
+        let origin = NodeIndex { i: 0, j: 0 };
+        for (cell_m, max_level) in [(1e6, 22), (1e6, 13), (30_000.0, 22)] {
+            let frame = Frame::new([0.0; 2], cell_m, origin, max_level);
+            assert!(matches!(frame, Err(FrameError::Extent { .. })), "{cell_m} m, {max_level}");
+        }
+        let frame = Frame::new([0.0; 2], 1e6, origin, 8).unwrap();
+        let farthest_m = (MAX_LATTICE_STEPS - 1) as f64 * frame.lattice_step_m();
+        assert!(frame.snap([0.5 * farthest_m, 0.0]).is_some());
+        assert_eq!(frame.snap([1.01 * farthest_m, 0.0]), None);
     }
 
     proptest! {

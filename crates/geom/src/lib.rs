@@ -21,7 +21,9 @@ mod tile_id;
 pub use barycentric::barycentric;
 pub use bounds::{Bounds, LatticeBounds};
 pub use coordinate_table::{CoordinateTable, CoordinateTableError};
-pub use frame::{Frame, FrameError, MAX_LEVEL, NodeIndex, NodeWindow, TILE_CELLS, TILE_NODES};
+pub use frame::{
+    Frame, FrameError, MAX_LATTICE_STEPS, MAX_LEVEL, NodeIndex, NodeWindow, TILE_CELLS, TILE_NODES,
+};
 pub use geo_transform::GeoTransform;
 pub use height_grid::HeightGrid;
 pub use lattice::LatticePoint;

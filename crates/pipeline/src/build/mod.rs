@@ -167,6 +167,7 @@ fn run(
             levels: &levels,
             meshes: &meshes,
             errors: &errors,
+            pyramid: &pyramid,
             data_tiles: &data_tiles,
             storage,
             threads,

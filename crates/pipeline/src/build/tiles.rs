@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use corniche_drape::OwnedBorders;
+use corniche_drape::{Neighbours, OwnedBorders};
 use corniche_geom::TileId;
 use corniche_roads::{FunctionalRoadClass, Road};
 use corniche_tileset::{
@@ -13,6 +13,7 @@ use corniche_tin::{Placement, Surface};
 
 use super::{
     errors::TileErrors,
+    heights::Pyramid,
     levels::Levels,
     mesh::{self, Meshes},
     road_log::RoadLog,
@@ -74,6 +75,7 @@ pub(crate) struct TileInput<'a> {
     pub(crate) levels: &'a Levels,
     pub(crate) meshes: &'a Meshes,
     pub(crate) errors: &'a TileErrors,
+    pub(crate) pyramid: &'a Pyramid<'a>,
     /// The finest tiles on which the data's rectangle lies.
     pub(crate) data_tiles: &'a [TileId],
     pub(crate) storage: &'a dyn Storage,
@@ -191,14 +193,15 @@ fn make_tile(
     let levels = input.levels;
     let frame = levels.frame();
     let Some(span) = input.meshes.get(&id) else {
-        return lost_roads(id, log, ordinals, levels);
+        return lost_roads(input, id, log, ordinals);
     };
     let meshed = mesh::load(input.storage, id, *span)?;
     let surface = Surface::new(&meshed.tin, Placement::of_tile(frame, id, levels.quantum_m()));
     let mut laid = Laid::default();
+    let on = Ground { id, surface: &surface, owned: owned_borders(input, id, ordinals)? };
     for &ordinal in ordinals {
         if let Some(log) = log {
-            laid.lay(&log.load(ordinal)?, ordinal, id, &surface, levels);
+            laid.lay(&log.load(ordinal)?, ordinal, &on, levels);
         }
     }
     let fates = std::mem::take(&mut laid.fates);
@@ -222,19 +225,57 @@ fn make_tile(
     Ok(Made { kept: Some(kept), fates })
 }
 
+/// What roads of a tile are laid on.
+struct Ground<'a> {
+    id: TileId,
+    surface: &'a Surface,
+    owned: OwnedBorders,
+}
+
+/// What the tile owns of its borders, by the ground on both sides of them.
+///
+/// A neighbour that no one asks (beside the data, or without ground above the finest level) owns nothing.
+fn owned_borders(
+    input: &TileInput<'_>,
+    id: TileId,
+    ordinals: &[u32],
+) -> Result<OwnedBorders, BuildError> {
+    if ordinals.is_empty() {
+        return Ok(OwnedBorders::ALL);
+    }
+    let is_asked = |east, south| {
+        id.neighbour(east, south).is_some_and(|other| {
+            input.meshes.contains_key(&other) || is_among(input.data_tiles, other)
+        })
+    };
+    let neighbours = Neighbours { east: is_asked(1, 0), south: is_asked(0, 1) };
+    let heights = input.pyramid.tile(id, 1)?;
+    Ok(OwnedBorders::among(neighbours).where_ground(|column, row| {
+        heights.cell_has_ground((column + 1) as usize, (row + 1) as usize)
+    }))
+}
+
+/// Whether a tile is one of the data's: they are a rectangle, row by row, so the first and the last are its corners.
+fn is_among(data_tiles: &[TileId], id: TileId) -> bool {
+    let (Some(first), Some(last)) = (data_tiles.first(), data_tiles.last()) else { return false };
+    id.z() == first.z()
+        && (first.x()..=last.x()).contains(&id.x())
+        && (first.y()..=last.y()).contains(&id.y())
+}
+
 /// What a finest tile without ground costs the roads on it.
 fn lost_roads(
+    input: &TileInput<'_>,
     id: TileId,
     log: Option<&RoadLog<'_>>,
     ordinals: &[u32],
-    levels: &Levels,
 ) -> Result<Made, BuildError> {
-    let bounds = levels.frame().tile_lattice_bounds(id);
+    let bounds = input.levels.frame().tile_lattice_bounds(id);
+    let owned = owned_borders(input, id, ordinals)?;
     let mut fates = Vec::new();
     for &ordinal in ordinals {
         let Some(log) = log else { continue };
-        let parts =
-            corniche_drape::clip(&log.load(ordinal)?.line, &bounds, OwnedBorders::of_tile(id));
+        let parts = corniche_drape::clip(&log.load(ordinal)?.line, &bounds, owned);
         let void_steps = parts.iter().map(corniche_geom::Polyline::length_steps).sum();
         fates.push((ordinal, RoadFate { kept_steps: 0.0, void_steps }));
     }
@@ -254,7 +295,8 @@ struct Laid {
 }
 
 impl Laid {
-    fn lay(&mut self, road: &Road, ordinal: u32, id: TileId, surface: &Surface, levels: &Levels) {
+    fn lay(&mut self, road: &Road, ordinal: u32, on: &Ground<'_>, levels: &Levels) {
+        let &Ground { id, surface, owned } = on;
         let frame = levels.frame();
         let bounds = frame.tile_lattice_bounds(id);
         let simplified = corniche_roads::simplify(road, levels.simplify_tolerance_steps(id.z()));
@@ -264,7 +306,7 @@ impl Laid {
         sums.simplified_vertices += points_of_tile(&simplified, id, levels);
         let parts = self.parts.entry(road.way_id).or_default();
         let mut laid = 0;
-        for part in corniche_drape::clip(&simplified, &bounds, OwnedBorders::of_tile(id)) {
+        for part in corniche_drape::clip(&simplified, &bounds, owned) {
             let draped = corniche_drape::drape(&part, surface);
             fate.void_steps += draped.off_ground_steps;
             fate.kept_steps += part.length_steps() - draped.off_ground_steps;
