@@ -8,6 +8,8 @@ const TILES: usize = 32;
 const HEADER_BYTES: usize = 127;
 /// Metadata of a small package, for directories and tiles to be looked at.
 const METADATA: &[u8] = include_bytes!("../corpus/package/metadata.json");
+/// The same as it is stored.
+static STORED: OnceLock<Vec<u8>> = OnceLock::new();
 
 /// A package of these bytes is opened or refused, its tiles listed or refused, every tile read or refused.
 ///
@@ -26,7 +28,6 @@ pub fn package(data: &[u8]) {
                 |at: usize| usize::from(u16::from_le_bytes([lengths[at], lengths[at + 1]]));
             let (root, rest) = rest.split_at(length(0).min(rest.len()));
             let (leaf, tiles) = rest.split_at(length(2).min(rest.len()));
-            static STORED: OnceLock<Vec<u8>> = OnceLock::new();
             file(&gzip(root), STORED.get_or_init(|| gzip(METADATA)), &gzip(leaf), tiles)
         }
         // No tiles: 0 entries.

@@ -63,7 +63,9 @@ fn sealed(mut data: &[u8]) -> Vec<u8> {
         offset += section.len();
     }
     bytes.extend([0; 4]);
-    sections.iter().for_each(|(_, section)| bytes.extend(*section));
+    for (_, section) in &sections {
+        bytes.extend(*section);
+    }
     with_right_checksums(&bytes)
 }
 

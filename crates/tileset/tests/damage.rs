@@ -89,3 +89,13 @@ fn tiles_exchanged_are_refused() {
     let expected = format!("tile {}, header: the bytes are those of tile {}", ids[2], ids[3]);
     assert!(error.starts_with(&expected), "{error}");
 }
+
+/// The fuzz target `package` takes its manifest from a file, to look at what lies behind.
+#[test]
+fn fuzzing_knows_the_manifest_of_today() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/package/metadata.json");
+    let kept: serde_json::Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
+    let manifest = serde_json::to_value(common::manifest()).unwrap();
+    let expected = serde_json::json!({ "name": "test", "corniche": manifest });
+    assert!(kept == expected, "put this into {path}:\n{expected}");
+}

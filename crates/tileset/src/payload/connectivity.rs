@@ -20,7 +20,7 @@
 //! positions: Lewiner, Lopes, Mello & Velho 2005, *`GEncode`: Geometry-driven compression for general meshes*.
 //! What we changed: all positions come first, sorted, which is cheaper than positions in walking order.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 
 use super::{Damage, nodes::Nodes, work::Work};
 
@@ -39,59 +39,68 @@ pub(super) struct Reached {
     pub(super) gate: [u32; 3],
 }
 
-/// Directed edges with the corner to their left: a hash table by open addressing, so that a vertex of a thousand
-/// triangles costs no more than any other.
+/// Directed edges with the corner to their left.
+///
+/// The first few of each origin are in a list: most vertices have six, and lists lie where the walk is (a hash table
+/// of all took half as long again). The others are in a tree, so that a vertex of a thousand triangles is no trap.
 #[derive(Debug)]
 pub(super) struct Edges<'w> {
-    /// Origin, target, corner; [`FREE`] as origin where there is no edge. A power of two of them.
-    slots: Vec<[u32; 3]>,
-    count: usize,
+    first: Vec<u32>,
+    /// How long each list is.
+    lengths: Vec<u8>,
+    /// Next in the list of the same origin, target, corner.
+    listed: Vec<[u32; 3]>,
+    /// Corners by origin and target, of origins whose lists are full.
+    more: BTreeMap<[u32; 2], u32>,
     work: &'w Work,
 }
 
-/// No vertex has this number.
-const FREE: u32 = u32::MAX;
+const END: u32 = u32::MAX;
+/// A list has no more edges; looking into the tree counts as so many steps too.
+const LIST_EDGES: u8 = 16;
 
 impl<'w> Edges<'w> {
-    /// Looking at a slot counts as `work`: a writer's edges hardly ever share one, a hostile one's may.
-    pub(super) fn new(work: &'w Work) -> Self {
-        Self { slots: vec![[FREE; 3]; 64], count: 0, work }
+    /// Looking at an edge counts as `work`.
+    pub(super) fn new(vertices: usize, work: &'w Work) -> Self {
+        Self {
+            first: vec![END; vertices],
+            lengths: vec![0; vertices],
+            listed: Vec::new(),
+            more: BTreeMap::new(),
+            work,
+        }
     }
 
     pub(super) fn corner(&self, a: u32, b: u32) -> Option<u32> {
-        let [origin, _, corner] = self.slots[self.slot(a, b)];
-        (origin != FREE).then_some(corner)
-    }
-
-    /// Where the edge is, or would be.
-    fn slot(&self, a: u32, b: u32) -> usize {
-        let last = self.slots.len() - 1;
-        let key = u64::from(a) << 32 | u64::from(b);
-        // Fibonacci hashing: Knuth 1998, *The Art of Computer Programming* 3, section 6.4.
-        let hash = key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
-        let mut at = hash as usize & last;
-        let mut steps = 1;
-        while self.slots[at][0] != FREE && self.slots[at][..2] != [a, b] {
-            at = (at + 1) & last;
+        let mut at = self.first[a as usize];
+        let mut steps = 0;
+        let mut found = None;
+        while let Some(&[next, target, corner]) = self.listed.get(at as usize) {
             steps += 1;
+            if target == b {
+                found = Some(corner);
+                break;
+            }
+            at = next;
+        }
+        if found.is_none() && steps == usize::from(LIST_EDGES) {
+            steps += usize::from(LIST_EDGES);
+            found = self.more.get(&[a, b]).copied();
         }
         self.work.add(steps);
-        at
+        found
     }
 
     fn add_edge(&mut self, a: u32, b: u32, corner: u32) {
-        // Half full at most, so that a search soon meets a free slot.
-        if 2 * self.count >= self.slots.len() {
-            let doubled = vec![[FREE; 3]; 2 * self.slots.len()];
-            let known = std::mem::replace(&mut self.slots, doubled);
-            for [a, b, corner] in known.into_iter().filter(|slot| slot[0] != FREE) {
-                let at = self.slot(a, b);
-                self.slots[at] = [a, b, corner];
-            }
+        let length = &mut self.lengths[a as usize];
+        if *length == LIST_EDGES {
+            self.more.insert([a, b], corner);
+            return;
         }
-        let at = self.slot(a, b);
-        self.slots[at] = [a, b, corner];
-        self.count += 1;
+        *length += 1;
+        let at = self.listed.len() as u32;
+        self.listed.push([self.first[a as usize], b, corner]);
+        self.first[a as usize] = at;
     }
 
     /// Adds a triangle; an edge that has a triangle on that side already makes it fail.
@@ -127,7 +136,7 @@ pub(super) fn walk(
     guide: &mut impl Guide,
 ) -> Result<(Vec<[u32; 3]>, Vec<Reached>), Damage> {
     let work = nodes.work();
-    let mut edges = Edges::new(work);
+    let mut edges = Edges::new(nodes.len(), work);
     let mut triangles = Vec::with_capacity(count);
     let mut order = Vec::with_capacity(nodes.len());
     let mut seen = vec![false; nodes.len()];
@@ -178,8 +187,6 @@ pub(super) fn walk(
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use proptest::prelude::*;
 
     use super::*;
@@ -189,7 +196,7 @@ mod tests {
         #[test]
         fn edges_are_what_was_added(triangles in prop::collection::vec([0..40_u32, 0..40, 0..40], 0..300)) {
             let work = Work::new(u64::MAX);
-            let (mut edges, mut expected) = (Edges::new(&work), BTreeMap::new());
+            let (mut edges, mut expected) = (Edges::new(40, &work), BTreeMap::new());
             for [a, b, c] in triangles {
                 let sides = [([a, b], c), ([b, c], a), ([c, a], b)];
                 if a == b || b == c || c == a || sides.iter().any(|(side, _)| expected.contains_key(side)) {

@@ -123,10 +123,13 @@ impl<'w> Nodes<'w> {
         let range =
             self.row_starts[row as usize] as usize..self.row_starts[row as usize + 1] as usize;
         let first = range.start + self.at[range.clone()].partition_point(|node| node[0] < low);
-        let end = first + self.at[first..range.end].partition_point(|node| node[0] <= high);
-        self.work.add(1 + end - first);
-        for vertex in first..end {
+        let mut steps = 1;
+        for vertex in first..range.end {
             let [c, r] = self.at[vertex];
+            if c > high {
+                break;
+            }
+            steps += 1;
             let cross = dx * (ar - r) - dy * (c - ac);
             if cross <= 0 {
                 continue;
@@ -142,6 +145,7 @@ impl<'w> Nodes<'w> {
                 *best = Some(circle(vertex as u32, dot, cross, [[ac, ar], [bc, br]]));
             }
         }
+        self.work.add(steps);
     }
 }
 

@@ -293,7 +293,7 @@ mod write {
         let work = Work::new(max_walk_steps(vertices.len(), triangles.len()));
         let nodes = Nodes::new(at.iter().copied(), &work);
         let lookups = Work::new(u64::MAX);
-        let mut recorder = Recorder::new(triangles, &lookups)
+        let mut recorder = Recorder::new(vertices.len(), triangles, &lookups)
             .map_err(|_| "an edge with several triangles on one side")?;
         let (found, order) =
             walk(&nodes, triangles.len(), &mut recorder).map_err(|damage| match damage {
@@ -368,10 +368,11 @@ mod write {
 
     impl<'a> Recorder<'a> {
         pub(in super::super) fn new(
+            vertices: usize,
             triangles: &'a [[u32; 3]],
             work: &'a Work,
         ) -> Result<Self, Damage> {
-            let mut edges = Edges::new(work);
+            let mut edges = Edges::new(vertices, work);
             for &triangle in triangles {
                 edges.add(triangle)?;
             }

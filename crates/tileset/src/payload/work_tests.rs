@@ -17,7 +17,7 @@ fn walk_steps(tin: &Tin) -> [u64; 2] {
     let (vertices, triangles) = (tin.vertices(), tin.triangles());
     let (work, lookups) = (Work::new(u64::MAX), Work::new(u64::MAX));
     let nodes = Nodes::new(vertices.iter().map(|v| [v.column, v.row]), &work);
-    let mut recorder = Recorder::new(triangles, &lookups).expect("a TIN");
+    let mut recorder = Recorder::new(vertices.len(), triangles, &lookups).expect("a TIN");
     let (found, _) = walk(&nodes, triangles.len(), &mut recorder).expect("a TIN");
     assert_eq!(found.len(), triangles.len());
     [work.done(), max_walk_steps(vertices.len(), triangles.len())]
@@ -89,7 +89,8 @@ fn a_walk_beyond_its_limit_is_refused() {
     for limit in [0, whole / 2, whole - whole / 16] {
         let (work, lookups) = (Work::new(limit), Work::new(u64::MAX));
         let nodes = Nodes::new(tin.vertices().iter().map(|v| [v.column, v.row]), &work);
-        let mut recorder = Recorder::new(tin.triangles(), &lookups).expect("a TIN");
+        let mut recorder =
+            Recorder::new(tin.vertices().len(), tin.triangles(), &lookups).expect("a TIN");
         let outcome = walk(&nodes, tin.triangles().len(), &mut recorder).map(|_| ());
         assert_eq!(outcome, Err(Damage::TooMuchWork { limit }));
     }
