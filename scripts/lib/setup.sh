@@ -19,6 +19,11 @@ missing_for_build() {
     has_vulkan_loader || echo libvulkan1
 }
 
+# The fuzz targets link libFuzzer, which is C++; CI makes sure that they compile.
+missing_for_fuzz() {
+    command -v c++ >/dev/null || echo g++
+}
+
 # A python3 with numpy and shapely, for the independent check.
 missing_for_check() {
     python_with numpy >/dev/null || echo python3-numpy

@@ -50,12 +50,15 @@ pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
     let watch = Watch { progress, defects };
     let settings = settings(*args)?;
     let built = corniche_pipeline::build(&settings, &watch);
-    // Of a run that failed the list may tell why; one that was interrupted leaves nothing.
-    if let Some(defects) = watch.defects.filter(|_| !matches!(built, Err(BuildError::Interrupted)))
-    {
-        defects.finish()?;
-    }
+    // A list stands at its place only if it is complete. Of a run that failed it is where all roads were looked at, and
+    // there it tells why.
+    let is_complete = match &built {
+        Ok(_) | Err(BuildError::NoRoads { .. } | BuildError::NoGround { .. }) => true,
+        Err(_) => false,
+    };
+    let listed = watch.defects.filter(|_| is_complete).map_or(Ok(()), DefectList::finish);
     let summary = built?;
+    listed?;
     if !quiet {
         eprintln!("\n{}", info::to_text(&summary.manifest, summary.package_bytes));
         eprintln!("wrote {}", settings.output.display());
@@ -69,6 +72,12 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
         Some(path) => presets::read_config(path)?,
         None => Config::default(),
     };
+    let nodata = args.terrain.nodata.or(config.terrain.nodata);
+    if let Some(value) = nodata.filter(|value| !value.is_finite()) {
+        return Err(Failure::unusable(format!(
+            "--nodata {value} is needless: what is no finite number is no height anyway; leave it out"
+        )));
+    }
     let terrain = TerrainSettings {
         crs: args.terrain.crs.or(config.terrain.crs),
         dem_crs: args.terrain.dem_crs.or(config.terrain.dem_crs),
@@ -79,7 +88,7 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
             .vertical_shift
             .or(config.terrain.vertical_shift)
             .unwrap_or(0.0),
-        nodata: args.terrain.nodata.or(config.terrain.nodata),
+        nodata,
         cell_m: positive("--cell", args.terrain.cell.or(config.terrain.cell))?,
         max_error_m: positive("--max-error", args.terrain.max_error.or(config.terrain.max_error))?,
         fill_voids: args.terrain.fill_voids.or(config.terrain.fill_voids).unwrap_or(FILL_VOIDS),

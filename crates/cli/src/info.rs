@@ -43,20 +43,20 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
         "package      {}, format {}, by {}",
         bytes(package_bytes),
         manifest.format_version,
-        manifest.generator
+        plain(&manifest.generator)
     ));
-    say(format!("CRS          {}, point scale {:.6}", manifest.crs, manifest.point_scale));
+    say(format!("CRS          {}, point scale {:.6}", plain(&manifest.crs), manifest.point_scale));
     say(format!(
         "extent       {west:.5} {south:.5} {east:.5} {north:.5} (west south east north, degrees)"
     ));
-    say(format!("grid         cell {} m, {}", frame.cell_m(), manifest.resampling));
+    say(format!("grid         cell {} m, {}", frame.cell_m(), plain(&manifest.resampling)));
     let vertical = &manifest.vertical;
     let [lowest_m, highest_m] = vertical.range_m;
     say(format!(
         "heights      {lowest_m:.1} to {highest_m:.1} m, quantum {} m",
         vertical.quantum_m
     ));
-    say(format!("datum        {}; heights {}", vertical.datum, vertical.treatment));
+    say(format!("datum        {}; heights {}", plain(&vertical.datum), plain(&vertical.treatment)));
     if let Some(warning) = odd_heights(manifest) {
         say(warning);
     }
@@ -69,16 +69,16 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
         count(samples.void)
     ));
     for input in &manifest.inputs {
-        let hash = input.sha256.get(..12).unwrap_or_default();
+        let hash = plain(input.sha256.get(..12).unwrap_or_default());
         say(format!(
             "input        {} {}, {}, sha256 {hash}…",
-            input.kind,
-            input.name,
+            plain(&input.kind),
+            plain(&input.name),
             bytes(input.bytes)
         ));
     }
     for credit in &manifest.attribution {
-        say(format!("attribution  {credit}"));
+        say(format!("attribution  {}", plain(credit)));
     }
     let mut levels = Table::new([
         "level",
@@ -119,6 +119,11 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
     text
 }
 
+/// Foreign text for a terminal: its control characters must neither colour nor forge lines.
+fn plain(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
+}
+
 /// A number with so many digits after the point; a dash where there is none.
 pub(crate) fn or_dash(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"))
@@ -138,7 +143,8 @@ fn odd_heights(manifest: &Manifest) -> Option<String> {
         return None;
     };
     Some(format!(
-        "warning: a height of {odd_m} m is none of this earth; if it means \"no data\", say --nodata {odd_m}"
+        "warning: a height of {odd_m} m is none of this earth; if the files store a value that means \"no data\", give it \
+         with --nodata as they store it (before scale, unit and shift)"
     ))
 }
 
@@ -156,12 +162,16 @@ fn roads(manifest: &Manifest) -> String {
         length(counts.roads_kept_m),
     ]);
     for loss in &counts.roads_lost {
-        table.row([format!("lost {}", loss.reason), count(loss.roads), length(loss.length_m)]);
+        table.row([
+            format!("lost {}", plain(&loss.reason)),
+            count(loss.roads),
+            length(loss.length_m),
+        ]);
     }
     for (class, &(roads, metres)) in counts.classes.iter().enumerate() {
         if roads > 0 {
             table.row([
-                format!("  FRC {class} ({})", manifest.settings.frc_table),
+                format!("  FRC {class} ({})", plain(&manifest.settings.frc_table)),
                 count(roads),
                 length(metres),
             ]);
@@ -177,13 +187,13 @@ fn roads(manifest: &Manifest) -> String {
         );
     }
     for (reason, number) in &counts.highways_left_out {
-        let _ = writeln!(text, "  not taken, {reason}: {}", count(*number));
+        let _ = writeln!(text, "  not taken, {}: {}", plain(reason), count(*number));
     }
     for (name, number) in &counts.defects {
-        let _ = writeln!(text, "defect: {name}: {}", count(*number));
+        let _ = writeln!(text, "defect: {}: {}", plain(name), count(*number));
     }
     for (value, number) in &counts.unknown_highways {
-        let _ = writeln!(text, "highway={value} is in no class: {}", count(*number));
+        let _ = writeln!(text, "highway={} is in no class: {}", plain(value), count(*number));
     }
     text
 }

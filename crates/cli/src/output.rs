@@ -39,12 +39,8 @@ impl Output {
         if target.is_dir() {
             return Err(unusable(&"it is a folder"));
         }
-        let same = |other: &Path| match (target.canonicalize(), other.canonicalize()) {
-            (Ok(target), Ok(other)) => target == other,
-            // What does not exist yet is told apart by its name alone.
-            _ => target == other,
-        };
-        if others.iter().any(|other| same(other)) {
+        let place = place_of(target);
+        if others.iter().any(|other| place_of(other) == place) {
             return Err(unusable(&"the command uses that file itself; choose another name"));
         }
         if existing == Existing::Keep && target.symlink_metadata().is_ok() {
@@ -93,6 +89,21 @@ impl Write for Output {
 
     fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
+    }
+}
+
+/// Where a file is or will be, whatever way its path is written: for one that does not exist yet, its folder's place.
+fn place_of(path: &Path) -> PathBuf {
+    if let Ok(place) = path.canonicalize() {
+        return place;
+    }
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    match (folder.canonicalize(), path.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => path.to_path_buf(),
     }
 }
 
@@ -164,5 +175,19 @@ mod tests {
         let refused = Output::create(&other_name, Existing::Replace, &[&package]).unwrap_err();
         assert_eq!(refused.code(), ExitCode::Unusable);
         assert_eq!(fs::read(&package).unwrap(), b"precious");
+    }
+
+    #[test]
+    fn what_a_command_will_write_is_the_same_file_by_any_path() {
+        let folder = tempfile::tempdir().unwrap();
+        let package = folder.path().join("new.pmtiles");
+        fs::create_dir(folder.path().join("sub")).unwrap();
+        for way in [".", "sub/.."] {
+            let list = folder.path().join(way).join("new.pmtiles");
+            let refused = Output::create(&list, Existing::Replace, &[&package]).unwrap_err();
+            assert_eq!(refused.code(), ExitCode::Unusable, "{way}");
+        }
+        let other = folder.path().join("other.csv");
+        assert!(Output::create(&other, Existing::Replace, &[&package]).is_ok());
     }
 }

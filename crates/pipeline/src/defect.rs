@@ -1,6 +1,5 @@
 /// Bad input that was survived and counted, from whichever crate met it, and what was lost by it.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub enum Defect {
     /// In the extract.
     Osm(corniche_osm::Defect),
@@ -12,7 +11,7 @@ pub enum Defect {
         loss: Loss,
         /// Length in plan.
         length_m: f64,
-        /// Whether anything of the road is kept.
+        /// Whether nothing of the road is kept.
         is_whole: bool,
     },
 }

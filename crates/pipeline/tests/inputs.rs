@@ -28,6 +28,20 @@ fn a_raster_inside_another_file_is_read() {
     assert_eq!(built.manifest.inputs[0].sha256, "not hashed: virtual");
 }
 
+/// A raster is named inside its container; the container is hashed, and no folder gets into the package.
+#[test]
+fn a_raster_of_a_container_is_read_and_its_container_hashed() {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = folder.path().join("dem.tif");
+    hills().write(&dem);
+    let inside = format!("GTIFF_DIR:1:{}", dem.display());
+    let built = build_files(Path::new(&inside), None, Options::plain(5.0)).unwrap();
+    let plain = build_files(&dem, None, Options::plain(5.0)).unwrap();
+    assert_eq!(built.tiles, plain.tiles);
+    let [inside, whole] = [&built, &plain].map(|built| &built.manifest.inputs[0]);
+    assert_eq!((inside.name.as_str(), &inside.sha256), ("GTIFF_DIR:1:dem.tif", &whole.sha256));
+}
+
 /// Steps of 32 bits reach neither a sentinel that nobody declared nor, when they are tiny, any mountain.
 #[test]
 fn a_height_that_steps_do_not_reach_is_refused_as_bad_input() {

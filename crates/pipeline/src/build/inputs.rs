@@ -3,7 +3,7 @@
 use std::{
     fs::File,
     io::{self, Read},
-    path::Path,
+    path::{Path, PathBuf},
 };
 
 use corniche_tileset::InputRecord;
@@ -35,13 +35,34 @@ pub(crate) fn hash(
     Ok(inputs)
 }
 
+/// The file that holds an input, and the input's name without folders.
+///
+/// They differ for a raster inside a container, as GDAL names it (`GPKG:dem.gpkg:heights`, `NETCDF:"dem.nc":Band1`).
+fn named(path: &Path) -> (PathBuf, String) {
+    let file_name = |path: &Path| {
+        path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+    };
+    let text = path.to_string_lossy();
+    let container = (!path.exists())
+        .then(|| text.split(':').map(|part| part.trim_matches('"')))
+        .and_then(|mut parts| parts.find(|part| Path::new(part).is_file()));
+    match container {
+        Some(container) => {
+            let short = file_name(Path::new(container));
+            (PathBuf::from(container), text.replace(container, &short))
+        }
+        None => (path.to_path_buf(), file_name(path)),
+    }
+}
+
 /// Name, size and hash of one file.
 pub(crate) fn record(
     kind: &str,
     path: &Path,
     observer: &dyn Observer,
 ) -> Result<InputRecord, BuildError> {
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let (path, name) = &named(path);
+    let name = name.clone();
     // By text: `Path::starts_with` compares whole names, and they go on, as in /vsizip/ and /vsicurl/.
     if !path.exists() && path.to_string_lossy().starts_with("/vsi") {
         // A name that only GDAL understands (inside an archive, on a server) has no bytes of its own to hash.
@@ -52,7 +73,7 @@ pub(crate) fn record(
             sha256: "not hashed: virtual".to_owned(),
         });
     }
-    let failed = |source: io::Error| BuildError::Input { path: path.to_path_buf(), source };
+    let failed = |source: io::Error| BuildError::Input { path: path.clone(), source };
     let mut file = File::open(path).map_err(failed)?;
     let mut hasher = Sha256::new();
     let mut buffer = vec![0; 1 << 20];

@@ -299,7 +299,8 @@ fn agree(said: Option<Distribution>, found: Option<Distribution>) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() <= RATIO_ROUNDING * a.max(b);
     match (said, found) {
         (Some(said), Some(found)) => {
-            near(said.min, found.min)
+            said.count == found.count
+                && near(said.min, found.min)
                 && near(said.median, found.median)
                 && near(said.p95, found.p95)
                 && near(said.max, found.max)

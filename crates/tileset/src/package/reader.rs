@@ -76,7 +76,9 @@ pub enum OpenError {
         what: &'static str,
     },
     /// The manifest cannot be read.
-    #[error("the package's manifest is damaged: {reason}; fetch or build it again")]
+    #[error(
+        "the package's manifest is damaged, or written by another version of Corniche: {reason}; fetch or build it again"
+    )]
     Manifest {
         /// What is wrong.
         reason: String,
