@@ -67,7 +67,7 @@ impl Crs {
         let as_wkt =
             |source: GdalError| DemError::Wkt { name: name.clone(), source: source.into() };
         let wkt = wkt2(&reference).map_err(as_wkt)?;
-        let vertical = VerticalCrs::of_wkt(&wkt);
+        let vertical = VerticalCrs::of_wkt(&wkt)?;
         if reference.is_compound() {
             // The heights' own system must not take part: it would ask PROJ for geoid grids.
             let Some(text) = children(&wkt).into_iter().find(|part| is_horizontal(part)) else {

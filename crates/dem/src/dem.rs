@@ -4,12 +4,12 @@ use std::sync::Once;
 use corniche_geom::Bounds;
 
 use crate::crs::Crs;
+use crate::heights::{self, Heights};
 use crate::mosaic::{self, Mosaic};
 use crate::operation::Operation;
 use crate::projection::DemProjection;
 use crate::reader::Reader;
 use crate::source::{OpenOptions, Source};
-use crate::vertical::{self, Heights};
 use crate::{DemError, GridPlan, PlanOptions, library, outline, plan, scale};
 
 /// Elevation files, described but not held open: may be shared between threads.
@@ -53,7 +53,7 @@ impl Dem {
         let (points_deg, wgs84_bounds) = outline::wgs84(&sources, &mosaics, &to_wgs84)?;
         // Files all around the earth have no middle; any will do.
         let center_deg = scale::center_deg(&points_deg).unwrap_or([0.0; 2]);
-        let heights = vertical::resolve(&mut sources, options, wgs84_bounds)?;
+        let heights = heights::resolve(&mut sources, options, wgs84_bounds, center_deg)?;
         Ok(Self { sources, mosaics, wgs84_bounds, center_deg, heights })
     }
 

@@ -86,11 +86,23 @@ pub enum DemError {
     )]
     NoVerticalCrs { path: PathBuf, to: String },
     #[error(
+        "heights of {path:?} cannot be carried from {from} to {to}: {unnamed} names no datum, so that nobody knows how the two are related; name the true vertical CRS (gdal_translate -a_srs, --dem-vertical-crs, --vertical-crs), or leave out --vertical-crs and give --vertical-shift"
+    )]
+    NoVerticalDatum { path: PathBuf, from: String, to: String, unnamed: String },
+    #[error(
+        "vertical coordinate system {name:?} gives its axis no unit of length; name one that does, such as EPSG:5773"
+    )]
+    VerticalUnit { name: String },
+    #[error(
         "heights of {first:?} are {first_says}, those of {other:?} {other_says}; name a common one with --vertical-crs, and with --dem-vertical-crs that of files that name none"
     )]
     MixedVertical { first: PathBuf, first_says: String, other: PathBuf, other_says: String },
     #[error(
-        "heights of {path:?} cannot be carried from {from} to {to}: PROJ lacks the geoid grid {grids}; install it (projsync, or the package proj-data), or leave out --vertical-crs and give --vertical-shift"
+        "heights of {path:?} cannot be carried from {from} to {to}: there is no geoid grid {grids}; put it there, or install one that PROJ knows (projsync, or the package proj-data) and name its vertical CRS, or leave out --vertical-crs and give --vertical-shift"
+    )]
+    NoGeoidGrid { path: PathBuf, from: String, to: String, grids: String },
+    #[error(
+        "heights of {path:?} cannot be carried from {from} to {to}: PROJ has no exact operation from the one to the other here; a geoid grid may be missing ({grids}): install it (projsync, or the package proj-data), or leave out --vertical-crs and give --vertical-shift"
     )]
     VerticalOperation {
         path: PathBuf,

@@ -19,6 +19,7 @@ mod plan;
 mod reader;
 
 mod crs;
+mod heights;
 mod values;
 mod vertical;
 mod wkt;

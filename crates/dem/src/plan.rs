@@ -70,7 +70,7 @@ pub struct GridPlan {
     pub resampling: String,
     /// What the resulting heights are measured from, as far as files or options name it.
     pub vertical_datum: Option<String>,
-    /// What was done to the files' heights, in words.
+    /// What was done to the files' heights, in words; with the offset at the DEM's centre where PROJ carried them.
     pub vertical: String,
     /// Releases of GDAL and PROJ, on which the heights' last bits depend.
     pub libraries: String,

@@ -55,6 +55,7 @@ impl Values {
         let flags = band
             .mask_flags()
             .map_err(|source| DemError::Open { path: path.to_path_buf(), source: source.into() })?;
+        let is_own_nodata = flags.is_nodata() && !flags.is_per_dataset();
         let pixel_type = band.metadata_item("PIXELTYPE", "IMAGE_STRUCTURE");
         Ok(Self {
             nodata,
@@ -63,8 +64,9 @@ impl Values {
             scale,
             offset,
             unit_m: m_per_value(path, &band.unit(), vertical)?,
-            // Of nodata and of some alpha bands GDAL makes masks too; looking ourselves is exact, and covers all types.
-            has_mask: !flags.is_all_valid() && !flags.is_nodata() && !flags.is_alpha(),
+            // Of the band's nodata and of some alpha bands GDAL makes masks too; looking ourselves is exact, and covers
+            // all types. A nodata mask of the whole dataset is another thing: its item NODATA_VALUES, which no band has.
+            has_mask: !flags.is_all_valid() && !flags.is_alpha() && !is_own_nodata,
         })
     }
 

@@ -141,7 +141,7 @@ pub(crate) fn check_refused(files: &[PathBuf], options: &OpenOptions, words: &[&
     let read = || {
         let dem = Dem::open(files, options)?;
         let plan = dem.plan(&self::options())?;
-        dem.reader(&plan)?.window(all(&plan))
+        dem.reader(&plan)?.window(all(&plan)).map(|_| ())
     };
     let error = read().expect_err(&format!("{files:?} was read"));
     check_words(&error, words);

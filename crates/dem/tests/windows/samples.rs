@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use corniche_dem::{Dem, OpenOptions};
+use gdal::Metadata;
 use gdal::raster::Buffer;
 use gdal::raster::{ColorEntry, ColorInterpretation, ColorTable, GdalType, PaletteInterpretation};
 
@@ -190,6 +191,24 @@ fn masks_take_samples_away() {
     // Of other types GDAL makes no mask; its own warper writes such files.
     alpha(folder.path(), "i16.tif", [5_i16, 6, 7], [32_767, 1, 0]);
     alpha(folder.path(), "f32.tif", [5.0_f32, 6.0, 7.0], [255.0, 1.0, 0.0]);
+}
+
+/// `gdal_translate -mo NODATA_VALUES=…` declares a sentinel for the dataset, with or without one of the band's own.
+#[test]
+fn a_sentinel_of_the_whole_dataset_is_one_too() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, nodata, last) in [("alone", None, Some(7.0)), ("both", Some(7.0), None)] {
+        let declared = Raster { nodata, ..raster() }.tagged(|dataset| {
+            dataset.set_metadata_item("NODATA_VALUES", "-9999", "").unwrap();
+        });
+        let path = row(folder.path(), &format!("{name}.tif"), declared, &[5_i16, -9999, 7]);
+        check(name, path, &OpenOptions::default(), &[Some(5.0), None, last]);
+        let declared = Raster { nodata, ..raster() }.tagged(|dataset| {
+            dataset.set_metadata_item("NODATA_VALUES", "-9999.9", "").unwrap();
+        });
+        let path = row(folder.path(), &format!("{name}-f32.tif"), declared, &[5_f32, -9999.9, 7.0]);
+        check(name, path, &OpenOptions::default(), &[Some(5.0), None, last]);
+    }
 }
 
 /// The last of three samples is transparent, and so is the second once it is also nodata.

@@ -28,13 +28,19 @@ fn undulation_m([lon, lat]: [f64; 2]) -> f64 {
 
 /// Writes that geoid for 8..10° E, 46..48° N, and gives the vertical CRS above it.
 fn geoid(folder: &Path) -> String {
+    raised_geoid(folder, 0.0)
+}
+
+/// The same, so many metres higher.
+fn raised_geoid(folder: &Path, by_m: f64) -> String {
     let path = folder.join("geoid.gtx");
     let driver = DriverManager::get_driver_by_name("GTX").unwrap();
     let mut grid = driver.create_with_band_type::<f32, _>(&path, 21, 21, 1).unwrap();
     grid.set_geo_transform(&[7.95, 0.1, 0.0, 48.05, 0.0, -0.1]).unwrap();
     let values = (0..441)
         .map(|k| {
-            undulation_m([8.0 + f64::from(k % 21) / 10.0, 48.0 - f64::from(k / 21) / 10.0]) as f32
+            let at = [8.0 + f64::from(k % 21) / 10.0, 48.0 - f64::from(k / 21) / 10.0];
+            (undulation_m(at) + by_m) as f32
         })
         .collect();
     let mut band = grid.rasterband(1).unwrap();
@@ -57,7 +63,7 @@ fn above(grid: &Path) -> String {
     )
 }
 
-fn given(own: &str, wanted: &str) -> OpenOptions {
+pub(crate) fn given(own: &str, wanted: &str) -> OpenOptions {
     let text = |text: &str| (!text.is_empty()).then(|| text.to_owned());
     OpenOptions {
         dem_vertical_crs: text(own),
@@ -73,7 +79,7 @@ fn compound(definition: &str) -> Raster<'_> {
     })
 }
 
-fn vertical(files: &[PathBuf], options: &OpenOptions) -> (Option<String>, String) {
+pub(crate) fn vertical(files: &[PathBuf], options: &OpenOptions) -> (Option<String>, String) {
     let plan = plan(&Dem::open(files, options).unwrap());
     (plan.vertical_datum, plan.vertical)
 }
@@ -228,12 +234,18 @@ fn what_is_missing_is_named_and_never_guessed() {
     let utm = [Raster::new(32632, [60, 50], UTM).write(folder.path(), "utm.tif", plane)];
     let gone = above(&folder.path().join("gone.gtx"));
     check_refused(&utm, &given("EPSG:4979", &gone), &["utm.tif", "gone.gtx", "--vertical-shift"]);
-    check_refused(&utm, &given(&gone, "EPSG:4979"), &["utm.tif", "gone.gtx", "install"]);
+    let words = ["utm.tif", "there is no geoid grid", "gone.gtx", "install"];
+    check_refused(&utm, &given(&gone, "EPSG:4979"), &words);
     let optional = gone.replace("model file\",\"", "model file\",\"@");
     check_refused(&utm, &given("EPSG:4979", &optional), &["gone.gtx", "optional"]);
     // Two geoids of which PROJ knows no relation, and would leave heights as they are.
-    let words = ["utm.tif", "Baltic 1977 height", "NAVD88 height"];
+    let words = ["utm.tif", "Baltic 1977 height", "NAVD88 height", "no exact", "may be missing"];
     check_refused(&utm, &given("EPSG:5705", "EPSG:5703"), &words);
+    // A file that is there but no grid: nobody claims that it is missing.
+    fs::write(folder.path().join("text.gtx"), "no grid").unwrap();
+    let broken = above(&folder.path().join("text.gtx"));
+    let words = ["utm.tif", "no exact", "may be missing (", "text.gtx"];
+    check_refused(&utm, &given("EPSG:4979", &broken), &words);
     check_refused(
         &utm,
         &given("", "EPSG:5773"),
@@ -318,6 +330,40 @@ fn files_must_agree_on_what_heights_are_measured_from() {
             println!("skipped: PROJ has no grid of EGM96 here: {error}");
         }
     }
+}
+
+/// Two editions of a grid under one name: what was done reads differently, as PROJ does not say which it took.
+#[test]
+fn different_grids_are_told_apart_by_the_offset_on_record() {
+    let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
+    let utm = [Raster::new(32632, [60, 50], UTM).write(folders[0].path(), "utm.tif", plane)];
+    // The middle of 600 m × 500 m is at 500 303, 5 200 257 in UTM, by `gdaltransform` at:
+    let middle_m = undulation_m([9.003_982_22, 46.955_841_83]);
+    let offset_m = |words: &str| -> f64 {
+        let (before, _) = words.split_once(" m at the centre").unwrap();
+        before.rsplit(' ').next().unwrap().parse().unwrap()
+    };
+    for (folder, by_m) in folders.iter().zip([0.0, 1.0]) {
+        let local = raised_geoid(folder.path(), by_m);
+        for (from, to, sign) in [(local.as_str(), "EPSG:4979", 1.0), ("EPSG:4979", &local, -1.0)] {
+            let words = vertical(&utm, &given(from, to)).1;
+            let found_m = offset_m(&words);
+            assert!((found_m - sign * (middle_m + by_m)).abs() < 0.0015, "{middle_m}: {words}");
+        }
+    }
+    // Files in different systems of the plan, carried alike: one text for all.
+    let local = geoid(folders[0].path());
+    let frame = [9.02, 0.0002, 0.0, 46.96, 0.0, -0.00015];
+    let beside = Raster::new(4326, [30, 25], frame).write(folders[0].path(), "ll.tif", plane);
+    let words = vertical(&[utm[0].clone(), beside], &given(&local, "EPSG:4979")).1;
+    assert_eq!(words.matches("carried").count(), 1, "{words}");
+    assert!(words.ends_with(" m at the centre"), "{words}");
+    // The centre lies beyond the grid: the first sample from which heights are carried stands for it.
+    let frame = [9.9, 0.001, 0.0, 47.0, 0.0, -0.001];
+    let east = |[lon, _]: [f64; 2]| if lon > 9.99 { f32::NAN } else { 100.0 };
+    let half = [Raster::new(4326, [300, 50], frame).write(folders[0].path(), "half.tif", east)];
+    let words = vertical(&half, &given(&local, "EPSG:4979")).1;
+    assert!(words.ends_with(" m at 9.93, 46.995 in EPSG:4326"), "{words}");
 }
 
 #[test]
