@@ -4,6 +4,7 @@ use std::{num::NonZeroUsize, path::PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use corniche_geom::TileId;
+use corniche_viewer::RoadMethod;
 
 /// Terrain tiles with roads laid exactly on them, from elevation rasters and OpenStreetMap extracts.
 #[derive(Debug, Parser)]
@@ -27,6 +28,8 @@ pub(crate) enum Command {
     Tile(TileArgs),
     /// Draw a package to a PNG, without a window
     Render(RenderArgs),
+    /// Fly over a package without a window and tell what each frame costs
+    Fly(FlyArgs),
 }
 
 #[derive(Debug, Args)]
@@ -190,8 +193,31 @@ pub(crate) struct TileArgs {
 pub(crate) enum Roads {
     /// As geometry on the TIN
     Geo,
+    /// As shadow volumes: exact to the pixel, also on steep ground
+    Sv,
     /// Not at all
     None,
+}
+
+impl Roads {
+    /// As it is said on the command line.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Geo => "geo",
+            Self::Sv => "sv",
+            Self::None => "none",
+        }
+    }
+}
+
+impl From<Roads> for RoadMethod {
+    fn from(roads: Roads) -> Self {
+        match roads {
+            Roads::Geo => Self::Geometry,
+            Roads::Sv => Self::ShadowVolumes,
+            Roads::None => Self::None,
+        }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -233,6 +259,111 @@ pub(crate) struct RenderArgs {
     pub(crate) exaggeration: f64,
 }
 
+/// How much of the ground is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Lod {
+    /// All finest tiles, in view or not
+    Full,
+    /// The finest tiles in view
+    Culled,
+    /// Tiles by screen-space error, loaded on the way
+    #[value(name = "lod")]
+    Adaptive,
+}
+
+impl Lod {
+    /// As it is said on the command line.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Full => "full",
+            Self::Culled => "culled",
+            Self::Adaptive => "lod",
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FlyArgs {
+    /// The package
+    pub(crate) package: PathBuf,
+    /// The list to write (.csv): one line per frame, with the tiles, triangles, bytes and milliseconds it took
+    #[arg(short, long, value_name = "CSV")]
+    pub(crate) output: PathBuf,
+    /// Replace files that exist, once the new ones are complete
+    #[arg(short = 'O', long)]
+    pub(crate) overwrite: bool,
+    /// Also draw the frame times along the flight
+    #[arg(long, value_name = "SVG")]
+    pub(crate) svg: Option<PathBuf>,
+    /// Also keep every frame as a picture in this new folder
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) png: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) flight: FlightArgs,
+    #[command(flatten)]
+    pub(crate) drawing: DrawingArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Flight")]
+pub(crate) struct FlightArgs {
+    /// Flight to take: keyframes in TOML, as --save-path writes them [default: a pass along the data]
+    #[arg(long, value_name = "TOML")]
+    pub(crate) path: Option<PathBuf>,
+    /// Write down the flight taken
+    #[arg(long, value_name = "TOML")]
+    pub(crate) save_path: Option<PathBuf>,
+    /// How many frames, evenly spread over the flight
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    pub(crate) frames: u32,
+    /// Time from one frame to the next, in seconds, instead of a number of frames
+    #[arg(long, value_name = "SECONDS", conflicts_with = "frames", allow_negative_numbers = true)]
+    pub(crate) step: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Drawing")]
+pub(crate) struct DrawingArgs {
+    /// How roads are drawn; with several, separated by commas, the flight is taken with each
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "geo")]
+    pub(crate) roads: Vec<Roads>,
+    /// How much of the ground is drawn; with several, the flight is taken with each
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "lod")]
+    pub(crate) lod: Vec<Lod>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1600x1200", value_parser = parse_size)]
+    pub(crate) size: [u32; 2],
+    /// Terrain error that may be seen, in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 2.0)]
+    pub(crate) screen_space_error: f64,
+    /// Vertical exaggeration
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    pub(crate) exaggeration: f64,
+    /// Memory for tiles on the graphics card, such as 512M or 4G
+    #[arg(long, value_name = "BYTES", default_value = "512M", value_parser = parse_bytes)]
+    pub(crate) gpu_memory: u64,
+    /// Handed to the graphics card in a frame at most, though always a whole tile
+    #[arg(long, value_name = "BYTES", default_value = "4M", value_parser = parse_bytes)]
+    pub(crate) upload_per_frame: u64,
+    /// Load for where the camera will be in so many seconds; 0 loads nothing in advance
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0)]
+    pub(crate) ahead: f64,
+}
+
+fn parse_bytes(text: &str) -> Result<u64, String> {
+    let (digits, shift) = match text.strip_suffix(['K', 'M', 'G']) {
+        Some(digits) if text.ends_with('K') => (digits, 10),
+        Some(digits) if text.ends_with('M') => (digits, 20),
+        Some(digits) => (digits, 30),
+        None => (text, 0),
+    };
+    let number: Option<u64> = digits.parse().ok();
+    match number.and_then(|number| number.checked_mul(1 << shift)) {
+        Some(size_bytes @ 1..) => Ok(size_bytes),
+        _ => Err("write it like 800K, 512M or 4G".to_owned()),
+    }
+}
+
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text
         .split_once('x')
@@ -268,6 +399,29 @@ mod tests {
     }
 
     #[test]
+    fn sizes_of_memory() {
+        assert_eq!(parse_bytes("800K"), Ok(800 << 10));
+        assert_eq!(parse_bytes("512M"), Ok(512 << 20));
+        assert_eq!(parse_bytes("4G"), Ok(4 << 30));
+        assert_eq!(parse_bytes("17"), Ok(17));
+        for bad in ["", "0", "M", "-1M", "4T", "1.5G", "99999999999999G"] {
+            assert!(parse_bytes(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn one_flight_may_be_taken_with_several_methods() {
+        let line = "corniche fly a -o b --roads none,geo --roads sv --lod full,culled,lod";
+        let Command::Fly(args) = Arguments::try_parse_from(line.split(' ')).unwrap().command else {
+            panic!("{line} is a flight");
+        };
+        assert_eq!(args.drawing.roads, [Roads::None, Roads::Geo, Roads::Sv]);
+        assert_eq!(args.drawing.lod, [Lod::Full, Lod::Culled, Lod::Adaptive]);
+        let both = "corniche fly a -o b --frames 3 --step 0.1";
+        assert!(Arguments::try_parse_from(both.split(' ')).is_err());
+    }
+
+    #[test]
     fn sizes_and_positions() {
         assert_eq!(parse_size("640x480"), Ok([640, 480]));
         assert!(
@@ -285,9 +439,5 @@ mod tests {
             let line = format!("corniche build --dem a.tif -o b {line}");
             assert!(Arguments::try_parse_from(line.split(' ')).is_err(), "{line}");
         }
-        assert!(
-            Arguments::try_parse_from(["corniche", "render", "a", "-o", "b", "--roads", "sv"])
-                .is_err()
-        );
     }
 }

@@ -10,6 +10,8 @@ mod chart;
 mod defects;
 mod exit;
 mod failure;
+mod flight_chart;
+mod fly;
 mod growth;
 mod info;
 mod interrupt;
@@ -58,5 +60,6 @@ fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
         Command::Verify(args) => verify::run(&args),
         Command::Tile(args) => tile::run(&args),
         Command::Render(args) => render::run(&args),
+        Command::Fly(args) => fly::run(&args),
     }
 }

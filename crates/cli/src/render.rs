@@ -3,12 +3,12 @@
 use std::io::Cursor;
 
 use corniche_viewer::{
-    CameraRequest, RenderError, RenderRequest, RoadMethod, camera::Orientation, render,
+    CameraRequest, RenderError, RenderRequest, RoadOptions, camera::Orientation, render,
     style::Style,
 };
 
 use crate::{
-    args::{RenderArgs, Roads},
+    args::RenderArgs,
     exit::ExitCode,
     failure::Failure,
     output::{Existing, Output},
@@ -21,10 +21,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let request = RenderRequest {
         package: args.package.clone(),
         size_px: args.size,
-        roads: match args.roads {
-            Roads::Geo => RoadMethod::Geometry,
-            Roads::None => RoadMethod::None,
-        },
+        roads: RoadOptions::of(args.roads.into()),
         camera: match args.look_at {
             Some([lon_deg, lat_deg]) => CameraRequest::LookAt {
                 lon_deg,
@@ -56,6 +53,13 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         report.road_segments,
         report.adapter
     );
+    if report.clamped_tiles > 0 {
+        eprintln!(
+            "note: in up to {} tiles roads may be drawn narrower than the style says, because their volumes reach no \
+             farther than the package's width margin",
+            report.clamped_tiles
+        );
+    }
     Ok(ExitCode::Done)
 }
 

@@ -8,10 +8,6 @@
 
 use crate::wire::{self, Value, WireError, zigzag};
 
-/// Decoding a block may take at most this much memory, by an estimate that is never too low.
-///
-/// A block of 32 MiB of dense nodes, the most that a writer could mean, takes 360 MiB; an ordinary one of 8000 objects, 10.
-const MAX_DECODED_BYTES: u64 = 512 << 20;
 /// The largest record of the decoder, of a relation, has some 200 bytes; lists of records grow by doubling.
 const OBJECT_BYTES: u64 = 512;
 /// A number of eight bytes in a list that grows by doubling.
@@ -24,9 +20,11 @@ const UNKNOWN_BYTES: u64 = 256;
 /// More tags than any object has by far.
 const MAX_TAGS: u64 = 1 << 16;
 
-/// Checks a block (message `PrimitiveBlock`).
-pub(crate) fn audit(block: &[u8]) -> Result<(), String> {
-    let mut audit = Audit { granularity: 100, offsets: [0; 2], texts: 0, decoded_bytes: 0 };
+/// Checks a block (message `PrimitiveBlock`). Decoding it may take at most `most_bytes` of memory, by an estimate that is
+/// never too low.
+pub(crate) fn audit(block: &[u8], most_bytes: u64) -> Result<(), String> {
+    let mut audit =
+        Audit { granularity: 100, offsets: [0; 2], texts: 0, decoded_bytes: 0, most_bytes };
     audit.frame(block)?;
     for field in wire::fields(block) {
         let field = field?;
@@ -44,6 +42,7 @@ struct Audit {
     offsets: [i64; 2],
     texts: u64,
     decoded_bytes: u64,
+    most_bytes: u64,
 }
 
 impl Audit {
@@ -290,8 +289,8 @@ impl Audit {
 
     fn spend(&mut self, bytes: u64) -> Result<(), WireError> {
         self.decoded_bytes += bytes;
-        if self.decoded_bytes > MAX_DECODED_BYTES {
-            return Err("it holds more than fits 512 MiB of memory");
+        if self.decoded_bytes > self.most_bytes {
+            return Err("decoding it takes more memory than a block may");
         }
         Ok(())
     }

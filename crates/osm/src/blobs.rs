@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use osmpbf::{ErrorKind, HeaderBlock, PrimitiveBlock};
+use osmpbf::{BlobError, ErrorKind, HeaderBlock, PrimitiveBlock};
 use rayon::prelude::*;
 
 use crate::{
@@ -17,6 +17,26 @@ use crate::{
 
 /// A header is a few hundred bytes; unpacked it must be smaller than this.
 const MAX_HEADER_BLOCK_BYTES: u64 = 1 << 20;
+
+/// What one block may take of the memory.
+#[derive(Debug, Clone, Copy)]
+#[expect(clippy::struct_field_names, reason = "units are in names")]
+struct Limits {
+    unpacked_bytes: u64,
+    decoded_bytes: u64,
+    /// For what is found in it.
+    found_bytes: u64,
+}
+
+/// Of blocks that are decoded side by side: an ordinary one, of 8000 objects, takes 1, 10 and 3 MB.
+///
+/// 16 MiB is what the format asks of writers (OSM wiki, *PBF Format*, "File format"); twice that is what it allows.
+const SIDE_BY_SIDE: Limits =
+    Limits { unpacked_bytes: 16 << 20, decoded_bytes: 64 << 20, found_bytes: 16 << 20 };
+
+/// Of a block that is decoded alone: one of 32 MiB of dense nodes, the most that a writer could mean, takes 360 MiB.
+const ALONE: Limits =
+    Limits { unpacked_bytes: MAX_BLOB_BYTES, decoded_bytes: 512 << 20, found_bytes: 256 << 20 };
 
 /// An extract whose framing and header have been checked from end to end, before any work is put into it.
 ///
@@ -164,7 +184,10 @@ impl<R: Read + Seek> BlobFile<R> {
         for feature in header.required_features() {
             match feature.as_str() {
                 "OsmSchema-V0.6" | "DenseNodes" | "LocationsOnWays" => {}
-                "HistoricalInformation" => return Err(ReadOsmError::History { path: path() }),
+                "HistoricalInformation" => {
+                    let reason = format!("it asks its readers for {feature:?}");
+                    return Err(ReadOsmError::History { path: path(), reason });
+                }
                 _ => {
                     return Err(ReadOsmError::Feature { path: path(), feature: feature.clone() });
                 }
@@ -183,21 +206,26 @@ impl<R: Read + Seek> BlobFile<R> {
         self.len_bytes
     }
 
-    /// Decodes the data blobs with these numbers in parallel and hands on what `scan` makes of each, in their order.
+    /// Decodes the data blobs with these numbers in parallel and hands on what `look` makes of each unpacked block and `scan`
+    /// of the decoded one, in their order. `scan` is told how many bytes it may find, and gives up beyond.
     ///
     /// A few blobs per thread are held at a time. What is wrong in the eyes of `take` ends it.
-    pub(crate) fn for_each<T: Send>(
+    pub(crate) fn for_each<L: Send, T: Send>(
         &mut self,
         numbers: &[usize],
         decoding: &Decoding<'_>,
-        scan: impl Fn(&PrimitiveBlock) -> Result<T, String> + Sync,
-        mut take: impl FnMut(usize, T) -> Result<(), ReadOsmError>,
+        look: impl Fn(&[u8]) -> L + Sync,
+        scan: impl Fn(&PrimitiveBlock, u64) -> Option<T> + Sync,
+        mut take: impl FnMut(usize, L, T) -> Result<(), ReadOsmError>,
     ) -> Result<(), ReadOsmError> {
         const BLOBS_PER_THREAD: usize = 4;
+        let decode = |blob: &Vec<u8>, limits| decode(blob, limits, &look, &scan);
+        let stop = |path: &Path| {
+            let stopped = ReadOsmError::Stopped { path: path.to_path_buf() };
+            if (decoding.should_stop)() { Err(stopped) } else { Ok(()) }
+        };
         for batch in numbers.chunks(decoding.pool.current_num_threads() * BLOBS_PER_THREAD) {
-            if (decoding.should_stop)() {
-                return Err(ReadOsmError::Stopped { path: self.path.clone() });
-            }
+            stop(&self.path)?;
             let mut blobs = Vec::with_capacity(batch.len());
             for &number in batch {
                 let part = self.data[number];
@@ -205,12 +233,19 @@ impl<R: Read + Seek> BlobFile<R> {
                 sought.map_err(|source| self.unreadable(source))?;
                 blobs.push(self.read_part(part)?);
             }
-            let scanned: Vec<Result<T, BlobRefusal>> = decoding
+            let scanned: Vec<Option<(L, T)>> = decoding
                 .pool
-                .install(|| blobs.par_iter().map(|blob| decode(blob, &scan)).collect());
-            for (&number, result) in batch.iter().zip(scanned) {
-                let offset = self.data[number].offset;
-                take(number, result.map_err(|refusal| self.refused(offset, refusal))?)?;
+                .install(|| blobs.par_iter().map(|blob| decode(blob, SIDE_BY_SIDE).ok()).collect());
+            for ((&number, blob), found) in batch.iter().zip(&blobs).zip(scanned) {
+                let (looked, scanned) = if let Some(found) = found {
+                    found
+                } else {
+                    // Too large to be decoded beside others, or wrong: alone it shows.
+                    stop(&self.path)?;
+                    let offset = self.data[number].offset;
+                    decode(blob, ALONE).map_err(|refusal| self.refused(offset, refusal))?
+                };
+                take(number, looked, scanned)?;
             }
         }
         Ok(())
@@ -247,24 +282,46 @@ fn header_block(block: &[u8]) -> Result<HeaderBlock, BlobRefusal> {
     decoder_blob("OSMHeader", block).and_then(|blob| blob.to_headerblock()).map_err(of_decoder)
 }
 
-/// Unpacks, checks and decodes a blob and makes of it what `scan` does.
-fn decode<T>(
+/// Unpacks, checks and decodes a blob and makes of it what `look` and `scan` do.
+fn decode<L, T>(
     blob: &[u8],
-    scan: &(impl Fn(&PrimitiveBlock) -> Result<T, String> + Sync),
-) -> Result<T, BlobRefusal> {
-    let block = unpack(blob, MAX_BLOB_BYTES)?;
-    audit(&block).map_err(BlobRefusal::Damaged)?;
+    limits: Limits,
+    look: &impl Fn(&[u8]) -> L,
+    scan: &impl Fn(&PrimitiveBlock, u64) -> Option<T>,
+) -> Result<(L, T), BlobRefusal> {
+    let block = unpack(blob, limits.unpacked_bytes)?;
+    audit(&block, limits.decoded_bytes).map_err(BlobRefusal::Damaged)?;
+    let looked = look(&block);
     let blob = decoder_blob("OSMData", &block).map_err(of_decoder)?;
     drop(block);
     let block = blob.to_primitiveblock().map_err(of_decoder)?;
     drop(blob);
-    scan(&block).map_err(BlobRefusal::Damaged)
+    let scanned = scan(&block, limits.found_bytes);
+    let scanned = scanned.ok_or("its roads take more memory than those of a block may")?;
+    Ok((looked, scanned))
 }
+
+/// For kinds of errors that the decoder does not have yet.
+const UNREADABLE: &str = "its contents cannot be decoded";
 
 fn of_decoder(error: osmpbf::Error) -> BlobRefusal {
     BlobRefusal::Damaged(match error.into_kind() {
+        ErrorKind::Io(error) => format!("it ends early: {error}"),
         ErrorKind::Protobuf { err, .. } => err.to_string(),
-        kind => format!("{kind:?}"),
+        ErrorKind::StringtableUtf8 { index, .. } => format!("its string {index} is no text"),
+        ErrorKind::StringtableIndexOutOfBounds { index } => {
+            format!("it names string {index}, which its table does not have")
+        }
+        ErrorKind::Blob(error) => match error {
+            BlobError::InvalidHeaderSize => "its header gives no size".to_owned(),
+            BlobError::HeaderTooBig { size } => {
+                format!("its header claims to be {size} bytes long")
+            }
+            BlobError::MessageTooBig { size } => format!("it is {size} bytes long"),
+            BlobError::Empty => "it holds no data".to_owned(),
+            _ => UNREADABLE.to_owned(),
+        },
+        _ => UNREADABLE.to_owned(),
     })
 }
 

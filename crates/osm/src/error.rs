@@ -30,11 +30,11 @@ pub enum ReadOsmError {
     )]
     Compression { path: PathBuf, method: &'static str },
     #[error(
-        "OSM extract {path:?} is a history or change file, with several versions of an object; of a history take one point \
-         in time: osmium time-filter IN.osh.pbf 2026-01-01T00:00:00Z -o OUT.osm.pbf; apply changes to the extract that they \
-         belong to: osmium apply-changes IN.osm.pbf CHANGES.osc.pbf -o OUT.osm.pbf"
+        "OSM extract {path:?} is a history or change file, or one of several merged, not one point in time: {reason}; of a \
+         history take one point in time: osmium time-filter IN.osh.pbf 2026-01-01T00:00:00Z -o OUT.osm.pbf; apply changes to \
+         the extract that they belong to: osmium apply-changes IN.osm.pbf CHANGES.osc.pbf -o OUT.osm.pbf"
     )]
-    History { path: PathBuf },
+    History { path: PathBuf, reason: String },
     #[error(
         "OSM extract {path:?} asks its readers for {feature:?}, which is not supported; \
          rewrite it with a program that knows it: osmium cat IN.osm.pbf -o OUT.osm.pbf"

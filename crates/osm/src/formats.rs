@@ -48,6 +48,13 @@ pub(crate) fn other_format(path: &Path, start: &[u8]) -> Option<(&'static str, &
     if is_blob_header(start) {
         return None;
     }
+    if let Some(text) = utf16(start) {
+        let (found, usual) = match text.trim_start() {
+            text if text.starts_with('<') => markup(text.as_bytes()),
+            _ => ("text in UTF-16", OTHER),
+        };
+        return Some((found, advice(usual)));
+    }
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
     if text.starts_with(b"<") {
         let (found, usual) = markup(text);
@@ -62,6 +69,19 @@ pub(crate) fn other_format(path: &Path, start: &[u8]) -> Option<(&'static str, &
     }
     let is_text = !start.iter().any(|&byte| byte < b'\t' || byte == 0x7f);
     Some((if is_text { "text" } else { "a file of some other kind" }, OTHER))
+}
+
+/// Text that says by its first two bytes that it is in UTF-16.
+fn utf16(start: &[u8]) -> Option<String> {
+    let to_unit = match start.first_chunk()? {
+        b"\xff\xfe" => u16::from_le_bytes,
+        b"\xfe\xff" => u16::from_be_bytes,
+        _ => return None,
+    };
+    let units = start[2..].as_chunks().0.iter().map(|&pair| to_unit(pair));
+    let text: String =
+        char::decode_utf16(units).map(|char| char.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
+    (!text.contains('\0')).then_some(text)
 }
 
 /// Tells apart what begins with `<`, by its first element.

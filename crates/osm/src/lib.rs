@@ -24,6 +24,7 @@ mod wire;
 mod assemble;
 mod nodes;
 mod self_crossings;
+mod versions;
 mod ways;
 
 mod defect;

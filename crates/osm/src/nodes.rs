@@ -1,6 +1,6 @@
 //! Pass 2: where the nodes lie that roads need.
 
-use osmpbf::{DenseNodeInfo, PrimitiveBlock};
+use osmpbf::PrimitiveBlock;
 use rayon::prelude::*;
 
 use crate::{Defect, ways::Ways};
@@ -95,23 +95,29 @@ impl NodeTable {
 }
 
 impl NodeIds {
-    /// The listed nodes of a block, by number, with their places.
-    pub(crate) fn scan(&self, block: &PrimitiveBlock) -> Vec<(usize, Location)> {
+    /// The listed nodes of a block, by number, with their places; `None` if they take more than `most_bytes`.
+    pub(crate) fn scan(
+        &self,
+        block: &PrimitiveBlock,
+        most_bytes: u64,
+    ) -> Option<Vec<(usize, Location)>> {
         let mut found = Vec::new();
         for group in block.groups() {
-            let dense =
-                group.dense_nodes().filter(|node| node.info().is_none_or(DenseNodeInfo::visible));
+            let dense = group.dense_nodes();
             let dense = dense.map(|node| (node.id(), node.nano_lon(), node.nano_lat()));
-            let plain = group.nodes().filter(|node| node.info().visible());
+            let plain = group.nodes();
             let plain = plain.map(|node| (node.id(), node.nano_lon(), node.nano_lat()));
             let mut search = Search { ids: &self.ids, at: 0 };
             for (id, lon_nano_deg, lat_nano_deg) in dense.chain(plain) {
                 if let Some(number) = search.find(id) {
                     found.push((number, location_from_nano(lon_nano_deg, lat_nano_deg)));
                 }
+                if size_of_val(found.as_slice()) as u64 > most_bytes {
+                    return None;
+                }
             }
         }
-        found
+        Some(found)
     }
 
     /// The number of a node.

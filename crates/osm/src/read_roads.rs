@@ -6,6 +6,7 @@ use std::{
 
 use corniche_geom::LatticePoint;
 use corniche_roads::{FrcTable, Road};
+use osmpbf::PrimitiveBlock;
 use rayon::prelude::*;
 
 use crate::{
@@ -13,6 +14,7 @@ use crate::{
     assemble::{Assembled, assemble},
     blobs::{BlobFile, Decoding},
     nodes::{Location, NodeTable},
+    versions::Versions,
     ways::Ways,
 };
 
@@ -53,17 +55,22 @@ pub struct ReadRequest<'a> {
 /// |---|---|---|
 /// | a blob header | 64 KiB | damaged |
 /// | a blob, packed and unpacked | 32 MiB, the format's own; 1 MiB for the file's header | damaged |
-/// | a decoded block | 512 MiB, one per thread; besides, four packed blobs per thread wait | damaged |
+/// | a block, decoded | 512 MiB | damaged |
+/// | what is found in a block | 256 MiB | damaged |
 /// | the ways, tags and node ids that are kept | 64 MiB and 64 times the size of the file; real extracts keep less than their own size | [`ReadOsmError::TooMuch`] |
 /// | a tag's text | 255 characters, OSM's own | cut, [`Defect::LongText`] |
 /// | tags of a way | 65 536 | damaged |
 /// | comparisons in search of a way's self-crossings | 2 million, enough for the 2000 nodes that OSM allows | not all are found |
 ///
+/// Blocks of up to 16 MiB unpacked, 64 MiB decoded and 16 MiB found are decoded side by side; larger ones, which ordinary writers
+/// do not make, alone. So blobs take, together and beside what is kept, at most 192 MiB and four packed blobs per thread, and
+/// 1 GiB for one that is alone.
 /// Lookup and sorting of the nodes take at most four times the room of what is kept. Time is proportional to the unpacked size,
 /// which deflate keeps below 1032 times that of the file.
 ///
 /// # Errors
-/// When the file cannot be read, is no `.osm.pbf`, is cut off or damaged, is a history file, uses a feature or a
+/// When the file cannot be read, is no `.osm.pbf`, is cut off or damaged, is a history file (its header says so, it marks an
+/// object as deleted, or holds one in two versions, neighbours or roads), uses a feature or a
 /// compression that is not supported, or when `should_stop` says so.
 pub fn read_roads(
     request: &ReadRequest<'_>,
@@ -133,15 +140,22 @@ fn read_ways<R: Read + Seek>(
     decoding: &Decoding<'_>,
 ) -> Result<(Ways, Vec<usize>), ReadOsmError> {
     let mut ways = Ways::default();
+    let mut versions = Versions::default();
     let mut blobs_with_nodes = Vec::new();
+    let history = |reason| ReadOsmError::History { path: request.path.to_path_buf(), reason };
     let all: Vec<usize> = (0..file.len()).collect();
     let len_bytes = file.len_bytes();
     let most_bytes = HELD_BYTES.saturating_add(len_bytes.saturating_mul(HELD_BYTES_PER_BYTE));
     file.for_each(
         &all,
         decoding,
-        |block| Ways::scan(block, request.table),
-        |number, of_block| {
+        Versions::scan,
+        |block, most_bytes| Ways::scan(block, request.table, most_bytes),
+        |number, versions_of_block, of_block| {
+            versions.append(versions_of_block);
+            if let Some(reason) = versions.history.take() {
+                return Err(history(reason));
+            }
             if of_block.summary.nodes_seen > 0 {
                 blobs_with_nodes.push(number);
             }
@@ -152,7 +166,7 @@ fn read_ways<R: Read + Seek>(
             Ok(())
         },
     )?;
-    ways.sort();
+    ways.sort().map_err(history)?;
     Ok((ways, blobs_with_nodes))
 }
 
@@ -166,13 +180,14 @@ fn locate_nodes<R: Read + Seek>(
 ) -> Result<(), ReadOsmError> {
     let NodeTable { ids, places } = table;
     if ids.len() > 0 {
-        let take = |_, found: Vec<(usize, Location)>| {
+        let take = |_, (), found: Vec<(usize, Location)>| {
             for (number, location) in found {
                 places.set(number, location);
             }
             Ok(())
         };
-        file.for_each(blobs_with_nodes, decoding, |block| Ok(ids.scan(block)), take)?;
+        let scan = |block: &PrimitiveBlock, most_bytes| ids.scan(block, most_bytes);
+        file.for_each(blobs_with_nodes, decoding, |_| (), scan, take)?;
     }
     for (id, location) in std::mem::take(&mut ways.located) {
         if let Some(number) = ids.number(id) {

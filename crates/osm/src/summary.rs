@@ -22,10 +22,8 @@ pub struct ExtractSummary {
     pub nodes_needed: u64,
     /// Those of them that the file holds no place for.
     pub nodes_missing: u64,
-    /// Ways in the file, deleted ones not counted.
+    /// Ways in the file.
     pub ways_seen: u64,
-    /// Ways marked as deleted; they are not looked at.
-    pub ways_deleted: u64,
     /// Ways with a `highway` tag.
     pub highway_ways: u64,
     /// Ways that became roads.

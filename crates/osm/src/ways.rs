@@ -10,6 +10,7 @@ use osmpbf::{PrimitiveBlock, Way};
 use crate::{
     Defect, ExtractSummary, HighwayCount,
     nodes::{Location, location_from_nano},
+    versions::{known_version, two_versions},
 };
 
 /// A way that is a road, without its nodes.
@@ -18,6 +19,7 @@ pub(crate) struct RoadWay {
     pub(crate) way_id: i64,
     pub(crate) class: FunctionalRoadClass,
     pub(crate) attributes: RoadAttributes,
+    version: Option<i32>,
     /// Its nodes are `node_ids[nodes_start..nodes_end]` of the [`Ways`] it belongs to.
     pub(crate) nodes_start: usize,
     pub(crate) nodes_end: usize,
@@ -40,30 +42,21 @@ pub(crate) struct Ways {
 /// OSM allows 255 characters (OSM wiki, *API v0.6*), each of at most four bytes.
 const MAX_TEXT_CHARS: usize = 255;
 
-/// The roads of one block may take this much; an ordinary block of 8000 ways takes 3 MB.
-const MAX_HELD_BYTES_PER_BLOCK: u64 = 256 << 20;
-
 impl Ways {
-    /// Finds the roads of a block.
-    ///
-    /// Fails when it holds more than roads ever take.
-    pub(crate) fn scan(block: &PrimitiveBlock, table: &FrcTable) -> Result<Self, String> {
+    /// Finds the roads of a block; `None` if they take more than `most_bytes`.
+    pub(crate) fn scan(block: &PrimitiveBlock, table: &FrcTable, most_bytes: u64) -> Option<Self> {
         let mut ways = Self::default();
         for group in block.groups() {
             ways.summary.nodes_seen += (group.nodes().len() + group.dense_nodes().len()) as u64;
             for way in group.ways() {
-                if way.info().deleted() {
-                    ways.summary.ways_deleted += 1;
-                } else {
-                    ways.summary.ways_seen += 1;
-                    ways.look_at(&way, table);
-                    if ways.held_bytes > MAX_HELD_BYTES_PER_BLOCK {
-                        return Err("its roads do not fit 256 MiB of memory".into());
-                    }
+                ways.summary.ways_seen += 1;
+                ways.look_at(&way, table);
+                if ways.held_bytes > most_bytes {
+                    return None;
                 }
             }
         }
-        Ok(ways)
+        Some(ways)
     }
 
     fn look_at(&mut self, way: &Way<'_>, table: &FrcTable) {
@@ -152,7 +145,9 @@ impl Ways {
         self.held_bytes += (text_bytes
             + 2 * size_of::<RoadWay>()
             + 2 * nodes * (size_of::<i64>() + locations)) as u64;
-        self.roads.push(RoadWay { way_id: way.id(), class, attributes, nodes_start, nodes_end });
+        let version = way.info().version().and_then(known_version);
+        let way_id = way.id();
+        self.roads.push(RoadWay { way_id, class, attributes, version, nodes_start, nodes_end });
     }
 
     /// Adds the ways of a later block.
@@ -170,7 +165,6 @@ impl Ways {
         let (own, other) = (&mut self.summary, later.summary);
         own.nodes_seen += other.nodes_seen;
         own.ways_seen += other.ways_seen;
-        own.ways_deleted += other.ways_deleted;
         own.highway_ways += other.highway_ways;
         own.left_out.listed += other.left_out.listed;
         own.left_out.class_off += other.left_out.class_off;
@@ -183,8 +177,18 @@ impl Ways {
     }
 
     /// Puts the roads in ascending order of way id; of equal ids the first in the file stays.
-    pub(crate) fn sort(&mut self) {
+    ///
+    /// Fails, with the reason, if it is there in two versions.
+    pub(crate) fn sort(&mut self) -> Result<(), String> {
         self.roads.sort_by_key(|way| way.way_id);
+        for same in self.roads.chunk_by(|a, b| a.way_id == b.way_id) {
+            let mut versions = same.iter().filter_map(|way| way.version);
+            if let Some(first) = versions.next()
+                && let Some(second) = versions.find(|&version| version != first)
+            {
+                return Err(two_versions("way", same[0].way_id, [first, second]));
+            }
+        }
         let (defects, left_out) = (&mut self.defects, &mut self.summary.left_out);
         self.roads.dedup_by(|later, first| {
             let is_same = later.way_id == first.way_id;
@@ -194,6 +198,7 @@ impl Ways {
             }
             is_same
         });
+        Ok(())
     }
 
     /// The nodes of a road.

@@ -32,6 +32,14 @@ fn check_refused(path: &Path, words: &[&str]) {
     }
 }
 
+fn utf16_le(text: &str) -> Vec<u8> {
+    [0xfeff].into_iter().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect()
+}
+
+fn utf16_be(text: &str) -> Vec<u8> {
+    [0xfeff].into_iter().chain(text.encode_utf16()).flat_map(u16::to_be_bytes).collect()
+}
+
 #[test]
 fn a_file_of_another_format_is_named_with_the_way_to_convert_it() {
     const CONVERT: &str = "osmium cat IN -o OUT.osm.pbf";
@@ -76,6 +84,15 @@ fn a_file_of_another_format_is_named_with_the_way_to_convert_it() {
         ("a.tif", b"II+\0\x08\0\0\0", "a BigTIFF", OTHER),
         ("a.txt", b"x", "is text", OTHER),
         ("a.txt", "né à Vaduz".as_bytes(), "is text", OTHER),
+        ("a.osm", &utf16_le("<?xml version='1.0'?>\n<osm version='0.6'/>"), "is XML, ", CONVERT),
+        ("a.osm", &utf16_be("\n<osm version='0.6'/>"), "is XML, ", CONVERT),
+        ("a.osc", &utf16_be("<osmChange version='0.6'/>"), "change file", CHANGES),
+        ("a.osm.pbf", &utf16_le("<!DOCTYPE html><html>404</html>"), "an HTML page", "fetch"),
+        ("a.txt", &utf16_le("né à Vaduz \u{1f6e3}"), "is text in UTF-16", OTHER),
+        ("a.txt", &utf16_be("né à Vaduz \u{1f6e3}"), "is text in UTF-16", OTHER),
+        ("a.txt", &utf16_le(&"é".repeat(5000)), "is text in UTF-16", OTHER),
+        // In UTF-32, as far as anyone can tell.
+        ("a.txt", b"\xff\xfe\0\0x\0\0\0", "some other kind", OTHER),
         ("a.osm.pbf", &[0; 100], "some other kind", OTHER),
         ("a.osm.pbf", &[255, 0, 255, 0], "some other kind", OTHER),
         ("a.osm.pbf", b"\0\0\0\x0d\x0a\x09OSM\x01eader\x18\x01", "some other kind", OTHER),

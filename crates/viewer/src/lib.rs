@@ -8,19 +8,24 @@
 //!
 //! [`render`] makes one picture of a package without a window. Its parts are usable alone: [`camera`], [`lod`]
 //! and [`style`] are values and pure functions; [`tiles`] decodes; [`gpu`] draws what it is handed.
+//! [`Replay`] flies along a [`flight`], frame by frame, with [`stream`] choosing what is loaded and kept.
 //!
 //! This crate never depends on `pipeline`, `dem` or `osm`: it learns everything from the package. It never
 //! writes a file.
 
 mod attribution;
 pub mod camera;
+pub mod flight;
 pub mod gpu;
 pub mod lod;
 mod render;
+mod replay;
 pub mod scene;
+pub mod stream;
 pub mod style;
 pub mod tiles;
 
 pub use attribution::draw_attribution;
 pub use render::{CameraRequest, RenderError, RenderReport, RenderRequest, Rendered, render};
-pub use scene::RoadMethod;
+pub use replay::{Detail, FrameRecord, Replay, ReplayError, ReplayOptions, default_flight};
+pub use scene::{CapTest, Caps, Outline, RoadMethod, RoadOptions, WidthGrowth};

@@ -10,7 +10,7 @@ use crate::{
     camera::{Camera, Orientation, WorldBox},
     gpu::{DrawTile, FrameView, Gpu, GpuError, ReadBackError, Renderer, Targets, TileBuffers},
     lod::{Quality, Request},
-    scene::{self, RoadMethod},
+    scene::{self, RoadOptions},
     style::Style,
     tiles::{LoadTileError, PackageSource, TileStore},
 };
@@ -41,7 +41,7 @@ pub struct RenderRequest {
     /// Width and height of the picture.
     pub size_px: [u32; 2],
     /// How roads are drawn.
-    pub roads: RoadMethod,
+    pub roads: RoadOptions,
     /// Where to look from.
     pub camera: CameraRequest,
     /// A tile is refined while its error looks larger than this.
@@ -74,6 +74,9 @@ pub struct RenderReport {
     pub triangles: u64,
     /// Road segments drawn.
     pub road_segments: u64,
+    /// Tiles in which volumes may have been drawn narrower than asked, because half their width is more than the
+    /// level's width margin somewhere.
+    pub clamped_tiles: u64,
     /// Tiles drawn per level, coarse levels first.
     pub levels: Vec<(u8, u64)>,
     /// Tiles read from the package to get there, drawn or not.
@@ -118,7 +121,7 @@ pub enum RenderError {
 /// When the request makes no sense, the package cannot be read, or there is no graphics adapter.
 pub fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
     check(request)?;
-    let source = PackageSource::open(&request.package)?;
+    let source = PackageSource::open(&request.package)?.for_method(request.roads.method);
     let mut store = TileStore::new(&source);
     let point_scale = source.manifest().point_scale;
     let quality = Quality {
@@ -161,16 +164,18 @@ pub fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
             _ => levels.push((tile.id.z(), 1)),
         }
     }
-    let road_segments = match request.roads {
-        RoadMethod::Geometry => uploaded.iter().map(|(buffers, _)| buffers.road_segments()).sum(),
-        RoadMethod::None => 0,
-    };
+    let method = request.roads.method;
+    let road_segments = uploaded.iter().map(|(buffers, _)| buffers.road_segments(method)).sum();
+    let clamped_tiles = scene::draw_list(&store, &drawn)
+        .filter(|(tile, _)| scene::may_be_clamped(tile, &view))
+        .count() as u64;
     let eye = camera.eye_in_world();
     let report = RenderReport {
         adapter: gpu.adapter_name().to_owned(),
         tiles: drawn.len() as u64,
         triangles: uploaded.iter().map(|(buffers, _)| buffers.triangles()).sum(),
         road_segments,
+        clamped_tiles,
         levels,
         tiles_loaded: store.len() as u64,
         eye_m: [eye.x, eye.y, eye.z / quality.vertical_scale],

@@ -1,18 +1,123 @@
-//! What one picture shows: the tiles of a selection, all loaded.
+//! What one picture shows: the tiles of a selection, all loaded, and how their roads are drawn.
+
+mod bridges;
+
+use corniche_geom::Bounds;
+use corniche_roads::FunctionalRoadClass;
 
 use crate::{
-    camera::Camera,
+    camera::{Camera, WorldBox},
+    gpu::FrameView,
     lod::{self, Drawn, Quality},
+    style::{Style, WidthScaling},
     tiles::{LoadTileError, TileGeometry, TileStore},
 };
+
+pub use self::bridges::{BorderTile, Bridge, bridges};
 
 /// How roads are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RoadMethod {
     /// As geometry lying on the TIN of their level (GEO).
     Geometry,
+    /// As volumes cut with the ground (SV).
+    ShadowVolumes,
     /// Not at all.
     None,
+}
+
+/// How a road begins, ends and bends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Caps {
+    /// With a half disc around every point of the line.
+    Round,
+    /// Cut off straight: every segment is a rectangle, and bends gape.
+    None,
+}
+
+/// How a fragment of a volume finds out whether the ground it sees is road.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CapTest {
+    /// By the distance in plan from that ground to the segment. Exact to some hundredths of a pixel anywhere.
+    Distance,
+    /// By the paper's formula: where the ray of view enters and leaves the volume, as the roots of a quadratic.
+    /// Loses its digits far from the eye; there for comparison. Volumes only.
+    PaperQuadratic,
+}
+
+/// How widths depend on the distance from the eye (the paper, Fig. 10).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WidthGrowth {
+    /// True widths.
+    None,
+    /// True widths times [`WidthScaling::constant`].
+    Constant,
+    /// True widths near the eye, growing beyond [`WidthScaling::threshold_m`].
+    ByDistance,
+}
+
+/// The edge drawn around roads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outline {
+    /// As wide as the style says.
+    OfStyle,
+    /// None.
+    None,
+    /// One pixel: a kernel of 3 × 3.
+    Kernel3,
+    /// Two pixels: a kernel of 5 × 5.
+    Kernel5,
+}
+
+/// How the roads of a picture are drawn; colours and widths are the style's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RoadOptions {
+    /// The method.
+    pub method: RoadMethod,
+    /// Ends and bends.
+    pub caps: Caps,
+    /// The test in the fragments of volumes.
+    pub cap_test: CapTest,
+    /// Widths over distance.
+    pub width_growth: WidthGrowth,
+    /// The edge.
+    pub outline: Outline,
+}
+
+impl RoadOptions {
+    /// The method as it is meant to be seen: round caps, decided by distance, all else by the style.
+    #[must_use]
+    pub fn of(method: RoadMethod) -> Self {
+        Self {
+            method,
+            caps: Caps::Round,
+            cap_test: CapTest::Distance,
+            width_growth: WidthGrowth::ByDistance,
+            outline: Outline::OfStyle,
+        }
+    }
+
+    /// The growth of widths of a style that is drawn so.
+    #[must_use]
+    pub fn width_scaling(&self, style: &Style) -> WidthScaling {
+        let scaling = style.width_scaling;
+        match self.width_growth {
+            WidthGrowth::None => WidthScaling { exponent: 0.0, constant: 1.0, ..scaling },
+            WidthGrowth::Constant => WidthScaling { exponent: 0.0, ..scaling },
+            WidthGrowth::ByDistance => WidthScaling { constant: 1.0, ..scaling },
+        }
+    }
+
+    /// Radius of the outline's kernel, pixels.
+    #[must_use]
+    pub fn outline_px(&self, style: &Style) -> u32 {
+        match self.outline {
+            Outline::OfStyle => style.outline_px,
+            Outline::None => 0,
+            Outline::Kernel3 => 1,
+            Outline::Kernel5 => 2,
+        }
+    }
 }
 
 /// Loads what `camera` needs, level by level, until nothing is missing, and says what to draw.
@@ -39,4 +144,69 @@ pub fn draw_list<'a>(
     drawn: &'a [Drawn],
 ) -> impl Iterator<Item = (&'a TileGeometry, f64)> {
     drawn.iter().filter_map(|drawn| Some((store.get(drawn.id)?, drawn.skirt_depth_m)))
+}
+
+/// Whether some volume of a tile is to be drawn wider than its margin allows; never false when one is.
+#[must_use]
+pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
+    let Some(summary) = tile.summary.filter(|_| view.roads.method == RoadMethod::ShadowVolumes)
+    else {
+        return false;
+    };
+    let half_m = tile.width_m / 2.0;
+    let [x, y, _] = tile.reference_m;
+    let plan =
+        Bounds { min_x: x - half_m, min_y: y - half_m, max_x: x + half_m, max_y: y + half_m };
+    let ground = WorldBox::new(plan, summary.height_range_m.map(|m| m * view.vertical_scale()));
+    let eye = view.camera.eye_in_world();
+    let far_m = ground.corners().map(|corner| corner.distance(eye)).fold(0.0, f64::max);
+    let scaling = view.roads.width_scaling(view.style);
+    FunctionalRoadClass::all().filter(|class| !tile.volumes.range_of(*class).is_empty()).any(
+        |class| {
+            let road = &view.style.roads[usize::from(class.number())];
+            let width_m = f64::from(road.width_m)
+                * view.point_scale
+                * scaling.factor(far_m / view.point_scale);
+            let pixel_m = view.camera.pixel_at_unit_depth_m() * far_m;
+            let least_m = f64::from(road.min_width_px * view.supersampling as f32) * pixel_m;
+            width_m.max(least_m) / 2.0 > tile.width_margin_m
+        },
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Growth of widths at 4 km with a threshold of 1 km, an exponent of a half and a constant of 3.
+    #[test]
+    fn widths_grow_as_the_option_says() {
+        let style = Style {
+            width_scaling: WidthScaling { threshold_m: 1000.0, exponent: 0.5, constant: 3.0 },
+            ..Style::road_atlas()
+        };
+        let check = |width_growth, at_500_m: f64, at_4_km: f64| {
+            let options =
+                RoadOptions { width_growth, ..RoadOptions::of(RoadMethod::ShadowVolumes) };
+            let scaling = options.width_scaling(&style);
+            assert!((scaling.factor(500.0) - at_500_m).abs() < 1e-9, "{width_growth:?}");
+            assert!((scaling.factor(4000.0) - at_4_km).abs() < 1e-9, "{width_growth:?}");
+        };
+        check(WidthGrowth::None, 1.0, 1.0);
+        check(WidthGrowth::Constant, 3.0, 3.0);
+        check(WidthGrowth::ByDistance, 1.0, 2.0);
+    }
+
+    #[test]
+    fn outlines_are_as_wide_as_their_kernel_reaches() {
+        let style = Style { outline_px: 7, ..Style::road_atlas() };
+        let check = |outline, expected_px| {
+            let options = RoadOptions { outline, ..RoadOptions::of(RoadMethod::Geometry) };
+            assert_eq!(options.outline_px(&style), expected_px, "{outline:?}");
+        };
+        check(Outline::OfStyle, 7);
+        check(Outline::None, 0);
+        check(Outline::Kernel3, 1);
+        check(Outline::Kernel5, 2);
+    }
 }

@@ -41,13 +41,16 @@ pub struct WidthScaling {
     pub threshold_m: f32,
     /// 0 to 1.
     pub exponent: f32,
+    /// Factor on all widths; 1 is true.
+    pub constant: f32,
 }
 
 impl WidthScaling {
     /// Factor on the width at a distance from the eye.
     #[must_use]
     pub fn factor(&self, distance_m: f64) -> f64 {
-        (distance_m / f64::from(self.threshold_m)).max(1.0).powf(f64::from(self.exponent))
+        let growth = (distance_m / f64::from(self.threshold_m)).max(1.0);
+        f64::from(self.constant) * growth.powf(f64::from(self.exponent))
     }
 }
 
@@ -108,7 +111,7 @@ impl Style {
                 road(5.0, 1.0, 0xF3_EC_E0, 0x8C_85_79),
                 road(3.5, 1.0, 0xE4_D8_C6, 0x97_8D_7F),
             ],
-            width_scaling: WidthScaling { threshold_m: 1500.0, exponent: 0.75 },
+            width_scaling: WidthScaling { threshold_m: 1500.0, exponent: 0.75, constant: 4.0 },
             outline_px: 1,
             tint: [
                 (0.0, rgb(0xCB_DD_B4)),
@@ -153,7 +156,7 @@ mod tests {
 
     #[test]
     fn widths_are_true_up_to_the_threshold_and_grow_beyond() {
-        let scaling = WidthScaling { threshold_m: 1000.0, exponent: 0.5 };
+        let scaling = WidthScaling { threshold_m: 1000.0, exponent: 0.5, constant: 1.0 };
         assert!((scaling.factor(10.0) - 1.0).abs() < 1e-12);
         assert!((scaling.factor(1000.0) - 1.0).abs() < 1e-12);
         assert!((scaling.factor(4000.0) - 2.0).abs() < 1e-12);

@@ -6,7 +6,10 @@
 mod support;
 
 use corniche_geom::TileId;
-use corniche_viewer::camera::{Camera, Orientation};
+use corniche_viewer::{
+    camera::{Camera, Orientation},
+    tiles::GroundLine,
+};
 use glam::{DVec2, DVec3};
 use support::{
     SceneTile, cast, class, draw, draw_exaggerated, frame, gpu, lay, plain_style, plan_distance_m,
@@ -40,7 +43,14 @@ fn scene(
     let line = |from: [f64; 2], to: [f64; 2]| {
         lay(center() + DVec2::from_array(from), center() + DVec2::from_array(to), &mesh)
     };
-    let lines = roads.iter().map(|(number, from, to)| (class(*number), line(*from, *to))).collect();
+    let lines = roads
+        .iter()
+        .map(|(number, from, to)| GroundLine {
+            way_id: 1,
+            class: class(*number),
+            points_m: line(*from, *to),
+        })
+        .collect();
     (TileId::ROOT, ground, lines, 0.0)
 }
 
@@ -133,7 +143,7 @@ fn a_road_grows_beyond_the_threshold_and_never_gets_thinner_than_asked() {
     let tile = scene(256, |_, _| 0.0, &[(2, [-37.0, -2000.0], [41.0, 2000.0])]);
     let mut style = plain_style(10.0);
     style.width_scaling =
-        corniche_viewer::style::WidthScaling { threshold_m: 400.0, exponent: 0.5 };
+        corniche_viewer::style::WidthScaling { threshold_m: 400.0, exponent: 0.5, constant: 1.0 };
     let width_px = |style: &corniche_viewer::style::Style, distance_m| {
         let drawing =
             draw(&gpu, &camera(0.0, distance_m, 0.0, 0.0), style, std::slice::from_ref(&tile));
@@ -308,7 +318,7 @@ fn hidden_centerline_points(
     tile: &SceneTile,
 ) -> usize {
     let mut hidden = 0;
-    for pair in tile.2.iter().flat_map(|(_, line)| line.windows(2)) {
+    for pair in tile.2.iter().flat_map(|line| line.points_m.windows(2)) {
         let (a, b) = (DVec3::from_array(pair[0]), DVec3::from_array(pair[1]));
         let steps = (a.distance(b) / 2.0).ceil();
         for k in 0..steps as u32 {
@@ -341,8 +351,9 @@ fn more_important_roads_lie_above_across_tiles() {
     let middle = DVec2::new(border.max_x, f64::midpoint(border.min_y, border.max_y));
     let tile = |id, number, reach_m: f64| {
         let ground = terrain(id, 64, |_, _| 100.0);
-        let line = lay(middle, middle + DVec2::new(reach_m, 0.0), &triangles(id, &ground));
-        (id, ground, vec![(class(number), line)], 0.0)
+        let points_m = lay(middle, middle + DVec2::new(reach_m, 0.0), &triangles(id, &ground));
+        let line = GroundLine { way_id: 1, class: class(number), points_m };
+        (id, ground, vec![line], 0.0)
     };
     let camera = Camera::look_at(
         middle.extend(100.0),

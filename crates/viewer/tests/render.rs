@@ -11,12 +11,12 @@ use corniche_tileset::{
     Writer, encode, pmtiles_order,
 };
 use corniche_viewer::{
-    CameraRequest, RenderError, RenderRequest, Rendered, RoadMethod, camera::Orientation, render,
-    style::Style,
+    CameraRequest, RenderError, RenderRequest, Rendered, RoadMethod, RoadOptions,
+    camera::Orientation, render, style::Style,
 };
 use image::RgbaImage;
 use support::{
-    country::{Country, MAX_ERROR_M, QUANTUM_M},
+    country::{Country, MAX_ERROR_M, QUANTUM_M, width_margin_m},
     gpu,
 };
 
@@ -62,9 +62,11 @@ fn manifest(country: &Country) -> Manifest {
         cell_m: frame.level_cell_m(level),
         max_error_m: MAX_ERROR_M * frame.stride(level) as f64,
         geometric_error_m: 100.0,
+        errors_m: None,
+        tightness: None,
         least_class: Some(7),
         simplify_tolerance_m: 0.0,
-        width_margin_m: 0.0,
+        width_margin_m: width_margin_m(&frame, level),
         tiles: 0,
         triangles: 0,
         vertices: 0,
@@ -76,6 +78,9 @@ fn manifest(country: &Country) -> Manifest {
         fill_voids: 0,
         nodata: None,
         dem_crs: None,
+        dem_vertical_crs: None,
+        vertical_crs: None,
+        vertical_shift_m: 0.0,
         crs: None,
         cell_m: None,
         frc_table: "none".to_owned(),
@@ -98,6 +103,8 @@ fn manifest(country: &Country) -> Manifest {
             quantum_m: QUANTUM_M,
             unit: "metre".to_owned(),
             datum: "unknown".to_owned(),
+            treatment: "none".to_owned(),
+            range_m: [90.0, 1910.0],
         },
         coordinates: CoordinateTable::sample(&projection, data_bounds, 0.01).unwrap(),
         levels: (0..=frame.max_level()).map(level).collect(),
@@ -133,7 +140,7 @@ fn request(package: &Path) -> RenderRequest {
     RenderRequest {
         package: package.to_path_buf(),
         size_px: [480, 320],
-        roads: RoadMethod::Geometry,
+        roads: RoadOptions::of(RoadMethod::Geometry),
         camera: CameraRequest::FrameAll,
         screen_space_error_px: 2.0,
         exaggeration: 1.0,
@@ -178,7 +185,9 @@ fn a_package_becomes_a_picture_with_roads_and_credits() {
     let again = render(&request(&package)).unwrap();
     assert!(all == again, "the same request gives the same picture");
 
-    let bare = render(&RenderRequest { roads: RoadMethod::None, ..request(&package) }).unwrap();
+    let bare =
+        render(&RenderRequest { roads: RoadOptions::of(RoadMethod::None), ..request(&package) })
+            .unwrap();
     keep("bare", &bare);
     assert_eq!(bare.report.road_segments, 0);
     assert_eq!(red_pixels(&bare.picture), 0);

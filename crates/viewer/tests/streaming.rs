@@ -5,7 +5,7 @@ mod support;
 
 use corniche_geom::TileId;
 use corniche_viewer::{
-    RoadMethod,
+    RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
     gpu::{DrawTile, FrameView, Renderer, Targets, TileBuffers},
     lod::Quality,
@@ -53,7 +53,7 @@ fn picture(
     let view = FrameView {
         camera,
         style,
-        roads: RoadMethod::Geometry,
+        roads: RoadOptions::of(RoadMethod::Geometry),
         exaggeration: 1.0,
         point_scale: 1.0,
         height_range_m: [90.0, 1910.0],

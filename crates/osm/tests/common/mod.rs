@@ -120,12 +120,13 @@ pub(crate) fn read(path: &Path) -> Result<Extract, ReadOsmError> {
 
 /// Reads from memory; `made.osm.pbf` is the name in messages.
 pub(crate) fn read_bytes(bytes: &[u8]) -> Result<Extract, ReadOsmError> {
-    let request = ReadRequest {
-        path: Path::new("made.osm.pbf"),
-        table: &TABLE,
-        place: &to_lattice,
-        pool: &POOL,
-    };
+    read_bytes_in(&POOL, bytes)
+}
+
+/// The same with other threads.
+pub(crate) fn read_bytes_in(pool: &ThreadPool, bytes: &[u8]) -> Result<Extract, ReadOsmError> {
+    let path = Path::new("made.osm.pbf");
+    let request = ReadRequest { path, table: &TABLE, place: &to_lattice, pool };
     gather(|sink, on_defect| {
         read_roads_from(Cursor::new(bytes), &request, sink, on_defect, &|| false)
     })

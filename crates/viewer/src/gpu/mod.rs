@@ -1,25 +1,34 @@
 //! Everything that talks to the graphics card: device, targets, passes, buffers of tiles.
 //!
 //! ```text
-//!  terrain pass ──► ground colour, depth ──┬──────────────► composite pass ──► picture
-//!                                          ▼                     ▲
-//!                              roads pass ──► road labels ───────┘
+//!  terrain pass ──► ground colour, depth, owner ──┬────────────► composite pass ──► picture
+//!                                                 ▼                   ▲
+//!                                     roads pass ──► road labels ─────┘
 //! ```
 //!
 //! A label is 0 without a road, else `2 · (9 − class)`, plus 1 on a centre line: larger is more important.
 //! Labels instead of colours let the composite pass find edges between classes, and let tests compare every
 //! pixel's class with a reference.
+//!
+//! The owner of a pixel is the tile whose ground it shows. Volumes (SV) paint the ground of their own tile only;
+//! each tile has all roads near enough. Marking tiles in the stencil buffer instead would allow 255 of them, and
+//! a pass cannot write the stencil of a texture whose depth it reads; comparing a number costs one texture read.
 
 mod passes;
 mod renderer;
+mod roads_pass;
 mod targets;
 mod tile_buffers;
+mod tile_bytes;
+mod timings;
 mod uniforms;
 
 pub use self::{
     renderer::{DrawTile, FrameView, Renderer},
-    targets::{ReadBackError, Targets, label_class},
+    targets::{Owner, ReadBackError, Targets, label_class},
     tile_buffers::TileBuffers,
+    tile_bytes::tile_bytes,
+    timings::{PassTimer, PassTimes},
 };
 
 /// Why there is no graphics device.
@@ -58,7 +67,11 @@ impl Gpu {
             .map_err(|source| GpuError::NoAdapter { source })?;
         let info = adapter.get_info();
         let adapter_name = format!("{} ({})", info.name, info.backend);
-        let descriptor = wgpu::DeviceDescriptor { label: Some("corniche"), ..Default::default() };
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("corniche"),
+            required_features: adapter.features() & PassTimer::FEATURES,
+            ..Default::default()
+        };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|source| GpuError::NoDevice { adapter: adapter_name.clone(), source })?;
         Ok(Self { device, queue, adapter_name })

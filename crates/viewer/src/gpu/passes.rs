@@ -1,45 +1,50 @@
-//! The three pipelines and what they bind.
+//! The pipelines and what they bind.
 
 use wgpu::{
     BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, CompareFunction,
-    DepthStencilState, Device, RenderPipeline, ShaderStages, TextureSampleType, VertexBufferLayout,
-    VertexStepMode, vertex_attr_array,
+    DepthStencilState, Device, PrimitiveTopology, RenderPipeline, ShaderStages, TextureSampleType,
+    VertexBufferLayout, VertexStepMode, vertex_attr_array,
 };
 
 use super::{
-    targets::{COLOR, DEPTH, LABEL},
-    tile_buffers::{GROUND_STRIDE, SEGMENT_STRIDE},
+    targets::{COLOR, DEPTH, LABEL, OWNER},
+    tile_buffers::{GROUND_STRIDE, SEGMENT_STRIDE, VOLUME_STRIDE},
     uniforms::TILE_BYTES,
 };
 
+macro_rules! shader {
+    ($($file:literal),+) => {
+        concat!($(include_str!(concat!("../shaders/", $file, ".wgsl"))),+)
+    };
+}
+
 /// Shader sources by name, complete as compiled.
-pub(super) const SHADERS: [(&str, &str); 3] = [
-    (
-        "terrain",
-        concat!(include_str!("../shaders/common.wgsl"), include_str!("../shaders/terrain.wgsl")),
-    ),
-    (
-        "roads",
-        concat!(include_str!("../shaders/common.wgsl"), include_str!("../shaders/roads.wgsl")),
-    ),
-    (
-        "composite",
-        concat!(include_str!("../shaders/common.wgsl"), include_str!("../shaders/composite.wgsl")),
-    ),
+pub(super) const SHADERS: [(&str, &str); 4] = [
+    ("terrain", shader!("common", "terrain")),
+    ("roads", shader!("common", "coverage", "roads")),
+    ("volumes", shader!("common", "coverage", "volumes")),
+    ("composite", shader!("common", "composite")),
 ];
 
 pub(super) struct Layouts {
     pub(super) frame: BindGroupLayout,
     pub(super) tile: BindGroupLayout,
-    pub(super) depth: BindGroupLayout,
+    pub(super) ground: BindGroupLayout,
     pub(super) composite: BindGroupLayout,
 }
 
 pub(super) struct Pipelines {
     pub(super) terrain: RenderPipeline,
-    pub(super) roads: RenderPipeline,
-    pub(super) centers: RenderPipeline,
+    pub(super) skirts: RenderPipeline,
+    pub(super) segments: RoadPipelines,
+    pub(super) volumes: RoadPipelines,
     pub(super) composite: RenderPipeline,
+}
+
+/// The same for a whole road and for the line along its middle.
+pub(super) struct RoadPipelines {
+    pub(super) fills: RenderPipeline,
+    pub(super) centers: RenderPipeline,
 }
 
 impl Layouts {
@@ -53,7 +58,10 @@ impl Layouts {
         Self {
             frame: layout("frame", &[uniform(0, None)]),
             tile: layout("tile", &[uniform(0, std::num::NonZeroU64::new(TILE_BYTES))]),
-            depth: layout("depth", &[texture(0, TextureSampleType::Depth)]),
+            ground: layout(
+                "ground",
+                &[texture(0, TextureSampleType::Depth), texture(1, TextureSampleType::Uint)],
+            ),
             composite: layout(
                 "composite",
                 &[
@@ -70,15 +78,20 @@ impl Pipelines {
     pub(super) fn new(device: &Device, layouts: &Layouts) -> Self {
         let ground_attributes = vertex_attr_array![0 => Float32x3, 1 => Snorm8x4];
         let segment_attributes = vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32];
-        let terrain = Recipe {
+        let volume_attributes =
+            vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Float32x2, 3 => Uint32];
+        let terrain_groups = [Some(&layouts.frame), Some(&layouts.tile)];
+        let terrain = |constants| Recipe {
             shader: 0,
-            groups: &[Some(&layouts.frame), Some(&layouts.tile)],
+            groups: &terrain_groups,
             buffer: Some(VertexBufferLayout {
                 array_stride: GROUND_STRIDE,
                 step_mode: VertexStepMode::Vertex,
                 attributes: &ground_attributes,
             }),
-            topology: wgpu::PrimitiveTopology::TriangleList,
+            topology: PrimitiveTopology::TriangleList,
+            // From below the ground one sees its underside.
+            cull: None,
             depth: Some(DepthStencilState {
                 format: DEPTH,
                 depth_write_enabled: Some(true),
@@ -87,11 +100,11 @@ impl Pipelines {
                 stencil: wgpu::StencilState::default(),
                 bias: wgpu::DepthBiasState::default(),
             }),
-            target: COLOR,
-            constants: &[],
+            targets: &[COLOR, OWNER],
+            constants,
         };
-        let road_groups = [Some(&layouts.frame), Some(&layouts.tile), Some(&layouts.depth)];
-        let roads = |constants| Recipe {
+        let road_groups = [Some(&layouts.frame), Some(&layouts.tile), Some(&layouts.ground)];
+        let segments = |constants| Recipe {
             shader: 1,
             groups: &road_groups,
             buffer: Some(VertexBufferLayout {
@@ -99,24 +112,42 @@ impl Pipelines {
                 step_mode: VertexStepMode::Instance,
                 attributes: &segment_attributes,
             }),
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            topology: PrimitiveTopology::TriangleStrip,
+            // Quads face anywhere.
+            cull: None,
             depth: None,
-            target: LABEL,
+            targets: &[LABEL],
             constants,
         };
-        let composite = Recipe {
+        let volumes = |constants| Recipe {
             shader: 2,
+            buffer: Some(VertexBufferLayout {
+                array_stride: VOLUME_STRIDE,
+                step_mode: VertexStepMode::Instance,
+                attributes: &volume_attributes,
+            }),
+            // One fragment per pixel and box, also with the eye inside: the far faces.
+            cull: Some(wgpu::Face::Front),
+            ..segments(constants)
+        };
+        let composite = Recipe {
+            shader: 3,
             groups: &[Some(&layouts.frame), Some(&layouts.composite)],
             buffer: None,
-            topology: wgpu::PrimitiveTopology::TriangleList,
+            topology: PrimitiveTopology::TriangleList,
+            cull: None,
             depth: None,
-            target: COLOR,
+            targets: &[COLOR],
             constants: &[],
         };
+        let both = |recipe: &dyn Fn(&'static [(&'static str, f64)]) -> RenderPipeline| {
+            RoadPipelines { fills: recipe(&[("BAND", 0.0)]), centers: recipe(&[("BAND", 1.0)]) }
+        };
         Self {
-            terrain: terrain.cook(device),
-            roads: roads(&[("BAND", 0.0)]).cook(device),
-            centers: roads(&[("BAND", 1.0)]).cook(device),
+            terrain: terrain(&[("SKIRT", 0.0)]).cook(device),
+            skirts: terrain(&[("SKIRT", 1.0)]).cook(device),
+            segments: both(&|constants| segments(constants).cook(device)),
+            volumes: both(&|constants| volumes(constants).cook(device)),
             composite: composite.cook(device),
         }
     }
@@ -127,9 +158,10 @@ struct Recipe<'a> {
     shader: usize,
     groups: &'a [Option<&'a BindGroupLayout>],
     buffer: Option<VertexBufferLayout<'a>>,
-    topology: wgpu::PrimitiveTopology,
+    topology: PrimitiveTopology,
+    cull: Option<wgpu::Face>,
     depth: Option<DepthStencilState>,
-    target: wgpu::TextureFormat,
+    targets: &'a [wgpu::TextureFormat],
     constants: &'a [(&'a str, f64)],
 }
 
@@ -147,6 +179,18 @@ impl Recipe<'_> {
         });
         let options =
             wgpu::PipelineCompilationOptions { constants: self.constants, ..Default::default() };
+        let targets: Vec<_> = self
+            .targets
+            .iter()
+            .map(|format| {
+                Some(wgpu::ColorTargetState {
+                    format: *format,
+                    // Roads overwrite each other: least important first, no blending.
+                    blend: None,
+                    write_mask: wgpu::ColorWrites::ALL,
+                })
+            })
+            .collect();
         let buffers: Vec<_> = self.buffer.iter().cloned().map(Some).collect();
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(name),
@@ -157,20 +201,18 @@ impl Recipe<'_> {
                 compilation_options: options.clone(),
                 buffers: &buffers,
             },
-            // Nothing is culled: from below the ground one sees its underside, and quads of roads face anywhere.
-            primitive: wgpu::PrimitiveState { topology: self.topology, ..Default::default() },
+            primitive: wgpu::PrimitiveState {
+                topology: self.topology,
+                cull_mode: self.cull,
+                ..Default::default()
+            },
             depth_stencil: self.depth.clone(),
             multisample: wgpu::MultisampleState::default(),
             fragment: Some(wgpu::FragmentState {
                 module: &module,
                 entry_point: Some("fragment"),
                 compilation_options: options,
-                targets: &[Some(wgpu::ColorTargetState {
-                    format: self.target,
-                    // Roads overwrite each other: least important first, no blending.
-                    blend: None,
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
+                targets: &targets,
             }),
             multiview_mask: None,
             cache: None,
@@ -240,7 +282,7 @@ mod tests {
         let view = crate::gpu::FrameView {
             camera: &camera,
             style: &style,
-            roads: crate::RoadMethod::None,
+            roads: crate::RoadOptions::of(crate::RoadMethod::None),
             exaggeration: 1.0,
             point_scale: 1.0,
             height_range_m: [0.0, 1.0],
@@ -257,5 +299,30 @@ mod tests {
             });
             assert_eq!(span, Some(rows as u32 * 16), "{name}");
         }
+    }
+
+    /// Needs no GPU: every face of a volume's box is drawn, its corners counter-clockwise seen from outside.
+    #[test]
+    fn the_strip_of_a_volume_goes_around_its_box() {
+        let source = SHADERS[2].1;
+        let list = source.split("STRIP = array<u32, 14>(").nth(1).unwrap().split(')').next();
+        let strip: Vec<u32> = list
+            .unwrap()
+            .split(',')
+            .map(|k| k.trim().trim_end_matches('u').parse().unwrap())
+            .collect();
+        let corner = |k: u32| {
+            glam::Vec3::from_array([0, 1, 2].map(|bit| if k >> bit & 1 == 1 { 1.0 } else { -1.0 }))
+        };
+        let mut area_by_face = std::collections::BTreeMap::new();
+        for (index, three) in strip.windows(3).enumerate() {
+            let [a, b, c] = [three[0], three[1], three[2]].map(corner);
+            let flip = if index % 2 == 0 { 1.0 } else { -1.0 };
+            let normal = (b - a).cross(c - a) * flip;
+            assert!(normal.dot(a + b + c) > 0.0, "triangle {index} faces inwards");
+            let face = normal.normalize().round().to_array().map(|part| part as i8);
+            *area_by_face.entry(face).or_insert(0.0) += normal.length() / 2.0;
+        }
+        assert_eq!(area_by_face.into_values().collect::<Vec<f32>>(), [4.0; 6]);
     }
 }

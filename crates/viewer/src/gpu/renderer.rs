@@ -1,4 +1,3 @@
-use corniche_roads::FunctionalRoadClass;
 use wgpu::{
     BindGroup, BindGroupEntry, BindingResource, CommandEncoder, LoadOp, Operations, StoreOp,
     util::DeviceExt,
@@ -7,11 +6,13 @@ use wgpu::{
 use super::{
     Gpu,
     passes::{Layouts, Pipelines},
+    roads_pass::Bridges,
     targets::Targets,
     tile_buffers::TileBuffers,
+    timings::PassTimer,
     uniforms,
 };
-use crate::{RoadMethod, camera::Camera, style::Style};
+use crate::{RoadOptions, camera::Camera, style::Style};
 
 /// What a picture shows and how, apart from the tiles.
 #[derive(Debug, Clone, Copy)]
@@ -21,7 +22,7 @@ pub struct FrameView<'a> {
     /// Colours and widths.
     pub style: &'a Style,
     /// How roads are drawn.
-    pub roads: RoadMethod,
+    pub roads: RoadOptions,
     /// Factor on heights.
     pub exaggeration: f64,
     /// Length in the working CRS over true length: heights and widths are multiplied by it.
@@ -51,16 +52,23 @@ pub struct DrawTile<'a> {
 /// Knows how to draw tiles; holds nothing of any frame.
 pub struct Renderer {
     layouts: Layouts,
-    pipelines: Pipelines,
+    pub(super) pipelines: Pipelines,
 }
 
 /// What the passes of one frame share.
-struct FrameBindings {
-    frame: BindGroup,
+pub(super) struct FrameBindings {
+    pub(super) frame: BindGroup,
     tiles: BindGroup,
     tile_stride: u32,
-    depth: BindGroup,
+    pub(super) ground: BindGroup,
     composite: BindGroup,
+}
+
+impl FrameBindings {
+    /// Sets the block of the tile with this index in the list.
+    pub(super) fn set_tile(&self, pass: &mut wgpu::RenderPass<'_>, index: usize) {
+        pass.set_bind_group(1, &self.tiles, &[index as u32 * self.tile_stride]);
+    }
 }
 
 impl Renderer {
@@ -74,13 +82,34 @@ impl Renderer {
 
     /// Draws terrain, roads and composite into `targets`.
     pub fn draw(&self, gpu: &Gpu, view: &FrameView<'_>, tiles: &[DrawTile<'_>], targets: &Targets) {
+        self.draw_timed(gpu, view, tiles, targets, None);
+    }
+
+    /// The same, and `timer` notes how long each pass takes.
+    pub fn draw_timed(
+        &self,
+        gpu: &Gpu,
+        view: &FrameView<'_>,
+        tiles: &[DrawTile<'_>],
+        targets: &Targets,
+        timer: Option<&PassTimer>,
+    ) {
         let bindings = self.bind(gpu, view, tiles, targets);
-        let mut encoder = gpu
-            .device
-            .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+        let bridges = Bridges::new(gpu, view.roads.method, tiles);
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
+        let mut encoder = gpu.device.create_command_encoder(&descriptor);
+        let mark = |encoder: &mut CommandEncoder, number| {
+            if let Some(timer) = timer {
+                timer.mark(encoder, number);
+            }
+        };
+        mark(&mut encoder, 0);
         self.terrain_pass(&mut encoder, &bindings, tiles, targets);
-        self.roads_pass(&mut encoder, &bindings, tiles, view, targets);
+        mark(&mut encoder, 1);
+        self.roads_pass(&mut encoder, &bindings, tiles, &bridges, view, targets);
+        mark(&mut encoder, 2);
         self.composite_pass(&mut encoder, &bindings, targets);
+        mark(&mut encoder, 3);
         gpu.queue.submit([encoder.finish()]);
     }
 
@@ -112,8 +141,9 @@ impl Renderer {
             .max(uniforms::TILE_BYTES);
         // At least one block, so that there is something to bind without tiles.
         let mut blocks = vec![0_u8; stride as usize * tiles.len().max(1)];
-        for (tile, block) in tiles.iter().zip(blocks.chunks_exact_mut(stride as usize)) {
-            let rows = uniforms::tile_rows(view, tile.buffers.reference_m, tile.skirt_depth_m);
+        let in_list = tiles.iter().zip(1..);
+        for ((tile, number), block) in in_list.zip(blocks.chunks_exact_mut(stride as usize)) {
+            let rows = uniforms::tile_rows(view, tile, number);
             block[..uniforms::TILE_BYTES as usize].copy_from_slice(bytemuck::cast_slice(&rows));
         }
         let tiles = uniform("tiles", &blocks);
@@ -123,8 +153,8 @@ impl Renderer {
             size: std::num::NonZeroU64::new(uniforms::TILE_BYTES),
         };
 
-        let [ground, depth, labels] =
-            [targets.ground_view(), targets.depth_view(), targets.labels_view()];
+        let [ground, depth] = [targets.ground_view(), targets.depth_view()];
+        let [owners, labels] = [targets.owners_view(), targets.labels_view()];
         let texture = |binding, view| BindGroupEntry {
             binding,
             resource: BindingResource::TextureView(view),
@@ -141,7 +171,11 @@ impl Renderer {
                 &[BindGroupEntry { binding: 0, resource: BindingResource::Buffer(tile_block) }],
             ),
             tile_stride: stride as u32,
-            depth: group("depth", &self.layouts.depth, &[texture(0, &depth)]),
+            ground: group(
+                "ground",
+                &self.layouts.ground,
+                &[texture(0, &depth), texture(1, &owners)],
+            ),
             composite: group(
                 "composite",
                 &self.layouts.composite,
@@ -157,55 +191,23 @@ impl Renderer {
         tiles: &[DrawTile<'_>],
         targets: &Targets,
     ) {
-        let mut pass =
-            begin(encoder, "terrain", &targets.ground_view(), Some(&targets.depth_view()));
-        pass.set_pipeline(&self.pipelines.terrain);
+        let mut pass = begin(
+            encoder,
+            "terrain",
+            &[&targets.ground_view(), &targets.owners_view()],
+            Some(&targets.depth_view()),
+        );
         pass.set_bind_group(0, &bindings.frame, &[]);
-        for (tile, offset) in tiles.iter().zip((0..).step_by(bindings.tile_stride as usize)) {
-            let Some(ground) = &tile.buffers.ground else { continue };
-            pass.set_bind_group(1, &bindings.tiles, &[offset]);
-            pass.set_vertex_buffer(0, ground.vertices.slice(..));
-            pass.set_index_buffer(ground.indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..ground.index_count, 0, 0..1);
-        }
-    }
-
-    /// Classes outside, tiles inside: a more important road lies above a lesser one across tile borders too.
-    fn roads_pass(
-        &self,
-        encoder: &mut CommandEncoder,
-        bindings: &FrameBindings,
-        tiles: &[DrawTile<'_>],
-        view: &FrameView<'_>,
-        targets: &Targets,
-    ) {
-        // The pass clears the labels even when it draws no road.
-        let mut pass = begin(encoder, "roads", &targets.labels_view(), None);
-        if view.roads == RoadMethod::None {
-            return;
-        }
-        pass.set_bind_group(0, &bindings.frame, &[]);
-        pass.set_bind_group(2, &bindings.depth, &[]);
-        for class in FunctionalRoadClass::all().rev() {
-            let index = usize::from(class.number());
-            let has_center = view.style.roads[index].center.is_some();
-            for pipeline in
-                [Some(&self.pipelines.roads), has_center.then_some(&self.pipelines.centers)]
-            {
-                let Some(pipeline) = pipeline else { continue };
-                pass.set_pipeline(pipeline);
-                for (tile, offset) in tiles.iter().zip((0..).step_by(bindings.tile_stride as usize))
-                {
-                    let range = tile.buffers.class_ranges[index].clone();
-                    let Some(segments) =
-                        tile.buffers.segments.as_ref().filter(|_| !range.is_empty())
-                    else {
-                        continue;
-                    };
-                    pass.set_bind_group(1, &bindings.tiles, &[offset]);
-                    pass.set_vertex_buffer(0, segments.slice(..));
-                    pass.draw(0..4, range);
-                }
+        for is_skirts in [false, true] {
+            let Pipelines { terrain, skirts, .. } = &self.pipelines;
+            pass.set_pipeline(if is_skirts { skirts } else { terrain });
+            for (index, tile) in tiles.iter().enumerate() {
+                let Some(ground) = &tile.buffers.ground else { continue };
+                let part = if is_skirts { &ground.skirts } else { &ground.surface };
+                bindings.set_tile(&mut pass, index);
+                pass.set_vertex_buffer(0, ground.vertices.slice(..));
+                pass.set_index_buffer(ground.indices.slice(..), wgpu::IndexFormat::Uint32);
+                pass.draw_indexed(part.clone(), 0, 0..1);
             }
         }
     }
@@ -216,7 +218,7 @@ impl Renderer {
         bindings: &FrameBindings,
         targets: &Targets,
     ) {
-        let mut pass = begin(encoder, "composite", &targets.picture_view(), None);
+        let mut pass = begin(encoder, "composite", &[&targets.picture_view()], None);
         pass.set_pipeline(&self.pipelines.composite);
         pass.set_bind_group(0, &bindings.frame, &[]);
         pass.set_bind_group(1, &bindings.composite, &[]);
@@ -224,24 +226,28 @@ impl Renderer {
     }
 }
 
-/// A pass that starts from nothing: colour 0, depth 0 (infinitely far).
-fn begin<'e>(
+/// A pass that starts from nothing: colours 0, depth 0 (infinitely far).
+pub(super) fn begin<'e>(
     encoder: &'e mut CommandEncoder,
     label: &str,
-    color: &wgpu::TextureView,
+    colors: &[&wgpu::TextureView],
     depth: Option<&wgpu::TextureView>,
 ) -> wgpu::RenderPass<'e> {
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some(label),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: color,
+    let attach = |view| {
+        Some(wgpu::RenderPassColorAttachment {
+            view,
             depth_slice: None,
             resolve_target: None,
             ops: Operations {
                 load: LoadOp::Clear(wgpu::Color::TRANSPARENT),
                 store: StoreOp::Store,
             },
-        })],
+        })
+    };
+    let attachments: Vec<_> = colors.iter().map(|view| attach(*view)).collect();
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &attachments,
         depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
             view,
             depth_ops: Some(Operations { load: LoadOp::Clear(0.0), store: StoreOp::Store }),

@@ -6,12 +6,16 @@ use super::{Gpu, GpuError};
 pub(super) const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
 pub(super) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 pub(super) const LABEL: TextureFormat = TextureFormat::R8Uint;
+pub(super) const OWNER: TextureFormat = TextureFormat::R32Uint;
+/// Set in the owner of a pixel that shows a skirt.
+const SKIRT_BIT: u32 = 1 << 31;
 
 /// What the passes draw into; all of one size.
 pub struct Targets {
     size_px: [u32; 2],
     ground: Texture,
     depth: Texture,
+    owners: Texture,
     labels: Texture,
     picture: Texture,
 }
@@ -27,6 +31,27 @@ pub enum ReadBackError {
     Map { source: wgpu::BufferAsyncError },
     #[error("the drawn pixels cannot be read")]
     Range { source: wgpu::MapRangeError },
+}
+
+/// Whose a pixel of the terrain pass is; tiles by their place in the list that was drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Owner {
+    /// No ground is seen.
+    Nobody,
+    /// A tile's ground.
+    Ground(usize),
+    /// A tile's skirt.
+    Skirt(usize),
+}
+
+impl Owner {
+    fn of(pixel: u32) -> Self {
+        match (pixel & !SKIRT_BIT).checked_sub(1) {
+            None => Self::Nobody,
+            Some(tile) if pixel & SKIRT_BIT == 0 => Self::Ground(tile as usize),
+            Some(tile) => Self::Skirt(tile as usize),
+        }
+    }
 }
 
 impl Targets {
@@ -60,6 +85,7 @@ impl Targets {
             size_px,
             ground: texture("ground", COLOR),
             depth: texture("depth", DEPTH),
+            owners: texture("owners", OWNER),
             labels: texture("road labels", LABEL),
             picture: texture("picture", COLOR),
         })
@@ -77,6 +103,10 @@ impl Targets {
 
     pub(super) fn depth_view(&self) -> TextureView {
         view(&self.depth)
+    }
+
+    pub(super) fn owners_view(&self) -> TextureView {
+        view(&self.owners)
     }
 
     pub(super) fn labels_view(&self) -> TextureView {
@@ -111,6 +141,18 @@ impl Targets {
     pub fn read_depth(&self, gpu: &Gpu) -> Result<Vec<f32>, ReadBackError> {
         let bytes = self.read(gpu, &self.depth, 4)?;
         Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
+    }
+
+    /// Whose each pixel of the terrain pass is.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn read_owners(&self, gpu: &Gpu) -> Result<Vec<Owner>, ReadBackError> {
+        let bytes = self.read(gpu, &self.owners, 4)?;
+        Ok(bytes
+            .chunks_exact(4)
+            .map(|b| Owner::of(u32::from_le_bytes([b[0], b[1], b[2], b[3]])))
+            .collect())
     }
 
     /// The road label of each pixel; see [`label_class`].

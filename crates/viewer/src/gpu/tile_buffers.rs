@@ -1,30 +1,51 @@
 use std::ops::Range;
 
+use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
 use wgpu::util::DeviceExt;
 
 use super::Gpu;
-use crate::tiles::TileGeometry;
+use crate::{
+    RoadMethod,
+    tiles::{RoadEnd, RoadVolume, TileGeometry},
+};
 
 /// A tile on the graphics card.
 pub struct TileBuffers {
     pub(super) ground: Option<GroundBuffers>,
-    pub(super) segments: Option<wgpu::Buffer>,
-    pub(super) class_ranges: [Range<u32>; FunctionalRoadClass::COUNT],
+    pub(super) segments: RoadBuffers,
+    pub(super) volumes: RoadBuffers,
     pub(super) reference_m: [f64; 3],
+    pub(super) width_margin_m: f64,
+    pub(super) width_m: f64,
+    pub(super) id: TileId,
     triangles: u64,
 }
 
 pub(super) struct GroundBuffers {
     pub(super) vertices: wgpu::Buffer,
     pub(super) indices: wgpu::Buffer,
-    pub(super) index_count: u32,
+    /// Indices of the ground, then of the skirts.
+    pub(super) surface: Range<u32>,
+    pub(super) skirts: Range<u32>,
+}
+
+/// What one method draws of a tile's roads.
+#[derive(Default)]
+pub(super) struct RoadBuffers {
+    /// One instance per segment, in order of class; `None` without any.
+    pub(super) instances: Option<wgpu::Buffer>,
+    pub(super) class_ranges: [Range<u32>; FunctionalRoadClass::COUNT],
+    /// Where the roads meet the tile's border.
+    pub(super) ends: Vec<RoadEnd>,
 }
 
 /// Bytes of one ground vertex: position as three f32, normal and skirt flag as four i8.
 pub(super) const GROUND_STRIDE: u64 = 16;
 /// Bytes of one road segment: two positions as three f32 each, class as u32.
 pub(super) const SEGMENT_STRIDE: u64 = 28;
+/// Bytes of one road volume: two plan positions and a height range as two f32 each, class and other tile as u32.
+pub(super) const VOLUME_STRIDE: u64 = 28;
 
 impl TileBuffers {
     /// Uploads a tile.
@@ -37,22 +58,41 @@ impl TileBuffers {
                 usage,
             })
         };
-        let ground = (!tile.ground.indices.is_empty()).then(|| GroundBuffers {
+        let all = tile.ground.indices.len() as u32;
+        let surface = tile.ground.surface_indices as u32;
+        let ground = (all > 0).then(|| GroundBuffers {
             vertices: buffer(&ground_bytes(tile), wgpu::BufferUsages::VERTEX),
             indices: buffer(bytemuck::cast_slice(&tile.ground.indices), wgpu::BufferUsages::INDEX),
-            index_count: tile.ground.indices.len() as u32,
+            surface: 0..surface,
+            skirts: surface..all,
         });
-        let segments = (!tile.roads.all().is_empty())
-            .then(|| buffer(&segment_bytes(tile), wgpu::BufferUsages::VERTEX));
-        let mut class_ranges = [const { 0..0 }; FunctionalRoadClass::COUNT];
+        let instances =
+            |bytes: &[u8]| (!bytes.is_empty()).then(|| buffer(bytes, wgpu::BufferUsages::VERTEX));
+        let mut segments = RoadBuffers {
+            instances: instances(&segment_bytes(tile)),
+            ends: tile.roads.ends().to_vec(),
+            ..RoadBuffers::default()
+        };
+        let mut volumes = RoadBuffers {
+            instances: instances(&volume_bytes(
+                tile.volumes.all().iter().map(|volume| (*volume, 0)),
+            )),
+            ends: tile.volumes.ends().to_vec(),
+            ..RoadBuffers::default()
+        };
         for class in FunctionalRoadClass::all() {
-            class_ranges[usize::from(class.number())] = tile.roads.range_of(class);
+            let index = usize::from(class.number());
+            segments.class_ranges[index] = tile.roads.range_of(class);
+            volumes.class_ranges[index] = tile.volumes.range_of(class);
         }
         Self {
             ground,
             segments,
-            class_ranges,
+            volumes,
             reference_m: tile.reference_m,
+            width_margin_m: tile.width_margin_m,
+            width_m: tile.width_m,
+            id: tile.id,
             triangles: (tile.ground.surface_indices / 3) as u64,
         }
     }
@@ -63,10 +103,20 @@ impl TileBuffers {
         self.triangles
     }
 
-    /// Segments of its roads.
+    /// Segments of its roads, as one method draws them.
     #[must_use]
-    pub fn road_segments(&self) -> u64 {
-        self.class_ranges.iter().map(|range| u64::from(range.end - range.start)).sum()
+    pub fn road_segments(&self, method: RoadMethod) -> u64 {
+        self.roads(method).map_or(0, |roads| {
+            roads.class_ranges.iter().map(|range| u64::from(range.end - range.start)).sum()
+        })
+    }
+
+    pub(super) fn roads(&self, method: RoadMethod) -> Option<&RoadBuffers> {
+        match method {
+            RoadMethod::Geometry => Some(&self.segments),
+            RoadMethod::ShadowVolumes => Some(&self.volumes),
+            RoadMethod::None => None,
+        }
     }
 }
 
@@ -85,6 +135,19 @@ fn segment_bytes(tile: &TileGeometry) -> Vec<u8> {
         bytes.extend_from_slice(bytemuck::cast_slice(&segment.start_in_tile));
         bytes.extend_from_slice(bytemuck::cast_slice(&segment.end_in_tile));
         bytes.extend_from_slice(&u32::from(segment.class.number()).to_ne_bytes());
+    }
+    bytes
+}
+
+/// Volumes, each with the number of the other tile it belongs to, 0 for those that are no bridges.
+pub(super) fn volume_bytes(volumes: impl Iterator<Item = (RoadVolume, u32)>) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(volumes.size_hint().0 * VOLUME_STRIDE as usize);
+    for (volume, other) in volumes {
+        bytes.extend_from_slice(bytemuck::cast_slice(&volume.start_in_tile));
+        bytes.extend_from_slice(bytemuck::cast_slice(&volume.end_in_tile));
+        bytes.extend_from_slice(bytemuck::cast_slice(&volume.height_range_in_tile));
+        let class = u32::from(volume.class.number());
+        bytes.extend_from_slice(&(class | other << 4).to_ne_bytes());
     }
     bytes
 }

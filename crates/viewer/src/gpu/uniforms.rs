@@ -2,7 +2,8 @@
 
 use glam::{DVec3, DVec4};
 
-use super::renderer::FrameView;
+use super::renderer::{DrawTile, FrameView};
+use crate::{CapTest, Caps};
 
 /// Bytes of a tile's block.
 pub(super) const TILE_BYTES: u64 = 32;
@@ -19,7 +20,7 @@ pub(super) fn frame_rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
             (style.light_azimuth_deg.to_radians(), style.light_altitude_deg.to_radians());
         DVec3::new(azimuth.sin() * altitude.cos(), azimuth.cos() * altitude.cos(), altitude.sin())
     };
-    let scaling = style.width_scaling;
+    let scaling = view.roads.width_scaling(style);
     let [lowest_m, highest_m] = view.height_range_m;
 
     let mut rows: Vec<[f32; 4]> = camera
@@ -42,15 +43,21 @@ pub(super) fn frame_rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
     rows.push([
         scaling.threshold_m * view.point_scale as f32,
         scaling.exponent,
-        (style.outline_px * view.supersampling) as f32,
+        (view.roads.outline_px(style) * view.supersampling) as f32,
         supersampling as f32,
+    ]);
+    rows.push([
+        if view.roads.caps == Caps::Round { 1.0 } else { 0.0 },
+        if view.roads.cap_test == CapTest::PaperQuadratic { 1.0 } else { 0.0 },
+        0.0,
+        0.0,
     ]);
     rows.push([lowest_m as f32, (1.0 / (highest_m - lowest_m).max(1.0)) as f32, 0.0, 0.0]);
     rows.extend(style.tint.iter().map(|(share, rgb)| color(*rgb, *share)));
     rows.extend(style.roads.iter().map(|road| {
         let center_share = road.center.map_or(0.0, |center| center.width_share);
         [
-            road.width_m / 2.0 * view.point_scale as f32,
+            road.width_m / 2.0 * scaling.constant * view.point_scale as f32,
             road.min_width_px / 2.0 * supersampling as f32,
             center_share,
             0.0,
@@ -67,18 +74,15 @@ pub(super) fn frame_rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
     rows
 }
 
-/// A tile's block: the reference point relative to the eye and the skirt's depth, then its true height.
-pub(super) fn tile_rows(
-    view: &FrameView<'_>,
-    reference_m: [f64; 3],
-    skirt_depth_m: f64,
-) -> [[f32; 4]; 2] {
-    let [x, y, height_m] = reference_m;
+/// A tile's block: the reference point relative to the eye and the skirt's depth; then its true height, the widest
+/// half width of volumes and the tile's number in the frame. Numbers below 2^24 are exact in f32.
+pub(super) fn tile_rows(view: &FrameView<'_>, tile: &DrawTile<'_>, number: u32) -> [[f32; 4]; 2] {
+    let [x, y, height_m] = tile.buffers.reference_m;
     let reference_in_world = DVec3::new(x, y, height_m * view.vertical_scale());
     let offset = reference_in_world - view.camera.eye_in_world();
     [
-        row(offset.extend(skirt_depth_m * view.vertical_scale())),
-        row(DVec4::new(height_m, 0.0, 0.0, 0.0)),
+        row(offset.extend(tile.skirt_depth_m * view.vertical_scale())),
+        row(DVec4::new(height_m, tile.buffers.width_margin_m, f64::from(number), 0.0)),
     ]
 }
 

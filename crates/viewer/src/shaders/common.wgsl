@@ -25,6 +25,8 @@ struct Frame {
     // x: distance up to which road widths are true; y: exponent beyond; z: radius of the outline kernel in
     // pixels of this target; w: how many of these pixels make one pixel of the final picture.
     road_scale: vec4<f32>,
+    // x: 1 with caps, 0 without; y: 1 for the paper's test in the fragments of volumes.
+    road_options: vec4<f32>,
     // x: lowest ground; y: 1 / height range.
     heights: vec4<f32>,
     // rgb; w: share of the height range.

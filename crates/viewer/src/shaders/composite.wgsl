@@ -15,6 +15,9 @@ fn vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
     return vec4(x, y, 0.0, 1.0);
 }
 
+// Ground that many times farther away than its neighbour in the picture lies behind it.
+const FARTHER = 1.1;
+
 fn class_of(label: u32) -> u32 {
     return CLASSES - label / 2u;
 }
@@ -59,7 +62,10 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     for (var y = -radius; y <= radius; y++) {
         for (var x = -radius; x <= radius; x++) {
             let near = clamp(pixel + vec2(x, y), vec2(0), last);
-            most = max(most, textureLoad(road_labels, near, 0).r);
+            // A road behind a crest has no edge on the crest.
+            if textureLoad(terrain_depth, near, 0) * FARTHER >= depth_buffer {
+                most = max(most, textureLoad(road_labels, near, 0).r);
+            }
         }
     }
     if most / 2u > label / 2u {

@@ -1,14 +1,21 @@
-// Terrain: tile-relative vertices to colour and depth.
-// Alpha says what the pixel is: 1 ground, 0.5 skirt, 0 nothing. Roads are no part of a skirt.
+// Terrain: tile-relative vertices to colour, depth and owner.
+//
+// The owner says whose the pixel is: 0 nobody's, else the number of the tile in this frame, with the highest bit
+// set on skirts. Roads ask it: a skirt is no ground, and a volume paints its own tile only. Skirts are drawn by
+// a pipeline of their own, so that not even their upper rim counts as ground.
+// Alpha says it again for the picture: 1 ground, 0.5 skirt, 0 nothing.
 
 struct Tile {
     // xyz: the tile's reference point minus the eye; w: depth of the skirt, world metres.
     offset: vec4<f32>,
-    // x: true height of the reference point.
+    // x: true height of the reference point; z: the tile's number in this frame, from 1.
     base: vec4<f32>,
 }
 
 @group(1) @binding(0) var<uniform> tile: Tile;
+
+// 0 draws ground, 1 skirts.
+override SKIRT: u32 = 0u;
 
 struct VertexIn {
     @location(0) position_in_tile: vec3<f32>,
@@ -20,7 +27,11 @@ struct VertexOut {
     @builtin(position) clip: vec4<f32>,
     @location(0) normal: vec3<f32>,
     @location(1) height_m: f32,
-    @location(2) skirt: f32,
+}
+
+struct Pixel {
+    @location(0) color: vec4<f32>,
+    @location(1) owner: u32,
 }
 
 @vertex
@@ -33,7 +44,6 @@ fn vertex(in: VertexIn) -> VertexOut {
     // Stretching the ground upwards flattens its normals' vertical part.
     out.normal = vec3(in.normal_skirt.xy * vertical_scale, in.normal_skirt.z);
     out.height_m = tile.base.x + in.position_in_tile.z;
-    out.skirt = in.normal_skirt.w;
     return out;
 }
 
@@ -49,7 +59,7 @@ fn tint_at(height_m: f32) -> vec3<f32> {
 }
 
 @fragment
-fn fragment(in: VertexOut) -> @location(0) vec4<f32> {
+fn fragment(in: VertexOut) -> Pixel {
     // 1 on level ground, below on slopes turned away from the light, above on slopes turned towards it.
     let lit = max(dot(normalize(in.normal), frame.light.xyz), 0.0) / frame.light.z;
     let color = tint_at(in.height_m);
@@ -57,5 +67,6 @@ fn fragment(in: VertexOut) -> @location(0) vec4<f32> {
     let shaded = color * vec3(0.36, 0.40, 0.52);
     let dark = mix(color, shaded, frame.light.w * clamp(1.0 - lit, 0.0, 1.0));
     let bright = mix(dark, vec3(1.0), frame.light.w * clamp(lit - 1.0, 0.0, 1.0) * 0.9);
-    return vec4(bright, select(1.0, 0.5, in.skirt > 1e-6));
+    let owner = u32(tile.base.z) | (SKIRT << 31u);
+    return Pixel(vec4(bright, select(1.0, 0.5, SKIRT == 1u)), owner);
 }

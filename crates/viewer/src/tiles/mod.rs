@@ -7,16 +7,18 @@ mod ground;
 mod package;
 mod roads;
 
-use std::{collections::BTreeMap, ops::Range};
+use std::collections::BTreeMap;
 
 use corniche_geom::{Bounds, Frame, TileId, barycentric};
-use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{Terrain, TilePayload};
 
 pub use self::{
     ground::{GroundMesh, GroundVertex},
     package::PackageSource,
-    roads::{BadRoad, RoadSegment, RoadSegments},
+    roads::{
+        BadRoad, GroundLine, PlanLine, RoadEnd, RoadSegment, RoadSegments, RoadVolume, RoadVolumes,
+        Side, TileLines,
+    },
 };
 use crate::lod::{GroundSummary, Node, Request, TileTree};
 
@@ -31,12 +33,15 @@ pub struct TileGeometry {
     pub summary: Option<GroundSummary>,
     /// The ground and its skirts.
     pub ground: GroundMesh,
-    /// The roads on it.
+    /// The roads on it as geometry (GEO); empty if that section was not read.
     pub roads: RoadSegments,
+    /// The roads on it as volumes (SV); empty if that section was not read.
+    pub volumes: RoadVolumes,
+    /// Half widths beyond this are not drawn as volumes.
+    pub width_margin_m: f64,
+    /// Side of its square.
+    pub width_m: f64,
 }
-
-/// A line on the ground: class, then x, y in the working CRS and true height of each vertex.
-pub type GroundLine = (FunctionalRoadClass, Vec<[f64; 3]>);
 
 impl TileGeometry {
     /// Puts a decoded tile together. `quantum_m` is the height of one step of the TIN's heights.
@@ -44,11 +49,12 @@ impl TileGeometry {
     pub fn assemble(
         id: TileId,
         terrain: Option<&Terrain>,
-        lines: &[GroundLine],
+        lines: &TileLines,
         frame: &Frame,
         quantum_m: f64,
     ) -> Self {
-        let [x, y] = frame.tile_bounds(id).center();
+        let bounds = frame.tile_bounds(id);
+        let [x, y] = bounds.center();
         let [low_m, high_m] = terrain.map_or([0.0; 2], |terrain| terrain.height_range_m);
         let reference_m = [x, y, f64::midpoint(low_m, high_m)];
         let ground = terrain.map_or_else(GroundMesh::default, |terrain| {
@@ -58,10 +64,19 @@ impl TileGeometry {
             geometric_error_m: terrain.geometric_error_m,
             height_range_m: terrain.height_range_m,
         });
-        Self { id, reference_m, summary, ground, roads: RoadSegments::new(lines, reference_m) }
+        Self {
+            id,
+            reference_m,
+            summary,
+            ground,
+            roads: RoadSegments::new(&lines.ground, bounds, reference_m),
+            volumes: RoadVolumes::new(&lines.plan, bounds, reference_m),
+            width_margin_m: lines.width_margin_m,
+            width_m: bounds.width(),
+        }
     }
 
-    /// Decodes a tile's payload: terrain and GEO roads.
+    /// Decodes a tile's payload: terrain and what it has of roads. `width_margin_m` is its level's.
     ///
     /// # Errors
     /// When a road does not fit the ground.
@@ -69,8 +84,9 @@ impl TileGeometry {
         payload: &TilePayload,
         frame: &Frame,
         quantum_m: f64,
+        width_margin_m: f64,
     ) -> Result<Self, BadRoad> {
-        let lines = roads::ground_lines(payload, frame, quantum_m)?;
+        let lines = TileLines::of_payload(payload, frame, quantum_m, width_margin_m)?;
         Ok(Self::assemble(payload.id, payload.terrain.as_ref(), &lines, frame, quantum_m))
     }
 
@@ -204,15 +220,4 @@ impl TileTree for TileStore<'_> {
 
 fn holds(bounds: &Bounds, [x, y]: [f64; 2]) -> bool {
     (bounds.min_x..=bounds.max_x).contains(&x) && (bounds.min_y..=bounds.max_y).contains(&y)
-}
-
-/// The part of `sorted` that belongs to each class, 0 first. `sorted` is in order of class.
-fn class_ranges(sorted: &[RoadSegment]) -> [Range<u32>; FunctionalRoadClass::COUNT] {
-    let mut ranges = [const { 0..0 }; FunctionalRoadClass::COUNT];
-    for (class, range) in ranges.iter_mut().enumerate() {
-        let start = sorted.partition_point(|segment| usize::from(segment.class.number()) < class);
-        let end = sorted.partition_point(|segment| usize::from(segment.class.number()) <= class);
-        *range = start as u32..end as u32;
-    }
-    ranges
 }

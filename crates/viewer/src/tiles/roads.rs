@@ -1,22 +1,46 @@
-use std::ops::Range;
-
 use corniche_drape::BadLine;
-use corniche_geom::Frame;
+use corniche_geom::{Bounds, Frame};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::TilePayload;
 use corniche_tin::{Placement, Surface};
 
-use super::{GroundLine, class_ranges, ground::relative};
+mod segments;
 
-/// A straight piece of a road's centre-line on the ground.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RoadSegment {
-    /// Metres from the tile's reference point; z is true height, before exaggeration.
-    pub start_in_tile: [f32; 3],
-    /// The other end.
-    pub end_in_tile: [f32; 3],
+pub use self::segments::{RoadEnd, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, Side};
+
+/// A road on the ground (GEO): its centre-line as it lies on the tile's TIN.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GroundLine {
+    /// OSM's id of the way.
+    pub way_id: i64,
     /// Functional road class.
     pub class: FunctionalRoadClass,
+    /// x, y in the working CRS and true height of each vertex.
+    pub points_m: Vec<[f64; 3]>,
+}
+
+/// A road in plan (SV), in the tile and its margin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanLine {
+    /// OSM's id of the way.
+    pub way_id: i64,
+    /// Functional road class.
+    pub class: FunctionalRoadClass,
+    /// x, y in the working CRS.
+    pub points_m: Vec<[f64; 2]>,
+    /// Per segment the lowest and highest ground of the tile within the width margin, true height.
+    pub ground_range_m: Vec<[f64; 2]>,
+}
+
+/// The roads of a tile.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TileLines {
+    /// On the ground; empty if that section was not read.
+    pub ground: Vec<GroundLine>,
+    /// In plan; empty if that section was not read.
+    pub plan: Vec<PlanLine>,
+    /// How far the plan lines reach beyond the tile; half widths beyond it are not drawn.
+    pub width_margin_m: f64,
 }
 
 /// Why a road of a tile cannot be drawn: the package is damaged.
@@ -31,8 +55,21 @@ pub struct BadRoad {
     pub source: BadLine,
 }
 
+impl TileLines {
+    /// Places the roads of a payload, as far as it has them. `width_margin_m` is the level's.
+    pub(super) fn of_payload(
+        payload: &TilePayload,
+        frame: &Frame,
+        quantum_m: f64,
+        width_margin_m: f64,
+    ) -> Result<Self, BadRoad> {
+        let ground = ground_lines(payload, frame, quantum_m)?;
+        Ok(Self { ground, plan: plan_lines(payload, frame), width_margin_m })
+    }
+}
+
 /// Recomputes the positions of a tile's clipped roads from its ground.
-pub(super) fn ground_lines(
+fn ground_lines(
     payload: &TilePayload,
     frame: &Frame,
     quantum_m: f64,
@@ -49,67 +86,84 @@ pub(super) fn ground_lines(
     for road in &payload.roads_geo {
         let positions = corniche_drape::positions(&road.line, &surface)
             .map_err(|source| BadRoad { way_id: road.way_id, part: road.part, source })?;
-        lines.push((road.class, positions.into_iter().map(place).collect()));
+        lines.push(GroundLine {
+            way_id: road.way_id,
+            class: road.class,
+            points_m: positions.into_iter().map(place).collect(),
+        });
     }
     Ok(lines)
 }
 
-/// All segments of a tile, in order of class.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct RoadSegments {
-    segments: Vec<RoadSegment>,
-    ranges: [Range<u32>; FunctionalRoadClass::COUNT],
+fn plan_lines(payload: &TilePayload, frame: &Frame) -> Vec<PlanLine> {
+    let place = |road: &corniche_tileset::SvRoad| PlanLine {
+        way_id: road.way_id,
+        class: road.class,
+        points_m: road.line.points.iter().map(|point| frame.position_m(*point)).collect(),
+        ground_range_m: road.line.ground_range_m.clone(),
+    };
+    payload.roads_sv.iter().map(place).collect()
 }
 
-impl RoadSegments {
-    /// Cuts lines into segments. Positions are x, y in the working CRS and true height.
-    #[must_use]
-    pub fn new(lines: &[GroundLine], reference_m: [f64; 3]) -> Self {
-        let mut segments: Vec<RoadSegment> = lines
-            .iter()
-            .flat_map(|(class, line)| {
-                line.windows(2).map(move |pair| RoadSegment {
-                    start_in_tile: relative(pair[0], reference_m),
-                    end_in_tile: relative(pair[1], reference_m),
-                    class: *class,
-                })
-            })
-            .collect();
-        segments.sort_by_key(|segment| segment.class);
-        let ranges = class_ranges(&segments);
-        Self { segments, ranges }
+/// Where lines on the ground end on the tile's border.
+fn ground_ends(lines: &[GroundLine], tile: Bounds) -> Vec<RoadEnd> {
+    let mut ends = Vec::new();
+    for line in lines {
+        for point in [line.points_m.first(), line.points_m.last()].into_iter().flatten() {
+            let [x, y, height_m] = *point;
+            if let Some(side) = Side::of([x, y], tile) {
+                ends.push(RoadEnd {
+                    way_id: line.way_id,
+                    class: line.class,
+                    side,
+                    at_m: [x, y],
+                    height_range_m: [height_m; 2],
+                });
+            }
+        }
     }
+    ends
+}
 
-    /// The segments, most important class first.
-    #[must_use]
-    pub fn all(&self) -> &[RoadSegment] {
-        &self.segments
+/// Where lines in plan cross the tile's border.
+fn plan_ends(lines: &[PlanLine], tile: Bounds) -> Vec<RoadEnd> {
+    let mut ends = Vec::new();
+    for line in lines {
+        for (pair, height_range_m) in line.points_m.windows(2).zip(&line.ground_range_m) {
+            for (side, at_m) in crossings([pair[0], pair[1]], tile) {
+                ends.push(RoadEnd {
+                    way_id: line.way_id,
+                    class: line.class,
+                    side,
+                    at_m,
+                    height_range_m: *height_range_m,
+                });
+            }
+        }
     }
+    ends
+}
 
-    /// Where the segments of a class are.
-    #[must_use]
-    pub fn range_of(&self, class: FunctionalRoadClass) -> Range<u32> {
-        self.ranges[usize::from(class.number())].clone()
-    }
+/// Where a segment passes from one side of a border of the tile to the other.
+fn crossings([p, q]: [[f64; 2]; 2], tile: Bounds) -> impl Iterator<Item = (Side, [f64; 2])> {
+    let sides = [
+        (Side::West, 0, tile.min_x),
+        (Side::East, 0, tile.max_x),
+        (Side::South, 1, tile.min_y),
+        (Side::North, 1, tile.max_y),
+    ];
+    sides.into_iter().filter_map(move |(side, axis, border)| {
+        // A point on the border counts as beyond it, so that a line through one crosses once.
+        ((p[axis] < border) != (q[axis] < border)).then_some(())?;
+        let share = (border - p[axis]) / (q[axis] - p[axis]);
+        let along = p[1 - axis] + share * (q[1 - axis] - p[1 - axis]);
+        let range = [[tile.min_y, tile.max_y], [tile.min_x, tile.max_x]][axis];
+        let mut at_m = [border; 2];
+        at_m[1 - axis] = along;
+        (range[0]..=range[1]).contains(&along).then_some((side, at_m))
+    })
 }
 
 #[cfg(test)]
-#[expect(clippy::float_cmp, reason = "these numbers are exact")]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn segments_are_relative_and_sorted_by_class() {
-        let class = |number| FunctionalRoadClass::new(number).unwrap();
-        let lines = vec![
-            (class(6), vec![[10.0, 20.0, 1.0], [11.0, 20.0, 1.5], [12.0, 20.0, 1.0]]),
-            (class(0), vec![[0.0, 0.0, 0.0], [10.0, 20.0, 1.0]]),
-        ];
-        let roads = RoadSegments::new(&lines, [10.0, 20.0, 1.0]);
-        assert_eq!(roads.range_of(class(0)), 0..1);
-        assert_eq!(roads.range_of(class(6)), 1..3);
-        assert!(roads.range_of(class(3)).is_empty());
-        assert_eq!(roads.all()[0].end_in_tile, [0.0; 3]);
-        assert_eq!(roads.all()[1].end_in_tile, [1.0, 0.0, 0.5]);
-    }
-}
+#[path = "roads_tests.rs"]
+mod tests;

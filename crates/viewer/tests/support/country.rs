@@ -1,8 +1,8 @@
 //! Mountains of three wavelengths with roads, triangulated and draped when a tile is asked for.
 
-use corniche_drape::{OwnedBorders, clip, drape};
+use corniche_drape::{OwnedBorders, clip, clip_closed, drape, extrude};
 use corniche_geom::{Frame, HeightGrid, NodeIndex, Polyline, TILE_NODES, TileId};
-use corniche_tileset::{GeoRoad, Terrain, TilePayload};
+use corniche_tileset::{GeoRoad, SvRoad, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface, TinSpec, normals, triangulate};
 use corniche_viewer::tiles::{LoadTileError, TileGeometry, TileSource};
 
@@ -38,6 +38,11 @@ pub(crate) fn interpolation_error_m(cell_m: f64) -> f64 {
         (height * cell_m * cell_m / 8.0 * (kx + ky).powi(2)).min(2.0 * height)
     };
     WAVES.map(error).iter().sum()
+}
+
+/// How far SV lines reach beyond their tile: eight cells of the level.
+pub(crate) fn width_margin_m(frame: &Frame, level: u8) -> f64 {
+    8.0 * frame.level_cell_m(level)
 }
 
 impl Country {
@@ -76,12 +81,24 @@ impl Country {
             quantum_m: QUANTUM_M,
         };
         let surface = Surface::new(&tin, placement);
-        let mut roads_geo = Vec::new();
+        let (mut roads_geo, mut roads_sv) = (Vec::new(), Vec::new());
+        let margin = (width_margin_m(frame, id.z()) / frame.lattice_step_m()) as i64;
         for (way_id, (number, line)) in self.roads.iter().enumerate() {
             let mut parts = 0..;
             for part in clip(line, &frame.tile_lattice_bounds(id), OwnedBorders::of_tile(id)) {
                 for line in drape(&part, &surface).lines {
                     roads_geo.push(GeoRoad {
+                        way_id: way_id as i64,
+                        part: parts.next().unwrap(),
+                        class: class(*number),
+                        line,
+                    });
+                }
+            }
+            let mut parts = 0..;
+            for part in clip_closed(line, &frame.tile_lattice_bounds(id).expanded(margin)) {
+                for line in extrude(&part, &surface, margin) {
+                    roads_sv.push(SvRoad {
                         way_id: way_id as i64,
                         part: parts.next().unwrap(),
                         class: class(*number),
@@ -97,13 +114,7 @@ impl Country {
             height_range_m: [90.0, 1910.0],
             uncovered_nodes: 0,
         };
-        TilePayload {
-            id,
-            terrain: Some(terrain),
-            roads_geo,
-            roads_sv: Vec::new(),
-            attributes: Vec::new(),
-        }
+        TilePayload { id, terrain: Some(terrain), roads_geo, roads_sv, attributes: Vec::new() }
     }
 }
 
@@ -117,7 +128,8 @@ impl TileSource for Country {
     }
 
     fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
-        TileGeometry::from_payload(&self.payload(id), &self.frame, QUANTUM_M)
+        let margin_m = width_margin_m(&self.frame, id.z());
+        TileGeometry::from_payload(&self.payload(id), &self.frame, QUANTUM_M, margin_m)
             .map_err(|error| LoadTileError { id, source: error.into() })
     }
 }

@@ -13,11 +13,11 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::Terrain;
 use corniche_tin::{Tin, TinVertex};
 use corniche_viewer::{
-    RoadMethod,
+    RoadMethod, RoadOptions,
     camera::Camera,
-    gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers},
+    gpu::{DrawTile, FrameView, Gpu, Owner, Renderer, Targets, TileBuffers},
     style::{RoadStyle, Style, WidthScaling},
-    tiles::{GroundLine, TileGeometry},
+    tiles::{GroundLine, TileGeometry, TileLines},
 };
 use glam::{DVec2, DVec3};
 
@@ -151,7 +151,7 @@ pub(crate) fn plain_style(width_m: f32) -> Style {
         RoadStyle { width_m, min_width_px: 0.0, color: [1.0; 3], outline: [0.0; 3], center: None };
     Style {
         roads: [road; 9],
-        width_scaling: WidthScaling { threshold_m: 1e9, exponent: 0.0 },
+        width_scaling: WidthScaling { threshold_m: 1e9, exponent: 0.0, constant: 1.0 },
         ..Style::road_atlas()
     }
 }
@@ -163,6 +163,7 @@ pub(crate) struct Drawing {
     pub(crate) ground: Vec<u8>,
     pub(crate) depth: Vec<f32>,
     pub(crate) labels: Vec<u8>,
+    pub(crate) owners: Vec<Owner>,
 }
 
 impl Drawing {
@@ -173,6 +174,7 @@ impl Drawing {
             ground: targets.read_ground(gpu).unwrap(),
             depth: targets.read_depth(gpu).unwrap(),
             labels: targets.read_labels(gpu).unwrap(),
+            owners: targets.read_owners(gpu).unwrap(),
         };
         keep(&drawing);
         drawing
@@ -230,7 +232,8 @@ pub(crate) fn draw_exaggerated(
     let buffers: Vec<(TileBuffers, f64)> = scene
         .iter()
         .map(|(id, terrain, lines, skirt_depth_m)| {
-            let tile = TileGeometry::assemble(*id, Some(terrain), lines, &frame(), QUANTUM_M);
+            let lines = TileLines { ground: lines.clone(), ..TileLines::default() };
+            let tile = TileGeometry::assemble(*id, Some(terrain), &lines, &frame(), QUANTUM_M);
             (TileBuffers::new(gpu, &tile), *skirt_depth_m)
         })
         .collect();
@@ -242,7 +245,7 @@ pub(crate) fn draw_exaggerated(
     let view = FrameView {
         camera,
         style,
-        roads: RoadMethod::Geometry,
+        roads: RoadOptions::of(RoadMethod::Geometry),
         exaggeration,
         point_scale: 1.0,
         height_range_m: [0.0, 1000.0],
@@ -266,8 +269,8 @@ fn keep(drawing: &Drawing) {
 /// Distance in plan from a point to the nearest of some lines.
 pub(crate) fn plan_distance_m(at: DVec2, lines: &[GroundLine]) -> f64 {
     let mut nearest = f64::INFINITY;
-    for (_, line) in lines {
-        for pair in line.windows(2) {
+    for line in lines {
+        for pair in line.points_m.windows(2) {
             let (a, b) = (DVec2::new(pair[0][0], pair[0][1]), DVec2::new(pair[1][0], pair[1][1]));
             let along = ((at - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
             nearest = nearest.min(at.distance(a + (b - a) * along));

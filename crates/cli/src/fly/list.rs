@@ -1,0 +1,80 @@
+//! One line per frame and run. The columns of milliseconds come last: all others are the same each time.
+
+use std::fmt::Write as _;
+
+use super::Run;
+
+const HEADINGS: &str = "lod,roads,frame,time_s,x_m,y_m,height_m,heading_deg,pitch_deg,tiles_drawn,tiles_loaded,\
+tiles_uploaded,tiles_evicted,tiles_missing,triangles,road_segments,gpu_bytes,select_ms,decode_ms,upload_ms,draw_ms,\
+terrain_ms,roads_ms,composite_ms\n";
+
+/// Times of passes stay empty where the adapter has no clock.
+pub(super) fn to_csv(runs: &[Run]) -> String {
+    let mut text = HEADINGS.to_owned();
+    for run in runs {
+        for frame in &run.frames {
+            let [x, y, height_m] = frame.pose.eye_m;
+            // Writing to a string cannot fail.
+            let _ = write!(
+                text,
+                "{},{},{},{:.4},{x:.3},{y:.3},{height_m:.3},{:.3},{:.3},{},{},{},{},{},{},{},{},{:.3},{:.3},{:.3},{:.3}",
+                run.lod.word(),
+                run.roads.word(),
+                frame.frame,
+                frame.time_s,
+                frame.pose.orientation.heading_deg,
+                frame.pose.orientation.pitch_deg,
+                frame.tiles_drawn,
+                frame.tiles_loaded,
+                frame.tiles_uploaded,
+                frame.tiles_evicted,
+                frame.tiles_missing,
+                frame.triangles,
+                frame.road_segments,
+                frame.gpu_bytes,
+                frame.select_ms,
+                frame.decode_ms,
+                frame.upload_ms,
+                frame.draw_ms,
+            );
+            let _ = match frame.passes {
+                Some(passes) => writeln!(
+                    text,
+                    ",{:.3},{:.3},{:.3}",
+                    passes.terrain_ms, passes.roads_ms, passes.composite_ms
+                ),
+                None => writeln!(text, ",,,"),
+            };
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        args::{Lod, Roads},
+        fly::summary::tests::frame,
+    };
+
+    #[test]
+    fn every_line_has_every_column() {
+        let mut clockless = frame(8.0);
+        clockless.passes = None;
+        let runs =
+            [Run { lod: Lod::Culled, roads: Roads::Sv, frames: vec![frame(3.0), clockless] }];
+        let csv = to_csv(&runs);
+        let lines: Vec<&str> = csv.lines().collect();
+        assert_eq!(lines.len(), 3);
+        for line in &lines {
+            assert_eq!(line.split(',').count(), 24, "{line}");
+        }
+        assert!(
+            lines[1].starts_with("culled,sv,4,1.5000,1.000,2.000,3.000,45.000,65.000,7,"),
+            "{csv}"
+        );
+        assert!(lines[1].ends_with(",3.000,1.000,2.000,0.500"), "{csv}");
+        assert!(lines[2].ends_with(",8.000,,,"), "{csv}");
+    }
+}

@@ -1,0 +1,169 @@
+//! Tells what holds more than one point in time, a history or changes, from an extract, where the header does not.
+//!
+//! An extract holds each object once, and none that is deleted. So a file is refused that
+//! - marks an object as deleted (`Info.visible`), or
+//! - holds an object in two versions (`Info.version`): either one after the other, as histories and merged extracts are
+//!   sorted, or, of ways, anywhere in the file if both are roads.
+//!
+//! Versions below 1 are none: programs write them for what they do not know. An object without a version, or twice in the
+//! same one, says nothing of history. The ids of all objects are not remembered, so that of an unsorted file the versions
+//! go unseen that are no roads.
+//!
+//! This reads the block itself: the decoder forgets versions and marks of dense nodes that come without times and users.
+
+use crate::wire::{self, Field, Value, zigzag};
+
+const KINDS: [&str; 3] = ["node", "way", "relation"];
+
+/// What versions the objects of a block, or of the file so far, have.
+#[derive(Debug, Default)]
+pub(crate) struct Versions {
+    /// Nodes, ways, relations.
+    runs: [Run; 3],
+    /// Why this is no extract: the first thing found.
+    pub(crate) history: Option<String>,
+}
+
+/// The objects of one kind, in the file's order; those without version are passed over.
+#[derive(Debug, Default, Clone, Copy)]
+struct Run {
+    first: Option<Versioned>,
+    last: Option<Versioned>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Versioned {
+    id: i64,
+    version: i32,
+}
+
+/// What is known of an object.
+#[derive(Debug, Clone, Copy, Default)]
+struct Info {
+    version: i32,
+    is_deleted: bool,
+}
+
+/// A version, if it is one.
+pub(crate) fn known_version(version: i32) -> Option<i32> {
+    (version > 0).then_some(version)
+}
+
+/// The words for a way in two versions, or another object.
+pub(crate) fn two_versions(kind: &str, id: i64, [first, second]: [i32; 2]) -> String {
+    format!("it holds {kind} {id} in versions {first} and {second}")
+}
+
+impl Versions {
+    /// Looks through a block (message `PrimitiveBlock`) that was audited: all of it can be read.
+    pub(crate) fn scan(block: &[u8]) -> Self {
+        let mut versions = Self::default();
+        for group in messages(block, 2) {
+            for field in wire::fields(group).flatten() {
+                match (field.number, field.value) {
+                    (1, Value::Bytes(node)) => versions.object(0, node, zigzag),
+                    (2, Value::Bytes(nodes)) => versions.dense(nodes),
+                    (3, Value::Bytes(way)) => versions.object(1, way, u64::cast_signed),
+                    (4, Value::Bytes(relation)) => versions.object(2, relation, u64::cast_signed),
+                    _ => {}
+                }
+            }
+        }
+        versions
+    }
+
+    /// Adds a later block.
+    pub(crate) fn append(&mut self, later: Self) {
+        for (kind, run) in later.runs.into_iter().enumerate() {
+            for object in [run.first, run.last].into_iter().flatten() {
+                self.follow(kind, object);
+            }
+        }
+        if self.history.is_none() {
+            self.history = later.history;
+        }
+    }
+
+    fn object(&mut self, kind: usize, message: &[u8], to_id: fn(u64) -> i64) {
+        let (mut id, mut info) = (0, Info::default());
+        for field in wire::fields(message).flatten() {
+            match (field.number, field.value) {
+                (1, Value::Varint(number)) => id = to_id(number),
+                (4, Value::Bytes(message)) => info.read(message),
+                _ => {}
+            }
+        }
+        self.take(kind, id, info);
+    }
+
+    /// Arrays of ids, versions and marks; the latter two may be shorter, or not be there at all.
+    fn dense(&mut self, nodes: &[u8]) {
+        let infos = || messages(nodes, 5);
+        let mut versions = infos().flat_map(|info| numbers(info, 1)).peekable();
+        let mut visible = infos().flat_map(|info| numbers(info, 6)).peekable();
+        if versions.peek().is_none() && visible.peek().is_none() {
+            return;
+        }
+        let mut id = 0_i64;
+        for step in numbers(nodes, 1) {
+            id = id.wrapping_add(zigzag(step));
+            let version = versions.next().map_or(0, to_version);
+            self.take(0, id, Info { version, is_deleted: visible.next() == Some(0) });
+        }
+    }
+
+    fn take(&mut self, kind: usize, id: i64, info: Info) {
+        if info.is_deleted && self.history.is_none() {
+            self.history = Some(format!("it marks {} {id} as deleted", KINDS[kind]));
+        }
+        if let Some(version) = known_version(info.version) {
+            self.follow(kind, Versioned { id, version });
+        }
+    }
+
+    fn follow(&mut self, kind: usize, object: Versioned) {
+        let Run { first, last } = &mut self.runs[kind];
+        first.get_or_insert(object);
+        if let Some(last) = last.replace(object)
+            && last.id == object.id
+            && last.version != object.version
+            && self.history.is_none()
+        {
+            let versions = [last.version, object.version];
+            self.history = Some(two_versions(KINDS[kind], object.id, versions));
+        }
+    }
+}
+
+impl Info {
+    fn read(&mut self, message: &[u8]) {
+        for field in wire::fields(message).flatten() {
+            match (field.number, field.value) {
+                (1, Value::Varint(version)) => self.version = to_version(version),
+                (6, Value::Varint(is_visible)) => self.is_deleted = is_visible == 0,
+                _ => {}
+            }
+        }
+    }
+}
+
+/// The parts of a message in fields of this number.
+fn messages(message: &[u8], number: u32) -> impl Iterator<Item = &[u8]> {
+    let of_number = move |field: &Field<'_>| field.number == number;
+    wire::fields(message).flatten().filter(of_number).filter_map(|field| field.value.bytes().ok())
+}
+
+/// The numbers of a repeated field, one after another; nothing is kept of them.
+fn numbers(message: &[u8], number: u32) -> impl Iterator<Item = u64> {
+    let of_number = move |field: &Field<'_>| field.number == number;
+    wire::fields(message)
+        .flatten()
+        .filter(of_number)
+        .filter_map(|field| field.value.numbers().ok())
+        .flat_map(Iterator::flatten)
+}
+
+/// An `int32`: of a negative one, ten bytes are written, and what does not fit is no version.
+fn to_version(number: u64) -> i32 {
+    i32::try_from(number.cast_signed()).unwrap_or(0)
+}

@@ -1,0 +1,167 @@
+use std::collections::BTreeMap;
+
+use corniche_geom::TileId;
+use corniche_roads::FunctionalRoadClass;
+
+use crate::tiles::{RoadEnd, Side};
+
+/// Ends of one way in two tiles belong together if they are at most this share of the coarser tile apart: two of
+/// its cells, far more than simplification moves a line.
+const MAX_OFFSET_SHARE: f64 = 2.0 / 256.0;
+
+/// A tile that is drawn, as far as its roads' ends go.
+#[derive(Debug, Clone, Copy)]
+pub struct BorderTile<'a> {
+    /// Which.
+    pub id: TileId,
+    /// Side of its square, metres.
+    pub width_m: f64,
+    /// How far its skirt hangs, true metres.
+    pub skirt_depth_m: f64,
+    /// Where its roads meet its border.
+    pub ends: &'a [RoadEnd],
+}
+
+/// A piece of road over the step between two tiles of different levels.
+///
+/// ```text
+///     coarse │ fine            Both tiles end the road exactly on their common border, but on their own ground,
+///            │  ●━━━━━━━       and, where the coarse line is simplified, beside each other. Between the ends
+///            │ ╱  skirt        there is the step, closed by a skirt, which is no ground and carries no road.
+///   ━━━━━━━━━●                 The bridge ╱ does: it belongs to both tiles and to their skirts.
+/// ```
+///
+/// Agrawal, Radhakrishna & Joshi 2006, *Geometry-based Mapping and Rendering of Vector Data over LOD Phototextured
+/// 3D Terrain Models*, section 4.4.2 (special case 2), move the vector points onto the triangles that fill the
+/// crack. Our cracks are filled by vertical skirts, where there is nothing to move a point onto.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bridge {
+    /// Index of the finer tile in the list.
+    pub fine: usize,
+    /// Index of the coarser one.
+    pub coarse: usize,
+    /// Functional road class.
+    pub class: FunctionalRoadClass,
+    /// Its ends in plan, working CRS: in the finer tile, in the coarser.
+    pub ends_m: [[f64; 2]; 2],
+    /// Lowest and highest true height that it may have to cover.
+    pub height_range_m: [f64; 2],
+}
+
+/// The bridges between tiles that are drawn together, in order of class, then of the tiles.
+#[must_use]
+pub fn bridges(tiles: &[BorderTile<'_>]) -> Vec<Bridge> {
+    let index_of: BTreeMap<TileId, usize> =
+        tiles.iter().enumerate().map(|(index, tile)| (tile.id, index)).collect();
+    let mut found = Vec::new();
+    for (fine, tile) in tiles.iter().enumerate() {
+        for end in tile.ends {
+            let (dx, dy) = end.side.offset();
+            let coarse = tile.id.neighbour(dx, dy).and_then(|beside| {
+                (0..tile.id.z()).rev().find_map(|z| index_of.get(&beside.ancestor(z)))
+            });
+            let Some(&coarse) = coarse else { continue };
+            let beyond = &tiles[coarse];
+            let Some(partner) = partner(end, beyond) else { continue };
+            let skirt_m = tile.skirt_depth_m.max(beyond.skirt_depth_m);
+            let [low, high] = [end.height_range_m, partner.height_range_m];
+            found.push(Bridge {
+                fine,
+                coarse,
+                class: end.class,
+                ends_m: [end.at_m, partner.at_m],
+                height_range_m: [low[0].min(high[0]) - skirt_m, low[1].max(high[1]) + skirt_m],
+            });
+        }
+    }
+    found.sort_by_key(|bridge| (bridge.class, bridge.fine));
+    found
+}
+
+/// Where the way goes on in the tile beyond: its nearest end on the side that faces back.
+fn partner<'a>(end: &RoadEnd, beyond: &BorderTile<'a>) -> Option<&'a RoadEnd> {
+    let distance_m =
+        |other: &RoadEnd| (other.at_m[0] - end.at_m[0]).hypot(other.at_m[1] - end.at_m[1]);
+    beyond
+        .ends
+        .iter()
+        .filter(|other| other.way_id == end.way_id && other.side == end.side.opposite())
+        .filter(|other| distance_m(other) <= MAX_OFFSET_SHARE * beyond.width_m)
+        .min_by(|a, b| distance_m(a).total_cmp(&distance_m(b)))
+}
+
+impl Side {
+    /// The tile beyond: columns to the east, rows to the south.
+    fn offset(self) -> (i32, i32) {
+        match self {
+            Self::West => (-1, 0),
+            Self::East => (1, 0),
+            Self::North => (0, -1),
+            Self::South => (0, 1),
+        }
+    }
+
+    fn opposite(self) -> Self {
+        match self {
+            Self::West => Self::East,
+            Self::East => Self::West,
+            Self::North => Self::South,
+            Self::South => Self::North,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn end(way_id: i64, side: Side, at_m: [f64; 2], height_m: f64) -> RoadEnd {
+        let class = FunctionalRoadClass::new(3).expect("a class");
+        RoadEnd { way_id, class, side, at_m, height_range_m: [height_m; 2] }
+    }
+
+    /// A coarse tile of 200 m, 1/0/0, and the finer 2/2/0 of 100 m to its east.
+    fn check(coarse: &[RoadEnd], fine: &[RoadEnd], expected: &[[[f64; 2]; 2]]) {
+        let id = |z, x, y| TileId::new(z, x, y).expect("a tile");
+        let tiles = [
+            BorderTile { id: id(1, 0, 0), width_m: 200.0, skirt_depth_m: 5.0, ends: coarse },
+            BorderTile { id: id(2, 2, 0), width_m: 100.0, skirt_depth_m: 3.0, ends: fine },
+        ];
+        let found: Vec<_> = bridges(&tiles).iter().map(|bridge| bridge.ends_m).collect();
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn a_way_is_bridged_to_where_it_goes_on() {
+        let coarse = [
+            end(7, Side::East, [200.0, 150.0], 10.0),
+            end(7, Side::East, [200.0, 141.0], 10.0),
+            end(8, Side::East, [200.0, 140.0], 10.0),
+        ];
+        let fine = [end(7, Side::West, [200.0, 140.0], 12.0)];
+        check(&coarse, &fine, &[[[200.0, 140.0], [200.0, 141.0]]]);
+    }
+
+    #[test]
+    fn ends_far_apart_or_on_other_sides_are_not_bridged() {
+        let coarse = [end(7, Side::East, [200.0, 150.0], 10.0)];
+        check(&coarse, &[end(7, Side::West, [200.0, 140.0], 12.0)], &[]);
+        check(&coarse, &[end(7, Side::North, [200.0, 150.0], 12.0)], &[]);
+        check(&[], &[end(7, Side::West, [200.0, 150.0], 12.0)], &[]);
+    }
+
+    #[test]
+    fn a_bridge_reaches_over_both_heights_and_the_deeper_skirt() {
+        let id = |z, x, y| TileId::new(z, x, y).expect("a tile");
+        let coarse = [end(7, Side::East, [200.0, 150.0], 10.0)];
+        let fine = [end(7, Side::West, [200.0, 150.0], 12.0)];
+        let tiles = [
+            BorderTile { id: id(1, 0, 0), width_m: 200.0, skirt_depth_m: 5.0, ends: &coarse },
+            BorderTile { id: id(2, 2, 0), width_m: 100.0, skirt_depth_m: 3.0, ends: &fine },
+        ];
+        let found = bridges(&tiles);
+        assert_eq!((found[0].fine, found[0].coarse), (1, 0));
+        let [low_m, high_m] = found[0].height_range_m;
+        assert!((low_m - 5.0).abs() < 1e-9 && (high_m - 17.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,151 @@
+// Whether the ground that a pixel sees is road: one rule for both methods, which differ in what they draw it with.
+//
+// The terrain's depth is read and the ground seen at the pixel's centre is reconstructed. It is road if its
+// distance in plan to the segment is at most half the road's width. For a volume that stands upright this is the
+// same as the test of Vaaraniemi, Treib & Westermann 2011, High-Quality Cartographic Roads on High-Resolution DEMs,
+// section 5.1, whether the ground lies between where the ray of view enters and leaves; but their roots of a
+// quadratic lose their digits where the eye is far away and the road narrow (a tenth of all pixels near caps at
+// some 7 km), and this does not.
+//
+// A road seen at a grazing angle would break into dashes thinner than a pixel. So ground is also road whose
+// distance to the segment *looks* smaller than the least half width: from the pixel's centre to where the segment
+// is seen, found by interpolating between this pixel's ground and its neighbours' towards the segment. In plan that ground may be no more than `stretch` least half widths away, so that a crest does not
+// paint the valley.
+
+struct Tile {
+    // xyz: the tile's reference point minus the eye; w: depth of the skirt, world metres.
+    offset: vec4<f32>,
+    // x: true height of the reference point; y: widest half width that may be drawn, world metres; z: the tile's
+    // number in this frame, from 1.
+    base: vec4<f32>,
+}
+
+@group(1) @binding(0) var<uniform> tile: Tile;
+@group(2) @binding(0) var terrain_depth: texture_depth_2d;
+@group(2) @binding(1) var owners: texture_2d<u32>;
+
+// 0 draws the road, 1 its centre line.
+override BAND: u32 = 0u;
+
+const MAX_STRETCH = 8.0;
+const SKIRT = 0x80000000u;
+const NEVER = 1e30;
+
+fn position_at(pixel: vec2<f32>, depth_buffer: f32) -> vec3<f32> {
+    return ray_at(pixel) * view_depth_of(depth_buffer);
+}
+
+// How many times wider a level road must be in plan to look as wide as one seen from above.
+fn stretch_of(distance_m: f32, height_m: f32) -> f32 {
+    // Slopes that face away from the eye need some more.
+    return clamp(1.5 * distance_m / max(abs(height_m), 1e-3), 1.0, MAX_STRETCH);
+}
+
+fn half_width_share(road_class: u32) -> f32 {
+    return select(1.0, frame.road_widths[road_class].z, BAND == 1u);
+}
+
+fn has_caps() -> bool {
+    return frame.road_options.x > 0.5;
+}
+
+// In plan from the nearest point of a segment; `NEVER` away beside the ends of a road without caps.
+fn from_segment(from_start: vec2<f32>, start_to_end: vec2<f32>) -> vec2<f32> {
+    let length_squared = dot(start_to_end, start_to_end);
+    let along = dot(from_start, start_to_end) / max(length_squared, 1e-12);
+    let share = clamp(along, 0.0, 1.0);
+    if !has_caps() && (share != along || length_squared == 0.0) {
+        return vec2(NEVER, 0.0);
+    }
+    return from_start - share * start_to_end;
+}
+
+// The pixel `step` away from one, and what it sees.
+struct Neighbour {
+    depth_buffer: f32,
+    // In plan, relative to the eye.
+    position: vec2<f32>,
+    to_segment_m: f32,
+}
+
+fn neighbour(pixel: vec2<i32>, step: vec2<i32>, start: vec2<f32>, start_to_end: vec2<f32>) -> Neighbour {
+    let last = vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1;
+    let at = pixel + step;
+    var out: Neighbour;
+    if any(at < vec2(0)) || any(at > last) {
+        return out;
+    }
+    out.depth_buffer = textureLoad(terrain_depth, at, 0);
+    if out.depth_buffer > 0.0 {
+        out.position = position_at(vec2<f32>(at) + 0.5, out.depth_buffer).xy;
+        out.to_segment_m = length(from_segment(out.position - start, start_to_end));
+    }
+    return out;
+}
+
+// How far in plan what is seen moves with a step of one pixel, on the side where the segment is nearer. The
+// other side, if there is no ground or a silhouette on this one: on one triangle the depth buffer is linear.
+fn plan_step(pixel: vec2<i32>, step: vec2<i32>, depth_buffer: f32, position: vec2<f32>, start: vec2<f32>,
+    start_to_end: vec2<f32>) -> vec2<f32> {
+    let ahead = neighbour(pixel, step, start, start_to_end);
+    let behind = neighbour(pixel, -step, start, start_to_end);
+    let change_ahead = abs(ahead.depth_buffer - depth_buffer);
+    let change_behind = abs(behind.depth_buffer - depth_buffer);
+    var is_ahead = ahead.to_segment_m <= behind.to_segment_m;
+    if behind.depth_buffer == 0.0 || change_behind > 4.0 * change_ahead + 1e-4 * depth_buffer {
+        is_ahead = true;
+    } else if ahead.depth_buffer == 0.0 || change_ahead > 4.0 * change_behind + 1e-4 * depth_buffer {
+        is_ahead = false;
+    }
+    if is_ahead {
+        return select(ahead.position - position, vec2(0.0), ahead.depth_buffer == 0.0);
+    }
+    return position - behind.position;
+}
+
+// Pixels from the middle of this one to the image of a segment. `right` and `down` map pixels to plan; their
+// inverse maps the segment to pixels. (Its nearest point in the picture is not its nearest in plan.)
+fn seen_px(right: vec2<f32>, down: vec2<f32>, from_start: vec2<f32>, start_to_end: vec2<f32>) -> f32 {
+    let area = right.x * down.y - right.y * down.x;
+    if area == 0.0 {
+        return NEVER;
+    }
+    let px_from_m = mat2x2(vec2(down.y, -right.y) / area, vec2(-down.x, right.x) / area);
+    return length(from_segment(px_from_m * from_start, px_from_m * start_to_end));
+}
+
+fn is_road(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
+    road_class: u32, widest_m: f32) -> bool {
+    let position = position_at(center, depth_buffer);
+    let distance_m = length(position);
+    let plan_m = length(from_segment(position.xy - start, start_to_end));
+    let band = half_width_share(road_class);
+    if plan_m > widest_m {
+        return false;
+    }
+    if plan_m <= band * scaled_half_width_m(road_class, distance_m) {
+        return true;
+    }
+    let least_m = band * least_half_width_m(road_class, view_depth_of(depth_buffer));
+    if plan_m > stretch_of(distance_m, position.z) * least_m {
+        return false;
+    }
+    let right = plan_step(pixel, vec2(1, 0), depth_buffer, position.xy, start, start_to_end);
+    let down = plan_step(pixel, vec2(0, 1), depth_buffer, position.xy, start, start_to_end);
+    return seen_px(right, down, position.xy - start, start_to_end) <= band * frame.road_widths[road_class].y;
+}
+
+// Bounds on the half width of a road none of which is farther away than `far_m` or nearer in height to the eye
+// than `near_height_m`.
+fn bounding_radius_m(road_class: u32, far_m: f32, near_height_m: f32) -> f32 {
+    let band = half_width_share(road_class);
+    let first = max(scaled_half_width_m(road_class, far_m), MAX_STRETCH * least_half_width_m(road_class, far_m));
+    let reach_m = far_m + 2.0 * first;
+    let stretch = stretch_of(reach_m, near_height_m);
+    return band * max(scaled_half_width_m(road_class, reach_m), stretch * least_half_width_m(road_class, reach_m));
+}
+
+// More important classes have larger labels; the centre line of a class lies above its fill.
+fn label_of(road_class: u32) -> u32 {
+    return (CLASSES - road_class) * 2u + BAND;
+}

@@ -1,0 +1,149 @@
+// Roads as shadow volumes (SV): one box per segment, from below the lowest ground beneath it to above the highest.
+//
+// Source: Vaaraniemi, Treib & Westermann 2011, High-Quality Cartographic Roads on High-Resolution DEMs, section 5.
+//
+//            ┌───────────────┐ ─ highest ground beneath
+//           ╱│              ╱│     Only faces that look away from the eye are drawn: each pixel that sees the
+//          ┌───────────────┐ │     box gets one fragment, also when the eye is inside. There is no depth test;
+//          │ │  a──────b   │ │     the fragment looks at the ground instead and decides whether it is road.
+//          │ └─────────────│─┘ ─ lowest
+//          │╱              │╱
+//          └───────────────┘
+//
+// What we changed: the box is as high as the ground under the segment, not as the tile; and the ground's distance
+// to the segment decides (coverage.wgsl). `road_options.y` brings back the paper's own test.
+//
+// A volume paints the ground of its own tile alone. Every tile has all lines within the width margin around it, so
+// wide roads are not cut at borders, and where levels meet, no tile's roads smear over the other's ground. Skirts
+// are no ground; only bridges (scene/bridges.rs) go over them.
+
+struct VolumeIn {
+    @builtin(vertex_index) corner: u32,
+    @location(0) start_in_tile: vec2<f32>,
+    @location(1) end_in_tile: vec2<f32>,
+    @location(2) height_range_in_tile: vec2<f32>,
+    // Lowest four bits: class. Above, for a bridge, the number of the other tile it belongs to, else 0.
+    @location(3) class_and_other: u32,
+}
+
+struct VertexOut {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) @interpolate(flat) start: vec2<f32>,
+    @location(1) @interpolate(flat) start_to_end: vec2<f32>,
+    @location(2) @interpolate(flat) class_and_other: u32,
+}
+
+// The corners of a box as one strip of twelve triangles, all counter-clockwise seen from outside:
+// bit 0: end or start, bit 1: left or right of the segment, bit 2: top or bottom.
+const STRIP = array<u32, 14>(0u, 1u, 4u, 5u, 7u, 1u, 3u, 0u, 2u, 4u, 6u, 7u, 2u, 3u);
+
+@vertex
+fn vertex(in: VolumeIn) -> VertexOut {
+    let vertical_scale = frame.background.w;
+    let road_class = in.class_and_other & 15u;
+    let is_bridge = in.class_and_other > 15u;
+    let a = tile.offset.xy + in.start_in_tile;
+    let ab = in.end_in_tile - in.start_in_tile;
+    var heights = tile.offset.z + in.height_range_in_tile * vertical_scale;
+    let length_m = length(ab);
+    let direction = select(vec2(1.0, 0.0), ab / length_m, length_m > 1e-6);
+
+    let far_height_m = max(abs(heights.x), abs(heights.y));
+    let far_m = length(vec2(max(length(a), length(a + ab)), far_height_m));
+    let near_height_m = select(0.0, min(abs(heights.x), abs(heights.y)), heights.x * heights.y > 0.0);
+    // The ground was searched within the margin.
+    let radius_m = min(bounding_radius_m(road_class, far_m, near_height_m), tile.base.y);
+    // Rounding of positions must not cut off ground at the rim; the fragment decides anyway. Beside a bridge the
+    // ground was not searched, but rises or falls by more than the road is wide only on cliffs.
+    let pad_m = 1e-6 * far_m + 0.01;
+    let pad_height_m = pad_m + select(0.0, 2.0 * radius_m * vertical_scale, is_bridge);
+    heights += vec2(-pad_height_m, pad_height_m);
+
+    let corner = STRIP[in.corner];
+    let at_end = f32(corner & 1u);
+    let side = f32((corner >> 1u) & 1u) * 2.0 - 1.0;
+    let along = direction * (at_end * 2.0 - 1.0);
+    let across = vec2(-direction.y, direction.x) * side;
+    let plan = a + ab * at_end + (along + across) * (radius_m + pad_m);
+    let height = select(heights.x, heights.y, (corner & 4u) != 0u);
+
+    var out: VertexOut;
+    out.clip = frame.clip_from_relative * vec4(plan, height, 1.0);
+    out.start = a;
+    out.start_to_end = ab;
+    out.class_and_other = in.class_and_other;
+    return out;
+}
+
+// Where a ray from the eye along the unit vector `ray` is in the half width around an end, as the paper computes
+// it: distances at which it enters and leaves, entry behind exit if it does not.
+fn through_cap(ray: vec3<f32>, cap: vec2<f32>, radius_m: f32) -> vec2<f32> {
+    let c = -cap;
+    let vv = dot(ray.xy, ray.xy);
+    let vc = dot(ray.xy, c);
+    let d = 4.0 * vc * vc - 4.0 * vv * (dot(c, c) - radius_m * radius_m);
+    if d <= 0.0 || vv < 1e-12 {
+        return vec2(NEVER, -NEVER);
+    }
+    return (vec2(-2.0 * vc) + vec2(-1.0, 1.0) * sqrt(d)) / (2.0 * vv);
+}
+
+// Where `origin + distance · speed` lies between `low` and `high`.
+fn through_slab(origin: f32, speed: f32, low: f32, high: f32) -> vec2<f32> {
+    if abs(speed) < 1e-9 {
+        return select(vec2(NEVER, -NEVER), vec2(-NEVER, NEVER), origin >= low && origin <= high);
+    }
+    let t = vec2(low - origin, high - origin) / speed;
+    return vec2(min(t.x, t.y), max(t.x, t.y));
+}
+
+// The paper's test, section 5.2: z0 < zt < z1.
+fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
+    road_class: u32) -> bool {
+    let position = position_at(center, depth_buffer);
+    let ground = length(position);
+    let ray = normalize(ray_at(center));
+    let radius_m = min(tile.base.y, half_width_share(road_class)
+        * max(scaled_half_width_m(road_class, ground), least_half_width_m(road_class, view_depth_of(depth_buffer))));
+
+    let length_m = length(start_to_end);
+    let direction = select(vec2(1.0, 0.0), start_to_end / length_m, length_m > 1e-6);
+    let normal = vec2(-direction.y, direction.x);
+    let along = through_slab(-dot(start, direction), dot(ray.xy, direction), 0.0, length_m);
+    let across = through_slab(-dot(start, normal), dot(ray.xy, normal), -radius_m, radius_m);
+    var between = vec2(max(along.x, across.x), min(along.y, across.y));
+    if between.x > between.y {
+        between = vec2(NEVER, -NEVER);
+    }
+    if has_caps() {
+        let first = through_cap(ray, start, radius_m);
+        let last = through_cap(ray, start + start_to_end, radius_m);
+        between = vec2(min(between.x, min(first.x, last.x)), max(between.y, max(first.y, last.y)));
+    }
+    return between.x < ground && ground < between.y;
+}
+
+@fragment
+fn fragment(in: VertexOut) -> @location(0) u32 {
+    let pixel = vec2<i32>(in.clip.xy);
+    let owner = textureLoad(owners, pixel, 0).r;
+    let own = u32(tile.base.z);
+    let other = in.class_and_other >> 4u;
+    let is_mine = owner == own;
+    let is_bridged = other != 0u && ((owner & ~SKIRT) == own || (owner & ~SKIRT) == other);
+    if !is_mine && !is_bridged {
+        discard;
+    }
+    let road_class = in.class_and_other & 15u;
+    let depth_buffer = textureLoad(terrain_depth, pixel, 0);
+    var covered: bool;
+    if frame.road_options.y > 0.5 {
+        covered = is_road_by_the_paper(in.clip.xy, depth_buffer, in.start, in.start_to_end, road_class);
+    } else {
+        covered = is_road(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, road_class, tile.base.y);
+    }
+    if !covered {
+        discard;
+    }
+    return label_of(road_class);
+}

@@ -1,0 +1,280 @@
+//! Which tiles to load, to hand to the graphics card and to forget while the camera moves.
+//!
+//! ```text
+//!            load                arrived               upload
+//!  listed ─────────► loading ─────────────► waiting ─────────────► resident ──► drawn
+//!    ▲                                         │ cancel                │ evict
+//!    └─────────────────────────────────────────┴───────────────────────┘
+//! ```
+//!
+//! [`Streamer`] decides and remembers; it holds no tile, opens no file and knows no graphics card, so that it is tested
+//! without any. Whoever drives it does what a [`Plan`] says, in its order, and reports what was decoded. Time is counted
+//! in frames: the same camera and the same arrivals give the same plans.
+//!
+//! A tile is drawn only when it is resident, and its parent is drawn until all its children that exist are
+//! ([`lod::select`]). What is drawn is never evicted, nor are the tiles above it, which take its place, nor the siblings of
+//! any of these, drawn or waiting for one another: without them, a budget too small would be spent again each frame.
+//!
+//! Source: Cozzi & Ring, *3D Engine Design for Virtual Globes* (2011), ch. 12: least recently used tiles go first, the
+//! requests of the present view come before those of the coming one.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use corniche_geom::{Bounds, TileId};
+
+use crate::{
+    camera::Camera,
+    lod::{self, Drawn, GroundSummary, Node, Quality, Request, Selection, TileTree},
+    tiles::TileSource,
+};
+
+/// How much is done in a frame and kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StreamBudget {
+    /// So many tiles are being decoded at once.
+    pub tiles_in_flight: usize,
+    /// So much is handed to the graphics card in a frame, though always at least one tile.
+    pub upload_bytes_per_frame: u64,
+    /// So much lies on the graphics card.
+    pub gpu_bytes: u64,
+}
+
+/// What the streamer knows of a decoded tile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TileFacts {
+    /// Errors and heights; `None` without ground.
+    pub ground: Option<GroundSummary>,
+    /// What it takes on the graphics card.
+    pub gpu_bytes: u64,
+}
+
+/// What to do in this frame, in this order.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Plan {
+    /// Remove from the graphics card.
+    pub evict: Vec<TileId>,
+    /// Hand over to the graphics card; all of them have arrived.
+    pub upload: Vec<TileId>,
+    /// Draw.
+    pub drawn: Vec<Drawn>,
+    /// Forget, decoded but no longer wanted.
+    pub cancel: Vec<TileId>,
+    /// Begin to load, most urgent first.
+    pub load: Vec<TileId>,
+    /// Tiles that this view wants next and that are not resident yet; what lies beneath them is not counted.
+    pub missing: usize,
+}
+
+/// Decides what is loaded, resident and drawn.
+#[derive(Debug, Clone)]
+pub struct Streamer {
+    budget: StreamBudget,
+    frame: u64,
+    loading: BTreeSet<TileId>,
+    waiting: BTreeMap<TileId, TileFacts>,
+    resident: BTreeMap<TileId, Resident>,
+    resident_bytes: u64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Resident {
+    facts: TileFacts,
+    last_used_frame: u64,
+}
+
+impl Streamer {
+    /// Nothing loaded yet.
+    #[must_use]
+    pub fn new(budget: StreamBudget) -> Self {
+        Self {
+            budget,
+            frame: 0,
+            loading: BTreeSet::new(),
+            waiting: BTreeMap::new(),
+            resident: BTreeMap::new(),
+            resident_bytes: 0,
+        }
+    }
+
+    /// A tile of an earlier [`Plan::load`] is decoded.
+    pub fn arrived(&mut self, id: TileId, facts: TileFacts) {
+        if self.loading.remove(&id) {
+            self.waiting.insert(id, facts);
+        }
+    }
+
+    /// What lies on the graphics card.
+    #[must_use]
+    pub fn resident_bytes(&self) -> u64 {
+        self.resident_bytes
+    }
+
+    /// How many tiles lie on the graphics card.
+    #[must_use]
+    pub fn resident_tiles(&self) -> usize {
+        self.resident.len()
+    }
+
+    /// Plans the next frame, seen from `camera`; `ahead` is where the camera will soon be, to load for in advance.
+    pub fn plan(
+        &mut self,
+        source: &dyn TileSource,
+        camera: &Camera,
+        ahead: Option<&Camera>,
+        quality: Quality,
+    ) -> Plan {
+        self.frame += 1;
+        let mut plan = Plan::default();
+        let before = self.select(source, camera, quality);
+        self.touch(&before);
+        let coming = ahead.map(|ahead| self.select(source, ahead, quality)).unwrap_or_default();
+
+        // What the coming view shows may go for the present one, but not for more of the coming one.
+        let mut left_bytes = self.budget.upload_bytes_per_frame;
+        self.upload(&before.requests, &BTreeSet::new(), &mut left_bytes, &mut plan);
+        let kept = self.in_use(&coming);
+        self.upload(&coming.requests, &kept, &mut left_bytes, &mut plan);
+
+        let shown = if plan.upload.is_empty() {
+            before
+        } else {
+            let shown = self.select(source, camera, quality);
+            self.touch(&shown);
+            shown
+        };
+        self.load(&shown.requests, &coming.requests, &mut plan);
+        plan.missing = shown.requests.len();
+        plan.drawn = shown.drawn;
+        plan
+    }
+
+    fn select(&self, source: &dyn TileSource, camera: &Camera, quality: Quality) -> Selection {
+        lod::select(&ResidentTree { source, resident: &self.resident }, camera, quality)
+    }
+
+    /// Tiles that a selection needs to stay as it is: those drawn, those above them, and of each of these all children,
+    /// in view or not, because one that lacks has its parent drawn instead.
+    fn in_use(&self, selection: &Selection) -> BTreeSet<TileId> {
+        let mut refined = BTreeSet::new();
+        let drawn = selection.drawn.iter().map(|drawn| drawn.id);
+        let wanted = selection.requests.iter().map(|request| request.id);
+        for id in drawn.clone().chain(wanted) {
+            let mut next = id.parent();
+            while let Some(id) = next.filter(|id| refined.insert(*id)) {
+                next = id.parent();
+            }
+        }
+        let children: Vec<TileId> = refined.iter().flat_map(|id| id.children()).collect();
+        let mut used = refined;
+        used.extend(drawn.chain(children));
+        used.retain(|id| self.resident.contains_key(id));
+        used
+    }
+
+    fn touch(&mut self, selection: &Selection) {
+        for id in self.in_use(selection) {
+            if let Some(tile) = self.resident.get_mut(&id) {
+                tile.last_used_frame = self.frame;
+            }
+        }
+    }
+
+    fn upload(
+        &mut self,
+        requests: &[Request],
+        kept: &BTreeSet<TileId>,
+        left_bytes: &mut u64,
+        plan: &mut Plan,
+    ) {
+        for Request { id, .. } in requests {
+            let Some(&facts) = self.waiting.get(id) else { continue };
+            let fits = facts.gpu_bytes <= *left_bytes || plan.upload.is_empty();
+            if !fits || !self.make_room(facts.gpu_bytes, kept, plan) {
+                return;
+            }
+            *left_bytes = left_bytes.saturating_sub(facts.gpu_bytes);
+            self.waiting.remove(id);
+            self.resident_bytes += facts.gpu_bytes;
+            self.resident.insert(*id, Resident { facts, last_used_frame: self.frame });
+            plan.upload.push(*id);
+        }
+    }
+
+    /// Evicts the least recently used until `wanted_bytes` more fit; nothing if they cannot.
+    fn make_room(&mut self, wanted_bytes: u64, kept: &BTreeSet<TileId>, plan: &mut Plan) -> bool {
+        let excess_bytes =
+            (self.resident_bytes + wanted_bytes).saturating_sub(self.budget.gpu_bytes);
+        if excess_bytes == 0 {
+            return true;
+        }
+        let mut idle: Vec<(u64, TileId)> = self
+            .resident
+            .iter()
+            .filter(|(id, tile)| tile.last_used_frame < self.frame && !kept.contains(id))
+            .map(|(id, tile)| (tile.last_used_frame, *id))
+            .collect();
+        // Of tiles last used together, the finest goes first: the coarse ones stand in for more.
+        idle.sort_by(|a, b| a.0.cmp(&b.0).then(b.1.cmp(&a.1)));
+        let mut freed_bytes = 0;
+        let enough = idle.iter().position(|(_, id)| {
+            freed_bytes += self.resident[id].facts.gpu_bytes;
+            freed_bytes >= excess_bytes
+        });
+        let Some(last) = enough else { return false };
+        for (_, id) in &idle[..=last] {
+            if let Some(tile) = self.resident.remove(id) {
+                self.resident_bytes -= tile.facts.gpu_bytes;
+                plan.evict.push(*id);
+            }
+        }
+        true
+    }
+
+    fn load(&mut self, now: &[Request], coming: &[Request], plan: &mut Plan) {
+        let wanted: BTreeSet<TileId> = now.iter().chain(coming).map(|request| request.id).collect();
+        plan.cancel = self.waiting.keys().filter(|id| !wanted.contains(id)).copied().collect();
+        for id in &plan.cancel {
+            self.waiting.remove(id);
+        }
+        // What waits already for want of room must not be joined by ever more.
+        let room = self.budget.tiles_in_flight.saturating_sub(self.waiting.len());
+        let coming = coming.iter().take(room);
+        for Request { id, .. } in now.iter().chain(coming) {
+            let is_new = !self.resident.contains_key(id) && !self.waiting.contains_key(id);
+            if is_new
+                && self.loading.len() < self.budget.tiles_in_flight
+                && self.loading.insert(*id)
+            {
+                plan.load.push(*id);
+            }
+        }
+    }
+}
+
+/// The package's tiles; those on the graphics card count as loaded.
+struct ResidentTree<'a> {
+    source: &'a dyn TileSource,
+    resident: &'a BTreeMap<TileId, Resident>,
+}
+
+impl TileTree for ResidentTree<'_> {
+    fn node(&self, id: TileId) -> Node {
+        match self.resident.get(&id) {
+            Some(tile) => Node::Loaded(tile.facts.ground),
+            None if self.source.exists(id) => Node::Listed,
+            None => Node::Absent,
+        }
+    }
+
+    fn plan_bounds(&self, id: TileId) -> Bounds {
+        self.source.frame().tile_bounds(id)
+    }
+
+    fn max_level(&self) -> u8 {
+        self.source.frame().max_level()
+    }
+}
+
+#[cfg(test)]
+#[path = "stream_tests.rs"]
+mod tests;

@@ -1,0 +1,189 @@
+use std::ops::Range;
+
+use corniche_geom::Bounds;
+use corniche_roads::FunctionalRoadClass;
+
+use super::{super::ground::relative, GroundLine, PlanLine, ground_ends, plan_ends};
+
+/// A straight piece of a road's centre-line on the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoadSegment {
+    /// Metres from the tile's reference point; z is true height, before exaggeration.
+    pub start_in_tile: [f32; 3],
+    /// The other end.
+    pub end_in_tile: [f32; 3],
+    /// Functional road class.
+    pub class: FunctionalRoadClass,
+}
+
+/// A straight piece of a road in plan with the heights that its volume spans.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoadVolume {
+    /// Metres from the tile's reference point, east and north.
+    pub start_in_tile: [f32; 2],
+    /// The other end.
+    pub end_in_tile: [f32; 2],
+    /// Lowest and highest ground beneath, true metres above the reference point, rounded outwards.
+    pub height_range_in_tile: [f32; 2],
+    /// Functional road class.
+    pub class: FunctionalRoadClass,
+}
+
+/// A side of a tile.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "compass directions")]
+pub enum Side {
+    West,
+    East,
+    North,
+    South,
+}
+
+/// Where a road meets the border of its tile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoadEnd {
+    /// OSM's id of the way.
+    pub way_id: i64,
+    /// Functional road class.
+    pub class: FunctionalRoadClass,
+    /// Which border.
+    pub side: Side,
+    /// Where, in the working CRS.
+    pub at_m: [f64; 2],
+    /// Lowest and highest true height that the ground may have there.
+    pub height_range_m: [f64; 2],
+}
+
+/// All segments of a tile, in order of class.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RoadSegments {
+    segments: Vec<RoadSegment>,
+    ranges: [Range<u32>; FunctionalRoadClass::COUNT],
+    ends: Vec<RoadEnd>,
+}
+
+/// All volumes of a tile, in order of class.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RoadVolumes {
+    volumes: Vec<RoadVolume>,
+    ranges: [Range<u32>; FunctionalRoadClass::COUNT],
+    ends: Vec<RoadEnd>,
+}
+
+impl Side {
+    /// The side of `tile` that a point lies on, if any.
+    pub(super) fn of([x, y]: [f64; 2], tile: Bounds) -> Option<Self> {
+        // Roads are cut on the border exactly; positions are sums of f64.
+        let slack_m = 1e-9 * tile.width();
+        let on = |a: f64, b: f64| (a - b).abs() <= slack_m;
+        [
+            (Self::West, on(x, tile.min_x)),
+            (Self::East, on(x, tile.max_x)),
+            (Self::North, on(y, tile.max_y)),
+            (Self::South, on(y, tile.min_y)),
+        ]
+        .into_iter()
+        .find_map(|(side, is_on)| is_on.then_some(side))
+    }
+}
+
+impl RoadSegments {
+    /// Cuts lines of the tile with these bounds into segments.
+    #[must_use]
+    pub fn new(lines: &[GroundLine], tile: Bounds, reference_m: [f64; 3]) -> Self {
+        let mut segments: Vec<RoadSegment> = lines
+            .iter()
+            .flat_map(|line| {
+                line.points_m.windows(2).map(|pair| RoadSegment {
+                    start_in_tile: relative(pair[0], reference_m),
+                    end_in_tile: relative(pair[1], reference_m),
+                    class: line.class,
+                })
+            })
+            .collect();
+        segments.sort_by_key(|segment| segment.class);
+        let ranges = class_ranges(&segments, |segment| segment.class);
+        Self { segments, ranges, ends: ground_ends(lines, tile) }
+    }
+
+    /// The segments, most important class first.
+    #[must_use]
+    pub fn all(&self) -> &[RoadSegment] {
+        &self.segments
+    }
+
+    /// Where the segments of a class are.
+    #[must_use]
+    pub fn range_of(&self, class: FunctionalRoadClass) -> Range<u32> {
+        self.ranges[usize::from(class.number())].clone()
+    }
+
+    /// Where they meet the tile's border.
+    #[must_use]
+    pub fn ends(&self) -> &[RoadEnd] {
+        &self.ends
+    }
+}
+
+impl RoadVolumes {
+    /// Cuts lines of the tile with these bounds into volumes.
+    #[must_use]
+    pub fn new(lines: &[PlanLine], tile: Bounds, reference_m: [f64; 3]) -> Self {
+        let place = |[x, y]: [f64; 2]| {
+            let [x, y, _] = relative([x, y, 0.0], reference_m);
+            [x, y]
+        };
+        let mut volumes: Vec<RoadVolume> = lines
+            .iter()
+            .flat_map(|line| {
+                line.points_m.windows(2).zip(&line.ground_range_m).map(|(pair, range_m)| {
+                    let [low_m, high_m] = range_m.map(|height_m| height_m - reference_m[2]);
+                    RoadVolume {
+                        start_in_tile: place(pair[0]),
+                        end_in_tile: place(pair[1]),
+                        height_range_in_tile: [
+                            (low_m as f32).next_down(),
+                            (high_m as f32).next_up(),
+                        ],
+                        class: line.class,
+                    }
+                })
+            })
+            .collect();
+        volumes.sort_by_key(|volume| volume.class);
+        let ranges = class_ranges(&volumes, |volume| volume.class);
+        Self { volumes, ranges, ends: plan_ends(lines, tile) }
+    }
+
+    /// The volumes, most important class first.
+    #[must_use]
+    pub fn all(&self) -> &[RoadVolume] {
+        &self.volumes
+    }
+
+    /// Where the volumes of a class are.
+    #[must_use]
+    pub fn range_of(&self, class: FunctionalRoadClass) -> Range<u32> {
+        self.ranges[usize::from(class.number())].clone()
+    }
+
+    /// Where they meet the tile's border.
+    #[must_use]
+    pub fn ends(&self) -> &[RoadEnd] {
+        &self.ends
+    }
+}
+
+/// The part of `sorted` that belongs to each class, 0 first. `sorted` is in order of class.
+fn class_ranges<T>(
+    sorted: &[T],
+    class_of: impl Fn(&T) -> FunctionalRoadClass,
+) -> [Range<u32>; FunctionalRoadClass::COUNT] {
+    let mut ranges = [const { 0..0 }; FunctionalRoadClass::COUNT];
+    for (class, range) in FunctionalRoadClass::all().zip(&mut ranges) {
+        let start = sorted.partition_point(|item| class_of(item) < class);
+        let end = sorted.partition_point(|item| class_of(item) <= class);
+        *range = start as u32..end as u32;
+    }
+    ranges
+}

@@ -1,0 +1,76 @@
+#![expect(clippy::float_cmp, reason = "these numbers are exact")]
+
+use super::*;
+
+const TILE: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 100.0, max_y: 100.0 };
+
+fn class(number: u8) -> FunctionalRoadClass {
+    FunctionalRoadClass::new(number).expect("a class")
+}
+
+fn ground_line(number: u8, points_m: Vec<[f64; 3]>) -> GroundLine {
+    GroundLine { way_id: 1, class: class(number), points_m }
+}
+
+#[test]
+fn segments_are_relative_and_sorted_by_class() {
+    let lines = vec![
+        ground_line(6, vec![[10.0, 20.0, 1.0], [11.0, 20.0, 1.5], [12.0, 20.0, 1.0]]),
+        ground_line(0, vec![[0.0, 0.0, 0.0], [10.0, 20.0, 1.0]]),
+    ];
+    let roads = RoadSegments::new(&lines, TILE, [10.0, 20.0, 1.0]);
+    assert_eq!(roads.range_of(class(0)), 0..1);
+    assert_eq!(roads.range_of(class(6)), 1..3);
+    assert!(roads.range_of(class(3)).is_empty());
+    assert_eq!(roads.all()[0].end_in_tile, [0.0; 3]);
+    assert_eq!(roads.all()[1].end_in_tile, [1.0, 0.0, 0.5]);
+}
+
+#[test]
+fn volumes_are_relative_sorted_by_class_and_never_lower_or_shallower_than_the_ground() {
+    let line = |number, from: [f64; 2], range_m| PlanLine {
+        way_id: 1,
+        class: class(number),
+        points_m: vec![from, [30.0, 20.0]],
+        ground_range_m: vec![range_m],
+    };
+    let lines = [line(5, [10.0, 20.0], [7.1, 9.3]), line(2, [20.0, 20.0], [1.0, 2.0])];
+    let roads = RoadVolumes::new(&lines, TILE, [10.0, 20.0, 1.0]);
+    assert_eq!((roads.range_of(class(2)), roads.range_of(class(5))), (0..1, 1..2));
+    assert_eq!(roads.all()[0].start_in_tile, [10.0, 0.0]);
+    let [low, high] = roads.all()[1].height_range_in_tile.map(f64::from);
+    assert!(low < 7.1 - 1.0 && high > 9.3 - 1.0);
+    assert!((low - 6.1).abs() < 1e-5 && (high - 8.3).abs() < 1e-5);
+}
+
+#[test]
+fn a_line_on_the_ground_ends_on_the_border_it_was_cut_at() {
+    let check = |points_m: Vec<[f64; 3]>, expected: &[(Side, f64)]| {
+        let ends = ground_ends(&[ground_line(4, points_m)], TILE);
+        let found: Vec<_> = ends.iter().map(|end| (end.side, end.height_range_m[0])).collect();
+        assert_eq!(found, expected);
+    };
+    check(vec![[0.0, 50.0, 3.0], [40.0, 50.0, 4.0]], &[(Side::West, 3.0)]);
+    check(vec![[10.0, 0.0, 3.0], [100.0, 50.0, 4.0]], &[(Side::South, 3.0), (Side::East, 4.0)]);
+    check(vec![[10.0, 99.0, 3.0], [40.0, 100.0, 4.0]], &[(Side::North, 4.0)]);
+    check(vec![[10.0, 10.0, 3.0], [0.0, 50.0, 3.5], [40.0, 50.0, 4.0]], &[]);
+}
+
+#[test]
+fn a_line_in_plan_crosses_the_border_where_it_passes_to_the_other_side() {
+    let check = |points_m: Vec<[f64; 2]>, expected: &[(Side, [f64; 2])]| {
+        let ground_range_m = vec![[1.0, 2.0]; points_m.len() - 1];
+        let line = PlanLine { way_id: 1, class: class(4), points_m, ground_range_m };
+        let ends = plan_ends(&[line], TILE);
+        let found: Vec<_> = ends.iter().map(|end| (end.side, end.at_m)).collect();
+        assert_eq!(found, expected);
+    };
+    check(vec![[-10.0, 40.0], [10.0, 60.0]], &[(Side::West, [0.0, 50.0])]);
+    check(vec![[-10.0, 40.0], [0.0, 50.0], [10.0, 60.0]], &[(Side::West, [0.0, 50.0])]);
+    check(
+        vec![[50.0, 150.0], [50.0, -50.0]],
+        &[(Side::South, [50.0, 0.0]), (Side::North, [50.0, 100.0])],
+    );
+    check(vec![[-10.0, 140.0], [10.0, 160.0]], &[]);
+    check(vec![[20.0, 20.0], [60.0, 60.0]], &[]);
+}

@@ -1,0 +1,352 @@
+//! Gates and figures: volumes agree with both references; how far geometry does is measured.
+
+use corniche_geom::TileId;
+use corniche_viewer::{
+    CapTest, Caps, RoadMethod, RoadOptions, WidthGrowth,
+    camera::{Camera, Orientation},
+    lod::Quality,
+    scene::{may_be_clamped, settle},
+    style::{Style, WidthScaling},
+    tiles::TileStore,
+};
+use glam::{DVec2, DVec3};
+
+use crate::{
+    ground_rays::{self, Caster},
+    measures::{self, CenterLines, Line},
+    reference::{Comparison, DepthOracle},
+    scene::{Scene, Tile},
+    scenes::{self, Named, four_tiles, one_tile, style},
+    support::{
+        country::{Country, QUANTUM_M, width_margin_m},
+        gpu,
+    },
+};
+
+const METHODS: [RoadMethod; 2] = [RoadMethod::Geometry, RoadMethod::ShadowVolumes];
+
+fn name_of(method: RoadMethod) -> &'static str {
+    match method {
+        RoadMethod::Geometry => "GEO",
+        RoadMethod::ShadowVolumes => "SV",
+        RoadMethod::None => "none",
+    }
+}
+
+fn print_row(
+    name: &str,
+    method: RoadMethod,
+    found: &Comparison,
+    rays: Option<(usize, usize)>,
+    lines: CenterLines,
+) {
+    let rays = rays.map_or("-".to_owned(), |(compared, wrong)| format!("{wrong} of {compared}"));
+    println!(
+        "{name:34} {:4} {:>7} compared, {:>6} wrong ({:5.2} %), {:>5} in band, {:>5} at jumps | O2 {rays:>14} | missing {:5.1} + {:4.1} at jumps of {:6.1} px",
+        name_of(method),
+        found.compared,
+        found.wrong,
+        100.0 * found.wrong as f64 / found.compared.max(1) as f64,
+        found.in_band,
+        found.at_jumps,
+        lines.missing_px,
+        lines.missing_at_jumps_px,
+        lines.seen_px,
+    );
+}
+
+/// Draws a scene from its cameras in both methods, prints the figures and holds SV to the gates.
+fn check(named: &Named) {
+    let Some(gpu) = gpu() else { return };
+    let Named { name, scene, cameras } = named;
+    let is_plain = scene.style.roads.iter().all(|road| road.min_width_px == 0.0);
+    let has_centers = scene.style.roads.iter().any(|road| road.center.is_some());
+    for method in METHODS {
+        let options = RoadOptions::of(method);
+        for camera in cameras {
+            let drawing = scene.draw(&gpu, camera, options);
+            let found =
+                DepthOracle { scene, camera, options, drawing: &drawing, band_px: 0.05 }.compare();
+            // The second reference knows neither least widths nor centre lines.
+            let rays = (is_plain && !has_centers)
+                .then(|| ground_rays::compare(scene, camera, options, &drawing));
+            let lines = measures::center_lines(scene, camera, &drawing);
+            print_row(name, method, &found, rays, lines);
+            assert!(found.compared > 100, "{name}: {} pixels are no test", found.compared);
+            if method == RoadMethod::ShadowVolumes {
+                assert_eq!(found.wrong, 0, "{name}: of {}", found.compared);
+                let (compared, wrong) = rays.unwrap_or_default();
+                assert!(
+                    wrong as f64 <= 1e-4 * compared as f64,
+                    "{name}: {wrong} of {compared} by rays"
+                );
+                // A pixel of slack for lines of a hundred pixels.
+                assert!(lines.missing_px <= 0.001 * lines.seen_px + 1.0, "{name}: {lines:?}");
+            }
+        }
+    }
+}
+
+/// One test for a few scenes each, so that none takes long.
+fn check_named(names: &[&str]) {
+    let all = scenes::all();
+    for name in names {
+        check(all.iter().find(|named| named.name == *name).expect("a scene of this name"));
+    }
+}
+
+#[test]
+fn volumes_agree_with_both_references_on_planes() {
+    check_named(&["plane", "plane at 45°", "as wide as its margin"]);
+}
+
+#[test]
+fn volumes_agree_with_both_references_on_ridges_and_cliffs() {
+    check_named(&["ridge", "staircase cliff", "eye inside a box"]);
+}
+
+#[test]
+fn volumes_agree_with_both_references_across_tiles() {
+    check_named(&["sine hills, four tiles"]);
+}
+
+#[test]
+fn volumes_agree_with_the_reference_at_junctions() {
+    check_named(&["junction of 4 classes", "junction, atlas style, far"]);
+}
+
+#[test]
+fn volumes_agree_with_both_references_at_bends_edges_and_vertices() {
+    check_named(&["hairpin and points", "along an edge, through vertices"]);
+}
+
+/// A scene of the country's tiles as they are selected for a camera.
+pub(crate) fn country_scene(
+    country: &Country,
+    camera: &Camera,
+    error_px: f64,
+    style: Style,
+) -> Scene {
+    let mut store = TileStore::new(country);
+    let quality = Quality { screen_space_error_px: error_px, vertical_scale: 1.0 };
+    let drawn = settle(&mut store, camera, quality).unwrap();
+    let tiles = drawn
+        .iter()
+        .map(|drawn| {
+            let margin_m = width_margin_m(&country.frame, drawn.id.z());
+            let payload = country.payload(drawn.id);
+            Tile::of_payload(&payload, &country.frame, QUANTUM_M, margin_m, drawn.skirt_depth_m)
+        })
+        .collect();
+    Scene { tiles, style }
+}
+
+fn country_camera(country: &Country, distance_m: f64, heading_deg: f64, pitch_deg: f64) -> Camera {
+    let [x, y] = country.frame.tile_bounds(TileId::ROOT).center();
+    let target = DVec3::new(x, y, crate::support::country::height_m(x, y));
+    Camera::look_at(target, distance_m, Orientation { heading_deg, pitch_deg }, scenes::SIZE)
+}
+
+fn levels(scene: &Scene) -> usize {
+    let mut levels: Vec<_> = scene.tiles.iter().map(|tile| tile.geometry.id.z()).collect();
+    levels.dedup();
+    levels.len()
+}
+
+#[test]
+fn volumes_agree_with_the_reference_where_levels_meet() {
+    let country = Country::new();
+    for (distance_m, heading_deg, pitch_deg, error_px) in
+        [(6000.0, 10.0, 55.0, 1.5), (9000.0, 90.0, 70.0, 6.0)]
+    {
+        let camera = country_camera(&country, distance_m, heading_deg, pitch_deg);
+        let scene = country_scene(&country, &camera, error_px, Style::road_atlas());
+        assert!(levels(&scene) > 1);
+        let name = "mountains, several levels";
+        check(&Named { name, scene, cameras: vec![camera] });
+    }
+}
+
+/// Between the ends of a way in two tiles of different levels: straight over the step.
+fn steps(scene: &Scene) -> Vec<Line> {
+    let ends: Vec<(u8, i64, DVec3, u8)> = scene
+        .tiles
+        .iter()
+        .flat_map(|tile| {
+            tile.centers.iter().flat_map(move |line| {
+                [line.points_m.first(), line.points_m.last()].into_iter().flatten().map(
+                    move |point| {
+                        let at = DVec3::from_array(*point);
+                        (tile.geometry.id.z(), line.way_id, at, line.class.number())
+                    },
+                )
+            })
+        })
+        .collect();
+    let mut steps = Vec::new();
+    for (k, a) in ends.iter().enumerate() {
+        for b in &ends[k + 1..] {
+            if a.0 != b.0 && a.1 == b.1 && a.2.truncate().distance(b.2.truncate()) < 0.01 {
+                steps.push((a.3, vec![a.2, b.2]));
+            }
+        }
+    }
+    steps
+}
+
+/// Coarse tiles in the west, fine ones in the east: two levels apart, the ground steps up or down where they meet.
+fn stepped(country: &Country) -> Scene {
+    let ids = [(2, 1, 1), (2, 1, 2), (4, 8, 7), (4, 8, 8)];
+    let tiles = ids
+        .map(|(z, x, y)| {
+            let id = TileId::new(z, x, y).unwrap();
+            let margin_m = width_margin_m(&country.frame, z);
+            Tile::of_payload(&country.payload(id), &country.frame, QUANTUM_M, margin_m, 120.0)
+        })
+        .to_vec();
+    Scene { tiles, style: Style::road_atlas() }
+}
+
+#[test]
+fn bridges_close_the_step_between_levels_and_without_them_it_gapes() {
+    let Some(gpu) = gpu() else { return };
+    let country = Country::new();
+    let with = stepped(&country);
+    // Of another way in each tile, the roads have nothing to do with each other.
+    let mut without = with.clone();
+    for (tile, k) in without.tiles.iter_mut().zip(1..) {
+        *tile = tile.with_ways_renumbered(k * 1000);
+    }
+    let steps = steps(&with);
+    for (class, step) in &steps {
+        println!("a step of {:.1} m under a road of class {class}", step[0].distance(step[1]));
+    }
+    let mut sums = [[CenterLines::default(); 2]; 2];
+    for heading_deg in [75.0, 285.0] {
+        for (_, step) in steps.iter().filter(|(_, step)| step[0].distance(step[1]) > 1.0) {
+            let orientation = Orientation { heading_deg, pitch_deg: 50.0 };
+            let camera = Camera::look_at(step[0], 150.0, orientation, scenes::SIZE);
+            let caster = Caster::new(&with, &camera);
+            for (method, sums) in METHODS.into_iter().zip(&mut sums) {
+                for (scene, sum) in [&with, &without].into_iter().zip(sums) {
+                    let drawing = scene.draw(&gpu, &camera, RoadOptions::of(method));
+                    let found = measures::walk(&steps, &with, &caster, &camera, &drawing);
+                    sum.seen_px += found.seen_px;
+                    // A step is a silhouette all along.
+                    sum.missing_px += found.missing_px + found.missing_at_jumps_px;
+                }
+            }
+        }
+    }
+    for (method, [with, without]) in METHODS.into_iter().zip(sums) {
+        println!(
+            "{}: over steps between levels {:.1} of {:.1} px of centre-line missing, {:.1} px without bridges",
+            name_of(method),
+            with.missing_px,
+            with.seen_px,
+            without.missing_px
+        );
+        assert!(with.seen_px > 20.0, "{with:?} is no test");
+        assert!(without.missing_px > 0.3 * without.seen_px, "{without:?}");
+        assert!(with.missing_px < 0.02 * with.seen_px, "{with:?}");
+    }
+}
+
+/// Volumes with these options on hills with a junction; the share of pixels that are wrong.
+fn wrong_share(options: RoadOptions, style: Style) -> Option<f64> {
+    let gpu = gpu()?;
+    let scene = one_tile(16, scenes::hills, &scenes::junction(), style);
+    let camera = scenes::camera(400.0, 1800.0, 100.0, 55.0);
+    let drawing = scene.draw(&gpu, &camera, options);
+    let oracle =
+        DepthOracle { scene: &scene, camera: &camera, options, drawing: &drawing, band_px: 0.05 };
+    let found = oracle.compare();
+    println!("{options:?}: {} of {} wrong", found.wrong, found.compared);
+    assert!(found.compared > 500);
+    Some(found.wrong as f64 / found.compared as f64)
+}
+
+#[test]
+fn volumes_agree_with_the_reference_whatever_the_options() {
+    let scaling = WidthScaling { threshold_m: 600.0, exponent: 0.6, constant: 1.7 };
+    let style = Style { width_scaling: scaling, ..style(24.0) };
+    let of_volumes = RoadOptions::of(RoadMethod::ShadowVolumes);
+    for width_growth in [WidthGrowth::None, WidthGrowth::Constant, WidthGrowth::ByDistance] {
+        for caps in [Caps::Round, Caps::None] {
+            let options = RoadOptions { width_growth, caps, ..of_volumes };
+            let Some(wrong) = wrong_share(options, style.clone()) else { return };
+            assert!(wrong.abs() < f64::EPSILON, "{options:?}");
+        }
+    }
+}
+
+#[test]
+fn volumes_wider_than_their_margin_are_cut_to_it_and_counted() {
+    let Some(gpu) = gpu() else { return };
+    let roads = [(3, vec![[-700.0, -310.0], [650.0, 420.0]])];
+    // Half as wide again as the margin of 80 m.
+    let scene = four_tiles([64; 4], |_, _| 300.0, &roads, style(240.0));
+    let camera = scenes::camera(300.0, 4000.0, 15.0, 30.0);
+    let options = RoadOptions::of(RoadMethod::ShadowVolumes);
+    let drawing = scene.draw(&gpu, &camera, options);
+    let oracle =
+        DepthOracle { scene: &scene, camera: &camera, options, drawing: &drawing, band_px: 0.05 };
+    let found = oracle.compare();
+    assert!(found.compared > 1000);
+    assert_eq!(found.wrong, 0);
+    let clamped = |style: &Style, method| {
+        let view = Scene::view(&camera, style, RoadOptions::of(method));
+        scene.tiles.iter().filter(|tile| may_be_clamped(&tile.geometry, &view)).count()
+    };
+    assert_eq!(clamped(&style(240.0), RoadMethod::ShadowVolumes), 4, "the road is near all");
+    assert_eq!(clamped(&style(159.0), RoadMethod::ShadowVolumes), 0);
+    assert_eq!(clamped(&style(240.0), RoadMethod::Geometry), 0);
+}
+
+#[test]
+fn the_papers_test_agrees_with_the_reference_near_the_eye() {
+    for caps in [Caps::Round, Caps::None] {
+        let options = RoadOptions {
+            cap_test: CapTest::PaperQuadratic,
+            caps,
+            ..RoadOptions::of(RoadMethod::ShadowVolumes)
+        };
+        let Some(wrong) = wrong_share(options, style(40.0)) else { return };
+        assert!(wrong < 0.005, "{wrong}");
+    }
+}
+
+#[test]
+fn straight_roads_on_flat_ground_have_their_width_to_a_tenth_of_a_pixel() {
+    let Some(gpu) = gpu() else { return };
+    let camera = scenes::camera(0.0, 1000.0, 0.0, 0.0);
+    let pixel_m = 1000.0 * camera.pixel_at_unit_depth_m();
+    for method in METHODS {
+        let mut worst_px = 0.0_f64;
+        for k in 0..100_u32 {
+            // Golden angles and a width from 4 to 24 pixels: no two alike, none along the pixels.
+            let angle = f64::from(k) * 2.399_963_229_728_653;
+            let width_px = 4.0 + 0.2 * f64::from(k);
+            let direction = DVec2::from_angle(angle);
+            let shift = DVec2::new((f64::from(k) * 0.618).fract(), (f64::from(k) * 0.377).fract());
+            let end = |sign: f64| (shift * pixel_m * 10.0 + direction * sign * 1500.0).to_array();
+            let road = (3, vec![end(-1.0), end(1.0)]);
+            let scene = one_tile(256, |_, _| 0.0, &[road], style((width_px * pixel_m) as f32));
+            let drawing = scene.draw(&gpu, &camera, RoadOptions::of(method));
+            // Pixels of the road in a square window turned with the road: area over length. In the
+            // picture, y points down.
+            let half_px = 140.0;
+            let middle = DVec2::new(f64::from(scenes::SIZE[0]), f64::from(scenes::SIZE[1])) / 2.0;
+            let along = DVec2::new(direction.x, -direction.y);
+            let area = drawing
+                .pixels_of(3)
+                .iter()
+                .filter(|at| (**at - middle).dot(along).abs() <= half_px)
+                .count();
+            let measured_px = area as f64 / (2.0 * half_px);
+            worst_px = worst_px.max((measured_px - width_px).abs());
+        }
+        println!("{}: width on flat ground off by {worst_px:.3} px at most", name_of(method));
+        assert!(worst_px <= 0.1, "{worst_px} px");
+    }
+}

@@ -1,0 +1,267 @@
+//! O1: the label of each pixel from the card's own depth and owner, in f64.
+
+use corniche_viewer::{Caps, RoadOptions, camera::Camera, gpu::Owner, style::Style};
+use glam::{DMat2, DVec2, DVec3};
+
+use crate::{
+    scene::{PlanSegment, Scene},
+    support::Drawing,
+};
+
+/// Ground may be painted so many least half widths away in plan, at most.
+const MAX_STRETCH: f64 = 8.0;
+
+/// What a reference says of a pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Verdict {
+    /// This label, and it stays so within the band.
+    Label(u8),
+    /// Something within the band changes it.
+    InBand,
+}
+
+/// A yes or no that may be uncertain within a band.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Tri {
+    Yes,
+    No,
+    Perhaps,
+}
+
+impl Tri {
+    /// Whether `value` is at most `limit`, with a band around it.
+    fn at_most(value: f64, limit: f64, band: f64) -> Self {
+        if value <= limit - band {
+            Self::Yes
+        } else if value > limit + band {
+            Self::No
+        } else {
+            Self::Perhaps
+        }
+    }
+
+    fn or(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Yes, _) | (_, Self::Yes) => Self::Yes,
+            (Self::No, Self::No) => Self::No,
+            _ => Self::Perhaps,
+        }
+    }
+
+    fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::No, _) | (_, Self::No) => Self::No,
+            (Self::Yes, Self::Yes) => Self::Yes,
+            _ => Self::Perhaps,
+        }
+    }
+}
+
+/// What is compared, and how it came out.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Comparison {
+    /// Pixels outside the band that should have or have a road.
+    pub(crate) compared: usize,
+    /// Of these, with another label.
+    pub(crate) wrong: usize,
+    /// Pixels within the band.
+    pub(crate) in_band: usize,
+    /// Pixels at silhouettes; compared like all others.
+    pub(crate) at_jumps: usize,
+    /// Pixels with ground.
+    pub(crate) ground: usize,
+}
+
+/// The reference for one drawing.
+pub(crate) struct DepthOracle<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) camera: &'a Camera,
+    pub(crate) options: RoadOptions,
+    pub(crate) drawing: &'a Drawing,
+    pub(crate) band_px: f64,
+}
+
+impl DepthOracle<'_> {
+    /// Compares every pixel that shows ground.
+    pub(crate) fn compare(&self) -> Comparison {
+        let mut sum = Comparison::default();
+        for (index, _) in self.drawing.pixels() {
+            let Owner::Ground(tile) = self.drawing.owners[index] else { continue };
+            sum.ground += 1;
+            // Not left out: this reference sees the silhouette that the card sees.
+            sum.at_jumps += usize::from(self.drawing.is_at_jump(index));
+            let (ground, _) = self.ground(index).expect("the owner says there is ground");
+            let near = self.scene.tiles[tile].segments_near(ground.truncate());
+            match self.verdict(index, near) {
+                Verdict::InBand => sum.in_band += 1,
+                Verdict::Label(label) => {
+                    let drawn = self.drawing.labels[index];
+                    sum.compared += usize::from(label != 0 || drawn != 0);
+                    sum.wrong += usize::from(label != drawn);
+                }
+            }
+        }
+        sum
+    }
+
+    /// The label of a pixel by the lines of its tile.
+    pub(crate) fn verdict(&self, index: usize, segments: &[PlanSegment]) -> Verdict {
+        for class in 0..9_u8 {
+            for is_center in [true, false] {
+                let center = self.scene.style.roads[usize::from(class)].center;
+                let Some(share) = (if is_center {
+                    center.map(|center| f64::from(center.width_share))
+                } else {
+                    Some(1.0)
+                }) else {
+                    continue;
+                };
+                let mut covered = Tri::No;
+                for (_, ends) in segments.iter().filter(|(number, _)| *number == class) {
+                    covered = covered.or(self.is_road(index, class, share, *ends));
+                    if covered == Tri::Yes {
+                        break;
+                    }
+                }
+                match covered {
+                    Tri::Yes => return Verdict::Label((9 - class) * 2 + u8::from(is_center)),
+                    Tri::Perhaps => return Verdict::InBand,
+                    Tri::No => {}
+                }
+            }
+        }
+        Verdict::Label(0)
+    }
+
+    fn is_road(&self, index: usize, class: u8, share: f64, ends: [DVec2; 2]) -> Tri {
+        let Owner::Ground(tile) = self.drawing.owners[index] else { return Tri::No };
+        let widest_m = self.scene.tiles[tile].geometry.width_margin_m;
+        let (ground, depth_m) = self.ground(index).expect("the owner says there is ground");
+        let from_eye = ground - self.camera.eye_in_world();
+        let pixel_m = self.camera.pixel_at_unit_depth_m() * depth_m;
+        // A step of a pixel on the screen moves the plan position by at least this much.
+        let band_m = self.band_px * pixel_m;
+        let caps = self.options.caps;
+        let plan_m = distance(ground.truncate(), ends, caps);
+        let (half_m, least_px) =
+            half_width(&self.scene.style, self.options, class, from_eye.length());
+        let wide = Tri::at_most(plan_m, share * half_m, band_m);
+        let stretch = (1.5 * from_eye.length() / from_eye.z.abs()).clamp(1.0, MAX_STRETCH);
+        let near = Tri::at_most(plan_m, stretch * share * least_px * pixel_m, band_m);
+        let thin = if near == Tri::No || wide == Tri::Yes {
+            Tri::No
+        } else {
+            near.and(self.looks_near(index, ground.truncate(), ends, share * least_px))
+        };
+        // Without caps a road ends abruptly: a step along it may do what one across does.
+        let end =
+            if caps == Caps::None { near_end(ground.truncate(), ends, band_m) } else { Tri::Yes };
+        wide.or(thin).and(end).and(Tri::at_most(plan_m, widest_m, band_m))
+    }
+
+    /// Whether a segment's image is at most `least_px` from a pixel's centre.
+    fn looks_near(&self, index: usize, at: DVec2, ends: [DVec2; 2], least_px: f64) -> Tri {
+        let mut verdict = None;
+        for right in self.steps(index, [1, 0], at, ends) {
+            for down in self.steps(index, [0, 1], at, ends) {
+                let plan_from_px = DMat2::from_cols(right, down);
+                let seen_px = if plan_from_px.determinant() == 0.0 {
+                    f64::INFINITY
+                } else {
+                    let px_from_plan = plan_from_px.inverse();
+                    let ends_px = ends.map(|end| px_from_plan * (end - at));
+                    distance(DVec2::ZERO, ends_px, self.options.caps)
+                };
+                let this = Tri::at_most(seen_px, least_px, self.band_px);
+                verdict = Some(
+                    verdict.map_or(this, |known| if known == this { this } else { Tri::Perhaps }),
+                );
+            }
+        }
+        verdict.expect("at least one step each way")
+    }
+
+    /// How far in plan the ground moves with a step of a pixel, towards the segment; both ways where it is a
+    /// matter of rounding which is nearer.
+    fn steps(&self, index: usize, [dx, dy]: [i64; 2], at: DVec2, ends: [DVec2; 2]) -> Vec<DVec2> {
+        let depth = self.drawing.depth[index];
+        let look = |sign: i64| {
+            let width = i64::from(self.drawing.size_px[0]);
+            let (x, y) = (index as i64 % width + sign * dx, index as i64 / width + sign * dy);
+            let inside =
+                (0..width).contains(&x) && (0..i64::from(self.drawing.size_px[1])).contains(&y);
+            let other = (y * width + x) as usize;
+            let ground = inside.then(|| self.ground(other)).flatten()?.0.truncate();
+            let change = f64::from((self.drawing.depth[other] - depth).abs());
+            Some((ground, change, distance(ground, ends, self.options.caps)))
+        };
+        let step = |(ground, ..): (DVec2, f64, f64), sign: f64| (ground - at) * sign;
+        match (look(1), look(-1)) {
+            (None, None) => vec![DVec2::ZERO],
+            (Some(ahead), None) => vec![step(ahead, 1.0)],
+            (None, Some(behind)) => vec![step(behind, -1.0)],
+            (Some(ahead), Some(behind)) => {
+                let slack = 1e-4 * f64::from(depth);
+                let clearly = |a: f64, b: f64| Tri::at_most(b, 4.0 * a + slack, 0.01 * (b + slack));
+                // The other side's silhouette counts first, as its own does not follow from it.
+                match (clearly(ahead.1, behind.1), clearly(behind.1, ahead.1)) {
+                    (Tri::No, _) => vec![step(ahead, 1.0)],
+                    (Tri::Yes, Tri::No) => vec![step(behind, -1.0)],
+                    (Tri::Yes, Tri::Yes)
+                        if (ahead.2 - behind.2).abs() > 1e-3 * (ahead.2 + behind.2) =>
+                    {
+                        if ahead.2 < behind.2 {
+                            vec![step(ahead, 1.0)]
+                        } else {
+                            vec![step(behind, -1.0)]
+                        }
+                    }
+                    _ => vec![step(ahead, 1.0), step(behind, -1.0)],
+                }
+            }
+        }
+    }
+
+    /// The ground that a pixel's centre sees, and its depth.
+    fn ground(&self, index: usize) -> Option<(DVec3, f64)> {
+        let depth = self.drawing.depth[index];
+        (depth > 0.0).then(|| {
+            let width = self.drawing.size_px[0] as usize;
+            let at = DVec2::new((index % width) as f64 + 0.5, (index / width) as f64 + 0.5);
+            let depth_m = self.camera.near_m() / f64::from(depth);
+            (self.camera.eye_in_world() + self.camera.ray_in_world(at) * depth_m, depth_m)
+        })
+    }
+}
+
+/// Whether a point is beside a segment without caps, not beyond its ends.
+fn near_end(at: DVec2, [a, b]: [DVec2; 2], band_m: f64) -> Tri {
+    let along_m = (at - a).dot((b - a).normalize_or_zero());
+    Tri::at_most(-along_m, 0.0, band_m).and(Tri::at_most(along_m, a.distance(b), band_m))
+}
+
+/// Half width of a class in metres at a distance from the eye, and the least one in pixels.
+pub(crate) fn half_width(
+    style: &Style,
+    options: RoadOptions,
+    class: u8,
+    distance_m: f64,
+) -> (f64, f64) {
+    let road = &style.roads[usize::from(class)];
+    let growth = options.width_scaling(style).factor(distance_m);
+    (f64::from(road.width_m) / 2.0 * growth, f64::from(road.min_width_px) / 2.0)
+}
+
+/// Distance from a point to a segment; infinite beyond the ends of one without caps.
+pub(crate) fn distance(at: DVec2, [a, b]: [DVec2; 2], caps: Caps) -> f64 {
+    let d = b - a;
+    let along = if d == DVec2::ZERO { 0.0 } else { (at - a).dot(d) / d.length_squared() };
+    if caps == Caps::None && !(d != DVec2::ZERO && (-0.5..=1.5).contains(&along)) {
+        return f64::INFINITY;
+    }
+    match caps {
+        Caps::Round => at.distance(a + d * along.clamp(0.0, 1.0)),
+        // How near the ends is asked for with a band of its own.
+        Caps::None => at.distance(a + d * along),
+    }
+}

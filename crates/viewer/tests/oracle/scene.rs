@@ -1,0 +1,260 @@
+//! What is drawn, in f64, as both the card and the references get it.
+
+use std::collections::HashMap;
+
+use corniche_geom::{Bounds, Frame, TileId};
+use corniche_tileset::{Terrain, TilePayload};
+use corniche_tin::{Placement, Surface};
+use corniche_viewer::{
+    RoadOptions,
+    camera::Camera,
+    gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers},
+    style::Style,
+    tiles::{GroundLine, PlanLine, TileGeometry, TileLines},
+};
+use glam::{DVec2, DVec3};
+
+use crate::support::{self, Drawing};
+
+/// A segment of a road in plan: class and ends.
+pub(crate) type PlanSegment = (u8, [DVec2; 2]);
+
+/// A tile of a scene.
+#[derive(Clone)]
+pub(crate) struct Tile {
+    pub(crate) geometry: TileGeometry,
+    pub(crate) skirt_depth_m: f64,
+    /// The ground without skirts.
+    pub(crate) triangles: Vec<[DVec3; 3]>,
+    /// The SV lines.
+    pub(crate) segments: Vec<PlanSegment>,
+    /// The GEO lines.
+    pub(crate) centers: Vec<GroundLine>,
+    /// The SV lines within the width margin of each square of a grid as wide as the margin.
+    near: HashMap<[i64; 2], Vec<PlanSegment>>,
+    terrain: Terrain,
+    frame: Frame,
+    quantum_m: f64,
+    lines: TileLines,
+}
+
+/// Tiles and how their roads look.
+#[derive(Clone)]
+pub(crate) struct Scene {
+    pub(crate) tiles: Vec<Tile>,
+    pub(crate) style: Style,
+}
+
+impl Tile {
+    /// A tile of the support's frame with roads given in plan by way, class and points.
+    pub(crate) fn new(
+        id: TileId,
+        ground: &Terrain,
+        roads: &[(i64, u8, Vec<DVec2>)],
+        skirt_depth_m: f64,
+    ) -> Self {
+        let frame = support::frame();
+        let margin_m = 8.0 * frame.level_cell_m(id.z());
+        let bounds = frame.tile_bounds(id);
+        let triangles = support::triangles(id, ground);
+        let mut lines = TileLines { width_margin_m: margin_m, ..TileLines::default() };
+        for (way_id, number, points) in roads {
+            let class = support::class(*number);
+            for pair in points.windows(2) {
+                if let Some([a, b]) = clip([pair[0], pair[1]], grown(bounds, margin_m)) {
+                    lines.plan.push(PlanLine {
+                        way_id: *way_id,
+                        class,
+                        points_m: vec![a.to_array(), b.to_array()],
+                        // As low and high as the tile: never too narrow.
+                        ground_range_m: vec![ground.height_range_m],
+                    });
+                }
+                if let Some([a, b]) = clip([pair[0], pair[1]], bounds) {
+                    let points_m = support::lay(a, b, &triangles);
+                    lines.ground.push(GroundLine { way_id: *way_id, class, points_m });
+                }
+            }
+        }
+        Self::of_lines(id, ground, &frame, support::QUANTUM_M, lines, triangles, skirt_depth_m)
+    }
+
+    /// The SV lines that may be within the width margin of a position, and others.
+    pub(crate) fn segments_near(&self, at: DVec2) -> &[PlanSegment] {
+        self.near.get(&square(at, self.geometry.width_margin_m)).map_or(&[], Vec::as_slice)
+    }
+
+    /// A tile as a package has it.
+    pub(crate) fn of_payload(
+        payload: &TilePayload,
+        frame: &Frame,
+        quantum_m: f64,
+        margin_m: f64,
+        skirt_depth_m: f64,
+    ) -> Self {
+        let ground = payload.terrain.as_ref().unwrap();
+        let placement = Placement::of_tile(frame, payload.id, quantum_m);
+        let surface = Surface::new(&ground.tin, placement);
+        let centers = payload
+            .roads_geo
+            .iter()
+            .map(|road| GroundLine {
+                way_id: road.way_id,
+                class: road.class,
+                points_m: corniche_drape::positions(&road.line, &surface)
+                    .unwrap()
+                    .into_iter()
+                    .map(|[u, v, height_m]| {
+                        let [x, y] = frame.position_of_fraction_m([u, v]);
+                        [x, y, height_m]
+                    })
+                    .collect(),
+            })
+            .collect();
+        let plan = payload
+            .roads_sv
+            .iter()
+            .map(|road| PlanLine {
+                way_id: road.way_id,
+                class: road.class,
+                points_m: road.line.points.iter().map(|point| frame.position_m(*point)).collect(),
+                ground_range_m: road.line.ground_range_m.clone(),
+            })
+            .collect();
+        let lines = TileLines { ground: centers, plan, width_margin_m: margin_m };
+        let corner = |vertex: u32| {
+            let [x, y] = frame.position_m(surface.points()[vertex as usize]);
+            DVec3::new(x, y, surface.heights_m()[vertex as usize])
+        };
+        let triangles = surface.triangles().iter().map(|corners| corners.map(corner)).collect();
+        Self::of_lines(payload.id, ground, frame, quantum_m, lines, triangles, skirt_depth_m)
+    }
+
+    /// The same tile with other ids of its ways; its GEO and SV lines alike.
+    pub(crate) fn with_ways_renumbered(&self, by: i64) -> Self {
+        let mut lines = self.lines.clone();
+        lines.ground.iter_mut().for_each(|line| line.way_id += by);
+        lines.plan.iter_mut().for_each(|line| line.way_id += by);
+        let (id, triangles) = (self.geometry.id, self.triangles.clone());
+        let Self { terrain, frame, quantum_m, skirt_depth_m, .. } = self;
+        Self::of_lines(id, terrain, frame, *quantum_m, lines, triangles, *skirt_depth_m)
+    }
+
+    pub(crate) fn of_lines(
+        id: TileId,
+        ground: &Terrain,
+        frame: &Frame,
+        quantum_m: f64,
+        lines: TileLines,
+        triangles: Vec<[DVec3; 3]>,
+        skirt_depth_m: f64,
+    ) -> Self {
+        let segments: Vec<PlanSegment> = lines
+            .plan
+            .iter()
+            .flat_map(|line| {
+                line.points_m.windows(2).map(|pair| {
+                    let ends = [pair[0], pair[1]].map(DVec2::from_array);
+                    (line.class.number(), ends)
+                })
+            })
+            .collect();
+        let mut near: HashMap<_, Vec<PlanSegment>> = HashMap::new();
+        for segment in &segments {
+            let [a, b] = segment.1;
+            let [low, high] = [a.min(b), a.max(b)].map(|at| square(at, lines.width_margin_m));
+            for column in low[0] - 1..=high[0] + 1 {
+                for row in low[1] - 1..=high[1] + 1 {
+                    near.entry([column, row]).or_default().push(*segment);
+                }
+            }
+        }
+        Self {
+            near,
+            geometry: TileGeometry::assemble(id, Some(ground), &lines, frame, quantum_m),
+            skirt_depth_m,
+            triangles,
+            segments,
+            centers: lines.ground.clone(),
+            terrain: ground.clone(),
+            frame: *frame,
+            quantum_m,
+            lines,
+        }
+    }
+}
+
+impl Scene {
+    pub(crate) fn view<'a>(
+        camera: &'a Camera,
+        style: &'a Style,
+        roads: RoadOptions,
+    ) -> FrameView<'a> {
+        FrameView {
+            camera,
+            style,
+            roads,
+            exaggeration: 1.0,
+            point_scale: 1.0,
+            height_range_m: [0.0, 2000.0],
+            supersampling: 1,
+        }
+    }
+
+    pub(crate) fn draw(&self, gpu: &Gpu, camera: &Camera, options: RoadOptions) -> Drawing {
+        let buffers: Vec<TileBuffers> =
+            self.tiles.iter().map(|tile| TileBuffers::new(gpu, &tile.geometry)).collect();
+        let tiles: Vec<DrawTile<'_>> = buffers
+            .iter()
+            .zip(&self.tiles)
+            .map(|(buffers, tile)| DrawTile { buffers, skirt_depth_m: tile.skirt_depth_m })
+            .collect();
+        let targets = Targets::new(gpu, camera.size_px()).unwrap();
+        let view = Self::view(camera, &self.style, options);
+        Renderer::new(gpu).draw(gpu, &view, &tiles, &targets);
+        Drawing::read(gpu, &targets)
+    }
+}
+
+/// The square of a grid that holds a position.
+fn square(at: DVec2, side_m: f64) -> [i64; 2] {
+    (at / side_m).floor().to_array().map(|k| k as i64)
+}
+
+fn grown(bounds: Bounds, margin_m: f64) -> Bounds {
+    Bounds {
+        min_x: bounds.min_x - margin_m,
+        min_y: bounds.min_y - margin_m,
+        max_x: bounds.max_x + margin_m,
+        max_y: bounds.max_y + margin_m,
+    }
+}
+
+/// What of a segment lies in a rectangle; `None` without any length there, unless the segment has none itself.
+///
+/// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*.
+fn clip([a, b]: [DVec2; 2], bounds: Bounds) -> Option<[DVec2; 2]> {
+    let d = b - a;
+    let mut range = [0.0_f64, 1.0_f64];
+    for (p, q) in [
+        (-d.x, a.x - bounds.min_x),
+        (d.x, bounds.max_x - a.x),
+        (-d.y, a.y - bounds.min_y),
+        (d.y, bounds.max_y - a.y),
+    ] {
+        if p < 0.0 {
+            range[0] = range[0].max(q / p);
+        } else if p > 0.0 {
+            range[1] = range[1].min(q / p);
+        } else if q < 0.0 {
+            return None;
+        }
+    }
+    let at = |share: f64| match share {
+        0.0 => a,
+        1.0 => b,
+        _ => (a + d * share)
+            .clamp(DVec2::new(bounds.min_x, bounds.min_y), DVec2::new(bounds.max_x, bounds.max_y)),
+    };
+    (range[0] < range[1]).then(|| range.map(at))
+}
