@@ -8,7 +8,7 @@ use plotters::prelude::{
 use crate::fly::Run;
 
 /// Told apart also by those who see no red or green (Okabe & Ito 2008, *Color Universal Design*).
-const COLOURS: [RGBColor; 7] = [
+const COLOURS: [RGBColor; 9] = [
     RGBColor(0, 0, 0),
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -16,6 +16,8 @@ const COLOURS: [RGBColor; 7] = [
     RGBColor(204, 121, 167),
     RGBColor(86, 180, 233),
     RGBColor(230, 159, 0),
+    RGBColor(136, 34, 85),
+    RGBColor(110, 110, 110),
 ];
 
 /// Milliseconds to draw each frame over the time in the flight, as SVG. The first frame of a run is left out: what is made
