@@ -7,7 +7,7 @@ use plotters::prelude::{
 
 use crate::fly::Run;
 
-/// Told apart also by those who see no red or green (Okabe & Ito 2008, *Color Universal Design*).
+/// The first seven are told apart also by those who see no red or green (Okabe & Ito 2008, *Color Universal Design*).
 const COLOURS: [RGBColor; 9] = [
     RGBColor(0, 0, 0),
     RGBColor(0, 114, 178),

@@ -2,7 +2,7 @@ use std::future::Future;
 
 /// Why bytes could not be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("cannot read {length} bytes at {offset} of {name}: {reason}")]
+#[error("{}", self.text())]
 pub struct SourceError {
     /// What is read: a path or an address.
     pub name: String,
@@ -12,6 +12,17 @@ pub struct SourceError {
     pub length: usize,
     /// What went wrong.
     pub reason: String,
+}
+
+impl SourceError {
+    /// Nothing was asked for yet where the source could not even be opened.
+    fn text(&self) -> String {
+        let Self { name, offset, length, reason } = self;
+        match length {
+            0 => format!("cannot open {name}: {reason}"),
+            _ => format!("cannot read {length} bytes at {offset} of {name}: {reason}"),
+        }
+    }
 }
 
 /// Where the bytes of a package come from: a file, memory, a server that answers range requests.
