@@ -1,6 +1,6 @@
-use corniche_presets::{Config, class_filter, parse_frc_table};
+use corniche_presets::{Config, class_filter, parse_frc_table, parse_style};
 
-/// A settings file and an FRC table of these bytes are read or refused; what is read keeps its own promises.
+/// A settings file, an FRC table and a style of these bytes are read or refused; what is read keeps its own promises.
 ///
 /// # Panics
 /// When a promise is broken.
@@ -23,6 +23,18 @@ pub fn config(data: &[u8]) {
             let again = corniche_roads::Classified::NotARoad(corniche_roads::NotARoad::NoHighway);
             assert_eq!(table.classify(&[]), again, "no tag, no road");
             assert!(!table.name().is_empty() && !table.canonical_text().is_empty());
+        }
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
+    match parse_style(text) {
+        Ok(style) => {
+            // What the shaders divide by.
+            assert!(style.width_scaling.threshold_m >= 1.0 && style.background.haze_reach > 0.0);
+            assert!(style.tint.is_sorted_by(|a, b| (a.share as f32) < b.share as f32), "{:?}", style.tint);
+            for road in style.roads {
+                assert!(road.width_m > 0.0 && road.min_width_px > 0.0, "{road:?}");
+                assert!(road.width_m.is_finite() && road.min_width_px.is_finite(), "{road:?}");
+            }
         }
         Err(error) => assert!(!error.to_string().is_empty()),
     }

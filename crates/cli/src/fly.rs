@@ -1,31 +1,34 @@
 //! `corniche fly`: a flight over a package, frame by frame: what each costs, as a list, pictures and a chart.
 
 mod list;
+mod pictures;
 mod summary;
 
 use std::{
     fs,
     io::{self, Write as _},
-    path::{Path, PathBuf},
+    path::Path,
 };
 
+use self::pictures::Pictures;
+#[cfg(test)]
+pub(crate) use self::summary::tests::frame;
+use crate::{
+    args::{FlyArgs, Lod, Roads},
+    chart,
+    exit::ExitCode,
+    failure::Failure,
+    interrupt,
+    output::{Existing, Output},
+    styles,
+};
 use corniche_viewer::{
-    Detail, FrameRecord, Replay, ReplayError, ReplayOptions, RoadMethod, RoadOptions,
-    default_flight,
+    Detail, FrameRecord, Replay, ReplayError, ReplayOptions, default_flight,
     flight::Flight,
-    gpu::{Gpu, GpuError},
+    gpu::{Gpu, GpuError, PassTimes},
     stream::StreamBudget,
     style::Style,
     tiles::PackageSource,
-};
-use tempfile::TempDir;
-
-use crate::{
-    args::{FlyArgs, Lod, Roads},
-    exit::ExitCode,
-    failure::Failure,
-    flight_chart, interrupt,
-    output::{Existing, Output},
 };
 
 /// A text of keyframes is no longer than this: a hundred thousand of them take less.
@@ -44,31 +47,44 @@ impl Run {
     pub(crate) fn name(&self) -> String {
         format!("{}, roads {}", self.lod.word(), self.roads.word())
     }
+
+    /// The frames that figures are taken of: all but the first, which waits for its tiles, and in which the driver makes
+    /// what it makes once.
+    pub(crate) fn counted(&self) -> &[FrameRecord] {
+        self.frames.get(1..).unwrap_or_default()
+    }
+}
+
+/// What drawing a frame took the graphics card, by its own clock.
+pub(crate) fn gpu_ms(passes: &PassTimes) -> f64 {
+    passes.terrain_ms + passes.roads_ms + passes.composite_ms
 }
 
 pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
     let mut used: Vec<&Path> = vec![&args.package];
     used.extend(args.flight.path.as_deref());
+    used.extend(styles::file_of(&args.look.style));
     let csv = Output::create(&args.output, existing, &used)?;
     used.push(&args.output);
     let svg = create(args.svg.as_deref(), existing, &mut used)?;
     let save_path = create(args.flight.save_path.as_deref(), existing, &mut used)?;
     let pictures = args.png.as_deref().map(|folder| Pictures::create(folder, &used)).transpose()?;
 
+    let style = styles::style(&args.look.style)?;
+    let methods = args.look.roads(&args.drawing.roads)?;
     let source = PackageSource::open(&args.package)?;
-    let flight = flight(args, &source)?;
     interrupt::watch()?;
+    let flight = flight(args, &source)?;
     let gpu = Gpu::new().map_err(|error| Failure::new(ExitCode::Failed, error))?;
     eprintln!("drawn by {}", gpu.adapter_name());
     let mut runs = Vec::new();
     for lod in once_each(&args.drawing.lod) {
-        for roads in once_each(&args.drawing.roads) {
-            runs.push(Run {
-                lod,
-                roads,
-                frames: fly(args, &gpu, &flight, lod, roads, pictures.as_ref())?,
-            });
+        for roads in once_each(&methods) {
+            let options = options(args, &flight, &style, lod, roads)?;
+            let name = format!("{}-{}", lod.word(), roads.word());
+            let frames = fly(args, &gpu, &flight, &options, &name, pictures.as_ref())?;
+            runs.push(Run { lod, roads, frames });
         }
     }
 
@@ -76,7 +92,7 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
         pictures.finish()?;
     }
     if let Some(svg) = svg {
-        let drawing = flight_chart::frame_times(&runs, gpu.adapter_name())
+        let drawing = chart::frame_times(&runs, gpu.adapter_name())
             .map_err(|error| Failure::new(ExitCode::Failed, error))?;
         svg.write_whole(drawing.as_bytes())?;
     }
@@ -103,7 +119,9 @@ fn create<'a>(
 
 /// The flight asked for, else a pass along the data.
 fn flight(args: &FlyArgs, source: &PackageSource) -> Result<Flight, Failure> {
-    let Some(path) = &args.flight.path else { return Ok(default_flight(source)?) };
+    let Some(path) = &args.flight.path else {
+        return Ok(default_flight(source, &interrupt::is_noted)?);
+    };
     let unusable =
         |error: &dyn std::fmt::Display| Failure::unusable(format!("{}: {error}", path.display()));
     let size_bytes = fs::metadata(path).map_err(|error| unusable(&error))?.len();
@@ -114,19 +132,16 @@ fn flight(args: &FlyArgs, source: &PackageSource) -> Result<Flight, Failure> {
     Flight::parse(&text, &source.manifest().coordinates).map_err(|error| unusable(&error))
 }
 
-fn fly(
+fn options(
     args: &FlyArgs,
-    gpu: &Gpu,
     flight: &Flight,
+    style: &Style,
     lod: Lod,
     roads: Roads,
-    pictures: Option<&Pictures>,
-) -> Result<Vec<FrameRecord>, Failure> {
-    let method = RoadMethod::from(roads);
-    let source = PackageSource::open(&args.package)?.for_method(method);
-    let options = ReplayOptions {
+) -> Result<ReplayOptions, Failure> {
+    Ok(ReplayOptions {
         size_px: args.drawing.size,
-        roads: RoadOptions::of(method),
+        roads: args.look.road_options(roads),
         detail: match lod {
             Lod::Full => Detail::Full,
             Lod::Culled => Detail::Culled,
@@ -134,7 +149,8 @@ fn fly(
         },
         screen_space_error_px: args.drawing.screen_space_error,
         exaggeration: args.drawing.exaggeration,
-        style: Style::road_atlas(),
+        supersampling: args.drawing.supersampling,
+        style: style.clone(),
         budget: StreamBudget {
             tiles_in_flight: TILES_IN_FLIGHT,
             upload_bytes_per_frame: args.drawing.upload_per_frame,
@@ -142,24 +158,28 @@ fn fly(
         },
         ahead_s: args.drawing.ahead,
         frames: frames(args, flight)?,
-    };
-    let mut replay = Replay::new(gpu, &source, flight, &options)?;
+    })
+}
+
+/// Flies once; pictures get names that begin with `name`.
+fn fly(
+    args: &FlyArgs,
+    gpu: &Gpu,
+    flight: &Flight,
+    options: &ReplayOptions,
+    name: &str,
+    pictures: Option<&Pictures>,
+) -> Result<Vec<FrameRecord>, Failure> {
+    let source = PackageSource::open(&args.package)?.for_method(options.roads.method);
+    let mut replay = Replay::new(gpu, &source, flight, options, &interrupt::is_noted)?;
     let mut records = Vec::new();
-    while let Some(record) = next_frame(&mut replay)? {
+    while let Some(record) = replay.next_frame()? {
         if let Some(pictures) = pictures {
-            let name = format!("{}-{}-{:05}.png", lod.word(), roads.word(), record.frame);
-            pictures.add(&name, &replay)?;
+            pictures.add(&format!("{name}-{:05}.png", record.frame), &replay)?;
         }
         records.push(record);
     }
     Ok(records)
-}
-
-fn next_frame(replay: &mut Replay<'_>) -> Result<Option<FrameRecord>, Failure> {
-    if interrupt::is_noted() {
-        return Err(Failure::new(ExitCode::Interrupted, anyhow::anyhow!("interrupted")));
-    }
-    Ok(replay.next_frame()?)
 }
 
 /// So many frames that they lie about `--step` apart, else `--frames`.
@@ -186,65 +206,12 @@ fn once_each<T: Copy + PartialEq>(given: &[T]) -> Vec<T> {
         .collect()
 }
 
-/// A folder of pictures that takes its place when it is complete.
-struct Pictures {
-    target: PathBuf,
-    folder: TempDir,
-}
-
-impl Pictures {
-    fn create(target: &Path, used: &[&Path]) -> Result<Self, Failure> {
-        let unusable = |reason: &dyn std::fmt::Display| {
-            Failure::unusable(format!("cannot write pictures to {}: {reason}", target.display()))
-        };
-        if used.contains(&target) {
-            return Err(unusable(&"the command uses that file itself; choose another name"));
-        }
-        if target.symlink_metadata().is_ok() {
-            return Err(Failure::new(
-                ExitCode::Exists,
-                anyhow::anyhow!(
-                    "{} exists already; name a new folder for the pictures",
-                    target.display()
-                ),
-            ));
-        }
-        let parent = match target.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
-        let mut builder = tempfile::Builder::new();
-        // Temporary folders are their owner's alone; this one is to become an ordinary folder.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-        let folder = builder.tempdir_in(parent).map_err(|error| unusable(&error))?;
-        Ok(Self { target: target.to_path_buf(), folder })
-    }
-
-    fn add(&self, name: &str, replay: &Replay<'_>) -> Result<(), Failure> {
-        let picture = replay.picture()?;
-        picture
-            .save_with_format(self.folder.path().join(name), image::ImageFormat::Png)
-            .map_err(|error| Failure::new(ExitCode::Failed, error))
-    }
-
-    fn finish(self) -> Result<(), Failure> {
-        let Self { target, folder } = self;
-        fs::rename(folder.path(), &target).map_err(|error| {
-            Failure::new(
-                ExitCode::Failed,
-                anyhow::anyhow!("cannot move the pictures to {}: {error}", target.display()),
-            )
-        })?;
-        // It is the user's folder now.
-        let _ = folder.keep();
-        Ok(())
-    }
-}
-
 impl From<ReplayError> for Failure {
     fn from(error: ReplayError) -> Self {
         let code = match &error {
+            ReplayError::Stopped => {
+                return Self::new(ExitCode::Interrupted, anyhow::anyhow!("interrupted"));
+            }
             ReplayError::ReadBack(_)
             | ReplayError::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }) => {
                 ExitCode::Failed
@@ -263,25 +230,5 @@ mod tests {
     fn what_is_given_twice_is_flown_once() {
         assert_eq!(once_each(&[Roads::Sv, Roads::Geo, Roads::Sv]), [Roads::Sv, Roads::Geo]);
         assert!(once_each::<Roads>(&[]).is_empty());
-    }
-
-    #[test]
-    fn pictures_take_their_place_together_or_leave_nothing() {
-        let folder = tempfile::tempdir().unwrap();
-        let target = folder.path().join("frames");
-        let pictures = Pictures::create(&target, &[]).unwrap();
-        fs::write(pictures.folder.path().join("a.png"), b"a").unwrap();
-        assert!(!target.exists());
-        drop(pictures);
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "litter");
-        let pictures = Pictures::create(&target, &[]).unwrap();
-        fs::write(pictures.folder.path().join("a.png"), b"a").unwrap();
-        pictures.finish().unwrap();
-        assert_eq!(fs::read(target.join("a.png")).unwrap(), b"a");
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "litter");
-        let refused = Pictures::create(&target, &[]).err().unwrap();
-        assert_eq!(refused.code(), ExitCode::Exists);
-        let list = folder.path().join("list.csv");
-        assert_eq!(Pictures::create(&list, &[&list]).err().unwrap().code(), ExitCode::Unusable);
     }
 }

@@ -37,7 +37,7 @@ pub(crate) fn refuse(what: &str, error: &PresetError) -> Failure {
     Failure::unusable(format!("{what}: {error}"))
 }
 
-fn read_text(path: &Path) -> std::io::Result<String> {
+pub(crate) fn read_text(path: &Path) -> std::io::Result<String> {
     let mut text = String::new();
     fs::File::open(path)?.take(MAX_FILE_BYTES).read_to_string(&mut text)?;
     Ok(text)

@@ -1,27 +1,28 @@
 //! `corniche render`: a picture of a package, without a window.
 
-use std::io::Cursor;
+use std::{io::Cursor, path::Path};
 
-use corniche_viewer::{
-    CameraRequest, RenderError, RenderRequest, RoadOptions, camera::Orientation, render,
-    style::Style,
-};
+use corniche_viewer::{CameraRequest, RenderError, RenderRequest, camera::Orientation, render};
 
 use crate::{
     args::RenderArgs,
     exit::ExitCode,
     failure::Failure,
     output::{Existing, Output},
+    styles,
 };
 
-/// Samples along each side of a pixel: enough that roads of a pixel's width do not sparkle.
-const SUPERSAMPLING: u32 = 2;
-
 pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
+    let used: Vec<&Path> = [Some(args.package.as_path()), styles::file_of(&args.look.style)]
+        .into_iter()
+        .flatten()
+        .collect();
+    let style = styles::style(&args.look.style)?;
+    let roads = args.look.roads(&[args.roads])?[0];
     let request = RenderRequest {
         package: args.package.clone(),
         size_px: args.size,
-        roads: RoadOptions::of(args.roads.into()),
+        roads: args.look.road_options(roads),
         camera: match args.look_at {
             Some([lon_deg, lat_deg]) => CameraRequest::LookAt {
                 lon_deg,
@@ -33,10 +34,10 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         },
         screen_space_error_px: args.screen_space_error,
         exaggeration: args.exaggeration,
-        supersampling: SUPERSAMPLING,
-        style: Style::road_atlas(),
+        supersampling: args.supersampling,
+        style,
     };
-    let output = Output::create(&args.output, Existing::Replace, &[&args.package])?;
+    let output = Output::create(&args.output, Existing::Replace, &used)?;
     let rendered = render(&request)?;
     let mut png = Cursor::new(Vec::new());
     rendered

@@ -18,6 +18,8 @@ pub mod camera;
 pub mod flight;
 pub mod gpu;
 pub mod lod;
+pub mod pick;
+mod range;
 mod render;
 mod replay;
 pub mod scene;
@@ -26,6 +28,7 @@ pub mod style;
 pub mod tiles;
 
 pub use attribution::draw_attribution;
+pub use range::OutOfRange;
 pub use render::{CameraRequest, RenderError, RenderReport, RenderRequest, Rendered, render};
 pub use replay::{Detail, FrameRecord, Replay, ReplayError, ReplayOptions, default_flight};
 pub use scene::{CapTest, Caps, Outline, RoadMethod, RoadOptions, WidthGrowth};

@@ -1,6 +1,5 @@
 use std::path::PathBuf;
 
-use corniche_geom::TileId;
 use corniche_tileset::OpenError;
 use glam::DVec3;
 use image::RgbaImage;
@@ -8,8 +7,12 @@ use image::RgbaImage;
 use crate::{
     attribution::draw_attribution,
     camera::{Camera, Orientation, WorldBox},
-    gpu::{DrawTile, FrameView, Gpu, GpuError, ReadBackError, Renderer, Targets, TileBuffers},
-    lod::{Quality, Request},
+    gpu::{
+        DrawTile, FrameView, Gpu, GpuError, ReadBackError, Renderer, Targets, TileBuffers,
+        Wireframe,
+    },
+    lod::Quality,
+    range::{self, OutOfRange},
     scene::{self, RoadOptions},
     style::Style,
     tiles::{LoadTileError, PackageSource, TileStore},
@@ -109,8 +112,8 @@ pub enum RenderError {
         "the eye would be {depth_m:.0} m under the ground; look from farther away, from another side or more steeply down"
     )]
     EyeUnderGround { depth_m: f64 },
-    #[error("{name} of {value} is out of range; it must be {range}")]
-    Range { name: &'static str, value: f64, range: &'static str },
+    #[error(transparent)]
+    Range(#[from] OutOfRange),
 }
 
 /// Renders a picture of a package, without a window.
@@ -128,13 +131,14 @@ pub fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
         screen_space_error_px: request.screen_space_error_px,
         vertical_scale: request.exaggeration * point_scale,
     };
-    let height_range_m = root_height_range(&mut store, request)?;
+    let height_range_m = store
+        .ground_range_m()?
+        .ok_or_else(|| RenderError::NoGround { package: request.package.clone() })?;
     let camera = camera(request, &source, &mut store, height_range_m, quality.vertical_scale)?;
     let drawn = scene::settle(&mut store, &camera, quality)?;
 
     let gpu = Gpu::new()?;
-    let camera = camera.supersampled(request.supersampling);
-    let targets = Targets::new(&gpu, camera.size_px())?;
+    let targets = Targets::new(&gpu, request.size_px, request.supersampling)?;
     let view = FrameView {
         camera: &camera,
         style: &request.style,
@@ -142,7 +146,7 @@ pub fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
         exaggeration: request.exaggeration,
         point_scale,
         height_range_m,
-        supersampling: request.supersampling,
+        wireframe: Wireframe::Hidden,
     };
     let uploaded: Vec<(TileBuffers, f64)> = scene::draw_list(&store, &drawn)
         .map(|(tile, skirt_depth_m)| (TileBuffers::new(&gpu, tile), skirt_depth_m))
@@ -153,8 +157,7 @@ pub fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
         .collect();
     Renderer::new(&gpu).draw(&gpu, &view, &tiles, &targets);
 
-    let samples = targets.read_picture(&gpu)?;
-    let mut picture = average(&samples, request.size_px, request.supersampling);
+    let mut picture = targets.picture().read_image(&gpu)?;
     draw_attribution(&mut picture, &source.manifest().attribution);
 
     let mut levels: Vec<(u8, u64)> = Vec::new();
@@ -183,48 +186,16 @@ pub fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
     Ok(Rendered { picture, report })
 }
 
-fn check(request: &RenderRequest) -> Result<(), RenderError> {
-    let within = |name, value: f64, fits: bool, range| {
-        // Not a number fits nowhere: every test below is false for it.
-        if fits { Ok(()) } else { Err(RenderError::Range { name, value, range }) }
-    };
-    let error_px = request.screen_space_error_px;
-    within(
-        "a screen-space error",
-        error_px,
-        error_px > 0.0 && error_px.is_finite(),
-        "above 0 pixels",
-    )?;
-    let exaggeration = request.exaggeration;
-    within("an exaggeration", exaggeration, (0.01..=100.0).contains(&exaggeration), "0.01 to 100")?;
-    let samples = f64::from(request.supersampling);
-    within("supersampling", samples, (1..=4).contains(&request.supersampling), "1 to 4")?;
+fn check(request: &RenderRequest) -> Result<(), OutOfRange> {
+    range::check_ground(request.screen_space_error_px, request.exaggeration)?;
+    range::check_supersampling(request.supersampling)?;
     if let CameraRequest::LookAt { distance_m, orientation, .. } = request.camera {
-        within("a distance", distance_m, (1.0..=1e8).contains(&distance_m), "1 m to 100 000 km")?;
         let Orientation { heading_deg, pitch_deg } = orientation;
-        within("a heading", heading_deg, heading_deg.is_finite(), "an angle in degrees")?;
-        within(
-            "a pitch",
-            pitch_deg,
-            (0.0..=90.0).contains(&pitch_deg),
-            "0 (straight down) to 90 (level)",
-        )?;
+        range::within("a distance", distance_m, 1.0..=1e8, "1 m to 100 000 km")?;
+        range::within("a heading", heading_deg, f64::MIN..=f64::MAX, "an angle in degrees")?;
+        range::within("a pitch", pitch_deg, 0.0..=90.0, "0 (straight down) to 90 (level)")?;
     }
     Ok(())
-}
-
-/// Loads the root and says between which true heights all ground lies.
-fn root_height_range(
-    store: &mut TileStore<'_>,
-    request: &RenderRequest,
-) -> Result<[f64; 2], RenderError> {
-    let none = || RenderError::NoGround { package: request.package.clone() };
-    if !store.exists(TileId::ROOT) {
-        return Err(none());
-    }
-    store.load(&[Request { id: TileId::ROOT, priority_px: f64::INFINITY }])?;
-    let summary = store.get(TileId::ROOT).and_then(|tile| tile.summary);
-    Ok(summary.ok_or_else(none)?.height_range_m)
 }
 
 /// The eye stays at least so far above the ground: nearer it would see through the TIN's skirts.
@@ -270,45 +241,5 @@ fn camera(
             }
             Ok(camera)
         }
-    }
-}
-
-/// The mean of each square of `factor` × `factor` samples, rounded to the nearest step.
-fn average(samples: &[u8], [width, height]: [u32; 2], factor: u32) -> RgbaImage {
-    let row = (width * factor) as usize * 4;
-    let count = factor * factor;
-    RgbaImage::from_fn(width, height, |x, y| {
-        let mut sums = [count / 2; 4];
-        for dy in 0..factor {
-            let start = (y * factor + dy) as usize * row + (x * factor) as usize * 4;
-            for sample in samples[start..start + factor as usize * 4].chunks_exact(4) {
-                for (sum, channel) in sums.iter_mut().zip(sample) {
-                    *sum += u32::from(*channel);
-                }
-            }
-        }
-        image::Rgba(sums.map(|sum| (sum / count) as u8))
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn averaging_takes_the_mean_of_each_square() {
-        let samples = [
-            [0, 0, 0, 255],
-            [4, 0, 0, 255],
-            [8, 8, 8, 255],
-            [8, 8, 8, 255],
-            [8, 0, 0, 255],
-            [12, 2, 0, 255],
-            [8, 8, 8, 255],
-            [8, 8, 8, 255],
-        ];
-        let picture = average(samples.as_flattened(), [2, 1], 2);
-        assert_eq!(picture.get_pixel(0, 0).0, [6, 1, 0, 255]);
-        assert_eq!(picture.get_pixel(1, 0).0, [8, 8, 8, 255]);
     }
 }

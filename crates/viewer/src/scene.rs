@@ -168,7 +168,7 @@ pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
                 * view.point_scale
                 * scaling.factor(far_m / view.point_scale);
             let pixel_m = view.camera.pixel_at_unit_depth_m() * far_m;
-            let least_m = f64::from(road.min_width_px * view.supersampling as f32) * pixel_m;
+            let least_m = f64::from(road.min_width_px) * pixel_m;
             width_m.max(least_m) / 2.0 > tile.width_margin_m
         },
     )

@@ -7,7 +7,7 @@ use corniche_geom::TileId;
 use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
-    gpu::{DrawTile, FrameView, Renderer, Targets, TileBuffers},
+    gpu::{DrawTile, FrameView, Renderer, Targets, TileBuffers, Wireframe},
     lod::Quality,
     scene,
     style::Style,
@@ -49,7 +49,7 @@ fn picture(
         .iter()
         .map(|(buffers, depth)| DrawTile { buffers, skirt_depth_m: *depth })
         .collect();
-    let targets = Targets::new(&gpu, camera.size_px()).unwrap();
+    let targets = Targets::new(&gpu, camera.size_px(), 1).unwrap();
     let view = FrameView {
         camera,
         style,
@@ -57,7 +57,7 @@ fn picture(
         exaggeration: 1.0,
         point_scale: 1.0,
         height_range_m: [90.0, 1910.0],
-        supersampling: 1,
+        wireframe: Wireframe::Hidden,
     };
     Renderer::new(&gpu).draw(&gpu, &view, &tiles, &targets);
     Some((Drawing::read(&gpu, &targets), levels))

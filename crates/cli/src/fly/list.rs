@@ -55,7 +55,7 @@ mod tests {
     use super::*;
     use crate::{
         args::{Lod, Roads},
-        fly::summary::tests::frame,
+        fly::frame,
     };
 
     #[test]

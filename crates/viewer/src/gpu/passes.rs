@@ -1,13 +1,14 @@
 //! The pipelines and what they bind.
 
 use wgpu::{
-    BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, CompareFunction,
-    DepthStencilState, Device, PrimitiveTopology, RenderPipeline, ShaderStages, TextureSampleType,
-    VertexBufferLayout, VertexStepMode, vertex_attr_array,
+    BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, ColorWrites,
+    CompareFunction, DepthStencilState, Device, PrimitiveTopology, RenderPipeline, ShaderStages,
+    TextureSampleType, VertexBufferLayout, VertexStepMode, vertex_attr_array,
 };
 
 use super::{
-    targets::{COLOR, DEPTH, LABEL, OWNER},
+    picture::{COLOR, MAX_SAMPLES_PER_SIDE},
+    targets::{DEPTH, LABEL, OWNER},
     tile_buffers::{GROUND_STRIDE, SEGMENT_STRIDE, VOLUME_STRIDE},
     uniforms::TILE_BYTES,
 };
@@ -19,11 +20,13 @@ macro_rules! shader {
 }
 
 /// Shader sources by name, complete as compiled.
-pub(super) const SHADERS: [(&str, &str); 4] = [
+pub(super) const SHADERS: [(&str, &str); 6] = [
     ("terrain", shader!("common", "terrain")),
     ("roads", shader!("common", "coverage", "roads")),
     ("volumes", shader!("common", "coverage", "volumes")),
-    ("composite", shader!("common", "composite")),
+    ("composite", shader!("common", "screen", "composite")),
+    ("average", shader!("screen", "average")),
+    ("difference", shader!("screen", "difference")),
 ];
 
 pub(super) struct Layouts {
@@ -31,14 +34,20 @@ pub(super) struct Layouts {
     pub(super) tile: BindGroupLayout,
     pub(super) ground: BindGroupLayout,
     pub(super) composite: BindGroupLayout,
+    pub(super) average: BindGroupLayout,
+    pub(super) difference: BindGroupLayout,
 }
 
 pub(super) struct Pipelines {
     pub(super) terrain: RenderPipeline,
     pub(super) skirts: RenderPipeline,
+    pub(super) wires: RenderPipeline,
     pub(super) segments: RoadPipelines,
     pub(super) volumes: RoadPipelines,
     pub(super) composite: RenderPipeline,
+    /// Of 2, 3 and 4 samples on each side of a pixel.
+    pub(super) averages: [RenderPipeline; MAX_SAMPLES_PER_SIDE as usize - 1],
+    pub(super) difference: RenderPipeline,
 }
 
 /// The same for a whole road and for the line along its middle.
@@ -70,6 +79,18 @@ impl Layouts {
                     texture(2, TextureSampleType::Uint),
                 ],
             ),
+            average: layout(
+                "average",
+                &[texture(0, TextureSampleType::Float { filterable: false })],
+            ),
+            difference: layout(
+                "difference",
+                &[
+                    texture(0, TextureSampleType::Uint),
+                    texture(1, TextureSampleType::Uint),
+                    texture(2, TextureSampleType::Float { filterable: false }),
+                ],
+            ),
         }
     }
 }
@@ -83,6 +104,7 @@ impl Pipelines {
         let terrain_groups = [Some(&layouts.frame), Some(&layouts.tile)];
         let terrain = |constants| Recipe {
             shader: 0,
+            entries: ENTRIES,
             groups: &terrain_groups,
             buffer: Some(VertexBufferLayout {
                 array_stride: GROUND_STRIDE,
@@ -100,12 +122,27 @@ impl Pipelines {
                 stencil: wgpu::StencilState::default(),
                 bias: wgpu::DepthBiasState::default(),
             }),
-            targets: &[COLOR, OWNER],
+            targets: &[(COLOR, ColorWrites::ALL), (OWNER, ColorWrites::ALL)],
             constants,
+        };
+        let wires = Recipe {
+            entries: ["vertex", "wire_fragment"],
+            topology: PrimitiveTopology::LineList,
+            depth: Some(DepthStencilState {
+                format: DEPTH,
+                depth_write_enabled: Some(false),
+                depth_compare: Some(CompareFunction::GreaterEqual),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            // Alpha and owner still say that there is ground.
+            targets: &[(COLOR, ColorWrites::COLOR), (OWNER, ColorWrites::empty())],
+            ..terrain(&[("PULL_PX", 2.0)])
         };
         let road_groups = [Some(&layouts.frame), Some(&layouts.tile), Some(&layouts.ground)];
         let segments = |constants| Recipe {
             shader: 1,
+            entries: ENTRIES,
             groups: &road_groups,
             buffer: Some(VertexBufferLayout {
                 array_stride: SEGMENT_STRIDE,
@@ -116,7 +153,7 @@ impl Pipelines {
             // Quads face anywhere.
             cull: None,
             depth: None,
-            targets: &[LABEL],
+            targets: &[(LABEL, ColorWrites::ALL)],
             constants,
         };
         let volumes = |constants| Recipe {
@@ -130,15 +167,10 @@ impl Pipelines {
             cull: Some(wgpu::Face::Front),
             ..segments(constants)
         };
-        let composite = Recipe {
-            shader: 3,
-            groups: &[Some(&layouts.frame), Some(&layouts.composite)],
-            buffer: None,
-            topology: PrimitiveTopology::TriangleList,
-            cull: None,
-            depth: None,
-            targets: &[COLOR],
-            constants: &[],
+        let composite_groups = [Some(&layouts.frame), Some(&layouts.composite)];
+        let average_groups = [Some(&layouts.average)];
+        let average = |per_side| {
+            Recipe::full_screen(4, &average_groups, &[("PER_SIDE", per_side)]).cook(device)
         };
         let both = |recipe: &dyn Fn(&'static [(&'static str, f64)]) -> RenderPipeline| {
             RoadPipelines { fills: recipe(&[("BAND", 0.0)]), centers: recipe(&[("BAND", 1.0)]) }
@@ -146,26 +178,54 @@ impl Pipelines {
         Self {
             terrain: terrain(&[("SKIRT", 0.0)]).cook(device),
             skirts: terrain(&[("SKIRT", 1.0)]).cook(device),
+            wires: wires.cook(device),
             segments: both(&|constants| segments(constants).cook(device)),
             volumes: both(&|constants| volumes(constants).cook(device)),
-            composite: composite.cook(device),
+            composite: Recipe::full_screen(3, &composite_groups, &[]).cook(device),
+            averages: [average(2.0), average(3.0), average(4.0)],
+            difference: Recipe::full_screen(5, &[Some(&layouts.difference)], &[]).cook(device),
         }
     }
 }
 
+/// What most shaders call theirs.
+const ENTRIES: [&str; 2] = ["vertex", "fragment"];
+
 /// What differs between the pipelines.
+#[derive(Clone)]
 struct Recipe<'a> {
     shader: usize,
+    /// Names of the vertex and the fragment shader.
+    entries: [&'a str; 2],
     groups: &'a [Option<&'a BindGroupLayout>],
     buffer: Option<VertexBufferLayout<'a>>,
     topology: PrimitiveTopology,
     cull: Option<wgpu::Face>,
     depth: Option<DepthStencilState>,
-    targets: &'a [wgpu::TextureFormat],
+    targets: &'a [(wgpu::TextureFormat, ColorWrites)],
     constants: &'a [(&'a str, f64)],
 }
 
-impl Recipe<'_> {
+impl<'a> Recipe<'a> {
+    /// One triangle over all of a picture.
+    fn full_screen(
+        shader: usize,
+        groups: &'a [Option<&'a BindGroupLayout>],
+        constants: &'a [(&'a str, f64)],
+    ) -> Self {
+        Self {
+            shader,
+            entries: ENTRIES,
+            groups,
+            buffer: None,
+            topology: PrimitiveTopology::TriangleList,
+            cull: None,
+            depth: None,
+            targets: &[(COLOR, ColorWrites::ALL)],
+            constants,
+        }
+    }
+
     fn cook(&self, device: &Device) -> RenderPipeline {
         let (name, source) = SHADERS[self.shader];
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -182,12 +242,12 @@ impl Recipe<'_> {
         let targets: Vec<_> = self
             .targets
             .iter()
-            .map(|format| {
+            .map(|(format, write_mask)| {
                 Some(wgpu::ColorTargetState {
                     format: *format,
                     // Roads overwrite each other: least important first, no blending.
                     blend: None,
-                    write_mask: wgpu::ColorWrites::ALL,
+                    write_mask: *write_mask,
                 })
             })
             .collect();
@@ -197,7 +257,7 @@ impl Recipe<'_> {
             layout: Some(&layout),
             vertex: wgpu::VertexState {
                 module: &module,
-                entry_point: Some("vertex"),
+                entry_point: Some(self.entries[0]),
                 compilation_options: options.clone(),
                 buffers: &buffers,
             },
@@ -210,7 +270,7 @@ impl Recipe<'_> {
             multisample: wgpu::MultisampleState::default(),
             fragment: Some(wgpu::FragmentState {
                 module: &module,
-                entry_point: Some("fragment"),
+                entry_point: Some(self.entries[1]),
                 compilation_options: options,
                 targets: &targets,
             }),
@@ -247,82 +307,5 @@ fn texture(binding: u32, sample_type: TextureSampleType) -> BindGroupLayoutEntry
 }
 
 #[cfg(test)]
-mod tests {
-    use super::SHADERS;
-
-    /// Needs no GPU: every shader parses and is valid.
-    #[test]
-    fn every_shader_is_valid() {
-        use wgpu::naga::{front::wgsl, valid};
-        for (name, source) in SHADERS {
-            let module = wgsl::parse_str(source).unwrap_or_else(|error| {
-                panic!("{name}: {}", error.emit_to_string(source));
-            });
-            let mut validator = valid::Validator::new(
-                valid::ValidationFlags::all(),
-                valid::Capabilities::default(),
-            );
-            validator.validate(&module).unwrap_or_else(|error| {
-                panic!("{name}: {}", error.emit_to_string(source));
-            });
-        }
-    }
-
-    /// Needs no GPU: the uniform block has as many rows as the shaders declare.
-    #[test]
-    fn the_frame_block_is_as_long_as_declared() {
-        use wgpu::naga::{TypeInner, front::wgsl};
-        let camera = crate::camera::Camera::look_at(
-            glam::DVec3::ZERO,
-            10.0,
-            crate::camera::Orientation { heading_deg: 0.0, pitch_deg: 0.0 },
-            [8, 8],
-        );
-        let style = crate::style::Style::road_atlas();
-        let view = crate::gpu::FrameView {
-            camera: &camera,
-            style: &style,
-            roads: crate::RoadOptions::of(crate::RoadMethod::None),
-            exaggeration: 1.0,
-            point_scale: 1.0,
-            height_range_m: [0.0, 1.0],
-            supersampling: 1,
-        };
-        let rows = crate::gpu::uniforms::frame_rows(&view).len();
-        for (name, source) in SHADERS {
-            let module = wgsl::parse_str(source).unwrap();
-            let span = module.types.iter().find_map(|(_, ty)| match &ty.inner {
-                TypeInner::Struct { span, .. } if ty.name.as_deref() == Some("Frame") => {
-                    Some(*span)
-                }
-                _ => None,
-            });
-            assert_eq!(span, Some(rows as u32 * 16), "{name}");
-        }
-    }
-
-    /// Needs no GPU: every face of a volume's box is drawn, its corners counter-clockwise seen from outside.
-    #[test]
-    fn the_strip_of_a_volume_goes_around_its_box() {
-        let source = SHADERS[2].1;
-        let list = source.split("STRIP = array<u32, 14>(").nth(1).unwrap().split(')').next();
-        let strip: Vec<u32> = list
-            .unwrap()
-            .split(',')
-            .map(|k| k.trim().trim_end_matches('u').parse().unwrap())
-            .collect();
-        let corner = |k: u32| {
-            glam::Vec3::from_array([0, 1, 2].map(|bit| if k >> bit & 1 == 1 { 1.0 } else { -1.0 }))
-        };
-        let mut area_by_face = std::collections::BTreeMap::new();
-        for (index, three) in strip.windows(3).enumerate() {
-            let [a, b, c] = [three[0], three[1], three[2]].map(corner);
-            let flip = if index % 2 == 0 { 1.0 } else { -1.0 };
-            let normal = (b - a).cross(c - a) * flip;
-            assert!(normal.dot(a + b + c) > 0.0, "triangle {index} faces inwards");
-            let face = normal.normalize().round().to_array().map(|part| part as i8);
-            *area_by_face.entry(face).or_insert(0.0) += normal.length() / 2.0;
-        }
-        assert_eq!(area_by_face.into_values().collect::<Vec<f32>>(), [4.0; 6]);
-    }
-}
+#[path = "passes_tests.rs"]
+mod tests;

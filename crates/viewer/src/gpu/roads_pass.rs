@@ -1,9 +1,10 @@
 use corniche_roads::FunctionalRoadClass;
-use wgpu::{CommandEncoder, util::DeviceExt};
+use wgpu::{BufferUsages, CommandEncoder};
 
 use super::{
     Gpu,
-    renderer::{DrawTile, FrameBindings, FrameView, Renderer, begin},
+    bindings::FrameBindings,
+    renderer::{DrawTile, FrameView, Renderer, begin},
     targets::Targets,
     tile_buffers::volume_bytes,
 };
@@ -47,13 +48,8 @@ impl Bridges {
             (volume, bridge.coarse as u32 + 1)
         });
         let bytes = volume_bytes(volumes);
-        let instances = (!bytes.is_empty()).then(|| {
-            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("bridges"),
-                contents: &bytes,
-                usage: wgpu::BufferUsages::VERTEX,
-            })
-        });
+        let instances =
+            (!bytes.is_empty()).then(|| gpu.buffer("bridges", &bytes, BufferUsages::VERTEX));
         Self { list, instances }
     }
 
@@ -85,7 +81,7 @@ impl Renderer {
         targets: &Targets,
     ) {
         // The pass clears the labels even when it draws no road.
-        let mut pass = begin(encoder, "roads", &[&targets.labels_view()], None);
+        let mut pass = begin(encoder, "roads", &[&targets.labels.view], None);
         let (pipelines, corners) = match view.roads.method {
             RoadMethod::Geometry => (&self.pipelines.segments, 0..4),
             RoadMethod::ShadowVolumes => (&self.pipelines.volumes, 0..14),

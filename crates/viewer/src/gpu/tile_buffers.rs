@@ -1,8 +1,8 @@
-use std::ops::Range;
+use std::{ops::Range, sync::OnceLock};
 
 use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
-use wgpu::util::DeviceExt;
+use wgpu::{Buffer, BufferUsages};
 
 use super::Gpu;
 use crate::{
@@ -23,18 +23,47 @@ pub struct TileBuffers {
 }
 
 pub(super) struct GroundBuffers {
-    pub(super) vertices: wgpu::Buffer,
-    pub(super) indices: wgpu::Buffer,
+    pub(super) vertices: Buffer,
+    pub(super) indices: Buffer,
     /// Indices of the ground, then of the skirts.
     pub(super) surface: Range<u32>,
     pub(super) skirts: Range<u32>,
+    /// Three per triangle of the ground: what the edges are made of.
+    triangles: Vec<u32>,
+    edges: OnceLock<Buffer>,
+}
+
+impl GroundBuffers {
+    /// Two indices for each edge of the ground, made when they are first drawn: few pictures show them.
+    pub(super) fn edges(&self, gpu: &Gpu) -> &Buffer {
+        self.edges.get_or_init(|| {
+            gpu.buffer("edges", bytemuck::cast_slice(&edges(&self.triangles)), BufferUsages::INDEX)
+        })
+    }
+
+    /// The buffer above, if it was made.
+    pub(super) fn drawn_edges(&self) -> Option<&Buffer> {
+        self.edges.get()
+    }
+}
+
+/// Each edge of some triangles once.
+fn edges(triangles: &[u32]) -> Vec<[u32; 2]> {
+    let mut edges: Vec<[u32; 2]> = triangles
+        .chunks_exact(3)
+        .flat_map(|corners| [0, 1, 2].map(|k| [corners[k], corners[(k + 1) % 3]]))
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
 }
 
 /// What one method draws of a tile's roads.
 #[derive(Default)]
 pub(super) struct RoadBuffers {
     /// One instance per segment, in order of class; `None` without any.
-    pub(super) instances: Option<wgpu::Buffer>,
+    pub(super) instances: Option<Buffer>,
     pub(super) class_ranges: [Range<u32>; FunctionalRoadClass::COUNT],
     /// Where the roads meet the tile's border.
     pub(super) ends: Vec<RoadEnd>,
@@ -51,23 +80,19 @@ impl TileBuffers {
     /// Uploads a tile.
     #[must_use]
     pub fn new(gpu: &Gpu, tile: &TileGeometry) -> Self {
-        let buffer = |contents: &[u8], usage| {
-            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("tile"),
-                contents,
-                usage,
-            })
-        };
+        let buffer = |contents: &[u8], usage| gpu.buffer("tile", contents, usage);
         let all = tile.ground.indices.len() as u32;
         let surface = tile.ground.surface_indices as u32;
         let ground = (all > 0).then(|| GroundBuffers {
-            vertices: buffer(&ground_bytes(tile), wgpu::BufferUsages::VERTEX),
-            indices: buffer(bytemuck::cast_slice(&tile.ground.indices), wgpu::BufferUsages::INDEX),
+            vertices: buffer(&ground_bytes(tile), BufferUsages::VERTEX),
+            indices: buffer(bytemuck::cast_slice(&tile.ground.indices), BufferUsages::INDEX),
             surface: 0..surface,
             skirts: surface..all,
+            triangles: tile.ground.indices[..tile.ground.surface_indices].to_vec(),
+            edges: OnceLock::new(),
         });
         let instances =
-            |bytes: &[u8]| (!bytes.is_empty()).then(|| buffer(bytes, wgpu::BufferUsages::VERTEX));
+            |bytes: &[u8]| (!bytes.is_empty()).then(|| buffer(bytes, BufferUsages::VERTEX));
         let mut segments = RoadBuffers {
             instances: instances(&segment_bytes(tile)),
             ends: tile.roads.ends().to_vec(),
@@ -150,4 +175,15 @@ pub(super) fn volume_bytes(volumes: impl Iterator<Item = (RoadVolume, u32)>) -> 
         bytes.extend_from_slice(&(class | other << 4).to_ne_bytes());
     }
     bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_that_share_an_edge_have_it_once() {
+        assert_eq!(edges(&[0, 1, 2, 2, 1, 3]), [[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]]);
+        assert!(edges(&[]).is_empty());
+    }
 }

@@ -3,18 +3,25 @@
 use glam::{DVec3, DVec4};
 
 use super::renderer::{DrawTile, FrameView};
-use crate::{CapTest, Caps};
+use crate::{CapTest, Caps, RoadMethod};
 
 /// Bytes of a tile's block.
 pub(super) const TILE_BYTES: u64 = 32;
 
 /// The frame's block. Its length follows from the style's arrays and matches `struct Frame`.
-pub(super) fn frame_rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
-    let FrameView { camera, style, .. } = view;
+pub(super) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f32; 4]> {
+    let style = view.style;
+    // To the passes a sample is a pixel.
+    let camera = view.camera.supersampled(samples_per_side);
     let axes = camera.world_from_view();
     let tan = camera.half_extent_at_unit_depth();
     let [width_px, height_px] = camera.size_px().map(f64::from);
-    let supersampling = f64::from(view.supersampling);
+    let samples = samples_per_side as f32;
+    // Without roads there is no edge to look for.
+    let outline_px = match view.roads.method {
+        RoadMethod::None => 0,
+        _ => view.roads.outline_px(style),
+    };
     let light = {
         let (azimuth, altitude) =
             (style.light_azimuth_deg.to_radians(), style.light_altitude_deg.to_radians());
@@ -43,8 +50,8 @@ pub(super) fn frame_rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
     rows.push([
         scaling.threshold_m * view.point_scale as f32,
         scaling.exponent,
-        (view.roads.outline_px(style) * view.supersampling) as f32,
-        supersampling as f32,
+        outline_px as f32 * samples,
+        samples,
     ]);
     rows.push([
         if view.roads.caps == Caps::Round { 1.0 } else { 0.0 },
@@ -58,7 +65,7 @@ pub(super) fn frame_rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
         let center_share = road.center.map_or(0.0, |center| center.width_share);
         [
             road.width_m / 2.0 * scaling.constant * view.point_scale as f32,
-            road.min_width_px / 2.0 * supersampling as f32,
+            road.min_width_px / 2.0 * samples,
             center_share,
             0.0,
         ]

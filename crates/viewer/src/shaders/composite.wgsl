@@ -7,14 +7,6 @@
 @group(1) @binding(1) var terrain_depth: texture_depth_2d;
 @group(1) @binding(2) var road_labels: texture_2d<u32>;
 
-@vertex
-fn vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
-    // One triangle that covers the picture.
-    let x = f32(corner & 1u) * 4.0 - 1.0;
-    let y = f32(corner >> 1u) * 4.0 - 1.0;
-    return vec4(x, y, 0.0, 1.0);
-}
-
 // Ground that many times farther away than its neighbour in the picture lies behind it.
 const FARTHER = 1.1;
 
@@ -62,9 +54,10 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     for (var y = -radius; y <= radius; y++) {
         for (var x = -radius; x <= radius; x++) {
             let near = clamp(pixel + vec2(x, y), vec2(0), last);
+            let candidate = textureLoad(road_labels, near, 0).r;
             // A road behind a crest has no edge on the crest.
-            if textureLoad(terrain_depth, near, 0) * FARTHER >= depth_buffer {
-                most = max(most, textureLoad(road_labels, near, 0).r);
+            if candidate > most && textureLoad(terrain_depth, near, 0) * FARTHER >= depth_buffer {
+                most = candidate;
             }
         }
     }

@@ -16,6 +16,10 @@ struct Tile {
 
 // 0 draws ground, 1 skirts.
 override SKIRT: u32 = 0u;
+// The edges of the ground's triangles lie in the ground, but a line is drawn at pixel centres beside it, where
+// sloping ground is nearer. Pulled towards the eye by so many pixels' sides, it hides only where the ground falls
+// away more steeply than that.
+override PULL_PX: f32 = 0.0;
 
 struct VertexIn {
     @location(0) position_in_tile: vec3<f32>,
@@ -41,6 +45,8 @@ fn vertex(in: VertexIn) -> VertexOut {
     let in_tile = vec3(in.position_in_tile.xy, in.position_in_tile.z * vertical_scale - down);
     var out: VertexOut;
     out.clip = frame.clip_from_relative * vec4(tile.offset.xyz + in_tile, 1.0);
+    // depth_buffer = z / w, greater is nearer.
+    out.clip.z *= 1.0 + PULL_PX * frame.sky.w;
     // Stretching the ground upwards flattens its normals' vertical part.
     out.normal = vec3(in.normal_skirt.xy * vertical_scale, in.normal_skirt.z);
     out.height_m = tile.base.x + in.position_in_tile.z;
@@ -69,4 +75,11 @@ fn fragment(in: VertexOut) -> Pixel {
     let bright = mix(dark, vec3(1.0), frame.light.w * clamp(lit - 1.0, 0.0, 1.0) * 0.9);
     let owner = u32(tile.base.z) | (SKIRT << 31u);
     return Pixel(vec4(bright, select(1.0, 0.5, SKIRT == 1u)), owner);
+}
+
+@fragment
+fn wire_fragment(in: VertexOut) -> @location(0) vec4<f32> {
+    let color = tint_at(in.height_m);
+    let is_dark = dot(color, vec3(0.299, 0.587, 0.114)) < 0.4;
+    return vec4(mix(color, vec3(select(0.0, 1.0, is_dark)), 0.6), 1.0);
 }

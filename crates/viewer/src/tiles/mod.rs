@@ -181,6 +181,19 @@ impl<'a> TileStore<'a> {
         self.tiles.get(&id)
     }
 
+    /// Between which true heights all ground lies; `None` without any. Loads the root.
+    ///
+    /// # Errors
+    /// When the root cannot be had.
+    pub fn ground_range_m(&mut self) -> Result<Option<[f64; 2]>, LoadTileError> {
+        if !self.exists(TileId::ROOT) {
+            return Ok(None);
+        }
+        self.load(&[Request { id: TileId::ROOT, priority_px: f64::INFINITY }])?;
+        let summary = self.get(TileId::ROOT).and_then(|root| root.summary);
+        Ok(summary.map(|ground| ground.height_range_m))
+    }
+
     /// True height of the ground at a position, from the finest tile there; loads the tiles down to it.
     ///
     /// # Errors

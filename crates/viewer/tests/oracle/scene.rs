@@ -8,7 +8,7 @@ use corniche_tin::{Placement, Surface};
 use corniche_viewer::{
     RoadOptions,
     camera::Camera,
-    gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers},
+    gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers, Wireframe},
     style::Style,
     tiles::{GroundLine, PlanLine, TileGeometry, TileLines},
 };
@@ -197,7 +197,7 @@ impl Scene {
             exaggeration: 1.0,
             point_scale: 1.0,
             height_range_m: [0.0, 2000.0],
-            supersampling: 1,
+            wireframe: Wireframe::Hidden,
         }
     }
 
@@ -209,7 +209,7 @@ impl Scene {
             .zip(&self.tiles)
             .map(|(buffers, tile)| DrawTile { buffers, skirt_depth_m: tile.skirt_depth_m })
             .collect();
-        let targets = Targets::new(gpu, camera.size_px()).unwrap();
+        let targets = Targets::new(gpu, camera.size_px(), 1).unwrap();
         let view = Self::view(camera, &self.style, options);
         Renderer::new(gpu).draw(gpu, &view, &tiles, &targets);
         Drawing::read(gpu, &targets)

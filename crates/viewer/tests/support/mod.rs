@@ -15,7 +15,7 @@ use corniche_tin::{Tin, TinVertex};
 use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::Camera,
-    gpu::{DrawTile, FrameView, Gpu, Owner, Renderer, Targets, TileBuffers},
+    gpu::{DrawTile, FrameView, Gpu, Owner, Renderer, Targets, TileBuffers, Wireframe},
     style::{RoadStyle, Style, WidthScaling},
     tiles::{GroundLine, TileGeometry, TileLines},
 };
@@ -241,7 +241,7 @@ pub(crate) fn draw_exaggerated(
         .iter()
         .map(|(buffers, depth)| DrawTile { buffers, skirt_depth_m: *depth })
         .collect();
-    let targets = Targets::new(gpu, camera.size_px()).unwrap();
+    let targets = Targets::new(gpu, camera.size_px(), 1).unwrap();
     let view = FrameView {
         camera,
         style,
@@ -249,7 +249,7 @@ pub(crate) fn draw_exaggerated(
         exaggeration,
         point_scale: 1.0,
         height_range_m: [0.0, 1000.0],
-        supersampling: 1,
+        wireframe: Wireframe::Hidden,
     };
     Renderer::new(gpu).draw(gpu, &view, &tiles, &targets);
     Drawing::read(gpu, &targets)

@@ -1,0 +1,106 @@
+use std::{num::NonZeroUsize, path::PathBuf};
+
+use clap::Args;
+
+#[derive(Debug, Args)]
+pub(crate) struct BuildArgs {
+    /// Elevation rasters, any format GDAL reads; where they overlap, the first has precedence
+    #[arg(long, value_name = "FILE", num_args = 1.., required = true)]
+    pub(crate) dem: Vec<PathBuf>,
+    /// OpenStreetMap extract (.osm.pbf); without it the package is terrain alone
+    #[arg(long, value_name = "FILE")]
+    pub(crate) osm: Option<PathBuf>,
+    /// The package to write (.pmtiles)
+    #[arg(short, long, value_name = "PACKAGE")]
+    pub(crate) output: PathBuf,
+    /// Replace the package if it exists, once the new one is complete
+    #[arg(short = 'O', long)]
+    pub(crate) overwrite: bool,
+    /// Also list every defect of the extract and every road lost, one per line (CSV); an existing list is kept
+    /// unless -O is given
+    #[arg(long, value_name = "CSV", requires = "osm")]
+    pub(crate) defects: Option<PathBuf>,
+    /// Credit to show wherever the package is shown, such as a DEM's; may be given several times
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) attribution: Vec<String>,
+    /// Settings file; what is said on the command line goes before it
+    #[arg(long, value_name = "TOML")]
+    pub(crate) config: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) terrain: TerrainArgs,
+    #[command(flatten)]
+    pub(crate) roads: RoadArgs,
+    #[command(flatten)]
+    pub(crate) resources: ResourceArgs,
+    #[command(flatten)]
+    pub(crate) report: ReportArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Terrain")]
+pub(crate) struct TerrainArgs {
+    /// Working CRS, projected, in metres [default: the DEM's if it is projected and true to scale, else UTM]
+    #[arg(long, value_name = "EPSG:N")]
+    pub(crate) crs: Option<String>,
+    /// CRS of rasters that name none
+    #[arg(long, value_name = "EPSG:N")]
+    pub(crate) dem_crs: Option<String>,
+    /// Vertical CRS of rasters that name none
+    #[arg(long, value_name = "EPSG:N")]
+    pub(crate) dem_vertical_crs: Option<String>,
+    /// Vertical CRS that heights are wanted in, through PROJ and its geoid grids [default: the files']
+    #[arg(long, value_name = "EPSG:N")]
+    pub(crate) vertical_crs: Option<String>,
+    /// Added to every height, in metres [default: 0]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    pub(crate) vertical_shift: Option<f64>,
+    /// Height that means "no data", beside what the files say
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    pub(crate) nodata: Option<f64>,
+    /// Spacing of the finest level, in metres [default: the DEM's]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    pub(crate) cell: Option<f64>,
+    /// Largest vertical error of the finest level, in metres [default: a quarter of the cell]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    pub(crate) max_error: Option<f64>,
+    /// Fill voids that have data within this many cells in each of eight directions [default: 32]
+    #[arg(long, value_name = "CELLS")]
+    pub(crate) fill_voids: Option<u32>,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Roads")]
+pub(crate) struct RoadArgs {
+    /// FRC table: a preset (default, valhalla, fraunhofer, itinero, here5) or a TOML file [default: default]
+    #[arg(long, value_name = "PRESET|FILE")]
+    pub(crate) frc_table: Option<String>,
+    /// Show every class on every level
+    #[arg(long)]
+    pub(crate) all_classes: bool,
+    /// Tolerance of the simplification of roads on coarser levels, in cells of the level; 0 keeps every point
+    /// [default: 0.25]
+    #[arg(long, value_name = "CELLS")]
+    pub(crate) simplify: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Resources")]
+pub(crate) struct ResourceArgs {
+    /// Worker threads [default: one per processor]
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+    /// Memory for buffers and caches, such as 512M or 4G [default: 1G]
+    #[arg(long, value_name = "BYTES")]
+    pub(crate) memory: Option<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Progress")]
+pub(crate) struct ReportArgs {
+    /// Say nothing but errors
+    #[arg(short, long, conflicts_with = "json_progress")]
+    pub(crate) quiet: bool,
+    /// Progress as one JSON object a line on standard error
+    #[arg(long)]
+    pub(crate) json_progress: bool,
+}

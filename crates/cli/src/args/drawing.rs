@@ -1,0 +1,181 @@
+//! Commands that draw without a window.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::{
+    look::{LookArgs, Roads},
+    values::{parse_bytes, parse_position, parse_size},
+};
+
+#[derive(Debug, Args)]
+pub(crate) struct RenderArgs {
+    /// The package
+    pub(crate) package: PathBuf,
+    /// The picture to write (.png); an existing one is replaced
+    #[arg(short, long, value_name = "PNG")]
+    pub(crate) output: PathBuf,
+    /// How roads are drawn
+    #[arg(long, value_enum, default_value_t = Roads::Geo)]
+    pub(crate) roads: Roads,
+    #[command(flatten)]
+    pub(crate) look: LookArgs,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1600x1200", value_parser = parse_size)]
+    pub(crate) size: [u32; 2],
+    /// Look at this longitude and latitude (degrees, WGS84) instead of the whole package
+    #[arg(long, value_name = "LON,LAT", value_parser = parse_position, allow_hyphen_values = true)]
+    pub(crate) look_at: Option<[f64; 2]>,
+    /// Distance from the eye to the point looked at, in metres
+    #[arg(long, value_name = "METRES", default_value_t = 5000.0, requires = "look_at")]
+    pub(crate) distance: f64,
+    /// Direction of view, in degrees clockwise from north
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        default_value_t = 0.0,
+        requires = "look_at",
+        allow_hyphen_values = true
+    )]
+    pub(crate) heading: f64,
+    /// Tilt of the view, in degrees: 0 looks straight down, 90 at the horizon
+    #[arg(long, value_name = "DEGREES", default_value_t = 60.0, requires = "look_at")]
+    pub(crate) pitch: f64,
+    /// Terrain error that may be seen, in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 2.0)]
+    pub(crate) screen_space_error: f64,
+    /// Vertical exaggeration
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    pub(crate) exaggeration: f64,
+    /// Samples per pixel along each side, averaged
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=4))]
+    pub(crate) supersampling: u32,
+}
+
+/// How much of the ground is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Lod {
+    /// All finest tiles, in view or not
+    Full,
+    /// The finest tiles in view
+    Culled,
+    /// Tiles by screen-space error, loaded on the way
+    #[value(name = "lod")]
+    Adaptive,
+}
+
+impl Lod {
+    /// As it is said on the command line.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Full => "full",
+            Self::Culled => "culled",
+            Self::Adaptive => "lod",
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FlyArgs {
+    /// The package
+    pub(crate) package: PathBuf,
+    /// The list to write (.csv): one line per frame, with the tiles, triangles, bytes and milliseconds it took
+    #[arg(short, long, value_name = "CSV")]
+    pub(crate) output: PathBuf,
+    /// Replace files that exist, once the new ones are complete
+    #[arg(short = 'O', long)]
+    pub(crate) overwrite: bool,
+    /// Also draw the frame times along the flight
+    #[arg(long, value_name = "SVG")]
+    pub(crate) svg: Option<PathBuf>,
+    /// Also keep every frame as a picture in this new folder
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) png: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) flight: FlightArgs,
+    #[command(flatten)]
+    pub(crate) drawing: DrawingArgs,
+    #[command(flatten)]
+    pub(crate) look: LookArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Flight")]
+pub(crate) struct FlightArgs {
+    /// Flight to take: keyframes in TOML, as --save-path writes them [default: a pass along the data]
+    #[arg(long, value_name = "TOML")]
+    pub(crate) path: Option<PathBuf>,
+    /// Write down the flight taken
+    #[arg(long, value_name = "TOML")]
+    pub(crate) save_path: Option<PathBuf>,
+    /// How many frames, evenly spread over the flight
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    pub(crate) frames: u32,
+    /// Time from one frame to the next, in seconds, instead of a number of frames
+    #[arg(long, value_name = "SECONDS", conflicts_with = "frames", allow_negative_numbers = true)]
+    pub(crate) step: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Drawing")]
+pub(crate) struct DrawingArgs {
+    /// How roads are drawn; with several, separated by commas, the flight is taken with each
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "geo")]
+    pub(crate) roads: Vec<Roads>,
+    /// How much of the ground is drawn; with several, the flight is taken with each
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "lod")]
+    pub(crate) lod: Vec<Lod>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1600x1200", value_parser = parse_size)]
+    pub(crate) size: [u32; 2],
+    /// Terrain error that may be seen, in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 2.0)]
+    pub(crate) screen_space_error: f64,
+    /// Vertical exaggeration
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    pub(crate) exaggeration: f64,
+    /// Samples per pixel along each side, averaged
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4))]
+    pub(crate) supersampling: u32,
+    /// Memory for tiles on the graphics card, such as 512M or 4G
+    #[arg(long, value_name = "BYTES", default_value = "512M", value_parser = parse_bytes)]
+    pub(crate) gpu_memory: u64,
+    /// Handed to the graphics card in a frame at most, though always a whole tile
+    #[arg(long, value_name = "BYTES", default_value = "4M", value_parser = parse_bytes)]
+    pub(crate) upload_per_frame: u64,
+    /// Load for where the camera will be in so many seconds; 0 loads nothing in advance
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0)]
+    pub(crate) ahead: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser as _;
+
+    use super::*;
+    use crate::args::{Arguments, Command};
+
+    #[test]
+    fn one_flight_may_be_taken_with_several_methods() {
+        let line =
+            "corniche fly a -o b --roads none,geo --roads sv,sv-no-caps --lod full,culled,lod";
+        let Command::Fly(args) = Arguments::try_parse_from(line.split(' ')).unwrap().command else {
+            panic!("{line} is a flight");
+        };
+        assert_eq!(args.drawing.roads, [Roads::None, Roads::Geo, Roads::Sv, Roads::SvNoCaps]);
+        assert_eq!(args.drawing.lod, [Lod::Full, Lod::Culled, Lod::Adaptive]);
+        let both = "corniche fly a -o b --frames 3 --step 0.1";
+        assert!(Arguments::try_parse_from(both.split(' ')).is_err());
+    }
+
+    #[test]
+    fn samples_are_one_to_four_along_each_side() {
+        for (samples, fits) in [("0", false), ("1", true), ("4", true), ("5", false)] {
+            for command in ["render", "fly"] {
+                let line = ["corniche", command, "a", "-o", "b", "--supersampling", samples];
+                assert_eq!(Arguments::try_parse_from(line).is_ok(), fits, "{command} {samples}");
+            }
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! What can be said on the command line.
+
+mod build;
+mod drawing;
+mod look;
+mod reading;
+mod values;
+
+use clap::{Parser, Subcommand};
+
+pub(crate) use build::{BuildArgs, ReportArgs, ResourceArgs, RoadArgs, TerrainArgs};
+pub(crate) use drawing::{DrawingArgs, FlightArgs, FlyArgs, Lod, RenderArgs};
+pub(crate) use look::{LookArgs, Roads};
+pub(crate) use reading::{GrowthArgs, InfoArgs, TileArgs, VerifyArgs};
+
+/// Terrain tiles with roads laid exactly on them, from elevation rasters and OpenStreetMap extracts.
+#[derive(Debug, Parser)]
+#[command(version, name = "corniche", max_term_width = 100)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Build a tile package from elevation rasters and an OpenStreetMap extract
+    Build(Box<BuildArgs>),
+    /// Tell what a package holds and what became of its inputs
+    Info(InfoArgs),
+    /// Tell what laying roads on the terrain costs, per level and class
+    Growth(GrowthArgs),
+    /// Check every promise a package makes; exits with 1 when one is broken
+    Verify(VerifyArgs),
+    /// Dump one decoded tile
+    Tile(TileArgs),
+    /// Draw a package to a PNG, without a window
+    Render(RenderArgs),
+    /// Fly over a package without a window and tell what each frame costs
+    Fly(FlyArgs),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        use clap::CommandFactory as _;
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn options_of_later_issues_are_rejected() {
+        for line in ["--resume", "--photo x.tif"] {
+            let line = format!("corniche build --dem a.tif -o b {line}");
+            assert!(Arguments::try_parse_from(line.split(' ')).is_err(), "{line}");
+        }
+    }
+}

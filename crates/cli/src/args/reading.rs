@@ -1,0 +1,61 @@
+//! Commands that tell what a package holds.
+
+use std::{num::NonZeroUsize, path::PathBuf};
+
+use clap::Args;
+use corniche_geom::TileId;
+
+use super::ReportArgs;
+
+#[derive(Debug, Args)]
+pub(crate) struct InfoArgs {
+    /// The package
+    pub(crate) package: PathBuf,
+    /// For programs
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct GrowthArgs {
+    /// The package
+    pub(crate) package: PathBuf,
+    /// For programs: JSON
+    #[arg(long, conflicts_with = "csv")]
+    pub(crate) json: bool,
+    /// For programs: CSV
+    #[arg(long)]
+    pub(crate) csv: bool,
+    /// Also draw the growth per level and class
+    #[arg(long, value_name = "FILE")]
+    pub(crate) svg: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct VerifyArgs {
+    /// The package
+    pub(crate) package: PathBuf,
+    /// The elevation rasters it was made from, in the same order: checks stored errors against true ones
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    pub(crate) dem: Vec<PathBuf>,
+    /// Worker threads [default: one per processor]
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+    /// For programs
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) report: ReportArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TileArgs {
+    /// The package
+    pub(crate) package: PathBuf,
+    /// The tile: level, column from the west, row from the north
+    #[arg(value_name = "Z/X/Y")]
+    pub(crate) id: TileId,
+    /// For programs: everything, in working-CRS coordinates
+    #[arg(long)]
+    pub(crate) json: bool,
+}

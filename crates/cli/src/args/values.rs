@@ -1,0 +1,67 @@
+//! Texts of single values.
+
+pub(super) fn parse_bytes(text: &str) -> Result<u64, String> {
+    let (digits, shift) = match text.strip_suffix(['K', 'M', 'G']) {
+        Some(digits) if text.ends_with('K') => (digits, 10),
+        Some(digits) if text.ends_with('M') => (digits, 20),
+        Some(digits) => (digits, 30),
+        None => (text, 0),
+    };
+    let number: Option<u64> = digits.parse().ok();
+    match number.and_then(|number| number.checked_mul(1 << shift)) {
+        Some(size_bytes @ 1..) => Ok(size_bytes),
+        _ => Err("write it like 800K, 512M or 4G".to_owned()),
+    }
+}
+
+pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text
+        .split_once('x')
+        .and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
+    match sides {
+        Some([width @ 1..=8192, height @ 1..=8192]) => Ok([width, height]),
+        Some(_) => Err("both sides must be between 1 and 8192 pixels".to_owned()),
+        None => Err("write it like 1600x1200".to_owned()),
+    }
+}
+
+pub(super) fn parse_position(text: &str) -> Result<[f64; 2], String> {
+    let position = text
+        .split_once(',')
+        .and_then(|(lon, lat)| Some([lon.trim().parse().ok()?, lat.trim().parse().ok()?]));
+    match position {
+        Some([lon, lat]) if (-360.0..=360.0).contains(&lon) && (-90.0..=90.0).contains(&lat) => {
+            Ok([lon, lat])
+        }
+        Some(_) => Err("longitude must be within ±360 and latitude within ±90 degrees".to_owned()),
+        None => Err("write longitude,latitude like 9.52,47.14".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_of_memory() {
+        assert_eq!(parse_bytes("800K"), Ok(800 << 10));
+        assert_eq!(parse_bytes("512M"), Ok(512 << 20));
+        assert_eq!(parse_bytes("4G"), Ok(4 << 30));
+        assert_eq!(parse_bytes("17"), Ok(17));
+        for bad in ["", "0", "M", "-1M", "4T", "1.5G", "99999999999999G"] {
+            assert!(parse_bytes(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn sizes_and_positions() {
+        assert_eq!(parse_size("640x480"), Ok([640, 480]));
+        assert!(
+            parse_size("640").is_err()
+                && parse_size("0x5").is_err()
+                && parse_size("9000x9000").is_err()
+        );
+        assert_eq!(parse_position("-9.5, 47"), Ok([-9.5, 47.0]));
+        assert!(parse_position("47").is_err() && parse_position("9,147").is_err());
+    }
+}

@@ -1,0 +1,88 @@
+use corniche_viewer::FrameRecord;
+use plotters::prelude::{RGBColor, SeriesLabelPosition};
+
+use super::{Axes, Axis, Curve, Marks, Ticks, draw};
+use crate::fly::{Run, gpu_ms};
+
+/// The first seven are told apart also by those who see no red or green (Okabe & Ito 2008, *Color Universal Design*).
+const COLORS: [RGBColor; 9] = [
+    RGBColor(0, 0, 0),
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(230, 159, 0),
+    RGBColor(136, 34, 85),
+    RGBColor(110, 110, 110),
+];
+
+/// Milliseconds to draw each frame over the time in the flight, one curve a run: what Vaaraniemi, Treib & Westermann 2011
+/// show in Figures 13 and 14. By the graphics card's clock where there is one.
+pub(crate) fn frame_times(runs: &[Run], adapter: &str) -> anyhow::Result<String> {
+    let times = |frame: &FrameRecord| frame.passes.as_ref().map(gpu_ms);
+    let mut frames = runs.iter().flat_map(Run::counted);
+    let has_clock = frames.all(|frame| frame.passes.is_some());
+    let point = |frame: &FrameRecord| {
+        let frame_ms = times(frame).filter(|_| has_clock).unwrap_or(frame.draw_ms);
+        (frame.time_s, frame_ms)
+    };
+    let points = |run: &Run| -> Vec<(f64, f64)> { run.counted().iter().map(point).collect() };
+    let all: Vec<(f64, f64)> = runs.iter().flat_map(points).collect();
+    let begin_s = all.iter().map(|(time_s, _)| *time_s).fold(f64::INFINITY, f64::min);
+    let end_s = all.iter().map(|(time_s, _)| *time_s).fold(f64::NEG_INFINITY, f64::max);
+    let most_ms = all.iter().map(|(_, frame_ms)| *frame_ms).fold(0.0, f64::max);
+    let axes = Axes {
+        size_px: (1000, 560),
+        caption: format!("Time to draw a frame ({adapter})"),
+        x: Axis {
+            description: "time in the flight, s",
+            range: if begin_s < end_s { begin_s..end_s } else { 0.0..1.0 },
+            ticks: Ticks::Round,
+        },
+        y: Axis {
+            description: if has_clock { "ms by the graphics card's clock" } else { "ms" },
+            // Room above the curves for their names.
+            range: 0.0..most_ms.max(0.001) * (1.1 + 0.06 * runs.len() as f64),
+            ticks: Ticks::Round,
+        },
+        names: SeriesLabelPosition::UpperRight,
+    };
+    let curve = |(run, color): (&Run, &RGBColor)| Curve {
+        name: run.name(),
+        color: *color,
+        points: points(run),
+        marks: Marks::None,
+    };
+    let curves: Vec<Curve> = runs.iter().zip(COLORS.iter().cycle()).map(curve).collect();
+    draw(&axes, &curves)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        args::{Lod, Roads},
+        fly::frame,
+    };
+
+    #[test]
+    fn a_chart_without_frames_is_a_chart() {
+        let runs = [Run { lod: Lod::Adaptive, roads: Roads::Geo, frames: Vec::new() }];
+        let svg = frame_times(&runs, "an adapter").unwrap();
+        assert!(svg.contains("<svg") && svg.contains("lod, roads geo") && !svg.contains("NaN"));
+    }
+
+    #[test]
+    fn a_chart_says_which_clock_its_times_are_of() {
+        let run = |frames| [Run { lod: Lod::Adaptive, roads: Roads::Geo, frames }];
+        let mut timed = vec![frame(1.0), frame(3.0), frame(3.0)];
+        let svg = frame_times(&run(timed.clone()), "an adapter").unwrap();
+        assert!(svg.contains("clock"), "{svg}");
+        // The first frame does not count, so neither does its clock.
+        timed[0].passes = None;
+        assert!(frame_times(&run(timed.clone()), "an adapter").unwrap().contains("clock"));
+        timed[2].passes = None;
+        assert!(!frame_times(&run(timed), "an adapter").unwrap().contains("clock"));
+    }
+}

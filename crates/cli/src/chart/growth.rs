@@ -1,0 +1,54 @@
+use corniche_tileset::Manifest;
+use plotters::prelude::{RGBColor, SeriesLabelPosition};
+
+use super::{Axes, Axis, Curve, Marks, Ticks, draw};
+
+/// One colour a class, as on a road atlas: red for motorways down to grey for tracks.
+const CLASS_COLORS: [RGBColor; 9] = [
+    RGBColor(200, 30, 40),
+    RGBColor(230, 100, 30),
+    RGBColor(235, 160, 30),
+    RGBColor(190, 170, 20),
+    RGBColor(110, 150, 50),
+    RGBColor(40, 140, 140),
+    RGBColor(50, 90, 170),
+    RGBColor(110, 110, 120),
+    RGBColor(160, 120, 160),
+];
+
+/// Growth of clipped vertices over the level's own simplified line, one curve a class over the levels.
+pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
+    let factor = |geo: u64, simplified: u64| geo as f64 / simplified as f64;
+    let rows: Vec<_> = manifest.growth.iter().filter(|row| row.simplified_vertices > 0).collect();
+    let highest = rows
+        .iter()
+        .map(|row| factor(row.geo_vertices, row.simplified_vertices))
+        .fold(1.0_f64, f64::max);
+    let last = manifest.levels.last().map_or(0, |level| level.level);
+    let axes = Axes {
+        size_px: (900, 520),
+        caption: "Vertices of clipped roads over the level's simplified lines".to_owned(),
+        x: Axis {
+            description: "level (0 = root)",
+            range: -0.3..f64::from(last) + 1.4,
+            ticks: Ticks::Whole(usize::from(last) + 1),
+        },
+        y: Axis {
+            description: "times the vertices",
+            range: 0.0..highest * 1.08,
+            ticks: Ticks::Round,
+        },
+        names: SeriesLabelPosition::MiddleRight,
+    };
+    let curve = |(class, color): (u8, RGBColor)| {
+        let of_class = rows.iter().filter(|row| row.class == class);
+        let point = |row: &&corniche_tileset::GrowthRow| {
+            (f64::from(row.level), factor(row.geo_vertices, row.simplified_vertices))
+        };
+        let points: Vec<(f64, f64)> = of_class.map(|row| point(row)).collect();
+        let name = format!("FRC {class}");
+        (!points.is_empty()).then_some(Curve { name, color, points, marks: Marks::Dots })
+    };
+    let curves: Vec<Curve> = (0_u8..).zip(CLASS_COLORS).filter_map(curve).collect();
+    draw(&axes, &curves)
+}

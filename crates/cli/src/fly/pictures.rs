@@ -1,0 +1,90 @@
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use corniche_viewer::Replay;
+use tempfile::TempDir;
+
+use crate::{exit::ExitCode, failure::Failure};
+
+/// A folder of pictures that takes its place when it is complete.
+pub(super) struct Pictures {
+    target: PathBuf,
+    folder: TempDir,
+}
+
+impl Pictures {
+    pub(super) fn create(target: &Path, used: &[&Path]) -> Result<Self, Failure> {
+        let unusable = |reason: &dyn std::fmt::Display| {
+            Failure::unusable(format!("cannot write pictures to {}: {reason}", target.display()))
+        };
+        if used.contains(&target) {
+            return Err(unusable(&"the command uses that file itself; choose another name"));
+        }
+        if target.symlink_metadata().is_ok() {
+            return Err(Failure::new(
+                ExitCode::Exists,
+                anyhow::anyhow!(
+                    "{} exists already; name a new folder for the pictures",
+                    target.display()
+                ),
+            ));
+        }
+        let parent = match target.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent,
+            _ => Path::new("."),
+        };
+        let mut builder = tempfile::Builder::new();
+        // Temporary folders are their owner's alone; this one is to become an ordinary folder.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
+        let folder = builder.tempdir_in(parent).map_err(|error| unusable(&error))?;
+        Ok(Self { target: target.to_path_buf(), folder })
+    }
+
+    pub(super) fn add(&self, name: &str, replay: &Replay<'_>) -> Result<(), Failure> {
+        let picture = replay.picture()?;
+        picture
+            .save_with_format(self.folder.path().join(name), image::ImageFormat::Png)
+            .map_err(|error| Failure::new(ExitCode::Failed, error))
+    }
+
+    pub(super) fn finish(self) -> Result<(), Failure> {
+        let Self { target, folder } = self;
+        fs::rename(folder.path(), &target).map_err(|error| {
+            Failure::new(
+                ExitCode::Failed,
+                anyhow::anyhow!("cannot move the pictures to {}: {error}", target.display()),
+            )
+        })?;
+        // It is the user's folder now.
+        let _ = folder.keep();
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_take_their_place_together_or_leave_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("frames");
+        let pictures = Pictures::create(&target, &[]).unwrap();
+        fs::write(pictures.folder.path().join("a.png"), b"a").unwrap();
+        assert!(!target.exists());
+        drop(pictures);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "litter");
+        let pictures = Pictures::create(&target, &[]).unwrap();
+        fs::write(pictures.folder.path().join("a.png"), b"a").unwrap();
+        pictures.finish().unwrap();
+        assert_eq!(fs::read(target.join("a.png")).unwrap(), b"a");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "litter");
+        let refused = Pictures::create(&target, &[]).err().unwrap();
+        assert_eq!(refused.code(), ExitCode::Exists);
+        let list = folder.path().join("list.csv");
+        assert_eq!(Pictures::create(&list, &[&list]).err().unwrap().code(), ExitCode::Unusable);
+    }
+}

@@ -1,0 +1,113 @@
+use super::*;
+
+fn atlas() -> &'static str {
+    style_preset("road-atlas").expect("the default style is there")
+}
+
+/// Refuses the atlas with one text in it replaced, and with all these words.
+fn refuses(from: &str, to: &str, words: &[&str]) {
+    let text = atlas().replacen(from, to, 1);
+    assert_ne!(text, atlas(), "{from:?} does not stand there");
+    let error = parse_style(&text).expect_err(to).to_string();
+    for word in words {
+        assert!(error.contains(word), "{to:?}: no {word:?} in {error}");
+    }
+}
+
+#[test]
+fn the_styles_that_come_along_are_styles_of_ordered_roads() {
+    assert_eq!(style_preset_names().collect::<Vec<_>>(), ["road-atlas", "dark"]);
+    for name in style_preset_names() {
+        let style = parse_style(style_preset(name).unwrap()).unwrap();
+        assert!(
+            style
+                .roads
+                .is_sorted_by(|a, b| a.width_m > b.width_m && a.min_width_px >= b.min_width_px),
+            "{name}: more important roads are wider"
+        );
+        assert!(style.roads[0].center.is_some() && style.roads[8].center.is_none(), "{name}");
+    }
+    assert!(style_preset("road atlas").is_none());
+}
+
+/// Relative luminance as WCAG 2.2 defines it.
+fn luminance(Rgb8(rgb): Rgb8) -> f64 {
+    let [r, g, b] = rgb.map(|channel| {
+        let share = f64::from(channel) / 255.0;
+        if share <= 0.04045 { share / 12.92 } else { ((share + 0.055) / 1.055).powf(2.4) }
+    });
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+/// The contrast of main roads, tracks and edges with ground that lies flat in the light.
+#[test]
+fn dark_roads_glow_and_their_edges_are_darker_than_any_ground() {
+    let style = parse_style(style_preset("dark").unwrap()).unwrap();
+    let contrast = |a: Rgb8, b: Rgb8| {
+        let [a, b] = [a, b].map(luminance);
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    };
+    // The two highest tints are rock and snow; roads there are few and low classes fade into them.
+    let ground = &style.tint[..4];
+    for (class, road) in style.roads.iter().enumerate() {
+        for tint in ground {
+            let least = if class <= 4 { 5.0 } else { 1.7 };
+            let reached = contrast(road.color, tint.color);
+            assert!(reached >= least, "class {class} on {:?}: {reached:.2}", tint.color);
+            assert!(luminance(road.color) > luminance(tint.color), "class {class} glows");
+            assert!(luminance(road.outline) < luminance(tint.color), "class {class} has an edge");
+        }
+    }
+}
+
+#[test]
+fn colours_are_six_hexadecimal_digits() {
+    assert_eq!(Rgb8::try_from("#ff0033".to_owned()), Ok(Rgb8([255, 0, 0x33])));
+    for bad in ["ff0033", "#ff003", "#ff00330", "#+f0033", "#gg0000", "", "#", "#é0033", "red"] {
+        assert!(Rgb8::try_from(bad.to_owned()).is_err(), "{bad}");
+    }
+    refuses("\"#D93A2B\"", "\"#D93A2\"", &["line", "#D93A2", "colour"]);
+}
+
+#[test]
+fn numbers_out_of_their_range_are_named_with_it() {
+    refuses("width_m = 24", "width_m = 0", &["roads.0.width_m", "0.1 to 500"]);
+    refuses("width_m = 3.5", "width_m = nan", &["roads.8.width_m", "NaN"]);
+    refuses("min_width_px = 2.6", "min_width_px = 51", &["roads.1.min_width_px", "0.1 to 50"]);
+    refuses(
+        "width_share = 0.3",
+        "width_share = 1",
+        &["roads.0.center.width_share", "0.01 to 0.99"],
+    );
+    refuses("threshold_m = 1500", "threshold_m = inf", &["threshold_m", "1 to 10000000"]);
+    refuses("exponent = 0.75", "exponent = -0.1", &["width_scaling.exponent", "0 to 1"]);
+    refuses("constant = 4", "constant = 0", &["width_scaling.constant", "0.1 to 100"]);
+    refuses("outline_px = 1", "outline_px = 5", &["outline_px", "0 to 4"]);
+    refuses("azimuth_deg = 315", "azimuth_deg = 361", &["light.azimuth_deg", "0 to 360"]);
+    refuses("altitude_deg = 45", "altitude_deg = 91", &["light.altitude_deg", "0 to 90"]);
+    refuses("hillshade = 0.75", "hillshade = 1.1", &["light.hillshade", "0 to 1"]);
+    refuses("haze_reach = 6", "haze_reach = 0", &["background.haze_reach", "0.1 to 1000"]);
+}
+
+#[test]
+fn what_is_unknown_or_left_out_is_named() {
+    refuses("hillshade = 0.75", "hillshading = 0.75", &["line", "hillshading"]);
+    refuses("sky = \"#9FC1E0\"\n", "", &["sky"]);
+    refuses("[roads.4]", "[roads.04]", &["04", "0 to 8"]);
+    refuses("[roads.4]", "[roads.9]", &["9", "0 to 8"]);
+    let without = atlas().split("[roads.8]").next().expect("split gives one part at least");
+    let error = parse_style(without).unwrap_err().to_string();
+    assert!(error.contains("roads.8") && error.contains("missing"), "{error}");
+    assert!(matches!(parse_style(&"#".repeat(2 << 20)), Err(PresetError::TooLong { .. })));
+}
+
+#[test]
+fn tints_ascend_from_the_lowest_ground_to_the_highest() {
+    let order = "ascend from 0 to 1";
+    refuses("share = 0.15", "share = 0.35", &[order]);
+    refuses("share = 0.15", "share = nan", &[order]);
+    refuses("share = 0.15", "share = 1e-320", &[order]);
+    refuses("share = 0\n", "share = 0.1\n", &[order]);
+    refuses("share = 1\n", "share = 0.9\n", &[order]);
+    refuses("[[tint]]\nshare = 0.15\ncolor = \"#DDE6BF\"\n", "", &["6 [[tint]] entries, not 5"]);
+}

@@ -1,0 +1,211 @@
+use std::sync::{
+    Arc, Mutex, PoisonError,
+    atomic::{AtomicBool, Ordering},
+};
+
+use super::{PassTimer, ReadBackError};
+
+/// Why there is no graphics device, or it cannot draw what is asked.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum GpuError {
+    #[error("no graphics adapter found; install a Vulkan driver (software: mesa-vulkan-drivers)")]
+    NoAdapter { source: wgpu::RequestAdapterError },
+    #[error("the graphics adapter {adapter:?} gives no device")]
+    NoDevice { adapter: String, source: wgpu::RequestDeviceError },
+    #[error(
+        "a picture of {size_px:?} pixels is beyond what the adapter can draw ({limit_px} a side)"
+    )]
+    TooLarge { size_px: [u32; 2], limit_px: u32 },
+    #[error("a picture needs at least one pixel, not {size_px:?}")]
+    Empty { size_px: [u32; 2] },
+    #[error(
+        "{samples_per_side} samples on a pixel's side are out of range; it must be 1 to {most}"
+    )]
+    Samples { samples_per_side: u32, most: u32 },
+    #[error("pictures of {sizes_px:?} samples cannot be compared: they must be of one size")]
+    SizesDiffer { sizes_px: [[u32; 2]; 3] },
+}
+
+/// A graphics device.
+pub struct Gpu {
+    adapter: wgpu::Adapter,
+    adapter_name: String,
+    pub(super) device: wgpu::Device,
+    pub(super) queue: wgpu::Queue,
+    faults: Arc<Faults>,
+}
+
+/// What the device reports from elsewhere than where it was called.
+#[derive(Default)]
+struct Faults {
+    is_lost: AtomicBool,
+    first: Mutex<Option<String>>,
+}
+
+impl Gpu {
+    /// Takes the fastest adapter, a software one if there is no other; no window is needed.
+    ///
+    /// The environment may choose: `WGPU_BACKEND` (vulkan, gl, …), `WGPU_POWER_PREF` (low, high) and
+    /// `WGPU_ADAPTER_NAME` (a part of it).
+    ///
+    /// # Errors
+    /// When there is no adapter at all or it gives no device.
+    pub fn new() -> Result<Self, GpuError> {
+        let with = |backends| {
+            let descriptor = wgpu::InstanceDescriptor {
+                backends,
+                ..wgpu::InstanceDescriptor::new_without_display_handle()
+            };
+            adapter(&wgpu::Instance::new(descriptor.with_env()), None)
+        };
+        // OpenGL only if there is nothing better.
+        let adapter = with(wgpu::Backends::PRIMARY)
+            .or_else(|_| with(wgpu::Backends::SECONDARY))
+            .map_err(|source| GpuError::NoAdapter { source })?;
+        Self::of(adapter)
+    }
+
+    /// The same for a window: an adapter that can show pictures on `surface`, which `instance` made. The
+    /// instance decides which backends there are.
+    ///
+    /// # Errors
+    /// When no adapter can show pictures there or it gives no device.
+    pub fn for_window(
+        instance: &wgpu::Instance,
+        surface: &wgpu::Surface<'_>,
+    ) -> Result<Self, GpuError> {
+        Self::of(adapter(instance, Some(surface)).map_err(|source| GpuError::NoAdapter { source })?)
+    }
+
+    fn of(adapter: wgpu::Adapter) -> Result<Self, GpuError> {
+        let info = adapter.get_info();
+        let adapter_name = format!("{} ({})", info.name, info.backend);
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("corniche"),
+            required_features: adapter.features() & PassTimer::FEATURES,
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|source| GpuError::NoDevice { adapter: adapter_name.clone(), source })?;
+        let faults = Arc::new(Faults::default());
+        let seen = Arc::clone(&faults);
+        device.set_device_lost_callback(move |_, _| seen.is_lost.store(true, Ordering::Release));
+        let seen = Arc::clone(&faults);
+        // Without a handler the process would end.
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            let mut first = seen.first.lock().unwrap_or_else(PoisonError::into_inner);
+            first.get_or_insert_with(|| error.to_string());
+        }));
+        Ok(Self { adapter, adapter_name, device, queue, faults })
+    }
+
+    /// What draws, for reports: "llvmpipe (…) (vulkan)".
+    #[must_use]
+    pub fn adapter_name(&self) -> &str {
+        &self.adapter_name
+    }
+
+    /// Whether the processor draws, for want of a graphics card.
+    #[must_use]
+    pub fn is_software(&self) -> bool {
+        self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Whether the device is gone, by a reset of its driver for instance. All that was made with it is gone too: a
+    /// window makes everything anew.
+    #[must_use]
+    pub fn is_lost(&self) -> bool {
+        self.faults.is_lost.load(Ordering::Acquire)
+    }
+
+    /// The first thing that went wrong since this was asked last: memory ran out, or a mistake in the renderer. What
+    /// was drawn since cannot be trusted. Reading pixels back tells of it too.
+    #[must_use]
+    pub fn take_fault(&self) -> Option<String> {
+        self.faults.first.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    /// Largest side of a picture, samples counted.
+    #[must_use]
+    pub fn max_side_px(&self) -> u32 {
+        self.device.limits().max_texture_dimension_2d
+    }
+
+    /// What the device is made from; knows what surfaces can do.
+    #[must_use]
+    pub fn adapter(&self) -> &wgpu::Adapter {
+        &self.adapter
+    }
+
+    /// Makes buffers, textures and pipelines.
+    #[must_use]
+    pub fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    /// Takes work.
+    #[must_use]
+    pub fn queue(&self) -> &wgpu::Queue {
+        &self.queue
+    }
+
+    /// Waits until everything handed over so far is drawn.
+    ///
+    /// # Errors
+    /// When the device is lost or something went wrong since the last time.
+    pub fn finish(&self) -> Result<(), ReadBackError> {
+        self.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .map_err(|source| ReadBackError::Poll { source })?;
+        match self.take_fault() {
+            Some(what) => Err(ReadBackError::Fault { what }),
+            None => Ok(()),
+        }
+    }
+
+    /// A buffer with these contents, whose length is a multiple of 4.
+    ///
+    /// `wgpu`'s own helper maps the buffer instead and panics when the device is lost.
+    pub(super) fn buffer(
+        &self,
+        label: &str,
+        contents: &[u8],
+        usage: wgpu::BufferUsages,
+    ) -> wgpu::Buffer {
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: contents.len() as u64,
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.queue.write_buffer(&buffer, 0, contents);
+        buffer
+    }
+}
+
+/// The adapter the environment names, else the fastest, else a software one.
+fn adapter(
+    instance: &wgpu::Instance,
+    surface: Option<&wgpu::Surface<'_>>,
+) -> Result<wgpu::Adapter, wgpu::RequestAdapterError> {
+    let fastest = wgpu::RequestAdapterOptions {
+        power_preference: wgpu::PowerPreference::from_env()
+            .unwrap_or(wgpu::PowerPreference::HighPerformance),
+        compatible_surface: surface,
+        ..Default::default()
+    };
+    let software = wgpu::RequestAdapterOptions {
+        force_fallback_adapter: true,
+        compatible_surface: surface,
+        ..Default::default()
+    };
+    match pollster::block_on(wgpu::util::initialize_adapter_from_env(instance, surface)) {
+        Err(wgpu::RequestAdapterError::EnvNotSet) => {
+            pollster::block_on(instance.request_adapter(&fastest))
+                .or_else(|_| pollster::block_on(instance.request_adapter(&software)))
+        }
+        named => named,
+    }
+}

@@ -1,0 +1,191 @@
+use wgpu::{Extent3d, TextureAspect, TextureFormat, TextureUsages, TextureView};
+
+use super::{Gpu, GpuError};
+
+pub(super) const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
+
+/// Samples on each side of a pixel, at most. Sums of so many colours stay exact, and sixteen are more than one sees.
+pub const MAX_SAMPLES_PER_SIDE: u32 = 4;
+
+/// What is shown: a texture that holds colours as sRGB encodes them, without being of an sRGB format.
+///
+/// With several samples a pixel there is a second, larger texture that is drawn first and averaged into it.
+pub struct Picture {
+    size_px: [u32; 2],
+    samples_per_side: u32,
+    samples: Option<Plane>,
+    pixels: Plane,
+}
+
+/// Why pixels did not come back.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum ReadBackError {
+    #[error("the graphics device did not finish drawing")]
+    Poll { source: wgpu::PollError },
+    #[error("the drawn pixels cannot be mapped")]
+    Map { source: wgpu::BufferAsyncError },
+    #[error("the drawn pixels cannot be read")]
+    Range { source: wgpu::MapRangeError },
+    #[error("the graphics device could not do its work: {what}")]
+    Fault { what: String },
+    #[error("no frame was timed since the last one")]
+    Untimed,
+}
+
+/// A texture and its only view.
+pub(super) struct Plane {
+    texture: wgpu::Texture,
+    pub(super) view: TextureView,
+}
+
+impl Picture {
+    /// A picture with this width and height and as many samples on each side of a pixel.
+    ///
+    /// # Errors
+    /// When the size has a 0, is beyond the adapter's limit with its samples, or they are too many or none.
+    pub fn new(gpu: &Gpu, size_px: [u32; 2], samples_per_side: u32) -> Result<Self, GpuError> {
+        let sampled_px = sampled_px(gpu, size_px, samples_per_side)?;
+        let samples = (samples_per_side > 1).then(|| Plane::new(gpu, "samples", COLOR, sampled_px));
+        let pixels = Plane::new(gpu, "picture", COLOR, size_px);
+        Ok(Self { size_px, samples_per_side, samples, pixels })
+    }
+
+    /// Width and height in pixels.
+    #[must_use]
+    pub fn size_px(&self) -> [u32; 2] {
+        self.size_px
+    }
+
+    /// Samples on each side of a pixel.
+    #[must_use]
+    pub fn samples_per_side(&self) -> u32 {
+        self.samples_per_side
+    }
+
+    /// To bind it, in a window for instance.
+    #[must_use]
+    pub fn view(&self) -> &TextureView {
+        &self.pixels.view
+    }
+
+    /// Four bytes a pixel (red, green, blue, 255), rows from the top.
+    ///
+    /// # Errors
+    /// When the device is lost or could not draw.
+    pub fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
+        self.pixels.read(gpu, 4)
+    }
+
+    /// The same as an image.
+    ///
+    /// # Errors
+    /// When the device is lost or could not draw.
+    pub fn read_image(&self, gpu: &Gpu) -> Result<image::RgbaImage, ReadBackError> {
+        let pixels = self.read(gpu)?;
+        let [width, height] = self.size_px;
+        Ok(image::RgbaImage::from_fn(width, height, |x, y| {
+            let start = (y as usize * width as usize + x as usize) * 4;
+            image::Rgba([0, 1, 2, 3].map(|channel| pixels[start + channel]))
+        }))
+    }
+
+    /// What is drawn into: the samples, or the pixels where there is one sample each.
+    pub(super) fn drawn(&self) -> &TextureView {
+        self.samples.as_ref().map_or(&self.pixels.view, |samples| &samples.view)
+    }
+
+    /// The samples, where there are several a pixel.
+    pub(super) fn samples(&self) -> Option<&TextureView> {
+        self.samples.as_ref().map(|samples| &samples.view)
+    }
+
+    /// Width and height in samples.
+    pub(super) fn sampled_px(&self) -> [u32; 2] {
+        self.size_px.map(|side| side * self.samples_per_side)
+    }
+}
+
+/// Width and height in samples, if the adapter can draw them.
+fn sampled_px(gpu: &Gpu, size_px: [u32; 2], samples_per_side: u32) -> Result<[u32; 2], GpuError> {
+    let limit_px = gpu.max_side_px();
+    if size_px.contains(&0) {
+        return Err(GpuError::Empty { size_px });
+    }
+    if !(1..=MAX_SAMPLES_PER_SIDE).contains(&samples_per_side) {
+        return Err(GpuError::Samples { samples_per_side, most: MAX_SAMPLES_PER_SIDE });
+    }
+    if size_px.iter().any(|side| *side > limit_px / samples_per_side) {
+        return Err(GpuError::TooLarge { size_px, limit_px: limit_px / samples_per_side });
+    }
+    Ok(size_px.map(|side| side * samples_per_side))
+}
+
+impl Plane {
+    pub(super) fn new(gpu: &Gpu, label: &str, format: TextureFormat, size_px: [u32; 2]) -> Self {
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: Extent3d { width: size_px[0], height: size_px[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: TextureUsages::RENDER_ATTACHMENT
+                | TextureUsages::TEXTURE_BINDING
+                | TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Self { texture, view }
+    }
+
+    /// Its texels, row by row from the top.
+    pub(super) fn read(&self, gpu: &Gpu, bytes_per_pixel: u32) -> Result<Vec<u8>, ReadBackError> {
+        let (width, height) = (self.texture.width(), self.texture.height());
+        let row_bytes = width * bytes_per_pixel;
+        let padded_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("read back"),
+            size: u64::from(padded_bytes) * u64::from(height),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder =
+            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_texture_to_buffer(
+            wgpu::TexelCopyTextureInfo {
+                aspect: TextureAspect::All,
+                ..self.texture.as_image_copy()
+            },
+            wgpu::TexelCopyBufferInfo {
+                buffer: &buffer,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(padded_bytes),
+                    rows_per_image: Some(height),
+                },
+            },
+            self.texture.size(),
+        );
+        gpu.queue.submit([encoder.finish()]);
+        let (sender, receiver) = std::sync::mpsc::channel();
+        buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+            // The receiver outlives the wait below, so sending cannot fail.
+            let _ = sender.send(result);
+        });
+        gpu.finish()?;
+        if let Ok(Err(source)) = receiver.try_recv() {
+            return Err(ReadBackError::Map { source });
+        }
+        let mapped = buffer
+            .slice(..)
+            .get_mapped_range()
+            .map_err(|source| ReadBackError::Range { source })?;
+        let mut rows = Vec::with_capacity((row_bytes * height) as usize);
+        for row in mapped.chunks_exact(padded_bytes as usize) {
+            rows.extend_from_slice(&row[..row_bytes as usize]);
+        }
+        Ok(rows)
+    }
+}

@@ -1,0 +1,96 @@
+use corniche_geom::TileId;
+use proptest::prelude::*;
+
+use super::*;
+use crate::{
+    lod::GroundSummary,
+    tiles::{GroundMesh, GroundVertex, RoadSegments, RoadVolumes, TileGeometry},
+};
+
+/// A tile of 100 m around (`x`, `y`): a grid of 11 × 11 nodes at `height_m` of their place.
+fn tile(x: f64, y: f64, height_m: impl Fn(f64, f64) -> f64) -> TileGeometry {
+    let mut ground = GroundMesh::default();
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for row in 0..11_u32 {
+        for column in 0..11_u32 {
+            let [dx, dy] = [column, row].map(|step| f64::from(step) * 10.0 - 50.0);
+            let z = height_m(x + dx, y + dy);
+            (low, high) = (low.min(z), high.max(z));
+            ground.vertices.push(GroundVertex {
+                position_in_tile: [dx as f32, dy as f32, (z - 500.0) as f32],
+                normal_skirt: [0, 0, 127, 0],
+            });
+            if column < 10 && row < 10 {
+                let k = row * 11 + column;
+                ground.indices.extend([k, k + 1, k + 11, k + 1, k + 12, k + 11]);
+            }
+        }
+    }
+    ground.surface_indices = ground.indices.len();
+    let summary = GroundSummary { geometric_error_m: 0.0, height_range_m: [low, high] };
+    TileGeometry {
+        id: TileId::ROOT,
+        reference_m: [x, y, 500.0],
+        summary: Some(summary),
+        ground,
+        roads: RoadSegments::default(),
+        volumes: RoadVolumes::default(),
+        width_margin_m: 0.0,
+        width_m: 100.0,
+    }
+}
+
+#[test]
+fn a_plane_is_met_where_its_equation_says() {
+    // z = 480 + 0.3 x, at twice its height: 2 z = 960 + 0.6 x.
+    let tiles = [tile(1000.0, 2000.0, |x, _| 480.0 + 0.3 * (x - 1000.0))];
+    let check = |eye: DVec3, ray: DVec3, expected_depth: Option<f64>| {
+        let hit = ground_at(tiles.iter(), 2.0, eye, ray);
+        assert_eq!(hit.is_some(), expected_depth.is_some(), "{eye} {ray}");
+        if let (Some(hit), Some(expected)) = (hit, expected_depth) {
+            assert!((hit.depth - expected).abs() < 1e-4, "{} {expected}", hit.depth);
+            assert!(hit.at_in_world.distance(eye + ray * expected) < 1e-3);
+        }
+    };
+    check(DVec3::new(1010.0, 2003.0, 1200.0), DVec3::NEG_Z, Some(1200.0 - 966.0));
+    check(DVec3::new(1010.0, 2003.0, 1200.0), DVec3::new(0.0, 0.0, -10.0), Some(23.4));
+    // From below.
+    check(DVec3::new(1010.0, 2003.0, 900.0), DVec3::Z, Some(66.0));
+    // Away from it, and beside it.
+    check(DVec3::new(1010.0, 2003.0, 1200.0), DVec3::Z, None);
+    check(DVec3::new(1060.0, 2003.0, 1200.0), DVec3::NEG_Z, None);
+    // Obliquely: 1000 − t = 960 + 0.6 (t − 40) at x = 960 + t.
+    check(DVec3::new(960.0, 2003.0, 1000.0), DVec3::new(1.0, 0.0, -1.0), Some(40.0));
+}
+
+#[test]
+fn the_nearer_of_two_tiles_is_met_whatever_their_order() {
+    let near = tile(0.0, 0.0, |_, _| 514.0);
+    let far = tile(100.0, 0.0, |_, _| 500.0);
+    let eye = DVec3::new(-10.0, 0.0, 530.0);
+    let ray = DVec3::new(10.0, 0.0, -8.0);
+    // After two steps of the ray on the near one; it would reach the far one's height after six.
+    for tiles in [[&near, &far], [&far, &near]] {
+        let hit = ground_at(tiles.into_iter(), 1.0, eye, ray).unwrap();
+        assert!((hit.depth - 2.0).abs() < 1e-6);
+    }
+    // Over the near one's edge the far one is met: 30 m down at 0.25 m each metre.
+    let hit = ground_at([&near, &far].into_iter(), 1.0, eye, DVec3::new(10.0, 0.0, -2.5)).unwrap();
+    assert!((hit.at_in_world.x - 110.0).abs() < 1e-6 && (hit.at_in_world.z - 500.0).abs() < 1e-6);
+}
+
+proptest! {
+    /// No ray down on a tile slips between its triangles, along edges and through corners least of all.
+    #[test]
+    fn no_ray_slips_through(x in -50.0..50.0_f64, y in -50.0..50.0_f64, on_grid in 0..3_u8, slant in -0.5..0.5_f64) {
+        let tiles = [tile(0.0, 0.0, |x, y| 500.0 + (x / 7.0).sin() * 9.0 + (y / 5.0).cos() * 6.0)];
+        let snap = |value: f64, wanted: bool| if wanted { (value / 10.0).round() * 10.0 } else { value };
+        let target = DVec3::new(snap(x, on_grid > 0) * 0.999_999, snap(y, on_grid > 1) * 0.999_999, 500.0);
+        // Through the target at the height of 500 m, from 100 m above it; on its way it stays over the tile.
+        let ray = DVec3::new(slant * -target.x.signum(), slant * -target.y.signum(), -1.0) * 0.2;
+        let eye = target - ray * 500.0;
+        prop_assume!((target + ray * 80.0).truncate().abs().max_element() < 50.0);
+        prop_assume!((target - ray * 80.0).truncate().abs().max_element() < 50.0);
+        prop_assert!(ground_at(tiles.iter(), 1.0, eye, ray).is_some());
+    }
+}

@@ -1,0 +1,90 @@
+use std::{collections::BTreeMap, time::Instant};
+
+use corniche_geom::TileId;
+
+use super::{ReplayError, Work, ms_since};
+use crate::{
+    camera::{Camera, WorldBox},
+    gpu::{Gpu, TileBuffers, tile_bytes},
+    lod::Drawn,
+    tiles::{PackageSource, TileSource},
+};
+
+/// All tiles without tiles beneath them, loaded before the flight begins.
+pub(super) struct Finest {
+    buffers: BTreeMap<TileId, TileBuffers>,
+    /// Between which true heights their ground lies; those without ground are left out.
+    height_ranges_m: BTreeMap<TileId, [f64; 2]>,
+}
+
+impl Finest {
+    pub(super) fn load(
+        gpu: &Gpu,
+        source: &PackageSource,
+        budget_bytes: u64,
+        is_stopped: &dyn Fn() -> bool,
+    ) -> Result<Self, ReplayError> {
+        let mut finest = Self { buffers: BTreeMap::new(), height_ranges_m: BTreeMap::new() };
+        let mut next = vec![TileId::ROOT];
+        let mut gpu_bytes = 0;
+        while let Some(id) = next.pop() {
+            if is_stopped() {
+                return Err(ReplayError::Stopped);
+            }
+            let beneath = next.len();
+            if id.z() < source.frame().max_level() {
+                next.extend(id.children().filter(|child| source.exists(*child)));
+            }
+            if next.len() > beneath {
+                continue;
+            }
+            let tile = source.load(id)?;
+            gpu_bytes += tile_bytes(&tile);
+            if gpu_bytes > budget_bytes {
+                return Err(ReplayError::OverBudget {
+                    wanted_bytes: gpu_bytes,
+                    budget_bytes,
+                    or_less: ", or draw by level of detail",
+                });
+            }
+            finest.buffers.insert(id, TileBuffers::new(gpu, &tile));
+            finest.height_ranges_m.extend(tile.summary.map(|ground| (id, ground.height_range_m)));
+        }
+        Ok(finest)
+    }
+
+    pub(super) fn buffers(&self) -> &BTreeMap<TileId, TileBuffers> {
+        &self.buffers
+    }
+
+    /// Draws all of them.
+    pub(super) fn all(&self) -> Work {
+        let started = Instant::now();
+        self.choose(started, |_, _| true)
+    }
+
+    /// Draws those in view. Heights in the world are true heights times `vertical_scale`.
+    pub(super) fn in_view(
+        &self,
+        source: &PackageSource,
+        camera: &Camera,
+        vertical_scale: f64,
+    ) -> Work {
+        let started = Instant::now();
+        let frustum = camera.frustum();
+        self.choose(started, |id, range_m| {
+            let plan = source.frame().tile_bounds(id);
+            frustum.may_see(&WorldBox::new(plan, range_m.map(|height_m| height_m * vertical_scale)))
+        })
+    }
+
+    fn choose(&self, started: Instant, is_drawn: impl Fn(TileId, [f64; 2]) -> bool) -> Work {
+        let drawn = self
+            .height_ranges_m
+            .iter()
+            .filter(|(id, range_m)| is_drawn(**id, **range_m))
+            .map(|(id, _)| Drawn { id: *id, skirt_depth_m: 0.0 })
+            .collect();
+        Work { drawn, select_ms: ms_since(started), ..Work::default() }
+    }
+}

@@ -1,0 +1,120 @@
+use std::{collections::BTreeMap, time::Instant};
+
+use corniche_geom::TileId;
+
+use super::{ReplayError, Work, ms_since};
+use crate::{
+    camera::Camera,
+    gpu::{Gpu, TileBuffers, tile_bytes},
+    lod::Quality,
+    stream::{StreamBudget, Streamer, TileFacts},
+    tiles::{PackageSource, TileGeometry, TileSource},
+};
+
+/// How long a frame may wait for its tiles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Patience {
+    /// It is drawn with what there is; what it asks for comes with the next.
+    None,
+    /// It is drawn when nothing is missing, or no more fits.
+    UntilSettled,
+}
+
+/// Tiles that come and go as a [`Streamer`] plans; each arrives in the frame after it was asked for.
+pub(super) struct Streamed<'a> {
+    gpu: &'a Gpu,
+    source: &'a PackageSource,
+    budget: StreamBudget,
+    streamer: Streamer,
+    /// Decoded, but not on the graphics card.
+    decoded: BTreeMap<TileId, TileGeometry>,
+    buffers: BTreeMap<TileId, TileBuffers>,
+}
+
+impl<'a> Streamed<'a> {
+    pub(super) fn new(gpu: &'a Gpu, source: &'a PackageSource, budget: StreamBudget) -> Self {
+        Self {
+            gpu,
+            source,
+            budget,
+            streamer: Streamer::new(budget),
+            decoded: BTreeMap::new(),
+            buffers: BTreeMap::new(),
+        }
+    }
+
+    pub(super) fn buffers(&self) -> &BTreeMap<TileId, TileBuffers> {
+        &self.buffers
+    }
+
+    /// Gets ready for a frame seen from `camera`, loading also for where it will be, `ahead`.
+    pub(super) fn advance(
+        &mut self,
+        camera: &Camera,
+        ahead: Option<&Camera>,
+        quality: Quality,
+        patience: Patience,
+        is_stopped: &dyn Fn() -> bool,
+    ) -> Result<Work, ReplayError> {
+        let mut work = Work::default();
+        loop {
+            if is_stopped() {
+                return Err(ReplayError::Stopped);
+            }
+            let is_settled = self.step(camera, ahead, quality, &mut work)?;
+            if is_settled && let Some(root) = self.decoded.get(&TileId::ROOT) {
+                return Err(ReplayError::OverBudget {
+                    wanted_bytes: tile_bytes(root),
+                    budget_bytes: self.budget.gpu_bytes,
+                    or_less: "",
+                });
+            }
+            if is_settled || patience == Patience::None {
+                return Ok(work);
+            }
+        }
+    }
+
+    /// Does what is planned, in its order; tells whether that was to draw and nothing else.
+    fn step(
+        &mut self,
+        camera: &Camera,
+        ahead: Option<&Camera>,
+        quality: Quality,
+        work: &mut Work,
+    ) -> Result<bool, ReplayError> {
+        let started = Instant::now();
+        let plan = self.streamer.plan(self.source, camera, ahead, quality);
+        work.select_ms += ms_since(started);
+
+        let started = Instant::now();
+        for id in &plan.evict {
+            self.buffers.remove(id);
+        }
+        for id in &plan.upload {
+            if let Some(tile) = self.decoded.remove(id) {
+                self.buffers.insert(*id, TileBuffers::new(self.gpu, &tile));
+            }
+        }
+        work.upload_ms += ms_since(started);
+
+        let started = Instant::now();
+        for id in &plan.cancel {
+            self.decoded.remove(id);
+        }
+        for id in &plan.load {
+            let tile = self.source.load(*id)?;
+            let facts = TileFacts { ground: tile.summary, gpu_bytes: tile_bytes(&tile) };
+            self.streamer.arrived(*id, facts);
+            self.decoded.insert(*id, tile);
+        }
+        work.decode_ms += ms_since(started);
+
+        work.evicted += plan.evict.len();
+        work.uploaded += plan.upload.len();
+        work.loaded += plan.load.len();
+        work.missing = plan.missing;
+        work.drawn = plan.drawn;
+        Ok(plan.load.is_empty() && plan.upload.is_empty())
+    }
+}

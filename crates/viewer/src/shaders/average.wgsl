@@ -1,0 +1,19 @@
+// The mean of the samples of a pixel, rounded to the nearest step. In whole steps, so that it is the same everywhere.
+
+@group(0) @binding(0) var samples: texture_2d<f32>;
+
+// Samples on each side of a pixel.
+override PER_SIDE: u32 = 2u;
+
+@fragment
+fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let first = vec2<u32>(position.xy) * PER_SIDE;
+    let count = PER_SIDE * PER_SIDE;
+    var sum = vec4(count / 2u);
+    for (var y = 0u; y < PER_SIDE; y++) {
+        for (var x = 0u; x < PER_SIDE; x++) {
+            sum += vec4<u32>(round(textureLoad(samples, first + vec2(x, y), 0) * 255.0));
+        }
+    }
+    return vec4<f32>(sum / count) / 255.0;
+}

@@ -1,0 +1,356 @@
+//! Everything of the window that lies on the graphics card, apart from the surface: tiles, pictures of the map, the
+//! panel's textures. Made anew as a whole when the device is lost.
+
+mod read;
+
+use std::collections::BTreeMap;
+
+use corniche_geom::TileId;
+use corniche_viewer::{
+    RoadMethod, RoadOptions,
+    camera::Camera,
+    gpu::{
+        DrawTile, FrameView, Gpu, GpuError, PassTimer, PassTimes, Picture, ReadBackError, Renderer,
+        Targets, TileBuffers, Wireframe,
+    },
+    lod::Drawn,
+    style::Style,
+};
+use egui::{ClippedPrimitive, TextureId, TexturesDelta};
+use egui_wgpu::ScreenDescriptor;
+use image::RgbaImage;
+
+use crate::{panel::Pictures, settings::Compare, tiles::Changes};
+
+/// What the map shows. Two equal scenes look the same, as long as their tiles lie on the graphics card.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Scene {
+    /// Its size is the pictures'.
+    pub(crate) camera: Camera,
+    /// Width and height of the window; the camera's are less in a hurry.
+    pub(crate) window_px: [u32; 2],
+    /// Colours and widths.
+    pub(crate) style: Style,
+    /// How the roads of each picture are drawn: one, or GEO and SV.
+    pub(crate) roads: Vec<RoadOptions>,
+    /// What is made of them.
+    pub(crate) compare: Compare,
+    /// Factor on heights.
+    pub(crate) exaggeration: f64,
+    /// Length in the working CRS over true length.
+    pub(crate) point_scale: f64,
+    /// True heights that the tint spans.
+    pub(crate) height_range_m: [f64; 2],
+    /// Edges of triangles.
+    pub(crate) wireframe: Wireframe,
+    /// Tiles.
+    pub(crate) drawn: Vec<Drawn>,
+    /// Samples per pixel along each side.
+    pub(crate) samples_per_side: u32,
+}
+
+/// What came of drawing a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Drew {
+    /// The pictures.
+    pub(crate) pictures: Pictures,
+    /// Whether anything was drawn; not, when the scene was the same as before.
+    pub(crate) is_new: bool,
+}
+
+/// Numbers of the scene drawn last, all pictures together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Counts {
+    /// Triangles of the ground, skirts not counted.
+    pub(crate) triangles: u64,
+    /// Segments of roads.
+    pub(crate) segments: u64,
+}
+
+/// The graphics card's side of the window.
+pub(crate) struct Canvas {
+    gpu: Gpu,
+    ui: egui_wgpu::Renderer,
+    format: wgpu::TextureFormat,
+    renderer: Renderer,
+    tiles: BTreeMap<TileId, TileBuffers>,
+    /// One for each method shown.
+    maps: Vec<Map>,
+    difference: Option<(TextureId, Picture)>,
+    shown: Option<(Scene, Pictures)>,
+    counts: Counts,
+}
+
+/// One method's picture.
+struct Map {
+    texture: TextureId,
+    targets: Targets,
+    timer: Option<PassTimer>,
+    times: Option<(RoadMethod, PassTimes)>,
+}
+
+impl Canvas {
+    /// Nothing drawn yet; the panel will be painted into views of this `format`.
+    pub(crate) fn new(gpu: Gpu, format: wgpu::TextureFormat) -> Self {
+        let options =
+            egui_wgpu::RendererOptions { dithering: false, ..egui_wgpu::RendererOptions::default() };
+        Self {
+            ui: egui_wgpu::Renderer::new(gpu.device(), format, options),
+            renderer: Renderer::new(&gpu),
+            format,
+            gpu,
+            tiles: BTreeMap::new(),
+            maps: Vec::new(),
+            difference: None,
+            shown: None,
+            counts: Counts::default(),
+        }
+    }
+
+    /// The device.
+    pub(crate) fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Removes tiles and uploads others.
+    pub(crate) fn change(&mut self, changes: &Changes) {
+        for id in &changes.evict {
+            self.tiles.remove(id);
+        }
+        for tile in &changes.upload {
+            self.tiles.insert(tile.id, TileBuffers::new(&self.gpu, tile));
+        }
+    }
+
+    /// Draws the scene, unless it is what is shown already.
+    ///
+    /// # Errors
+    /// When the pictures are beyond what the adapter can draw.
+    pub(crate) fn draw(&mut self, scene: &Scene) -> Result<Drew, GpuError> {
+        if let Some((shown, pictures)) = &self.shown
+            && shown == scene
+        {
+            return Ok(Drew { pictures: *pictures, is_new: false });
+        }
+        self.shown = None;
+        self.maps.truncate(scene.roads.len());
+        self.counts = Counts::default();
+        for (place, roads) in scene.roads.iter().enumerate() {
+            self.fit_map(place, scene)?;
+            self.draw_map(place, *roads, scene);
+        }
+        let pictures = match (scene.compare, &self.maps[..]) {
+            (Compare::Split, [first, second]) => {
+                Pictures::Two([first.texture, second.texture])
+            }
+            (Compare::Difference, [_, _]) => Pictures::One(self.draw_difference(scene)?),
+            (_, maps) => Pictures::One(maps.first().map_or(TextureId::default(), |map| map.texture)),
+        };
+        self.shown = Some((scene.clone(), pictures));
+        Ok(Drew { pictures, is_new: true })
+    }
+
+    /// Makes room for the picture at `place`.
+    fn fit_map(&mut self, place: usize, scene: &Scene) -> Result<(), GpuError> {
+        let (size_px, samples) = (scene.camera.size_px(), scene.samples_per_side);
+        let fits = |map: &Map| {
+            (map.targets.size_px(), map.targets.samples_per_side()) == (size_px, samples)
+        };
+        if self.maps.get(place).is_some_and(fits) {
+            return Ok(());
+        }
+        let targets = Targets::new(&self.gpu, size_px, samples)?;
+        let filter = filter(scene);
+        match self.maps.get_mut(place) {
+            Some(map) => {
+                let view = targets.picture().view();
+                let device = self.gpu.device();
+                self.ui.update_egui_texture_from_wgpu_texture(device, view, filter, map.texture);
+                map.targets = targets;
+            }
+            None => {
+                let view = targets.picture().view();
+                let texture = self.ui.register_native_texture(self.gpu.device(), view, filter);
+                let timer = PassTimer::new(&self.gpu);
+                self.maps.push(Map { texture, targets, timer, times: None });
+            }
+        }
+        Ok(())
+    }
+
+    fn draw_map(&mut self, place: usize, roads: RoadOptions, scene: &Scene) {
+        let Some(map) = self.maps.get_mut(place) else { return };
+        let view = FrameView {
+            camera: &scene.camera,
+            style: &scene.style,
+            roads,
+            exaggeration: scene.exaggeration,
+            point_scale: scene.point_scale,
+            height_range_m: scene.height_range_m,
+            wireframe: scene.wireframe,
+        };
+        let tiles: Vec<DrawTile<'_>> = scene
+            .drawn
+            .iter()
+            .filter_map(|drawn| {
+                let buffers = self.tiles.get(&drawn.id)?;
+                Some(DrawTile { buffers, skirt_depth_m: drawn.skirt_depth_m })
+            })
+            .collect();
+        for tile in &tiles {
+            self.counts.triangles += tile.buffers.triangles();
+            self.counts.segments += tile.buffers.road_segments(roads.method);
+        }
+        // Times of the method before are not this one's.
+        map.times = map.times.filter(|(method, _)| *method == roads.method);
+        self.renderer.draw_timed(&self.gpu, &view, &tiles, &map.targets, map.timer.as_mut());
+    }
+
+    fn draw_difference(&mut self, scene: &Scene) -> Result<TextureId, GpuError> {
+        let (size_px, samples) = (scene.camera.size_px(), scene.samples_per_side);
+        let [first, second] = &self.maps[..] else { return Ok(TextureId::default()) };
+        let fits = |picture: &Picture| {
+            (picture.size_px(), picture.samples_per_side()) == (size_px, samples)
+        };
+        let (texture, picture) = match self.difference.take() {
+            Some((texture, picture)) if fits(&picture) => (texture, picture),
+            other => {
+                let picture = Picture::new(&self.gpu, size_px, samples)?;
+                let (device, view) = (self.gpu.device(), picture.view());
+                let filter = filter(scene);
+                let texture = match other {
+                    Some((texture, _)) => {
+                        self.ui.update_egui_texture_from_wgpu_texture(device, view, filter, texture);
+                        texture
+                    }
+                    None => self.ui.register_native_texture(device, view, filter),
+                };
+                (texture, picture)
+            }
+        };
+        let drawn =
+            self.renderer.draw_difference(&self.gpu, &first.targets, &second.targets, &picture);
+        self.difference = Some((texture, picture));
+        drawn.map(|()| texture)
+    }
+
+    /// Numbers of the scene drawn last.
+    pub(crate) fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// The newest times that the graphics card has finished, picture by picture; never waits.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub(crate) fn times(&mut self) -> Result<Vec<(RoadMethod, PassTimes)>, ReadBackError> {
+        let Some((scene, _)) = &self.shown else { return Ok(Vec::new()) };
+        for (map, roads) in self.maps.iter_mut().zip(&scene.roads) {
+            if let Some(timer) = &mut map.timer
+                && let Some(times) = timer.poll(&self.gpu)?
+            {
+                map.times = Some((roads.method, times));
+            }
+        }
+        Ok(self.maps.iter().filter_map(|map| map.times).collect())
+    }
+
+    /// The map that is shown, without anything on it.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub(crate) fn read_map(&self, divider_share: f32) -> Result<RgbaImage, ReadBackError> {
+        let read = |picture: &Picture| {
+            let pixels = picture.read(&self.gpu)?;
+            let [width, height] = picture.size_px();
+            // As many bytes as the size says: the picture's own promise.
+            Ok(RgbaImage::from_raw(width, height, pixels).unwrap_or_default())
+        };
+        match (self.shown.as_ref().map(|(scene, _)| scene.compare), &self.difference) {
+            (Some(Compare::Difference), Some((_, picture))) => read(picture),
+            _ => {
+                let mut pictures = self.maps.iter().map(|map| read(map.targets.picture()));
+                let mut left = pictures.next().unwrap_or_else(|| Ok(RgbaImage::default()))?;
+                if let Some(right) = pictures.next() {
+                    let right = right?;
+                    let column = (divider_share * left.width() as f32).round() as u32;
+                    for (x, y, pixel) in left.enumerate_pixels_mut() {
+                        if x >= column {
+                            *pixel = *right.get_pixel(x, y);
+                        }
+                    }
+                }
+                Ok(left)
+            }
+        }
+    }
+
+    /// Takes over what the panel changed of its textures: before painting what was laid out with them.
+    pub(crate) fn take_textures(&mut self, delta: &TexturesDelta) {
+        for (id, change) in &delta.set {
+            self.ui.update_texture(self.gpu.device(), self.gpu.queue(), *id, change);
+        }
+    }
+
+    /// Forgets textures that nothing laid out from now on will use.
+    pub(crate) fn free_textures(&mut self, delta: &TexturesDelta) {
+        for id in &delta.free {
+            self.ui.free_texture(id);
+        }
+    }
+
+    /// Paints the whole window: the map and what lies on it.
+    pub(crate) fn paint(
+        &mut self,
+        primitives: &[ClippedPrimitive],
+        screen: &ScreenDescriptor,
+        into: &wgpu::TextureView,
+    ) {
+        let (device, queue) = (self.gpu.device(), self.gpu.queue());
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("window") };
+        let mut encoder = device.create_command_encoder(&descriptor);
+        let mut commands = self.ui.update_buffers(device, queue, &mut encoder, primitives, screen);
+        {
+            let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("window"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: into,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                ..Default::default()
+            });
+            self.ui.render(&mut pass.forget_lifetime(), primitives, screen);
+        }
+        commands.push(encoder.finish());
+        queue.submit(commands);
+    }
+
+    /// Paints the whole window into a picture.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub(crate) fn read_window(
+        &mut self,
+        primitives: &[ClippedPrimitive],
+        screen: &ScreenDescriptor,
+    ) -> Result<RgbaImage, ReadBackError> {
+        let texture = read::texture(&self.gpu, self.format, screen.size_in_pixels);
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        self.paint(primitives, screen, &view);
+        read::pixels(&self.gpu, &texture)
+    }
+}
+
+/// Pixel for pixel, or in a hurry drawn larger than it is.
+fn filter(scene: &Scene) -> wgpu::FilterMode {
+    if scene.camera.size_px() == scene.window_px {
+        wgpu::FilterMode::Nearest
+    } else {
+        wgpu::FilterMode::Linear
+    }
+}

@@ -1,0 +1,122 @@
+use corniche_viewer::camera::{Camera, Orientation};
+use glam::{DMat3, DVec2, DVec3};
+
+/// The ground as far as it is known.
+pub trait Ground {
+    /// The first ground along a ray.
+    fn hit(&self, eye_in_world: DVec3, ray_in_world: DVec3) -> Option<DVec3>;
+    /// Height of the ground at a place in plan, world metres.
+    fn height(&self, at: [f64; 2]) -> Option<f64>;
+    /// A height in the midst of the ground, world metres: where there is none, a plane this high stands in.
+    fn base_height(&self) -> f64;
+}
+
+/// Where the eye is and how it looks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// The eye, world metres.
+    pub eye_in_world: DVec3,
+    /// Direction of view.
+    pub orientation: Orientation,
+    /// How far away the ground is that one looks at, about; near plane and haze follow from it.
+    pub focus_m: f64,
+}
+
+/// A view that looks level is about so many times as far from the ground as it is high.
+const LEAST_COS: f64 = 0.2;
+/// The nearest focus.
+const MIN_FOCUS_M: f64 = 1.0;
+
+impl View {
+    /// What a camera with this direction sees.
+    #[must_use]
+    pub fn of(camera: &Camera, orientation: Orientation) -> Self {
+        Self { eye_in_world: camera.eye_in_world(), orientation, focus_m: camera.focus_m() }
+    }
+
+    /// The camera for a picture of a size in pixels.
+    #[must_use]
+    pub fn camera(&self, size_px: [u32; 2]) -> Camera {
+        let backward = self.world_from_view().z_axis;
+        let target = self.eye_in_world - backward * self.focus_m;
+        Camera::look_at(target, self.focus_m, self.orientation, size_px)
+    }
+
+    /// Columns: right, up, backward.
+    #[must_use]
+    pub fn world_from_view(&self) -> DMat3 {
+        // The axes depend neither on the place nor on the size.
+        Camera::look_at(DVec3::ZERO, 1.0, self.orientation, [1, 1]).world_from_view()
+    }
+
+    /// The ground at a pixel; without any, the plane at its base height, no farther away than `most_m`.
+    #[must_use]
+    pub fn ground_at(
+        &self,
+        at_px: DVec2,
+        size_px: [u32; 2],
+        most_m: f64,
+        ground: &dyn Ground,
+    ) -> Option<DVec3> {
+        let ray = self.camera(size_px).ray_in_world(at_px);
+        ground
+            .hit(self.eye_in_world, ray)
+            .or_else(|| self.on_plane(ray, ground.base_height(), most_m))
+    }
+
+    /// Where a ray from the eye meets the level plane of a height, no farther away than `most_m`.
+    #[must_use]
+    pub fn on_plane(&self, ray: DVec3, height_m: f64, most_m: f64) -> Option<DVec3> {
+        let depth = (height_m - self.eye_in_world.z) / ray.z;
+        let is_ahead = depth.is_finite() && depth > 0.0 && depth * ray.length() <= most_m;
+        is_ahead.then(|| self.eye_in_world + ray * depth)
+    }
+
+    /// The same picture of `pivot` from another direction: the pivot stays on its pixel.
+    #[must_use]
+    pub fn turned_about(&self, pivot: DVec3, orientation: Orientation) -> Self {
+        let pivot_in_view = self.world_from_view().transpose() * (pivot - self.eye_in_world);
+        let turned = Self { orientation, ..*self };
+        Self { eye_in_world: pivot - turned.world_from_view() * pivot_in_view, ..turned }
+    }
+
+    /// The eye `factor` times as far from `pivot`, which stays on its pixel.
+    #[must_use]
+    pub fn zoomed_at(&self, pivot: DVec3, factor: f64) -> Self {
+        Self { eye_in_world: pivot + (self.eye_in_world - pivot) * factor, ..*self }
+    }
+
+    /// The eye moved in plan so that `anchor` is seen at a pixel; `None` where that would take it more than `most_m` away
+    /// from the anchor.
+    #[must_use]
+    pub fn dragged(
+        &self,
+        anchor: DVec3,
+        at_px: DVec2,
+        size_px: [u32; 2],
+        most_m: f64,
+    ) -> Option<Self> {
+        let ray = self.camera(size_px).ray_in_world(at_px);
+        self.on_plane(ray, anchor.z, most_m)
+            .map(|beneath| Self { eye_in_world: self.eye_in_world + (anchor - beneath), ..*self })
+    }
+
+    /// How far the eye is beneath the least height above the ground; not above 0 where it is high enough.
+    #[must_use]
+    pub fn lacks_m(&self, clearance_m: f64, ground: &dyn Ground) -> f64 {
+        let eye = self.eye_in_world;
+        ground
+            .height([eye.x, eye.y])
+            .map_or(f64::NEG_INFINITY, |height_m| height_m + clearance_m - eye.z)
+    }
+
+    /// The same view with the focus that its height above the ground suggests: the way to level ground in the middle of
+    /// the picture. It changes as smoothly as that height.
+    #[must_use]
+    pub fn refocused(&self, ground: &dyn Ground) -> Self {
+        let eye = self.eye_in_world;
+        let below_m = ground.height([eye.x, eye.y]).unwrap_or_else(|| ground.base_height());
+        let cos = self.orientation.pitch_deg.to_radians().cos().max(LEAST_COS);
+        Self { focus_m: ((eye.z - below_m) / cos).max(MIN_FOCUS_M), ..*self }
+    }
+}

@@ -1,0 +1,120 @@
+use std::{
+    sync::atomic::{AtomicUsize, Ordering},
+    time::{Duration, Instant},
+};
+
+use corniche_geom::{Frame, NodeIndex};
+use corniche_viewer::tiles::TileLines;
+
+use super::*;
+
+/// Tiles without ground; those of level 3 are damaged.
+struct Bare {
+    frame: Frame,
+    loaded: AtomicUsize,
+}
+
+impl TileSource for Bare {
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn exists(&self, _: TileId) -> bool {
+        true
+    }
+
+    fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
+        self.loaded.fetch_add(1, Ordering::SeqCst);
+        if id.z() == 3 {
+            return Err(LoadTileError { id, source: "damaged".into() });
+        }
+        Ok(TileGeometry::assemble(id, None, &TileLines::default(), &self.frame, 0.5))
+    }
+}
+
+fn bare() -> Arc<Bare> {
+    let frame = Frame::new([0.0; 2], 10.0, NodeIndex { i: 0, j: 256 << 4 }, 4);
+    let frame = frame.unwrap_or_else(|error| panic!("{error}"));
+    Arc::new(Bare { frame, loaded: AtomicUsize::new(0) })
+}
+
+fn loader(source: &Arc<Bare>, threads: usize, room: usize, woken: &Arc<AtomicUsize>) -> Loader {
+    let source: SharedSource = Arc::<Bare>::clone(source);
+    let woken = Arc::clone(woken);
+    let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(move || {
+        woken.fetch_add(1, Ordering::SeqCst);
+    });
+    let threads = NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN);
+    Loader::new(&source, threads, room, &wake).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn take(loader: &Loader, count: usize) -> Vec<Loaded> {
+    let begun = Instant::now();
+    let mut taken = Vec::new();
+    while taken.len() < count {
+        taken.extend(loader.arrivals());
+        assert!(begun.elapsed() < Duration::from_secs(30), "{} of {count}", taken.len());
+        thread::sleep(Duration::from_millis(1));
+    }
+    taken
+}
+
+fn level_4(count: u32) -> Vec<TileId> {
+    (0..count).map(|x| TileId::new(4, x, 3).unwrap_or(TileId::ROOT)).collect()
+}
+
+#[test]
+fn one_worker_loads_in_the_order_asked_and_wakes_for_each() {
+    let (source, woken) = (bare(), Arc::new(AtomicUsize::new(0)));
+    let loader = loader(&source, 1, 8, &woken);
+    let ids = level_4(12);
+    loader.request(&ids[..5]);
+    loader.request(&ids[5..]);
+    let arrived: Vec<TileId> = take(&loader, 12).iter().map(|loaded| loaded.id).collect();
+    assert_eq!(arrived, ids);
+    drop(loader);
+    assert_eq!(woken.load(Ordering::SeqCst), 12);
+}
+
+#[test]
+fn a_damaged_tile_says_so_and_the_next_ones_arrive() {
+    let (source, woken) = (bare(), Arc::new(AtomicUsize::new(0)));
+    let loader = loader(&source, 2, 8, &woken);
+    let damaged = TileId::new(3, 1, 1).unwrap();
+    loader.request(&[&[damaged], &level_4(4)[..]].concat());
+    let arrived = take(&loader, 5);
+    let failed: Vec<TileId> =
+        arrived.iter().filter(|loaded| loaded.tile.is_err()).map(|loaded| loaded.id).collect();
+    assert_eq!(failed, [damaged]);
+}
+
+#[test]
+fn it_ends_while_nobody_takes_what_has_arrived() {
+    let (source, woken) = (bare(), Arc::new(AtomicUsize::new(0)));
+    let loader = loader(&source, 2, 1, &woken);
+    loader.request(&level_4(10));
+    let begun = Instant::now();
+    while source.loaded.load(Ordering::SeqCst) < 3 {
+        assert!(begun.elapsed() < Duration::from_secs(30), "nothing was loaded");
+        thread::sleep(Duration::from_millis(1));
+    }
+    drop(loader);
+    assert!(source.loaded.load(Ordering::SeqCst) < 10, "the rest was not loaded");
+}
+
+#[test]
+fn what_is_forgotten_is_not_loaded() {
+    let (source, woken) = (bare(), Arc::new(AtomicUsize::new(0)));
+    let loader = loader(&source, 1, 1, &woken);
+    // One in the results, one waiting for room, the others in the queue.
+    loader.request(&level_4(10));
+    let begun = Instant::now();
+    while source.loaded.load(Ordering::SeqCst) < 2 {
+        assert!(begun.elapsed() < Duration::from_secs(30), "nothing was loaded");
+        thread::sleep(Duration::from_millis(1));
+    }
+    loader.forget();
+    take(&loader, 2);
+    thread::sleep(Duration::from_millis(20));
+    assert_eq!(source.loaded.load(Ordering::SeqCst), 2);
+}

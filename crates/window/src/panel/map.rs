@@ -1,0 +1,49 @@
+use egui::{ComboBox, Slider, Ui};
+
+use crate::{
+    facts::Facts,
+    settings::{Refinement, Settings, range},
+};
+
+/// Style, heights, detail.
+pub(super) fn show(ui: &mut Ui, settings: &mut Settings, facts: &Facts<'_>) {
+    ui.horizontal(|ui| {
+        ui.label("Style");
+        let chosen = facts.style_names.get(settings.style).map_or("", String::as_str);
+        ComboBox::from_id_salt("style").width(180.0).truncate().selected_text(chosen).show_ui(
+            ui,
+            |ui| {
+                for (place, name) in facts.style_names.iter().enumerate() {
+                    ui.selectable_value(&mut settings.style, place, name);
+                }
+            },
+        );
+    });
+    ui.add(
+        Slider::new(&mut settings.exaggeration, range::EXAGGERATION)
+            .logarithmic(true)
+            .prefix("× ")
+            .max_decimals(2)
+            .text("heights"),
+    );
+    ui.add(
+        Slider::new(&mut settings.screen_space_error_px, range::SCREEN_SPACE_ERROR_PX)
+            .logarithmic(true)
+            .suffix(" px")
+            .max_decimals(1)
+            .text("ground error"),
+    )
+    .on_hover_text("A tile is refined while its error looks larger than this");
+    ui.horizontal(|ui| {
+        ui.label("Samples per pixel");
+        for samples in range::SAMPLES_PER_SIDE {
+            let words = format!("{samples} × {samples}");
+            ui.selectable_value(&mut settings.samples_per_side, samples, words);
+        }
+    });
+    ui.checkbox(&mut settings.is_wireframe, "Wireframe");
+    let mut is_frozen = settings.refinement == Refinement::Frozen;
+    ui.checkbox(&mut is_frozen, "Freeze tiles")
+        .on_hover_text("Keep what is drawn now while the camera moves");
+    settings.refinement = if is_frozen { Refinement::Frozen } else { Refinement::Live };
+}

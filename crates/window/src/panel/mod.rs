@@ -1,0 +1,117 @@
+//! The panel at the window's right side, and how it shares the window with the map.
+
+mod map;
+mod performance;
+mod record;
+mod roads;
+
+use egui::{Color32, Rect, TextureId, Ui, pos2};
+
+use crate::{
+    facts::{Command, Facts},
+    hud,
+    settings::Settings,
+};
+
+/// Width of the panel, points.
+const WIDTH: f32 = 290.0;
+
+/// The pictures of the map, as large as the window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Pictures {
+    /// One.
+    One(TextureId),
+    /// Left and right of the divider.
+    Two([TextureId; 2]),
+}
+
+/// What came of a frame.
+#[derive(Default)]
+pub(crate) struct Answer {
+    /// What the person wants.
+    pub(crate) commands: Vec<Command>,
+    /// Where the mouse is not the map's.
+    pub(crate) occupied: Vec<Rect>,
+}
+
+/// Lays out the whole window: the map behind, the panel, the line of positions and what lies on the map.
+pub(crate) fn show(
+    ui: &mut Ui,
+    settings: &mut Settings,
+    facts: &Facts<'_>,
+    pictures: Pictures,
+) -> Answer {
+    let mut answer = Answer::default();
+    let whole = ui.ctx().viewport_rect();
+    paint(ui, whole, settings.divider_share, pictures);
+    let status = egui::Panel::bottom("status")
+        .resizable(false)
+        .show_separator_line(false)
+        .frame(frame(ui).inner_margin(egui::Margin::symmetric(8, 3)))
+        .show(ui, |ui| hud::status_line(ui, facts));
+    answer.occupied.push(status.response.rect);
+    if settings.is_panel_open {
+        let panel = egui::Panel::right("panel")
+            .resizable(false)
+            .exact_size(WIDTH.min(whole.width()))
+            .frame(frame(ui).inner_margin(egui::Margin::same(8)))
+            .show(ui, |ui| sections(ui, settings, facts, &mut answer.commands));
+        answer.occupied.push(panel.response.rect);
+    }
+    let free = ui.available_rect_before_wrap();
+    let overlay = hud::overlay(ui, free, settings, facts);
+    answer.commands.extend(overlay.commands);
+    answer.occupied.extend(overlay.occupied);
+    answer
+}
+
+fn frame(ui: &Ui) -> egui::Frame {
+    egui::Frame::new().fill(ui.visuals().panel_fill.gamma_multiply(0.96))
+}
+
+fn sections(ui: &mut Ui, settings: &mut Settings, facts: &Facts<'_>, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        ui.heading("Corniche");
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.small("Tab hides this");
+        });
+    });
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        section(ui, "Roads", |ui| roads::show(ui, settings));
+        section(ui, "Classes", |ui| roads::classes(ui, settings, facts));
+        section(ui, "Map", |ui| map::show(ui, settings, facts));
+        section(ui, "Camera", |ui| record::camera(ui, facts, commands));
+        section(ui, "Record", |ui| record::show(ui, facts, commands));
+        section(ui, "Performance", |ui| performance::show(ui, facts));
+    });
+}
+
+fn section(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
+    egui::CollapsingHeader::new(egui::RichText::new(title).strong())
+        .default_open(title != "Classes")
+        .show_unindented(ui, add);
+}
+
+/// The map fills the window, also where the panel hides it: opening the panel moves nothing.
+fn paint(ui: &Ui, whole: Rect, divider_share: f32, pictures: Pictures) {
+    let painter = ui.painter();
+    let image = |texture, from: f32, to: f32| {
+        let part = Rect::from_min_max(
+            pos2(whole.left() + from * whole.width(), whole.top()),
+            pos2(whole.left() + to * whole.width(), whole.bottom()),
+        );
+        let uv = Rect::from_min_max(pos2(from, 0.0), pos2(to, 1.0));
+        painter.image(texture, part, uv, Color32::WHITE);
+    };
+    match pictures {
+        Pictures::One(texture) => image(texture, 0.0, 1.0),
+        Pictures::Two([left, right]) => {
+            image(left, 0.0, divider_share);
+            image(right, divider_share, 1.0);
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "panel_tests.rs"]
+mod tests;

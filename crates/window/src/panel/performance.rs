@@ -1,0 +1,90 @@
+use corniche_viewer::RoadMethod;
+use egui::{Color32, Grid, Pos2, Sense, Shape, Stroke, Ui, pos2, vec2};
+
+use crate::{facts::Facts, frame_times::FrameTimes, words};
+
+/// The graph reaches at least this high.
+const GRAPH_MS: f64 = 33.3;
+
+/// What a frame costs.
+pub(super) fn show(ui: &mut Ui, facts: &Facts<'_>) {
+    let times = facts.frame_times;
+    let ms = |value: Option<f64>| value.map_or("–".to_owned(), |ms| format!("{ms:.1}"));
+    ui.label(format!(
+        "frame {} ms, p50 {}, p95 {}",
+        ms(times.last_ms()),
+        ms(times.quantile_ms(0.5)),
+        ms(times.quantile_ms(0.95))
+    ));
+    graph(ui, times);
+    if facts.passes.is_empty() {
+        ui.label("no pass timed yet");
+    } else {
+        passes(ui, facts);
+    }
+    Grid::new("counts").num_columns(2).spacing(vec2(16.0, 2.0)).show(ui, |ui| {
+        let tiles = format!(
+            "{} drawn, {} missing, {} loading",
+            facts.tiles_drawn, facts.tiles_missing, facts.tiles_loading
+        );
+        let [used, allowed] = facts.gpu_bytes;
+        for (name, value) in [
+            ("tiles", tiles),
+            ("triangles", words::grouped(facts.triangles)),
+            ("segments", words::grouped(facts.segments)),
+            ("GPU memory", format!("{} of {}", words::mebibytes(used), words::mebibytes(allowed))),
+        ] {
+            ui.label(name);
+            ui.label(value);
+            ui.end_row();
+        }
+    });
+    let words = format!("drawn by {}", facts.adapter);
+    ui.add(egui::Label::new(egui::RichText::new(words).small()).wrap());
+}
+
+fn passes(ui: &mut Ui, facts: &Facts<'_>) {
+    Grid::new("passes").num_columns(5).spacing(vec2(12.0, 2.0)).show(ui, |ui| {
+        for heading in ["GPU ms", "terrain", "roads", "composite", "sum"] {
+            ui.small(heading);
+        }
+        ui.end_row();
+        for (method, times) in facts.passes {
+            ui.label(match method {
+                RoadMethod::Geometry => "GEO",
+                RoadMethod::ShadowVolumes => "SV",
+                RoadMethod::None => "none",
+            });
+            let parts = [times.terrain_ms, times.roads_ms, times.composite_ms];
+            for ms in parts.into_iter().chain([parts.iter().sum()]) {
+                ui.monospace(format!("{ms:.2}"));
+            }
+            ui.end_row();
+        }
+    });
+}
+
+fn graph(ui: &mut Ui, times: &FrameTimes) {
+    let size = vec2(ui.available_width(), 44.0);
+    let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+    let painter = ui.painter();
+    painter.rect_filled(area, 2, ui.visuals().extreme_bg_color);
+    let top_ms = times.iter().fold(GRAPH_MS, f64::max);
+    let y = |ms: f64| area.bottom() - (ms / top_ms) as f32 * (area.height() - 2.0);
+    for (ms, color) in [
+        (1000.0 / 60.0, Color32::from_rgb(60, 110, 70)),
+        (1000.0 / 30.0, Color32::from_rgb(120, 100, 50)),
+    ] {
+        let ends = [pos2(area.left(), y(ms)), pos2(area.right(), y(ms))];
+        painter.line_segment(ends, Stroke::new(1.0, color));
+    }
+    let step = area.width() / (times.iter().len().max(2) - 1) as f32;
+    let line: Vec<Pos2> = times
+        .iter()
+        .enumerate()
+        .map(|(place, ms)| pos2(area.left() + place as f32 * step, y(ms)))
+        .collect();
+    if line.len() > 1 {
+        painter.add(Shape::line(line, Stroke::new(1.2, Color32::from_rgb(120, 190, 240))));
+    }
+}

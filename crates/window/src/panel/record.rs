@@ -1,0 +1,47 @@
+use egui::Ui;
+
+use crate::{
+    controls::Mode,
+    facts::{Command, Facts, Shot},
+};
+
+/// What moves the camera besides the mouse.
+pub(super) fn camera(ui: &mut Ui, facts: &Facts<'_>, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let fly = if facts.mode == Mode::Fly { "Back to map (F)" } else { "Fly (F)" };
+        for (words, command) in [
+            ("North up (N)", Command::NorthUp),
+            ("Reset (R)", Command::Reset),
+            (fly, Command::ToggleFly),
+        ] {
+            if ui.button(words).clicked() {
+                commands.push(command);
+            }
+        }
+    });
+}
+
+/// Pictures, and the way of the camera.
+pub(super) fn show(ui: &mut Ui, facts: &Facts<'_>, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        for (words, shot) in [("Map (P)", Shot::Map), ("Window (Shift P)", Shot::Window)] {
+            if ui.button(words).on_hover_text("Saves a picture").clicked() {
+                commands.push(Command::Take(shot));
+            }
+        }
+    });
+    ui.horizontal(|ui| match facts.recording_s {
+        None => {
+            let start = ui.button("Record the camera's way");
+            if start.on_hover_text("For corniche fly --path").clicked() {
+                commands.push(Command::StartRecording);
+            }
+        }
+        Some(recording_s) => {
+            if ui.button("Stop and save").clicked() {
+                commands.push(Command::StopRecording);
+            }
+            ui.label(format!("recording, {recording_s:.0} s"));
+        }
+    });
+}

@@ -1,0 +1,120 @@
+//! What can be changed while the window is open, as plain values.
+
+use corniche_roads::FunctionalRoadClass;
+use corniche_viewer::{RoadMethod, RoadOptions, style::Style};
+
+/// Whether one method is shown or two are set against each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Compare {
+    /// One.
+    Off,
+    /// GEO to the left of a divider, SV to the right.
+    Split,
+    /// Where the two disagree.
+    Difference,
+}
+
+impl Compare {
+    /// What is drawn, with the options of the roads for each: one picture, or GEO and SV.
+    pub(crate) fn pictures(self, roads: RoadOptions) -> Vec<RoadOptions> {
+        match self {
+            Self::Off => vec![roads],
+            Self::Split | Self::Difference => {
+                [RoadMethod::Geometry, RoadMethod::ShadowVolumes]
+                    .map(|method| RoadOptions { method, ..roads })
+                    .into()
+            }
+        }
+    }
+}
+
+/// Whether the choice of tiles follows the camera.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Refinement {
+    /// It does.
+    Live,
+    /// What is drawn now stays, wherever the camera goes: to see from aside what was chosen.
+    Frozen,
+}
+
+/// How the roads of one class are shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ClassSettings {
+    /// Whether at all.
+    pub(crate) is_shown: bool,
+    /// Factor on the style's widths.
+    pub(crate) width_factor: f32,
+}
+
+/// Everything the panel changes.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Settings {
+    /// How roads are drawn.
+    pub(crate) roads: RoadOptions,
+    /// One method or two.
+    pub(crate) compare: Compare,
+    /// Where the divider stands, as a share of the window's width.
+    pub(crate) divider_share: f32,
+    /// Classes, 0 first.
+    pub(crate) classes: [ClassSettings; FunctionalRoadClass::COUNT],
+    /// Which of the styles.
+    pub(crate) style: usize,
+    /// Factor on heights; 1 is true.
+    pub(crate) exaggeration: f64,
+    /// A tile is refined while its error looks larger than this.
+    pub(crate) screen_space_error_px: f64,
+    /// Samples per pixel along each side.
+    pub(crate) samples_per_side: u32,
+    /// Edges of the triangles.
+    pub(crate) is_wireframe: bool,
+    /// Whether tiles are chosen anew.
+    pub(crate) refinement: Refinement,
+    /// Whether the panel is open.
+    pub(crate) is_panel_open: bool,
+}
+
+/// Ranges of what can be set.
+pub(crate) mod range {
+    use std::ops::RangeInclusive;
+
+    pub(crate) const EXAGGERATION: RangeInclusive<f64> = 0.25..=8.0;
+    pub(crate) const SCREEN_SPACE_ERROR_PX: RangeInclusive<f64> = 0.5..=8.0;
+    pub(crate) const SAMPLES_PER_SIDE: RangeInclusive<u32> = 1..=3;
+    pub(crate) const WIDTH_FACTOR: RangeInclusive<f32> = 0.25..=4.0;
+    pub(crate) const DIVIDER_SHARE: RangeInclusive<f32> = 0.05..=0.95;
+}
+
+impl Settings {
+    /// A style as it is to be drawn: widths times their factors, classes that are not shown without any width.
+    pub(crate) fn applied_to(&self, style: &Style) -> Style {
+        let mut applied = style.clone();
+        for (road, class) in applied.roads.iter_mut().zip(&self.classes) {
+            if class.is_shown {
+                road.width_m *= class.width_factor;
+            } else {
+                // No ground is nearer to a line than 0, and no least width keeps it visible.
+                road.width_m = 0.0;
+                road.min_width_px = 0.0;
+                road.center = None;
+            }
+        }
+        applied
+    }
+}
+
+#[cfg(test)]
+pub(crate) fn usual() -> Settings {
+    Settings {
+        roads: RoadOptions::of(RoadMethod::ShadowVolumes),
+        compare: Compare::Off,
+        divider_share: 0.5,
+        classes: [ClassSettings { is_shown: true, width_factor: 1.0 }; FunctionalRoadClass::COUNT],
+        style: 0,
+        exaggeration: 1.0,
+        screen_space_error_px: 2.0,
+        samples_per_side: 2,
+        is_wireframe: false,
+        refinement: Refinement::Live,
+        is_panel_open: true,
+    }
+}

@@ -1,0 +1,197 @@
+//! The tiles of the window: loaded by threads, chosen by the streamer, their ground kept for rays and heights.
+
+use std::{collections::BTreeMap, sync::Arc};
+
+use corniche_geom::TileId;
+use corniche_viewer::{
+    camera::Camera,
+    gpu::tile_bytes,
+    lod::{Drawn, Quality},
+    pick,
+    stream::{Plan, StreamBudget, Streamer, TileFacts},
+    tiles::{TileGeometry, TileLines},
+};
+use glam::DVec3;
+
+use crate::{
+    controls::Ground,
+    loader::{Loader, SharedSource},
+};
+
+/// All tiles, from being asked for to being drawn.
+pub(crate) struct Tiles {
+    source: SharedSource,
+    quantum_m: f64,
+    loader: Loader,
+    budget: StreamBudget,
+    streamer: Streamer,
+    /// Decoded, not on the graphics card.
+    waiting: BTreeMap<TileId, Arc<TileGeometry>>,
+    /// On the graphics card.
+    resident: BTreeMap<TileId, Arc<TileGeometry>>,
+    drawn: Vec<Drawn>,
+    missing: usize,
+    loading: usize,
+}
+
+/// What a frame has to do on the graphics card, in this order.
+#[derive(Default)]
+pub(crate) struct Changes {
+    /// To remove.
+    pub(crate) evict: Vec<TileId>,
+    /// To hand over.
+    pub(crate) upload: Vec<Arc<TileGeometry>>,
+    /// Something was asked for, handed over or removed: the next frame may have more to do.
+    pub(crate) is_under_way: bool,
+}
+
+impl Tiles {
+    /// Nothing loaded yet. `quantum_m` is the package's height step.
+    pub(crate) fn new(
+        source: SharedSource,
+        quantum_m: f64,
+        loader: Loader,
+        budget: StreamBudget,
+    ) -> Self {
+        Self {
+            source,
+            quantum_m,
+            loader,
+            budget,
+            streamer: Streamer::new(budget),
+            waiting: BTreeMap::new(),
+            resident: BTreeMap::new(),
+            drawn: Vec::new(),
+            missing: 0,
+            loading: 0,
+        }
+    }
+
+    /// Takes what the threads have loaded; tells of tiles that cannot be had.
+    ///
+    /// Such a tile counts as one without ground: what lies beneath it is shown as far as it can be had, else a hole.
+    pub(crate) fn take_arrivals(&mut self) -> Vec<String> {
+        let mut defects = Vec::new();
+        for loaded in self.loader.arrivals() {
+            self.loading = self.loading.saturating_sub(1);
+            let tile = loaded.tile.unwrap_or_else(|error| {
+                let cause = std::error::Error::source(&error).map(ToString::to_string);
+                defects.push(format!("{error}: {}", cause.unwrap_or_default()));
+                let (frame, lines) = (self.source.frame(), TileLines::default());
+                TileGeometry::assemble(loaded.id, None, &lines, frame, self.quantum_m)
+            });
+            let facts = TileFacts { ground: tile.summary, gpu_bytes: tile_bytes(&tile) };
+            self.streamer.arrived(loaded.id, facts);
+            self.waiting.insert(loaded.id, Arc::new(tile));
+        }
+        defects
+    }
+
+    /// Chooses what is drawn, kept and loaded.
+    pub(crate) fn choose(
+        &mut self,
+        camera: &Camera,
+        ahead: Option<&Camera>,
+        quality: Quality,
+    ) -> Changes {
+        let plan = self.streamer.plan(self.source.as_ref(), camera, ahead, quality);
+        let Plan { evict, upload, drawn, cancel, load, missing } = plan;
+        for id in &evict {
+            self.resident.remove(id);
+        }
+        let mut uploaded = Vec::with_capacity(upload.len());
+        for id in upload {
+            if let Some(tile) = self.waiting.remove(&id) {
+                self.resident.insert(id, Arc::clone(&tile));
+                uploaded.push(tile);
+            }
+        }
+        for id in &cancel {
+            self.waiting.remove(id);
+        }
+        self.loader.request(&load);
+        self.loading += load.len();
+        self.drawn = drawn;
+        self.missing = missing;
+        let is_under_way = !(evict.is_empty() && uploaded.is_empty() && load.is_empty());
+        Changes { evict, upload: uploaded, is_under_way }
+    }
+
+    /// The graphics card has forgotten everything: it is all asked for again.
+    pub(crate) fn begin_again(&mut self) {
+        self.loader.forget();
+        self.loading = 0;
+        self.streamer = Streamer::new(self.budget);
+        self.waiting.clear();
+        self.resident.clear();
+        self.drawn.clear();
+    }
+
+    /// What is drawn.
+    pub(crate) fn drawn(&self) -> &[Drawn] {
+        &self.drawn
+    }
+
+    /// Tiles that the view wants and that are not there yet.
+    pub(crate) fn missing(&self) -> usize {
+        self.missing
+    }
+
+    /// Tiles being loaded.
+    pub(crate) fn loading(&self) -> usize {
+        self.loading
+    }
+
+    /// Bytes on the graphics card, and how many there may be.
+    pub(crate) fn bytes_of_budget(&self) -> [u64; 2] {
+        [self.streamer.resident_bytes(), self.budget.gpu_bytes]
+    }
+
+    /// The ground that is drawn, and where it is not in view, what else of it is there.
+    pub(crate) fn ground(&self, vertical_scale: f64, base_height_m: f64) -> ShownGround<'_> {
+        ShownGround { tiles: self, vertical_scale, base_height_m }
+    }
+}
+
+/// The ground as the camera's controls see it: world heights, that is true ones times `vertical_scale`.
+pub(crate) struct ShownGround<'a> {
+    tiles: &'a Tiles,
+    vertical_scale: f64,
+    base_height_m: f64,
+}
+
+impl Ground for ShownGround<'_> {
+    fn hit(&self, eye_in_world: DVec3, ray_in_world: DVec3) -> Option<DVec3> {
+        let drawn = self.tiles.drawn.iter().filter_map(|drawn| self.tiles.resident.get(&drawn.id));
+        let tiles = drawn.map(Arc::as_ref);
+        pick::ground_at(tiles, self.vertical_scale, eye_in_world, ray_in_world)
+            .map(|hit| hit.at_in_world)
+    }
+
+    fn height(&self, at: [f64; 2]) -> Option<f64> {
+        let mut found = None;
+        let mut next = self.tiles.resident.get(&TileId::ROOT);
+        while let Some(tile) = next {
+            found = tile.ground_height_m(at).or(found);
+            // On a border two children have the place, at the same height.
+            next = tile
+                .id
+                .children()
+                .filter_map(|child| self.tiles.resident.get(&child))
+                .find(|child| holds(child, at));
+        }
+        found.map(|height_m| height_m * self.vertical_scale)
+    }
+
+    fn base_height(&self) -> f64 {
+        self.base_height_m * self.vertical_scale
+    }
+}
+
+fn holds(tile: &TileGeometry, at: [f64; 2]) -> bool {
+    (0..2).all(|axis| (at[axis] - tile.reference_m[axis]).abs() <= tile.width_m / 2.0)
+}
+
+#[cfg(test)]
+#[path = "tiles_tests.rs"]
+mod tests;

@@ -1,0 +1,144 @@
+//! A diagnostic: a file with a line per frame, by which a script can wait until all is loaded and prove that the ground
+//! grabbed stays under the cursor.
+
+use std::{
+    fs::File,
+    io::{self, Write as _},
+    path::{Path, PathBuf},
+};
+
+use corniche_viewer::flight::Pose;
+use glam::DVec2;
+
+/// What one frame was like.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TraceLine {
+    /// Its number, 1 first.
+    pub(crate) frame: u64,
+    /// The cursor, pixels of the window; `None` outside.
+    pub(crate) cursor_px: Option<DVec2>,
+    /// The ground under it: x and y in the working CRS, true height; `None` over sky and voids.
+    pub(crate) ground_m: Option<[f64; 3]>,
+    /// Side of a pixel there, metres of the working CRS.
+    pub(crate) pixel_m: Option<f64>,
+    /// The camera.
+    pub(crate) pose: Pose,
+    /// Tiles drawn.
+    pub(crate) tiles: usize,
+    /// Tiles that the view wants and that are not there.
+    pub(crate) missing: usize,
+    /// Tiles being loaded.
+    pub(crate) loading: usize,
+    /// Whether the camera moves by itself.
+    pub(crate) is_moving: bool,
+    /// Width and height of the window, pixels.
+    pub(crate) size_px: [u32; 2],
+}
+
+/// The names of the columns.
+const HEAD: &str = "frame,cursor_x_px,cursor_y_px,ground_x_m,ground_y_m,ground_height_m,pixel_m,eye_x_m,eye_y_m,\
+                    eye_height_m,heading_deg,pitch_deg,tiles,missing,loading,moving,width_px,height_px\n";
+
+impl TraceLine {
+    fn to_text(self) -> String {
+        let some = |value: Option<f64>, digits: usize| {
+            value.map(|value| format!("{value:.digits$}")).unwrap_or_default()
+        };
+        let Pose { eye_m: [x, y, height_m], orientation } = self.pose;
+        let ground = |axis: usize| some(self.ground_m.map(|ground_m| ground_m[axis]), 3);
+        [
+            self.frame.to_string(),
+            some(self.cursor_px.map(|cursor| cursor.x), 2),
+            some(self.cursor_px.map(|cursor| cursor.y), 2),
+            ground(0),
+            ground(1),
+            ground(2),
+            some(self.pixel_m, 6),
+            some(Some(x), 3),
+            some(Some(y), 3),
+            some(Some(height_m), 3),
+            some(Some(orientation.heading_deg), 4),
+            some(Some(orientation.pitch_deg), 4),
+            self.tiles.to_string(),
+            self.missing.to_string(),
+            self.loading.to_string(),
+            u8::from(self.is_moving).to_string(),
+            self.size_px[0].to_string(),
+            self.size_px[1].to_string(),
+        ]
+        .join(",")
+    }
+}
+
+/// The file.
+pub(crate) struct Trace {
+    path: PathBuf,
+    file: File,
+}
+
+impl Trace {
+    /// Begins a file, in the place of one that was there.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub(crate) fn create(path: &Path) -> io::Result<Self> {
+        let mut file = File::create(path)?;
+        file.write_all(HEAD.as_bytes())?;
+        Ok(Self { path: path.to_owned(), file })
+    }
+
+    /// Writes a line; whoever reads along sees all of it or nothing.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub(crate) fn write(&mut self, line: TraceLine) -> io::Result<()> {
+        self.file.write_all(format!("{}\n", line.to_text()).as_bytes())
+    }
+
+    /// The file's name.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use corniche_viewer::camera::Orientation;
+
+    use super::*;
+
+    #[test]
+    fn every_line_has_a_cell_for_every_column() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("trace.csv");
+        let mut trace = Trace::create(&path).unwrap();
+        let orientation = Orientation { heading_deg: -10.0, pitch_deg: 45.0 };
+        let line = TraceLine {
+            frame: 7,
+            cursor_px: None,
+            ground_m: None,
+            pixel_m: None,
+            pose: Pose { eye_m: [1.0, 2.0, 3.0], orientation },
+            tiles: 4,
+            missing: 5,
+            loading: 6,
+            is_moving: false,
+            size_px: [320, 240],
+        };
+        trace.write(line).unwrap();
+        let ground = TraceLine {
+            cursor_px: Some(DVec2::new(10.5, 20.0)),
+            ground_m: Some([2_600_000.1234, 1.0, 455.5]),
+            pixel_m: Some(0.25),
+            ..line
+        };
+        trace.write(ground).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+        assert_eq!(lines.len(), 3);
+        assert!(lines.iter().all(|cells| cells.len() == lines[0].len()), "{text}");
+        assert_eq!(lines[1][..4], ["7", "", "", ""]);
+        assert_eq!(lines[2][..4], ["7", "10.50", "20.00", "2600000.123"]);
+        assert_eq!(lines[2][lines[0].iter().position(|name| *name == "missing").unwrap()], "5");
+    }
+}

@@ -1,0 +1,90 @@
+//! Numbers as people read them.
+
+/// A length on the ground: "350 m", "12.5 km".
+pub(crate) fn length(m: f64) -> String {
+    if m.abs() >= 10_000.0 {
+        format!("{:.1} km", m / 1000.0)
+    } else if m.abs() >= 10.0 {
+        format!("{m:.0} m")
+    } else {
+        format!("{m:.1} m")
+    }
+}
+
+/// A length of a scale bar, which has one digit: "20 m", "5 km", "10 cm".
+pub(crate) fn round_length(m: f64) -> String {
+    if m >= 1000.0 {
+        format!("{:.0} km", m / 1000.0)
+    } else if m >= 1.0 {
+        format!("{m:.0} m")
+    } else {
+        format!("{:.0} cm", m * 100.0)
+    }
+}
+
+/// A whole number in groups of three: "1 234 567".
+pub(crate) fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place) % 3 == 0 {
+            // A narrow no-break space is missing in some fonts; this one is not.
+            text.push('\u{a0}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// Bytes in MiB.
+pub(crate) fn mebibytes(bytes: u64) -> String {
+    format!("{:.0} MiB", bytes as f64 / f64::from(1 << 20))
+}
+
+/// "47.14012° N, 9.52201° E".
+pub(crate) fn position([lon_deg, lat_deg]: [f64; 2]) -> String {
+    let side = |value: f64, positive, negative| if value < 0.0 { negative } else { positive };
+    // Past the antimeridian longitudes of a package go on beyond 180.
+    let lon_deg = (lon_deg + 180.0).rem_euclid(360.0) - 180.0;
+    format!(
+        "{:.5}° {}, {:.5}° {}",
+        lat_deg.abs(),
+        side(lat_deg, 'N', 'S'),
+        lon_deg.abs(),
+        side(lon_deg, 'E', 'W')
+    )
+}
+
+/// The heading as one reads it off a compass: 0 to 359 whole degrees.
+pub(crate) fn heading(heading_deg: f64) -> String {
+    format!("{:03.0}°", heading_deg.round().rem_euclid(360.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_as_people_write_them() {
+        assert_eq!(grouped(7), "7");
+        assert_eq!(grouped(1234), "1\u{a0}234");
+        assert_eq!(grouped(123_456_789), "123\u{a0}456\u{a0}789");
+        assert_eq!([length(3.25), length(350.2), length(12_345.0)], ["3.2 m", "350 m", "12.3 km"]);
+        assert_eq!([round_length(0.2), round_length(50.0), round_length(2000.0)], [
+            "20 cm", "50 m", "2 km"
+        ]);
+        assert_eq!(mebibytes(3 << 20), "3 MiB");
+    }
+
+    #[test]
+    fn positions_have_sides_of_the_world() {
+        assert_eq!(position([9.5, 47.25]), "47.25000° N, 9.50000° E");
+        assert_eq!(position([-70.25, -33.5]), "33.50000° S, 70.25000° W");
+        assert_eq!(position([181.0, 0.0]), "0.00000° N, 179.00000° W");
+    }
+
+    #[test]
+    fn a_heading_is_never_360() {
+        assert_eq!([heading(-0.2), heading(359.8), heading(-90.0)], ["000°", "000°", "270°"]);
+    }
+}
