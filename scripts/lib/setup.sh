@@ -16,7 +16,7 @@ missing_for_build() {
     command -v pkg-config >/dev/null || echo pkg-config
     pkg-config --exists gdal 2>/dev/null || echo libgdal-dev
     has_vulkan_driver || echo mesa-vulkan-drivers
-    has_vulkan_loader || echo libvulkan1
+    has_library libvulkan.so.1 || echo libvulkan1
 }
 
 # The fuzz targets link libFuzzer, which is C++; CI makes sure that they compile.
@@ -30,15 +30,28 @@ missing_for_check() {
     python_with shapely >/dev/null || echo python3-shapely
 }
 
+# For the tests of the window: a display without a screen, a hand for its mouse, and what a window loads as it opens.
+missing_for_window() {
+    [ "$(uname -s)" != Linux ] && return 0
+    command -v Xvfb >/dev/null || echo xvfb
+    command -v xdotool >/dev/null || echo xdotool
+    has_library libX11-xcb.so.1 || echo libx11-xcb1
+    has_library libXcursor.so.1 || echo libxcursor1
+    has_library libXi.so.6 || echo libxi6
+    has_library libXrandr.so.2 || echo libxrandr2
+    has_library libxkbcommon-x11.so.0 || echo libxkbcommon-x11-0
+}
+
 missing_for_download() {
     command -v curl >/dev/null || { echo curl; echo ca-certificates; }
 }
 
-has_vulkan_loader() {
+# Whether a shared library is installed; elsewhere than on Linux nobody asks.
+has_library() {
     local libraries
     [ "$(uname -s)" != Linux ] && return 0
     libraries=$(PATH=$PATH:/sbin:/usr/sbin ldconfig -p 2>/dev/null) || return 1
-    grep -qF libvulkan.so.1 <<<"$libraries"
+    grep -qF "$1" <<<"$libraries"
 }
 
 has_vulkan_driver() {

@@ -40,10 +40,12 @@ fn the_same_flight_gives_the_same_list_and_the_same_pictures() {
     let mut flights = Vec::new();
     for turn in ["first", "second"] {
         let (csv, png) = (at(&format!("{turn}.csv")), at(turn));
-        let options = ["--frames", "6", "--roads", "none,geo,sv", "--png", text(&png)];
+        let options = ["--frames", "6", "--roads", "none,geo,sv,sv-no-caps", "--png", text(&png)];
         let Some(ran) = fly(&package, &csv, &options) else { return };
         assert_eq!(ran.code, 0, "{}", ran.err);
-        assert!(ran.out.contains("lod, roads sv") && ran.out.contains("loss %"), "{}", ran.out);
+        for word in ["first frame left out", "lod, roads sv-no-caps", "loss %", "p95", "26 %"] {
+            assert!(ran.out.contains(word), "{word}: {}", ran.out);
+        }
         let mut pictures: Vec<(String, Vec<u8>)> = fs::read_dir(&png)
             .unwrap()
             .map(|entry| entry.unwrap())
@@ -57,12 +59,13 @@ fn the_same_flight_gives_the_same_list_and_the_same_pictures() {
     }
     assert!(flights[0] == flights[1], "{:?}\n{:?}", flights[0].0, flights[1].0);
     let (list, pictures) = &flights[0];
-    assert_eq!(list.len(), 1 + 3 * 6);
+    assert_eq!(list.len(), 1 + 4 * 6);
     let names: Vec<&str> = pictures.iter().map(|(name, _)| name.as_str()).collect();
-    assert_eq!(names.len(), 18);
-    assert_eq!((names[0], names[17]), ("lod-geo-00000.png", "lod-sv-00005.png"));
+    assert_eq!(names.len(), 24);
+    assert_eq!((names[0], names[23]), ("lod-geo-00000.png", "lod-sv-no-caps-00005.png"));
     let picture = |name: &str| &pictures.iter().find(|(known, _)| known == name).unwrap().1;
     assert_ne!(picture("lod-none-00003.png"), picture("lod-geo-00003.png"), "roads show");
+    assert_ne!(picture("lod-sv-00003.png"), picture("lod-sv-no-caps-00003.png"), "caps show");
     assert_ne!(picture("lod-geo-00003.png"), picture("lod-geo-00004.png"), "the camera moves");
     // The same flight for all methods: they differ in segments only.
     let column = |name: &str| list[0].iter().position(|heading| heading == name).unwrap();
@@ -154,6 +157,46 @@ fn a_flight_can_be_written_down_changed_and_taken_again() {
     refused(&written, &["--svg", text(&at("none.csv"))], &["none.csv", "uses that file"]);
     refused(&written, &["--gpu-memory", "1K"], &["1024", "memory"]);
     refused(&written, &["--gpu-memory", "1K", "--lod", "full"], &["level of detail"]);
+}
+
+/// Looking up the ground beneath a million frames takes minutes; an interrupt is noticed long before.
+#[cfg(unix)]
+#[test]
+fn a_flight_is_interrupted_while_it_is_being_checked_too() {
+    use std::{
+        io::{BufRead, BufReader},
+        process::{Command, Stdio},
+        time::{Duration, Instant},
+    };
+
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("pass.pmtiles");
+    build_pass(&package, &["--quiet"]);
+    let csv = folder.path().join("fly.csv");
+    let mut child = Command::new(e2e::binary())
+        .args(["fly", text(&package), "-o", text(&csv), "--frames", "1000000"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut said = BufReader::new(child.stderr.take().unwrap());
+    let mut lines = String::new();
+    // The adapter is named before the check begins.
+    while !lines.contains("drawn by") {
+        if said.read_line(&mut lines).unwrap() == 0 {
+            assert!(std::env::var_os("CORNICHE_REQUIRE_GPU").is_none(), "{lines}");
+            assert!(lines.contains("adapter"), "{lines}");
+            child.wait().unwrap();
+            skipped(&lines);
+            return;
+        }
+    }
+    let signalled = Instant::now();
+    let signal = format!("kill -INT {}", child.id());
+    assert!(Command::new("sh").args(["-c", &signal]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(4));
+    assert!(signalled.elapsed() < Duration::from_secs(10), "{:?}", signalled.elapsed());
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "only the package is there");
 }
 
 /// Interrupted in the middle: exit code 4, no list, no pictures, no chart, nothing beside them.

@@ -33,7 +33,8 @@ fn read(path: &Path) -> Result<Style, Failure> {
     let text = read_text(path).map_err(|error| {
         let names = style_preset_names().collect::<Vec<_>>().join(", ");
         Failure::unusable(format!(
-            "--style {path:?} is neither a style that comes along ({names}) nor a readable file: {error}"
+            "--style {} is neither a style that comes along ({names}) nor a readable file: {error}",
+            path.display()
         ))
     })?;
     parse(&format!("style {}", path.display()), &text)

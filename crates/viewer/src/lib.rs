@@ -31,4 +31,4 @@ pub use attribution::draw_attribution;
 pub use range::OutOfRange;
 pub use render::{CameraRequest, RenderError, RenderReport, RenderRequest, Rendered, render};
 pub use replay::{Detail, FrameRecord, Replay, ReplayError, ReplayOptions, default_flight};
-pub use scene::{CapTest, Caps, Outline, RoadMethod, RoadOptions, WidthGrowth};
+pub use scene::{CapTest, Caps, ClassSet, Outline, RoadMethod, RoadOptions, WidthGrowth};

@@ -167,8 +167,8 @@ pub fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
             _ => levels.push((tile.id.z(), 1)),
         }
     }
-    let method = request.roads.method;
-    let road_segments = uploaded.iter().map(|(buffers, _)| buffers.road_segments(method)).sum();
+    let road_segments =
+        uploaded.iter().map(|(buffers, _)| buffers.road_segments(request.roads)).sum();
     let clamped_tiles = scene::draw_list(&store, &drawn)
         .filter(|(tile, _)| scene::may_be_clamped(tile, &view))
         .count() as u64;

@@ -69,11 +69,40 @@ pub enum Outline {
     Kernel5,
 }
 
+/// Some of the functional road classes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ClassSet(u16);
+
+impl ClassSet {
+    /// All of them.
+    pub const ALL: Self = Self((1 << FunctionalRoadClass::COUNT) - 1);
+
+    /// Whether a class is among them.
+    #[must_use]
+    pub fn contains(self, class: FunctionalRoadClass) -> bool {
+        self.0 >> class.number() & 1 == 1
+    }
+
+    /// These and a class.
+    #[must_use]
+    pub fn with(self, class: FunctionalRoadClass) -> Self {
+        Self(self.0 | 1 << class.number())
+    }
+
+    /// These but for a class.
+    #[must_use]
+    pub fn without(self, class: FunctionalRoadClass) -> Self {
+        Self(self.0 & !(1 << class.number()))
+    }
+}
+
 /// How the roads of a picture are drawn; colours and widths are the style's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RoadOptions {
     /// The method.
     pub method: RoadMethod,
+    /// Roads of other classes are left out.
+    pub classes: ClassSet,
     /// Ends and bends.
     pub caps: Caps,
     /// The test in the fragments of volumes.
@@ -85,11 +114,12 @@ pub struct RoadOptions {
 }
 
 impl RoadOptions {
-    /// The method as it is meant to be seen: round caps, decided by distance, all else by the style.
+    /// The method as it is meant to be seen: all classes, round caps, decided by distance, all else by the style.
     #[must_use]
     pub fn of(method: RoadMethod) -> Self {
         Self {
             method,
+            classes: ClassSet::ALL,
             caps: Caps::Round,
             cap_test: CapTest::Distance,
             width_growth: WidthGrowth::ByDistance,
@@ -161,8 +191,10 @@ pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
     let eye = view.camera.eye_in_world();
     let far_m = ground.corners().map(|corner| corner.distance(eye)).fold(0.0, f64::max);
     let scaling = view.roads.width_scaling(view.style);
-    FunctionalRoadClass::all().filter(|class| !tile.volumes.range_of(*class).is_empty()).any(
-        |class| {
+    FunctionalRoadClass::all()
+        .filter(|class| view.roads.classes.contains(*class))
+        .filter(|class| !tile.volumes.range_of(*class).is_empty())
+        .any(|class| {
             let road = &view.style.roads[usize::from(class.number())];
             let width_m = f64::from(road.width_m)
                 * view.point_scale
@@ -170,8 +202,7 @@ pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
             let pixel_m = view.camera.pixel_at_unit_depth_m() * far_m;
             let least_m = f64::from(road.min_width_px) * pixel_m;
             width_m.max(least_m) / 2.0 > tile.width_margin_m
-        },
-    )
+        })
 }
 
 #[cfg(test)]
@@ -195,6 +226,15 @@ mod tests {
         check(WidthGrowth::None, 1.0, 1.0);
         check(WidthGrowth::Constant, 3.0, 3.0);
         check(WidthGrowth::ByDistance, 1.0, 2.0);
+    }
+
+    #[test]
+    fn a_class_is_in_a_set_until_it_is_taken_out() {
+        let [two, five] = [2, 5].map(|number| FunctionalRoadClass::new(number).unwrap());
+        assert!(FunctionalRoadClass::all().all(|class| ClassSet::ALL.contains(class)));
+        let set = ClassSet::ALL.without(two).without(two);
+        assert!(!set.contains(two) && set.contains(five));
+        assert_eq!(set.with(two), ClassSet::ALL);
     }
 
     #[test]

@@ -70,8 +70,7 @@ fn passes_take_some_time_and_no_more_than_the_frame() {
         passes
     };
     // The timer serves frame after frame; the least of some is the least disturbed by whatever else runs.
-    let mut least_ms =
-        |method| (0..5).map(|_| frame(method).roads_ms).fold(f64::INFINITY, f64::min);
+    let least_ms = |method| (0..5).map(|_| frame(method).roads_ms).fold(f64::INFINITY, f64::min);
     let [bare_ms, volumes_ms] = [RoadMethod::None, RoadMethod::ShadowVolumes].map(least_ms);
     assert!(bare_ms < volumes_ms, "roads take time: {volumes_ms} ms, without {bare_ms} ms");
 }

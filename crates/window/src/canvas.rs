@@ -87,6 +87,7 @@ struct Map {
     targets: Targets,
     timer: Option<PassTimer>,
     times: Option<(RoadMethod, PassTimes)>,
+    is_timing: bool,
 }
 
 impl Canvas {
@@ -172,7 +173,7 @@ impl Canvas {
                 let view = targets.picture().view();
                 let texture = self.ui.register_native_texture(self.gpu.device(), view, filter);
                 let timer = PassTimer::new(&self.gpu);
-                self.maps.push(Map { texture, targets, timer, times: None });
+                self.maps.push(Map { texture, targets, timer, times: None, is_timing: false });
             }
         }
         Ok(())
@@ -199,10 +200,11 @@ impl Canvas {
             .collect();
         for tile in &tiles {
             self.counts.triangles += tile.buffers.triangles();
-            self.counts.segments += tile.buffers.road_segments(roads.method);
+            self.counts.segments += tile.buffers.road_segments(roads);
         }
         // Times of the method before are not this one's.
         map.times = map.times.filter(|(method, _)| *method == roads.method);
+        map.is_timing = map.timer.is_some();
         self.renderer.draw_timed(&self.gpu, &view, &tiles, &map.targets, map.timer.as_mut());
     }
 
@@ -234,6 +236,16 @@ impl Canvas {
         drawn.map(|()| texture)
     }
 
+    /// Whether what is shown has all the window's pixels.
+    pub(crate) fn is_full(&self) -> bool {
+        self.shown.as_ref().is_some_and(|(scene, _)| scene.camera.size_px() == scene.window_px)
+    }
+
+    /// Whether the graphics card has not yet told how long the last frame took.
+    pub(crate) fn is_timing(&self) -> bool {
+        self.maps.iter().any(|map| map.is_timing)
+    }
+
     /// Numbers of the scene drawn last.
     pub(crate) fn counts(&self) -> Counts {
         self.counts
@@ -250,6 +262,7 @@ impl Canvas {
                 && let Some(times) = timer.poll(&self.gpu)?
             {
                 map.times = Some((roads.method, times));
+                map.is_timing = false;
             }
         }
         Ok(self.maps.iter().filter_map(|map| map.times).collect())
@@ -287,8 +300,10 @@ impl Canvas {
 
     /// Takes over what the panel changed of its textures: before painting what was laid out with them.
     pub(crate) fn take_textures(&mut self, delta: &TexturesDelta) {
-        for (id, change) in &delta.set {
-            self.ui.update_texture(self.gpu.device(), self.gpu.queue(), *id, change);
+        for (id, changes) in &delta.set {
+            for change in changes {
+                self.ui.update_texture(self.gpu.device(), self.gpu.queue(), *id, change);
+            }
         }
     }
 

@@ -17,8 +17,6 @@ pub(crate) struct GroundPoint {
 pub(crate) struct Facts<'a> {
     /// What draws.
     pub(crate) adapter: &'a str,
-    /// Whether the processor draws.
-    pub(crate) is_software: bool,
     /// The package's credits.
     pub(crate) attribution: &'a [String],
     /// Name of the working CRS.

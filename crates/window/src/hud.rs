@@ -88,7 +88,7 @@ fn compass(ui: &mut Ui, rect: Rect, facts: &Facts<'_>, overlay: &mut Overlay) ->
     let center = pos2(rect.right() - MARGIN - radius, rect.top() + MARGIN + radius);
     let area = Rect::from_center_size(center, Vec2::splat(2.0 * radius));
     let response = ui
-        .interact(area, ui.id().with("compass"), Sense::click())
+        .interact(area, ui.scope_id().with("compass"), Sense::click())
         .on_hover_text("Click: north up (N)");
     if response.clicked() {
         overlay.commands.push(Command::NorthUp);
@@ -228,7 +228,7 @@ fn notices(ui: &mut Ui, room: Rect, facts: &Facts<'_>, overlay: &mut Overlay) {
             Vec2::splat(16.0),
         );
         let response = ui
-            .interact(cross, ui.id().with(("notice", place)), Sense::click())
+            .interact(cross, ui.scope_id().with(("notice", place)), Sense::click())
             .on_hover_text("Dismiss");
         let ink = if response.hovered() { Color32::WHITE } else { CHALK.gamma_multiply(0.8) };
         for [x, y] in [[1.0, 1.0], [1.0, -1.0]] {
@@ -250,7 +250,7 @@ fn divider(ui: &mut Ui, rect: Rect, settings: &mut Settings, overlay: &mut Overl
     let x = whole.left() + settings.divider_share * whole.width();
     let grip = Rect::from_min_max(pos2(x - 5.0, rect.top()), pos2(x + 5.0, rect.bottom()));
     let response = ui
-        .interact(grip, ui.id().with("divider"), Sense::drag())
+        .interact(grip, ui.scope_id().with("divider"), Sense::drag())
         .on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
     if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
         let share = (pointer.x - whole.left()) / whole.width().max(1.0);

@@ -133,6 +133,7 @@ impl LookArgs {
     pub(crate) fn road_options(&self, roads: Roads) -> RoadOptions {
         RoadOptions {
             method: roads.method(),
+            classes: corniche_viewer::ClassSet::ALL,
             caps: match roads {
                 Roads::GeoNoCaps | Roads::SvNoCaps => corniche_viewer::Caps::None,
                 _ => corniche_viewer::Caps::Round,
@@ -189,6 +190,7 @@ mod tests {
             line("--roads sv --cap-test paper --width-growth constant --outline 5 --style dark");
         let expected = RoadOptions {
             method: RoadMethod::ShadowVolumes,
+            classes: corniche_viewer::ClassSet::ALL,
             caps: corniche_viewer::Caps::Round,
             cap_test: corniche_viewer::CapTest::PaperQuadratic,
             width_growth: corniche_viewer::WidthGrowth::Constant,

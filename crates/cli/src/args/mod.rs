@@ -8,9 +8,9 @@ mod values;
 
 use clap::{Parser, Subcommand};
 
-pub(crate) use build::{BuildArgs, ReportArgs, ResourceArgs, RoadArgs, TerrainArgs};
-pub(crate) use drawing::{DrawingArgs, FlightArgs, FlyArgs, Lod, RenderArgs};
-pub(crate) use look::{LookArgs, Roads};
+pub(crate) use build::{BuildArgs, ReportArgs};
+pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
+pub(crate) use look::Roads;
 pub(crate) use reading::{GrowthArgs, InfoArgs, TileArgs, VerifyArgs};
 
 /// Terrain tiles with roads laid exactly on them, from elevation rasters and OpenStreetMap extracts.

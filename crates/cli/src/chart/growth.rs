@@ -31,7 +31,8 @@ pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
         x: Axis {
             description: "level (0 = root)",
             range: -0.3..f64::from(last) + 1.4,
-            ticks: Ticks::Whole(usize::from(last) + 1),
+            // The axis reaches one level farther, to make room for the names.
+            ticks: Ticks::Whole(usize::from(last) + 3),
         },
         y: Axis {
             description: "times the vertices",
@@ -45,7 +46,7 @@ pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
         let point = |row: &&corniche_tileset::GrowthRow| {
             (f64::from(row.level), factor(row.geo_vertices, row.simplified_vertices))
         };
-        let points: Vec<(f64, f64)> = of_class.map(|row| point(row)).collect();
+        let points: Vec<(f64, f64)> = of_class.map(point).collect();
         let name = format!("FRC {class}");
         (!points.is_empty()).then_some(Curve { name, color, points, marks: Marks::Dots })
     };

@@ -70,7 +70,8 @@ fn draw(axes: &Axes, curves: &[Curve]) -> anyhow::Result<String> {
         mesh.x_desc(axes.x.description)
             .y_desc(axes.y.description)
             .axis_desc_style(("sans-serif", 16))
-            .label_style(("sans-serif", 14));
+            .label_style(("sans-serif", 14))
+            .max_light_lines(2);
         if let Ticks::Whole(count) = axes.x.ticks {
             mesh.x_labels(count).x_label_formatter(&whole);
         }

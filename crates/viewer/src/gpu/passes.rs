@@ -1,9 +1,10 @@
 //! The pipelines and what they bind.
 
 use wgpu::{
-    BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, ColorWrites,
-    CompareFunction, DepthStencilState, Device, PrimitiveTopology, RenderPipeline, ShaderStages,
-    TextureSampleType, VertexBufferLayout, VertexStepMode, vertex_attr_array,
+    BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BlendComponent,
+    BlendFactor, BlendOperation, BlendState, ColorWrites, CompareFunction, DepthStencilState,
+    Device, PrimitiveTopology, RenderPipeline, ShaderStages, TextureSampleType, VertexBufferLayout,
+    VertexStepMode, vertex_attr_array,
 };
 
 use super::{
@@ -29,6 +30,15 @@ pub(super) const SHADERS: [(&str, &str); 6] = [
     ("difference", shader!("screen", "difference")),
 ];
 
+/// Colours and labels are read texel by texel.
+const UNFILTERED: TextureSampleType = TextureSampleType::Float { filterable: false };
+/// The most important label stays, in whatever order roads are drawn.
+const LARGEST: BlendComponent = BlendComponent {
+    src_factor: BlendFactor::One,
+    dst_factor: BlendFactor::One,
+    operation: BlendOperation::Max,
+};
+
 pub(super) struct Layouts {
     pub(super) frame: BindGroupLayout,
     pub(super) tile: BindGroupLayout,
@@ -42,18 +52,12 @@ pub(super) struct Pipelines {
     pub(super) terrain: RenderPipeline,
     pub(super) skirts: RenderPipeline,
     pub(super) wires: RenderPipeline,
-    pub(super) segments: RoadPipelines,
-    pub(super) volumes: RoadPipelines,
+    pub(super) segments: RenderPipeline,
+    pub(super) volumes: RenderPipeline,
     pub(super) composite: RenderPipeline,
     /// Of 2, 3 and 4 samples on each side of a pixel.
     pub(super) averages: [RenderPipeline; MAX_SAMPLES_PER_SIDE as usize - 1],
     pub(super) difference: RenderPipeline,
-}
-
-/// The same for a whole road and for the line along its middle.
-pub(super) struct RoadPipelines {
-    pub(super) fills: RenderPipeline,
-    pub(super) centers: RenderPipeline,
 }
 
 impl Layouts {
@@ -74,22 +78,15 @@ impl Layouts {
             composite: layout(
                 "composite",
                 &[
-                    texture(0, TextureSampleType::Float { filterable: false }),
+                    texture(0, UNFILTERED),
                     texture(1, TextureSampleType::Depth),
-                    texture(2, TextureSampleType::Uint),
+                    texture(2, UNFILTERED),
                 ],
             ),
-            average: layout(
-                "average",
-                &[texture(0, TextureSampleType::Float { filterable: false })],
-            ),
+            average: layout("average", &[texture(0, UNFILTERED)]),
             difference: layout(
                 "difference",
-                &[
-                    texture(0, TextureSampleType::Uint),
-                    texture(1, TextureSampleType::Uint),
-                    texture(2, TextureSampleType::Float { filterable: false }),
-                ],
+                &[texture(0, UNFILTERED), texture(1, UNFILTERED), texture(2, UNFILTERED)],
             ),
         }
     }
@@ -123,6 +120,7 @@ impl Pipelines {
                 bias: wgpu::DepthBiasState::default(),
             }),
             targets: &[(COLOR, ColorWrites::ALL), (OWNER, ColorWrites::ALL)],
+            blend: None,
             constants,
         };
         let wires = Recipe {
@@ -140,7 +138,7 @@ impl Pipelines {
             ..terrain(&[("PULL_PX", 2.0)])
         };
         let road_groups = [Some(&layouts.frame), Some(&layouts.tile), Some(&layouts.ground)];
-        let segments = |constants| Recipe {
+        let segments = Recipe {
             shader: 1,
             entries: ENTRIES,
             groups: &road_groups,
@@ -154,9 +152,10 @@ impl Pipelines {
             cull: None,
             depth: None,
             targets: &[(LABEL, ColorWrites::ALL)],
-            constants,
+            blend: Some(BlendState { color: LARGEST, alpha: LARGEST }),
+            constants: &[],
         };
-        let volumes = |constants| Recipe {
+        let volumes = Recipe {
             shader: 2,
             buffer: Some(VertexBufferLayout {
                 array_stride: VOLUME_STRIDE,
@@ -165,22 +164,19 @@ impl Pipelines {
             }),
             // One fragment per pixel and box, also with the eye inside: the far faces.
             cull: Some(wgpu::Face::Front),
-            ..segments(constants)
+            ..segments.clone()
         };
         let composite_groups = [Some(&layouts.frame), Some(&layouts.composite)];
         let average_groups = [Some(&layouts.average)];
         let average = |per_side| {
             Recipe::full_screen(4, &average_groups, &[("PER_SIDE", per_side)]).cook(device)
         };
-        let both = |recipe: &dyn Fn(&'static [(&'static str, f64)]) -> RenderPipeline| {
-            RoadPipelines { fills: recipe(&[("BAND", 0.0)]), centers: recipe(&[("BAND", 1.0)]) }
-        };
         Self {
             terrain: terrain(&[("SKIRT", 0.0)]).cook(device),
             skirts: terrain(&[("SKIRT", 1.0)]).cook(device),
             wires: wires.cook(device),
-            segments: both(&|constants| segments(constants).cook(device)),
-            volumes: both(&|constants| volumes(constants).cook(device)),
+            segments: segments.cook(device),
+            volumes: volumes.cook(device),
             composite: Recipe::full_screen(3, &composite_groups, &[]).cook(device),
             averages: [average(2.0), average(3.0), average(4.0)],
             difference: Recipe::full_screen(5, &[Some(&layouts.difference)], &[]).cook(device),
@@ -203,6 +199,7 @@ struct Recipe<'a> {
     cull: Option<wgpu::Face>,
     depth: Option<DepthStencilState>,
     targets: &'a [(wgpu::TextureFormat, ColorWrites)],
+    blend: Option<BlendState>,
     constants: &'a [(&'a str, f64)],
 }
 
@@ -222,6 +219,7 @@ impl<'a> Recipe<'a> {
             cull: None,
             depth: None,
             targets: &[(COLOR, ColorWrites::ALL)],
+            blend: None,
             constants,
         }
     }
@@ -245,8 +243,7 @@ impl<'a> Recipe<'a> {
             .map(|(format, write_mask)| {
                 Some(wgpu::ColorTargetState {
                     format: *format,
-                    // Roads overwrite each other: least important first, no blending.
-                    blend: None,
+                    blend: self.blend,
                     write_mask: *write_mask,
                 })
             })

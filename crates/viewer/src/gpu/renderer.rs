@@ -84,7 +84,7 @@ impl Renderer {
         mut timer: Option<&mut PassTimer>,
     ) {
         let bindings = FrameBindings::new(gpu, &self.layouts, view, tiles, targets);
-        let bridges = Bridges::new(gpu, view.roads.method, tiles);
+        let bridges = Bridges::new(gpu, view.roads, tiles);
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
         let mut mark = |encoder: &mut CommandEncoder, number| {

@@ -1,20 +1,27 @@
-use corniche_roads::FunctionalRoadClass;
+use std::ops::Range;
+
 use wgpu::{BufferUsages, CommandEncoder};
 
 use super::{
     Gpu,
     bindings::FrameBindings,
+    passes::Pipelines,
     renderer::{DrawTile, FrameView, Renderer, begin},
     targets::Targets,
     tile_buffers::volume_bytes,
 };
 use crate::{
-    RoadMethod,
+    RoadMethod, RoadOptions,
     scene::{BorderTile, Bridge, bridges},
     tiles::RoadVolume,
 };
 
-/// The bridges of a frame, in order of class.
+/// Corners of a segment's quad, as `shaders/roads.wgsl` counts them.
+const SEGMENT_CORNERS: Range<u32> = 0..4;
+/// Corners of the strip around a volume's box, as `shaders/volumes.wgsl` counts them.
+const VOLUME_CORNERS: Range<u32> = 0..14;
+
+/// The bridges of a frame, in order of the finer tile.
 pub(super) struct Bridges {
     list: Vec<Bridge>,
     instances: Option<wgpu::Buffer>,
@@ -22,17 +29,18 @@ pub(super) struct Bridges {
 
 impl Bridges {
     /// Finds them and uploads their volumes, each relative to the finer of its tiles.
-    pub(super) fn new(gpu: &Gpu, method: RoadMethod, tiles: &[DrawTile<'_>]) -> Self {
+    pub(super) fn new(gpu: &Gpu, roads: RoadOptions, tiles: &[DrawTile<'_>]) -> Self {
         let border_tiles: Vec<BorderTile<'_>> = tiles
             .iter()
             .map(|tile| BorderTile {
                 id: tile.buffers.id,
                 width_m: tile.buffers.width_m,
                 skirt_depth_m: tile.skirt_depth_m,
-                ends: tile.buffers.roads(method).map_or(&[], |roads| &roads.ends),
+                ends: tile.buffers.roads(roads.method).map_or(&[], |roads| &roads.ends),
             })
             .collect();
-        let list = bridges(&border_tiles);
+        let mut list = bridges(&border_tiles);
+        list.retain(|bridge| roads.classes.contains(bridge.class));
         let volumes = list.iter().map(|bridge| {
             let reference_m = tiles[bridge.fine].buffers.reference_m;
             let place = |at: [f64; 2]| [0, 1].map(|k| (at[k] - reference_m[k]) as f32);
@@ -53,24 +61,20 @@ impl Bridges {
         Self { list, instances }
     }
 
-    /// The bridges of a class, piece by piece as they share a tile: the tile's index and a range of instances.
-    fn runs(&self, class: FunctionalRoadClass) -> Vec<(usize, std::ops::Range<u32>)> {
-        let first = self.list.partition_point(|bridge| bridge.class < class) as u32;
-        let mut start = first;
-        self.list[first as usize..]
-            .chunk_by(|a, b| (a.class, a.fine) == (b.class, b.fine))
-            .take_while(|run| run[0].class == class)
-            .map(|run| {
-                let range = start..start + run.len() as u32;
-                start = range.end;
-                (run[0].fine, range)
-            })
-            .collect()
+    /// Piece by piece as they share the finer tile: its index and a range of instances.
+    fn runs(&self) -> impl Iterator<Item = (usize, Range<u32>)> {
+        let mut start = 0;
+        self.list.chunk_by(|a, b| a.fine == b.fine).map(move |run| {
+            let range = start..start + run.len() as u32;
+            start = range.end;
+            (run[0].fine, range)
+        })
     }
 }
 
 impl Renderer {
-    /// Classes outside, tiles inside: a more important road lies above a lesser one across tile borders too.
+    /// One draw per tile: the target keeps the largest label, so that neither the order of classes nor that of tiles
+    /// matters.
     pub(super) fn roads_pass(
         &self,
         encoder: &mut CommandEncoder,
@@ -82,41 +86,30 @@ impl Renderer {
     ) {
         // The pass clears the labels even when it draws no road.
         let mut pass = begin(encoder, "roads", &[&targets.labels.view], None);
-        let (pipelines, corners) = match view.roads.method {
-            RoadMethod::Geometry => (&self.pipelines.segments, 0..4),
-            RoadMethod::ShadowVolumes => (&self.pipelines.volumes, 0..14),
+        let Pipelines { segments, volumes, .. } = &self.pipelines;
+        let (pipeline, corners) = match view.roads.method {
+            RoadMethod::Geometry => (segments, SEGMENT_CORNERS),
+            RoadMethod::ShadowVolumes => (volumes, VOLUME_CORNERS),
             RoadMethod::None => return,
         };
         pass.set_bind_group(0, &bindings.frame, &[]);
         pass.set_bind_group(2, &bindings.ground, &[]);
-        let over_steps = &self.pipelines.volumes;
-        for class in FunctionalRoadClass::all().rev() {
-            let index = usize::from(class.number());
-            let has_center = view.style.roads[index].center.is_some();
-            for is_center in [false, true] {
-                if is_center && !has_center {
-                    continue;
-                }
-                pass.set_pipeline(if is_center { &pipelines.centers } else { &pipelines.fills });
-                for (place, tile) in tiles.iter().enumerate() {
-                    let Some(roads) = tile.buffers.roads(view.roads.method) else { continue };
-                    let range = roads.class_ranges[index].clone();
-                    let Some(instances) = roads.instances.as_ref().filter(|_| !range.is_empty())
-                    else {
-                        continue;
-                    };
-                    bindings.set_tile(&mut pass, place);
-                    pass.set_vertex_buffer(0, instances.slice(..));
-                    pass.draw(corners.clone(), range);
-                }
-                let Some(instances) = &bridges.instances else { continue };
-                pass.set_pipeline(if is_center { &over_steps.centers } else { &over_steps.fills });
-                pass.set_vertex_buffer(0, instances.slice(..));
-                for (place, range) in bridges.runs(class) {
-                    bindings.set_tile(&mut pass, place);
-                    pass.draw(0..14, range);
-                }
+        pass.set_pipeline(pipeline);
+        for (place, tile) in tiles.iter().enumerate() {
+            let Some(roads) = tile.buffers.roads(view.roads.method) else { continue };
+            let Some(instances) = &roads.instances else { continue };
+            bindings.set_tile(&mut pass, place);
+            pass.set_vertex_buffer(0, instances.slice(..));
+            for range in roads.runs(view.roads.classes) {
+                pass.draw(corners.clone(), range);
             }
+        }
+        let Some(instances) = &bridges.instances else { return };
+        pass.set_pipeline(volumes);
+        pass.set_vertex_buffer(0, instances.slice(..));
+        for (place, range) in bridges.runs() {
+            bindings.set_tile(&mut pass, place);
+            pass.draw(VOLUME_CORNERS, range);
         }
     }
 }

@@ -7,7 +7,7 @@ use super::{
 };
 
 pub(super) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
-pub(super) const LABEL: TextureFormat = TextureFormat::R8Uint;
+pub(super) const LABEL: TextureFormat = TextureFormat::R8Unorm;
 pub(super) const OWNER: TextureFormat = TextureFormat::R32Uint;
 /// Set in the owner of a sample that shows a skirt.
 const SKIRT_BIT: u32 = 1 << 31;

@@ -6,8 +6,8 @@ use wgpu::{Buffer, BufferUsages};
 
 use super::Gpu;
 use crate::{
-    RoadMethod,
-    tiles::{RoadEnd, RoadVolume, TileGeometry},
+    ClassSet, RoadMethod, RoadOptions,
+    tiles::{RoadEnd, RoadList, RoadVolume, TileGeometry},
 };
 
 /// A tile on the graphics card.
@@ -69,6 +69,34 @@ pub(super) struct RoadBuffers {
     pub(super) ends: Vec<RoadEnd>,
 }
 
+impl RoadBuffers {
+    /// Uploads a list, coded as instances.
+    fn new<T>(gpu: &Gpu, list: &RoadList<T>, bytes: &[u8]) -> Self {
+        let mut class_ranges = [const { 0..0 }; FunctionalRoadClass::COUNT];
+        for (class, range) in FunctionalRoadClass::all().zip(&mut class_ranges) {
+            *range = list.range_of(class);
+        }
+        let instances =
+            (!bytes.is_empty()).then(|| gpu.buffer("roads", bytes, BufferUsages::VERTEX));
+        Self { instances, class_ranges, ends: list.ends().to_vec() }
+    }
+
+    /// The instances of some classes, in as few pieces as may be.
+    pub(super) fn runs(&self, classes: ClassSet) -> Vec<Range<u32>> {
+        let mut runs: Vec<Range<u32>> = Vec::new();
+        for (class, range) in FunctionalRoadClass::all().zip(&self.class_ranges) {
+            if range.is_empty() || !classes.contains(class) {
+                continue;
+            }
+            match runs.last_mut() {
+                Some(last) if last.end == range.start => last.end = range.end,
+                _ => runs.push(range.clone()),
+            }
+        }
+        runs
+    }
+}
+
 /// Bytes of one ground vertex: position as three f32, normal and skirt flag as four i8.
 pub(super) const GROUND_STRIDE: u64 = 16;
 /// Bytes of one road segment: two positions as three f32 each, class as u32.
@@ -91,25 +119,9 @@ impl TileBuffers {
             triangles: tile.ground.indices[..tile.ground.surface_indices].to_vec(),
             edges: OnceLock::new(),
         });
-        let instances =
-            |bytes: &[u8]| (!bytes.is_empty()).then(|| buffer(bytes, BufferUsages::VERTEX));
-        let mut segments = RoadBuffers {
-            instances: instances(&segment_bytes(tile)),
-            ends: tile.roads.ends().to_vec(),
-            ..RoadBuffers::default()
-        };
-        let mut volumes = RoadBuffers {
-            instances: instances(&volume_bytes(
-                tile.volumes.all().iter().map(|volume| (*volume, 0)),
-            )),
-            ends: tile.volumes.ends().to_vec(),
-            ..RoadBuffers::default()
-        };
-        for class in FunctionalRoadClass::all() {
-            let index = usize::from(class.number());
-            segments.class_ranges[index] = tile.roads.range_of(class);
-            volumes.class_ranges[index] = tile.volumes.range_of(class);
-        }
+        let segments = RoadBuffers::new(gpu, &tile.roads, &segment_bytes(tile));
+        let volumes = tile.volumes.all().iter().map(|volume| (*volume, 0));
+        let volumes = RoadBuffers::new(gpu, &tile.volumes, &volume_bytes(volumes));
         Self {
             ground,
             segments,
@@ -128,12 +140,12 @@ impl TileBuffers {
         self.triangles
     }
 
-    /// Segments of its roads, as one method draws them.
+    /// Segments of its roads that are drawn so.
     #[must_use]
-    pub fn road_segments(&self, method: RoadMethod) -> u64 {
-        self.roads(method).map_or(0, |roads| {
-            roads.class_ranges.iter().map(|range| u64::from(range.end - range.start)).sum()
-        })
+    pub fn road_segments(&self, roads: RoadOptions) -> u64 {
+        let drawn =
+            self.roads(roads.method).into_iter().flat_map(|drawn| drawn.runs(roads.classes));
+        drawn.map(|range| u64::from(range.end - range.start)).sum()
     }
 
     pub(super) fn roads(&self, method: RoadMethod) -> Option<&RoadBuffers> {
@@ -180,6 +192,22 @@ pub(super) fn volume_bytes(volumes: impl Iterator<Item = (RoadVolume, u32)>) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn classes_side_by_side_are_drawn_at_once() {
+        let class = |number| FunctionalRoadClass::new(number).unwrap();
+        let class_ranges = [0..2, 2..2, 2..5, 5..6, 6..6, 6..6, 6..9, 9..9, 9..9];
+        let roads = RoadBuffers { class_ranges, ..RoadBuffers::default() };
+        let check = |left_out: &[u8], expected: &[Range<u32>]| {
+            let classes =
+                left_out.iter().fold(ClassSet::ALL, |set, number| set.without(class(*number)));
+            assert_eq!(roads.runs(classes), expected);
+        };
+        check(&[], std::slice::from_ref(&(0..9)));
+        check(&[4], std::slice::from_ref(&(0..9)));
+        check(&[2], &[0..2, 5..9]);
+        check(&[0, 6], std::slice::from_ref(&(2..6)));
+    }
 
     #[test]
     fn triangles_that_share_an_edge_have_it_once() {

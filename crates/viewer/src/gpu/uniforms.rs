@@ -62,7 +62,7 @@ pub(super) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
     rows.push([lowest_m as f32, (1.0 / (highest_m - lowest_m).max(1.0)) as f32, 0.0, 0.0]);
     rows.extend(style.tint.iter().map(|(share, rgb)| color(*rgb, *share)));
     rows.extend(style.roads.iter().map(|road| {
-        let center_share = road.center.map_or(0.0, |center| center.width_share);
+        let center_share = road.center.map_or(-1.0, |center| center.width_share);
         [
             road.width_m / 2.0 * scaling.constant * view.point_scale as f32,
             road.min_width_px / 2.0 * samples,

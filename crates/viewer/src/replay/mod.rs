@@ -280,7 +280,6 @@ impl<'a> Replay<'a> {
         self.gpu.finish()?;
         let draw_ms = ms_since(started);
         let passes = self.timer.as_mut().map(|timer| timer.read(self.gpu)).transpose()?;
-        let method = self.options.roads.method;
         let record = FrameRecord {
             frame,
             time_s,
@@ -291,7 +290,10 @@ impl<'a> Replay<'a> {
             tiles_evicted: work.evicted,
             tiles_missing: work.missing,
             triangles: tiles.iter().map(|tile| tile.buffers.triangles()).sum(),
-            road_segments: tiles.iter().map(|tile| tile.buffers.road_segments(method)).sum(),
+            road_segments: tiles
+                .iter()
+                .map(|tile| tile.buffers.road_segments(self.options.roads))
+                .sum(),
             gpu_bytes: buffers.values().map(TileBuffers::gpu_bytes).sum(),
             select_ms: work.select_ms,
             decode_ms: work.decode_ms,

@@ -48,7 +48,7 @@ pub struct Bridge {
     pub height_range_m: [f64; 2],
 }
 
-/// The bridges between tiles that are drawn together, in order of class, then of the tiles.
+/// The bridges between tiles that are drawn together, in order of the finer tiles, then of class.
 #[must_use]
 pub fn bridges(tiles: &[BorderTile<'_>]) -> Vec<Bridge> {
     let index_of: BTreeMap<TileId, usize> =
@@ -74,7 +74,7 @@ pub fn bridges(tiles: &[BorderTile<'_>]) -> Vec<Bridge> {
             });
         }
     }
-    found.sort_by_key(|bridge| (bridge.class, bridge.fine));
+    found.sort_by_key(|bridge| (bridge.fine, bridge.class));
     found
 }
 

@@ -32,7 +32,7 @@ struct Frame {
     // rgb; w: share of the height range.
     tint: array<vec4<f32>, TINT_STOPS>,
     // x: half width in world metres; y: least half width in pixels of this target; z: share of the width that
-    // the centre line takes, 0 without one.
+    // the centre line takes, -1 without one.
     road_widths: array<vec4<f32>, CLASSES>,
     road_fills: array<vec4<f32>, CLASSES>,
     road_outlines: array<vec4<f32>, CLASSES>,

@@ -5,10 +5,14 @@
 
 @group(1) @binding(0) var ground_color: texture_2d<f32>;
 @group(1) @binding(1) var terrain_depth: texture_depth_2d;
-@group(1) @binding(2) var road_labels: texture_2d<u32>;
+@group(1) @binding(2) var road_labels: texture_2d<f32>;
 
 // Ground that many times farther away than its neighbour in the picture lies behind it.
 const FARTHER = 1.1;
+
+fn label_of(pixel: vec2<i32>) -> u32 {
+    return u32(round(textureLoad(road_labels, pixel, 0).r * 255.0));
+}
 
 fn class_of(label: u32) -> u32 {
     return CLASSES - label / 2u;
@@ -35,10 +39,11 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     }
     let depth = view_depth_of(depth_buffer);
     let distance_m = depth * length(ray);
-    let haze = 1.0 - exp(-pow(distance_m / frame.haze.w, 2.0));
+    let reach = distance_m / frame.haze.w;
+    let haze = 1.0 - exp(-reach * reach);
     var color = mix(textureLoad(ground_color, pixel, 0).rgb, frame.haze.rgb, haze);
 
-    let label = textureLoad(road_labels, pixel, 0).r;
+    let label = label_of(pixel);
     if label != 0u {
         let road_class = class_of(label);
         let fill = select(frame.road_fills[road_class].rgb, frame.road_centers[road_class].rgb, (label & 1u) == 1u);
@@ -54,7 +59,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     for (var y = -radius; y <= radius; y++) {
         for (var x = -radius; x <= radius; x++) {
             let near = clamp(pixel + vec2(x, y), vec2(0), last);
-            let candidate = textureLoad(road_labels, near, 0).r;
+            let candidate = label_of(near);
             // A road behind a crest has no edge on the crest.
             if candidate > most && textureLoad(terrain_depth, near, 0) * FARTHER >= depth_buffer {
                 most = candidate;

@@ -24,12 +24,10 @@ struct Tile {
 @group(2) @binding(0) var terrain_depth: texture_depth_2d;
 @group(2) @binding(1) var owners: texture_2d<u32>;
 
-// 0 draws the road, 1 its centre line.
-override BAND: u32 = 0u;
-
 const MAX_STRETCH = 8.0;
 const SKIRT = 0x80000000u;
 const NEVER = 1e30;
+const NOTHING = 0u;
 
 fn position_at(pixel: vec2<f32>, depth_buffer: f32) -> vec3<f32> {
     return ray_at(pixel) * view_depth_of(depth_buffer);
@@ -41,8 +39,9 @@ fn stretch_of(distance_m: f32, height_m: f32) -> f32 {
     return clamp(1.5 * distance_m / max(abs(height_m), 1e-3), 1.0, MAX_STRETCH);
 }
 
-fn half_width_share(road_class: u32) -> f32 {
-    return select(1.0, frame.road_widths[road_class].z, BAND == 1u);
+// Share of the width that the centre line takes; below 0 without one, so that nothing looks as near as that.
+fn center_share(road_class: u32) -> f32 {
+    return frame.road_widths[road_class].z;
 }
 
 fn has_caps() -> bool {
@@ -114,38 +113,56 @@ fn seen_px(right: vec2<f32>, down: vec2<f32>, from_start: vec2<f32>, start_to_en
     return length(from_segment(px_from_m * from_start, px_from_m * start_to_end));
 }
 
-fn is_road(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
-    road_class: u32, widest_m: f32) -> bool {
+// What the ground at a pixel is to a segment: 0 nothing, else a label.
+fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
+    road_class: u32, widest_m: f32) -> u32 {
     let position = position_at(center, depth_buffer);
     let distance_m = length(position);
     let plan_m = length(from_segment(position.xy - start, start_to_end));
-    let band = half_width_share(road_class);
     if plan_m > widest_m {
-        return false;
+        return NOTHING;
     }
-    if plan_m <= band * scaled_half_width_m(road_class, distance_m) {
-        return true;
+    // The centre line is a road of its own, narrower in all respects.
+    let share = center_share(road_class);
+    let half_m = scaled_half_width_m(road_class, distance_m);
+    if share > 0.0 && plan_m <= share * half_m {
+        return center_label(road_class);
     }
-    let least_m = band * least_half_width_m(road_class, view_depth_of(depth_buffer));
-    if plan_m > stretch_of(distance_m, position.z) * least_m {
-        return false;
+    let looks_m = stretch_of(distance_m, position.z)
+        * least_half_width_m(road_class, view_depth_of(depth_buffer));
+    let is_within = plan_m <= half_m;
+    if plan_m > looks_m * select(1.0, share, is_within) {
+        return select(NOTHING, fill_label(road_class), is_within);
     }
     let right = plan_step(pixel, vec2(1, 0), depth_buffer, position.xy, start, start_to_end);
     let down = plan_step(pixel, vec2(0, 1), depth_buffer, position.xy, start, start_to_end);
-    return seen_px(right, down, position.xy - start, start_to_end) <= band * frame.road_widths[road_class].y;
+    let seen = seen_px(right, down, position.xy - start, start_to_end);
+    let least_px = frame.road_widths[road_class].y;
+    if plan_m <= share * looks_m && seen <= share * least_px {
+        return center_label(road_class);
+    }
+    return select(NOTHING, fill_label(road_class), is_within || seen <= least_px);
 }
 
 // Bounds on the half width of a road none of which is farther away than `far_m` or nearer in height to the eye
 // than `near_height_m`.
 fn bounding_radius_m(road_class: u32, far_m: f32, near_height_m: f32) -> f32 {
-    let band = half_width_share(road_class);
     let first = max(scaled_half_width_m(road_class, far_m), MAX_STRETCH * least_half_width_m(road_class, far_m));
     let reach_m = far_m + 2.0 * first;
     let stretch = stretch_of(reach_m, near_height_m);
-    return band * max(scaled_half_width_m(road_class, reach_m), stretch * least_half_width_m(road_class, reach_m));
+    return max(scaled_half_width_m(road_class, reach_m), stretch * least_half_width_m(road_class, reach_m));
 }
 
 // More important classes have larger labels; the centre line of a class lies above its fill.
-fn label_of(road_class: u32) -> u32 {
-    return (CLASSES - road_class) * 2u + BAND;
+fn fill_label(road_class: u32) -> u32 {
+    return (CLASSES - road_class) * 2u;
+}
+
+fn center_label(road_class: u32) -> u32 {
+    return fill_label(road_class) + 1u;
+}
+
+// As the target takes it; blending keeps the largest.
+fn stored(label: u32) -> f32 {
+    return f32(label) / 255.0;
 }

@@ -1,7 +1,7 @@
 // Where the roads of two drawings differ, over the first one's picture in pale grey.
 
-@group(0) @binding(0) var first_labels: texture_2d<u32>;
-@group(0) @binding(1) var second_labels: texture_2d<u32>;
+@group(0) @binding(0) var first_labels: texture_2d<f32>;
+@group(0) @binding(1) var second_labels: texture_2d<f32>;
 @group(0) @binding(2) var picture: texture_2d<f32>;
 
 // As in gpu/screen_passes.rs.
@@ -22,8 +22,8 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         let luma = dot(textureLoad(picture, pixel, 0).rgb, vec3(0.299, 0.587, 0.114));
         return vec4(vec3(mix(1.0, luma, CONTRAST)), 1.0);
     }
-    if second == 0u {
+    if second == 0.0 {
         return vec4(FIRST_ONLY, 1.0);
     }
-    return vec4(select(OTHER_LABEL, SECOND_ONLY, first == 0u), 1.0);
+    return vec4(select(OTHER_LABEL, SECOND_ONLY, first == 0.0), 1.0);
 }

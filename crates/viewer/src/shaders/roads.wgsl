@@ -60,7 +60,7 @@ fn vertex(in: SegmentIn) -> VertexOut {
 }
 
 @fragment
-fn fragment(in: VertexOut) -> @location(0) u32 {
+fn fragment(in: VertexOut) -> @location(0) f32 {
     let pixel = vec2<i32>(in.clip.xy);
     let owner = textureLoad(owners, pixel, 0).r;
     // Not the sky and no skirt. Any tile's ground: what lies beside the border is painted from both sides.
@@ -68,8 +68,9 @@ fn fragment(in: VertexOut) -> @location(0) u32 {
         discard;
     }
     let depth_buffer = textureLoad(terrain_depth, pixel, 0);
-    if !is_road(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, in.road_class, NEVER) {
+    let label = label_at(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, in.road_class, NEVER);
+    if label == NOTHING {
         discard;
     }
-    return label_of(in.road_class);
+    return stored(label);
 }

@@ -97,13 +97,13 @@ fn through_slab(origin: f32, speed: f32, low: f32, high: f32) -> vec2<f32> {
     return vec2(min(t.x, t.y), max(t.x, t.y));
 }
 
-// The paper's test, section 5.2: z0 < zt < z1.
+// The paper's test, section 5.2: z0 < zt < z1. `share` of the road's width.
 fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
-    road_class: u32) -> bool {
+    road_class: u32, share: f32) -> bool {
     let position = position_at(center, depth_buffer);
     let ground = length(position);
     let ray = normalize(ray_at(center));
-    let radius_m = min(tile.base.y, half_width_share(road_class)
+    let radius_m = min(tile.base.y, share
         * max(scaled_half_width_m(road_class, ground), least_half_width_m(road_class, view_depth_of(depth_buffer))));
 
     let length_m = length(start_to_end);
@@ -123,8 +123,18 @@ fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, 
     return between.x < ground && ground < between.y;
 }
 
+fn label_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
+    road_class: u32) -> u32 {
+    let share = center_share(road_class);
+    if share > 0.0 && is_road_by_the_paper(center, depth_buffer, start, start_to_end, road_class, share) {
+        return center_label(road_class);
+    }
+    let is_road = is_road_by_the_paper(center, depth_buffer, start, start_to_end, road_class, 1.0);
+    return select(NOTHING, fill_label(road_class), is_road);
+}
+
 @fragment
-fn fragment(in: VertexOut) -> @location(0) u32 {
+fn fragment(in: VertexOut) -> @location(0) f32 {
     let pixel = vec2<i32>(in.clip.xy);
     let owner = textureLoad(owners, pixel, 0).r;
     let own = u32(tile.base.z);
@@ -136,14 +146,14 @@ fn fragment(in: VertexOut) -> @location(0) u32 {
     }
     let road_class = in.class_and_other & 15u;
     let depth_buffer = textureLoad(terrain_depth, pixel, 0);
-    var covered: bool;
+    var label: u32;
     if frame.road_options.y > 0.5 {
-        covered = is_road_by_the_paper(in.clip.xy, depth_buffer, in.start, in.start_to_end, road_class);
+        label = label_by_the_paper(in.clip.xy, depth_buffer, in.start, in.start_to_end, road_class);
     } else {
-        covered = is_road(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, road_class, tile.base.y);
+        label = label_at(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, road_class, tile.base.y);
     }
-    if !covered {
+    if label == NOTHING {
         discard;
     }
-    return label_of(road_class);
+    return stored(label);
 }

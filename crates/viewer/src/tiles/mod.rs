@@ -16,8 +16,8 @@ pub use self::{
     ground::{GroundMesh, GroundVertex},
     package::PackageSource,
     roads::{
-        BadRoad, GroundLine, PlanLine, RoadEnd, RoadSegment, RoadSegments, RoadVolume, RoadVolumes,
-        Side, TileLines,
+        BadRoad, GroundLine, PlanLine, RoadEnd, RoadList, RoadSegment, RoadSegments, RoadVolume,
+        RoadVolumes, Side, TileLines,
     },
 };
 use crate::lod::{GroundSummary, Node, Request, TileTree};

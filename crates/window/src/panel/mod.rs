@@ -34,6 +34,15 @@ pub(crate) struct Answer {
     pub(crate) occupied: Vec<Rect>,
 }
 
+/// Prepares the toolkit: dark, and at rest as soon as it is painted.
+pub(crate) fn set_up(ui: &egui::Context) {
+    ui.set_theme(egui::Theme::Dark);
+    ui.all_styles_mut(|style| {
+        style.animation_time = 0.0;
+        style.interaction.selectable_labels = false;
+    });
+}
+
 /// Lays out the whole window: the map behind, the panel, the line of positions and what lies on the map.
 pub(crate) fn show(
     ui: &mut Ui,

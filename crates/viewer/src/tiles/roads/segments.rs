@@ -54,21 +54,19 @@ pub struct RoadEnd {
     pub height_range_m: [f64; 2],
 }
 
-/// All segments of a tile, in order of class.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct RoadSegments {
-    segments: Vec<RoadSegment>,
+/// All pieces of the roads of a tile, as one method draws them, in order of class.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RoadList<T> {
+    pieces: Vec<T>,
     ranges: [Range<u32>; FunctionalRoadClass::COUNT],
     ends: Vec<RoadEnd>,
 }
 
-/// All volumes of a tile, in order of class.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct RoadVolumes {
-    volumes: Vec<RoadVolume>,
-    ranges: [Range<u32>; FunctionalRoadClass::COUNT],
-    ends: Vec<RoadEnd>,
-}
+/// All segments of a tile.
+pub type RoadSegments = RoadList<RoadSegment>;
+
+/// All volumes of a tile.
+pub type RoadVolumes = RoadList<RoadVolume>;
 
 impl Side {
     /// The side of `tile` that a point lies on, if any.
@@ -87,45 +85,22 @@ impl Side {
     }
 }
 
-impl RoadSegments {
+impl RoadList<RoadSegment> {
     /// Cuts lines of the tile with these bounds into segments.
     #[must_use]
     pub fn new(lines: &[GroundLine], tile: Bounds, reference_m: [f64; 3]) -> Self {
-        let mut segments: Vec<RoadSegment> = lines
-            .iter()
-            .flat_map(|line| {
-                line.points_m.windows(2).map(|pair| RoadSegment {
-                    start_in_tile: relative(pair[0], reference_m),
-                    end_in_tile: relative(pair[1], reference_m),
-                    class: line.class,
-                })
+        let segments = lines.iter().flat_map(|line| {
+            line.points_m.windows(2).map(|pair| RoadSegment {
+                start_in_tile: relative(pair[0], reference_m),
+                end_in_tile: relative(pair[1], reference_m),
+                class: line.class,
             })
-            .collect();
-        segments.sort_by_key(|segment| segment.class);
-        let ranges = class_ranges(&segments, |segment| segment.class);
-        Self { segments, ranges, ends: ground_ends(lines, tile) }
-    }
-
-    /// The segments, most important class first.
-    #[must_use]
-    pub fn all(&self) -> &[RoadSegment] {
-        &self.segments
-    }
-
-    /// Where the segments of a class are.
-    #[must_use]
-    pub fn range_of(&self, class: FunctionalRoadClass) -> Range<u32> {
-        self.ranges[usize::from(class.number())].clone()
-    }
-
-    /// Where they meet the tile's border.
-    #[must_use]
-    pub fn ends(&self) -> &[RoadEnd] {
-        &self.ends
+        });
+        Self::sorted(segments.collect(), |segment| segment.class, ground_ends(lines, tile))
     }
 }
 
-impl RoadVolumes {
+impl RoadList<RoadVolume> {
     /// Cuts lines of the tile with these bounds into volumes.
     #[must_use]
     pub fn new(lines: &[PlanLine], tile: Bounds, reference_m: [f64; 3]) -> Self {
@@ -133,35 +108,44 @@ impl RoadVolumes {
             let [x, y, _] = relative([x, y, 0.0], reference_m);
             [x, y]
         };
-        let mut volumes: Vec<RoadVolume> = lines
-            .iter()
-            .flat_map(|line| {
-                line.points_m.windows(2).zip(&line.ground_range_m).map(|(pair, range_m)| {
-                    let [low_m, high_m] = range_m.map(|height_m| height_m - reference_m[2]);
-                    RoadVolume {
-                        start_in_tile: place(pair[0]),
-                        end_in_tile: place(pair[1]),
-                        height_range_in_tile: [
-                            (low_m as f32).next_down(),
-                            (high_m as f32).next_up(),
-                        ],
-                        class: line.class,
-                    }
-                })
+        let volumes = lines.iter().flat_map(|line| {
+            line.points_m.windows(2).zip(&line.ground_range_m).map(|(pair, range_m)| {
+                let [low_m, high_m] = range_m.map(|height_m| height_m - reference_m[2]);
+                RoadVolume {
+                    start_in_tile: place(pair[0]),
+                    end_in_tile: place(pair[1]),
+                    height_range_in_tile: [(low_m as f32).next_down(), (high_m as f32).next_up()],
+                    class: line.class,
+                }
             })
-            .collect();
-        volumes.sort_by_key(|volume| volume.class);
-        let ranges = class_ranges(&volumes, |volume| volume.class);
-        Self { volumes, ranges, ends: plan_ends(lines, tile) }
+        });
+        Self::sorted(volumes.collect(), |volume| volume.class, plan_ends(lines, tile))
+    }
+}
+
+impl<T> RoadList<T> {
+    fn sorted(
+        mut pieces: Vec<T>,
+        class_of: impl Fn(&T) -> FunctionalRoadClass,
+        ends: Vec<RoadEnd>,
+    ) -> Self {
+        pieces.sort_by_key(&class_of);
+        let mut ranges = [const { 0..0 }; FunctionalRoadClass::COUNT];
+        for (class, range) in FunctionalRoadClass::all().zip(&mut ranges) {
+            let start = pieces.partition_point(|piece| class_of(piece) < class);
+            let end = pieces.partition_point(|piece| class_of(piece) <= class);
+            *range = start as u32..end as u32;
+        }
+        Self { pieces, ranges, ends }
     }
 
-    /// The volumes, most important class first.
+    /// The pieces, most important class first.
     #[must_use]
-    pub fn all(&self) -> &[RoadVolume] {
-        &self.volumes
+    pub fn all(&self) -> &[T] {
+        &self.pieces
     }
 
-    /// Where the volumes of a class are.
+    /// Where the pieces of a class are.
     #[must_use]
     pub fn range_of(&self, class: FunctionalRoadClass) -> Range<u32> {
         self.ranges[usize::from(class.number())].clone()
@@ -174,16 +158,9 @@ impl RoadVolumes {
     }
 }
 
-/// The part of `sorted` that belongs to each class, 0 first. `sorted` is in order of class.
-fn class_ranges<T>(
-    sorted: &[T],
-    class_of: impl Fn(&T) -> FunctionalRoadClass,
-) -> [Range<u32>; FunctionalRoadClass::COUNT] {
-    let mut ranges = [const { 0..0 }; FunctionalRoadClass::COUNT];
-    for (class, range) in FunctionalRoadClass::all().zip(&mut ranges) {
-        let start = sorted.partition_point(|item| class_of(item) < class);
-        let end = sorted.partition_point(|item| class_of(item) <= class);
-        *range = start as u32..end as u32;
+impl<T> Default for RoadList<T> {
+    fn default() -> Self {
+        let ranges = [const { 0..0 }; FunctionalRoadClass::COUNT];
+        Self { pieces: Vec::new(), ranges, ends: Vec::new() }
     }
-    ranges
 }

@@ -1,0 +1,556 @@
+//! The window without a window: what it shows, what inputs do to it, what a frame has to do.
+//!
+//! A frame, in this order: tiles that have arrived, time, choice of tiles, map, panel. What the panel changes is seen in
+//! the next frame, which it asks for.
+
+mod start;
+
+pub(crate) use self::start::Package;
+
+use std::sync::Arc;
+
+use corniche_viewer::{
+    RoadMethod,
+    camera::Camera,
+    draw_attribution,
+    flight::Pose,
+    gpu::{GpuError, PassTimes, Wireframe},
+    lod::Quality,
+    style::Rgb,
+    tiles::PackageSource,
+};
+use egui::{Rect, pos2};
+use egui_wgpu::ScreenDescriptor;
+use glam::DVec2;
+
+use crate::{
+    NamedStyle, Reload, WindowError,
+    canvas::{Canvas, Drew, Scene},
+    clicks::{Click, Clicks},
+    controls::{Button, Ground as _, Input, Modifiers, Navigator, View},
+    facts::{Command, Facts, GroundPoint, Shot},
+    frame_times::FrameTimes,
+    panel::{self, Answer},
+    recorder::Recorder,
+    settings::{Refinement, Settings},
+    shots::Shots,
+    tiles::{Changes, ShownGround, Tiles},
+    trace::{Trace, TraceLine},
+};
+
+/// The style's file is asked after so often.
+const RELOAD_S: f64 = 1.0;
+/// For so long after the camera moved the processor, if it draws, draws coarsely.
+const HURRY_S: f64 = 0.15;
+/// Tiles are loaded in advance for where the camera will be after this time.
+const AHEAD_S: f64 = 0.5;
+/// So long after a frame its passes' times are asked for, if nothing else makes a frame before.
+const CLOCK_S: f64 = 0.1;
+/// More notices than these are not kept.
+const NOTICES: usize = 6;
+
+/// The window's state.
+pub(crate) struct App {
+    source: Arc<PackageSource>,
+    height_range_m: [f64; 2],
+    tiles: Tiles,
+    navigator: Navigator,
+    settings: Settings,
+    styles: Vec<NamedStyle>,
+    style_names: Vec<String>,
+    reload: Option<Reload>,
+    reloaded_s: f64,
+    adapter: String,
+    is_software: bool,
+    frame_times: FrameTimes,
+    /// When the last frame began, if it drew the map and another one was to follow at once.
+    drawing_since_s: Option<f64>,
+    passes: Vec<(RoadMethod, PassTimes)>,
+    recorder: Option<Recorder>,
+    shots: Shots,
+    wanted: Vec<Shot>,
+    notices: Vec<String>,
+    trace: Option<Trace>,
+    frame: u64,
+    clicks: Clicks,
+    cursor_px: Option<DVec2>,
+    is_dragging: bool,
+    /// Where the mouse is the panel's, points.
+    occupied: Vec<Rect>,
+    pixels_per_point: f32,
+    last_view: Option<(f64, View)>,
+    moved_s: f64,
+    seen: Seen,
+}
+
+/// What rays into the scene found; kept while neither the scene nor the cursor changes.
+#[derive(Default)]
+struct Seen {
+    cursor_px: Option<DVec2>,
+    /// The ground under the cursor, and the side of a pixel there in world metres.
+    cursor: Option<(GroundPoint, f64)>,
+    /// Side of a pixel in the middle of the window, world metres.
+    middle_pixel_m: Option<f64>,
+}
+
+/// What a frame is given. Times are seconds of one clock.
+pub(crate) struct FrameInput {
+    pub(crate) now_s: f64,
+    pub(crate) size_px: [u32; 2],
+    pub(crate) pixels_per_point: f32,
+    pub(crate) ui: egui::RawInput,
+}
+
+/// When the next frame is due.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Redraw {
+    /// As soon as may be.
+    Now,
+    /// At a time, unless something happens before.
+    At(f64),
+    /// When something happens.
+    Asked,
+}
+
+/// What the window system has to do.
+pub(crate) struct Frame {
+    /// The window's contents, to be painted with [`Canvas::paint`].
+    pub(crate) primitives: Vec<egui::ClippedPrimitive>,
+    pub(crate) screen: ScreenDescriptor,
+    pub(crate) textures: egui::TexturesDelta,
+    /// Cursor and the like.
+    pub(crate) platform: egui::PlatformOutput,
+    pub(crate) redraw: Redraw,
+}
+
+impl App {
+    /// Whether the mouse at this pixel of the window is the map's, not the panel's.
+    pub(crate) fn is_map(&self, ui: &egui::Context, at_px: DVec2) -> bool {
+        let at = at_px / f64::from(self.pixels_per_point);
+        let at = pos2(at.x as f32, at.y as f32);
+        // Lists that hang from the panel lie in layers of their own.
+        let is_in_front =
+            ui.layer_id_at(at).is_some_and(|layer| layer.order != egui::Order::Background);
+        !is_in_front && !self.occupied.iter().any(|rect| rect.contains(at))
+    }
+
+    /// A button of the mouse goes down on the map.
+    pub(crate) fn press(&mut self, button: Button, at_px: DVec2, modifiers: Modifiers, now_s: f64) {
+        let input = match (button, self.clicks_at(button, at_px, now_s)) {
+            (Button::Left, Click::Double) => Input::DoubleClick { at_px, modifiers },
+            _ => {
+                self.is_dragging = true;
+                Input::Press { button, at_px, modifiers }
+            }
+        };
+        self.input(&input, now_s);
+    }
+
+    fn clicks_at(&mut self, button: Button, at_px: DVec2, now_s: f64) -> Click {
+        match button {
+            Button::Left => self.clicks.press(at_px, now_s),
+            _ => Click::Single,
+        }
+    }
+
+    /// Something else that moves the camera.
+    pub(crate) fn input(&mut self, input: &Input, now_s: f64) {
+        match input {
+            Input::Release { .. } | Input::LetGo => self.is_dragging = false,
+            _ => {}
+        }
+        let ground = ground(&self.tiles, &self.settings, &self.source, self.height_range_m);
+        self.navigator.handle(input, now_s, &ground);
+    }
+
+    /// The cursor is here; `None` outside the window.
+    pub(crate) fn point_at(&mut self, cursor_px: Option<DVec2>) {
+        self.cursor_px = cursor_px;
+    }
+
+    /// A key asks for this.
+    pub(crate) fn command(&mut self, command: Command, now_s: f64) {
+        match command {
+            Command::NorthUp => self.input(&Input::NorthUp, now_s),
+            Command::Reset => self.input(&Input::Reset, now_s),
+            Command::ToggleFly => self.input(&Input::ToggleFly, now_s),
+            Command::Take(shot) => self.wanted.push(shot),
+            Command::StartRecording => self.recorder = Some(Recorder::new(now_s, self.pose())),
+            Command::StopRecording => self.stop_recording(now_s),
+            Command::Dismiss(place) => {
+                if place < self.notices.len() {
+                    self.notices.remove(place);
+                }
+            }
+        }
+    }
+
+    /// Shows the panel, or hides it.
+    pub(crate) fn toggle_panel(&mut self) {
+        self.settings.is_panel_open = !self.settings.is_panel_open;
+    }
+
+    /// Everything on the graphics card is gone.
+    pub(crate) fn begin_again(&mut self, canvas: &Canvas) {
+        self.tiles.begin_again();
+        self.adapter = canvas.gpu().adapter_name().to_owned();
+        self.is_software = canvas.gpu().is_software();
+        self.passes.clear();
+        self.notice("the graphics device was lost; everything was loaded again".to_owned());
+    }
+
+    fn notice(&mut self, words: String) {
+        // The same thing again is no news.
+        self.notices.retain(|known| *known != words);
+        self.notices.push(words);
+        let excess = self.notices.len().saturating_sub(NOTICES);
+        self.notices.drain(..excess);
+    }
+
+    fn stop_recording(&mut self, now_s: f64) {
+        let Some(recorder) = self.recorder.take() else { return };
+        match recorder.finish(now_s).and_then(|flight| flight.to_text()) {
+            Ok(text) => self.shots.save_flight(text),
+            Err(error) => self.notice(format!("nothing was recorded: {error}")),
+        }
+    }
+
+    fn vertical_scale(&self) -> f64 {
+        self.settings.exaggeration * self.source.manifest().point_scale
+    }
+
+    /// The camera as flights have it.
+    fn pose(&self) -> Pose {
+        let View { eye_in_world: eye, orientation, .. } = self.navigator.view();
+        Pose { eye_m: [eye.x, eye.y, eye.z / self.vertical_scale()], orientation }
+    }
+
+    /// Everything a frame does, up to its being painted.
+    ///
+    /// # Errors
+    /// When the pictures cannot be drawn or the trace cannot be written.
+    pub(crate) fn frame(
+        &mut self,
+        canvas: &mut Canvas,
+        ui: &egui::Context,
+        input: FrameInput,
+    ) -> Result<Frame, WindowError> {
+        let FrameInput { now_s, size_px, pixels_per_point, ui: raw } = input;
+        self.frame += 1;
+        self.pixels_per_point = pixels_per_point;
+        self.take_news();
+        self.navigator.resize(size_px);
+        let ground = ground(&self.tiles, &self.settings, &self.source, self.height_range_m);
+        self.navigator.advance(now_s, &ground);
+        let camera = self.navigator.camera();
+        let changes = self.choose_tiles(&camera, now_s);
+        canvas.change(&changes);
+        let pose = self.pose();
+        if let Some(recorder) = &mut self.recorder {
+            recorder.note(now_s, pose);
+        }
+        let drew = self.draw(canvas, &camera, now_s)?;
+        self.look(&camera, drew.is_new);
+        self.passes = canvas.times()?;
+
+        let before = self.settings.clone();
+        let mut answer = Answer::default();
+        let mut output = self.lay_out(canvas, ui, raw, drew, now_s, &mut answer);
+        for command in answer.commands {
+            self.command(command, now_s);
+        }
+        self.occupied = answer.occupied;
+        let is_changed = self.settings != before;
+        self.follow_exaggeration(&before);
+
+        let screen = ScreenDescriptor { size_in_pixels: size_px, pixels_per_point };
+        canvas.take_textures(&output.textures_delta);
+        let primitives = ui.tessellate(std::mem::take(&mut output.shapes), pixels_per_point);
+        self.take_shots(canvas, &primitives, &screen)?;
+        self.write_trace(pose, size_px)?;
+
+        let is_moving = self.navigator.is_moving() || self.is_dragging;
+        let is_busy = is_moving || changes.is_under_way || !self.wanted.is_empty();
+        self.time(now_s, drew.is_new, is_busy);
+        let wishes = output.viewport_output.values().map(|viewport| viewport.repaint_delay);
+        let wish_s = wishes.map(|delay| delay.as_secs_f64()).fold(f64::INFINITY, f64::min);
+        let redraw = if is_busy || is_changed || wish_s <= 0.0 {
+            Redraw::Now
+        } else {
+            let hurry_s = self.is_hurrying(now_s).then_some(HURRY_S);
+            // A little later the graphics card tells how long this frame took.
+            let clock_s = canvas.is_timing().then_some(CLOCK_S);
+            let wish_s = wish_s.is_finite().then_some(wish_s);
+            let soonest_s = [hurry_s, clock_s, wish_s].into_iter().flatten().reduce(f64::min);
+            soonest_s.map_or(Redraw::Asked, |rest_s| Redraw::At(now_s + rest_s))
+        };
+        Ok(Frame {
+            primitives,
+            screen,
+            textures: output.textures_delta,
+            platform: output.platform_output,
+            redraw,
+        })
+    }
+
+    /// When the style's file is to be looked at.
+    pub(crate) fn reload_due_s(&self) -> Option<f64> {
+        self.reload.as_ref().map(|_| self.reloaded_s + RELOAD_S)
+    }
+
+    /// Looks at the style's file, if it is time; tells whether there is something to show.
+    pub(crate) fn reload(&mut self, now_s: f64) -> bool {
+        if self.reload_due_s().is_none_or(|due_s| due_s > now_s) {
+            return false;
+        }
+        self.reloaded_s = now_s;
+        match self.reload.as_mut().and_then(|reload| reload()) {
+            None => return false,
+            Some(Ok(style)) => {
+                if let Some(first) = self.styles.first_mut() {
+                    first.style = style;
+                }
+                self.notice("the style was loaded again".to_owned());
+            }
+            Some(Err(why)) => self.notice(format!("the style stays as it was: {why}")),
+        }
+        true
+    }
+
+    /// The graphics device could not do something.
+    pub(crate) fn fault(&mut self, what: &str) {
+        self.notice(format!("the graphics device could not do its work: {what}"));
+    }
+
+    fn take_news(&mut self) {
+        for defect in self.tiles.take_arrivals() {
+            self.notice(format!("{defect}; it is shown without its ground"));
+        }
+        for news in self.shots.news() {
+            self.notice(news);
+        }
+    }
+
+    fn choose_tiles(&mut self, camera: &Camera, now_s: f64) -> Changes {
+        let view = self.navigator.view();
+        let ahead = self.last_view.and_then(|(last_s, last)| {
+            let passed_s = now_s - last_s;
+            let way = view.eye_in_world - last.eye_in_world;
+            let is_moving = passed_s > 0.0 && passed_s < AHEAD_S && way.length() > 0.0;
+            is_moving.then(|| {
+                let eye_in_world = view.eye_in_world + way * (AHEAD_S / passed_s);
+                View { eye_in_world, ..view }.camera(camera.size_px())
+            })
+        });
+        if self.last_view.is_some_and(|(_, last)| last != view) {
+            self.moved_s = now_s;
+        }
+        self.last_view = Some((now_s, view));
+        let quality = Quality {
+            screen_space_error_px: self.settings.screen_space_error_px,
+            vertical_scale: self.vertical_scale(),
+        };
+        match self.settings.refinement {
+            Refinement::Live => self.tiles.choose(camera, ahead.as_ref(), quality),
+            Refinement::Frozen => Changes::default(),
+        }
+    }
+
+    fn is_hurrying(&self, now_s: f64) -> bool {
+        self.is_software && now_s - self.moved_s < HURRY_S && self.frame > 1
+    }
+
+    /// Draws the map; where it is too large for the adapter with its samples, with one sample a pixel.
+    fn draw(
+        &mut self,
+        canvas: &mut Canvas,
+        camera: &Camera,
+        now_s: f64,
+    ) -> Result<Drew, WindowError> {
+        let scene = self.scene(camera, now_s);
+        match canvas.draw(&scene) {
+            Err(GpuError::TooLarge { .. }) if scene.samples_per_side > 1 => {
+                self.notice(format!(
+                    "{0} × {0} samples a pixel are more than the adapter can draw in a window of this size; there is \
+                     one now",
+                    scene.samples_per_side
+                ));
+                self.settings.samples_per_side = 1;
+                Ok(canvas.draw(&Scene { samples_per_side: 1, ..scene })?)
+            }
+            drew => Ok(drew?),
+        }
+    }
+
+    fn scene(&self, camera: &Camera, now_s: f64) -> Scene {
+        let window_px = camera.size_px();
+        // A picture that is to be saved is drawn in full.
+        let is_coarse = self.is_hurrying(now_s) && self.wanted.is_empty();
+        let (size_px, samples_per_side) = if is_coarse {
+            (window_px.map(|side| side.div_ceil(2)), 1)
+        } else {
+            (window_px, self.settings.samples_per_side)
+        };
+        let style = &self.styles[self.settings.style.min(self.styles.len() - 1)].style;
+        let shown = |is_shown| if is_shown { Wireframe::Shown } else { Wireframe::Hidden };
+        Scene {
+            camera: self.navigator.view().camera(size_px),
+            window_px,
+            style: self.settings.applied_to(style),
+            roads: self.settings.compare.pictures(self.settings.roads),
+            compare: self.settings.compare,
+            exaggeration: self.settings.exaggeration,
+            point_scale: self.source.manifest().point_scale,
+            height_range_m: self.height_range_m,
+            wireframe: shown(self.settings.is_wireframe),
+            drawn: self.tiles.drawn().to_vec(),
+            samples_per_side,
+        }
+    }
+
+    /// Looks what is under the cursor and in the middle, where that may have changed.
+    fn look(&mut self, camera: &Camera, is_new: bool) {
+        let scale = self.vertical_scale();
+        let ground = ground(&self.tiles, &self.settings, &self.source, self.height_range_m);
+        let pixel_m = |at_px: DVec2| {
+            let hit = ground.hit(camera.eye_in_world(), camera.ray_in_world(at_px))?;
+            let (_, depth) = camera.project(hit)?;
+            Some((hit, depth * camera.pixel_at_unit_depth_m()))
+        };
+        if is_new {
+            let [width, height] = camera.size_px().map(f64::from);
+            self.seen.middle_pixel_m =
+                pixel_m(DVec2::new(width, height) / 2.0).map(|(_, pixel_m)| pixel_m);
+        }
+        if is_new || self.seen.cursor_px != self.cursor_px {
+            let coordinates = &self.source.manifest().coordinates;
+            self.seen.cursor = self.cursor_px.and_then(pixel_m).map(|(hit, pixel_m)| {
+                let point = GroundPoint {
+                    lon_lat_deg: coordinates.wgs84_from_working([hit.x, hit.y]),
+                    at_m: [hit.x, hit.y, hit.z / scale],
+                };
+                (point, pixel_m)
+            });
+            self.seen.cursor_px = self.cursor_px;
+        }
+    }
+
+    fn lay_out(
+        &mut self,
+        canvas: &Canvas,
+        ui: &egui::Context,
+        raw: egui::RawInput,
+        drew: Drew,
+        now_s: f64,
+        answer: &mut Answer,
+    ) -> egui::FullOutput {
+        let manifest = self.source.manifest();
+        let is_over_map = self.cursor_px.is_some_and(|at_px| self.is_map(ui, at_px));
+        let style = &self.styles[self.settings.style.min(self.styles.len() - 1)].style;
+        let road_colors: Vec<Rgb> = style.roads.iter().map(|road| road.color).collect();
+        let counts = canvas.counts();
+        let points = f64::from(self.pixels_per_point) / manifest.point_scale;
+        let facts = Facts {
+            adapter: &self.adapter,
+            attribution: &manifest.attribution,
+            crs: &manifest.crs,
+            cursor: self.seen.cursor.filter(|_| is_over_map).map(|(point, _)| point),
+            pose: self.pose(),
+            metres_per_point: self.seen.middle_pixel_m.map(|pixel_m| pixel_m * points),
+            mode: self.navigator.mode(),
+            style_names: &self.style_names,
+            road_colors: &road_colors,
+            tiles_drawn: self.tiles.drawn().len(),
+            tiles_missing: self.tiles.missing(),
+            tiles_loading: self.tiles.loading(),
+            triangles: counts.triangles,
+            segments: counts.segments,
+            gpu_bytes: self.tiles.bytes_of_budget(),
+            passes: &self.passes,
+            frame_times: &self.frame_times,
+            recording_s: self.recorder.as_ref().map(|recorder| recorder.duration_s(now_s)),
+            notices: &self.notices,
+        };
+        let mut settings = self.settings.clone();
+        let output = ui.run_ui(raw, |ui| {
+            let shown = panel::show(ui, &mut settings, &facts, drew.pictures);
+            // What was clicked in a first layout is not clicked in a second one.
+            answer.commands.extend(shown.commands);
+            answer.occupied = shown.occupied;
+        });
+        self.settings = settings;
+        output
+    }
+
+    /// The camera keeps its place over the ground when heights are drawn otherwise.
+    fn follow_exaggeration(&mut self, before: &Settings) {
+        let factor = self.settings.exaggeration / before.exaggeration;
+        if self.settings.exaggeration.to_bits() != before.exaggeration.to_bits() {
+            let ground = ground(&self.tiles, before, &self.source, self.height_range_m);
+            self.navigator.rescale_heights(factor, &ground);
+        }
+    }
+
+    fn take_shots(
+        &mut self,
+        canvas: &mut Canvas,
+        primitives: &[egui::ClippedPrimitive],
+        screen: &ScreenDescriptor,
+    ) -> Result<(), WindowError> {
+        // What was asked for in this frame is drawn in full in the next.
+        let is_full = canvas.is_full();
+        for shot in std::mem::take(&mut self.wanted) {
+            if !is_full {
+                self.wanted.push(shot);
+                continue;
+            }
+            let picture = match shot {
+                Shot::Map => {
+                    let mut picture = canvas.read_map(self.settings.divider_share)?;
+                    draw_attribution(&mut picture, &self.source.manifest().attribution);
+                    picture
+                }
+                Shot::Window => canvas.read_window(primitives, screen)?,
+            };
+            self.shots.save_picture(picture);
+        }
+        Ok(())
+    }
+
+    fn write_trace(&mut self, pose: Pose, size_px: [u32; 2]) -> Result<(), WindowError> {
+        let line = TraceLine {
+            frame: self.frame,
+            cursor_px: self.cursor_px,
+            ground_m: self.seen.cursor.map(|(point, _)| point.at_m),
+            pixel_m: self.seen.cursor.map(|(_, pixel_m)| pixel_m),
+            pose,
+            tiles: self.tiles.drawn().len(),
+            missing: self.tiles.missing(),
+            loading: self.tiles.loading(),
+            is_moving: self.navigator.is_moving(),
+            size_px,
+        };
+        let Some(trace) = &mut self.trace else { return Ok(()) };
+        trace
+            .write(line)
+            .map_err(|source| WindowError::Trace { path: trace.path().to_owned(), source })
+    }
+
+    /// Only frames that follow one another at once tell how long a frame takes.
+    fn time(&mut self, now_s: f64, is_new: bool, is_busy: bool) {
+        if let Some(since_s) = self.drawing_since_s {
+            self.frame_times.push((now_s - since_s) * 1e3);
+        }
+        self.drawing_since_s = (is_new && is_busy).then_some(now_s);
+    }
+}
+
+fn ground<'a>(
+    tiles: &'a Tiles,
+    settings: &Settings,
+    source: &PackageSource,
+    [lowest_m, highest_m]: [f64; 2],
+) -> ShownGround<'a> {
+    let vertical_scale = settings.exaggeration * source.manifest().point_scale;
+    tiles.ground(vertical_scale, f64::midpoint(lowest_m, highest_m))
+}

@@ -1,0 +1,200 @@
+//! What people do, from the window system's words into those of the map.
+
+use glam::DVec2;
+use winit::{
+    event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent},
+    keyboard::{KeyCode, ModifiersState, NamedKey, PhysicalKey},
+};
+
+use crate::{
+    app::App,
+    controls::{Button, Input, Key, KeyState, Modifiers},
+    facts::{Command, Shot},
+};
+
+/// A touchpad's scrolling by so many pixels is a notch of a wheel.
+const PX_PER_NOTCH: f64 = 50.0;
+
+/// What is held down, and where.
+#[derive(Debug, Default)]
+pub(super) struct Inputs {
+    modifiers: Modifiers,
+    cursor_px: DVec2,
+}
+
+/// Whether this event is the key that shows and hides the panel, which the panel's toolkit would take for itself.
+pub(super) fn is_panel_key(event: &WindowEvent) -> bool {
+    matches!(event, WindowEvent::KeyboardInput { event, .. }
+        if event.logical_key == winit::keyboard::Key::Named(NamedKey::Tab))
+}
+
+impl Inputs {
+    /// Hands an event on; tells whether it changed anything.
+    pub(super) fn take(
+        &mut self,
+        event: &WindowEvent,
+        app: &mut App,
+        ui: &egui::Context,
+        now_s: f64,
+    ) -> bool {
+        match event {
+            WindowEvent::ModifiersChanged(modifiers) => {
+                let state = modifiers.state();
+                self.modifiers = Modifiers {
+                    shift: state.contains(ModifiersState::SHIFT),
+                    control: state.contains(ModifiersState::CONTROL),
+                };
+                false
+            }
+            WindowEvent::CursorMoved { position, .. } => {
+                self.cursor_px = DVec2::new(position.x, position.y);
+                app.point_at(Some(self.cursor_px));
+                app.input(&Input::Move { at_px: self.cursor_px }, now_s);
+                true
+            }
+            WindowEvent::CursorLeft { .. } => {
+                app.point_at(None);
+                true
+            }
+            WindowEvent::MouseInput { state, button, .. } => {
+                self.click(*state, *button, app, ui, now_s)
+            }
+            WindowEvent::MouseWheel { delta, .. } => {
+                let steps = match delta {
+                    MouseScrollDelta::LineDelta(_, lines) => f64::from(*lines),
+                    MouseScrollDelta::PixelDelta(way) => way.y / PX_PER_NOTCH,
+                };
+                let is_maps = app.is_map(ui, self.cursor_px);
+                if is_maps {
+                    app.input(&Input::Wheel { steps, at_px: self.cursor_px }, now_s);
+                }
+                is_maps
+            }
+            WindowEvent::Focused(false) => {
+                app.input(&Input::LetGo, now_s);
+                true
+            }
+            WindowEvent::KeyboardInput { event, .. } => {
+                let is_down = event.state == ElementState::Pressed;
+                // What is typed into a field is not meant for the map; what is let go is let go everywhere.
+                if is_down && ui.text_edit_focused() {
+                    return false;
+                }
+                self.key(event, app, now_s)
+            }
+            _ => false,
+        }
+    }
+
+    fn click(
+        &mut self,
+        state: ElementState,
+        button: MouseButton,
+        app: &mut App,
+        ui: &egui::Context,
+        now_s: f64,
+    ) -> bool {
+        let button = match button {
+            MouseButton::Left => Button::Left,
+            MouseButton::Middle => Button::Middle,
+            MouseButton::Right => Button::Right,
+            _ => return false,
+        };
+        match state {
+            ElementState::Pressed if app.is_map(ui, self.cursor_px) => {
+                app.press(button, self.cursor_px, self.modifiers, now_s);
+            }
+            ElementState::Pressed => return false,
+            ElementState::Released => app.input(&Input::Release { button }, now_s),
+        }
+        true
+    }
+
+    fn key(&self, event: &winit::event::KeyEvent, app: &mut App, now_s: f64) -> bool {
+        let state = match event.state {
+            ElementState::Pressed => KeyState::Pressed,
+            ElementState::Released => KeyState::Released,
+        };
+        if let Some(key) = moving_key(&event.logical_key, event.physical_key) {
+            app.input(&Input::Key { key, state, modifiers: self.modifiers }, now_s);
+            return true;
+        }
+        if state == KeyState::Released || event.repeat {
+            return false;
+        }
+        if event.logical_key == winit::keyboard::Key::Named(NamedKey::Tab) {
+            app.toggle_panel();
+            return true;
+        }
+        let Some(command) = command(&event.logical_key, self.modifiers) else { return false };
+        app.command(command, now_s);
+        true
+    }
+}
+
+/// Arrows and signs by what is printed on them, the keys of fly mode by where they are.
+fn moving_key(logical: &winit::keyboard::Key, physical: PhysicalKey) -> Option<Key> {
+    use winit::keyboard::Key as Logical;
+    let named = match logical {
+        Logical::Named(NamedKey::ArrowLeft) => Some(Key::Left),
+        Logical::Named(NamedKey::ArrowRight) => Some(Key::Right),
+        Logical::Named(NamedKey::ArrowUp) => Some(Key::Up),
+        Logical::Named(NamedKey::ArrowDown) => Some(Key::Down),
+        Logical::Character(sign) => match sign.as_str() {
+            "+" | "=" => Some(Key::ZoomIn),
+            "-" | "_" => Some(Key::ZoomOut),
+            _ => None,
+        },
+        _ => None,
+    };
+    named.or(match physical {
+        PhysicalKey::Code(KeyCode::KeyW) => Some(Key::Ahead),
+        PhysicalKey::Code(KeyCode::KeyS) => Some(Key::Back),
+        PhysicalKey::Code(KeyCode::KeyA) => Some(Key::StrafeLeft),
+        PhysicalKey::Code(KeyCode::KeyD) => Some(Key::StrafeRight),
+        PhysicalKey::Code(KeyCode::KeyE) => Some(Key::Rise),
+        PhysicalKey::Code(KeyCode::KeyQ) => Some(Key::Sink),
+        _ => None,
+    })
+}
+
+fn command(logical: &winit::keyboard::Key, modifiers: Modifiers) -> Option<Command> {
+    use winit::keyboard::Key as Logical;
+    match logical {
+        Logical::Named(NamedKey::Home) => Some(Command::Reset),
+        Logical::Character(letter) => match letter.to_lowercase().as_str() {
+            "n" => Some(Command::NorthUp),
+            "r" => Some(Command::Reset),
+            "f" => Some(Command::ToggleFly),
+            "p" if modifiers.shift => Some(Command::Take(Shot::Window)),
+            "p" => Some(Command::Take(Shot::Map)),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use winit::keyboard::Key as Logical;
+
+    use super::*;
+
+    #[test]
+    fn shift_makes_a_picture_of_the_window() {
+        let letter = |letter: &str| Logical::Character(letter.into());
+        let shift = Modifiers { shift: true, control: false };
+        assert_eq!(command(&letter("p"), Modifiers::default()), Some(Command::Take(Shot::Map)));
+        assert_eq!(command(&letter("P"), shift), Some(Command::Take(Shot::Window)));
+        assert_eq!(command(&letter("x"), shift), None);
+    }
+
+    #[test]
+    fn fly_mode_goes_by_the_place_of_keys_and_zoom_by_their_signs() {
+        let key = |sign: &str, code| moving_key(&Logical::Character(sign.into()), PhysicalKey::Code(code));
+        // A French keyboard has a z where an English one has a w.
+        assert_eq!(key("z", KeyCode::KeyW), Some(Key::Ahead));
+        assert_eq!(key("+", KeyCode::BracketRight), Some(Key::ZoomIn));
+        assert_eq!(key("n", KeyCode::KeyN), None);
+    }
+}

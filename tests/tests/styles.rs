@@ -1,0 +1,102 @@
+//! Styles and the look of roads through the whole binary.
+
+use std::{fs, path::Path};
+
+use e2e::{Ran, build_pass, corniche, root, skipped};
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("paths of these tests are UTF-8")
+}
+
+/// `render` in a small size; `None` where there is no adapter.
+fn render(package: &Path, png: &Path, options: &[&str]) -> Option<Ran> {
+    let fixed = ["render", text(package), "-o", text(png), "--size", "200x150"];
+    let ran = corniche(fixed.into_iter().chain(options.iter().copied()));
+    if ran.code == 1
+        && std::env::var_os("CORNICHE_REQUIRE_GPU").is_none()
+        && ran.err.contains("adapter")
+    {
+        skipped(&ran.err);
+        return None;
+    }
+    Some(ran)
+}
+
+#[test]
+fn every_option_of_the_look_shows_in_the_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("pass.pmtiles");
+    build_pass(&package, &["--quiet"]);
+    let looks: [&[&str]; 8] = [
+        &[],
+        &["--style", "dark"],
+        &["--caps", "none"],
+        &["--width-growth", "none"],
+        &["--width-growth", "constant"],
+        &["--outline", "none"],
+        &["--outline", "5"],
+        &["--supersampling", "1"],
+    ];
+    let mut pictures: Vec<Vec<u8>> = Vec::new();
+    for look in looks {
+        let png = folder.path().join("a.png");
+        let options = [&["--roads", "sv"], look].concat();
+        let Some(ran) = render(&package, &png, &options) else { return };
+        assert_eq!(ran.code, 0, "{look:?}: {}", ran.err);
+        let picture = fs::read(&png).unwrap();
+        let same = pictures.iter().position(|before| *before == picture);
+        assert!(same.is_none(), "{look:?} looks like {:?}", same.map(|k| looks[k]));
+        pictures.push(picture);
+    }
+    // What is said is what would be taken without saying it.
+    let explicit =
+        ["--roads", "sv", "--style", "road-atlas", "--caps", "round", "--outline", "style"];
+    let more = ["--width-growth", "distance", "--cap-test", "distance", "--supersampling", "2"];
+    let png = folder.path().join("b.png");
+    let ran = render(&package, &png, &[&explicit[..], &more[..]].concat()).unwrap();
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert!(fs::read(&png).unwrap() == pictures[0]);
+    let ran = render(&package, &png, &["--roads", "geo", "--cap-test", "paper"]).unwrap();
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("--cap-test") && ran.err.contains("--roads sv"), "{}", ran.err);
+}
+
+#[test]
+fn a_style_of_ones_own_is_drawn_with_or_refused_by_what_is_wrong_in_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("pass.pmtiles");
+    build_pass(&package, &["--quiet"]);
+    let (style, png) = (folder.path().join("mine.toml"), folder.path().join("a.png"));
+    let dark = fs::read_to_string(root().join("config/styles/dark.toml")).unwrap();
+    fs::write(&style, &dark).unwrap();
+    let Some(ran) = render(&package, &png, &["--style", text(&style)]) else { return };
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let own = fs::read(&png).unwrap();
+    assert_eq!(render(&package, &png, &["--style", "dark"]).unwrap().code, 0);
+    assert!(own == fs::read(&png).unwrap(), "a copy of a style is that style");
+
+    let refused = |text_of_style: &str, words: &[&str]| {
+        fs::write(&style, text_of_style).unwrap();
+        let csv = folder.path().join("none.csv");
+        for command in ["render", "fly"] {
+            let ran =
+                corniche([command, text(&package), "-o", text(&csv), "--style", text(&style)]);
+            assert_eq!(ran.code, 2, "{}", ran.err);
+            assert!(words.iter().all(|word| ran.err.contains(word)), "{words:?}: {}", ran.err);
+            assert!(!csv.exists());
+        }
+    };
+    refused(
+        &dark.replace("hillshade = 0.85", "hillshade = 8.5"),
+        &["mine.toml", "light.hillshade", "0 to 1"],
+    );
+    refused(&dark.replace("[roads.3]", "[roads.30]"), &["mine.toml", "30", "0 to 8"]);
+    refused(&dark.replace("\"#FFB347\"", "\"amber\""), &["mine.toml", "amber", "line"]);
+    let ran = render(&package, &png, &["--style", "no-such"]).unwrap();
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("road-atlas, dark"), "{}", ran.err);
+    // A style is never replaced by the picture.
+    let ran = render(&package, &style, &["--style", text(&style)]).unwrap();
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(fs::read_to_string(&style).unwrap().contains("amber"));
+}
