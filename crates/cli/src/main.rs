@@ -22,6 +22,7 @@ mod styles;
 mod table;
 mod tile;
 mod verify;
+mod view;
 
 use std::process;
 
@@ -61,5 +62,6 @@ fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
         Command::Tile(args) => tile::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Fly(args) => fly::run(&args),
+        Command::View(args) => view::run(&args),
     }
 }

@@ -37,15 +37,6 @@ pub(crate) enum Refinement {
     Frozen,
 }
 
-/// How the roads of one class are shown.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct ClassSettings {
-    /// Whether at all.
-    pub(crate) is_shown: bool,
-    /// Factor on the style's widths.
-    pub(crate) width_factor: f32,
-}
-
 /// Everything the panel changes.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Settings {
@@ -55,8 +46,8 @@ pub(crate) struct Settings {
     pub(crate) compare: Compare,
     /// Where the divider stands, as a share of the window's width.
     pub(crate) divider_share: f32,
-    /// Classes, 0 first.
-    pub(crate) classes: [ClassSettings; FunctionalRoadClass::COUNT],
+    /// Factors on the style's widths, class 0 first.
+    pub(crate) width_factors: [f32; FunctionalRoadClass::COUNT],
     /// Which of the styles.
     pub(crate) style: usize,
     /// Factor on heights; 1 is true.
@@ -85,18 +76,11 @@ pub(crate) mod range {
 }
 
 impl Settings {
-    /// A style as it is to be drawn: widths times their factors, classes that are not shown without any width.
+    /// A style as it is to be drawn: widths times their factors.
     pub(crate) fn applied_to(&self, style: &Style) -> Style {
         let mut applied = style.clone();
-        for (road, class) in applied.roads.iter_mut().zip(&self.classes) {
-            if class.is_shown {
-                road.width_m *= class.width_factor;
-            } else {
-                // No ground is nearer to a line than 0, and no least width keeps it visible.
-                road.width_m = 0.0;
-                road.min_width_px = 0.0;
-                road.center = None;
-            }
+        for (road, factor) in applied.roads.iter_mut().zip(self.width_factors) {
+            road.width_m *= factor;
         }
         applied
     }
@@ -108,7 +92,7 @@ pub(crate) fn usual() -> Settings {
         roads: RoadOptions::of(RoadMethod::ShadowVolumes),
         compare: Compare::Off,
         divider_share: 0.5,
-        classes: [ClassSettings { is_shown: true, width_factor: 1.0 }; FunctionalRoadClass::COUNT],
+        width_factors: [1.0; FunctionalRoadClass::COUNT],
         style: 0,
         exaggeration: 1.0,
         screen_space_error_px: 2.0,
@@ -116,5 +100,34 @@ pub(crate) fn usual() -> Settings {
         is_wireframe: false,
         refinement: Refinement::Live,
         is_panel_open: true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_comparison_draws_both_methods_whichever_was_chosen() {
+        let roads = RoadOptions::of(RoadMethod::None);
+        assert_eq!(Compare::Off.pictures(roads), [roads]);
+        let methods = |compare: Compare| -> Vec<RoadMethod> {
+            compare.pictures(roads).iter().map(|options| options.method).collect()
+        };
+        for compare in [Compare::Split, Compare::Difference] {
+            assert_eq!(methods(compare), [RoadMethod::Geometry, RoadMethod::ShadowVolumes]);
+        }
+    }
+
+    #[test]
+    fn a_factor_widens_its_class_and_no_other() {
+        let style = Style::road_atlas();
+        let mut settings = usual();
+        settings.width_factors[3] = 2.0;
+        let applied = settings.applied_to(&style);
+        for (class, (before, after)) in style.roads.iter().zip(&applied.roads).enumerate() {
+            let expected = if class == 3 { 2.0 * before.width_m } else { before.width_m };
+            assert!((after.width_m - expected).abs() < 1e-6, "class {class}");
+        }
     }
 }

@@ -10,8 +10,11 @@ use clap::{Parser, Subcommand};
 
 pub(crate) use build::{BuildArgs, ReportArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
-pub(crate) use look::Roads;
+pub(crate) use look::{LookArgs, Roads};
 pub(crate) use reading::{GrowthArgs, InfoArgs, TileArgs, VerifyArgs};
+pub(crate) use values::{parse_bytes, parse_position, parse_size};
+
+use crate::view::ViewArgs;
 
 /// Terrain tiles with roads laid exactly on them, from elevation rasters and OpenStreetMap extracts.
 #[derive(Debug, Parser)]
@@ -37,6 +40,8 @@ pub(crate) enum Command {
     Render(RenderArgs),
     /// Fly over a package without a window and tell what each frame costs
     Fly(FlyArgs),
+    /// Open a window on a package
+    View(ViewArgs),
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Texts of single values.
 
-pub(super) fn parse_bytes(text: &str) -> Result<u64, String> {
+pub(crate) fn parse_bytes(text: &str) -> Result<u64, String> {
     let (digits, shift) = match text.strip_suffix(['K', 'M', 'G']) {
         Some(digits) if text.ends_with('K') => (digits, 10),
         Some(digits) if text.ends_with('M') => (digits, 20),
@@ -14,7 +14,7 @@ pub(super) fn parse_bytes(text: &str) -> Result<u64, String> {
     }
 }
 
-pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
+pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text
         .split_once('x')
         .and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
@@ -25,7 +25,7 @@ pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-pub(super) fn parse_position(text: &str) -> Result<[f64; 2], String> {
+pub(crate) fn parse_position(text: &str) -> Result<[f64; 2], String> {
     let position = text
         .split_once(',')
         .and_then(|(lon, lat)| Some([lon.trim().parse().ok()?, lat.trim().parse().ok()?]));

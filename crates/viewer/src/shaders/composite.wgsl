@@ -10,12 +10,33 @@
 // Ground that many times farther away than its neighbour in the picture lies behind it.
 const FARTHER = 1.1;
 
-fn label_of(pixel: vec2<i32>) -> u32 {
-    return u32(round(textureLoad(road_labels, pixel, 0).r * 255.0));
+// From what the target stores.
+fn label_of(stored: f32) -> u32 {
+    return u32(round(stored * 255.0));
 }
 
 fn class_of(label: u32) -> u32 {
     return CLASSES - label / 2u;
+}
+
+// The largest label around a pixel, of roads on ground of at least this depth in the buffer.
+fn largest_around(pixel: vec2<i32>, own: f32, least_depth: f32) -> f32 {
+    let radius = i32(frame.road_scale.z);
+    let last = vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1;
+    var largest = own;
+    for (var y = -radius; y <= radius; y++) {
+        for (var x = -radius; x <= radius; x++) {
+            let near = clamp(pixel + vec2(x, y), vec2(0), last);
+            let stored = textureLoad(road_labels, near, 0).r;
+            if stored > largest {
+                // A road behind a crest has no edge on the crest.
+                if textureLoad(terrain_depth, near, 0) >= least_depth {
+                    largest = stored;
+                }
+            }
+        }
+    }
+    return largest;
 }
 
 fn background_at(ray: vec3<f32>) -> vec3<f32> {
@@ -43,7 +64,8 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let haze = 1.0 - exp(-reach * reach);
     var color = mix(textureLoad(ground_color, pixel, 0).rgb, frame.haze.rgb, haze);
 
-    let label = label_of(pixel);
+    let own = textureLoad(road_labels, pixel, 0).r;
+    let label = label_of(own);
     if label != 0u {
         let road_class = class_of(label);
         let fill = select(frame.road_fills[road_class].rgb, frame.road_centers[road_class].rgb, (label & 1u) == 1u);
@@ -53,19 +75,7 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         color = mix(color, mix(fill, frame.haze.rgb, 0.5 * haze), presence);
     }
 
-    let radius = i32(frame.road_scale.z);
-    let last = vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1;
-    var most = label;
-    for (var y = -radius; y <= radius; y++) {
-        for (var x = -radius; x <= radius; x++) {
-            let near = clamp(pixel + vec2(x, y), vec2(0), last);
-            let candidate = label_of(near);
-            // A road behind a crest has no edge on the crest.
-            if candidate > most && textureLoad(terrain_depth, near, 0) * FARTHER >= depth_buffer {
-                most = candidate;
-            }
-        }
-    }
+    let most = label_of(largest_around(pixel, own, depth_buffer / FARTHER));
     if most / 2u > label / 2u {
         let road_class = class_of(most);
         // An edge around a thread of a road would be all one sees of it.

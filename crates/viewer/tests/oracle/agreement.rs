@@ -15,11 +15,11 @@ use crate::{
     ground_rays::{self, Caster},
     measures::{self, CenterLines, Line},
     reference::{Comparison, DepthOracle},
-    scene::{Scene, Tile},
-    scenes::{self, Named, four_tiles, one_tile, style},
     support::{
         country::{Country, QUANTUM_M, width_margin_m},
         gpu,
+        scene::{Scene, Tile},
+        scenes::{self, Named, four_tiles, one_tile, style},
     },
 };
 

@@ -5,8 +5,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     reference::{distance, half_width},
-    scene::Scene,
-    support::{Drawing, cast},
+    support::{Drawing, cast, scene::Scene},
 };
 
 /// Side of a bin of the picture that lists the triangles it may show.

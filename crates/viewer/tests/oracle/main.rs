@@ -21,5 +21,3 @@ mod metamorphic;
 mod must_fail;
 mod package;
 mod reference;
-mod scene;
-mod scenes;

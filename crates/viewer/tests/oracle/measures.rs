@@ -3,7 +3,11 @@
 use corniche_viewer::{RoadMethod, RoadOptions, camera::Camera};
 use glam::{DVec2, DVec3};
 
-use crate::{ground_rays::Caster, reference::half_width, scene::Scene, support::Drawing};
+use crate::{
+    ground_rays::Caster,
+    reference::half_width,
+    support::{Drawing, scene::Scene},
+};
 
 /// Length of the steps along a centre-line.
 const STEP_PX: f64 = 0.25;

@@ -5,9 +5,11 @@ use corniche_viewer::{RoadMethod, RoadOptions};
 
 use crate::{
     reference::DepthOracle,
-    scene::Scene,
-    scenes::{self, Road, camera, hills, one_tile, style, tile},
-    support::{Drawing, gpu},
+    support::{
+        Drawing, gpu,
+        scene::Scene,
+        scenes::{self, Road, camera, hills, one_tile, style, tile},
+    },
 };
 
 const SV: RoadMethod = RoadMethod::ShadowVolumes;

@@ -6,9 +6,11 @@ use glam::DVec2;
 use crate::{
     ground_rays,
     reference::DepthOracle,
-    scene::Scene,
-    scenes::{Road, camera, hills, one_tile, style},
-    support::{Drawing, gpu},
+    support::{
+        Drawing, gpu,
+        scene::Scene,
+        scenes::{Road, camera, hills, one_tile, style},
+    },
 };
 
 const SV: RoadMethod = RoadMethod::ShadowVolumes;

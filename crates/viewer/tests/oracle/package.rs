@@ -15,9 +15,11 @@ use glam::DVec3;
 use crate::{
     measures,
     reference::DepthOracle,
-    scene::{Scene, Tile},
-    scenes::SIZE,
-    support::gpu,
+    support::{
+        gpu,
+        scene::{Scene, Tile},
+        scenes::SIZE,
+    },
 };
 
 /// The tiles of a package as they are selected for a camera.

@@ -3,9 +3,9 @@
 use corniche_viewer::{Caps, RoadOptions, camera::Camera, gpu::Owner, style::Style};
 use glam::{DMat2, DVec2, DVec3};
 
-use crate::{
+use crate::support::{
+    Drawing,
     scene::{PlanSegment, Scene},
-    support::Drawing,
 };
 
 /// Ground may be painted so many least half widths away in plan, at most.

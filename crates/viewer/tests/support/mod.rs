@@ -7,6 +7,8 @@
 )]
 
 pub(crate) mod country;
+pub(crate) mod scene;
+pub(crate) mod scenes;
 
 use corniche_geom::{Frame, NodeIndex, TILE_CELLS, TileId};
 use corniche_roads::FunctionalRoadClass;
@@ -49,12 +51,16 @@ pub(crate) fn class(number: u8) -> FunctionalRoadClass {
 pub(crate) fn terrain(id: TileId, step: u16, height_m: impl Fn(f64, f64) -> f64) -> Terrain {
     let (frame, window) = (frame(), frame().tile_window(id));
     let count = TILE_CELLS as u16 / step + 1;
-    let mut vertices = Vec::new();
+    let (mut vertices, mut normals) = (Vec::new(), Vec::new());
     for row in 0..count {
         for column in 0..count {
             let node = window.node(usize::from(column * step), usize::from(row * step));
-            let height_q =
-                (height_m(frame.x_m(node.i), frame.y_m(node.j)) / QUANTUM_M).round() as i32;
+            let (x, y) = (frame.x_m(node.i), frame.y_m(node.j));
+            let height_q = (height_m(x, y) / QUANTUM_M).round() as i32;
+            normals.push(octahedron_normal(
+                (height_m(x + 1.0, y) - height_m(x - 1.0, y)) / 2.0,
+                (height_m(x, y + 1.0) - height_m(x, y - 1.0)) / 2.0,
+            ));
             vertices.push(TinVertex { row: row * step, column: column * step, height_q });
         }
     }
@@ -70,12 +76,18 @@ pub(crate) fn terrain(id: TileId, step: u16, height_m: impl Fn(f64, f64) -> f64)
     let range =
         [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)];
     Terrain {
-        normals: vec![[0, 0]; vertices.len()],
+        normals,
         tin: Tin::new(vertices.clone(), &triangles).unwrap(),
         geometric_error_m: 1.0,
         height_range_m: range,
         uncovered_nodes: 0,
     }
+}
+
+/// The normal of ground that rises by so many metres per metre, as packages have it.
+fn octahedron_normal(east: f64, north: f64) -> [i8; 2] {
+    let length = east.abs() + north.abs() + 1.0;
+    [-east, -north].map(|part| (part / length * 127.0).round() as i8)
 }
 
 /// Triangles of a tile's ground in world space, f64.

@@ -19,7 +19,7 @@ use crate::{
     controls::{Limits, Navigator, View},
     frame_times::FrameTimes,
     loader::{Loader, SharedSource},
-    settings::{ClassSettings, Compare, Refinement, Settings, range},
+    settings::{Compare, Refinement, Settings, range},
     shots::Shots,
     tiles::Tiles,
     trace::Trace,
@@ -96,8 +96,7 @@ impl App {
                 roads: request.roads,
                 compare: Compare::Off,
                 divider_share: 0.5,
-                classes: [ClassSettings { is_shown: true, width_factor: 1.0 };
-                    FunctionalRoadClass::COUNT],
+                width_factors: [1.0; FunctionalRoadClass::COUNT],
                 style: 0,
                 exaggeration: request.exaggeration,
                 screen_space_error_px: request.screen_space_error_px,

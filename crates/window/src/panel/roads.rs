@@ -80,18 +80,21 @@ fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, all: &[(T
 /// Which classes are shown, and how wide.
 pub(super) fn classes(ui: &mut Ui, settings: &mut Settings, facts: &Facts<'_>) {
     Grid::new("classes").num_columns(3).show(ui, |ui| {
-        for (class, setting) in FunctionalRoadClass::all().zip(&mut settings.classes) {
+        for (class, factor) in FunctionalRoadClass::all().zip(&mut settings.width_factors) {
             let color = facts.road_colors.get(usize::from(class.number()));
             let [red, green, blue] =
                 color.copied().unwrap_or_default().map(|part| (part * 255.0).round() as u8);
             let (swatch, _) = ui.allocate_exact_size(vec2(18.0, 10.0), egui::Sense::hover());
             ui.painter().rect_filled(swatch, 2, Color32::from_rgb(red, green, blue));
-            ui.checkbox(&mut setting.is_shown, class.to_string());
-            let width = egui::Slider::new(&mut setting.width_factor, range::WIDTH_FACTOR)
+            let shown = &mut settings.roads.classes;
+            let mut is_shown = shown.contains(class);
+            ui.checkbox(&mut is_shown, class.to_string());
+            *shown = if is_shown { shown.with(class) } else { shown.without(class) };
+            let width = egui::Slider::new(factor, range::WIDTH_FACTOR)
                 .logarithmic(true)
                 .prefix("× ")
                 .max_decimals(2);
-            ui.add_enabled(setting.is_shown, width).on_hover_text("Factor on the style's width");
+            ui.add_enabled(is_shown, width).on_hover_text("Factor on the style's width");
             ui.end_row();
         }
     });

@@ -14,7 +14,8 @@ use corniche_viewer::{
 };
 use glam::{DVec2, DVec3};
 
-use crate::support::{self, Drawing};
+use super::Drawing;
+use crate::support;
 
 /// A segment of a road in plan: class and ends.
 pub(crate) type PlanSegment = (u8, [DVec2; 2]);
@@ -202,6 +203,16 @@ impl Scene {
     }
 
     pub(crate) fn draw(&self, gpu: &Gpu, camera: &Camera, options: RoadOptions) -> Drawing {
+        let targets = self.draw_view(gpu, &Self::view(camera, &self.style, options), 1);
+        Drawing::read(gpu, &targets)
+    }
+
+    pub(crate) fn draw_view(
+        &self,
+        gpu: &Gpu,
+        view: &FrameView<'_>,
+        samples_per_side: u32,
+    ) -> Targets {
         let buffers: Vec<TileBuffers> =
             self.tiles.iter().map(|tile| TileBuffers::new(gpu, &tile.geometry)).collect();
         let tiles: Vec<DrawTile<'_>> = buffers
@@ -209,10 +220,9 @@ impl Scene {
             .zip(&self.tiles)
             .map(|(buffers, tile)| DrawTile { buffers, skirt_depth_m: tile.skirt_depth_m })
             .collect();
-        let targets = Targets::new(gpu, camera.size_px(), 1).unwrap();
-        let view = Self::view(camera, &self.style, options);
-        Renderer::new(gpu).draw(gpu, &view, &tiles, &targets);
-        Drawing::read(gpu, &targets)
+        let targets = Targets::new(gpu, view.camera.size_px(), samples_per_side).unwrap();
+        Renderer::new(gpu).draw(gpu, view, &tiles, &targets);
+        targets
     }
 }
 

@@ -7,9 +7,10 @@ use corniche_viewer::{
 };
 use glam::DVec2;
 
-use crate::{
+use super::{
+    frame, plain_style,
     scene::{Scene, Tile},
-    support::{frame, plain_style, terrain},
+    terrain,
 };
 
 pub(crate) const SIZE: [u32; 2] = [480, 360];
