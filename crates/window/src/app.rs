@@ -46,6 +46,8 @@ const HURRY_S: f64 = 0.15;
 const AHEAD_S: f64 = 0.5;
 /// So long after a frame its passes' times are asked for, if nothing else makes a frame before.
 const CLOCK_S: f64 = 0.1;
+/// A panel that wishes to be painted again later than this does not wish it; its toolkit says so with ages.
+const LONGEST_WISH_S: f64 = 3600.0;
 /// More notices than these are not kept.
 const NOTICES: usize = 6;
 
@@ -117,7 +119,8 @@ pub(crate) struct Frame {
     /// The window's contents, to be painted with [`Canvas::paint`].
     pub(crate) primitives: Vec<egui::ClippedPrimitive>,
     pub(crate) screen: ScreenDescriptor,
-    pub(crate) textures: egui::TexturesDelta,
+    /// For [`Canvas::free_textures`], when it is painted.
+    pub(crate) unused_textures: Vec<egui::TextureId>,
     /// Cursor and the like.
     pub(crate) platform: egui::PlatformOutput,
     pub(crate) redraw: Redraw,
@@ -264,7 +267,7 @@ impl App {
         self.follow_exaggeration(&before);
 
         let screen = ScreenDescriptor { size_in_pixels: size_px, pixels_per_point };
-        canvas.take_textures(&output.textures_delta);
+        let unused_textures = canvas.take_textures(std::mem::take(&mut output.textures_delta));
         let primitives = ui.tessellate(std::mem::take(&mut output.shapes), pixels_per_point);
         self.take_shots(canvas, &primitives, &screen)?;
         self.write_trace(pose, size_px)?;
@@ -280,14 +283,14 @@ impl App {
             let hurry_s = self.is_hurrying(now_s).then_some(HURRY_S);
             // A little later the graphics card tells how long this frame took.
             let clock_s = canvas.is_timing().then_some(CLOCK_S);
-            let wish_s = wish_s.is_finite().then_some(wish_s);
+            let wish_s = (wish_s <= LONGEST_WISH_S).then_some(wish_s);
             let soonest_s = [hurry_s, clock_s, wish_s].into_iter().flatten().reduce(f64::min);
             soonest_s.map_or(Redraw::Asked, |rest_s| Redraw::At(now_s + rest_s))
         };
         Ok(Frame {
             primitives,
             screen,
-            textures: output.textures_delta,
+            unused_textures,
             platform: output.platform_output,
             redraw,
         })

@@ -298,18 +298,22 @@ impl Canvas {
         }
     }
 
-    /// Takes over what the panel changed of its textures: before painting what was laid out with them.
-    pub(crate) fn take_textures(&mut self, delta: &TexturesDelta) {
+    /// Takes over what the panel changed of its textures, before what was laid out with them is painted. Returns those
+    /// to free when it is.
+    pub(crate) fn take_textures(&mut self, mut delta: TexturesDelta) -> Vec<TextureId> {
         for (id, changes) in &delta.set {
             for change in changes {
                 self.ui.update_texture(self.gpu.device(), self.gpu.queue(), *id, change);
             }
         }
+        let unused = delta.free.iter().copied().collect();
+        delta.clear();
+        unused
     }
 
     /// Forgets textures that nothing laid out from now on will use.
-    pub(crate) fn free_textures(&mut self, delta: &TexturesDelta) {
-        for id in &delta.free {
+    pub(crate) fn free_textures(&mut self, unused: &[TextureId]) {
+        for id in unused {
             self.ui.free_texture(id);
         }
     }

@@ -253,7 +253,7 @@ impl Open {
             Acquired::Later => Redraw::Now,
             Acquired::Hidden => Redraw::Asked,
         };
-        self.canvas.free_textures(&frame.textures);
+        self.canvas.free_textures(&frame.unused_textures);
         if let Some(what) = self.canvas.gpu().take_fault() {
             self.app.fault(&what);
         }

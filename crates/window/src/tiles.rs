@@ -1,6 +1,9 @@
 //! The tiles of the window: loaded by threads, chosen by the streamer, their ground kept for rays and heights.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 use corniche_geom::TileId;
 use corniche_viewer::{
@@ -31,7 +34,7 @@ pub(crate) struct Tiles {
     resident: BTreeMap<TileId, Arc<TileGeometry>>,
     drawn: Vec<Drawn>,
     missing: usize,
-    loading: usize,
+    loading: BTreeSet<TileId>,
 }
 
 /// What a frame has to do on the graphics card, in this order.
@@ -63,7 +66,7 @@ impl Tiles {
             resident: BTreeMap::new(),
             drawn: Vec::new(),
             missing: 0,
-            loading: 0,
+            loading: BTreeSet::new(),
         }
     }
 
@@ -73,7 +76,10 @@ impl Tiles {
     pub(crate) fn take_arrivals(&mut self) -> Vec<String> {
         let mut defects = Vec::new();
         for loaded in self.loader.arrivals() {
-            self.loading = self.loading.saturating_sub(1);
+            if !self.loading.remove(&loaded.id) {
+                // Asked for before everything was lost, and here a second time.
+                continue;
+            }
             let tile = loaded.tile.unwrap_or_else(|error| {
                 let cause = std::error::Error::source(&error).map(ToString::to_string);
                 defects.push(format!("{error}: {}", cause.unwrap_or_default()));
@@ -110,7 +116,7 @@ impl Tiles {
             self.waiting.remove(id);
         }
         self.loader.request(&load);
-        self.loading += load.len();
+        self.loading.extend(&load);
         self.drawn = drawn;
         self.missing = missing;
         let is_under_way = !(evict.is_empty() && uploaded.is_empty() && load.is_empty());
@@ -120,7 +126,7 @@ impl Tiles {
     /// The graphics card has forgotten everything: it is all asked for again.
     pub(crate) fn begin_again(&mut self) {
         self.loader.forget();
-        self.loading = 0;
+        self.loading.clear();
         self.streamer = Streamer::new(self.budget);
         self.waiting.clear();
         self.resident.clear();
@@ -139,7 +145,7 @@ impl Tiles {
 
     /// Tiles being loaded.
     pub(crate) fn loading(&self) -> usize {
-        self.loading
+        self.loading.len()
     }
 
     /// Bytes on the graphics card, and how many there may be.

@@ -2,7 +2,7 @@ use wgpu::{BindGroup, BindGroupEntry, BindingResource, BufferUsages, TextureView
 
 use super::{
     Gpu,
-    passes::Layouts,
+    layouts::Layouts,
     renderer::{DrawTile, FrameView},
     targets::Targets,
     uniforms,

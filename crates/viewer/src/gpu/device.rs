@@ -12,6 +12,10 @@ use super::{PassTimer, ReadBackError};
 pub enum GpuError {
     #[error("no graphics adapter found; install a Vulkan driver (software: mesa-vulkan-drivers)")]
     NoAdapter { source: wgpu::RequestAdapterError },
+    #[error(
+        "no graphics adapter has {name:?} in its name, as WGPU_ADAPTER_NAME asks; unset it to take the fastest"
+    )]
+    NotNamed { name: String },
     #[error("the graphics adapter {adapter:?} gives no device")]
     NoDevice { adapter: String, source: wgpu::RequestDeviceError },
     #[error(
@@ -47,36 +51,37 @@ struct Faults {
 impl Gpu {
     /// Takes the fastest adapter, a software one if there is no other; no window is needed.
     ///
-    /// The environment may choose: `WGPU_BACKEND` (vulkan, gl, …), `WGPU_POWER_PREF` (low, high) and
+    /// The environment may choose, as with other programs of this kind: `WGPU_BACKEND` (vulkan, gl, metal, dx12) and
     /// `WGPU_ADAPTER_NAME` (a part of it).
     ///
     /// # Errors
-    /// When there is no adapter at all or it gives no device.
+    /// When there is no adapter, or none as the environment asks for, or it gives no device.
     pub fn new() -> Result<Self, GpuError> {
         let with = |backends| {
             let descriptor = wgpu::InstanceDescriptor {
                 backends,
                 ..wgpu::InstanceDescriptor::new_without_display_handle()
             };
-            adapter(&wgpu::Instance::new(descriptor.with_env()), None)
+            adapter(&wgpu::Instance::new(descriptor), None)
         };
-        // OpenGL only if there is nothing better.
-        let adapter = with(wgpu::Backends::PRIMARY)
-            .or_else(|_| with(wgpu::Backends::SECONDARY))
-            .map_err(|source| GpuError::NoAdapter { source })?;
-        Self::of(adapter)
+        let adapter = match std::env::var("WGPU_BACKEND") {
+            Ok(names) => with(wgpu::Backends::from_comma_list(&names)),
+            // OpenGL only if there is nothing better.
+            Err(_) => with(wgpu::Backends::PRIMARY).or_else(|_| with(wgpu::Backends::SECONDARY)),
+        };
+        Self::of(adapter?)
     }
 
     /// The same for a window: an adapter that can show pictures on `surface`, which `instance` made. The
-    /// instance decides which backends there are.
+    /// instance decides which backends there are; `WGPU_ADAPTER_NAME` may choose here too.
     ///
     /// # Errors
-    /// When no adapter can show pictures there or it gives no device.
+    /// When no such adapter can show pictures there or it gives no device.
     pub fn for_window(
         instance: &wgpu::Instance,
         surface: &wgpu::Surface<'_>,
     ) -> Result<Self, GpuError> {
-        Self::of(adapter(instance, Some(surface)).map_err(|source| GpuError::NoAdapter { source })?)
+        Self::of(adapter(instance, Some(surface))?)
     }
 
     fn of(adapter: wgpu::Adapter) -> Result<Self, GpuError> {
@@ -189,10 +194,12 @@ impl Gpu {
 fn adapter(
     instance: &wgpu::Instance,
     surface: Option<&wgpu::Surface<'_>>,
-) -> Result<wgpu::Adapter, wgpu::RequestAdapterError> {
+) -> Result<wgpu::Adapter, GpuError> {
+    if let Ok(name) = std::env::var("WGPU_ADAPTER_NAME") {
+        return named_adapter(instance, surface, name);
+    }
     let fastest = wgpu::RequestAdapterOptions {
-        power_preference: wgpu::PowerPreference::from_env()
-            .unwrap_or(wgpu::PowerPreference::HighPerformance),
+        power_preference: wgpu::PowerPreference::HighPerformance,
         compatible_surface: surface,
         ..Default::default()
     };
@@ -201,11 +208,20 @@ fn adapter(
         compatible_surface: surface,
         ..Default::default()
     };
-    match pollster::block_on(wgpu::util::initialize_adapter_from_env(instance, surface)) {
-        Err(wgpu::RequestAdapterError::EnvNotSet) => {
-            pollster::block_on(instance.request_adapter(&fastest))
-                .or_else(|_| pollster::block_on(instance.request_adapter(&software)))
-        }
-        named => named,
-    }
+    pollster::block_on(instance.request_adapter(&fastest))
+        .or_else(|_| pollster::block_on(instance.request_adapter(&software)))
+        .map_err(|source| GpuError::NoAdapter { source })
+}
+
+fn named_adapter(
+    instance: &wgpu::Instance,
+    surface: Option<&wgpu::Surface<'_>>,
+    name: String,
+) -> Result<wgpu::Adapter, GpuError> {
+    let wanted = name.to_lowercase();
+    pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()))
+        .into_iter()
+        .filter(|adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface)))
+        .find(|adapter| adapter.get_info().name.to_lowercase().contains(&wanted))
+        .ok_or(GpuError::NotNamed { name })
 }

@@ -27,6 +27,7 @@
 
 mod bindings;
 mod device;
+mod layouts;
 mod passes;
 mod picture;
 mod renderer;

@@ -1,17 +1,16 @@
-//! The pipelines and what they bind.
+//! The pipelines.
 
 use wgpu::{
-    BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BlendComponent,
-    BlendFactor, BlendOperation, BlendState, ColorWrites, CompareFunction, DepthStencilState,
-    Device, PrimitiveTopology, RenderPipeline, ShaderStages, TextureSampleType, VertexBufferLayout,
-    VertexStepMode, vertex_attr_array,
+    BindGroupLayout, BlendComponent, BlendFactor, BlendOperation, BlendState, ColorWrites,
+    CompareFunction, DepthStencilState, Device, PrimitiveTopology, RenderPipeline,
+    VertexBufferLayout, VertexStepMode, vertex_attr_array,
 };
 
 use super::{
+    layouts::Layouts,
     picture::{COLOR, MAX_SAMPLES_PER_SIDE},
     targets::{DEPTH, LABEL, OWNER},
     tile_buffers::{GROUND_STRIDE, SEGMENT_STRIDE, VOLUME_STRIDE},
-    uniforms::TILE_BYTES,
 };
 
 macro_rules! shader {
@@ -20,33 +19,22 @@ macro_rules! shader {
     };
 }
 
-/// Shader sources by name, complete as compiled.
-pub(super) const SHADERS: [(&str, &str); 6] = [
-    ("terrain", shader!("common", "terrain")),
-    ("roads", shader!("common", "coverage", "roads")),
-    ("volumes", shader!("common", "coverage", "volumes")),
-    ("composite", shader!("common", "screen", "composite")),
-    ("average", shader!("screen", "average")),
-    ("difference", shader!("screen", "difference")),
-];
+/// A shader's name and its source, complete as compiled.
+type Shader = (&'static str, &'static str);
 
-/// Colours and labels are read texel by texel.
-const UNFILTERED: TextureSampleType = TextureSampleType::Float { filterable: false };
+const TERRAIN: Shader = ("terrain", shader!("common", "terrain"));
+const ROADS: Shader = ("roads", shader!("common", "coverage", "roads"));
+const VOLUMES: Shader = ("volumes", shader!("common", "coverage", "volumes"));
+const COMPOSITE: Shader = ("composite", shader!("common", "screen", "composite"));
+const AVERAGE: Shader = ("average", shader!("screen", "average"));
+const DIFFERENCE: Shader = ("difference", shader!("screen", "difference"));
+
 /// The most important label stays, in whatever order roads are drawn.
 const LARGEST: BlendComponent = BlendComponent {
     src_factor: BlendFactor::One,
     dst_factor: BlendFactor::One,
     operation: BlendOperation::Max,
 };
-
-pub(super) struct Layouts {
-    pub(super) frame: BindGroupLayout,
-    pub(super) tile: BindGroupLayout,
-    pub(super) ground: BindGroupLayout,
-    pub(super) composite: BindGroupLayout,
-    pub(super) average: BindGroupLayout,
-    pub(super) difference: BindGroupLayout,
-}
 
 pub(super) struct Pipelines {
     pub(super) terrain: RenderPipeline,
@@ -60,38 +48,6 @@ pub(super) struct Pipelines {
     pub(super) difference: RenderPipeline,
 }
 
-impl Layouts {
-    pub(super) fn new(device: &Device) -> Self {
-        let layout = |label, entries: &[BindGroupLayoutEntry]| {
-            device.create_bind_group_layout(&BindGroupLayoutDescriptor {
-                label: Some(label),
-                entries,
-            })
-        };
-        Self {
-            frame: layout("frame", &[uniform(0, None)]),
-            tile: layout("tile", &[uniform(0, std::num::NonZeroU64::new(TILE_BYTES))]),
-            ground: layout(
-                "ground",
-                &[texture(0, TextureSampleType::Depth), texture(1, TextureSampleType::Uint)],
-            ),
-            composite: layout(
-                "composite",
-                &[
-                    texture(0, UNFILTERED),
-                    texture(1, TextureSampleType::Depth),
-                    texture(2, UNFILTERED),
-                ],
-            ),
-            average: layout("average", &[texture(0, UNFILTERED)]),
-            difference: layout(
-                "difference",
-                &[texture(0, UNFILTERED), texture(1, UNFILTERED), texture(2, UNFILTERED)],
-            ),
-        }
-    }
-}
-
 impl Pipelines {
     pub(super) fn new(device: &Device, layouts: &Layouts) -> Self {
         let ground_attributes = vertex_attr_array![0 => Float32x3, 1 => Snorm8x4];
@@ -100,7 +56,7 @@ impl Pipelines {
             vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Float32x2, 3 => Uint32];
         let terrain_groups = [Some(&layouts.frame), Some(&layouts.tile)];
         let terrain = |constants| Recipe {
-            shader: 0,
+            shader: TERRAIN,
             entries: ENTRIES,
             groups: &terrain_groups,
             buffer: Some(VertexBufferLayout {
@@ -139,7 +95,7 @@ impl Pipelines {
         };
         let road_groups = [Some(&layouts.frame), Some(&layouts.tile), Some(&layouts.ground)];
         let segments = Recipe {
-            shader: 1,
+            shader: ROADS,
             entries: ENTRIES,
             groups: &road_groups,
             buffer: Some(VertexBufferLayout {
@@ -156,7 +112,7 @@ impl Pipelines {
             constants: &[],
         };
         let volumes = Recipe {
-            shader: 2,
+            shader: VOLUMES,
             buffer: Some(VertexBufferLayout {
                 array_stride: VOLUME_STRIDE,
                 step_mode: VertexStepMode::Instance,
@@ -169,7 +125,7 @@ impl Pipelines {
         let composite_groups = [Some(&layouts.frame), Some(&layouts.composite)];
         let average_groups = [Some(&layouts.average)];
         let average = |per_side| {
-            Recipe::full_screen(4, &average_groups, &[("PER_SIDE", per_side)]).cook(device)
+            Recipe::full_screen(AVERAGE, &average_groups, &[("PER_SIDE", per_side)]).cook(device)
         };
         Self {
             terrain: terrain(&[("SKIRT", 0.0)]).cook(device),
@@ -177,9 +133,10 @@ impl Pipelines {
             wires: wires.cook(device),
             segments: segments.cook(device),
             volumes: volumes.cook(device),
-            composite: Recipe::full_screen(3, &composite_groups, &[]).cook(device),
+            composite: Recipe::full_screen(COMPOSITE, &composite_groups, &[]).cook(device),
             averages: [average(2.0), average(3.0), average(4.0)],
-            difference: Recipe::full_screen(5, &[Some(&layouts.difference)], &[]).cook(device),
+            difference: Recipe::full_screen(DIFFERENCE, &[Some(&layouts.difference)], &[])
+                .cook(device),
         }
     }
 }
@@ -190,7 +147,7 @@ const ENTRIES: [&str; 2] = ["vertex", "fragment"];
 /// What differs between the pipelines.
 #[derive(Clone)]
 struct Recipe<'a> {
-    shader: usize,
+    shader: Shader,
     /// Names of the vertex and the fragment shader.
     entries: [&'a str; 2],
     groups: &'a [Option<&'a BindGroupLayout>],
@@ -206,7 +163,7 @@ struct Recipe<'a> {
 impl<'a> Recipe<'a> {
     /// One triangle over all of a picture.
     fn full_screen(
-        shader: usize,
+        shader: Shader,
         groups: &'a [Option<&'a BindGroupLayout>],
         constants: &'a [(&'a str, f64)],
     ) -> Self {
@@ -225,7 +182,7 @@ impl<'a> Recipe<'a> {
     }
 
     fn cook(&self, device: &Device) -> RenderPipeline {
-        let (name, source) = SHADERS[self.shader];
+        let (name, source) = self.shader;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(name),
             source: wgpu::ShaderSource::Wgsl(source.into()),
@@ -274,32 +231,6 @@ impl<'a> Recipe<'a> {
             multiview_mask: None,
             cache: None,
         })
-    }
-}
-
-fn uniform(binding: u32, dynamic_bytes: Option<std::num::NonZeroU64>) -> BindGroupLayoutEntry {
-    BindGroupLayoutEntry {
-        binding,
-        visibility: ShaderStages::VERTEX_FRAGMENT,
-        ty: BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: dynamic_bytes.is_some(),
-            min_binding_size: dynamic_bytes,
-        },
-        count: None,
-    }
-}
-
-fn texture(binding: u32, sample_type: TextureSampleType) -> BindGroupLayoutEntry {
-    BindGroupLayoutEntry {
-        binding,
-        visibility: ShaderStages::FRAGMENT,
-        ty: BindingType::Texture {
-            sample_type,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        },
-        count: None,
     }
 }
 

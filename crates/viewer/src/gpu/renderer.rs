@@ -1,13 +1,8 @@
 use wgpu::{CommandEncoder, LoadOp, Operations, StoreOp};
 
 use super::{
-    Gpu,
-    bindings::FrameBindings,
-    passes::{Layouts, Pipelines},
-    roads_pass::Bridges,
-    targets::Targets,
-    tile_buffers::TileBuffers,
-    timings::PassTimer,
+    Gpu, bindings::FrameBindings, layouts::Layouts, passes::Pipelines, roads_pass::Bridges,
+    targets::Targets, tile_buffers::TileBuffers, timings::PassTimer,
 };
 use crate::{RoadOptions, camera::Camera, style::Style};
 

@@ -4,7 +4,7 @@
 // roads around a pixel, minus the pixel's own. Whatever is left is the edge of the more important road.
 
 @group(1) @binding(0) var ground_color: texture_2d<f32>;
-@group(1) @binding(1) var terrain_depth: texture_depth_2d;
+@group(1) @binding(1) var terrain_depth: texture_2d<f32>;
 @group(1) @binding(2) var road_labels: texture_2d<f32>;
 
 // Ground that many times farther away than its neighbour in the picture lies behind it.
@@ -30,7 +30,7 @@ fn largest_around(pixel: vec2<i32>, own: f32, least_depth: f32) -> f32 {
             let stored = textureLoad(road_labels, near, 0).r;
             if stored > largest {
                 // A road behind a crest has no edge on the crest.
-                if textureLoad(terrain_depth, near, 0) >= least_depth {
+                if textureLoad(terrain_depth, near, 0).r >= least_depth {
                     largest = stored;
                 }
             }
@@ -54,7 +54,7 @@ fn width_px(road_class: u32, distance_m: f32, depth: f32) -> f32 {
 fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = vec2<i32>(position.xy);
     let ray = ray_at(position.xy);
-    let depth_buffer = textureLoad(terrain_depth, pixel, 0);
+    let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
     if depth_buffer == 0.0 {
         return vec4(background_at(ray), 1.0);
     }

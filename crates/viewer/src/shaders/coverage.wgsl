@@ -9,8 +9,8 @@
 //
 // A road seen at a grazing angle would break into dashes thinner than a pixel. So ground is also road whose
 // distance to the segment *looks* smaller than the least half width: from the pixel's centre to where the segment
-// is seen, found by interpolating between this pixel's ground and its neighbours' towards the segment. In plan that ground may be no more than `stretch` least half widths away, so that a crest does not
-// paint the valley.
+// is seen, found by interpolating between this pixel's ground and its neighbours' towards the segment. In plan that
+// ground may be no more than `stretch` least half widths away, so that a crest does not paint the valley.
 
 struct Tile {
     // xyz: the tile's reference point minus the eye; w: depth of the skirt, world metres.
@@ -21,7 +21,7 @@ struct Tile {
 }
 
 @group(1) @binding(0) var<uniform> tile: Tile;
-@group(2) @binding(0) var terrain_depth: texture_depth_2d;
+@group(2) @binding(0) var terrain_depth: texture_2d<f32>;
 @group(2) @binding(1) var owners: texture_2d<u32>;
 
 const MAX_STRETCH = 8.0;
@@ -74,7 +74,7 @@ fn neighbour(pixel: vec2<i32>, step: vec2<i32>, start: vec2<f32>, start_to_end: 
     if any(at < vec2(0)) || any(at > last) {
         return out;
     }
-    out.depth_buffer = textureLoad(terrain_depth, at, 0);
+    out.depth_buffer = textureLoad(terrain_depth, at, 0).r;
     if out.depth_buffer > 0.0 {
         out.position = position_at(vec2<f32>(at) + 0.5, out.depth_buffer).xy;
         out.to_segment_m = length(from_segment(out.position - start, start_to_end));

@@ -67,7 +67,7 @@ fn fragment(in: VertexOut) -> @location(0) f32 {
     if owner == 0u || (owner & SKIRT) != 0u {
         discard;
     }
-    let depth_buffer = textureLoad(terrain_depth, pixel, 0);
+    let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
     let label = label_at(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, in.road_class, NEVER);
     if label == NOTHING {
         discard;

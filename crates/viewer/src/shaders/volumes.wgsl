@@ -145,7 +145,7 @@ fn fragment(in: VertexOut) -> @location(0) f32 {
         discard;
     }
     let road_class = in.class_and_other & 15u;
-    let depth_buffer = textureLoad(terrain_depth, pixel, 0);
+    let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
     var label: u32;
     if frame.road_options.y > 0.5 {
         label = label_by_the_paper(in.clip.xy, depth_buffer, in.start, in.start_to_end, road_class);

@@ -1,0 +1,72 @@
+use wgpu::{
+    BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, Device,
+    ShaderStages, TextureSampleType,
+};
+
+use super::uniforms::TILE_BYTES;
+
+/// Colours and labels are read texel by texel.
+const UNFILTERED: TextureSampleType = TextureSampleType::Float { filterable: false };
+/// What the shaders bind.
+pub(super) struct Layouts {
+    pub(super) frame: BindGroupLayout,
+    pub(super) tile: BindGroupLayout,
+    pub(super) ground: BindGroupLayout,
+    pub(super) composite: BindGroupLayout,
+    pub(super) average: BindGroupLayout,
+    pub(super) difference: BindGroupLayout,
+}
+
+impl Layouts {
+    pub(super) fn new(device: &Device) -> Self {
+        let layout = |label, entries: &[BindGroupLayoutEntry]| {
+            device.create_bind_group_layout(&BindGroupLayoutDescriptor {
+                label: Some(label),
+                entries,
+            })
+        };
+        Self {
+            frame: layout("frame", &[uniform(0, None)]),
+            tile: layout("tile", &[uniform(0, std::num::NonZeroU64::new(TILE_BYTES))]),
+            ground: layout(
+                "ground",
+                &[texture(0, UNFILTERED), texture(1, TextureSampleType::Uint)],
+            ),
+            composite: layout(
+                "composite",
+                &[texture(0, UNFILTERED), texture(1, UNFILTERED), texture(2, UNFILTERED)],
+            ),
+            average: layout("average", &[texture(0, UNFILTERED)]),
+            difference: layout(
+                "difference",
+                &[texture(0, UNFILTERED), texture(1, UNFILTERED), texture(2, UNFILTERED)],
+            ),
+        }
+    }
+}
+
+fn uniform(binding: u32, dynamic_bytes: Option<std::num::NonZeroU64>) -> BindGroupLayoutEntry {
+    BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::VERTEX_FRAGMENT,
+        ty: BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: dynamic_bytes.is_some(),
+            min_binding_size: dynamic_bytes,
+        },
+        count: None,
+    }
+}
+
+fn texture(binding: u32, sample_type: TextureSampleType) -> BindGroupLayoutEntry {
+    BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::FRAGMENT,
+        ty: BindingType::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
+    }
+}
