@@ -30,7 +30,11 @@ pub fn config(data: &[u8]) {
         Ok(style) => {
             // What the shaders divide by.
             assert!(style.width_scaling.threshold_m >= 1.0 && style.background.haze_reach > 0.0);
-            assert!(style.tint.is_sorted_by(|a, b| (a.share as f32) < b.share as f32), "{:?}", style.tint);
+            assert!(
+                style.tint.is_sorted_by(|a, b| (a.share as f32) < b.share as f32),
+                "{:?}",
+                style.tint
+            );
             for road in style.roads {
                 assert!(road.width_m > 0.0 && road.min_width_px > 0.0, "{road:?}");
                 assert!(road.width_m.is_finite() && road.min_width_px.is_finite(), "{road:?}");

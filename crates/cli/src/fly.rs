@@ -7,8 +7,16 @@ mod summary;
 use std::{
     fs,
     io::{self, Write as _},
+    panic,
     path::Path,
+    sync::{
+        atomic::{AtomicBool, Ordering},
+        mpsc::{self, SyncSender},
+    },
+    thread,
 };
+
+use image::RgbaImage;
 
 use self::pictures::Pictures;
 #[cfg(test)]
@@ -30,6 +38,7 @@ use corniche_viewer::{
     style::Style,
     tiles::PackageSource,
 };
+use corniche_window::{Watched, watch};
 
 /// A text of keyframes is no longer than this: a hundred thousand of them take less.
 const MAX_PATH_BYTES: u64 = 32 << 20;
@@ -76,23 +85,21 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let source = PackageSource::open(&args.package)?;
     interrupt::watch()?;
     let flight = flight(args, &source)?;
-    let gpu = Gpu::new().map_err(|error| Failure::new(ExitCode::Failed, error))?;
-    eprintln!("drawn by {}", gpu.adapter_name());
-    let mut runs = Vec::new();
-    for lod in once_each(&args.drawing.lod) {
-        for roads in once_each(&methods) {
-            let options = options(args, &flight, &style, lod, roads)?;
-            let name = format!("{}-{}", lod.word(), roads.word());
-            let frames = fly(args, &gpu, &flight, &options, &name, pictures.as_ref())?;
-            runs.push(Run { lod, roads, frames });
-        }
-    }
+    let plan = Plan {
+        args,
+        flight: &flight,
+        style: &style,
+        methods: &methods,
+        pictures: pictures.as_ref(),
+    };
+    let Drawn { runs, adapter } =
+        if args.window { plan.fly_in_a_window()? } else { plan.fly(None)? };
 
     if let Some(pictures) = pictures {
         pictures.finish()?;
     }
     if let Some(svg) = svg {
-        let drawing = chart::frame_times(&runs, gpu.adapter_name())
+        let drawing = chart::frame_times(&runs, &adapter)
             .map_err(|error| Failure::new(ExitCode::Failed, error))?;
         svg.write_whole(drawing.as_bytes())?;
     }
@@ -161,25 +168,100 @@ fn options(
     })
 }
 
-/// Flies once; pictures get names that begin with `name`.
-fn fly(
-    args: &FlyArgs,
-    gpu: &Gpu,
-    flight: &Flight,
-    options: &ReplayOptions,
-    name: &str,
-    pictures: Option<&Pictures>,
-) -> Result<Vec<FrameRecord>, Failure> {
-    let source = PackageSource::open(&args.package)?.for_method(options.roads.method);
-    let mut replay = Replay::new(gpu, &source, flight, options, &interrupt::is_noted)?;
-    let mut records = Vec::new();
-    while let Some(record) = replay.next_frame()? {
-        if let Some(pictures) = pictures {
-            pictures.add(&format!("{name}-{:05}.png", record.frame), &replay)?;
-        }
-        records.push(record);
+/// All flights that are asked for.
+struct Plan<'a> {
+    args: &'a FlyArgs,
+    flight: &'a Flight,
+    style: &'a Style,
+    methods: &'a [Roads],
+    pictures: Option<&'a Pictures>,
+}
+
+/// What came of them.
+struct Drawn {
+    runs: Vec<Run>,
+    adapter: String,
+}
+
+/// Whoever looks on while frames are drawn.
+struct Watcher<'a> {
+    window: SyncSender<RgbaImage>,
+    is_gone: &'a AtomicBool,
+}
+
+impl Watcher<'_> {
+    fn show(&self, replay: &Replay<'_>) -> Result<(), Failure> {
+        // What a window that is gone does not take is not missed: the flight ends by `is_gone`.
+        let _ = self.window.send(replay.picture()?);
+        Ok(())
     }
-    Ok(records)
+}
+
+impl Plan<'_> {
+    /// Flies in a thread of its own while this one, the program's first, holds the window: most systems want it so.
+    fn fly_in_a_window(&self) -> Result<Drawn, Failure> {
+        // One picture ahead of the window: a flight is not faster than what is shown of it.
+        let (window, pictures) = mpsc::sync_channel(1);
+        let is_gone = AtomicBool::new(false);
+        let watcher = Watcher { window, is_gone: &is_gone };
+        let name = self.args.package.file_name().unwrap_or_default().to_string_lossy();
+        thread::scope(|scope| {
+            // The watcher goes with the thread, and the window with the watcher.
+            let worker = scope.spawn(move || self.fly(Some(&watcher)));
+            let watched = watch(&format!("{name} – Corniche"), self.args.drawing.size, pictures);
+            is_gone.store(true, Ordering::SeqCst);
+            let drawn = worker.join().unwrap_or_else(|panic| panic::resume_unwind(panic));
+            match (watched?, drawn) {
+                (Watched::InPart, Err(failure))
+                    if failure.code() == ExitCode::Interrupted && !interrupt::is_noted() =>
+                {
+                    let closed = anyhow::anyhow!("the window was closed before the flight's end");
+                    Err(Failure::new(ExitCode::Interrupted, closed))
+                }
+                (_, drawn) => drawn,
+            }
+        })
+    }
+
+    fn fly(&self, watcher: Option<&Watcher<'_>>) -> Result<Drawn, Failure> {
+        let gpu = Gpu::new().map_err(|error| Failure::new(ExitCode::Failed, error))?;
+        eprintln!("drawn by {}", gpu.adapter_name());
+        let mut runs = Vec::new();
+        for lod in once_each(&self.args.drawing.lod) {
+            for roads in once_each(self.methods) {
+                runs.push(Run { lod, roads, frames: self.fly_once(&gpu, watcher, lod, roads)? });
+            }
+        }
+        Ok(Drawn { runs, adapter: gpu.adapter_name().to_owned() })
+    }
+
+    fn fly_once(
+        &self,
+        gpu: &Gpu,
+        watcher: Option<&Watcher<'_>>,
+        lod: Lod,
+        roads: Roads,
+    ) -> Result<Vec<FrameRecord>, Failure> {
+        let options = options(self.args, self.flight, self.style, lod, roads)?;
+        let source = PackageSource::open(&self.args.package)?.for_method(options.roads.method);
+        let is_stopped = || {
+            let is_gone = watcher.is_some_and(|watcher| watcher.is_gone.load(Ordering::SeqCst));
+            is_gone || interrupt::is_noted()
+        };
+        let mut replay = Replay::new(gpu, &source, self.flight, &options, &is_stopped)?;
+        let mut records = Vec::new();
+        while let Some(record) = replay.next_frame()? {
+            if let Some(pictures) = self.pictures {
+                let name = format!("{}-{}-{:05}.png", lod.word(), roads.word(), record.frame);
+                pictures.add(&name, &replay)?;
+            }
+            if let Some(watcher) = watcher {
+                watcher.show(&replay)?;
+            }
+            records.push(record);
+        }
+        Ok(records)
+    }
 }
 
 /// So many frames that they lie about `--step` apart, else `--frames`.

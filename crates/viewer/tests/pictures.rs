@@ -14,7 +14,7 @@ use corniche_viewer::{
         Targets, TileBuffers, Wireframe,
     },
     style::Style,
-    tiles::{GroundLine, TileGeometry, TileLines},
+    tiles::{GroundLine, PlanLine, TileGeometry, TileLines},
 };
 use glam::DVec2;
 use support::{class, frame, gpu, lay, plain_style, terrain, triangles};
@@ -32,7 +32,13 @@ fn geometry(from: [f64; 2], to: [f64; 2]) -> TileGeometry {
     let [from, to] = [from, to].map(|at| center() + DVec2::from_array(at));
     let points_m = lay(from, to, &triangles(TileId::ROOT, &ground));
     let line = GroundLine { way_id: 1, class: class(2), points_m };
-    let lines = TileLines { ground: vec![line], ..TileLines::default() };
+    let plan = PlanLine {
+        way_id: 1,
+        class: class(2),
+        points_m: vec![from.to_array(), to.to_array()],
+        ground_range_m: vec![ground.height_range_m],
+    };
+    let lines = TileLines { ground: vec![line], plan: vec![plan], width_margin_m: 100.0 };
     TileGeometry::assemble(TileId::ROOT, Some(&ground), &lines, &frame(), support::QUANTUM_M)
 }
 
@@ -217,6 +223,43 @@ fn times_of_frames_come_without_waiting() {
     // All room is free again.
     renderer.draw_timed(&gpu, &view(&camera, &style), &tiles, &targets, Some(&mut timer));
     assert!(timer.read(&gpu).is_ok());
+}
+
+#[test]
+fn classes_left_out_are_not_drawn() {
+    let Some(gpu) = gpu() else { return };
+    let tile = geometry([-500.0, -300.0], [600.0, 400.0]);
+    let (camera, style) = (camera(), plain_style(40.0));
+    for method in [RoadMethod::Geometry, RoadMethod::ShadowVolumes] {
+        let labels = |left_out: u8| {
+            let all = RoadOptions::of(method);
+            let roads = RoadOptions { classes: all.classes.without(class(left_out)), ..all };
+            let view = FrameView { roads, ..view(&camera, &style) };
+            draw(&gpu, &tile, &view, 1).read_labels(&gpu).unwrap()
+        };
+        assert!(labels(3).iter().any(|label| *label != 0), "{method:?}: the road is of class 2");
+        assert!(labels(2).iter().all(|label| *label == 0), "{method:?}");
+    }
+}
+
+#[test]
+fn opengl_draws_the_same_picture() {
+    let Some(gpu) = gpu() else { return };
+    let Ok(opengl) = Gpu::with_backends(wgpu::Backends::GL) else {
+        println!("skipped: no OpenGL");
+        return;
+    };
+    let tile = geometry([-500.0, -300.0], [600.0, 400.0]);
+    let style = Style { outline_px: 1, ..plain_style(40.0) };
+    let camera = camera();
+    for method in [RoadMethod::Geometry, RoadMethod::ShadowVolumes] {
+        let view = FrameView { roads: RoadOptions::of(method), ..view(&camera, &style) };
+        let [a, b] =
+            [&gpu, &opengl].map(|gpu| draw(gpu, &tile, &view, 2).read_picture(gpu).unwrap());
+        let differing = a.iter().zip(&b).filter(|(a, b)| a.abs_diff(**b) > 2).count();
+        assert_eq!(a.len(), (SIZE[0] * SIZE[1] * 4) as usize);
+        assert!(differing < a.len() / 1000, "{method:?}: {differing} of {}", a.len());
+    }
 }
 
 #[test]

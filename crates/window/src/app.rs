@@ -46,6 +46,8 @@ const HURRY_S: f64 = 0.15;
 const AHEAD_S: f64 = 0.5;
 /// So long after a frame its passes' times are asked for, if nothing else makes a frame before.
 const CLOCK_S: f64 = 0.1;
+/// A mouse that pauses for so long in the midst of a drag rests.
+const REST_S: f64 = 0.5;
 /// A panel that wishes to be painted again later than this does not wish it; its toolkit says so with ages.
 const LONGEST_WISH_S: f64 = 3600.0;
 /// More notices than these are not kept.
@@ -65,8 +67,8 @@ pub(crate) struct App {
     adapter: String,
     is_software: bool,
     frame_times: FrameTimes,
-    /// When the last frame began, if it drew the map and another one was to follow at once.
-    drawing_since_s: Option<f64>,
+    /// When the last frame began, if it drew the map and another one was to follow, and how much later at most.
+    drawing_since_s: Option<(f64, f64)>,
     passes: Vec<(RoadMethod, PassTimes)>,
     recorder: Option<Recorder>,
     shots: Shots,
@@ -139,12 +141,11 @@ impl App {
 
     /// A button of the mouse goes down on the map.
     pub(crate) fn press(&mut self, button: Button, at_px: DVec2, modifiers: Modifiers, now_s: f64) {
-        let input = match (button, self.clicks_at(button, at_px, now_s)) {
-            (Button::Left, Click::Double) => Input::DoubleClick { at_px, modifiers },
-            _ => {
-                self.is_dragging = true;
-                Input::Press { button, at_px, modifiers }
-            }
+        let input = if self.clicks_at(button, at_px, now_s) == Click::Double {
+            Input::DoubleClick { at_px, modifiers }
+        } else {
+            self.is_dragging = true;
+            Input::Press { button, at_px, modifiers }
         };
         self.input(&input, now_s);
     }
@@ -196,7 +197,7 @@ impl App {
     /// Everything on the graphics card is gone.
     pub(crate) fn begin_again(&mut self, canvas: &Canvas) {
         self.tiles.begin_again();
-        self.adapter = canvas.gpu().adapter_name().to_owned();
+        canvas.gpu().adapter_name().clone_into(&mut self.adapter);
         self.is_software = canvas.gpu().is_software();
         self.passes.clear();
         self.notice("the graphics device was lost; everything was loaded again".to_owned());
@@ -272,8 +273,7 @@ impl App {
         self.take_shots(canvas, &primitives, &screen)?;
         self.write_trace(pose, size_px)?;
 
-        let is_moving = self.navigator.is_moving() || self.is_dragging;
-        let is_busy = is_moving || changes.is_under_way || !self.wanted.is_empty();
+        let is_busy = self.navigator.is_moving() || changes.is_under_way || !self.wanted.is_empty();
         self.time(now_s, drew.is_new, is_busy);
         let wishes = output.viewport_output.values().map(|viewport| viewport.repaint_delay);
         let wish_s = wishes.map(|delay| delay.as_secs_f64()).fold(f64::INFINITY, f64::min);
@@ -287,13 +287,7 @@ impl App {
             let soonest_s = [hurry_s, clock_s, wish_s].into_iter().flatten().reduce(f64::min);
             soonest_s.map_or(Redraw::Asked, |rest_s| Redraw::At(now_s + rest_s))
         };
-        Ok(Frame {
-            primitives,
-            screen,
-            unused_textures,
-            platform: output.platform_output,
-            redraw,
-        })
+        Ok(Frame { primitives, screen, unused_textures, platform: output.platform_output, redraw })
     }
 
     /// When the style's file is to be looked at.
@@ -539,12 +533,17 @@ impl App {
             .map_err(|source| WindowError::Trace { path: trace.path().to_owned(), source })
     }
 
-    /// Only frames that follow one another at once tell how long a frame takes.
+    /// Only frames that follow one another without a rest tell how long a frame takes.
     fn time(&mut self, now_s: f64, is_new: bool, is_busy: bool) {
-        if let Some(since_s) = self.drawing_since_s {
+        if let Some((since_s, most_s)) = self.drawing_since_s
+            && now_s - since_s <= most_s
+        {
             self.frame_times.push((now_s - since_s) * 1e3);
         }
-        self.drawing_since_s = (is_new && is_busy).then_some(now_s);
+        // What is asked for at once begins as soon as the last frame is shown, however long that takes.
+        let most_s = if is_busy { f64::INFINITY } else { REST_S };
+        let is_one_of_many = is_new && (is_busy || self.is_dragging);
+        self.drawing_since_s = is_one_of_many.then_some((now_s, most_s));
     }
 }
 

@@ -93,8 +93,10 @@ struct Map {
 impl Canvas {
     /// Nothing drawn yet; the panel will be painted into views of this `format`.
     pub(crate) fn new(gpu: Gpu, format: wgpu::TextureFormat) -> Self {
-        let options =
-            egui_wgpu::RendererOptions { dithering: false, ..egui_wgpu::RendererOptions::default() };
+        let options = egui_wgpu::RendererOptions {
+            dithering: false,
+            ..egui_wgpu::RendererOptions::default()
+        };
         Self {
             ui: egui_wgpu::Renderer::new(gpu.device(), format, options),
             renderer: Renderer::new(&gpu),
@@ -141,11 +143,11 @@ impl Canvas {
             self.draw_map(place, *roads, scene);
         }
         let pictures = match (scene.compare, &self.maps[..]) {
-            (Compare::Split, [first, second]) => {
-                Pictures::Two([first.texture, second.texture])
-            }
+            (Compare::Split, [first, second]) => Pictures::Two([first.texture, second.texture]),
             (Compare::Difference, [_, _]) => Pictures::One(self.draw_difference(scene)?),
-            (_, maps) => Pictures::One(maps.first().map_or(TextureId::default(), |map| map.texture)),
+            (_, maps) => {
+                Pictures::One(maps.first().map_or(TextureId::default(), |map| map.texture))
+            }
         };
         self.shown = Some((scene.clone(), pictures));
         Ok(Drew { pictures, is_new: true })
@@ -162,19 +164,14 @@ impl Canvas {
         }
         let targets = Targets::new(&self.gpu, size_px, samples)?;
         let filter = filter(scene);
-        match self.maps.get_mut(place) {
-            Some(map) => {
-                let view = targets.picture().view();
-                let device = self.gpu.device();
-                self.ui.update_egui_texture_from_wgpu_texture(device, view, filter, map.texture);
-                map.targets = targets;
-            }
-            None => {
-                let view = targets.picture().view();
-                let texture = self.ui.register_native_texture(self.gpu.device(), view, filter);
-                let timer = PassTimer::new(&self.gpu);
-                self.maps.push(Map { texture, targets, timer, times: None, is_timing: false });
-            }
+        let (device, view) = (self.gpu.device(), targets.picture().view());
+        if let Some(map) = self.maps.get_mut(place) {
+            self.ui.update_egui_texture_from_wgpu_texture(device, view, filter, map.texture);
+            map.targets = targets;
+        } else {
+            let texture = self.ui.register_native_texture(device, view, filter);
+            let timer = PassTimer::new(&self.gpu);
+            self.maps.push(Map { texture, targets, timer, times: None, is_timing: false });
         }
         Ok(())
     }
@@ -222,7 +219,8 @@ impl Canvas {
                 let filter = filter(scene);
                 let texture = match other {
                     Some((texture, _)) => {
-                        self.ui.update_egui_texture_from_wgpu_texture(device, view, filter, texture);
+                        self.ui
+                            .update_egui_texture_from_wgpu_texture(device, view, filter, texture);
                         texture
                     }
                     None => self.ui.register_native_texture(device, view, filter),
@@ -279,23 +277,22 @@ impl Canvas {
             // As many bytes as the size says: the picture's own promise.
             Ok(RgbaImage::from_raw(width, height, pixels).unwrap_or_default())
         };
-        match (self.shown.as_ref().map(|(scene, _)| scene.compare), &self.difference) {
-            (Some(Compare::Difference), Some((_, picture))) => read(picture),
-            _ => {
-                let mut pictures = self.maps.iter().map(|map| read(map.targets.picture()));
-                let mut left = pictures.next().unwrap_or_else(|| Ok(RgbaImage::default()))?;
-                if let Some(right) = pictures.next() {
-                    let right = right?;
-                    let column = (divider_share * left.width() as f32).round() as u32;
-                    for (x, y, pixel) in left.enumerate_pixels_mut() {
-                        if x >= column {
-                            *pixel = *right.get_pixel(x, y);
-                        }
-                    }
+        let compare = self.shown.as_ref().map(|(scene, _)| scene.compare);
+        if let (Some(Compare::Difference), Some((_, picture))) = (compare, &self.difference) {
+            return read(picture);
+        }
+        let mut pictures = self.maps.iter().map(|map| read(map.targets.picture()));
+        let mut left = pictures.next().unwrap_or_else(|| Ok(RgbaImage::default()))?;
+        if let Some(right) = pictures.next() {
+            let right = right?;
+            let column = (divider_share * left.width() as f32).round() as u32;
+            for (x, y, pixel) in left.enumerate_pixels_mut() {
+                if x >= column {
+                    *pixel = *right.get_pixel(x, y);
                 }
-                Ok(left)
             }
         }
+        Ok(left)
     }
 
     /// Takes over what the panel changed of its textures, before what was laid out with them is painted. Returns those
@@ -373,3 +370,7 @@ fn filter(scene: &Scene) -> wgpu::FilterMode {
         wgpu::FilterMode::Linear
     }
 }
+
+#[cfg(test)]
+#[path = "canvas/canvas_tests.rs"]
+mod tests;

@@ -4,7 +4,10 @@
 //! Everything is painted at its place in the map's free part, without windows of its own, so that nothing moves, fades
 //! or covers anything else.
 
-use egui::{Align2, Color32, CornerRadius, FontId, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2, vec2};
+use corniche_viewer::gpu::{DIFFERENCE_COLORS, DifferenceColors};
+use egui::{
+    Align2, Color32, CornerRadius, FontId, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2, vec2,
+};
 
 use crate::{
     controls::Mode,
@@ -73,11 +76,16 @@ pub(crate) fn overlay(
     if settings.compare == Compare::Split {
         divider(ui, rect, settings, &mut overlay);
     }
+    if settings.compare == Compare::Difference {
+        legend(ui, rect);
+    }
     let credits_left = credits(ui, rect, facts);
     scale_bar(ui, rect, credits_left, facts);
     let compass_left = compass(ui, rect, facts, &mut overlay);
-    let notices_below = if settings.compare == Compare::Off { rect.top() } else { rect.top() + 30.0 };
-    let room = Rect::from_min_max(pos2(rect.left(), notices_below), pos2(compass_left, rect.bottom()));
+    let notices_below =
+        if settings.compare == Compare::Off { rect.top() } else { rect.top() + 30.0 };
+    let room =
+        Rect::from_min_max(pos2(rect.left(), notices_below), pos2(compass_left, rect.bottom()));
     notices(ui, room, facts, &mut overlay);
     overlay
 }
@@ -122,11 +130,8 @@ fn compass(ui: &mut Ui, rect: Rect, facts: &Facts<'_>, overlay: &mut Overlay) ->
     let letter = center + (on_disc(0.0, 1.0) - center) * 1.0 + vec2(-sin, -cos * flat) * 6.0;
     painter.text(letter, Align2::CENTER_CENTER, "N", FontId::proportional(11.0), CHALK);
 
-    let words = format!(
-        "{}  {:.0}°",
-        words::heading(orientation.heading_deg),
-        orientation.pitch_deg
-    );
+    let words =
+        format!("{}  {:.0}°", words::heading(orientation.heading_deg), orientation.pitch_deg);
     let galley = painter.layout_no_wrap(words, FontId::proportional(11.0), CHALK);
     let size = galley.size() + vec2(10.0, 4.0);
     let plate = Rect::from_center_size(center + vec2(0.0, radius + 4.0 + size.y / 2.0), size);
@@ -140,12 +145,8 @@ fn compass(ui: &mut Ui, rect: Rect, facts: &Facts<'_>, overlay: &mut Overlay) ->
 fn credits(ui: &Ui, rect: Rect, facts: &Facts<'_>) -> f32 {
     let painter = ui.painter();
     let room = (rect.width() - LONGEST_BAR - 6.0 * MARGIN).max(0.5 * rect.width());
-    let galley = painter.layout(
-        facts.attribution.join("  ·  "),
-        FontId::proportional(11.0),
-        INK,
-        room,
-    );
+    let galley =
+        painter.layout(facts.attribution.join("  ·  "), FontId::proportional(11.0), INK, room);
     if facts.attribution.is_empty() {
         return rect.right();
     }
@@ -244,7 +245,28 @@ fn notices(ui: &mut Ui, room: Rect, facts: &Facts<'_>, overlay: &mut Overlay) {
     }
 }
 
-/// Share of a window's width to its place in points.
+/// What the colours of a difference mean.
+fn legend(ui: &Ui, rect: Rect) {
+    let painter = ui.painter();
+    let mut left = rect.left() + MARGIN;
+    let DifferenceColors { first_only, second_only, other_label } = DIFFERENCE_COLORS;
+    for (words, color) in
+        [("GEO only", first_only), ("SV only", second_only), ("another class", other_label)]
+    {
+        let [red, green, blue] = color.map(|part| (part * 255.0).round() as u8);
+        let galley = painter.layout_no_wrap(words.into(), FontId::proportional(12.0), CHALK);
+        let size = galley.size() + vec2(28.0, 6.0);
+        let plate = Rect::from_min_size(pos2(left, rect.top() + MARGIN), size);
+        painter.rect_filled(plate, CornerRadius::same(3), SLATE);
+        let swatch =
+            Rect::from_center_size(pos2(plate.left() + 12.0, plate.center().y), Vec2::splat(10.0));
+        painter.rect_filled(swatch, CornerRadius::ZERO, Color32::from_rgb(red, green, blue));
+        painter.galley(plate.min + vec2(22.0, 3.0), galley, CHALK);
+        left = plate.right() + 4.0;
+    }
+}
+
+/// Two pictures side by side, and the line between them, which can be dragged.
 fn divider(ui: &mut Ui, rect: Rect, settings: &mut Settings, overlay: &mut Overlay) {
     let whole = ui.ctx().viewport_rect();
     let x = whole.left() + settings.divider_share * whole.width();
@@ -254,19 +276,22 @@ fn divider(ui: &mut Ui, rect: Rect, settings: &mut Settings, overlay: &mut Overl
         .on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
     if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
         let share = (pointer.x - whole.left()) / whole.width().max(1.0);
-        settings.divider_share = share.clamp(*range::DIVIDER_SHARE.start(), *range::DIVIDER_SHARE.end());
+        settings.divider_share =
+            share.clamp(*range::DIVIDER_SHARE.start(), *range::DIVIDER_SHARE.end());
     }
     overlay.occupied.push(grip);
     let painter = ui.painter();
     let line = |width, color| {
-        painter.line_segment([pos2(x, rect.top()), pos2(x, rect.bottom())], Stroke::new(width, color));
+        painter
+            .line_segment([pos2(x, rect.top()), pos2(x, rect.bottom())], Stroke::new(width, color));
     };
     line(4.0, SLATE);
     line(1.5, CHALK);
     for (words, align, dx) in [("GEO", Align2::RIGHT_TOP, -10.0), ("SV", Align2::LEFT_TOP, 10.0)] {
         let at = pos2(x + dx, rect.top() + MARGIN);
         let font = FontId::proportional(13.0);
-        let place = align.anchor_size(at, painter.layout_no_wrap(words.into(), font.clone(), CHALK).size());
+        let place =
+            align.anchor_size(at, painter.layout_no_wrap(words.into(), font.clone(), CHALK).size());
         painter.rect_filled(place.expand2(vec2(5.0, 2.0)), CornerRadius::same(3), SLATE);
         painter.text(at, align, words, font, CHALK);
     }

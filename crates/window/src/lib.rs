@@ -7,7 +7,7 @@
 //!                                                                   loader ── decoded tiles
 //! ```
 //!
-//! [`run`] opens the window and returns when it is closed. `platform` is the one module that knows the window system;
+//! [`run`] opens the window and returns when it is closed; [`watch`] opens one on pictures that come from elsewhere. `platform` is the one module that knows the window system;
 //! `canvas` is all that lies on the graphics card; `app` is the rest, and knows neither a window nor a clock. Nothing is
 //! drawn while nothing moves, loads or is touched.
 //!
@@ -42,7 +42,7 @@ use corniche_viewer::{
     tiles::LoadTileError,
 };
 
-pub use platform::run;
+pub use platform::{Watched, run, watch};
 
 /// A style and what it is called.
 #[derive(Debug, Clone, PartialEq)]

@@ -97,7 +97,9 @@ impl Loader {
                     wake();
                 }
             };
-            loader.workers.push(thread::Builder::new().name(format!("tiles {number}")).spawn(work)?);
+            loader
+                .workers
+                .push(thread::Builder::new().name(format!("tiles {number}")).spawn(work)?);
         }
         Ok(loader)
     }

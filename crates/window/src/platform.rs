@@ -4,6 +4,7 @@
 
 mod inputs;
 mod screen;
+mod watch;
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
@@ -19,6 +20,7 @@ use winit::{
     window::{Window, WindowId},
 };
 
+pub use self::watch::{Watched, watch};
 use self::{
     inputs::Inputs,
     screen::{Acquired, Screen},
@@ -60,9 +62,7 @@ fn event_loop() -> Result<EventLoop<News>, WindowError> {
     let built = catch_unwind(AssertUnwindSafe(|| EventLoop::with_user_event().build()));
     let no_display = |reason| WindowError::NoDisplay { reason };
     built
-        .map_err(|_| {
-            no_display("a library of the window system is missing; see above".to_owned())
-        })?
+        .map_err(|_| no_display("a library of the window system is missing; see above".to_owned()))?
         .map_err(|error| no_display(error.to_string()))
 }
 
@@ -166,6 +166,10 @@ impl ApplicationHandler<News> for Shell {
                 event_loop.exit();
                 Ok(())
             }
+            event if open.inputs.is_end(&event) => {
+                event_loop.exit();
+                Ok(())
+            }
             WindowEvent::RedrawRequested => open.redraw(now_s),
             event => {
                 open.take(&event, now_s);
@@ -186,7 +190,9 @@ impl ApplicationHandler<News> for Shell {
         }
         let due_s = [open.due_s, open.app.reload_due_s()].into_iter().flatten().reduce(f64::min);
         event_loop.set_control_flow(due_s.map_or(ControlFlow::Wait, |due_s| {
-            ControlFlow::WaitUntil(Instant::now() + Duration::from_secs_f64((due_s - now_s).max(0.0)))
+            ControlFlow::WaitUntil(
+                Instant::now() + Duration::from_secs_f64((due_s - now_s).max(0.0)),
+            )
         }));
     }
 

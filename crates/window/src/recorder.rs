@@ -32,6 +32,7 @@ impl Recorder {
             // It stood where it was until this movement began, and then some frames went by.
             let moved_s = now.time_s - STEP_S;
             if moved_s > self.last.time_s {
+                self.push(self.last);
                 self.push(Keyframe { time_s: moved_s, pose: self.last.pose });
             }
             if now.time_s - self.noted_s() >= STEP_S {

@@ -19,11 +19,9 @@ impl Compare {
     pub(crate) fn pictures(self, roads: RoadOptions) -> Vec<RoadOptions> {
         match self {
             Self::Off => vec![roads],
-            Self::Split | Self::Difference => {
-                [RoadMethod::Geometry, RoadMethod::ShadowVolumes]
-                    .map(|method| RoadOptions { method, ..roads })
-                    .into()
-            }
+            Self::Split | Self::Difference => [RoadMethod::Geometry, RoadMethod::ShadowVolumes]
+                .map(|method| RoadOptions { method, ..roads })
+                .into(),
         }
     }
 }

@@ -4,8 +4,8 @@ use std::{
 };
 
 use corniche_geom::{Frame, NodeIndex};
-use corniche_tin::{Tin, TinVertex};
 use corniche_tileset::Terrain;
+use corniche_tin::{Tin, TinVertex};
 use corniche_viewer::{
     camera::Orientation,
     tiles::{LoadTileError, TileSource},

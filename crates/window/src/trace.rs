@@ -128,7 +128,7 @@ mod tests {
         trace.write(line).unwrap();
         let ground = TraceLine {
             cursor_px: Some(DVec2::new(10.5, 20.0)),
-            ground_m: Some([2_600_000.1234, 1.0, 455.5]),
+            ground_m: Some([2_600_000.123_4, 1.0, 455.5]),
             pixel_m: Some(0.25),
             ..line
         };

@@ -27,7 +27,7 @@ pub(crate) fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place) % 3 == 0 {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
             // A narrow no-break space is missing in some fonts; this one is not.
             text.push('\u{a0}');
         }
@@ -57,7 +57,8 @@ pub(crate) fn position([lon_deg, lat_deg]: [f64; 2]) -> String {
 
 /// The heading as one reads it off a compass: 0 to 359 whole degrees.
 pub(crate) fn heading(heading_deg: f64) -> String {
-    format!("{:03.0}°", heading_deg.round().rem_euclid(360.0))
+    // Adding nothing turns minus nothing into nothing.
+    format!("{:03.0}°", heading_deg.round().rem_euclid(360.0) + 0.0)
 }
 
 #[cfg(test)]
@@ -70,9 +71,10 @@ mod tests {
         assert_eq!(grouped(1234), "1\u{a0}234");
         assert_eq!(grouped(123_456_789), "123\u{a0}456\u{a0}789");
         assert_eq!([length(3.25), length(350.2), length(12_345.0)], ["3.2 m", "350 m", "12.3 km"]);
-        assert_eq!([round_length(0.2), round_length(50.0), round_length(2000.0)], [
-            "20 cm", "50 m", "2 km"
-        ]);
+        assert_eq!(
+            [round_length(0.2), round_length(50.0), round_length(2000.0)],
+            ["20 cm", "50 m", "2 km"]
+        );
         assert_eq!(mebibytes(3 << 20), "3 MiB");
     }
 

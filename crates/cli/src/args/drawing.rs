@@ -92,6 +92,9 @@ pub(crate) struct FlyArgs {
     /// Also keep every frame as a picture in this new folder
     #[arg(long, value_name = "FOLDER")]
     pub(crate) png: Option<PathBuf>,
+    /// Also show every frame in a window as it is drawn; closing it ends the flight
+    #[arg(long)]
+    pub(crate) window: bool,
     #[command(flatten)]
     pub(crate) flight: FlightArgs,
     #[command(flatten)]

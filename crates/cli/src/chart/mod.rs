@@ -63,7 +63,7 @@ fn draw(axes: &Axes, curves: &[Curve]) -> anyhow::Result<String> {
             .caption(&axes.caption, ("sans-serif", 20))
             .margin(16)
             .x_label_area_size(44)
-            .y_label_area_size(60)
+            .y_label_area_size(80)
             .build_cartesian_2d(axes.x.range.clone(), axes.y.range.clone())?;
         let whole = |number: &f64| format!("{number:.0}");
         let mut mesh = chart.configure_mesh();

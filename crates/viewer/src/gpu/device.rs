@@ -57,19 +57,24 @@ impl Gpu {
     /// # Errors
     /// When there is no adapter, or none as the environment asks for, or it gives no device.
     pub fn new() -> Result<Self, GpuError> {
-        let with = |backends| {
-            let descriptor = wgpu::InstanceDescriptor {
-                backends,
-                ..wgpu::InstanceDescriptor::new_without_display_handle()
-            };
-            adapter(&wgpu::Instance::new(descriptor), None)
-        };
-        let adapter = match std::env::var("WGPU_BACKEND") {
-            Ok(names) => with(wgpu::Backends::from_comma_list(&names)),
+        match std::env::var("WGPU_BACKEND") {
+            Ok(names) => Self::with_backends(wgpu::Backends::from_comma_list(&names)),
             // OpenGL only if there is nothing better.
-            Err(_) => with(wgpu::Backends::PRIMARY).or_else(|_| with(wgpu::Backends::SECONDARY)),
+            Err(_) => Self::with_backends(wgpu::Backends::PRIMARY)
+                .or_else(|_| Self::with_backends(wgpu::Backends::SECONDARY)),
+        }
+    }
+
+    /// The same with these backends alone.
+    ///
+    /// # Errors
+    /// When they have no adapter, or none as the environment asks for, or it gives no device.
+    pub fn with_backends(backends: wgpu::Backends) -> Result<Self, GpuError> {
+        let descriptor = wgpu::InstanceDescriptor {
+            backends,
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
         };
-        Self::of(adapter?)
+        Self::of(adapter(&wgpu::Instance::new(descriptor), None)?)
     }
 
     /// The same for a window: an adapter that can show pictures on `surface`, which `instance` made. The

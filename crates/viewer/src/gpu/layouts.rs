@@ -5,7 +5,8 @@ use wgpu::{
 
 use super::uniforms::TILE_BYTES;
 
-/// Colours and labels are read texel by texel.
+/// Colours, labels and depths are read texel by texel; depths as numbers like others, for OpenGL's shading language
+/// has no other way.
 const UNFILTERED: TextureSampleType = TextureSampleType::Float { filterable: false };
 /// What the shaders bind.
 pub(super) struct Layouts {

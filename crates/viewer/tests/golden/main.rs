@@ -30,7 +30,7 @@ const METHODS: [RoadMethod; 2] = [RoadMethod::Geometry, RoadMethod::ShadowVolume
 /// The software adapter, or `None` and a line on the terminal.
 fn software() -> Option<Gpu> {
     let gpu = gpu()?;
-    let is_pinned = gpu.adapter_name().contains("llvmpipe");
+    let is_pinned = ["llvmpipe", "vulkan"].iter().all(|part| gpu.adapter_name().contains(part));
     if !is_pinned {
         println!("skipped: these pictures are llvmpipe's, not {}'s", gpu.adapter_name());
     }

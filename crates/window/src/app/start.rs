@@ -83,9 +83,7 @@ impl App {
             .map_err(|source| WindowError::Thread { source })?;
         let trace = request
             .trace
-            .map(|path| {
-                Trace::create(&path).map_err(|source| WindowError::Trace { path, source })
-            })
+            .map(|path| Trace::create(&path).map_err(|source| WindowError::Trace { path, source }))
             .transpose()?;
         let is_software = canvas.gpu().is_software();
         let mut app = Self {
@@ -100,9 +98,11 @@ impl App {
                 style: 0,
                 exaggeration: request.exaggeration,
                 screen_space_error_px: request.screen_space_error_px,
-                samples_per_side: request
-                    .samples_per_side
-                    .unwrap_or(if is_software { 1 } else { 2 }),
+                samples_per_side: request.samples_per_side.unwrap_or(if is_software {
+                    1
+                } else {
+                    2
+                }),
                 is_wireframe: false,
                 refinement: Refinement::Live,
                 is_panel_open: true,
@@ -210,8 +210,7 @@ fn home(
             };
             let at = manifest.coordinates.working_from_wgs84([lon_deg, lat_deg]);
             let at = at.ok_or_else(off_ground)?;
-            let height_m =
-                TileStore::new(source).ground_height_m(at)?.ok_or_else(off_ground)?;
+            let height_m = TileStore::new(source).ground_height_m(at)?.ok_or_else(off_ground)?;
             let target = DVec3::new(at[0], at[1], height_m * vertical_scale);
             let distance_in_world_m = distance_m * manifest.point_scale;
             let camera = Camera::look_at(target, distance_in_world_m, orientation, size_px);

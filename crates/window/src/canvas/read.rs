@@ -5,7 +5,11 @@ use image::RgbaImage;
 use wgpu::{TextureFormat, TextureUsages};
 
 /// Something to paint into and read.
-pub(super) fn texture(gpu: &Gpu, format: TextureFormat, [width, height]: [u32; 2]) -> wgpu::Texture {
+pub(super) fn texture(
+    gpu: &Gpu,
+    format: TextureFormat,
+    [width, height]: [u32; 2],
+) -> wgpu::Texture {
     gpu.device().create_texture(&wgpu::TextureDescriptor {
         label: Some("picture of the window"),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Width of the panel, points.
-const WIDTH: f32 = 290.0;
+const WIDTH: f32 = 300.0;
 
 /// The pictures of the map, as large as the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,6 +39,9 @@ pub(crate) fn set_up(ui: &egui::Context) {
     ui.set_theme(egui::Theme::Dark);
     ui.all_styles_mut(|style| {
         style.animation_time = 0.0;
+        // The toolkit's own grey is hard to read on a bright day.
+        style.visuals.widgets.noninteractive.fg_stroke.color = Color32::from_gray(205);
+        style.visuals.widgets.inactive.fg_stroke.color = Color32::from_gray(220);
         style.interaction.selectable_labels = false;
     });
 }

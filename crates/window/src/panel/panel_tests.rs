@@ -1,0 +1,256 @@
+use corniche_viewer::{RoadMethod, camera::Orientation, flight::Pose, gpu::PassTimes};
+use egui::{Event, PointerButton, RawInput, Shape, vec2};
+
+use super::*;
+use crate::{
+    controls::Mode,
+    facts::GroundPoint,
+    frame_times::FrameTimes,
+    settings::{Compare, usual},
+};
+
+/// Everything there is to tell, and all of it long.
+struct Told {
+    times: FrameTimes,
+    attribution: Vec<String>,
+    styles: Vec<String>,
+    notices: Vec<String>,
+    passes: Vec<(RoadMethod, PassTimes)>,
+}
+
+impl Told {
+    fn new() -> Self {
+        let mut times = FrameTimes::default();
+        (0..100).for_each(|k| times.push(10.0 + f64::from(k % 7)));
+        let pass = PassTimes { terrain_ms: 1111.25, roads_ms: 3370.5, composite_ms: 99.75 };
+        Self {
+            times,
+            attribution: vec![
+                "© OpenStreetMap contributors, ODbL 1.0".into(),
+                "© swisstopo".into(),
+            ],
+            styles: vec!["road-atlas".into(), "dark".into()],
+            notices: vec!["saved somewhere/corniche-001.png".into(), "a long notice ".repeat(12)],
+            passes: vec![(RoadMethod::Geometry, pass), (RoadMethod::ShadowVolumes, pass)],
+        }
+    }
+
+    fn facts(&self) -> Facts<'_> {
+        let orientation = Orientation { heading_deg: 123.0, pitch_deg: 55.0 };
+        Facts {
+            adapter: "llvmpipe (LLVM 15.0.6, 256 bits) (vulkan)",
+            attribution: &self.attribution,
+            crs: "EPSG:32632",
+            cursor: Some(GroundPoint {
+                lon_lat_deg: [9.521_23, 47.140_12],
+                at_m: [539_512.25, 5_221_456.75, 1455.5],
+            }),
+            pose: Pose { eye_m: [539_000.0, 5_220_000.0, 2830.0], orientation },
+            metres_per_point: Some(3.7),
+            mode: Mode::Map,
+            style_names: &self.styles,
+            road_colors: &[[0.8, 0.2, 0.1]; 9],
+            tiles_drawn: 123,
+            tiles_missing: 45,
+            tiles_loading: 8,
+            triangles: 1_234_567,
+            segments: 234_567,
+            gpu_bytes: [300 << 20, 512 << 20],
+            passes: &self.passes,
+            frame_times: &self.times,
+            recording_s: Some(12.0),
+            notices: &self.notices,
+        }
+    }
+}
+
+/// Lays out a window of a size in points, with the events of each pass; the last one counts.
+fn lay_out(
+    size: [f32; 2],
+    settings: &mut Settings,
+    facts: &Facts<'_>,
+    passes: &[&[Event]],
+) -> (Vec<(String, Rect, Rect)>, Answer) {
+    let ctx = egui::Context::default();
+    set_up(&ctx);
+    let mut texts = Vec::new();
+    let mut answer = Answer::default();
+    for events in passes {
+        let input = RawInput {
+            screen_rect: Some(Rect::from_min_size(egui::Pos2::ZERO, size.into())),
+            events: events.to_vec(),
+            ..RawInput::default()
+        };
+        let mut commands = Vec::new();
+        let mut output = ctx.run_ui(input, |ui| {
+            answer = show(ui, settings, facts, Pictures::One(TextureId::User(0)));
+            commands.append(&mut answer.commands);
+        });
+        answer.commands = commands;
+        output.textures_delta.clear();
+        texts.clear();
+        for clipped in &output.shapes {
+            gather(&clipped.shape, clipped.clip_rect, &mut texts);
+        }
+    }
+    (texts, answer)
+}
+
+fn gather(shape: &Shape, clip: Rect, texts: &mut Vec<(String, Rect, Rect)>) {
+    match shape {
+        Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather(shape, clip, texts)),
+        Shape::Text(text) if !text.galley.text().trim().is_empty() => {
+            // The letters themselves: a line that begins in the midst of another has its room from the left edge on.
+            let place = text.galley.mesh_bounds.translate(text.pos.to_vec2());
+            texts.push((text.galley.text().to_owned(), place, clip));
+        }
+        _ => {}
+    }
+}
+
+/// All states of the panel that look different.
+fn states() -> Vec<(&'static str, Settings)> {
+    let usual = usual();
+    let mut none = usual.clone();
+    none.roads.method = RoadMethod::None;
+    vec![
+        ("usual", usual.clone()),
+        ("no roads", none),
+        ("split", Settings { compare: Compare::Split, ..usual.clone() }),
+        ("difference", Settings { compare: Compare::Difference, ..usual.clone() }),
+        ("hidden", Settings { is_panel_open: false, ..usual }),
+    ]
+}
+
+#[test]
+fn no_text_is_cut_off_or_lies_on_another() {
+    let told = Told::new();
+    for (name, mut settings) in states() {
+        let (texts, _) = lay_out([1280.0, 1000.0], &mut settings, &told.facts(), &[&[], &[]]);
+        assert!(texts.len() > 10, "{name}: {texts:?}");
+        for (place, (words, rect, clip)) in texts.iter().enumerate() {
+            assert!(clip.expand(1.0).contains_rect(*rect), "{name}: {words:?} is cut off");
+            for (other, beneath, _) in &texts[..place] {
+                let overlap = rect.shrink(1.0).intersect(beneath.shrink(1.0));
+                assert!(!overlap.is_positive(), "{name}: {words:?} lies on {other:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_panel_is_as_wide_as_it_says_with_everything_open() {
+    let told = Told::new();
+    let size = [1280.0, 1200.0];
+    let (texts, _) = lay_out(size, &mut usual(), &told.facts(), &[&[], &[]]);
+    let (_, header, _) = texts.iter().find(|(text, ..)| text == "Classes").unwrap();
+    let [over, press, release] = click(header.center());
+    let passes: [&[Event]; 6] = [&[], &over, &press, &release, &[], &[]];
+    let (texts, answer) = lay_out(size, &mut usual(), &told.facts(), &passes);
+    let left = 1280.0 - WIDTH;
+    assert!(texts.iter().any(|(text, ..)| text == "FRC 8"), "the classes are shown");
+    assert!(
+        answer
+            .occupied
+            .contains(&Rect::from_min_max(pos2(left, 0.0), pos2(1280.0, answer.occupied[0].top())))
+    );
+    for (words, rect, clip) in &texts {
+        assert!(clip.expand(1.0).contains_rect(*rect), "{words:?} is cut off");
+        assert!(rect.right() <= left || rect.left() >= left, "{words:?} lies across the edge");
+    }
+}
+
+#[test]
+fn credits_are_in_every_window_however_small() {
+    let told = Told::new();
+    for (name, mut settings) in states() {
+        for size in [[1280.0, 800.0], [640.0, 480.0], [400.0, 300.0]] {
+            let (texts, _) = lay_out(size, &mut settings, &told.facts(), &[&[], &[]]);
+            let credits = texts.iter().find(|(words, ..)| words.contains("© OpenStreetMap"));
+            let (_, rect, clip) = credits.unwrap_or_else(|| panic!("{name} {size:?}: {texts:?}"));
+            let window = Rect::from_min_size(egui::Pos2::ZERO, size.into());
+            assert!(clip.intersect(window).contains_rect(*rect), "{name} {size:?}: {rect:?}");
+            let free = if settings.is_panel_open { size[0] - WIDTH } else { size[0] };
+            assert!(rect.right() <= free, "{name} {size:?}: the panel hides {rect:?}");
+        }
+    }
+}
+
+#[test]
+fn a_tilted_scale_says_where_it_holds() {
+    let told = Told::new();
+    let has = |facts: &Facts<'_>, words: &str| {
+        let (texts, _) = lay_out([1000.0, 700.0], &mut usual(), facts, &[&[]]);
+        texts.iter().any(|(text, ..)| text == words)
+    };
+    let mut facts = told.facts();
+    assert!(has(&facts, "500 m in the middle"));
+    facts.pose.orientation.pitch_deg = 0.0;
+    assert!(has(&facts, "500 m"));
+    facts.metres_per_point = None;
+    assert!(!has(&facts, "500 m"));
+}
+
+fn click(at: egui::Pos2) -> [Vec<Event>; 3] {
+    let button = |pressed| Event::PointerButton {
+        pos: at,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: egui::Modifiers::NONE,
+    };
+    [vec![Event::PointerMoved(at)], vec![button(true)], vec![button(false)]]
+}
+
+#[test]
+fn a_click_on_the_compass_turns_north_up() {
+    let told = Told::new();
+    let mut settings = Settings { is_panel_open: false, ..usual() };
+    let [over, press, release] = click(pos2(1000.0 - 34.0, 34.0));
+    let (_, answer) =
+        lay_out([1000.0, 700.0], &mut settings, &told.facts(), &[&over, &press, &release]);
+    assert_eq!(answer.commands, [Command::NorthUp]);
+}
+
+#[test]
+fn buttons_ask_for_what_they_say() {
+    let told = Told::new();
+    let size = [1280.0, 1000.0];
+    for (words, command) in [
+        ("Map (P)", Command::Take(crate::facts::Shot::Map)),
+        ("Stop and save", Command::StopRecording),
+        ("Fly (F)", Command::ToggleFly),
+    ] {
+        let (texts, _) = lay_out(size, &mut usual(), &told.facts(), &[&[], &[]]);
+        let (_, rect, _) = texts.iter().find(|(text, ..)| text == words).unwrap();
+        let [over, press, release] = click(rect.center());
+        let (_, answer) =
+            lay_out(size, &mut usual(), &told.facts(), &[&[], &over, &press, &release]);
+        assert_eq!(answer.commands, [command], "{words}");
+    }
+}
+
+#[test]
+fn the_mouse_is_the_maps_beside_the_panel_and_only_there() {
+    let told = Told::new();
+    let (_, answer) = lay_out([1280.0, 800.0], &mut usual(), &told.facts(), &[&[], &[]]);
+    let is_free = |x, y| !answer.occupied.iter().any(|rect| rect.contains(pos2(x, y)));
+    assert!(is_free(500.0, 400.0));
+    assert!(!is_free(1200.0, 400.0), "panel");
+    assert!(!is_free(500.0, 795.0), "line of positions");
+    assert!(!is_free(1280.0 - WIDTH - 34.0, 34.0), "compass");
+}
+
+#[test]
+fn the_divider_follows_the_mouse_and_stays_in_the_window() {
+    let told = Told::new();
+    let mut settings = Settings { compare: Compare::Split, is_panel_open: false, ..usual() };
+    let at = pos2(500.0, 400.0);
+    let [over, press, _] = click(at);
+    let moved = [Event::PointerMoved(at + vec2(-250.0, 0.0))];
+    lay_out([1000.0, 700.0], &mut settings, &told.facts(), &[&[], &over, &press, &moved]);
+    assert!((settings.divider_share - 0.25).abs() < 0.01, "{}", settings.divider_share);
+    let out = [Event::PointerMoved(pos2(-50.0, 400.0))];
+    let [over, press, _] = click(pos2(250.0, 400.0));
+    lay_out([1000.0, 700.0], &mut settings, &told.facts(), &[&[], &over, &press, &out]);
+    assert!((settings.divider_share - 0.05).abs() < 0.01, "{}", settings.divider_share);
+}

@@ -44,7 +44,7 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts<'_>) {
 }
 
 fn passes(ui: &mut Ui, facts: &Facts<'_>) {
-    Grid::new("passes").num_columns(5).spacing(vec2(12.0, 2.0)).show(ui, |ui| {
+    Grid::new("passes").num_columns(5).min_col_width(34.0).spacing(vec2(8.0, 2.0)).show(ui, |ui| {
         for heading in ["GPU ms", "terrain", "roads", "composite", "sum"] {
             ui.small(heading);
         }
@@ -57,7 +57,8 @@ fn passes(ui: &mut Ui, facts: &Facts<'_>) {
             });
             let parts = [times.terrain_ms, times.roads_ms, times.composite_ms];
             for ms in parts.into_iter().chain([parts.iter().sum()]) {
-                ui.monospace(format!("{ms:.2}"));
+                let digits = if ms < 100.0 { 2 } else { 0 };
+                ui.monospace(format!("{ms:.digits$}"));
             }
             ui.end_row();
         }

@@ -30,12 +30,7 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings) {
         });
     });
     Grid::new("roads").num_columns(2).show(ui, |ui| {
-        choice(
-            ui,
-            "Caps",
-            &mut roads.caps,
-            &[(Caps::Round, "round"), (Caps::None, "none")],
-        );
+        choice(ui, "Caps", &mut roads.caps, &[(Caps::Round, "round"), (Caps::None, "none")]);
         choice(
             ui,
             "Cap test (SV)",
@@ -79,7 +74,7 @@ fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, all: &[(T
 
 /// Which classes are shown, and how wide.
 pub(super) fn classes(ui: &mut Ui, settings: &mut Settings, facts: &Facts<'_>) {
-    Grid::new("classes").num_columns(3).show(ui, |ui| {
+    Grid::new("classes").num_columns(3).min_col_width(0.0).show(ui, |ui| {
         for (class, factor) in FunctionalRoadClass::all().zip(&mut settings.width_factors) {
             let color = facts.road_colors.get(usize::from(class.number()));
             let [red, green, blue] =

@@ -29,6 +29,15 @@ pub(super) fn is_panel_key(event: &WindowEvent) -> bool {
 }
 
 impl Inputs {
+    /// Whether this event ends the program: Ctrl Q, also where no frame around the window has a button for it.
+    pub(super) fn is_end(&self, event: &WindowEvent) -> bool {
+        use winit::keyboard::Key as Logical;
+        matches!(event, WindowEvent::KeyboardInput { event, .. }
+            if self.modifiers.control
+                && event.state == ElementState::Pressed
+                && matches!(&event.logical_key, Logical::Character(letter) if letter.eq_ignore_ascii_case("q")))
+    }
+
     /// Hands an event on; tells whether it changed anything.
     pub(super) fn take(
         &mut self,
@@ -191,7 +200,9 @@ mod tests {
 
     #[test]
     fn fly_mode_goes_by_the_place_of_keys_and_zoom_by_their_signs() {
-        let key = |sign: &str, code| moving_key(&Logical::Character(sign.into()), PhysicalKey::Code(code));
+        let key = |sign: &str, code| {
+            moving_key(&Logical::Character(sign.into()), PhysicalKey::Code(code))
+        };
         // A French keyboard has a z where an English one has a w.
         assert_eq!(key("z", KeyCode::KeyW), Some(Key::Ahead));
         assert_eq!(key("+", KeyCode::BracketRight), Some(Key::ZoomIn));

@@ -124,10 +124,7 @@ impl Screen {
     }
 }
 
-fn new_surface(
-    instance: &Instance,
-    window: &Arc<Window>,
-) -> Result<Surface<'static>, WindowError> {
+fn new_surface(instance: &Instance, window: &Arc<Window>) -> Result<Surface<'static>, WindowError> {
     instance
         .create_surface(Arc::clone(window))
         .map_err(|source| WindowError::Surface { source: source.into() })

@@ -1,0 +1,123 @@
+use corniche_viewer::camera::Orientation;
+use egui::{Color32, Rect, pos2};
+use glam::DVec3;
+
+use super::*;
+
+const SIZE_PX: [u32; 2] = [64, 48];
+
+/// `None`, and says so, where there is nothing to draw with.
+fn canvas() -> Option<Canvas> {
+    match Gpu::new() {
+        Ok(gpu) => Some(Canvas::new(gpu, wgpu::TextureFormat::Bgra8Unorm)),
+        Err(error) => {
+            assert!(std::env::var_os("CORNICHE_REQUIRE_GPU").is_none(), "{error}");
+            eprintln!("skipped: {error}");
+            None
+        }
+    }
+}
+
+/// Nothing but sky and void, so that no tile is needed.
+fn scene(compare: Compare) -> Scene {
+    let level = Orientation { heading_deg: 0.0, pitch_deg: 80.0 };
+    Scene {
+        camera: Camera::look_at(DVec3::ZERO, 1000.0, level, SIZE_PX),
+        window_px: SIZE_PX,
+        style: Style::road_atlas(),
+        roads: compare.pictures(RoadOptions::of(RoadMethod::Geometry)),
+        compare,
+        exaggeration: 1.0,
+        point_scale: 1.0,
+        height_range_m: [0.0, 100.0],
+        wireframe: Wireframe::Hidden,
+        drawn: Vec::new(),
+        samples_per_side: 1,
+    }
+}
+
+fn red_beside_map(ui: &mut egui::Ui, texture: TextureId) {
+    let whole = ui.ctx().viewport_rect();
+    let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+    ui.painter().image(texture, whole, uv, Color32::WHITE);
+    ui.painter().rect_filled(whole.with_max_x(32.0), 0, Color32::from_rgb(200, 30, 10));
+}
+
+/// The window with a red left half over the map.
+fn paint(canvas: &mut Canvas, drew: Drew) -> RgbaImage {
+    let Pictures::One(texture) = drew.pictures else { panic!("{drew:?}") };
+    let ui = egui::Context::default();
+    let [width, height] = SIZE_PX.map(|side| side as f32);
+    let input = egui::RawInput {
+        screen_rect: Some(Rect::from_min_max(pos2(0.0, 0.0), pos2(width, height))),
+        ..egui::RawInput::default()
+    };
+    let mut output = ui.run_ui(input, |ui| red_beside_map(ui, texture));
+    canvas.take_textures(std::mem::take(&mut output.textures_delta));
+    let primitives = ui.tessellate(output.shapes, 1.0);
+    let screen = ScreenDescriptor { size_in_pixels: SIZE_PX, pixels_per_point: 1.0 };
+    canvas.read_window(&primitives, &screen).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn the_map_is_shown_pixel_for_pixel_beneath_the_panel() {
+    let Some(mut canvas) = canvas() else { return };
+    let drew = canvas.draw(&scene(Compare::Off)).unwrap();
+    let (map, window) = (canvas.read_map(0.5).unwrap(), paint(&mut canvas, drew));
+    assert_eq!(window.dimensions(), (64, 48));
+    // Some pixels around the edge are the toolkit's, which smooths it.
+    for (x, y, pixel) in window.enumerate_pixels().filter(|(x, ..)| !(30..=34).contains(x)) {
+        let expected = if x < 32 { [200, 30, 10, 255] } else { map.get_pixel(x, y).0 };
+        assert_eq!(pixel.0, expected, "{x}, {y}");
+    }
+    assert_ne!(map.get_pixel(40, 2), map.get_pixel(40, 46), "sky above, void below");
+}
+
+#[test]
+fn only_another_scene_is_drawn() {
+    let Some(mut canvas) = canvas() else { return };
+    let first = canvas.draw(&scene(Compare::Off)).unwrap();
+    assert!(first.is_new && !canvas.draw(&scene(Compare::Off)).unwrap().is_new);
+    let raised = Scene { exaggeration: 2.0, ..scene(Compare::Off) };
+    let second = canvas.draw(&raised).unwrap();
+    assert!(second.is_new);
+    assert_eq!(first.pictures, second.pictures, "in the same texture");
+    assert!(matches!(
+        canvas.draw(&scene(Compare::Split)).unwrap().pictures,
+        Pictures::Two([left, right]) if left != right
+    ));
+    assert!(matches!(
+        canvas.draw(&scene(Compare::Difference)).unwrap().pictures,
+        Pictures::One(texture) if Pictures::One(texture) != first.pictures
+    ));
+}
+
+#[test]
+fn in_a_hurry_fewer_pixels_are_drawn() {
+    let Some(mut canvas) = canvas() else { return };
+    let full = scene(Compare::Off);
+    canvas.draw(&full).unwrap();
+    assert!(canvas.is_full());
+    let level = Orientation { heading_deg: 0.0, pitch_deg: 80.0 };
+    let camera = Camera::look_at(DVec3::ZERO, 1000.0, level, [32, 24]);
+    canvas.draw(&Scene { camera, ..full.clone() }).unwrap();
+    assert!(!canvas.is_full());
+    assert_eq!(canvas.read_map(0.5).unwrap().dimensions(), (32, 24));
+    assert!(canvas.draw(&full).unwrap().is_new && canvas.is_full());
+}
+
+#[test]
+fn what_was_lost_is_drawn_again_by_another_canvas() {
+    let Some(mut first) = canvas() else { return };
+    first.draw(&scene(Compare::Off)).unwrap();
+    let before = first.read_map(0.5).unwrap();
+    first.gpu().device().destroy();
+    // Whether or not drawing on tells of it, it must not end the program.
+    let _ = first.draw(&Scene { exaggeration: 2.0, ..scene(Compare::Off) });
+    let _ = first.times();
+    assert!(first.gpu().is_lost());
+    let Some(mut second) = canvas() else { return };
+    assert!(!second.gpu().is_lost());
+    second.draw(&scene(Compare::Off)).unwrap();
+    assert_eq!(second.read_map(0.5).unwrap(), before);
+}

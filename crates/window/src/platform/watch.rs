@@ -1,0 +1,223 @@
+//! A window on pictures that another thread makes: a flight as it is drawn.
+
+use std::{
+    sync::{
+        Arc,
+        mpsc::{Receiver, TryRecvError},
+    },
+    time::{Duration, Instant},
+};
+
+use egui::{Color32, ColorImage, Rect, TextureHandle, TextureOptions, pos2};
+use egui_wgpu::ScreenDescriptor;
+use image::RgbaImage;
+use winit::{
+    application::ApplicationHandler,
+    dpi::PhysicalSize,
+    event::WindowEvent,
+    event_loop::{ActiveEventLoop, ControlFlow},
+    window::{Window, WindowId},
+};
+
+use super::screen::{Acquired, Screen};
+use crate::{WindowError, canvas::Canvas};
+
+/// The next picture is looked for so often.
+const PICTURE_TIME: Duration = Duration::from_millis(10);
+
+/// Whose turn it was when the window went.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Watched {
+    /// There are no more pictures.
+    ToTheEnd,
+    /// The person closed the window before.
+    InPart,
+}
+
+/// Shows pictures as they come, in a window that is `size_px` large at first, until there are no more or it is closed.
+///
+/// Must be called from the program's first thread; whoever sends the pictures is another. Each is fitted into the window,
+/// pixel for pixel while that has the pictures' size.
+///
+/// # Errors
+/// When there is no display, or nothing to draw with.
+pub fn watch(
+    title: &str,
+    size_px: [u32; 2],
+    pictures: Receiver<RgbaImage>,
+) -> Result<Watched, WindowError> {
+    let event_loop = super::event_loop()?;
+    let mut show = Show {
+        title: title.to_owned(),
+        size_px,
+        pictures,
+        open: None,
+        watched: Watched::InPart,
+        failure: None,
+    };
+    event_loop
+        .run_app(&mut show)
+        .map_err(|source| WindowError::System { source: source.into() })?;
+    show.failure.map_or(Ok(show.watched), Err)
+}
+
+struct Show {
+    title: String,
+    size_px: [u32; 2],
+    pictures: Receiver<RgbaImage>,
+    open: Option<Open>,
+    watched: Watched,
+    failure: Option<WindowError>,
+}
+
+/// Fields are dropped in order: what lies on the card before the surface, that before the window.
+struct Open {
+    picture: Option<TextureHandle>,
+    canvas: Canvas,
+    screen: Screen,
+    ui: egui::Context,
+    window: Arc<Window>,
+}
+
+impl Show {
+    fn open(&self, event_loop: &ActiveEventLoop) -> Result<Open, WindowError> {
+        let [width, height] = self.size_px;
+        let attributes = Window::default_attributes()
+            .with_title(&self.title)
+            .with_inner_size(PhysicalSize::new(width, height));
+        let window = event_loop
+            .create_window(attributes)
+            .map_err(|source| WindowError::System { source: source.into() })?;
+        let window = Arc::new(window);
+        let (screen, gpu) = Screen::new(event_loop, &window)?;
+        let canvas = Canvas::new(gpu, screen.format());
+        window.request_redraw();
+        Ok(Open { picture: None, canvas, screen, ui: egui::Context::default(), window })
+    }
+
+    fn settle(&mut self, event_loop: &ActiveEventLoop, done: Result<(), WindowError>) {
+        if let Err(failure) = done {
+            self.failure.get_or_insert(failure);
+            event_loop.exit();
+        }
+    }
+}
+
+impl ApplicationHandler<super::News> for Show {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        if self.open.is_none() {
+            let opened = self.open(event_loop).map(|open| self.open = Some(open));
+            self.settle(event_loop, opened);
+        }
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(open) = &mut self.open else { return };
+        let done = match event {
+            WindowEvent::CloseRequested => {
+                event_loop.exit();
+                Ok(())
+            }
+            WindowEvent::Resized(size) => {
+                open.screen.resize(&open.canvas, [size.width, size.height]);
+                open.window.request_redraw();
+                Ok(())
+            }
+            WindowEvent::RedrawRequested => open.draw(),
+            _ => Ok(()),
+        };
+        self.settle(event_loop, done);
+    }
+
+    fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        let Some(open) = &mut self.open else { return };
+        match self.pictures.try_recv() {
+            Ok(picture) => open.take(&picture),
+            Err(TryRecvError::Empty) => {}
+            Err(TryRecvError::Disconnected) => {
+                self.watched = Watched::ToTheEnd;
+                event_loop.exit();
+            }
+        }
+        event_loop.set_control_flow(ControlFlow::WaitUntil(Instant::now() + PICTURE_TIME));
+    }
+
+    fn exiting(&mut self, _: &ActiveEventLoop) {
+        // While the display is still there.
+        self.open = None;
+    }
+}
+
+impl Open {
+    fn take(&mut self, picture: &RgbaImage) {
+        let size = [picture.width(), picture.height()].map(|side| side as usize);
+        let picture = ColorImage::from_rgba_unmultiplied(size, picture.as_raw());
+        match &mut self.picture {
+            Some(shown) => shown.set(picture, TextureOptions::LINEAR),
+            None => {
+                self.picture = Some(self.ui.load_texture("frame", picture, TextureOptions::LINEAR));
+            }
+        }
+        self.window.request_redraw();
+    }
+
+    fn draw(&mut self) -> Result<(), WindowError> {
+        let size_px = self.screen.size_px();
+        if size_px.contains(&0) {
+            return Ok(());
+        }
+        // One point is one pixel: nothing here is to be read, and pictures keep their pixels.
+        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(size_px[0] as f32, size_px[1] as f32));
+        let input = egui::RawInput { screen_rect: Some(whole), ..Default::default() };
+        let picture = self.picture.clone();
+        let mut output = self.ui.run_ui(input, |ui| {
+            if let Some(picture) = &picture {
+                let full = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+                ui.painter().image(
+                    picture.id(),
+                    fitted(picture.size(), whole),
+                    full,
+                    Color32::WHITE,
+                );
+            }
+        });
+        let screen = ScreenDescriptor { size_in_pixels: size_px, pixels_per_point: 1.0 };
+        let primitives = self.ui.tessellate(std::mem::take(&mut output.shapes), 1.0);
+        let unused = self.canvas.take_textures(output.textures_delta);
+        match self.screen.acquire(&self.canvas, &self.window)? {
+            Acquired::Texture(texture) => {
+                let view = texture.texture.create_view(&wgpu::TextureViewDescriptor::default());
+                self.canvas.paint(&primitives, &screen, &view);
+                self.window.pre_present_notify();
+                self.canvas.gpu().queue().present(texture);
+            }
+            Acquired::Later => self.window.request_redraw(),
+            Acquired::Hidden => {}
+        }
+        self.canvas.free_textures(&unused);
+        Ok(())
+    }
+}
+
+/// The largest rectangle of a picture's shape in the middle of another.
+fn fitted([width, height]: [usize; 2], room: Rect) -> Rect {
+    let size = egui::vec2(width as f32, height as f32);
+    let scale = (room.width() / size.x).min(room.height() / size.y);
+    Rect::from_center_size(room.center(), size * scale)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_keep_their_shape_and_touch_two_sides() {
+        let check = |picture: [usize; 2], room: [f32; 2], [x0, y0, x1, y1]: [f32; 4]| {
+            let room = Rect::from_min_max(pos2(0.0, 0.0), pos2(room[0], room[1]));
+            assert_eq!(fitted(picture, room), Rect::from_min_max(pos2(x0, y0), pos2(x1, y1)));
+        };
+        check([400, 300], [400.0, 300.0], [0.0, 0.0, 400.0, 300.0]);
+        check([400, 300], [800.0, 300.0], [200.0, 0.0, 600.0, 300.0]);
+        check([400, 300], [400.0, 600.0], [0.0, 150.0, 400.0, 450.0]);
+    }
+}

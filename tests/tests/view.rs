@@ -1,0 +1,334 @@
+//! The window through the whole binary, on a display without a screen (Xvfb), driven by xdotool.
+#![cfg(target_os = "linux")]
+
+use std::{
+    fs,
+    io::{BufRead as _, BufReader},
+    path::{Path, PathBuf},
+    process::{Child, Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+use e2e::{Ran, binary, build_pass, skipped};
+
+/// A line of the trace that `--trace` writes, by the names of its columns.
+#[derive(Debug, Clone)]
+struct Line(Vec<(String, String)>);
+
+impl Line {
+    fn number(&self, name: &str) -> Option<f64> {
+        self.0.iter().find(|(known, _)| known == name).and_then(|(_, cell)| cell.parse().ok())
+    }
+
+    fn vector<const N: usize>(&self, names: [&str; N]) -> Option<[f64; N]> {
+        let mut numbers = [0.0; N];
+        for (number, name) in numbers.iter_mut().zip(names) {
+            *number = self.number(name)?;
+        }
+        Some(numbers)
+    }
+
+    /// Nothing moves, loads or lacks.
+    fn is_settled(&self) -> bool {
+        self.vector(["missing", "loading", "moving"]) == Some([0.0; 3])
+            && self.number("tiles").is_some_and(|tiles| tiles > 0.0)
+    }
+}
+
+fn last_line(trace: &Path) -> Option<Line> {
+    let text = fs::read_to_string(trace).ok()?;
+    // What is not yet written to its end has no end of line.
+    let mut lines = text.split_inclusive('\n').filter_map(|line| line.strip_suffix('\n'));
+    let names: Vec<String> = lines.next()?.split(',').map(str::to_owned).collect();
+    let cells = lines.next_back()?.split(',').map(str::to_owned);
+    Some(Line(names.into_iter().zip(cells).collect()))
+}
+
+/// A display, a window on it, and what the window writes. All ends with it.
+struct Desk {
+    display: String,
+    server: Child,
+    window: Child,
+    trace: PathBuf,
+    pictures: PathBuf,
+    _folder: tempfile::TempDir,
+}
+
+impl Drop for Desk {
+    fn drop(&mut self) {
+        // They may have ended by themselves.
+        let _ = self.window.kill();
+        let _ = self.window.wait();
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+impl Desk {
+    /// `None`, and says why, where there is no Xvfb, no xdotool or nothing to draw with.
+    fn open(options: &[&str]) -> Option<Self> {
+        for program in ["Xvfb", "xdotool"] {
+            let found = Command::new(program).arg("-version").stdin(Stdio::null()).output();
+            if found.is_err() {
+                skipped(&format!("{program} is not installed"));
+                return None;
+            }
+        }
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let package = folder.path().join("pass.pmtiles");
+        build_pass(&package, &["--quiet"]);
+        let (trace, pictures) = (folder.path().join("trace.csv"), folder.path().join("pictures"));
+
+        // The server chooses a free number itself.
+        let mut server = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-screen", "0", "1000x800x24", "-nolisten", "tcp"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("Xvfb starts");
+        let mut number = String::new();
+        let told = server.stdout.take().expect("its output is ours");
+        BufReader::new(told).read_line(&mut number).expect("Xvfb tells its number");
+        let display = format!(":{}", number.trim());
+        let window = Command::new(binary())
+            .arg("view")
+            .arg(&package)
+            .args(["--size", "640x480", "--motion", "prompt"])
+            .arg("--folder")
+            .arg(&pictures)
+            .arg("--trace")
+            .arg(&trace)
+            .args(options)
+            .env("DISPLAY", &display)
+            .env_remove("WAYLAND_DISPLAY")
+            .env_remove("WAYLAND_SOCKET")
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the binary starts");
+        let mut desk = Self { display, server, window, trace, pictures, _folder: folder };
+        desk.wait("a first picture", Line::is_settled).map(|_| desk)
+    }
+
+    /// Waits until the last line of the trace is as it is to be and no other follows. `None` when the window ended for
+    /// want of an adapter.
+    fn wait(&mut self, what: &str, is_right: impl Fn(&Line) -> bool) -> Option<Line> {
+        let begun = Instant::now();
+        let mut last: Option<(u64, Instant)> = None;
+        loop {
+            if self.window.try_wait().expect("the window is ours").is_some() {
+                let mut err = String::new();
+                if let Some(mut said) = self.window.stderr.take() {
+                    std::io::Read::read_to_string(&mut said, &mut err).expect("its words are text");
+                }
+                let is_allowed = std::env::var_os("CORNICHE_REQUIRE_GPU").is_none();
+                assert!(is_allowed && err.contains("adapter"), "no {what}: {err}");
+                skipped(&err);
+                return None;
+            }
+            let length = fs::metadata(&self.trace).map_or(0, |metadata| metadata.len());
+            match last {
+                Some((known, since)) if known == length => {
+                    if let Some(line) = last_line(&self.trace).filter(&is_right)
+                        && since.elapsed() > Duration::from_millis(700)
+                    {
+                        return Some(line);
+                    }
+                }
+                _ => last = Some((length, Instant::now())),
+            }
+            let line = last_line(&self.trace);
+            assert!(begun.elapsed() < Duration::from_mins(2), "no {what}: {line:?}");
+            thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    fn xdotool(&self, command: &str) -> String {
+        let output = Command::new("xdotool")
+            .args(command.split(' '))
+            .env("DISPLAY", &self.display)
+            .output()
+            .expect("xdotool runs");
+        assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stdout).trim().to_owned()
+    }
+
+    /// The window's number; it gets the keyboard, for there is no window manager to give it.
+    fn focus(&self) -> String {
+        let found = self.xdotool("search --name Corniche");
+        let id = found.lines().last().expect("the window has its name").to_owned();
+        self.xdotool(&format!("windowfocus {id}"));
+        id
+    }
+
+    fn point_at(&mut self, x: i32, y: i32) -> Line {
+        self.xdotool(&format!("mousemove {x} {y}"));
+        let is_there = |line: &Line| {
+            let at = line.vector(["cursor_x_px", "cursor_y_px"]);
+            at == Some([f64::from(x), f64::from(y)]) && line.is_settled()
+        };
+        self.wait(&format!("cursor at {x}, {y}"), is_there).expect("the window is open")
+    }
+
+    /// The picture that a key saves.
+    fn picture(&mut self, key: &str, number: u32) -> image::RgbaImage {
+        self.xdotool(&format!("key {key}"));
+        let path = self.pictures.join(format!("corniche-{number:03}.png"));
+        let begun = Instant::now();
+        // It is there before it is complete.
+        loop {
+            if let Ok(picture) = image::open(&path) {
+                return picture.to_rgba8();
+            }
+            assert!(begun.elapsed() < Duration::from_mins(1), "no {}", path.display());
+            thread::sleep(Duration::from_millis(50));
+        }
+    }
+}
+
+/// Dark letters on a light plate in this part of a picture: x and y from, to.
+fn has_letters(picture: &image::RgbaImage, [left, top, right, bottom]: [u32; 4]) -> bool {
+    let (mut light, mut dark) = (0, 0);
+    for (x, y, pixel) in picture.enumerate_pixels() {
+        if (left..right).contains(&x) && (top..bottom).contains(&y) {
+            light += u32::from(pixel.0[..3].iter().all(|channel| *channel > 205));
+            dark += u32::from(pixel.0[..3].iter().all(|channel| *channel < 90));
+        }
+    }
+    light > 200 && dark > 40
+}
+
+fn colors(picture: &image::RgbaImage) -> usize {
+    picture.pixels().map(|pixel| pixel.0).collect::<std::collections::BTreeSet<_>>().len()
+}
+
+#[test]
+fn without_a_display_it_says_what_needs_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("pass.pmtiles");
+    build_pass(&package, &["--quiet"]);
+    let mut command = Command::new(binary());
+    command.arg("view").arg(&package);
+    for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(name);
+    }
+    let ran = Ran::from(command.output().unwrap());
+    assert_eq!(ran.code, 1, "{}", ran.err);
+    assert!(ran.err.contains("no display") && ran.err.contains("corniche render"), "{}", ran.err);
+    assert!(!ran.err.contains("panicked"), "{}", ran.err);
+}
+
+#[test]
+fn what_is_no_package_opens_no_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("none.pmtiles");
+    fs::write(&file, b"PMTiles, or so it says").unwrap();
+    let ran = e2e::corniche(["view".as_ref(), file.as_os_str()]);
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("none.pmtiles"), "{}", ran.err);
+}
+
+#[test]
+fn the_ground_grabbed_stays_under_the_cursor() {
+    let Some(mut desk) = Desk::open(&["--screen-space-error", "0.5"]) else { return };
+    let ground = ["ground_x_m", "ground_y_m", "ground_height_m"];
+    let press = desk.point_at(150, 200);
+    let grabbed = press.vector(ground).expect("there is ground");
+    desk.xdotool("mousedown 1");
+    for step in 1..=6 {
+        desk.xdotool(&format!("mousemove {} {}", 150 + 12 * step, 200 + 15 * step));
+    }
+    let dragged = desk.point_at(230, 300);
+    desk.xdotool("mouseup 1");
+    let released = desk.point_at(230, 300);
+    for line in [dragged, released] {
+        let here = line.vector(ground).expect("there is still ground");
+        let pixel_m = line.number("pixel_m").expect("and it has a size");
+        // On tilted ground a pixel is larger than this: it would be fewer pixels.
+        let off_m = (0..3).map(|axis| (here[axis] - grabbed[axis]).powi(2)).sum::<f64>().sqrt();
+        assert!(off_m / pixel_m <= 0.5, "{} px off: {press:?} {line:?}", off_m / pixel_m);
+        let eye = ["eye_x_m", "eye_y_m"];
+        let [from, to] = [&press, &line].map(|line| line.vector(eye).expect("an eye"));
+        assert!((to[0] - from[0]).hypot(to[1] - from[1]) > 60.0 * pixel_m, "it was dragged");
+    }
+}
+
+#[test]
+fn pictures_show_the_map_and_its_credits_with_the_panel_and_without() {
+    let Some(mut desk) = Desk::open(&[]) else { return };
+    desk.focus();
+    let map = desk.picture("p", 1);
+    assert_eq!(map.dimensions(), (640, 480));
+    assert!(colors(&map) > 500, "{} colours", colors(&map));
+    assert!(has_letters(&map, [300, 455, 640, 480]), "credits in the map's corner");
+
+    let window = desk.picture("shift+p", 2);
+    assert_eq!(window.dimensions(), (640, 480));
+    assert!(has_letters(&window, [0, 400, 350, 480]), "credits beside the panel");
+    let panel = |picture: &image::RgbaImage| {
+        let dark = picture.enumerate_pixels().filter(|(x, _, pixel)| *x > 360 && pixel.0[0] < 60);
+        dark.count() > 20_000
+    };
+    assert!(panel(&window) && !panel(&map));
+    desk.xdotool("key Tab");
+    let hidden = desk.picture("shift+p", 3);
+    assert!(!panel(&hidden), "Tab hides the panel");
+    assert!(has_letters(&hidden, [300, 400, 640, 480]), "and not the credits");
+}
+
+#[test]
+fn a_style_that_changes_is_shown_and_a_broken_one_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let style = folder.path().join("mine.toml");
+    let preset = |name: &str| {
+        fs::read_to_string(e2e::root().join("config/styles").join(name)).expect("it comes along")
+    };
+    fs::write(&style, preset("dark.toml")).unwrap();
+    let Some(mut desk) = Desk::open(&["--style", style.to_str().expect("paths are UTF-8")]) else {
+        return;
+    };
+    desk.focus();
+    let mean = |picture: &image::RgbaImage| {
+        let sum: u64 = picture.pixels().map(|pixel| u64::from(pixel.0[1])).sum();
+        sum / u64::from(picture.width() * picture.height())
+    };
+    let dark = mean(&desk.picture("p", 1));
+    fs::write(&style, preset("road-atlas.toml")).unwrap();
+    thread::sleep(Duration::from_secs(3));
+    let light = mean(&desk.picture("p", 2));
+    assert!(light > dark + 50, "{dark} became {light}");
+    fs::write(&style, "outline_px = high").unwrap();
+    thread::sleep(Duration::from_secs(3));
+    assert_eq!(mean(&desk.picture("p", 3)), light, "the old one stays");
+}
+
+#[test]
+fn it_survives_other_sizes_and_being_hidden_and_ends_well() {
+    let Some(mut desk) = Desk::open(&[]) else { return };
+    let id = desk.focus();
+    desk.xdotool(&format!("windowsize {id} 500 401"));
+    let is_small = |line: &Line| {
+        line.vector(["width_px", "height_px"]) == Some([500.0, 401.0]) && line.is_settled()
+    };
+    desk.wait("smaller picture", is_small).expect("the window is open");
+    desk.xdotool(&format!("windowunmap {id}"));
+    thread::sleep(Duration::from_millis(300));
+    desk.xdotool(&format!("windowmap {id}"));
+    thread::sleep(Duration::from_millis(300));
+    desk.focus();
+    desk.point_at(120, 200);
+    desk.point_at(140, 210);
+    assert_eq!(desk.picture("p", 1).dimensions(), (500, 401));
+
+    desk.xdotool("key ctrl+q");
+    let begun = Instant::now();
+    let status = loop {
+        if let Some(status) = desk.window.try_wait().unwrap() {
+            break status;
+        }
+        assert!(begun.elapsed() < Duration::from_secs(30), "it does not end");
+        thread::sleep(Duration::from_millis(20));
+    };
+    assert_eq!(status.code(), Some(0));
+}
