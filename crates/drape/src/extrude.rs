@@ -3,11 +3,10 @@ use std::ops::Range;
 use corniche_geom::{LatticeBounds, LatticePoint, Polyline};
 use corniche_tin::Surface;
 
-use crate::SvLine;
-
-/// Heights are widened by this part of the largest of them and of their range: far more than f64 rounding in
-/// the cut polygons, far less than a height quantum.
-const PAD: f64 = 1e-6;
+use crate::{
+    SvLine,
+    around::{Around, padded},
+};
 
 /// The plan line for shadow volumes, with the lowest and highest ground of this tile around each segment.
 ///
@@ -107,7 +106,7 @@ impl Near<'_> {
 
     /// Lowest and highest ground around one of the segments; `None` without ground there.
     fn ground_range_m(&self, [p, q]: [LatticePoint; 2], margin: i64) -> Option<[f64; 2]> {
-        let around = Around::new([p, q], margin);
+        let around = Around::new([p, q].map(LatticePoint::in_steps), margin as f64);
         let (mut lowest_m, mut highest_m) = (f64::INFINITY, f64::NEG_INFINITY);
         let look = |triangle: u32, [lowest_m, highest_m]: [&mut f64; 2]| {
             for &[.., height_m] in around.part_of(triangle, self.surface).corners() {
@@ -131,112 +130,12 @@ impl Near<'_> {
             }
             look(triangle, [&mut lowest_m, &mut highest_m]);
         }
-        let pad_m = PAD * lowest_m.abs().max(highest_m.abs()).max(highest_m - lowest_m);
-        Some([lowest_m - pad_m, highest_m + pad_m])
+        Some(padded([lowest_m, highest_m]))
     }
 }
 
 fn heights_m(surface: &Surface, triangle: u32) -> [f64; 3] {
     surface.triangles()[triangle as usize].map(|vertex| surface.heights_m()[vertex as usize])
-}
-
-/// The rectangle around a segment, in coordinates along and across it.
-struct Around {
-    p: LatticePoint,
-    east: f64,
-    north: f64,
-    length: f64,
-    margin: f64,
-}
-
-impl Around {
-    fn new([p, q]: [LatticePoint; 2], margin: i64) -> Self {
-        let length = p.distance_steps(q);
-        let (east, north) = ((q.u - p.u) as f64 / length, (q.v - p.v) as f64 / length);
-        Self { p, east, north, length, margin: margin as f64 }
-    }
-
-    /// What of a triangle lies in the rectangle.
-    fn part_of(&self, triangle: u32, surface: &Surface) -> Polygon {
-        let Self { p, east, north, length, margin } = *self;
-        let vertices = surface.triangles()[triangle as usize];
-        let corners = vertices.map(|vertex| {
-            let point = surface.points()[vertex as usize];
-            let (du, dv) = ((point.u - p.u) as f64, (point.v - p.v) as f64);
-            let height_m = surface.heights_m()[vertex as usize];
-            [du * east + dv * north, dv * east - du * north, height_m]
-        });
-        // Most triangles lie wholly inside, or wholly beyond one side.
-        let range = |axis: usize| {
-            let [a, b, c] = corners.map(|corner| corner[axis]);
-            [a.min(b).min(c), a.max(b).max(c)]
-        };
-        let ([along_min, along_max], [across_min, across_max]) = (range(0), range(1));
-        let (last, first) = (length + margin, -margin);
-        if along_max < first || along_min > last || across_max < -margin || across_min > margin {
-            return Polygon::NONE;
-        }
-        let mut polygon = Polygon::of(corners);
-        if along_min < first || along_max > last {
-            polygon = polygon.cut(|[along, ..]| along - first).cut(|[along, ..]| last - along);
-        }
-        if across_min < -margin || across_max > margin {
-            polygon =
-                polygon.cut(|[_, across, _]| across + margin).cut(|[_, across, _]| margin - across);
-        }
-        polygon
-    }
-}
-
-/// A convex polygon of a triangle cut by up to four lines: at most seven corners, in place.
-/// A corner is [along, across, height].
-#[derive(Clone, Copy)]
-struct Polygon {
-    corners: [[f64; 3]; 8],
-    count: usize,
-}
-
-impl Polygon {
-    const NONE: Self = Self { corners: [[0.0; 3]; 8], count: 0 };
-
-    fn of([a, b, c]: [[f64; 3]; 3]) -> Self {
-        let mut corners = [[0.0; 3]; 8];
-        corners[..3].copy_from_slice(&[a, b, c]);
-        Self { corners, count: 3 }
-    }
-
-    fn corners(&self) -> &[[f64; 3]] {
-        &self.corners[..self.count]
-    }
-
-    /// What lies where `inside`, an affine function, is at least 0.
-    fn cut(&self, inside: impl Fn([f64; 3]) -> f64) -> Self {
-        let mut kept = Self::NONE;
-        for (k, &this) in self.corners().iter().enumerate() {
-            let next = self.corners[(k + 1) % self.count];
-            let (here, there) = (inside(this), inside(next));
-            if here >= 0.0 {
-                kept.push(this);
-            }
-            if (here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0) {
-                let part = here / (here - there);
-                let mut cut = [0, 1, 2].map(|axis| this[axis] + part * (next[axis] - this[axis]));
-                // Rounding must not lift a cut above its edge: the order of the search would show.
-                cut[2] = cut[2].clamp(this[2].min(next[2]), this[2].max(next[2]));
-                kept.push(cut);
-            }
-        }
-        kept
-    }
-
-    /// Rounding can make a polygon so thin that it is cut once too often; its corners then lie on one
-    /// another, and the last may be left out.
-    fn push(&mut self, corner: [f64; 3]) {
-        if self.count < self.corners.len() {
-            self.corners[self.count] = corner;
-            self.count += 1;
-        }
-    }
 }
 
 #[cfg(test)]

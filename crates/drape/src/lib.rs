@@ -10,11 +10,13 @@
 //!
 //! This crate never knows what a line means, and never reads a file.
 
+mod around;
 mod check;
 mod clip;
 mod draped_line;
 mod extrude;
 mod fraction;
+mod near_ground;
 mod owned_borders;
 mod positions;
 mod ray;
@@ -24,6 +26,7 @@ pub use check::check;
 pub use clip::{clip, clip_closed};
 pub use draped_line::{DrapedLine, DrapedVertex, SvLine};
 pub use extrude::extrude;
+pub use near_ground::{NearGround, near_ground};
 pub use owned_borders::{Neighbours, OwnedBorders};
 pub use positions::{BadLine, positions};
 pub use walk::{Drape, drape};

@@ -305,6 +305,22 @@ impl Frame {
         ]
     }
 
+    /// Lattice steps in a metre of the working CRS.
+    #[must_use]
+    pub fn steps_per_m(&self) -> f64 {
+        (1_u64 << self.lattice_bits) as f64 / self.cell_m
+    }
+
+    /// Where a position lies, in lattice steps: the other way round.
+    #[must_use]
+    pub fn fraction_of_position(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let steps_per_cell = (1_u64 << self.lattice_bits) as f64;
+        [
+            (x - self.origin_m[0]) / self.cell_m * steps_per_cell,
+            (y - self.origin_m[1]) / self.cell_m * steps_per_cell,
+        ]
+    }
+
     /// The lattice point nearest to a position; `None` when it is not finite or absurdly far away.
     #[must_use]
     pub fn snap(&self, [x, y]: [f64; 2]) -> Option<LatticePoint> {

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     RoadMethod, RoadOptions,
     scene::{BorderTile, Bridge, bridges},
-    tiles::RoadVolume,
+    tiles::{NearHeights, RoadVolume},
 };
 
 /// Corners of a segment's quad, as `shaders/roads.wgsl` counts them.
@@ -45,12 +45,13 @@ impl Bridges {
             let reference_m = tiles[bridge.fine].buffers.reference_m;
             let place = |at: [f64; 2]| [0, 1].map(|k| (at[k] - reference_m[k]) as f32);
             let [start, end] = bridge.ends_m.map(place);
+            let height_range_in_tile =
+                bridge.height_range_m.map(|height_m| (height_m - reference_m[2]) as f32);
             let volume = RoadVolume {
                 start_in_tile: start,
                 end_in_tile: end,
-                height_range_in_tile: bridge
-                    .height_range_m
-                    .map(|height_m| (height_m - reference_m[2]) as f32),
+                height_range_in_tile,
+                near: NearHeights { range_in_tile: height_range_in_tile, rise: 0.0 },
                 class: bridge.class,
             };
             (volume, bridge.coarse as u32 + 1)

@@ -101,8 +101,9 @@ impl RoadBuffers {
 pub(super) const GROUND_STRIDE: u64 = 16;
 /// Bytes of one road segment: two positions as three f32 each, class as u32.
 pub(super) const SEGMENT_STRIDE: u64 = 28;
-/// Bytes of one road volume: two plan positions and a height range as two f32 each, class and other tile as u32.
-pub(super) const VOLUME_STRIDE: u64 = 28;
+/// Bytes of one road volume: two plan positions and two height ranges as two f32 each, rise as f32, class and other
+/// tile as u32.
+pub(super) const VOLUME_STRIDE: u64 = 40;
 
 impl TileBuffers {
     /// Uploads a tile.
@@ -183,6 +184,8 @@ pub(super) fn volume_bytes(volumes: impl Iterator<Item = (RoadVolume, u32)>) -> 
         bytes.extend_from_slice(bytemuck::cast_slice(&volume.start_in_tile));
         bytes.extend_from_slice(bytemuck::cast_slice(&volume.end_in_tile));
         bytes.extend_from_slice(bytemuck::cast_slice(&volume.height_range_in_tile));
+        bytes.extend_from_slice(bytemuck::cast_slice(&volume.near.range_in_tile));
+        bytes.extend_from_slice(&volume.near.rise.to_ne_bytes());
         let class = u32::from(volume.class.number());
         bytes.extend_from_slice(&(class | other << 4).to_ne_bytes());
     }

@@ -3,7 +3,7 @@
 use glam::{DVec3, DVec4};
 
 use super::renderer::{DrawTile, FrameView};
-use crate::{CapTest, Caps, RoadMethod};
+use crate::{CapTest, Caps, RoadMethod, tiles::NearHeights};
 
 /// Bytes of a tile's block.
 pub(super) const TILE_BYTES: u64 = 32;
@@ -82,14 +82,20 @@ pub(super) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
 }
 
 /// A tile's block: the reference point relative to the eye and the skirt's depth; then its true height, the widest
-/// half width of volumes and the tile's number in the frame. Numbers below 2^24 are exact in f32.
+/// half width of volumes, the tile's number in the frame and how far near heights hold. Numbers below 2^24 are exact in
+/// f32.
 pub(super) fn tile_rows(view: &FrameView<'_>, tile: &DrawTile<'_>, number: u32) -> [[f32; 4]; 2] {
     let [x, y, height_m] = tile.buffers.reference_m;
     let reference_in_world = DVec3::new(x, y, height_m * view.vertical_scale());
     let offset = reference_in_world - view.camera.eye_in_world();
     [
         row(offset.extend(tile.skirt_depth_m * view.vertical_scale())),
-        row(DVec4::new(height_m, tile.buffers.width_margin_m, f64::from(number), 0.0)),
+        row(DVec4::new(
+            height_m,
+            tile.buffers.width_margin_m,
+            f64::from(number),
+            NearHeights::reach_m(tile.buffers.width_m),
+        )),
     ]
 }
 

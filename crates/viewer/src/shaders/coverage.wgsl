@@ -16,7 +16,7 @@ struct Tile {
     // xyz: the tile's reference point minus the eye; w: depth of the skirt, world metres.
     offset: vec4<f32>,
     // x: true height of the reference point; y: widest half width that may be drawn, world metres; z: the tile's
-    // number in this frame, from 1.
+    // number in this frame, from 1; w: from how far away near heights hold, world metres.
     base: vec4<f32>,
 }
 

@@ -10,8 +10,8 @@
 //          │╱              │╱
 //          └───────────────┘
 //
-// What we changed: the box is as high as the ground under the segment, not as the tile; and the ground's distance
-// to the segment decides (coverage.wgsl). `road_options.y` brings back the paper's own test.
+// What we changed: the box is as high as the ground as near to the segment as the road is wide there, not as the
+// tile; and the ground's distance to the segment decides (coverage.wgsl). `road_options.y` brings back the paper's own test.
 //
 // A volume paints the ground of its own tile alone. Every tile has all lines within the width margin around it, so
 // wide roads are not cut at borders, and where levels meet, no tile's roads smear over the other's ground. Skirts
@@ -22,8 +22,11 @@ struct VolumeIn {
     @location(0) start_in_tile: vec2<f32>,
     @location(1) end_in_tile: vec2<f32>,
     @location(2) height_range_in_tile: vec2<f32>,
+    // Ground beneath the segment, and how much lower or higher it may be per metre away from it, up to `tile.base.w`.
+    @location(3) near_range_in_tile: vec2<f32>,
+    @location(4) near_rise: f32,
     // Lowest four bits: class. Above, for a bridge, the number of the other tile it belongs to, else 0.
-    @location(3) class_and_other: u32,
+    @location(5) class_and_other: u32,
 }
 
 struct VertexOut {
@@ -37,6 +40,35 @@ struct VertexOut {
 // bit 0: end or start, bit 1: left or right of the segment, bit 2: top or bottom.
 const STRIP = array<u32, 14>(0u, 1u, 4u, 5u, 7u, 1u, 3u, 0u, 2u, 4u, 6u, 7u, 2u, 3u);
 
+struct Reach {
+    radius_m: f32,
+    // Relative to the eye.
+    heights: vec2<f32>,
+}
+
+// Half the width of a road whose ground lies between these heights, with them.
+fn reach_over(heights: vec2<f32>, road_class: u32, plan_m: f32) -> Reach {
+    let far_m = length(vec2(plan_m, max(abs(heights.x), abs(heights.y))));
+    let near_height_m = select(0.0, min(abs(heights.x), abs(heights.y)), heights.x * heights.y > 0.0);
+    // The ground was searched within the margin.
+    return Reach(min(bounding_radius_m(road_class, far_m, near_height_m), tile.base.y), heights);
+}
+
+// Half the width of the box, and between which heights ground so near to the segment lies.
+fn reach_of(in: VolumeIn, road_class: u32, plan_m: f32) -> Reach {
+    let vertical_scale = frame.background.w;
+    let all = tile.offset.z + in.height_range_in_tile * vertical_scale;
+    let rise = vec2(-1.0, 1.0) * in.near_rise;
+    let near = tile.offset.z + (in.near_range_in_tile + rise * tile.base.w) * vertical_scale;
+    var reach = reach_over(clamp(near, all.xx, all.yy), road_class, plan_m);
+    if reach.radius_m > tile.base.w {
+        return reach_over(all, road_class, plan_m);
+    }
+    let nearer = tile.offset.z + (in.near_range_in_tile + rise * reach.radius_m) * vertical_scale;
+    reach.heights = clamp(nearer, all.xx, all.yy);
+    return reach;
+}
+
 @vertex
 fn vertex(in: VolumeIn) -> VertexOut {
     let vertical_scale = frame.background.w;
@@ -44,20 +76,17 @@ fn vertex(in: VolumeIn) -> VertexOut {
     let is_bridge = in.class_and_other > 15u;
     let a = tile.offset.xy + in.start_in_tile;
     let ab = in.end_in_tile - in.start_in_tile;
-    var heights = tile.offset.z + in.height_range_in_tile * vertical_scale;
     let length_m = length(ab);
     let direction = select(vec2(1.0, 0.0), ab / length_m, length_m > 1e-6);
 
-    let far_height_m = max(abs(heights.x), abs(heights.y));
-    let far_m = length(vec2(max(length(a), length(a + ab)), far_height_m));
-    let near_height_m = select(0.0, min(abs(heights.x), abs(heights.y)), heights.x * heights.y > 0.0);
-    // The ground was searched within the margin.
-    let radius_m = min(bounding_radius_m(road_class, far_m, near_height_m), tile.base.y);
+    let plan_m = max(length(a), length(a + ab));
+    let reach = reach_of(in, road_class, plan_m);
+    let radius_m = reach.radius_m;
     // Rounding of positions must not cut off ground at the rim; the fragment decides anyway. Beside a bridge the
     // ground was not searched, but rises or falls by more than the road is wide only on cliffs.
-    let pad_m = 1e-6 * far_m + 0.01;
+    let pad_m = 1e-6 * length(vec3(plan_m, reach.heights)) + 0.01;
     let pad_height_m = pad_m + select(0.0, 2.0 * radius_m * vertical_scale, is_bridge);
-    heights += vec2(-pad_height_m, pad_height_m);
+    let heights = reach.heights + vec2(-pad_height_m, pad_height_m);
 
     let corner = STRIP[in.corner];
     let at_end = f32(corner & 1u);

@@ -9,15 +9,17 @@ mod roads;
 
 use std::collections::BTreeMap;
 
+use corniche_drape::near_ground;
 use corniche_geom::{Bounds, Frame, TileId, barycentric};
 use corniche_tileset::{Terrain, TilePayload};
+use corniche_tin::{Placement, Surface};
 
 pub use self::{
     ground::{GroundMesh, GroundVertex},
     package::PackageSource,
     roads::{
-        BadRoad, GroundLine, PlanLine, RoadEnd, RoadList, RoadSegment, RoadSegments, RoadVolume,
-        RoadVolumes, Side, TileLines,
+        BadRoad, GroundLine, NearHeights, PlanLine, RoadEnd, RoadList, RoadSegment, RoadSegments,
+        RoadVolume, RoadVolumes, Side, TileLines,
     },
 };
 use crate::lod::{GroundSummary, Node, Request, TileTree};
@@ -64,13 +66,24 @@ impl TileGeometry {
             geometric_error_m: terrain.geometric_error_m,
             height_range_m: terrain.height_range_m,
         });
+        // Found here and not stored: where it is worth it a package would be half as large again.
+        let surface = terrain
+            .filter(|_| !lines.plan.is_empty())
+            .map(|terrain| Surface::new(&terrain.tin, Placement::of_tile(frame, id, quantum_m)));
+        let steps_per_m = frame.steps_per_m();
+        let reach = NearHeights::reach_m(bounds.width()) * steps_per_m;
+        let near = |ends: [[f64; 2]; 2]| {
+            let ends = ends.map(|at| frame.fraction_of_position(at));
+            let found = near_ground(ends, surface.as_ref()?, reach)?;
+            Some((found.range_m, found.rise_m * steps_per_m))
+        };
         Self {
             id,
             reference_m,
             summary,
             ground,
             roads: RoadSegments::new(&lines.ground, bounds, reference_m),
-            volumes: RoadVolumes::new(&lines.plan, bounds, reference_m),
+            volumes: RoadVolumes::new(&lines.plan, bounds, reference_m, near),
             width_margin_m: lines.width_margin_m,
             width_m: bounds.width(),
         }

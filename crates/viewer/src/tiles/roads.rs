@@ -7,7 +7,7 @@ use corniche_tin::{Placement, Surface};
 mod segments;
 
 pub use self::segments::{
-    RoadEnd, RoadList, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, Side,
+    NearHeights, RoadEnd, RoadList, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, Side,
 };
 
 /// A road on the ground (GEO): its centre-line as it lies on the tile's TIN.

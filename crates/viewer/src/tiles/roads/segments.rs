@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use corniche_geom::Bounds;
+use corniche_geom::{Bounds, TILE_CELLS};
 use corniche_roads::FunctionalRoadClass;
 
 use super::{super::ground::relative, GroundLine, PlanLine, ground_ends, plan_ends};
@@ -23,10 +23,30 @@ pub struct RoadVolume {
     pub start_in_tile: [f32; 2],
     /// The other end.
     pub end_in_tile: [f32; 2],
-    /// Lowest and highest ground beneath, true metres above the reference point, rounded outwards.
+    /// Lowest and highest ground within the width margin, true metres above the reference point, rounded outwards.
     pub height_range_in_tile: [f32; 2],
+    /// Closer bounds for roads that are not wide.
+    pub near: NearHeights,
     /// Functional road class.
     pub class: FunctionalRoadClass,
+}
+
+/// Heights of the ground no farther from a segment than [`NearHeights::reach_m`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NearHeights {
+    /// Lowest and highest ground beneath, true metres above the reference point, rounded outwards.
+    pub range_in_tile: [f32; 2],
+    /// True metres that it may lie lower or higher for each metre away from the segment.
+    pub rise: f32,
+}
+
+impl NearHeights {
+    /// How far away they hold, in a tile of this width: one of its cells. Roads that look wider are drawn on a finer
+    /// level, if there is one.
+    #[must_use]
+    pub fn reach_m(tile_width_m: f64) -> f64 {
+        tile_width_m / TILE_CELLS as f64
+    }
 }
 
 /// A side of a tile.
@@ -102,19 +122,37 @@ impl RoadList<RoadSegment> {
 
 impl RoadList<RoadVolume> {
     /// Cuts lines of the tile with these bounds into volumes.
+    ///
+    /// `near` tells, for the ends of a segment in the working CRS, the ground's true heights beneath it and how they
+    /// rise per metre; `None` when no ground is within [`NearHeights::reach_m`].
     #[must_use]
-    pub fn new(lines: &[PlanLine], tile: Bounds, reference_m: [f64; 3]) -> Self {
+    pub fn new(
+        lines: &[PlanLine],
+        tile: Bounds,
+        reference_m: [f64; 3],
+        near: impl Fn([[f64; 2]; 2]) -> Option<([f64; 2], f64)>,
+    ) -> Self {
+        let above = |[low_m, high_m]: [f64; 2]| {
+            let [low, high] = [low_m, high_m].map(|height_m| (height_m - reference_m[2]) as f32);
+            [low.next_down(), high.next_up()]
+        };
         let place = |[x, y]: [f64; 2]| {
             let [x, y, _] = relative([x, y, 0.0], reference_m);
             [x, y]
         };
         let volumes = lines.iter().flat_map(|line| {
             line.points_m.windows(2).zip(&line.ground_range_m).map(|(pair, range_m)| {
-                let [low_m, high_m] = range_m.map(|height_m| height_m - reference_m[2]);
+                // Without ground near, a box as good as flat.
+                let (near_m, rise) = near([pair[0], pair[1]])
+                    .unwrap_or(([f64::midpoint(range_m[0], range_m[1]); 2], 0.0));
                 RoadVolume {
                     start_in_tile: place(pair[0]),
                     end_in_tile: place(pair[1]),
-                    height_range_in_tile: [(low_m as f32).next_down(), (high_m as f32).next_up()],
+                    height_range_in_tile: above(*range_m),
+                    near: NearHeights {
+                        range_in_tile: above(near_m),
+                        rise: (rise as f32).next_up(),
+                    },
                     class: line.class,
                 }
             })

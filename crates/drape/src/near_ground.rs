@@ -1,0 +1,97 @@
+use corniche_geom::{LatticeBounds, LatticePoint};
+use corniche_tin::Surface;
+
+use crate::around::{Around, padded};
+
+/// What of the rectangle around a segment may lack ground and still count as covered: rounding of areas.
+const UNCOVERED: f64 = 1e-9;
+
+/// Bounds on the ground near a segment that grow with the distance from it.
+///
+/// ```text
+///     height │  ╲                 ╱       Ground at a distance d from the segment, d ≤ reach, is not lower than
+///            │    ╲  _    ground╱         the lowest beneath the segment by more than d · rise, and not higher
+///            │     ╲╱ ╲___╱‾╲ ╱           than the highest by more: rise is that of the steepest triangle near.
+///            │  highest ═════             The range within the reach alone, which is all that is known where
+///            │  lowest  ═════             there is not ground everywhere near, is far wider on slopes.
+///            │     ╱         ╲
+///            └────────┬─┬──────► across
+///                   segment
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NearGround {
+    /// Lowest and highest ground beneath the segment, metres; within the reach where `rise_m` is 0.
+    pub range_m: [f64; 2],
+    /// Metres that ground may be lower or higher for each lattice step away from the segment.
+    pub rise_m: f64,
+}
+
+/// Bounds on the ground within `reach` of a segment; `None` without any there.
+///
+/// The ends and the reach are in lattice steps. *Within* is as for [`extrude`](crate::extrude): a rectangle, which holds
+/// the caps.
+#[must_use]
+pub fn near_ground(ends: [[f64; 2]; 2], surface: &Surface, reach: f64) -> Option<NearGround> {
+    let (near, beneath) = (Around::new(ends, reach), Around::new(ends, reach.min(1.0)));
+    let mut triangles = Vec::new();
+    surface.triangles_near(bounds(ends, reach), &mut triangles);
+    triangles.sort_unstable();
+    triangles.dedup();
+    let (mut near_range_m, mut beneath_range_m) = (NOTHING, NOTHING);
+    let (mut covered, mut rise_m) = (0.0, 0.0_f64);
+    for triangle in triangles {
+        let part = near.part_of(triangle, surface);
+        if part.corners().is_empty() {
+            continue;
+        }
+        widen(&mut near_range_m, part.corners());
+        widen(&mut beneath_range_m, beneath.part_of(triangle, surface).corners());
+        covered += part.area();
+        rise_m = rise_m.max(gradient(near.corners_of(triangle, surface)));
+    }
+    if near_range_m[0] > near_range_m[1] {
+        return None;
+    }
+    // Only where all ways from the segment are over ground does its slope tell how far it rises.
+    let is_covered = covered >= (1.0 - UNCOVERED) * near.area();
+    Some(if is_covered && beneath_range_m[0] <= beneath_range_m[1] {
+        NearGround { range_m: padded(beneath_range_m), rise_m }
+    } else {
+        NearGround { range_m: padded(near_range_m), rise_m: 0.0 }
+    })
+}
+
+/// No height is in it.
+const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+fn widen([lowest_m, highest_m]: &mut [f64; 2], corners: &[[f64; 3]]) {
+    for &[.., height_m] in corners {
+        *lowest_m = lowest_m.min(height_m);
+        *highest_m = highest_m.max(height_m);
+    }
+}
+
+/// Metres that a triangle rises per step where it is steepest.
+fn gradient([a, b, c]: [[f64; 3]; 3]) -> f64 {
+    let [b, c] = [b, c].map(|corner| [0, 1, 2].map(|axis| corner[axis] - a[axis]));
+    let doubled_area = b[0] * c[1] - c[0] * b[1];
+    let along = b[2] * c[1] - c[2] * b[1];
+    let across = b[0] * c[2] - c[0] * b[2];
+    along.hypot(across) / doubled_area.abs()
+}
+
+/// Whatever lies in the rectangle around a segment, and more.
+fn bounds([p, q]: [[f64; 2]; 2], reach: f64) -> LatticeBounds {
+    // A corner is √2 reaches from its end.
+    let around = 1.5 * reach + 1.0;
+    let least = |axis: usize| (p[axis].min(q[axis]) - around).floor() as i64;
+    let most = |axis: usize| (p[axis].max(q[axis]) + around).ceil() as i64;
+    LatticeBounds {
+        min: LatticePoint::new(least(0), least(1)),
+        max: LatticePoint::new(most(0), most(1)),
+    }
+}
+
+#[cfg(test)]
+#[path = "near_ground_tests.rs"]
+mod tests;
