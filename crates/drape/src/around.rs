@@ -35,21 +35,15 @@ impl Around {
         (self.length + 2.0 * self.margin) * 2.0 * self.margin
     }
 
-    /// A triangle's corners: along, across, height.
-    pub(crate) fn corners_of(&self, triangle: u32, surface: &Surface) -> [[f64; 3]; 3] {
-        let Self { p, east, north, .. } = *self;
-        surface.triangles()[triangle as usize].map(|vertex| {
+    /// What of a triangle lies in the rectangle.
+    pub(crate) fn part_of(&self, triangle: u32, surface: &Surface) -> Polygon {
+        let Self { p, east, north, length, margin } = *self;
+        let corners = surface.triangles()[triangle as usize].map(|vertex| {
             let point = surface.points()[vertex as usize];
             let (du, dv) = (point.u as f64 - p[0], point.v as f64 - p[1]);
             let height_m = surface.heights_m()[vertex as usize];
             [du * east + dv * north, dv * east - du * north, height_m]
-        })
-    }
-
-    /// What of a triangle lies in the rectangle.
-    pub(crate) fn part_of(&self, triangle: u32, surface: &Surface) -> Polygon {
-        let Self { length, margin, .. } = *self;
-        let corners = self.corners_of(triangle, surface);
+        });
         // Most triangles lie wholly inside, or wholly beyond one side.
         let range = |axis: usize| {
             let [a, b, c] = corners.map(|corner| corner[axis]);

@@ -47,7 +47,8 @@ pub fn near_ground(ends: [[f64; 2]; 2], surface: &Surface, reach: f64) -> Option
         widen(&mut near_range_m, part.corners());
         widen(&mut beneath_range_m, beneath.part_of(triangle, surface).corners());
         covered += part.area();
-        rise_m = rise_m.max(gradient(near.corners_of(triangle, surface)));
+        let [east_m, north_m] = surface.gradient_m(triangle);
+        rise_m = rise_m.max(east_m.hypot(north_m));
     }
     if near_range_m[0] > near_range_m[1] {
         return None;
@@ -69,15 +70,6 @@ fn widen([lowest_m, highest_m]: &mut [f64; 2], corners: &[[f64; 3]]) {
         *lowest_m = lowest_m.min(height_m);
         *highest_m = highest_m.max(height_m);
     }
-}
-
-/// Metres that a triangle rises per step where it is steepest.
-fn gradient([a, b, c]: [[f64; 3]; 3]) -> f64 {
-    let [b, c] = [b, c].map(|corner| [0, 1, 2].map(|axis| corner[axis] - a[axis]));
-    let doubled_area = b[0] * c[1] - c[0] * b[1];
-    let along = b[2] * c[1] - c[2] * b[1];
-    let across = b[0] * c[2] - c[0] * b[2];
-    along.hypot(across) / doubled_area.abs()
 }
 
 /// Whatever lies in the rectangle around a segment, and more.

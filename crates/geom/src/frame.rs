@@ -305,12 +305,6 @@ impl Frame {
         ]
     }
 
-    /// Lattice steps in a metre of the working CRS.
-    #[must_use]
-    pub fn steps_per_m(&self) -> f64 {
-        (1_u64 << self.lattice_bits) as f64 / self.cell_m
-    }
-
     /// Where a position lies, in lattice steps: the other way round.
     #[must_use]
     pub fn fraction_of_position(&self, [x, y]: [f64; 2]) -> [f64; 2] {

@@ -184,6 +184,18 @@ impl Surface {
         self.height_from_corner_m(triangle, [(point.u - a.u) as f64, (point.v - a.v) as f64])
     }
 
+    /// How many metres the plane of `triangle` rises per lattice step east and per lattice step north.
+    #[must_use]
+    pub fn gradient_m(&self, triangle: u32) -> [f64; 2] {
+        let corners = self.triangles[triangle as usize].map(|vertex| vertex as usize);
+        let [a, b, c] = corners.map(|vertex| self.points[vertex]);
+        let [a_m, b_m, c_m] = corners.map(|vertex| self.heights_m[vertex]);
+        let [b, c] = [b, c].map(|p| [(p.u - a.u) as f64, (p.v - a.v) as f64]);
+        let (b_m, c_m) = (b_m - a_m, c_m - a_m);
+        let doubled_area = b[0] * c[1] - c[0] * b[1];
+        [(b_m * c[1] - c_m * b[1]) / doubled_area, (b[0] * c_m - c[0] * b_m) / doubled_area]
+    }
+
     /// All triangles whose bounding boxes meet `bounds`, in ascending order, without repetition, put
     /// into `out` in place of what it held.
     pub fn triangles_near(&self, bounds: LatticeBounds, out: &mut Vec<u32>) {

@@ -117,6 +117,8 @@ fn a_plane_is_reproduced_at_tile_scale() {
         assert!((surface.height_at_point_m(triangle, point) - expected_m).abs() < 1e-9);
         let at = [point.u as f64, point.v as f64];
         assert!((surface.height_in_triangle_m(triangle, at) - expected_m).abs() < 1e-9);
+        let [east_m, north_m] = surface.gradient_m(triangle).map(|m| m * f64::from(1 << 15));
+        assert!((east_m - 0.375).abs() < 1e-9 && (north_m - 0.625).abs() < 1e-9);
     }
 }
 

@@ -51,7 +51,8 @@ pub(super) struct Pipelines {
 impl Pipelines {
     pub(super) fn new(device: &Device, layouts: &Layouts) -> Self {
         let ground_attributes = vertex_attr_array![0 => Float32x3, 1 => Snorm8x4];
-        let segment_attributes = vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32];
+        let segment_attributes =
+            vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32, 3 => Uint32];
         let volume_attributes = vertex_attr_array![
             0 => Float32x2, 1 => Float32x2, 2 => Float32x2, 3 => Float32x2, 4 => Float32, 5 => Uint32
         ];

@@ -99,8 +99,8 @@ impl RoadBuffers {
 
 /// Bytes of one ground vertex: position as three f32, normal and skirt flag as four i8.
 pub(super) const GROUND_STRIDE: u64 = 16;
-/// Bytes of one road segment: two positions as three f32 each, class as u32.
-pub(super) const SEGMENT_STRIDE: u64 = 28;
+/// Bytes of one road segment: two positions as three f32 each, cross slope as f32, class as u32.
+pub(super) const SEGMENT_STRIDE: u64 = 32;
 /// Bytes of one road volume: two plan positions and two height ranges as two f32 each, rise as f32, class and other
 /// tile as u32.
 pub(super) const VOLUME_STRIDE: u64 = 40;
@@ -172,6 +172,7 @@ fn segment_bytes(tile: &TileGeometry) -> Vec<u8> {
     for segment in tile.roads.all() {
         bytes.extend_from_slice(bytemuck::cast_slice(&segment.start_in_tile));
         bytes.extend_from_slice(bytemuck::cast_slice(&segment.end_in_tile));
+        bytes.extend_from_slice(&segment.cross_slope.to_ne_bytes());
         bytes.extend_from_slice(&u32::from(segment.class.number()).to_ne_bytes());
     }
     bytes

@@ -1,6 +1,8 @@
 use corniche_geom::{Frame, TILE_CELLS, TileId};
 use corniche_tin::{Tin, decode_normal};
 
+use super::buckets::Buckets;
+
 /// A vertex of the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundVertex {
@@ -14,6 +16,8 @@ pub struct GroundVertex {
 ///
 /// A skirt hangs from every edge on the tile's border. Its lower vertices have the place and normal of the
 /// upper ones and a flag; the vertex shader lowers them, as deep as the neighbours drawn make necessary.
+///
+/// What is near a place is looked up in buckets that belong to the triangles: once made, a mesh is not to be changed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct GroundMesh {
     /// Vertices of the TIN in its order, then the lower vertices of the skirts.
@@ -22,6 +26,7 @@ pub struct GroundMesh {
     pub indices: Vec<u32>,
     /// How many of the indices are ground.
     pub surface_indices: usize,
+    buckets: Buckets,
 }
 
 impl GroundMesh {
@@ -46,10 +51,33 @@ impl GroundMesh {
             }
         };
         let vertices = tin.vertices().iter().zip(normals).map(place).collect();
-        let indices: Vec<u32> = tin.triangles().iter().flatten().copied().collect();
-        let mut mesh = Self { surface_indices: indices.len(), vertices, indices };
+        let mut mesh = Self::of_surface(vertices, tin.triangles().iter().flatten().copied());
         mesh.add_skirts(tin);
         mesh
+    }
+
+    /// Triangles without skirts, three indices each.
+    pub(crate) fn of_surface(
+        vertices: Vec<GroundVertex>,
+        indices: impl Iterator<Item = u32>,
+    ) -> Self {
+        let indices: Vec<u32> = indices.collect();
+        let buckets = Buckets::new(&vertices, &indices);
+        Self { surface_indices: indices.len(), vertices, indices, buckets }
+    }
+
+    /// Which triangles of the ground are near a place.
+    pub(crate) fn buckets(&self) -> &Buckets {
+        &self.buckets
+    }
+
+    /// The corners of a triangle of the ground, from the tile's reference point, true heights.
+    pub(crate) fn corners(&self, triangle: u32) -> [[f64; 3]; 3] {
+        let first = triangle as usize * 3;
+        [0, 1, 2].map(|k| {
+            let index = self.indices[first + k] as usize;
+            self.vertices[index].position_in_tile.map(f64::from)
+        })
     }
 
     fn add_skirts(&mut self, tin: &Tin) {

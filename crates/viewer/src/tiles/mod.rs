@@ -3,17 +3,18 @@
 //! [`TileSource::load`] is a pure function of the tile id and `&self`, so that a worker thread may call it;
 //! [`TileStore`] is what the frame loop holds: it takes requests and answers what is known.
 
+mod buckets;
 mod ground;
 mod package;
+mod relief;
 mod roads;
 
 use std::collections::BTreeMap;
 
-use corniche_drape::near_ground;
 use corniche_geom::{Bounds, Frame, TileId, barycentric};
 use corniche_tileset::{Terrain, TilePayload};
-use corniche_tin::{Placement, Surface};
 
+use self::relief::Relief;
 pub use self::{
     ground::{GroundMesh, GroundVertex},
     package::PackageSource,
@@ -66,24 +67,18 @@ impl TileGeometry {
             geometric_error_m: terrain.geometric_error_m,
             height_range_m: terrain.height_range_m,
         });
-        // Found here and not stored: where it is worth it a package would be half as large again.
-        let surface = terrain
-            .filter(|_| !lines.plan.is_empty())
-            .map(|terrain| Surface::new(&terrain.tin, Placement::of_tile(frame, id, quantum_m)));
-        let steps_per_m = frame.steps_per_m();
-        let reach = NearHeights::reach_m(bounds.width()) * steps_per_m;
-        let near = |ends: [[f64; 2]; 2]| {
-            let ends = ends.map(|at| frame.fraction_of_position(at));
-            let found = near_ground(ends, surface.as_ref()?, reach)?;
-            Some((found.range_m, found.rise_m * steps_per_m))
-        };
+        let relief = Relief::new(id, terrain, lines, frame, quantum_m);
         Self {
             id,
             reference_m,
             summary,
             ground,
-            roads: RoadSegments::new(&lines.ground, bounds, reference_m),
-            volumes: RoadVolumes::new(&lines.plan, bounds, reference_m, near),
+            roads: RoadSegments::new(&lines.ground, bounds, reference_m, |at_m| {
+                relief.gradient(at_m)
+            }),
+            volumes: RoadVolumes::new(&lines.plan, bounds, reference_m, |ends_m| {
+                relief.near(ends_m)
+            }),
             width_margin_m: lines.width_margin_m,
             width_m: bounds.width(),
         }
@@ -107,11 +102,8 @@ impl TileGeometry {
     #[must_use]
     pub fn ground_height_m(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let at = [x - self.reference_m[0], y - self.reference_m[1]];
-        self.ground.indices[..self.ground.surface_indices].chunks_exact(3).find_map(|corners| {
-            let corner = |k: usize| {
-                self.ground.vertices[corners[k] as usize].position_in_tile.map(f64::from)
-            };
-            let [a, b, c] = [corner(0), corner(1), corner(2)];
+        self.ground.buckets().at(at).iter().find_map(|triangle| {
+            let [a, b, c] = self.ground.corners(*triangle);
             let weights = barycentric(at, [a[0], a[1]], [b[0], b[1]], [c[0], c[1]]);
             // A millionth of slack: positions were rounded to f32 and the query must not fall between triangles.
             weights.iter().all(|weight| *weight >= -1e-6).then(|| {
@@ -194,17 +186,17 @@ impl<'a> TileStore<'a> {
         self.tiles.get(&id)
     }
 
-    /// Between which true heights all ground lies; `None` without any. Loads the root.
+    /// The root's ground: between which true heights all ground lies, and how far off the coarsest is; `None` without
+    /// any. Loads the root.
     ///
     /// # Errors
     /// When the root cannot be had.
-    pub fn ground_range_m(&mut self) -> Result<Option<[f64; 2]>, LoadTileError> {
+    pub fn coarsest_ground(&mut self) -> Result<Option<GroundSummary>, LoadTileError> {
         if !self.exists(TileId::ROOT) {
             return Ok(None);
         }
         self.load(&[Request { id: TileId::ROOT, priority_px: f64::INFINITY }])?;
-        let summary = self.get(TileId::ROOT).and_then(|root| root.summary);
-        Ok(summary.map(|ground| ground.height_range_m))
+        Ok(self.get(TileId::ROOT).and_then(|root| root.summary))
     }
 
     /// True height of the ground at a position, from the finest tile there; loads the tiles down to it.

@@ -18,12 +18,16 @@ fn segments_are_relative_and_sorted_by_class() {
         ground_line(6, vec![[10.0, 20.0, 1.0], [11.0, 20.0, 1.5], [12.0, 20.0, 1.0]]),
         ground_line(0, vec![[0.0, 0.0, 0.0], [10.0, 20.0, 1.0]]),
     ];
-    let roads = RoadSegments::new(&lines, TILE, [10.0, 20.0, 1.0]);
+    let gradient = |[x, _]: [f64; 2]| if x > 10.0 { [0.25, 0.5] } else { [3.0, -4.0] };
+    let roads = RoadSegments::new(&lines, TILE, [10.0, 20.0, 1.0], gradient);
     assert_eq!(roads.range_of(class(0)), 0..1);
     assert_eq!(roads.range_of(class(6)), 1..3);
     assert!(roads.range_of(class(3)).is_empty());
     assert_eq!(roads.all()[0].end_in_tile, [0.0; 3]);
     assert_eq!(roads.all()[1].end_in_tile, [1.0, 0.0, 0.5]);
+    assert_eq!(roads.all()[1].cross_slope, 0.5, "north is left of east");
+    // To the left of (1, 2) is (−2, 1).
+    assert!((roads.all()[0].cross_slope - -10.0 / 5.0_f32.sqrt()).abs() < 1e-6);
 }
 
 #[test]
@@ -35,12 +39,20 @@ fn volumes_are_relative_sorted_by_class_and_never_lower_or_shallower_than_the_gr
         ground_range_m: vec![range_m],
     };
     let lines = [line(5, [10.0, 20.0], [7.1, 9.3]), line(2, [20.0, 20.0], [1.0, 2.0])];
-    let roads = RoadVolumes::new(&lines, TILE, [10.0, 20.0, 1.0]);
+    let near = |[start, _]: [[f64; 2]; 2]| (start == [10.0, 20.0]).then_some(([8.1, 8.3], 0.7));
+    let roads = RoadVolumes::new(&lines, TILE, [10.0, 20.0, 1.0], near);
     assert_eq!((roads.range_of(class(2)), roads.range_of(class(5))), (0..1, 1..2));
     assert_eq!(roads.all()[0].start_in_tile, [10.0, 0.0]);
     let [low, high] = roads.all()[1].height_range_in_tile.map(f64::from);
     assert!(low < 7.1 - 1.0 && high > 9.3 - 1.0);
     assert!((low - 6.1).abs() < 1e-5 && (high - 8.3).abs() < 1e-5);
+
+    let near = roads.all()[1].near;
+    let [low, high] = near.range_in_tile.map(f64::from);
+    assert!(low < 8.1 - 1.0 && high > 8.3 - 1.0 && f64::from(near.rise) > 0.7);
+    assert!((low - 7.1).abs() < 1e-5 && (high - 7.3).abs() < 1e-5 && near.rise < 0.701);
+    let without = roads.all()[0].near;
+    assert!((without.range_in_tile[0] - 0.5).abs() < 1e-5 && without.rise < 1e-6, "{without:?}");
 }
 
 #[test]

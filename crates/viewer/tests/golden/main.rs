@@ -37,7 +37,7 @@ fn software() -> Option<Gpu> {
     is_pinned.then_some(gpu)
 }
 
-/// So steep across the roads that the quads of geometry leave part of them out.
+/// So uneven across the roads that the quads of geometry leave part of them out.
 fn steep(x: f64, y: f64) -> f64 {
     400.0 + 40.0 * (x / 60.0).sin() * (y / 75.0).cos()
 }

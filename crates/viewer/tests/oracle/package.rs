@@ -93,37 +93,58 @@ fn volumes_agree_with_the_reference_on_packages() {
             measure(&gpu, &format!("{name} far, {error_px} px"), &scene, &far);
         }
         for level in 0..=manifest.frame.max_level() {
-            let Some((scene, camera)) = level_scene(&package, level) else { continue };
-            measure(&gpu, &format!("{name}, level {level} alone"), &scene, &camera);
+            let tiles = tiles_of(&package, level);
+            for (place, found) in [("valley", busy_place(&tiles)), ("slope", steep_place(&tiles))] {
+                let Some(target) = found else { continue };
+                let cell_m = manifest.levels[usize::from(level)].cell_m;
+                let (scene, camera) = scene_at(&tiles, cell_m, target);
+                measure(&gpu, &format!("{name}, level {level} alone, {place}"), &scene, &camera);
+            }
         }
     }
 }
 
-/// The tile of a level with most roads and those around it, looked at from where a cell is eight pixels wide.
-fn level_scene(package: &FilePackage, level: u8) -> Option<(Scene, Camera)> {
+/// The tiles of a level that have ground.
+fn tiles_of(package: &FilePackage, level: u8) -> Vec<Tile> {
     let manifest = package.manifest();
-    let payload = |id| package.payload(id, Sections::ALL).unwrap().filter(|p| p.terrain.is_some());
-    let payloads: Vec<_> = package
-        .tile_ids()
-        .unwrap()
-        .into_iter()
-        .filter(|id| id.z() == level)
-        .filter_map(payload)
-        .collect();
-    let record = &manifest.levels[usize::from(level)];
-    let tiles: Vec<Tile> = payloads
-        .iter()
+    let margin_m = manifest.levels[usize::from(level)].width_margin_m;
+    let ids = package.tile_ids().unwrap().into_iter().filter(|id| id.z() == level);
+    ids.filter_map(|id| package.payload(id, Sections::ALL).unwrap())
+        .filter(|payload| payload.terrain.is_some())
         .map(|payload| {
             let (frame, quantum_m) = (&manifest.frame, manifest.vertical.quantum_m);
-            Tile::of_payload(payload, frame, quantum_m, record.width_margin_m, 0.0)
+            Tile::of_payload(&payload, frame, quantum_m, margin_m, 0.0)
         })
-        .collect();
+        .collect()
+}
+
+/// Along the longest line of the tile with most roads: as a rule in a valley.
+fn busy_place(tiles: &[Tile]) -> Option<DVec3> {
     let busiest = tiles.iter().max_by_key(|tile| tile.segments.len())?;
     let line = busiest.centers.iter().max_by_key(|line| line.points_m.len())?;
-    let target = DVec3::from_array(line.points_m[line.points_m.len() / 2]);
+    Some(DVec3::from_array(line.points_m[line.points_m.len() / 2]))
+}
+
+/// Where the ground is so steep across a road that it is steeper at one segment in twenty.
+fn steep_place(tiles: &[Tile]) -> Option<DVec3> {
+    let mut places: Vec<(f32, DVec3)> = Vec::new();
+    for tile in tiles {
+        let reference = DVec3::from_array(tile.geometry.reference_m);
+        places.extend(tile.geometry.roads.all().iter().map(|segment| {
+            let ends = [segment.start_in_tile, segment.end_in_tile];
+            let [start, end] = ends.map(|end| reference + DVec3::from_array(end.map(f64::from)));
+            (segment.cross_slope.abs(), start.midpoint(end))
+        }));
+    }
+    places.sort_by(|a, b| a.0.total_cmp(&b.0));
+    places.get(places.len() * 19 / 20).map(|(_, place)| *place)
+}
+
+/// A place among tiles of one level, looked at from where a cell is eight pixels wide.
+fn scene_at(tiles: &[Tile], cell_m: f64, target: DVec3) -> (Scene, Camera) {
     let orientation = Orientation { heading_deg: 30.0, pitch_deg: 45.0 };
     let unit = Camera::look_at(target, 1.0, orientation, SIZE);
-    let distance_m = record.cell_m / (8.0 * unit.pixel_at_unit_depth_m());
+    let distance_m = cell_m / (8.0 * unit.pixel_at_unit_depth_m());
     let camera = Camera::look_at(target, distance_m, orientation, SIZE);
     let near: Vec<Tile> = tiles
         .iter()
@@ -133,5 +154,5 @@ fn level_scene(package: &FilePackage, level: u8) -> Option<(Scene, Camera)> {
         })
         .cloned()
         .collect();
-    Some((Scene { tiles: near, style: Style::road_atlas() }, camera))
+    (Scene { tiles: near, style: Style::road_atlas() }, camera)
 }

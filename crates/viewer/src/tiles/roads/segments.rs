@@ -12,6 +12,8 @@ pub struct RoadSegment {
     pub start_in_tile: [f32; 3],
     /// The other end.
     pub end_in_tile: [f32; 3],
+    /// True metres that the ground rises per metre to the left of the way from start to end.
+    pub cross_slope: f32,
     /// Functional road class.
     pub class: FunctionalRoadClass,
 }
@@ -106,13 +108,27 @@ impl Side {
 }
 
 impl RoadList<RoadSegment> {
-    /// Cuts lines of the tile with these bounds into segments.
+    /// Cuts lines of the tile with these bounds into segments. `gradient` tells, for a position in the working CRS, how
+    /// many true metres the ground there rises per metre east and per metre north.
     #[must_use]
-    pub fn new(lines: &[GroundLine], tile: Bounds, reference_m: [f64; 3]) -> Self {
+    pub fn new(
+        lines: &[GroundLine],
+        tile: Bounds,
+        reference_m: [f64; 3],
+        gradient: impl Fn([f64; 2]) -> [f64; 2],
+    ) -> Self {
+        // A segment lies in one triangle, and its middle not on the rim, unless all of it does.
+        let cross_slope = |[x, y, _]: [f64; 3], [to_x, to_y, _]: [f64; 3]| {
+            let (dx, dy) = (to_x - x, to_y - y);
+            let length_m = dx.hypot(dy);
+            let [east, north] = gradient([f64::midpoint(x, to_x), f64::midpoint(y, to_y)]);
+            if length_m > 0.0 { ((north * dx - east * dy) / length_m) as f32 } else { 0.0 }
+        };
         let segments = lines.iter().flat_map(|line| {
             line.points_m.windows(2).map(|pair| RoadSegment {
                 start_in_tile: relative(pair[0], reference_m),
                 end_in_tile: relative(pair[1], reference_m),
+                cross_slope: cross_slope(pair[0], pair[1]),
                 class: line.class,
             })
         });
