@@ -1,9 +1,15 @@
 //! Harness of the scenarios: runs the real binary on real and made-up inputs.
 
+#[cfg(target_os = "linux")]
+mod display;
+
 use std::{
     path::{Path, PathBuf},
     process::{Command, Output},
 };
+
+#[cfg(target_os = "linux")]
+pub use display::{Display, without_display};
 
 /// The repository's root.
 #[must_use]
@@ -88,6 +94,41 @@ pub fn corniche<I: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = I
 #[expect(clippy::print_stderr, reason = "a test that is skipped says so")]
 pub fn skipped(why: &str) {
     eprintln!("skipped: {why}");
+}
+
+/// Whether a command failed for want of a graphics adapter, which is no failure unless `CORNICHE_REQUIRE_GPU` is set; says
+/// so. Any other failure is one.
+#[must_use]
+pub fn lacks_adapter(ran: &Ran) -> bool {
+    let lacks = ran.code == 1
+        && ran.err.contains("no graphics adapter found")
+        && std::env::var_os("CORNICHE_REQUIRE_GPU").is_none();
+    if lacks {
+        skipped(&ran.err);
+    }
+    lacks
+}
+
+/// Runs a command that draws from `package` into `output`; `None` where there is no adapter.
+#[must_use]
+pub fn draw(command: &str, package: &Path, output: &Path, options: &[&str]) -> Option<Ran> {
+    let mut arguments = vec![command.as_ref(), package.as_os_str(), "-o".as_ref()];
+    arguments.push(output.as_os_str());
+    arguments.extend(options.iter().map(std::ffi::OsStr::new));
+    let ran = corniche(arguments);
+    (!lacks_adapter(&ran)).then_some(ran)
+}
+
+/// A path as it is said on the command line.
+///
+/// # Panics
+/// When it is not UTF-8, as all paths of these tests are.
+#[must_use]
+pub fn text(path: &Path) -> &str {
+    match path.to_str() {
+        Some(text) => text,
+        None => panic!("{} is not UTF-8", path.display()),
+    }
 }
 
 /// Builds the `pass` sample into `package` with more `options`.

@@ -2,24 +2,11 @@
 
 use std::{fs, path::Path};
 
-use e2e::{Ran, build_pass, corniche, root, skipped};
-
-fn text(path: &Path) -> &str {
-    path.to_str().expect("paths of these tests are UTF-8")
-}
+use e2e::{Ran, build_pass, corniche, draw, root, text};
 
 /// `render` in a small size; `None` where there is no adapter.
 fn render(package: &Path, png: &Path, options: &[&str]) -> Option<Ran> {
-    let fixed = ["render", text(package), "-o", text(png), "--size", "200x150"];
-    let ran = corniche(fixed.into_iter().chain(options.iter().copied()));
-    if ran.code == 1
-        && std::env::var_os("CORNICHE_REQUIRE_GPU").is_none()
-        && ran.err.contains("adapter")
-    {
-        skipped(&ran.err);
-        return None;
-    }
-    Some(ran)
+    draw("render", package, png, &[&["--size", "200x150"], options].concat())
 }
 
 #[test]
@@ -99,4 +86,29 @@ fn a_style_of_ones_own_is_drawn_with_or_refused_by_what_is_wrong_in_it() {
     let ran = render(&package, &style, &["--style", text(&style)]).unwrap();
     assert_eq!(ran.code, 2, "{}", ran.err);
     assert!(fs::read_to_string(&style).unwrap().contains("amber"));
+}
+
+/// The adapter's own limit counts, not the least that all adapters have.
+#[test]
+fn a_picture_may_be_as_large_as_the_adapter_can_draw_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("pass.pmtiles");
+    build_pass(&package, &["--quiet"]);
+    let png = folder.path().join("a.png");
+    let Some(wide) =
+        draw("render", &package, &png, &["--size", "16384x24", "--supersampling", "2"])
+    else {
+        return;
+    };
+    assert_eq!(wide.code, 2, "{}", wide.err);
+    for words in ["16384 × 24", "2 × 2 samples"] {
+        assert!(wide.err.contains(words), "{words}: {}", wide.err);
+    }
+    assert!(!png.exists());
+    // An adapter with the least limit draws half of that.
+    let most = if wide.err.contains("it fits with --supersampling 1") { 16384 } else { 8192 };
+    let size = format!("{most}x24");
+    let ran = draw("render", &package, &png, &["--size", &size, "--supersampling", "1"]).unwrap();
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert_eq!(image::image_dimensions(&png).unwrap(), (most, 24));
 }

@@ -2,6 +2,7 @@ use std::{fmt, io};
 
 use corniche_pipeline::{BuildError, VerifyError};
 use corniche_tileset::OpenError;
+use corniche_viewer::gpu::GpuError;
 
 use crate::exit::ExitCode;
 
@@ -73,6 +74,22 @@ impl From<VerifyError> for Failure {
 impl From<OpenError> for Failure {
     fn from(error: OpenError) -> Self {
         Self::new(ExitCode::Unusable, error)
+    }
+}
+
+impl From<GpuError> for Failure {
+    fn from(error: GpuError) -> Self {
+        match error {
+            GpuError::TooLarge { size_px, samples_per_side, limit_px }
+                if samples_per_side > 1 && size_px.iter().all(|side| *side <= limit_px) =>
+            {
+                Self::unusable(format!("{error}; it fits with --supersampling 1"))
+            }
+            GpuError::TooLarge { .. } | GpuError::Empty { .. } | GpuError::Samples { .. } => {
+                Self::new(ExitCode::Unusable, error)
+            }
+            _ => Self::new(ExitCode::Failed, error),
+        }
     }
 }
 

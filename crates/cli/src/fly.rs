@@ -1,6 +1,7 @@
 //! `corniche fly`: a flight over a package, frame by frame: what each costs, as a list, pictures and a chart.
 
 mod list;
+mod outputs;
 mod pictures;
 mod summary;
 
@@ -8,7 +9,6 @@ use std::{
     fs,
     io::{self, Write as _},
     panic,
-    path::Path,
     sync::{
         atomic::{AtomicBool, Ordering},
         mpsc::{self, SyncSender},
@@ -18,22 +18,19 @@ use std::{
 
 use image::RgbaImage;
 
-use self::pictures::Pictures;
+use self::outputs::Outputs;
 #[cfg(test)]
 pub(crate) use self::summary::tests::frame;
 use crate::{
     args::{FlyArgs, Lod, Roads},
-    chart,
     exit::ExitCode,
     failure::Failure,
-    interrupt,
-    output::{Existing, Output},
-    styles,
+    interrupt, styles,
 };
 use corniche_viewer::{
-    Detail, FrameRecord, Replay, ReplayError, ReplayOptions, default_flight,
+    Detail, FrameRecord, Lifted, Replay, ReplayError, ReplayOptions, default_flight,
     flight::Flight,
-    gpu::{Gpu, GpuError, PassTimes},
+    gpu::{Gpu, PassTimes},
     stream::StreamBudget,
     style::Style,
     tiles::PackageSource,
@@ -70,58 +67,19 @@ pub(crate) fn gpu_ms(passes: &PassTimes) -> f64 {
 }
 
 pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
-    let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
-    let mut used: Vec<&Path> = vec![&args.package];
-    used.extend(args.flight.path.as_deref());
-    used.extend(styles::file_of(&args.look.style));
-    let csv = Output::create(&args.output, existing, &used)?;
-    used.push(&args.output);
-    let svg = create(args.svg.as_deref(), existing, &mut used)?;
-    let save_path = create(args.flight.save_path.as_deref(), existing, &mut used)?;
-    let pictures = args.png.as_deref().map(|folder| Pictures::create(folder, &used)).transpose()?;
-
+    let outputs = Outputs::create(args)?;
     let style = styles::style(&args.look.style)?;
     let methods = args.look.roads(&args.drawing.roads)?;
     let source = PackageSource::open(&args.package)?;
     interrupt::watch()?;
     let flight = flight(args, &source)?;
-    let plan = Plan {
-        args,
-        flight: &flight,
-        style: &style,
-        methods: &methods,
-        pictures: pictures.as_ref(),
-    };
+    let plan = Plan { args, flight: &flight, style: &style, methods: &methods, outputs: &outputs };
     let Drawn { runs, adapter } =
         if args.window { plan.fly_in_a_window()? } else { plan.fly(None)? };
 
-    if let Some(pictures) = pictures {
-        pictures.finish()?;
-    }
-    if let Some(svg) = svg {
-        let drawing = chart::frame_times(&runs, &adapter)
-            .map_err(|error| Failure::new(ExitCode::Failed, error))?;
-        svg.write_whole(drawing.as_bytes())?;
-    }
-    if let Some(save_path) = save_path {
-        let text = flight.to_text().map_err(|error| Failure::new(ExitCode::Failed, error))?;
-        save_path.write_whole(text.as_bytes())?;
-    }
-    csv.write_whole(list::to_csv(&runs).as_bytes())?;
+    outputs.finish(&flight, &runs, &adapter)?;
     io::stdout().lock().write_all(summary::to_text(&runs).as_bytes())?;
     Ok(ExitCode::Done)
-}
-
-/// Begins a file that is wanted, which is none of those `used`; then it is used too.
-fn create<'a>(
-    path: Option<&'a Path>,
-    existing: Existing,
-    used: &mut Vec<&'a Path>,
-) -> Result<Option<Output>, Failure> {
-    let Some(path) = path else { return Ok(None) };
-    let output = Output::create(path, existing, used)?;
-    used.push(path);
-    Ok(Some(output))
 }
 
 /// The flight asked for, else a pass along the data.
@@ -174,7 +132,7 @@ struct Plan<'a> {
     flight: &'a Flight,
     style: &'a Style,
     methods: &'a [Roads],
-    pictures: Option<&'a Pictures>,
+    outputs: &'a Outputs,
 }
 
 /// What came of them.
@@ -198,7 +156,8 @@ impl Watcher<'_> {
 }
 
 impl Plan<'_> {
-    /// Flies in a thread of its own while this one, the program's first, holds the window: most systems want it so.
+    /// Flies in a thread of its own while this one, the program's first, holds the window: most systems want it so. Without
+    /// a display there is no flight; a window that is lost on the way is missed, and no more.
     fn fly_in_a_window(&self) -> Result<Drawn, Failure> {
         // One picture ahead of the window: a flight is not faster than what is shown of it.
         let (window, pictures) = mpsc::sync_channel(1);
@@ -209,22 +168,35 @@ impl Plan<'_> {
             // The watcher goes with the thread, and the window with the watcher.
             let worker = scope.spawn(move || self.fly(Some(&watcher)));
             let watched = watch(&format!("{name} – Corniche"), self.args.drawing.size, pictures);
-            is_gone.store(true, Ordering::SeqCst);
+            let is_closed = match watched {
+                Ok(Watched::Lost(error)) => {
+                    let why = Failure::from(error);
+                    eprintln!("note: the window is lost, the flight goes on without it: {why}");
+                    Ok(false)
+                }
+                Ok(Watched::ToTheEnd) => Ok(false),
+                Ok(Watched::InPart) => Ok(true),
+                Err(error) => Err(error),
+            };
+            is_gone.store(!matches!(is_closed, Ok(false)), Ordering::SeqCst);
             let drawn = worker.join().unwrap_or_else(|panic| panic::resume_unwind(panic));
-            match (watched?, drawn) {
-                (Watched::InPart, Err(failure))
-                    if failure.code() == ExitCode::Interrupted && !interrupt::is_noted() =>
+            let is_closed = is_closed?;
+            match drawn {
+                Err(failure)
+                    if is_closed
+                        && failure.code() == ExitCode::Interrupted
+                        && !interrupt::is_noted() =>
                 {
                     let closed = anyhow::anyhow!("the window was closed before the flight's end");
                     Err(Failure::new(ExitCode::Interrupted, closed))
                 }
-                (_, drawn) => drawn,
+                drawn => drawn,
             }
         })
     }
 
     fn fly(&self, watcher: Option<&Watcher<'_>>) -> Result<Drawn, Failure> {
-        let gpu = Gpu::new().map_err(|error| Failure::new(ExitCode::Failed, error))?;
+        let gpu = Gpu::new()?;
         eprintln!("drawn by {}", gpu.adapter_name());
         let mut runs = Vec::new();
         for lod in once_each(&self.args.drawing.lod) {
@@ -249,12 +221,20 @@ impl Plan<'_> {
             is_gone || interrupt::is_noted()
         };
         let mut replay = Replay::new(gpu, &source, self.flight, &options, &is_stopped)?;
+        let Lifted { frames, most_m } = replay.lifted();
+        if frames > 0 {
+            eprintln!(
+                "note: {}, roads {}: in {frames} frames the eye was lifted off the ground, by up to {:.1} m",
+                lod.word(),
+                roads.word(),
+                // Rounded up: never "0.0 m".
+                (most_m * 10.0).ceil() / 10.0
+            );
+        }
         let mut records = Vec::new();
         while let Some(record) = replay.next_frame()? {
-            if let Some(pictures) = self.pictures {
-                let name = format!("{}-{}-{:05}.png", lod.word(), roads.word(), record.frame);
-                pictures.add(&name, &replay)?;
-            }
+            let name = format!("{}-{}-{:05}.png", lod.word(), roads.word(), record.frame);
+            self.outputs.add_picture(&name, &replay)?;
             if let Some(watcher) = watcher {
                 watcher.show(&replay)?;
             }
@@ -290,14 +270,12 @@ fn once_each<T: Copy + PartialEq>(given: &[T]) -> Vec<T> {
 
 impl From<ReplayError> for Failure {
     fn from(error: ReplayError) -> Self {
-        let code = match &error {
+        let code = match error {
+            ReplayError::Gpu(error) => return error.into(),
             ReplayError::Stopped => {
                 return Self::new(ExitCode::Interrupted, anyhow::anyhow!("interrupted"));
             }
-            ReplayError::ReadBack(_)
-            | ReplayError::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }) => {
-                ExitCode::Failed
-            }
+            ReplayError::ReadBack(_) => ExitCode::Failed,
             _ => ExitCode::Unusable,
         };
         Self::new(code, error)

@@ -2,10 +2,11 @@
 
 use std::{
     fmt::Display,
-    io::{self, BufWriter, Write},
+    io::{self, BufWriter, Cursor, Write},
     path::{Path, PathBuf},
 };
 
+use image::RgbaImage;
 use tempfile::NamedTempFile;
 
 use crate::{exit::ExitCode, failure::Failure};
@@ -60,10 +61,41 @@ impl Output {
 
     /// Puts the file in its place.
     pub(crate) fn finish(self) -> Result<(), Failure> {
+        self.end()?.place()
+    }
+
+    /// Writes the whole file at once.
+    pub(crate) fn write_whole(self, bytes: &[u8]) -> Result<(), Failure> {
+        self.fill(bytes)?.place()
+    }
+
+    /// Writes the whole file, which takes its place later: together with others.
+    pub(crate) fn fill(mut self, bytes: &[u8]) -> Result<Complete, Failure> {
+        self.file.write_all(bytes).map_err(|error| failed(&self.target, &error))?;
+        self.end()
+    }
+
+    fn end(self) -> Result<Complete, Failure> {
         let Self { target, existing, file } = self;
         let file = file
             .into_inner()
             .map_err(|error| failed(&target, &io::IntoInnerError::into_error(error)))?;
+        Ok(Complete { target, existing, file })
+    }
+}
+
+/// A file that is written to its end, beside its target.
+#[derive(Debug)]
+pub(crate) struct Complete {
+    target: PathBuf,
+    existing: Existing,
+    file: NamedTempFile,
+}
+
+impl Complete {
+    /// Puts it in its place.
+    pub(crate) fn place(self) -> Result<(), Failure> {
+        let Self { target, existing, file } = self;
         let placed = match existing {
             Existing::Replace => file.persist(&target),
             Existing::Keep => file.persist_noclobber(&target),
@@ -73,12 +105,6 @@ impl Output {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(exists(&target)),
             Err(error) => Err(failed(&target, &error)),
         }
-    }
-
-    /// Writes the whole file at once.
-    pub(crate) fn write_whole(mut self, bytes: &[u8]) -> Result<(), Failure> {
-        self.file.write_all(bytes).map_err(|error| failed(&self.target, &error))?;
-        self.finish()
     }
 }
 
@@ -105,6 +131,15 @@ fn place_of(path: &Path) -> PathBuf {
         (Ok(folder), Some(name)) => folder.join(name),
         _ => path.to_path_buf(),
     }
+}
+
+/// A picture's file.
+pub(crate) fn png(picture: &RgbaImage) -> Result<Vec<u8>, Failure> {
+    let mut bytes = Cursor::new(Vec::new());
+    picture
+        .write_to(&mut bytes, image::ImageFormat::Png)
+        .map_err(|error| Failure::new(ExitCode::Failed, error))?;
+    Ok(bytes.into_inner())
 }
 
 pub(crate) fn failed(target: &Path, error: &io::Error) -> Failure {
@@ -154,6 +189,20 @@ mod tests {
         assert_eq!(fs::read(&target).unwrap(), b"precious");
         Output::create(&target, Existing::Replace, &[]).unwrap().write_whole(b"new").unwrap();
         assert_eq!(fs::read(&target).unwrap(), b"new");
+    }
+
+    #[test]
+    fn files_that_belong_together_are_all_written_before_one_takes_its_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let targets = ["a.csv", "b.svg"].map(|name| folder.path().join(name));
+        let complete = targets.each_ref().map(|target| {
+            Output::create(target, Existing::Keep, &[]).unwrap().fill(b"whole").unwrap()
+        });
+        assert!(targets.iter().all(|target| !target.exists()));
+        for file in complete {
+            file.place().unwrap();
+        }
+        assert!(targets.iter().all(|target| fs::read(target).unwrap() == b"whole"));
     }
 
     #[test]

@@ -1,14 +1,14 @@
 //! `corniche render`: a picture of a package, without a window.
 
-use std::{io::Cursor, path::Path};
+use std::path::Path;
 
-use corniche_viewer::{CameraRequest, RenderError, RenderRequest, camera::Orientation, render};
+use corniche_viewer::{RenderError, RenderRequest, render};
 
 use crate::{
     args::RenderArgs,
     exit::ExitCode,
     failure::Failure,
-    output::{Existing, Output},
+    output::{Existing, Output, png},
     styles,
 };
 
@@ -23,15 +23,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         package: args.package.clone(),
         size_px: args.size,
         roads: args.look.road_options(roads),
-        camera: match args.look_at {
-            Some([lon_deg, lat_deg]) => CameraRequest::LookAt {
-                lon_deg,
-                lat_deg,
-                distance_m: args.distance,
-                orientation: Orientation { heading_deg: args.heading, pitch_deg: args.pitch },
-            },
-            None => CameraRequest::FrameAll,
-        },
+        camera: args.camera.request(),
         screen_space_error_px: args.screen_space_error,
         exaggeration: args.exaggeration,
         supersampling: args.supersampling,
@@ -39,12 +31,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     };
     let output = Output::create(&args.output, Existing::Replace, &used)?;
     let rendered = render(&request)?;
-    let mut png = Cursor::new(Vec::new());
-    rendered
-        .picture
-        .write_to(&mut png, image::ImageFormat::Png)
-        .map_err(|error| Failure::new(ExitCode::Failed, error))?;
-    output.write_whole(png.get_ref())?;
+    output.write_whole(&png(&rendered.picture)?)?;
     let report = &rendered.report;
     eprintln!(
         "{}: {} tiles, {} triangles, {} road segments, drawn by {}",
@@ -66,8 +53,9 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
 
 impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
-        let code = match &error {
-            RenderError::Gpu(_) | RenderError::ReadBack(_) => ExitCode::Failed,
+        let code = match error {
+            RenderError::Gpu(error) => return error.into(),
+            RenderError::ReadBack(_) => ExitCode::Failed,
             _ => ExitCode::Unusable,
         };
         Self::new(code, error)

@@ -1,9 +1,8 @@
 //! Styles by name or path: texts to what the viewer draws with.
 
 use std::{
-    fs,
+    io,
     path::{Path, PathBuf},
-    time::SystemTime,
 };
 
 use corniche_presets::{
@@ -45,34 +44,53 @@ fn parse(what: &str, text: &str) -> Result<Style, Failure> {
 }
 
 /// The file of a style, looked at again and again while a window shows it.
+///
+/// It is read each time: a few kilobytes, and no time stamp is fine enough to tell of every change.
 #[derive(Debug, Clone)]
 pub(crate) struct StyleFile {
     path: PathBuf,
-    /// When it was changed last, as far as is known; `None` while it cannot be told.
-    modified: Option<SystemTime>,
+    /// What it said when it was last told of; `None` while that is not known.
+    told: Option<Result<String, String>>,
+    /// What it said the last time, if that was no style: perhaps it was being written just then.
+    doubted: Option<Result<String, String>>,
 }
 
 impl StyleFile {
     /// The file behind `--style`; `None` for a style that comes with the program, which never changes.
     pub(crate) fn of(name_or_path: &str) -> Option<Self> {
         let path = file_of(name_or_path)?.to_owned();
-        let modified = modified(&path);
-        Some(Self { path, modified })
+        let told = said(&path);
+        Some(Self { path, told, doubted: None })
     }
 
-    /// The style anew when the file has changed since it was last looked at, or why it is none; said once a change. A file
-    /// that is away for a moment, as while an editor replaces it, has not changed.
+    /// The style anew when the file says something else than was last told, or why it is none: told once, and only when two
+    /// looks in a row found the same, for a look may fall between an editor's emptying a file and filling it. A file that is
+    /// away for a moment, as while an editor replaces it, has not changed.
     pub(crate) fn reload_if_changed(&mut self) -> Option<Result<Style, Failure>> {
-        let modified = modified(&self.path)?;
-        if self.modified.replace(modified) == Some(modified) {
+        let said = said(&self.path)?;
+        let doubted = self.doubted.take();
+        if self.told.as_ref() == Some(&said) {
             return None;
         }
-        Some(read(&self.path))
+        let style = match &said {
+            Ok(text) => parse(&format!("style {}", self.path.display()), text),
+            Err(error) => Err(Failure::unusable(format!("style {}: {error}", self.path.display()))),
+        };
+        if style.is_err() && doubted.as_ref() != Some(&said) {
+            self.doubted = Some(said);
+            return None;
+        }
+        self.told = Some(said);
+        Some(style)
     }
 }
 
-fn modified(path: &Path) -> Option<SystemTime> {
-    fs::metadata(path).and_then(|metadata| metadata.modified()).ok()
+/// The text of a file, or why there is none to read; `None` when there is no file.
+fn said(path: &Path) -> Option<Result<String, String>> {
+    match read_text(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+        said => Some(said.map_err(|error| error.to_string())),
+    }
 }
 
 fn of_sheet(sheet: &StyleSheet) -> Style {
@@ -115,7 +133,10 @@ fn color(Rgb8(channels): Rgb8) -> Rgb {
 
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
+    use std::{
+        fs,
+        time::{Duration, SystemTime},
+    };
 
     use super::*;
 
@@ -138,30 +159,55 @@ mod tests {
         assert!(message.contains("mine.toml") && message.contains("line 1"), "{message}");
     }
 
+    /// A look finds whatever changed, also what no time stamp tells of.
     #[test]
     fn a_style_is_read_again_when_its_file_changes_and_only_then() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("mine.toml");
-        let name = path.to_str().unwrap();
-        let write = |text: &str, seconds: u64| {
+        let write = |text: &str| {
             fs::write(&path, text).unwrap();
-            let time = SystemTime::UNIX_EPOCH + Duration::from_secs(seconds);
-            fs::File::options().write(true).open(&path).unwrap().set_modified(time).unwrap();
+            let file = fs::File::options().write(true).open(&path).unwrap();
+            file.set_modified(SystemTime::UNIX_EPOCH + Duration::from_secs(1000)).unwrap();
         };
-        write(style_preset("road-atlas").unwrap(), 1000);
-        let mut file = StyleFile::of(name).unwrap();
+        let [atlas, dark] = ["road-atlas", "dark"].map(|name| style_preset(name).unwrap());
+        write(atlas);
+        let mut file = StyleFile::of(path.to_str().unwrap()).unwrap();
         assert!(file.reload_if_changed().is_none());
-        // An older file in its place, as from a backup, is another one too.
-        write(style_preset("dark").unwrap(), 500);
+        write(dark);
         assert_eq!(file.reload_if_changed().unwrap().unwrap(), style("dark").unwrap());
         assert!(file.reload_if_changed().is_none());
-        write("outline_px = high", 2000);
-        assert!(file.reload_if_changed().unwrap().is_err());
-        assert!(file.reload_if_changed().is_none(), "an error is said once");
-        fs::remove_file(&path).unwrap();
-        assert!(file.reload_if_changed().is_none());
-        write(style_preset("dark").unwrap(), 3000);
+        let as_long = dark.replace("hillshade = 0.75", "hillshade = 0.25");
+        assert!(as_long != dark && as_long.len() == dark.len());
+        write(&as_long);
         assert!(file.reload_if_changed().unwrap().is_ok());
         assert!(StyleFile::of("dark").is_none());
+    }
+
+    #[test]
+    fn what_is_no_style_is_told_once_and_not_while_it_may_still_be_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mine.toml");
+        let [atlas, dark] = ["road-atlas", "dark"].map(|name| style_preset(name).unwrap());
+        fs::write(&path, atlas).unwrap();
+        let mut file = StyleFile::of(path.to_str().unwrap()).unwrap();
+        // Emptied, begun, complete.
+        for part in [0, dark.len() / 2] {
+            fs::write(&path, &dark[..part]).unwrap();
+            assert!(file.reload_if_changed().is_none(), "{part} bytes of it");
+        }
+        fs::write(&path, dark).unwrap();
+        assert_eq!(file.reload_if_changed().unwrap().unwrap(), style("dark").unwrap());
+
+        for broken in [&b"outline_px = high"[..], b"\xff\xfe"] {
+            fs::write(&path, broken).unwrap();
+            assert!(file.reload_if_changed().is_none(), "perhaps it is being written");
+            let message = file.reload_if_changed().unwrap().unwrap_err().to_string();
+            assert!(message.contains("mine.toml"), "{message}");
+            assert!(file.reload_if_changed().is_none(), "an error is said once");
+        }
+        fs::remove_file(&path).unwrap();
+        assert!(file.reload_if_changed().is_none());
+        fs::write(&path, dark).unwrap();
+        assert!(file.reload_if_changed().unwrap().is_ok(), "what was right before is right again");
     }
 }

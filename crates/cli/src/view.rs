@@ -1,19 +1,26 @@
 //! `corniche view`: a window on a package.
 
-use std::path::PathBuf;
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use clap::{Args, ValueEnum};
 use corniche_presets::style_preset_names;
-use corniche_viewer::{CameraRequest, camera::Orientation, stream::StreamBudget};
+use corniche_viewer::{stream::StreamBudget, tiles::PackageSource};
 use corniche_window::{
-    NamedStyle, Reload, WindowError, WindowRequest, controls::Inertia, run as open_window,
+    BeginTrace, Closed, End, NamedStyle, Reload, WindowError, WindowRequest, controls::Inertia,
+    run as open_window,
 };
 
 use crate::{
-    args::{LookArgs, Roads, parse_bytes, parse_position, parse_size},
+    args::{CameraArgs, LookArgs, Roads, parse_bytes, parse_size},
     exit::ExitCode,
     failure::Failure,
-    styles::{StyleFile, style},
+    interrupt,
+    output::{Existing, Output},
+    styles::{StyleFile, file_of, style},
 };
 
 /// Tiles being decoded at once.
@@ -40,24 +47,8 @@ pub(crate) struct ViewArgs {
     /// Width and height of the window at first, in pixels
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x800", value_parser = parse_size)]
     pub(crate) size: [u32; 2],
-    /// Look at this longitude and latitude (degrees, WGS84) instead of the whole package
-    #[arg(long, value_name = "LON,LAT", value_parser = parse_position, allow_hyphen_values = true)]
-    pub(crate) look_at: Option<[f64; 2]>,
-    /// Distance from the eye to the point looked at, in metres
-    #[arg(long, value_name = "METRES", default_value_t = 5000.0, requires = "look_at")]
-    pub(crate) distance: f64,
-    /// Direction of view, in degrees clockwise from north
-    #[arg(
-        long,
-        value_name = "DEGREES",
-        default_value_t = 0.0,
-        requires = "look_at",
-        allow_hyphen_values = true
-    )]
-    pub(crate) heading: f64,
-    /// Tilt of the view, in degrees: 0 looks straight down, 85 almost at the horizon
-    #[arg(long, value_name = "DEGREES", default_value_t = 60.0, requires = "look_at")]
-    pub(crate) pitch: f64,
+    #[command(flatten)]
+    pub(crate) camera: CameraArgs,
     /// Terrain error that may be seen, in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 2.0)]
     pub(crate) screen_space_error: f64,
@@ -65,7 +56,7 @@ pub(crate) struct ViewArgs {
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     pub(crate) exaggeration: f64,
     /// Samples per pixel along each side, averaged [default: 2, and 1 without a graphics card]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=3))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4))]
     pub(crate) supersampling: Option<u32>,
     /// Memory for tiles on the graphics card, such as 512M or 4G
     #[arg(long, value_name = "BYTES", default_value = "512M", value_parser = parse_bytes)]
@@ -76,10 +67,10 @@ pub(crate) struct ViewArgs {
     /// How movements end
     #[arg(long, value_enum, default_value_t = Motion::Soft)]
     pub(crate) motion: Motion,
-    /// Where pictures (key P) and recorded flights are saved, numbered
+    /// Where pictures (key P) and recorded flights (key C) are saved, numbered; no file is replaced
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     pub(crate) folder: PathBuf,
-    /// Diagnostic: write a line per frame, with the cursor, the ground under it, the camera and the tiles
+    /// Diagnostic: write a line per frame to a new file, with the cursor, the ground under it, the camera and the tiles
     #[arg(long, value_name = "CSV")]
     pub(crate) trace: Option<PathBuf>,
 }
@@ -91,18 +82,22 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         styles.push(NamedStyle { name: name.to_owned(), style: style(name)? });
     }
     let roads = args.look.roads(&[args.roads])?[0];
+    let used: Vec<&Path> =
+        [Some(args.package.as_path()), file_of(chosen)].into_iter().flatten().collect();
+    let trace = args.trace.as_deref().map(|path| begin_trace(path, &used)).transpose()?;
+    if args.folder.exists() && !args.folder.is_dir() {
+        return Err(Failure::unusable(format!(
+            "--folder {} is a file; give a folder for pictures and flights",
+            args.folder.display()
+        )));
+    }
+    let source = PackageSource::open(&args.package)?;
+    interrupt::watch()?;
     let request = WindowRequest {
-        package: args.package.clone(),
+        name: args.package.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        source: Arc::new(source),
         size_px: args.size,
-        camera: match args.look_at {
-            Some([lon_deg, lat_deg]) => CameraRequest::LookAt {
-                lon_deg,
-                lat_deg,
-                distance_m: args.distance,
-                orientation: Orientation { heading_deg: args.heading, pitch_deg: args.pitch },
-            },
-            None => CameraRequest::FrameAll,
-        },
+        camera: args.camera.request(),
         roads: args.look.road_options(roads),
         styles,
         reload: reload(chosen),
@@ -119,10 +114,37 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
             Motion::Prompt => Inertia::Off,
         },
         folder: args.folder.clone(),
-        trace: args.trace.clone(),
+        trace,
+        is_stopped: Box::new(interrupt::is_noted),
     };
-    open_window(request)?;
-    Ok(ExitCode::Done)
+    let Closed { end, last_news } = open_window(request);
+    for news in last_news {
+        eprintln!("{news}");
+    }
+    match end? {
+        End::Closed => Ok(ExitCode::Done),
+        End::Stopped => Err(Failure::new(ExitCode::Interrupted, anyhow::anyhow!("interrupted"))),
+    }
+}
+
+/// Checks where the trace is to be, as with any other file; it is begun when there is a window. Whoever reads along finds
+/// it there from the first line on, so it does not wait beside its place until it is complete.
+fn begin_trace(path: &Path, used: &[&Path]) -> Result<BeginTrace, Failure> {
+    drop(Output::create(path, Existing::Replace, used)?);
+    if path.symlink_metadata().is_ok() {
+        return Err(Failure::new(
+            ExitCode::Exists,
+            anyhow::anyhow!("--trace {} exists already; choose another name", path.display()),
+        ));
+    }
+    let path = path.to_owned();
+    Ok(Box::new(move || {
+        let begun = fs::OpenOptions::new().write(true).create_new(true).open(&path);
+        let file = begun.map_err(|error| {
+            io::Error::new(error.kind(), format!("{}: {error}", path.display()))
+        })?;
+        Ok(Box::new(file))
+    }))
 }
 
 /// Reads the file of a style again whenever it changes.
@@ -137,11 +159,11 @@ fn reload(name_or_path: &str) -> Option<Reload> {
 impl From<WindowError> for Failure {
     fn from(error: WindowError) -> Self {
         let code = match &error {
-            WindowError::Open(_)
-            | WindowError::Load(_)
+            WindowError::Load(_)
             | WindowError::NoGround { .. }
-            | WindowError::OffGround { .. }
-            | WindowError::Range { .. }
+            | WindowError::OverBudget { .. }
+            | WindowError::OffGround(_)
+            | WindowError::Range(_)
             | WindowError::NoStyle
             | WindowError::Trace { .. } => ExitCode::Unusable,
             _ => ExitCode::Failed,

@@ -132,21 +132,30 @@ impl Flight {
     /// # Errors
     /// Never for a flight made here; the writer of the text is another's.
     pub fn to_text(&self) -> Result<String, FlightError> {
-        let keyframe = self.times_s.iter().zip(&self.values).map(|(time_s, value)| {
-            let [x, y, height_m, heading_deg, pitch_deg] = *value;
+        let keyframe = self.keyframes().map(|Keyframe { time_s, pose }| {
+            let [x, y, height_m] = pose.eye_m;
             KeyframeRecord {
-                time_s: *time_s,
+                time_s,
                 lon_deg: None,
                 lat_deg: None,
                 x_m: Some(x),
                 y_m: Some(y),
                 height_m,
-                heading_deg,
-                pitch_deg,
+                heading_deg: pose.orientation.heading_deg,
+                pitch_deg: pose.orientation.pitch_deg,
             }
         });
         toml::to_string(&FlightFile { keyframe: keyframe.collect() })
             .map_err(|error| FlightError::Syntax { message: error.to_string() })
+    }
+
+    /// Its keyframes in order. Headings may be beyond a full turn.
+    pub fn keyframes(&self) -> impl Iterator<Item = Keyframe> {
+        self.times_s.iter().zip(&self.values).map(|(time_s, value)| {
+            let [x, y, height_m, heading_deg, pitch_deg] = *value;
+            let orientation = Orientation { heading_deg, pitch_deg };
+            Keyframe { time_s: *time_s, pose: Pose { eye_m: [x, y, height_m], orientation } }
+        })
     }
 
     /// When it begins and ends, seconds.

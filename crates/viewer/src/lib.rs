@@ -13,22 +13,25 @@
 //! This crate never depends on `pipeline`, `dem` or `osm`: it learns everything from the package. It never
 //! writes a file.
 
+pub mod above;
 mod attribution;
 pub mod camera;
 pub mod flight;
 pub mod gpu;
 pub mod lod;
 pub mod pick;
-mod range;
+pub mod range;
 mod render;
 mod replay;
 pub mod scene;
 pub mod stream;
 pub mod style;
 pub mod tiles;
+mod viewpoint;
 
 pub use attribution::draw_attribution;
 pub use range::OutOfRange;
-pub use render::{CameraRequest, RenderError, RenderReport, RenderRequest, Rendered, render};
-pub use replay::{Detail, FrameRecord, Replay, ReplayError, ReplayOptions, default_flight};
+pub use render::{RenderError, RenderReport, RenderRequest, Rendered, render};
+pub use replay::{Detail, FrameRecord, Lifted, Replay, ReplayError, ReplayOptions, default_flight};
 pub use scene::{CapTest, Caps, ClassSet, Outline, RoadMethod, RoadOptions, WidthGrowth};
+pub use viewpoint::{CameraRequest, OffGround, ViewpointError};

@@ -30,76 +30,93 @@ pub fn ground_at<'a>(
     eye_in_world: DVec3,
     ray_in_world: DVec3,
 ) -> Option<GroundHit> {
-    let mut met: Vec<(f64, &TileGeometry)> = tiles
+    let mut met: Vec<([f64; 2], &TileGeometry)> = tiles
         .filter_map(|tile| {
-            let enters = entry(&world_box(tile, vertical_scale)?, eye_in_world, ray_in_world)?;
-            Some((enters, tile))
+            let met = depths_within(&world_box(tile, vertical_scale)?, eye_in_world, ray_in_world)?;
+            Some((met, tile))
         })
         .collect();
-    met.sort_by(|a, b| a.0.total_cmp(&b.0));
+    met.sort_by(|([a, _], _), ([b, _], _)| a.total_cmp(b));
     let mut nearest = f64::INFINITY;
-    for (enters, tile) in met {
+    for ([enters, leaves], tile) in met {
         if enters > nearest {
             break;
         }
         let [x, y, height_m] = tile.reference_m;
         let eye_in_tile = eye_in_world - DVec3::new(x, y, height_m * vertical_scale);
-        nearest = nearest.min(first_in_tile(tile, vertical_scale, eye_in_tile, ray_in_world));
+        let ray = Ray { eye: eye_in_tile, way: ray_in_world, enters, leaves };
+        nearest = nearest.min(ray.first_in_tile(tile, vertical_scale));
     }
     nearest
         .is_finite()
         .then(|| GroundHit { at_in_world: eye_in_world + ray_in_world * nearest, depth: nearest })
 }
 
-/// Depth of the first hit; infinite without one.
-fn first_in_tile(tile: &TileGeometry, vertical_scale: f64, eye: DVec3, ray: DVec3) -> f64 {
-    let scale = DVec3::new(1.0, 1.0, vertical_scale);
-    let corner = |index: u32| {
-        let [x, y, z] = tile.ground.vertices[index as usize].position_in_tile.map(f64::from);
-        DVec3::new(x, y, z) * scale
-    };
-    let surface = &tile.ground.indices[..tile.ground.surface_indices];
-    surface
-        .chunks_exact(3)
-        .filter_map(|corners| {
-            let a = corner(corners[0]);
-            let (ab, ac) = (corner(corners[1]) - a, corner(corners[2]) - a);
-            let across = ray.cross(ac);
-            let volume = ab.dot(across);
-            if volume == 0.0 {
-                return None;
+/// A ray relative to a tile's reference point, and at which depths it enters and leaves the tile's box.
+struct Ray {
+    eye: DVec3,
+    way: DVec3,
+    enters: f64,
+    leaves: f64,
+}
+
+impl Ray {
+    /// Depth of the first hit; infinite without one. Looks at the triangles beneath the ray, column by column of the
+    /// tile's buckets, until one of them is nearer than all to come.
+    fn first_in_tile(&self, tile: &TileGeometry, vertical_scale: f64) -> f64 {
+        let plan = |depth: f64| (self.eye + self.way * depth).truncate().to_array();
+        let mut nearest = f64::INFINITY;
+        for (share, triangles) in tile.ground.buckets().along(plan(self.enters), plan(self.leaves))
+        {
+            if self.enters + share * (self.leaves - self.enters) > nearest {
+                break;
             }
-            let from_a = eye - a;
-            let b_share = from_a.dot(across) / volume;
-            let above = from_a.cross(ab);
-            let c_share = ray.dot(above) / volume;
-            let depth = ac.dot(above) / volume;
-            let is_inside =
-                b_share >= -SLACK && c_share >= -SLACK && b_share + c_share <= 1.0 + SLACK;
-            (is_inside && depth > 0.0).then_some(depth)
-        })
-        .fold(f64::INFINITY, f64::min)
+            let hits = triangles.filter_map(|triangle| {
+                self.hit(
+                    tile.ground
+                        .corners(triangle)
+                        .map(|[x, y, height_m]| DVec3::new(x, y, height_m * vertical_scale)),
+                )
+            });
+            nearest = hits.fold(nearest, f64::min);
+        }
+        nearest
+    }
+
+    /// Depth at which it meets a triangle.
+    fn hit(&self, [a, b, c]: [DVec3; 3]) -> Option<f64> {
+        let (ab, ac) = (b - a, c - a);
+        let across = self.way.cross(ac);
+        let volume = ab.dot(across);
+        if volume == 0.0 {
+            return None;
+        }
+        let from_a = self.eye - a;
+        let b_share = from_a.dot(across) / volume;
+        let above = from_a.cross(ab);
+        let c_share = self.way.dot(above) / volume;
+        let depth = ac.dot(above) / volume;
+        let is_inside = b_share >= -SLACK && c_share >= -SLACK && b_share + c_share <= 1.0 + SLACK;
+        (is_inside && depth > 0.0).then_some(depth)
+    }
 }
 
 /// All ground of a tile; `None` without any.
 fn world_box(tile: &TileGeometry, vertical_scale: f64) -> Option<WorldBox> {
-    let range_m = tile.summary?.height_range_m;
+    let [low_m, high_m] = tile.summary?.height_range_m.map(|height_m| height_m * vertical_scale);
     let [x, y, _] = tile.reference_m;
-    let half_m = tile.width_m / 2.0;
+    // Positions were rounded to f32, and triangles are larger than they are.
+    let slack_m = 2.0 * SLACK * (tile.width_m + high_m - low_m);
+    let half_m = tile.width_m / 2.0 + slack_m;
     let plan =
         Bounds { min_x: x - half_m, min_y: y - half_m, max_x: x + half_m, max_y: y + half_m };
-    // Heights were rounded to f32 with the rest.
-    let slack_m = tile.width_m * SLACK;
-    Some(WorldBox::new(
-        plan,
-        [range_m[0] * vertical_scale - slack_m, range_m[1] * vertical_scale + slack_m],
-    ))
+    Some(WorldBox::new(plan, [low_m - slack_m, high_m + slack_m]))
 }
 
-/// Where the ray enters the box, 0 inside it; `None` when it misses.
+/// The depths at which the ray enters the box, 0 inside it, and leaves it; `None` when it misses.
 ///
 /// Source: Kay & Kajiya 1986, *Ray Tracing Complex Scenes*: the latest entry into three slabs, before the first exit.
-fn entry(subject: &WorldBox, eye: DVec3, ray: DVec3) -> Option<f64> {
+fn depths_within(subject: &WorldBox, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
     let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
     for axis in 0..3 {
         if ray[axis] == 0.0 {
@@ -112,7 +129,7 @@ fn entry(subject: &WorldBox, eye: DVec3, ray: DVec3) -> Option<f64> {
         enters = enters.max(ends[0].min(ends[1]));
         leaves = leaves.min(ends[0].max(ends[1]));
     }
-    (enters <= leaves).then_some(enters)
+    (enters <= leaves).then_some([enters, leaves])
 }
 
 #[cfg(test)]

@@ -9,30 +9,29 @@ use crate::{
 
 /// A tile of 100 m around (`x`, `y`): a grid of 11 × 11 nodes at `height_m` of their place.
 fn tile(x: f64, y: f64, height_m: impl Fn(f64, f64) -> f64) -> TileGeometry {
-    let mut ground = GroundMesh::default();
+    let (mut vertices, mut indices) = (Vec::new(), Vec::new());
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for row in 0..11_u32 {
         for column in 0..11_u32 {
             let [dx, dy] = [column, row].map(|step| f64::from(step) * 10.0 - 50.0);
             let z = height_m(x + dx, y + dy);
             (low, high) = (low.min(z), high.max(z));
-            ground.vertices.push(GroundVertex {
+            vertices.push(GroundVertex {
                 position_in_tile: [dx as f32, dy as f32, (z - 500.0) as f32],
                 normal_skirt: [0, 0, 127, 0],
             });
             if column < 10 && row < 10 {
                 let k = row * 11 + column;
-                ground.indices.extend([k, k + 1, k + 11, k + 1, k + 12, k + 11]);
+                indices.extend([k, k + 1, k + 11, k + 1, k + 12, k + 11]);
             }
         }
     }
-    ground.surface_indices = ground.indices.len();
     let summary = GroundSummary { geometric_error_m: 0.0, height_range_m: [low, high] };
     TileGeometry {
         id: TileId::ROOT,
         reference_m: [x, y, 500.0],
         summary: Some(summary),
-        ground,
+        ground: GroundMesh::of_surface(vertices, indices.into_iter()),
         roads: RoadSegments::default(),
         volumes: RoadVolumes::default(),
         width_margin_m: 0.0,
@@ -92,5 +91,35 @@ proptest! {
         prop_assume!((target + ray * 80.0).truncate().abs().max_element() < 50.0);
         prop_assume!((target - ray * 80.0).truncate().abs().max_element() < 50.0);
         prop_assert!(ground_at(tiles.iter(), 1.0, eye, ray).is_some());
+    }
+
+    /// Whatever the ray and however rough the ground, the hit is the nearest among all triangles.
+    #[test]
+    fn buckets_find_what_a_look_at_all_triangles_finds(
+        eye in prop::array::uniform3(-90.0..90.0_f64),
+        target in prop::array::uniform3(-55.0..55.0_f64),
+        level in 0..3_u8,
+        vertical_scale in 0.2..4.0_f64,
+    ) {
+        let tile = tile(0.0, 0.0, |x, y| 500.0 + (x / 7.0).sin() * 9.0 + (y / 5.0).cos() * 6.0);
+        let flat = |value: f64, of: u8| if level == of { 0.0 } else { value };
+        let target = DVec3::new(target[0], target[1], target[2] / 4.0);
+        let eye = DVec3::from(eye);
+        // Along the columns, or level, or neither.
+        let way = DVec3::new(flat(target.x - eye.x, 1), target.y - eye.y, flat(target.z - eye.z, 2));
+        let reference = DVec3::new(0.0, 0.0, 500.0 * vertical_scale);
+        let found = ground_at(std::iter::once(&tile), vertical_scale, eye + reference, way);
+        let ray = Ray { eye, way, enters: 0.0, leaves: f64::INFINITY };
+        let all = (0..tile.ground.surface_indices as u32 / 3).filter_map(|triangle| {
+            ray.hit(tile.ground.corners(triangle).map(|[x, y, z]| DVec3::new(x, y, z * vertical_scale)))
+        });
+        let expected = all.reduce(f64::min);
+        // The eye's height is rounded differently: it went through the world.
+        let is_same = match (found, expected) {
+            (Some(found), Some(expected)) => (found.depth - expected).abs() < 1e-9,
+            (None, None) => true,
+            _ => false,
+        };
+        prop_assert!(is_same, "{found:?} {expected:?}");
     }
 }

@@ -1,6 +1,8 @@
-//! Numbers that pictures and flights alike are asked for with.
+//! Numbers that pictures, flights and windows alike are asked for with.
 
 use std::ops::RangeInclusive;
+
+use crate::{camera::Orientation, gpu::MAX_SAMPLES_PER_SIDE, viewpoint::CameraRequest};
 
 /// A number that was asked for and cannot be had.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -14,8 +16,11 @@ pub struct OutOfRange {
     pub range: &'static str,
 }
 
-/// Checks one number; what is not a number fits nowhere.
-pub(crate) fn within(
+/// Checks one number; what is not a number fits nowhere. `range` says in words what fits.
+///
+/// # Errors
+/// When it is none of those that fit.
+pub fn within(
     name: &'static str,
     value: f64,
     fits: RangeInclusive<f64>,
@@ -25,18 +30,34 @@ pub(crate) fn within(
 }
 
 /// Checks what says how fine the ground is drawn and how high.
-pub(crate) fn check_ground(
-    screen_space_error_px: f64,
-    exaggeration: f64,
-) -> Result<(), OutOfRange> {
+///
+/// # Errors
+/// When one of them is out of range.
+pub fn check_ground(screen_space_error_px: f64, exaggeration: f64) -> Result<(), OutOfRange> {
     let any_above_0 = f64::MIN_POSITIVE..=f64::MAX;
     within("a screen-space error", screen_space_error_px, any_above_0, "above 0 pixels")?;
     within("an exaggeration", exaggeration, 0.01..=100.0, "0.01 to 100")
 }
 
 /// Checks the samples per pixel along each side.
-pub(crate) fn check_supersampling(samples_per_side: u32) -> Result<(), OutOfRange> {
-    within("supersampling", f64::from(samples_per_side), 1.0..=4.0, "1 to 4")
+///
+/// # Errors
+/// When they are none or too many.
+pub fn check_supersampling(samples_per_side: u32) -> Result<(), OutOfRange> {
+    let fits = 1.0..=f64::from(MAX_SAMPLES_PER_SIDE);
+    within("supersampling", f64::from(samples_per_side), fits, "1 to 4")
+}
+
+/// Checks where to look from.
+///
+/// # Errors
+/// When one of the numbers is out of range.
+pub fn check_camera(camera: CameraRequest) -> Result<(), OutOfRange> {
+    let CameraRequest::LookAt { distance_m, orientation, .. } = camera else { return Ok(()) };
+    let Orientation { heading_deg, pitch_deg } = orientation;
+    within("a distance", distance_m, 1.0..=1e8, "1 m to 100 000 km")?;
+    within("a heading", heading_deg, f64::MIN..=f64::MAX, "an angle in degrees")?;
+    within("a pitch", pitch_deg, 0.0..=90.0, "0 (straight down) to 90 (level)")
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 use std::path::PathBuf;
 
 use corniche_tileset::OpenError;
-use glam::DVec3;
 use image::RgbaImage;
 
 use crate::{
+    above::clearance_m,
     attribution::draw_attribution,
-    camera::{Camera, Orientation, WorldBox},
+    camera::Camera,
     gpu::{
         DrawTile, FrameView, Gpu, GpuError, ReadBackError, Renderer, Targets, TileBuffers,
         Wireframe,
@@ -16,25 +16,8 @@ use crate::{
     scene::{self, RoadOptions},
     style::Style,
     tiles::{LoadTileError, PackageSource, TileStore},
+    viewpoint::{CameraRequest, OffGround, ViewpointError},
 };
-
-/// Where to look from.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum CameraRequest {
-    /// The whole package, obliquely from the south.
-    FrameAll,
-    /// A place on the ground from a distance.
-    LookAt {
-        /// Longitude of the place, WGS84.
-        lon_deg: f64,
-        /// Latitude of the place, WGS84.
-        lat_deg: f64,
-        /// From the eye to the place.
-        distance_m: f64,
-        /// Direction of view.
-        orientation: Orientation,
-    },
-}
 
 /// What to render.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,17 +86,23 @@ pub enum RenderError {
     ReadBack(#[from] ReadBackError),
     #[error("{package:?} has no ground to show")]
     NoGround { package: PathBuf },
+    #[error(transparent)]
+    OffGround(#[from] OffGround),
     #[error(
-        "longitude {lon_deg}, latitude {lat_deg} has no ground: it lies in a void, at the data's edge or outside the \
-         package, which covers {covered_deg:?} (west, south, east, north in degrees)"
-    )]
-    OffGround { lon_deg: f64, lat_deg: f64, covered_deg: [f64; 4] },
-    #[error(
-        "the eye would be {depth_m:.0} m under the ground; look from farther away, from another side or more steeply down"
+        "the eye would be {depth_m:.1} m too near to the ground or under it; look from farther away, from another side or more steeply down"
     )]
     EyeUnderGround { depth_m: f64 },
     #[error(transparent)]
     Range(#[from] OutOfRange),
+}
+
+impl From<ViewpointError> for RenderError {
+    fn from(error: ViewpointError) -> Self {
+        match error {
+            ViewpointError::OffGround(off_ground) => Self::OffGround(off_ground),
+            ViewpointError::Load(load) => Self::Load(load),
+        }
+    }
 }
 
 /// Renders a picture of a package, without a window.
@@ -132,9 +121,14 @@ pub fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
         vertical_scale: request.exaggeration * point_scale,
     };
     let height_range_m = store
-        .ground_range_m()?
-        .ok_or_else(|| RenderError::NoGround { package: request.package.clone() })?;
-    let camera = camera(request, &source, &mut store, height_range_m, quality.vertical_scale)?;
+        .coarsest_ground()?
+        .ok_or_else(|| RenderError::NoGround { package: request.package.clone() })?
+        .height_range_m;
+    let camera =
+        request.camera.camera(&source, height_range_m, quality.vertical_scale, request.size_px)?;
+    if request.camera != CameraRequest::FrameAll {
+        check_above_ground(&camera, &mut store, quality.vertical_scale, point_scale)?;
+    }
     let drawn = scene::settle(&mut store, &camera, quality)?;
 
     let gpu = Gpu::new()?;
@@ -189,57 +183,19 @@ pub fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
 fn check(request: &RenderRequest) -> Result<(), OutOfRange> {
     range::check_ground(request.screen_space_error_px, request.exaggeration)?;
     range::check_supersampling(request.supersampling)?;
-    if let CameraRequest::LookAt { distance_m, orientation, .. } = request.camera {
-        let Orientation { heading_deg, pitch_deg } = orientation;
-        range::within("a distance", distance_m, 1.0..=1e8, "1 m to 100 000 km")?;
-        range::within("a heading", heading_deg, f64::MIN..=f64::MAX, "an angle in degrees")?;
-        range::within("a pitch", pitch_deg, 0.0..=90.0, "0 (straight down) to 90 (level)")?;
-    }
-    Ok(())
+    range::check_camera(request.camera)
 }
 
-/// The eye stays at least so far above the ground: nearer it would see through the TIN's skirts.
-const MIN_CLEARANCE_M: f64 = 2.0;
-
-fn camera(
-    request: &RenderRequest,
-    source: &PackageSource,
+fn check_above_ground(
+    camera: &Camera,
     store: &mut TileStore<'_>,
-    height_range_m: [f64; 2],
     vertical_scale: f64,
-) -> Result<Camera, RenderError> {
-    let manifest = source.manifest();
-    match request.camera {
-        CameraRequest::FrameAll => {
-            let subject = WorldBox::new(
-                manifest.data_bounds,
-                height_range_m.map(|height_m| height_m * vertical_scale),
-            );
-            let oblique = Orientation { heading_deg: 0.0, pitch_deg: 45.0 };
-            Ok(Camera::framing(subject, oblique, request.size_px))
-        }
-        CameraRequest::LookAt { lon_deg, lat_deg, distance_m, orientation } => {
-            let off_ground = || RenderError::OffGround {
-                lon_deg,
-                lat_deg,
-                covered_deg: manifest.wgs84_bounds.to_array(),
-            };
-            let at = manifest
-                .coordinates
-                .working_from_wgs84([lon_deg, lat_deg])
-                .ok_or_else(off_ground)?;
-            let height_m = store.ground_height_m(at)?.ok_or_else(off_ground)?;
-            let target = DVec3::new(at[0], at[1], height_m * vertical_scale);
-            let distance_in_world_m = distance_m * manifest.point_scale;
-            let camera = Camera::look_at(target, distance_in_world_m, orientation, request.size_px);
-            let eye = camera.eye_in_world();
-            if let Some(ground_m) = store.ground_height_m([eye.x, eye.y])? {
-                let depth_m = ground_m * vertical_scale + MIN_CLEARANCE_M - eye.z;
-                if depth_m > 0.0 {
-                    return Err(RenderError::EyeUnderGround { depth_m });
-                }
-            }
-            Ok(camera)
-        }
-    }
+    point_scale: f64,
+) -> Result<(), RenderError> {
+    let eye = camera.eye_in_world();
+    let Some(ground_m) = store.ground_height_m([eye.x, eye.y])? else { return Ok(()) };
+    let lacking_m = ground_m * vertical_scale + clearance_m(point_scale) - eye.z;
+    // Rounded up: never "0.0 m".
+    let depth_m = (lacking_m * 10.0).ceil() / 10.0;
+    if lacking_m > 0.0 { Err(RenderError::EyeUnderGround { depth_m }) } else { Ok(()) }
 }

@@ -3,6 +3,7 @@
 //! A frame, in this order: tiles that have arrived, time, choice of tiles, map, panel. What the panel changes is seen in
 //! the next frame, which it asks for.
 
+mod keep;
 mod start;
 
 pub(crate) use self::start::Package;
@@ -12,7 +13,6 @@ use std::sync::Arc;
 use corniche_viewer::{
     RoadMethod,
     camera::Camera,
-    draw_attribution,
     flight::Pose,
     gpu::{GpuError, PassTimes, Wireframe},
     lod::Quality,
@@ -30,12 +30,13 @@ use crate::{
     controls::{Button, Ground as _, Input, Modifiers, Navigator, View},
     facts::{Command, Facts, GroundPoint, Shot},
     frame_times::FrameTimes,
+    notices::Notices,
     panel::{self, Answer},
     recorder::Recorder,
     settings::{Refinement, Settings},
-    shots::Shots,
+    shots::{SAVED, Shots},
     tiles::{Changes, ShownGround, Tiles},
-    trace::{Trace, TraceLine},
+    trace::Trace,
 };
 
 /// The style's file is asked after so often.
@@ -50,8 +51,8 @@ const CLOCK_S: f64 = 0.1;
 const REST_S: f64 = 0.5;
 /// A panel that wishes to be painted again later than this does not wish it; its toolkit says so with ages.
 const LONGEST_WISH_S: f64 = 3600.0;
-/// More notices than these are not kept.
-const NOTICES: usize = 6;
+/// How a notice begins that a style's file cannot be used.
+const STYLE_STAYS: &str = "the style stays as it was: ";
 
 /// The window's state.
 pub(crate) struct App {
@@ -73,7 +74,9 @@ pub(crate) struct App {
     recorder: Option<Recorder>,
     shots: Shots,
     wanted: Vec<Shot>,
-    notices: Vec<String>,
+    notices: Notices,
+    /// Whether it was said that the graphics memory allowed is full.
+    was_full: bool,
     trace: Option<Trace>,
     frame: u64,
     clicks: Clicks,
@@ -160,7 +163,17 @@ impl App {
     /// Something else that moves the camera.
     pub(crate) fn input(&mut self, input: &Input, now_s: f64) {
         match input {
-            Input::Release { .. } | Input::LetGo => self.is_dragging = false,
+            Input::Move { at_px } => self.clicks.move_to(*at_px),
+            Input::Release { button } => {
+                self.is_dragging = false;
+                if *button == Button::Left {
+                    self.clicks.release();
+                }
+            }
+            Input::LetGo => {
+                self.is_dragging = false;
+                self.clicks.let_go();
+            }
             _ => {}
         }
         let ground = ground(&self.tiles, &self.settings, &self.source, self.height_range_m);
@@ -179,12 +192,13 @@ impl App {
             Command::Reset => self.input(&Input::Reset, now_s),
             Command::ToggleFly => self.input(&Input::ToggleFly, now_s),
             Command::Take(shot) => self.wanted.push(shot),
-            Command::StartRecording => self.recorder = Some(Recorder::new(now_s, self.pose())),
+            Command::ToggleRecording if self.recorder.is_some() => self.stop_recording(now_s),
+            Command::ToggleRecording | Command::StartRecording => {
+                self.recorder = Some(Recorder::new(now_s, self.pose()));
+            }
             Command::StopRecording => self.stop_recording(now_s),
             Command::Dismiss(place) => {
-                if place < self.notices.len() {
-                    self.notices.remove(place);
-                }
+                self.notices.dismiss(place);
             }
         }
     }
@@ -197,6 +211,8 @@ impl App {
     /// Everything on the graphics card is gone.
     pub(crate) fn begin_again(&mut self, canvas: &Canvas) {
         self.tiles.begin_again();
+        // A choice that stays as it is would stay empty.
+        self.settings.refinement = Refinement::Live;
         canvas.gpu().adapter_name().clone_into(&mut self.adapter);
         self.is_software = canvas.gpu().is_software();
         self.passes.clear();
@@ -204,19 +220,7 @@ impl App {
     }
 
     fn notice(&mut self, words: String) {
-        // The same thing again is no news.
-        self.notices.retain(|known| *known != words);
-        self.notices.push(words);
-        let excess = self.notices.len().saturating_sub(NOTICES);
-        self.notices.drain(..excess);
-    }
-
-    fn stop_recording(&mut self, now_s: f64) {
-        let Some(recorder) = self.recorder.take() else { return };
-        match recorder.finish(now_s).and_then(|flight| flight.to_text()) {
-            Ok(text) => self.shots.save_flight(text),
-            Err(error) => self.notice(format!("nothing was recorded: {error}")),
-        }
+        self.notices.warn(words);
     }
 
     fn vertical_scale(&self) -> f64 {
@@ -242,20 +246,23 @@ impl App {
         let FrameInput { now_s, size_px, pixels_per_point, ui: raw } = input;
         self.frame += 1;
         self.pixels_per_point = pixels_per_point;
-        self.take_news();
+        self.take_news(now_s);
         self.navigator.resize(size_px);
         let ground = ground(&self.tiles, &self.settings, &self.source, self.height_range_m);
         self.navigator.advance(now_s, &ground);
         let camera = self.navigator.camera();
         let changes = self.choose_tiles(&camera, now_s);
         canvas.change(&changes);
+        let is_under_way = changes.is_under_way;
+        self.tiles.keep_ground(changes.upload);
+        self.tell_if_full();
         let pose = self.pose();
         if let Some(recorder) = &mut self.recorder {
             recorder.note(now_s, pose);
         }
         let drew = self.draw(canvas, &camera, now_s)?;
         self.look(&camera, drew.is_new);
-        self.passes = canvas.times()?;
+        self.take_times(canvas)?;
 
         let before = self.settings.clone();
         let mut answer = Answer::default();
@@ -273,7 +280,7 @@ impl App {
         self.take_shots(canvas, &primitives, &screen)?;
         self.write_trace(pose, size_px)?;
 
-        let is_busy = self.navigator.is_moving() || changes.is_under_way || !self.wanted.is_empty();
+        let is_busy = self.navigator.is_moving() || is_under_way || !self.wanted.is_empty();
         self.time(now_s, drew.is_new, is_busy);
         let wishes = output.viewport_output.values().map(|viewport| viewport.repaint_delay);
         let wish_s = wishes.map(|delay| delay.as_secs_f64()).fold(f64::INFINITY, f64::min);
@@ -284,10 +291,21 @@ impl App {
             // A little later the graphics card tells how long this frame took.
             let clock_s = canvas.is_timing().then_some(CLOCK_S);
             let wish_s = (wish_s <= LONGEST_WISH_S).then_some(wish_s);
-            let soonest_s = [hurry_s, clock_s, wish_s].into_iter().flatten().reduce(f64::min);
+            let rests_s = [hurry_s, clock_s, wish_s, self.words_change_in_s(now_s)];
+            let soonest_s = rests_s.into_iter().flatten().reduce(f64::min);
             soonest_s.map_or(Redraw::Asked, |rest_s| Redraw::At(now_s + rest_s))
         };
         Ok(Frame { primitives, screen, unused_textures, platform: output.platform_output, redraw })
+    }
+
+    /// When a notice goes or a recording is a second longer, though nothing moves.
+    fn words_change_in_s(&self, now_s: f64) -> Option<f64> {
+        let second_s = self.recorder.as_ref().map(|recorder| {
+            let duration_s = recorder.duration_s(now_s);
+            duration_s.floor() + 1.0 - duration_s
+        });
+        let end_s = self.notices.next_end_s().map(|until_s| (until_s - now_s).max(0.0));
+        [second_s, end_s].into_iter().flatten().reduce(f64::min)
     }
 
     /// When the style's file is to be looked at.
@@ -307,9 +325,14 @@ impl App {
                 if let Some(first) = self.styles.first_mut() {
                     first.style = style;
                 }
-                self.notice("the style was loaded again".to_owned());
+                // What was wrong with it is wrong no more.
+                self.notices.retract(STYLE_STAYS);
+                self.notices.tell("the style was loaded again".to_owned(), now_s);
             }
-            Some(Err(why)) => self.notice(format!("the style stays as it was: {why}")),
+            Some(Err(why)) => {
+                self.notices.retract(STYLE_STAYS);
+                self.notices.warn(format!("{STYLE_STAYS}{why}"));
+            }
         }
         true
     }
@@ -319,12 +342,29 @@ impl App {
         self.notice(format!("the graphics device could not do its work: {what}"));
     }
 
-    fn take_news(&mut self) {
+    fn take_news(&mut self, now_s: f64) {
+        self.notices.expire(now_s);
         for defect in self.tiles.take_arrivals() {
             self.notice(format!("{defect}; it is shown without its ground"));
         }
         for news in self.shots.news() {
-            self.notice(news);
+            // That something could not be saved must be seen; where a file is may be asked at once.
+            if news.starts_with(SAVED) {
+                self.notices.tell(news, now_s);
+            } else {
+                self.notices.warn(news);
+            }
+        }
+    }
+
+    /// Once: after that the line of positions says so while it is so.
+    fn tell_if_full(&mut self) {
+        if self.tiles.is_full() && !std::mem::replace(&mut self.was_full, true) {
+            self.notice(
+                "the graphics memory allowed is full: this view is drawn more coarsely than asked; allow more with \
+                 --gpu-memory"
+                    .to_owned(),
+            );
         }
     }
 
@@ -357,26 +397,33 @@ impl App {
         self.is_software && now_s - self.moved_s < HURRY_S && self.frame > 1
     }
 
-    /// Draws the map; where it is too large for the adapter with its samples, with one sample a pixel.
+    /// Draws the map; where it is too large for the adapter with its samples, with fewer. With one it never is: the window
+    /// is no larger.
     fn draw(
         &mut self,
         canvas: &mut Canvas,
         camera: &Camera,
         now_s: f64,
     ) -> Result<Drew, WindowError> {
-        let scene = self.scene(camera, now_s);
-        match canvas.draw(&scene) {
-            Err(GpuError::TooLarge { .. }) if scene.samples_per_side > 1 => {
-                self.notice(format!(
-                    "{0} × {0} samples a pixel are more than the adapter can draw in a window of this size; there is \
-                     one now",
-                    scene.samples_per_side
-                ));
-                self.settings.samples_per_side = 1;
-                Ok(canvas.draw(&Scene { samples_per_side: 1, ..scene })?)
+        let mut scene = self.scene(camera, now_s);
+        let wanted = scene.samples_per_side;
+        let drew = loop {
+            match canvas.draw(&scene) {
+                Err(GpuError::TooLarge { .. }) if scene.samples_per_side > 1 => {
+                    scene.samples_per_side -= 1;
+                }
+                drew => break drew?,
             }
-            drew => Ok(drew?),
+        };
+        let drawn = scene.samples_per_side;
+        if drawn < wanted {
+            self.notice(format!(
+                "{wanted} × {wanted} samples a pixel are more than the adapter can draw in a window of this size; there \
+                 are {drawn} × {drawn} now"
+            ));
+            self.settings.samples_per_side = drawn;
         }
+        Ok(drew)
     }
 
     fn scene(&self, camera: &Camera, now_s: f64) -> Scene {
@@ -460,13 +507,14 @@ impl App {
             tiles_drawn: self.tiles.drawn().len(),
             tiles_missing: self.tiles.missing(),
             tiles_loading: self.tiles.loading(),
+            is_full: self.tiles.is_full(),
             triangles: counts.triangles,
             segments: counts.segments,
             gpu_bytes: self.tiles.bytes_of_budget(),
             passes: &self.passes,
             frame_times: &self.frame_times,
             recording_s: self.recorder.as_ref().map(|recorder| recorder.duration_s(now_s)),
-            notices: &self.notices,
+            notices: self.notices.all(),
         };
         let mut settings = self.settings.clone();
         let output = ui.run_ui(raw, |ui| {
@@ -486,51 +534,6 @@ impl App {
             let ground = ground(&self.tiles, before, &self.source, self.height_range_m);
             self.navigator.rescale_heights(factor, &ground);
         }
-    }
-
-    fn take_shots(
-        &mut self,
-        canvas: &mut Canvas,
-        primitives: &[egui::ClippedPrimitive],
-        screen: &ScreenDescriptor,
-    ) -> Result<(), WindowError> {
-        // What was asked for in this frame is drawn in full in the next.
-        let is_full = canvas.is_full();
-        for shot in std::mem::take(&mut self.wanted) {
-            if !is_full {
-                self.wanted.push(shot);
-                continue;
-            }
-            let picture = match shot {
-                Shot::Map => {
-                    let mut picture = canvas.read_map(self.settings.divider_share)?;
-                    draw_attribution(&mut picture, &self.source.manifest().attribution);
-                    picture
-                }
-                Shot::Window => canvas.read_window(primitives, screen)?,
-            };
-            self.shots.save_picture(picture);
-        }
-        Ok(())
-    }
-
-    fn write_trace(&mut self, pose: Pose, size_px: [u32; 2]) -> Result<(), WindowError> {
-        let line = TraceLine {
-            frame: self.frame,
-            cursor_px: self.cursor_px,
-            ground_m: self.seen.cursor.map(|(point, _)| point.at_m),
-            pixel_m: self.seen.cursor.map(|(_, pixel_m)| pixel_m),
-            pose,
-            tiles: self.tiles.drawn().len(),
-            missing: self.tiles.missing(),
-            loading: self.tiles.loading(),
-            is_moving: self.navigator.is_moving(),
-            size_px,
-        };
-        let Some(trace) = &mut self.trace else { return Ok(()) };
-        trace
-            .write(line)
-            .map_err(|source| WindowError::Trace { path: trace.path().to_owned(), source })
     }
 
     /// Only frames that follow one another without a rest tell how long a frame takes.

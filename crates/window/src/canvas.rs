@@ -373,4 +373,4 @@ fn filter(scene: &Scene) -> wgpu::FilterMode {
 
 #[cfg(test)]
 #[path = "canvas/canvas_tests.rs"]
-mod tests;
+pub(crate) mod tests;

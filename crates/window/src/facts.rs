@@ -2,7 +2,7 @@
 
 use corniche_viewer::{RoadMethod, flight::Pose, gpu::PassTimes, style::Rgb};
 
-use crate::{controls::Mode, frame_times::FrameTimes};
+use crate::{controls::Mode, frame_times::FrameTimes, notices::Notice};
 
 /// A place on the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,6 +36,8 @@ pub(crate) struct Facts<'a> {
     pub(crate) tiles_drawn: usize,
     pub(crate) tiles_missing: usize,
     pub(crate) tiles_loading: usize,
+    /// Whether those that are missing find no room in the graphics memory allowed.
+    pub(crate) is_full: bool,
     /// Triangles of the ground and segments of roads, drawn.
     pub(crate) triangles: u64,
     pub(crate) segments: u64,
@@ -48,7 +50,7 @@ pub(crate) struct Facts<'a> {
     /// For how long the camera's way has been recorded.
     pub(crate) recording_s: Option<f64>,
     /// What happened, oldest first.
-    pub(crate) notices: &'a [String],
+    pub(crate) notices: &'a [Notice],
 }
 
 /// Whether a picture shows the panel and the like.
@@ -71,6 +73,8 @@ pub(crate) enum Command {
     ToggleFly,
     /// A picture.
     Take(Shot),
+    /// Begin to record, or end it.
+    ToggleRecording,
     /// Begin to record.
     StartRecording,
     /// End it and write the flight.

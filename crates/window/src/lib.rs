@@ -7,8 +7,8 @@
 //!                                                                   loader ── decoded tiles
 //! ```
 //!
-//! [`run`] opens the window and returns when it is closed; [`watch`] opens one on pictures that come from elsewhere. `platform` is the one module that knows the window system;
-//! `canvas` is all that lies on the graphics card; `app` is the rest, and knows neither a window nor a clock. Nothing is
+//! [`run`] opens the window and returns when it is closed; [`watch`] opens one on pictures that come from elsewhere.
+//! `platform` is the one module that knows the window system, threads and files; `canvas` is all that lies on the graphics card; `app` is the rest, and knows neither a window nor a clock. Nothing is
 //! drawn while nothing moves, loads or is touched.
 //!
 //! This crate never reads elevation files or extracts and never computes geometry; pictures of the map are
@@ -21,7 +21,7 @@ pub mod controls;
 mod facts;
 mod frame_times;
 mod hud;
-mod loader;
+mod notices;
 mod panel;
 mod platform;
 mod recorder;
@@ -31,15 +31,14 @@ mod tiles;
 mod trace;
 mod words;
 
-use std::path::PathBuf;
+use std::{io, path::PathBuf, sync::Arc};
 
-use corniche_tileset::OpenError;
 use corniche_viewer::{
-    CameraRequest, RoadOptions,
+    CameraRequest, OffGround, OutOfRange, RoadOptions, ViewpointError,
     gpu::{GpuError, ReadBackError},
     stream::StreamBudget,
     style::Style,
-    tiles::LoadTileError,
+    tiles::{LoadTileError, PackageSource},
 };
 
 pub use platform::{Watched, run, watch};
@@ -57,10 +56,15 @@ pub struct NamedStyle {
 /// there is none, and then the old one stays.
 pub type Reload = Box<dyn FnMut() -> Option<Result<Style, String>>>;
 
+/// Begins the trace once there is a window to tell of. What is written appears at once to whoever reads along.
+pub type BeginTrace = Box<dyn FnOnce() -> io::Result<Box<dyn io::Write>>>;
+
 /// What to open and how.
 pub struct WindowRequest {
+    /// What the package is called.
+    pub name: String,
     /// The package.
-    pub package: PathBuf,
+    pub source: Arc<PackageSource>,
     /// Width and height of the window's inside at first, pixels.
     pub size_px: [u32; 2],
     /// Where to look from at first.
@@ -81,10 +85,30 @@ pub struct WindowRequest {
     pub budget: StreamBudget,
     /// Whether movements run out softly.
     pub inertia: controls::Inertia,
-    /// Where pictures and flights are saved.
+    /// Where pictures and flights are saved, never in the place of another file.
     pub folder: PathBuf,
-    /// A diagnostic: a file that gets a line for each frame.
-    pub trace: Option<PathBuf>,
+    /// A diagnostic: what gets a line for each frame.
+    pub trace: Option<BeginTrace>,
+    /// Asked several times a second whether the program is to end, by a signal for instance.
+    pub is_stopped: Box<dyn Fn() -> bool>,
+}
+
+/// What came of a window.
+#[derive(Debug)]
+pub struct Closed {
+    /// Why it is closed.
+    pub end: Result<End, WindowError>,
+    /// In words, what was saved last, or could not be: there was no window any more to say so.
+    pub last_news: Vec<String>,
+}
+
+/// How a window ends when nothing fails.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// The person closed it.
+    Closed,
+    /// [`WindowRequest::is_stopped`] said so.
+    Stopped,
 }
 
 /// Why there is no window, or none any more.
@@ -101,24 +125,24 @@ pub enum WindowError {
     #[error("the window gives no surface to draw on")]
     Surface { source: Box<dyn std::error::Error + Send + Sync> },
     #[error(transparent)]
-    Open(#[from] OpenError),
-    #[error(transparent)]
     Load(#[from] LoadTileError),
-    #[error("{package:?} has no ground to show")]
-    NoGround { package: PathBuf },
+    #[error("{name:?} has no ground to show")]
+    NoGround { name: String },
     #[error(
-        "longitude {lon_deg}, latitude {lat_deg} has no ground: it lies in a void, at the data's edge or outside the \
-         package, which covers {covered_deg:?} (west, south, east, north in degrees)"
+        "the package's coarsest tile takes {wanted_bytes} bytes, more than the {budget_bytes} bytes of graphics memory \
+         allowed; allow more (--gpu-memory)"
     )]
-    OffGround { lon_deg: f64, lat_deg: f64, covered_deg: [f64; 4] },
-    #[error("{name} of {value} is out of range; it must be {range}")]
-    Range { name: &'static str, value: f64, range: &'static str },
+    OverBudget { wanted_bytes: u64, budget_bytes: u64 },
+    #[error(transparent)]
+    OffGround(#[from] OffGround),
+    #[error(transparent)]
+    Range(#[from] OutOfRange),
     #[error("a window needs a style to show the map in; give at least one")]
     NoStyle,
     #[error("the system gives no thread to load tiles in")]
-    Thread { source: std::io::Error },
-    #[error("cannot write the trace {path:?}")]
-    Trace { path: PathBuf, source: std::io::Error },
+    Thread { source: io::Error },
+    #[error("cannot write the trace")]
+    Trace { source: io::Error },
     #[error(transparent)]
     Gpu(#[from] GpuError),
     #[error(transparent)]
@@ -126,7 +150,16 @@ pub enum WindowError {
     #[error("the adapter {adapter:?} cannot show pictures in a window of this system")]
     NoFormat { adapter: String },
     #[error(
-        "the graphics device was lost twice; the driver may be at fault, or WGPU_BACKEND may choose another one"
+        "the graphics device was lost twice within a minute; the driver may be at fault, or WGPU_BACKEND may choose another one"
     )]
     DeviceLost,
+}
+
+impl From<ViewpointError> for WindowError {
+    fn from(error: ViewpointError) -> Self {
+        match error {
+            ViewpointError::OffGround(off_ground) => Self::OffGround(off_ground),
+            ViewpointError::Load(load) => Self::Load(load),
+        }
+    }
 }

@@ -1,8 +1,14 @@
-//! The window system: event loop, surface, loss of either. Nothing else in this crate knows `winit`.
+//! What the system gives: event loop, surface, loss of either, threads that load tiles, a folder for files. Nothing else in
+//! this crate knows `winit`, a thread, a clock or a file.
 //!
-//! A browser would have a module of its own in this one's place.
+//! A browser would have a module of its own in this one's place: `run` on the event loop of a page, `Loader` on its
+//! workers, `Files` on its downloads. What else it lacks lies in `corniche-viewer`: `PackageSource` reads a file, and waits
+//! for what it reads, where a page gets ranges of bytes later; `CameraRequest::camera` and `Package` load tiles on the
+//! thread that draws; `Gpu` waits for its device, and pictures to be saved wait for their pixels.
 
+mod files;
 mod inputs;
+mod loader;
 mod screen;
 mod watch;
 
@@ -21,40 +27,59 @@ use winit::{
 };
 
 pub use self::watch::{Watched, watch};
+pub(crate) use self::{
+    files::Files,
+    loader::{Loader, SharedSource},
+};
 use self::{
     inputs::Inputs,
     screen::{Acquired, Screen},
 };
 use crate::{
-    WindowError, WindowRequest,
+    Closed, End, WindowError, WindowRequest,
     app::{App, FrameInput, Package, Redraw},
     canvas::Canvas,
 };
+
+/// Whether the program is to end is asked so often.
+const STOP_S: f64 = 0.2;
+/// A device that is lost again so soon will be lost for ever.
+const SOON_S: f64 = 60.0;
 
 /// Another thread has something new to show.
 #[derive(Debug)]
 struct News;
 
-/// Opens a window on a package and returns when it is closed.
+/// Opens a window on a package and returns when it is closed. A flight that is being recorded then is saved, however the
+/// window came to its end.
 ///
 /// Must be called from the program's first thread.
-///
-/// # Errors
-/// When the package cannot be shown, there is no display or nothing to draw with, or the graphics device is lost twice.
-pub fn run(request: WindowRequest) -> Result<(), WindowError> {
-    let package = Package::open(&request)?;
+#[must_use]
+pub fn run(request: WindowRequest) -> Closed {
+    let mut last_news = Vec::new();
+    let end = show(request, &mut last_news);
+    Closed { end, last_news }
+}
+
+fn show(request: WindowRequest, last_news: &mut Vec<String>) -> Result<End, WindowError> {
+    let package = Package::of(&request)?;
     let event_loop = event_loop()?;
     let mut shell = Shell {
         waiting: Some((request, package)),
         news: event_loop.create_proxy(),
         begun: Instant::now(),
         open: None,
-        failure: None,
+        end: None,
+        last_news: Vec::new(),
     };
-    event_loop
-        .run_app(&mut shell)
-        .map_err(|source| WindowError::System { source: source.into() })?;
-    shell.failure.map_or(Ok(()), Err)
+    let ran = event_loop.run_app(&mut shell);
+    shell.close();
+    last_news.append(&mut shell.last_news);
+    match (shell.end, ran) {
+        (Some(end), _) => end,
+        (None, Ok(())) => Ok(End::Closed),
+        (None, Err(source)) => Err(WindowError::System { source: source.into() }),
+    }
 }
 
 fn event_loop() -> Result<EventLoop<News>, WindowError> {
@@ -73,7 +98,9 @@ struct Shell {
     news: EventLoopProxy<News>,
     begun: Instant,
     open: Option<Open>,
-    failure: Option<WindowError>,
+    /// Once it is over.
+    end: Option<Result<End, WindowError>>,
+    last_news: Vec<String>,
 }
 
 /// An open window. Fields are dropped in order: what lies on the card before the surface, that before the window.
@@ -85,8 +112,10 @@ struct Open {
     ui_state: egui_winit::State,
     inputs: Inputs,
     window: Arc<Window>,
+    is_stopped: Box<dyn Fn() -> bool>,
     is_hidden: bool,
-    is_rebuilt: bool,
+    /// When everything on the graphics card was made anew.
+    rebuilt_s: Option<f64>,
     /// When a frame is due without any event.
     due_s: Option<f64>,
 }
@@ -99,13 +128,13 @@ impl Shell {
     fn open(
         &self,
         event_loop: &ActiveEventLoop,
-        request: WindowRequest,
+        mut request: WindowRequest,
         package: Package,
     ) -> Result<Open, WindowError> {
         let [width, height] = request.size_px;
-        let name = request.package.file_name().unwrap_or_default().to_string_lossy();
+        let is_stopped = std::mem::replace(&mut request.is_stopped, Box::new(|| false));
         let attributes = Window::default_attributes()
-            .with_title(format!("{name} – Corniche"))
+            .with_title(format!("{} – Corniche", request.name))
             .with_inner_size(PhysicalSize::new(width, height));
         let window = event_loop
             .create_window(attributes)
@@ -119,8 +148,9 @@ impl Shell {
             let _ = news.send_event(News);
         });
         let size_px = screen.size_px().map(|side| side.max(1));
-        let app = App::new(request, package, &canvas, &wake, size_px)?;
         let ui = new_ui(None);
+        let pixels_per_point = egui_winit::pixels_per_point(&ui, &window);
+        let app = App::new(request, package, &canvas, &wake, size_px, pixels_per_point)?;
         let ui_state = new_ui_state(&ui, &window, &canvas);
         window.request_redraw();
         Ok(Open {
@@ -131,15 +161,25 @@ impl Shell {
             ui_state,
             inputs: Inputs::default(),
             window,
+            is_stopped,
             is_hidden: false,
-            is_rebuilt: false,
+            rebuilt_s: None,
             due_s: None,
         })
     }
 
-    fn fail(&mut self, event_loop: &ActiveEventLoop, failure: WindowError) {
-        self.failure.get_or_insert(failure);
+    /// Only the first end counts.
+    fn end(&mut self, event_loop: &ActiveEventLoop, end: Result<End, WindowError>) {
+        self.end.get_or_insert(end);
         event_loop.exit();
+    }
+
+    /// Saves what is to be saved, and lets go of the window; once.
+    fn close(&mut self) {
+        let now_s = self.now_s();
+        if let Some(mut open) = self.open.take() {
+            self.last_news.extend(open.app.end(now_s));
+        }
     }
 }
 
@@ -148,7 +188,7 @@ impl ApplicationHandler<News> for Shell {
         let Some((request, package)) = self.waiting.take() else { return };
         match self.open(event_loop, request, package) {
             Ok(open) => self.open = Some(open),
-            Err(failure) => self.fail(event_loop, failure),
+            Err(failure) => self.end(event_loop, Err(failure)),
         }
     }
 
@@ -160,45 +200,52 @@ impl ApplicationHandler<News> for Shell {
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let now_s = self.now_s();
-        let Some(open) = &mut self.open else { return };
+        // Once it is over nothing is drawn: there may be no window any more.
+        let Some(open) = self.open.as_mut().filter(|_| self.end.is_none()) else { return };
         let done = match event {
-            WindowEvent::CloseRequested => {
-                event_loop.exit();
-                Ok(())
+            // Destroyed is what another program closed.
+            WindowEvent::CloseRequested | WindowEvent::Destroyed => {
+                return self.end(event_loop, Ok(End::Closed));
             }
             event if open.inputs.is_end(&event) => {
-                event_loop.exit();
-                Ok(())
+                return self.end(event_loop, Ok(End::Closed));
             }
-            WindowEvent::RedrawRequested => open.redraw(now_s),
+            // The window library panics where a window is gone before it has said so. What is being recorded must not go
+            // with it, nor with any defect of ours.
+            WindowEvent::RedrawRequested => catch_unwind(AssertUnwindSafe(|| open.redraw(now_s)))
+                .unwrap_or_else(|_| {
+                    let source = "it cannot be drawn; see above".into();
+                    Err(WindowError::System { source })
+                }),
             event => {
                 open.take(&event, now_s);
                 Ok(())
             }
         };
         if let Err(failure) = done {
-            self.fail(event_loop, failure);
+            self.end(event_loop, Err(failure));
         }
     }
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
         let now_s = self.now_s();
         let Some(open) = &mut self.open else { return };
+        if (open.is_stopped)() {
+            return self.end(event_loop, Ok(End::Stopped));
+        }
         if open.app.reload(now_s) || open.due_s.is_some_and(|due_s| due_s <= now_s) {
             open.due_s = None;
             open.window.request_redraw();
         }
-        let due_s = [open.due_s, open.app.reload_due_s()].into_iter().flatten().reduce(f64::min);
-        event_loop.set_control_flow(due_s.map_or(ControlFlow::Wait, |due_s| {
-            ControlFlow::WaitUntil(
-                Instant::now() + Duration::from_secs_f64((due_s - now_s).max(0.0)),
-            )
-        }));
+        let dues_s = [open.due_s, open.app.reload_due_s()];
+        let due_s = dues_s.into_iter().flatten().fold(now_s + STOP_S, f64::min);
+        let rest = Duration::from_secs_f64((due_s - now_s).max(0.0));
+        event_loop.set_control_flow(ControlFlow::WaitUntil(Instant::now() + rest));
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
         // While the display is still there.
-        self.open = None;
+        self.close();
     }
 }
 
@@ -230,16 +277,17 @@ impl Open {
             return Ok(());
         }
         if self.canvas.gpu().is_lost() {
-            return self.rebuild();
+            return self.rebuild(now_s);
         }
         match self.draw(now_s) {
             // Whatever went wrong with a device that is gone went wrong for that.
-            Err(_) if self.canvas.gpu().is_lost() => self.rebuild(),
+            Err(_) if self.canvas.gpu().is_lost() => self.rebuild(now_s),
             drawn => drawn,
         }
     }
 
     fn draw(&mut self, now_s: f64) -> Result<(), WindowError> {
+        self.inputs.hand_on_move(&mut self.app);
         let input = FrameInput {
             now_s,
             size_px: self.screen.size_px(),
@@ -272,11 +320,12 @@ impl Open {
         Ok(())
     }
 
-    /// Everything on the graphics card anew, once: a device that is lost again will be lost for ever.
-    fn rebuild(&mut self) -> Result<(), WindowError> {
-        if std::mem::replace(&mut self.is_rebuilt, true) {
+    /// Everything on the graphics card anew, unless it was lost shortly before.
+    fn rebuild(&mut self, now_s: f64) -> Result<(), WindowError> {
+        if is_soon_after(self.rebuilt_s, now_s) {
             return Err(WindowError::DeviceLost);
         }
+        self.rebuilt_s = Some(now_s);
         let gpu = self.screen.rebuild(&self.window)?;
         self.canvas = Canvas::new(gpu, self.screen.format());
         // Textures of the panel were on the card too; a new context makes them again.
@@ -286,6 +335,10 @@ impl Open {
         self.window.request_redraw();
         Ok(())
     }
+}
+
+fn is_soon_after(last_s: Option<f64>, now_s: f64) -> bool {
+    last_s.is_some_and(|last_s| now_s - last_s < SOON_S)
 }
 
 /// The panel's toolkit, remembering what another one did.
@@ -308,4 +361,16 @@ fn new_ui_state(ui: &egui::Context, window: &Window, canvas: &Canvas) -> egui_wi
         None,
         Some(canvas.gpu().max_side_px() as usize),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_device_may_be_lost_now_and_then_but_not_twice_in_a_row() {
+        assert!(!is_soon_after(None, 3.0), "the first time");
+        assert!(is_soon_after(Some(3.0), 4.0));
+        assert!(!is_soon_after(Some(3.0), 3.0 + 2.0 * SOON_S));
+    }
 }

@@ -68,7 +68,8 @@ pub(crate) mod range {
 
     pub(crate) const EXAGGERATION: RangeInclusive<f64> = 0.25..=8.0;
     pub(crate) const SCREEN_SPACE_ERROR_PX: RangeInclusive<f64> = 0.5..=8.0;
-    pub(crate) const SAMPLES_PER_SIDE: RangeInclusive<u32> = 1..=3;
+    pub(crate) const SAMPLES_PER_SIDE: RangeInclusive<u32> =
+        1..=corniche_viewer::gpu::MAX_SAMPLES_PER_SIDE;
     pub(crate) const WIDTH_FACTOR: RangeInclusive<f32> = 0.25..=4.0;
     pub(crate) const DIVIDER_SHARE: RangeInclusive<f32> = 0.05..=0.95;
 }

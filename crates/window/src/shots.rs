@@ -1,37 +1,32 @@
-//! Pictures and flights as files: numbered, never in the place of another, written beside the drawing.
+//! Pictures and flights as files.
 
 use std::{
-    fs::{self, OpenOptions},
-    io::{self, Cursor, Write as _},
-    path::{Path, PathBuf},
-    sync::{Arc, mpsc},
-    thread::{self, JoinHandle},
+    io::{self, Cursor},
+    path::PathBuf,
+    sync::Arc,
 };
 
 use image::{ImageFormat, RgbaImage};
 
-/// Numbers are tried up to here.
-const MOST: u32 = 99_999;
+use crate::platform::Files;
 
-/// Writes files.
+/// How good news of a file begins.
+pub(crate) const SAVED: &str = "saved ";
+
+/// Saves what the person wants to keep.
 pub(crate) struct Shots {
-    folder: PathBuf,
-    wake: Arc<dyn Fn() + Send + Sync>,
-    sender: mpsc::Sender<String>,
-    said: mpsc::Receiver<String>,
-    writers: Vec<JoinHandle<()>>,
+    files: Files,
 }
 
 impl Shots {
     /// Files go into `folder`; `wake` is called from another thread whenever one is written.
     pub(crate) fn new(folder: PathBuf, wake: Arc<dyn Fn() + Send + Sync>) -> Self {
-        let (sender, said) = mpsc::channel();
-        Self { folder, wake, sender, said, writers: Vec::new() }
+        Self { files: Files::new(folder, wake) }
     }
 
     /// Writes a picture.
     pub(crate) fn save_picture(&mut self, picture: RgbaImage) {
-        self.save("corniche", "png", move || {
+        self.files.save("corniche", "png", move || {
             let mut png = Cursor::new(Vec::new());
             picture.write_to(&mut png, ImageFormat::Png).map_err(io::Error::other)?;
             Ok(png.into_inner())
@@ -40,78 +35,26 @@ impl Shots {
 
     /// Writes a flight.
     pub(crate) fn save_flight(&mut self, text: String) {
-        self.save("flight", "toml", move || Ok(text.into_bytes()));
+        self.files.save("flight", "toml", move || Ok(text.into_bytes()));
     }
 
     /// What became of the files since this was asked last.
     pub(crate) fn news(&mut self) -> Vec<String> {
-        self.writers.retain(|writer| !writer.is_finished());
-        self.said.try_iter().collect()
+        self.files.news()
     }
 
-    fn save(
-        &mut self,
-        stem: &'static str,
-        extension: &'static str,
-        encode: impl FnOnce() -> io::Result<Vec<u8>> + Send + 'static,
-    ) {
-        let (folder, wake, sender) =
-            (self.folder.clone(), Arc::clone(&self.wake), self.sender.clone());
-        let work = move || {
-            let news = match encode().and_then(|bytes| write(&folder, stem, extension, &bytes)) {
-                Ok(path) => format!("saved {}", path.display()),
-                Err(error) => {
-                    format!("nothing could be saved in {}: {error}", folder.display())
-                }
-            };
-            // Nobody listens once the window is closed.
-            let _ = sender.send(news);
-            wake();
-        };
-        match thread::Builder::new().name("file".to_owned()).spawn(work) {
-            Ok(writer) => self.writers.push(writer),
-            Err(error) => {
-                let _ = self.sender.send(format!("nothing could be saved: {error}"));
-            }
-        }
+    /// Waits until all is written; what became of the files that [`Shots::news`] did not tell of.
+    pub(crate) fn finish(&mut self) -> Vec<String> {
+        self.files.finish()
     }
-}
-
-impl Drop for Shots {
-    /// A picture taken just before the window was closed is still written.
-    fn drop(&mut self) {
-        for writer in self.writers.drain(..) {
-            let _ = writer.join();
-        }
-    }
-}
-
-/// Writes to the first free number.
-fn write(folder: &Path, stem: &str, extension: &str, bytes: &[u8]) -> io::Result<PathBuf> {
-    fs::create_dir_all(folder)?;
-    for number in 1..=MOST {
-        let path = folder.join(format!("{stem}-{number:03}.{extension}"));
-        match OpenOptions::new().write(true).create_new(true).open(&path) {
-            Ok(mut file) => {
-                return match file.write_all(bytes) {
-                    Ok(()) => Ok(path),
-                    Err(error) => {
-                        // Half a picture is of no use; that it cannot be removed adds nothing to the first error.
-                        let _ = fs::remove_file(&path);
-                        Err(error)
-                    }
-                };
-            }
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-            Err(error) => return Err(error),
-        }
-    }
-    Err(io::Error::other(format!("all numbers up to {MOST} are taken; choose another folder")))
 }
 
 #[cfg(test)]
 mod tests {
-    use std::time::{Duration, Instant};
+    use std::{
+        fs, thread,
+        time::{Duration, Instant},
+    };
 
     use super::*;
 
@@ -134,7 +77,7 @@ mod tests {
         for _ in 0..2 {
             shots.save_picture(RgbaImage::from_pixel(3, 2, image::Rgba([1, 2, 3, 255])));
             let news = news_of(&mut shots, 1);
-            assert!(news[0].starts_with("saved "), "{news:?}");
+            assert!(news[0].starts_with(SAVED), "{news:?}");
         }
         assert_eq!(fs::read(folder.path().join("corniche-001.png")).unwrap(), b"mine");
         let picture = image::open(folder.path().join("corniche-003.png")).unwrap().to_rgba8();
@@ -160,5 +103,15 @@ mod tests {
         drop(shots);
         let path = folder.path().join("flight-001.toml");
         assert_eq!(fs::read_to_string(path).unwrap(), "the way");
+    }
+
+    #[test]
+    fn at_the_end_it_waits_and_tells_what_was_not_yet_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut shots = Shots::new(folder.path().to_owned(), Arc::new(|| ()));
+        shots.save_flight("the way".to_owned());
+        let news = shots.finish();
+        assert!(news.len() == 1 && news[0].ends_with("flight-001.toml"), "{news:?}");
+        assert!(shots.finish().is_empty());
     }
 }

@@ -1,9 +1,6 @@
 //! The tiles of the window: loaded by threads, chosen by the streamer, their ground kept for rays and heights.
 
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    sync::Arc,
-};
+use std::collections::{BTreeMap, BTreeSet};
 
 use corniche_geom::TileId;
 use corniche_viewer::{
@@ -18,7 +15,7 @@ use glam::DVec3;
 
 use crate::{
     controls::Ground,
-    loader::{Loader, SharedSource},
+    platform::{Loader, SharedSource},
 };
 
 /// All tiles, from being asked for to being drawn.
@@ -29,12 +26,13 @@ pub(crate) struct Tiles {
     budget: StreamBudget,
     streamer: Streamer,
     /// Decoded, not on the graphics card.
-    waiting: BTreeMap<TileId, Arc<TileGeometry>>,
-    /// On the graphics card.
-    resident: BTreeMap<TileId, Arc<TileGeometry>>,
+    waiting: BTreeMap<TileId, TileGeometry>,
+    /// On the graphics card; here is their ground alone.
+    resident: BTreeMap<TileId, TileGeometry>,
     drawn: Vec<Drawn>,
     missing: usize,
     loading: BTreeSet<TileId>,
+    is_full: bool,
 }
 
 /// What a frame has to do on the graphics card, in this order.
@@ -42,8 +40,8 @@ pub(crate) struct Tiles {
 pub(crate) struct Changes {
     /// To remove.
     pub(crate) evict: Vec<TileId>,
-    /// To hand over.
-    pub(crate) upload: Vec<Arc<TileGeometry>>,
+    /// To hand over, and then back to [`Tiles::keep_ground`].
+    pub(crate) upload: Vec<TileGeometry>,
     /// Something was asked for, handed over or removed: the next frame may have more to do.
     pub(crate) is_under_way: bool,
 }
@@ -67,6 +65,7 @@ impl Tiles {
             drawn: Vec::new(),
             missing: 0,
             loading: BTreeSet::new(),
+            is_full: false,
         }
     }
 
@@ -88,7 +87,7 @@ impl Tiles {
             });
             let facts = TileFacts { ground: tile.summary, gpu_bytes: tile_bytes(&tile) };
             self.streamer.arrived(loaded.id, facts);
-            self.waiting.insert(loaded.id, Arc::new(tile));
+            self.waiting.insert(loaded.id, tile);
         }
         defects
     }
@@ -107,10 +106,7 @@ impl Tiles {
         }
         let mut uploaded = Vec::with_capacity(upload.len());
         for id in upload {
-            if let Some(tile) = self.waiting.remove(&id) {
-                self.resident.insert(id, Arc::clone(&tile));
-                uploaded.push(tile);
-            }
+            uploaded.extend(self.waiting.remove(&id));
         }
         for id in &cancel {
             self.waiting.remove(id);
@@ -120,7 +116,20 @@ impl Tiles {
         self.drawn = drawn;
         self.missing = missing;
         let is_under_way = !(evict.is_empty() && uploaded.is_empty() && load.is_empty());
+        // What is there waits for room that nothing gives up, and there is nothing else to wait for.
+        self.is_full = missing > 0 && !is_under_way && self.loading.is_empty();
         Changes { evict, upload: uploaded, is_under_way }
+    }
+
+    /// Takes back tiles that were handed over: rays and heights need their ground from now on. Roads, most of a tile where
+    /// there are towns, lie on the graphics card alone.
+    pub(crate) fn keep_ground(&mut self, uploaded: Vec<TileGeometry>) {
+        for tile in uploaded {
+            let (frame, none) = (self.source.frame(), TileLines::default());
+            let bare = TileGeometry::assemble(tile.id, None, &none, frame, self.quantum_m);
+            let TileGeometry { roads, volumes, .. } = bare;
+            self.resident.insert(tile.id, TileGeometry { roads, volumes, ..tile });
+        }
     }
 
     /// The graphics card has forgotten everything: it is all asked for again.
@@ -131,6 +140,7 @@ impl Tiles {
         self.waiting.clear();
         self.resident.clear();
         self.drawn.clear();
+        self.is_full = false;
     }
 
     /// What is drawn.
@@ -146,6 +156,11 @@ impl Tiles {
     /// Tiles being loaded.
     pub(crate) fn loading(&self) -> usize {
         self.loading.len()
+    }
+
+    /// Whether the view wants more tiles than the graphics card may hold: it is drawn more coarsely than was asked.
+    pub(crate) fn is_full(&self) -> bool {
+        self.is_full
     }
 
     /// Bytes on the graphics card, and how many there may be.
@@ -169,8 +184,7 @@ pub(crate) struct ShownGround<'a> {
 impl Ground for ShownGround<'_> {
     fn hit(&self, eye_in_world: DVec3, ray_in_world: DVec3) -> Option<DVec3> {
         let drawn = self.tiles.drawn.iter().filter_map(|drawn| self.tiles.resident.get(&drawn.id));
-        let tiles = drawn.map(Arc::as_ref);
-        pick::ground_at(tiles, self.vertical_scale, eye_in_world, ray_in_world)
+        pick::ground_at(drawn, self.vertical_scale, eye_in_world, ray_in_world)
             .map(|hit| hit.at_in_world)
     }
 

@@ -1,5 +1,6 @@
 use std::{
     num::NonZeroUsize,
+    sync::Arc,
     time::{Duration, Instant},
 };
 
@@ -51,13 +52,16 @@ impl TileSource for Steps {
 }
 
 fn tiles() -> Tiles {
+    tiles_within(1 << 24)
+}
+
+fn tiles_within(gpu_bytes: u64) -> Tiles {
     let frame = Frame::new([0.0; 2], CELL_M, NodeIndex { i: 0, j: 512 }, 1);
     let source: SharedSource =
         Arc::new(Steps { frame: frame.unwrap_or_else(|error| panic!("{error}")) });
     let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(|| ());
     let loader = Loader::new(&source, NonZeroUsize::MIN, 8, &wake);
-    let budget =
-        StreamBudget { tiles_in_flight: 8, upload_bytes_per_frame: 1 << 20, gpu_bytes: 1 << 24 };
+    let budget = StreamBudget { tiles_in_flight: 8, upload_bytes_per_frame: 1 << 20, gpu_bytes };
     Tiles::new(source, 1.0, loader.unwrap_or_else(|error| panic!("{error}")), budget)
 }
 
@@ -75,6 +79,7 @@ fn settle(tiles: &mut Tiles, screen_space_error_px: f64) -> Vec<String> {
     loop {
         defects.extend(tiles.take_arrivals());
         let changes = tiles.choose(&camera(), None, quality);
+        tiles.keep_ground(changes.upload);
         if !changes.is_under_way && tiles.missing() == 0 && tiles.loading() == 0 {
             return defects;
         }
@@ -113,6 +118,29 @@ fn a_damaged_tile_is_told_of_once_and_the_others_are_shown() {
     assert_eq!(defects.len(), 1, "{defects:?}");
     assert!(defects[0].contains("1/1/1") && defects[0].contains("missing"), "{defects:?}");
     assert!(settle(&mut tiles, 0.01).is_empty());
+}
+
+#[test]
+fn a_view_that_wants_more_than_may_be_held_is_full_and_another_is_not() {
+    let root_bytes = {
+        let mut tiles = tiles();
+        settle(&mut tiles, 1e6);
+        tiles.bytes_of_budget()[0]
+    };
+    let mut tiles = tiles_within(root_bytes + root_bytes / 2);
+    settle(&mut tiles, 1e6);
+    assert!(!tiles.is_full(), "the root alone fits");
+    let quality = Quality { screen_space_error_px: 0.01, vertical_scale: 1.0 };
+    let begun = Instant::now();
+    while !tiles.is_full() {
+        tiles.take_arrivals();
+        let changes = tiles.choose(&camera(), None, quality);
+        tiles.keep_ground(changes.upload);
+        assert!(begun.elapsed() < Duration::from_secs(30), "{} missing", tiles.missing());
+    }
+    assert!(tiles.missing() > 0 && tiles.loading() == 0);
+    settle(&mut tiles, 1e6);
+    assert!(!tiles.is_full(), "the root alone still fits");
 }
 
 #[test]

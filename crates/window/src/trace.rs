@@ -1,11 +1,7 @@
 //! A diagnostic: a file with a line per frame, by which a script can wait until all is loaded and prove that the ground
 //! grabbed stays under the cursor.
 
-use std::{
-    fs::File,
-    io::{self, Write as _},
-    path::{Path, PathBuf},
-};
+use std::io;
 
 use corniche_viewer::flight::Pose;
 use glam::DVec2;
@@ -70,21 +66,19 @@ impl TraceLine {
     }
 }
 
-/// The file.
+/// Where the lines go.
 pub(crate) struct Trace {
-    path: PathBuf,
-    file: File,
+    out: Box<dyn io::Write>,
 }
 
 impl Trace {
-    /// Begins a file, in the place of one that was there.
+    /// Begins with the names of the columns.
     ///
     /// # Errors
     /// When it cannot be written.
-    pub(crate) fn create(path: &Path) -> io::Result<Self> {
-        let mut file = File::create(path)?;
-        file.write_all(HEAD.as_bytes())?;
-        Ok(Self { path: path.to_owned(), file })
+    pub(crate) fn begin(mut out: Box<dyn io::Write>) -> io::Result<Self> {
+        out.write_all(HEAD.as_bytes())?;
+        Ok(Self { out })
     }
 
     /// Writes a line; whoever reads along sees all of it or nothing.
@@ -92,12 +86,7 @@ impl Trace {
     /// # Errors
     /// When it cannot be written.
     pub(crate) fn write(&mut self, line: TraceLine) -> io::Result<()> {
-        self.file.write_all(format!("{}\n", line.to_text()).as_bytes())
-    }
-
-    /// The file's name.
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
+        self.out.write_all(format!("{}\n", line.to_text()).as_bytes())
     }
 }
 
@@ -111,7 +100,7 @@ mod tests {
     fn every_line_has_a_cell_for_every_column() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("trace.csv");
-        let mut trace = Trace::create(&path).unwrap();
+        let mut trace = Trace::begin(Box::new(std::fs::File::create(&path).unwrap())).unwrap();
         let orientation = Orientation { heading_deg: -10.0, pitch_deg: 45.0 };
         let line = TraceLine {
             frame: 7,

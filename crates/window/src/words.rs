@@ -1,4 +1,6 @@
-//! Numbers as people read them.
+//! Numbers and choices as people read them.
+
+use corniche_viewer::RoadMethod;
 
 /// A length on the ground: "350 m", "12.5 km".
 pub(crate) fn length(m: f64) -> String {
@@ -19,6 +21,15 @@ pub(crate) fn round_length(m: f64) -> String {
         format!("{m:.0} m")
     } else {
         format!("{:.0} cm", m * 100.0)
+    }
+}
+
+/// How roads are drawn.
+pub(crate) fn method(method: RoadMethod) -> &'static str {
+    match method {
+        RoadMethod::Geometry => "GEO",
+        RoadMethod::ShadowVolumes => "SV",
+        RoadMethod::None => "none",
     }
 }
 

@@ -1,12 +1,13 @@
-//! Commands that draw without a window.
+//! Commands that draw pictures: one, or a flight of them.
 
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
 use super::{
+    camera::CameraArgs,
     look::{LookArgs, Roads},
-    values::{parse_bytes, parse_position, parse_size},
+    values::{parse_bytes, parse_size},
 };
 
 #[derive(Debug, Args)]
@@ -24,24 +25,8 @@ pub(crate) struct RenderArgs {
     /// Width and height in pixels
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1600x1200", value_parser = parse_size)]
     pub(crate) size: [u32; 2],
-    /// Look at this longitude and latitude (degrees, WGS84) instead of the whole package
-    #[arg(long, value_name = "LON,LAT", value_parser = parse_position, allow_hyphen_values = true)]
-    pub(crate) look_at: Option<[f64; 2]>,
-    /// Distance from the eye to the point looked at, in metres
-    #[arg(long, value_name = "METRES", default_value_t = 5000.0, requires = "look_at")]
-    pub(crate) distance: f64,
-    /// Direction of view, in degrees clockwise from north
-    #[arg(
-        long,
-        value_name = "DEGREES",
-        default_value_t = 0.0,
-        requires = "look_at",
-        allow_hyphen_values = true
-    )]
-    pub(crate) heading: f64,
-    /// Tilt of the view, in degrees: 0 looks straight down, 90 at the horizon
-    #[arg(long, value_name = "DEGREES", default_value_t = 60.0, requires = "look_at")]
-    pub(crate) pitch: f64,
+    #[command(flatten)]
+    pub(crate) camera: CameraArgs,
     /// Terrain error that may be seen, in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 2.0)]
     pub(crate) screen_space_error: f64,
@@ -92,7 +77,7 @@ pub(crate) struct FlyArgs {
     /// Also keep every frame as a picture in this new folder
     #[arg(long, value_name = "FOLDER")]
     pub(crate) png: Option<PathBuf>,
-    /// Also show every frame in a window as it is drawn; closing it ends the flight
+    /// Also show every frame in a window as it is drawn; closing it, also with Ctrl Q, ends the flight
     #[arg(long)]
     pub(crate) window: bool,
     #[command(flatten)]

@@ -1,6 +1,7 @@
 //! What can be said on the command line.
 
 mod build;
+mod camera;
 mod drawing;
 mod look;
 mod reading;
@@ -9,10 +10,11 @@ mod values;
 use clap::{Parser, Subcommand};
 
 pub(crate) use build::{BuildArgs, ReportArgs};
+pub(crate) use camera::CameraArgs;
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use look::{LookArgs, Roads};
 pub(crate) use reading::{GrowthArgs, InfoArgs, TileArgs, VerifyArgs};
-pub(crate) use values::{parse_bytes, parse_position, parse_size};
+pub(crate) use values::{parse_bytes, parse_size};
 
 use crate::view::ViewArgs;
 
@@ -38,7 +40,7 @@ pub(crate) enum Command {
     Tile(TileArgs),
     /// Draw a package to a PNG, without a window
     Render(RenderArgs),
-    /// Fly over a package without a window and tell what each frame costs
+    /// Fly over a package and tell what each frame costs; needs no window
     Fly(FlyArgs),
     /// Open a window on a package
     View(ViewArgs),

@@ -14,13 +14,14 @@ pub(crate) fn parse_bytes(text: &str) -> Result<u64, String> {
     }
 }
 
+/// More than most graphics cards can draw; each says itself what it can.
 pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text
         .split_once('x')
         .and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
     match sides {
-        Some([width @ 1..=8192, height @ 1..=8192]) => Ok([width, height]),
-        Some(_) => Err("both sides must be between 1 and 8192 pixels".to_owned()),
+        Some([width @ 1..=16384, height @ 1..=16384]) => Ok([width, height]),
+        Some(_) => Err("both sides must be between 1 and 16384 pixels".to_owned()),
         None => Err("write it like 1600x1200".to_owned()),
     }
 }
@@ -59,7 +60,7 @@ mod tests {
         assert!(
             parse_size("640").is_err()
                 && parse_size("0x5").is_err()
-                && parse_size("9000x9000").is_err()
+                && parse_size("17000x900").is_err()
         );
         assert_eq!(parse_position("-9.5, 47"), Ok([-9.5, 47.0]));
         assert!(parse_position("47").is_err() && parse_position("9,147").is_err());

@@ -6,7 +6,11 @@ use std::{
 use corniche_viewer::Replay;
 use tempfile::TempDir;
 
-use crate::{exit::ExitCode, failure::Failure};
+use crate::{
+    exit::ExitCode,
+    failure::Failure,
+    output::{self, png},
+};
 
 /// A folder of pictures that takes its place when it is complete.
 pub(super) struct Pictures {
@@ -44,10 +48,8 @@ impl Pictures {
     }
 
     pub(super) fn add(&self, name: &str, replay: &Replay<'_>) -> Result<(), Failure> {
-        let picture = replay.picture()?;
-        picture
-            .save_with_format(self.folder.path().join(name), image::ImageFormat::Png)
-            .map_err(|error| Failure::new(ExitCode::Failed, error))
+        let path = self.folder.path().join(name);
+        fs::write(&path, png(&replay.picture()?)?).map_err(|error| output::failed(&path, &error))
     }
 
     pub(super) fn finish(self) -> Result<(), Failure> {

@@ -19,10 +19,13 @@ pub enum GpuError {
     #[error("the graphics adapter {adapter:?} gives no device")]
     NoDevice { adapter: String, source: wgpu::RequestDeviceError },
     #[error(
-        "a picture of {size_px:?} pixels is beyond what the adapter can draw ({limit_px} a side)"
+        "a picture of {} × {} pixels, {samples_per_side} × {samples_per_side} samples in each, is beyond what the \
+         adapter can draw ({limit_px} samples a side)",
+        size_px[0],
+        size_px[1]
     )]
-    TooLarge { size_px: [u32; 2], limit_px: u32 },
-    #[error("a picture needs at least one pixel, not {size_px:?}")]
+    TooLarge { size_px: [u32; 2], samples_per_side: u32, limit_px: u32 },
+    #[error("a picture needs at least one pixel, not {} × {}", size_px[0], size_px[1])]
     Empty { size_px: [u32; 2] },
     #[error(
         "{samples_per_side} samples on a pixel's side are out of range; it must be 1 to {most}"
@@ -92,9 +95,15 @@ impl Gpu {
     fn of(adapter: wgpu::Adapter) -> Result<Self, GpuError> {
         let info = adapter.get_info();
         let adapter_name = format!("{} ({})", info.name, info.backend);
+        // Everything else keeps to WebGPU's defaults; how large a picture may be is not for shaders to depend on.
+        let required_limits = wgpu::Limits {
+            max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
+            ..wgpu::Limits::default()
+        };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("corniche"),
             required_features: adapter.features() & PassTimer::FEATURES,
+            required_limits,
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
@@ -137,7 +146,7 @@ impl Gpu {
         self.faults.first.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
-    /// Largest side of a picture, samples counted.
+    /// Largest side of a picture, samples counted: the adapter's own limit.
     #[must_use]
     pub fn max_side_px(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d

@@ -30,6 +30,7 @@ mod device;
 mod layouts;
 mod passes;
 mod picture;
+mod read_back;
 mod renderer;
 mod roads_pass;
 mod screen_passes;
@@ -43,6 +44,7 @@ mod uniforms;
 pub use self::{
     device::{Gpu, GpuError},
     picture::{MAX_SAMPLES_PER_SIDE, Picture, ReadBackError},
+    read_back::read_texture,
     renderer::{DrawTile, FrameView, Renderer, Wireframe},
     screen_passes::{DIFFERENCE_COLORS, DifferenceColors},
     targets::{Owner, Targets, label_class},

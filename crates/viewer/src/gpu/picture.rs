@@ -1,6 +1,6 @@
-use wgpu::{Extent3d, TextureAspect, TextureFormat, TextureUsages, TextureView};
+use wgpu::{Extent3d, TextureFormat, TextureUsages, TextureView};
 
-use super::{Gpu, GpuError};
+use super::{Gpu, GpuError, read_texture};
 
 pub(super) const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
 
@@ -75,7 +75,7 @@ impl Picture {
     /// # Errors
     /// When the device is lost or could not draw.
     pub fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
-        self.pixels.read(gpu, 4)
+        self.pixels.read(gpu)
     }
 
     /// The same as an image.
@@ -83,12 +83,9 @@ impl Picture {
     /// # Errors
     /// When the device is lost or could not draw.
     pub fn read_image(&self, gpu: &Gpu) -> Result<image::RgbaImage, ReadBackError> {
-        let pixels = self.read(gpu)?;
         let [width, height] = self.size_px;
-        Ok(image::RgbaImage::from_fn(width, height, |x, y| {
-            let start = (y as usize * width as usize + x as usize) * 4;
-            image::Rgba([0, 1, 2, 3].map(|channel| pixels[start + channel]))
-        }))
+        // Four bytes for each pixel, so there is always an image.
+        Ok(image::RgbaImage::from_raw(width, height, self.read(gpu)?).unwrap_or_default())
     }
 
     /// What is drawn into: the samples, or the pixels where there is one sample each.
@@ -117,7 +114,7 @@ fn sampled_px(gpu: &Gpu, size_px: [u32; 2], samples_per_side: u32) -> Result<[u3
         return Err(GpuError::Samples { samples_per_side, most: MAX_SAMPLES_PER_SIDE });
     }
     if size_px.iter().any(|side| *side > limit_px / samples_per_side) {
-        return Err(GpuError::TooLarge { size_px, limit_px: limit_px / samples_per_side });
+        return Err(GpuError::TooLarge { size_px, samples_per_side, limit_px });
     }
     Ok(size_px.map(|side| side * samples_per_side))
 }
@@ -141,51 +138,7 @@ impl Plane {
     }
 
     /// Its texels, row by row from the top.
-    pub(super) fn read(&self, gpu: &Gpu, bytes_per_pixel: u32) -> Result<Vec<u8>, ReadBackError> {
-        let (width, height) = (self.texture.width(), self.texture.height());
-        let row_bytes = width * bytes_per_pixel;
-        let padded_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("read back"),
-            size: u64::from(padded_bytes) * u64::from(height),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let mut encoder =
-            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_texture_to_buffer(
-            wgpu::TexelCopyTextureInfo {
-                aspect: TextureAspect::All,
-                ..self.texture.as_image_copy()
-            },
-            wgpu::TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(padded_bytes),
-                    rows_per_image: Some(height),
-                },
-            },
-            self.texture.size(),
-        );
-        gpu.queue.submit([encoder.finish()]);
-        let (sender, receiver) = std::sync::mpsc::channel();
-        buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-            // The receiver outlives the wait below, so sending cannot fail.
-            let _ = sender.send(result);
-        });
-        gpu.finish()?;
-        if let Ok(Err(source)) = receiver.try_recv() {
-            return Err(ReadBackError::Map { source });
-        }
-        let mapped = buffer
-            .slice(..)
-            .get_mapped_range()
-            .map_err(|source| ReadBackError::Range { source })?;
-        let mut rows = Vec::with_capacity((row_bytes * height) as usize);
-        for row in mapped.chunks_exact(padded_bytes as usize) {
-            rows.extend_from_slice(&row[..row_bytes as usize]);
-        }
-        Ok(rows)
+    pub(super) fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
+        read_texture(gpu, &self.texture)
     }
 }

@@ -98,7 +98,7 @@ impl Targets {
     /// # Errors
     /// When the device is lost or could not draw.
     pub fn read_ground(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
-        self.ground.read(gpu, 4)
+        self.ground.read(gpu)
     }
 
     /// The terrain's depth buffer, sample by sample: near plane divided by view depth, 0 without ground.
@@ -106,7 +106,7 @@ impl Targets {
     /// # Errors
     /// When the device is lost or could not draw.
     pub fn read_depth(&self, gpu: &Gpu) -> Result<Vec<f32>, ReadBackError> {
-        let bytes = self.depth.read(gpu, 4)?;
+        let bytes = self.depth.read(gpu)?;
         Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
     }
 
@@ -115,7 +115,7 @@ impl Targets {
     /// # Errors
     /// When the device is lost or could not draw.
     pub fn read_owners(&self, gpu: &Gpu) -> Result<Vec<Owner>, ReadBackError> {
-        let bytes = self.owners.read(gpu, 4)?;
+        let bytes = self.owners.read(gpu)?;
         Ok(bytes
             .chunks_exact(4)
             .map(|b| Owner::of(u32::from_le_bytes([b[0], b[1], b[2], b[3]])))
@@ -127,7 +127,7 @@ impl Targets {
     /// # Errors
     /// When the device is lost or could not draw.
     pub fn read_labels(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
-        self.labels.read(gpu, 1)
+        self.labels.read(gpu)
     }
 }
 

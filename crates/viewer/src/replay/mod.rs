@@ -16,6 +16,7 @@ use image::RgbaImage;
 use self::{
     finest::Finest,
     streamed::{Patience, Streamed},
+    survey::Survey,
 };
 use crate::{
     attribution::draw_attribution,
@@ -33,7 +34,7 @@ use crate::{
     tiles::{LoadTileError, PackageSource, TileStore},
 };
 
-pub use self::survey::default_flight;
+pub use self::survey::{Lifted, default_flight};
 
 /// How much of the ground is drawn: the ablation of Agrawal et al. 2006, Table 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,7 +79,7 @@ pub struct FrameRecord {
     pub frame: u32,
     /// When in the flight.
     pub time_s: f64,
-    /// Where the camera is.
+    /// Where the camera is, lifted off the ground where the flight led too near to it.
     pub pose: Pose,
     /// Tiles drawn.
     pub tiles_drawn: usize,
@@ -122,9 +123,10 @@ pub enum ReplayError {
     #[error("the package has no ground to fly over")]
     NoGround,
     #[error(
-        "at {time_s:.2} s the eye would be {lacking_m:.0} m too low: it must stay {clearance_m:.0} m above the ground"
+        "at {time_s:.2} s the eye is {depth_m:.1} m too low: it lies under the ground; give its true height, in the \
+         package's vertical datum"
     )]
-    UnderGround { time_s: f64, lacking_m: f64, clearance_m: f64 },
+    UnderGround { time_s: f64, depth_m: f64 },
     #[error(transparent)]
     Range(#[from] OutOfRange),
     #[error(
@@ -143,7 +145,7 @@ pub struct Replay<'a> {
     is_stopped: &'a dyn Fn() -> bool,
     timetable: Timetable<'a>,
     height_range_m: [f64; 2],
-    focus_m: f64,
+    survey: Survey,
     next: u32,
     ground: Ground<'a>,
     renderer: Renderer,
@@ -184,6 +186,12 @@ impl Timetable<'_> {
     fn time_s(&self, frame: u32) -> f64 {
         self.flight.span_s()[0] + f64::from(frame) * self.step_s()
     }
+
+    /// The frame nearest to a time.
+    fn frame_at(&self, time_s: f64) -> u32 {
+        let steps = (time_s - self.flight.span_s()[0]) / self.step_s();
+        (steps.round() as u32).min(self.frames - 1)
+    }
 }
 
 /// What was done besides drawing.
@@ -200,12 +208,12 @@ struct Work {
 }
 
 impl<'a> Replay<'a> {
-    /// Gets ready: checks that the whole flight is above the ground and, for [`Detail::Full`] and
+    /// Gets ready: looks up the ground beneath the whole flight and, for [`Detail::Full`] and
     /// [`Detail::Culled`], loads all finest tiles. `is_stopped` is asked again and again, here and in each frame; when it
     /// says yes, the answer is [`ReplayError::Stopped`].
     ///
     /// # Errors
-    /// When the options make no sense, the flight meets the ground, a tile cannot be had, not all fits, or it was stopped.
+    /// When the options make no sense, a keyframe lies under the ground, a tile cannot be had, not all fits, or it was stopped.
     pub fn new(
         gpu: &'a Gpu,
         source: &'a PackageSource,
@@ -214,10 +222,9 @@ impl<'a> Replay<'a> {
         is_stopped: &'a dyn Fn() -> bool,
     ) -> Result<Self, ReplayError> {
         check(options)?;
-        let height_range_m =
-            TileStore::new(source).ground_range_m()?.ok_or(ReplayError::NoGround)?;
+        let coarsest = TileStore::new(source).coarsest_ground()?.ok_or(ReplayError::NoGround)?;
         let timetable = Timetable { flight, frames: options.frames };
-        let focus_m = survey::focus_m(source, timetable, options, is_stopped)?;
+        let survey = Survey::new(source, timetable, options, coarsest, is_stopped)?;
         let ground = match options.detail {
             Detail::Adaptive => Ground::Streamed(Streamed::new(gpu, source, options.budget)),
             Detail::Full | Detail::Culled => {
@@ -231,8 +238,8 @@ impl<'a> Replay<'a> {
             options,
             is_stopped,
             timetable,
-            height_range_m,
-            focus_m,
+            height_range_m: coarsest.height_range_m,
+            survey,
             next: 0,
             ground,
             renderer: Renderer::new(gpu),
@@ -254,8 +261,10 @@ impl<'a> Replay<'a> {
         }
         let frame = self.next;
         let time_s = self.timetable.time_s(frame);
-        let pose = self.timetable.flight.at(time_s);
-        let camera = self.camera(pose);
+        let stand = self.survey.stand(frame);
+        let mut pose = self.timetable.flight.at(time_s);
+        pose.eye_m[2] += stand.lift_m;
+        let camera = self.camera(pose, stand.focus_m);
         let work = self.work(frame, &camera)?;
         let started = Instant::now();
         let buffers = self.ground.buffers();
@@ -321,24 +330,33 @@ impl<'a> Replay<'a> {
         self.timetable.step_s()
     }
 
+    /// Frames in which the flight leads too near to the ground: there the eye is lifted, as in a window.
+    #[must_use]
+    pub fn lifted(&self) -> Lifted {
+        self.survey.lifted()
+    }
+
     fn vertical_scale(&self) -> f64 {
         self.options.exaggeration * self.source.manifest().point_scale
     }
 
-    fn camera(&self, Pose { eye_m: [x, y, height_m], orientation }: Pose) -> Camera {
+    fn camera(&self, Pose { eye_m: [x, y, height_m], orientation }: Pose, focus_m: f64) -> Camera {
         let eye = DVec3::new(x, y, height_m * self.vertical_scale());
         let size_px = self.options.size_px;
         // Only the direction matters here; the view axes do not depend on where one looks from.
         let backward = Camera::look_at(eye, 1.0, orientation, size_px).world_from_view().z_axis;
-        Camera::look_at(eye - backward * self.focus_m, self.focus_m, orientation, size_px)
+        Camera::look_at(eye - backward * focus_m, focus_m, orientation, size_px)
     }
 
     /// Has what the frame shows on the graphics card, as far as it may be.
     fn work(&mut self, frame: u32, camera: &Camera) -> Result<Work, ReplayError> {
         let vertical_scale = self.vertical_scale();
         let ahead_s = self.options.ahead_s;
-        let ahead = (ahead_s > 0.0)
-            .then(|| self.camera(self.timetable.flight.at(self.timetable.time_s(frame) + ahead_s)));
+        let ahead = (ahead_s > 0.0).then(|| {
+            let time_s = self.timetable.time_s(frame) + ahead_s;
+            let stand = self.survey.stand(self.timetable.frame_at(time_s));
+            self.camera(self.timetable.flight.at(time_s), stand.focus_m)
+        });
         match &mut self.ground {
             Ground::Streamed(streamed) => {
                 let quality = Quality {

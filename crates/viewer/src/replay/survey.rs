@@ -1,16 +1,13 @@
 //! What is looked up before a flight begins: heights of the ground beneath it.
 
-use glam::DVec3;
-
 use super::{ReplayError, ReplayOptions, Timetable};
 use crate::{
-    camera::Camera,
+    above::{clearance_m, focus_m},
     flight::{Flight, Pose},
+    lod::GroundSummary,
     tiles::{PackageSource, TileStore},
 };
 
-/// The eye stays so far above the ground, or twice the near plane's depth if that is more: nearer it would see into it.
-const MIN_CLEARANCE_M: f64 = 2.0;
 /// So many tiles are kept while heights are looked up.
 const LOOK_UP_TILES: usize = 256;
 
@@ -28,47 +25,90 @@ pub fn default_flight(
         .ok_or(ReplayError::NoGround)
 }
 
-/// Checks that no frame is too low and tells from how far away one looks at the ground, in the mean: haze and near
-/// plane follow from that, and are to stay the same all the way.
-pub(super) fn focus_m(
-    source: &PackageSource,
-    timetable: Timetable<'_>,
-    options: &ReplayOptions,
-    is_stopped: &dyn Fn() -> bool,
-) -> Result<f64, ReplayError> {
-    let mut ground = GroundLookUp::new(source, is_stopped);
-    let scale = options.exaggeration * source.manifest().point_scale;
-    let mut looks = Vec::new();
-    for frame in 0..timetable.frames {
-        let time_s = timetable.time_s(frame);
-        let Pose { eye_m: [x, y, height_m], orientation } = timetable.flight.at(time_s);
-        let above_m = ground.height_m([x, y])?.map(|ground_m| (height_m - ground_m) * scale);
-        looks.push((time_s, above_m, orientation.pitch_deg));
-    }
-    let slants_m: Vec<f64> = looks
-        .iter()
-        .filter_map(|(_, above_m, pitch_deg)| {
-            // Looking level one looks infinitely far; five times the height is far enough.
-            Some(above_m.as_ref()?.max(1.0) / pitch_deg.to_radians().cos().max(0.2))
-        })
-        .collect();
-    let focus_m = if slants_m.is_empty() {
-        // Nowhere above the data: as far as the data are wide.
-        source.manifest().data_bounds.width().max(1.0)
-    } else {
-        slants_m.iter().sum::<f64>() / slants_m.len() as f64
-    };
-    let orientation = timetable.flight.at(timetable.time_s(0)).orientation;
-    let near_m = Camera::look_at(DVec3::ZERO, focus_m, orientation, options.size_px).near_m();
-    let clearance_m = MIN_CLEARANCE_M.max(2.0 * near_m);
-    for (time_s, above_m, _) in looks {
-        if let Some(lacking_m) = above_m.map(|above_m| clearance_m - above_m)
-            && lacking_m > 0.0
-        {
-            return Err(ReplayError::UnderGround { time_s, lacking_m, clearance_m });
+/// Frames in which the flight led too near to the ground.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Lifted {
+    /// How many.
+    pub frames: u32,
+    /// By how much the eye was lifted at most, true metres.
+    pub most_m: f64,
+}
+
+/// How the eye stands above the ground in one frame.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stand {
+    /// It is lifted by so much, true metres.
+    pub(super) lift_m: f64,
+    /// How far away it looks, world metres.
+    pub(super) focus_m: f64,
+}
+
+/// How the eye stands in every frame of a flight.
+///
+/// A window lifts the eye where ground is in its way, and looks as far as the ground beneath it is away; so does a flight,
+/// for the same path to give the same pictures. Between two keyframes a path may cut through a ridge, and a window that
+/// recorded it may have known coarser ground only; but nobody can have flown beneath even the coarsest.
+pub(super) struct Survey {
+    stands: Vec<Stand>,
+    lifted: Lifted,
+}
+
+impl Survey {
+    /// Looks at the ground beneath each keyframe and each frame. `coarsest` is the root's ground.
+    ///
+    /// # Errors
+    /// When a keyframe is farther under the ground than the coarsest ground is from the true one, a tile cannot be had, or
+    /// it was stopped.
+    pub(super) fn new(
+        source: &PackageSource,
+        timetable: Timetable<'_>,
+        options: &ReplayOptions,
+        coarsest: GroundSummary,
+        is_stopped: &dyn Fn() -> bool,
+    ) -> Result<Self, ReplayError> {
+        let mut ground = GroundLookUp::new(source, is_stopped);
+        for keyframe in timetable.flight.keyframes() {
+            let [x, y, height_m] = keyframe.pose.eye_m;
+            if let Some(ground_m) = ground.height_m([x, y])?
+                && ground_m - height_m > coarsest.geometric_error_m
+            {
+                // Rounded up: never "0.0 m".
+                let depth_m = ((ground_m - height_m) * 10.0).ceil() / 10.0;
+                return Err(ReplayError::UnderGround { time_s: keyframe.time_s, depth_m });
+            }
         }
+        let point_scale = source.manifest().point_scale;
+        let scale = options.exaggeration * point_scale;
+        let [lowest_m, highest_m] = coarsest.height_range_m;
+        let base_m = f64::midpoint(lowest_m, highest_m);
+        let mut stands = Vec::with_capacity(timetable.frames as usize);
+        let mut lifted = Lifted::default();
+        for frame in 0..timetable.frames {
+            let Pose { eye_m: [x, y, height_m], orientation } =
+                timetable.flight.at(timetable.time_s(frame));
+            let beneath_m = ground.height_m([x, y])?;
+            let lift_m = beneath_m.map_or(0.0, |ground_m| {
+                (ground_m + clearance_m(point_scale) / scale - height_m).max(0.0)
+            });
+            if lift_m > 0.0 {
+                lifted.frames += 1;
+                lifted.most_m = lifted.most_m.max(lift_m);
+            }
+            let above_m = (height_m + lift_m - beneath_m.unwrap_or(base_m)) * scale;
+            stands.push(Stand { lift_m, focus_m: focus_m(above_m, orientation.pitch_deg) });
+        }
+        Ok(Self { stands, lifted })
     }
-    Ok(focus_m)
+
+    /// Of a frame of the flight.
+    pub(super) fn stand(&self, frame: u32) -> Stand {
+        self.stands[frame as usize]
+    }
+
+    /// Frames in which the eye was too low.
+    pub(super) fn lifted(&self) -> Lifted {
+        self.lifted
+    }
 }
 
 /// True heights of the ground from the finest tiles, of which it keeps some.

@@ -93,13 +93,15 @@ impl Buckets {
         to: [f64; 2],
     ) -> impl Iterator<Item = (f64, impl Iterator<Item = u32>)> {
         let way = [0, 1].map(|axis| to[axis] - from[axis]);
-        let (first, last) = (self.bucket(0, from[0].min(to[0])), self.bucket(0, from[0].max(to[0])));
+        let (first, last) =
+            (self.bucket(0, from[0].min(to[0])), self.bucket(0, from[0].max(to[0])));
         let columns = if self.starts.is_empty() { 0 } else { last - first + 1 };
         (0..columns).map(move |step| {
             let column = if way[0] < 0.0 { last - step } else { first + step };
             // The outermost columns hold what lies beyond them too.
             let edge_m = |column: usize| self.min[0] + column as f64 / self.per_m[0];
-            let west_m = if column == 0 { f64::NEG_INFINITY } else { edge_m(column) - self.slack_m };
+            let west_m =
+                if column == 0 { f64::NEG_INFINITY } else { edge_m(column) - self.slack_m };
             let is_last = column == SIDE - 1;
             let east_m = if is_last { f64::INFINITY } else { edge_m(column + 1) + self.slack_m };
             let share = |x: f64| ((x - from[0]) / way[0]).clamp(0.0, 1.0);
@@ -123,7 +125,8 @@ impl Buckets {
     /// Columns and rows of all that lies within the slack of a box.
     fn ranges(&self, low: [f64; 2], high: [f64; 2]) -> [RangeInclusive<usize>; 2] {
         [0, 1].map(|axis| {
-            self.bucket(axis, low[axis] - self.slack_m)..=self.bucket(axis, high[axis] + self.slack_m)
+            self.bucket(axis, low[axis] - self.slack_m)
+                ..=self.bucket(axis, high[axis] + self.slack_m)
         })
     }
 

@@ -69,7 +69,7 @@ pub(crate) fn mismatch(name: &str, found: &RgbaImage) -> Result<Mismatch, String
 }
 
 /// Fails unless a picture is as the golden one of this name. What was drawn, and where it differs, is then left in
-/// the build's folder for temporary files.
+/// a folder for temporary files, the build's if it is known.
 pub(crate) fn check(name: &str, found: &RgbaImage) {
     if is_blessing() {
         found.save(path(name)).unwrap();
@@ -79,7 +79,8 @@ pub(crate) fn check(name: &str, found: &RgbaImage) {
     if compared.as_ref().is_ok_and(Mismatch::is_match) {
         return;
     }
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    // Only tests beside a crate are told of that folder.
+    let folder = option_env!("CARGO_TARGET_TMPDIR").map_or_else(std::env::temp_dir, PathBuf::from);
     found.save(folder.join(format!("{name}.png"))).unwrap();
     let what = match compared {
         Ok(mismatch) => {

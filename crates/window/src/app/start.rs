@@ -1,15 +1,17 @@
 //! From a request to the first frame.
 
-use std::{num::NonZeroUsize, sync::Arc, thread};
+use std::sync::Arc;
 
 use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::{
     CameraRequest,
-    camera::{Camera, Orientation, WorldBox},
-    tiles::{PackageSource, TileSource as _, TileStore},
+    above::clearance_m,
+    camera::{Camera, Orientation},
+    gpu::tile_bytes,
+    range,
+    tiles::{PackageSource, TileSource as _},
 };
-use glam::DVec3;
 
 use super::{App, Seen};
 use crate::{
@@ -18,41 +20,44 @@ use crate::{
     clicks::Clicks,
     controls::{Limits, Navigator, View},
     frame_times::FrameTimes,
-    loader::{Loader, SharedSource},
-    settings::{Compare, Refinement, Settings, range},
+    notices::Notices,
+    panel,
+    platform::{Loader, SharedSource},
+    settings::{Compare, Refinement, Settings},
     shots::Shots,
     tiles::Tiles,
     trace::Trace,
 };
 
-/// The eye stays so far above the ground: nearer it would see through the TIN's skirts.
-const CLEARANCE_M: f64 = 2.0;
 /// Tilt of map mode; beyond, what lies under the cursor is too far away to be dragged.
 const MAX_PITCH_DEG: f64 = 85.0;
-/// More threads that decode would take turns with the one that draws.
-const MOST_THREADS: usize = 4;
 
-/// A package that has ground.
+/// A package that can be shown.
 pub(crate) struct Package {
     source: Arc<PackageSource>,
     height_range_m: [f64; 2],
 }
 
 impl Package {
-    /// Opens it and reads its root. No window is needed for it, and none should open if it cannot be had.
+    /// Checks the request and reads the package's root. No window is needed for it, and none should open if it cannot be
+    /// shown.
     ///
     /// # Errors
-    /// When it cannot be read or has no ground.
-    pub(crate) fn open(request: &WindowRequest) -> Result<Self, WindowError> {
+    /// When it cannot be read, has no ground or does not fit the graphics memory allowed.
+    pub(crate) fn of(request: &WindowRequest) -> Result<Self, WindowError> {
         check(request)?;
-        let source = PackageSource::open(&request.package)?;
-        let none = || WindowError::NoGround { package: request.package.clone() };
+        let source = Arc::clone(&request.source);
+        let none = || WindowError::NoGround { name: request.name.clone() };
         if !source.exists(TileId::ROOT) {
             return Err(none());
         }
         let root = source.load(TileId::ROOT)?;
         let height_range_m = root.summary.ok_or_else(none)?.height_range_m;
-        Ok(Self { source: Arc::new(source), height_range_m })
+        let (wanted_bytes, budget_bytes) = (tile_bytes(&root), request.budget.gpu_bytes);
+        if wanted_bytes > budget_bytes {
+            return Err(WindowError::OverBudget { wanted_bytes, budget_bytes });
+        }
+        Ok(Self { source, height_range_m })
     }
 }
 
@@ -67,24 +72,35 @@ impl App {
         canvas: &Canvas,
         wake: &Arc<dyn Fn() + Send + Sync>,
         size_px: [u32; 2],
+        pixels_per_point: f32,
     ) -> Result<Self, WindowError> {
         let Package { source, height_range_m } = package;
         let manifest = source.manifest();
         let vertical_scale = request.exaggeration * manifest.point_scale;
-        let home = home(&request, &source, height_range_m, vertical_scale, size_px)?;
+        let panel_px = panel::width(size_px[0] as f32 / pixels_per_point) * pixels_per_point;
+        let part_px = match request.camera {
+            // All is to be seen, and so beside the panel.
+            CameraRequest::FrameAll => {
+                [size_px[0].saturating_sub(panel_px as u32).max(1), size_px[1]]
+            }
+            CameraRequest::LookAt { .. } => size_px,
+        };
+        let camera = request.camera.camera(&source, height_range_m, vertical_scale, part_px)?;
+        let home = in_left_part(&camera, request.camera.orientation(), size_px[0]);
         let limits = Limits {
             data: manifest.data_bounds,
-            clearance_m: CLEARANCE_M * manifest.point_scale,
+            clearance_m: clearance_m(manifest.point_scale),
             max_pitch_deg: MAX_PITCH_DEG,
         };
         let shared: SharedSource = Arc::<PackageSource>::clone(&source);
         let room = request.budget.tiles_in_flight;
-        let loader = Loader::new(&shared, threads(), room, wake)
+        let loader = Loader::new(&shared, Loader::usual_threads(), room, wake)
             .map_err(|source| WindowError::Thread { source })?;
         let trace = request
             .trace
-            .map(|path| Trace::create(&path).map_err(|source| WindowError::Trace { path, source }))
-            .transpose()?;
+            .map(|begin| begin().and_then(Trace::begin))
+            .transpose()
+            .map_err(|source| WindowError::Trace { source })?;
         let is_software = canvas.gpu().is_software();
         let mut app = Self {
             height_range_m,
@@ -119,14 +135,15 @@ impl App {
             recorder: None,
             shots: Shots::new(request.folder, Arc::clone(wake)),
             wanted: Vec::new(),
-            notices: Vec::new(),
+            notices: Notices::default(),
+            was_full: false,
             trace,
             frame: 0,
             clicks: Clicks::default(),
             cursor_px: None,
             is_dragging: false,
             occupied: Vec::new(),
-            pixels_per_point: 1.0,
+            pixels_per_point,
             last_view: None,
             moved_s: f64::NEG_INFINITY,
             seen: Seen::default(),
@@ -142,79 +159,59 @@ impl App {
     }
 }
 
-/// One core is left to the thread that draws.
-fn threads() -> NonZeroUsize {
-    let cores = thread::available_parallelism().map_or(2, NonZeroUsize::get);
-    NonZeroUsize::new((cores - 1).clamp(1, MOST_THREADS)).unwrap_or(NonZeroUsize::MIN)
-}
-
 fn check(request: &WindowRequest) -> Result<(), WindowError> {
-    let within = |name, value: f64, fits: bool, range| {
-        // Not a number fits nowhere: every test below is false for it.
-        if fits { Ok(()) } else { Err(WindowError::Range { name, value, range }) }
-    };
     if request.styles.is_empty() {
         return Err(WindowError::NoStyle);
     }
-    let error_px = request.screen_space_error_px;
-    within(
-        "a screen-space error",
-        error_px,
-        error_px > 0.0 && error_px.is_finite(),
-        "above 0 pixels",
-    )?;
-    let exaggeration = request.exaggeration;
-    within("an exaggeration", exaggeration, (0.01..=100.0).contains(&exaggeration), "0.01 to 100")?;
+    range::check_ground(request.screen_space_error_px, request.exaggeration)?;
     if let Some(samples) = request.samples_per_side {
-        let fits = range::SAMPLES_PER_SIDE.contains(&samples);
-        within("supersampling", f64::from(samples), fits, "1 to 3")?;
+        range::check_supersampling(samples)?;
     }
     let [width, height] = request.size_px;
     let least = f64::from(width.min(height));
-    within("a window's side", least, least >= 1.0, "at least 1 pixel")?;
-    if let CameraRequest::LookAt { distance_m, orientation, .. } = request.camera {
-        within("a distance", distance_m, (1.0..=1e8).contains(&distance_m), "1 m to 100 000 km")?;
-        let Orientation { heading_deg, pitch_deg } = orientation;
-        within("a heading", heading_deg, heading_deg.is_finite(), "an angle in degrees")?;
-        within(
-            "a pitch",
-            pitch_deg,
-            (0.0..=MAX_PITCH_DEG).contains(&pitch_deg),
-            "0 (straight down) to 85",
-        )?;
-    }
+    range::within("a window's side", least, 1.0..=f64::MAX, "at least 1 pixel")?;
+    range::check_camera(request.camera)?;
+    let pitch_deg = request.camera.orientation().pitch_deg;
+    range::within("a pitch", pitch_deg, 0.0..=MAX_PITCH_DEG, "0 (straight down) to 85")?;
     Ok(())
 }
 
-/// The first view.
-fn home(
-    request: &WindowRequest,
-    source: &PackageSource,
-    height_range_m: [f64; 2],
-    vertical_scale: f64,
-    size_px: [u32; 2],
-) -> Result<View, WindowError> {
-    let manifest = source.manifest();
-    match request.camera {
-        CameraRequest::FrameAll => {
-            let range = height_range_m.map(|height_m| height_m * vertical_scale);
-            let subject = WorldBox::new(manifest.data_bounds, range);
-            let oblique = Orientation { heading_deg: 0.0, pitch_deg: 45.0 };
-            Ok(View::of(&Camera::framing(subject, oblique, size_px), oblique))
-        }
-        CameraRequest::LookAt { lon_deg, lat_deg, distance_m, orientation } => {
-            let off_ground = || WindowError::OffGround {
-                lon_deg,
-                lat_deg,
-                covered_deg: manifest.wgs84_bounds.to_array(),
-            };
-            let at = manifest.coordinates.working_from_wgs84([lon_deg, lat_deg]);
-            let at = at.ok_or_else(off_ground)?;
-            let height_m = TileStore::new(source).ground_height_m(at)?.ok_or_else(off_ground)?;
-            let target = DVec3::new(at[0], at[1], height_m * vertical_scale);
-            let distance_in_world_m = distance_m * manifest.point_scale;
-            let camera = Camera::look_at(target, distance_in_world_m, orientation, size_px);
-            Ok(View::of(&camera, orientation))
+/// What `camera` sees, in the left part of a window of this width.
+fn in_left_part(camera: &Camera, orientation: Orientation, window_width_px: u32) -> View {
+    let mut view = View::of(camera, orientation);
+    let part_width_px = camera.size_px()[0];
+    let hidden_px = f64::from(window_width_px.saturating_sub(part_width_px));
+    // The window's middle lies so much to the right of the part's. A pixel is as large in both, for its size follows
+    // from the height.
+    let aside_px = hidden_px / 2.0;
+    // What is near moves farther aside than what is in the middle: a step back makes room for it.
+    let back_m = view.focus_m * hidden_px / f64::from(part_width_px) / 8.0;
+    let aside_m = aside_px * camera.pixel_at_unit_depth_m() * (view.focus_m + back_m);
+    let axes = view.world_from_view();
+    view.eye_in_world += axes.x_axis * aside_m + axes.z_axis * back_m;
+    view
+}
+
+#[cfg(test)]
+mod tests {
+    use corniche_geom::Bounds;
+    use corniche_viewer::camera::WorldBox;
+
+    use super::*;
+
+    #[test]
+    fn the_first_view_shows_all_the_data_beside_the_panel() {
+        let plan = Bounds { min_x: 0.0, min_y: 0.0, max_x: 30_000.0, max_y: 10_000.0 };
+        let subject = WorldBox::new(plan, [400.0, 2500.0]);
+        let oblique = Orientation { heading_deg: 0.0, pitch_deg: 45.0 };
+        for ([width, height], part) in [([1280, 800], 980), ([640, 480], 340), ([400, 300], 400)] {
+            let framing = Camera::framing(subject, oblique, [part, height]);
+            let camera = in_left_part(&framing, oblique, width).camera([width, height]);
+            for corner in subject.corners() {
+                let (at_px, _) = camera.project(corner).unwrap();
+                assert!((0.0..=f64::from(part)).contains(&at_px.x), "{at_px}");
+                assert!((0.0..=f64::from(height)).contains(&at_px.y), "{at_px}");
+            }
         }
     }
 }

@@ -7,7 +7,7 @@ use super::*;
 const SIZE_PX: [u32; 2] = [64, 48];
 
 /// `None`, and says so, where there is nothing to draw with.
-fn canvas() -> Option<Canvas> {
+pub(crate) fn canvas() -> Option<Canvas> {
     match Gpu::new() {
         Ok(gpu) => Some(Canvas::new(gpu, wgpu::TextureFormat::Bgra8Unorm)),
         Err(error) => {
@@ -20,10 +20,14 @@ fn canvas() -> Option<Canvas> {
 
 /// Nothing but sky and void, so that no tile is needed.
 fn scene(compare: Compare) -> Scene {
+    scene_of_size(compare, SIZE_PX)
+}
+
+pub(crate) fn scene_of_size(compare: Compare, size_px: [u32; 2]) -> Scene {
     let level = Orientation { heading_deg: 0.0, pitch_deg: 80.0 };
     Scene {
-        camera: Camera::look_at(DVec3::ZERO, 1000.0, level, SIZE_PX),
-        window_px: SIZE_PX,
+        camera: Camera::look_at(DVec3::ZERO, 1000.0, level, size_px),
+        window_px: size_px,
         style: Style::road_atlas(),
         roads: compare.pictures(RoadOptions::of(RoadMethod::Geometry)),
         compare,

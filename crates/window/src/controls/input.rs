@@ -103,6 +103,11 @@ pub enum Input {
         /// With what.
         modifiers: Modifiers,
     },
+    /// Shift or Control went down or up.
+    Modify {
+        /// Those held now.
+        modifiers: Modifiers,
+    },
     /// Whatever is held down is let go: the window lost the keyboard or the mouse.
     LetGo,
     /// Turn north up, and keep the tilt.

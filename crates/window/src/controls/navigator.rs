@@ -30,8 +30,9 @@ const GLIDE_DECAY_S: f64 = 0.25;
 const THROW_WINDOW_S: f64 = 0.08;
 /// Slower than so many pixels a second nothing glides.
 const GLIDE_MIN_PX_PER_S: f64 = 60.0;
-/// The longest time step: a program that was asleep does not jump.
-const MAX_STEP_S: f64 = 0.1;
+/// The longest time step: a program that was asleep does not jump. It is longer than most frames that a processor
+/// draws, for whoever flies without a graphics card is to be no slower for it.
+const MAX_STEP_S: f64 = 0.5;
 /// Way back to the first view.
 const RETURN_S: f64 = 0.8;
 /// A drag over rising ground is solved at most so many times.
@@ -211,6 +212,7 @@ impl Navigator {
 
     /// Takes an input at a time, in seconds of any clock that does not run back.
     pub fn handle(&mut self, input: &Input, now_s: f64, ground: &dyn Ground) {
+        let was_moving = self.is_moving();
         match *input {
             Input::Press { button, at_px, modifiers } => {
                 self.stop();
@@ -237,6 +239,7 @@ impl Navigator {
                 self.zoom(levels, at_px, ground);
             }
             Input::Key { key, state, modifiers } => self.key(key, state, modifiers, ground),
+            Input::Modify { modifiers } => self.flying.set_fast(modifiers.shift),
             Input::LetGo => {
                 self.gesture = None;
                 self.flying.let_go();
@@ -264,7 +267,11 @@ impl Navigator {
             }
         }
         self.settle(ground);
-        self.now_s = now_s;
+        // What moved before has yet to move for the time since the last step: a key held down repeats itself, and what
+        // it says again must not take that time away.
+        if !was_moving {
+            self.now_s = now_s;
+        }
     }
 
     /// Lets time pass.
@@ -328,7 +335,10 @@ impl Navigator {
                 };
             }
         }
-        self.trail.retain(|(time_s, _)| now_s - time_s <= THROW_WINDOW_S);
+        // One move from before the window stays: where frames are slow there is no other to measure a speed by.
+        let is_old = |(time_s, _): &(f64, DVec3)| now_s - time_s > THROW_WINDOW_S;
+        let old = self.trail.iter().take_while(|mark| is_old(mark)).count();
+        self.trail.drain(..old.saturating_sub(1));
         self.trail.push((now_s, self.view.eye_in_world));
     }
 
@@ -373,8 +383,10 @@ impl Navigator {
     /// After a fast drag the map glides on.
     fn throw(&mut self, now_s: f64) {
         let is_pan = matches!(self.gesture, Some(Gesture::Pan { .. }));
-        let recent = self.trail.iter().find(|(time_s, _)| now_s - time_s <= THROW_WINDOW_S);
-        let (Some((from_s, from)), Some((to_s, to))) = (recent, self.trail.last()) else { return };
+        let (Some((from_s, from)), Some((to_s, to))) = (self.trail.first(), self.trail.last())
+        else {
+            return;
+        };
         let is_throw =
             is_pan && self.inertia == Inertia::On && now_s - to_s <= THROW_WINDOW_S / 2.0;
         let dt_s = to_s - from_s;
@@ -394,7 +406,6 @@ impl Navigator {
     }
 
     fn key(&mut self, key: Key, state: KeyState, modifiers: Modifiers, ground: &dyn Ground) {
-        self.flying.set_fast(modifiers.shift);
         if state == KeyState::Released {
             self.flying.release(key);
             return;
@@ -407,6 +418,7 @@ impl Navigator {
                 pending.pan_px += DVec2::new(sideways, upward) * PAN_STEP_PX;
             }
         };
+        let levels = if modifiers.shift { 2.0 } else { 1.0 };
         self.glide_m_per_s = DVec3::ZERO;
         self.returning = None;
         match key {
@@ -414,8 +426,8 @@ impl Navigator {
             Key::Right => turn(&mut self.pending, 1.0, 0.0),
             Key::Up => turn(&mut self.pending, 0.0, 1.0),
             Key::Down => turn(&mut self.pending, 0.0, -1.0),
-            Key::ZoomIn => self.zoom(1.0, self.middle_px(), ground),
-            Key::ZoomOut => self.zoom(-1.0, self.middle_px(), ground),
+            Key::ZoomIn => self.zoom(levels, self.middle_px(), ground),
+            Key::ZoomOut => self.zoom(-levels, self.middle_px(), ground),
             _ if self.mode == Mode::Fly => self.flying.press(key),
             _ => {}
         }

@@ -315,6 +315,60 @@ fn a_map_thrown_glides_on_and_one_put_down_stays() {
 }
 
 #[test]
+fn a_map_is_thrown_where_frames_are_slow_too() {
+    let drag = |moves: &[(f64, f64)]| {
+        let mut navigator = looking(0.0, 30.0, 3000.0);
+        navigator.set_inertia(Inertia::On);
+        navigator.handle(&press(Button::Left, 400.0, 300.0), 0.0, &FLAT);
+        let mut last_s = 0.0;
+        for (now_s, x) in moves {
+            navigator.handle(&to(*x, 300.0), *now_s, &FLAT);
+            last_s = *now_s;
+        }
+        navigator.handle(&Input::Release { button: Button::Left }, last_s, &FLAT);
+        navigator.is_moving()
+    };
+    assert!(drag(&[(0.2, 500.0), (0.4, 600.0), (0.6, 700.0)]));
+    assert!(!drag(&[(0.2, 700.0), (1.4, 702.0)]), "before its last step the hand rested");
+}
+
+#[test]
+fn signs_zoom_by_a_level_and_with_shift_by_two() {
+    let target = DVec3::new(5000.0, 5000.0, 400.0);
+    for (sign, shift, factor) in [
+        (Key::ZoomIn, false, 0.5),
+        (Key::ZoomIn, true, 0.25),
+        (Key::ZoomOut, false, 2.0),
+        (Key::ZoomOut, true, 4.0),
+    ] {
+        let mut navigator = looking(0.0, 30.0, 3000.0);
+        navigator.handle(&key(sign, KeyState::Pressed, shift), 0.0, &FLAT);
+        rest(&mut navigator, 0.0, &FLAT);
+        let distance_m = navigator.view().eye_in_world.distance(target);
+        assert!((distance_m / 3000.0 / factor - 1.0).abs() < 0.005, "{distance_m}");
+    }
+}
+
+#[test]
+fn shift_makes_a_flight_under_way_fast_and_slow_again() {
+    let mut navigator = looking(90.0, 85.0, 3000.0);
+    navigator.handle(&Input::ToggleFly, 0.0, &FLAT);
+    navigator.handle(&key(Key::StrafeLeft, KeyState::Pressed, false), 0.0, &FLAT);
+    let mut now_s = 0.0;
+    let mut way_m = |shift: bool| {
+        let modifiers = Modifiers { shift, control: false };
+        navigator.handle(&Input::Modify { modifiers }, now_s, &FLAT);
+        let from = navigator.view().eye_in_world;
+        now_s += 0.05;
+        navigator.advance(now_s, &FLAT);
+        navigator.view().eye_in_world.distance(from)
+    };
+    let [slow_m, fast_m, again_m] = [false, true, false].map(&mut way_m);
+    assert!((fast_m / slow_m - 4.0).abs() < 1e-6, "{slow_m} m became {fast_m} m");
+    assert!((again_m / slow_m - 1.0).abs() < 1e-6);
+}
+
+#[test]
 fn a_double_click_halves_the_distance_and_doubles_it_with_shift() {
     let check = |shift, factor: f64| {
         let mut navigator = looking(0.0, 30.0, 3000.0);
@@ -414,4 +468,24 @@ fn exaggeration_keeps_the_middle_of_the_picture() {
     navigator.rescale_heights(3.0, &FLAT);
     let lifted = DVec3::new(middle.x, middle.y, 1200.0);
     assert!(off_px(&navigator, lifted, 400.0, 300.0) < 1e-6);
+}
+
+#[test]
+fn a_key_that_repeats_itself_flies_as_far_as_one_that_does_not() {
+    let flown_m = |repeats: &[f64]| {
+        let mut navigator = looking(0.0, 60.0, 2000.0);
+        let ahead = |state| Input::Key { key: Key::Ahead, state, modifiers: Modifiers::default() };
+        navigator.handle(&Input::ToggleFly, 10.0, &FLAT);
+        let from = navigator.view().eye_in_world;
+        navigator.handle(&ahead(KeyState::Pressed), 10.0, &FLAT);
+        for at_s in repeats {
+            navigator.handle(&ahead(KeyState::Pressed), *at_s, &FLAT);
+        }
+        navigator.advance(10.4, &FLAT);
+        navigator.view().eye_in_world.distance(from)
+    };
+    let once_m = flown_m(&[]);
+    assert!(once_m > 100.0, "{once_m}");
+    let repeated_m = flown_m(&[10.25, 10.3, 10.35, 10.399]);
+    assert!((once_m - repeated_m).abs() < 1e-6, "{once_m} {repeated_m}");
 }

@@ -1,4 +1,7 @@
-use corniche_viewer::camera::{Camera, Orientation};
+use corniche_viewer::{
+    above,
+    camera::{Camera, Orientation},
+};
 use glam::{DMat3, DVec2, DVec3};
 
 /// The ground as far as it is known.
@@ -21,11 +24,6 @@ pub struct View {
     /// How far away the ground is that one looks at, about; near plane and haze follow from it.
     pub focus_m: f64,
 }
-
-/// A view that looks level is about so many times as far from the ground as it is high.
-const LEAST_COS: f64 = 0.2;
-/// The nearest focus.
-const MIN_FOCUS_M: f64 = 1.0;
 
 impl View {
     /// What a camera with this direction sees.
@@ -110,13 +108,12 @@ impl View {
             .map_or(f64::NEG_INFINITY, |height_m| height_m + clearance_m - eye.z)
     }
 
-    /// The same view with the focus that its height above the ground suggests: the way to level ground in the middle of
-    /// the picture. It changes as smoothly as that height.
+    /// The same view with the focus that its height above the ground suggests, as a flight takes it too.
     #[must_use]
     pub fn refocused(&self, ground: &dyn Ground) -> Self {
         let eye = self.eye_in_world;
         let below_m = ground.height([eye.x, eye.y]).unwrap_or_else(|| ground.base_height());
-        let cos = self.orientation.pitch_deg.to_radians().cos().max(LEAST_COS);
-        Self { focus_m: ((eye.z - below_m) / cos).max(MIN_FOCUS_M), ..*self }
+        let focus_m = above::focus_m(eye.z - below_m, self.orientation.pitch_deg);
+        Self { focus_m, ..*self }
     }
 }

@@ -1,5 +1,6 @@
-use egui::{ComboBox, Slider, Ui};
+use egui::{ComboBox, Ui};
 
+use super::slide::slide;
 use crate::{
     facts::Facts,
     settings::{Refinement, Settings, range},
@@ -19,23 +20,15 @@ pub(super) fn show(ui: &mut Ui, settings: &mut Settings, facts: &Facts<'_>) {
             },
         );
     });
-    ui.add(
-        Slider::new(&mut settings.exaggeration, range::EXAGGERATION)
-            .logarithmic(true)
-            .prefix("× ")
-            .max_decimals(2)
-            .text("heights"),
-    );
-    ui.add(
-        Slider::new(&mut settings.screen_space_error_px, range::SCREEN_SPACE_ERROR_PX)
-            .logarithmic(true)
-            .suffix(" px")
-            .max_decimals(1)
-            .text("ground error"),
-    )
+    slide(ui, &mut settings.exaggeration, range::EXAGGERATION, |slider| {
+        slider.prefix("× ").max_decimals(2).text("heights")
+    });
+    slide(ui, &mut settings.screen_space_error_px, range::SCREEN_SPACE_ERROR_PX, |slider| {
+        slider.suffix(" px").max_decimals(1).text("ground error")
+    })
     .on_hover_text("A tile is refined while its error looks larger than this");
     ui.horizontal(|ui| {
-        ui.label("Samples per pixel");
+        ui.label("Samples").on_hover_text("Per pixel; they are averaged");
         for samples in range::SAMPLES_PER_SIDE {
             let words = format!("{samples} × {samples}");
             ui.selectable_value(&mut settings.samples_per_side, samples, words);

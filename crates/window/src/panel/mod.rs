@@ -4,6 +4,7 @@ mod map;
 mod performance;
 mod record;
 mod roads;
+mod slide;
 
 use egui::{Color32, Rect, TextureId, Ui, pos2};
 
@@ -15,6 +16,8 @@ use crate::{
 
 /// Width of the panel, points.
 const WIDTH: f32 = 300.0;
+/// A window without so much room beside the panel shows the map instead.
+const LEAST_MAP_WIDTH: f32 = 140.0;
 
 /// The pictures of the map, as large as the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,6 +26,15 @@ pub(crate) enum Pictures {
     One(TextureId),
     /// Left and right of the divider.
     Two([TextureId; 2]),
+}
+
+/// Whether the panel, if it is to be shown, can be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PanelRoom {
+    /// It can.
+    Enough,
+    /// The window is too narrow.
+    TooLittle,
 }
 
 /// What came of a frame.
@@ -43,7 +55,13 @@ pub(crate) fn set_up(ui: &egui::Context) {
         style.visuals.widgets.noninteractive.fg_stroke.color = Color32::from_gray(205);
         style.visuals.widgets.inactive.fg_stroke.color = Color32::from_gray(220);
         style.interaction.selectable_labels = false;
+        style.text_styles.insert(egui::TextStyle::Small, egui::FontId::proportional(11.0));
     });
+}
+
+/// How wide the open panel is in a window of a width, in points: 0 where there is no room for it.
+pub(crate) fn width(window_width: f32) -> f32 {
+    if window_width >= WIDTH + LEAST_MAP_WIDTH { WIDTH } else { 0.0 }
 }
 
 /// Lays out the whole window: the map behind, the panel, the line of positions and what lies on the map.
@@ -56,16 +74,21 @@ pub(crate) fn show(
     let mut answer = Answer::default();
     let whole = ui.ctx().viewport_rect();
     paint(ui, whole, settings.divider_share, pictures);
+    let room = if settings.is_panel_open && width(whole.width()) == 0.0 {
+        PanelRoom::TooLittle
+    } else {
+        PanelRoom::Enough
+    };
     let status = egui::Panel::bottom("status")
         .resizable(false)
         .show_separator_line(false)
         .frame(frame(ui).inner_margin(egui::Margin::symmetric(8, 3)))
-        .show(ui, |ui| hud::status_line(ui, facts));
+        .show(ui, |ui| hud::status_line(ui, facts, room));
     answer.occupied.push(status.response.rect);
-    if settings.is_panel_open {
+    if settings.is_panel_open && room == PanelRoom::Enough {
         let panel = egui::Panel::right("panel")
             .resizable(false)
-            .exact_size(WIDTH.min(whole.width()))
+            .exact_size(WIDTH)
             .frame(frame(ui).inner_margin(egui::Margin::same(8)))
             .show(ui, |ui| sections(ui, settings, facts, &mut answer.commands));
         answer.occupied.push(panel.response.rect);

@@ -1,3 +1,4 @@
+use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::{RoadMethod, camera::Orientation, flight::Pose, gpu::PassTimes};
 use egui::{Event, PointerButton, RawInput, Shape, vec2};
 
@@ -6,15 +7,19 @@ use crate::{
     controls::Mode,
     facts::GroundPoint,
     frame_times::FrameTimes,
+    notices::Notice,
     settings::{Compare, usual},
 };
+
+#[path = "golden_tests.rs"]
+mod golden;
 
 /// Everything there is to tell, and all of it long.
 struct Told {
     times: FrameTimes,
     attribution: Vec<String>,
     styles: Vec<String>,
-    notices: Vec<String>,
+    notices: Vec<Notice>,
     passes: Vec<(RoadMethod, PassTimes)>,
 }
 
@@ -30,7 +35,10 @@ impl Told {
                 "© swisstopo".into(),
             ],
             styles: vec!["road-atlas".into(), "dark".into()],
-            notices: vec!["saved somewhere/corniche-001.png".into(), "a long notice ".repeat(12)],
+            notices: vec![
+                Notice { words: "saved somewhere/corniche-001.png".into(), until_s: Some(1.0) },
+                Notice { words: "a long notice ".repeat(12), until_s: None },
+            ],
             passes: vec![(RoadMethod::Geometry, pass), (RoadMethod::ShadowVolumes, pass)],
         }
     }
@@ -53,6 +61,7 @@ impl Told {
             tiles_drawn: 123,
             tiles_missing: 45,
             tiles_loading: 8,
+            is_full: false,
             triangles: 1_234_567,
             segments: 234_567,
             gpu_bytes: [300 << 20, 512 << 20],
@@ -156,7 +165,10 @@ fn the_panel_is_as_wide_as_it_says_with_everything_open() {
     );
     for (words, rect, clip) in &texts {
         assert!(clip.expand(1.0).contains_rect(*rect), "{words:?} is cut off");
-        assert!(rect.right() <= left || rect.left() >= left, "{words:?} lies across the edge");
+        // The status line is as wide as the window.
+        let is_below = rect.top() >= answer.occupied[0].top();
+        let is_beside = rect.right() <= left || rect.left() >= left;
+        assert!(is_below || is_beside, "{words:?} lies across the edge");
     }
 }
 
@@ -170,10 +182,72 @@ fn credits_are_in_every_window_however_small() {
             let (_, rect, clip) = credits.unwrap_or_else(|| panic!("{name} {size:?}: {texts:?}"));
             let window = Rect::from_min_size(egui::Pos2::ZERO, size.into());
             assert!(clip.intersect(window).contains_rect(*rect), "{name} {size:?}: {rect:?}");
-            let free = if settings.is_panel_open { size[0] - WIDTH } else { size[0] };
+            let free = size[0] - if settings.is_panel_open { width(size[0]) } else { 0.0 };
             assert!(rect.right() <= free, "{name} {size:?}: the panel hides {rect:?}");
         }
     }
+}
+
+#[test]
+fn in_small_windows_nothing_on_the_map_lies_on_anything_else() {
+    let mut told = Told::new();
+    told.attribution.pop();
+    for (name, mut settings) in states() {
+        for size in [[640.0, 480.0], [500.0, 400.0], [450.0, 300.0], [300.0, 200.0], [230.0, 160.0]]
+        {
+            let (texts, answer) = lay_out(size, &mut settings, &told.facts(), &[&[], &[]]);
+            let seen: Vec<(&str, Rect)> = texts
+                .iter()
+                .map(|(words, rect, clip)| (&words[..], rect.intersect(*clip)))
+                .filter(|(_, rect)| rect.is_positive())
+                .collect();
+            for (place, (words, rect)) in seen.iter().enumerate() {
+                for (other, beneath) in &seen[..place] {
+                    let overlap = rect.shrink(1.0).intersect(beneath.shrink(1.0));
+                    assert!(!overlap.is_positive(), "{name} {size:?}: {words:?} on {other:?}");
+                }
+            }
+            let status = answer.occupied[0];
+            let free = size[0] - if settings.is_panel_open { width(size[0]) } else { 0.0 };
+            for (words, rect, clip) in &texts {
+                if words.starts_with("© OpenStreetMap") || words.ends_with(" in the middle") {
+                    assert!(clip.contains_rect(*rect), "{name} {size:?}: {words:?} is cut off");
+                    assert!(rect.bottom() <= status.top() && rect.right() <= free, "{words:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_window_too_narrow_for_the_panel_says_so() {
+    let told = Told::new();
+    let has = |size, words: &str| {
+        let (texts, _) = lay_out(size, &mut usual(), &told.facts(), &[&[], &[]]);
+        texts.iter().any(|(text, ..)| text == words)
+    };
+    let words = "a wider window shows the panel";
+    assert!(has([400.0, 300.0], words) && !has([400.0, 300.0], "Corniche"));
+    assert!(!has([460.0, 300.0], words) && has([460.0, 300.0], "Corniche"));
+}
+
+#[test]
+fn the_panel_pushes_the_divider_aside() {
+    let told = Told::new();
+    let mut settings = Settings { compare: Compare::Split, divider_share: 0.9, ..usual() };
+    lay_out([1000.0, 700.0], &mut settings, &told.facts(), &[&[]]);
+    assert!((settings.divider_share - (700.0 - 24.0) / 1000.0).abs() < 1e-3);
+    settings = Settings { divider_share: 0.9, is_panel_open: false, ..settings };
+    lay_out([1000.0, 700.0], &mut settings, &told.facts(), &[&[]]);
+    assert!((settings.divider_share - 0.9).abs() < 1e-3);
+}
+
+#[test]
+fn a_notice_of_several_lines_keeps_its_columns() {
+    let mut told = Told::new();
+    told.notices = vec![Notice { words: "1 | wide = x\n  |        ^".into(), until_s: None }];
+    let (texts, _) = lay_out([1000.0, 700.0], &mut usual(), &told.facts(), &[&[]]);
+    assert!(texts.iter().any(|(words, ..)| words.starts_with("1 | wide")), "{texts:?}");
 }
 
 #[test]
@@ -253,4 +327,20 @@ fn the_divider_follows_the_mouse_and_stays_in_the_window() {
     let [over, press, _] = click(pos2(250.0, 400.0));
     lay_out([1000.0, 700.0], &mut settings, &told.facts(), &[&[], &over, &press, &out]);
     assert!((settings.divider_share - 0.05).abs() < 0.01, "{}", settings.divider_share);
+}
+
+#[test]
+fn what_nobody_moves_stays_as_it_was_given() {
+    let told = Told::new();
+    for (exaggeration, screen_space_error_px) in [(0.01, 0.1), (100.0, 20.0), (1.234_5, 0.75)] {
+        let given = Settings {
+            exaggeration,
+            screen_space_error_px,
+            width_factors: [0.123_4; FunctionalRoadClass::COUNT],
+            ..usual()
+        };
+        let mut settings = given.clone();
+        lay_out([1000.0, 1400.0], &mut settings, &told.facts(), &[&[], &[]]);
+        assert_eq!(settings, given);
+    }
 }

@@ -1,4 +1,3 @@
-use corniche_viewer::RoadMethod;
 use egui::{Color32, Grid, Pos2, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::{facts::Facts, frame_times::FrameTimes, words};
@@ -11,7 +10,7 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts<'_>) {
     let times = facts.frame_times;
     let ms = |value: Option<f64>| value.map_or("–".to_owned(), |ms| format!("{ms:.1}"));
     ui.label(format!(
-        "frame {} ms, p50 {}, p95 {}",
+        "frame {} ms, p50 {} ms, p95 {} ms",
         ms(times.last_ms()),
         ms(times.quantile_ms(0.5)),
         ms(times.quantile_ms(0.95))
@@ -50,11 +49,7 @@ fn passes(ui: &mut Ui, facts: &Facts<'_>) {
         }
         ui.end_row();
         for (method, times) in facts.passes {
-            ui.label(match method {
-                RoadMethod::Geometry => "GEO",
-                RoadMethod::ShadowVolumes => "SV",
-                RoadMethod::None => "none",
-            });
+            ui.label(words::method(*method));
             let parts = [times.terrain_ms, times.roads_ms, times.composite_ms];
             for ms in parts.into_iter().chain([parts.iter().sum()]) {
                 let digits = if ms < 100.0 { 2 } else { 0 };
@@ -67,7 +62,10 @@ fn passes(ui: &mut Ui, facts: &Facts<'_>) {
 
 fn graph(ui: &mut Ui, times: &FrameTimes) {
     let size = vec2(ui.available_width(), 44.0);
-    let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+    let (area, response) = ui.allocate_exact_size(size, Sense::hover());
+    response.on_hover_text(
+        "Time of the last frames that followed one another; lines at 60 and 30 a second",
+    );
     let painter = ui.painter();
     painter.rect_filled(area, 2, ui.visuals().extreme_bg_color);
     let top_ms = times.iter().fold(GRAPH_MS, f64::max);

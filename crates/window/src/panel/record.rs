@@ -33,7 +33,7 @@ pub(super) fn show(ui: &mut Ui, facts: &Facts<'_>, commands: &mut Vec<Command>) 
     ui.horizontal(|ui| match facts.recording_s {
         None => {
             let start = ui.button("Record the camera's way");
-            if start.on_hover_text("For corniche fly --path").clicked() {
+            if start.on_hover_text("For corniche fly --path (key C)").clicked() {
                 commands.push(Command::StartRecording);
             }
         }

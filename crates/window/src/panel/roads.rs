@@ -2,6 +2,7 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::{CapTest, Caps, Outline, RoadMethod, WidthGrowth};
 use egui::{Color32, ComboBox, Grid, Ui, vec2};
 
+use super::slide::slide;
 use crate::{
     facts::Facts,
     settings::{Compare, Settings, range},
@@ -85,11 +86,12 @@ pub(super) fn classes(ui: &mut Ui, settings: &mut Settings, facts: &Facts<'_>) {
             let mut is_shown = shown.contains(class);
             ui.checkbox(&mut is_shown, class.to_string());
             *shown = if is_shown { shown.with(class) } else { shown.without(class) };
-            let width = egui::Slider::new(factor, range::WIDTH_FACTOR)
-                .logarithmic(true)
-                .prefix("× ")
-                .max_decimals(2);
-            ui.add_enabled(is_shown, width).on_hover_text("Factor on the style's width");
+            ui.add_enabled_ui(is_shown, |ui| {
+                slide(ui, factor, range::WIDTH_FACTOR, |slider| {
+                    slider.prefix("× ").max_decimals(2)
+                })
+                .on_hover_text("Factor on the style's width");
+            });
             ui.end_row();
         }
     });

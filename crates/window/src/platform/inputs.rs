@@ -20,6 +20,9 @@ const PX_PER_NOTCH: f64 = 50.0;
 pub(super) struct Inputs {
     modifiers: Modifiers,
     cursor_px: DVec2,
+    /// Where the cursor went last and when, not yet handed on: each place costs a search of the ground, and mice tell of
+    /// many in a frame.
+    moved: Option<(DVec2, f64)>,
 }
 
 /// Whether this event is the key that shows and hides the panel, which the panel's toolkit would take for itself.
@@ -28,17 +31,28 @@ pub(super) fn is_panel_key(event: &WindowEvent) -> bool {
         if event.logical_key == winit::keyboard::Key::Named(NamedKey::Tab))
 }
 
+/// Whether this event is the letter that ends the program together with Ctrl.
+pub(super) fn is_end_letter(event: &WindowEvent) -> bool {
+    use winit::keyboard::Key as Logical;
+    matches!(event, WindowEvent::KeyboardInput { event, .. }
+        if event.state == ElementState::Pressed
+            && matches!(&event.logical_key, Logical::Character(letter) if letter.eq_ignore_ascii_case("q")))
+}
+
 impl Inputs {
     /// Whether this event ends the program: Ctrl Q, also where no frame around the window has a button for it.
     pub(super) fn is_end(&self, event: &WindowEvent) -> bool {
-        use winit::keyboard::Key as Logical;
-        matches!(event, WindowEvent::KeyboardInput { event, .. }
-            if self.modifiers.control
-                && event.state == ElementState::Pressed
-                && matches!(&event.logical_key, Logical::Character(letter) if letter.eq_ignore_ascii_case("q")))
+        self.modifiers.control && is_end_letter(event)
     }
 
-    /// Hands an event on; tells whether it changed anything.
+    /// Hands on where the cursor is, if it moved; for each frame, and before whatever else happens there.
+    pub(super) fn hand_on_move(&mut self, app: &mut App) {
+        if let Some((at_px, moved_s)) = self.moved.take() {
+            app.input(&Input::Move { at_px }, moved_s);
+        }
+    }
+
+    /// Hands an event on, or keeps it for [`Inputs::hand_on_move`]; tells whether it changed anything.
     pub(super) fn take(
         &mut self,
         event: &WindowEvent,
@@ -46,6 +60,11 @@ impl Inputs {
         ui: &egui::Context,
         now_s: f64,
     ) -> bool {
+        let is_mere_move =
+            matches!(event, WindowEvent::CursorMoved { .. } | WindowEvent::AxisMotion { .. });
+        if !is_mere_move {
+            self.hand_on_move(app);
+        }
         match event {
             WindowEvent::ModifiersChanged(modifiers) => {
                 let state = modifiers.state();
@@ -53,12 +72,13 @@ impl Inputs {
                     shift: state.contains(ModifiersState::SHIFT),
                     control: state.contains(ModifiersState::CONTROL),
                 };
+                app.input(&Input::Modify { modifiers: self.modifiers }, now_s);
                 false
             }
             WindowEvent::CursorMoved { position, .. } => {
                 self.cursor_px = DVec2::new(position.x, position.y);
+                self.moved = Some((self.cursor_px, now_s));
                 app.point_at(Some(self.cursor_px));
-                app.input(&Input::Move { at_px: self.cursor_px }, now_s);
                 true
             }
             WindowEvent::CursorLeft { .. } => {
@@ -175,6 +195,7 @@ fn command(logical: &winit::keyboard::Key, modifiers: Modifiers) -> Option<Comma
             "n" => Some(Command::NorthUp),
             "r" => Some(Command::Reset),
             "f" => Some(Command::ToggleFly),
+            "c" => Some(Command::ToggleRecording),
             "p" if modifiers.shift => Some(Command::Take(Shot::Window)),
             "p" => Some(Command::Take(Shot::Map)),
             _ => None,

@@ -4,19 +4,21 @@ use std::sync::Arc;
 
 use corniche_viewer::gpu::Gpu;
 use wgpu::{
-    Backends, CurrentSurfaceTexture, Instance, InstanceDescriptor, Surface, SurfaceConfiguration,
-    SurfaceTexture, TextureFormat,
+    Backends, CurrentSurfaceTexture, ErrorFilter, Instance, InstanceDescriptor, Surface,
+    SurfaceConfiguration, SurfaceTexture, TextureFormat,
 };
 use winit::{event_loop::ActiveEventLoop, window::Window};
 
 use crate::{WindowError, canvas::Canvas};
 
-/// The surface, configured for the window's size.
+/// The surface and the size of what is painted on it.
 pub(super) struct Screen {
     surface: Surface<'static>,
     instance: Instance,
     configuration: SurfaceConfiguration,
     size_px: [u32; 2],
+    /// Nothing is got of a surface that is not: that would end the program.
+    is_configured: bool,
 }
 
 /// What there is to paint into.
@@ -50,10 +52,10 @@ impl Screen {
         let surface = new_surface(&instance, window)?;
         let gpu = Gpu::for_window(&instance, &surface)?;
         let size = window.inner_size();
-        let size_px = [size.width, size.height];
+        let size_px = drawable_px(&gpu, [size.width, size.height]);
         let configuration = configuration(&surface, &gpu)?;
-        let mut screen = Self { surface, instance, configuration, size_px };
-        screen.configure(gpu.device());
+        let mut screen = Self { surface, instance, configuration, size_px, is_configured: false };
+        screen.configure(&gpu)?;
         Ok((screen, gpu))
     }
 
@@ -62,23 +64,36 @@ impl Screen {
         self.configuration.format
     }
 
-    /// Width and height; 0 while the window is minimised on some systems.
+    /// Width and height of what is painted; 0 while the window is minimised on some systems. No side is larger than the
+    /// device's textures, which a window across many screens may be: the system fits the picture into it.
     pub(super) fn size_px(&self) -> [u32; 2] {
         self.size_px
     }
 
     /// The window has another size.
     pub(super) fn resize(&mut self, canvas: &Canvas, size_px: [u32; 2]) {
-        self.size_px = size_px;
-        self.configure(canvas.gpu().device());
+        self.size_px = drawable_px(canvas.gpu(), size_px);
+        // Of many sizes in a row only the last is painted.
+        self.is_configured = false;
     }
 
-    fn configure(&mut self, device: &wgpu::Device) {
+    /// Prepares the surface for its size, unless that is nothing or the device is lost.
+    fn configure(&mut self, gpu: &Gpu) -> Result<(), WindowError> {
+        self.is_configured = false;
         if self.size_px.contains(&0) {
-            return;
+            return Ok(());
         }
         [self.configuration.width, self.configuration.height] = self.size_px;
-        self.surface.configure(device, &self.configuration);
+        let filters = [ErrorFilter::Validation, ErrorFilter::OutOfMemory, ErrorFilter::Internal];
+        let scopes = filters.map(|filter| gpu.device().push_error_scope(filter));
+        self.surface.configure(gpu.device(), &self.configuration);
+        let ended = scopes.into_iter().rev().map(|scope| pollster::block_on(scope.pop()));
+        // All of them are ended, whichever caught something.
+        if let Some(source) = ended.collect::<Vec<_>>().into_iter().flatten().next() {
+            return Err(WindowError::Surface { source: source.into() });
+        }
+        self.is_configured = !gpu.is_lost();
+        Ok(())
     }
 
     /// Gets something to paint into; once for each way of losing it, the surface is made anew.
@@ -87,8 +102,15 @@ impl Screen {
         canvas: &Canvas,
         window: &Arc<Window>,
     ) -> Result<Acquired, WindowError> {
-        let device = canvas.gpu().device();
+        let gpu = canvas.gpu();
         for _ in 0..3 {
+            if !self.is_configured {
+                self.configure(gpu)?;
+            }
+            if !self.is_configured {
+                // The device is lost; everything is made anew before the next frame.
+                return Ok(Acquired::Later);
+            }
             match self.surface.get_current_texture() {
                 CurrentSurfaceTexture::Success(texture)
                 | CurrentSurfaceTexture::Suboptimal(texture) => {
@@ -96,17 +118,16 @@ impl Screen {
                     if [size.width, size.height] == self.size_px {
                         return Ok(Acquired::Texture(texture));
                     }
-                    drop(texture);
-                    self.configure(device);
+                    self.is_configured = false;
                 }
                 CurrentSurfaceTexture::Timeout => return Ok(Acquired::Later),
                 CurrentSurfaceTexture::Occluded => return Ok(Acquired::Hidden),
                 CurrentSurfaceTexture::Outdated | CurrentSurfaceTexture::Validation => {
-                    self.configure(device);
+                    self.is_configured = false;
                 }
                 CurrentSurfaceTexture::Lost => {
+                    self.is_configured = false;
                     self.surface = new_surface(&self.instance, window)?;
-                    self.configure(device);
                 }
             }
         }
@@ -116,12 +137,19 @@ impl Screen {
 
     /// A new surface and a new device, in the place of those lost.
     pub(super) fn rebuild(&mut self, window: &Arc<Window>) -> Result<Gpu, WindowError> {
+        self.is_configured = false;
         self.surface = new_surface(&self.instance, window)?;
         let gpu = Gpu::for_window(&self.instance, &self.surface)?;
         self.configuration = configuration(&self.surface, &gpu)?;
-        self.configure(gpu.device());
+        self.size_px = drawable_px(&gpu, self.size_px);
+        self.configure(&gpu)?;
         Ok(gpu)
     }
+}
+
+/// The largest part of a size that a device can paint.
+fn drawable_px(gpu: &Gpu, size_px: [u32; 2]) -> [u32; 2] {
+    size_px.map(|side| side.min(gpu.max_side_px()))
 }
 
 fn new_surface(instance: &Instance, window: &Arc<Window>) -> Result<Surface<'static>, WindowError> {

@@ -8,6 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use corniche_viewer::gpu::ReadBackError;
 use egui::{Color32, ColorImage, Rect, TextureHandle, TextureOptions, pos2};
 use egui_wgpu::ScreenDescriptor;
 use image::RgbaImage;
@@ -19,19 +20,24 @@ use winit::{
     window::{Window, WindowId},
 };
 
-use super::screen::{Acquired, Screen};
+use super::{
+    inputs::is_end_letter,
+    screen::{Acquired, Screen},
+};
 use crate::{WindowError, canvas::Canvas};
 
 /// The next picture is looked for so often.
 const PICTURE_TIME: Duration = Duration::from_millis(10);
 
 /// Whose turn it was when the window went.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug)]
 pub enum Watched {
     /// There are no more pictures.
     ToTheEnd,
-    /// The person closed the window before.
+    /// The person closed the window before, by its frame or with Ctrl Q.
     InPart,
+    /// The window was lost before: with its surface or its device, which need not be those that pictures are made with.
+    Lost(WindowError),
 }
 
 /// Shows pictures as they come, in a window that is `size_px` large at first, until there are no more or it is closed.
@@ -40,7 +46,7 @@ pub enum Watched {
 /// pixel for pixel while that has the pictures' size.
 ///
 /// # Errors
-/// When there is no display, or nothing to draw with.
+/// When no window opens: there is no display, or nothing to draw with.
 pub fn watch(
     title: &str,
     size_px: [u32; 2],
@@ -52,13 +58,15 @@ pub fn watch(
         size_px,
         pictures,
         open: None,
-        watched: Watched::InPart,
-        failure: None,
+        is_control_down: false,
+        ended: None,
     };
-    event_loop
-        .run_app(&mut show)
-        .map_err(|source| WindowError::System { source: source.into() })?;
-    show.failure.map_or(Ok(show.watched), Err)
+    let ran = event_loop.run_app(&mut show);
+    match (show.ended, ran) {
+        (Some(ended), _) => ended,
+        (None, Ok(())) => Ok(Watched::InPart),
+        (None, Err(source)) => Err(WindowError::System { source: source.into() }),
+    }
 }
 
 struct Show {
@@ -66,8 +74,9 @@ struct Show {
     size_px: [u32; 2],
     pictures: Receiver<RgbaImage>,
     open: Option<Open>,
-    watched: Watched,
-    failure: Option<WindowError>,
+    is_control_down: bool,
+    /// Once it is over.
+    ended: Option<Result<Watched, WindowError>>,
 }
 
 /// Fields are dropped in order: what lies on the card before the surface, that before the window.
@@ -95,38 +104,48 @@ impl Show {
         Ok(Open { picture: None, canvas, screen, ui: egui::Context::default(), window })
     }
 
-    fn settle(&mut self, event_loop: &ActiveEventLoop, done: Result<(), WindowError>) {
-        if let Err(failure) = done {
-            self.failure.get_or_insert(failure);
-            event_loop.exit();
-        }
+    /// Only the first end counts.
+    fn end(&mut self, event_loop: &ActiveEventLoop, ended: Result<Watched, WindowError>) {
+        self.ended.get_or_insert(ended);
+        event_loop.exit();
     }
 }
 
 impl ApplicationHandler<super::News> for Show {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
         if self.open.is_none() {
-            let opened = self.open(event_loop).map(|open| self.open = Some(open));
-            self.settle(event_loop, opened);
+            match self.open(event_loop) {
+                Ok(open) => self.open = Some(open),
+                Err(error) => self.end(event_loop, Err(error)),
+            }
         }
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(open) = &mut self.open else { return };
-        let done = match event {
-            WindowEvent::CloseRequested => {
-                event_loop.exit();
-                Ok(())
+        match event {
+            WindowEvent::CloseRequested => self.end(event_loop, Ok(Watched::InPart)),
+            event if self.is_control_down && is_end_letter(&event) => {
+                self.end(event_loop, Ok(Watched::InPart));
+            }
+            WindowEvent::ModifiersChanged(modifiers) => {
+                self.is_control_down = modifiers.state().control_key();
+            }
+            WindowEvent::Destroyed => {
+                let source = "it was taken away".into();
+                self.end(event_loop, Ok(Watched::Lost(WindowError::System { source })));
             }
             WindowEvent::Resized(size) => {
                 open.screen.resize(&open.canvas, [size.width, size.height]);
                 open.window.request_redraw();
-                Ok(())
             }
-            WindowEvent::RedrawRequested => open.draw(),
-            _ => Ok(()),
-        };
-        self.settle(event_loop, done);
+            WindowEvent::RedrawRequested => {
+                if let Err(error) = open.draw() {
+                    self.end(event_loop, Ok(Watched::Lost(error)));
+                }
+            }
+            _ => {}
+        }
     }
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
@@ -135,8 +154,7 @@ impl ApplicationHandler<super::News> for Show {
             Ok(picture) => open.take(&picture),
             Err(TryRecvError::Empty) => {}
             Err(TryRecvError::Disconnected) => {
-                self.watched = Watched::ToTheEnd;
-                event_loop.exit();
+                self.end(event_loop, Ok(Watched::ToTheEnd));
             }
         }
         event_loop.set_control_flow(ControlFlow::WaitUntil(Instant::now() + PICTURE_TIME));
@@ -195,7 +213,10 @@ impl Open {
             Acquired::Hidden => {}
         }
         self.canvas.free_textures(&unused);
-        Ok(())
+        match self.canvas.gpu().take_fault() {
+            Some(what) => Err(ReadBackError::Fault { what }.into()),
+            None => Ok(()),
+        }
     }
 }
 

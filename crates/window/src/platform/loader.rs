@@ -8,15 +8,20 @@
 //! bounded by whoever asks ([`corniche_viewer::stream::StreamBudget`]); the results have room for as many.
 
 use std::{
+    any::Any,
     collections::VecDeque,
     io,
     num::NonZeroUsize,
+    panic::{AssertUnwindSafe, catch_unwind},
     sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc},
     thread::{self, JoinHandle},
 };
 
 use corniche_geom::TileId;
 use corniche_viewer::tiles::{LoadTileError, TileGeometry, TileSource};
+
+/// More threads that decode would take turns with the one that draws.
+const MOST_THREADS: usize = 4;
 
 /// Where tiles come from, usable from any thread.
 pub(crate) type SharedSource = Arc<dyn TileSource + Send + Sync>;
@@ -70,6 +75,12 @@ impl Shared {
 }
 
 impl Loader {
+    /// How many workers this machine has use for: one core is left to the thread that draws.
+    pub(crate) fn usual_threads() -> NonZeroUsize {
+        let cores = thread::available_parallelism().map_or(2, NonZeroUsize::get);
+        NonZeroUsize::new((cores - 1).clamp(1, MOST_THREADS)).unwrap_or(NonZeroUsize::MIN)
+    }
+
     /// Starts `threads` workers, at most `room` tiles ahead of whoever takes them. `wake` is called from theirs
     /// whenever a tile is there.
     ///
@@ -91,7 +102,7 @@ impl Loader {
             let (sender, wake) = (sender.clone(), Arc::clone(wake));
             let work = move || {
                 while let Some(id) = shared.next() {
-                    if sender.send(Loaded { id, tile: source.load(id) }).is_err() {
+                    if sender.send(Loaded { id, tile: load(source.as_ref(), id) }).is_err() {
                         return;
                     }
                     wake();
@@ -119,6 +130,20 @@ impl Loader {
     pub(crate) fn arrivals(&self) -> impl Iterator<Item = Loaded> {
         self.results.iter().flat_map(mpsc::Receiver::try_iter)
     }
+}
+
+/// A tile, or why not. A defect of the decoder costs one tile and not the worker: whoever asked would wait for ever.
+fn load(source: &dyn TileSource, id: TileId) -> Result<TileGeometry, LoadTileError> {
+    // A source is only read: nothing of it is left half changed.
+    catch_unwind(AssertUnwindSafe(|| source.load(id))).unwrap_or_else(|panic| {
+        let source = format!("the program fails on it: {}", words_of(panic.as_ref())).into();
+        Err(LoadTileError { id, source })
+    })
+}
+
+fn words_of(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without a word")
 }
 
 impl Drop for Loader {

@@ -8,7 +8,7 @@ use corniche_viewer::tiles::TileLines;
 
 use super::*;
 
-/// Tiles without ground; those of level 3 are damaged.
+/// Tiles without ground; those of level 3 are damaged, and on those of level 2 the decoder fails.
 struct Bare {
     frame: Frame,
     loaded: AtomicUsize,
@@ -25,6 +25,7 @@ impl TileSource for Bare {
 
     fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
         self.loaded.fetch_add(1, Ordering::SeqCst);
+        assert!(id.z() != 2, "no such tile was thought of");
         if id.z() == 3 {
             return Err(LoadTileError { id, source: "damaged".into() });
         }
@@ -86,6 +87,19 @@ fn a_damaged_tile_says_so_and_the_next_ones_arrive() {
     let failed: Vec<TileId> =
         arrived.iter().filter(|loaded| loaded.tile.is_err()).map(|loaded| loaded.id).collect();
     assert_eq!(failed, [damaged]);
+}
+
+#[test]
+fn a_tile_that_the_decoder_fails_on_says_so_and_the_worker_goes_on() {
+    let (source, woken) = (bare(), Arc::new(AtomicUsize::new(0)));
+    let loader = loader(&source, 1, 8, &woken);
+    let bad = TileId::new(2, 1, 1).unwrap();
+    loader.request(&[&[bad], &level_4(2)[..]].concat());
+    let arrived = take(&loader, 3);
+    let error = arrived[0].tile.as_ref().unwrap_err();
+    assert_eq!(error.id, bad);
+    assert!(error.source.to_string().contains("no such tile was thought of"), "{error:?}");
+    assert!(arrived[1..].iter().all(|loaded| loaded.tile.is_ok()));
 }
 
 #[test]

@@ -1,0 +1,73 @@
+//! Where to look from, for all commands that look from one place at first.
+
+use clap::Args;
+use corniche_viewer::{CameraRequest, camera::Orientation};
+
+use super::values::parse_position;
+
+#[derive(Debug, Args)]
+pub(crate) struct CameraArgs {
+    /// Look at this longitude and latitude (degrees, WGS84) instead of the whole package
+    #[arg(long, value_name = "LON,LAT", value_parser = parse_position, allow_hyphen_values = true)]
+    look_at: Option<[f64; 2]>,
+    /// Distance from the eye to the point looked at, in metres
+    #[arg(long, value_name = "METRES", default_value_t = 5000.0, requires = "look_at")]
+    distance: f64,
+    /// Direction of view, in degrees clockwise from north
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        default_value_t = 0.0,
+        requires = "look_at",
+        allow_hyphen_values = true
+    )]
+    heading: f64,
+    /// Tilt of the view, in degrees: 0 looks straight down, 90 at the horizon; a window goes up to 85
+    #[arg(long, value_name = "DEGREES", default_value_t = 60.0, requires = "look_at")]
+    pitch: f64,
+}
+
+impl CameraArgs {
+    /// What is asked of the viewer, which checks it.
+    pub(crate) fn request(&self) -> CameraRequest {
+        let Some([lon_deg, lat_deg]) = self.look_at else { return CameraRequest::FrameAll };
+        CameraRequest::LookAt {
+            lon_deg,
+            lat_deg,
+            distance_m: self.distance,
+            orientation: Orientation { heading_deg: self.heading, pitch_deg: self.pitch },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        camera: CameraArgs,
+    }
+
+    #[test]
+    fn a_place_is_looked_at_from_where_the_options_say() {
+        let check = |line: &str, expected: Option<CameraRequest>| {
+            let line = Line::try_parse_from(line.split_whitespace());
+            assert_eq!(line.ok().map(|line| line.camera.request()), expected);
+        };
+        let place = |distance_m, heading_deg, pitch_deg| CameraRequest::LookAt {
+            lon_deg: -9.5,
+            lat_deg: 47.0,
+            distance_m,
+            orientation: Orientation { heading_deg, pitch_deg },
+        };
+        check("corniche", Some(CameraRequest::FrameAll));
+        check("corniche --look-at -9.5,47", Some(place(5000.0, 0.0, 60.0)));
+        let all = "corniche --look-at -9.5,47 --distance 20 --heading -30 --pitch 5";
+        check(all, Some(place(20.0, -30.0, 5.0)));
+        check("corniche --distance 20", None);
+    }
+}

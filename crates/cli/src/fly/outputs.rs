@@ -1,0 +1,86 @@
+//! Everything a flight writes: all of it, or nothing.
+
+use std::path::Path;
+
+use corniche_viewer::{Replay, flight::Flight};
+
+use super::{Run, list, pictures::Pictures};
+use crate::{
+    args::FlyArgs,
+    chart,
+    exit::ExitCode,
+    failure::Failure,
+    output::{Complete, Existing, Output},
+    styles,
+};
+
+/// Files and a folder beside their targets, which nothing has touched yet.
+pub(super) struct Outputs {
+    csv: Output,
+    svg: Option<Output>,
+    save_path: Option<Output>,
+    pictures: Option<Pictures>,
+}
+
+impl Outputs {
+    /// Begins what is asked for; none of it is what the command reads, and no two are one.
+    pub(super) fn create(args: &FlyArgs) -> Result<Self, Failure> {
+        let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
+        let mut used: Vec<&Path> = vec![&args.package];
+        used.extend(args.flight.path.as_deref());
+        used.extend(styles::file_of(&args.look.style));
+        let csv = Output::create(&args.output, existing, &used)?;
+        used.push(&args.output);
+        let svg = create(args.svg.as_deref(), existing, &mut used)?;
+        let save_path = create(args.flight.save_path.as_deref(), existing, &mut used)?;
+        let pictures =
+            args.png.as_deref().map(|folder| Pictures::create(folder, &used)).transpose()?;
+        Ok(Self { csv, svg, save_path, pictures })
+    }
+
+    /// Adds the frame drawn last, where pictures are wanted.
+    pub(super) fn add_picture(&self, name: &str, replay: &Replay<'_>) -> Result<(), Failure> {
+        self.pictures.as_ref().map_or(Ok(()), |pictures| pictures.add(name, replay))
+    }
+
+    /// Writes everything, and then puts everything in its place, the list last: where it stands, all else stands too.
+    ///
+    /// What can still go wrong is a place that has been taken or closed to us since the flight began; then what took its
+    /// place before stays, and the list is missing.
+    pub(super) fn finish(
+        self,
+        flight: &Flight,
+        runs: &[Run],
+        adapter: &str,
+    ) -> Result<(), Failure> {
+        let Self { csv, svg, save_path, pictures } = self;
+        let mut written = Vec::new();
+        if let Some(svg) = svg {
+            let drawing = chart::frame_times(runs, adapter).map_err(failed)?;
+            written.push(svg.fill(drawing.as_bytes())?);
+        }
+        if let Some(save_path) = save_path {
+            let text = flight.to_text().map_err(failed)?;
+            written.push(save_path.fill(text.as_bytes())?);
+        }
+        written.push(csv.fill(list::to_csv(runs).as_bytes())?);
+        pictures.map_or(Ok(()), Pictures::finish)?;
+        written.into_iter().try_for_each(Complete::place)
+    }
+}
+
+fn failed(error: impl Into<anyhow::Error>) -> Failure {
+    Failure::new(ExitCode::Failed, error)
+}
+
+/// Begins a file that is wanted, which is none of those `used`; then it is used too.
+fn create<'a>(
+    path: Option<&'a Path>,
+    existing: Existing,
+    used: &mut Vec<&'a Path>,
+) -> Result<Option<Output>, Failure> {
+    let Some(path) = path else { return Ok(None) };
+    let output = Output::create(path, existing, used)?;
+    used.push(path);
+    Ok(Some(output))
+}

@@ -1,0 +1,62 @@
+//! What follows from the eye's height above the ground beneath it: how low it may go, and how far away it looks.
+//!
+//! Windows, flights and pictures go by the same two rules, so that what one of them shows the others can show too. All
+//! heights are world heights: true ones times exaggeration and the point scale.
+//!
+//! The near plane lies at a thousandth of the focus, and the focus is at most five times the height above the ground (a
+//! metre at least): so at the least height it is a centimetre away, and never reaches the ground.
+
+/// The eye stays at least so far above the ground: nearer it would see through the TIN's skirts.
+const CLEARANCE_M: f64 = 2.0;
+/// A view that looks level is about so many times as far from the ground as it is high.
+const LEAST_COS: f64 = 0.2;
+/// The nearest focus.
+const MIN_FOCUS_M: f64 = 1.0;
+
+/// Least height of the eye above the ground; `point_scale` is length in the working CRS over true length.
+#[must_use]
+pub fn clearance_m(point_scale: f64) -> f64 {
+    CLEARANCE_M * point_scale
+}
+
+/// How far away the ground is that one looks at from `above_ground_m`: the way to level ground in the middle of the
+/// picture. It changes as smoothly as that height and the pitch. Haze and near plane follow from it.
+#[must_use]
+pub fn focus_m(above_ground_m: f64, pitch_deg: f64) -> f64 {
+    (above_ground_m / pitch_deg.to_radians().cos().max(LEAST_COS)).max(MIN_FOCUS_M)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::camera::{Camera, Orientation};
+
+    #[test]
+    fn the_focus_is_where_the_middle_of_the_picture_meets_level_ground() {
+        for (above_m, pitch_deg, expected_m) in [
+            (100.0, 0.0, 100.0),
+            (100.0, 60.0, 200.0),
+            (100.0, 90.0, 500.0),
+            (0.1, 0.0, 1.0),
+            (-50.0, 30.0, 1.0),
+        ] {
+            let focus_m = focus_m(above_m, pitch_deg);
+            assert!((focus_m - expected_m).abs() < 1e-9, "{above_m} {pitch_deg}: {focus_m}");
+        }
+    }
+
+    #[test]
+    fn the_near_plane_does_not_reach_the_ground() {
+        for pitch_deg in [0.0, 45.0, 85.0, 90.0] {
+            for above_m in [clearance_m(1.0), 10.0, 1e4, 1e7] {
+                let orientation = Orientation { heading_deg: 0.0, pitch_deg };
+                let focus_m = focus_m(above_m, pitch_deg);
+                let camera = Camera::look_at(DVec3::ZERO, focus_m, orientation, [100, 100]);
+                // The near plane's corners are less than twice its depth away.
+                assert!(2.0 * camera.near_m() < above_m / 10.0, "{pitch_deg} {above_m}");
+            }
+        }
+    }
+}

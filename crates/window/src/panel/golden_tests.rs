@@ -1,0 +1,82 @@
+//! The window as it was looked at and found right, against the window painted now: where panel, credits, scale, compass
+//! and notices lie, and that each can be read.
+//!
+//! They hold for software Vulkan (llvmpipe) alone. `CORNICHE_BLESS=1 cargo test -p corniche-window golden` accepts the
+//! pictures painted now. Look at them.
+
+use corniche_viewer::gpu::Gpu;
+use egui_wgpu::ScreenDescriptor;
+use image::RgbaImage;
+
+use super::*;
+use crate::canvas::{
+    Canvas,
+    tests::{canvas, scene_of_size},
+};
+
+/// The same rule as for pictures of the map; a crate for it alone would be one too many.
+#[path = "../../../viewer/tests/golden/compare.rs"]
+mod compare;
+
+fn is_pinned(gpu: &Gpu) -> bool {
+    let is_pinned = ["llvmpipe", "vulkan"].iter().all(|part| gpu.adapter_name().contains(part));
+    if !is_pinned {
+        println!("skipped: these pictures are llvmpipe's, not {}'s", gpu.adapter_name());
+    }
+    is_pinned
+}
+
+/// The window over a map of sky and void.
+fn painted(canvas: &mut Canvas, size_px: [u32; 2], settings: &mut Settings) -> RgbaImage {
+    let drew = canvas.draw(&scene_of_size(settings.compare, size_px)).unwrap();
+    let told = Told::new();
+    let ctx = egui::Context::default();
+    set_up(&ctx);
+    let size = size_px.map(|side| side as f32);
+    let mut output = egui::FullOutput::default();
+    // The toolkit knows how large things are from the second time on.
+    for _ in 0..2 {
+        let input = RawInput {
+            screen_rect: Some(Rect::from_min_size(egui::Pos2::ZERO, size.into())),
+            ..RawInput::default()
+        };
+        output = ctx.run_ui(input, |ui| {
+            show(ui, settings, &told.facts(), drew.pictures);
+        });
+        canvas.take_textures(std::mem::take(&mut output.textures_delta));
+    }
+    let primitives = ctx.tessellate(output.shapes, 1.0);
+    let screen = ScreenDescriptor { size_in_pixels: size_px, pixels_per_point: 1.0 };
+    canvas.read_window(&primitives, &screen).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn the_window_looks_as_it_did() {
+    let Some(mut canvas) = canvas() else { return };
+    if !is_pinned(canvas.gpu()) {
+        return;
+    }
+    let split = Settings { compare: Compare::Split, ..usual() };
+    for (name, size_px, mut settings) in
+        [("window", [820, 640], usual()), ("window-small-split", [400, 300], split)]
+    {
+        compare::check(name, &painted(&mut canvas, size_px, &mut settings));
+    }
+}
+
+/// The comparison sees what it should see.
+#[test]
+fn a_window_without_its_panel_is_no_match() {
+    if compare::is_blessing() {
+        return;
+    }
+    let Some(mut canvas) = canvas() else { return };
+    if !is_pinned(canvas.gpu()) {
+        return;
+    }
+    let mut hidden = Settings { is_panel_open: false, ..usual() };
+    let found =
+        compare::mismatch("window", &painted(&mut canvas, [820, 640], &mut hidden)).unwrap();
+    println!("must fail, the panel hidden: {found}");
+    assert!(!found.is_match());
+}

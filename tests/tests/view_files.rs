@@ -1,0 +1,146 @@
+//! What `corniche view` leaves on disk: never in the place of another file, and never lost.
+#![cfg(target_os = "linux")]
+
+use std::{
+    fs,
+    io::Read as _,
+    path::{Path, PathBuf},
+    process::{Child, Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+use e2e::{Display, Ran, binary, build_pass, lacks_adapter, text, without_display};
+
+/// A folder with a package.
+fn package() -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let package = folder.path().join("pass.pmtiles");
+    build_pass(&package, &["--quiet"]);
+    (folder, package)
+}
+
+/// Asks for a window where none can open: what is refused is refused before.
+fn refused(package: &Path, options: &[&str]) -> Ran {
+    let mut command = Command::new(binary());
+    without_display(command.arg("view").arg(package).args(options))
+        .output()
+        .expect("the binary starts")
+        .into()
+}
+
+#[test]
+fn a_trace_replaces_neither_the_package_nor_the_style_nor_another_file() {
+    let (folder, package) = package();
+    let style = folder.path().join("mine.toml");
+    fs::copy(e2e::root().join("config/styles/dark.toml"), &style).unwrap();
+    let precious = folder.path().join("precious.csv");
+    fs::write(&precious, b"precious").unwrap();
+    let before = [&package, &style, &precious].map(|path| fs::read(path).unwrap());
+
+    let same_package = folder.path().join(".").join("pass.pmtiles");
+    for (options, code) in [
+        (["--trace", text(&same_package), "--style", "dark"], 2),
+        (["--trace", text(&style), "--style", text(&style)], 2),
+        (["--trace", text(&precious), "--style", "dark"], 3),
+    ] {
+        let ran = refused(&package, &options);
+        assert_eq!(ran.code, code, "{options:?}: {}", ran.err);
+        assert!(ran.err.contains(options[1]), "{}", ran.err);
+    }
+    let after = [&package, &style, &precious].map(|path| fs::read(path).unwrap());
+    assert!(before == after);
+
+    let new = folder.path().join("new.csv");
+    assert_eq!(refused(&package, &["--trace", text(&new)]).code, 1, "no display");
+    assert!(!new.exists(), "without a window there is nothing to tell of");
+}
+
+#[test]
+fn what_is_to_hold_pictures_must_not_be_a_file() {
+    let (folder, package) = package();
+    let file = folder.path().join("pictures");
+    fs::write(&file, b"precious").unwrap();
+    let ran = refused(&package, &["--folder", text(&file)]);
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("--folder"), "{}", ran.err);
+    assert_eq!(fs::read(&file).unwrap(), b"precious");
+}
+
+#[test]
+fn a_package_that_does_not_fit_the_memory_allowed_opens_no_window() {
+    let (_folder, package) = package();
+    let ran = refused(&package, &["--gpu-memory", "1K"]);
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("--gpu-memory"), "{}", ran.err);
+}
+
+/// Waits for the program's end.
+fn ended(window: &mut Child) -> Ran {
+    let begun = Instant::now();
+    let code = loop {
+        if let Some(status) = window.try_wait().expect("it is ours") {
+            break status.code().unwrap_or(-1);
+        }
+        assert!(begun.elapsed() < Duration::from_mins(1), "it does not end");
+        thread::sleep(Duration::from_millis(20));
+    };
+    let mut err = String::new();
+    if let Some(mut said) = window.stderr.take() {
+        said.read_to_string(&mut err).expect("its words are text");
+    }
+    Ran { code, out: String::new(), err }
+}
+
+#[test]
+fn a_recording_is_saved_however_the_window_ends() {
+    let Some(display) = Display::start() else { return };
+    let (folder, package) = package();
+    // A window that is taken away may fail before it learns of it.
+    let ends: [(&str, &[i32]); 3] =
+        [("key ctrl+q", &[0]), ("signal", &[4]), ("windowclose", &[0, 1])];
+    for (number, (end, codes)) in (1..).zip(ends) {
+        let trace = folder.path().join(format!("trace-{number}.csv"));
+        let mut command = Command::new(binary());
+        command.arg("view").arg(&package).args(["--size", "320x240", "--folder"]);
+        command.arg(folder.path()).arg("--trace").arg(&trace);
+        command.stdout(Stdio::null()).stderr(Stdio::piped());
+        let mut window = display.lend(&mut command).spawn().unwrap();
+        // The first frames are there.
+        let lines = || fs::read_to_string(&trace).map_or(0, |text| text.lines().count());
+        while lines() < 3 {
+            if window.try_wait().unwrap().is_some() {
+                let ran = ended(&mut window);
+                assert!(lacks_adapter(&ran), "{}", ran.err);
+                return;
+            }
+            thread::sleep(Duration::from_millis(50));
+        }
+        let id = display.xdotool("search --name Corniche");
+        let id = id.lines().last().expect("the window has its name");
+        display.xdotool(&format!("windowfocus {id}"));
+        // It learns of the keyboard's being its own a little later.
+        thread::sleep(Duration::from_secs(1));
+        display.xdotool("key c");
+        thread::sleep(Duration::from_secs(2));
+        match end {
+            "signal" => {
+                let number = window.id().to_string();
+                let sent = Command::new("kill").args(["-TERM", &number]).status().unwrap();
+                assert!(sent.success());
+            }
+            "windowclose" => {
+                display.xdotool(&format!("windowclose {id}"));
+            }
+            key => {
+                display.xdotool(key);
+            }
+        }
+        let ran = ended(&mut window);
+        assert!(codes.contains(&ran.code), "{end} gave {}: {}", ran.code, ran.err);
+        let flight = format!("flight-{number:03}.toml");
+        assert!(ran.err.contains(&flight), "{end}: {}", ran.err);
+        let flight = fs::read_to_string(folder.path().join(flight)).unwrap();
+        assert!(flight.matches("time_s").count() >= 2, "{end}: {flight}");
+    }
+}
