@@ -39,17 +39,16 @@ proptest! {
     fn no_ground_is_beyond_the_bounds(
         p in (-1500_i64..17_500, -1500_i64..17_500), by in (-4000_i64..4000, -4000_i64..4000),
         reach in 1_i64..3000, seed in 0_i32..1000, holes in 2_u32..60, steep in 1_i32..40,
-        samples in prop::collection::vec((-1.0..=1.0_f64, -1.0..=1.0_f64), 100),
+        samples in prop::collection::vec((0.0..=1.0_f64, -1.0..=1.0_f64, -1.0..=1.0_f64), 100),
     ) {
         let rough = |column: i32, row: i32| steep * (column * 7919 + row * 104_729 + seed * 31).rem_euclid(97);
         let surface = ground(rough, |column, row| (column * 5 + row * 3) % holes == 1);
         let ends = [[p.0 as f64, p.1 as f64], [(p.0 + by.0) as f64, (p.1 + by.1) as f64]];
         let found = near_ground(ends, &surface, reach as f64);
-        for (along, across) in samples {
+        for (share, east, north) in samples {
             // Anywhere around the segment, most of it near.
-            let share = (along + 1.0) / 2.0;
             let at = [0, 1].map(|axis| ends[0][axis] + share * (ends[1][axis] - ends[0][axis]));
-            let at = LatticePoint::new((at[0] + across * reach as f64) as i64, (at[1] + along * across * reach as f64) as i64);
+            let at = LatticePoint::new((at[0] + east * reach as f64) as i64, (at[1] + north * reach as f64) as i64);
             let away = distance(at.in_steps(), ends);
             let Some(triangle) = surface.locate(at).filter(|_| away <= reach as f64) else { continue };
             let height_m = surface.height_at_point_m(triangle, at);
