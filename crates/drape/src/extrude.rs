@@ -140,4 +140,4 @@ fn heights_m(surface: &Surface, triangle: u32) -> [f64; 3] {
 
 #[cfg(test)]
 #[path = "extrude_tests.rs"]
-mod tests;
+pub(crate) mod tests;

@@ -6,7 +6,10 @@ use proptest::prelude::*;
 const STEPS: i64 = 1000;
 
 /// 17 × 17 nodes; the cells for which `hole` holds are void.
-fn ground(height_q: impl Fn(i32, i32) -> i32, hole: impl Fn(u32, u32) -> bool) -> Surface {
+pub(crate) fn ground(
+    height_q: impl Fn(i32, i32) -> i32,
+    hole: impl Fn(u32, u32) -> bool,
+) -> Surface {
     let mut vertices = Vec::new();
     let mut triangles = Vec::new();
     for row in 0..17_u32 {

@@ -1,28 +1,7 @@
-use corniche_tin::{Placement, Tin, TinVertex};
 use proptest::prelude::*;
 
 use super::*;
-
-const STEPS: i64 = 1000;
-
-/// 17 × 17 nodes; the cells for which `hole` holds are void.
-fn ground(height_q: impl Fn(i32, i32) -> i32, hole: impl Fn(u32, u32) -> bool) -> Surface {
-    let mut vertices = Vec::new();
-    let mut triangles = Vec::new();
-    for row in 0..17_u32 {
-        for column in 0..17_u32 {
-            let height_q = height_q(column as i32, row as i32);
-            vertices.push(TinVertex { row: row as u16, column: column as u16, height_q });
-            let (nw, sw) = (row * 17 + column, (row + 1) * 17 + column);
-            if row < 16 && column < 16 && !hole(column, row) {
-                triangles.extend([[nw, sw, nw + 1], [sw, sw + 1, nw + 1]]);
-            }
-        }
-    }
-    let placement =
-        Placement { corner: LatticePoint::new(0, 16 * STEPS), node_steps: STEPS, quantum_m: 0.5 };
-    Surface::new(&Tin::new(vertices, &triangles).unwrap(), placement)
-}
+use crate::extrude::tests::ground;
 
 /// How far a point is from a segment.
 fn distance(at: [f64; 2], [p, q]: [[f64; 2]; 2]) -> f64 {
