@@ -134,7 +134,7 @@ pub(crate) struct Frame {
 impl App {
     /// Whether the mouse at this pixel of the window is the map's, not the panel's.
     pub(crate) fn is_map(&self, ui: &egui::Context, at_px: DVec2) -> bool {
-        let at = at_px / f64::from(self.pixels_per_point);
+        let at = self.in_points(at_px);
         let at = pos2(at.x as f32, at.y as f32);
         // Lists that hang from the panel lie in layers of their own.
         let is_in_front =
@@ -153,9 +153,13 @@ impl App {
         self.input(&input, now_s);
     }
 
+    fn in_points(&self, at_px: DVec2) -> DVec2 {
+        at_px / f64::from(self.pixels_per_point)
+    }
+
     fn clicks_at(&mut self, button: Button, at_px: DVec2, now_s: f64) -> Click {
         match button {
-            Button::Left => self.clicks.press(at_px, now_s),
+            Button::Left => self.clicks.press(self.in_points(at_px), now_s),
             _ => Click::Single,
         }
     }
@@ -163,7 +167,7 @@ impl App {
     /// Something else that moves the camera.
     pub(crate) fn input(&mut self, input: &Input, now_s: f64) {
         match input {
-            Input::Move { at_px } => self.clicks.move_to(*at_px),
+            Input::Move { at_px } => self.clicks.move_to(self.in_points(*at_px)),
             Input::Release { button } => {
                 self.is_dragging = false;
                 if *button == Button::Left {
@@ -248,6 +252,7 @@ impl App {
         self.pixels_per_point = pixels_per_point;
         self.take_news(now_s);
         self.navigator.resize(size_px);
+        self.navigator.set_pixels_per_point(f64::from(pixels_per_point));
         let ground = ground(&self.tiles, &self.settings, &self.source, self.height_range_m);
         self.navigator.advance(now_s, &ground);
         let camera = self.navigator.camera();

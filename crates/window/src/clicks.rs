@@ -5,9 +5,9 @@ use glam::DVec2;
 /// The second comes no later than this,
 const WITHIN_S: f64 = 0.4;
 /// and no farther away.
-const WITHIN_PX: f64 = 6.0;
+const WITHIN_POINTS: f64 = 6.0;
 /// A hand is not quite still while it clicks; what moves farther drags.
-const STILL_PX: f64 = 3.0;
+const STILL_POINTS: f64 = 3.0;
 
 /// Remembers the last click.
 #[derive(Debug, Clone, Copy, Default)]
@@ -18,7 +18,7 @@ pub(crate) struct Clicks {
 #[derive(Debug, Clone, Copy)]
 struct Last {
     at_s: f64,
-    at_px: DVec2,
+    at: DVec2,
     is_released: bool,
 }
 
@@ -32,20 +32,20 @@ pub(crate) enum Click {
 }
 
 impl Clicks {
-    /// The button goes down, at a time of any clock.
-    pub(crate) fn press(&mut self, at_px: DVec2, now_s: f64) -> Click {
+    /// The button goes down, at a place in points and a time of any clock.
+    pub(crate) fn press(&mut self, at: DVec2, now_s: f64) -> Click {
         let is_second = self.last.is_some_and(|last| {
             last.is_released
                 && now_s - last.at_s <= WITHIN_S
-                && last.at_px.distance(at_px) <= WITHIN_PX
+                && last.at.distance(at) <= WITHIN_POINTS
         });
-        self.last = (!is_second).then_some(Last { at_s: now_s, at_px, is_released: false });
+        self.last = (!is_second).then_some(Last { at_s: now_s, at, is_released: false });
         if is_second { Click::Double } else { Click::Single }
     }
 
     /// The cursor is here; with the button held that may be a drag, which is no click.
-    pub(crate) fn move_to(&mut self, at_px: DVec2) {
-        let is_drag = |last: &Last| !last.is_released && last.at_px.distance(at_px) > STILL_PX;
+    pub(crate) fn move_to(&mut self, at: DVec2) {
+        let is_drag = |last: &Last| !last.is_released && last.at.distance(at) > STILL_POINTS;
         self.last = self.last.filter(|last| !is_drag(last));
     }
 
@@ -66,8 +66,8 @@ impl Clicks {
 mod tests {
     use super::*;
 
-    fn click(clicks: &mut Clicks, at_px: DVec2, now_s: f64) -> Click {
-        let click = clicks.press(at_px, now_s);
+    fn click(clicks: &mut Clicks, at: DVec2, now_s: f64) -> Click {
+        let click = clicks.press(at, now_s);
         clicks.release();
         click
     }

@@ -8,16 +8,16 @@ use super::{
     view::{Ground, View},
 };
 
-/// Heading per pixel of a drag, `MapLibre`'s.
-const HEADING_DEG_PER_PX: f64 = 0.8;
-/// Tilt per pixel of a drag, `MapLibre`'s.
-const PITCH_DEG_PER_PX: f64 = 0.5;
-/// Both, per pixel, in fly mode.
-const LOOK_DEG_PER_PX: f64 = 0.15;
+/// Heading per point of a drag, `MapLibre`'s; a point is a pixel of a screen that is not a fine one.
+const HEADING_DEG_PER_POINT: f64 = 0.8;
+/// Tilt per point of a drag, `MapLibre`'s.
+const PITCH_DEG_PER_POINT: f64 = 0.5;
+/// Both, per point, in fly mode.
+const LOOK_DEG_PER_POINT: f64 = 0.15;
 /// Zoom levels of a notch of the wheel: three of them halve the distance.
 const LEVELS_PER_NOTCH: f64 = 1.0 / 3.0;
 /// An arrow pans by so much, `MapLibre`'s.
-const PAN_STEP_PX: f64 = 100.0;
+const PAN_STEP_POINTS: f64 = 100.0;
 /// Shift and an arrow turn by so much, `MapLibre`'s.
 const HEADING_STEP_DEG: f64 = 15.0;
 /// Shift and an arrow tilt by so much, `MapLibre`'s.
@@ -117,6 +117,7 @@ pub struct Navigator {
     view: View,
     limits: Limits,
     size_px: [u32; 2],
+    pixels_per_point: f64,
     mode: Mode,
     inertia: Inertia,
     cursor_px: DVec2,
@@ -139,6 +140,7 @@ impl Navigator {
             view: home,
             limits,
             size_px,
+            pixels_per_point: 1.0,
             mode: Mode::Map,
             inertia,
             cursor_px: DVec2::ZERO,
@@ -173,6 +175,11 @@ impl Navigator {
     /// The picture has another size now; no side may be 0.
     pub fn resize(&mut self, size_px: [u32; 2]) {
         self.size_px = size_px;
+    }
+
+    /// The screen has so many pixels to a point: on a fine one, the same way of a hand is more of them.
+    pub fn set_pixels_per_point(&mut self, pixels_per_point: f64) {
+        self.pixels_per_point = pixels_per_point;
     }
 
     /// Movements run out softly from now on, or happen at once.
@@ -317,21 +324,21 @@ impl Navigator {
     }
 
     fn drag(&mut self, at_px: DVec2, now_s: f64, ground: &dyn Ground) {
-        let moved_px = at_px - self.cursor_px;
+        let moved_points = (at_px - self.cursor_px) / self.pixels_per_point;
         self.cursor_px = at_px;
         let Orientation { heading_deg, pitch_deg } = self.view.orientation;
         match self.gesture {
             None => return,
             Some(Gesture::Pan { anchor, .. }) => self.pan_to(anchor, ground),
             Some(Gesture::Turn { pivot, .. }) => {
-                let heading_deg = heading_deg + HEADING_DEG_PER_PX * moved_px.x;
-                let pitch_deg = pitch_deg - PITCH_DEG_PER_PX * moved_px.y;
+                let heading_deg = heading_deg + HEADING_DEG_PER_POINT * moved_points.x;
+                let pitch_deg = pitch_deg - PITCH_DEG_PER_POINT * moved_points.y;
                 self.turn(pivot, heading_deg, pitch_deg, ground);
             }
             Some(Gesture::Look { .. }) => {
                 self.view.orientation = Orientation {
-                    heading_deg: heading_deg - LOOK_DEG_PER_PX * moved_px.x,
-                    pitch_deg: (pitch_deg + LOOK_DEG_PER_PX * moved_px.y).clamp(0.0, 90.0),
+                    heading_deg: heading_deg - LOOK_DEG_PER_POINT * moved_points.x,
+                    pitch_deg: (pitch_deg + LOOK_DEG_PER_POINT * moved_points.y).clamp(0.0, 90.0),
                 };
             }
         }
@@ -410,12 +417,13 @@ impl Navigator {
             self.flying.release(key);
             return;
         }
+        let step_px = PAN_STEP_POINTS * self.pixels_per_point;
         let turn = |pending: &mut Pending, sideways: f64, upward: f64| {
             if modifiers.shift {
                 pending.heading_deg += HEADING_STEP_DEG * sideways;
                 pending.pitch_deg += PITCH_STEP_DEG * upward;
             } else {
-                pending.pan_px += DVec2::new(sideways, upward) * PAN_STEP_PX;
+                pending.pan_px += DVec2::new(sideways, upward) * step_px;
             }
         };
         let levels = if modifiers.shift { 2.0 } else { 1.0 };

@@ -489,3 +489,24 @@ fn a_key_that_repeats_itself_flies_as_far_as_one_that_does_not() {
     let repeated_m = flown_m(&[10.25, 10.3, 10.35, 10.399]);
     assert!((once_m - repeated_m).abs() < 1e-6, "{once_m} {repeated_m}");
 }
+
+#[test]
+fn on_a_screen_twice_as_fine_the_same_way_of_the_hand_turns_as_far() {
+    let turned = |pixels_per_point: f64, keyed: Key| {
+        let mut navigator = looking(10.0, 40.0, 3000.0);
+        navigator.set_pixels_per_point(pixels_per_point);
+        navigator.handle(&press(Button::Right, 400.0, 300.0), 0.0, &FLAT);
+        let moved = to(400.0 + 30.0 * pixels_per_point, 300.0 + 8.0 * pixels_per_point);
+        navigator.handle(&moved, 0.1, &FLAT);
+        navigator.handle(&Input::Release { button: Button::Right }, 1.0, &FLAT);
+        let from = navigator.view();
+        navigator.handle(&key(keyed, KeyState::Pressed, false), 2.0, &FLAT);
+        rest(&mut navigator, 2.0, &FLAT);
+        (from.orientation, (navigator.view().eye_in_world - from.eye_in_world).length())
+    };
+    let ((coarse, way_m), (fine, finer_way_m)) = (turned(1.0, Key::Left), turned(2.0, Key::Left));
+    assert!((coarse.heading_deg - fine.heading_deg).abs() < 1e-9, "{coarse:?} {fine:?}");
+    assert!((coarse.pitch_deg - fine.pitch_deg).abs() < 1e-9, "{coarse:?} {fine:?}");
+    // An arrow pans over as much of the screen, which is twice the pixels.
+    assert!((finer_way_m / way_m - 2.0).abs() < 0.05, "{way_m} m and {finer_way_m} m");
+}

@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// A touchpad's scrolling by so many pixels is a notch of a wheel.
-const PX_PER_NOTCH: f64 = 50.0;
+const POINTS_PER_NOTCH: f64 = 50.0;
 
 /// What is held down, and where.
 #[derive(Debug, Default)]
@@ -91,7 +91,9 @@ impl Inputs {
             WindowEvent::MouseWheel { delta, .. } => {
                 let steps = match delta {
                     MouseScrollDelta::LineDelta(_, lines) => f64::from(*lines),
-                    MouseScrollDelta::PixelDelta(way) => way.y / PX_PER_NOTCH,
+                    MouseScrollDelta::PixelDelta(way) => {
+                        way.y / (POINTS_PER_NOTCH * f64::from(ui.pixels_per_point()))
+                    }
                 };
                 let is_maps = app.is_map(ui, self.cursor_px);
                 if is_maps {
