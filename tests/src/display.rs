@@ -45,9 +45,19 @@ impl Display {
     }
 
     fn of_new_server() -> Self {
-        // The server chooses a free number itself.
+        // The server chooses a free number itself. Without the last option it begins again whenever its last client goes,
+        // and whoever comes then is turned away.
         let server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "1000x800x24", "-nolisten", "tcp"])
+            .args([
+                "-displayfd",
+                "1",
+                "-screen",
+                "0",
+                "1000x800x24",
+                "-nolisten",
+                "tcp",
+                "-noreset",
+            ])
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn();

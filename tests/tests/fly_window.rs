@@ -139,6 +139,21 @@ fn without_a_display_there_is_no_flight() {
     assert_eq!(fs::read_dir(place.folder.path()).unwrap().count(), 2, "{}", text(&place.out));
 }
 
+/// Whether nothing moves, loads or lacks in a window with this trace, and nothing new is drawn for a second.
+fn is_at_rest(trace: &Path) -> bool {
+    let read = || fs::read_to_string(trace).unwrap_or_default();
+    let before = read();
+    thread::sleep(Duration::from_secs(1));
+    let mut lines = before.lines();
+    let names: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
+    let cells: Vec<&str> = lines.next_back().unwrap_or_default().split(',').collect();
+    let is_still = ["missing", "loading", "moving"].iter().all(|name| {
+        let place = names.iter().position(|known| known == name);
+        place.and_then(|place| cells.get(place)).is_some_and(|cell| *cell == "0")
+    });
+    is_still && before == read()
+}
+
 /// Zooming in from afar to the ground at the cursor changes what haze and near plane follow from; the flight follows.
 #[test]
 fn a_recorded_flight_ends_with_the_picture_that_the_window_showed() {
@@ -156,26 +171,18 @@ fn a_recorded_flight_ends_with_the_picture_that_the_window_showed() {
         assert!(lacks_adapter(&ran), "{}", ran.err);
         return;
     };
-    // Nothing is drawn while nothing moves or loads, and then nothing is written.
     let settle = || {
-        let (begun, mut known, mut since) = (Instant::now(), 0, Instant::now());
-        while known == 0 || since.elapsed() < Duration::from_secs(1) {
-            let length = fs::metadata(&trace).map_or(0, |metadata| metadata.len());
-            if length != known {
-                (known, since) = (length, Instant::now());
-            }
-            assert!(begun.elapsed() < Duration::from_mins(1), "it does not come to rest");
-            thread::sleep(Duration::from_millis(20));
+        let begun = Instant::now();
+        while !is_at_rest(&trace) {
+            assert!(begun.elapsed() < Duration::from_mins(2), "it does not come to rest");
         }
     };
-    let saved = |name: &str| {
+    let begins = |name: &str| {
         let (path, begun) = (place.out.join(name), Instant::now());
         while !path.exists() {
-            assert!(begun.elapsed() < Duration::from_mins(1), "no {}", path.display());
+            assert!(begun.elapsed() < Duration::from_mins(2), "no {}", path.display());
             thread::sleep(Duration::from_millis(50));
         }
-        // Its writer may not be done with it.
-        thread::sleep(Duration::from_millis(500));
         path
     };
     display.xdotool(&format!("windowfocus {id}"));
@@ -188,11 +195,13 @@ fn a_recorded_flight_ends_with_the_picture_that_the_window_showed() {
     }
     settle();
     display.xdotool("key c");
-    let flight = saved("flight-001.toml");
+    let flight = begins("flight-001.toml");
     display.xdotool("key p");
-    let shown = image::open(saved("corniche-001.png")).unwrap().to_rgb8();
+    let shown = begins("corniche-001.png");
+    // What has begun is written to its end before the window is gone.
     display.xdotool("key ctrl+q");
     assert_eq!(Ran::from(window.wait_with_output().unwrap()).code, 0);
+    let shown = image::open(shown).unwrap().to_rgb8();
 
     let (csv, png) = (place.folder.path().join("fly.csv"), place.folder.path().join("frames"));
     // So slowly that the last frame does not wait for tiles.

@@ -88,7 +88,13 @@ fn event_loop() -> Result<EventLoop<News>, WindowError> {
     let no_display = |reason| WindowError::NoDisplay { reason };
     built
         .map_err(|_| no_display("a library of the window system is missing; see above".to_owned()))?
-        .map_err(|error| no_display(error.to_string()))
+        .map_err(|error| no_display(without_source_place(&error.to_string()).to_owned()))
+}
+
+/// What the window library says of the system's errors begins with a file and a line of its own.
+fn without_source_place(words: &str) -> &str {
+    let told = words.strip_prefix("os error at ").and_then(|told| told.split_once(".rs:"));
+    told.and_then(|(_, told)| told.split_once(": ")).map_or(words, |(_, told)| told)
 }
 
 /// What the event loop drives.
@@ -366,6 +372,13 @@ fn new_ui_state(ui: &egui::Context, window: &Window, canvas: &Canvas) -> egui_wi
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_error_of_the_system_is_told_without_where_in_the_source_it_came_up() {
+        let told = "os error at /x/winit/src/mod.rs:788: Failed to open connection: no";
+        assert_eq!(without_source_place(told), "Failed to open connection: no");
+        assert_eq!(without_source_place("neither is set"), "neither is set");
+    }
 
     #[test]
     fn a_device_may_be_lost_now_and_then_but_not_twice_in_a_row() {
