@@ -129,6 +129,8 @@ pub struct Navigator {
     returning: Option<Return>,
     flying: Flying,
     now_s: f64,
+    /// When a frame was last begun.
+    advanced_s: f64,
 }
 
 impl Navigator {
@@ -151,6 +153,7 @@ impl Navigator {
             returning: None,
             flying: Flying::default(),
             now_s: 0.0,
+            advanced_s: 0.0,
         }
     }
 
@@ -285,6 +288,7 @@ impl Navigator {
     pub fn advance(&mut self, now_s: f64, ground: &dyn Ground) {
         let dt_s = (now_s - self.now_s).clamp(0.0, MAX_STEP_S);
         self.now_s = now_s;
+        self.advanced_s = now_s;
         if let Some(back) = self.returning {
             self.go_back(back, now_s);
         }
@@ -396,7 +400,8 @@ impl Navigator {
         };
         let is_throw =
             is_pan && self.inertia == Inertia::On && now_s - to_s <= THROW_WINDOW_S / 2.0;
-        let dt_s = to_s - from_s;
+        // What was done while a frame was drawn is heard of when it is, all at once: it may have taken as long as that.
+        let dt_s = (to_s - from_s).max(now_s - self.advanced_s);
         if is_throw && dt_s > 0.0 {
             let velocity = ((*to - *from) / dt_s).with_z(0.0);
             if velocity.length() > GLIDE_MIN_PX_PER_S * self.pixel_m() {

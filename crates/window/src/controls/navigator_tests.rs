@@ -510,3 +510,17 @@ fn on_a_screen_twice_as_fine_the_same_way_of_the_hand_turns_as_far() {
     // An arrow pans over as much of the screen, which is twice the pixels.
     assert!((finer_way_m / way_m - 2.0).abs() < 0.05, "{way_m} m and {finer_way_m} m");
 }
+
+#[test]
+fn a_drag_heard_of_after_a_long_frame_is_no_throw_across_the_map() {
+    let mut navigator = looking(0.0, 45.0, 3000.0);
+    navigator.advance(10.0, &FLAT);
+    // A frame takes 1.8 s, and then the whole drag is heard of within a millisecond.
+    navigator.handle(&press(Button::Left, 400.0, 300.0), 11.8, &FLAT);
+    navigator.handle(&to(490.0, 348.0), 11.800_5, &FLAT);
+    let from = navigator.view().eye_in_world;
+    navigator.handle(&Input::Release { button: Button::Left }, 11.801, &FLAT);
+    rest(&mut navigator, 11.801, &FLAT);
+    let glided_m = (navigator.view().eye_in_world - from).length();
+    assert!(glided_m < 300.0, "{glided_m} m from 3 km away");
+}
