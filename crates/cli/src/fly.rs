@@ -54,6 +54,23 @@ impl Run {
         format!("{}, roads {}", self.lod.word(), self.roads.word())
     }
 
+    /// What makes its figures or pictures less than they seem, if anything does.
+    fn doubt(&self) -> Option<String> {
+        if self.frames.iter().all(|frame| frame.triangles == 0) {
+            return Some(
+                "no frame shows any ground; is the flight one over this package?".to_owned(),
+            );
+        }
+        let coarse = self.frames.iter().filter(|frame| frame.tiles_missing > 0).count();
+        (coarse > 0).then(|| {
+            format!(
+                "{coarse} of {} frames are coarser than asked for, because their tiles had not arrived; more frames, or \
+                 --lod culled, show all",
+                self.frames.len()
+            )
+        })
+    }
+
     /// The frames that figures are taken of: all but the first, which waits for its tiles, and in which the driver makes
     /// what it makes once.
     pub(crate) fn counted(&self) -> &[FrameRecord] {
@@ -201,7 +218,7 @@ impl Plan<'_> {
         let mut runs = Vec::new();
         for lod in once_each(&self.args.drawing.lod) {
             for roads in once_each(self.methods) {
-                runs.push(Run { lod, roads, frames: self.fly_once(&gpu, watcher, lod, roads)? });
+                runs.push(self.fly_once(&gpu, watcher, lod, roads)?);
             }
         }
         Ok(Drawn { runs, adapter: gpu.adapter_name().to_owned() })
@@ -213,7 +230,7 @@ impl Plan<'_> {
         watcher: Option<&Watcher<'_>>,
         lod: Lod,
         roads: Roads,
-    ) -> Result<Vec<FrameRecord>, Failure> {
+    ) -> Result<Run, Failure> {
         let options = options(self.args, self.flight, self.style, lod, roads)?;
         let source = PackageSource::open(&self.args.package)?.for_method(options.roads.method);
         let is_stopped = || {
@@ -240,7 +257,11 @@ impl Plan<'_> {
             }
             records.push(record);
         }
-        Ok(records)
+        let run = Run { lod, roads, frames: records };
+        if let Some(doubt) = run.doubt() {
+            eprintln!("note: {}: {doubt}", run.name());
+        }
+        Ok(run)
     }
 }
 
@@ -285,6 +306,17 @@ impl From<ReplayError> for Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn flights_that_show_less_than_they_seem_to_say_so() {
+        let run = |frames| Run { lod: Lod::Adaptive, roads: Roads::Geo, frames };
+        let whole = FrameRecord { triangles: 10, tiles_missing: 0, ..frame(1.0) };
+        let coarse = FrameRecord { tiles_missing: 3, ..whole };
+        let empty = FrameRecord { triangles: 0, ..whole };
+        assert_eq!(run(vec![whole, empty]).doubt(), None);
+        assert!(run(vec![empty, empty]).doubt().unwrap().contains("no frame shows any ground"));
+        assert!(run(vec![whole, coarse]).doubt().unwrap().contains("1 of 2 frames"));
+    }
 
     #[test]
     fn what_is_given_twice_is_flown_once() {

@@ -10,7 +10,7 @@ use crate::{
     chart,
     exit::ExitCode,
     failure::Failure,
-    output::{Existing, Output},
+    output::{Existing, Kind, Output},
     table::{Table, bytes, count},
 };
 
@@ -28,7 +28,7 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
     }
     // The chart comes first: whoever reads the table may stop before its end.
     if let Some(path) = &args.svg {
-        let output = Output::create(path, Existing::Replace, &[&args.package])?;
+        let output = Output::create(path, Existing::ReplaceLike(Kind::Svg), &[&args.package])?;
         let svg = chart::growth(manifest).map_err(|error| Failure::new(ExitCode::Failed, error))?;
         output.write_whole(svg.as_bytes())?;
     }

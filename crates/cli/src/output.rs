@@ -2,7 +2,8 @@
 
 use std::{
     fmt::Display,
-    io::{self, BufWriter, Cursor, Write},
+    fs::File,
+    io::{self, BufWriter, Cursor, Read as _, Write},
     path::{Path, PathBuf},
 };
 
@@ -16,6 +17,36 @@ use crate::{exit::ExitCode, failure::Failure};
 pub(crate) enum Existing {
     Keep,
     Replace,
+    /// Replaces what is of the kind that is written, and keeps anything else: a slip of the hand must not cost a package
+    /// or a raster.
+    ReplaceLike(Kind),
+}
+
+/// What a file is, by how it begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Png,
+    Svg,
+}
+
+impl Kind {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Png => "PNG",
+            Self::Svg => "SVG",
+        }
+    }
+
+    /// Whether the file at a path begins as this kind does, or holds nothing.
+    fn is_of(self, path: &Path) -> io::Result<bool> {
+        let beginnings: &[&[u8]] = match self {
+            Self::Png => &[b"\x89PNG"],
+            Self::Svg => &[b"<svg", b"<?xml"],
+        };
+        let mut first = Vec::new();
+        File::open(path)?.take(5).read_to_end(&mut first)?;
+        Ok(first.is_empty() || beginnings.iter().any(|beginning| first.starts_with(beginning)))
+    }
 }
 
 /// A file that is written beside its target and takes its place when it is complete.
@@ -46,6 +77,14 @@ impl Output {
         }
         if existing == Existing::Keep && target.symlink_metadata().is_ok() {
             return Err(exists(target));
+        }
+        if let Existing::ReplaceLike(kind) = existing
+            && target.exists()
+            && !kind.is_of(target).map_err(|error| unusable(&error))?
+        {
+            let what = format!("{} exists already and is no {}", target.display(), kind.name());
+            let advice = "choose another name, or delete it first";
+            return Err(Failure::new(ExitCode::Exists, anyhow::anyhow!("{what}; {advice}")));
         }
         let folder = match target.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -97,7 +136,7 @@ impl Complete {
     pub(crate) fn place(self) -> Result<(), Failure> {
         let Self { target, existing, file } = self;
         let placed = match existing {
-            Existing::Replace => file.persist(&target),
+            Existing::Replace | Existing::ReplaceLike(_) => file.persist(&target),
             Existing::Keep => file.persist_noclobber(&target),
         };
         match placed.map_err(|error| error.error) {
@@ -189,6 +228,22 @@ mod tests {
         assert_eq!(fs::read(&target).unwrap(), b"precious");
         Output::create(&target, Existing::Replace, &[]).unwrap().write_whole(b"new").unwrap();
         assert_eq!(fs::read(&target).unwrap(), b"new");
+    }
+
+    #[test]
+    fn a_picture_takes_the_place_of_a_picture_and_of_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("map.png");
+        let create = |kind| Output::create(&target, Existing::ReplaceLike(kind), &[]);
+        create(Kind::Png).unwrap().write_whole(b"\x89PNG old").unwrap();
+        create(Kind::Png).unwrap().write_whole(b"\x89PNG new").unwrap();
+        assert_eq!(fs::read(&target).unwrap(), b"\x89PNG new");
+        let refused = create(Kind::Svg).unwrap_err();
+        assert_eq!(refused.code(), ExitCode::Exists);
+        assert!(refused.to_string().contains("map.png exists already and is no SVG"), "{refused}");
+        assert_eq!(fs::read(&target).unwrap(), b"\x89PNG new");
+        fs::write(&target, b"").unwrap();
+        create(Kind::Svg).unwrap().write_whole(b"<svg").unwrap();
     }
 
     #[test]

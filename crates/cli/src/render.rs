@@ -8,7 +8,8 @@ use crate::{
     args::RenderArgs,
     exit::ExitCode,
     failure::Failure,
-    output::{Existing, Output, png},
+    interrupt,
+    output::{Existing, Kind, Output, png},
     styles,
 };
 
@@ -29,8 +30,12 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         supersampling: args.supersampling,
         style,
     };
-    let output = Output::create(&args.output, Existing::Replace, &used)?;
+    let output = Output::create(&args.output, Existing::ReplaceLike(Kind::Png), &used)?;
+    interrupt::watch()?;
     let rendered = render(&request)?;
+    if interrupt::is_noted() {
+        return Err(Failure::new(ExitCode::Interrupted, anyhow::anyhow!("interrupted")));
+    }
     output.write_whole(&png(&rendered.picture)?)?;
     let report = &rendered.report;
     eprintln!(

@@ -10,10 +10,10 @@ pub(crate) struct CameraArgs {
     /// Look at this longitude and latitude (degrees, WGS84) instead of the whole package
     #[arg(long, value_name = "LON,LAT", value_parser = parse_position, allow_hyphen_values = true)]
     look_at: Option<[f64; 2]>,
-    /// Distance from the eye to the point looked at, in metres
+    /// With --look-at: distance from the eye to the point looked at, in metres
     #[arg(long, value_name = "METRES", default_value_t = 5000.0, requires = "look_at")]
     distance: f64,
-    /// Direction of view, in degrees clockwise from north
+    /// With --look-at: direction of view, in degrees clockwise from north
     #[arg(
         long,
         value_name = "DEGREES",
@@ -22,7 +22,7 @@ pub(crate) struct CameraArgs {
         allow_hyphen_values = true
     )]
     heading: f64,
-    /// Tilt of the view, in degrees: 0 looks straight down, 90 at the horizon; a window goes up to 85
+    /// With --look-at: tilt of the view, in degrees: 0 looks straight down, 90 at the horizon; a window goes up to 85
     #[arg(long, value_name = "DEGREES", default_value_t = 60.0, requires = "look_at")]
     pitch: f64,
 }

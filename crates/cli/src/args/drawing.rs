@@ -14,7 +14,7 @@ use super::{
 pub(crate) struct RenderArgs {
     /// The package
     pub(crate) package: PathBuf,
-    /// The picture to write (.png); an existing one is replaced
+    /// The picture to write (.png); an existing PNG is replaced
     #[arg(short, long, value_name = "PNG")]
     pub(crate) output: PathBuf,
     /// How roads are drawn

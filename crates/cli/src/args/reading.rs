@@ -26,7 +26,7 @@ pub(crate) struct GrowthArgs {
     /// For programs: CSV
     #[arg(long)]
     pub(crate) csv: bool,
-    /// Also draw the growth per level and class
+    /// Also draw the growth per level and class; an existing SVG is replaced
     #[arg(long, value_name = "FILE")]
     pub(crate) svg: Option<PathBuf>,
 }
