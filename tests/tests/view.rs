@@ -131,6 +131,13 @@ impl Desk {
         id
     }
 
+    /// Stops the window's program, or lets it go on.
+    fn signal(&self, name: &str) {
+        let pid = self.window.id().to_string();
+        let sent = Command::new("kill").args(["-s", name, &pid]).status();
+        assert!(sent.is_ok_and(|status| status.success()), "kill -s {name}");
+    }
+
     fn point_at(&mut self, x: i32, y: i32) -> Line {
         self.xdotool(&format!("mousemove {x} {y}"));
         let is_there = |line: &Line| {
@@ -141,8 +148,13 @@ impl Desk {
     }
 
     /// The picture that a key saves.
-    fn picture(&mut self, key: &str, number: u32) -> image::RgbaImage {
+    fn picture(&self, key: &str, number: u32) -> image::RgbaImage {
         self.xdotool(&format!("key {key}"));
+        self.saved(number)
+    }
+
+    /// The picture of this number, once it is there.
+    fn saved(&self, number: u32) -> image::RgbaImage {
         let path = self.pictures.join(format!("corniche-{number:03}.png"));
         let begun = Instant::now();
         // It is there before it is complete.
@@ -222,7 +234,7 @@ fn the_ground_grabbed_stays_under_the_cursor() {
 
 #[test]
 fn pictures_show_the_map_and_its_credits_with_the_panel_and_without() {
-    let Some(mut desk) = Desk::open(&[]) else { return };
+    let Some(desk) = Desk::open(&[]) else { return };
     desk.focus();
     let map = desk.picture("p", 1);
     assert_eq!(map.dimensions(), (640, 480));
@@ -232,15 +244,32 @@ fn pictures_show_the_map_and_its_credits_with_the_panel_and_without() {
     let window = desk.picture("shift+p", 2);
     assert_eq!(window.dimensions(), (640, 480));
     assert!(has_letters(&window, [0, 400, 350, 480]), "credits beside the panel");
-    let panel = |picture: &image::RgbaImage| {
-        let dark = picture.enumerate_pixels().filter(|(x, _, pixel)| *x > 360 && pixel.0[0] < 60);
-        dark.count() > 20_000
-    };
-    assert!(panel(&window) && !panel(&map));
+    assert!(shows_panel(&window) && !shows_panel(&map));
     desk.xdotool("key Tab");
     let hidden = desk.picture("shift+p", 3);
-    assert!(!panel(&hidden), "Tab hides the panel");
+    assert!(!shows_panel(&hidden), "Tab hides the panel");
     assert!(has_letters(&hidden, [300, 400, 640, 480]), "and not the credits");
+}
+
+/// Much of the right is as dark as the panel, which no map is.
+fn shows_panel(picture: &image::RgbaImage) -> bool {
+    let dark = picture.enumerate_pixels().filter(|(x, _, pixel)| *x > 360 && pixel.0[0] < 60);
+    dark.count() > 20_000
+}
+
+#[test]
+fn a_key_held_when_the_keyboard_comes_to_the_window_is_pressed_once() {
+    let Some(desk) = Desk::open(&[]) else { return };
+    let id = desk.xdotool("search --name Corniche");
+    let id = id.lines().last().expect("the window has its name");
+    // A window that is slow to hear of the keyboard finds the key down already, and then hears that it goes down.
+    desk.signal("STOP");
+    desk.xdotool(&format!("windowfocus {id}"));
+    desk.xdotool("keydown p");
+    desk.signal("CONT");
+    assert!(!shows_panel(&desk.saved(1)), "of the map");
+    desk.xdotool("keyup p");
+    assert!(shows_panel(&desk.picture("shift+p", 2)), "of the window, and no other before it");
 }
 
 #[test]
@@ -251,7 +280,7 @@ fn a_style_that_changes_is_shown_and_a_broken_one_is_not() {
         fs::read_to_string(e2e::root().join("config/styles").join(name)).expect("it comes along")
     };
     fs::write(&style, preset("dark.toml")).unwrap();
-    let Some(mut desk) = Desk::open(&["--style", style.to_str().expect("paths are UTF-8")]) else {
+    let Some(desk) = Desk::open(&["--style", style.to_str().expect("paths are UTF-8")]) else {
         return;
     };
     desk.focus();

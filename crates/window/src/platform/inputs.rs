@@ -31,10 +31,11 @@ pub(super) fn is_panel_key(event: &WindowEvent) -> bool {
         if event.logical_key == winit::keyboard::Key::Named(NamedKey::Tab))
 }
 
-/// Whether this event is the letter that ends the program together with Ctrl.
+/// Whether this event is the letter that ends the program together with Ctrl. What was held down before the window got
+/// the keyboard was meant for another: the window library tells of it as pressed here.
 pub(super) fn is_end_letter(event: &WindowEvent) -> bool {
     use winit::keyboard::Key as Logical;
-    matches!(event, WindowEvent::KeyboardInput { event, .. }
+    matches!(event, WindowEvent::KeyboardInput { event, is_synthetic: false, .. }
         if event.state == ElementState::Pressed
             && matches!(&event.logical_key, Logical::Character(letter) if letter.eq_ignore_ascii_case("q")))
 }
@@ -105,10 +106,11 @@ impl Inputs {
                 app.input(&Input::LetGo, now_s);
                 true
             }
-            WindowEvent::KeyboardInput { event, .. } => {
+            WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
                 let is_down = event.state == ElementState::Pressed;
-                // What is typed into a field is not meant for the map; what is let go is let go everywhere.
-                if is_down && ui.text_edit_focused() {
+                // What is typed into a field is not meant for the map, nor is a key that was held down before the
+                // window got the keyboard; what is let go is let go everywhere.
+                if is_down && (*is_synthetic || ui.text_edit_focused()) {
                     return false;
                 }
                 self.key(event, app, now_s)
