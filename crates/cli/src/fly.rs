@@ -184,7 +184,7 @@ impl Plan<'_> {
         thread::scope(|scope| {
             // The watcher goes with the thread, and the window with the watcher.
             let worker = scope.spawn(move || self.fly(Some(&watcher)));
-            let watched = watch(&format!("{name} – Corniche"), self.args.drawing.size, pictures);
+            let watched = watch(&name, self.args.drawing.size, pictures);
             let is_closed = match watched {
                 Ok(Watched::Lost(error)) => {
                     let why = Failure::from(error);

@@ -317,14 +317,13 @@ impl Frame {
 
     /// The lattice point nearest to a position; `None` when it is not finite or absurdly far away.
     #[must_use]
-    pub fn snap(&self, [x, y]: [f64; 2]) -> Option<LatticePoint> {
-        let steps_per_cell = (1_u64 << self.lattice_bits) as f64;
-        let snap = |metres: f64, origin_m: f64| {
-            let steps = ((metres - origin_m) / self.cell_m * steps_per_cell).round();
+    pub fn snap(&self, position: [f64; 2]) -> Option<LatticePoint> {
+        let [u, v] = self.fraction_of_position(position).map(|steps| {
+            let steps = steps.round();
             // Not a number fails the comparison too.
             (steps.abs() < MAX_LATTICE_STEPS as f64).then_some(steps as i64)
-        };
-        Some(LatticePoint::new(snap(x, self.origin_m[0])?, snap(y, self.origin_m[1])?))
+        });
+        Some(LatticePoint::new(u?, v?))
     }
 
     /// The north-west node of a tile.

@@ -271,12 +271,7 @@ impl Canvas {
     /// # Errors
     /// When the device is lost.
     pub(crate) fn read_map(&self, divider_share: f32) -> Result<RgbaImage, ReadBackError> {
-        let read = |picture: &Picture| {
-            let pixels = picture.read(&self.gpu)?;
-            let [width, height] = picture.size_px();
-            // As many bytes as the size says: the picture's own promise.
-            Ok(RgbaImage::from_raw(width, height, pixels).unwrap_or_default())
-        };
+        let read = |picture: &Picture| picture.read_image(&self.gpu);
         let compare = self.shown.as_ref().map(|(scene, _)| scene.compare);
         if let (Some(Compare::Difference), Some((_, picture))) = (compare, &self.difference) {
             return read(picture);

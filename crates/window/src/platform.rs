@@ -91,6 +91,19 @@ fn event_loop() -> Result<EventLoop<News>, WindowError> {
         .map_err(|error| no_display(without_source_place(&error.to_string()).to_owned()))
 }
 
+/// A window on a package of this name, so large at first.
+fn new_window(
+    event_loop: &ActiveEventLoop,
+    name: &str,
+    [width, height]: [u32; 2],
+) -> Result<Arc<Window>, WindowError> {
+    let attributes = Window::default_attributes()
+        .with_title(format!("{name} – Corniche"))
+        .with_inner_size(PhysicalSize::new(width, height));
+    let window = event_loop.create_window(attributes);
+    window.map(Arc::new).map_err(|source| WindowError::System { source: source.into() })
+}
+
 /// What the window library says of the system's errors begins with a file and a line of its own.
 fn without_source_place(words: &str) -> &str {
     let told = words.strip_prefix("os error at ").and_then(|told| told.split_once(".rs:"));
@@ -137,15 +150,8 @@ impl Shell {
         mut request: WindowRequest,
         package: Package,
     ) -> Result<Open, WindowError> {
-        let [width, height] = request.size_px;
         let is_stopped = std::mem::replace(&mut request.is_stopped, Box::new(|| false));
-        let attributes = Window::default_attributes()
-            .with_title(format!("{} – Corniche", request.name))
-            .with_inner_size(PhysicalSize::new(width, height));
-        let window = event_loop
-            .create_window(attributes)
-            .map_err(|source| WindowError::System { source: source.into() })?;
-        let window = Arc::new(window);
+        let window = new_window(event_loop, &request.name, request.size_px)?;
         let (screen, gpu) = Screen::new(event_loop, &window)?;
         let canvas = Canvas::new(gpu, screen.format());
         let news = self.news.clone();

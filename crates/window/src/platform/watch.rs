@@ -14,7 +14,6 @@ use egui_wgpu::ScreenDescriptor;
 use image::RgbaImage;
 use winit::{
     application::ApplicationHandler,
-    dpi::PhysicalSize,
     event::WindowEvent,
     event_loop::{ActiveEventLoop, ControlFlow},
     window::{Window, WindowId},
@@ -40,7 +39,8 @@ pub enum Watched {
     Lost(WindowError),
 }
 
-/// Shows pictures as they come, in a window that is `size_px` large at first, until there are no more or it is closed.
+/// Shows pictures of the package `name` as they come, in a window that is `size_px` large at first, until there are no
+/// more or it is closed.
 ///
 /// Must be called from the program's first thread; whoever sends the pictures is another. Each is fitted into the window,
 /// pixel for pixel while that has the pictures' size.
@@ -48,13 +48,13 @@ pub enum Watched {
 /// # Errors
 /// When no window opens: there is no display, or nothing to draw with.
 pub fn watch(
-    title: &str,
+    name: &str,
     size_px: [u32; 2],
     pictures: Receiver<RgbaImage>,
 ) -> Result<Watched, WindowError> {
     let event_loop = super::event_loop()?;
     let mut show = Show {
-        title: title.to_owned(),
+        name: name.to_owned(),
         size_px,
         pictures,
         open: None,
@@ -70,7 +70,7 @@ pub fn watch(
 }
 
 struct Show {
-    title: String,
+    name: String,
     size_px: [u32; 2],
     pictures: Receiver<RgbaImage>,
     open: Option<Open>,
@@ -90,14 +90,7 @@ struct Open {
 
 impl Show {
     fn open(&self, event_loop: &ActiveEventLoop) -> Result<Open, WindowError> {
-        let [width, height] = self.size_px;
-        let attributes = Window::default_attributes()
-            .with_title(&self.title)
-            .with_inner_size(PhysicalSize::new(width, height));
-        let window = event_loop
-            .create_window(attributes)
-            .map_err(|source| WindowError::System { source: source.into() })?;
-        let window = Arc::new(window);
+        let window = super::new_window(event_loop, &self.name, self.size_px)?;
         let (screen, gpu) = Screen::new(event_loop, &window)?;
         let canvas = Canvas::new(gpu, screen.format());
         window.request_redraw();
