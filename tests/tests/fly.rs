@@ -129,6 +129,9 @@ fn a_flight_can_be_written_down_changed_and_taken_again() {
     };
     refused("height = high", &[], &["changed.toml", "line 1"]);
     refused(&written.replace("time_s", "time"), &[], &["changed.toml", "time"]);
+    let (crs, keyframes) = written.split_once('\n').unwrap();
+    assert!(crs.starts_with("crs = \"EPSG:"), "{crs}");
+    refused(&format!("crs = \"EPSG:3857\"\n{keyframes}"), &[], &["EPSG:3857", "lon_deg"]);
     let low: String = written
         .lines()
         .map(|line| {

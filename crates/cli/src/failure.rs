@@ -23,6 +23,11 @@ impl Failure {
         Self::new(ExitCode::Unusable, anyhow::anyhow!("{message}"))
     }
 
+    /// A signal came.
+    pub(crate) fn interrupted() -> Self {
+        Self::new(ExitCode::Interrupted, anyhow::anyhow!("interrupted"))
+    }
+
     pub(crate) fn code(&self) -> ExitCode {
         if self.is_closed_pipe() { ExitCode::Done } else { self.code }
     }

@@ -25,7 +25,7 @@ use crate::{
     args::{FlyArgs, Lod, Roads},
     exit::ExitCode,
     failure::Failure,
-    interrupt, styles,
+    interrupt, progress, styles,
 };
 use corniche_viewer::{
     Detail, FrameRecord, Lifted, Replay, ReplayError, ReplayOptions, default_flight,
@@ -94,7 +94,7 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let Drawn { runs, adapter } =
         if args.window { plan.fly_in_a_window()? } else { plan.fly(None)? };
 
-    outputs.finish(&flight, &runs, &adapter)?;
+    outputs.finish(&flight, &source.manifest().crs, &runs, &adapter)?;
     io::stdout().lock().write_all(summary::to_text(&runs).as_bytes())?;
     Ok(ExitCode::Done)
 }
@@ -111,7 +111,8 @@ fn flight(args: &FlyArgs, source: &PackageSource) -> Result<Flight, Failure> {
         return Err(unusable(&"too large for a flight"));
     }
     let text = fs::read_to_string(path).map_err(|error| unusable(&error))?;
-    Flight::parse(&text, &source.manifest().coordinates).map_err(|error| unusable(&error))
+    let manifest = source.manifest();
+    Flight::parse(&text, &manifest.crs, &manifest.coordinates).map_err(|error| unusable(&error))
 }
 
 fn options(
@@ -241,23 +242,24 @@ impl Plan<'_> {
         let Lifted { frames, most_m } = replay.lifted();
         if frames > 0 {
             eprintln!(
-                "note: {}, roads {}: in {frames} frames the eye was lifted off the ground, by up to {:.1} m",
+                "note: {}, roads {}: in {frames} frames the eye was lifted off the ground, by up to {most_m:.1} m",
                 lod.word(),
-                roads.word(),
-                // Rounded up: never "0.0 m".
-                (most_m * 10.0).ceil() / 10.0
+                roads.word()
             );
         }
-        let mut records = Vec::new();
+        let mut run = Run { lod, roads, frames: Vec::new() };
+        // It hides itself where nobody looks on.
+        let bar = progress::bar(run.name(), Some(options.frames.into()));
         while let Some(record) = replay.next_frame()? {
             let name = format!("{}-{}-{:05}.png", lod.word(), roads.word(), record.frame);
             self.outputs.add_picture(&name, &replay)?;
             if let Some(watcher) = watcher {
                 watcher.show(&replay)?;
             }
-            records.push(record);
+            run.frames.push(record);
+            bar.inc(1);
         }
-        let run = Run { lod, roads, frames: records };
+        bar.finish_and_clear();
         if let Some(doubt) = run.doubt() {
             eprintln!("note: {}: {doubt}", run.name());
         }
@@ -294,7 +296,7 @@ impl From<ReplayError> for Failure {
         let code = match error {
             ReplayError::Gpu(error) => return error.into(),
             ReplayError::Stopped => {
-                return Self::new(ExitCode::Interrupted, anyhow::anyhow!("interrupted"));
+                return Self::interrupted();
             }
             ReplayError::ReadBack(_) => ExitCode::Failed,
             _ => ExitCode::Unusable,

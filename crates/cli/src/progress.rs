@@ -1,6 +1,7 @@
 //! Progress: bars on a terminal, plain lines elsewhere, JSON lines on request, or nothing.
 
 use std::{
+    borrow::Cow,
     io::{IsTerminal as _, Write as _, stderr},
     sync::{Mutex, PoisonError},
     time::{Duration, Instant},
@@ -54,6 +55,20 @@ impl Progress {
     }
 }
 
+/// A bar, or without a total a sign of life.
+pub(crate) fn bar(title: impl Into<Cow<'static, str>>, total: Option<u64>) -> ProgressBar {
+    let bar = total.map_or_else(ProgressBar::new_spinner, ProgressBar::new);
+    let template = if total.is_some() {
+        "{msg:22} {bar:30} {pos}/{len} {eta}"
+    } else {
+        "{msg:22} {spinner} {pos}"
+    };
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar.with_message(title)
+}
+
 impl Running {
     fn tell_json(&self, state: &str) {
         let line = json!({
@@ -67,19 +82,7 @@ impl Running {
 
 impl Observer for Progress {
     fn begin(&self, stage: Stage, total: Option<u64>) {
-        let bar = (self.manner == Manner::Bars).then(|| {
-            let bar = total.map_or_else(ProgressBar::new_spinner, ProgressBar::new);
-            let template = if total.is_some() {
-                "{msg:22} {bar:30} {pos}/{len} {eta}"
-            } else {
-                "{msg:22} {spinner} {pos}"
-            };
-            if let Ok(style) = ProgressStyle::with_template(template) {
-                bar.set_style(style);
-            }
-            bar.set_message(stage.title());
-            bar
-        });
+        let bar = (self.manner == Manner::Bars).then(|| bar(stage.title(), total));
         let now = Instant::now();
         let running = Running { stage, total, done: 0, since: now, told: now, bar };
         if self.manner == Manner::Json {

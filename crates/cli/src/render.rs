@@ -32,10 +32,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     };
     let output = Output::create(&args.output, Existing::ReplaceLike(Kind::Png), &used)?;
     interrupt::watch()?;
-    let rendered = render(&request)?;
-    if interrupt::is_noted() {
-        return Err(Failure::new(ExitCode::Interrupted, anyhow::anyhow!("interrupted")));
-    }
+    let rendered = render(&request, &interrupt::is_noted)?;
     output.write_whole(&png(&rendered.picture)?)?;
     let report = &rendered.report;
     eprintln!(
@@ -60,6 +57,7 @@ impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
         let code = match error {
             RenderError::Gpu(error) => return error.into(),
+            RenderError::Stopped => return Self::interrupted(),
             RenderError::ReadBack(_) => ExitCode::Failed,
             _ => ExitCode::Unusable,
         };

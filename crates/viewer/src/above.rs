@@ -26,6 +26,11 @@ pub fn focus_m(above_ground_m: f64, pitch_deg: f64) -> f64 {
     (above_ground_m / pitch_deg.to_radians().cos().max(LEAST_COS)).max(MIN_FOCUS_M)
 }
 
+/// How much the eye is too low, as it is told: rounded up to a tenth of a metre, for "0.0 m too low" says nothing.
+pub(crate) fn told_m(lacking_m: f64) -> f64 {
+    (lacking_m * 10.0).ceil() / 10.0
+}
+
 #[cfg(test)]
 mod tests {
     use glam::DVec3;

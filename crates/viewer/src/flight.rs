@@ -1,6 +1,8 @@
 //! A recorded way of the camera: keyframes in a text file, and where the camera is between them.
 //!
 //! ```toml
+//! crs = "EPSG:2056"   # of x_m and y_m; may be left out
+//!
 //! [[keyframe]]
 //! time_s = 0.0
 //! lon_deg = 9.52      # WGS84; or x_m and y_m, in the package's working CRS
@@ -78,6 +80,10 @@ pub enum FlightError {
         "keyframe {number}: longitude {lon_deg}, latitude {lat_deg} lies far outside the package"
     )]
     FarOutside { number: usize, lon_deg: f64, lat_deg: f64 },
+    #[error(
+        "its x_m and y_m are in {flight}, the package is in {package}; give lon_deg and lat_deg, or a package in {flight}"
+    )]
+    OtherCrs { flight: String, package: String },
 }
 
 impl Flight {
@@ -111,13 +117,23 @@ impl Flight {
         Ok(Self { times_s, values, slopes })
     }
 
-    /// Reads the text of a flight, as described at the top of this module.
+    /// Reads the text of a flight, as described at the top of this module. `crs` and `coordinates` are the package's.
     ///
     /// # Errors
-    /// When it is no such text, or says something impossible; the message names the line or the keyframe.
-    pub fn parse(text: &str, coordinates: &CoordinateTable) -> Result<Self, FlightError> {
+    /// When it is no such text, or says something impossible; the message names the line or the keyframe. When it is meant
+    /// for a package in another CRS.
+    pub fn parse(
+        text: &str,
+        crs: &str,
+        coordinates: &CoordinateTable,
+    ) -> Result<Self, FlightError> {
         let file: FlightFile = toml::from_str(text)
             .map_err(|error| FlightError::Syntax { message: error.to_string() })?;
+        if let Some(flight) = file.crs.filter(|known| known != crs)
+            && file.keyframe.iter().any(|record| record.x_m.is_some())
+        {
+            return Err(FlightError::OtherCrs { flight, package: crs.to_owned() });
+        }
         let keyframes: Result<Vec<Keyframe>, FlightError> = file
             .keyframe
             .iter()
@@ -127,11 +143,11 @@ impl Flight {
         Self::new(&keyframes?)
     }
 
-    /// The text of this flight, in the working CRS: [`Self::parse`] reads back the same flight.
+    /// The text of this flight, in the working CRS, whose name is `crs`: [`Self::parse`] reads back the same flight.
     ///
     /// # Errors
     /// Never for a flight made here; the writer of the text is another's.
-    pub fn to_text(&self) -> Result<String, FlightError> {
+    pub fn to_text(&self, crs: &str) -> Result<String, FlightError> {
         let keyframe = self.keyframes().map(|Keyframe { time_s, pose }| {
             let [x, y, height_m] = pose.eye_m;
             KeyframeRecord {
@@ -145,7 +161,7 @@ impl Flight {
                 pitch_deg: pose.orientation.pitch_deg,
             }
         });
-        toml::to_string(&FlightFile { keyframe: keyframe.collect() })
+        toml::to_string(&FlightFile { crs: Some(crs.to_owned()), keyframe: keyframe.collect() })
             .map_err(|error| FlightError::Syntax { message: error.to_string() })
     }
 
@@ -245,6 +261,8 @@ fn slopes(times_s: &[f64], values: &[[f64; 5]]) -> Vec<[f64; 5]> {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FlightFile {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    crs: Option<String>,
     keyframe: Vec<KeyframeRecord>,
 }
 

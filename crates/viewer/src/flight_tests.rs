@@ -22,6 +22,7 @@ impl Projection for Flat {
     }
 }
 
+const CRS: &str = "EPSG:2056";
 const PLAN: Bounds = Bounds { min_x: 5000.0, min_y: 20_000.0, max_x: 15_000.0, max_y: 45_000.0 };
 
 fn table() -> CoordinateTable {
@@ -43,20 +44,34 @@ fn a_text_becomes_the_flight_it_describes() {
     let text = line(
         "time_s = 2.5\nlon_deg = 10\nlat_deg = 30.5\nheight_m = 7\nheading_deg = -6\npitch_deg = 90",
     );
-    let flight = Flight::parse(&text, &table()).unwrap();
+    let flight = Flight::parse(&text, CRS, &table()).unwrap();
     assert_eq!(flight.span_s(), [0.0, 2.5]);
     assert_eq!(flight.at(0.0), keyframe(0.0, [1.0, 2.0, 3.0], 4.0, 5.0).pose);
     let end = flight.at(2.5);
     let expected = [10_000.0, 30_500.0, 7.0];
     assert!(end.eye_m.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-3), "{end:?}");
     assert_eq!(flight.at(99.0), end, "stands still after the end");
-    assert_eq!(Flight::parse(&flight.to_text().unwrap(), &table()).unwrap(), flight);
+    assert_eq!(Flight::parse(&flight.to_text(CRS).unwrap(), CRS, &table()).unwrap(), flight);
+}
+
+#[test]
+fn metres_of_another_crs_are_refused_and_degrees_are_not() {
+    let flight = Flight::new(&[0.0, 1.0].map(|t| keyframe(t, [t; 3], 0.0, 0.0))).unwrap();
+    let said = Flight::parse(&flight.to_text("EPSG:25832").unwrap(), CRS, &table()).unwrap_err();
+    assert!(["EPSG:25832", CRS].iter().all(|name| said.to_string().contains(name)), "{said}");
+    let degrees = |time_s: u32| {
+        format!(
+            "[[keyframe]]\ntime_s = {time_s}\nlon_deg = 10\nlat_deg = 30\nheight_m = 7\nheading_deg = 0\npitch_deg = 9\n"
+        )
+    };
+    let anywhere = format!("crs = \"EPSG:25832\"\n{}{}", degrees(0), degrees(1));
+    assert!(Flight::parse(&anywhere, CRS, &table()).is_ok());
 }
 
 #[test]
 fn texts_that_make_no_sense_say_what_and_where() {
     let check = |text: &str, expected: &str| {
-        let said = Flight::parse(text, &table()).unwrap_err().to_string();
+        let said = Flight::parse(text, CRS, &table()).unwrap_err().to_string();
         assert!(said.contains(expected), "{text:?}: {said}");
     };
     check("nonsense", "line 1");

@@ -4,7 +4,7 @@ use corniche_tileset::OpenError;
 use image::RgbaImage;
 
 use crate::{
-    above::clearance_m,
+    above::{clearance_m, told_m},
     attribution::draw_attribution,
     camera::Camera,
     gpu::{
@@ -13,7 +13,7 @@ use crate::{
     },
     lod::Quality,
     range::{self, OutOfRange},
-    scene::{self, RoadOptions},
+    scene::{self, RoadOptions, SettleError},
     style::Style,
     tiles::{LoadTileError, PackageSource, TileStore},
     viewpoint::{CameraRequest, OffGround, ViewpointError},
@@ -94,6 +94,17 @@ pub enum RenderError {
     EyeUnderGround { depth_m: f64 },
     #[error(transparent)]
     Range(#[from] OutOfRange),
+    #[error("interrupted")]
+    Stopped,
+}
+
+impl From<SettleError> for RenderError {
+    fn from(error: SettleError) -> Self {
+        match error {
+            SettleError::Load(load) => Self::Load(load),
+            SettleError::Stopped => Self::Stopped,
+        }
+    }
 }
 
 impl From<ViewpointError> for RenderError {
@@ -107,11 +118,15 @@ impl From<ViewpointError> for RenderError {
 
 /// Renders a picture of a package, without a window.
 ///
-/// The picture is the same, byte for byte, each time on the same adapter and driver.
+/// The picture is the same, byte for byte, each time on the same adapter and driver. `is_stopped` is asked before each
+/// tile is read, and once more at the end.
 ///
 /// # Errors
-/// When the request makes no sense, the package cannot be read, or there is no graphics adapter.
-pub fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
+/// When the request makes no sense, the package cannot be read, there is no graphics adapter, or it was stopped.
+pub fn render(
+    request: &RenderRequest,
+    is_stopped: &dyn Fn() -> bool,
+) -> Result<Rendered, RenderError> {
     check(request)?;
     let source = PackageSource::open(&request.package)?.for_method(request.roads.method);
     let mut store = TileStore::new(&source);
@@ -129,7 +144,7 @@ pub fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
     if request.camera != CameraRequest::FrameAll {
         check_above_ground(&camera, &mut store, quality.vertical_scale, point_scale)?;
     }
-    let drawn = scene::settle(&mut store, &camera, quality)?;
+    let drawn = scene::settle(&mut store, &camera, quality, is_stopped)?;
 
     let gpu = Gpu::new()?;
     let targets = Targets::new(&gpu, request.size_px, request.supersampling)?;
@@ -152,6 +167,9 @@ pub fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
     Renderer::new(&gpu).draw(&gpu, &view, &tiles, &targets);
 
     let mut picture = targets.picture().read_image(&gpu)?;
+    if is_stopped() {
+        return Err(RenderError::Stopped);
+    }
     draw_attribution(&mut picture, &source.manifest().attribution);
 
     let mut levels: Vec<(u8, u64)> = Vec::new();
@@ -195,7 +213,8 @@ fn check_above_ground(
     let eye = camera.eye_in_world();
     let Some(ground_m) = store.ground_height_m([eye.x, eye.y])? else { return Ok(()) };
     let lacking_m = ground_m * vertical_scale + clearance_m(point_scale) - eye.z;
-    // Rounded up: never "0.0 m".
-    let depth_m = (lacking_m * 10.0).ceil() / 10.0;
-    if lacking_m > 0.0 { Err(RenderError::EyeUnderGround { depth_m }) } else { Ok(()) }
+    if lacking_m > 0.0 {
+        return Err(RenderError::EyeUnderGround { depth_m: told_m(lacking_m) });
+    }
+    Ok(())
 }

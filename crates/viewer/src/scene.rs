@@ -2,6 +2,8 @@
 
 mod bridges;
 
+use std::slice;
+
 use corniche_geom::Bounds;
 use corniche_roads::FunctionalRoadClass;
 
@@ -153,19 +155,35 @@ impl RoadOptions {
 /// Loads what `camera` needs, level by level, until nothing is missing, and says what to draw.
 ///
 /// # Errors
-/// When a tile cannot be had.
+/// When a tile cannot be had, or it was stopped.
 pub fn settle(
     store: &mut TileStore<'_>,
     camera: &Camera,
     quality: Quality,
-) -> Result<Vec<Drawn>, LoadTileError> {
+    is_stopped: &dyn Fn() -> bool,
+) -> Result<Vec<Drawn>, SettleError> {
     loop {
         let selection = lod::select(store, camera, quality);
         if selection.requests.is_empty() {
             return Ok(selection.drawn);
         }
-        store.load(&selection.requests)?;
+        for request in &selection.requests {
+            if is_stopped() {
+                return Err(SettleError::Stopped);
+            }
+            store.load(slice::from_ref(request))?;
+        }
     }
+}
+
+/// Why the tiles of a view are not there.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+pub enum SettleError {
+    #[error(transparent)]
+    Load(#[from] LoadTileError),
+    #[error("interrupted")]
+    Stopped,
 }
 
 /// The tiles to draw with the depths of their skirts. Tiles that are not loaded are left out.

@@ -3,7 +3,10 @@
 
 mod support;
 
-use std::path::{Path, PathBuf};
+use std::{
+    cell::Cell,
+    path::{Path, PathBuf},
+};
 
 use corniche_geom::{Bounds, CoordinateTable, ProjectError, Projection, TileId};
 use corniche_tileset::{
@@ -12,7 +15,7 @@ use corniche_tileset::{
 };
 use corniche_viewer::{
     CameraRequest, RenderError, RenderRequest, Rendered, RoadMethod, RoadOptions,
-    camera::Orientation, render, style::Style,
+    camera::Orientation, style::Style,
 };
 use image::RgbaImage;
 use support::{
@@ -154,6 +157,10 @@ fn look_at(lon_deg: f64, lat_deg: f64) -> CameraRequest {
     CameraRequest::LookAt { lon_deg, lat_deg, distance_m: 12_000.0, orientation }
 }
 
+fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
+    corniche_viewer::render(request, &|| false)
+}
+
 /// Pixels that look like the motorway of the style.
 fn red_pixels(picture: &RgbaImage) -> usize {
     picture.pixels().filter(|p| i32::from(p.0[0]) - i32::from(p.0[1]) > 90).count()
@@ -211,6 +218,36 @@ fn looking_at_a_place_has_it_in_the_middle() {
     let middle = image::imageops::crop_imm(&near.picture, 225, 145, 30, 30).to_image();
     assert!(red_pixels(&middle) > 40, "{} red pixels in the middle", red_pixels(&middle));
     assert!(near.report.levels.iter().all(|(level, _)| *level < LEVELS));
+}
+
+/// After any number of questions the answer may be yes: at the first, between two tiles, after the last.
+#[test]
+fn a_picture_can_be_stopped_at_any_tile() {
+    if gpu().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let package = package(folder.path());
+    let near = RenderRequest {
+        camera: look_at(ORIGIN_DEG[0], ORIGIN_DEG[1]),
+        screen_space_error_px: 0.2,
+        ..request(&package)
+    };
+    let asked = Cell::new(0);
+    let ask = |stop_at: u32| {
+        asked.set(0);
+        corniche_viewer::render(&near, &|| {
+            asked.set(asked.get() + 1);
+            asked.get() == stop_at
+        })
+    };
+    let tiles = ask(u32::MAX).unwrap().report.tiles;
+    let questions = asked.get();
+    assert!(tiles > 2 && u64::from(questions) >= tiles, "{questions} for {tiles} tiles");
+    for stop_at in [1, 2, questions] {
+        assert!(matches!(ask(stop_at), Err(RenderError::Stopped)), "{stop_at}");
+        assert_eq!(asked.get(), stop_at);
+    }
 }
 
 #[test]

@@ -37,7 +37,7 @@ fn picture(
     let gpu = gpu()?;
     let mut store = TileStore::new(country);
     let quality = Quality { screen_space_error_px: error_px, vertical_scale: 1.0 };
-    let drawn = scene::settle(&mut store, camera, quality).unwrap();
+    let drawn = scene::settle(&mut store, camera, quality, &|| false).unwrap();
     let mut levels = [0; 5];
     for tile in &drawn {
         levels[usize::from(tile.id.z())] += 1;

@@ -43,13 +43,14 @@ impl Outputs {
         self.pictures.as_ref().map_or(Ok(()), |pictures| pictures.add(name, replay))
     }
 
-    /// Writes everything, and then puts everything in its place, the list last: where it stands, all else stands too.
+    /// Writes everything (the flight in the working CRS, `crs`), and then puts everything in its place, the list last: where it stands, all else stands too.
     ///
     /// What can still go wrong is a place that has been taken or closed to us since the flight began; then what took its
     /// place before stays, and the list is missing.
     pub(super) fn finish(
         self,
         flight: &Flight,
+        crs: &str,
         runs: &[Run],
         adapter: &str,
     ) -> Result<(), Failure> {
@@ -60,7 +61,7 @@ impl Outputs {
             written.push(svg.fill(drawing.as_bytes())?);
         }
         if let Some(save_path) = save_path {
-            let text = flight.to_text().map_err(failed)?;
+            let text = flight.to_text(crs).map_err(failed)?;
             written.push(save_path.fill(text.as_bytes())?);
         }
         written.push(csv.fill(list::to_csv(runs).as_bytes())?);

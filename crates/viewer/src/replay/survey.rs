@@ -2,7 +2,7 @@
 
 use super::{ReplayError, ReplayOptions, Timetable};
 use crate::{
-    above::{clearance_m, focus_m},
+    above::{clearance_m, focus_m, told_m},
     flight::{Flight, Pose},
     lod::GroundSummary,
     tiles::{PackageSource, TileStore},
@@ -30,7 +30,7 @@ pub fn default_flight(
 pub struct Lifted {
     /// How many.
     pub frames: u32,
-    /// By how much the eye was lifted at most, true metres.
+    /// By how much the eye was lifted at most, true metres, rounded up to a tenth.
     pub most_m: f64,
 }
 
@@ -72,8 +72,7 @@ impl Survey {
             if let Some(ground_m) = ground.height_m([x, y])?
                 && ground_m - height_m > coarsest.geometric_error_m
             {
-                // Rounded up: never "0.0 m".
-                let depth_m = ((ground_m - height_m) * 10.0).ceil() / 10.0;
+                let depth_m = told_m(ground_m - height_m);
                 return Err(ReplayError::UnderGround { time_s: keyframe.time_s, depth_m });
             }
         }
@@ -92,7 +91,7 @@ impl Survey {
             });
             if lift_m > 0.0 {
                 lifted.frames += 1;
-                lifted.most_m = lifted.most_m.max(lift_m);
+                lifted.most_m = lifted.most_m.max(told_m(lift_m));
             }
             let above_m = (height_m + lift_m - beneath_m.unwrap_or(base_m)) * scale;
             stands.push(Stand { lift_m, focus_m: focus_m(above_m, orientation.pitch_deg) });

@@ -32,7 +32,7 @@ fn scene_of(
     let manifest = package.manifest();
     let mut store = TileStore::new(source);
     let quality = Quality { screen_space_error_px: error_px, vertical_scale: 1.0 };
-    let drawn = settle(&mut store, camera, quality).unwrap();
+    let drawn = settle(&mut store, camera, quality, &|| false).unwrap();
     let tiles = drawn
         .iter()
         .map(|drawn| {
