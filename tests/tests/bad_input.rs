@@ -53,6 +53,23 @@ fn refuses_an_extract_that_lies_elsewhere() {
     let dem = sample("pass/pass-dem.tif");
     let osm = sample("liechtenstein/liechtenstein-2013-08-03.osm.pbf");
     refuses(folder.path(), &["--dem", text(&dem), "--osm", text(&osm)], 2, &["do not overlap"]);
+
+    // It tells where both are, so that one sees which of them is the wrong one.
+    let target = folder.path().join("out.pmtiles");
+    let ran = corniche(["build", "--dem", text(&dem), "--osm", text(&osm), "-o", text(&target)]);
+    let rectangle = |before: &str| -> Vec<f64> {
+        let (_, from) = ran.err.split_once(before).expect("it says so");
+        let (inside, _) = from.split_once(']').expect("four numbers in brackets");
+        inside.split(", ").map(|number| number.parse().expect("a number")).collect()
+    };
+    let liechtenstein_deg = [9.47, 47.05, 9.64, 47.27];
+    for (said, true_deg) in rectangle("roads lie within [").iter().zip(liechtenstein_deg) {
+        assert!((said - true_deg).abs() < 0.3, "{}", ran.err);
+    }
+    for within in ["roads lie within [", "heights within ["] {
+        let [west, south, east, north] = rectangle(within)[..] else { panic!("{}", ran.err) };
+        assert!(west < east && south < north, "{}", ran.err);
+    }
 }
 
 #[test]

@@ -31,8 +31,8 @@ pub enum BuildError {
     )]
     NoRoads { osm: PathBuf },
     #[error(
-        "{osm:?} and the elevation data do not overlap: roads lie within {roads_deg:?}, heights within \
-         {heights_deg:?} (west, south, east, north in degrees)"
+        "{osm:?} and the elevation data do not overlap: roads lie within {roads_deg:.4?}, heights within \
+         {heights_deg:.4?} (west, south, east, north in degrees)"
     )]
     NoOverlap { osm: PathBuf, roads_deg: [f64; 4], heights_deg: [f64; 4] },
     #[error(

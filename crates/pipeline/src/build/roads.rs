@@ -232,15 +232,20 @@ pub(crate) fn check_overlap(
     if roads_m.intersects(data_m) {
         return Ok(());
     }
-    let mut corners = [min, max];
+    // A rectangle of the working CRS is turned in degrees: two corners are not its bounds.
+    let mut corners = [min, max, [min[0], max[1]], [max[0], min[1]]];
     input
         .dem
         .projection(input.plan)?
         .wgs84_from_working(&mut corners)
         .map_err(BuildError::Project)?;
+    let mut roads_deg = Bounds::EMPTY;
+    for corner in corners {
+        roads_deg.include(corner);
+    }
     Err(BuildError::NoOverlap {
         osm: input.osm.to_path_buf(),
-        roads_deg: [corners[0][0], corners[0][1], corners[1][0], corners[1][1]],
+        roads_deg: roads_deg.to_array(),
         heights_deg: data_deg.to_array(),
     })
 }
