@@ -92,6 +92,37 @@ fn ended(window: &mut Child) -> Ran {
     Ran { code, out: String::new(), err }
 }
 
+/// A window that records its flight, and its number; `None` where there is nothing to draw with.
+fn recording(
+    display: &Display,
+    package: &Path,
+    pictures: &Path,
+    trace: &Path,
+) -> Option<(Child, String)> {
+    let mut command = Command::new(binary());
+    command.arg("view").arg(package).args(["--size", "320x240", "--folder"]);
+    command.arg(pictures).arg("--trace").arg(trace);
+    command.stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut window = display.lend(&mut command).spawn().expect("the binary starts");
+    // The first frames are there.
+    while fs::read_to_string(trace).map_or(0, |text| text.lines().count()) < 3 {
+        if window.try_wait().expect("it is ours").is_some() {
+            let ran = ended(&mut window);
+            assert!(lacks_adapter(&ran), "{}", ran.err);
+            return None;
+        }
+        thread::sleep(Duration::from_millis(50));
+    }
+    let id = display.xdotool("search --name Corniche");
+    let id = id.lines().last().expect("the window has its name").to_owned();
+    display.xdotool(&format!("windowfocus {id}"));
+    // It learns of the keyboard's being its own a little later.
+    thread::sleep(Duration::from_secs(1));
+    display.xdotool("key c");
+    thread::sleep(Duration::from_secs(2));
+    Some((window, id))
+}
+
 #[test]
 fn a_recording_is_saved_however_the_window_ends() {
     let Some(display) = Display::start() else { return };
@@ -101,28 +132,8 @@ fn a_recording_is_saved_however_the_window_ends() {
         [("key ctrl+q", &[0]), ("signal", &[4]), ("windowclose", &[0, 1])];
     for (number, (end, codes)) in (1..).zip(ends) {
         let trace = folder.path().join(format!("trace-{number}.csv"));
-        let mut command = Command::new(binary());
-        command.arg("view").arg(&package).args(["--size", "320x240", "--folder"]);
-        command.arg(folder.path()).arg("--trace").arg(&trace);
-        command.stdout(Stdio::null()).stderr(Stdio::piped());
-        let mut window = display.lend(&mut command).spawn().unwrap();
-        // The first frames are there.
-        let lines = || fs::read_to_string(&trace).map_or(0, |text| text.lines().count());
-        while lines() < 3 {
-            if window.try_wait().unwrap().is_some() {
-                let ran = ended(&mut window);
-                assert!(lacks_adapter(&ran), "{}", ran.err);
-                return;
-            }
-            thread::sleep(Duration::from_millis(50));
-        }
-        let id = display.xdotool("search --name Corniche");
-        let id = id.lines().last().expect("the window has its name");
-        display.xdotool(&format!("windowfocus {id}"));
-        // It learns of the keyboard's being its own a little later.
-        thread::sleep(Duration::from_secs(1));
-        display.xdotool("key c");
-        thread::sleep(Duration::from_secs(2));
+        let opened = recording(&display, &package, folder.path(), &trace);
+        let Some((mut window, id)) = opened else { return };
         match end {
             "signal" => {
                 let number = window.id().to_string();
@@ -143,4 +154,21 @@ fn a_recording_is_saved_however_the_window_ends() {
         let flight = fs::read_to_string(folder.path().join(flight)).unwrap();
         assert!(flight.matches("time_s").count() >= 2, "{end}: {flight}");
     }
+}
+
+#[test]
+fn a_recording_that_cannot_be_saved_is_told_and_fails() {
+    let Some(display) = Display::start() else { return };
+    let (folder, package) = package();
+    let pictures = folder.path().join("pictures");
+    let opened = recording(&display, &package, &pictures, &folder.path().join("trace.csv"));
+    let Some((mut window, _)) = opened else { return };
+    // What was to be its folder becomes a file meanwhile.
+    fs::write(&pictures, b"precious").unwrap();
+    display.xdotool("key ctrl+q");
+    let ran = ended(&mut window);
+    assert_eq!(ran.code, 1, "{}", ran.err);
+    assert!(ran.err.contains("nothing could be saved in"), "{}", ran.err);
+    assert!(ran.err.contains(text(&pictures)), "{}", ran.err);
+    assert_eq!(fs::read(&pictures).unwrap(), b"precious");
 }

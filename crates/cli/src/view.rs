@@ -117,13 +117,21 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         trace,
         is_stopped: Box::new(interrupt::is_noted),
     };
-    let Closed { end, last_news } = open_window(request);
-    for news in last_news {
-        eprintln!("{news}");
+    let Closed { end, last_files } = open_window(request);
+    let mut code = ExitCode::Done;
+    for saved in last_files {
+        match saved {
+            Ok(path) => eprintln!("saved {}", path.display()),
+            Err(error) => {
+                let lost = Failure::new(ExitCode::Failed, error);
+                eprintln!("corniche: {lost}");
+                code = lost.code();
+            }
+        }
     }
     match end? {
-        End::Closed => Ok(ExitCode::Done),
-        End::Stopped => Err(Failure::new(ExitCode::Interrupted, anyhow::anyhow!("interrupted"))),
+        End::Closed => Ok(code),
+        End::Stopped => Err(Failure::interrupted()),
     }
 }
 

@@ -34,9 +34,10 @@ use crate::{
     panel::{self, Answer},
     recorder::Recorder,
     settings::{Refinement, Settings},
-    shots::{SAVED, Shots},
+    shots::Shots,
     tiles::{Changes, ShownGround, Tiles},
     trace::Trace,
+    words,
 };
 
 /// The style's file is asked after so often.
@@ -352,12 +353,11 @@ impl App {
         for defect in self.tiles.take_arrivals() {
             self.notice(format!("{defect}; it is shown without its ground"));
         }
-        for news in self.shots.news() {
+        for saved in self.shots.news() {
             // That something could not be saved must be seen; where a file is may be asked at once.
-            if news.starts_with(SAVED) {
-                self.notices.tell(news, now_s);
-            } else {
-                self.notices.warn(news);
+            match saved {
+                Ok(path) => self.notices.tell(format!("saved {}", path.display()), now_s),
+                Err(lost) => self.notices.warn(words::with_causes(&lost)),
             }
         }
     }

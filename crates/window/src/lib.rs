@@ -8,8 +8,9 @@
 //! ```
 //!
 //! [`run`] opens the window and returns when it is closed; [`watch`] opens one on pictures that come from elsewhere.
-//! `platform` is the one module that knows the window system, threads and files; `canvas` is all that lies on the graphics card; `app` is the rest, and knows neither a window nor a clock. Nothing is
-//! drawn while nothing moves, loads or is touched.
+//! `platform` is the one module that knows the window system, threads and files; `canvas` is all that lies on the graphics
+//! card; `app` is the rest, and knows neither a window nor a clock. Nothing is drawn while nothing moves, loads or is
+//! touched.
 //!
 //! This crate never reads elevation files or extracts and never computes geometry; pictures of the map are
 //! `corniche-viewer`'s.
@@ -42,6 +43,7 @@ use corniche_viewer::{
 };
 
 pub use platform::{Watched, run, watch};
+pub use shots::NotSaved;
 
 /// A style and what it is called.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,8 +100,8 @@ pub struct WindowRequest {
 pub struct Closed {
     /// Why it is closed.
     pub end: Result<End, WindowError>,
-    /// In words, what was saved last, or could not be: there was no window any more to say so.
-    pub last_news: Vec<String>,
+    /// The files saved last, and those that could not be: there was no window any more to say so.
+    pub last_files: Vec<Result<PathBuf, NotSaved>>,
 }
 
 /// How a window ends when nothing fails.

@@ -14,6 +14,7 @@ mod watch;
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
+    path::PathBuf,
     sync::Arc,
     time::{Duration, Instant},
 };
@@ -39,6 +40,7 @@ use crate::{
     Closed, End, WindowError, WindowRequest,
     app::{App, FrameInput, Package, Redraw},
     canvas::Canvas,
+    shots::NotSaved,
 };
 
 /// Whether the program is to end is asked so often.
@@ -56,12 +58,15 @@ struct News;
 /// Must be called from the program's first thread.
 #[must_use]
 pub fn run(request: WindowRequest) -> Closed {
-    let mut last_news = Vec::new();
-    let end = show(request, &mut last_news);
-    Closed { end, last_news }
+    let mut last_files = Vec::new();
+    let end = show(request, &mut last_files);
+    Closed { end, last_files }
 }
 
-fn show(request: WindowRequest, last_news: &mut Vec<String>) -> Result<End, WindowError> {
+fn show(
+    request: WindowRequest,
+    last_files: &mut Vec<Result<PathBuf, NotSaved>>,
+) -> Result<End, WindowError> {
     let package = Package::of(&request)?;
     let event_loop = event_loop()?;
     let mut shell = Shell {
@@ -70,11 +75,11 @@ fn show(request: WindowRequest, last_news: &mut Vec<String>) -> Result<End, Wind
         begun: Instant::now(),
         open: None,
         end: None,
-        last_news: Vec::new(),
+        last_files: Vec::new(),
     };
     let ran = event_loop.run_app(&mut shell);
     shell.close();
-    last_news.append(&mut shell.last_news);
+    last_files.append(&mut shell.last_files);
     match (shell.end, ran) {
         (Some(end), _) => end,
         (None, Ok(())) => Ok(End::Closed),
@@ -119,7 +124,7 @@ struct Shell {
     open: Option<Open>,
     /// Once it is over.
     end: Option<Result<End, WindowError>>,
-    last_news: Vec<String>,
+    last_files: Vec<Result<PathBuf, NotSaved>>,
 }
 
 /// An open window. Fields are dropped in order: what lies on the card before the surface, that before the window.
@@ -190,7 +195,7 @@ impl Shell {
     fn close(&mut self) {
         let now_s = self.now_s();
         if let Some(mut open) = self.open.take() {
-            self.last_news.extend(open.app.end(now_s));
+            self.last_files.extend(open.app.end(now_s));
         }
     }
 }

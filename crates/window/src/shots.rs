@@ -6,12 +6,21 @@ use std::{
     sync::Arc,
 };
 
+use corniche_viewer::flight::FlightError;
 use image::{ImageFormat, RgbaImage};
 
 use crate::platform::Files;
 
-/// How good news of a file begins.
-pub(crate) const SAVED: &str = "saved ";
+/// Why something that was to be kept is lost.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum NotSaved {
+    #[error("nothing could be saved in {}", folder.display())]
+    File { folder: PathBuf, source: io::Error },
+    #[error("nothing was recorded")]
+    Recording(#[from] FlightError),
+}
 
 /// Saves what the person wants to keep.
 pub(crate) struct Shots {
@@ -39,12 +48,12 @@ impl Shots {
     }
 
     /// What became of the files since this was asked last.
-    pub(crate) fn news(&mut self) -> Vec<String> {
+    pub(crate) fn news(&mut self) -> Vec<Result<PathBuf, NotSaved>> {
         self.files.news()
     }
 
     /// Waits until all is written; what became of the files that [`Shots::news`] did not tell of.
-    pub(crate) fn finish(&mut self) -> Vec<String> {
+    pub(crate) fn finish(&mut self) -> Vec<Result<PathBuf, NotSaved>> {
         self.files.finish()
     }
 }
@@ -58,7 +67,7 @@ mod tests {
 
     use super::*;
 
-    fn news_of(shots: &mut Shots, count: usize) -> Vec<String> {
+    fn news_of(shots: &mut Shots, count: usize) -> Vec<Result<PathBuf, NotSaved>> {
         let begun = Instant::now();
         let mut news = Vec::new();
         while news.len() < count {
@@ -77,7 +86,7 @@ mod tests {
         for _ in 0..2 {
             shots.save_picture(RgbaImage::from_pixel(3, 2, image::Rgba([1, 2, 3, 255])));
             let news = news_of(&mut shots, 1);
-            assert!(news[0].starts_with(SAVED), "{news:?}");
+            assert!(news[0].is_ok(), "{news:?}");
         }
         assert_eq!(fs::read(folder.path().join("corniche-001.png")).unwrap(), b"mine");
         let picture = image::open(folder.path().join("corniche-003.png")).unwrap().to_rgba8();
@@ -92,7 +101,7 @@ mod tests {
         let mut shots = Shots::new(file, Arc::new(|| ()));
         shots.save_flight("text".to_owned());
         let news = news_of(&mut shots, 1);
-        assert!(news[0].contains("nothing could be saved"), "{news:?}");
+        assert!(matches!(news[0], Err(NotSaved::File { .. })), "{news:?}");
     }
 
     #[test]
@@ -111,7 +120,8 @@ mod tests {
         let mut shots = Shots::new(folder.path().to_owned(), Arc::new(|| ()));
         shots.save_flight("the way".to_owned());
         let news = shots.finish();
-        assert!(news.len() == 1 && news[0].ends_with("flight-001.toml"), "{news:?}");
+        let place = folder.path().join("flight-001.toml");
+        assert!(matches!(&news[..], [Ok(path)] if *path == place), "{news:?}");
         assert!(shots.finish().is_empty());
     }
 }

@@ -1,5 +1,7 @@
 //! Numbers and choices as people read them.
 
+use std::error::Error;
+
 use corniche_viewer::RoadMethod;
 
 /// A length on the ground: "350 m", "12.5 km".
@@ -70,6 +72,12 @@ pub(crate) fn position([lon_deg, lat_deg]: [f64; 2]) -> String {
 pub(crate) fn heading(heading_deg: f64) -> String {
     // Adding nothing turns minus nothing into nothing.
     format!("{:03.0}°", heading_deg.round().rem_euclid(360.0) + 0.0)
+}
+
+/// An error and what caused it, on one line.
+pub(crate) fn with_causes(error: &dyn Error) -> String {
+    let causes = std::iter::successors(error.source(), |cause| (*cause).source());
+    causes.fold(error.to_string(), |said, cause| format!("{said}: {cause}"))
 }
 
 #[cfg(test)]

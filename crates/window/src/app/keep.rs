@@ -1,31 +1,32 @@
 //! What outlasts a frame: flights, pictures, times and the trace.
 
+use std::path::PathBuf;
+
 use corniche_viewer::{draw_attribution, flight::Pose, gpu::ReadBackError};
 use egui_wgpu::ScreenDescriptor;
 
 use super::App;
-use crate::{WindowError, canvas::Canvas, facts::Shot, trace::TraceLine};
+use crate::{WindowError, canvas::Canvas, facts::Shot, shots::NotSaved, trace::TraceLine, words};
 
 impl App {
-    /// The window closes: saves what is being recorded and waits for what is being written. Returns in words what became
-    /// of it, for there is no panel any more to show it.
-    pub(crate) fn end(&mut self, now_s: f64) -> Vec<String> {
-        let mut news: Vec<String> = self.save_recording(now_s).err().into_iter().collect();
-        news.extend(self.shots.finish());
-        news
+    /// The window closes: saves what is being recorded and waits for what is being written. Returns what became of it, for
+    /// there is no panel any more to show it.
+    pub(crate) fn end(&mut self, now_s: f64) -> Vec<Result<PathBuf, NotSaved>> {
+        let mut saved: Vec<_> = self.save_recording(now_s).err().into_iter().map(Err).collect();
+        saved.extend(self.shots.finish());
+        saved
     }
 
     pub(super) fn stop_recording(&mut self, now_s: f64) {
-        if let Err(why) = self.save_recording(now_s) {
-            self.notice(why);
+        if let Err(lost) = self.save_recording(now_s) {
+            self.notice(words::with_causes(&lost));
         }
     }
 
-    /// In words, why nothing is saved though something was being recorded.
-    fn save_recording(&mut self, now_s: f64) -> Result<(), String> {
+    /// Fails when something was being recorded and there is nothing to save of it.
+    fn save_recording(&mut self, now_s: f64) -> Result<(), NotSaved> {
         let Some(recorder) = self.recorder.take() else { return Ok(()) };
-        let flight = recorder.finish(now_s).and_then(|flight| flight.to_text());
-        let text = flight.map_err(|error| format!("nothing was recorded: {error}"))?;
+        let text = recorder.finish(now_s)?.to_text(&self.source.manifest().crs)?;
         self.shots.save_flight(text);
         Ok(())
     }

@@ -8,7 +8,7 @@ use std::{
     thread::{self, JoinHandle},
 };
 
-use crate::shots::SAVED;
+use crate::shots::NotSaved;
 
 /// Numbers are tried up to here.
 const MOST: u32 = 99_999;
@@ -17,8 +17,8 @@ const MOST: u32 = 99_999;
 pub(crate) struct Files {
     folder: PathBuf,
     wake: Arc<dyn Fn() + Send + Sync>,
-    sender: mpsc::Sender<String>,
-    said: mpsc::Receiver<String>,
+    sender: mpsc::Sender<Result<PathBuf, NotSaved>>,
+    said: mpsc::Receiver<Result<PathBuf, NotSaved>>,
     writers: Vec<JoinHandle<()>>,
 }
 
@@ -30,13 +30,13 @@ impl Files {
     }
 
     /// What became of the files since this was asked last.
-    pub(crate) fn news(&mut self) -> Vec<String> {
+    pub(crate) fn news(&mut self) -> Vec<Result<PathBuf, NotSaved>> {
         self.writers.retain(|writer| !writer.is_finished());
         self.said.try_iter().collect()
     }
 
     /// Waits until all is written; what became of the files that [`Files::news`] did not tell of.
-    pub(crate) fn finish(&mut self) -> Vec<String> {
+    pub(crate) fn finish(&mut self) -> Vec<Result<PathBuf, NotSaved>> {
         for writer in self.writers.drain(..) {
             // It panicked, then, and said so.
             let _ = writer.join();
@@ -54,20 +54,16 @@ impl Files {
         let (folder, wake, sender) =
             (self.folder.clone(), Arc::clone(&self.wake), self.sender.clone());
         let work = move || {
-            let news = match encode().and_then(|bytes| write(&folder, stem, extension, &bytes)) {
-                Ok(path) => format!("{SAVED}{}", path.display()),
-                Err(error) => {
-                    format!("nothing could be saved in {}: {error}", folder.display())
-                }
-            };
+            let saved = encode().and_then(|bytes| write(&folder, stem, extension, &bytes));
             // Nobody listens once the window is closed.
-            let _ = sender.send(news);
+            let _ = sender.send(saved.map_err(|source| NotSaved::File { folder, source }));
             wake();
         };
         match thread::Builder::new().name("file".to_owned()).spawn(work) {
             Ok(writer) => self.writers.push(writer),
-            Err(error) => {
-                let _ = self.sender.send(format!("nothing could be saved: {error}"));
+            Err(source) => {
+                let folder = self.folder.clone();
+                let _ = self.sender.send(Err(NotSaved::File { folder, source }));
             }
         }
     }
