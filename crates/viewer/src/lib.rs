@@ -10,6 +10,10 @@
 //! and [`style`] are values and pure functions; [`tiles`] decodes; [`gpu`] draws what it is handed.
 //! [`Replay`] flies along a [`flight`], frame by frame, with [`stream`] choosing what is loaded and kept.
 //!
+//! It also builds for WebAssembly, without what waits for files, devices and pixels: [`render`], [`Replay`],
+//! [`tiles::PackageSource`], [`gpu::Gpu::new`]. Their parts that do not wait are [`tiles::PackageTiles`] and
+//! [`gpu::Gpu::request`].
+//!
 //! This crate never depends on `pipeline`, `dem` or `osm`: it learns everything from the package. It never
 //! writes a file.
 
@@ -21,7 +25,9 @@ pub mod gpu;
 pub mod lod;
 pub mod pick;
 pub mod range;
+#[cfg(not(target_arch = "wasm32"))]
 mod render;
+#[cfg(not(target_arch = "wasm32"))]
 mod replay;
 pub mod scene;
 pub mod stream;
@@ -31,7 +37,9 @@ mod viewpoint;
 
 pub use attribution::draw_attribution;
 pub use range::OutOfRange;
+#[cfg(not(target_arch = "wasm32"))]
 pub use render::{RenderError, RenderReport, RenderRequest, Rendered, render};
+#[cfg(not(target_arch = "wasm32"))]
 pub use replay::{Detail, FrameRecord, Lifted, Replay, ReplayError, ReplayOptions, default_flight};
 pub use scene::{CapTest, Caps, ClassSet, Outline, RoadMethod, RoadOptions, WidthGrowth};
 pub use viewpoint::{CameraRequest, OffGround, ViewpointError};

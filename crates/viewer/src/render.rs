@@ -139,8 +139,13 @@ pub fn render(
         .coarsest_ground()?
         .ok_or_else(|| RenderError::NoGround { package: request.package.clone() })?
         .height_range_m;
-    let camera =
-        request.camera.camera(&source, height_range_m, quality.vertical_scale, request.size_px)?;
+    let camera = request.camera.camera(
+        source.manifest(),
+        &source,
+        height_range_m,
+        quality.vertical_scale,
+        request.size_px,
+    )?;
     if request.camera != CameraRequest::FrameAll {
         check_above_ground(&camera, &mut store, quality.vertical_scale, point_scale)?;
     }

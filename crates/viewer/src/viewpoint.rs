@@ -1,10 +1,11 @@
 //! Where to look from at first, as pictures and windows are asked.
 
+use corniche_tileset::Manifest;
 use glam::DVec3;
 
 use crate::{
     camera::{Camera, Orientation, WorldBox},
-    tiles::{LoadTileError, PackageSource, TileStore},
+    tiles::{LoadTileError, TileSource, TileStore},
 };
 
 /// Where to look from.
@@ -60,19 +61,19 @@ impl CameraRequest {
         }
     }
 
-    /// The camera for a package whose ground lies between these true heights; in the world they are `vertical_scale` times
+    /// The camera for the package of this manifest and these tiles, whose ground lies between these true heights; in the world they are `vertical_scale` times
     /// as high.
     ///
     /// # Errors
     /// When the place has no ground, or a tile there cannot be had.
     pub fn camera(
         self,
-        source: &PackageSource,
+        manifest: &Manifest,
+        source: &dyn TileSource,
         height_range_m: [f64; 2],
         vertical_scale: f64,
         size_px: [u32; 2],
     ) -> Result<Camera, ViewpointError> {
-        let manifest = source.manifest();
         match self {
             Self::FrameAll => {
                 let range_m = height_range_m.map(|height_m| height_m * vertical_scale);

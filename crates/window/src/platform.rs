@@ -1,10 +1,10 @@
 //! What the system gives: event loop, surface, loss of either, threads that load tiles, a folder for files. Nothing else in
 //! this crate knows `winit`, a thread, a clock or a file.
 //!
-//! A browser would have a module of its own in this one's place: `run` on the event loop of a page, `Loader` on its
-//! workers, `Files` on its downloads. What else it lacks lies in `corniche-viewer`: `PackageSource` reads a file, and waits
-//! for what it reads, where a page gets ranges of bytes later; `CameraRequest::camera` and `Package` load tiles on the
-//! thread that draws; `Gpu` waits for its device, and pictures to be saved wait for their pixels.
+//! A browser would have a module of its own in this one's place: `run` on the event loop of a page, `Loader` on its fetches
+//! (`PackageTiles` and `Gpu::request` wait for nothing), `Files` on its downloads. Elsewhere it would still lack three
+//! things: `app` holds a `PackageSource`, which waits for its file; `Package` and `CameraRequest::camera` load the first
+//! tiles before there is a frame; pictures to be saved wait for their pixels.
 
 mod files;
 mod inputs;

@@ -24,6 +24,12 @@ impl FilePackage {
         Ok(Self { package, path: path.to_path_buf() })
     }
 
+    /// The same for callers that do not wait.
+    #[must_use]
+    pub fn into_package(self) -> Package<FileSource> {
+        self.package
+    }
+
     /// The file.
     #[must_use]
     pub fn path(&self) -> &Path {

@@ -59,6 +59,7 @@ impl Gpu {
     ///
     /// # Errors
     /// When there is no adapter, or none as the environment asks for, or it gives no device.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new() -> Result<Self, GpuError> {
         match std::env::var("WGPU_BACKEND") {
             Ok(names) => Self::with_backends(wgpu::Backends::from_comma_list(&names)),
@@ -72,12 +73,13 @@ impl Gpu {
     ///
     /// # Errors
     /// When they have no adapter, or none as the environment asks for, or it gives no device.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn with_backends(backends: wgpu::Backends) -> Result<Self, GpuError> {
         let descriptor = wgpu::InstanceDescriptor {
             backends,
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         };
-        Self::of(adapter(&wgpu::Instance::new(descriptor), None)?)
+        pollster::block_on(Self::request(&wgpu::Instance::new(descriptor), None))
     }
 
     /// The same for a window: an adapter that can show pictures on `surface`, which `instance` made. The
@@ -85,14 +87,23 @@ impl Gpu {
     ///
     /// # Errors
     /// When no such adapter can show pictures there or it gives no device.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn for_window(
         instance: &wgpu::Instance,
         surface: &wgpu::Surface<'_>,
     ) -> Result<Self, GpuError> {
-        Self::of(adapter(instance, Some(surface))?)
+        pollster::block_on(Self::request(instance, Some(surface)))
     }
 
-    fn of(adapter: wgpu::Adapter) -> Result<Self, GpuError> {
+    /// The same without waiting, with or without a window.
+    ///
+    /// # Errors
+    /// When there is no such adapter or it gives no device.
+    pub async fn request(
+        instance: &wgpu::Instance,
+        surface: Option<&wgpu::Surface<'_>>,
+    ) -> Result<Self, GpuError> {
+        let adapter = adapter(instance, surface).await?;
         let info = adapter.get_info();
         let adapter_name = format!("{} ({})", info.name, info.backend);
         // Everything else keeps to WebGPU's defaults; how large a picture may be is not for shaders to depend on.
@@ -106,7 +117,9 @@ impl Gpu {
             required_limits,
             ..Default::default()
         };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+        let (device, queue) = adapter
+            .request_device(&descriptor)
+            .await
             .map_err(|source| GpuError::NoDevice { adapter: adapter_name.clone(), source })?;
         let faults = Arc::new(Faults::default());
         let seen = Arc::clone(&faults);
@@ -205,12 +218,12 @@ impl Gpu {
 }
 
 /// The adapter the environment names, else the fastest, else a software one.
-fn adapter(
+async fn adapter(
     instance: &wgpu::Instance,
     surface: Option<&wgpu::Surface<'_>>,
 ) -> Result<wgpu::Adapter, GpuError> {
     if let Ok(name) = std::env::var("WGPU_ADAPTER_NAME") {
-        return named_adapter(instance, surface, name);
+        return named_adapter(instance, surface, name).await;
     }
     let fastest = wgpu::RequestAdapterOptions {
         power_preference: wgpu::PowerPreference::HighPerformance,
@@ -222,18 +235,22 @@ fn adapter(
         compatible_surface: surface,
         ..Default::default()
     };
-    pollster::block_on(instance.request_adapter(&fastest))
-        .or_else(|_| pollster::block_on(instance.request_adapter(&software)))
-        .map_err(|source| GpuError::NoAdapter { source })
+    if let Ok(adapter) = instance.request_adapter(&fastest).await {
+        return Ok(adapter);
+    }
+    let found = instance.request_adapter(&software).await;
+    found.map_err(|source| GpuError::NoAdapter { source })
 }
 
-fn named_adapter(
+async fn named_adapter(
     instance: &wgpu::Instance,
     surface: Option<&wgpu::Surface<'_>>,
     name: String,
 ) -> Result<wgpu::Adapter, GpuError> {
     let wanted = name.to_lowercase();
-    pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()))
+    instance
+        .enumerate_adapters(wgpu::Backends::all())
+        .await
         .into_iter()
         .filter(|adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface)))
         .find(|adapter| adapter.get_info().name.to_lowercase().contains(&wanted))

@@ -1,10 +1,13 @@
 //! Tiles as the renderer wants them, and where they come from.
 //!
-//! [`TileSource::load`] is a pure function of the tile id and `&self`, so that a worker thread may call it;
-//! [`TileStore`] is what the frame loop holds: it takes requests and answers what is known.
+//! [`PackageTiles`] reads and decodes without waiting, from any source of bytes; [`PackageSource`] does so from a file for
+//! threads that wait. [`TileSource::load`] is a pure function of the tile id and `&self`, so that a worker thread may call
+//! it; [`TileStore`] holds what is loaded and answers what is known.
 
 mod buckets;
 mod ground;
+#[cfg(not(target_arch = "wasm32"))]
+mod on_disk;
 mod package;
 mod relief;
 mod roads;
@@ -14,10 +17,12 @@ use std::collections::BTreeMap;
 use corniche_geom::{Bounds, Frame, TileId, barycentric};
 use corniche_tileset::{Terrain, TilePayload};
 
+#[cfg(not(target_arch = "wasm32"))]
+pub use self::on_disk::PackageSource;
 use self::relief::Relief;
 pub use self::{
     ground::{GroundMesh, GroundVertex},
-    package::PackageSource,
+    package::PackageTiles,
     roads::{
         BadRoad, GroundLine, NearHeights, PlanLine, RoadEnd, RoadList, RoadSegment, RoadSegments,
         RoadVolume, RoadVolumes, Side, TileLines,

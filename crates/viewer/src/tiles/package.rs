@@ -1,29 +1,29 @@
-use std::{collections::BTreeSet, path::Path};
+use std::collections::BTreeSet;
 
 use corniche_geom::{Frame, TileId};
-use corniche_tileset::{FilePackage, Manifest, OpenError, Sections};
+use corniche_tileset::{ByteSource, Manifest, OpenError, Package, Sections};
 
-use super::{LoadTileError, TileGeometry, TileLines, TileSource};
+use super::{LoadTileError, TileGeometry, TileLines};
 use crate::RoadMethod;
 
-/// A package on disk as a source of tiles.
+/// A package as tiles, wherever its bytes come from: it never waits by itself. [`PackageSource`](super::PackageSource) is
+/// one on disk, for threads that wait.
 #[derive(Debug)]
-pub struct PackageSource {
-    package: FilePackage,
+pub struct PackageTiles<S> {
+    package: Package<S>,
     /// Tiles of the package and all tiles above them.
     tiles: BTreeSet<TileId>,
     sections: Sections,
 }
 
-impl PackageSource {
-    /// Opens a package and lists its tiles.
+impl<S: ByteSource> PackageTiles<S> {
+    /// Lists a package's tiles.
     ///
     /// # Errors
-    /// When it cannot be read or is no package of this version.
-    pub fn open(path: &Path) -> Result<Self, OpenError> {
-        let package = FilePackage::open(path)?;
+    /// When its directories cannot be read or are damaged.
+    pub async fn new(package: Package<S>) -> Result<Self, OpenError> {
         let mut tiles = BTreeSet::new();
-        for id in package.tile_ids()? {
+        for id in package.tile_ids().await? {
             let mut next = Some(id);
             while let Some(id) = next.filter(|id| tiles.insert(*id)) {
                 next = id.parent();
@@ -49,23 +49,28 @@ impl PackageSource {
     pub fn manifest(&self) -> &Manifest {
         self.package.manifest()
     }
-}
 
-impl TileSource for PackageSource {
-    fn frame(&self) -> &Frame {
+    /// The grid.
+    #[must_use]
+    pub fn frame(&self) -> &Frame {
         &self.manifest().frame
     }
 
-    fn exists(&self, id: TileId) -> bool {
+    /// Whether the tile or anything beneath it exists.
+    #[must_use]
+    pub fn exists(&self, id: TileId) -> bool {
         self.tiles.contains(&id)
     }
 
-    fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
+    /// Reads and decodes a tile that exists.
+    ///
+    /// # Errors
+    /// When it cannot be read or is damaged.
+    pub async fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
         let failed = |source| LoadTileError { id, source };
         let quantum_m = self.manifest().vertical.quantum_m;
-        let payload =
-            self.package.payload(id, self.sections).map_err(|error| failed(error.into()))?;
-        match payload {
+        let payload = self.package.payload(id, self.sections).await;
+        match payload.map_err(|error| failed(error.into()))? {
             Some(payload) => {
                 // The manifest has a record for every level of the frame: its reader checks.
                 let level = &self.manifest().levels[usize::from(id.z())];

@@ -7,6 +7,7 @@
 )]
 
 pub(crate) mod country;
+pub(crate) mod package;
 pub(crate) mod scene;
 pub(crate) mod scenes;
 

@@ -85,7 +85,13 @@ impl App {
             }
             CameraRequest::LookAt { .. } => size_px,
         };
-        let camera = request.camera.camera(&source, height_range_m, vertical_scale, part_px)?;
+        let camera = request.camera.camera(
+            manifest,
+            source.as_ref(),
+            height_range_m,
+            vertical_scale,
+            part_px,
+        )?;
         let home = in_left_part(&camera, request.camera.orientation(), size_px[0]);
         let limits = Limits {
             data: manifest.data_bounds,

@@ -1,0 +1,52 @@
+use std::path::Path;
+
+use corniche_geom::{Frame, TileId};
+use corniche_tileset::{FilePackage, FileSource, Manifest, OpenError};
+
+use super::{LoadTileError, PackageTiles, TileGeometry, TileSource};
+use crate::RoadMethod;
+
+/// A package on disk as a source of tiles, for threads that wait.
+#[derive(Debug)]
+pub struct PackageSource(PackageTiles<FileSource>);
+
+impl PackageSource {
+    /// Opens a package and lists its tiles.
+    ///
+    /// # Errors
+    /// When it cannot be read or is no package of this version.
+    pub fn open(path: &Path) -> Result<Self, OpenError> {
+        let package = FilePackage::open(path)?.into_package();
+        let tiles = pollster::block_on(PackageTiles::new(package));
+        tiles.map(Self).map_err(|source| OpenError::File {
+            path: path.to_path_buf(),
+            source: Box::new(source),
+        })
+    }
+
+    /// See [`PackageTiles::for_method`].
+    #[must_use]
+    pub fn for_method(self, method: RoadMethod) -> Self {
+        Self(self.0.for_method(method))
+    }
+
+    /// The package's table of contents.
+    #[must_use]
+    pub fn manifest(&self) -> &Manifest {
+        self.0.manifest()
+    }
+}
+
+impl TileSource for PackageSource {
+    fn frame(&self) -> &Frame {
+        self.0.frame()
+    }
+
+    fn exists(&self, id: TileId) -> bool {
+        self.0.exists(id)
+    }
+
+    fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
+        pollster::block_on(self.0.load(id))
+    }
+}

@@ -1,0 +1,121 @@
+//! Tiles from bytes that come later, as from a server: nothing waits for them.
+#![allow(clippy::unwrap_used, reason = "this is test code, helpers included")]
+
+mod support;
+
+use std::{
+    cell::Cell,
+    fs,
+    pin::{Pin, pin},
+    task::{Context, Poll, Waker},
+};
+
+use corniche_geom::TileId;
+use corniche_tileset::{ByteSource, MemorySource, Package, SourceError};
+use corniche_viewer::{
+    RoadMethod,
+    tiles::{PackageSource, PackageTiles, TileSource as _},
+};
+use support::package::package;
+
+/// What becomes of bytes that are asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Line {
+    Waiting,
+    Open,
+    Broken,
+}
+
+struct Server<'a> {
+    bytes: MemorySource,
+    line: &'a Cell<Line>,
+    asked: &'a Cell<u32>,
+}
+
+impl ByteSource for Server<'_> {
+    async fn length(&self) -> Result<u64, SourceError> {
+        self.bytes.length().await
+    }
+
+    async fn read(&self, offset: u64, length: usize) -> Result<Vec<u8>, SourceError> {
+        self.asked.set(self.asked.get() + 1);
+        let answer = std::future::poll_fn(|_| match self.line.get() {
+            Line::Waiting => Poll::Pending,
+            line => Poll::Ready(line),
+        });
+        if answer.await == Line::Broken {
+            let (name, reason) = ("https://example.org".to_owned(), "no answer".to_owned());
+            return Err(SourceError { name, offset, length, reason });
+        }
+        self.bytes.read(offset, length).await
+    }
+}
+
+/// Goes on with some work as far as it can without waiting.
+fn poll<T>(work: Pin<&mut impl Future<Output = T>>) -> Poll<T> {
+    work.poll(&mut Context::from_waker(Waker::noop()))
+}
+
+fn done<T>(work: impl Future<Output = T>) -> T {
+    match poll(pin!(work)) {
+        Poll::Ready(result) => result,
+        Poll::Pending => panic!("it waits for something"),
+    }
+}
+
+fn tile(id: &str) -> TileId {
+    id.parse().unwrap()
+}
+
+#[test]
+fn several_tiles_are_under_way_at_once_and_each_is_one_request() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = package(folder.path());
+    let (line, asked) = (Cell::new(Line::Open), Cell::new(0));
+    let bytes = MemorySource::new(fs::read(&path).unwrap());
+    let server = Server { bytes, line: &line, asked: &asked };
+    let tiles = done(PackageTiles::new(done(Package::open(server)).unwrap())).unwrap();
+
+    line.set(Line::Waiting);
+    asked.set(0);
+    let ids = ["0/0/0", "1/0/1", "2/3/2"].map(tile);
+    let [mut first, mut second, mut third] = ids.map(|id| Box::pin(tiles.load(id)));
+    assert!(poll(first.as_mut()).is_pending());
+    assert!(poll(second.as_mut()).is_pending());
+    line.set(Line::Open);
+    // In another order than they were asked for.
+    let loaded = [&mut third, &mut second, &mut first].map(|load| match poll(load.as_mut()) {
+        Poll::Ready(tile) => tile.unwrap(),
+        Poll::Pending => panic!("its bytes are there"),
+    });
+    assert_eq!(asked.get(), 3);
+
+    let on_disk = PackageSource::open(&path).unwrap();
+    for tile in &loaded {
+        assert!(*tile == on_disk.load(tile.id).unwrap(), "{}", tile.id);
+        assert!(tile.summary.is_some(), "{} has ground", tile.id);
+    }
+    assert!(tiles.exists(ids[2]) && !tiles.exists(tile("9/0/0")));
+}
+
+#[test]
+fn what_does_not_come_costs_one_tile() {
+    let folder = tempfile::tempdir().unwrap();
+    let (line, asked) = (Cell::new(Line::Open), Cell::new(0));
+    let bytes = MemorySource::new(fs::read(package(folder.path())).unwrap());
+    let server = Server { bytes, line: &line, asked: &asked };
+    let tiles = done(PackageTiles::new(done(Package::open(server)).unwrap())).unwrap();
+    let tiles = tiles.for_method(RoadMethod::None);
+
+    line.set(Line::Broken);
+    let error = done(tiles.load(tile("1/0/1"))).unwrap_err();
+    assert_eq!(error.id, tile("1/0/1"));
+    let cause = std::error::Error::source(&error).unwrap().to_string();
+    assert!(cause.contains("https://example.org") && cause.contains("no answer"), "{cause}");
+    line.set(Line::Open);
+    let loaded = done(tiles.load(tile("1/0/1"))).unwrap();
+    assert!(
+        loaded.roads.all().is_empty() && loaded.volumes.all().is_empty(),
+        "without roads, as asked"
+    );
+}
