@@ -8,7 +8,7 @@ mod start;
 
 pub(crate) use self::start::Package;
 
-use std::sync::Arc;
+use std::{collections::VecDeque, sync::Arc};
 
 use corniche_viewer::{
     RoadMethod,
@@ -25,7 +25,7 @@ use glam::DVec2;
 
 use crate::{
     NamedStyle, Reload, WindowError,
-    canvas::{Canvas, Drew, Scene},
+    canvas::{Canvas, Drew, Scene, Snapshot},
     clicks::{Click, Clicks},
     controls::{Button, Ground as _, Input, Modifiers, Navigator, View},
     facts::{Command, Facts, GroundPoint, Shot},
@@ -48,6 +48,8 @@ const HURRY_S: f64 = 0.15;
 const AHEAD_S: f64 = 0.5;
 /// So long after a frame its passes' times are asked for, if nothing else makes a frame before.
 const CLOCK_S: f64 = 0.1;
+/// Pixels that are on their way back are asked for so often.
+const PICTURE_S: f64 = 0.02;
 /// A mouse that pauses for so long in the midst of a drag rests.
 const REST_S: f64 = 0.5;
 /// A panel that wishes to be painted again later than this does not wish it; its toolkit says so with ages.
@@ -75,6 +77,8 @@ pub(crate) struct App {
     recorder: Option<Recorder>,
     shots: Shots,
     wanted: Vec<Shot>,
+    /// Pictures whose pixels are on their way back from the graphics card.
+    developing: VecDeque<(Shot, Snapshot)>,
     notices: Notices,
     /// Whether it was said that the graphics memory allowed is full.
     was_full: bool,
@@ -221,6 +225,7 @@ impl App {
         canvas.gpu().adapter_name().clone_into(&mut self.adapter);
         self.is_software = canvas.gpu().is_software();
         self.passes.clear();
+        self.forget_pictures();
         self.notice("the graphics device was lost; everything was loaded again".to_owned());
     }
 
@@ -297,7 +302,8 @@ impl App {
             // A little later the graphics card tells how long this frame took.
             let clock_s = canvas.is_timing().then_some(CLOCK_S);
             let wish_s = (wish_s <= LONGEST_WISH_S).then_some(wish_s);
-            let rests_s = [hurry_s, clock_s, wish_s, self.words_change_in_s(now_s)];
+            let picture_s = (!self.developing.is_empty()).then_some(PICTURE_S);
+            let rests_s = [hurry_s, clock_s, picture_s, wish_s, self.words_change_in_s(now_s)];
             let soonest_s = rests_s.into_iter().flatten().reduce(f64::min);
             soonest_s.map_or(Redraw::Asked, |rest_s| Redraw::At(now_s + rest_s))
         };

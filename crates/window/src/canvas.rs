@@ -1,7 +1,7 @@
 //! Everything of the window that lies on the graphics card, apart from the surface: tiles, pictures of the map, the
 //! panel's textures. Made anew as a whole when the device is lost.
 
-mod read;
+mod snapshot;
 
 use std::collections::BTreeMap;
 
@@ -18,8 +18,8 @@ use corniche_viewer::{
 };
 use egui::{ClippedPrimitive, TextureId, TexturesDelta};
 use egui_wgpu::ScreenDescriptor;
-use image::RgbaImage;
 
+pub(crate) use self::snapshot::Snapshot;
 use crate::{panel::Pictures, settings::Compare, tiles::Changes};
 
 /// What the map shows. Two equal scenes look the same, as long as their tiles lie on the graphics card.
@@ -266,28 +266,18 @@ impl Canvas {
         Ok(self.maps.iter().filter_map(|map| map.times).collect())
     }
 
-    /// The map that is shown, without anything on it.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub(crate) fn read_map(&self, divider_share: f32) -> Result<RgbaImage, ReadBackError> {
-        let read = |picture: &Picture| picture.read_image(&self.gpu);
-        let compare = self.shown.as_ref().map(|(scene, _)| scene.compare);
-        if let (Some(Compare::Difference), Some((_, picture))) = (compare, &self.difference) {
-            return read(picture);
-        }
-        let mut pictures = self.maps.iter().map(|map| read(map.targets.picture()));
-        let mut left = pictures.next().unwrap_or_else(|| Ok(RgbaImage::default()))?;
-        if let Some(right) = pictures.next() {
-            let right = right?;
-            let column = (divider_share * left.width() as f32).round() as u32;
-            for (x, y, pixel) in left.enumerate_pixels_mut() {
-                if x >= column {
-                    *pixel = *right.get_pixel(x, y);
-                }
+    /// Asks for the map that is shown, without anything on it; `None` while none is.
+    pub(crate) fn snap_map(&self, divider_share: f32) -> Option<Snapshot> {
+        let (scene, _) = self.shown.as_ref()?;
+        let picture = match (scene.compare, &self.difference) {
+            (Compare::Difference, Some((_, picture))) => {
+                return Some(Snapshot::of_map(&self.gpu, picture, None, 0));
             }
-        }
-        Ok(left)
+            _ => self.maps.first()?.targets.picture(),
+        };
+        let right = self.maps.get(1).map(|map| map.targets.picture());
+        let column = (divider_share * picture.size_px()[0] as f32).round() as u32;
+        Some(Snapshot::of_map(&self.gpu, picture, right, column))
     }
 
     /// Takes over what the panel changed of its textures, before what was laid out with them is painted. Returns those
@@ -341,19 +331,16 @@ impl Canvas {
         queue.submit(commands);
     }
 
-    /// Paints the whole window into a picture.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub(crate) fn read_window(
+    /// Paints the whole window into a picture and asks for it.
+    pub(crate) fn snap_window(
         &mut self,
         primitives: &[ClippedPrimitive],
         screen: &ScreenDescriptor,
-    ) -> Result<RgbaImage, ReadBackError> {
-        let texture = read::texture(&self.gpu, self.format, screen.size_in_pixels);
+    ) -> Snapshot {
+        let texture = snapshot::texture(&self.gpu, self.format, screen.size_in_pixels);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         self.paint(primitives, screen, &view);
-        read::pixels(&self.gpu, &texture)
+        Snapshot::of_window(&self.gpu, &texture)
     }
 }
 

@@ -2,9 +2,9 @@
 //! this crate knows `winit`, a thread, a clock or a file.
 //!
 //! A browser would have a module of its own in this one's place: `run` on the event loop of a page, `Loader` on its fetches
-//! (`PackageTiles` and `Gpu::request` wait for nothing), `Files` on its downloads. Elsewhere it would still lack three
+//! (`PackageTiles` and `Gpu::request` wait for nothing), `Files` on its downloads. Elsewhere it would still lack two
 //! things: `app` holds a `PackageSource`, which waits for its file; `Package` and `CameraRequest::camera` load the first
-//! tiles before there is a frame; pictures to be saved wait for their pixels.
+//! tiles before there is a frame.
 
 mod files;
 mod inputs;
@@ -195,7 +195,7 @@ impl Shell {
     fn close(&mut self) {
         let now_s = self.now_s();
         if let Some(mut open) = self.open.take() {
-            self.last_files.extend(open.app.end(now_s));
+            self.last_files.extend(open.app.end(open.canvas.gpu(), now_s));
         }
     }
 }

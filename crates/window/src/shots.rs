@@ -6,7 +6,7 @@ use std::{
     sync::Arc,
 };
 
-use corniche_viewer::flight::FlightError;
+use corniche_viewer::{flight::FlightError, gpu::ReadBackError};
 use image::{ImageFormat, RgbaImage};
 
 use crate::platform::Files;
@@ -20,6 +20,10 @@ pub enum NotSaved {
     File { folder: PathBuf, source: io::Error },
     #[error("nothing was recorded")]
     Recording(#[from] FlightError),
+    #[error("no picture was taken")]
+    Picture(#[from] ReadBackError),
+    #[error("no picture was taken: the window closed before it was drawn")]
+    Untaken,
 }
 
 /// Saves what the person wants to keep.

@@ -191,10 +191,12 @@ impl Gpu {
         self.device
             .poll(wgpu::PollType::wait_indefinitely())
             .map_err(|source| ReadBackError::Poll { source })?;
-        match self.take_fault() {
-            Some(what) => Err(ReadBackError::Fault { what }),
-            None => Ok(()),
-        }
+        self.check()
+    }
+
+    /// Fails when something went wrong since the last time.
+    pub(super) fn check(&self) -> Result<(), ReadBackError> {
+        self.take_fault().map_or(Ok(()), |what| Err(ReadBackError::Fault { what }))
     }
 
     /// A buffer with these contents, whose length is a multiple of 4.

@@ -44,7 +44,7 @@ mod uniforms;
 pub use self::{
     device::{Gpu, GpuError},
     picture::{MAX_SAMPLES_PER_SIDE, Picture, ReadBackError},
-    read_back::read_texture,
+    read_back::{ReadBack, read_texture},
     renderer::{DrawTile, FrameView, Renderer, Wireframe},
     screen_passes::{DIFFERENCE_COLORS, DifferenceColors},
     targets::{Owner, Targets, label_class},

@@ -1,6 +1,6 @@
 use wgpu::{Extent3d, TextureFormat, TextureUsages, TextureView};
 
-use super::{Gpu, GpuError, read_texture};
+use super::{Gpu, GpuError, ReadBack, read_texture};
 
 pub(super) const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
 
@@ -76,6 +76,12 @@ impl Picture {
     /// When the device is lost or could not draw.
     pub fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
         self.pixels.read(gpu)
+    }
+
+    /// Asks for the same without waiting for it.
+    #[must_use]
+    pub fn begin_read(&self, gpu: &Gpu) -> ReadBack {
+        ReadBack::begin(gpu, &self.pixels.texture)
     }
 
     /// The same as an image.

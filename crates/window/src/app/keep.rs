@@ -2,17 +2,28 @@
 
 use std::path::PathBuf;
 
-use corniche_viewer::{draw_attribution, flight::Pose, gpu::ReadBackError};
+use corniche_viewer::{draw_attribution, flight::Pose, gpu::Gpu};
 use egui_wgpu::ScreenDescriptor;
+use image::RgbaImage;
 
 use super::App;
 use crate::{WindowError, canvas::Canvas, facts::Shot, shots::NotSaved, trace::TraceLine, words};
 
+/// How it is said that a picture could not be taken.
+const NO_PICTURE: &str = "no picture was taken: ";
+
 impl App {
-    /// The window closes: saves what is being recorded and waits for what is being written. Returns what became of it, for
-    /// there is no panel any more to show it.
-    pub(crate) fn end(&mut self, now_s: f64) -> Vec<Result<PathBuf, NotSaved>> {
+    /// The window closes: saves what is being recorded and waits for what is being taken and written. Returns what became
+    /// of it, for there is no panel any more to show it.
+    pub(crate) fn end(&mut self, gpu: &Gpu, now_s: f64) -> Vec<Result<PathBuf, NotSaved>> {
         let mut saved: Vec<_> = self.save_recording(now_s).err().into_iter().map(Err).collect();
+        for (shot, snapshot) in std::mem::take(&mut self.developing) {
+            match snapshot.into_image(gpu) {
+                Ok(picture) => self.save_picture(shot, picture),
+                Err(error) => saved.push(Err(error.into())),
+            }
+        }
+        saved.extend(self.wanted.drain(..).map(|_| Err(NotSaved::Untaken)));
         saved.extend(self.shots.finish());
         saved
     }
@@ -31,6 +42,7 @@ impl App {
         Ok(())
     }
 
+    /// Begins the pictures that are wanted, and saves those whose pixels have come back, in the order of the wishes.
     pub(super) fn take_shots(
         &mut self,
         canvas: &mut Canvas,
@@ -38,50 +50,63 @@ impl App {
         screen: &ScreenDescriptor,
     ) -> Result<(), WindowError> {
         // What was asked for in this frame is drawn in full in the next.
-        let is_full = canvas.is_full();
-        for shot in std::mem::take(&mut self.wanted) {
-            if !is_full {
-                self.wanted.push(shot);
-                continue;
+        if canvas.is_full() {
+            for shot in std::mem::take(&mut self.wanted) {
+                let snapshot = match shot {
+                    Shot::Map => canvas.snap_map(self.settings.divider_share),
+                    Shot::Window => Some(canvas.snap_window(primitives, screen)),
+                };
+                self.developing.extend(snapshot.map(|snapshot| (shot, snapshot)));
             }
-            let read = match shot {
-                Shot::Map => canvas.read_map(self.settings.divider_share).map(|mut picture| {
-                    draw_attribution(&mut picture, &self.source.manifest().attribution);
-                    picture
-                }),
-                Shot::Window => canvas.read_window(primitives, screen),
+        }
+        while let Some((shot, mut snapshot)) = self.developing.pop_front() {
+            let read = match snapshot.has_arrived(canvas.gpu()) {
+                Ok(false) => {
+                    self.developing.push_front((shot, snapshot));
+                    break;
+                }
+                Ok(true) => snapshot.into_image(canvas.gpu()),
+                Err(error) => Err(error),
             };
             match read {
-                Ok(picture) => self.shots.save_picture(picture),
-                Err(error) => self.survive(canvas, "no picture was taken", error)?,
+                Ok(picture) => self.save_picture(shot, picture),
+                Err(error) => {
+                    self.notice(format!("{NO_PICTURE}{error}"));
+                    if canvas.gpu().is_lost() {
+                        return Err(error.into());
+                    }
+                }
             }
         }
         Ok(())
+    }
+
+    fn save_picture(&mut self, shot: Shot, mut picture: RgbaImage) {
+        // A picture of the window shows them already.
+        if shot == Shot::Map {
+            draw_attribution(&mut picture, &self.source.manifest().attribution);
+        }
+        self.shots.save_picture(picture);
+    }
+
+    /// The pictures that were being taken went with the device.
+    pub(super) fn forget_pictures(&mut self) {
+        if !self.developing.is_empty() {
+            self.developing.clear();
+            self.notice(format!("{NO_PICTURE}the graphics device was lost"));
+        }
     }
 
     /// Asks the graphics card how long the last frames took.
     pub(super) fn take_times(&mut self, canvas: &mut Canvas) -> Result<(), WindowError> {
         match canvas.times() {
             Ok(times) => self.passes = times,
+            Err(error) if canvas.gpu().is_lost() => return Err(error.into()),
             Err(error) => {
                 self.passes.clear();
-                self.survive(canvas, "no pass was timed", error)?;
+                self.notice(format!("no pass was timed: {error}"));
             }
         }
-        Ok(())
-    }
-
-    /// What could not be read is said; only a device that is lost is an error.
-    fn survive(
-        &mut self,
-        canvas: &Canvas,
-        what: &str,
-        error: ReadBackError,
-    ) -> Result<(), WindowError> {
-        if canvas.gpu().is_lost() {
-            return Err(error.into());
-        }
-        self.notice(format!("{what}: {error}"));
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! From a request to the first frame.
 
-use std::sync::Arc;
+use std::{collections::VecDeque, sync::Arc};
 
 use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
@@ -141,6 +141,7 @@ impl App {
             recorder: None,
             shots: Shots::new(request.folder, Arc::clone(wake)),
             wanted: Vec::new(),
+            developing: VecDeque::new(),
             notices: Notices::default(),
             was_full: false,
             trace,

@@ -1,6 +1,9 @@
+use std::time::{Duration, Instant};
+
 use corniche_viewer::camera::Orientation;
 use egui::{Color32, Rect, pos2};
 use glam::DVec3;
+use image::RgbaImage;
 
 use super::*;
 
@@ -60,14 +63,19 @@ fn paint(canvas: &mut Canvas, drew: Drew) -> RgbaImage {
     canvas.take_textures(std::mem::take(&mut output.textures_delta));
     let primitives = ui.tessellate(output.shapes, 1.0);
     let screen = ScreenDescriptor { size_in_pixels: SIZE_PX, pixels_per_point: 1.0 };
-    canvas.read_window(&primitives, &screen).unwrap_or_else(|error| panic!("{error}"))
+    let snapshot = canvas.snap_window(&primitives, &screen);
+    snapshot.into_image(canvas.gpu()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn map(canvas: &Canvas) -> RgbaImage {
+    canvas.snap_map(0.5).expect("something is shown").into_image(canvas.gpu()).unwrap()
 }
 
 #[test]
 fn the_map_is_shown_pixel_for_pixel_beneath_the_panel() {
     let Some(mut canvas) = canvas() else { return };
     let drew = canvas.draw(&scene(Compare::Off)).unwrap();
-    let (map, window) = (canvas.read_map(0.5).unwrap(), paint(&mut canvas, drew));
+    let (map, window) = (map(&canvas), paint(&mut canvas, drew));
     assert_eq!(window.dimensions(), (64, 48));
     // Some pixels around the edge are the toolkit's, which smooths it.
     for (x, y, pixel) in window.enumerate_pixels().filter(|(x, ..)| !(30..=34).contains(x)) {
@@ -97,6 +105,53 @@ fn only_another_scene_is_drawn() {
 }
 
 #[test]
+fn a_picture_shows_what_was_shown_when_it_was_asked_for() {
+    let Some(mut canvas) = canvas() else { return };
+    canvas.draw(&scene(Compare::Off)).unwrap();
+    let before = map(&canvas);
+    let mut snapshot = canvas.snap_map(0.5).unwrap();
+    let night = Style { sky: [0.0; 3], ..Style::road_atlas() };
+    canvas.draw(&Scene { style: night, ..scene(Compare::Off) }).unwrap();
+    assert_ne!(map(&canvas), before, "something else is shown by now");
+    let begun = Instant::now();
+    while !snapshot.has_arrived(canvas.gpu()).unwrap() {
+        assert!(begun.elapsed() < Duration::from_mins(1));
+    }
+    assert_eq!(snapshot.into_image(canvas.gpu()).unwrap(), before);
+}
+
+/// A picture of one colour.
+fn plain(gpu: &Gpu, color: wgpu::Color) -> Picture {
+    let picture = Picture::new(gpu, SIZE_PX, 1).unwrap();
+    let mut encoder =
+        gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(color), store: wgpu::StoreOp::Store };
+    drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: picture.view(),
+            depth_slice: None,
+            resolve_target: None,
+            ops,
+        })],
+        ..Default::default()
+    }));
+    gpu.queue().submit([encoder.finish()]);
+    picture
+}
+
+#[test]
+fn a_split_picture_has_both_sides() {
+    let Some(canvas) = canvas() else { return };
+    let gpu = canvas.gpu();
+    let [red, blue] = [wgpu::Color::RED, wgpu::Color::BLUE].map(|color| plain(gpu, color));
+    let both = Snapshot::of_map(gpu, &red, Some(&blue), 16).into_image(gpu).unwrap();
+    for (x, y, pixel) in both.enumerate_pixels() {
+        let expected = if x < 16 { [255, 0, 0, 255] } else { [0, 0, 255, 255] };
+        assert_eq!(pixel.0, expected, "{x}, {y}");
+    }
+}
+
+#[test]
 fn in_a_hurry_fewer_pixels_are_drawn() {
     let Some(mut canvas) = canvas() else { return };
     let full = scene(Compare::Off);
@@ -106,7 +161,7 @@ fn in_a_hurry_fewer_pixels_are_drawn() {
     let camera = Camera::look_at(DVec3::ZERO, 1000.0, level, [32, 24]);
     canvas.draw(&Scene { camera, ..full.clone() }).unwrap();
     assert!(!canvas.is_full());
-    assert_eq!(canvas.read_map(0.5).unwrap().dimensions(), (32, 24));
+    assert_eq!(map(&canvas).dimensions(), (32, 24));
     assert!(canvas.draw(&full).unwrap().is_new && canvas.is_full());
 }
 
@@ -114,7 +169,7 @@ fn in_a_hurry_fewer_pixels_are_drawn() {
 fn what_was_lost_is_drawn_again_by_another_canvas() {
     let Some(mut first) = canvas() else { return };
     first.draw(&scene(Compare::Off)).unwrap();
-    let before = first.read_map(0.5).unwrap();
+    let before = map(&first);
     first.gpu().device().destroy();
     // Whether or not drawing on tells of it, it must not end the program.
     let _ = first.draw(&Scene { exaggeration: 2.0, ..scene(Compare::Off) });
@@ -123,5 +178,5 @@ fn what_was_lost_is_drawn_again_by_another_canvas() {
     let Some(mut second) = canvas() else { return };
     assert!(!second.gpu().is_lost());
     second.draw(&scene(Compare::Off)).unwrap();
-    assert_eq!(second.read_map(0.5).unwrap(), before);
+    assert_eq!(map(&second), before);
 }

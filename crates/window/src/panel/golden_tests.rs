@@ -47,7 +47,8 @@ fn painted(canvas: &mut Canvas, size_px: [u32; 2], settings: &mut Settings) -> R
     }
     let primitives = ctx.tessellate(output.shapes, 1.0);
     let screen = ScreenDescriptor { size_in_pixels: size_px, pixels_per_point: 1.0 };
-    canvas.read_window(&primitives, &screen).unwrap_or_else(|error| panic!("{error}"))
+    let snapshot = canvas.snap_window(&primitives, &screen);
+    snapshot.into_image(canvas.gpu()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[test]

@@ -1,0 +1,106 @@
+//! Pixels on their way back from the graphics card: of the map, or of the whole painted window.
+
+use corniche_viewer::gpu::{Gpu, Picture, ReadBack, ReadBackError};
+use image::RgbaImage;
+use wgpu::{TextureFormat, TextureUsages};
+
+/// A picture that is being taken; nothing waits for it.
+pub(crate) struct Snapshot {
+    left: Part,
+    /// What is seen from some column on.
+    right: Option<(Part, u32)>,
+}
+
+struct Part {
+    size_px: [u32; 2],
+    format: TextureFormat,
+    texels: ReadBack,
+}
+
+impl Snapshot {
+    /// Of one picture of the map, or of two: the second from `column` on.
+    pub(super) fn of_map(gpu: &Gpu, left: &Picture, right: Option<&Picture>, column: u32) -> Self {
+        let part = |picture: &Picture| Part {
+            size_px: picture.size_px(),
+            format: TextureFormat::Rgba8Unorm,
+            texels: picture.begin_read(gpu),
+        };
+        Self { left: part(left), right: right.map(|right| (part(right), column)) }
+    }
+
+    /// Of what is painted into such a [`texture`].
+    pub(super) fn of_window(gpu: &Gpu, texture: &wgpu::Texture) -> Self {
+        let part = Part {
+            size_px: [texture.width(), texture.height()],
+            format: texture.format(),
+            texels: ReadBack::begin(gpu, texture),
+        };
+        Self { left: part, right: None }
+    }
+
+    /// Whether all its pixels are there; never waits.
+    ///
+    /// # Errors
+    /// When the device is lost or could not draw.
+    pub(crate) fn has_arrived(&mut self, gpu: &Gpu) -> Result<bool, ReadBackError> {
+        let right = match &mut self.right {
+            Some((part, _)) => part.texels.has_arrived(gpu)?,
+            None => true,
+        };
+        Ok(self.left.texels.has_arrived(gpu)? && right)
+    }
+
+    /// The picture; waits for what is not yet there.
+    ///
+    /// # Errors
+    /// When the device is lost or could not draw.
+    pub(crate) fn into_image(self, gpu: &Gpu) -> Result<RgbaImage, ReadBackError> {
+        let mut picture = self.left.into_image(gpu)?;
+        if let Some((right, column)) = self.right {
+            let right = right.into_image(gpu)?;
+            for (x, y, pixel) in picture.enumerate_pixels_mut() {
+                if x >= column {
+                    *pixel = *right.get_pixel(x, y);
+                }
+            }
+        }
+        Ok(picture)
+    }
+}
+
+impl Part {
+    fn into_image(self, gpu: &Gpu) -> Result<RgbaImage, ReadBackError> {
+        let mut bytes = self.texels.into_texels(gpu)?;
+        let has_blue_first =
+            matches!(self.format, TextureFormat::Bgra8Unorm | TextureFormat::Bgra8UnormSrgb);
+        let (pixels, _) = bytes.as_chunks_mut::<4>();
+        for [a, _, b, opacity] in pixels {
+            if has_blue_first {
+                std::mem::swap(a, b);
+            }
+            // The window covers what is behind it.
+            *opacity = 255;
+        }
+        let [width, height] = self.size_px;
+        // Four bytes for each pixel, so there is always an image.
+        Ok(RgbaImage::from_raw(width, height, bytes).unwrap_or_default())
+    }
+}
+
+/// Something to paint the window into and read.
+pub(super) fn texture(
+    gpu: &Gpu,
+    format: TextureFormat,
+    [width, height]: [u32; 2],
+) -> wgpu::Texture {
+    gpu.device().create_texture(&wgpu::TextureDescriptor {
+        label: Some("picture of the window"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
+        view_formats: &[],
+    })
+}
