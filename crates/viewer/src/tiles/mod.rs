@@ -16,6 +16,7 @@ use std::collections::BTreeMap;
 
 use corniche_geom::{Bounds, Frame, TileId, barycentric};
 use corniche_tileset::{Terrain, TilePayload};
+use corniche_tin::{Placement, Surface};
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use self::on_disk::PackageSource;
@@ -61,6 +62,20 @@ impl TileGeometry {
         frame: &Frame,
         quantum_m: f64,
     ) -> Self {
+        let has_roads = !lines.ground.is_empty() || !lines.plan.is_empty();
+        let surface = surface(id, terrain.filter(|_| has_roads), frame, quantum_m);
+        Self::on_surface(id, terrain, surface.as_ref(), lines, frame, quantum_m)
+    }
+
+    /// The same where the `surface` of the terrain is known, if there are roads on it.
+    fn on_surface(
+        id: TileId,
+        terrain: Option<&Terrain>,
+        surface: Option<&Surface>,
+        lines: &TileLines,
+        frame: &Frame,
+        quantum_m: f64,
+    ) -> Self {
         let bounds = frame.tile_bounds(id);
         let [x, y] = bounds.center();
         let [low_m, high_m] = terrain.map_or([0.0; 2], |terrain| terrain.height_range_m);
@@ -72,7 +87,7 @@ impl TileGeometry {
             geometric_error_m: terrain.geometric_error_m,
             height_range_m: terrain.height_range_m,
         });
-        let relief = Relief::new(id, terrain, lines, frame, quantum_m);
+        let relief = Relief::new(id, surface, frame);
         Self {
             id,
             reference_m,
@@ -99,8 +114,11 @@ impl TileGeometry {
         quantum_m: f64,
         width_margin_m: f64,
     ) -> Result<Self, BadRoad> {
-        let lines = TileLines::of_payload(payload, frame, quantum_m, width_margin_m)?;
-        Ok(Self::assemble(payload.id, payload.terrain.as_ref(), &lines, frame, quantum_m))
+        let (id, terrain) = (payload.id, payload.terrain.as_ref());
+        let has_roads = !payload.roads_geo.is_empty() || !payload.roads_sv.is_empty();
+        let surface = surface(id, terrain.filter(|_| has_roads), frame, quantum_m);
+        let lines = TileLines::of_payload(payload, surface.as_ref(), frame, width_margin_m)?;
+        Ok(Self::on_surface(id, terrain, surface.as_ref(), &lines, frame, quantum_m))
     }
 
     /// True height of the ground at a position in the working CRS; `None` where this tile has no ground.
@@ -116,6 +134,16 @@ impl TileGeometry {
             })
         })
     }
+}
+
+/// A tile's ground as roads ask for it.
+fn surface(
+    id: TileId,
+    terrain: Option<&Terrain>,
+    frame: &Frame,
+    quantum_m: f64,
+) -> Option<Surface> {
+    terrain.map(|terrain| Surface::new(&terrain.tin, Placement::of_tile(frame, id, quantum_m)))
 }
 
 /// Why a tile could not be had.

@@ -2,7 +2,7 @@ use corniche_drape::BadLine;
 use corniche_geom::{Bounds, Frame};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::TilePayload;
-use corniche_tin::{Placement, Surface};
+use corniche_tin::Surface;
 
 mod segments;
 
@@ -58,14 +58,15 @@ pub struct BadRoad {
 }
 
 impl TileLines {
-    /// Places the roads of a payload, as far as it has them. `width_margin_m` is the level's.
+    /// Places the roads of a payload, as far as it has them, on its `surface`. `width_margin_m` is the level's.
     pub(super) fn of_payload(
         payload: &TilePayload,
+        surface: Option<&Surface>,
         frame: &Frame,
-        quantum_m: f64,
         width_margin_m: f64,
     ) -> Result<Self, BadRoad> {
-        let ground = ground_lines(payload, frame, quantum_m)?;
+        let ground =
+            surface.map_or(Ok(Vec::new()), |surface| ground_lines(payload, surface, frame))?;
         Ok(Self { ground, plan: plan_lines(payload, frame), width_margin_m })
     }
 }
@@ -73,20 +74,16 @@ impl TileLines {
 /// Recomputes the positions of a tile's clipped roads from its ground.
 fn ground_lines(
     payload: &TilePayload,
+    surface: &Surface,
     frame: &Frame,
-    quantum_m: f64,
 ) -> Result<Vec<GroundLine>, BadRoad> {
-    let Some(terrain) = payload.terrain.as_ref().filter(|_| !payload.roads_geo.is_empty()) else {
-        return Ok(Vec::new());
-    };
-    let surface = Surface::new(&terrain.tin, Placement::of_tile(frame, payload.id, quantum_m));
     let place = |[u, v, height_m]: [f64; 3]| {
         let [x, y] = frame.position_of_fraction_m([u, v]);
         [x, y, height_m]
     };
     let mut lines = Vec::with_capacity(payload.roads_geo.len());
     for road in &payload.roads_geo {
-        let positions = corniche_drape::positions(&road.line, &surface)
+        let positions = corniche_drape::positions(&road.line, surface)
             .map_err(|source| BadRoad { way_id: road.way_id, part: road.part, source })?;
         lines.push(GroundLine {
             way_id: road.way_id,
