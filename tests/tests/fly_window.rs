@@ -107,7 +107,7 @@ fn closing_the_window_ends_the_flight_and_leaves_nothing() {
     let Some(display) = Display::start() else { return };
     let place = Place::new();
     // There is no window manager whose button could be pressed: the key does the same.
-    let close = ["windowfocus ID", "key ctrl+q"];
+    let close = ["windowfocus ID", "sleep 1", "key ctrl+q"];
     let Some(ran) = disturbed(&place, &display, "5000", &close) else { return };
     assert_eq!(ran.code, 4, "{}", ran.err);
     assert!(ran.err.contains("closed before the flight's end"), "{}", ran.err);

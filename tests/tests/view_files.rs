@@ -105,12 +105,14 @@ fn recording(
     command.stdout(Stdio::null()).stderr(Stdio::piped());
     let mut window = display.lend(&mut command).spawn().expect("the binary starts");
     // The first frames are there.
+    let begun = Instant::now();
     while fs::read_to_string(trace).map_or(0, |text| text.lines().count()) < 3 {
         if window.try_wait().expect("it is ours").is_some() {
             let ran = ended(&mut window);
             assert!(lacks_adapter(&ran), "{}", ran.err);
             return None;
         }
+        assert!(begun.elapsed() < Duration::from_mins(2), "no first frames");
         thread::sleep(Duration::from_millis(50));
     }
     let id = display.xdotool("search --name Corniche");

@@ -81,7 +81,8 @@ pub enum FlightError {
     )]
     FarOutside { number: usize, lon_deg: f64, lat_deg: f64 },
     #[error(
-        "its x_m and y_m are in {flight}, the package is in {package}; give lon_deg and lat_deg, or a package in {flight}"
+        "its x_m and y_m are in {flight}, the package is in {package}; give lon_deg and lat_deg, or, if \
+         they are the same, remove the line crs"
     )]
     OtherCrs { flight: String, package: String },
 }

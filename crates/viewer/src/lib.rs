@@ -10,9 +10,9 @@
 //! and [`style`] are values and pure functions; [`tiles`] decodes; [`gpu`] draws what it is handed.
 //! [`Replay`] flies along a [`flight`], frame by frame, with [`stream`] choosing what is loaded and kept.
 //!
-//! It also builds for WebAssembly, without what waits for files, devices and pixels: [`render`], [`Replay`],
-//! [`tiles::PackageSource`], [`gpu::Gpu::new`]. Their parts that do not wait are [`tiles::PackageTiles`] and
-//! [`gpu::Gpu::request`].
+//! It also builds for WebAssembly, without what waits for files and devices: [`render`], [`Replay`],
+//! [`tiles::PackageSource`], [`gpu::Gpu::new`]. A browser takes [`tiles::PackageTiles`], [`gpu::Gpu::request`] and, for
+//! pixels, [`gpu::ReadBack`]: nobody can wait for pixels there.
 //!
 //! This crate never depends on `pipeline`, `dem` or `osm`: it learns everything from the package. It never
 //! writes a file.

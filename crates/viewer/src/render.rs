@@ -119,7 +119,7 @@ impl From<ViewpointError> for RenderError {
 /// Renders a picture of a package, without a window.
 ///
 /// The picture is the same, byte for byte, each time on the same adapter and driver. `is_stopped` is asked before each
-/// tile is read, and once more at the end.
+/// tile of the view is read, and once more at the end.
 ///
 /// # Errors
 /// When the request makes no sense, the package cannot be read, there is no graphics adapter, or it was stopped.

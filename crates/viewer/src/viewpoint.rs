@@ -61,8 +61,8 @@ impl CameraRequest {
         }
     }
 
-    /// The camera for the package of this manifest and these tiles, whose ground lies between these true heights; in the world they are `vertical_scale` times
-    /// as high.
+    /// The camera for the package of this manifest and these tiles, whose ground lies between these true heights; in the
+    /// world they are `vertical_scale` times as high.
     ///
     /// # Errors
     /// When the place has no ground, or a tile there cannot be had.

@@ -100,7 +100,8 @@ pub struct WindowRequest {
 pub struct Closed {
     /// Why it is closed.
     pub end: Result<End, WindowError>,
-    /// The files saved last, and those that could not be: there was no window any more to say so.
+    /// The files saved last, and those that could not be: there was no window any more to say so. What it said itself is
+    /// not among them.
     pub last_files: Vec<Result<PathBuf, NotSaved>>,
 }
 

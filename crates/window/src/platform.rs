@@ -2,9 +2,9 @@
 //! this crate knows `winit`, a thread, a clock or a file.
 //!
 //! A browser would have a module of its own in this one's place: `run` on the event loop of a page, `Loader` on its fetches
-//! (`PackageTiles` and `Gpu::request` wait for nothing), `Files` on its downloads. Elsewhere it would still lack two
+//! (`PackageTiles` and `Gpu::request` wait for nothing), `Files` on its downloads. Elsewhere it would still lack three
 //! things: `app` holds a `PackageSource`, which waits for its file; `Package` and `CameraRequest::camera` load the first
-//! tiles before there is a frame.
+//! tiles before there is a frame; `App::end` waits for pictures that are under way.
 
 mod files;
 mod inputs;
@@ -33,7 +33,7 @@ pub(crate) use self::{
     loader::{Loader, SharedSource},
 };
 use self::{
-    inputs::Inputs,
+    inputs::{EndKey, Inputs},
     screen::{Acquired, Screen},
 };
 use crate::{
@@ -135,6 +135,7 @@ struct Open {
     ui: egui::Context,
     ui_state: egui_winit::State,
     inputs: Inputs,
+    end_key: EndKey,
     window: Arc<Window>,
     is_stopped: Box<dyn Fn() -> bool>,
     is_hidden: bool,
@@ -177,6 +178,7 @@ impl Shell {
             ui,
             ui_state,
             inputs: Inputs::default(),
+            end_key: EndKey::default(),
             window,
             is_stopped,
             is_hidden: false,
@@ -224,7 +226,7 @@ impl ApplicationHandler<News> for Shell {
             WindowEvent::CloseRequested | WindowEvent::Destroyed => {
                 return self.end(event_loop, Ok(End::Closed));
             }
-            event if open.inputs.is_end(&event) => {
+            event if open.end_key.take(&event) => {
                 return self.end(event_loop, Ok(End::Closed));
             }
             // The window library panics where a window is gone before it has said so. What is being recorded must not go
@@ -322,7 +324,11 @@ impl Open {
                 frame.redraw
             }
             Acquired::Later => Redraw::Now,
-            Acquired::Hidden => Redraw::Asked,
+            // What comes at its time still comes.
+            Acquired::Hidden => match frame.redraw {
+                Redraw::Now => Redraw::Asked,
+                later => later,
+            },
         };
         self.canvas.free_textures(&frame.unused_textures);
         if let Some(what) = self.canvas.gpu().take_fault() {

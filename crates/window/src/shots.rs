@@ -22,8 +22,10 @@ pub enum NotSaved {
     Recording(#[from] FlightError),
     #[error("no picture was taken")]
     Picture(#[from] ReadBackError),
-    #[error("no picture was taken: the window closed before it was drawn")]
+    #[error("no picture was taken: it was not yet drawn")]
     Untaken,
+    #[error("no picture was taken: the graphics device was lost")]
+    DeviceLost,
 }
 
 /// Saves what the person wants to keep.
@@ -95,6 +97,26 @@ mod tests {
         assert_eq!(fs::read(folder.path().join("corniche-001.png")).unwrap(), b"mine");
         let picture = image::open(folder.path().join("corniche-003.png")).unwrap().to_rgba8();
         assert_eq!((picture.dimensions(), picture.get_pixel(2, 1).0), ((3, 2), [1, 2, 3, 255]));
+    }
+
+    #[test]
+    fn files_get_their_numbers_in_the_order_of_the_wishes() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut shots = Shots::new(folder.path().to_owned(), Arc::new(|| ()));
+        // The larger one takes longer to encode.
+        for side in [1500, 2] {
+            shots.save_picture(RgbaImage::from_fn(side, side, |x, y| {
+                image::Rgba([(x * y % 251) as u8, (x % 13) as u8, y as u8, 255])
+            }));
+        }
+        let saved = shots.finish();
+        assert_eq!(saved.len(), 2, "{saved:?}");
+        for (number, side) in [(1, 1500), (2, 2)] {
+            let path = folder.path().join(format!("corniche-{number:03}.png"));
+            assert_eq!(image::image_dimensions(path).unwrap(), (side, side));
+        }
+        shots.save_flight("after that too".to_owned());
+        assert!(matches!(&shots.finish()[..], [Ok(_)]));
     }
 
     #[test]

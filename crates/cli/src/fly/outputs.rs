@@ -43,7 +43,8 @@ impl Outputs {
         self.pictures.as_ref().map_or(Ok(()), |pictures| pictures.add(name, replay))
     }
 
-    /// Writes everything (the flight in the working CRS, `crs`), and then puts everything in its place, the list last: where it stands, all else stands too.
+    /// Writes everything, the flight in the working CRS, `crs`; and then puts everything in its place, the list last: where
+    /// it stands, all else stands too.
     ///
     /// What can still go wrong is a place that has been taken or closed to us since the flight began; then what took its
     /// place before stays, and the list is missing.

@@ -7,7 +7,7 @@ use std::{
 };
 
 use corniche_dem::Dem;
-use corniche_geom::{Bounds, LatticeBounds, LatticePoint, Projection, TileId};
+use corniche_geom::{Bounds, LatticeBounds, LatticePoint, ProjectError, Projection, TileId};
 use corniche_osm::ExtractSummary;
 use corniche_roads::{FunctionalRoadClass, Road};
 
@@ -232,27 +232,55 @@ pub(crate) fn check_overlap(
     if roads_m.intersects(data_m) {
         return Ok(());
     }
-    // A rectangle of the working CRS is turned in degrees: two corners are not its bounds.
-    let mut corners = [min, max, [min[0], max[1]], [max[0], min[1]]];
-    input
-        .dem
-        .projection(input.plan)?
-        .wgs84_from_working(&mut corners)
-        .map_err(BuildError::Project)?;
-    let mut roads_deg = Bounds::EMPTY;
-    for corner in corners {
-        roads_deg.include(corner);
-    }
+    let roads_deg = bounds_deg(roads_m, &input.dem.projection(input.plan)?);
     Err(BuildError::NoOverlap {
         osm: input.osm.to_path_buf(),
-        roads_deg: roads_deg.to_array(),
+        roads_deg: roads_deg.map_err(BuildError::Project)?.to_array(),
         heights_deg: data_deg.to_array(),
     })
+}
+
+/// A rectangle of the working CRS by its corners in degrees, where it is turned: two of them would not do.
+fn bounds_deg(bounds_m: Bounds, projection: &impl Projection) -> Result<Bounds, ProjectError> {
+    let Bounds { min_x, min_y, max_x, max_y } = bounds_m;
+    let mut corners = [[min_x, min_y], [max_x, max_y], [min_x, max_y], [max_x, min_y]];
+    projection.wgs84_from_working(&mut corners)?;
+    let mut bounds_deg = Bounds::EMPTY;
+    for corner in corners {
+        bounds_deg.include(corner);
+    }
+    Ok(bounds_deg)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Turned by 45 degrees.
+    struct Diamond;
+
+    impl Projection for Diamond {
+        fn working_from_wgs84(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
+            for point in points {
+                *point = [point[0] + point[1], point[1] - point[0]].map(|part| part / 2.0);
+            }
+            Ok(())
+        }
+
+        fn wgs84_from_working(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
+            for point in points {
+                *point = [point[0] - point[1], point[0] + point[1]];
+            }
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_rectangle_that_is_turned_in_degrees_is_told_by_all_its_corners() {
+        let square_m = Bounds { min_x: 0.0, min_y: 0.0, max_x: 10.0, max_y: 10.0 };
+        let diamond_deg = Bounds { min_x: -10.0, min_y: 0.0, max_x: 10.0, max_y: 20.0 };
+        assert_eq!(bounds_deg(square_m, &Diamond).unwrap(), diamond_deg);
+    }
 
     #[test]
     fn a_stretch_holds_the_segment_between_two_heights() {

@@ -24,7 +24,7 @@ impl FilePackage {
         Ok(Self { package, path: path.to_path_buf() })
     }
 
-    /// The same for callers that do not wait.
+    /// The package itself, whose methods are `async`.
     #[must_use]
     pub fn into_package(self) -> Package<FileSource> {
         self.package

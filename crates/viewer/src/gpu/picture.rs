@@ -30,6 +30,8 @@ pub enum ReadBackError {
     Range { source: wgpu::MapRangeError },
     #[error("the graphics device could not do its work: {what}")]
     Fault { what: String },
+    #[error("the drawn pixels did not come back")]
+    Missing,
     #[error("no frame was timed since the last one")]
     Untimed,
 }
@@ -78,12 +80,6 @@ impl Picture {
         self.pixels.read(gpu)
     }
 
-    /// Asks for the same without waiting for it.
-    #[must_use]
-    pub fn begin_read(&self, gpu: &Gpu) -> ReadBack {
-        ReadBack::begin(gpu, &self.pixels.texture)
-    }
-
     /// The same as an image.
     ///
     /// # Errors
@@ -92,6 +88,12 @@ impl Picture {
         let [width, height] = self.size_px;
         // Four bytes for each pixel, so there is always an image.
         Ok(image::RgbaImage::from_raw(width, height, self.read(gpu)?).unwrap_or_default())
+    }
+
+    /// Asks for the bytes of [`Picture::read`] without waiting for them.
+    #[must_use]
+    pub fn begin_read(&self, gpu: &Gpu) -> ReadBack {
+        ReadBack::begin(gpu, &self.pixels.texture)
     }
 
     /// What is drawn into: the samples, or the pixels where there is one sample each.

@@ -1,4 +1,4 @@
-use std::sync::mpsc::{self, Receiver};
+use std::sync::mpsc::{self, Receiver, TryRecvError};
 
 use wgpu::{BufferAsyncError, BufferUsages, Origin3d, TexelCopyBufferInfo, TexelCopyBufferLayout};
 
@@ -11,63 +11,58 @@ use super::{Gpu, ReadBackError};
 /// # Errors
 /// When the device is lost or could not draw.
 pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, ReadBackError> {
-    ReadBack::begin(gpu, texture).into_texels(gpu)
+    read_by_bands(gpu, texture, gpu.device.limits().max_buffer_size)
+}
+
+/// The same by bands of rows that take no more than `most_bytes` each, though always a row: the largest pictures are
+/// larger than a buffer may be. One after the other, so that there is one buffer at a time.
+fn read_by_bands(
+    gpu: &Gpu,
+    texture: &wgpu::Texture,
+    most_bytes: u64,
+) -> Result<Vec<u8>, ReadBackError> {
+    let layout = Layout::new(texture, most_bytes);
+    let mut texels = Vec::with_capacity(layout.bytes());
+    for rows in layout.bands() {
+        let mut band = Band::ask(gpu, texture, &layout, rows);
+        gpu.finish()?;
+        if !band.has_arrived()? {
+            return Err(ReadBackError::Missing);
+        }
+        band.append_to(&mut texels, &layout)?;
+    }
+    Ok(texels)
 }
 
 /// Texels of a texture on their way back, as they are when all is drawn that was handed over before.
 pub struct ReadBack {
-    row_bytes: usize,
-    padded_bytes: usize,
+    layout: Layout,
     bands: Vec<Band>,
-    /// So many of the bands are there.
-    arrived: usize,
-}
-
-/// Some rows of a texture: the largest are larger than a buffer may be.
-struct Band {
-    buffer: wgpu::Buffer,
-    mapped: Receiver<Result<(), BufferAsyncError>>,
 }
 
 impl ReadBack {
-    /// Asks for a texture; see [`read_texture`].
+    /// Asks for all of a texture; see [`read_texture`].
     #[must_use]
     pub fn begin(gpu: &Gpu, texture: &wgpu::Texture) -> Self {
         Self::by_bands(gpu, texture, gpu.device.limits().max_buffer_size)
     }
 
-    /// The same by bands of rows that take no more than `most_bytes` each, though always a row.
     fn by_bands(gpu: &Gpu, texture: &wgpu::Texture, most_bytes: u64) -> Self {
-        let (width, height) = (texture.width(), texture.height());
-        let row_bytes = width * texture.format().block_copy_size(None).unwrap_or(4);
-        let padded_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        // No more than the texture's height, which is a u32.
-        let band_rows =
-            (most_bytes / u64::from(padded_bytes)).clamp(1, u64::from(height.max(1))) as u32;
-        let bands = (0..height)
-            .step_by(band_rows as usize)
-            .map(|top| Band::ask(gpu, texture, top, band_rows.min(height - top), padded_bytes))
-            .collect();
-        Self {
-            row_bytes: row_bytes as usize,
-            padded_bytes: padded_bytes as usize,
-            bands,
-            arrived: 0,
-        }
+        let layout = Layout::new(texture, most_bytes);
+        let bands = layout.bands().map(|rows| Band::ask(gpu, texture, &layout, rows)).collect();
+        Self { layout, bands }
     }
 
     /// Whether all of it is there; never waits.
     ///
     /// # Errors
-    /// When the device is lost or could not draw.
+    /// When the device is lost, or something went wrong on it since it was asked last.
     pub fn has_arrived(&mut self, gpu: &Gpu) -> Result<bool, ReadBackError> {
         gpu.device.poll(wgpu::PollType::Poll).map_err(|source| ReadBackError::Poll { source })?;
         gpu.check()?;
-        while let Some(band) = self.bands.get(self.arrived) {
-            match band.mapped.try_recv() {
-                Ok(Ok(())) => self.arrived += 1,
-                Ok(Err(source)) => return Err(ReadBackError::Map { source }),
-                Err(_) => return Ok(false),
+        for band in &mut self.bands {
+            if !band.has_arrived()? {
+                return Ok(false);
             }
         }
         Ok(true)
@@ -76,32 +71,65 @@ impl ReadBack {
     /// The texels; waits for what is not yet there.
     ///
     /// # Errors
-    /// When the device is lost or could not draw.
+    /// As [`ReadBack::has_arrived`].
     pub fn into_texels(mut self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
-        if self.arrived < self.bands.len() {
+        if !self.has_arrived(gpu)? {
             gpu.finish()?;
-            self.has_arrived(gpu)?;
-        }
-        let mut texels = Vec::new();
-        for band in &self.bands {
-            let mapped = band
-                .buffer
-                .slice(..)
-                .get_mapped_range()
-                .map_err(|source| ReadBackError::Range { source })?;
-            for row in mapped.chunks_exact(self.padded_bytes) {
-                texels.extend_from_slice(&row[..self.row_bytes]);
+            if !self.has_arrived(gpu)? {
+                return Err(ReadBackError::Missing);
             }
+        }
+        let mut texels = Vec::with_capacity(self.layout.bytes());
+        for band in self.bands {
+            band.append_to(&mut texels, &self.layout)?;
         }
         Ok(texels)
     }
 }
 
+/// How the rows of a texture lie in buffers.
+struct Layout {
+    width: u32,
+    height: u32,
+    row_bytes: u32,
+    padded_bytes: u32,
+    band_rows: u32,
+}
+
+impl Layout {
+    fn new(texture: &wgpu::Texture, most_bytes: u64) -> Self {
+        let (width, height) = (texture.width(), texture.height());
+        let row_bytes = width * texture.format().block_copy_size(None).unwrap_or(4);
+        let padded_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        // No more than the texture's height, which is a u32.
+        let band_rows = (most_bytes / u64::from(padded_bytes)).clamp(1, u64::from(height)) as u32;
+        Self { width, height, row_bytes, padded_bytes, band_rows }
+    }
+
+    /// Without gaps.
+    fn bytes(&self) -> usize {
+        self.row_bytes as usize * self.height as usize
+    }
+
+    /// The first row of each band and how many it has.
+    fn bands(&self) -> impl Iterator<Item = [u32; 2]> + use<> {
+        let (height, band_rows) = (self.height, self.band_rows);
+        (0..height).step_by(band_rows as usize).map(move |top| [top, band_rows.min(height - top)])
+    }
+}
+
+/// Some rows.
+struct Band {
+    buffer: wgpu::Buffer,
+    mapped: Receiver<Result<(), BufferAsyncError>>,
+    is_mapped: bool,
+}
+
 impl Band {
-    fn ask(gpu: &Gpu, texture: &wgpu::Texture, top: u32, rows: u32, padded_bytes: u32) -> Self {
+    fn ask(gpu: &Gpu, texture: &wgpu::Texture, layout: &Layout, [top, rows]: [u32; 2]) -> Self {
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("read back"),
-            size: u64::from(padded_bytes) * u64::from(rows),
+            size: u64::from(layout.padded_bytes) * u64::from(rows),
             usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
@@ -116,19 +144,44 @@ impl Band {
                 buffer: &buffer,
                 layout: TexelCopyBufferLayout {
                     offset: 0,
-                    bytes_per_row: Some(padded_bytes),
+                    bytes_per_row: Some(layout.padded_bytes),
                     rows_per_image: Some(rows),
                 },
             },
-            wgpu::Extent3d { width: texture.width(), height: rows, depth_or_array_layers: 1 },
+            wgpu::Extent3d { width: layout.width, height: rows, depth_or_array_layers: 1 },
         );
         gpu.queue.submit([encoder.finish()]);
         let (sender, mapped) = mpsc::channel();
         buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-            // Nobody waits for it any more, then.
+            // Nobody listens once the band is gone.
             let _ = sender.send(result);
         });
-        Self { buffer, mapped }
+        Self { buffer, mapped, is_mapped: false }
+    }
+
+    fn has_arrived(&mut self) -> Result<bool, ReadBackError> {
+        if !self.is_mapped {
+            match self.mapped.try_recv() {
+                Ok(Ok(())) => self.is_mapped = true,
+                Ok(Err(source)) => return Err(ReadBackError::Map { source }),
+                Err(TryRecvError::Empty) => {}
+                Err(TryRecvError::Disconnected) => return Err(ReadBackError::Missing),
+            }
+        }
+        Ok(self.is_mapped)
+    }
+
+    /// Its rows, which have arrived.
+    fn append_to(self, texels: &mut Vec<u8>, layout: &Layout) -> Result<(), ReadBackError> {
+        let mapped = self
+            .buffer
+            .slice(..)
+            .get_mapped_range()
+            .map_err(|source| ReadBackError::Range { source })?;
+        for row in mapped.chunks_exact(layout.padded_bytes as usize) {
+            texels.extend_from_slice(&row[..layout.row_bytes as usize]);
+        }
+        Ok(())
     }
 }
 
@@ -170,6 +223,7 @@ mod tests {
         };
         gpu.queue.write_texture(texture.as_image_copy(), &texels, layout, size);
         for most_bytes in [1 << 20, 4 * 256, 256, 1] {
+            assert!(read_by_bands(&gpu, &texture, most_bytes).unwrap() == texels, "{most_bytes}");
             let waiting = ReadBack::by_bands(&gpu, &texture, most_bytes);
             assert!(waiting.into_texels(&gpu).unwrap() == texels, "{most_bytes}");
 
@@ -181,8 +235,16 @@ mod tests {
             assert!(asking.has_arrived(&gpu).unwrap(), "and stays there");
             assert!(asking.into_texels(&gpu).unwrap() == texels, "{most_bytes}");
         }
-        let lost = ReadBack::begin(&gpu, &texture);
+        let [mut asked, waited] = [(); 2].map(|()| ReadBack::begin(&gpu, &texture));
         gpu.device.destroy();
-        assert!(lost.into_texels(&gpu).is_err());
+        let begun = Instant::now();
+        // What was under way may still come, or not; but nobody asks for ever.
+        while matches!(asked.has_arrived(&gpu), Ok(false)) {
+            assert!(begun.elapsed() < Duration::from_mins(1), "it never comes, and never fails");
+        }
+        if let Ok(arrived) = waited.into_texels(&gpu) {
+            assert!(arrived == texels);
+        }
+        assert!(read_texture(&gpu, &texture).is_err());
     }
 }

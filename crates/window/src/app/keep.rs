@@ -9,9 +9,6 @@ use image::RgbaImage;
 use super::App;
 use crate::{WindowError, canvas::Canvas, facts::Shot, shots::NotSaved, trace::TraceLine, words};
 
-/// How it is said that a picture could not be taken.
-const NO_PICTURE: &str = "no picture was taken: ";
-
 impl App {
     /// The window closes: saves what is being recorded and waits for what is being taken and written. Returns what became
     /// of it, for there is no panel any more to show it.
@@ -56,26 +53,29 @@ impl App {
                     Shot::Map => canvas.snap_map(self.settings.divider_share),
                     Shot::Window => Some(canvas.snap_window(primitives, screen)),
                 };
-                self.developing.extend(snapshot.map(|snapshot| (shot, snapshot)));
+                match snapshot {
+                    Some(snapshot) => self.developing.push_back((shot, snapshot)),
+                    None => self.notice(words::with_causes(&NotSaved::Untaken)),
+                }
             }
         }
-        while let Some((shot, mut snapshot)) = self.developing.pop_front() {
-            let read = match snapshot.has_arrived(canvas.gpu()) {
-                Ok(false) => {
-                    self.developing.push_front((shot, snapshot));
+        while let Some((_, snapshot)) = self.developing.front_mut() {
+            match snapshot.has_arrived(canvas.gpu()) {
+                Ok(false) => break,
+                Ok(true) => {}
+                // What becomes of them is told by whoever makes everything anew, or fails to.
+                Err(error) if canvas.gpu().is_lost() => return Err(error.into()),
+                Err(error) => {
+                    // Nobody knows to which of them it happened.
+                    self.developing.clear();
+                    self.notice(words::with_causes(&NotSaved::from(error)));
                     break;
                 }
-                Ok(true) => snapshot.into_image(canvas.gpu()),
-                Err(error) => Err(error),
-            };
-            match read {
+            }
+            let Some((shot, snapshot)) = self.developing.pop_front() else { break };
+            match snapshot.into_image(canvas.gpu()) {
                 Ok(picture) => self.save_picture(shot, picture),
-                Err(error) => {
-                    self.notice(format!("{NO_PICTURE}{error}"));
-                    if canvas.gpu().is_lost() {
-                        return Err(error.into());
-                    }
-                }
+                Err(error) => self.notice(words::with_causes(&NotSaved::from(error))),
             }
         }
         Ok(())
@@ -93,7 +93,7 @@ impl App {
     pub(super) fn forget_pictures(&mut self) {
         if !self.developing.is_empty() {
             self.developing.clear();
-            self.notice(format!("{NO_PICTURE}the graphics device was lost"));
+            self.notice(words::with_causes(&NotSaved::DeviceLost));
         }
     }
 

@@ -4,7 +4,7 @@ use corniche_viewer::gpu::{Gpu, Picture, ReadBack, ReadBackError};
 use image::RgbaImage;
 use wgpu::{TextureFormat, TextureUsages};
 
-/// A picture that is being taken; nothing waits for it.
+/// A picture that is being taken.
 pub(crate) struct Snapshot {
     left: Part,
     /// What is seen from some column on.
@@ -13,7 +13,7 @@ pub(crate) struct Snapshot {
 
 struct Part {
     size_px: [u32; 2],
-    format: TextureFormat,
+    has_blue_first: bool,
     texels: ReadBack,
 }
 
@@ -22,7 +22,7 @@ impl Snapshot {
     pub(super) fn of_map(gpu: &Gpu, left: &Picture, right: Option<&Picture>, column: u32) -> Self {
         let part = |picture: &Picture| Part {
             size_px: picture.size_px(),
-            format: TextureFormat::Rgba8Unorm,
+            has_blue_first: false,
             texels: picture.begin_read(gpu),
         };
         Self { left: part(left), right: right.map(|right| (part(right), column)) }
@@ -32,7 +32,10 @@ impl Snapshot {
     pub(super) fn of_window(gpu: &Gpu, texture: &wgpu::Texture) -> Self {
         let part = Part {
             size_px: [texture.width(), texture.height()],
-            format: texture.format(),
+            has_blue_first: matches!(
+                texture.format(),
+                TextureFormat::Bgra8Unorm | TextureFormat::Bgra8UnormSrgb
+            ),
             texels: ReadBack::begin(gpu, texture),
         };
         Self { left: part, right: None }
@@ -71,14 +74,12 @@ impl Snapshot {
 impl Part {
     fn into_image(self, gpu: &Gpu) -> Result<RgbaImage, ReadBackError> {
         let mut bytes = self.texels.into_texels(gpu)?;
-        let has_blue_first =
-            matches!(self.format, TextureFormat::Bgra8Unorm | TextureFormat::Bgra8UnormSrgb);
         let (pixels, _) = bytes.as_chunks_mut::<4>();
         for [a, _, b, opacity] in pixels {
-            if has_blue_first {
+            if self.has_blue_first {
                 std::mem::swap(a, b);
             }
-            // The window covers what is behind it.
+            // A window covers what is behind it, whatever its surface keeps there.
             *opacity = 255;
         }
         let [width, height] = self.size_px;

@@ -31,21 +31,43 @@ pub(super) fn is_panel_key(event: &WindowEvent) -> bool {
         if event.logical_key == winit::keyboard::Key::Named(NamedKey::Tab))
 }
 
-/// Whether this event is the letter that ends the program together with Ctrl. What was held down before the window got
-/// the keyboard was meant for another: the window library tells of it as pressed here.
-pub(super) fn is_end_letter(event: &WindowEvent) -> bool {
+/// Ctrl Q ends the program, also where no frame around the window has a button for it.
+///
+/// Held down a little too long in another window it must not end this one too, when that gives it the keyboard: the window
+/// library tells of keys that are held down then as synthetic presses, and after that of their repetition as of new ones.
+#[derive(Debug, Default)]
+pub(super) struct EndKey {
+    is_control_down: bool,
+    is_held_from_before: bool,
+}
+
+impl EndKey {
+    /// Whether this event ends the program.
+    pub(super) fn take(&mut self, event: &WindowEvent) -> bool {
+        match event {
+            WindowEvent::ModifiersChanged(modifiers) => {
+                self.is_control_down = modifiers.state().control_key();
+                false
+            }
+            WindowEvent::KeyboardInput { event, is_synthetic, .. } if is_q(&event.logical_key) => {
+                self.press(event.state == ElementState::Pressed, *is_synthetic)
+            }
+            _ => false,
+        }
+    }
+
+    fn press(&mut self, is_down: bool, is_synthetic: bool) -> bool {
+        self.is_held_from_before = is_down && (self.is_held_from_before || is_synthetic);
+        is_down && self.is_control_down && !self.is_held_from_before
+    }
+}
+
+fn is_q(logical: &winit::keyboard::Key) -> bool {
     use winit::keyboard::Key as Logical;
-    matches!(event, WindowEvent::KeyboardInput { event, is_synthetic: false, .. }
-        if event.state == ElementState::Pressed
-            && matches!(&event.logical_key, Logical::Character(letter) if letter.eq_ignore_ascii_case("q")))
+    matches!(logical, Logical::Character(letter) if letter.eq_ignore_ascii_case("q"))
 }
 
 impl Inputs {
-    /// Whether this event ends the program: Ctrl Q, also where no frame around the window has a button for it.
-    pub(super) fn is_end(&self, event: &WindowEvent) -> bool {
-        self.modifiers.control && is_end_letter(event)
-    }
-
     /// Hands on where the cursor is, if it moved; for each frame, and before whatever else happens there.
     pub(super) fn hand_on_move(&mut self, app: &mut App) {
         if let Some((at_px, moved_s)) = self.moved.take() {
@@ -108,8 +130,8 @@ impl Inputs {
             }
             WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
                 let is_down = event.state == ElementState::Pressed;
-                // What is typed into a field is not meant for the map, nor is a key that was held down before the
-                // window got the keyboard; what is let go is let go everywhere.
+                // What is typed into a field is not meant for the map; what is let go is let go everywhere. A key that
+                // goes down as the window gets the keyboard is told of twice, first as held down: once is enough.
                 if is_down && (*is_synthetic || ui.text_edit_focused()) {
                     return false;
                 }
@@ -221,6 +243,18 @@ mod tests {
         assert_eq!(command(&letter("p"), Modifiers::default()), Some(Command::Take(Shot::Map)));
         assert_eq!(command(&letter("P"), shift), Some(Command::Take(Shot::Window)));
         assert_eq!(command(&letter("x"), shift), None);
+    }
+
+    #[test]
+    fn control_q_ends_the_program_unless_it_was_held_down_before() {
+        let control = |is_control_down| EndKey { is_control_down, is_held_from_before: false };
+        assert!(control(true).press(true, false));
+        assert!(!control(false).press(true, false), "a letter alone");
+        let mut end_key = control(true);
+        assert!(!end_key.press(true, true), "held down when the keyboard comes");
+        assert!(!end_key.press(true, false), "repeated");
+        assert!(!end_key.press(false, false), "let go");
+        assert!(end_key.press(true, false), "and pressed here");
     }
 
     #[test]

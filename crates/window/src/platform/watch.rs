@@ -20,7 +20,7 @@ use winit::{
 };
 
 use super::{
-    inputs::is_end_letter,
+    inputs::EndKey,
     screen::{Acquired, Screen},
 };
 use crate::{WindowError, canvas::Canvas};
@@ -58,7 +58,7 @@ pub fn watch(
         size_px,
         pictures,
         open: None,
-        is_control_down: false,
+        end_key: EndKey::default(),
         ended: None,
     };
     let ran = event_loop.run_app(&mut show);
@@ -74,7 +74,7 @@ struct Show {
     size_px: [u32; 2],
     pictures: Receiver<RgbaImage>,
     open: Option<Open>,
-    is_control_down: bool,
+    end_key: EndKey,
     /// Once it is over.
     ended: Option<Result<Watched, WindowError>>,
 }
@@ -118,12 +118,7 @@ impl ApplicationHandler<super::News> for Show {
         let Some(open) = &mut self.open else { return };
         match event {
             WindowEvent::CloseRequested => self.end(event_loop, Ok(Watched::InPart)),
-            event if self.is_control_down && is_end_letter(&event) => {
-                self.end(event_loop, Ok(Watched::InPart));
-            }
-            WindowEvent::ModifiersChanged(modifiers) => {
-                self.is_control_down = modifiers.state().control_key();
-            }
+            event if self.end_key.take(&event) => self.end(event_loop, Ok(Watched::InPart)),
             WindowEvent::Destroyed => {
                 let source = "it was taken away".into();
                 self.end(event_loop, Ok(Watched::Lost(WindowError::System { source })));
