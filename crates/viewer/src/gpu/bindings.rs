@@ -14,6 +14,7 @@ pub(super) struct FrameBindings {
     tiles: BindGroup,
     tile_stride: u32,
     pub(super) ground: BindGroup,
+    pub(super) blocks: BindGroup,
     pub(super) composite: BindGroup,
 }
 
@@ -44,16 +45,17 @@ impl FrameBindings {
             size: std::num::NonZeroU64::new(uniforms::TILE_BYTES),
         };
 
-        let Targets { ground, depth, owners, labels, .. } = targets;
+        let Targets { ground, depth, owners, labels, road_blocks, .. } = targets;
         Self {
             frame: group(gpu, &layouts.frame, &[frame.as_entire_binding()]),
             tiles: group(gpu, &layouts.tile, &[BindingResource::Buffer(tile_block)]),
             tile_stride: stride as u32,
             ground: textures(gpu, &layouts.ground, &[&depth.view, &owners.view]),
+            blocks: textures(gpu, &layouts.blocks, &[&labels.view]),
             composite: textures(
                 gpu,
                 &layouts.composite,
-                &[&ground.view, &depth.view, &labels.view],
+                &[&ground.view, &depth.view, &labels.view, &road_blocks.view],
             ),
         }
     }

@@ -13,6 +13,7 @@ pub(super) struct Layouts {
     pub(super) frame: BindGroupLayout,
     pub(super) tile: BindGroupLayout,
     pub(super) ground: BindGroupLayout,
+    pub(super) blocks: BindGroupLayout,
     pub(super) composite: BindGroupLayout,
     pub(super) average: BindGroupLayout,
     pub(super) difference: BindGroupLayout,
@@ -33,9 +34,18 @@ impl Layouts {
                 "ground",
                 &[texture(0, UNFILTERED), texture(1, TextureSampleType::Uint)],
             ),
+            blocks: layout("road blocks", &[texture(0, UNFILTERED)]),
             composite: layout(
                 "composite",
-                &[texture(0, UNFILTERED), texture(1, UNFILTERED), texture(2, UNFILTERED)],
+                &[
+                    texture(0, UNFILTERED),
+                    texture(1, UNFILTERED),
+                    texture(2, UNFILTERED),
+                    BindGroupLayoutEntry {
+                        visibility: ShaderStages::VERTEX,
+                        ..texture(3, UNFILTERED)
+                    },
+                ],
             ),
             average: layout("average", &[texture(0, UNFILTERED)]),
             difference: layout(

@@ -3,7 +3,9 @@
 //! ```text
 //!  terrain pass ──► ground colour, depth, owner ──┬────────────► composite pass ──► samples ──► average ──► picture
 //!                                                 ▼                   ▲
-//!                                     roads pass ──► road labels ─────┘
+//!                                     roads pass ──► road labels ─────┤
+//!                                                         ▼           │
+//!                                                    road blocks ─────┘
 //! ```
 //!
 //! A label is 0 without a road, else `2 · (9 − class)`, plus 1 on a centre line: larger is more important.
@@ -20,6 +22,10 @@
 //! one class a sample is, so that an f64 reference can check each sample exactly, and outlines, crests, borders of
 //! tiles and the ground itself are smoothed by the same rule. With n samples on a side the passes over pixels cost
 //! n² times as much (a frame of 1600 × 1200 with 2 × 2 samples holds 131 MB of targets); geometry costs the same.
+//!
+//! The composite asks nine pixels or more for the edge of a road, and most of a picture has none. So a small pass
+//! finds, for each block of 16 × 16 samples, the largest label in it and within the outline's reach around it; the
+//! composite draws ground and sky everywhere and, over that, only the blocks with a label with their roads and edges.
 //!
 //! The owner of a pixel is the tile whose ground it shows. Volumes (SV) paint the ground of their own tile only;
 //! each tile has all roads near enough. Marking tiles in the stencil buffer instead would allow 255 of them, and

@@ -9,7 +9,7 @@ use wgpu::{
 use super::{
     layouts::Layouts,
     picture::{COLOR, MAX_SAMPLES_PER_SIDE},
-    targets::{DEPTH, LABEL, OWNER},
+    targets::{BLOCK, DEPTH, LABEL, OWNER},
     tile_buffers::{GROUND_STRIDE, SEGMENT_STRIDE, VOLUME_STRIDE},
 };
 
@@ -25,6 +25,7 @@ type Shader = (&'static str, &'static str);
 const TERRAIN: Shader = ("terrain", shader!("common", "terrain"));
 const ROADS: Shader = ("roads", shader!("common", "coverage", "roads"));
 const VOLUMES: Shader = ("volumes", shader!("common", "coverage", "volumes"));
+const BLOCKS: Shader = ("road blocks", shader!("common", "screen", "blocks"));
 const COMPOSITE: Shader = ("composite", shader!("common", "screen", "composite"));
 const AVERAGE: Shader = ("average", shader!("screen", "average"));
 const DIFFERENCE: Shader = ("difference", shader!("screen", "difference"));
@@ -42,7 +43,11 @@ pub(super) struct Pipelines {
     pub(super) wires: RenderPipeline,
     pub(super) segments: RenderPipeline,
     pub(super) volumes: RenderPipeline,
+    pub(super) blocks: RenderPipeline,
+    /// Ground and sky, everywhere.
     pub(super) composite: RenderPipeline,
+    /// The same with roads, block by block.
+    pub(super) composite_roads: RenderPipeline,
     /// Of 2, 3 and 4 samples on each side of a pixel.
     pub(super) averages: [RenderPipeline; MAX_SAMPLES_PER_SIDE as usize - 1],
     pub(super) difference: RenderPipeline,
@@ -124,7 +129,17 @@ impl Pipelines {
             cull: Some(wgpu::Face::Front),
             ..segments.clone()
         };
+        let block = [("BLOCK", f64::from(BLOCK))];
+        let blocks_groups = [Some(&layouts.frame), Some(&layouts.blocks)];
+        let blocks = Recipe {
+            targets: &[(LABEL, ColorWrites::ALL)],
+            ..Recipe::full_screen(BLOCKS, &blocks_groups, &block)
+        };
         let composite_groups = [Some(&layouts.frame), Some(&layouts.composite)];
+        let composite = |entries| Recipe {
+            entries,
+            ..Recipe::full_screen(COMPOSITE, &composite_groups, &block)
+        };
         let average_groups = [Some(&layouts.average)];
         let average = |per_side| {
             Recipe::full_screen(AVERAGE, &average_groups, &[("PER_SIDE", per_side)]).cook(device)
@@ -135,7 +150,9 @@ impl Pipelines {
             wires: wires.cook(device),
             segments: segments.cook(device),
             volumes: volumes.cook(device),
-            composite: Recipe::full_screen(COMPOSITE, &composite_groups, &[]).cook(device),
+            blocks: blocks.cook(device),
+            composite: composite(["vertex", "ground_fragment"]).cook(device),
+            composite_roads: composite(["block_vertex", "road_fragment"]).cook(device),
             averages: [average(2.0), average(3.0), average(4.0)],
             difference: Recipe::full_screen(DIFFERENCE, &[Some(&layouts.difference)], &[])
                 .cook(device),

@@ -92,7 +92,7 @@ impl Renderer {
         mark(&mut encoder, 1);
         self.roads_pass(&mut encoder, &bindings, tiles, &bridges, view, targets);
         mark(&mut encoder, 2);
-        self.composite_pass(&mut encoder, &bindings, targets);
+        self.composite_pass(&mut encoder, &bindings, view.roads.method, targets);
         self.average_pass(gpu, &mut encoder, targets.picture());
         mark(&mut encoder, 3);
         gpu.queue.submit([encoder.finish()]);

@@ -23,7 +23,7 @@ pub struct PassTimes {
     pub terrain_ms: f64,
     /// Roads.
     pub roads_ms: f64,
-    /// Composite, and the averaging of samples.
+    /// Composite, what it asks about blocks before, and the averaging of samples.
     pub composite_ms: f64,
 }
 

@@ -1,4 +1,5 @@
-// Ground, roads and sky into one picture.
+// Ground, roads and sky into one picture: ground and sky everywhere, then, again with roads, the blocks that have some
+// in them or near them. Most of a picture has none, and is spared looking around every pixel.
 //
 // Outlines as in Vaaraniemi, Treib & Westermann 2011, section 6.2: a maximum filter over the importance of the
 // roads around a pixel, minus the pixel's own. Whatever is left is the edge of the more important road.
@@ -6,6 +7,10 @@
 @group(1) @binding(0) var ground_color: texture_2d<f32>;
 @group(1) @binding(1) var terrain_depth: texture_2d<f32>;
 @group(1) @binding(2) var road_labels: texture_2d<f32>;
+@group(1) @binding(3) var road_blocks: texture_2d<f32>;
+
+// Pixels on each side of a block.
+override BLOCK: u32 = 16u;
 
 // Ground that many times farther away than its neighbour in the picture lies behind it.
 const FARTHER = 1.1;
@@ -50,19 +55,65 @@ fn width_px(road_class: u32, distance_m: f32, depth: f32) -> f32 {
     return 2.0 * scaled_half_width_m(road_class, distance_m) / (frame.sky.w * depth * frame.road_scale.w);
 }
 
-@fragment
-fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let pixel = vec2<i32>(position.xy);
-    let ray = ray_at(position.xy);
-    let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
-    if depth_buffer == 0.0 {
-        return vec4(background_at(ray), 1.0);
+// What a pixel sees of ground or sky.
+struct Sight {
+    color: vec3<f32>,
+    // Share of the ground's colour that is lost on the way.
+    haze: f32,
+    // 0 in the sky, where all that follows means nothing.
+    depth_buffer: f32,
+    depth: f32,
+    distance_m: f32,
+}
+
+fn sight_at(position: vec2<f32>) -> Sight {
+    let pixel = vec2<i32>(position);
+    let ray = ray_at(position);
+    var sight: Sight;
+    sight.depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
+    if sight.depth_buffer == 0.0 {
+        sight.color = background_at(ray);
+        return sight;
     }
-    let depth = view_depth_of(depth_buffer);
-    let distance_m = depth * length(ray);
-    let reach = distance_m / frame.haze.w;
-    let haze = 1.0 - exp(-reach * reach);
-    var color = mix(textureLoad(ground_color, pixel, 0).rgb, frame.haze.rgb, haze);
+    sight.depth = view_depth_of(sight.depth_buffer);
+    sight.distance_m = sight.depth * length(ray);
+    let reach = sight.distance_m / frame.haze.w;
+    sight.haze = 1.0 - exp(-reach * reach);
+    sight.color = mix(textureLoad(ground_color, pixel, 0).rgb, frame.haze.rgb, sight.haze);
+    return sight;
+}
+
+@fragment
+fn ground_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    return vec4(sight_at(position.xy).color, 1.0);
+}
+
+// Two triangles for each block, row by row; those of a block without roads have no area.
+@vertex
+fn block_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    let number = index / 6u;
+    let columns = textureDimensions(road_blocks).x;
+    let block = vec2(number % columns, number / columns);
+    let has_roads = textureLoad(road_blocks, block, 0).r > 0.0;
+    //   0 ── 1    3
+    //   │  ╱    ╱ │
+    //   2    4 ── 5
+    let in_block = index % 6u;
+    let corner = select(in_block, in_block - 2u, in_block > 2u);
+    let side = select(vec2(0u), vec2(corner & 1u, corner >> 1u), has_roads);
+    // The last blocks reach over the edge of the picture, where nothing is drawn.
+    let pixel = vec2<f32>((block + side) * BLOCK);
+    return vec4(2.0 * pixel.x / frame.right.w - 1.0, 1.0 - 2.0 * pixel.y / frame.up.w, 0.0, 1.0);
+}
+
+@fragment
+fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let pixel = vec2<i32>(position.xy);
+    let sight = sight_at(position.xy);
+    if sight.depth_buffer == 0.0 {
+        return vec4(sight.color, 1.0);
+    }
+    var color = sight.color;
 
     let own = textureLoad(road_labels, pixel, 0).r;
     let label = label_of(own);
@@ -71,16 +122,16 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         let fill = select(frame.road_fills[road_class].rgb, frame.road_centers[road_class].rgb, (label & 1u) == 1u);
         // A road drawn wider than it is, to be seen at all, fades instead.
         let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
-        let presence = clamp(width_px(road_class, distance_m, depth) / least_px, 0.35, 1.0);
-        color = mix(color, mix(fill, frame.haze.rgb, 0.5 * haze), presence);
+        let presence = clamp(width_px(road_class, sight.distance_m, sight.depth) / least_px, 0.35, 1.0);
+        color = mix(color, mix(fill, frame.haze.rgb, 0.5 * sight.haze), presence);
     }
 
-    let most = label_of(largest_around(pixel, own, depth_buffer / FARTHER));
+    let most = label_of(largest_around(pixel, own, sight.depth_buffer / FARTHER));
     if most / 2u > label / 2u {
         let road_class = class_of(most);
         // An edge around a thread of a road would be all one sees of it.
-        let presence = smoothstep(1.5, 5.0, width_px(road_class, distance_m, depth));
-        color = mix(color, mix(frame.road_outlines[road_class].rgb, frame.haze.rgb, 0.5 * haze), presence);
+        let presence = smoothstep(1.5, 5.0, width_px(road_class, sight.distance_m, sight.depth));
+        color = mix(color, mix(frame.road_outlines[road_class].rgb, frame.haze.rgb, 0.5 * sight.haze), presence);
     }
     return vec4(color, 1.0);
 }

@@ -1,0 +1,23 @@
+// Where the picture has roads, block by block: the most important label in a block or so near to it that the outlines
+// of its pixels may show it. The composite draws roads in these blocks alone.
+
+@group(1) @binding(0) var road_labels: texture_2d<f32>;
+
+// Pixels on each side of a block.
+override BLOCK: i32 = 16;
+
+@fragment
+fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) f32 {
+    let radius = i32(frame.road_scale.z);
+    let last = vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1;
+    let corner = vec2<i32>(position.xy) * BLOCK;
+    let first = max(corner - radius, vec2(0));
+    let end = min(corner + (BLOCK - 1 + radius), last);
+    var largest = 0.0;
+    for (var y = first.y; y <= end.y; y++) {
+        for (var x = first.x; x <= end.x; x++) {
+            largest = max(largest, textureLoad(road_labels, vec2(x, y), 0).r);
+        }
+    }
+    return largest;
+}
