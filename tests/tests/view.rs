@@ -299,8 +299,11 @@ fn control_q_ends_the_window_that_it_was_pressed_in() {
     desk.xdotool("keyup ctrl");
     desk.point_at(120, 200);
 
+    // Both before the next frame.
+    desk.signal("STOP");
     desk.xdotool("key p");
     desk.xdotool("key ctrl+q");
+    desk.signal("CONT");
     assert_eq!(desk.ended(), 0);
     assert_eq!(desk.saved(1).dimensions(), (640, 480));
 }

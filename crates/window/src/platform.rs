@@ -197,7 +197,7 @@ impl Shell {
     fn close(&mut self) {
         let now_s = self.now_s();
         if let Some(mut open) = self.open.take() {
-            self.last_files.extend(open.app.end(open.canvas.gpu(), now_s));
+            self.last_files.extend(open.app.end(&open.canvas, now_s));
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use corniche_viewer::{draw_attribution, flight::Pose, gpu::Gpu};
+use corniche_viewer::{draw_attribution, flight::Pose};
 use egui_wgpu::ScreenDescriptor;
 use image::RgbaImage;
 
@@ -12,15 +12,23 @@ use crate::{WindowError, canvas::Canvas, facts::Shot, shots::NotSaved, trace::Tr
 impl App {
     /// The window closes: saves what is being recorded and waits for what is being taken and written. Returns what became
     /// of it, for there is no panel any more to show it.
-    pub(crate) fn end(&mut self, gpu: &Gpu, now_s: f64) -> Vec<Result<PathBuf, NotSaved>> {
+    pub(crate) fn end(&mut self, canvas: &Canvas, now_s: f64) -> Vec<Result<PathBuf, NotSaved>> {
         let mut saved: Vec<_> = self.save_recording(now_s).err().into_iter().map(Err).collect();
+        for shot in std::mem::take(&mut self.wanted) {
+            // The map is there; the panel is laid out in frames alone, and there will be none.
+            match canvas.snap_map(self.settings.divider_share) {
+                Some(snapshot) if shot == Shot::Map && canvas.is_full() => {
+                    self.developing.push_back((shot, snapshot));
+                }
+                _ => saved.push(Err(NotSaved::Untaken)),
+            }
+        }
         for (shot, snapshot) in std::mem::take(&mut self.developing) {
-            match snapshot.into_image(gpu) {
+            match snapshot.into_image(canvas.gpu()) {
                 Ok(picture) => self.save_picture(shot, picture),
                 Err(error) => saved.push(Err(error.into())),
             }
         }
-        saved.extend(self.wanted.drain(..).map(|_| Err(NotSaved::Untaken)));
         saved.extend(self.shots.finish());
         saved
     }
