@@ -96,6 +96,19 @@ impl Display {
             None => panic!("xdotool {command}: refused"),
         }
     }
+
+    /// The number of Corniche's window.
+    ///
+    /// # Panics
+    /// When there is none.
+    #[must_use]
+    pub fn window(&self) -> String {
+        let found = self.xdotool("search --name Corniche");
+        match found.lines().last() {
+            Some(id) => id.to_owned(),
+            None => panic!("no window has its name"),
+        }
+    }
 }
 
 /// Leaves a command without any display to open a window on.

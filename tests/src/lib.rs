@@ -4,8 +4,12 @@
 mod display;
 
 use std::{
+    fs,
+    io::Read as _,
     path::{Path, PathBuf},
-    process::{Command, Output},
+    process::{Child, Command, Output},
+    thread,
+    time::{Duration, Instant},
 };
 
 #[cfg(target_os = "linux")]
@@ -88,6 +92,40 @@ pub fn corniche<I: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = I
         Ok(output) => output.into(),
         Err(error) => panic!("the binary does not start: {error}"),
     }
+}
+
+/// Waits for the end of a program whose standard output nobody asked for.
+///
+/// # Panics
+/// When it does not end within a minute.
+#[must_use]
+pub fn ended(child: &mut Child) -> Ran {
+    let begun = Instant::now();
+    let status = loop {
+        match child.try_wait() {
+            Ok(Some(status)) => break status,
+            Ok(None) => assert!(begun.elapsed() < Duration::from_mins(1), "it does not end"),
+            Err(error) => panic!("it cannot be waited for: {error}"),
+        }
+        thread::sleep(Duration::from_millis(20));
+    };
+    let mut err = String::new();
+    let read = child.stderr.take().map(|mut said| said.read_to_string(&mut err));
+    assert!(!matches!(read, Some(Err(_))), "its words are text");
+    Ran { code: status.code().unwrap_or(-1), out: String::new(), err }
+}
+
+/// The cells of each line of a flight's list, without milliseconds, which come last.
+///
+/// # Panics
+/// When it cannot be read, or is none.
+#[must_use]
+pub fn without_times(csv: &Path) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(csv).unwrap_or_else(|error| panic!("no list: {error}"));
+    let columns = text.lines().next().unwrap_or_default().split(',');
+    let kept = columns.take_while(|name| !name.ends_with("_ms")).count();
+    assert!((10..30).contains(&kept), "{text}");
+    text.lines().map(|line| line.split(',').take(kept).map(str::to_owned).collect()).collect()
 }
 
 /// Says that a test was skipped, and why.

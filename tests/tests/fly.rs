@@ -2,20 +2,11 @@
 
 use std::{fs, path::Path};
 
-use e2e::{Ran, build_pass, draw, lacks_adapter, text};
+use e2e::{Ran, build_pass, draw, lacks_adapter, text, without_times};
 
 /// `fly` in a small size; `None` where there is no adapter.
 fn fly(package: &Path, csv: &Path, options: &[&str]) -> Option<Ran> {
     draw("fly", package, csv, &[&["--size", "160x120"], options].concat())
-}
-
-/// The cells of each line, without milliseconds, which come last.
-fn without_times(csv: &Path) -> Vec<Vec<String>> {
-    let text = fs::read_to_string(csv).expect("the list is written");
-    let columns = text.lines().next().unwrap_or_default().split(',');
-    let kept = columns.take_while(|name| !name.ends_with("_ms")).count();
-    assert!((10..30).contains(&kept), "{text}");
-    text.lines().map(|line| line.split(',').take(kept).map(str::to_owned).collect()).collect()
 }
 
 #[test]

@@ -10,7 +10,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-use e2e::{Display, Ran, binary, build_pass, draw, lacks_adapter, text, without_display};
+use e2e::{
+    Display, Ran, binary, build_pass, draw, lacks_adapter, text, without_display, without_times,
+};
 
 /// A package, and a folder for what is made of it.
 struct Place {
@@ -45,13 +47,6 @@ impl Place {
         let names = entries.map(|entry| entry.expect("it can be listed").file_name());
         names.map(|name| name.to_string_lossy().into_owned()).collect()
     }
-}
-
-/// The lines of a list without their milliseconds.
-fn without_times(csv: &Path) -> Vec<String> {
-    let list = fs::read_to_string(csv).expect("the list is written");
-    let kept = list.split(",select_ms").next().unwrap_or_default().split(',').count();
-    list.lines().map(|line| line.split(',').take(kept).collect::<Vec<_>>().join(",")).collect()
 }
 
 /// Waits until the flight's window is there; `None` when the flight ended before, for want of an adapter.

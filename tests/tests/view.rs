@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use e2e::{Display, Ran, binary, build_pass, lacks_adapter, without_display};
+use e2e::{Display, Ran, binary, build_pass, ended, lacks_adapter, without_display};
 
 /// A line of the trace that `--trace` writes, by the names of its columns.
 #[derive(Debug, Clone)]
@@ -93,12 +93,8 @@ impl Desk {
         let begun = Instant::now();
         let mut last: Option<(u64, Instant)> = None;
         loop {
-            if let Some(status) = self.window.try_wait().expect("the window is ours") {
-                let mut err = String::new();
-                if let Some(mut said) = self.window.stderr.take() {
-                    std::io::Read::read_to_string(&mut said, &mut err).expect("its words are text");
-                }
-                let ran = Ran { code: status.code().unwrap_or(-1), out: String::new(), err };
+            if self.window.try_wait().expect("the window is ours").is_some() {
+                let ran = ended(&mut self.window);
                 assert!(lacks_adapter(&ran), "no {what}: {}", ran.err);
                 return None;
             }
@@ -125,8 +121,7 @@ impl Desk {
 
     /// The window's number; it gets the keyboard, for there is no window manager to give it.
     fn focus(&self) -> String {
-        let found = self.xdotool("search --name Corniche");
-        let id = found.lines().last().expect("the window has its name").to_owned();
+        let id = self.display.window();
         self.xdotool(&format!("windowfocus {id}"));
         id
     }
@@ -136,18 +131,6 @@ impl Desk {
         let pid = self.window.id().to_string();
         let sent = Command::new("kill").args(["-s", name, &pid]).status();
         assert!(sent.is_ok_and(|status| status.success()), "kill -s {name}");
-    }
-
-    /// Waits for the program's end and tells its exit code.
-    fn ended(&mut self) -> i32 {
-        let begun = Instant::now();
-        loop {
-            if let Some(status) = self.window.try_wait().expect("it is ours") {
-                return status.code().unwrap_or(-1);
-            }
-            assert!(begun.elapsed() < Duration::from_mins(1), "it does not end");
-            thread::sleep(Duration::from_millis(20));
-        }
     }
 
     fn point_at(&mut self, x: i32, y: i32) -> Line {
@@ -272,8 +255,7 @@ fn shows_panel(picture: &image::RgbaImage) -> bool {
 #[test]
 fn a_key_held_when_the_keyboard_comes_to_the_window_is_pressed_once() {
     let Some(desk) = Desk::open(&[]) else { return };
-    let id = desk.xdotool("search --name Corniche");
-    let id = id.lines().last().expect("the window has its name");
+    let id = desk.display.window();
     // A window that is slow to hear of the keyboard finds the key down already, and then hears that it goes down.
     desk.signal("STOP");
     desk.xdotool(&format!("windowfocus {id}"));
@@ -304,7 +286,7 @@ fn control_q_ends_the_window_that_it_was_pressed_in() {
     desk.xdotool("key p");
     desk.xdotool("key ctrl+q");
     desk.signal("CONT");
-    assert_eq!(desk.ended(), 0);
+    assert_eq!(ended(&mut desk.window).code, 0);
     assert_eq!(desk.saved(1).dimensions(), (640, 480));
 }
 
@@ -361,5 +343,5 @@ fn it_survives_other_sizes_and_being_hidden_and_ends_well() {
     assert_eq!(desk.picture("p", 1).dimensions(), (500, 401));
 
     desk.xdotool("key ctrl+q");
-    assert_eq!(desk.ended(), 0);
+    assert_eq!(ended(&mut desk.window).code, 0);
 }

@@ -3,14 +3,13 @@
 
 use std::{
     fs,
-    io::Read as _,
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
     thread,
     time::{Duration, Instant},
 };
 
-use e2e::{Display, Ran, binary, build_pass, lacks_adapter, text, without_display};
+use e2e::{Display, Ran, binary, build_pass, ended, lacks_adapter, text, without_display};
 
 /// A folder with a package.
 fn package() -> (tempfile::TempDir, PathBuf) {
@@ -75,23 +74,6 @@ fn a_package_that_does_not_fit_the_memory_allowed_opens_no_window() {
     assert!(ran.err.contains("--gpu-memory"), "{}", ran.err);
 }
 
-/// Waits for the program's end.
-fn ended(window: &mut Child) -> Ran {
-    let begun = Instant::now();
-    let code = loop {
-        if let Some(status) = window.try_wait().expect("it is ours") {
-            break status.code().unwrap_or(-1);
-        }
-        assert!(begun.elapsed() < Duration::from_mins(1), "it does not end");
-        thread::sleep(Duration::from_millis(20));
-    };
-    let mut err = String::new();
-    if let Some(mut said) = window.stderr.take() {
-        said.read_to_string(&mut err).expect("its words are text");
-    }
-    Ran { code, out: String::new(), err }
-}
-
 /// A window that records its flight, and its number; `None` where there is nothing to draw with.
 fn recording(
     display: &Display,
@@ -115,8 +97,7 @@ fn recording(
         assert!(begun.elapsed() < Duration::from_mins(2), "no first frames");
         thread::sleep(Duration::from_millis(50));
     }
-    let id = display.xdotool("search --name Corniche");
-    let id = id.lines().last().expect("the window has its name").to_owned();
+    let id = display.window();
     display.xdotool(&format!("windowfocus {id}"));
     // It learns of the keyboard's being its own a little later.
     thread::sleep(Duration::from_secs(1));

@@ -28,6 +28,11 @@ impl Failure {
         Self::new(ExitCode::Interrupted, anyhow::anyhow!("interrupted"))
     }
 
+    /// Tells it on standard error, as every failure is told.
+    pub(crate) fn tell(&self) {
+        eprintln!("corniche: {self}");
+    }
+
     pub(crate) fn code(&self) -> ExitCode {
         if self.is_closed_pipe() { ExitCode::Done } else { self.code }
     }

@@ -46,7 +46,7 @@ fn main() -> process::ExitCode {
         Ok(code) => code.into(),
         Err(failure) => {
             if !failure.is_closed_pipe() {
-                eprintln!("corniche: {failure}");
+                failure.tell();
             }
             failure.code().into()
         }

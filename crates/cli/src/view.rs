@@ -124,7 +124,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
             Ok(path) => eprintln!("saved {}", path.display()),
             Err(error) => {
                 let lost = Failure::new(ExitCode::Failed, error);
-                eprintln!("corniche: {lost}");
+                lost.tell();
                 code = lost.code();
             }
         }

@@ -49,8 +49,8 @@ mod uniforms;
 
 pub use self::{
     device::{Gpu, GpuError},
-    picture::{MAX_SAMPLES_PER_SIDE, Picture, ReadBackError},
-    read_back::{ReadBack, read_texture},
+    picture::{MAX_SAMPLES_PER_SIDE, Picture},
+    read_back::{ReadBack, ReadBackError, read_texture},
     renderer::{DrawTile, FrameView, Renderer, Wireframe},
     screen_passes::{DIFFERENCE_COLORS, DifferenceColors},
     targets::{Owner, Targets, label_class},

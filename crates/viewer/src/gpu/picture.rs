@@ -1,6 +1,6 @@
 use wgpu::{Extent3d, TextureFormat, TextureUsages, TextureView};
 
-use super::{Gpu, GpuError, ReadBack, read_texture};
+use super::{Gpu, GpuError, ReadBack, ReadBackError, read_texture};
 
 pub(super) const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
 
@@ -15,25 +15,6 @@ pub struct Picture {
     samples_per_side: u32,
     samples: Option<Plane>,
     pixels: Plane,
-}
-
-/// Why pixels did not come back.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
-#[non_exhaustive]
-pub enum ReadBackError {
-    #[error("the graphics device did not finish drawing")]
-    Poll { source: wgpu::PollError },
-    #[error("the drawn pixels cannot be mapped")]
-    Map { source: wgpu::BufferAsyncError },
-    #[error("the drawn pixels cannot be read")]
-    Range { source: wgpu::MapRangeError },
-    #[error("the graphics device could not do its work: {what}")]
-    Fault { what: String },
-    #[error("the drawn pixels did not come back")]
-    Missing,
-    #[error("no frame was timed since the last one")]
-    Untimed,
 }
 
 /// A texture and its only view.

@@ -2,7 +2,26 @@ use std::sync::mpsc::{self, Receiver, TryRecvError};
 
 use wgpu::{BufferAsyncError, BufferUsages, Origin3d, TexelCopyBufferInfo, TexelCopyBufferLayout};
 
-use super::{Gpu, ReadBackError};
+use super::Gpu;
+
+/// Why pixels did not come back.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum ReadBackError {
+    #[error("the graphics device did not finish drawing")]
+    Poll { source: wgpu::PollError },
+    #[error("the drawn pixels cannot be mapped")]
+    Map { source: wgpu::BufferAsyncError },
+    #[error("the drawn pixels cannot be read")]
+    Range { source: wgpu::MapRangeError },
+    #[error("the graphics device could not do its work: {what}")]
+    Fault { what: String },
+    #[error("the drawn pixels did not come back")]
+    Missing,
+    #[error("no frame was timed since the last one")]
+    Untimed,
+}
 
 /// Texels of a texture, row by row from the top, without gaps. Waits until it is drawn.
 ///

@@ -2,8 +2,8 @@ use corniche_roads::FunctionalRoadClass;
 use wgpu::TextureFormat;
 
 use super::{
-    Gpu, GpuError,
-    picture::{COLOR, Picture, Plane, ReadBackError},
+    Gpu, GpuError, ReadBackError,
+    picture::{COLOR, Picture, Plane},
 };
 
 pub(super) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
