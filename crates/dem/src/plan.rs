@@ -401,7 +401,7 @@ fn resample(
     nodes: [NodeIndex; 2],
     spacing: Option<[f64; 2]>,
 ) -> Result<Method, DemError> {
-    let cell_m = frame.cell_m();
+    let cell_m = frame.cell().shorter_m();
     let samples_per_node =
         spacing.map_or([1.0; 2], |spacing| spacing.map(|spacing_m| cell_m / spacing_m));
     let most = samples_per_node[0].max(samples_per_node[1]);

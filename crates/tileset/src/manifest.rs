@@ -1,6 +1,6 @@
 mod check;
 
-use corniche_geom::{Bounds, CoordinateTable, Frame};
+use corniche_geom::{Bounds, Cell, CoordinateTable, Frame};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use check::{MAX_MEASURE_M, is_height_quantum};
@@ -82,8 +82,8 @@ impl VerticalRecord {
 pub struct LevelRecord {
     /// Level, 0 = root.
     pub level: u8,
-    /// Spacing of its nodes.
-    pub cell_m: f64,
+    /// Spacing of its nodes, east and north.
+    pub cell_m: Cell,
     /// Meshing tolerance against the level's own raster.
     pub max_error_m: f64,
     /// Largest stored geometric error of its tiles.
@@ -163,7 +163,7 @@ pub struct SettingsRecord {
     /// `--crs`, if given.
     pub crs: Option<String>,
     /// `--cell`, if given.
-    pub cell_m: Option<f64>,
+    pub cell_m: Option<Cell>,
     /// Name of the FRC table.
     pub frc_table: String,
     /// SHA-256 of the FRC table's text.

@@ -25,7 +25,7 @@ fn aligned_nodes_are_the_samples() {
     let raster = Raster::new(32632, [60, 50], UTM);
     let dem = open(&[raster.write(folder.path(), "a.tif", |at| plane(at) as f32)]);
     let plan = plan(&dem);
-    assert_eq!((plan.case, plan.frame.cell_m()), (Resampling::Aligned, 10.0));
+    assert_eq!((plan.case, plan.frame.cell().north_m), (Resampling::Aligned, 10.0));
     assert_eq!((plan.crs.as_str(), plan.frame.origin_m()), ("EPSG:32632", [8.0, 2.0]));
     assert!((plan.point_scale - 0.9996).abs() < 1e-6);
     assert!(plan.libraries.starts_with("GDAL 3") && plan.libraries.contains("PROJ "));
@@ -73,7 +73,7 @@ fn a_rotated_grid_is_interpolated() {
     let dem = open(&[Raster::new(32632, [60, 50], turned).write(folder.path(), "r.tif", plane)]);
     let plan = plan(&dem);
     assert_eq!(plan.case, Resampling::Resampled);
-    assert!((plan.frame.cell_m() - 10.0).abs() < 1e-9);
+    assert!((plan.frame.cell().north_m - 10.0).abs() < 1e-9);
     let count = check(&mut dem.reader(&plan).unwrap(), &plan, HUNDREDTH_M, plane);
     assert!((2700..=3000).contains(&count), "{count} nodes within the turned rectangle");
 }
@@ -107,7 +107,7 @@ fn a_grid_in_feet_is_laid_out_in_metres() {
     })]);
     let plan = plan(&dem);
     assert_eq!(plan.case, Resampling::Aligned, "{}", plan.resampling);
-    assert!((plan.frame.cell_m() - 30.0 * foot_m).abs() < 1e-6);
+    assert!((plan.frame.cell().north_m - 30.0 * foot_m).abs() < 1e-6);
     let truth = |[x, y]: [f64; 2]| x / foot_m - 2_690_000.0 + 2.0 * (y / foot_m - 234_000.0);
     assert_eq!(check(&mut dem.reader(&plan).unwrap(), &plan, 0.05, truth), 1200);
 }
@@ -131,7 +131,7 @@ fn a_reprojected_plane_comes_back() {
         let plan = dem.plan(&PlanOptions { cell_m, ..options() }).unwrap();
         assert_eq!((plan.crs.as_str(), plan.case), ("EPSG:32632", Resampling::Resampled));
         assert_eq!(plan.resampling.contains("average"), averaged, "{}", plan.resampling);
-        let cell = plan.frame.cell_m();
+        let cell = plan.frame.cell().north_m;
         assert!(cell_m.is_some() || cell == 15.0, "two digits of 15.2 and 16.7, not {cell}");
         let hundredth_m = 0.01 * cell * 0.224 + 1e-3;
         let count = check(&mut dem.reader(&plan).unwrap(), &plan, hundredth_m, plane);
@@ -222,13 +222,13 @@ fn files_in_different_systems_serve_one_grid() {
     // The degrees are the finer ones; the cell follows them, the CRS the first file.
     assert_eq!(plan.crs, "EPSG:32632");
     assert!(
-        plan.frame.cell_m() < 8.0 && plan.resampling.contains("EPSG:4326"),
+        plan.frame.cell().north_m < 8.0 && plan.resampling.contains("EPSG:4326"),
         "{}",
         plan.resampling
     );
     let count = check(&mut dem.reader(&plan).unwrap(), &plan, HUNDREDTH_M, plane);
     assert!(
-        count as f64 > 0.9 * 220.0 * 100.0 * 7.6 * 11.1 / plan.frame.cell_m().powi(2),
+        count as f64 > 0.9 * 220.0 * 100.0 * 7.6 * 11.1 / plan.frame.cell().north_m.powi(2),
         "{count}"
     );
 }

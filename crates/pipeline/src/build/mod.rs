@@ -119,7 +119,7 @@ fn run(
         cell_m: terrain.cell_m,
         fill_voids: terrain.fill_voids,
     })?;
-    let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell_m() / 4.0);
+    let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell().shorter_m() / 4.0);
     if !MAX_ERRORS_M.contains(&max_error_m) {
         return Err(BuildError::MaxError { max_error_m });
     }

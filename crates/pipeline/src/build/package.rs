@@ -36,8 +36,12 @@ pub(crate) struct Outcome<'a> {
 pub(crate) fn coordinates(dem: &Dem, plan: &GridPlan) -> Result<CoordinateTable, BuildError> {
     let projection = dem.projection(plan)?;
     // With room around it, but not as far as the root's far corners: they can be a world away.
-    let room_m =
-        0.1 * plan.data_bounds.width().max(plan.data_bounds.height()).max(plan.frame.cell_m());
+    let room_m = 0.1
+        * plan
+            .data_bounds
+            .width()
+            .max(plan.data_bounds.height())
+            .max(plan.frame.cell().shorter_m());
     let around = Bounds {
         min_x: plan.data_bounds.min_x - room_m,
         min_y: plan.data_bounds.min_y - room_m,
@@ -99,7 +103,7 @@ fn settings_record(outcome: &Outcome<'_>) -> SettingsRecord {
         vertical_crs: terrain.vertical_crs.clone(),
         vertical_shift_m: terrain.vertical_shift_m,
         crs: terrain.crs.clone(),
-        cell_m: terrain.cell_m,
+        cell_m: terrain.cell_m.map(corniche_geom::Cell::from),
         frc_table: roads.table.name().to_owned(),
         frc_table_sha256: hex(&Sha256::digest(roads.table.canonical_text())),
         class_max_cell_m: roads.filter.class_max_cell_m().to_vec(),
@@ -116,7 +120,7 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
             let errors_m = Distribution::of(sums.errors_m);
             LevelRecord {
                 level,
-                cell_m: levels.frame().level_cell_m(level),
+                cell_m: levels.frame().level_cell(level),
                 max_error_m: levels.max_error_m(level),
                 geometric_error_m: errors_m.map_or(0.0, |errors_m| errors_m.max),
                 errors_m,

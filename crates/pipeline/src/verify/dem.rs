@@ -142,7 +142,7 @@ fn open(
     }
     let plan = dem.plan(&PlanOptions {
         crs: record.crs.clone(),
-        cell_m: record.cell_m,
+        cell_m: record.cell_m.map(|cell| cell.north_m),
         fill_voids: record.fill_voids,
     })?;
     if plan.frame == manifest.frame { Ok((dem, plan)) } else { Err(other()) }
@@ -356,8 +356,8 @@ impl SampleSums {
                 });
                 let corner = frame.tile_corner(id);
                 let at = [
-                    (position_m[0] - frame.x_m(corner.i)) / frame.cell_m(),
-                    (frame.y_m(corner.j) - position_m[1]) / frame.cell_m(),
+                    (position_m[0] - frame.x_m(corner.i)) / frame.cell().east_m,
+                    (frame.y_m(corner.j) - position_m[1]) / frame.cell().north_m,
                 ];
                 match ground.as_ref().and_then(|ground| ground.height_m(at)) {
                     Some(ground_m) => {

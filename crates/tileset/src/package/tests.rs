@@ -1,6 +1,8 @@
 use std::{fs, io::Cursor};
 
-use corniche_geom::{Bounds, CoordinateTable, Frame, NodeIndex, ProjectError, Projection, TileId};
+use corniche_geom::{
+    Bounds, Cell, CoordinateTable, Frame, NodeIndex, ProjectError, Projection, TileId,
+};
 use corniche_tin::{Tin, TinVertex};
 
 use super::{
@@ -61,7 +63,7 @@ fn manifest(max_level: u8) -> Manifest {
             vertical_crs: None,
             vertical_shift_m: 0.0,
             crs: None,
-            cell_m: Some(1.0 / 3.0),
+            cell_m: Some(Cell { east_m: 1.0 / 3.0, north_m: 0.5 }),
             frc_table: "default".to_owned(),
             frc_table_sha256: String::new(),
             class_max_cell_m: vec![None; 9],
@@ -78,7 +80,7 @@ fn manifest(max_level: u8) -> Manifest {
 fn level(level: u8) -> LevelRecord {
     LevelRecord {
         level,
-        cell_m: 1.0,
+        cell_m: Cell::from(1.0),
         max_error_m: 0.3,
         geometric_error_m: 0.0,
         errors_m: None,

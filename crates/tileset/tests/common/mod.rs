@@ -5,8 +5,8 @@ use std::io::{Cursor, Write};
 
 use corniche_drape::{SvLine, drape};
 use corniche_geom::{
-    Bounds, CoordinateTable, Frame, LatticePoint, NodeIndex, Polyline, ProjectError, Projection,
-    TileId,
+    Bounds, Cell, CoordinateTable, Frame, LatticePoint, NodeIndex, Polyline, ProjectError,
+    Projection, TileId,
 };
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_tileset::{
@@ -52,7 +52,7 @@ pub(crate) fn ids() -> Vec<TileId> {
 fn level(level: u8) -> LevelRecord {
     LevelRecord {
         level,
-        cell_m: frame().level_cell_m(level),
+        cell_m: frame().level_cell(level),
         max_error_m: 8.0,
         geometric_error_m: 2.0,
         errors_m: None,
@@ -100,7 +100,7 @@ pub(crate) fn manifest() -> Manifest {
             vertical_crs: None,
             vertical_shift_m: 0.0,
             crs: None,
-            cell_m: Some(10.0),
+            cell_m: Some(Cell::from(10.0)),
             frc_table: "default".to_owned(),
             frc_table_sha256: String::new(),
             class_max_cell_m: vec![None; 9],

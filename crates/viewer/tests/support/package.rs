@@ -51,7 +51,7 @@ fn manifest(country: &Country) -> Manifest {
     let [[min_x, min_y], [max_x, max_y]] = corners;
     let level = |level| LevelRecord {
         level,
-        cell_m: frame.level_cell_m(level),
+        cell_m: frame.level_cell(level),
         max_error_m: MAX_ERROR_M * frame.stride(level) as f64,
         geometric_error_m: 100.0,
         errors_m: None,
