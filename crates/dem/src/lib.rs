@@ -32,6 +32,7 @@ mod outline;
 mod positions;
 mod projection;
 mod scale;
+mod working;
 
 mod error;
 mod library;
@@ -43,3 +44,4 @@ pub use plan::{GridPlan, PlanOptions, Resampling};
 pub use projection::DemProjection;
 pub use reader::{DemWindow, Reader, SampleBlock};
 pub use source::OpenOptions;
+pub use working::PlanScale;

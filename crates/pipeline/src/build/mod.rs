@@ -116,7 +116,9 @@ fn run(
     )?;
     let plan = dem.plan(&PlanOptions {
         crs: terrain.crs.clone(),
-        cell_m: terrain.cell_m,
+        cell: terrain.cell,
+        cell_every: terrain.cell_every,
+        scale_latitude_deg: terrain.scale_latitude_deg,
         fill_voids: terrain.fill_voids,
     })?;
     let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell().shorter_m() / 4.0);

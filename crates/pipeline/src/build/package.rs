@@ -6,7 +6,7 @@ use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{Bounds, CoordinateTable};
 use corniche_tileset::{
     Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest,
-    SampleCounts, SettingsRecord, VerticalRecord, Writer,
+    SampleCounts, ScaleRecord, SettingsRecord, VerticalRecord, Writer,
 };
 use sha2::{Digest, Sha256};
 
@@ -68,7 +68,13 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
             .to_owned(),
         crs: plan.crs.clone(),
         crs_wkt: plan.crs_wkt.clone(),
+        metres_per_unit: plan.metres_per_unit,
         point_scale: plan.point_scale,
+        scale: ScaleRecord {
+            center: plan.scale.center,
+            least: plan.scale.least,
+            largest: plan.scale.largest,
+        },
         frame,
         data_bounds: plan.data_bounds,
         wgs84_bounds: plan.wgs84_bounds,
@@ -103,7 +109,9 @@ fn settings_record(outcome: &Outcome<'_>) -> SettingsRecord {
         vertical_crs: terrain.vertical_crs.clone(),
         vertical_shift_m: terrain.vertical_shift_m,
         crs: terrain.crs.clone(),
-        cell_m: terrain.cell_m.map(corniche_geom::Cell::from),
+        cell_m: terrain.cell,
+        cell_every: terrain.cell_every,
+        scale_latitude_deg: terrain.scale_latitude_deg,
         frc_table: roads.table.name().to_owned(),
         frc_table_sha256: hex(&Sha256::digest(roads.table.canonical_text())),
         class_max_cell_m: roads.filter.class_max_cell_m().to_vec(),

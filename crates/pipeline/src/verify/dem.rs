@@ -142,7 +142,9 @@ fn open(
     }
     let plan = dem.plan(&PlanOptions {
         crs: record.crs.clone(),
-        cell_m: record.cell_m.map(|cell| cell.north_m),
+        cell: record.cell_m,
+        cell_every: record.cell_every,
+        scale_latitude_deg: record.scale_latitude_deg,
         fill_voids: record.fill_voids,
     })?;
     if plan.frame == manifest.frame { Ok((dem, plan)) } else { Err(other()) }

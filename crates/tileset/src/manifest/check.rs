@@ -16,6 +16,8 @@ const QUANTUM_EXPONENTS: std::ops::RangeInclusive<i32> = -64..=27;
 const MAX_COUNT: u64 = 1 << 61;
 /// Length in the working CRS over true length: Mercator reaches 57 a degree from the pole.
 const POINT_SCALES: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
+/// Working metres to a unit of the CRS, without its sign: a millimetre to a radian, and far beyond both.
+const FACTORS: std::ops::RangeInclusive<f64> = 1e-6..=1e9;
 /// Classes 0 to 8.
 const CLASSES: usize = corniche_roads::FunctionalRoadClass::COUNT;
 
@@ -36,6 +38,17 @@ impl Manifest {
         bounds("wgs84_bounds", &self.wgs84_bounds, [720.0, 91.0])?;
         bounds("coordinates.bounds", &self.coordinates.bounds(), [MAX_MEASURE_M; 2])?;
         that(POINT_SCALES.contains(&self.point_scale), "point_scale", self.point_scale)?;
+        let scale = &self.scale;
+        for (name, values) in [
+            ("scale.center", scale.center),
+            ("scale.least", scale.least),
+            ("scale.largest", scale.largest),
+        ] {
+            that(values.iter().all(|value| POINT_SCALES.contains(value)), name, values)?;
+        }
+        // Degrees to metres is 1e5; the units of projections are much smaller.
+        let are_factors = self.metres_per_unit.iter().all(|factor| FACTORS.contains(&factor.abs()));
+        that(are_factors, "metres_per_unit", self.metres_per_unit)?;
         let quantum_m = self.vertical.quantum_m;
         that(is_height_quantum(quantum_m), "vertical.quantum_m", quantum_m)?;
         let [low_m, high_m] = self.vertical.range_m;
