@@ -4,7 +4,7 @@ use corniche_geom::{Bounds, Cell, Frame, NodeIndex};
 use gdal::version::VersionInfo;
 
 use crate::kernel::Kernel;
-use crate::mosaic::Mosaic;
+use crate::mosaic::{Mosaic, Placed};
 use crate::operation::Operation;
 use crate::positions::NodePositions;
 use crate::working::{PlanScale, Working, rounded};
@@ -21,6 +21,9 @@ const MAX_EVERY: i64 = 1000;
 const MAX_SAMPLES_PER_NODE: f64 = 1000.0;
 /// Farthest that voids can be filled; bounds the halo.
 const MAX_FILL_VOIDS: u32 = 1024;
+
+/// Most files of one grid that the words about it name.
+const MAX_NAMES: usize = 3;
 
 /// What the user may say about the grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -430,30 +433,50 @@ fn resample(
     Ok(Method::Resampled(Box::new(positions), Kernel::new(samples_per_node)))
 }
 
+/// How nodes relate to samples. One grid is "the DEM"; of several each names its files, the first named first.
 fn describe(dem: &Dem, layers: &[Layer]) -> String {
+    let is_one = dem.mosaics.len() == 1;
     let mut texts: Vec<String> = Vec::new();
     for (mosaic, layer) in dem.mosaics.iter().zip(layers) {
+        let whose = if is_one { String::new() } else { format!(" of {}", names(dem, mosaic)) };
         let text = match &layer.method {
-            Method::Aligned(Alignment { every: 1, .. }) => "nodes are the DEM's samples".to_owned(),
             Method::Aligned(Alignment { every, .. }) => {
-                format!("nodes are every {every}th of the DEM's samples, along both axes")
+                let nodes =
+                    if is_one { "nodes are the DEM's samples" } else { "nodes are the samples" };
+                let share = match every {
+                    1 => String::new(),
+                    every => format!(", one in {every} along both axes"),
+                };
+                format!("{nodes}{whose}{share}")
             }
             Method::Resampled(positions, kernel) => {
                 let how = if kernel.is_average() { "area average of" } else { "bilinear between" };
+                let the = if is_one { "" } else { "the " };
                 let step = positions.step();
                 let exact = if step == 1 {
                     "every node transformed".to_owned()
                 } else {
                     format!("positions interpolated over {step} × {step} nodes")
                 };
-                format!("{how} samples in {}, {exact}", mosaic.crs.label)
+                format!("{how} {the}samples{whose} in {}, {exact}", mosaic.crs.label)
             }
         };
-        if !texts.contains(&text) {
-            texts.push(text);
-        }
+        texts.push(text);
     }
-    texts.join("; where the former have no data: ")
+    texts.join("; where those have no data: ")
+}
+
+/// The names of a mosaic's files, without folders.
+fn names(dem: &Dem, mosaic: &Mosaic) -> String {
+    let name = |file: &Placed| {
+        let path = &dem.sources[file.index].path;
+        path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+    };
+    let told: Vec<String> = mosaic.files.iter().take(MAX_NAMES).map(name).collect();
+    match mosaic.files.len().saturating_sub(MAX_NAMES) {
+        0 => told.join(", "),
+        more => format!("{} and {more} more", told.join(", ")),
+    }
 }
 
 fn libraries() -> String {

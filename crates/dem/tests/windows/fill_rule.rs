@@ -7,7 +7,7 @@ use corniche_dem::{DemWindow, OpenOptions, PlanOptions, Reader};
 use corniche_geom::{NodeIndex, NodeWindow};
 use proptest::prelude::*;
 
-use crate::fixture::{Raster, all, options};
+use crate::fixture::{Raster, all, in_utm, options};
 
 const SIZE: [usize; 2] = [46, 38];
 const FRAME: [f64; 6] = [500_000.0, 10.0, 0.0, 5_200_380.0, 0.0, -10.0];
@@ -167,12 +167,12 @@ fn nothing_is_filled_beyond_the_edge_of_reprojected_squares() {
     let frame = [10.5, 0.001, 0.0, 60.5, 0.0, -0.001];
     let file = Raster::new(4326, [240, 200], frame).write(folder.path(), "ll.tif", |at| at[1]);
     let dem = crate::fixture::open(&[file]);
-    let bare = dem.plan(&options()).unwrap();
+    let bare = dem.plan(&in_utm()).unwrap();
     let window = all(&bare);
     let bare = read(&mut dem.reader(&bare).unwrap(), window);
     assert!(bare.heights.count_heights() * 20 < window.columns * window.rows * 19, "edges slant");
     for reach in [1, 3, 32, 500] {
-        let plan = dem.plan(&PlanOptions { fill_voids: reach, ..options() }).unwrap();
+        let plan = dem.plan(&PlanOptions { fill_voids: reach, ..in_utm() }).unwrap();
         let filled = read(&mut dem.reader(&plan).unwrap(), window);
         assert_eq!(filled.filled, 0, "reach {reach}");
         let bits = |read: &DemWindow| -> Vec<u32> {
