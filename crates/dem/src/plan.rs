@@ -12,9 +12,12 @@ use crate::{Dem, DemError, outline, working};
 
 /// Nodes coincide with samples when none is farther off than this, in cells.
 const ALIGNED_CELLS: f64 = 1e-3;
-/// Rounding of a grid's phase, to a unit or, in degrees, to a cell: it hides the noise of corner coordinates and moves
-/// nothing.
+/// What numbers of few digits may move samples by, over the whole extent, in cells.
+const NOISE_CELLS: f64 = 5e-4;
+/// Rounding of a grid's phase, steps to a unit: it hides the noise of corner coordinates and moves nothing.
 const PHASE_STEPS: f64 = 1e6;
+/// The same in degrees, steps to a cell: degrees are written with fewer digits. It moves nodes by half of this at most.
+const PHASE_STEPS_DEGREES: f64 = 1e4;
 /// Most samples along an axis of which one is taken.
 const MAX_EVERY: i64 = 1000;
 /// Most samples averaged along a side of a cell; bounds the memory that one node can ask for.
@@ -163,6 +166,13 @@ pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemErro
             ]
         })
         .ok_or_else(|| DemError::OutsideCrs { crs: layout.working.crs.label.clone() })?;
+    let [columns, rows] = [north_east.i - south_west.i + 1, north_east.j - south_west.j + 1];
+    if let Some(every) = options.cell_every
+        && columns.min(rows) < 2
+    {
+        let [columns, rows] = [columns, rows].map(|nodes| nodes.max(0));
+        return Err(DemError::CellEveryLeaves { every, columns, rows });
+    }
     let frame = Frame::covering(layout.origin_m, layout.cell, south_west, north_east)?;
     let mut layers = Vec::new();
     for (((mosaic, working_from_crs), nodes), spacing) in
@@ -395,7 +405,7 @@ impl Layout {
 /// A spacing without the noise of its division by whoever wrote the file: a whole number of samples to a unit (1/1200 of a
 /// degree), or few decimal digits; as it is where neither is meant.
 fn nice(spacing: f64, reach: f64) -> f64 {
-    let is_noise = |nice: f64| (nice - spacing).abs() * reach <= 1e-4 * spacing;
+    let is_noise = |nice: f64| (nice - spacing).abs() * reach <= NOISE_CELLS * spacing;
     let digits = rounded(spacing, 9);
     let to_a_unit = 1.0 / (1.0 / spacing).round();
     [to_a_unit, digits]
@@ -406,10 +416,11 @@ fn nice(spacing: f64, reach: f64) -> f64 {
 
 /// Where samples lie between two multiples of their spacing, so that adjoining files of one product have the same grid.
 fn phase(at: f64, spacing: f64, is_degrees: bool) -> f64 {
-    // Degrees are written with fewer digits than metres: a millionth of a cell hides that and moves nothing.
-    let unit = if is_degrees { spacing } else { 1.0 };
-    let phase = (at.rem_euclid(spacing) / unit * PHASE_STEPS).round() / PHASE_STEPS * unit;
-    if spacing - phase < unit / PHASE_STEPS { 0.0 } else { phase }
+    let (unit, steps) =
+        if is_degrees { (spacing, PHASE_STEPS_DEGREES) } else { (1.0, PHASE_STEPS) };
+    let phase = (at.rem_euclid(spacing) / unit * steps).round() / steps * unit;
+    // A hair below a multiple is the multiple.
+    if spacing - phase < 0.5 * unit / steps { 0.0 } else { phase }
 }
 
 fn resample(

@@ -7,7 +7,7 @@ use gdal::spatial_ref::SpatialRef;
 use crate::crs::Crs;
 use crate::mosaic::Mosaic;
 use crate::operation::Operation;
-use crate::scale::{self, Scale};
+use crate::scale::{self, SCALES, Scale};
 use crate::{Dem, DemError};
 
 /// The DEM's own CRS is the working CRS where lengths are then true within this, all over the data: nodes that are the
@@ -35,7 +35,7 @@ pub(crate) struct Working {
     pub(crate) middle: f64,
 }
 
-/// How long lengths come out in working metres.
+/// How long lengths come out in working metres; scales beyond 0.001 to 1000 are given as these.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanScale {
     /// Working metres per true metre along x and y, in the middle of the data.
@@ -72,9 +72,9 @@ impl Working {
                     return Ok(Some(plain));
                 }
                 let [lon, _] = dem.wgs84_bounds.center();
-                let Some(scale) = plain.scale_at(dem, [lon, latitude_deg])? else {
-                    return Ok(None);
-                };
+                let scale = plain.scale_at(dem, [lon, latitude_deg])?;
+                let is_usable = |scale: &Scale| scale.along.iter().all(|at| SCALES.contains(at));
+                let Some(scale) = scale.filter(is_usable) else { return Ok(None) };
                 [0, 1].map(|axis| rounded(unit[axis] / scale.along[axis], FACTOR_DIGITS))
             }
         };
@@ -124,7 +124,12 @@ impl Working {
                 scale.largest[axis] = scale.largest[axis].max(along[axis]);
             }
         }
-        Ok(scale)
+        let recorded = |along: [f64; 2]| along.map(|at| at.clamp(*SCALES.start(), *SCALES.end()));
+        Ok(PlanScale {
+            center: recorded(scale.center),
+            least: recorded(scale.least),
+            largest: recorded(scale.largest),
+        })
     }
 }
 

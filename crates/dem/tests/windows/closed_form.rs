@@ -107,7 +107,9 @@ fn a_grid_in_feet_is_laid_out_in_metres() {
     })]);
     let plan = plan(&dem);
     assert_eq!(plan.case, Resampling::Aligned, "{}", plan.resampling);
-    assert!((plan.frame.cell().north_m - 30.0 * foot_m).abs() < 1e-6);
+    assert_eq!(plan.crs, "EPSG:2272");
+    check_near(plan.metres_per_unit, [foot_m; 2], 1e-12);
+    check_near(plan.frame.cell().to_array(), [30.0 * foot_m; 2], 1e-12);
     let truth = |[x, y]: [f64; 2]| x / foot_m - 2_690_000.0 + 2.0 * (y / foot_m - 234_000.0);
     assert_eq!(check(&mut dem.reader(&plan).unwrap(), &plan, 0.05, truth), 1200);
 }
