@@ -83,6 +83,8 @@ pub struct GridPlan {
     pub case: Resampling,
     /// The case in words.
     pub resampling: String,
+    /// Names, without folders, of the files that are resampled onto the grid of the first one, and of that one. `None` where no file is, or all are.
+    pub resampled_onto_first: Option<[String; 2]>,
     /// What the resulting heights are measured from, as far as files or options name it.
     pub vertical_datum: Option<String>,
     /// What was done to the files' heights, in words; with the offset at the DEM's centre where PROJ carried them.
@@ -212,6 +214,7 @@ pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemErro
             Resampling::Resampled
         },
         resampling: describe(dem, &layers),
+        resampled_onto_first: resampled_onto_first(dem, &layers),
         vertical_datum: dem.heights.datum.clone(),
         vertical: dem.heights.words.clone(),
         libraries: libraries(),
@@ -260,7 +263,7 @@ fn layout(
 ) -> Result<Layout, DemError> {
     let first = &dem.mosaics[0];
     let every = i64::from(options.cell_every.unwrap_or(1));
-    if every < 1 || every > MAX_EVERY {
+    if !(1..=MAX_EVERY).contains(&every) {
         return Err(DemError::CellEvery {
             every: options.cell_every.unwrap_or(0),
             limit: MAX_EVERY,
@@ -276,16 +279,15 @@ fn layout(
     if options.cell_every.is_some() {
         return Err(DemError::CellEveryResampled { crs: working.crs.label.clone() });
     }
-    let cell = match options.cell {
-        Some(cell) => cell,
-        None => {
-            let operations = into_working(&working);
-            let spacing_m = spacing_m(first, &working, &operations[0])?
-                .ok_or_else(|| DemError::OutsideCrs { crs: working.crs.label.clone() })?;
-            let shorter_m = spacing_m[0].min(spacing_m[1]);
-            let is_turned = first.crs.is_same(&working.crs);
-            Cell::from(rounded(shorter_m, if is_turned { 9 } else { 2 }))
-        }
+    let cell = if let Some(cell) = options.cell {
+        cell
+    } else {
+        let operations = into_working(&working);
+        let spacing_m = spacing_m(first, &working, &operations[0])?
+            .ok_or_else(|| DemError::OutsideCrs { crs: working.crs.label.clone() })?;
+        let shorter_m = spacing_m[0].min(spacing_m[1]);
+        let is_turned = first.crs.is_same(&working.crs);
+        Cell::from(rounded(shorter_m, if is_turned { 9 } else { 2 }))
     };
     if cell.to_array().iter().any(|side_m| !(0.001..=1e6).contains(side_m)) {
         return Err(DemError::Cell { cell });
@@ -475,6 +477,19 @@ fn describe(dem: &Dem, layers: &[Layer]) -> String {
         texts.push(text);
     }
     texts.join("; where those have no data: ")
+}
+
+/// Files on other grids than the first one's, whose samples are nodes, and the first one.
+fn resampled_onto_first(dem: &Dem, layers: &[Layer]) -> Option<[String; 2]> {
+    let is_resampled = |layer: &Layer| matches!(layer.method, Method::Resampled(..));
+    let (_, others) = layers.split_first().filter(|(first, _)| !is_resampled(first))?;
+    let told: Vec<String> = dem.mosaics[1..]
+        .iter()
+        .zip(others)
+        .filter(|(_, layer)| is_resampled(layer))
+        .map(|(mosaic, _)| names(dem, mosaic))
+        .collect();
+    (!told.is_empty()).then(|| [told.join(", "), names(dem, &dem.mosaics[0])])
 }
 
 /// The names of a mosaic's files, without folders.

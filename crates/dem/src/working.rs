@@ -59,24 +59,23 @@ impl Working {
         crs: &Crs,
         latitude_deg: f64,
     ) -> Result<Option<Self>, DemError> {
-        let factors = match crs.metres_per_turn_unit(latitude_deg)? {
-            Some(factors) => factors,
-            None => {
-                let unit = crs.signs().map(|sign| sign * crs.unit_m);
-                let plain = Self::new(crs.clone(), unit, dem);
-                let is_true = |scale: &Option<Scale>| {
-                    let is_near = |along: &f64| (along - 1.0).abs() <= TRUE_TOLERANCE;
-                    scale.is_some_and(|scale| scale.along.iter().all(is_near))
-                };
-                if plain.rim_scales(dem)?.iter().all(is_true) {
-                    return Ok(Some(plain));
-                }
-                let [lon, _] = dem.wgs84_bounds.center();
-                let scale = plain.scale_at(dem, [lon, latitude_deg])?;
-                let is_usable = |scale: &Scale| scale.along.iter().all(|at| SCALES.contains(at));
-                let Some(scale) = scale.filter(is_usable) else { return Ok(None) };
-                [0, 1].map(|axis| rounded(unit[axis] / scale.along[axis], FACTOR_DIGITS))
+        let factors = if let Some(factors) = crs.metres_per_turn_unit(latitude_deg)? {
+            factors
+        } else {
+            let unit = crs.signs().map(|sign| sign * crs.unit_m);
+            let plain = Self::new(crs.clone(), unit, dem);
+            let is_true = |scale: &Option<Scale>| {
+                let is_near = |along: &f64| (along - 1.0).abs() <= TRUE_TOLERANCE;
+                scale.is_some_and(|scale| scale.along.iter().all(is_near))
+            };
+            if plain.rim_scales(dem)?.iter().all(is_true) {
+                return Ok(Some(plain));
             }
+            let [lon, _] = dem.wgs84_bounds.center();
+            let scale = plain.scale_at(dem, [lon, latitude_deg])?;
+            let is_usable = |scale: &Scale| scale.along.iter().all(|at| SCALES.contains(at));
+            let Some(scale) = scale.filter(is_usable) else { return Ok(None) };
+            [0, 1].map(|axis| rounded(unit[axis] / scale.along[axis], FACTOR_DIGITS))
         };
         Ok(Some(Self::new(crs.clone(), factors, dem)))
     }
@@ -119,10 +118,11 @@ impl Working {
             PlanScale { center: center.along, least: center.along, largest: center.along };
         // Corners beyond the CRS (of a CRS that was asked for) say nothing.
         for Scale { along, .. } in self.rim_scales(dem)?.into_iter().flatten() {
-            for axis in 0..2 {
-                scale.least[axis] = scale.least[axis].min(along[axis]);
-                scale.largest[axis] = scale.largest[axis].max(along[axis]);
-            }
+            let merge = |known: [f64; 2], pick: fn(f64, f64) -> f64| {
+                [pick(known[0], along[0]), pick(known[1], along[1])]
+            };
+            scale.least = merge(scale.least, f64::min);
+            scale.largest = merge(scale.largest, f64::max);
         }
         let recorded = |along: [f64; 2]| along.map(|at| at.clamp(*SCALES.start(), *SCALES.end()));
         Ok(PlanScale {

@@ -249,6 +249,9 @@ fn the_first_named_file_defines_the_grid() {
         assert_eq!((plan.crs.as_str(), plan.case), ("EPSG:4326", Resampling::Resampled));
         assert_eq!(plan.frame.cell(), alone.frame.cell());
         assert_eq!(plan.frame.origin_m(), alone.frame.origin_m());
+        let [resampled, onto] = plan.resampled_onto_first.clone().unwrap();
+        assert_eq!([onto.as_str(), resampled.as_str()], names);
+        assert_eq!(dem.plan(&in_utm()).unwrap().resampled_onto_first, None, "all are resampled");
         let told = plan.resampling.as_str();
         assert!(told.starts_with(&format!("nodes are the samples of {}", names[0])), "{told}");
         assert!(told.contains(&format!("between the samples of {}", names[1])), "{told}");
@@ -275,6 +278,7 @@ fn files_of_one_phase_are_one_grid() {
         (one.case, one.resampling.as_str()),
         (Resampling::Aligned, "nodes are the DEM's samples")
     );
+    assert_eq!(one.resampled_onto_first, None);
     files.push(file("other.tif".to_owned(), 9.7, 0.0015));
     let told = plan(&open(&files)).resampling;
     assert!(
