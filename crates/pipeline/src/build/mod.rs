@@ -18,6 +18,7 @@ mod mesh;
 mod package;
 mod road_log;
 mod roads;
+mod samples;
 mod tiles;
 
 use std::{fs, path::Path};
@@ -164,6 +165,11 @@ fn run(
         });
     }
     let errors = errors::measure(&pyramid, &meshes, &levels, threads, storage, observer)?;
+    let sample_errors = if plan.nodes_are_samples() {
+        errors.at_nodes().to_vec()
+    } else {
+        samples::measure(&dem, &plan, &meshes, &levels, threads, storage, observer)?
+    };
     let tiles = tiles::make(
         &tiles::TileInput {
             levels: &levels,
@@ -192,6 +198,7 @@ fn run(
         roads: roads.as_ref(),
         tiles: &tiles,
         errors: &errors,
+        sample_errors: &sample_errors,
     });
     if let (Some(osm), 0) = (&settings.osm, manifest.counts.roads_kept) {
         return Err(BuildError::NoGround { osm: osm.clone() });

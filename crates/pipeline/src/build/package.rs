@@ -11,7 +11,9 @@ use corniche_tileset::{
 use sha2::{Digest, Sha256};
 
 use super::{errors::TileErrors, levels::Levels, losses, roads::ReadRoads, tiles::Tiles};
-use crate::{BuildError, BuildSettings, Observer, Stage, Storage, storage::Kind};
+use crate::{
+    BuildError, BuildSettings, Observer, Stage, Storage, sample_error::SampleSums, storage::Kind,
+};
 
 /// Positions interpolated from the manifest are this exact.
 const COORDINATE_TOLERANCE_M: f64 = 0.01;
@@ -30,6 +32,8 @@ pub(crate) struct Outcome<'a> {
     pub(crate) roads: Option<&'a ReadRoads<'a>>,
     pub(crate) tiles: &'a Tiles,
     pub(crate) errors: &'a TileErrors,
+    /// Per level, root first.
+    pub(crate) sample_errors: &'a [SampleSums],
 }
 
 /// Longitudes and latitudes over the data's rectangle, for readers without PROJ.
@@ -79,6 +83,7 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
         data_bounds: plan.data_bounds,
         wgs84_bounds: plan.wgs84_bounds,
         resampling: plan.resampling.clone(),
+        nodes_are_samples: plan.nodes_are_samples(),
         vertical: VerticalRecord {
             quantum_m: levels.quantum_m(),
             unit: "metre".to_owned(),
@@ -132,6 +137,7 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
                 max_error_m: levels.max_error_m(level),
                 geometric_error_m: errors_m.map_or(0.0, |errors_m| errors_m.max),
                 errors_m,
+                sample_error: outcome.sample_errors[usize::from(level)].record(),
                 tightness: Distribution::of(sums.tightness),
                 least_class: levels
                     .least_class(level)

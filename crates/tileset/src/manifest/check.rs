@@ -5,7 +5,7 @@
 
 use corniche_geom::{Bounds, Cell};
 
-use super::{Counts, Distribution, GrowthRow, LevelRecord, Manifest};
+use super::{Counts, Distribution, GrowthRow, LevelRecord, Manifest, SampleErrorRecord};
 
 /// No length, height or coordinate is larger: far beyond every planet, and its square still fits an f32.
 pub(crate) const MAX_MEASURE_M: f64 = 1e18;
@@ -99,6 +99,10 @@ fn check_level(level: usize, record: &LevelRecord) -> Result<(), String> {
     for distribution in [record.errors_m, record.tightness].into_iter().flatten() {
         check_distribution(&distribution)?;
     }
+    let SampleErrorRecord { max_m, rms_m, p99_m, .. } = record.sample_error;
+    measure("levels.sample_error.max_m", max_m)?;
+    that(rms_m >= 0.0 && rms_m <= max_m, "levels.sample_error.rms_m", rms_m)?;
+    that(p99_m >= 0.0 && p99_m <= max_m, "levels.sample_error.p99_m", p99_m)?;
     measure("levels.simplify_tolerance_m", record.simplify_tolerance_m)?;
     measure("levels.width_margin_m", record.width_margin_m)?;
     let class = record.least_class.unwrap_or(0);
@@ -114,9 +118,10 @@ fn check_distribution(distribution: &Distribution) -> Result<(), String> {
     that(is_sorted, "a distribution", distribution)
 }
 
-fn level_counts(record: &LevelRecord) -> [u64; 5] {
+fn level_counts(record: &LevelRecord) -> [u64; 7] {
     let LevelRecord { tiles, triangles, vertices, terrain_bytes, uncovered_nodes, .. } = *record;
-    [tiles, triangles, vertices, terrain_bytes, uncovered_nodes]
+    let SampleErrorRecord { on_tin, off_tin, .. } = record.sample_error;
+    [tiles, triangles, vertices, terrain_bytes, uncovered_nodes, on_tin, off_tin]
 }
 
 fn growth_counts(row: &GrowthRow) -> [u64; 9] {
