@@ -178,25 +178,25 @@ fn roads(manifest: &Manifest) -> String {
     }
     let mut text = String::new();
     let mut table = Table::new(["roads", "count", "length"]);
-    table.row(["read".into(), count(counts.roads_in), length(counts.roads_in_m)]);
+    table.row(["read".into(), count(counts.roads_in), length(counts.roads_in_um)]);
     table.row([
         "kept at the finest level".into(),
         count(counts.roads_kept),
-        length(counts.roads_kept_m),
+        length(counts.roads_kept_um),
     ]);
     for loss in &counts.roads_lost {
         table.row([
             format!("lost {}", plain(&loss.reason)),
             count(loss.roads),
-            length(loss.length_m),
+            length(loss.length_um),
         ]);
     }
-    for (class, &(roads, metres)) in counts.classes.iter().enumerate() {
+    for (class, &(roads, length_um)) in counts.classes.iter().enumerate() {
         if roads > 0 {
             table.row([
                 format!("  FRC {class} ({})", plain(&manifest.settings.frc_table)),
                 count(roads),
-                length(metres),
+                length(length_um),
             ]);
         }
     }

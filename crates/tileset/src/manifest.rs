@@ -234,12 +234,12 @@ pub struct Counts {
     pub samples: SampleCounts,
     /// Roads read from the extract (ways that the FRC table knows).
     pub roads_in: u64,
-    /// Their length in plan.
-    pub roads_in_m: f64,
+    /// Their true length in plan, micrometres.
+    pub roads_in_um: u64,
     /// Roads of which anything is kept at the finest level.
     pub roads_kept: u64,
-    /// Length in plan kept at the finest level.
-    pub roads_kept_m: f64,
+    /// True length in plan kept at the finest level, micrometres.
+    pub roads_kept_um: u64,
     /// The difference by reason; counts and lengths add up with what is kept to what came in.
     pub roads_lost: Vec<RoadLoss>,
     /// Defects met in the extract, by name: missing nodes, one-node ways and so on. Sorted by name.
@@ -252,8 +252,8 @@ pub struct Counts {
     pub highways_in: u64,
     /// Those of them that are no roads here, by reason. With the ways that became roads they add up.
     pub highways_left_out: Vec<(String, u64)>,
-    /// Roads per class, 0 first: count and metres in.
-    pub classes: Vec<(u64, f64)>,
+    /// Roads per class, 0 first: count and true micrometres in.
+    pub classes: Vec<(u64, u64)>,
 }
 
 /// Nodes of the finest grid over the data's rectangle.
@@ -276,8 +276,8 @@ pub struct RoadLoss {
     pub reason: String,
     /// Roads lost altogether for this reason.
     pub roads: u64,
-    /// Length in plan lost for this reason.
-    pub length_m: f64,
+    /// True length in plan lost for this reason, micrometres.
+    pub length_um: u64,
 }
 
 /// What one class costs on one level.

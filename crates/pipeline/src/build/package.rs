@@ -24,7 +24,7 @@ pub(crate) struct Outcome<'a> {
     pub(crate) max_error_m: f64,
     pub(crate) plan: &'a GridPlan,
     pub(crate) levels: &'a Levels,
-    pub(crate) coordinates: CoordinateTable,
+    pub(crate) coordinates: &'a CoordinateTable,
     pub(crate) inputs: Vec<InputRecord>,
     pub(crate) samples: SampleCounts,
     /// Lowest and highest node.
@@ -158,13 +158,12 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
 fn counts(outcome: &Outcome<'_>) -> Counts {
     let samples = outcome.samples;
     let Some(roads) = outcome.roads else { return Counts { samples, ..Counts::default() } };
-    let step_m = outcome.levels.frame().lattice_step_m();
-    let losses = losses::sums(roads, outcome.tiles, step_m);
+    let losses = losses::sums(roads, outcome.tiles);
     Counts {
         samples,
-        roads_in: roads.lengths_steps.len() as u64,
-        roads_in_m: roads.lengths_steps.iter().sum::<f64>() * step_m,
-        classes: roads.classes.iter().map(|&(count, steps)| (count, steps * step_m)).collect(),
+        roads_in: roads.lengths_um.len() as u64,
+        roads_in_um: roads.lengths_um.iter().sum(),
+        classes: roads.classes.clone(),
         defects: roads.defects.iter().map(|(name, &count)| (name.clone(), count)).collect(),
         unknown_highways: roads
             .extract
@@ -176,7 +175,7 @@ fn counts(outcome: &Outcome<'_>) -> Counts {
         highways_in: roads.extract.highway_ways,
         highways_left_out: left_out(&roads.extract),
         roads_kept: losses.roads_kept,
-        roads_kept_m: losses.roads_kept_m,
+        roads_kept_um: losses.roads_kept_um,
         roads_lost: losses.lost,
     }
 }

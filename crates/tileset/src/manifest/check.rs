@@ -144,20 +144,17 @@ fn check_counts(counts: &Counts) -> Result<(), String> {
         check_sum("counts.samples", [count])?;
     }
     check_sum("counts", [counts.roads_in, counts.roads_kept, counts.highways_in])?;
-    measure("counts.roads_in_m", counts.roads_in_m)?;
-    measure("counts.roads_kept_m", counts.roads_kept_m)?;
+    check_sum("counts", [counts.roads_in_um])?;
+    check_sum("counts", [counts.roads_kept_um])?;
     check_sum("counts.roads_lost", counts.roads_lost.iter().map(|loss| loss.roads))?;
-    for loss in &counts.roads_lost {
-        // A loss is a difference of sums and may come out a rounding error below 0.
-        all_measures("counts.roads_lost.length_m", &[loss.length_m])?;
-    }
+    check_sum("counts.roads_lost", counts.roads_lost.iter().map(|loss| loss.length_um))?;
     let names = [&counts.defects, &counts.unknown_highways, &counts.highways_left_out];
     for list in names {
         check_sum("counts", list.iter().map(|&(_, count)| count))?;
     }
     that(counts.classes.len() <= CLASSES, "the number of counts.classes", counts.classes.len())?;
     check_sum("counts.classes", counts.classes.iter().map(|&(count, _)| count))?;
-    counts.classes.iter().try_for_each(|&(_, length_m)| measure("counts.classes", length_m))
+    check_sum("counts.classes", counts.classes.iter().map(|&(_, length_um)| length_um))
 }
 
 fn that(holds: bool, name: &str, value: impl std::fmt::Debug) -> Result<(), String> {
