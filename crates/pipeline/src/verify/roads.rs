@@ -1,7 +1,7 @@
 //! P1: every vertex and edge of a geometric road lies on the TIN of its tile, as stored and decoded.
 
-use corniche_geom::{Frame, TileId};
-use corniche_tileset::TilePayload;
+use corniche_geom::{Frame, TileId, wgs84};
+use corniche_tileset::{Manifest, TilePayload};
 use corniche_tin::{Placement, Surface};
 
 use super::{Check, GapFigures, ground::Ground};
@@ -11,7 +11,7 @@ pub(crate) struct RoadFindings {
     pub(crate) on_tin: Check,
     pub(crate) order: Check,
     pub(crate) gaps: GapFigures,
-    /// Plan length of the GEO lines.
+    /// True length in plan of the GEO lines.
     pub(crate) length_m: f64,
 }
 
@@ -20,13 +20,9 @@ fn allowed_gap_m(max_error_m: f64) -> f64 {
     (max_error_m / 100.0).max(0.01)
 }
 
-pub(crate) fn verify(
-    payload: &TilePayload,
-    frame: &Frame,
-    quantum_m: f64,
-    max_error_m: f64,
-) -> RoadFindings {
+pub(crate) fn verify(payload: &TilePayload, manifest: &Manifest, max_error_m: f64) -> RoadFindings {
     let id = payload.id;
+    let (frame, quantum_m) = (&manifest.frame, manifest.vertical.quantum_m);
     let mut findings = RoadFindings {
         on_tin: Check::new("P1: GEO roads lie on their TIN"),
         order: Check::new("roads are sorted by class, way and part"),
@@ -47,7 +43,9 @@ pub(crate) fn verify(
     // The surface turns stored lines into positions, as a reader does; the ground judges them by itself.
     let surface = Surface::new(&terrain.tin, placement);
     let ground = Ground::new(&terrain.tin, quantum_m);
-    let step_m = frame.lattice_step_m();
+    let lon_lat = |[u, v, _]: [f64; 3]| {
+        manifest.coordinates.wgs84_from_working(frame.position_of_fraction_m([u, v]))
+    };
     for road in &payload.roads_geo {
         let name = || format!("way {} part {} in tile {id}", road.way_id, road.part);
         let positions = match corniche_drape::positions(&road.line, &surface) {
@@ -66,7 +64,9 @@ pub(crate) fn verify(
             ]
         };
         for pair in positions.windows(2) {
-            findings.length_m += (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]) * step_m;
+            if counts_for_sums(id, frame) {
+                findings.length_m += wgs84::short_distance_m(lon_lat(pair[0]), lon_lat(pair[1]));
+            }
             let gap_m = ground.edge_gap_m(in_cells(pair[0]), in_cells(pair[1]));
             findings.gaps.edges += 1;
             findings.gaps.largest_m = findings.gaps.largest_m.max(gap_m.unwrap_or(0.0));

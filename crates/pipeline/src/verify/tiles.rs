@@ -82,7 +82,7 @@ pub(crate) fn verify(
     let (seam_check, borders) = check_seams(&kept);
     let mut lengths =
         Check::new("P6: GEO roads of the finest level are as long as the manifest says");
-    let expected_m = manifest.counts.roads_kept_m;
+    let expected_m = manifest.counts.roads_kept_um as f64 / 1e6;
     lengths
         .look((finest_length_m - expected_m).abs() <= LENGTH_SHARE * expected_m.max(1.0), || {
             format!("{finest_length_m} m lie in the tiles, {expected_m} m are recorded")
@@ -129,8 +129,7 @@ fn look_at(package: &FilePackage, id: TileId) -> Found {
     };
     let max_error_m =
         manifest.levels.get(usize::from(id.z())).map_or(0.0, |level| level.max_error_m);
-    let findings =
-        roads::verify(&payload, &manifest.frame, manifest.vertical.quantum_m, max_error_m);
+    let findings = roads::verify(&payload, manifest, max_error_m);
     Found {
         kept: payload.terrain.map(|terrain| Kept {
             vertices: terrain.tin.vertices().len() as u64,
