@@ -104,6 +104,10 @@ impl Observer for Watch {
         }
     }
 
+    fn warning(&self, text: &str) {
+        self.progress.warning(text);
+    }
+
     fn is_cancelled(&self) -> bool {
         self.progress.is_cancelled()
     }

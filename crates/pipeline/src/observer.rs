@@ -55,6 +55,9 @@ pub trait Observer: Sync {
     /// Something is wrong with the input, was survived and is counted. In an order that the inputs alone determine.
     fn defect(&self, _: &Defect) {}
 
+    /// Something about the inputs that their owner should know, in words.
+    fn warning(&self, _: &str) {}
+
     /// Whether to stop at the next opportunity; the run then fails with `Interrupted`.
     fn is_cancelled(&self) -> bool {
         false

@@ -2,6 +2,8 @@ use std::{num::NonZeroUsize, path::PathBuf};
 
 use clap::Args;
 
+use super::values::parse_cell;
+
 #[derive(Debug, Args)]
 pub(crate) struct BuildArgs {
     /// Elevation rasters, any format GDAL reads; where they overlap, the first has precedence
@@ -39,8 +41,9 @@ pub(crate) struct BuildArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Terrain")]
 pub(crate) struct TerrainArgs {
-    /// Working CRS, projected, in metres [default: the DEM's if it is projected and true to scale, else UTM]
-    #[arg(long, value_name = "EPSG:N")]
+    /// Working CRS: dem (the first raster's own, so that nodes are its samples), utm, or any projected one
+    /// [default: dem where lengths are then true within 3 %, else utm]
+    #[arg(long, value_name = "dem|utm|EPSG:N|WKT")]
     pub(crate) crs: Option<String>,
     /// CRS of rasters that name none
     #[arg(long, value_name = "EPSG:N")]
@@ -57,9 +60,17 @@ pub(crate) struct TerrainArgs {
     /// Height that means "no data", beside what the files say
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     pub(crate) nodata: Option<f64>,
-    /// Spacing of the finest level, in metres [default: the DEM's]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
-    pub(crate) cell: Option<f64>,
+    /// Latitude, in degrees, at which lengths are true in a CRS that is not true to scale, such as degrees; packages of
+    /// adjoining regions fit when it is the same [default: the middle of the DEM, to half a degree]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub(crate) scale_latitude: Option<f64>,
+    /// Spacing of the finest level, in metres: of a square, or of a rectangle, east and north; heights are interpolated
+    /// [default: the DEM's own]
+    #[arg(long, value_name = "METRES|EAST,NORTH", value_parser = parse_cell, allow_hyphen_values = true)]
+    pub(crate) cell: Option<[f64; 2]>,
+    /// Take one in K of the DEM's samples along both axes as the finest level, as they are
+    #[arg(long, value_name = "K", conflicts_with = "cell")]
+    pub(crate) cell_every: Option<u32>,
     /// Largest vertical error of the finest level, in metres [default: a quarter of the cell]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub(crate) max_error: Option<f64>,
