@@ -102,7 +102,7 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
         levels.row([
             level.level.to_string(),
             sides(level.cell_m),
-            format!("{}", level.max_error_m),
+            rounded(level.max_error_m),
             format!("{:.2}", level.geometric_error_m),
             or_dash(level.errors_m.map(|errors_m| errors_m.median), 2),
             or_dash(level.errors_m.map(|errors_m| errors_m.p95), 2),
@@ -163,18 +163,20 @@ fn scales(scale: &ScaleRecord) -> String {
     format!("working metres to a true metre: {}; {}", along(0, "east"), along(1, "north"))
 }
 
-/// A cell's sides, to three digits at least: "30", "63.1 × 92.7".
+/// A cell's sides: "30", "63.1 × 92.7".
 fn sides(cell: Cell) -> String {
-    let side = |metres: f64| {
-        let digits = (2.0 - metres.abs().log10().floor()).clamp(0.0, 9.0) as usize;
-        let text = format!("{metres:.digits$}");
-        if digits == 0 {
-            return text;
-        }
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    };
-    let [east, north] = cell.to_array().map(side);
+    let [east, north] = cell.to_array().map(rounded);
     if east == north { north } else { format!("{east} × {north}") }
+}
+
+/// A length to three digits at least, without zeros at its end.
+fn rounded(metres: f64) -> String {
+    let digits = (2.0 - metres.abs().log10().floor()).clamp(0.0, 9.0) as usize;
+    let text = format!("{metres:.digits$}");
+    if digits == 0 {
+        return text;
+    }
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// Foreign text for a terminal: its control characters must neither colour nor forge lines.
