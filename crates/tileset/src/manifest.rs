@@ -132,7 +132,7 @@ pub struct LevelRecord {
 }
 
 /// How far a level's TINs are from the DEM's own samples: those that nodes are made from, each once, after nodata, units
-/// and shift; samples that lie on a border belong to the tile east or south of it.
+/// and shift, at the nearest lattice point; samples that lie on a border belong to the tile east or south of it.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct SampleErrorRecord {
     /// Samples at which there is a TIN.

@@ -106,7 +106,7 @@ pub(crate) fn write_degrees(
 }
 
 /// Writes samples of a grid: EPSG code, position of the first sample, spacing. −9999 is nodata.
-fn write_samples(
+pub(crate) fn write_samples(
     path: &Path,
     size: (usize, usize),
     (epsg, first, [east, north]): (u32, [f64; 2], [f64; 2]),
