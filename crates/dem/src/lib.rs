@@ -15,6 +15,11 @@
 mod dem;
 mod source;
 
+mod audit;
+mod files;
+mod oversampling;
+mod vsi;
+
 mod plan;
 mod reader;
 
@@ -36,10 +41,13 @@ mod scale;
 mod error;
 mod library;
 
+pub use audit::{Audit, AuditBlock, Auditor, SURFACE_RANGE_M};
 pub use dem::{Dem, limit_block_cache};
 pub use error::DemError;
+pub use files::raster_files;
 pub use library::LibraryError;
 pub use plan::{GridPlan, PlanOptions, Resampling};
 pub use projection::DemProjection;
 pub use reader::{DemWindow, Reader, SampleBlock};
 pub use source::OpenOptions;
+pub use vsi::VirtualFile;

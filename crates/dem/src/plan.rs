@@ -256,7 +256,7 @@ fn scale_at(
 }
 
 /// Spacing of a mosaic's columns and rows in the working CRS, at its centre; `None` outside the CRS.
-fn spacing_m(
+pub(crate) fn spacing_m(
     mosaic: &Mosaic,
     working: &Crs,
     operation: &Operation,

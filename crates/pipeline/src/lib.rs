@@ -5,9 +5,11 @@
 mod build;
 mod defect;
 mod error;
+mod inputs;
 mod observer;
 mod settings;
 mod storage;
+mod target;
 mod verify;
 mod workers;
 
@@ -18,6 +20,7 @@ pub use error::BuildError;
 pub use observer::{Observer, Silent, Stage};
 pub use settings::{BuildSettings, Existing, Resources, RoadSettings, TerrainSettings};
 pub use storage::{DiskStorage, Kind, MemoryStorage, Span, Storage};
+pub use target::{TargetError, file_target};
 pub use verify::{
     Check, ErrorFigures, GapFigures, VerifyError, VerifyReport, VerifySettings, verify,
 };

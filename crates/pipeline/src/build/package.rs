@@ -93,7 +93,8 @@ fn settings_record(outcome: &Outcome<'_>) -> SettingsRecord {
     SettingsRecord {
         max_error_m: outcome.max_error_m,
         fill_voids: terrain.fill_voids,
-        nodata: terrain.nodata,
+        nodata: terrain.nodata.clone(),
+        height_range_m: terrain.height_range_m,
         dem_crs: terrain.dem_crs.clone(),
         dem_vertical_crs: terrain.dem_vertical_crs.clone(),
         vertical_crs: terrain.vertical_crs.clone(),

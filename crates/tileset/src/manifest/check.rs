@@ -16,6 +16,8 @@ const QUANTUM_EXPONENTS: std::ops::RangeInclusive<i32> = -64..=27;
 const MAX_COUNT: u64 = 1 << 61;
 /// Length in the working CRS over true length: Mercator reaches 57 a degree from the pole.
 const POINT_SCALES: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
+/// More values that mean "no data" than any set of files has.
+const MAX_NODATA: usize = 64;
 /// Classes 0 to 8.
 const CLASSES: usize = corniche_roads::FunctionalRoadClass::COUNT;
 
@@ -70,6 +72,12 @@ impl Manifest {
         measure("settings.simplify_cells", settings.simplify_cells)?;
         measure("settings.cell_m", settings.cell_m.unwrap_or(0.0))?;
         all_measures("settings.vertical_shift_m", &[settings.vertical_shift_m])?;
+        that(settings.nodata.len() <= MAX_NODATA, "the number of settings.nodata", settings.nodata.len())?;
+        that(settings.nodata.iter().all(|value| value.is_finite()), "settings.nodata", &settings.nodata)?;
+        if let Some([low_m, high_m]) = settings.height_range_m {
+            all_measures("settings.height_range_m", &[low_m, high_m])?;
+            that(low_m <= high_m, "settings.height_range_m", [low_m, high_m])?;
+        }
         let cells = &settings.class_max_cell_m;
         that(cells.len() <= CLASSES, "the number of settings.class_max_cell_m", cells.len())?;
         cells
