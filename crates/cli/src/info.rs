@@ -205,5 +205,8 @@ fn roads(manifest: &Manifest) -> String {
     for (value, number) in &counts.unknown_highways {
         let _ = writeln!(text, "highway={} is in no class: {}", plain(value), count(*number));
     }
+    for (tag, number) in &counts.tags_taken_otherwise {
+        let _ = writeln!(text, "{} is taken for another value: {}", plain(tag), count(*number));
+    }
     text
 }

@@ -208,6 +208,9 @@ pub struct Counts {
     pub defects: Vec<(String, u64)>,
     /// Ways by `highway` value that the FRC table does not know. Sorted by value.
     pub unknown_highways: Vec<(String, u64)>,
+    /// Tags of roads that are taken for something else than they say ("layer=1000", "tunnel=culvert"): on how many ways.
+    /// Sorted by tag.
+    pub tags_taken_otherwise: Vec<(String, u64)>,
     /// Blobs of the extract of a type that readers pass over, as its format asks; 0 in the extracts of common tools.
     pub blobs_passed_over: u64,
     /// Ways with a `highway` tag in the extract.

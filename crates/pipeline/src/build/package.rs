@@ -155,6 +155,12 @@ fn counts(outcome: &Outcome<'_>) -> Counts {
             .iter()
             .map(|(value, &count)| (value.clone(), count))
             .collect(),
+        tags_taken_otherwise: roads
+            .extract
+            .tags_taken_otherwise
+            .iter()
+            .map(|(tag, &count)| (tag.clone(), count))
+            .collect(),
         blobs_passed_over: roads.extract.blobs_passed_over,
         highways_in: roads.extract.highway_ways,
         highways_left_out: left_out(&roads.extract),

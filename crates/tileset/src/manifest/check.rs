@@ -142,7 +142,12 @@ fn check_counts(counts: &Counts) -> Result<(), String> {
         // A loss is a difference of sums and may come out a rounding error below 0.
         all_measures("counts.roads_lost.length_m", &[loss.length_m])?;
     }
-    let names = [&counts.defects, &counts.unknown_highways, &counts.highways_left_out];
+    let names = [
+        &counts.defects,
+        &counts.unknown_highways,
+        &counts.tags_taken_otherwise,
+        &counts.highways_left_out,
+    ];
     for list in names {
         check_sum("counts", list.iter().map(|&(_, count)| count))?;
     }
