@@ -91,7 +91,9 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
     };
     let nodata = nodata(args.terrain.nodata, config.terrain.nodata)?;
     let height_range_m = args.terrain.height_range.or(config.terrain.height_range);
-    if let Some([low, high]) = height_range_m.filter(|[low, high]| !(low < high && (high - low).is_finite())) {
+    if let Some([low, high]) =
+        height_range_m.filter(|[low, high]| !(low < high && (high - low).is_finite()))
+    {
         return Err(Failure::unusable(format!(
             "height-range of {low}, {high} has no two ends in order; write it like [-500, 9000]"
         )));

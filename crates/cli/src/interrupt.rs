@@ -66,7 +66,8 @@ pub(crate) fn remove_at_end(path: &Path) {
 }
 
 fn end() -> ! {
-    let litter = LITTER.lock().map_or_else(|poisoned| poisoned.into_inner().clone(), |all| all.clone());
+    let litter =
+        LITTER.lock().map_or_else(|poisoned| poisoned.into_inner().clone(), |all| all.clone());
     // Other threads are still at work: what they add while a folder is emptied takes another turn.
     for _ in 0..3 {
         for path in litter.iter().filter(|path| path.symlink_metadata().is_ok()) {

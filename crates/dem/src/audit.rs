@@ -288,10 +288,16 @@ impl Audit {
         } else {
             0
         });
-        let first = dem.sources.iter().find(|source| named.first().is_some_and(|(path, _)| *path == source.path));
+        let first = dem
+            .sources
+            .iter()
+            .find(|source| named.first().is_some_and(|(path, _)| *path == source.path));
         DemError::Sentinel {
             paths: named.into_iter().map(|(path, _)| path).collect(),
-            stored: first.map_or_else(|| entry.stored.to_string(), |source| source.stored_text(entry.stored)),
+            stored: first.map_or_else(
+                || entry.stored.to_string(),
+                |source| source.stored_text(entry.stored),
+            ),
             count,
             samples,
             height_m: entry.height_m,

@@ -46,6 +46,7 @@ fn is_vrt(path: &Path) -> bool {
         return false;
     }
     let mut start = Vec::new();
-    let read = VirtualFile::open(path).and_then(|file| file.take(VRT_BYTES).read_to_end(&mut start));
+    let read =
+        VirtualFile::open(path).and_then(|file| file.take(VRT_BYTES).read_to_end(&mut start));
     read.is_ok() && start.windows(VRT.len()).any(|window| window == VRT)
 }

@@ -44,7 +44,8 @@ impl Values {
         if kind == GdalDataType::Unknown {
             return Err(DemError::SampleType { path: path.to_path_buf() });
         }
-        let mut nodata: Vec<f64> = declared(band, kind).into_iter().chain(options.nodata.iter().copied()).collect();
+        let mut nodata: Vec<f64> =
+            declared(band, kind).into_iter().chain(options.nodata.iter().copied()).collect();
         if kind == GdalDataType::Int16 {
             nodata.push(SRTM_VOID);
         }

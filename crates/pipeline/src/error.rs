@@ -19,7 +19,9 @@ pub enum BuildError {
     TargetIsInput { path: PathBuf },
     #[error("cannot read {path:?}")]
     Input { path: PathBuf, source: io::Error },
-    #[error("{path:?} is a pipe or a device; inputs are read more than once, so save it to a file first")]
+    #[error(
+        "{path:?} is a pipe or a device; inputs are read more than once, so save it to a file first"
+    )]
     Stream { path: PathBuf },
     #[error(
         "the name of {path:?} is not UTF-8, and a package records the names of its inputs as text; rename the file"

@@ -195,10 +195,8 @@ fn named(path: &Path) -> Option<(Content, String)> {
     if text.starts_with("/vsi") {
         return Some((Content::Virtual(path.to_path_buf()), short(path)?));
     }
-    let container = text
-        .split(':')
-        .map(|part| part.trim_matches('"'))
-        .find(|part| Path::new(part).is_file());
+    let container =
+        text.split(':').map(|part| part.trim_matches('"')).find(|part| Path::new(part).is_file());
     match container {
         Some(container) => {
             let name = text.replace(container, &short(Path::new(container))?);

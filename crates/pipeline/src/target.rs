@@ -14,7 +14,9 @@ pub enum TargetError {
     Folder { path: PathBuf },
     #[error("{path:?} is {found}, which no file may replace; choose another name")]
     NoFile { path: PathBuf, found: &'static str },
-    #[error("{path:?} is a link that leads nowhere; delete it, or name the file that it should lead to")]
+    #[error(
+        "{path:?} is a link that leads nowhere; delete it, or name the file that it should lead to"
+    )]
     DeadLink { path: PathBuf },
     #[error("{path:?} cannot be looked at")]
     Unknown { path: PathBuf, source: io::Error },
@@ -30,8 +32,11 @@ pub enum TargetError {
 /// folder: a device, a pipe, a socket.
 pub fn file_target(path: &Path) -> Result<PathBuf, TargetError> {
     let own = || path.to_path_buf();
-    let ends_in_slash =
-        path.as_os_str().as_encoded_bytes().last().is_some_and(|&byte| std::path::is_separator(byte.into()));
+    let ends_in_slash = path
+        .as_os_str()
+        .as_encoded_bytes()
+        .last()
+        .is_some_and(|&byte| std::path::is_separator(byte.into()));
     if ends_in_slash || path.file_name().is_none() {
         return Err(TargetError::Folder { path: own() });
     }

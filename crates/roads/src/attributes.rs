@@ -50,13 +50,10 @@ pub fn tags_taken_otherwise<'t>(
     let value = |key| tag(tags, key).map(str::trim).unwrap_or_default();
     let (layer, tunnel) = (value("layer"), value("tunnel"));
     let is_layer = layer.is_empty() || layer.parse::<i8>().is_ok();
-    [
-        ("layer", layer, !is_layer),
-        ("tunnel", tunnel, BESIDE_TUNNELS.contains(&tunnel)),
-    ]
-    .into_iter()
-    .filter(|(.., is_otherwise)| *is_otherwise)
-    .map(|(key, value, _)| (key, value))
+    [("layer", layer, !is_layer), ("tunnel", tunnel, BESIDE_TUNNELS.contains(&tunnel))]
+        .into_iter()
+        .filter(|(.., is_otherwise)| *is_otherwise)
+        .map(|(key, value, _)| (key, value))
 }
 
 /// Values of `tunnel` that do not put the road underground: the water is in a culvert, a building passage is at ground level.

@@ -21,7 +21,9 @@ pub(crate) fn parse_range(text: &str) -> Result<[f64; 2], String> {
         .split_once(',')
         .and_then(|(low, high)| Some([low.trim().parse().ok()?, high.trim().parse().ok()?]));
     match ends {
-        Some([low, high]) if low < high && f64::is_finite(low) && high.is_finite() => Ok([low, high]),
+        Some([low, high]) if low < high && f64::is_finite(low) && high.is_finite() => {
+            Ok([low, high])
+        }
         _ => Err("write the lowest and the highest like -500,9000".to_owned()),
     }
 }

@@ -26,7 +26,8 @@ use corniche_dem::{Dem, OpenOptions, PlanOptions};
 use corniche_tileset::Manifest;
 
 use crate::{
-    BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage, file_target, inputs::Inputs,
+    BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage, file_target,
+    inputs::Inputs,
 };
 
 pub(crate) use heights::data_tiles;

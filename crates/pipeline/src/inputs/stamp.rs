@@ -48,10 +48,12 @@ impl Stamp {
     /// Whether the file is still what it was.
     pub(super) fn still_holds(&self) -> bool {
         match self {
-            Self::File(path, state) => fs::metadata(path).is_ok_and(|now| FileState::of(&now) == *state),
-            Self::Remote(path, size) => {
-                VirtualFile::open(path).and_then(VirtualFile::into_size).is_ok_and(|now| now == *size)
+            Self::File(path, state) => {
+                fs::metadata(path).is_ok_and(|now| FileState::of(&now) == *state)
             }
+            Self::Remote(path, size) => VirtualFile::open(path)
+                .and_then(VirtualFile::into_size)
+                .is_ok_and(|now| now == *size),
         }
     }
 }
@@ -64,7 +66,12 @@ impl FileState {
             #[cfg(unix)]
             identity: {
                 use std::os::unix::fs::MetadataExt as _;
-                [found.dev().cast_signed(), found.ino().cast_signed(), found.ctime(), found.ctime_nsec()]
+                [
+                    found.dev().cast_signed(),
+                    found.ino().cast_signed(),
+                    found.ctime(),
+                    found.ctime_nsec(),
+                ]
             },
         }
     }

@@ -149,7 +149,9 @@ pub enum VerifyError {
          same order"
     )]
     OtherDem { expected: Vec<String> },
-    #[error("{path:?} is a pipe or a device; inputs are read more than once, so save it to a file first")]
+    #[error(
+        "{path:?} is a pipe or a device; inputs are read more than once, so save it to a file first"
+    )]
     Stream { path: PathBuf },
     #[error("the name of {path:?} is not UTF-8; rename the file")]
     InputName { path: PathBuf },

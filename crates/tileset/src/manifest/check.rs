@@ -72,8 +72,16 @@ impl Manifest {
         measure("settings.simplify_cells", settings.simplify_cells)?;
         measure("settings.cell_m", settings.cell_m.unwrap_or(0.0))?;
         all_measures("settings.vertical_shift_m", &[settings.vertical_shift_m])?;
-        that(settings.nodata.len() <= MAX_NODATA, "the number of settings.nodata", settings.nodata.len())?;
-        that(settings.nodata.iter().all(|value| value.is_finite()), "settings.nodata", &settings.nodata)?;
+        that(
+            settings.nodata.len() <= MAX_NODATA,
+            "the number of settings.nodata",
+            settings.nodata.len(),
+        )?;
+        that(
+            settings.nodata.iter().all(|value| value.is_finite()),
+            "settings.nodata",
+            &settings.nodata,
+        )?;
         if let Some([low_m, high_m]) = settings.height_range_m {
             all_measures("settings.height_range_m", &[low_m, high_m])?;
             that(low_m <= high_m, "settings.height_range_m", [low_m, high_m])?;
