@@ -26,8 +26,8 @@ const FAR_M: f64 = 1000.0;
 const ONE_IN: u64 = 10_000;
 /// Values that are kept of each end. Beyond the outermost ones nothing is judged.
 const KEPT: usize = 16;
-/// Side of the blocks that are looked at.
-const BLOCK_SAMPLES: usize = 1024;
+/// Side of the blocks that are looked at; of files stored in rows, so many samples in whole rows.
+const BLOCK_SAMPLES: usize = 512;
 
 /// A rectangle of one file's samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,6 +53,13 @@ struct Entry {
 #[derive(Debug, Clone, PartialEq, Default)]
 struct End {
     entries: Vec<Entry>,
+}
+
+/// What the samples of one block were found to be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AuditPart {
+    file: usize,
+    found: FileAudit,
 }
 
 /// What the samples of a DEM were found to be, in bounded memory; parts of it merge in any order.
@@ -87,10 +94,16 @@ impl Dem {
         let mut blocks = Vec::new();
         for (file, source) in self.sources.iter().enumerate() {
             let size = [source.columns as usize, source.rows as usize];
-            for row in (0..size[1]).step_by(BLOCK_SAMPLES) {
-                for column in (0..size[0]).step_by(BLOCK_SAMPLES) {
+            // Whoever cuts rows into columns unpacks each row many times.
+            let most = if source.is_striped {
+                [size[0], (BLOCK_SAMPLES * BLOCK_SAMPLES / size[0].max(1)).max(1)]
+            } else {
+                [BLOCK_SAMPLES; 2]
+            };
+            for row in (0..size[1]).step_by(most[1]) {
+                for column in (0..size[0]).step_by(most[0].max(1)) {
                     let start = [column, row];
-                    let side = |axis: usize| BLOCK_SAMPLES.min(size[axis] - start[axis]);
+                    let side = |axis: usize| most[axis].min(size[axis] - start[axis]);
                     blocks.push(AuditBlock { file, start, size: [side(0), side(1)] });
                 }
             }
@@ -117,18 +130,17 @@ impl Auditor<'_> {
     ///
     /// # Errors
     /// When the file cannot be read.
-    pub fn look(&mut self, block: &AuditBlock) -> Result<Audit, DemError> {
+    pub fn look(&mut self, block: &AuditBlock) -> Result<AuditPart, DemError> {
         let source = &self.dem.sources[block.file];
         let dataset: &Dataset = self.files.dataset(block.file, source)?;
         source.read_stored(dataset, block.start, block.size, &mut self.stored)?;
         self.heights_m.clone_from(&self.stored);
         source.convert(&mut self.heights_m);
-        let mut audit = Audit::new(self.dem.sources.len(), self.range_m);
-        let file = &mut audit.files[block.file];
+        let mut found = FileAudit::default();
         for (&stored, &height_m) in self.stored.iter().zip(&self.heights_m) {
-            file.add(stored, height_m, self.range_m);
+            found.add(stored, height_m, self.range_m);
         }
-        Ok(audit)
+        Ok(AuditPart { file: block.file, found })
     }
 }
 
@@ -216,10 +228,10 @@ impl Audit {
         Self::new(dem.sources.len(), range_m)
     }
 
-    /// Adds what was found in other blocks of the same DEM.
-    pub fn merge(&mut self, other: &Self) {
-        for (own, other) in self.files.iter_mut().zip(&other.files) {
-            own.merge(other);
+    /// Adds what was found in a block of the same DEM.
+    pub fn merge(&mut self, part: &AuditPart) {
+        if let Some(file) = self.files.get_mut(part.file) {
+            file.merge(&part.found);
         }
     }
 

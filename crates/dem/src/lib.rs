@@ -41,7 +41,7 @@ mod scale;
 mod error;
 mod library;
 
-pub use audit::{Audit, AuditBlock, Auditor, SURFACE_RANGE_M};
+pub use audit::{Audit, AuditBlock, AuditPart, Auditor, SURFACE_RANGE_M};
 pub use dem::{Dem, limit_block_cache};
 pub use error::DemError;
 pub use files::raster_files;

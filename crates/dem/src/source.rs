@@ -50,6 +50,8 @@ pub(crate) struct Source {
     /// What its heights are measured from, as the file or `--dem-vertical-crs` says.
     pub(crate) vertical: Option<VerticalCrs>,
     values: Values,
+    /// Stored in whole rows rather than in tiles.
+    pub(crate) is_striped: bool,
     /// Number of the band in which 0 means that there is no sample.
     alpha_band: Option<usize>,
     /// To the vertical CRS asked for, where that is another one.
@@ -105,6 +107,7 @@ impl Source {
             crs,
             values: Values::of(path, &band, vertical.as_ref(), options)?,
             vertical,
+            is_striped: band.block_size().0 == columns,
             alpha_band: alpha_band(&dataset),
             to_target: None,
             shift_m: 0.0,

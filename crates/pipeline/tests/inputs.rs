@@ -6,7 +6,9 @@ mod support;
 
 use std::{fs, path::Path, sync::Mutex};
 
-use corniche_pipeline::{BuildError, Observer, Silent, Stage, build};
+use corniche_pipeline::{
+    BuildError, Observer, Silent, Stage, VerifyError, VerifySettings, build, verify,
+};
 use support::{Options, Raster, build_files, build_raster, settings, terrain::waves};
 
 fn hills() -> Raster {
@@ -149,4 +151,21 @@ fn a_tolerance_beyond_what_numbers_hold_is_refused_as_such() {
     let level = Raster::new([300, 200], [5, 9], |_, _| 0.0);
     let built = build_raster(&level, Options::plain(1e-9)).unwrap();
     assert!(built.grounds().all(|(_, ground)| ground.geometric_error_m == 0.0));
+}
+
+/// What is verified against must stay as it is meanwhile, too.
+#[test]
+fn a_raster_exchanged_while_it_is_verified_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let [dem, output] = ["dem.tif", "out.pmtiles"].map(|name| folder.path().join(name));
+    hills().write(&dem);
+    build(&settings(dem.clone(), None, output.clone(), Options::plain(5.0)), &Silent).unwrap();
+    let request = VerifySettings { package: output, dem: vec![dem.clone()], threads: 2 };
+    assert!(verify(&request, &Silent).unwrap().holds());
+    for stage in [Stage::Hash, Stage::Errors] {
+        let change = At { stage, act: Mutex::new(Some(Box::new(|| exchange(&dem)))) };
+        let refused = verify(&request, &change).err().unwrap();
+        assert!(matches!(&refused, VerifyError::Changed { path } if *path == dem), "{refused}");
+        hills().write(&dem);
+    }
 }

@@ -56,9 +56,24 @@ pub(crate) fn verify(
     report: &mut VerifyReport,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let manifest = package.manifest();
     let inputs = Inputs::find(&settings.dem, None)?;
-    let (dem, plan) = open(settings, &inputs, manifest, observer)?;
+    let compared = compare_all(package, settings, &inputs, report, observer);
+    match &compared {
+        Err(VerifyError::Interrupted) => compared,
+        // What else is wrong may come of a change.
+        _ => inputs.check_unchanged().map_err(VerifyError::from).and(compared),
+    }
+}
+
+fn compare_all(
+    package: &FilePackage,
+    settings: &VerifySettings,
+    inputs: &Inputs,
+    report: &mut VerifyReport,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
+    let manifest = package.manifest();
+    let (dem, plan) = open(settings, inputs, manifest, observer)?;
     let max_level = manifest.frame.max_level();
     // All finest tiles of the data, those without ground too: a coarser level may cover their nodes.
     let finest = crate::build::data_tiles(&plan);
@@ -106,7 +121,6 @@ pub(crate) fn verify(
     )?;
     samples.measure(package, &dem, &plan, observer)?;
     observer.end(Stage::Errors);
-    inputs.check_unchanged()?;
     judge(package, &truths, report)?;
     report.samples = Some(samples.figures());
     Ok(())
