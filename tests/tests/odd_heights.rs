@@ -87,6 +87,30 @@ fn an_undeclared_value_is_refused_with_its_count_at_any_number_of_threads() {
     }
 }
 
+/// Of several files, those that have the value are named; one that has nothing else too.
+#[test]
+fn the_files_that_hold_the_value_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("out.pmtiles");
+    let [good, bad] = ["good.asc", "bad.asc"].map(|name| folder.path().join(name));
+    raster(folder.path(), "good.asc", hill);
+    for (void_rows, count, of) in [(3, 600, 40_000), (SIDE, 40_000, 80_000)] {
+        raster(
+            folder.path(),
+            "bad.asc",
+            |column, row| {
+                if row < void_rows { -9999.0 } else { hill(column, row) }
+            },
+        );
+        let files = ["--dem", text(&good), text(&bad)];
+        let rest = ["build", "-o", text(&package), "--quiet"];
+        let ran = corniche(rest.into_iter().chain(UTM).chain(files));
+        assert_eq!(ran.code, 2, "{}", ran.err);
+        let said = format!("{count} of {of} samples of {} hold -9999", bad.display());
+        assert!(ran.err.contains(&said), "{} is not {said}", ran.err);
+    }
+}
+
 #[test]
 fn several_values_may_mean_no_data() {
     let folder = tempfile::tempdir().unwrap();

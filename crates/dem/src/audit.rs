@@ -11,7 +11,7 @@
 //!             −9999
 //! ```
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use gdal::Dataset;
 
@@ -176,6 +176,12 @@ impl FileAudit {
         }
     }
 
+    /// How often an outermost value was met.
+    fn count_of(&self, height_m: f64) -> u64 {
+        let entries = self.lowest.entries.iter().chain(&self.highest.entries);
+        entries.into_iter().find(|entry| entry.height_m == height_m).map_or(0, |entry| entry.count)
+    }
+
     /// Lowest and highest sample.
     fn range_m(&self) -> Option<[f64; 2]> {
         let [low, high] = [&self.lowest, &self.highest].map(|end| end.entries.first());
@@ -245,15 +251,8 @@ impl Audit {
     /// # Errors
     /// [`DemError::Sentinel`] or [`DemError::OutOfRange`].
     pub fn check(&self, dem: &Dem, is_range_given: bool) -> Result<(), DemError> {
-        let mut all = FileAudit::default();
-        self.files.iter().for_each(|file| all.merge(file));
-        if !is_range_given {
-            let each = self.files.iter().map(|file| (file.sentinel(), file.samples));
-            let together = (all.sentinel(), all.samples);
-            let found = each.chain([together]).find_map(|(found, of)| Some((found?, of)));
-            if let Some(((entry, gap_m), samples)) = found {
-                return Err(self.sentinel_error(dem, entry, gap_m, samples));
-            }
+        if !is_range_given && let Some(error) = self.sentinel_error(dem) {
+            return Err(error);
         }
         let outside = dem.sources.iter().zip(&self.files).find(|(_, file)| file.outside > 0);
         let Some((source, file)) = outside else { return Ok(()) };
@@ -275,49 +274,48 @@ impl Audit {
         })
     }
 
-    fn sentinel_error(&self, dem: &Dem, entry: Entry, gap_m: f64, samples: u64) -> DemError {
-        let holds = |file: &FileAudit| {
-            [&file.lowest, &file.highest]
-                .into_iter()
-                .flat_map(|end| &end.entries)
-                .find(|other| other.height_m == entry.height_m)
-                .map(|other| other.count)
+    fn sentinel_error(&self, dem: &Dem) -> Option<DemError> {
+        let files = || dem.sources.iter().zip(&self.files);
+        let mut all = FileAudit::default();
+        self.files.iter().for_each(|file| all.merge(file));
+        // A file's own, with all files that have the same; else one that only stands out beside other files.
+        let own = self.files.iter().find_map(FileAudit::sentinel);
+        let (entry, gap_m) = own.or_else(|| all.sentinel())?;
+        let count_in = |file: &FileAudit| match file.sentinel() {
+            _ if own.is_none() => file.count_of(entry.height_m),
+            Some((same, _)) if same.height_m == entry.height_m => same.count,
+            _ => 0,
         };
-        let named: Vec<(PathBuf, u64)> = dem
-            .sources
-            .iter()
-            .zip(&self.files)
-            .filter_map(|(source, file)| Some((source.path.clone(), holds(file)?)))
-            .collect();
-        let ranges = self.files.iter().filter_map(FileAudit::range_m);
-        let range_m = ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |all, file| {
-            [all[0].min(file[0]), all[1].max(file[1])]
-        });
-        let count = named.iter().map(|(_, count)| count).sum::<u64>().max(entry.count);
-        // All files' samples, where the value was found in several of them.
-        let samples = samples.max(if named.len() > 1 {
-            self.files.iter().map(|file| file.samples).sum()
-        } else {
-            0
-        });
-        let first = dem
-            .sources
-            .iter()
-            .find(|source| named.first().is_some_and(|(path, _)| *path == source.path));
-        DemError::Sentinel {
-            paths: named.into_iter().map(|(path, _)| path).collect(),
-            stored: first.map_or_else(
-                || entry.stored.to_string(),
-                |source| source.stored_text(entry.stored),
-            ),
-            count,
+        let holders: Vec<_> = files().filter(|(_, file)| count_in(file) > 0).collect();
+        let (first, _) = holders.first()?;
+        let samples = match own {
+            Some(_) => holders.iter().map(|(_, file)| file.samples).sum(),
+            None => all.samples,
+        };
+        let [low_m, high_m] = all.range_m()?;
+        let names: Vec<&Path> = holders.iter().map(|(source, _)| source.path.as_path()).collect();
+        Some(DemError::Sentinel {
+            files: list(&names),
+            stored: first.stored_text(entry.stored),
+            count: holders.iter().map(|(_, file)| count_in(file)).sum(),
             samples,
             height_m: entry.height_m,
             gap_m,
-            side: if entry.height_m <= range_m[0].midpoint(range_m[1]) { "below" } else { "above" },
-            low_m: range_m[0].floor(),
-            high_m: range_m[1].ceil(),
-        }
+            side: if entry.height_m <= low_m.midpoint(high_m) { "below" } else { "above" },
+            low_m: low_m.floor(),
+            high_m: high_m.ceil(),
+        })
+    }
+}
+
+/// The first few files by name, and how many more there are.
+fn list(files: &[&Path]) -> String {
+    const NAMED: usize = 3;
+    let names: Vec<String> =
+        files.iter().take(NAMED).map(|path| path.display().to_string()).collect();
+    match files.len().saturating_sub(NAMED) {
+        0 => names.join(", "),
+        more => format!("{} and {more} more", names.join(", ")),
     }
 }
 

@@ -157,12 +157,12 @@ pub enum DemError {
     )]
     Oversampling { cell_m: f64, nodes: f64, limit: f64 },
     #[error(
-        "{count} of {samples} samples of {paths:?} hold {stored}, {gap_m:.0} m {side} all others: a value that means \"no \
+        "{count} of {samples} samples of {files} hold {stored}, {gap_m:.0} m {side} all others: a value that means \"no \
          data\" and is not declared as such; give it with --nodata {stored}, or if they are heights of {height_m} m allow \
          them with --height-range {low_m},{high_m}"
     )]
     Sentinel {
-        paths: Vec<PathBuf>,
+        files: String,
         stored: String,
         count: u64,
         samples: u64,
