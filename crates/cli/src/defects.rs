@@ -11,6 +11,7 @@ use corniche_pipeline::{Defect, Observer, Stage};
 
 use crate::{
     failure::Failure,
+    interrupt,
     output::{self, Existing, Output},
     progress::Progress,
 };
@@ -102,6 +103,10 @@ impl Observer for Watch {
         if let Some(defects) = &self.defects {
             defects.add(defect);
         }
+    }
+
+    fn work_folder(&self, folder: &Path) {
+        interrupt::remove_at_end(folder);
     }
 
     fn is_cancelled(&self) -> bool {

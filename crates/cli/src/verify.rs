@@ -14,13 +14,11 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     info::or_dash,
-    interrupt,
     progress::Progress,
     table::{Table, count},
 };
 
 pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
-    interrupt::watch()?;
     let settings = VerifySettings {
         package: args.package.clone(),
         dem: args.dem.clone(),

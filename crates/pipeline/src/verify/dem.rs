@@ -11,7 +11,12 @@ use corniche_tileset::{
 use super::{
     Check, ErrorFigures, VerifyError, VerifyReport, VerifySettings, ground::Ground, samples,
 };
-use crate::{BuildError, Observer, Stage, build::input_record, sample_error::SampleSums, workers};
+use crate::{
+    Observer, Stage,
+    inputs::{self, Inputs},
+    sample_error::SampleSums,
+    workers,
+};
 
 /// Slack for comparing two ways of computing the same height, metres.
 pub(super) const ROUNDING_M: f64 = 1e-6;
@@ -52,8 +57,24 @@ pub(crate) fn verify(
     report: &mut VerifyReport,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
+    let inputs = Inputs::find(&settings.dem, None)?;
+    let compared = compare_all(package, settings, &inputs, report, observer);
+    match &compared {
+        Err(VerifyError::Interrupted) => compared,
+        // What else is wrong may come of a change.
+        _ => inputs.check_unchanged().map_err(VerifyError::from).and(compared),
+    }
+}
+
+fn compare_all(
+    package: &FilePackage,
+    settings: &VerifySettings,
+    inputs: &Inputs,
+    report: &mut VerifyReport,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
     let manifest = package.manifest();
-    let (dem, plan) = open(settings, manifest, observer)?;
+    let (dem, plan) = open(settings, inputs, manifest, observer)?;
     let max_level = manifest.frame.max_level();
     // All finest tiles of the data, those without ground too: a coarser level may cover their nodes.
     let finest = crate::build::data_tiles(&plan);
@@ -123,11 +144,12 @@ pub(crate) fn verify(
 /// Opens the DEM as the build did and makes sure that it is the same one and gives the same grid.
 fn open(
     settings: &VerifySettings,
+    inputs: &Inputs,
     manifest: &Manifest,
     observer: &dyn Observer,
 ) -> Result<(Dem, GridPlan), VerifyError> {
-    let expected: Vec<&InputRecord> =
-        manifest.inputs.iter().filter(|input| input.kind == "dem").collect();
+    let is_dem = |input: &&InputRecord| input.kind == inputs::DEM || input.kind == inputs::DEM_PART;
+    let expected: Vec<&InputRecord> = manifest.inputs.iter().filter(is_dem).collect();
     let other = || VerifyError::OtherDem {
         expected: expected.iter().map(|input| input.name.clone()).collect(),
     };
@@ -136,23 +158,28 @@ fn open(
         &settings.dem,
         &OpenOptions {
             dem_crs: record.dem_crs.clone(),
-            nodata: record.nodata,
+            nodata: record.nodata.clone(),
             dem_vertical_crs: record.dem_vertical_crs.clone(),
             vertical_crs: record.vertical_crs.clone(),
             vertical_shift_m: record.vertical_shift_m,
         },
     )?;
-    let mut hashes = Vec::new();
-    for path in &settings.dem {
-        let given = input_record("dem", path, observer).map_err(|error| match error {
-            BuildError::Input { path, source } => VerifyError::Input { path, source },
-            _ => VerifyError::Interrupted,
-        })?;
-        hashes.push(given.sha256);
-    }
+    let given = inputs.hash(observer)?;
     // By content, not by name: a file may have been moved or renamed since.
-    if !hashes.iter().eq(expected.iter().map(|input| &input.sha256)) {
-        return Err(other());
+    let contents = |records: &mut dyn Iterator<Item = &InputRecord>, kind: &str| -> Vec<String> {
+        records.filter(|record| record.kind == kind).map(|record| record.sha256.clone()).collect()
+    };
+    for kind in [inputs::DEM, inputs::DEM_PART] {
+        let mut found = contents(&mut given.iter(), kind);
+        let mut recorded = contents(&mut expected.iter().copied(), kind);
+        if kind == inputs::DEM_PART {
+            // Their order is that of their names.
+            found.sort_unstable();
+            recorded.sort_unstable();
+        }
+        if found != recorded {
+            return Err(other());
+        }
     }
     let plan = dem.plan(&PlanOptions {
         crs: record.crs.clone(),

@@ -137,6 +137,14 @@ pub enum VerifyError {
          same order"
     )]
     OtherDem { expected: Vec<String> },
+    #[error(
+        "{path:?} is a pipe or a device; inputs are read more than once, so save it to a file first"
+    )]
+    Stream { path: PathBuf },
+    #[error("the name of {path:?} is not UTF-8; rename the file")]
+    InputName { path: PathBuf },
+    #[error("{path:?} changed while it was read; run the same command again when it is left alone")]
+    Changed { path: PathBuf },
     #[error("cannot read {path:?}")]
     Input { path: PathBuf, source: std::io::Error },
     #[error("interrupted")]

@@ -116,12 +116,13 @@ pub(crate) struct Options {
     pub(crate) max_error_m: f64,
     pub(crate) fill_voids: u32,
     pub(crate) threads: usize,
+    pub(crate) height_range_m: Option<[f64; 2]>,
 }
 
 impl Options {
     /// The raster's own cell, nothing filled.
     pub(crate) fn plain(max_error_m: f64) -> Self {
-        Self { cell_m: None, max_error_m, fill_voids: 0, threads: 2 }
+        Self { cell_m: None, max_error_m, fill_voids: 0, threads: 2, height_range_m: None }
     }
 }
 
@@ -163,7 +164,9 @@ pub(crate) fn settings(
             dem_vertical_crs: None,
             vertical_crs: None,
             vertical_shift_m: 0.0,
-            nodata: None,
+            nodata: Vec::new(),
+            height_range_m: options.height_range_m,
+            allow_fine_cell: false,
             cell: options.cell_m.map(corniche_geom::Cell::from),
             cell_every: None,
             scale_latitude_deg: None,
