@@ -6,6 +6,7 @@ use std::{
     thread,
 };
 
+use corniche_geom::Cell;
 use corniche_pipeline::{
     BuildError, BuildSettings, Existing, Resources, RoadSettings, TerrainSettings,
 };
@@ -14,7 +15,7 @@ use corniche_roads::ClassFilter;
 use corniche_tileset::Manifest;
 
 use crate::{
-    args::{BuildArgs, parse_bytes},
+    args::{BuildArgs, check_cell, parse_bytes},
     defects::{DefectList, Watch},
     exit::ExitCode,
     failure::Failure,
@@ -98,6 +99,15 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
             "height-range of {low}, {high} has no two ends in order; write it like [-500, 9000]"
         )));
     }
+    // Two ways to say one thing: what the command line says of it goes before all that the file says.
+    let (cell, cell_every) = match (args.terrain.cell, args.terrain.cell_every) {
+        (None, None) => {
+            let cell = config.terrain.cell.map(|sides| check_cell(sides.to_array())).transpose();
+            let cell = cell.map_err(|error| Failure::unusable(format!("cell: {error}")))?;
+            (cell, config.terrain.cell_every)
+        }
+        said => said,
+    };
     let terrain = TerrainSettings {
         crs: args.terrain.crs.or(config.terrain.crs),
         dem_crs: args.terrain.dem_crs.or(config.terrain.dem_crs),
@@ -111,10 +121,9 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
         nodata,
         height_range_m,
         allow_fine_cell: args.terrain.force,
-        cell: positive("--cell", args.terrain.cell.or(config.terrain.cell))?
-            .map(corniche_geom::Cell::from),
-        cell_every: None,
-        scale_latitude_deg: None,
+        cell: cell.map(Cell::from),
+        cell_every,
+        scale_latitude_deg: args.terrain.scale_latitude.or(config.terrain.scale_latitude),
         max_error_m: positive("--max-error", args.terrain.max_error.or(config.terrain.max_error))?,
         fill_voids: args.terrain.fill_voids.or(config.terrain.fill_voids).unwrap_or(FILL_VOIDS),
     };
@@ -219,8 +228,8 @@ mod tests {
 
     #[test]
     fn lengths_must_be_lengths() {
-        assert!(positive("--cell", Some(0.0)).is_err());
-        assert!(positive("--cell", Some(f64::NAN)).is_err());
-        assert_eq!(positive("--cell", Some(2.5)).unwrap(), Some(2.5));
+        assert!(positive("--max-error", Some(0.0)).is_err());
+        assert!(positive("--max-error", Some(f64::NAN)).is_err());
+        assert_eq!(positive("--max-error", Some(2.5)).unwrap(), Some(2.5));
     }
 }

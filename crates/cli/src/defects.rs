@@ -109,6 +109,10 @@ impl Observer for Watch {
         interrupt::remove_at_end(folder);
     }
 
+    fn warning(&self, text: &str) {
+        self.progress.warning(text);
+    }
+
     fn is_cancelled(&self) -> bool {
         self.progress.is_cancelled()
     }

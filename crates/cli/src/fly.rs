@@ -29,7 +29,7 @@ use crate::{
 };
 use corniche_viewer::{
     Detail, FrameRecord, Lifted, Replay, ReplayError, ReplayOptions, default_flight,
-    flight::Flight,
+    flight::{Flight, WorkingCrs},
     gpu::{Gpu, PassTimes},
     stream::StreamBudget,
     style::Style,
@@ -93,7 +93,7 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let Drawn { runs, adapter } =
         if args.window { plan.fly_in_a_window()? } else { plan.fly(None)? };
 
-    outputs.finish(&flight, &source.manifest().crs, &runs, &adapter)?;
+    outputs.finish(&flight, WorkingCrs::of(source.manifest()), &runs, &adapter)?;
     io::stdout().lock().write_all(summary::to_text(&runs).as_bytes())?;
     Ok(ExitCode::Done)
 }
@@ -112,7 +112,8 @@ fn flight(args: &FlyArgs, source: &PackageSource) -> Result<Flight, Failure> {
     }
     let text = fs::read_to_string(path).map_err(|error| unusable(&error))?;
     let manifest = source.manifest();
-    Flight::parse(&text, &manifest.crs, &manifest.coordinates).map_err(|error| unusable(&error))
+    Flight::parse(&text, WorkingCrs::of(manifest), &manifest.coordinates)
+        .map_err(|error| unusable(&error))
 }
 
 fn options(

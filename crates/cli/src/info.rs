@@ -6,7 +6,8 @@ use std::{
     io::{self, Write as _},
 };
 
-use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord};
+use corniche_geom::Cell;
+use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, ScaleRecord};
 use serde_json::json;
 
 use crate::{
@@ -45,11 +46,12 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
         manifest.format_version,
         plain(&manifest.generator)
     ));
-    say(format!("CRS          {}, point scale {:.6}", plain(&manifest.crs), manifest.point_scale));
+    say(format!("CRS          {}, {}", plain(&manifest.crs), factors(manifest.metres_per_unit)));
+    say(format!("scale        {}", scales(&manifest.scale)));
     say(format!(
         "extent       {west:.5} {south:.5} {east:.5} {north:.5} (west south east north, degrees)"
     ));
-    say(format!("grid         cell {}, {}", frame.cell(), plain(&manifest.resampling)));
+    say(format!("grid         cell {} m, {}", sides(frame.cell()), plain(&manifest.resampling)));
     let vertical = &manifest.vertical;
     let [lowest_m, highest_m] = vertical.range_m;
     say(format!(
@@ -99,8 +101,8 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
     for level in &manifest.levels {
         levels.row([
             level.level.to_string(),
-            format!("{}", level.cell_m),
-            format!("{}", level.max_error_m),
+            sides(level.cell_m),
+            rounded(level.max_error_m),
             format!("{:.2}", level.geometric_error_m),
             or_dash(level.errors_m.map(|errors_m| errors_m.median), 2),
             or_dash(level.errors_m.map(|errors_m| errors_m.p95), 2),
@@ -140,6 +142,41 @@ fn sample_errors(manifest: &Manifest) -> String {
         "At the DEM's own samples, which are not the nodes"
     };
     format!("{what}:\n{}\n", table.to_text())
+}
+
+/// What makes working metres of a CRS's coordinates.
+fn factors([east, north]: [f64; 2]) -> String {
+    if [east, north].iter().all(|factor| factor.to_bits() == 1.0_f64.to_bits()) {
+        return "working metres are its coordinates".to_owned();
+    }
+    format!("working metres are its coordinates times {east} (east) and {north} (north)")
+}
+
+/// How long lengths come out, along both axes.
+fn scales(scale: &ScaleRecord) -> String {
+    let along = |axis: usize, name: &str| {
+        format!(
+            "{name} {:.4} at the centre, {:.4} to {:.4} over the rim",
+            scale.center[axis], scale.least[axis], scale.largest[axis]
+        )
+    };
+    format!("working metres to a true metre: {}; {}", along(0, "east"), along(1, "north"))
+}
+
+/// A cell's sides: "30", "63.1 × 92.7".
+fn sides(cell: Cell) -> String {
+    let [east, north] = cell.to_array().map(rounded);
+    if east == north { north } else { format!("{east} × {north}") }
+}
+
+/// A length to three digits at least, without zeros at its end.
+fn rounded(metres: f64) -> String {
+    let digits = (2.0 - metres.abs().log10().floor()).clamp(0.0, 9.0) as usize;
+    let text = format!("{metres:.digits$}");
+    if digits == 0 {
+        return text;
+    }
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// Foreign text for a terminal: its control characters must neither colour nor forge lines.
@@ -232,4 +269,32 @@ fn roads(manifest: &Manifest) -> String {
         let _ = writeln!(text, "{} is taken for another value: {}", plain(tag), count(*number));
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sides_of_cells_are_told_to_three_digits() {
+        for (cell, expected) in [
+            ([63.073_2, 92.650_49], "63.1 × 92.7"),
+            ([30.0, 30.0], "30"),
+            ([5.0, 5.0], "5"),
+            ([20.0, 30.0], "20 × 30"),
+            ([0.5, 0.5], "0.5"),
+            ([0.25, 0.333_333], "0.25 × 0.333"),
+            ([1000.0, 1536.7], "1000 × 1537"),
+            ([1e6, 0.001], "1000000 × 0.001"),
+        ] {
+            assert_eq!(sides(Cell::from(cell)), expected);
+        }
+    }
+
+    #[test]
+    fn factors_are_told_where_there_are_any() {
+        assert_eq!(factors([1.0, 1.0]), "working metres are its coordinates");
+        let told = factors([-1.0, 111_180.5]);
+        assert!(told.ends_with("times -1 (east) and 111180.5 (north)"), "{told}");
+    }
 }

@@ -127,6 +127,22 @@ impl Observer for Progress {
         }
     }
 
+    /// Warnings are told to whoever asked for silence too.
+    fn warning(&self, text: &str) {
+        let line = match self.manner {
+            Manner::Json => json!({ "warning": text }).to_string(),
+            Manner::Quiet | Manner::Bars | Manner::Lines => format!("corniche: warning: {text}"),
+        };
+        let running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
+        let tell = || {
+            let _ = writeln!(stderr(), "{line}");
+        };
+        match running.as_ref().and_then(|running| running.bar.as_ref()) {
+            Some(bar) => bar.suspend(tell),
+            None => tell(),
+        }
+    }
+
     fn is_cancelled(&self) -> bool {
         interrupt::is_noted()
     }

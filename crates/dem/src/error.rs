@@ -155,6 +155,10 @@ pub enum DemError {
     Downsampling { cell: Cell, samples: f64, limit: f64 },
     #[error("--cell-every {every} is not usable; give a number from 1 to {limit}")]
     CellEvery { every: u32, limit: i64 },
+    #[error(
+        "--cell-every {every} leaves {columns} × {rows} nodes; ground lies between nodes, so give a smaller number that leaves at least 2 × 2"
+    )]
+    CellEveryLeaves { every: u32, columns: i64, rows: i64 },
     #[error("--cell and --cell-every both say what a cell is; give one of them")]
     CellTwice,
     #[error(

@@ -64,6 +64,9 @@ pub trait Observer: Sync {
     /// without waiting for that removes it.
     fn work_folder(&self, _: &Path) {}
 
+    /// Something about the inputs that their owner should know, in words.
+    fn warning(&self, _: &str) {}
+
     /// Whether to stop at the next opportunity; the run then fails with `Interrupted`.
     fn is_cancelled(&self) -> bool {
         false

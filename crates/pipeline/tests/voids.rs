@@ -298,7 +298,8 @@ fn a_square_of_degrees_ends_where_its_samples_end() {
     let folder = tempfile::tempdir().unwrap();
     let dem = folder.path().join("square.tif");
     support::write_degrees(&dem, SAMPLES, [west_deg, north_deg], STEP_DEG, height_m);
-    let built = build_files(&dem, None, Options::plain(5.0)).unwrap();
+    let options = Options { crs: Some("utm"), ..Options::plain(5.0) };
+    let built = build_files(&dem, None, options).unwrap();
     let frame = built.frame();
     let mut vertices = 0;
     for (id, ground) in built.grounds() {

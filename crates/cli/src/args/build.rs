@@ -2,7 +2,7 @@ use std::{num::NonZeroUsize, path::PathBuf};
 
 use clap::Args;
 
-use super::values::parse_range;
+use super::values::{parse_cell, parse_range};
 
 #[derive(Debug, Args)]
 pub(crate) struct BuildArgs {
@@ -41,8 +41,9 @@ pub(crate) struct BuildArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Terrain")]
 pub(crate) struct TerrainArgs {
-    /// Working CRS, projected, in metres [default: the DEM's if it is projected and true to scale, else UTM]
-    #[arg(long, value_name = "EPSG:N")]
+    /// Working CRS: dem (the first raster's own, so that nodes are its samples), utm, or any projected one
+    /// [default: dem where lengths are then true within 3 %, else utm]
+    #[arg(long, value_name = "dem|utm|EPSG:N|WKT")]
     pub(crate) crs: Option<String>,
     /// CRS of rasters that name none
     #[arg(long, value_name = "EPSG:N")]
@@ -63,9 +64,17 @@ pub(crate) struct TerrainArgs {
     /// [default: -12000,9000, and no repeated value 1000 m beyond all others]
     #[arg(long, value_name = "LOW,HIGH", value_parser = parse_range, allow_hyphen_values = true)]
     pub(crate) height_range: Option<[f64; 2]>,
-    /// Spacing of the finest level, in metres [default: the DEM's]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
-    pub(crate) cell: Option<f64>,
+    /// Latitude, in degrees, at which lengths are true in a CRS that is not true to scale, such as degrees; packages of
+    /// adjoining regions fit when it is the same [default: the middle of the DEM, to half a degree]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub(crate) scale_latitude: Option<f64>,
+    /// Spacing of the finest level, in metres: of a square, or of a rectangle, east and north; heights are interpolated
+    /// [default: the DEM's own]
+    #[arg(long, value_name = "METRES|EAST,NORTH", value_parser = parse_cell, allow_hyphen_values = true)]
+    pub(crate) cell: Option<[f64; 2]>,
+    /// Take one in K of the DEM's samples along both axes as the finest level, as they are
+    #[arg(long, value_name = "K", conflicts_with = "cell")]
+    pub(crate) cell_every: Option<u32>,
     /// Build with more than 16 nodes to a DEM sample, too
     #[arg(long)]
     pub(crate) force: bool,

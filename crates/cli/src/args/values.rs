@@ -53,6 +53,29 @@ pub(crate) fn parse_position(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
+/// A cell, east and north: one number is a square.
+pub(crate) fn parse_cell(text: &str) -> Result<[f64; 2], String> {
+    let side = |text: &str| text.trim().parse::<f64>().ok();
+    let sides_m = match text.split_once(',') {
+        Some((east, north)) => {
+            side(east).zip(side(north)).map(|(east_m, north_m)| [east_m, north_m])
+        }
+        None => side(text).map(|side_m| [side_m; 2]),
+    };
+    match sides_m {
+        Some(sides_m) => check_cell(sides_m),
+        None => Err("write metres like 30, or east,north like 20,30".to_owned()),
+    }
+}
+
+/// Sides that can be those of a cell, east and north.
+pub(crate) fn check_cell(sides_m: [f64; 2]) -> Result<[f64; 2], String> {
+    match sides_m.iter().find(|side_m| !(**side_m > 0.0 && side_m.is_finite())) {
+        Some(side_m) => Err(format!("a side must be a positive number of metres, not {side_m}")),
+        None => Ok(sides_m),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -75,6 +98,18 @@ mod tests {
         assert_eq!(parse_range("0, 70000.5"), Ok([0.0, 70_000.5]));
         for bad in ["", "5", "5,5", "9000,-500", "a,b", "0,inf", "nan,1", "1,2,3"] {
             assert!(parse_range(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn cells_are_squares_or_rectangles() {
+        assert_eq!(parse_cell("30"), Ok([30.0, 30.0]));
+        assert_eq!(parse_cell("20.5, 30"), Ok([20.5, 30.0]));
+        for bad in ["", "30 m", "20x30", "20,", "20,30,40"] {
+            assert!(parse_cell(bad).unwrap_err().contains("20,30"), "{bad}");
+        }
+        for bad in ["0", "-5", "nan", "inf", "20,0", "-20,30"] {
+            assert!(parse_cell(bad).unwrap_err().contains("positive number of metres"), "{bad}");
         }
     }
 

@@ -133,6 +133,11 @@ fn run(
         scale_latitude_deg: terrain.scale_latitude_deg,
         fill_voids: terrain.fill_voids,
     })?;
+    if let Some([files, first]) = &plan.resampled_onto_first {
+        observer.warning(&format!(
+            "{files}: samples lie on another grid than those of {first}, named first; they are resampled onto its grid"
+        ));
+    }
     let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell().shorter_m() / 4.0);
     if !MAX_ERRORS_M.contains(&max_error_m) {
         return Err(BuildError::MaxError { max_error_m });

@@ -4,7 +4,7 @@ use std::{fs, path::Path};
 
 use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 
-use super::{CELL_M, EPSG, Raster};
+use super::{EPSG, Raster};
 
 /// A straight road from one (column, row) of a raster to another, fractions allowed.
 #[derive(Debug, Clone, Copy)]
@@ -60,9 +60,8 @@ pub(crate) fn write_lines(path: &Path, lines_deg: &[Vec<[f64; 2]>]) {
 }
 
 /// Longitude and latitude of a (column, row) of a raster.
-fn to_degrees(raster: &Raster, [column, row]: [f64; 2]) -> [f64; 2] {
-    let x_m = (raster.west as f64 + column) * CELL_M;
-    utm_to_degrees(&[[x_m, (raster.north as f64 - row) * CELL_M]])[0]
+fn to_degrees(raster: &Raster, at: [f64; 2]) -> [f64; 2] {
+    utm_to_degrees(&[raster.position_m(at)])[0]
 }
 
 /// Longitude and latitude of positions in the rasters' CRS.
