@@ -31,6 +31,7 @@ mod operation;
 mod outline;
 mod positions;
 mod projection;
+mod recorded;
 mod scale;
 
 mod error;
@@ -42,4 +43,5 @@ pub use library::LibraryError;
 pub use plan::{GridPlan, PlanOptions, Resampling};
 pub use projection::DemProjection;
 pub use reader::{DemWindow, Reader, SampleBlock};
+pub use recorded::RecordedCrs;
 pub use source::OpenOptions;

@@ -19,5 +19,6 @@ pub use observer::{Observer, Silent, Stage};
 pub use settings::{BuildSettings, Existing, Resources, RoadSettings, TerrainSettings};
 pub use storage::{DiskStorage, Kind, MemoryStorage, Span, Storage};
 pub use verify::{
-    Check, ErrorFigures, GapFigures, VerifyError, VerifyReport, VerifySettings, verify,
+    Check, CheckId, ErrorFigures, GapFigures, Needs, VerifyError, VerifyOsm, VerifyReport,
+    VerifySettings, verify,
 };

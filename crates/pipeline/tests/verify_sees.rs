@@ -11,7 +11,7 @@ use std::{
 
 use corniche_drape::DrapedVertex;
 use corniche_geom::{Frame, TileId};
-use corniche_pipeline::{Silent, VerifyReport, VerifySettings, build, verify};
+use corniche_pipeline::{CheckId, Silent, VerifyReport, VerifySettings, build, verify};
 use corniche_tileset::{
     EncodeError, FilePackage, Manifest, PayloadContext, Sections, Terrain, TilePayload, Writer,
     encode,
@@ -23,21 +23,6 @@ use support::Options;
 const MAX_ERROR_M: f64 = 10.0;
 /// The last row and column of a tile's nodes.
 const LAST_NODE: u16 = 256;
-
-const WHOLE: &str = "every tile's sections are whole";
-const COUNT: &str = "tiles and their sums are those that the manifest counts";
-const ON_TIN: &str = "P1: GEO roads lie on their TIN";
-const BOUND: &str = "P2: no stored error is below the true one";
-const FINEST: &str = "P2: the finest level stays within --max-error";
-const STRAY: &str = "P2: nodes without ground lie within one cell of a void or an edge";
-const UNCOVERED: &str = "P2: uncovered nodes are as many as tiles and levels say";
-const SEAMS: &str = "P3: neighbours of one level share bit-identical border vertices";
-const RECORDED: &str = "P2: the recorded distributions of stored over true errors hold";
-const NESTING: &str = "a parent's error and height range are never below its children's";
-const LENGTH: &str = "P6: GEO roads of the finest level";
-const SETTINGS: &str = "tolerances follow from the settings";
-const RANGES: &str = "height ranges hold every node beneath";
-const SUMS: &str = "P6: what came in is what was kept";
 
 /// The sample's package, built once.
 static SOUND: LazyLock<Sound> = LazyLock::new(build_sample);
@@ -101,16 +86,19 @@ fn report_on(path: &Path, against: Against) -> VerifyReport {
         Against::Itself => vec![],
         Against::Dem => vec![sample("pass-dem.tif")],
     };
-    verify(&VerifySettings { package: path.to_path_buf(), dem, threads: 2 }, &Silent)
+    verify(&VerifySettings { package: path.to_path_buf(), dem, osm: None, threads: 2 }, &Silent)
         .expect("the package can be verified")
 }
 
-/// Asserts that exactly the checks whose names begin so are broken, and returns the report.
-fn assert_broken(report: VerifyReport, expected: &[&str]) -> VerifyReport {
+/// Asserts that exactly these checks are broken, in any order, and returns the report.
+fn assert_broken(report: VerifyReport, expected: &[CheckId]) -> VerifyReport {
     let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
-    let as_expected = broken.len() == expected.len()
-        && expected.iter().all(|name| broken.iter().any(|check| check.name.starts_with(name)));
-    assert!(as_expected, "expected {expected:?} to be broken, but it is {broken:#?}");
+    let mut sorted = expected.to_vec();
+    sorted.sort_unstable();
+    assert!(
+        broken.iter().map(|check| check.id).eq(sorted),
+        "expected {expected:?} to be broken, but it is {broken:#?}"
+    );
     assert_eq!(report.holds(), expected.is_empty());
     report
 }
@@ -130,7 +118,7 @@ impl Parts {
     }
 
     /// Verifies the package that these parts make, and asserts that exactly these checks are broken.
-    fn assert_breaks(&self, against: Against, expected: &[&str]) -> VerifyReport {
+    fn assert_breaks(&self, against: Against, expected: &[CheckId]) -> VerifyReport {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("changed.pmtiles");
         write(&path, &self.manifest, &self.encoded());
@@ -215,7 +203,7 @@ fn a_stored_error_below_the_true_one() {
     let id = parts.worst_finest();
     parts.terrain_mut(id).geometric_error_m /= 2.0;
     // The manifest's figures tell of it too.
-    parts.assert_breaks(Against::Dem, &[BOUND, COUNT, RECORDED]);
+    parts.assert_breaks(Against::Dem, &[CheckId::Bound, CheckId::LevelSums, CheckId::Recorded]);
 }
 
 #[test]
@@ -239,8 +227,8 @@ fn a_border_vertex_that_the_neighbour_has_elsewhere() {
         })
         .unwrap();
     parts.lift(id, vertex, 3);
-    let report = parts.assert_breaks(Against::Itself, &[SEAMS]);
-    let seams = report.checks.iter().find(|check| check.name.starts_with(SEAMS)).unwrap();
+    let report = parts.assert_breaks(Against::Itself, &[CheckId::Seams]);
+    let seams = report.checks.iter().find(|check| check.id == CheckId::Seams).unwrap();
     assert_eq!(seams.broken, 1);
     let named = |id: TileId| seams.examples[0].contains(&id.to_string());
     assert!(named(id) && named(east), "{:?}", seams.examples);
@@ -253,7 +241,7 @@ fn a_child_with_a_larger_error_than_its_parent() {
     let parent = id.parent().unwrap();
     let above_m = parts.terrain(parent).unwrap().geometric_error_m;
     parts.terrain_mut(id).geometric_error_m = 2.0 * above_m;
-    parts.assert_breaks(Against::Itself, &[COUNT, NESTING]);
+    parts.assert_breaks(Against::Itself, &[CheckId::LevelSums, CheckId::Nested]);
 }
 
 #[test]
@@ -262,7 +250,7 @@ fn a_child_that_reaches_above_its_parent() {
     let id = parts.worst_finest();
     let top_m = parts.terrain(id.parent().unwrap()).unwrap().height_range_m[1];
     parts.terrain_mut(id).height_range_m[1] = top_m + 1.0;
-    parts.assert_breaks(Against::Itself, &[NESTING]);
+    parts.assert_breaks(Against::Itself, &[CheckId::Nested]);
 }
 
 /// Roads out of order never come into a package: the encoding refuses them.
@@ -286,18 +274,18 @@ fn a_road_dropped_from_a_finest_tile() {
     let id = parts.tiles_above(0).max_by_key(|tile| tile.roads_geo.len()).unwrap().id;
     let index = parts.index_of(id).unwrap();
     parts.tiles[index].roads_geo.pop();
-    parts.assert_breaks(Against::Itself, &[LENGTH]);
+    parts.assert_breaks(Against::Itself, &[CheckId::Length]);
 }
 
 #[test]
 fn sums_that_do_not_add_up() {
     let mut roads = Parts::sound();
     roads.manifest.counts.roads_kept += 1;
-    roads.assert_breaks(Against::Itself, &[SUMS]);
+    roads.assert_breaks(Against::Itself, &[CheckId::RoadSums]);
 
     let mut samples = Parts::sound();
     samples.manifest.counts.samples.filled += 1;
-    samples.assert_breaks(Against::Itself, &[SUMS]);
+    samples.assert_breaks(Against::Itself, &[CheckId::RoadSums]);
 }
 
 #[test]
@@ -305,7 +293,7 @@ fn a_tile_left_out() {
     let mut parts = Parts::sound();
     let id = parts.finest_without_roads();
     parts.tiles.retain(|tile| tile.id != id);
-    parts.assert_breaks(Against::Itself, &[COUNT]);
+    parts.assert_breaks(Against::Itself, &[CheckId::LevelSums]);
 }
 
 #[test]
@@ -313,7 +301,7 @@ fn a_parent_left_out_over_its_children() {
     let mut parts = Parts::sound();
     let parent = parts.worst_finest().parent().unwrap();
     parts.tiles.retain(|tile| tile.id != parent);
-    parts.assert_breaks(Against::Itself, &[COUNT]);
+    parts.assert_breaks(Against::Itself, &[CheckId::LevelSums]);
 }
 
 #[test]
@@ -334,11 +322,11 @@ fn a_hole_in_the_ground() {
         .unwrap();
     triangles.remove(triangle);
     *tin = Tin::from_canonical(vertices, triangles).unwrap();
-    parts.assert_breaks(Against::Dem, &[COUNT, STRAY, UNCOVERED]);
+    parts.assert_breaks(Against::Dem, &[CheckId::LevelSums, CheckId::Stray, CheckId::Uncovered]);
 
     // Owning up to the hole does not close it.
     parts.terrain_mut(id).uncovered_nodes += nodes_inside(&hole);
-    parts.assert_breaks(Against::Dem, &[COUNT, STRAY, UNCOVERED]);
+    parts.assert_breaks(Against::Dem, &[CheckId::LevelSums, CheckId::Stray, CheckId::Uncovered]);
 }
 
 /// Twice a triangle's area in cells.
@@ -372,7 +360,7 @@ fn uncovered_nodes_that_are_not_counted() {
     let uncovered = &mut parts.terrain_mut(id).uncovered_nodes;
     assert!(*uncovered > 0, "the sample has voids and data edges");
     *uncovered -= 1;
-    parts.assert_breaks(Against::Dem, &[UNCOVERED]);
+    parts.assert_breaks(Against::Dem, &[CheckId::Uncovered]);
 }
 
 #[test]
@@ -387,7 +375,7 @@ fn a_finest_tile_off_by_more_than_the_bound() {
         .unwrap();
     let steps = (3.0 * MAX_ERROR_M / parts.manifest.vertical.quantum_m).ceil() as i32;
     parts.lift(id, vertex, steps);
-    parts.assert_breaks(Against::Dem, &[BOUND, FINEST, RECORDED]);
+    parts.assert_breaks(Against::Dem, &[CheckId::Bound, CheckId::Finest, CheckId::Recorded]);
 
     // Owning up to the error does not make it a smaller one.
     let mut above = Some(id);
@@ -396,7 +384,7 @@ fn a_finest_tile_off_by_more_than_the_bound() {
         *stored_m = stored_m.max(4.5 * MAX_ERROR_M);
         above = ancestor.parent();
     }
-    parts.assert_breaks(Against::Dem, &[COUNT, FINEST, RECORDED]);
+    parts.assert_breaks(Against::Dem, &[CheckId::LevelSums, CheckId::Finest, CheckId::Recorded]);
 }
 
 /// The tile, road and vertex of the first vertex inside a line that is as wanted, `above` the finest level.
@@ -424,7 +412,7 @@ fn a_line_that_skips_the_edge_it_crosses() {
     let index = parts.index_of(id).unwrap();
     // The line goes straight on, so that its length in plan stays what it was.
     parts.tiles[index].roads_geo[road].line.vertices.remove(vertex);
-    parts.assert_breaks(Against::Itself, &[ON_TIN]);
+    parts.assert_breaks(Against::Itself, &[CheckId::OnTin]);
 }
 
 #[test]
@@ -458,7 +446,7 @@ fn a_line_with_a_point_moved_far_away() {
 
     parts.tiles[index].roads_geo[road].line.vertices[vertex] =
         DrapedVertex::Source { point: corner(far), triangle: far as u32 };
-    parts.assert_breaks(Against::Itself, &[ON_TIN]);
+    parts.assert_breaks(Against::Itself, &[CheckId::OnTin]);
 }
 
 #[test]
@@ -471,18 +459,18 @@ fn a_tile_with_a_flipped_bit() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("damaged.pmtiles");
     write(&path, &parts.manifest, &tiles);
-    assert_broken(report_on(&path, Against::Itself), &[WHOLE, COUNT]);
+    assert_broken(report_on(&path, Against::Itself), &[CheckId::Whole, CheckId::LevelSums]);
 }
 
 #[test]
 fn tolerances_that_were_loosened() {
     let mut settings = Parts::sound();
     settings.manifest.settings.max_error_m *= 100.0;
-    settings.assert_breaks(Against::Itself, &[SETTINGS]);
+    settings.assert_breaks(Against::Itself, &[CheckId::SettingsHash]);
 
     let mut level = Parts::sound();
     level.manifest.levels[0].max_error_m *= 100.0;
-    level.assert_breaks(Against::Itself, &[SETTINGS]);
+    level.assert_breaks(Against::Itself, &[CheckId::SettingsHash]);
 }
 
 #[test]
@@ -492,7 +480,10 @@ fn ground_that_was_taken_away_with_its_count() {
     parts.tiles.retain(|tile| tile.id != id);
     let level = parts.manifest.levels.last_mut().unwrap();
     level.tiles -= 1;
-    parts.assert_breaks(Against::Dem, &[COUNT, RECORDED, STRAY, UNCOVERED]);
+    parts.assert_breaks(
+        Against::Dem,
+        &[CheckId::LevelSums, CheckId::Recorded, CheckId::Stray, CheckId::Uncovered],
+    );
 }
 
 #[test]
@@ -501,5 +492,5 @@ fn a_height_range_that_leaves_nodes_out() {
     let id = parts.finest_without_roads();
     let range_m = &mut parts.terrain_mut(id).height_range_m;
     range_m[1] = range_m[0];
-    parts.assert_breaks(Against::Dem, &[RANGES]);
+    parts.assert_breaks(Against::Dem, &[CheckId::Ranges]);
 }

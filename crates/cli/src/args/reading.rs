@@ -7,6 +7,10 @@ use corniche_geom::TileId;
 
 use super::ReportArgs;
 
+/// What `verify --help` ends with.
+const CHECKS: &str = "Every check has an id, such as P1 or sv.range: printed, in --json, and explained in \
+                      docs/promises.md. Exit code 1: a promise is broken.";
+
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
     /// The package
@@ -32,12 +36,19 @@ pub(crate) struct GrowthArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = CHECKS)]
 pub(crate) struct VerifyArgs {
     /// The package
     pub(crate) package: PathBuf,
     /// The elevation rasters it was made from, in the same order: checks stored errors against true ones
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub(crate) dem: Vec<PathBuf>,
+    /// The extract it was made from: reads it again and checks roads, attributes and counts against it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) osm: Option<PathBuf>,
+    /// With --osm: the FRC table it was made with [default: the preset of the recorded name]
+    #[arg(long, value_name = "NAME|FILE", requires = "osm")]
+    pub(crate) frc_table: Option<String>,
     /// Worker threads [default: one per processor]
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,

@@ -17,8 +17,8 @@ mod losses;
 mod mesh;
 mod package;
 mod road_log;
-mod roads;
-mod tiles;
+pub(crate) mod roads;
+pub(crate) mod tiles;
 
 use std::{fs, path::Path};
 
@@ -27,10 +27,11 @@ use corniche_tileset::Manifest;
 
 use crate::{BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage};
 
-pub(crate) use heights::data_tiles;
+pub(crate) use heights::{Pyramid, data_tiles, read as read_heights};
 pub(crate) use inputs::record as input_record;
-use levels::Levels;
-pub(crate) use package::settings_sha256;
+pub(crate) use levels::{Levels, recorded_filter};
+pub(crate) use package::{TILING, road_counts, settings_sha256, table_sha256};
+pub(crate) use tiles::share;
 
 /// Tolerances of the finest level that can be used. Beyond them, the root's or the height quantum is no number that a
 /// package can hold.
@@ -136,18 +137,18 @@ fn run(
                 .num_threads(threads)
                 .build()
                 .map_err(|error| start(&error))?;
+            let projection = dem.projection(&plan)?;
             let input = roads::RoadInput {
                 osm,
                 settings: &settings.roads,
-                dem: &dem,
-                plan: &plan,
+                projection: &projection,
                 levels: &levels,
                 data_bounds: heights::data_tile_bounds(&plan),
                 pool: &pool,
                 memory_bytes: settings.resources.memory_bytes / 4,
             };
             let read = roads::read(&input, storage, observer)?;
-            roads::check_overlap(&read, &input)?;
+            roads::check_overlap(&read, &input, &plan)?;
             Some(read)
         }
         None => None,
