@@ -49,7 +49,7 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
     say(format!(
         "extent       {west:.5} {south:.5} {east:.5} {north:.5} (west south east north, degrees)"
     ));
-    say(format!("grid         cell {} m, {}", frame.cell_m(), plain(&manifest.resampling)));
+    say(format!("grid         cell {}, {}", frame.cell(), plain(&manifest.resampling)));
     let vertical = &manifest.vertical;
     let [lowest_m, highest_m] = vertical.range_m;
     say(format!(

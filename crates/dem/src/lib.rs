@@ -33,6 +33,7 @@ mod positions;
 mod projection;
 mod recorded;
 mod scale;
+mod working;
 
 mod error;
 mod library;
@@ -45,3 +46,4 @@ pub use projection::DemProjection;
 pub use reader::{DemWindow, Reader, SampleBlock};
 pub use recorded::RecordedCrs;
 pub use source::OpenOptions;
+pub use working::PlanScale;

@@ -70,7 +70,7 @@ impl<'a> Reader<'a> {
         if reach > 0 && heights_m.iter().any(|height_m| height_m.is_nan()) {
             let wide = self.with_halo(window, &heights_m, reach)?;
             let columns = window.columns + 2 * reach;
-            for (at, height_m) in fill::fill(&wide, columns, reach) {
+            for (at, height_m) in fill::fill(&wide, columns, reach, self.plan.frame.cell()) {
                 let inner = (at / columns - reach) * window.columns + at % columns - reach;
                 heights_m[inner] = height_m;
                 is_filled.resize(heights_m.len(), false);
@@ -186,19 +186,17 @@ impl<'a> Reader<'a> {
     fn copy(
         &mut self,
         mosaic: &Mosaic,
-        Alignment { first, way }: Alignment,
+        alignment: Alignment,
         part: &NodeWindow,
         target: &Target,
         heights_m: &mut [f32],
     ) -> Result<(), DemError> {
         // Bands of rows, so that a window of any size needs bounded memory.
-        let band = (MOST_SAMPLES / part.columns).max(1);
+        let every = alignment.every as usize;
+        let band = (MOST_SAMPLES / (part.columns * every * every)).max(1);
         for top in (0..part.rows).step_by(band) {
             let rows = band.min(part.rows - top);
-            let sample = |column: usize, row: usize| {
-                let node = part.node(column, row);
-                [way[0] * (node.i - first.i), way[1] * (node.j - first.j)]
-            };
+            let sample = |column: usize, row: usize| alignment.sample(part.node(column, row));
             let (a, b) = (sample(0, top), sample(part.columns - 1, top + rows - 1));
             let rect = SampleRect {
                 min: [a[0].min(b[0]), a[1].min(b[1])],
@@ -207,12 +205,12 @@ impl<'a> Reader<'a> {
             self.files.read(&self.dem.sources, mosaic, &rect, &mut self.samples)?;
             let width = rect.columns();
             for row in 0..rows {
-                let [start, line] = sample(0, top + row);
+                let [_, line] = sample(0, top + row);
                 let from = (line - rect.min[1]) as usize * width;
                 let line = &self.samples[from..from + width];
-                debug_assert!(start == rect.min[0] || way[0] < 0);
                 for column in 0..part.columns {
-                    let found_m = line[if way[0] > 0 { column } else { width - 1 - column }];
+                    let at = column * every;
+                    let found_m = line[if alignment.way[0] > 0 { at } else { width - 1 - at }];
                     let height_m = &mut heights_m[target.at(column, top + row)];
                     if height_m.is_nan() {
                         *height_m = found_m as f32;

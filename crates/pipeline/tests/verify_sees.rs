@@ -3,190 +3,21 @@
 
 mod support;
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    sync::LazyLock,
-};
+use std::fs;
 
 use corniche_drape::DrapedVertex;
-use corniche_geom::{Frame, TileId};
-use corniche_pipeline::{CheckId, Silent, VerifyReport, VerifySettings, build, verify};
-use corniche_tileset::{
-    EncodeError, FilePackage, Manifest, PayloadContext, Sections, Terrain, TilePayload, Writer,
-    encode,
-};
-use corniche_tin::{NO_TWIN, Placement, Surface, Tin, TinVertex};
-use support::Options;
-
-/// Coarse, so that the sample is built and verified in seconds.
-const MAX_ERROR_M: f64 = 10.0;
-/// The last row and column of a tile's nodes.
-const LAST_NODE: u16 = 256;
-
-/// The sample's package, built once.
-static SOUND: LazyLock<Sound> = LazyLock::new(build_sample);
-
-struct Sound {
-    bytes: Vec<u8>,
-    parts: Parts,
-}
-
-/// A package taken apart; its tiles in the order of the file.
-#[derive(Clone)]
-struct Parts {
-    manifest: Manifest,
-    tiles: Vec<TilePayload>,
-}
-
-/// Whether the DEM is there to verify against.
-#[derive(Clone, Copy)]
-enum Against {
-    Itself,
-    Dem,
-}
-
-fn sample(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data-samples/pass").join(name)
-}
-
-fn build_sample() -> Sound {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("sound.pmtiles");
-    let options = Options { fill_voids: 32, ..Options::plain(MAX_ERROR_M) };
-    let (dem, osm) = (sample("pass-dem.tif"), sample("pass.osm.pbf"));
-    let mut settings = support::settings(dem, Some(osm), path.clone(), options);
-    settings.roads.simplify_cells = 0.5;
-    build(&settings, &Silent).expect("the sample can be built");
-    let package = FilePackage::open(&path).expect("the package can be opened");
-    let payload = |id| package.payload(id, Sections::ALL).expect("a whole tile");
-    let ids = package.tile_ids().expect("a list of tiles");
-    let parts = Parts {
-        manifest: package.manifest().clone(),
-        tiles: ids.into_iter().map(|id| payload(id).expect("a listed tile")).collect(),
-    };
-    Sound { bytes: fs::read(&path).expect("the package can be read"), parts }
-}
-
-fn encode_in(manifest: &Manifest, tile: &TilePayload) -> Result<Vec<u8>, EncodeError> {
-    let context = PayloadContext { frame: manifest.frame, quantum_m: manifest.vertical.quantum_m };
-    encode(tile, &context).map(|encoded| encoded.bytes)
-}
-
-fn write(path: &Path, manifest: &Manifest, tiles: &[(TileId, Vec<u8>)]) {
-    let mut writer = Writer::create(path, manifest).expect("a file for the package");
-    for (id, bytes) in tiles {
-        writer.add(*id, bytes).expect("tiles in their order");
-    }
-    writer.finish().expect("a finished package");
-}
-
-fn report_on(path: &Path, against: Against) -> VerifyReport {
-    let dem = match against {
-        Against::Itself => vec![],
-        Against::Dem => vec![sample("pass-dem.tif")],
-    };
-    verify(&VerifySettings { package: path.to_path_buf(), dem, osm: None, threads: 2 }, &Silent)
-        .expect("the package can be verified")
-}
-
-/// Asserts that exactly these checks are broken, in any order, and returns the report.
-fn assert_broken(report: VerifyReport, expected: &[CheckId]) -> VerifyReport {
-    let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
-    let mut sorted = expected.to_vec();
-    sorted.sort_unstable();
-    assert!(
-        broken.iter().map(|check| check.id).eq(sorted),
-        "expected {expected:?} to be broken, but it is {broken:#?}"
-    );
-    assert_eq!(report.holds(), expected.is_empty());
-    report
-}
-
-impl Parts {
-    fn sound() -> Self {
-        SOUND.parts.clone()
-    }
-
-    fn frame(&self) -> &Frame {
-        &self.manifest.frame
-    }
-
-    fn encoded(&self) -> Vec<(TileId, Vec<u8>)> {
-        let encoded = |tile| encode_in(&self.manifest, tile).expect("a tile that can be encoded");
-        self.tiles.iter().map(|tile| (tile.id, encoded(tile))).collect()
-    }
-
-    /// Verifies the package that these parts make, and asserts that exactly these checks are broken.
-    fn assert_breaks(&self, against: Against, expected: &[CheckId]) -> VerifyReport {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let path = folder.path().join("changed.pmtiles");
-        write(&path, &self.manifest, &self.encoded());
-        assert_broken(report_on(&path, against), expected)
-    }
-
-    fn index_of(&self, id: TileId) -> Option<usize> {
-        self.tiles.iter().position(|tile| tile.id == id)
-    }
-
-    fn terrain(&self, id: TileId) -> Option<&Terrain> {
-        self.tiles[self.index_of(id)?].terrain.as_ref()
-    }
-
-    fn terrain_mut(&mut self, id: TileId) -> &mut Terrain {
-        let index = self.index_of(id).expect("a tile of the package");
-        self.tiles[index].terrain.as_mut().expect("a tile with ground")
-    }
-
-    /// Tiles `above` levels above the finest.
-    fn tiles_above(&self, above: u8) -> impl Iterator<Item = &TilePayload> {
-        let level = self.frame().max_level() - above;
-        self.tiles.iter().filter(move |tile| tile.id.z() == level)
-    }
-
-    /// The finest tile with the largest stored error.
-    fn worst_finest(&self) -> TileId {
-        self.tiles_above(0)
-            .filter_map(|tile| Some((tile.terrain.as_ref()?.geometric_error_m, tile.id)))
-            .max_by(|a, b| a.0.total_cmp(&b.0))
-            .expect("a finest tile with ground")
-            .1
-    }
-
-    /// The first finest tile that no road meets.
-    fn finest_without_roads(&self) -> TileId {
-        self.tiles_above(0)
-            .find(|tile| tile.roads_geo.is_empty() && tile.roads_sv.is_empty())
-            .expect("a corner without roads")
-            .id
-    }
-
-    /// Lifts a vertex of a tile's TIN.
-    fn lift(&mut self, id: TileId, vertex: usize, steps: i32) {
-        let tin = &mut self.terrain_mut(id).tin;
-        let mut vertices = tin.vertices().to_vec();
-        vertices[vertex].height_q += steps;
-        *tin = Tin::from_canonical(vertices, tin.triangles().to_vec()).expect("the same triangles");
-    }
-
-    /// The tile's ground as lines are laid on it.
-    fn surface(&self, id: TileId) -> Surface {
-        let frame = self.frame();
-        let placement = Placement {
-            corner: frame.lattice_of_node(frame.tile_corner(id)),
-            node_steps: frame.stride(id.z()) << frame.lattice_bits(),
-            quantum_m: self.manifest.vertical.quantum_m,
-        };
-        Surface::new(&self.terrain(id).expect("ground").tin, placement)
-    }
-}
+use corniche_geom::TileId;
+use corniche_pipeline::CheckId;
+use corniche_tileset::EncodeError;
+use corniche_tin::{NO_TWIN, Tin, TinVertex};
+use support::parts::{Against, LAST_NODE, MAX_ERROR_M, Parts, SOUND, assert_broken, encode_in, report_on, write};
 
 #[test]
 fn nothing_broken_when_nothing_was_changed() {
     let parts = Parts::sound();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("same.pmtiles");
-    write(&path, &parts.manifest, &parts.encoded());
+    parts.write(&path).unwrap();
     // Whatever the other tests find is then due to their one change.
     assert!(
         fs::read(&path).unwrap() == SOUND.bytes,
@@ -453,7 +284,7 @@ fn a_line_with_a_point_moved_far_away() {
 fn a_tile_with_a_flipped_bit() {
     let parts = Parts::sound();
     let id = parts.finest_without_roads();
-    let mut tiles = parts.encoded();
+    let mut tiles = parts.encoded().unwrap();
     let (_, bytes) = tiles.iter_mut().find(|(tile, _)| *tile == id).unwrap();
     *bytes.last_mut().unwrap() ^= 1;
     let folder = tempfile::tempdir().unwrap();

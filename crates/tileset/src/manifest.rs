@@ -1,6 +1,6 @@
 mod check;
 
-use corniche_geom::{Bounds, CoordinateTable, Frame};
+use corniche_geom::{Bounds, Cell, CoordinateTable, Frame};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use check::{MAX_MEASURE_M, is_height_quantum};
@@ -16,15 +16,20 @@ pub struct Manifest {
     pub generator: String,
     /// Says that z/x/y is a local quadtree in the working CRS, not the web's.
     pub tiling: String,
-    /// Working CRS: "EPSG:…" where it has a code, else its name.
+    /// CRS: "EPSG:…" where it has a code, else its name. Its coordinates times `metres_per_unit` are working metres.
     pub crs: String,
-    /// Working CRS as WKT2.
+    /// CRS as WKT2.
     pub crs_wkt: String,
-    /// Length in the working CRS over true length, at the centre.
+    /// Working metres to a unit of the CRS's coordinates, east and north; negative where an axis counts westwards or
+    /// southwards.
+    pub metres_per_unit: [f64; 2],
+    /// Working metres to a true metre, at the centre: the geometric mean along both axes.
     pub point_scale: f64,
+    /// The same along each axis, at the centre and over the data's rim.
+    pub scale: ScaleRecord,
     /// The grid.
     pub frame: Frame,
-    /// Rectangle of the DEM's nodes in the working CRS.
+    /// Rectangle of the DEM's nodes, working metres.
     pub data_bounds: Bounds,
     /// The same in WGS84 degrees.
     pub wgs84_bounds: Bounds,
@@ -48,6 +53,17 @@ pub struct Manifest {
     pub counts: Counts,
     /// What clipping costs, per level and class.
     pub growth: Vec<GrowthRow>,
+}
+
+/// Working metres to a true metre, along x and along y.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ScaleRecord {
+    /// In the middle of the data.
+    pub center: [f64; 2],
+    /// The smallest over corners, middles of sides and centre of every file.
+    pub least: [f64; 2],
+    /// The largest.
+    pub largest: [f64; 2],
 }
 
 /// Heights: step, unit, datum.
@@ -82,8 +98,8 @@ impl VerticalRecord {
 pub struct LevelRecord {
     /// Level, 0 = root.
     pub level: u8,
-    /// Spacing of its nodes.
-    pub cell_m: f64,
+    /// Spacing of its nodes, east and north.
+    pub cell_m: Cell,
     /// Meshing tolerance against the level's own raster.
     pub max_error_m: f64,
     /// Largest stored geometric error of its tiles.
@@ -163,7 +179,11 @@ pub struct SettingsRecord {
     /// `--crs`, if given.
     pub crs: Option<String>,
     /// `--cell`, if given.
-    pub cell_m: Option<f64>,
+    pub cell_m: Option<Cell>,
+    /// `--cell-every`, if given.
+    pub cell_every: Option<u32>,
+    /// `--scale-latitude`, if given.
+    pub scale_latitude_deg: Option<f64>,
     /// Name of the FRC table.
     pub frc_table: String,
     /// SHA-256 of the FRC table's text.

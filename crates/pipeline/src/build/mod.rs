@@ -117,10 +117,12 @@ fn run(
     )?;
     let plan = dem.plan(&PlanOptions {
         crs: terrain.crs.clone(),
-        cell_m: terrain.cell_m,
+        cell: terrain.cell,
+        cell_every: terrain.cell_every,
+        scale_latitude_deg: terrain.scale_latitude_deg,
         fill_voids: terrain.fill_voids,
     })?;
-    let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell_m() / 4.0);
+    let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell().shorter_m() / 4.0);
     if !MAX_ERRORS_M.contains(&max_error_m) {
         return Err(BuildError::MaxError { max_error_m });
     }

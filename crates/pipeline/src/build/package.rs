@@ -7,7 +7,7 @@ use corniche_geom::{Bounds, CoordinateTable};
 use corniche_roads::FrcTable;
 use corniche_tileset::{
     Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest,
-    SampleCounts, SettingsRecord, VerticalRecord, Writer,
+    SampleCounts, ScaleRecord, SettingsRecord, VerticalRecord, Writer,
 };
 use sha2::{Digest, Sha256};
 
@@ -41,8 +41,12 @@ pub(crate) struct Outcome<'a> {
 pub(crate) fn coordinates(dem: &Dem, plan: &GridPlan) -> Result<CoordinateTable, BuildError> {
     let projection = dem.projection(plan)?;
     // With room around it, but not as far as the root's far corners: they can be a world away.
-    let room_m =
-        0.1 * plan.data_bounds.width().max(plan.data_bounds.height()).max(plan.frame.cell_m());
+    let room_m = 0.1
+        * plan
+            .data_bounds
+            .width()
+            .max(plan.data_bounds.height())
+            .max(plan.frame.cell().shorter_m());
     let around = Bounds {
         min_x: plan.data_bounds.min_x - room_m,
         min_y: plan.data_bounds.min_y - room_m,
@@ -67,7 +71,13 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
         tiling: TILING.to_owned(),
         crs: plan.crs.clone(),
         crs_wkt: plan.crs_wkt.clone(),
+        metres_per_unit: plan.metres_per_unit,
         point_scale: plan.point_scale,
+        scale: ScaleRecord {
+            center: plan.scale.center,
+            least: plan.scale.least,
+            largest: plan.scale.largest,
+        },
         frame,
         data_bounds: plan.data_bounds,
         wgs84_bounds: plan.wgs84_bounds,
@@ -102,7 +112,9 @@ fn settings_record(outcome: &Outcome<'_>) -> SettingsRecord {
         vertical_crs: terrain.vertical_crs.clone(),
         vertical_shift_m: terrain.vertical_shift_m,
         crs: terrain.crs.clone(),
-        cell_m: terrain.cell_m,
+        cell_m: terrain.cell,
+        cell_every: terrain.cell_every,
+        scale_latitude_deg: terrain.scale_latitude_deg,
         frc_table: roads.table.name().to_owned(),
         frc_table_sha256: table_sha256(&roads.table),
         class_max_cell_m: roads.filter.class_max_cell_m().to_vec(),
@@ -119,7 +131,7 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
             let errors_m = Distribution::of(sums.errors_m);
             LevelRecord {
                 level,
-                cell_m: levels.frame().level_cell_m(level),
+                cell_m: levels.frame().level_cell(level),
                 max_error_m: levels.max_error_m(level),
                 geometric_error_m: errors_m.map_or(0.0, |errors_m| errors_m.max),
                 errors_m,

@@ -150,7 +150,9 @@ fn open(
     report.checks.push(inputs);
     let plan = dem.plan(&PlanOptions {
         crs: record.crs.clone(),
-        cell_m: record.cell_m,
+        cell: record.cell_m,
+        cell_every: record.cell_every,
+        scale_latitude_deg: record.scale_latitude_deg,
         fill_voids: record.fill_voids,
     })?;
     report.checks.push(check_plan(&plan, manifest));
@@ -169,8 +171,11 @@ fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
     };
     same("frame", &manifest.frame, &plan.frame);
     same("crs", &manifest.crs, &plan.crs);
-    same("crs_wkt", &manifest.crs_wkt, &plan.crs_wkt);
+    same("metres_per_unit", &manifest.metres_per_unit, &plan.metres_per_unit);
     same("point_scale", &manifest.point_scale, &plan.point_scale);
+    let scale = (plan.scale.center, plan.scale.least, plan.scale.largest);
+    let said = (manifest.scale.center, manifest.scale.least, manifest.scale.largest);
+    same("scale", &said, &scale);
     same("data_bounds", &manifest.data_bounds, &plan.data_bounds);
     same("wgs84_bounds", &manifest.wgs84_bounds, &plan.wgs84_bounds);
     same("resampling", &manifest.resampling, &plan.resampling);
@@ -385,8 +390,8 @@ impl SampleSums {
                 });
                 let corner = frame.tile_corner(id);
                 let at = [
-                    (position_m[0] - frame.x_m(corner.i)) / frame.cell_m(),
-                    (frame.y_m(corner.j) - position_m[1]) / frame.cell_m(),
+                    (position_m[0] - frame.x_m(corner.i)) / frame.cell().east_m,
+                    (frame.y_m(corner.j) - position_m[1]) / frame.cell().north_m,
                 ];
                 match ground.as_ref().and_then(|ground| ground.height_m(at)) {
                     Some(ground_m) => {

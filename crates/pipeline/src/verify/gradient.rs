@@ -75,7 +75,7 @@ fn look_at(
         return Ok(findings);
     };
     let heights = pyramid.tile(id, 1)?;
-    let cell_m = [manifest.frame.level_cell_m(id.z()); 2];
+    let cell_m = manifest.frame.level_cell(id.z()).to_array();
     for (vertex, normal) in tin.vertices().iter().zip(&normals) {
         // One node of the neighbours lies around the tile's own.
         let at = [usize::from(vertex.column) + 1, usize::from(vertex.row) + 1];

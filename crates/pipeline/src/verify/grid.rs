@@ -18,7 +18,7 @@ pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     findings.look(CheckId::Grid, corners.map(f64::to_bits) == bounds.map(f64::to_bits), || {
         format!("the data's rectangle is {bounds:?}, but the nodes nearest to its corners are at {corners:?}")
     });
-    let wanted = Frame::covering(frame.origin_m(), frame.cell_m(), south_west, north_east);
+    let wanted = Frame::covering(frame.origin_m(), frame.cell(), south_west, north_east);
     findings.look(CheckId::Grid, wanted.as_ref() == Ok(frame), || {
         format!("the grid is {frame:?}, the smallest over the data is {wanted:?}")
     });
@@ -48,7 +48,8 @@ pub(crate) fn data_nodes(manifest: &Manifest) -> [NodeIndex; 2] {
 
 /// How many finest cells a position lies east and north of node (0, 0).
 fn cells(frame: &Frame, [x, y]: [f64; 2]) -> [f64; 2] {
-    [(x - frame.origin_m()[0]) / frame.cell_m(), (y - frame.origin_m()[1]) / frame.cell_m()]
+    let ([west, south], [east_m, north_m]) = (frame.origin_m(), frame.cell().to_array());
+    [(x - west) / east_m, (y - south) / north_m]
 }
 
 /// First and last of the finest tiles on which the data's rectangle lies: its north-western and south-eastern one.

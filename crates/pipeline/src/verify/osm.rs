@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 
-use corniche_dem::RecordedCrs;
 use corniche_drape::{Neighbours, OwnedBorders};
 use corniche_geom::TileId;
 use corniche_roads::Road;
@@ -15,6 +14,7 @@ use super::{
     checks::{CheckId, Findings},
     grid,
     ground::Ground,
+    place,
 };
 use crate::{
     BuildError, DiskStorage, Observer, RoadSettings, Stage,
@@ -47,7 +47,7 @@ pub(crate) fn verify(
     else {
         return Ok(());
     };
-    let Ok(crs) = RecordedCrs::new(&manifest.crs_wkt) else { return Ok(()) };
+    let Ok(crs) = place::recorded(manifest) else { return Ok(()) };
     let projection = crs.projection(manifest.wgs84_bounds)?;
     let frame = manifest.frame;
     let settings = RoadSettings {

@@ -20,7 +20,7 @@ const SCALE_ROUNDING: f64 = 1e-6;
 const RIM_CELLS: f64 = 3.0;
 
 pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
-    let crs = match RecordedCrs::new(&manifest.crs_wkt) {
+    let crs = match recorded(manifest) {
         Ok(crs) => crs,
         Err(error) => {
             findings.look(CheckId::Crs, false, || format!("the WKT cannot be used: {error}"));
@@ -35,23 +35,43 @@ pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     }
 }
 
+/// The CRS with the factors of the package.
+pub(crate) fn recorded(manifest: &Manifest) -> Result<RecordedCrs, DemError> {
+    RecordedCrs::new(&manifest.crs_wkt, manifest.metres_per_unit, manifest.data_bounds)
+}
+
 fn positions(
     manifest: &Manifest,
     crs: &RecordedCrs,
     findings: &mut Findings,
 ) -> Result<(), DemError> {
     let data = manifest.data_bounds;
-    let scales: Vec<f64> = crs.scales(&grid(data))?.into_iter().flatten().collect();
-    let least = scales.iter().copied().fold(f64::INFINITY, f64::min) - SCALE_ROUNDING;
-    let most = scales.iter().copied().fold(f64::NEG_INFINITY, f64::max) + SCALE_ROUNDING;
-    let said = manifest.point_scale;
-    findings.look(CheckId::Scale, (least..=most).contains(&said), || {
-        format!("the scale is {said}, but the CRS has {least} to {most} over the data")
-    });
     let projection = crs.projection(manifest.wgs84_bounds)?;
+    let scales: Vec<[f64; 2]> =
+        crs.scales(&grid(data), manifest.wgs84_bounds)?.into_iter().flatten().collect();
+    check_scales(manifest, &scales, findings);
     rectangles(manifest, &projection, findings);
     table(manifest, &projection, findings);
     Ok(())
+}
+
+/// The scales that are told lie among those over the data.
+fn check_scales(manifest: &Manifest, scales: &[[f64; 2]], findings: &mut Findings) {
+    let scale = &manifest.scale;
+    for axis in 0..2 {
+        let of_axis = || scales.iter().map(|along| along[axis]);
+        let least = of_axis().fold(f64::INFINITY, f64::min) - SCALE_ROUNDING;
+        let most = of_axis().fold(f64::NEG_INFINITY, f64::max) + SCALE_ROUNDING;
+        let said = [scale.least[axis], scale.center[axis], scale.largest[axis]];
+        let holds = least <= said[0] && said.is_sorted() && said[2] <= most;
+        findings.look(CheckId::Scale, holds, || {
+            format!("axis {axis}: scales {said:?} are recorded, there are {least} to {most} over the data")
+        });
+    }
+    let mean = (scale.center[0] * scale.center[1]).sqrt();
+    findings.look(CheckId::Scale, manifest.point_scale.to_bits() == mean.to_bits(), || {
+        format!("the scale is {}, its parts make {mean}", manifest.point_scale)
+    });
 }
 
 /// The rectangle in degrees is around the data, and the data's rectangle is around the one in degrees: each holds the
@@ -62,7 +82,8 @@ fn rectangles(manifest: &Manifest, projection: &dyn Projection, findings: &mut F
         // Data around a pole: their outline tells nothing of the latitudes inside.
         return;
     }
-    let rim_m = RIM_CELLS * manifest.frame.cell_m();
+    let [east_m, north_m] = manifest.frame.cell().to_array();
+    let rim_m = RIM_CELLS * east_m.max(north_m);
     let middle_deg = f64::midpoint(degrees.min_x, degrees.max_x);
 
     let mut outline = outline(data);

@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
 pub(crate) mod extract;
+pub(crate) mod parts;
 pub(crate) mod rays;
 pub(crate) mod terrain;
 
@@ -139,6 +140,37 @@ pub(crate) fn settings(
     output: PathBuf,
     options: Options,
 ) -> BuildSettings {
+    BuildSettings {
+        dem: vec![dem],
+        osm,
+        output,
+        existing: Existing::Keep,
+        terrain: TerrainSettings {
+            crs: None,
+            dem_crs: None,
+            dem_vertical_crs: None,
+            vertical_crs: None,
+            vertical_shift_m: 0.0,
+            nodata: None,
+            cell: options.cell_m.map(corniche_geom::Cell::from),
+            cell_every: None,
+            scale_latitude_deg: None,
+            max_error_m: Some(options.max_error_m),
+            fill_voids: options.fill_voids,
+        },
+        roads: RoadSettings {
+            table: table(),
+            filter: ClassFilter::usual(),
+            simplify_cells: 0.25,
+        },
+        resources: Resources { threads: options.threads, memory_bytes: 256 << 20 },
+        attribution: Vec::new(),
+        generator: "tests".to_owned(),
+    }
+}
+
+/// The FRC table of all tests.
+pub(crate) fn table() -> FrcTable {
     let classes = [
         ("motorway", 0),
         ("trunk", 1),
@@ -152,31 +184,7 @@ pub(crate) fn settings(
         ("track", 7),
     ];
     let classes = classes.map(|(value, class)| (value.to_owned(), class)).to_vec();
-    BuildSettings {
-        dem: vec![dem],
-        osm,
-        output,
-        existing: Existing::Keep,
-        terrain: TerrainSettings {
-            crs: None,
-            dem_crs: None,
-            dem_vertical_crs: None,
-            vertical_crs: None,
-            vertical_shift_m: 0.0,
-            nodata: None,
-            cell_m: options.cell_m,
-            max_error_m: Some(options.max_error_m),
-            fill_voids: options.fill_voids,
-        },
-        roads: RoadSettings {
-            table: FrcTable::new("test", classes, vec![], 7).unwrap(),
-            filter: ClassFilter::usual(),
-            simplify_cells: 0.25,
-        },
-        resources: Resources { threads: options.threads, memory_bytes: 256 << 20 },
-        attribution: Vec::new(),
-        generator: "tests".to_owned(),
-    }
+    FrcTable::new("test", classes, vec![], 7).unwrap()
 }
 
 /// Builds a package from files.
