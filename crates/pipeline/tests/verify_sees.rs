@@ -105,7 +105,7 @@ fn a_road_dropped_from_a_finest_tile() {
     let id = parts.tiles_above(0).max_by_key(|tile| tile.roads_geo.len()).unwrap().id;
     let index = parts.index_of(id).unwrap();
     parts.tiles[index].roads_geo.pop();
-    parts.assert_breaks(Against::Itself, &[CheckId::Length]);
+    parts.assert_breaks(Against::Itself, &[CheckId::Methods, CheckId::Length, CheckId::Growth]);
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn sums_that_do_not_add_up() {
 
     let mut samples = Parts::sound();
     samples.manifest.counts.samples.filled += 1;
-    samples.assert_breaks(Against::Itself, &[CheckId::RoadSums]);
+    samples.assert_breaks(Against::Itself, &[CheckId::SampleSums]);
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn a_parent_left_out_over_its_children() {
     let mut parts = Parts::sound();
     let parent = parts.worst_finest().parent().unwrap();
     parts.tiles.retain(|tile| tile.id != parent);
-    parts.assert_breaks(Against::Itself, &[CheckId::LevelSums]);
+    parts.assert_breaks(Against::Itself, &[CheckId::LevelSums, CheckId::Growth]);
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn a_finest_tile_off_by_more_than_the_bound() {
         .unwrap();
     let steps = (3.0 * MAX_ERROR_M / parts.manifest.vertical.quantum_m).ceil() as i32;
     parts.lift(id, vertex, steps);
-    parts.assert_breaks(Against::Dem, &[CheckId::Bound, CheckId::Finest, CheckId::Recorded]);
+    parts.assert_breaks(Against::Dem, &[CheckId::Levels, CheckId::SvRange, CheckId::Bound, CheckId::Finest, CheckId::Recorded, CheckId::Nodes]);
 
     // Owning up to the error does not make it a smaller one.
     let mut above = Some(id);
@@ -215,7 +215,7 @@ fn a_finest_tile_off_by_more_than_the_bound() {
         *stored_m = stored_m.max(4.5 * MAX_ERROR_M);
         above = ancestor.parent();
     }
-    parts.assert_breaks(Against::Dem, &[CheckId::LevelSums, CheckId::Finest, CheckId::Recorded]);
+    parts.assert_breaks(Against::Dem, &[CheckId::SvRange, CheckId::LevelSums, CheckId::Finest, CheckId::Recorded, CheckId::Nodes]);
 }
 
 /// The tile, road and vertex of the first vertex inside a line that is as wanted, `above` the finest level.
@@ -243,7 +243,7 @@ fn a_line_that_skips_the_edge_it_crosses() {
     let index = parts.index_of(id).unwrap();
     // The line goes straight on, so that its length in plan stays what it was.
     parts.tiles[index].roads_geo[road].line.vertices.remove(vertex);
-    parts.assert_breaks(Against::Itself, &[CheckId::OnTin]);
+    parts.assert_breaks(Against::Itself, &[CheckId::OnTin, CheckId::Growth]);
 }
 
 #[test]
@@ -277,7 +277,7 @@ fn a_line_with_a_point_moved_far_away() {
 
     parts.tiles[index].roads_geo[road].line.vertices[vertex] =
         DrapedVertex::Source { point: corner(far), triangle: far as u32 };
-    parts.assert_breaks(Against::Itself, &[CheckId::OnTin]);
+    parts.assert_breaks(Against::Itself, &[CheckId::OnTin, CheckId::Methods]);
 }
 
 #[test]
@@ -297,11 +297,11 @@ fn a_tile_with_a_flipped_bit() {
 fn tolerances_that_were_loosened() {
     let mut settings = Parts::sound();
     settings.manifest.settings.max_error_m *= 100.0;
-    settings.assert_breaks(Against::Itself, &[CheckId::SettingsHash]);
+    settings.assert_breaks(Against::Itself, &[CheckId::LevelRecords, CheckId::SettingsHash]);
 
     let mut level = Parts::sound();
     level.manifest.levels[0].max_error_m *= 100.0;
-    level.assert_breaks(Against::Itself, &[CheckId::SettingsHash]);
+    level.assert_breaks(Against::Itself, &[CheckId::LevelRecords]);
 }
 
 #[test]
@@ -323,5 +323,5 @@ fn a_height_range_that_leaves_nodes_out() {
     let id = parts.finest_without_roads();
     let range_m = &mut parts.terrain_mut(id).height_range_m;
     range_m[1] = range_m[0];
-    parts.assert_breaks(Against::Dem, &[CheckId::Ranges]);
+    parts.assert_breaks(Against::Dem, &[CheckId::Vertices, CheckId::Ranges]);
 }
