@@ -8,7 +8,7 @@ mod support;
 use std::{collections::BTreeMap, path::Path};
 
 use corniche_drape::{DrapedLine, DrapedVertex, SvLine};
-use corniche_geom::{LatticePoint, TileId};
+use corniche_geom::LatticePoint;
 use corniche_pipeline::{CheckId, Needs, VerifyError};
 use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
 use corniche_tileset::{GeoRoad, Manifest, RoadRecord, SvRoad, Terrain, TilePayload};
@@ -170,7 +170,8 @@ const MANIFEST: &[Change] = &[
     change("/counts/roads_lost/0/reason", text, By(C::Texts)),
     change("/counts/roads_lost/0/roads", one_more, By(C::RoadSums)),
     change("/counts/roads_lost/0/length_m", one_more, By(C::OsmCounts)),
-    change("/counts/defects", |_| json!([["way without nodes", 3]]), By(C::OsmCounts)),
+    change("/counts/defects/0/0", text, By(C::OsmCounts)),
+    change("/counts/defects/0/1", one_more, By(C::OsmCounts)),
     change("/counts/unknown_highways/0/0", text, By(C::OsmCounts)),
     change("/counts/unknown_highways/0/1", one_more, By(C::OsmCounts)),
     change("/counts/blobs_passed_over", one_more, By(C::OsmCounts)),
@@ -336,8 +337,11 @@ fn look_at(sound: &Value, change: &Change) -> Result<(), String> {
     }
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("changed.pmtiles");
-    parts.write(&path).map_err(|error| error.to_string())?;
-    check(&path, change.seen)
+    match parts.write(&path) {
+        Err(_) if change.seen == Refused => Ok(()),
+        Err(error) => Err(error),
+        Ok(()) => check(&path, change.seen),
+    }
 }
 
 /// Lists fields of types by patterns that name all of them: one that is added does not compile until it is named.
@@ -378,13 +382,13 @@ const CHANGES: &[PayloadChange] = &[
     ("TilePayload.roads_geo", |parts| drop(busy(parts).roads_geo.remove(0)), By(C::Methods)),
     ("TilePayload.roads_sv", without_sv, By(C::Methods)),
     ("TilePayload.attributes", |parts| drop(busy(parts).attributes.pop()), By(C::Attributes)),
-    ("Terrain.tin", |parts| ground(parts).tin = Tin::default(), By(C::LevelSums)),
+    ("Terrain.tin", without_ground, By(C::LevelSums)),
     ("Tin.triangles", flip, By(C::Bound)),
     ("TinVertex.row", |parts| move_vertex(parts, |v| v.row += 1), By(C::Nodes)),
     ("TinVertex.column", |parts| move_vertex(parts, |v| v.column += 1), By(C::Nodes)),
     ("TinVertex.height_q", |parts| move_vertex(parts, |v| v.height_q += 1), By(C::Nodes)),
     ("Terrain.normals", |parts| ground(parts).normals[40][1] += 1, By(C::Normals)),
-    ("Terrain.geometric_error_m", |parts| ground(parts).geometric_error_m *= 0.999, By(C::LevelSums)),
+    ("Terrain.geometric_error_m", |parts| ground(parts).geometric_error_m *= 0.999, By(C::Bound)),
     ("Terrain.height_range_m", |parts| ground(parts).height_range_m[0] -= 0.001, By(C::Ranges)),
     ("Terrain.uncovered_nodes", |parts| ground(parts).uncovered_nodes += 1, By(C::Uncovered)),
     ("GeoRoad.way_id", |parts| geo(parts, |road| road.way_id += 1 << 40), By(C::Methods)),
@@ -396,9 +400,9 @@ const CHANGES: &[PayloadChange] = &[
     ("DrapedLine.vertices", skip_crossing, By(C::OnTin)),
     ("Source.point", move_source, By(C::Methods)),
     ("Source.triangle", |parts| vertex(parts, is_source, other_triangle), Refused),
-    ("Crossing.a", |parts| vertex(parts, is_crossing, |v| crossing(v, 0)), Refused),
-    ("Crossing.b", |parts| vertex(parts, is_crossing, |v| crossing(v, 1)), Refused),
-    ("Vertex.vertex", |parts| vertex(parts, is_crossing, as_vertex), Refused),
+    ("Crossing.a", |parts| vertex(parts, is_crossing, |v| crossing(v, 0)), By(C::OnTin)),
+    ("Crossing.b", |parts| vertex(parts, is_crossing, |v| crossing(v, 1)), By(C::OnTin)),
+    ("Vertex.vertex", |parts| vertex(parts, is_crossing, as_vertex), By(C::OnTin)),
     ("SvRoad.way_id", |parts| sv(parts, |road| road.way_id += 1 << 40), By(C::Methods)),
     ("SvRoad.part", |parts| sv(parts, |road| road.part += 1), By(C::Order)),
     ("SvRoad.class", |parts| sv(parts, |road| road.class = other_class(road.class)), By(C::Classes)),
@@ -466,6 +470,12 @@ fn range(parts: &mut Parts, end: usize, steps: f64) {
     sv(parts, |road| road.line.ground_range_m[0][end] += steps * quantum_m);
 }
 
+/// Ground without a triangle.
+fn without_ground(parts: &mut Parts) {
+    let ground = ground(parts);
+    (ground.tin, ground.normals) = (Tin::default(), Vec::new());
+}
+
 /// Takes a way's SV lines away, its GEO lines stay.
 fn without_sv(parts: &mut Parts) {
     let tile = busy(parts);
@@ -511,7 +521,8 @@ fn other_triangle(vertex: &mut DrapedVertex) {
 
 fn crossing(vertex: &mut DrapedVertex, end: usize) {
     if let DrapedVertex::Crossing { a, b } = vertex {
-        *[a, b][end] += if end == 0 { u32::MAX } else { 1 };
+        let end = if end == 0 { a } else { b };
+        *end = if *end > 0 { *end - 1 } else { 1 };
     }
 }
 
@@ -651,11 +662,10 @@ fn every_field_of_a_payload_is_seen() {
 fn a_payload_in_another_tiles_place_is_seen() {
     let mut tiles = SOUND.encoded.clone();
     let (last, other) = (tiles.len() - 1, tiles.len() - 2);
-    tiles[last].1 = tiles[other].1.clone();
+    let bytes = std::mem::take(&mut tiles[last].1);
+    tiles[last].1 = std::mem::replace(&mut tiles[other].1, bytes);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("changed.pmtiles");
-    support::parts::write(&path, &SOUND.parts.manifest, &tiles);
+    support::parts::write(&path, &SOUND.parts.manifest, &tiles).unwrap();
     assert_eq!(check(&path, By(C::Whole)), Ok(()));
-    // Unused here, but a place all the same.
-    let _: TileId = tiles[last].0;
 }

@@ -289,7 +289,7 @@ fn a_tile_with_a_flipped_bit() {
     *bytes.last_mut().unwrap() ^= 1;
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("damaged.pmtiles");
-    write(&path, &parts.manifest, &tiles);
+    write(&path, &parts.manifest, &tiles).unwrap();
     assert_broken(report_on(&path, Against::Itself), &[CheckId::Whole, CheckId::LevelSums]);
 }
 

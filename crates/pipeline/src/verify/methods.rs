@@ -16,10 +16,10 @@ use super::{
 pub(crate) const SAME_LINE_STEPS: f64 = 2.0;
 /// Pieces shorter than this are no pieces.
 const LEAST_STEPS: f64 = 8.0;
-/// How much wider than the ground, as a part of the heights, a stored range may be before it is rounded.
-const RANGE_PAD: f64 = 2e-6;
-/// Rounding of f64, as a part of the heights.
-const ROUNDING: f64 = 1e-9;
+/// Ranges are widened by this part of the heights before they are rounded outwards (FORMAT.md, section 8) …
+const RANGE_PAD: f64 = 1e-6;
+/// … to this part of it: two ways of computing the same heights.
+const PAD_ROUNDING: f64 = 1e-3;
 
 /// A segment in local steps.
 pub(crate) type Segment = [[f64; 2]; 2];
@@ -195,10 +195,12 @@ pub(crate) fn verify_ranges(view: &View<'_>, findings: &mut Findings) {
             let found = view.ground.range_near(ends, margin);
             let holds = found.is_some_and(|[lowest_m, highest_m]| {
                 let size_m = lowest_m.abs().max(highest_m.abs()).max(highest_m - lowest_m);
-                let near_m = ROUNDING * (size_m + 1.0);
-                let most_m = view.quantum_m + RANGE_PAD * size_m + near_m;
-                (-near_m..=most_m).contains(&(lowest_m - low_m))
-                    && (-near_m..=most_m).contains(&(high_m - highest_m))
+                let steps = |height_m: f64| height_m / view.quantum_m;
+                let [less_m, more_m] = [1.0 - PAD_ROUNDING, 1.0 + PAD_ROUNDING]
+                    .map(|part| part * RANGE_PAD * size_m);
+                let lows = steps(lowest_m - more_m).floor()..=steps(lowest_m - less_m).floor();
+                let highs = steps(highest_m + less_m).ceil()..=steps(highest_m + more_m).ceil();
+                lows.contains(&steps(low_m)) && highs.contains(&steps(high_m))
             });
             findings.look(CheckId::SvRange, holds, || {
                 format!(

@@ -80,12 +80,17 @@ pub(crate) fn encode_in(manifest: &Manifest, tile: &TilePayload) -> Result<Vec<u
     encode(tile, &context).map(|encoded| encoded.bytes)
 }
 
-pub(crate) fn write(path: &Path, manifest: &Manifest, tiles: &[(TileId, Vec<u8>)]) {
-    let mut writer = Writer::create(path, manifest).expect("a file for the package");
+/// Fails when a writer refuses the manifest or the tiles.
+pub(crate) fn write(
+    path: &Path,
+    manifest: &Manifest,
+    tiles: &[(TileId, Vec<u8>)],
+) -> Result<(), String> {
+    let mut writer = Writer::create(path, manifest).map_err(|error| error.to_string())?;
     for (id, bytes) in tiles {
-        writer.add(*id, bytes).expect("tiles in their order");
+        writer.add(*id, bytes).map_err(|error| error.to_string())?;
     }
-    writer.finish().expect("a finished package");
+    writer.finish().map_err(|error| error.to_string())
 }
 
 pub(crate) fn report_on(path: &Path, against: Against) -> VerifyReport {
@@ -146,16 +151,15 @@ impl Parts {
 
     /// Writes the package that these parts make. Sums of stored bytes follow the tiles, as checksums do: what takes
     /// more or fewer bytes is told apart by what it says, not by its size.
-    pub(crate) fn write(&self, path: &Path) -> Result<(), EncodeError> {
-        let encoded = self.encoded()?;
+    pub(crate) fn write(&self, path: &Path) -> Result<(), String> {
+        let encoded = self.encoded().map_err(|error| error.to_string())?;
         let mut manifest = self.manifest.clone();
         for (tiles, sign) in [(&encoded, 1_i64), (&SOUND.encoded, -1)] {
             for (id, bytes) in tiles {
                 add_sizes(&mut manifest, *id, bytes, sign);
             }
         }
-        write(path, &manifest, &encoded);
-        Ok(())
+        write(path, &manifest, &encoded)
     }
 
     /// Verifies the package that these parts make, and asserts that exactly these checks are broken.
