@@ -6,7 +6,7 @@ use std::{
     io::{self, Write as _},
 };
 
-use corniche_tileset::{FilePackage, Manifest};
+use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord};
 use serde_json::json;
 
 use crate::{
@@ -115,8 +115,31 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
         ]);
     }
     say(format!("\n{}", levels.to_text()));
+    text.push_str(&sample_errors(manifest));
     text.push_str(&roads(manifest));
     text
+}
+
+/// How far each level is from the DEM's own samples.
+fn sample_errors(manifest: &Manifest) -> String {
+    let mut table = Table::new(["level", "samples on TIN", "off TIN", "max m", "RMS m", "p99 m"]);
+    for level in &manifest.levels {
+        let SampleErrorRecord { on_tin, off_tin, max_m, rms_m, p99_m } = level.sample_error;
+        table.row([
+            level.level.to_string(),
+            count(on_tin),
+            count(off_tin),
+            format!("{max_m:.2}"),
+            format!("{rms_m:.3}"),
+            format!("{p99_m:.2}"),
+        ]);
+    }
+    let what = if manifest.nodes_are_samples {
+        "At the DEM's own samples, which are the nodes"
+    } else {
+        "At the DEM's own samples, which are not the nodes"
+    };
+    format!("{what}:\n{}\n", table.to_text())
 }
 
 /// Foreign text for a terminal: its control characters must neither colour nor forge lines.
@@ -155,25 +178,25 @@ fn roads(manifest: &Manifest) -> String {
     }
     let mut text = String::new();
     let mut table = Table::new(["roads", "count", "length"]);
-    table.row(["read".into(), count(counts.roads_in), length(counts.roads_in_m)]);
+    table.row(["read".into(), count(counts.roads_in), length(counts.roads_in_um)]);
     table.row([
         "kept at the finest level".into(),
         count(counts.roads_kept),
-        length(counts.roads_kept_m),
+        length(counts.roads_kept_um),
     ]);
     for loss in &counts.roads_lost {
         table.row([
             format!("lost {}", plain(&loss.reason)),
             count(loss.roads),
-            length(loss.length_m),
+            length(loss.length_um),
         ]);
     }
-    for (class, &(roads, metres)) in counts.classes.iter().enumerate() {
+    for (class, &(roads, length_um)) in counts.classes.iter().enumerate() {
         if roads > 0 {
             table.row([
                 format!("  FRC {class} ({})", plain(&manifest.settings.frc_table)),
                 count(roads),
-                length(metres),
+                length(length_um),
             ]);
         }
     }

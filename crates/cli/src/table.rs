@@ -63,13 +63,10 @@ pub(crate) fn bytes(size: u64) -> String {
     }
 }
 
-/// A length for people.
-pub(crate) fn length(metres: f64) -> String {
-    if metres.abs() < 1000.0 {
-        format!("{metres:.1} m")
-    } else {
-        format!("{:.1} km", metres / 1000.0)
-    }
+/// A length for people, from micrometres.
+pub(crate) fn length(micrometres: u64) -> String {
+    let metres = micrometres as f64 / 1e6;
+    if metres < 1000.0 { format!("{metres:.1} m") } else { format!("{:.1} km", metres / 1000.0) }
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@ mod source;
 
 mod plan;
 mod reader;
+mod samples;
 
 mod crs;
 mod heights;
@@ -45,5 +46,6 @@ pub use plan::{GridPlan, PlanOptions, Resampling};
 pub use projection::DemProjection;
 pub use reader::{DemWindow, Reader, SampleBlock};
 pub use recorded::RecordedCrs;
+pub use samples::SampleArea;
 pub use source::OpenOptions;
 pub use working::PlanScale;

@@ -75,6 +75,11 @@ impl Operation {
         Self { divide: working.metres_per_unit, ..Self::new(&working.crs, to, area_deg) }
     }
 
+    /// The same, with what comes out moved by whole turns: `[turn, near]` of the first coordinate.
+    pub(crate) fn around(self, turn: Option<[f64; 2]>) -> Self {
+        Self { turn, ..self }
+    }
+
     /// The same where an approximation for want of a grid is no answer; for heights.
     pub(crate) fn exact(from: &Crs, to: &Crs, area_deg: Bounds) -> Self {
         let found = Self::new(from, to, Some(area_deg));

@@ -6,9 +6,7 @@ use crate::plan::{Alignment, Method};
 use crate::{Dem, DemError, GridPlan, fill};
 
 /// Samples held in memory at once for one window; larger windows are read in parts. 32 MB.
-const MOST_SAMPLES: usize = 1 << 22;
-/// Side of the blocks in which original samples are handed out.
-const BLOCK_SAMPLES: i64 = 256;
+pub(crate) const MOST_SAMPLES: usize = 1 << 22;
 
 /// Heights of a window of nodes.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,11 +32,11 @@ pub struct SampleBlock {
 
 /// Reads windows of heights. One per thread: it keeps files open and buffers at hand.
 pub struct Reader<'a> {
-    dem: &'a Dem,
-    plan: &'a GridPlan,
-    files: OpenFiles,
-    samples: Vec<f64>,
-    scratch: Scratch,
+    pub(crate) dem: &'a Dem,
+    pub(crate) plan: &'a GridPlan,
+    pub(crate) files: OpenFiles,
+    pub(crate) samples: Vec<f64>,
+    pub(crate) scratch: Scratch,
 }
 
 impl<'a> Reader<'a> {
@@ -95,35 +93,10 @@ impl<'a> Reader<'a> {
         &mut self,
         mut take: impl FnMut(&SampleBlock),
     ) -> Result<(), DemError> {
-        let (dem, plan) = (self.dem, self.plan);
-        let mut block = SampleBlock::default();
-        for (layer, mosaic) in dem.mosaics.iter().enumerate() {
-            block.layer = layer;
-            let SampleRect { min, max } = mosaic.extent;
-            for row in (min[1]..max[1]).step_by(BLOCK_SAMPLES as usize) {
-                for column in (min[0]..max[0]).step_by(BLOCK_SAMPLES as usize) {
-                    let end = [column + BLOCK_SAMPLES, row + BLOCK_SAMPLES];
-                    let rect =
-                        mosaic.extent.intersection(&SampleRect { min: [column, row], max: end });
-                    if mosaic.files.iter().all(|file| file.rect.intersection(&rect).is_empty()) {
-                        continue;
-                    }
-                    self.files.read(&dem.sources, mosaic, &rect, &mut self.samples)?;
-                    block.positions_m.clear();
-                    block.heights_m.clear();
-                    for (k, height_m) in
-                        self.samples.iter().enumerate().filter(|(_, height_m)| !height_m.is_nan())
-                    {
-                        let (c, r) = (k % rect.columns(), k / rect.columns());
-                        let sample = [(column + c as i64) as f64, (row + r as i64) as f64];
-                        block.positions_m.push(mosaic.crs_from_sample.crs_from_pixel(sample));
-                        block.heights_m.push(*height_m as f32);
-                    }
-                    plan.layers[layer].working_from_crs.apply(&mut block.positions_m)?;
-                    if !block.heights_m.is_empty() {
-                        take(&block);
-                    }
-                }
+        for area in self.dem.sample_areas() {
+            let block = self.samples(&area)?;
+            if !block.heights_m.is_empty() {
+                take(&block);
             }
         }
         Ok(())
@@ -332,7 +305,7 @@ fn intersection(
 }
 
 /// The samples that heights at some positions can depend on; `None` when there are none.
-fn around(
+pub(crate) fn around(
     positions: impl Iterator<Item = [f64; 2]>,
     kernel: &Kernel,
     extent: &SampleRect,

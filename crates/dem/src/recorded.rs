@@ -61,7 +61,8 @@ mod tests {
 
     #[test]
     fn a_code_and_its_wkt_are_one_system() {
-        let data = Bounds { min_x: 500_000.0, min_y: 5_200_000.0, max_x: 510_000.0, max_y: 5_210_000.0 };
+        let data =
+            Bounds { min_x: 500_000.0, min_y: 5_200_000.0, max_x: 510_000.0, max_y: 5_210_000.0 };
         let by_code = RecordedCrs::new("EPSG:32632", [1.0; 2], data).unwrap();
         let by_wkt = RecordedCrs::new(&by_code.working.crs.wkt, [1.0; 2], data).unwrap();
         assert_eq!(by_wkt.label(), "EPSG:32632");

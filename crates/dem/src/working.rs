@@ -49,7 +49,7 @@ pub struct PlanScale {
 impl Working {
     fn new(crs: Crs, metres_per_unit: [f64; 2], dem: &Dem) -> Self {
         let own = &dem.mosaics[0];
-        let middle = if crs.is_same(&own.crs) { middle_of(own)[0] } else { dem.center_deg[0] };
+        let middle = if crs.is_same(&own.crs) { own.middle()[0] } else { dem.center_deg[0] };
         Self { crs, metres_per_unit, middle }
     }
 
@@ -224,13 +224,6 @@ fn equal_area(dem: &Dem) -> Result<Working, DemError> {
     let mut crs = Crs::from_spatial_ref(&reference)?;
     crs.label = format!("Lambert azimuthal equal-area about {lat}, {lon}");
     Ok(Working::new(crs, [1.0; 2], dem))
-}
-
-/// CRS position of the middle of a mosaic.
-fn middle_of(mosaic: &Mosaic) -> [f64; 2] {
-    let middle =
-        [0, 1].map(|axis| (mosaic.extent.min[axis] + mosaic.extent.max[axis] - 1) as f64 / 2.0);
-    mosaic.crs_from_sample.crs_from_pixel(middle)
 }
 
 /// CRS positions of the corners, the middles of the sides and the centre of every file.

@@ -14,9 +14,29 @@ use crate::{OwnedBorders, fraction::Fraction, owned_borders::Border};
 /// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*, with exact fractions.
 #[must_use]
 pub fn clip(line: &Polyline, bounds: &LatticeBounds, owned: OwnedBorders) -> Vec<Polyline> {
+    clip_parts(line, bounds, owned).into_iter().map(|part| part.line).collect()
+}
+
+/// A part of a line in a rectangle.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ClippedPart {
+    /// The part.
+    pub line: Polyline,
+    /// For each of its segments, of which segment of the whole line it is.
+    pub segments: Vec<usize>,
+}
+
+/// [`clip`], and where in the line its parts come from.
+#[must_use]
+pub fn clip_parts(
+    line: &Polyline,
+    bounds: &LatticeBounds,
+    owned: OwnedBorders,
+) -> Vec<ClippedPart> {
     let mut parts = Parts::default();
-    for pair in line.points().windows(2) {
+    for (index, pair) in line.points().windows(2).enumerate() {
         let segment = [pair[0], pair[1]];
+        parts.segment = index;
         if let Some(along) = Along::of(segment, bounds) {
             along.keep_owned(&owned, &mut parts);
         } else if let Some(inside) = inside(segment, bounds) {
@@ -38,8 +58,12 @@ pub fn clip_closed(line: &Polyline, bounds: &LatticeBounds) -> Vec<Polyline> {
 /// The parts as they come.
 #[derive(Default)]
 struct Parts {
-    ended: Vec<Polyline>,
+    ended: Vec<ClippedPart>,
     current: Vec<LatticePoint>,
+    /// Of which segment of the line each segment of `current` is.
+    segments: Vec<usize>,
+    /// The segment of the line that is looked at.
+    segment: usize,
     /// Whether the last segment's end was kept, so that the next one goes on from it.
     goes_on: bool,
 }
@@ -49,12 +73,22 @@ impl Parts {
         if !(self.goes_on && inside.whole_start) {
             self.end();
         }
-        self.current.extend(inside.ends);
+        let [start, end] = inside.ends;
+        if self.current.is_empty() {
+            self.current.push(start);
+        }
+        // A piece that rounding makes a point is none.
+        if start != end {
+            self.current.push(end);
+            self.segments.push(self.segment);
+        }
         self.goes_on = inside.whole_end;
     }
 
     fn end(&mut self) {
-        self.ended.extend(Polyline::new(std::mem::take(&mut self.current)).ok());
+        let segments = std::mem::take(&mut self.segments);
+        let line = Polyline::new(std::mem::take(&mut self.current)).ok();
+        self.ended.extend(line.map(|line| ClippedPart { line, segments }));
     }
 }
 

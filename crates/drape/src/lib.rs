@@ -23,13 +23,13 @@ mod ray;
 mod walk;
 
 pub use check::check;
-pub use clip::{clip, clip_closed};
+pub use clip::{ClippedPart, clip, clip_closed, clip_parts};
 pub use draped_line::{DrapedLine, DrapedVertex, SvLine};
 pub use extrude::extrude;
 pub use near_ground::{NearGround, near_ground};
 pub use owned_borders::{Neighbours, OwnedBorders};
 pub use positions::{BadLine, positions};
-pub use walk::{Drape, drape};
+pub use walk::{Drape, Gap, drape};
 
 #[cfg(test)]
 mod oracle_tests;

@@ -14,6 +14,17 @@ pub struct Drape {
     pub lines: Vec<DrapedLine>,
     /// Length in plan that is over no ground, in lattice steps.
     pub off_ground_steps: f64,
+    /// Where that is, in order.
+    pub gaps: Vec<Gap>,
+}
+
+/// A stretch of a segment over no ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gap {
+    /// Which segment of the line.
+    pub segment: usize,
+    /// Where it begins and ends, as shares of the segment.
+    pub shares: [f64; 2],
 }
 
 /// Lays `line` on `surface`: a vertex at every source point, at every TIN edge crossed in its inside, and at
@@ -30,10 +41,12 @@ pub struct Drape {
 pub fn drape(line: &Polyline, surface: &Surface) -> Drape {
     let points = line.points();
     let room = 2 * points.len();
-    let mut walk = Walk { surface, drape: Drape::default(), part: None, room, near: Vec::new() };
+    let drape = Drape::default();
+    let mut walk = Walk { surface, drape, segment: 0, part: None, room, near: Vec::new() };
     let mut place = Place::of(points[0], surface);
     walk.arrive(points[0], place);
-    for pair in points.windows(2) {
+    for (segment, pair) in points.windows(2).enumerate() {
+        walk.segment = segment;
         place = walk.follow([pair[0], pair[1]], place);
     }
     walk.close(None);
@@ -43,6 +56,8 @@ pub fn drape(line: &Polyline, surface: &Surface) -> Drape {
 struct Walk<'a> {
     surface: &'a Surface,
     drape: Drape,
+    /// The segment being followed.
+    segment: usize,
     /// The part being laid, while on ground.
     part: Option<DrapedLine>,
     /// Vertices that a part is made for; it may get more.
@@ -89,14 +104,13 @@ impl Walk<'_> {
                 Next::Ends => {
                     self.close(Some(q));
                     let Some((back, entry)) = self.entry_after(&ray, last) else {
-                        self.drape.off_ground_steps += (1.0 - last.to_f64()) * p.distance_steps(q);
+                        self.leave_out([last.to_f64(), 1.0], p.distance_steps(q));
                         // The end may still touch ground, and the next segment go on from there.
                         let place = Place::of(q, self.surface);
                         self.arrive(q, place);
                         return place;
                     };
-                    self.drape.off_ground_steps +=
-                        (back.to_f64() - last.to_f64()) * p.distance_steps(q);
+                    self.leave_out([last.to_f64(), back.to_f64()], p.distance_steps(q));
                     last = back;
                     let (first, next) = match entry {
                         Entry::Edge(half_edge) => {
@@ -149,6 +163,12 @@ impl Walk<'_> {
             }
         }
         first
+    }
+
+    /// Counts a stretch of the segment, which is so long, as off the ground.
+    fn leave_out(&mut self, shares: [f64; 2], length_steps: f64) {
+        self.drape.off_ground_steps += (shares[1] - shares[0]) * length_steps;
+        self.drape.gaps.push(Gap { segment: self.segment, shares });
     }
 
     /// Adds a source point, if it lies on ground.

@@ -18,6 +18,7 @@ mod orientation;
 mod polyline;
 mod projection;
 mod tile_id;
+pub mod wgs84;
 
 pub use barycentric::barycentric;
 pub use bounds::{Bounds, LatticeBounds};

@@ -10,7 +10,9 @@ use corniche_geom::TileId;
 use corniche_pipeline::CheckId;
 use corniche_tileset::EncodeError;
 use corniche_tin::{NO_TWIN, Tin, TinVertex};
-use support::parts::{Against, LAST_NODE, MAX_ERROR_M, Parts, SOUND, assert_broken, encode_in, report_on, write};
+use support::parts::{
+    Against, LAST_NODE, MAX_ERROR_M, Parts, SOUND, assert_broken, encode_in, report_on, write,
+};
 
 #[test]
 fn nothing_broken_when_nothing_was_changed() {
@@ -206,7 +208,17 @@ fn a_finest_tile_off_by_more_than_the_bound() {
         .unwrap();
     let steps = (3.0 * MAX_ERROR_M / parts.manifest.vertical.quantum_m).ceil() as i32;
     parts.lift(id, vertex, steps);
-    parts.assert_breaks(Against::Dem, &[CheckId::Levels, CheckId::SvRange, CheckId::Bound, CheckId::Finest, CheckId::Recorded, CheckId::Nodes]);
+    parts.assert_breaks(
+        Against::Dem,
+        &[
+            CheckId::Levels,
+            CheckId::SvRange,
+            CheckId::Bound,
+            CheckId::Finest,
+            CheckId::Recorded,
+            CheckId::Nodes,
+        ],
+    );
 
     // Owning up to the error does not make it a smaller one.
     let mut above = Some(id);
@@ -215,7 +227,10 @@ fn a_finest_tile_off_by_more_than_the_bound() {
         *stored_m = stored_m.max(4.5 * MAX_ERROR_M);
         above = ancestor.parent();
     }
-    parts.assert_breaks(Against::Dem, &[CheckId::SvRange, CheckId::LevelSums, CheckId::Finest, CheckId::Recorded, CheckId::Nodes]);
+    parts.assert_breaks(
+        Against::Dem,
+        &[CheckId::SvRange, CheckId::LevelSums, CheckId::Finest, CheckId::Recorded, CheckId::Nodes],
+    );
 }
 
 /// The tile, road and vertex of the first vertex inside a line that is as wanted, `above` the finest level.

@@ -35,6 +35,8 @@ pub struct Manifest {
     pub wgs84_bounds: Bounds,
     /// How nodes relate to the DEM's samples, in words: "nodes are the DEM's samples", "bilinear from …".
     pub resampling: String,
+    /// Whether nodes and the DEM's samples are the same points: the error bounds then hold at every sample.
+    pub nodes_are_samples: bool,
     /// Heights.
     pub vertical: VerticalRecord,
     /// WGS84 ⇄ working CRS without PROJ.
@@ -106,6 +108,8 @@ pub struct LevelRecord {
     pub geometric_error_m: f64,
     /// Stored geometric errors of its tiles; `None` on a level without tiles.
     pub errors_m: Option<Distribution>,
+    /// How far its TINs are from the DEM's own samples.
+    pub sample_error: SampleErrorRecord,
     /// Stored error over the largest true one of the tile and its children, over the tiles where that is at least
     /// [`VerticalRecord::least_measured_error_m`]; `None` where there is no such tile.
     pub tightness: Option<Distribution>,
@@ -125,6 +129,22 @@ pub struct LevelRecord {
     pub terrain_bytes: u64,
     /// Full-resolution nodes with data that the level's TINs do not cover, next to voids and data edges.
     pub uncovered_nodes: u64,
+}
+
+/// How far a level's TINs are from the DEM's own samples: those that nodes are made from, each once, after nodata, units
+/// and shift; samples that lie on a border belong to the tile east or south of it.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct SampleErrorRecord {
+    /// Samples at which there is a TIN.
+    pub on_tin: u64,
+    /// Samples at which there is none: next to voids and the data's edge, or on tiles without ground.
+    pub off_tin: u64,
+    /// Largest vertical distance.
+    pub max_m: f64,
+    /// Root mean square.
+    pub rms_m: f64,
+    /// Distance that 99 % do not exceed, up to one height quantum too large.
+    pub p99_m: f64,
 }
 
 /// How values lie: nearest-rank quantiles.
@@ -214,12 +234,12 @@ pub struct Counts {
     pub samples: SampleCounts,
     /// Roads read from the extract (ways that the FRC table knows).
     pub roads_in: u64,
-    /// Their length in plan.
-    pub roads_in_m: f64,
+    /// Their true length in plan, micrometres.
+    pub roads_in_um: u64,
     /// Roads of which anything is kept at the finest level.
     pub roads_kept: u64,
-    /// Length in plan kept at the finest level.
-    pub roads_kept_m: f64,
+    /// True length in plan kept at the finest level, micrometres.
+    pub roads_kept_um: u64,
     /// The difference by reason; counts and lengths add up with what is kept to what came in.
     pub roads_lost: Vec<RoadLoss>,
     /// Defects met in the extract, by name: missing nodes, one-node ways and so on. Sorted by name.
@@ -232,8 +252,8 @@ pub struct Counts {
     pub highways_in: u64,
     /// Those of them that are no roads here, by reason. With the ways that became roads they add up.
     pub highways_left_out: Vec<(String, u64)>,
-    /// Roads per class, 0 first: count and metres in.
-    pub classes: Vec<(u64, f64)>,
+    /// Roads per class, 0 first: count and true micrometres in.
+    pub classes: Vec<(u64, u64)>,
 }
 
 /// Nodes of the finest grid over the data's rectangle.
@@ -256,8 +276,8 @@ pub struct RoadLoss {
     pub reason: String,
     /// Roads lost altogether for this reason.
     pub roads: u64,
-    /// Length in plan lost for this reason.
-    pub length_m: f64,
+    /// True length in plan lost for this reason, micrometres.
+    pub length_um: u64,
 }
 
 /// What one class costs on one level.

@@ -1,15 +1,23 @@
 //! Commands that tell what a package holds.
 
-use std::{num::NonZeroUsize, path::PathBuf};
+use std::{fmt::Write as _, num::NonZeroUsize, path::PathBuf};
 
 use clap::Args;
 use corniche_geom::TileId;
+use corniche_pipeline::CheckId;
 
 use super::ReportArgs;
 
-/// What `verify --help` ends with.
-const CHECKS: &str = "Every check has an id, such as P1 or sv.range: printed, in --json, and explained in \
-                      docs/promises.md. Exit code 1: a promise is broken.";
+/// What `verify --help` ends with: the checks, by their ids.
+fn checks() -> String {
+    let mut text =
+        "Checks (docs/promises.md explains them); a broken one makes exit code 1:\n".to_owned();
+    for check in CheckId::ALL {
+        let needs = check.needs().text().replace('`', "");
+        let _ = writeln!(text, "  {:<21} {} [{needs}]", check.id(), check.promise());
+    }
+    text
+}
 
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
@@ -36,7 +44,7 @@ pub(crate) struct GrowthArgs {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = CHECKS)]
+#[command(after_long_help = checks())]
 pub(crate) struct VerifyArgs {
     /// The package
     pub(crate) package: PathBuf,

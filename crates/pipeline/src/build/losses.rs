@@ -3,76 +3,71 @@
 use corniche_tileset::RoadLoss;
 
 use super::{
+    lengths::UM,
     roads::ReadRoads,
     tiles::{RoadFate, Tiles},
 };
 use crate::{BuildError, Defect, Loss, Observer};
 
-/// A road's length at the finest level, by what became of it; each part measured by itself.
+/// A road's true length at the finest level, micrometres, by what became of it; each part measured by itself.
 #[expect(clippy::struct_field_names, reason = "the unit is part of every name")]
 struct Lengths {
-    length_steps: f64,
-    kept_steps: f64,
-    outside_steps: f64,
-    void_steps: f64,
+    kept_um: u64,
+    outside_um: u64,
+    void_um: u64,
+}
+
+/// A cut moves a point by less than a lattice step, which is a millimetre; a length no greater than two is none.
+fn is_some(length_um: u64) -> bool {
+    length_um > 2_000
 }
 
 impl Lengths {
-    /// A cut moves a point by less than a lattice step; a length no greater than that is none.
-    fn is_some(&self, steps: f64) -> bool {
-        steps > 2.0 + self.length_steps * 1e-9
-    }
-
     fn is_kept(&self) -> bool {
-        self.is_some(self.kept_steps)
+        is_some(self.kept_um)
     }
 
-    fn losses(&self) -> [(Loss, f64); 2] {
-        [(Loss::OutsideData, self.outside_steps), (Loss::NoGround, self.void_steps)]
+    fn losses(&self) -> [(Loss, u64); 2] {
+        [(Loss::OutsideData, self.outside_um), (Loss::NoGround, self.void_um)]
     }
 
     /// What a road that is lost altogether is counted under: the greater part.
     fn reason(&self) -> Loss {
-        if self.void_steps >= self.outside_steps { Loss::NoGround } else { Loss::OutsideData }
+        if self.void_um >= self.outside_um { Loss::NoGround } else { Loss::OutsideData }
     }
 }
 
 fn lengths(roads: &ReadRoads<'_>, tiles: &Tiles) -> impl Iterator<Item = Lengths> {
-    roads.lengths_steps.iter().zip(&roads.outside_steps).zip(&tiles.roads).map(
-        |((&length_steps, &outside_steps), &RoadFate { kept_steps, void_steps })| Lengths {
-            length_steps,
-            kept_steps,
-            outside_steps,
-            void_steps,
-        },
+    roads.outside_um.iter().zip(&tiles.roads).map(
+        |(&outside_um, &RoadFate { kept_um, void_um })| Lengths { kept_um, outside_um, void_um },
     )
 }
 
 /// Sums over all roads.
 pub(crate) struct Sums {
     pub(crate) roads_kept: u64,
-    pub(crate) roads_kept_m: f64,
+    pub(crate) roads_kept_um: u64,
     pub(crate) lost: Vec<RoadLoss>,
 }
 
-/// Roads kept and lost, in count and length; `step_m` is the lattice's.
-pub(crate) fn sums(roads: &ReadRoads<'_>, tiles: &Tiles, step_m: f64) -> Sums {
-    let mut sums = Sums { roads_kept: 0, roads_kept_m: 0.0, lost: Vec::new() };
-    let mut losses = [(Loss::OutsideData, 0, 0.0), (Loss::NoGround, 0, 0.0)];
+/// Roads kept and lost, in count and length.
+pub(crate) fn sums(roads: &ReadRoads<'_>, tiles: &Tiles) -> Sums {
+    let mut sums = Sums { roads_kept: 0, roads_kept_um: 0, lost: Vec::new() };
+    let mut losses = [(Loss::OutsideData, 0, 0), (Loss::NoGround, 0, 0)];
     for road in lengths(roads, tiles) {
-        sums.roads_kept_m += road.kept_steps * step_m;
+        sums.roads_kept_um += road.kept_um;
         sums.roads_kept += u64::from(road.is_kept());
-        for ((loss, count, length_m), (_, steps)) in losses.iter_mut().zip(road.losses()) {
-            *length_m += steps * step_m;
+        for ((loss, count, length_um), (_, lost_um)) in losses.iter_mut().zip(road.losses()) {
+            *length_um += lost_um;
             *count += u64::from(!road.is_kept() && road.reason() == *loss);
         }
     }
     sums.lost = losses
         .into_iter()
-        .map(|(loss, roads, length_m)| RoadLoss {
+        .map(|(loss, roads, length_um)| RoadLoss {
             reason: loss.reason().to_owned(),
             roads,
-            length_m,
+            length_um,
         })
         .collect();
     sums
@@ -82,18 +77,17 @@ pub(crate) fn sums(roads: &ReadRoads<'_>, tiles: &Tiles, step_m: f64) -> Sums {
 pub(crate) fn report(
     roads: &ReadRoads<'_>,
     tiles: &Tiles,
-    step_m: f64,
     observer: &dyn Observer,
 ) -> Result<(), BuildError> {
     for (ordinal, road) in (0..).zip(lengths(roads, tiles)) {
-        for (loss, steps) in road.losses() {
+        for (loss, lost_um) in road.losses() {
             // A road of no length to speak of is lost as a whole, or not at all.
             let is_counted = !road.is_kept() && road.reason() == loss;
-            if is_counted || road.is_some(steps) {
+            if is_counted || is_some(lost_um) {
                 observer.defect(&Defect::LostRoad {
                     way_id: roads.log.load(ordinal)?.way_id,
                     loss,
-                    length_m: steps * step_m,
+                    length_m: lost_um as f64 / UM,
                     is_whole: !road.is_kept(),
                 });
             }

@@ -12,12 +12,14 @@
 mod errors;
 mod heights;
 mod inputs;
+mod lengths;
 mod levels;
 mod losses;
 mod mesh;
 mod package;
 mod road_log;
 pub(crate) mod roads;
+mod samples;
 pub(crate) mod tiles;
 
 use std::{fs, path::Path};
@@ -29,6 +31,7 @@ use crate::{BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage}
 
 pub(crate) use heights::{Pyramid, data_tiles, read as read_heights};
 pub(crate) use inputs::record as input_record;
+pub(crate) use lengths::TrueLengths;
 pub(crate) use levels::{Levels, recorded_filter};
 pub(crate) use package::{TILING, road_counts, settings_sha256, table_sha256};
 pub(crate) use tiles::share;
@@ -129,6 +132,8 @@ fn run(
     let levels = Levels::new(plan.frame, max_error_m, &settings.roads);
     // Files too far apart for one package are found out here, before the long work.
     let coordinates = package::coordinates(&dem, &plan)?;
+    let projection = dem.projection(&plan)?;
+    let lengths = TrueLengths::new(plan.frame, &coordinates, &projection);
     let inputs = inputs::hash(settings, observer)?;
 
     // Roads come before the long work on heights: an extract that is no use is told at once.
@@ -139,12 +144,12 @@ fn run(
                 .num_threads(threads)
                 .build()
                 .map_err(|error| start(&error))?;
-            let projection = dem.projection(&plan)?;
             let input = roads::RoadInput {
                 osm,
                 settings: &settings.roads,
                 projection: &projection,
                 levels: &levels,
+                lengths: &lengths,
                 data_bounds: heights::data_tile_bounds(&plan),
                 pool: &pool,
                 memory_bytes: settings.resources.memory_bytes / 4,
@@ -165,9 +170,15 @@ fn run(
         });
     }
     let errors = errors::measure(&pyramid, &meshes, &levels, threads, storage, observer)?;
+    let sample_errors = if plan.nodes_are_samples() {
+        errors.at_nodes().to_vec()
+    } else {
+        samples::measure(&dem, &plan, &meshes, &levels, threads, storage, observer)?
+    };
     let tiles = tiles::make(
         &tiles::TileInput {
             levels: &levels,
+            lengths: &lengths,
             meshes: &meshes,
             errors: &errors,
             pyramid: &pyramid,
@@ -179,20 +190,21 @@ fn run(
         observer,
     )?;
     if let Some(roads) = &roads {
-        losses::report(roads, &tiles, levels.frame().lattice_step_m(), observer)?;
+        losses::report(roads, &tiles, observer)?;
     }
     let manifest = package::manifest(&package::Outcome {
         settings,
         max_error_m,
         plan: &plan,
         levels: &levels,
-        coordinates,
+        coordinates: &coordinates,
         inputs,
         samples: pyramid.samples(),
         range_m: pyramid.range_m(),
         roads: roads.as_ref(),
         tiles: &tiles,
         errors: &errors,
+        sample_errors: &sample_errors,
     });
     if let (Some(osm), 0) = (&settings.osm, manifest.counts.roads_kept) {
         return Err(BuildError::NoGround { osm: osm.clone() });

@@ -12,7 +12,9 @@ use corniche_tileset::{
 use sha2::{Digest, Sha256};
 
 use super::{errors::TileErrors, levels::Levels, losses, roads::ReadRoads, tiles::Tiles};
-use crate::{BuildError, BuildSettings, Observer, Stage, Storage, storage::Kind};
+use crate::{
+    BuildError, BuildSettings, Observer, Stage, Storage, sample_error::SampleSums, storage::Kind,
+};
 
 /// Positions interpolated from the manifest are this exact.
 const COORDINATE_TOLERANCE_M: f64 = 0.01;
@@ -27,7 +29,7 @@ pub(crate) struct Outcome<'a> {
     pub(crate) max_error_m: f64,
     pub(crate) plan: &'a GridPlan,
     pub(crate) levels: &'a Levels,
-    pub(crate) coordinates: CoordinateTable,
+    pub(crate) coordinates: &'a CoordinateTable,
     pub(crate) inputs: Vec<InputRecord>,
     pub(crate) samples: SampleCounts,
     /// Lowest and highest node.
@@ -35,6 +37,8 @@ pub(crate) struct Outcome<'a> {
     pub(crate) roads: Option<&'a ReadRoads<'a>>,
     pub(crate) tiles: &'a Tiles,
     pub(crate) errors: &'a TileErrors,
+    /// Per level, root first.
+    pub(crate) sample_errors: &'a [SampleSums],
 }
 
 /// Longitudes and latitudes over the data's rectangle, for readers without PROJ.
@@ -82,6 +86,7 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
         data_bounds: plan.data_bounds,
         wgs84_bounds: plan.wgs84_bounds,
         resampling: plan.resampling.clone(),
+        nodes_are_samples: plan.nodes_are_samples(),
         vertical: VerticalRecord {
             quantum_m: levels.quantum_m(),
             unit: "metre".to_owned(),
@@ -135,6 +140,7 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
                 max_error_m: levels.max_error_m(level),
                 geometric_error_m: errors_m.map_or(0.0, |errors_m| errors_m.max),
                 errors_m,
+                sample_error: outcome.sample_errors[usize::from(level)].record(),
                 tightness: Distribution::of(sums.tightness),
                 least_class: levels
                     .least_class(level)
@@ -155,25 +161,19 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
 fn counts(outcome: &Outcome<'_>) -> Counts {
     let samples = outcome.samples;
     match outcome.roads {
-        Some(roads) => road_counts(samples, roads, outcome.tiles, outcome.levels),
+        Some(roads) => road_counts(samples, roads, outcome.tiles),
         None => Counts { samples, ..Counts::default() },
     }
 }
 
 /// The same from roads and tiles alone.
-pub(crate) fn road_counts(
-    samples: SampleCounts,
-    roads: &ReadRoads<'_>,
-    tiles: &Tiles,
-    levels: &Levels,
-) -> Counts {
-    let step_m = levels.frame().lattice_step_m();
-    let losses = losses::sums(roads, tiles, step_m);
+pub(crate) fn road_counts(samples: SampleCounts, roads: &ReadRoads<'_>, tiles: &Tiles) -> Counts {
+    let losses = losses::sums(roads, tiles);
     Counts {
         samples,
-        roads_in: roads.lengths_steps.len() as u64,
-        roads_in_m: roads.lengths_steps.iter().sum::<f64>() * step_m,
-        classes: roads.classes.iter().map(|&(count, steps)| (count, steps * step_m)).collect(),
+        roads_in: roads.lengths_um.len() as u64,
+        roads_in_um: roads.lengths_um.iter().sum(),
+        classes: roads.classes.clone(),
         defects: roads.defects.iter().map(|(name, &count)| (name.clone(), count)).collect(),
         unknown_highways: roads
             .extract
@@ -185,7 +185,7 @@ pub(crate) fn road_counts(
         highways_in: roads.extract.highway_ways,
         highways_left_out: left_out(&roads.extract),
         roads_kept: losses.roads_kept,
-        roads_kept_m: losses.roads_kept_m,
+        roads_kept_um: losses.roads_kept_um,
         roads_lost: losses.lost,
     }
 }

@@ -7,11 +7,13 @@ use std::{
 };
 
 use corniche_dem::{DemProjection, GridPlan};
+use corniche_drape::OwnedBorders;
 use corniche_geom::{Bounds, LatticeBounds, LatticePoint, ProjectError, Projection, TileId};
 use corniche_osm::ExtractSummary;
 use corniche_roads::{FunctionalRoadClass, Road};
 
 use super::{
+    lengths::{TrueLengths, pieces_um},
     levels::Levels,
     road_log::{RoadLog, RoadTileCursor, RoadTiles},
 };
@@ -21,12 +23,12 @@ use crate::{BuildError, Defect, Observer, RoadSettings, Stage, Storage};
 pub(crate) struct ReadRoads<'a> {
     pub(crate) log: RoadLog<'a>,
     pub(crate) by_tile: RoadTileCursor<'a>,
-    /// Per road: its length in lattice steps.
-    pub(crate) lengths_steps: Vec<f64>,
+    /// Per road: its true length, micrometres.
+    pub(crate) lengths_um: Vec<u64>,
     /// Per road: how much of that lies outside the tiles of the data's rectangle, measured by itself.
-    pub(crate) outside_steps: Vec<f64>,
-    /// Per class: roads and lattice steps.
-    pub(crate) classes: Vec<(u64, f64)>,
+    pub(crate) outside_um: Vec<u64>,
+    /// Per class: roads and true micrometres.
+    pub(crate) classes: Vec<(u64, u64)>,
     /// Counted defects by name.
     pub(crate) defects: BTreeMap<String, u64>,
     /// What the extract held and what of it is no road.
@@ -41,6 +43,7 @@ pub(crate) struct RoadInput<'a> {
     pub(crate) settings: &'a RoadSettings,
     pub(crate) projection: &'a DemProjection,
     pub(crate) levels: &'a Levels,
+    pub(crate) lengths: &'a TrueLengths<'a>,
     /// The finest tiles on which the data's rectangle lies, all together.
     pub(crate) data_bounds: LatticeBounds,
     pub(crate) pool: &'a rayon::ThreadPool,
@@ -56,14 +59,15 @@ pub(crate) fn read<'a>(
     observer.begin(Stage::Roads, None);
     let mut gathered = Gathered {
         levels: input.levels,
+        lengths: input.lengths,
         data_bounds: input.data_bounds,
         roads: ReadRoads {
             log: RoadLog::new(storage),
             // Filled at the end; an empty list of pairs has an empty cursor.
             by_tile: RoadTiles::new(storage, 0).finish()?,
-            lengths_steps: Vec::new(),
-            outside_steps: Vec::new(),
-            classes: vec![(0, 0.0); FunctionalRoadClass::COUNT],
+            lengths_um: Vec::new(),
+            outside_um: Vec::new(),
+            classes: vec![(0, 0); FunctionalRoadClass::COUNT],
             defects: BTreeMap::new(),
             extract: ExtractSummary::default(),
             bounds: None,
@@ -128,6 +132,7 @@ pub(crate) fn read<'a>(
 /// Roads as they come in.
 struct Gathered<'a, 'l> {
     levels: &'l Levels,
+    lengths: &'l TrueLengths<'l>,
     data_bounds: LatticeBounds,
     roads: ReadRoads<'a>,
     pairs: RoadTiles<'a>,
@@ -146,13 +151,18 @@ impl Gathered<'_, '_> {
 
     fn try_add(&mut self, road: &Road) -> Result<(), BuildError> {
         let ordinal = self.roads.log.push(road)?;
-        let length_steps = road.line.length_steps();
-        self.roads.lengths_steps.push(length_steps);
+        let segments_um = self.lengths.segments_um(&road.line);
+        let length_um: u64 = segments_um.iter().sum();
+        self.roads.lengths_um.push(length_um);
         let class = &mut self.roads.classes[usize::from(road.class.number())];
-        *class = (class.0 + 1, class.1 + length_steps);
-        let inside = corniche_drape::clip_closed(&road.line, &self.data_bounds);
-        let inside_steps: f64 = inside.iter().map(corniche_geom::Polyline::length_steps).sum();
-        self.roads.outside_steps.push(length_steps - inside_steps);
+        *class = (class.0 + 1, class.1 + length_um);
+        let all = OwnedBorders::ALL;
+        let inside_um: u64 = corniche_drape::clip_parts(&road.line, &self.data_bounds, all)
+            .iter()
+            .flat_map(|part| pieces_um(&road.line, part, &segments_um))
+            .map(|[from, to]| to - from)
+            .sum();
+        self.roads.outside_um.push(length_um - inside_um);
         for level in self.levels.numbers() {
             if !self.levels.shows(level, road.class) {
                 continue;

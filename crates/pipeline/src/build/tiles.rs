@@ -14,6 +14,7 @@ use corniche_tin::{Placement, Surface};
 use super::{
     errors::TileErrors,
     heights::Pyramid,
+    lengths::{TrueLengths, gaps_um, pieces_um},
     levels::Levels,
     mesh::{self, Meshes},
     road_log::RoadLog,
@@ -30,7 +31,7 @@ pub(crate) struct Tiles {
     pub(crate) payloads: Vec<(TileId, Span)>,
     pub(crate) levels: BTreeMap<u8, LevelSums>,
     pub(crate) classes: BTreeMap<(u8, u8), ClassSums>,
-    /// Per road, at the finest level, in lattice steps.
+    /// Per road, at the finest level.
     pub(crate) roads: Vec<RoadFate>,
 }
 
@@ -64,15 +65,16 @@ pub(crate) struct ClassSums {
 /// What became of a road at the finest level.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct RoadFate {
-    /// Length that lies on a TIN.
-    pub(crate) kept_steps: f64,
-    /// Length on the data's tiles, but where there is no ground.
-    pub(crate) void_steps: f64,
+    /// True length that lies on a TIN, micrometres.
+    pub(crate) kept_um: u64,
+    /// True length on the data's tiles, but where there is no ground, micrometres.
+    pub(crate) void_um: u64,
 }
 
 /// What every tile needs.
 pub(crate) struct TileInput<'a> {
     pub(crate) levels: &'a Levels,
+    pub(crate) lengths: &'a TrueLengths<'a>,
     pub(crate) meshes: &'a Meshes,
     pub(crate) errors: &'a TileErrors,
     pub(crate) pyramid: &'a Pyramid<'a>,
@@ -178,8 +180,8 @@ impl Tiles {
     pub(crate) fn add_fates(&mut self, fates: &[(u32, RoadFate)]) {
         for &(ordinal, fate) in fates {
             let road = &mut self.roads[ordinal as usize];
-            road.kept_steps += fate.kept_steps;
-            road.void_steps += fate.void_steps;
+            road.kept_um += fate.kept_um;
+            road.void_um += fate.void_um;
         }
     }
 
@@ -211,7 +213,7 @@ fn make_tile(
     let on = Ground { id, surface: &surface, owned: owned_borders(input, id, ordinals)? };
     for &ordinal in ordinals {
         if let Some(log) = log {
-            laid.lay(&log.load(ordinal)?, ordinal, &on, levels);
+            laid.lay(&log.load(ordinal)?, ordinal, &on, levels, input.lengths);
         }
     }
     let fates = std::mem::take(&mut laid.fates);
@@ -286,16 +288,25 @@ fn lost_roads(
     let mut fates = Vec::new();
     for &ordinal in ordinals {
         let Some(log) = log else { continue };
-        fates.push((ordinal, lost_road(&log.load(ordinal)?, &bounds, owned)));
+        fates.push((ordinal, lost_road(&log.load(ordinal)?, &bounds, owned, input.lengths)));
     }
     Ok(Made { kept: None, fates })
 }
 
 /// What becomes of a road on a finest tile without ground.
-pub(crate) fn lost_road(road: &Road, bounds: &LatticeBounds, owned: OwnedBorders) -> RoadFate {
-    let parts = corniche_drape::clip(&road.line, bounds, owned);
-    let void_steps = parts.iter().map(corniche_geom::Polyline::length_steps).sum();
-    RoadFate { kept_steps: 0.0, void_steps }
+pub(crate) fn lost_road(
+    road: &Road,
+    bounds: &LatticeBounds,
+    owned: OwnedBorders,
+    lengths: &TrueLengths<'_>,
+) -> RoadFate {
+    let segments_um = lengths.segments_um(&road.line);
+    let void_um = corniche_drape::clip_parts(&road.line, bounds, owned)
+        .iter()
+        .flat_map(|part| pieces_um(&road.line, part, &segments_um))
+        .map(|[from, to]| to - from)
+        .sum();
+    RoadFate { kept_um: 0, void_um }
 }
 
 /// The roads of one tile as they are laid.
@@ -311,7 +322,14 @@ pub(crate) struct Laid {
 }
 
 impl Laid {
-    pub(crate) fn lay(&mut self, road: &Road, ordinal: u32, on: &Ground<'_>, levels: &Levels) {
+    pub(crate) fn lay(
+        &mut self,
+        road: &Road,
+        ordinal: u32,
+        on: &Ground<'_>,
+        levels: &Levels,
+        lengths: &TrueLengths<'_>,
+    ) {
         let &Ground { id, surface, owned } = on;
         let frame = levels.frame();
         let bounds = frame.tile_lattice_bounds(id);
@@ -322,10 +340,17 @@ impl Laid {
         sums.simplified_vertices += points_of_tile(&simplified, id, levels);
         let parts = self.parts.entry(road.way_id).or_default();
         let mut laid = 0;
-        for part in corniche_drape::clip(&simplified, &bounds, owned) {
-            let draped = corniche_drape::drape(&part, surface);
-            fate.void_steps += draped.off_ground_steps;
-            fate.kept_steps += part.length_steps() - draped.off_ground_steps;
+        // There the line is the source line: nothing is simplified.
+        let is_finest = id.z() == frame.max_level();
+        let segments_um = if is_finest { lengths.segments_um(&simplified) } else { Vec::new() };
+        for part in corniche_drape::clip_parts(&simplified, &bounds, owned) {
+            let draped = corniche_drape::drape(&part.line, surface);
+            if is_finest {
+                let pieces: Vec<[u64; 2]> = pieces_um(&simplified, &part, &segments_um).collect();
+                let void_um = gaps_um(&pieces, &draped.gaps);
+                fate.void_um += void_um;
+                fate.kept_um += pieces.iter().map(|[from, to]| to - from).sum::<u64>() - void_um;
+            }
             for line in draped.lines {
                 self.geo.push(GeoRoad {
                     way_id: road.way_id,
@@ -356,7 +381,7 @@ impl Laid {
                 attributes: road.attributes.clone(),
             });
         }
-        if id.z() == frame.max_level() && fate != RoadFate::default() {
+        if fate != RoadFate::default() {
             self.fates.push((ordinal, fate));
         }
     }

@@ -89,6 +89,8 @@ checks! {
     Tight "P2.tight" Dem "stored errors are at most twice the true ones, for 95 % of tiles"
     Recorded "P2.recorded" Dem "the recorded distributions of stored over true errors hold"
     Finest "P2.finest" Dem "the finest level stays within --max-error"
+    Samples "P2.samples" Dem "the error at the DEM's own samples is what the levels say"
+    SampleBound "P2.bounded" Dem "where nodes are samples, samples are within --max-error of the finest level"
     Stray "P2.stray" Dem "nodes without ground lie within one cell of a void or an edge"
     Uncovered "P2.uncovered" Dem "uncovered nodes are as many as tiles and levels say"
     Ranges "heights.ranges" Dem "the height range of a tile is that of the nodes beneath"

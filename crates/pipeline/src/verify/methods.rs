@@ -196,8 +196,8 @@ pub(crate) fn verify_ranges(view: &View<'_>, findings: &mut Findings) {
             let holds = found.is_some_and(|[lowest_m, highest_m]| {
                 let size_m = lowest_m.abs().max(highest_m.abs()).max(highest_m - lowest_m);
                 let steps = |height_m: f64| height_m / view.quantum_m;
-                let [less_m, more_m] = [1.0 - PAD_ROUNDING, 1.0 + PAD_ROUNDING]
-                    .map(|part| part * RANGE_PAD * size_m);
+                let [less_m, more_m] =
+                    [1.0 - PAD_ROUNDING, 1.0 + PAD_ROUNDING].map(|part| part * RANGE_PAD * size_m);
                 let lows = steps(lowest_m - more_m).floor()..=steps(lowest_m - less_m).floor();
                 let highs = steps(highest_m + less_m).ceil()..=steps(highest_m + more_m).ceil();
                 lows.contains(&steps(low_m)) && highs.contains(&steps(high_m))

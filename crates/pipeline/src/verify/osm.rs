@@ -19,7 +19,7 @@ use super::{
 use crate::{
     BuildError, DiskStorage, Observer, RoadSettings, Stage,
     build::{
-        Levels, input_record, recorded_filter, road_counts,
+        Levels, TrueLengths, input_record, recorded_filter, road_counts,
         roads::{ReadRoads, RoadInput, read},
         table_sha256,
         tiles::{self, ClassSums, Laid, RoadFate, Tiles},
@@ -29,8 +29,6 @@ use crate::{
 
 /// Tiles whose lists of roads are in memory at once.
 const BATCH: usize = 1024;
-/// Lengths are sums in another order.
-const LENGTH_SHARE: f64 = 1e-9;
 
 pub(crate) fn verify(
     package: &FilePackage,
@@ -56,6 +54,7 @@ pub(crate) fn verify(
         simplify_cells: manifest.settings.simplify_cells,
     };
     let levels = Levels::new(frame, manifest.settings.max_error_m, &settings);
+    let lengths = TrueLengths::new(frame, &manifest.coordinates, &projection);
     let work = tempfile::tempdir().map_err(VerifyError::Work)?;
     let storage = DiskStorage::create(work.path()).map_err(VerifyError::Work)?;
     let pool = rayon::ThreadPoolBuilder::new()
@@ -68,6 +67,7 @@ pub(crate) fn verify(
             settings: &settings,
             projection: &projection,
             levels: &levels,
+            lengths: &lengths,
             data_bounds: frame.tile_lattice_bounds(first).union(&frame.tile_lattice_bounds(last)),
             pool: &pool,
             memory_bytes: osm.memory_bytes,
@@ -76,13 +76,13 @@ pub(crate) fn verify(
         observer,
     )?;
     let tiles = lay(
-        &Laying { package, levels: &levels, data: [first, last] },
+        &Laying { package, levels: &levels, lengths: &lengths, data: [first, last] },
         &mut roads,
         threads,
         findings,
         observer,
     )?;
-    check_counts(manifest, &roads, &tiles, &levels, findings);
+    check_counts(manifest, &roads, &tiles, findings);
     check_growth(manifest, &tiles, findings);
     Ok(())
 }
@@ -120,6 +120,7 @@ fn check_inputs(
 struct Laying<'a> {
     package: &'a FilePackage,
     levels: &'a Levels,
+    lengths: &'a TrueLengths<'a>,
     /// First and last of the finest tiles of the data.
     data: [TileId; 2],
 }
@@ -200,11 +201,9 @@ fn look_at(laying: &Laying<'_>, grounds: &mut Grounds, id: TileId, roads: &[(u32
         if id.z() == frame.max_level() {
             let owned = grounds.owned_borders(laying, id, !roads.is_empty());
             let bounds = frame.tile_lattice_bounds(id);
-            found.fates.extend(
-                roads
-                    .iter()
-                    .map(|(ordinal, road)| (*ordinal, tiles::lost_road(road, &bounds, owned))),
-            );
+            found.fates.extend(roads.iter().map(|(ordinal, road)| {
+                (*ordinal, tiles::lost_road(road, &bounds, owned, laying.lengths))
+            }));
         }
         return found;
     };
@@ -214,7 +213,7 @@ fn look_at(laying: &Laying<'_>, grounds: &mut Grounds, id: TileId, roads: &[(u32
     let on = tiles::Ground { id, surface: &surface, owned };
     let mut laid = Laid::default();
     for (ordinal, road) in roads {
-        laid.lay(road, *ordinal, &on, laying.levels);
+        laid.lay(road, *ordinal, &on, laying.levels, laying.lengths);
     }
     laid.sort();
     compare(payload, &laid, &mut found.findings);
@@ -322,11 +321,10 @@ fn check_counts(
     manifest: &Manifest,
     roads: &ReadRoads<'_>,
     tiles: &Tiles,
-    levels: &Levels,
     findings: &mut Findings,
 ) {
     let said = &manifest.counts;
-    let wanted = road_counts(said.samples, roads, tiles, levels);
+    let wanted = road_counts(said.samples, roads, tiles);
     let mut same = |what: &str, said: &dyn std::fmt::Debug, found: &dyn std::fmt::Debug| {
         let (said, found) = (format!("{said:?}"), format!("{found:?}"));
         findings.look(CheckId::OsmCounts, said == found, || {
@@ -340,27 +338,10 @@ fn check_counts(
     same("blobs_passed_over", &said.blobs_passed_over, &wanted.blobs_passed_over);
     same("highways_in", &said.highways_in, &wanted.highways_in);
     same("highways_left_out", &said.highways_left_out, &wanted.highways_left_out);
-    let reasons = |lost: &[corniche_tileset::RoadLoss]| -> Vec<_> {
-        lost.iter().map(|loss| (loss.reason.clone(), loss.roads)).collect()
-    };
-    same("roads_lost", &reasons(&said.roads_lost), &reasons(&wanted.roads_lost));
-    let classes =
-        |classes: &[(u64, f64)]| -> Vec<_> { classes.iter().map(|&(roads, _)| roads).collect() };
-    same("classes", &classes(&said.classes), &classes(&wanted.classes));
-    let near = |a: f64, b: f64| (a - b).abs() <= LENGTH_SHARE * wanted.roads_in_m;
-    let lengths = |counts: &corniche_tileset::Counts| -> Vec<f64> {
-        [counts.roads_in_m, counts.roads_kept_m]
-            .into_iter()
-            .chain(counts.roads_lost.iter().map(|loss| loss.length_m))
-            .chain(counts.classes.iter().map(|&(_, length_m)| length_m))
-            .collect()
-    };
-    let (said_m, wanted_m) = (lengths(said), lengths(&wanted));
-    let holds = said_m.len() == wanted_m.len()
-        && said_m.iter().zip(&wanted_m).all(|(&said_m, &wanted_m)| near(said_m, wanted_m));
-    findings.look(CheckId::OsmCounts, holds, || {
-        format!("lengths in metres: {said_m:?} are recorded, {wanted_m:?} are in the extract")
-    });
+    same("roads_in_um", &said.roads_in_um, &wanted.roads_in_um);
+    same("roads_kept_um", &said.roads_kept_um, &wanted.roads_kept_um);
+    same("roads_lost", &said.roads_lost, &wanted.roads_lost);
+    same("classes", &said.classes, &wanted.classes);
 }
 
 /// Source and simplified points of each level and class.

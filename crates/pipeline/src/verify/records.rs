@@ -39,19 +39,16 @@ fn levels(manifest: &Manifest, findings: &mut Findings) {
         let level = record.level;
         let lengths = [record.max_error_m, record.simplify_tolerance_m, record.width_margin_m];
         let said = (record.cell_m.to_array(), lengths);
-        let lengths = [
-            levels.max_error_m(level),
-            levels.simplify_tolerance_m(level),
-            levels.margin_m(level),
-        ];
+        let lengths =
+            [levels.max_error_m(level), levels.simplify_tolerance_m(level), levels.margin_m(level)];
         let wanted = (manifest.frame.level_cell(level).to_array(), lengths);
-        let bits = |(cell, lengths): ([f64; 2], [f64; 3])| (cell.map(f64::to_bits), lengths.map(f64::to_bits));
+        let bits = |(cell, lengths): ([f64; 2], [f64; 3])| {
+            (cell.map(f64::to_bits), lengths.map(f64::to_bits))
+        };
         // The build computes them so: equal to the last bit.
-        findings.look(
-            CheckId::LevelRecords,
-            bits(said) == bits(wanted),
-            || format!("level {level} has cell, tolerances and margin {said:?}, not {wanted:?}"),
-        );
+        findings.look(CheckId::LevelRecords, bits(said) == bits(wanted), || {
+            format!("level {level} has cell, tolerances and margin {said:?}, not {wanted:?}")
+        });
         let least = levels.least_class(level).map(corniche_roads::FunctionalRoadClass::number);
         findings.look(CheckId::LevelRecords, record.least_class == least, || {
             format!("level {level} shows classes up to {:?}, not {least:?}", record.least_class)

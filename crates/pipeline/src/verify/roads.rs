@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use corniche_geom::{Frame, TileId};
+use corniche_geom::{Frame, TileId, wgs84};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{Manifest, TilePayload};
 use corniche_tin::{Placement, Surface, Tin};
@@ -18,7 +18,7 @@ use super::{
 #[derive(Default)]
 pub(crate) struct OnTin {
     pub(crate) gaps: GapFigures,
-    /// Plan length of the lines, metres.
+    /// True length in plan of the lines.
     pub(crate) length_m: f64,
     /// Where the vertices of each line lie, as a reader computes them; `None` for a line that is none.
     pub(crate) positions: Vec<Option<Vec<[f64; 3]>>>,
@@ -65,7 +65,9 @@ pub(crate) fn verify_on_tin(
     // The surface turns stored lines into positions, as a reader does; the ground judges them by itself.
     let surface = Surface::new(tin, Placement::of_tile(frame, id, manifest.vertical.quantum_m));
     let place = Place::of(frame, id);
-    let step_m = frame.lattice_step_m();
+    let lon_lat = |[u, v, _]: [f64; 3]| {
+        manifest.coordinates.wgs84_from_working(frame.position_of_fraction_m([u, v]))
+    };
     for road in &payload.roads_geo {
         let name = || format!("way {} part {} in tile {id}", road.way_id, road.part);
         let positions = match corniche_drape::positions(&road.line, &surface) {
@@ -81,7 +83,9 @@ pub(crate) fn verify_on_tin(
             [column, row, p[2]]
         };
         for pair in positions.windows(2) {
-            found.length_m += (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]) * step_m;
+            if counts_for_sums(id, frame) {
+                found.length_m += wgs84::short_distance_m(lon_lat(pair[0]), lon_lat(pair[1]));
+            }
             let gap_m = ground.edge_gap_m(in_cells(pair[0]), in_cells(pair[1]));
             found.gaps.edges += 1;
             found.gaps.largest_m = found.gaps.largest_m.max(gap_m.unwrap_or(0.0));

@@ -128,7 +128,7 @@ pub(crate) fn verify(
     observer.end(Stage::Verify);
     let borders = check_seams(&kept, &mut findings);
     check_nesting(&kept, &mut findings);
-    let expected_m = manifest.counts.roads_kept_m;
+    let expected_m = manifest.counts.roads_kept_um as f64 / 1e6;
     findings.look(
         CheckId::Length,
         (finest_length_m - expected_m).abs() <= LENGTH_SHARE * expected_m.max(1.0),

@@ -158,11 +158,7 @@ pub(crate) fn settings(
             max_error_m: Some(options.max_error_m),
             fill_voids: options.fill_voids,
         },
-        roads: RoadSettings {
-            table: table(),
-            filter: ClassFilter::usual(),
-            simplify_cells: 0.25,
-        },
+        roads: RoadSettings { table: table(), filter: ClassFilter::usual(), simplify_cells: 0.25 },
         resources: Resources { threads: options.threads, memory_bytes: 256 << 20 },
         attribution: Vec::new(),
         generator: "tests".to_owned(),

@@ -135,13 +135,12 @@ impl Parts {
         &self.manifest.frame
     }
 
-    /// All tiles as bytes; those that are as in the sound package are not encoded again.
+    /// All tiles as bytes. Those that are as in the sound package are not encoded again, whatever the manifest says:
+    /// positions and heights in them are whole steps from the tile's corner.
     pub(crate) fn encoded(&self) -> Result<Vec<(TileId, Vec<u8>)>, EncodeError> {
-        let scale = |manifest: &Manifest| (manifest.frame, manifest.vertical.quantum_m.to_bits());
-        let same_scale = scale(&self.manifest) == scale(&SOUND.parts.manifest);
         let encoded = |tile: &TilePayload| {
             let at = SOUND.parts.index_of(tile.id).filter(|&at| SOUND.parts.tiles[at] == *tile);
-            match at.filter(|_| same_scale) {
+            match at {
                 Some(at) => Ok((tile.id, SOUND.encoded[at].1.clone())),
                 None => Ok((tile.id, encode_in(&self.manifest, tile)?)),
             }
@@ -226,7 +225,6 @@ impl Parts {
     }
 }
 
-
 /// Adds or takes away what a tile counts for in the manifest's sums of stored bytes.
 fn add_sizes(manifest: &mut Manifest, id: TileId, bytes: &[u8], sign: i64) {
     let sizes = payload_sizes(bytes, id).expect("a whole tile");
@@ -237,8 +235,14 @@ fn add_sizes(manifest: &mut Manifest, id: TileId, bytes: &[u8], sign: i64) {
     for row in manifest.growth.iter_mut().filter(|row| row.level == id.z()) {
         let class = usize::from(row.class);
         if class < 9 {
-            add(&mut row.geo_stored_bytes, share(sizes.roads_geo.stored, &sizes.geo_class_bytes, class));
-            add(&mut row.sv_stored_bytes, share(sizes.roads_sv.stored, &sizes.sv_class_bytes, class));
+            add(
+                &mut row.geo_stored_bytes,
+                share(sizes.roads_geo.stored, &sizes.geo_class_bytes, class),
+            );
+            add(
+                &mut row.sv_stored_bytes,
+                share(sizes.roads_sv.stored, &sizes.sv_class_bytes, class),
+            );
         }
     }
 }

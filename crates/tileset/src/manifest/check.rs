@@ -5,7 +5,7 @@
 
 use corniche_geom::{Bounds, Cell};
 
-use super::{Counts, Distribution, GrowthRow, LevelRecord, Manifest};
+use super::{Counts, Distribution, GrowthRow, LevelRecord, Manifest, SampleErrorRecord};
 
 /// No length, height or coordinate is larger: far beyond every planet, and its square still fits an f32.
 pub(crate) const MAX_MEASURE_M: f64 = 1e18;
@@ -99,6 +99,10 @@ fn check_level(level: usize, record: &LevelRecord) -> Result<(), String> {
     for distribution in [record.errors_m, record.tightness].into_iter().flatten() {
         check_distribution(&distribution)?;
     }
+    let SampleErrorRecord { max_m, rms_m, p99_m, .. } = record.sample_error;
+    measure("levels.sample_error.max_m", max_m)?;
+    that(rms_m >= 0.0 && rms_m <= max_m, "levels.sample_error.rms_m", rms_m)?;
+    that(p99_m >= 0.0 && p99_m <= max_m, "levels.sample_error.p99_m", p99_m)?;
     measure("levels.simplify_tolerance_m", record.simplify_tolerance_m)?;
     measure("levels.width_margin_m", record.width_margin_m)?;
     let class = record.least_class.unwrap_or(0);
@@ -114,9 +118,10 @@ fn check_distribution(distribution: &Distribution) -> Result<(), String> {
     that(is_sorted, "a distribution", distribution)
 }
 
-fn level_counts(record: &LevelRecord) -> [u64; 5] {
+fn level_counts(record: &LevelRecord) -> [u64; 7] {
     let LevelRecord { tiles, triangles, vertices, terrain_bytes, uncovered_nodes, .. } = *record;
-    [tiles, triangles, vertices, terrain_bytes, uncovered_nodes]
+    let SampleErrorRecord { on_tin, off_tin, .. } = record.sample_error;
+    [tiles, triangles, vertices, terrain_bytes, uncovered_nodes, on_tin, off_tin]
 }
 
 fn growth_counts(row: &GrowthRow) -> [u64; 9] {
@@ -139,20 +144,17 @@ fn check_counts(counts: &Counts) -> Result<(), String> {
         check_sum("counts.samples", [count])?;
     }
     check_sum("counts", [counts.roads_in, counts.roads_kept, counts.highways_in])?;
-    measure("counts.roads_in_m", counts.roads_in_m)?;
-    measure("counts.roads_kept_m", counts.roads_kept_m)?;
+    check_sum("counts", [counts.roads_in_um])?;
+    check_sum("counts", [counts.roads_kept_um])?;
     check_sum("counts.roads_lost", counts.roads_lost.iter().map(|loss| loss.roads))?;
-    for loss in &counts.roads_lost {
-        // A loss is a difference of sums and may come out a rounding error below 0.
-        all_measures("counts.roads_lost.length_m", &[loss.length_m])?;
-    }
+    check_sum("counts.roads_lost", counts.roads_lost.iter().map(|loss| loss.length_um))?;
     let names = [&counts.defects, &counts.unknown_highways, &counts.highways_left_out];
     for list in names {
         check_sum("counts", list.iter().map(|&(_, count)| count))?;
     }
     that(counts.classes.len() <= CLASSES, "the number of counts.classes", counts.classes.len())?;
     check_sum("counts.classes", counts.classes.iter().map(|&(count, _)| count))?;
-    counts.classes.iter().try_for_each(|&(_, length_m)| measure("counts.classes", length_m))
+    check_sum("counts.classes", counts.classes.iter().map(|&(_, length_um)| length_um))
 }
 
 fn that(holds: bool, name: &str, value: impl std::fmt::Debug) -> Result<(), String> {

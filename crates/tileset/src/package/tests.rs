@@ -10,8 +10,8 @@ use super::{
     directory::Directory, pmtiles_order,
 };
 use crate::{
-    Counts, LevelRecord, Manifest, PayloadContext, ScaleRecord, Sections, SettingsRecord, Terrain,
-    TilePayload, VerticalRecord, encode,
+    Counts, LevelRecord, Manifest, PayloadContext, SampleErrorRecord, ScaleRecord, Sections,
+    SettingsRecord, Terrain, TilePayload, VerticalRecord, encode,
 };
 
 /// Degrees that are metres / 100 km.
@@ -47,6 +47,7 @@ fn manifest(max_level: u8) -> Manifest {
         data_bounds,
         wgs84_bounds: Bounds { min_x: 9.4, min_y: 47.0, max_x: 9.7, max_y: 47.3 },
         resampling: "nodes are the DEM's samples".to_owned(),
+        nodes_are_samples: true,
         vertical: VerticalRecord {
             quantum_m: 0.125,
             unit: "metre".to_owned(),
@@ -88,6 +89,7 @@ fn level(level: u8) -> LevelRecord {
         max_error_m: 0.3,
         geometric_error_m: 0.0,
         errors_m: None,
+        sample_error: SampleErrorRecord::default(),
         tightness: None,
         least_class: None,
         simplify_tolerance_m: 0.0,

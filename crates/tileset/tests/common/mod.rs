@@ -11,8 +11,8 @@ use corniche_geom::{
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_tileset::{
     Counts, FORMAT_VERSION, GeoRoad, GrowthRow, LevelRecord, Manifest, PayloadContext, RoadRecord,
-    ScaleRecord, SettingsRecord, SvRoad, Terrain, TilePayload, VerticalRecord, Writer, encode,
-    pmtiles_order,
+    SampleErrorRecord, ScaleRecord, SettingsRecord, SvRoad, Terrain, TilePayload, VerticalRecord,
+    Writer, encode, pmtiles_order,
 };
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
@@ -57,6 +57,7 @@ fn level(level: u8) -> LevelRecord {
         max_error_m: 8.0,
         geometric_error_m: 2.0,
         errors_m: None,
+        sample_error: SampleErrorRecord::default(),
         tightness: None,
         least_class: Some(7),
         simplify_tolerance_m: 0.0,
@@ -85,6 +86,7 @@ pub(crate) fn manifest() -> Manifest {
         data_bounds,
         wgs84_bounds: Bounds { min_x: 9.4, min_y: 47.0, max_x: 9.7, max_y: 47.3 },
         resampling: "nodes are the DEM's samples".to_owned(),
+        nodes_are_samples: true,
         vertical: VerticalRecord {
             quantum_m: QUANTUM_M,
             unit: "metre".to_owned(),

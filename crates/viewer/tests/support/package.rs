@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use corniche_geom::{Bounds, CoordinateTable, ProjectError, Projection, TileId};
 use corniche_tileset::{
-    Counts, FORMAT_VERSION, LevelRecord, Manifest, PayloadContext, ScaleRecord, SettingsRecord,
-    VerticalRecord, Writer, encode, pmtiles_order,
+    Counts, FORMAT_VERSION, LevelRecord, Manifest, PayloadContext, SampleErrorRecord, ScaleRecord,
+    SettingsRecord, VerticalRecord, Writer, encode, pmtiles_order,
 };
 
 use super::country::{Country, MAX_ERROR_M, QUANTUM_M, width_margin_m};
@@ -55,6 +55,7 @@ fn manifest(country: &Country) -> Manifest {
         max_error_m: MAX_ERROR_M * frame.stride(level) as f64,
         geometric_error_m: 100.0,
         errors_m: None,
+        sample_error: SampleErrorRecord::default(),
         tightness: None,
         least_class: Some(7),
         simplify_tolerance_m: 0.0,
@@ -95,6 +96,7 @@ fn manifest(country: &Country) -> Manifest {
         data_bounds,
         wgs84_bounds: Bounds { min_x, min_y, max_x, max_y },
         resampling: "none".to_owned(),
+        nodes_are_samples: true,
         vertical: VerticalRecord {
             quantum_m: QUANTUM_M,
             unit: "metre".to_owned(),

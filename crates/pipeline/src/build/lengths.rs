@@ -1,0 +1,134 @@
+//! True lengths of roads, in whole micrometres, so that parts add up exactly.
+
+use corniche_drape::{ClippedPart, Gap};
+use corniche_geom::{
+    CoordinateTable, Frame, LatticeBounds, LatticePoint, Polyline, Projection, wgs84,
+};
+
+/// A metre.
+pub(crate) const UM: f64 = 1e6;
+
+/// Tells how long roads truly are: each segment has one length, by the ellipsoid's radii of curvature at its middle, and
+/// pieces of it have their shares of that, cut at whole micrometres along the segment. Pieces that meet share the cut, so
+/// whatever a segment is cut into adds up to it.
+pub(crate) struct TrueLengths<'a> {
+    frame: Frame,
+    /// Inside its bounds positions come from here; PROJ is asked for others.
+    table: &'a CoordinateTable,
+    projection: &'a (dyn Projection + Sync),
+}
+
+impl<'a> TrueLengths<'a> {
+    pub(crate) fn new(
+        frame: Frame,
+        table: &'a CoordinateTable,
+        projection: &'a (dyn Projection + Sync),
+    ) -> Self {
+        Self { frame, table, projection }
+    }
+
+    /// Of each segment of a line, micrometres.
+    pub(crate) fn segments_um(&self, line: &Polyline) -> Vec<u64> {
+        let positions_deg = self.positions_deg(line.points());
+        positions_deg
+            .windows(2)
+            .zip(line.points().windows(2))
+            .map(|(pair_deg, pair)| {
+                let true_m = wgs84::short_distance_m(pair_deg[0], pair_deg[1]);
+                // Far outside the CRS's use there is no way back to degrees; working metres must do.
+                let plain_m = pair[0].distance_steps(pair[1]) * self.frame.lattice_step_m();
+                ((if true_m.is_finite() { true_m } else { plain_m }) * UM).round() as u64
+            })
+            .collect()
+    }
+
+    fn positions_deg(&self, points: &[LatticePoint]) -> Vec<[f64; 2]> {
+        let mut positions: Vec<[f64; 2]> =
+            points.iter().map(|&point| self.frame.position_m(point)).collect();
+        let bounds = self.table.bounds();
+        let is_tabulated = LatticeBounds::of(points).is_some_and(|own| {
+            let [min, max] = [own.min, own.max].map(|point| self.frame.position_m(point));
+            min[0] >= bounds.min_x
+                && min[1] >= bounds.min_y
+                && max[0] <= bounds.max_x
+                && max[1] <= bounds.max_y
+        });
+        if is_tabulated {
+            for position in &mut positions {
+                *position = self.table.wgs84_from_working(*position);
+            }
+        } else if self.projection.wgs84_from_working(&mut positions).is_err() {
+            positions.fill([f64::NAN; 2]);
+        }
+        positions
+    }
+}
+
+/// How far along a segment from p to q a point on it lies, as a share of the segment: 0 at p, 1 at q, and the same from
+/// whichever tile it is asked.
+pub(crate) fn share([p, q]: [LatticePoint; 2], at: LatticePoint) -> f64 {
+    let along = |point: LatticePoint| {
+        i128::from(point.u - p.u) * i128::from(q.u - p.u)
+            + i128::from(point.v - p.v) * i128::from(q.v - p.v)
+    };
+    along(at) as f64 / along(q) as f64
+}
+
+/// Of each segment of a part, where it begins and ends along the line's segment that it is of, micrometres. `segments_um`
+/// are the true lengths of the line's segments.
+pub(crate) fn pieces_um<'a>(
+    line: &'a Polyline,
+    part: &'a ClippedPart,
+    segments_um: &'a [u64],
+) -> impl Iterator<Item = [u64; 2]> + 'a {
+    let pairs = part.line.points().windows(2);
+    pairs.zip(&part.segments).map(|(pair, &segment)| {
+        let whole = [line.points()[segment], line.points()[segment + 1]];
+        [pair[0], pair[1]].map(|at| cut_um(share(whole, at), segments_um[segment]))
+    })
+}
+
+/// How much of a part lies over the gaps that were found when it was draped, micrometres. `pieces` are those of
+/// [`pieces_um`]: a gap takes its shares of them.
+pub(crate) fn gaps_um(pieces: &[[u64; 2]], gaps: &[Gap]) -> u64 {
+    let within = |[from, to]: [u64; 2], share: f64| from + cut_um(share, to - from);
+    gaps.iter()
+        .map(|gap| {
+            let piece = pieces[gap.segment];
+            let [from, to] = gap.shares.map(|share| within(piece, share));
+            to - from
+        })
+        .sum()
+}
+
+/// Where a share of a segment ends, in whole micrometres from its start.
+pub(crate) fn cut_um(share: f64, segment_um: u64) -> u64 {
+    // A point is rounded to the lattice and may lie a little beyond the end.
+    (share.clamp(0.0, 1.0) * segment_um as f64).round() as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// Whatever cuts a segment, its pieces add up to it, exactly.
+        #[test]
+        fn pieces_add_up(ends in any::<[i32; 4]>(), cuts in proptest::collection::vec(0.0..1.0_f64, 0..20), segment_um in 0_u64..1 << 50) {
+            let point = |u: i32, v: i32| LatticePoint::new(i64::from(u), i64::from(v));
+            let segment = [point(ends[0], ends[1]), point(ends[2], ends[3])];
+            prop_assume!(segment[0] != segment[1]);
+            let mut shares: Vec<f64> = cuts.iter().map(|t| {
+                let along = |a: i64, b: i64| a + ((b - a) as f64 * t).round() as i64;
+                share(segment, LatticePoint::new(along(segment[0].u, segment[1].u), along(segment[0].v, segment[1].v)))
+            }).collect();
+            shares.extend([share(segment, segment[0]), share(segment, segment[1])]);
+            shares.sort_by(f64::total_cmp);
+            let ends_um: Vec<u64> = shares.iter().map(|&share| cut_um(share, segment_um)).collect();
+            prop_assert_eq!(ends_um[0], 0);
+            prop_assert_eq!(ends_um.windows(2).map(|pair| pair[1] - pair[0]).sum::<u64>(), segment_um);
+        }
+    }
+}
