@@ -155,11 +155,17 @@ fn a_hole_in_the_ground() {
         .unwrap();
     triangles.remove(triangle);
     *tin = Tin::from_canonical(vertices, triangles).unwrap();
-    parts.assert_breaks(Against::Dem, &[CheckId::LevelSums, CheckId::Stray, CheckId::Uncovered]);
+    parts.assert_breaks(
+        Against::Dem,
+        &[CheckId::LevelSums, CheckId::Samples, CheckId::Stray, CheckId::Uncovered],
+    );
 
     // Owning up to the hole does not close it.
     parts.terrain_mut(id).uncovered_nodes += nodes_inside(&hole);
-    parts.assert_breaks(Against::Dem, &[CheckId::LevelSums, CheckId::Stray, CheckId::Uncovered]);
+    parts.assert_breaks(
+        Against::Dem,
+        &[CheckId::LevelSums, CheckId::Samples, CheckId::Stray, CheckId::Uncovered],
+    );
 }
 
 /// Twice a triangle's area in cells.
@@ -216,6 +222,8 @@ fn a_finest_tile_off_by_more_than_the_bound() {
             CheckId::Bound,
             CheckId::Finest,
             CheckId::Recorded,
+            CheckId::Samples,
+            CheckId::SampleBound,
             CheckId::Nodes,
         ],
     );
@@ -229,7 +237,15 @@ fn a_finest_tile_off_by_more_than_the_bound() {
     }
     parts.assert_breaks(
         Against::Dem,
-        &[CheckId::SvRange, CheckId::LevelSums, CheckId::Finest, CheckId::Recorded, CheckId::Nodes],
+        &[
+            CheckId::SvRange,
+            CheckId::LevelSums,
+            CheckId::Finest,
+            CheckId::Recorded,
+            CheckId::Samples,
+            CheckId::SampleBound,
+            CheckId::Nodes,
+        ],
     );
 }
 
@@ -328,7 +344,13 @@ fn ground_that_was_taken_away_with_its_count() {
     level.tiles -= 1;
     parts.assert_breaks(
         Against::Dem,
-        &[CheckId::LevelSums, CheckId::Recorded, CheckId::Stray, CheckId::Uncovered],
+        &[
+            CheckId::LevelSums,
+            CheckId::Recorded,
+            CheckId::Samples,
+            CheckId::Stray,
+            CheckId::Uncovered,
+        ],
     );
 }
 
