@@ -37,6 +37,7 @@ mod operation;
 mod outline;
 mod positions;
 mod projection;
+mod recorded;
 mod scale;
 mod working;
 
@@ -51,6 +52,7 @@ pub use library::LibraryError;
 pub use plan::{GridPlan, PlanOptions, Resampling};
 pub use projection::DemProjection;
 pub use reader::{DemWindow, Reader, SampleBlock};
+pub use recorded::RecordedCrs;
 pub use samples::SampleArea;
 pub use source::OpenOptions;
 pub use vsi::VirtualFile;

@@ -153,6 +153,12 @@ impl CoordinateTable {
         self.bounds
     }
 
+    /// Samples along each side.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
     /// `[lon_deg, lat_deg]` of a position in the working CRS. Outside the table's bounds it extrapolates.
     #[must_use]
     pub fn wgs84_from_working(&self, [x, y]: [f64; 2]) -> [f64; 2] {

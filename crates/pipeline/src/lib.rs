@@ -23,5 +23,6 @@ pub use settings::{BuildSettings, Existing, Resources, RoadSettings, TerrainSett
 pub use storage::{DiskStorage, Kind, MemoryStorage, Span, Storage};
 pub use target::{TargetError, file_target};
 pub use verify::{
-    Check, ErrorFigures, GapFigures, VerifyError, VerifyReport, VerifySettings, verify,
+    Check, CheckId, ErrorFigures, GapFigures, Needs, VerifyError, VerifyOsm, VerifyReport,
+    VerifySettings, verify,
 };

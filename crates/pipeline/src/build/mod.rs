@@ -18,9 +18,9 @@ mod losses;
 mod mesh;
 mod package;
 mod road_log;
-mod roads;
+pub(crate) mod roads;
 mod samples;
-mod tiles;
+pub(crate) mod tiles;
 
 use std::{fs, path::Path};
 
@@ -32,10 +32,11 @@ use crate::{
     inputs::Inputs,
 };
 
-pub(crate) use heights::data_tiles;
-use lengths::TrueLengths;
-use levels::Levels;
-pub(crate) use package::{hex, settings_sha256};
+pub(crate) use heights::{Pyramid, data_tiles, read as read_heights};
+pub(crate) use lengths::TrueLengths;
+pub(crate) use levels::{Levels, recorded_filter};
+pub(crate) use package::{TILING, hex, road_counts, settings_sha256, table_sha256};
+pub(crate) use tiles::share;
 
 /// Tolerances of the finest level that can be used. Beyond them, the root's or the height quantum is no number that a
 /// package can hold.
@@ -163,8 +164,7 @@ fn run(
             let input = roads::RoadInput {
                 osm,
                 settings: &settings.roads,
-                dem: &dem,
-                plan: &plan,
+                projection: &projection,
                 levels: &levels,
                 lengths: &lengths,
                 data_bounds: heights::data_tile_bounds(&plan),
@@ -172,7 +172,7 @@ fn run(
                 memory_bytes: settings.resources.memory_bytes / 4,
             };
             let read = roads::read(&input, storage, observer)?;
-            roads::check_overlap(&read, &input)?;
+            roads::check_overlap(&read, &input, &plan)?;
             Some(read)
         }
         None => None,

@@ -6,6 +6,7 @@
 
 pub(crate) mod agreement;
 pub(crate) mod extract;
+pub(crate) mod parts;
 pub(crate) mod rays;
 pub(crate) mod terrain;
 
@@ -163,19 +164,6 @@ pub(crate) fn settings(
     output: PathBuf,
     options: Options,
 ) -> BuildSettings {
-    let classes = [
-        ("motorway", 0),
-        ("trunk", 1),
-        ("primary", 2),
-        ("secondary", 3),
-        ("tertiary", 4),
-        ("unclassified", 5),
-        ("residential", 6),
-        ("living_street", 6),
-        ("service", 7),
-        ("track", 7),
-    ];
-    let classes = classes.map(|(value, class)| (value.to_owned(), class)).to_vec();
     BuildSettings {
         dem: vec![dem],
         osm,
@@ -196,15 +184,29 @@ pub(crate) fn settings(
             max_error_m: Some(options.max_error_m),
             fill_voids: options.fill_voids,
         },
-        roads: RoadSettings {
-            table: FrcTable::new("test", classes, vec![], 7).unwrap(),
-            filter: ClassFilter::usual(),
-            simplify_cells: 0.25,
-        },
+        roads: RoadSettings { table: table(), filter: ClassFilter::usual(), simplify_cells: 0.25 },
         resources: Resources { threads: options.threads, memory_bytes: 256 << 20 },
         attribution: Vec::new(),
         generator: "tests".to_owned(),
     }
+}
+
+/// The FRC table of all tests.
+pub(crate) fn table() -> FrcTable {
+    let classes = [
+        ("motorway", 0),
+        ("trunk", 1),
+        ("primary", 2),
+        ("secondary", 3),
+        ("tertiary", 4),
+        ("unclassified", 5),
+        ("residential", 6),
+        ("living_street", 6),
+        ("service", 7),
+        ("track", 7),
+    ];
+    let classes = classes.map(|(value, class)| (value.to_owned(), class)).to_vec();
+    FrcTable::new("test", classes, vec![], 7).unwrap()
 }
 
 /// Builds a package from files.
