@@ -18,7 +18,7 @@ fn build_while(dem: &Path, osm: &Path, package: &Path, change: impl FnOnce()) ->
     let mut child = Command::new(e2e::binary())
         .args(["build", "--dem", text(dem), "--osm", text(osm), "-o", text(package)])
         // A fine tolerance: long enough to be met at work.
-        .args(["--max-error", "0.3", "--threads", "2", "--json-progress"])
+        .args(["--max-error", "2", "--threads", "2", "--json-progress"])
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
