@@ -1,5 +1,6 @@
 //! Inputs that change while they are read: a package never holds the hash of other bytes than it is made of.
 
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 #![cfg(unix)]
 
 use std::{
