@@ -8,6 +8,7 @@ use std::{
     io::{BufRead as _, BufReader},
     path::{Path, PathBuf},
     process::{Command, Stdio},
+    time::SystemTime,
 };
 
 use e2e::{corniche, sample, text};
@@ -68,12 +69,8 @@ fn a_changed_input_ends_the_build_and_nothing_is_written() {
     let changes: [(&str, Change); 3] = [
         ("exchanged", exchange),
         ("touched", |path| {
-            fs::File::options()
-                .append(true)
-                .open(path)
-                .unwrap()
-                .set_modified(std::time::SystemTime::now())
-                .unwrap()
+            let file = fs::File::options().append(true).open(path).unwrap();
+            file.set_modified(SystemTime::now()).unwrap();
         }),
         ("deleted", |path| fs::remove_file(path).unwrap()),
     ];
