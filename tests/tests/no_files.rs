@@ -1,5 +1,6 @@
 //! Targets and inputs that are no files: never replaced, never waited for; and a signal ends whatever hangs.
 
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 #![cfg(unix)]
 
 use std::{

@@ -1,5 +1,7 @@
 //! Heights that cannot be: refused before anything is made of them, with value, count, file and the way out.
 
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
 use std::{
     fmt::Write as _,
     fs,

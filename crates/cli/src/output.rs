@@ -70,8 +70,8 @@ impl Output {
             Failure::unusable(format!("cannot write {}: {reason}", target.display()))
         };
         let named = target;
-        let target = &writable(named)?;
-        let place = place_of(target);
+        let target = writable(named)?;
+        let place = place_of(&target);
         if others.iter().any(|other| place_of(other) == place) {
             return Err(unusable(&"the command uses that file itself; choose another name"));
         }
@@ -80,7 +80,7 @@ impl Output {
         }
         if let Existing::ReplaceLike(kind) = existing
             && target.exists()
-            && !kind.is_of(target).map_err(|error| unusable(&error))?
+            && !kind.is_of(&target).map_err(|error| unusable(&error))?
         {
             let what = format!("{} exists already and is no {}", target.display(), kind.name());
             let advice = "choose another name, or delete it first";
@@ -96,7 +96,7 @@ impl Output {
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let file = builder.tempfile_in(folder).map_err(|error| unusable(&error))?;
         interrupt::remove_at_end(file.path());
-        Ok(Self { target: target.to_path_buf(), existing, file: BufWriter::new(file) })
+        Ok(Self { target, existing, file: BufWriter::new(file) })
     }
 
     /// Puts the file in its place.

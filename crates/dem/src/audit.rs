@@ -179,7 +179,10 @@ impl FileAudit {
     /// How often an outermost value was met.
     fn count_of(&self, height_m: f64) -> u64 {
         let entries = self.lowest.entries.iter().chain(&self.highest.entries);
-        entries.into_iter().find(|entry| entry.height_m == height_m).map_or(0, |entry| entry.count)
+        entries
+            .into_iter()
+            .find(|entry| entry.height_m - height_m == 0.0)
+            .map_or(0, |entry| entry.count)
     }
 
     /// Lowest and highest sample.
@@ -283,7 +286,7 @@ impl Audit {
         let (entry, gap_m) = own.or_else(|| all.sentinel())?;
         let count_in = |file: &FileAudit| match file.sentinel() {
             _ if own.is_none() => file.count_of(entry.height_m),
-            Some((same, _)) if same.height_m == entry.height_m => same.count,
+            Some((same, _)) if same.height_m - entry.height_m == 0.0 => same.count,
             _ => 0,
         };
         let holders: Vec<_> = files().filter(|(_, file)| count_in(file) > 0).collect();
