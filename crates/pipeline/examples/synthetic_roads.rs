@@ -70,8 +70,7 @@ fn winding(size: [f64; 2], random: &mut Random) -> Vec<[f64; 2]> {
     let mut points = vec![at];
     while points.len() < POINTS {
         heading += 0.9 * (random.share() - 0.5);
-        let next =
-            [at[0] + STEP_CELLS * heading.cos(), at[1] + STEP_CELLS * heading.sin()];
+        let next = [at[0] + STEP_CELLS * heading.cos(), at[1] + STEP_CELLS * heading.sin()];
         let is_inside = [0, 1].iter().all(|&axis| (2.0..size[axis] - 2.0).contains(&next[axis]));
         if is_inside {
             at = next;

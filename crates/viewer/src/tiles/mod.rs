@@ -11,6 +11,7 @@ mod on_disk;
 mod package;
 mod relief;
 mod roads;
+mod slopes;
 
 use std::collections::BTreeMap;
 
@@ -25,8 +26,8 @@ pub use self::{
     ground::{GroundMesh, GroundVertex},
     package::PackageTiles,
     roads::{
-        BadRoad, GroundLine, NearHeights, PlanLine, RoadEnd, RoadList, RoadSegment, RoadSegments,
-        RoadVolume, RoadVolumes, Side, TileLines,
+        BadRoad, Bed, GroundLine, NearHeights, PlanLine, RoadEnd, RoadList, RoadSegment,
+        RoadSegments, RoadVolume, RoadVolumes, Side, TileLines,
     },
 };
 use crate::lod::{GroundSummary, Node, Request, TileTree};
@@ -87,14 +88,15 @@ impl TileGeometry {
             geometric_error_m: terrain.geometric_error_m,
             height_range_m: terrain.height_range_m,
         });
-        let relief = Relief::new(id, surface, frame);
+        let relief = Relief::new(id, surface, frame, lines.width_margin_m);
+        let wide = relief.wide(&lines.ground);
         Self {
             id,
             reference_m,
             summary,
             ground,
-            roads: RoadSegments::new(&lines.ground, bounds, reference_m, |at_m| {
-                relief.gradient(at_m)
+            roads: RoadSegments::of_lines(&lines.ground, bounds, reference_m, |piece| {
+                relief.bed(piece, &wide)
             }),
             volumes: RoadVolumes::new(&lines.plan, bounds, reference_m, |ends_m| {
                 relief.near(ends_m)

@@ -6,8 +6,9 @@ use corniche_tin::Surface;
 
 mod segments;
 
+pub(super) use self::segments::Piece;
 pub use self::segments::{
-    NearHeights, RoadEnd, RoadList, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, Side,
+    Bed, NearHeights, RoadEnd, RoadList, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, Side,
 };
 
 /// A road on the ground (GEO): its centre-line as it lies on the tile's TIN.
@@ -19,6 +20,19 @@ pub struct GroundLine {
     pub class: FunctionalRoadClass,
     /// x, y in the working CRS and true height of each vertex.
     pub points_m: Vec<[f64; 3]>,
+    /// For each piece between two vertices the ends, in plan, of the segment of the source line that it is a piece of.
+    /// Between pieces of one segment the road goes straight on.
+    pub sources_m: Vec<[[f64; 2]; 2]>,
+}
+
+impl GroundLine {
+    /// A line whose vertices are all points of the source line.
+    #[must_use]
+    pub fn of_source(way_id: i64, class: FunctionalRoadClass, points_m: Vec<[f64; 3]>) -> Self {
+        let plan = |[x, y, _]: [f64; 3]| [x, y];
+        let sources_m = points_m.windows(2).map(|pair| [plan(pair[0]), plan(pair[1])]).collect();
+        Self { way_id, class, points_m, sources_m }
+    }
 }
 
 /// A road in plan (SV), in the tile and its margin.
@@ -89,6 +103,10 @@ fn ground_lines(
             way_id: road.way_id,
             class: road.class,
             points_m: positions.into_iter().map(place).collect(),
+            sources_m: corniche_drape::source_segments(&road.line)
+                .into_iter()
+                .map(|ends| ends.map(|point| frame.position_m(point)))
+                .collect(),
         });
     }
     Ok(lines)

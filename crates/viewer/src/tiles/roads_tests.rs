@@ -9,7 +9,7 @@ fn class(number: u8) -> FunctionalRoadClass {
 }
 
 fn ground_line(number: u8, points_m: Vec<[f64; 3]>) -> GroundLine {
-    GroundLine { way_id: 1, class: class(number), points_m }
+    GroundLine::of_source(1, class(number), points_m)
 }
 
 #[test]
@@ -18,16 +18,28 @@ fn segments_are_relative_and_sorted_by_class() {
         ground_line(6, vec![[10.0, 20.0, 1.0], [11.0, 20.0, 1.5], [12.0, 20.0, 1.0]]),
         ground_line(0, vec![[0.0, 0.0, 0.0], [10.0, 20.0, 1.0]]),
     ];
-    let gradient = |[x, _]: [f64; 2]| if x > 10.0 { [0.25, 0.5] } else { [3.0, -4.0] };
-    let roads = RoadSegments::new(&lines, TILE, [10.0, 20.0, 1.0], gradient);
+    let roads = RoadSegments::of_lines(&lines, TILE, [10.0, 20.0, 1.0], |_| Bed::default());
     assert_eq!(roads.range_of(class(0)), 0..1);
     assert_eq!(roads.range_of(class(6)), 1..3);
     assert!(roads.range_of(class(3)).is_empty());
-    assert_eq!(roads.all()[0].end_in_tile, [0.0; 3]);
-    assert_eq!(roads.all()[1].end_in_tile, [1.0, 0.0, 0.5]);
-    assert_eq!(roads.all()[1].cross_slope, 0.5, "north is left of east");
-    // To the left of (1, 2) is (−2, 1).
-    assert!((roads.all()[0].cross_slope - -10.0 / 5.0_f32.sqrt()).abs() < 1e-6);
+    assert_eq!(roads.all()[0].end_in_tile, [0.0; 2]);
+    assert_eq!(roads.all()[1].end_in_tile, [1.0, 0.0]);
+    assert_eq!(roads.all()[2].height_in_tile, 0.5);
+}
+
+#[test]
+fn pieces_of_a_segment_have_caps_at_its_ends_only() {
+    let points_m = vec![[10.0, 20.0, 1.0], [11.0, 20.0, 1.5], [14.0, 20.0, 1.0], [14.0, 30.0, 1.0]];
+    let segment = [[10.0, 20.0], [14.0, 20.0]];
+    let sources_m = vec![segment, segment, [[14.0, 20.0], [14.0, 40.0]]];
+    let line = GroundLine { sources_m, ..ground_line(2, points_m) };
+    let roads = RoadSegments::of_lines(&[line], TILE, [10.0, 20.0, 1.0], |_| Bed::default());
+    let found: Vec<_> = roads.all().iter().map(|piece| (piece.shares, piece.has_caps)).collect();
+    // The last ends halfway, at the tile's border or beside a void.
+    let expected =
+        [([0.0, 0.25], [true, false]), ([0.25, 1.0], [false, true]), ([0.0, 0.5], [true, true])];
+    assert_eq!(found, expected);
+    assert_eq!(roads.all()[1].end_in_tile, [4.0, 0.0]);
 }
 
 #[test]

@@ -155,8 +155,7 @@ impl PixelOracle<'_> {
         let band_m = self.band_px * pixel_m;
         let caps = self.options.caps;
         let plan_m = distance(ground.truncate(), ends, caps);
-        let (half_m, least_px) =
-            half_width(self.style, self.options, class, from_eye.length());
+        let (half_m, least_px) = half_width(self.style, self.options, class, from_eye.length());
         let wide = Tri::at_most(plan_m, share * half_m, band_m);
         let stretch = (1.5 * from_eye.length() / from_eye.z.abs()).clamp(1.0, MAX_STRETCH);
         let near = Tri::at_most(plan_m, stretch * share * least_px * pixel_m, band_m);

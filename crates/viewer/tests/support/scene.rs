@@ -73,7 +73,8 @@ impl Tile {
                 }
                 if let Some([a, b]) = clip([pair[0], pair[1]], bounds) {
                     let points_m = support::lay(a, b, &triangles);
-                    lines.ground.push(GroundLine { way_id: *way_id, class, points_m });
+                    let line = support::ground_line(*number, points_m);
+                    lines.ground.push(GroundLine { way_id: *way_id, ..line });
                 }
             }
         }
@@ -109,6 +110,10 @@ impl Tile {
                         let [x, y] = frame.position_of_fraction_m([u, v]);
                         [x, y, height_m]
                     })
+                    .collect(),
+                sources_m: corniche_drape::source_segments(&road.line)
+                    .into_iter()
+                    .map(|ends| ends.map(|point| frame.position_m(point)))
                     .collect(),
             })
             .collect();
