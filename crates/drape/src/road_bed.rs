@@ -115,3 +115,7 @@ fn bounds(piece: &RoadPiece, reach: f64) -> LatticeBounds {
         max: LatticePoint::new(most(0), most(1)),
     }
 }
+
+#[cfg(test)]
+#[path = "road_bed_tests.rs"]
+mod tests;

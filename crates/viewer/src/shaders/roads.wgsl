@@ -49,6 +49,8 @@ const AT_END = 0x20u;
 const LEAVES_TILE = 0x40u;
 // So many times as far away the quad looks the same, and the near plane does not cut it.
 const AWAY = 1024.0;
+// A quad shows a bed of which no point is nearer than this share of the way to it.
+const LEAST_NEAREST = 0.05;
 
 // How far the ground within a radius leaves the plane, downwards and upwards, world metres.
 fn leaving_m(in: SegmentIn, radius_m: f32) -> vec2<f32> {
@@ -56,9 +58,7 @@ fn leaving_m(in: SegmentIn, radius_m: f32) -> vec2<f32> {
     var most = min(in.rises_near.xy * radius_m, in.rises_near.zw);
     var leaves_tile = in.class_and_flags & LEAVES_TILE;
     if radius_m > 4.0 * near_m {
-        // Beyond the last reach, on as far as up to it.
-        let reach_m = max(tile.base.y, 8.0 * near_m);
-        most = in.farther.zw * max(1.0, radius_m / reach_m);
+        most = in.farther.zw;
         leaves_tile = in.class_and_flags & (LEAVES_TILE << 2u);
     } else if radius_m > near_m {
         most = in.farther.xy;
@@ -68,12 +68,85 @@ fn leaving_m(in: SegmentIn, radius_m: f32) -> vec2<f32> {
     return most * frame.background.w + select(0.0, tile.offset.w, leaves_tile != 0u);
 }
 
-// Where the points of a bed are seen on a plane across the way from the eye, as a rectangle on it.
+// A bed: its points are start + along · x + across · y + up · z, with x, y and z within these ranges.
+struct RoadBed {
+    start: vec3<f32>,
+    along: vec3<f32>,
+    across: vec3<f32>,
+    x: vec2<f32>,
+    y: vec2<f32>,
+    z: vec2<f32>,
+}
+
+// A plane across the way from the eye, a multiple of `plane_m` along `normal` away from it, and where on it, along `u` and
+// `v`, a bed is seen.
 struct Shown {
+    u: vec3<f32>,
+    v: vec3<f32>,
+    normal: vec3<f32>,
+    plane_m: f32,
     least: vec2<f32>,
     most: vec2<f32>,
-    // How far the nearest of them is from the eye along the normal, over how far the plane is.
+    // The same as of the plane for the point of the bed that is nearest along the normal, over that of the plane.
     nearest: f32,
+}
+
+// On a plane that turns about the bed's axis towards the eye: the bed is hidden by as little as can be.
+fn shown_about_axis(bed: RoadBed) -> Shown {
+    var out: Shown;
+    let along_m = length(bed.along);
+    out.u = bed.along / along_m;
+    let to_axis = bed.start - out.u * dot(bed.start, out.u);
+    out.plane_m = length(to_axis);
+    out.normal = to_axis / max(out.plane_m, 1e-9);
+    out.v = cross(out.normal, out.u);
+    // Neither the normal nor v has a part along the axis.
+    let start_u = dot(bed.start, out.u);
+    let across = vec3(dot(bed.across, out.u), dot(bed.across, out.v), dot(bed.across, out.normal));
+    let up = vec3(out.u.z, out.v.z, out.normal.z);
+    let ends = start_u + bed.x * along_m;
+    // The four edges along the axis.
+    let y = vec4(bed.y.x, bed.y.y, bed.y.x, bed.y.y);
+    let z = vec4(bed.z.xx, bed.z.yy);
+    let away = (out.plane_m + across.z * y + up.z * z) / max(out.plane_m, 1e-9);
+    let seen_v = (across.y * y + up.y * z) / away;
+    let aside = across.x * y + up.x * z;
+    let first = (ends.x + aside) / away;
+    let last = (ends.y + aside) / away;
+    out.least = vec2(least_of(min(first, last)), least_of(seen_v));
+    out.most = vec2(-least_of(-max(first, last)), -least_of(-seen_v));
+    out.nearest = least_of(away);
+    return out;
+}
+
+// On the plane through the bed's middle, for an eye that is in the bed's axis or near it.
+fn shown_from_its_end(bed: RoadBed) -> Shown {
+    var out: Shown;
+    let middle = bed.start + bed.along * (0.5 * (bed.x.x + bed.x.y));
+    out.plane_m = length(middle);
+    out.normal = middle / max(out.plane_m, 1e-9);
+    let aside = select(vec3(0.0, 0.0, 1.0), vec3(1.0, 0.0, 0.0), abs(out.normal.z) > 0.9);
+    out.u = normalize(cross(out.normal, aside));
+    out.v = cross(out.normal, out.u);
+    out.least = vec2(NEVER);
+    out.most = vec2(-NEVER);
+    out.nearest = NEVER;
+    for (var k = 0u; k < 8u; k++) {
+        let x = select(bed.x.x, bed.x.y, (k & 1u) != 0u);
+        let y = select(bed.y.x, bed.y.y, (k & 2u) != 0u);
+        let z = select(bed.z.x, bed.z.y, (k & 4u) != 0u);
+        let corner = bed.start + bed.along * x + bed.across * y + vec3(0.0, 0.0, z);
+        let away = dot(corner, out.normal) / max(out.plane_m, 1e-9);
+        let seen = vec2(dot(corner, out.u), dot(corner, out.v)) / away;
+        out.least = min(out.least, seen);
+        out.most = max(out.most, seen);
+        out.nearest = min(out.nearest, away);
+    }
+    return out;
+}
+
+fn least_of(values: vec4<f32>) -> f32 {
+    return min(min(values.x, values.y), min(values.z, values.w));
 }
 
 @vertex
@@ -95,47 +168,32 @@ fn vertex(in: SegmentIn) -> VertexOut {
     let near_height_m = select(0.0, min(abs(a.z), abs(b.z)), a.z * b.z > 0.0);
     // Rounding of positions must not cut off ground at the rim; the fragment decides anyway.
     let pad_m = 1e-6 * far_m + 0.01;
-    let radius_m = bounding_radius_m(road_class, far_m, near_height_m) + pad_m;
+    // As wide as roads may be, as for volumes: the neighbours know of no more.
+    let radius_m = min(bounding_radius_m(road_class, far_m, near_height_m), tile.base.y) + pad_m;
     let leaving = leaving_m(in, radius_m) + pad_m * (1.0 + abs(slopes.x) + abs(slopes.y));
     let ends = vec2(
         -select(pad_m, radius_m, (in.class_and_flags & AT_START) != 0u),
         length_m + select(pad_m, radius_m, (in.class_and_flags & AT_END) != 0u),
     );
 
-    // The quad turns about the piece towards the eye; where the eye is in the bed's own direction it stands across the
-    // way to its middle instead.
-    let middle = a + along * (0.5 * (ends.x + ends.y));
-    var u = normalize(along);
-    var to_eye = u * dot(middle, u) - middle;
-    if dot(to_eye, to_eye) < 1e-6 * dot(middle, middle) {
-        to_eye = -middle;
-        let aside = select(vec3(0.0, 0.0, 1.0), vec3(1.0, 0.0, 0.0), abs(middle.z) > 0.9 * length(middle));
-        u = normalize(cross(to_eye, aside));
-    }
-    let plane_m = length(to_eye);
-    let normal = to_eye / plane_m;
-    let v = cross(normal, u);
-    var least = vec2(NEVER);
-    var most = vec2(-NEVER);
-    var nearest = NEVER;
-    for (var k = 0u; k < 8u; k++) {
-        let along_m = select(ends.x, ends.y, (k & 1u) != 0u);
-        let left_m = select(-radius_m, radius_m, (k & 2u) != 0u);
-        let up_m = select(-leaving.x, leaving.y, (k & 4u) != 0u);
-        let corner = a + along * along_m + vec3(left * left_m, slopes.y * left_m + up_m);
-        let away = -dot(corner, normal) / plane_m;
-        let seen = vec2(dot(corner, u), dot(corner, v)) / away;
-        least = min(least, seen);
-        most = max(most, seen);
-        nearest = min(nearest, away);
+    var bed: RoadBed;
+    bed.start = a;
+    bed.along = along;
+    bed.across = vec3(left, slopes.y);
+    bed.x = ends;
+    bed.y = vec2(-radius_m, radius_m);
+    bed.z = vec2(-leaving.x, leaving.y);
+    var shown = shown_about_axis(bed);
+    if shown.nearest < LEAST_NEAREST {
+        shown = shown_from_its_end(bed);
     }
     let side = vec2(f32(in.corner & 1u), f32(in.corner >> 1u));
-    let at = mix(least, most, side);
-    var position = u * at.x + v * at.y - normal * plane_m;
+    let at = mix(shown.least, shown.most, side);
+    var position = shown.u * at.x + shown.v * at.y + shown.normal * shown.plane_m;
     // The eye is in the bed, or as good as: it may be anywhere in the picture.
-    if nearest < 0.01 {
-        let everywhere = 2.0 * side - 1.0;
-        position = frame.forward.xyz + 1.01 * (everywhere.x * frame.right.xyz + everywhere.y * frame.up.xyz);
+    if shown.nearest < LEAST_NEAREST {
+        let everywhere = 1.01 * (2.0 * side - 1.0);
+        position = frame.forward.xyz + everywhere.x * frame.right.xyz + everywhere.y * frame.up.xyz;
     }
 
     var out: VertexOut;
@@ -155,7 +213,7 @@ fn fragment(in: VertexOut) -> @location(0) f32 {
         discard;
     }
     let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
-    let label = label_at(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, in.road_class, NEVER);
+    let label = label_at(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, in.road_class, tile.base.y);
     if label == NOTHING {
         discard;
     }

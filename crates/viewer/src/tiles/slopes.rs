@@ -190,3 +190,7 @@ fn may_meet(middle: [f64; 2], half_m: [f64; 2], corners_m: [[f64; 2]; 4]) -> boo
         inside + left.abs() * half_m[0] + forward.abs() * half_m[1] >= 0.0
     })
 }
+
+#[cfg(test)]
+#[path = "slopes_tests.rs"]
+mod tests;

@@ -137,14 +137,15 @@ impl<'a> Atlas<'a> {
             drawing: &theirs,
             band_px: BAND_PX,
         };
-        let differing = differing
+        let differing: Vec<usize> = differing
             .into_iter()
             .filter(|index| {
                 let Owner::Ground(tile) = theirs.owners[*index] else { return true };
                 oracle.verdict(*index, &self.tiles[&drawn[tile].id]) != Verdict::InBand
             })
-            .count();
-        Seen { of_roads, differing }
+            .collect();
+        let missing = differing.iter().filter(|index| ours.labels[**index] == 0).count();
+        Seen { of_roads, differing: differing.len(), missing }
     }
 
     fn tile(&self, id: TileId) -> Tile {

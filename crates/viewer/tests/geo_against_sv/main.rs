@@ -94,10 +94,11 @@ impl Found {
         let worst = self.views.last().into_iter();
         for (view, seen) in self.above().chain(worst.filter(|(_, seen)| seen.share() <= GATE)) {
             println!(
-                "    {view}: {} of {} ({:.2} %)",
+                "    {view}: {} of {} ({:.2} %), {} of them missing",
                 seen.differing,
                 seen.of_roads,
-                100.0 * seen.share()
+                100.0 * seen.share(),
+                seen.missing
             );
         }
     }

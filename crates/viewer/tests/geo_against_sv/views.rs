@@ -39,6 +39,8 @@ pub(crate) struct Seen {
     pub(crate) of_roads: usize,
     /// Pixels whose labels differ, outside the band.
     pub(crate) differing: usize,
+    /// Of these, without any road in the drawing that is compared.
+    pub(crate) missing: usize,
 }
 
 impl Seen {
