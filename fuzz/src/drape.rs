@@ -59,8 +59,11 @@ fn surface(bytes: &mut Unstructured<'_>, node_steps: i64) -> Result<Option<Surfa
         Err(error) => panic!("small heights make a TIN: {error}"),
     };
     tin.check_invariants();
-    let placement =
-        Placement { corner: LatticePoint::new(0, 0), node_steps, quantum_m: spec.quantum_m };
+    let placement = Placement {
+        corner: LatticePoint::new(0, 0),
+        node_steps: [node_steps; 2],
+        quantum_m: spec.quantum_m,
+    };
     Ok((!tin.is_empty()).then(|| Surface::new(&tin, placement)))
 }
 

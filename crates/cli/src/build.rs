@@ -89,7 +89,10 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
             .or(config.terrain.vertical_shift)
             .unwrap_or(0.0),
         nodata,
-        cell_m: positive("--cell", args.terrain.cell.or(config.terrain.cell))?,
+        cell: positive("--cell", args.terrain.cell.or(config.terrain.cell))?
+            .map(corniche_geom::Cell::from),
+        cell_every: None,
+        scale_latitude_deg: None,
         max_error_m: positive("--max-error", args.terrain.max_error.or(config.terrain.max_error))?,
         fill_voids: args.terrain.fill_voids.or(config.terrain.fill_voids).unwrap_or(FILL_VOIDS),
     };

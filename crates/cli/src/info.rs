@@ -6,7 +6,7 @@ use std::{
     io::{self, Write as _},
 };
 
-use corniche_tileset::{FilePackage, Manifest};
+use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord};
 use serde_json::json;
 
 use crate::{
@@ -49,7 +49,7 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
     say(format!(
         "extent       {west:.5} {south:.5} {east:.5} {north:.5} (west south east north, degrees)"
     ));
-    say(format!("grid         cell {} m, {}", frame.cell_m(), plain(&manifest.resampling)));
+    say(format!("grid         cell {}, {}", frame.cell(), plain(&manifest.resampling)));
     let vertical = &manifest.vertical;
     let [lowest_m, highest_m] = vertical.range_m;
     say(format!(
@@ -115,8 +115,31 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
         ]);
     }
     say(format!("\n{}", levels.to_text()));
+    text.push_str(&sample_errors(manifest));
     text.push_str(&roads(manifest));
     text
+}
+
+/// How far each level is from the DEM's own samples.
+fn sample_errors(manifest: &Manifest) -> String {
+    let mut table = Table::new(["level", "samples on TIN", "off TIN", "max m", "RMS m", "p99 m"]);
+    for level in &manifest.levels {
+        let SampleErrorRecord { on_tin, off_tin, max_m, rms_m, p99_m } = level.sample_error;
+        table.row([
+            level.level.to_string(),
+            count(on_tin),
+            count(off_tin),
+            format!("{max_m:.2}"),
+            format!("{rms_m:.3}"),
+            format!("{p99_m:.2}"),
+        ]);
+    }
+    let what = if manifest.nodes_are_samples {
+        "At the DEM's own samples, which are the nodes"
+    } else {
+        "At the DEM's own samples, which are not the nodes"
+    };
+    format!("{what}:\n{}\n", table.to_text())
 }
 
 /// Foreign text for a terminal: its control characters must neither colour nor forge lines.

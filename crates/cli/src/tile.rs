@@ -60,7 +60,7 @@ fn to_json(package: &FilePackage, payload: &TilePayload) -> Result<Value, Failur
         "id": id.to_string(),
         "crs": manifest.crs,
         "bounds": frame.tile_bounds(id).to_array(),
-        "cell_m": frame.level_cell_m(id.z()),
+        "cell_m": frame.level_cell(id.z()).to_array(),
         "max_error_m": level.map(|level| level.max_error_m),
         "geometric_error_m": null,
         "height_range_m": null,

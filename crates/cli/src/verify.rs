@@ -96,12 +96,13 @@ fn to_text(report: &VerifyReport) -> String {
     if let Some(samples) = report.samples {
         let _ = write!(
             text,
-            "\nAt the DEM's own {} samples the finest level is off by {:.3} m at most, {:.3} m RMS; {} samples lie off \
-             the TIN\n",
-            count(samples.samples),
-            samples.largest_m,
+            "\nAt the DEM's own {} samples the finest level is off by {:.3} m at most, {:.3} m RMS, {:.3} m at \
+             the 99th percentile; {} samples lie off the TIN\n",
+            count(samples.on_tin),
+            samples.max_m,
             samples.rms_m,
-            count(samples.uncovered),
+            samples.p99_m,
+            count(samples.off_tin),
         );
     }
     text
@@ -124,9 +125,6 @@ fn to_json(report: &VerifyReport) -> serde_json::Value {
             "largest_true_m": figures.largest_true_m, "tightness": figures.tightness,
             "uncovered_nodes": figures.uncovered_nodes,
         })).collect::<Vec<_>>(),
-        "samples": report.samples.map(|samples| json!({
-            "samples": samples.samples, "uncovered": samples.uncovered, "largest_m": samples.largest_m,
-            "rms_m": samples.rms_m,
-        })),
+        "samples": report.samples,
     })
 }

@@ -5,7 +5,7 @@ use gdal::errors::GdalError;
 use gdal::spatial_ref::{AxisMappingStrategy, SpatialRef};
 
 use crate::vertical::VerticalCrs;
-use crate::wkt::{child, children, keyword, quoted};
+use crate::wkt::{child, children, keyword};
 use crate::{DemError, library};
 
 /// A horizontal coordinate system, kept as text: PROJ's objects belong to one thread.
@@ -19,8 +19,6 @@ pub(crate) struct Crs {
     pub(crate) turn: Option<f64>,
     /// Metres to a unit of the coordinates; 1 for a geographic system.
     pub(crate) unit_m: f64,
-    /// Plain spherical Mercator over ellipsoidal latitudes: its "metres" are none.
-    pub(crate) is_web_mercator: bool,
 }
 
 impl Crs {
@@ -28,17 +26,12 @@ impl Crs {
         let name = reference.name().unwrap_or_else(|| "unnamed".to_owned());
         let wkt = wkt2(reference)
             .map_err(|source| DemError::Wkt { name: name.clone(), source: source.into() })?;
-        let proj = reference.to_proj4().unwrap_or_default();
         let projected = reference.is_projected();
-        let is_web_mercator = proj.contains("+proj=merc") && proj.contains("+b=6378137")
-            || proj.contains("+proj=webmerc")
-            || name.contains("Pseudo-Mercator");
         Ok(Self {
             wkt: wkt.into(),
             label: reference.authority().unwrap_or(name),
             turn: (!projected).then(|| std::f64::consts::TAU / reference.angular_units()),
             unit_m: if projected { reference.linear_units() } else { 1.0 },
-            is_web_mercator,
         })
     }
 
@@ -101,9 +94,38 @@ impl Crs {
         self.turn.is_none()
     }
 
-    /// Whether its coordinates are metres; meaningful for a projected system.
-    pub(crate) fn is_metric(&self) -> bool {
-        (self.unit_m - 1.0).abs() < 1e-12
+    /// Metres to a unit of longitude and of latitude at a latitude, by the radii of curvature of the system's ellipsoid;
+    /// `None` when projected.
+    ///
+    /// Source: Snyder 1987, *Map Projections: A Working Manual*, equations 4-18 to 4-21.
+    pub(crate) fn metres_per_turn_unit(
+        &self,
+        latitude_deg: f64,
+    ) -> Result<Option<[f64; 2]>, DemError> {
+        let Some(turn) = self.turn else { return Ok(None) };
+        let unreadable =
+            |source: GdalError| DemError::Wkt { name: self.label.clone(), source: source.into() };
+        let reference = self.spatial_ref().map_err(unreadable)?;
+        let major_m = reference.semi_major().map_err(unreadable)?;
+        let minor_m = reference.semi_minor().map_err(unreadable)?;
+        let radians = std::f64::consts::TAU / turn;
+        let [parallel_m, meridian_m] = radii_m([major_m, minor_m], latitude_deg.to_radians());
+        Ok(Some([parallel_m * radians, meridian_m * radians]))
+    }
+
+    /// For each of the two coordinates 1, or −1 where it counts westwards or southwards. A polar system's axes all run
+    /// south or north and are taken as they are.
+    pub(crate) fn signs(&self) -> [f64; 2] {
+        let bound = child(&self.wkt, &["SOURCECRS"]).and_then(|source| children(&source).pop());
+        let axes: Vec<String> = children(bound.as_deref().unwrap_or(&self.wkt))
+            .into_iter()
+            .filter(|part| keyword(part) == "AXIS")
+            .filter_map(|axis| children(&axis).first().cloned())
+            .collect();
+        let has = |way: &str| axes.iter().any(|axis| axis.eq_ignore_ascii_case(way));
+        let is_polar = !(has("west") || has("east"));
+        let sign = |counts_back: bool| if counts_back { -1.0 } else { 1.0 };
+        [sign(has("west")), sign(!is_polar && has("south"))]
     }
 
     /// Whether both describe the same system, whatever they call it.
@@ -114,31 +136,14 @@ impl Crs {
                 _ => false,
             }
     }
+}
 
-    /// The same projection with its unit changed to metres; `None` when the text does not lend itself to it.
-    ///
-    /// Only false easting and northing are lengths in the unit; the caller checks the result with positions.
-    pub(crate) fn in_metres(&self) -> Option<Self> {
-        let reference = self.spatial_ref().ok()?;
-        let wkt = reference.to_wkt().ok()?;
-        let mut parts = children(&wkt);
-        for part in &mut parts {
-            if part.starts_with("UNIT") {
-                "UNIT[\"metre\",1,AUTHORITY[\"EPSG\",\"9001\"]]".clone_into(part);
-            } else if part.starts_with("PARAMETER[\"false_") {
-                let (head, value) = part.trim_end_matches(']').rsplit_once(',')?;
-                let metres = value.parse::<f64>().ok()? * self.unit_m;
-                *part = format!("{head},{metres}]");
-            } else if part.starts_with("AUTHORITY") || part.starts_with("EXTENSION") {
-                part.clear();
-            }
-        }
-        parts.retain(|part| !part.is_empty());
-        let text = format!("PROJCS[\"{} (metres)\",{}]", quoted(&wkt)?, parts.join(","));
-        let metric = SpatialRef::from_wkt(&text).ok()?;
-        let found = Self::from_spatial_ref(&metric).ok()?;
-        found.is_metric().then_some(found)
-    }
+/// Radius of the parallel and radius of curvature of the meridian at a latitude, of an ellipsoid by its semi-axes.
+fn radii_m([major_m, minor_m]: [f64; 2], latitude_rad: f64) -> [f64; 2] {
+    let eccentricity_2 = 1.0 - (minor_m / major_m).powi(2);
+    let w_2 = 1.0 - eccentricity_2 * latitude_rad.sin().powi(2);
+    let across_m = major_m / w_2.sqrt();
+    [across_m * latitude_rad.cos(), across_m * (1.0 - eccentricity_2) / w_2]
 }
 
 /// Whether a part of a compound system says where, not how high.
@@ -174,26 +179,33 @@ mod tests {
         assert_eq!(vertical.unit_m.to_bits(), (1200.0_f64 / 3937.0).to_bits());
     }
 
+    /// WGS84 at 45 degrees: Snyder 1987, table 3: 1 degree of latitude 111 131.7 m, of longitude 78 846.8 m.
     #[test]
-    fn feet_become_metres_without_moving() {
-        let (feet, _) = Crs::from_text("--dem-crs", "EPSG:2272").unwrap();
-        let metres = feet.in_metres().unwrap();
-        assert_eq!((metres.unit_m, metres.is_projected()), (1.0, true));
-        let operation = crate::operation::Operation::new(&feet, &metres, None);
-        let mut points = [[2_690_000.0, 235_000.0], [1_968_500.0, 0.0]];
-        let truth = points.map(|[x, y]| [x * feet.unit_m, y * feet.unit_m]);
-        operation.apply(&mut points).unwrap();
-        for (point, truth) in points.iter().zip(truth) {
-            assert!(
-                (point[0] - truth[0]).hypot(point[1] - truth[1]) < 1e-4,
-                "{point:?} is not {truth:?}"
-            );
-        }
+    fn a_degree_is_as_long_as_the_tables_say() {
+        let (crs, _) = Crs::from_text("--dem-crs", "EPSG:4326").unwrap();
+        let [east_m, north_m] = crs.metres_per_turn_unit(45.0).unwrap().unwrap();
+        assert!(
+            (east_m - 78_846.8).abs() < 0.1 && (north_m - 111_131.8).abs() < 0.1,
+            "{east_m} {north_m}"
+        );
+        let (grads, _) = Crs::from_text("--dem-crs", "EPSG:4807").unwrap();
+        let [_, grad_m] = grads.metres_per_turn_unit(45.0).unwrap().unwrap();
+        assert!((grad_m - 100_000.0).abs() < 50.0, "a grad of latitude is 100 km: {grad_m}");
+        assert_eq!(
+            Crs::from_text("--crs", "EPSG:32632").unwrap().0.metres_per_turn_unit(45.0).unwrap(),
+            None
+        );
     }
 
     #[test]
-    fn web_mercator_is_recognised_and_mercator_is_not() {
-        assert!(Crs::from_text("--crs", "EPSG:3857").unwrap().0.is_web_mercator);
-        assert!(!Crs::from_text("--crs", "EPSG:3395").unwrap().0.is_web_mercator);
+    fn axes_that_count_back_are_known_and_polar_ones_left() {
+        let check = |code: &str, signs: [f64; 2]| {
+            assert_eq!(Crs::from_text("--crs", code).unwrap().0.signs(), signs, "{code}");
+        };
+        check("EPSG:32632", [1.0, 1.0]);
+        check("EPSG:31467", [1.0, 1.0]);
+        check("EPSG:2053", [-1.0, -1.0]);
+        check("EPSG:3413", [1.0, 1.0]);
+        check("EPSG:3031", [1.0, 1.0]);
     }
 }

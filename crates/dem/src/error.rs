@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use corniche_geom::FrameError;
+use corniche_geom::{Cell, FrameError};
 
 use crate::LibraryError;
 
@@ -120,7 +120,7 @@ pub enum DemError {
     )]
     OptionalGeoidGrid { grids: String },
     #[error(
-        "--crs {text:?} is not a projected coordinate system in metres with x to the right of y; choose one that is"
+        "--crs {text:?} is not a projected coordinate system with x to the right of y, nor the DEM's own; choose one that is"
     )]
     WorkingCrs { text: String },
     #[error("coordinate system {name:?} cannot be written down as WKT; give another by EPSG:n")]
@@ -137,12 +137,32 @@ pub enum DemError {
         "{path:?} lies nowhere on earth by its coordinate system {crs}; name its true CRS with gdal_translate -a_srs"
     )]
     Nowhere { path: PathBuf, crs: String },
-    #[error("--cell {cell_m} is not a usable length; give metres between 0.001 and 1000000")]
-    Cell { cell_m: f64 },
     #[error(
-        "a cell of {cell_m} m averages {samples:.0} DEM samples along a side, more than {limit}; use a smaller --cell"
+        "--cell {cell} is not usable; give metres between 0.001 and 1000000: a number, or east,north"
     )]
-    Downsampling { cell_m: f64, samples: f64, limit: f64 },
+    Cell { cell: Cell },
+    #[error(
+        "a cell of {cell} averages {samples:.0} DEM samples along a side, more than {limit}; use a smaller --cell"
+    )]
+    Downsampling { cell: Cell, samples: f64, limit: f64 },
+    #[error("--cell-every {every} is not usable; give a number from 1 to {limit}")]
+    CellEvery { every: u32, limit: i64 },
+    #[error("--cell and --cell-every both say what a cell is; give one of them")]
+    CellTwice,
+    #[error(
+        "--cell-every needs nodes that are the DEM's samples, and in {crs} they are not; leave out --crs or give --crs dem, or give --cell"
+    )]
+    CellEveryResampled { crs: String },
+    #[error("--scale-latitude {latitude_deg} is not usable; give degrees between -89 and 89")]
+    ScaleLatitude { latitude_deg: f64 },
+    #[error(
+        "the DEM's own coordinate system {crs} does not do as working CRS here: its y does not lie to the left of its x, or the DEM's middle lies outside it; leave out --crs dem"
+    )]
+    OwnCrs { crs: String },
+    #[error(
+        "UTM is defined from 80° south to 84° north, and the DEM reaches from {south:.3}° to {north:.3}°; leave out --crs utm"
+    )]
+    NoUtm { south: f64, north: f64 },
     #[error("--fill-voids {cells} is too far; at most {limit} cells")]
     FillVoids { cells: u32, limit: u32 },
     #[error("the DEM's grid cannot be made")]

@@ -1,5 +1,7 @@
 //! Filling voids from what surrounds them.
 
+use corniche_geom::Cell;
+
 /// The eight directions in a fixed order, clockwise from north: columns east, rows south.
 const DIRECTIONS: [[i64; 2]; 8] =
     [[0, -1], [1, -1], [1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1]];
@@ -9,14 +11,19 @@ const DIRECTIONS: [[i64; 2]; 8] =
 /// ```text
 ///   ·   ·   8       A void is filled if and only if data is found within `reach` cells in each of the eight
 ///     ·     |   /   directions. Its height is the mean of those eight, weighted by inverse distance
-///   7 ─ ─ ─ ? ─ 3   (a diagonal cell is √2 long).
+///   7 ─ ─ ─ ? ─ 3   in working metres: a step east is as long as the cell's east side.
 ///     /   / | ·
 ///   6   ·   5   4   Only data counts, never filled nodes: the rule is local, whatever window it is seen through.
 /// ```
 ///
 /// `heights_m` holds `columns` nodes a row, with `reach` nodes of halo on every side. What comes back are the
 /// indices of the filled nodes within it, and their heights.
-pub(crate) fn fill(heights_m: &[f32], columns: usize, reach: usize) -> Vec<(usize, f32)> {
+pub(crate) fn fill(
+    heights_m: &[f32],
+    columns: usize,
+    reach: usize,
+    cell: Cell,
+) -> Vec<(usize, f32)> {
     let rows = heights_m.len() / columns.max(1);
     let mut filled = Vec::new();
     for row in reach..rows.saturating_sub(reach) {
@@ -24,7 +31,7 @@ pub(crate) fn fill(heights_m: &[f32], columns: usize, reach: usize) -> Vec<(usiz
             let at = row * columns + column;
             if heights_m[at].is_nan() {
                 filled.extend(
-                    fill_node(heights_m, columns, at, reach).map(|height_m| (at, height_m)),
+                    fill_node(heights_m, columns, at, reach, cell).map(|height_m| (at, height_m)),
                 );
             }
         }
@@ -32,11 +39,18 @@ pub(crate) fn fill(heights_m: &[f32], columns: usize, reach: usize) -> Vec<(usiz
     filled
 }
 
-fn fill_node(heights_m: &[f32], columns: usize, at: usize, reach: usize) -> Option<f32> {
+fn fill_node(
+    heights_m: &[f32],
+    columns: usize,
+    at: usize,
+    reach: usize,
+    cell: Cell,
+) -> Option<f32> {
     let (mut weights, mut sum) = (0.0, 0.0);
     for [east, south] in DIRECTIONS {
         let stride = south * columns as i64 + east;
-        let length = if east != 0 && south != 0 { std::f64::consts::SQRT_2 } else { 1.0 };
+        // In north sides of a cell: weights matter by their ratios only.
+        let length = (east as f64 * (cell.east_m / cell.north_m)).hypot(south as f64);
         let found = (1..=reach as i64).find_map(|cells| {
             let height_m = heights_m[(at as i64 + cells * stride) as usize];
             (!height_m.is_nan()).then_some((cells, height_m))
@@ -58,7 +72,7 @@ mod tests {
         let mut heights: Vec<f32> =
             (0..121).map(|k| (k % 11) as f32 * 2.0 + (k / 11) as f32).collect();
         heights[60] = f32::NAN;
-        let filled = fill(&heights, 11, 3);
+        let filled = fill(&heights, 11, 3, Cell { east_m: 20.0, north_m: 30.0 });
         assert_eq!(filled.len(), 1);
         assert_eq!(filled[0].0, 60);
         assert!((filled[0].1 - 15.0).abs() < 1e-5);
@@ -70,7 +84,7 @@ mod tests {
         heights[24] = f32::NAN;
         // South of the void, all the way within reach.
         (1..=3).for_each(|k| heights[24 + 7 * k] = f32::NAN);
-        assert!(fill(&heights, 7, 3).is_empty());
-        assert_eq!(fill(&[1.0, f32::NAN], 2, 0), []);
+        assert!(fill(&heights, 7, 3, Cell::from(1.0)).is_empty());
+        assert_eq!(fill(&[1.0, f32::NAN], 2, 0, Cell::from(1.0)), []);
     }
 }

@@ -17,6 +17,7 @@ mod source;
 
 mod plan;
 mod reader;
+mod samples;
 
 mod crs;
 mod heights;
@@ -32,6 +33,7 @@ mod outline;
 mod positions;
 mod projection;
 mod scale;
+mod working;
 
 mod error;
 mod library;
@@ -42,4 +44,6 @@ pub use library::LibraryError;
 pub use plan::{GridPlan, PlanOptions, Resampling};
 pub use projection::DemProjection;
 pub use reader::{DemWindow, Reader, SampleBlock};
+pub use samples::SampleArea;
 pub use source::OpenOptions;
+pub use working::PlanScale;

@@ -122,6 +122,18 @@ fn from_centres(crs_from_pixel: &GeoTransform) -> GeoTransform {
 }
 
 impl Mosaic {
+    /// CRS position of the middle.
+    pub(crate) fn middle(&self) -> [f64; 2] {
+        let middle =
+            [0, 1].map(|axis| (self.extent.min[axis] + self.extent.max[axis] - 1) as f64 / 2.0);
+        self.crs_from_sample.crs_from_pixel(middle)
+    }
+
+    /// A full turn of longitude and the longitude in the middle; `None` for projected CRSs.
+    pub(crate) fn turn(&self) -> Option<[f64; 2]> {
+        self.crs.turn.map(|turn| [turn, self.middle()[0]])
+    }
+
     /// Samples that positions can ask for: all around the earth, where columns come round.
     pub(crate) fn reachable(&self) -> SampleRect {
         let around = self.period.unwrap_or(0);

@@ -8,6 +8,7 @@ use gdal::spatial_ref::{CoordTransform, CoordTransformOptions};
 
 use crate::DemError;
 use crate::crs::Crs;
+use crate::working::Working;
 
 /// A coordinate operation between two systems, pinned to one area of interest.
 ///
@@ -21,6 +22,12 @@ pub(crate) struct Operation {
     area_deg: Option<[f64; 4]>,
     /// Operations that ignore what PROJ lacks the data for ("ballpark") are not allowed.
     is_exact: bool,
+    /// Working metres are divided by these before.
+    divide: [f64; 2],
+    /// And these make them after.
+    multiply: [f64; 2],
+    /// A full turn of the first coordinate of what comes out, and what it is to be near to.
+    turn: Option<[f64; 2]>,
     key: String,
 }
 
@@ -44,7 +51,33 @@ impl Operation {
             }
         });
         let key = format!("{}→{}@{area_deg:?}", from.wkt, to.wkt);
-        Self { from: from.clone(), to: to.clone(), area_deg, is_exact: false, key }
+        Self {
+            from: from.clone(),
+            to: to.clone(),
+            area_deg,
+            is_exact: false,
+            divide: [1.0; 2],
+            multiply: [1.0; 2],
+            turn: None,
+            key,
+        }
+    }
+
+    /// From a system to working metres. Longitudes come out as those images that are nearest to the data's middle.
+    pub(crate) fn into_working(from: &Crs, working: &Working, area_deg: Option<Bounds>) -> Self {
+        let turn = working.crs.turn.map(|turn| [turn, working.middle]);
+        let multiply = working.metres_per_unit;
+        Self { multiply, turn, ..Self::new(from, &working.crs, area_deg) }
+    }
+
+    /// From working metres to a system.
+    pub(crate) fn out_of_working(working: &Working, to: &Crs, area_deg: Option<Bounds>) -> Self {
+        Self { divide: working.metres_per_unit, ..Self::new(&working.crs, to, area_deg) }
+    }
+
+    /// The same, with what comes out moved by whole turns: `[turn, near]` of the first coordinate.
+    pub(crate) fn around(self, turn: Option<[f64; 2]>) -> Self {
+        Self { turn, ..self }
     }
 
     /// The same where an approximation for want of a grid is no answer; for heights.
@@ -82,15 +115,25 @@ impl Operation {
 
     /// Replaces each position by its image; NaN where there is none.
     pub(crate) fn apply(&self, points: &mut [[f64; 2]]) -> Result<(), DemError> {
-        let transform = self.transform().map_err(|source| self.failed(source))?;
-        let mut xs: Vec<f64> = points.iter().map(|point| point[0]).collect();
-        let mut ys: Vec<f64> = points.iter().map(|point| point[1]).collect();
-        // An error here means that some positions have no image; those come out as infinite.
-        let _some_failed = transform.transform_coords(&mut xs, &mut ys, &mut []);
-        for ((point, x), y) in points.iter_mut().zip(xs).zip(ys) {
+        let mut xs: Vec<f64> = points.iter().map(|point| point[0] / self.divide[0]).collect();
+        let mut ys: Vec<f64> = points.iter().map(|point| point[1] / self.divide[1]).collect();
+        // PROJ is not asked for what it would only wrap or round.
+        if self.from.wkt != self.to.wkt {
+            let transform = self.transform().map_err(|source| self.failed(source))?;
+            // An error here means that some positions have no image; those come out as infinite.
+            let _some_failed = transform.transform_coords(&mut xs, &mut ys, &mut []);
+        }
+        for ((point, mut x), y) in points.iter_mut().zip(xs).zip(ys) {
             let image_exists =
                 x.is_finite() && y.is_finite() && point[0].is_finite() && point[1].is_finite();
-            *point = if image_exists { [x, y] } else { [f64::NAN; 2] };
+            if let Some([turn, near]) = self.turn {
+                x -= turn * ((x - near) / turn).round();
+            }
+            *point = if image_exists {
+                [x * self.multiply[0], y * self.multiply[1]]
+            } else {
+                [f64::NAN; 2]
+            };
         }
         Ok(())
     }

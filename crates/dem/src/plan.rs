@@ -1,25 +1,22 @@
 //! The grid of a package: working CRS, cell, extent.
 
-use corniche_geom::{Bounds, Frame, NodeIndex};
-use gdal::errors::GdalError;
-use gdal::spatial_ref::SpatialRef;
+use corniche_geom::{Bounds, Cell, Frame, NodeIndex};
 use gdal::version::VersionInfo;
 
-use crate::crs::Crs;
 use crate::kernel::Kernel;
 use crate::mosaic::Mosaic;
 use crate::operation::Operation;
 use crate::positions::NodePositions;
-use crate::{Dem, DemError, outline, scale};
+use crate::working::{PlanScale, Working, rounded};
+use crate::{Dem, DemError, outline, working};
 
-/// A CRS within this of true scale serves as working CRS; of the DEM's own at the centre, of UTM all over.
-const SCALE_TOLERANCE: f64 = 0.01;
 /// Nodes coincide with samples when none is farther off than this, in cells.
 const ALIGNED_CELLS: f64 = 1e-3;
-/// Rounding of a grid's phase: a micrometre hides the noise of corner coordinates and moves nothing.
-const PHASE_STEPS_PER_M: f64 = 1e6;
-/// UTM is defined between these latitudes.
-const UTM_LATITUDES_DEG: [f64; 2] = [-80.0, 84.0];
+/// Rounding of a grid's phase, to a unit or, in degrees, to a cell: it hides the noise of corner coordinates and moves
+/// nothing.
+const PHASE_STEPS: f64 = 1e6;
+/// Most samples along an axis of which one is taken.
+const MAX_EVERY: i64 = 1000;
 /// Most samples averaged along a side of a cell; bounds the memory that one node can ask for.
 const MAX_SAMPLES_PER_NODE: f64 = 1000.0;
 /// Farthest that voids can be filled; bounds the halo.
@@ -28,10 +25,15 @@ const MAX_FILL_VOIDS: u32 = 1024;
 /// What the user may say about the grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanOptions {
-    /// Working CRS; `None` chooses one.
+    /// Working CRS: "dem" (the first file's own), "utm", "EPSG:n" or WKT; `None` chooses one.
     pub crs: Option<String>,
-    /// Spacing of the nodes; `None` takes the DEM's.
-    pub cell_m: Option<f64>,
+    /// Spacing of the nodes, working metres; `None` takes the DEM's.
+    pub cell: Option<Cell>,
+    /// Take every n-th sample along both axes as node, of those whose indices, counted as tiles are aligned, are multiples
+    /// of n. Not together with `cell`.
+    pub cell_every: Option<u32>,
+    /// Latitude at which lengths in the DEM's own CRS are true; `None` takes the data's middle, to half a degree.
+    pub scale_latitude_deg: Option<f64>,
     /// A void is filled from data within this many cells; 0 fills nothing.
     pub fill_voids: u32,
 }
@@ -39,8 +41,10 @@ pub struct PlanOptions {
 /// Whether nodes are the DEM's samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Resampling {
-    /// Every node is a sample: nothing is resampled.
+    /// Nodes are samples, and samples are nodes: nothing is resampled.
     Aligned,
+    /// Nodes are samples, but only every n-th one is a node.
+    Thinned,
     /// Heights at nodes are interpolated or averaged, from some files at least.
     Resampled,
 }
@@ -58,9 +62,14 @@ pub struct GridPlan {
     pub crs: String,
     /// Working CRS as WKT2.
     pub crs_wkt: String,
-    /// Length in the working CRS over true length, at the centre.
+    /// Working metres to a unit of the CRS's coordinates, east and north. Negative where an axis counts westwards or
+    /// southwards.
+    pub metres_per_unit: [f64; 2],
+    /// Working metres to a true metre, at the centre: the geometric mean along both axes.
     pub point_scale: f64,
-    /// Rectangle of the nodes from `south_west` to `north_east`, metres in the working CRS.
+    /// The same along each axis, at the centre and over the data's rim.
+    pub scale: PlanScale,
+    /// Rectangle of the nodes from `south_west` to `north_east`, working metres.
     pub data_bounds: Bounds,
     /// Rectangle around the files in WGS84 degrees. Past the antimeridian longitudes go on beyond ±180.
     pub wgs84_bounds: Bounds,
@@ -78,7 +87,7 @@ pub struct GridPlan {
     pub fill_voids: u32,
     /// One per mosaic of the DEM, in its order.
     pub(crate) layers: Vec<Layer>,
-    pub(crate) working: Crs,
+    pub(crate) working: Working,
 }
 
 /// How one mosaic serves nodes.
@@ -87,7 +96,7 @@ pub(crate) struct Layer {
     /// South-western and north-eastern node between which it can have data.
     pub(crate) nodes: [NodeIndex; 2],
     pub(crate) method: Method,
-    /// From the mosaic's CRS to the working one.
+    /// From the mosaic's CRS to working metres.
     pub(crate) working_from_crs: Operation,
 }
 
@@ -97,38 +106,49 @@ pub(crate) enum Method {
     Resampled(Box<NodePositions>, Kernel),
 }
 
-/// Sample (column, row) = (`way[0]` · (i − `first.i`), `way[1]` · (j − `first.j`)).
+/// Sample (column, row) = (`way[0]` · (`every` · i − `first[0]`), `way[1]` · (`every` · j − `first[1]`)).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Alignment {
-    pub(crate) first: NodeIndex,
+    /// Index of sample (0, 0), counted in samples from node (0, 0).
+    pub(crate) first: [i64; 2],
     pub(crate) way: [i64; 2],
+    pub(crate) every: i64,
+}
+
+impl Alignment {
+    /// The sample under a node.
+    pub(crate) fn sample(&self, node: NodeIndex) -> [i64; 2] {
+        [
+            self.way[0] * (self.every * node.i - self.first[0]),
+            self.way[1] * (self.every * node.j - self.first[1]),
+        ]
+    }
 }
 
 pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
     if options.fill_voids > MAX_FILL_VOIDS {
         return Err(DemError::FillVoids { cells: options.fill_voids, limit: MAX_FILL_VOIDS });
     }
-    let (working, point_scale) = working_crs(dem, options.crs.as_deref())?;
-    let operations: Vec<Operation> = dem
-        .mosaics
-        .iter()
-        .map(|mosaic| Operation::new(&mosaic.crs, &working, Some(dem.wgs84_bounds)))
-        .collect();
+    let working = working::choose(dem, options.crs.as_deref(), options.scale_latitude_deg)?;
+    let into_working = |working: &Working| -> Vec<Operation> {
+        let of =
+            |mosaic: &Mosaic| Operation::into_working(&mosaic.crs, working, Some(dem.wgs84_bounds));
+        dem.mosaics.iter().map(of).collect()
+    };
+    let layout = layout(dem, options, working, &into_working)?;
+    let scale = layout.working.scale(dem)?;
+    let operations = into_working(&layout.working);
     let spacings: Vec<Option<[f64; 2]>> = dem
         .mosaics
         .iter()
         .zip(&operations)
-        .map(|(mosaic, operation)| spacing_m(mosaic, &working, operation))
+        .map(|(mosaic, operation)| spacing_m(mosaic, &layout.working, operation))
         .collect::<Result<_, _>>()?;
-    let cell_m = cell_m(dem, options, &working, &spacings)?;
-    let origin_m =
-        dem.mosaics.iter().find_map(|mosaic| phase_m(mosaic, &working, cell_m)).unwrap_or([0.0; 2]);
-    let grid = Grid { working: &working, origin_m, cell_m };
     let extents: Vec<[NodeIndex; 2]> = dem
         .mosaics
         .iter()
         .zip(&operations)
-        .map(|(mosaic, operation)| grid.nodes(dem, mosaic, operation))
+        .map(|(mosaic, operation)| layout.nodes(dem, mosaic, operation))
         .collect::<Result<_, _>>()?;
     let [south_west, north_east] = extents
         .iter()
@@ -139,26 +159,31 @@ pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemErro
                 NodeIndex { i: ne.i.max(high.i), j: ne.j.max(high.j) },
             ]
         })
-        .ok_or_else(|| DemError::OutsideCrs { crs: working.label.clone() })?;
-    let frame = Frame::covering(origin_m, cell_m, south_west, north_east)?;
+        .ok_or_else(|| DemError::OutsideCrs { crs: layout.working.crs.label.clone() })?;
+    let frame = Frame::covering(layout.origin_m, layout.cell, south_west, north_east)?;
     let mut layers = Vec::new();
     for (((mosaic, working_from_crs), nodes), spacing) in
         dem.mosaics.iter().zip(operations).zip(extents).zip(spacings)
     {
-        let method = match grid.alignment(mosaic) {
+        let method = match layout.alignment(mosaic) {
             Some(alignment) => Method::Aligned(alignment),
-            None => resample(dem, mosaic, &frame, &working, nodes, spacing)?,
+            None => resample(dem, mosaic, &frame, &layout.working, nodes, spacing)?,
         };
         layers.push(Layer { nodes, method, working_from_crs });
     }
+    let is_every_sample =
+        |layer: &Layer| matches!(layer.method, Method::Aligned(alignment) if alignment.every == 1);
     let is_aligned = |layer: &Layer| matches!(layer.method, Method::Aligned(_));
+    let working = layout.working;
     Ok(GridPlan {
         frame,
         south_west,
         north_east,
-        crs: working.label.clone(),
-        crs_wkt: working.wkt.to_string(),
-        point_scale,
+        crs: working.crs.label.clone(),
+        crs_wkt: working.crs.wkt.to_string(),
+        metres_per_unit: working.metres_per_unit,
+        point_scale: (scale.center[0] * scale.center[1]).sqrt(),
+        scale,
         data_bounds: Bounds {
             min_x: frame.x_m(south_west.i),
             min_y: frame.y_m(south_west.j),
@@ -166,8 +191,10 @@ pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemErro
             max_y: frame.y_m(north_east.j),
         },
         wgs84_bounds: dem.wgs84_bounds,
-        case: if layers.iter().all(is_aligned) {
+        case: if layers.iter().all(is_every_sample) {
             Resampling::Aligned
+        } else if layers.iter().all(is_aligned) {
+            Resampling::Thinned
         } else {
             Resampling::Resampled
         },
@@ -181,89 +208,16 @@ pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemErro
     })
 }
 
-/// The working CRS and its scale at the centre.
-fn working_crs(dem: &Dem, asked: Option<&str>) -> Result<(Crs, f64), DemError> {
-    if let Some(text) = asked {
-        let (crs, _) = Crs::from_text("--crs", text)?;
-        let refuse = || DemError::WorkingCrs { text: text.to_owned() };
-        if !(crs.is_projected() && crs.is_metric()) {
-            return Err(refuse());
-        }
-        let scale = scale_at(dem, &crs, &[dem.center_deg])?
-            .ok_or_else(|| DemError::OutsideCrs { crs: crs.label.clone() })?;
-        return if scale.deviation.is_finite() { Ok((crs, scale.mean)) } else { Err(refuse()) };
-    }
-    let own = &dem.mosaics[0].crs;
-    let is_usable = own.is_projected() && own.is_metric() && !own.is_web_mercator;
-    let own_scale = if is_usable { scale_at(dem, own, &[dem.center_deg])? } else { None };
-    if let Some(scale) = own_scale.filter(|scale| scale.deviation <= SCALE_TOLERANCE) {
-        return Ok((own.clone(), scale.mean));
-    }
-    let bounds = dem.wgs84_bounds;
-    if bounds.min_y >= UTM_LATITUDES_DEG[0] && bounds.max_y <= UTM_LATITUDES_DEG[1] {
-        let [lon, lat] = dem.center_deg;
-        let zone = (((lon + 180.0) / 6.0).floor() as u32).min(59) + 1;
-        let code = if lat < 0.0 { 32700 } else { 32600 } + zone;
-        let (utm, _) = Crs::from_text("the chosen", &format!("EPSG:{code}"))?;
-        let far = scale_at(dem, &utm, &rim_deg(bounds))?;
-        if far.is_some_and(|scale| scale.deviation <= SCALE_TOLERANCE)
-            && let Some(scale) = scale_at(dem, &utm, &[dem.center_deg])?
-        {
-            return Ok((utm, scale.mean));
-        }
-    }
-    equal_area(dem)
-}
-
-/// Lambert azimuthal equal-area about the data's centre, rounded to whole degrees so that small changes of the
-/// extent leave the grid where it is.
-fn equal_area(dem: &Dem) -> Result<(Crs, f64), DemError> {
-    let [lon, lat] = dem.center_deg.map(f64::round);
-    let text = format!(
-        "+proj=laea +lat_0={lat} +lon_0={lon} +x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs"
-    );
-    let reference = SpatialRef::from_proj4(&text).map_err(|source: GdalError| {
-        DemError::CrsText { option: "the chosen", text, source: source.into() }
-    })?;
-    let mut crs = Crs::from_spatial_ref(&reference)?;
-    crs.label = format!("Lambert azimuthal equal-area about {lat}, {lon}");
-    let scale = scale_at(dem, &crs, &[dem.center_deg])?;
-    let scale = scale.ok_or_else(|| DemError::OutsideCrs { crs: crs.label.clone() })?;
-    Ok((crs, scale.mean))
-}
-
-/// Corners and middles of the sides.
-fn rim_deg(bounds: Bounds) -> Vec<[f64; 2]> {
-    let [x, y] = bounds.center();
-    let (xs, ys) = ([bounds.min_x, x, bounds.max_x], [bounds.min_y, y, bounds.max_y]);
-    xs.iter().flat_map(|&x| ys.map(|y| [x, y])).collect()
-}
-
-/// The scale farthest from 1 at the given places; `None` when one of them lies outside the CRS.
-fn scale_at(
-    dem: &Dem,
-    crs: &Crs,
-    places_deg: &[[f64; 2]],
-) -> Result<Option<scale::Scale>, DemError> {
-    let wgs84 = Crs::wgs84()?;
-    let mut points = places_deg.to_vec();
-    Operation::new(&wgs84, crs, Some(dem.wgs84_bounds)).apply(&mut points)?;
-    let scales = scale::scales(&Operation::new(crs, &wgs84, Some(dem.wgs84_bounds)), &points)?;
-    let all: Option<Vec<scale::Scale>> = scales.into_iter().collect();
-    Ok(all.and_then(|all| {
-        all.into_iter().reduce(|a, b| if b.deviation > a.deviation { b } else { a })
-    }))
-}
-
-/// Spacing of a mosaic's columns and rows in the working CRS, at its centre; `None` outside the CRS.
+/// Spacing of a mosaic's columns and rows in working metres, at its centre; `None` outside the CRS.
 fn spacing_m(
     mosaic: &Mosaic,
-    working: &Crs,
+    working: &Working,
     operation: &Operation,
 ) -> Result<Option<[f64; 2]>, DemError> {
     let c = mosaic.crs_from_sample.coefficients;
-    if mosaic.crs.is_same(working) {
-        return Ok(Some([c[1].hypot(c[4]), c[2].hypot(c[5])]));
+    if mosaic.crs.is_same(&working.crs) {
+        let [fx, fy] = working.metres_per_unit;
+        return Ok(Some([(c[1] * fx).hypot(c[4] * fy), (c[2] * fx).hypot(c[5] * fy)]));
     }
     let [x, y] =
         [0, 1].map(|axis| (mosaic.extent.min[axis] + mosaic.extent.max[axis] - 1) as f64 / 2.0);
@@ -275,73 +229,111 @@ fn spacing_m(
     Ok(spacing.iter().all(|metres| metres.is_finite() && *metres > 0.0).then_some(spacing))
 }
 
-/// The cell: as asked, else the finest spacing of all mosaics, so that none loses detail.
-fn cell_m(
+/// Cell, phase and the working CRS with its final factors.
+struct Layout {
+    working: Working,
+    origin_m: [f64; 2],
+    cell: Cell,
+    /// The samples taken are those whose index, counted as tiles are aligned, is a multiple of this.
+    every: i64,
+}
+
+/// The cell as asked, else the first mosaic's: its samples, or every n-th of them, are then the nodes.
+fn layout(
     dem: &Dem,
     options: &PlanOptions,
-    working: &Crs,
-    spacings: &[Option<[f64; 2]>],
-) -> Result<f64, DemError> {
-    if let Some(cell_m) = options.cell_m {
-        return if (0.001..=1e6).contains(&cell_m) {
-            Ok(cell_m)
-        } else {
-            Err(DemError::Cell { cell_m })
+    working: Working,
+    into_working: &dyn Fn(&Working) -> Vec<Operation>,
+) -> Result<Layout, DemError> {
+    let first = &dem.mosaics[0];
+    let every = i64::from(options.cell_every.unwrap_or(1));
+    if every < 1 || every > MAX_EVERY {
+        return Err(DemError::CellEvery {
+            every: options.cell_every.unwrap_or(0),
+            limit: MAX_EVERY,
+        });
+    }
+    if options.cell_every.is_some() && options.cell.is_some() {
+        return Err(DemError::CellTwice);
+    }
+    let is_own = first.crs.is_same(&working.crs) && first.crs_from_sample.is_axis_parallel();
+    if is_own && options.cell.is_none() {
+        return Ok(Layout::of_samples(first, working, every));
+    }
+    if options.cell_every.is_some() {
+        return Err(DemError::CellEveryResampled { crs: working.crs.label.clone() });
+    }
+    let cell = match options.cell {
+        Some(cell) => cell,
+        None => {
+            let operations = into_working(&working);
+            let spacing_m = spacing_m(first, &working, &operations[0])?
+                .ok_or_else(|| DemError::OutsideCrs { crs: working.crs.label.clone() })?;
+            let shorter_m = spacing_m[0].min(spacing_m[1]);
+            let is_turned = first.crs.is_same(&working.crs);
+            Cell::from(rounded(shorter_m, if is_turned { 9 } else { 2 }))
+        }
+    };
+    if cell.to_array().iter().any(|side_m| !(0.001..=1e6).contains(side_m)) {
+        return Err(DemError::Cell { cell });
+    }
+    let cell = cell.fitted();
+    if is_own {
+        // A cell that is the DEM's own, given as a number.
+        let of_samples = Layout::of_samples(first, working.clone(), 1);
+        let is_near = |axis: usize| {
+            let (own, asked) = (of_samples.cell.to_array()[axis], cell.to_array()[axis]);
+            let reach = first.extent.columns().max(first.extent.rows()) as f64;
+            (own - asked).abs() * reach <= ALIGNED_CELLS * asked
         };
+        if is_near(0) && is_near(1) {
+            return Ok(of_samples);
+        }
     }
-    let finest = dem
-        .mosaics
-        .iter()
-        .zip(spacings)
-        .filter_map(|(mosaic, spacing)| spacing.map(|[across, down]| (mosaic, across.min(down))))
-        .reduce(|a, b| if b.1 < a.1 { b } else { a });
-    let (mosaic, spacing_m) =
-        finest.ok_or_else(|| DemError::OutsideCrs { crs: working.label.clone() })?;
-    if !mosaic.crs.is_same(working) {
-        return Ok(rounded(spacing_m, 2));
+    Ok(Layout { working, origin_m: [0.0; 2], cell, every: 1 })
+}
+
+impl Layout {
+    /// Nodes at every `every`-th sample of a mosaic that lies along the axes of the working CRS.
+    ///
+    /// The east factor changes by less than a millimetre a cell, so that the cell's east side is a whole number of
+    /// lattice steps.
+    fn of_samples(mosaic: &Mosaic, mut working: Working, every: i64) -> Self {
+        let c = mosaic.crs_from_sample.coefficients;
+        let reach = mosaic.extent.columns().max(mosaic.extent.rows()) as f64;
+        let spacing = [c[1], c[5]].map(|step| nice(step.abs(), reach));
+        let factor = working.metres_per_unit;
+        let side_m = |axis: usize| spacing[axis] * factor[axis].abs() * every as f64;
+        let cell = Cell { east_m: side_m(0), north_m: side_m(1) }.fitted();
+        if cell.east_m.to_bits() != side_m(0).to_bits() {
+            let east = cell.east_m / (spacing[0] * every as f64);
+            working.metres_per_unit[0] = east.copysign(factor[0]);
+        }
+        let is_degrees = mosaic.crs.turn.is_some();
+        let origin_m = [0, 1].map(|axis| {
+            let factor = working.metres_per_unit[axis];
+            let at = [c[0], c[3]][axis] * factor.signum();
+            phase(at, spacing[axis], is_degrees) * factor.abs()
+        });
+        Self { working, origin_m, cell, every }
     }
-    // The DEM's own spacing, less the noise of its division by whoever wrote the file.
-    let nice_m = rounded(spacing_m, 9);
-    let reach = mosaic.extent.columns().max(mosaic.extent.rows()) as f64;
-    let is_noise = (nice_m - spacing_m).abs() * reach <= 1e-4 * spacing_m;
-    Ok(if is_noise { nice_m } else { spacing_m })
-}
 
-/// A number rounded to so many significant decimal digits.
-fn rounded(value: f64, digits: usize) -> f64 {
-    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
-}
-
-/// Position of the grid's node (0, 0) for a mosaic whose samples are to be the nodes, within one cell of the
-/// CRS's zero; `None` when CRS or cell differ.
-fn phase_m(mosaic: &Mosaic, working: &Crs, cell_m: f64) -> Option<[f64; 2]> {
-    let c = mosaic.crs_from_sample.coefficients;
-    let phase = [c[0], c[3]].map(|metres| {
-        let phase = (metres.rem_euclid(cell_m) * PHASE_STEPS_PER_M).round() / PHASE_STEPS_PER_M;
-        if cell_m - phase < 1.0 / PHASE_STEPS_PER_M { 0.0 } else { phase }
-    });
-    Grid { working, origin_m: phase, cell_m }.alignment(mosaic).map(|_| phase)
-}
-
-struct Grid<'a> {
-    working: &'a Crs,
-    origin_m: [f64; 2],
-    cell_m: f64,
-}
-
-impl Grid<'_> {
     /// How the mosaic's samples are nodes; `None` when they are not.
     fn alignment(&self, mosaic: &Mosaic) -> Option<Alignment> {
         let transform = &mosaic.crs_from_sample;
-        if !transform.is_axis_parallel() || !mosaic.crs.is_same(self.working) {
+        if !transform.is_axis_parallel() || !mosaic.crs.is_same(&self.working.crs) {
             return None;
         }
+        let factor = self.working.metres_per_unit;
+        // A cell between samples, when only every n-th is taken.
+        let between = self.cell.times(1.0 / self.every as f64).to_array();
         let cells = |sample: [i64; 2]| {
             let at = transform.crs_from_pixel(sample.map(|index| index as f64));
-            [0, 1].map(|axis| (at[axis] - self.origin_m[axis]) / self.cell_m)
+            [0, 1].map(|axis| (at[axis] * factor[axis] - self.origin_m[axis]) / between[axis])
         };
-        let way =
-            [transform.coefficients[1], transform.coefficients[5]].map(|step| step.signum() as i64);
+        let c = transform.coefficients;
+        let steps = [c[1] * factor[0], c[5] * factor[1]];
+        let way = steps.map(|step| step.signum() as i64);
         let [i, j] = cells([0, 0]).map(|cells| cells.round() as i64);
         let (low, high) = (mosaic.extent.min, mosaic.extent.max.map(|index| index - 1));
         let fits = [low, high].iter().all(|&sample| {
@@ -351,10 +343,10 @@ impl Grid<'_> {
             off.iter().all(|off| off.abs() <= ALIGNED_CELLS)
         });
         // A single row or column says nothing of its own spacing; both must be the cell.
-        let c = transform.coefficients;
-        let is_square =
-            [c[1], c[5]].iter().all(|step| (step.abs() / self.cell_m - 1.0).abs() <= ALIGNED_CELLS);
-        (fits && is_square).then_some(Alignment { first: NodeIndex { i, j }, way })
+        let is_cell = [0, 1]
+            .iter()
+            .all(|&axis| (steps[axis].abs() / between[axis] - 1.0).abs() <= ALIGNED_CELLS);
+        (fits && is_cell).then_some(Alignment { first: [i, j], way, every: self.every })
     }
 
     /// South-western and north-eastern node between which a mosaic can have data.
@@ -364,13 +356,15 @@ impl Grid<'_> {
         mosaic: &Mosaic,
         operation: &Operation,
     ) -> Result<[NodeIndex; 2], DemError> {
-        if let Some(Alignment { first, way }) = self.alignment(mosaic) {
+        if let Some(Alignment { first, way, every }) = self.alignment(mosaic) {
             let (low, high) = (mosaic.extent.min, mosaic.extent.max.map(|index| index - 1));
-            let ends = |axis: usize, first: i64| {
-                let (a, b) = (first + way[axis] * low[axis], first + way[axis] * high[axis]);
-                (a.min(b), a.max(b))
+            let ends = |axis: usize| {
+                let (a, b) =
+                    (first[axis] + way[axis] * low[axis], first[axis] + way[axis] * high[axis]);
+                // Rounded inwards: between two nodes there may be samples and no node.
+                (-(-a.min(b)).div_euclid(every), a.max(b).div_euclid(every))
             };
-            let ((west, east), (south, north)) = (ends(0, first.i), ends(1, first.j));
+            let ((west, east), (south, north)) = (ends(0), ends(1));
             return Ok([NodeIndex { i: west, j: south }, NodeIndex { i: east, j: north }]);
         }
         let mut bounds = Bounds::EMPTY;
@@ -379,12 +373,14 @@ impl Grid<'_> {
             if found.is_empty() {
                 // Leaving it out would lose its heights in silence.
                 let path = dem.sources[file.index].path.clone();
-                return Err(DemError::FileOutsideCrs { path, crs: self.working.label.clone() });
+                let crs = self.working.crs.label.clone();
+                return Err(DemError::FileOutsideCrs { path, crs });
             }
             bounds.include([found.min_x, found.min_y]);
             bounds.include([found.max_x, found.max_y]);
         }
-        let cells = |metres: f64, axis: usize| (metres - self.origin_m[axis]) / self.cell_m;
+        let cells =
+            |metres: f64, axis: usize| (metres - self.origin_m[axis]) / self.cell.to_array()[axis];
         let corner = |x: f64, y: f64| NodeIndex { i: x as i64, j: y as i64 };
         Ok([
             corner(cells(bounds.min_x, 0).floor(), cells(bounds.min_y, 1).floor()),
@@ -393,22 +389,42 @@ impl Grid<'_> {
     }
 }
 
+/// A spacing without the noise of its division by whoever wrote the file: a whole number of samples to a unit (1/1200 of a
+/// degree), or few decimal digits; as it is where neither is meant.
+fn nice(spacing: f64, reach: f64) -> f64 {
+    let is_noise = |nice: f64| (nice - spacing).abs() * reach <= 1e-4 * spacing;
+    let digits = rounded(spacing, 9);
+    let to_a_unit = 1.0 / (1.0 / spacing).round();
+    [to_a_unit, digits]
+        .into_iter()
+        .find(|&nice| nice.is_finite() && is_noise(nice))
+        .unwrap_or(spacing)
+}
+
+/// Where samples lie between two multiples of their spacing, so that adjoining files of one product have the same grid.
+fn phase(at: f64, spacing: f64, is_degrees: bool) -> f64 {
+    // Degrees are written with fewer digits than metres: a millionth of a cell hides that and moves nothing.
+    let unit = if is_degrees { spacing } else { 1.0 };
+    let phase = (at.rem_euclid(spacing) / unit * PHASE_STEPS).round() / PHASE_STEPS * unit;
+    if spacing - phase < unit / PHASE_STEPS { 0.0 } else { phase }
+}
+
 fn resample(
     dem: &Dem,
     mosaic: &Mosaic,
     frame: &Frame,
-    working: &Crs,
+    working: &Working,
     nodes: [NodeIndex; 2],
     spacing: Option<[f64; 2]>,
 ) -> Result<Method, DemError> {
-    let cell_m = frame.cell_m();
-    let samples_per_node =
-        spacing.map_or([1.0; 2], |spacing| spacing.map(|spacing_m| cell_m / spacing_m));
+    let cell = frame.cell();
+    let samples_per_node = spacing
+        .map_or([1.0; 2], |[columns_m, rows_m]| [cell.east_m / columns_m, cell.north_m / rows_m]);
     let most = samples_per_node[0].max(samples_per_node[1]);
     if most > MAX_SAMPLES_PER_NODE {
-        return Err(DemError::Downsampling { cell_m, samples: most, limit: MAX_SAMPLES_PER_NODE });
+        return Err(DemError::Downsampling { cell, samples: most, limit: MAX_SAMPLES_PER_NODE });
     }
-    let back = Operation::new(working, &mosaic.crs, Some(dem.wgs84_bounds));
+    let back = Operation::out_of_working(working, &mosaic.crs, Some(dem.wgs84_bounds));
     let least = samples_per_node[0].min(samples_per_node[1]);
     let positions = NodePositions::new(mosaic, back, frame, nodes, least)?;
     Ok(Method::Resampled(Box::new(positions), Kernel::new(samples_per_node)))
@@ -418,7 +434,10 @@ fn describe(dem: &Dem, layers: &[Layer]) -> String {
     let mut texts: Vec<String> = Vec::new();
     for (mosaic, layer) in dem.mosaics.iter().zip(layers) {
         let text = match &layer.method {
-            Method::Aligned(_) => "nodes are the DEM's samples".to_owned(),
+            Method::Aligned(Alignment { every: 1, .. }) => "nodes are the DEM's samples".to_owned(),
+            Method::Aligned(Alignment { every, .. }) => {
+                format!("nodes are every {every}th of the DEM's samples, along both axes")
+            }
             Method::Resampled(positions, kernel) => {
                 let how = if kernel.is_average() { "area average of" } else { "bilinear between" };
                 let step = positions.step();

@@ -48,10 +48,7 @@ impl NodePositions {
         [south_west, north_east]: [NodeIndex; 2],
         samples_per_node: f64,
     ) -> Result<Self, DemError> {
-        let middle =
-            [0, 1].map(|axis| (mosaic.extent.min[axis] + mosaic.extent.max[axis] - 1) as f64 / 2.0);
-        let turn =
-            mosaic.crs.turn.map(|turn| [turn, mosaic.crs_from_sample.crs_from_pixel(middle)[0]]);
+        let turn = mosaic.turn();
         let crs_from_sample = mosaic.crs_from_sample;
         let scale = samples_per_node.min(1.0);
         let mut positions = Self {

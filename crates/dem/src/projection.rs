@@ -3,8 +3,9 @@ use corniche_geom::{Bounds, ProjectError, Projection};
 use crate::DemError;
 use crate::crs::Crs;
 use crate::operation::Operation;
+use crate::working::Working;
 
-/// WGS84 ⇄ a plan's working CRS, by PROJ, longitude first.
+/// WGS84 ⇄ a plan's working metres: PROJ, longitude first, and the plan's factors around it.
 ///
 /// Goes to any thread; PROJ's own objects are made once per thread, on first use.
 #[derive(Debug, Clone)]
@@ -14,11 +15,11 @@ pub struct DemProjection {
 }
 
 impl DemProjection {
-    pub(crate) fn new(working: &Crs, area_deg: Bounds) -> Result<Self, DemError> {
+    pub(crate) fn new(working: &Working, area_deg: Bounds) -> Result<Self, DemError> {
         let wgs84 = Crs::wgs84()?;
         let projection = Self {
-            working_from_wgs84: Operation::new(&wgs84, working, Some(area_deg)),
-            wgs84_from_working: Operation::new(working, &wgs84, Some(area_deg)),
+            working_from_wgs84: Operation::into_working(&wgs84, working, Some(area_deg)),
+            wgs84_from_working: Operation::out_of_working(working, &wgs84, Some(area_deg)),
         };
         // Whether PROJ can do it shows when it is made.
         projection.working_from_wgs84.apply(&mut [area_deg.center()])?;

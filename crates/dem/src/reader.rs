@@ -6,9 +6,7 @@ use crate::plan::{Alignment, Method};
 use crate::{Dem, DemError, GridPlan, fill};
 
 /// Samples held in memory at once for one window; larger windows are read in parts. 32 MB.
-const MOST_SAMPLES: usize = 1 << 22;
-/// Side of the blocks in which original samples are handed out.
-const BLOCK_SAMPLES: i64 = 256;
+pub(crate) const MOST_SAMPLES: usize = 1 << 22;
 
 /// Heights of a window of nodes.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,11 +32,11 @@ pub struct SampleBlock {
 
 /// Reads windows of heights. One per thread: it keeps files open and buffers at hand.
 pub struct Reader<'a> {
-    dem: &'a Dem,
-    plan: &'a GridPlan,
-    files: OpenFiles,
-    samples: Vec<f64>,
-    scratch: Scratch,
+    pub(crate) dem: &'a Dem,
+    pub(crate) plan: &'a GridPlan,
+    pub(crate) files: OpenFiles,
+    pub(crate) samples: Vec<f64>,
+    pub(crate) scratch: Scratch,
 }
 
 impl<'a> Reader<'a> {
@@ -70,7 +68,7 @@ impl<'a> Reader<'a> {
         if reach > 0 && heights_m.iter().any(|height_m| height_m.is_nan()) {
             let wide = self.with_halo(window, &heights_m, reach)?;
             let columns = window.columns + 2 * reach;
-            for (at, height_m) in fill::fill(&wide, columns, reach) {
+            for (at, height_m) in fill::fill(&wide, columns, reach, self.plan.frame.cell()) {
                 let inner = (at / columns - reach) * window.columns + at % columns - reach;
                 heights_m[inner] = height_m;
                 is_filled.resize(heights_m.len(), false);
@@ -95,35 +93,10 @@ impl<'a> Reader<'a> {
         &mut self,
         mut take: impl FnMut(&SampleBlock),
     ) -> Result<(), DemError> {
-        let (dem, plan) = (self.dem, self.plan);
-        let mut block = SampleBlock::default();
-        for (layer, mosaic) in dem.mosaics.iter().enumerate() {
-            block.layer = layer;
-            let SampleRect { min, max } = mosaic.extent;
-            for row in (min[1]..max[1]).step_by(BLOCK_SAMPLES as usize) {
-                for column in (min[0]..max[0]).step_by(BLOCK_SAMPLES as usize) {
-                    let end = [column + BLOCK_SAMPLES, row + BLOCK_SAMPLES];
-                    let rect =
-                        mosaic.extent.intersection(&SampleRect { min: [column, row], max: end });
-                    if mosaic.files.iter().all(|file| file.rect.intersection(&rect).is_empty()) {
-                        continue;
-                    }
-                    self.files.read(&dem.sources, mosaic, &rect, &mut self.samples)?;
-                    block.positions_m.clear();
-                    block.heights_m.clear();
-                    for (k, height_m) in
-                        self.samples.iter().enumerate().filter(|(_, height_m)| !height_m.is_nan())
-                    {
-                        let (c, r) = (k % rect.columns(), k / rect.columns());
-                        let sample = [(column + c as i64) as f64, (row + r as i64) as f64];
-                        block.positions_m.push(mosaic.crs_from_sample.crs_from_pixel(sample));
-                        block.heights_m.push(*height_m as f32);
-                    }
-                    plan.layers[layer].working_from_crs.apply(&mut block.positions_m)?;
-                    if !block.heights_m.is_empty() {
-                        take(&block);
-                    }
-                }
+        for area in self.dem.sample_areas() {
+            let block = self.samples(&area)?;
+            if !block.heights_m.is_empty() {
+                take(&block);
             }
         }
         Ok(())
@@ -186,19 +159,17 @@ impl<'a> Reader<'a> {
     fn copy(
         &mut self,
         mosaic: &Mosaic,
-        Alignment { first, way }: Alignment,
+        alignment: Alignment,
         part: &NodeWindow,
         target: &Target,
         heights_m: &mut [f32],
     ) -> Result<(), DemError> {
         // Bands of rows, so that a window of any size needs bounded memory.
-        let band = (MOST_SAMPLES / part.columns).max(1);
+        let every = alignment.every as usize;
+        let band = (MOST_SAMPLES / (part.columns * every * every)).max(1);
         for top in (0..part.rows).step_by(band) {
             let rows = band.min(part.rows - top);
-            let sample = |column: usize, row: usize| {
-                let node = part.node(column, row);
-                [way[0] * (node.i - first.i), way[1] * (node.j - first.j)]
-            };
+            let sample = |column: usize, row: usize| alignment.sample(part.node(column, row));
             let (a, b) = (sample(0, top), sample(part.columns - 1, top + rows - 1));
             let rect = SampleRect {
                 min: [a[0].min(b[0]), a[1].min(b[1])],
@@ -207,12 +178,12 @@ impl<'a> Reader<'a> {
             self.files.read(&self.dem.sources, mosaic, &rect, &mut self.samples)?;
             let width = rect.columns();
             for row in 0..rows {
-                let [start, line] = sample(0, top + row);
+                let [_, line] = sample(0, top + row);
                 let from = (line - rect.min[1]) as usize * width;
                 let line = &self.samples[from..from + width];
-                debug_assert!(start == rect.min[0] || way[0] < 0);
                 for column in 0..part.columns {
-                    let found_m = line[if way[0] > 0 { column } else { width - 1 - column }];
+                    let at = column * every;
+                    let found_m = line[if alignment.way[0] > 0 { at } else { width - 1 - at }];
                     let height_m = &mut heights_m[target.at(column, top + row)];
                     if height_m.is_nan() {
                         *height_m = found_m as f32;
@@ -334,7 +305,7 @@ fn intersection(
 }
 
 /// The samples that heights at some positions can depend on; `None` when there are none.
-fn around(
+pub(crate) fn around(
     positions: impl Iterator<Item = [f64; 2]>,
     kernel: &Kernel,
     extent: &SampleRect,

@@ -44,7 +44,7 @@ pub(crate) struct Source {
     pub(crate) path: PathBuf,
     pub(crate) columns: i64,
     pub(crate) rows: i64,
-    /// Pixel to CRS, in metres when projected.
+    /// Pixel to CRS.
     pub(crate) crs_from_pixel: GeoTransform,
     pub(crate) crs: Crs,
     /// What its heights are measured from, as the file or `--dem-vertical-crs` says.
@@ -68,21 +68,10 @@ impl Source {
         let band = dataset.rasterband(1).map_err(broken)?;
         refuse_imagery(path, &dataset, &band)?;
         let (columns, rows) = dataset.raster_size();
-        let (mut crs_from_pixel, is_tied) = geo_transform(path, &dataset)?;
+        let (crs_from_pixel, is_tied) = geo_transform(path, &dataset)?;
         let reference =
             if is_tied { dataset.gcp_spatial_ref() } else { dataset.spatial_ref().ok() };
-        let (mut crs, vertical) = crs_of(path, reference, options)?;
-        if crs.is_projected() && !crs.is_metric() {
-            let unit_m = crs.unit_m;
-            // Where the text does not lend itself to a change of unit the plan goes by another CRS.
-            if let Some(metric) =
-                crs.in_metres().filter(|metric| same_places(&crs, metric, &crs_from_pixel))
-            {
-                crs = metric;
-                crs_from_pixel.coefficients =
-                    crs_from_pixel.coefficients.map(|value| value * unit_m);
-            }
-        }
+        let (crs, vertical) = crs_of(path, reference, options)?;
         if crs_from_pixel.pixel_from_crs([0.0, 0.0]).is_none()
             || !crs_from_pixel.coefficients.iter().all(|value| value.is_finite())
         {
@@ -330,17 +319,6 @@ fn crs_of(
         }
         (None, None, None) => Err(DemError::NoCrs { path: own() }),
     }
-}
-
-/// Whether `metric` puts the file's corner where `crs` in its own unit does, to a tenth of a millimetre.
-fn same_places(crs: &Crs, metric: &Crs, crs_from_pixel: &GeoTransform) -> bool {
-    let corners = [[0.0, 0.0], [1000.0, 1000.0]].map(|at| crs_from_pixel.crs_from_pixel(at));
-    let mut moved = corners;
-    let carried = crate::operation::Operation::new(crs, metric, None).apply(&mut moved).is_ok();
-    carried
-        && moved.iter().zip(corners).all(|(got, at)| {
-            (got[0] - at[0] * crs.unit_m).hypot(got[1] - at[1] * crs.unit_m) < 1e-4
-        })
 }
 
 #[cfg(test)]

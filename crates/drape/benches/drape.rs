@@ -36,7 +36,7 @@ fn full_tile() -> Surface {
     }
     let tin = Tin::new(vertices, &triangles).expect("a regular grid is a TIN");
     let corner = LatticePoint::new(1 << 33, 1 << 33);
-    Surface::new(&tin, Placement { corner, node_steps: NODE_STEPS, quantum_m: 1.0 / 64.0 })
+    Surface::new(&tin, Placement { corner, node_steps: [NODE_STEPS; 2], quantum_m: 1.0 / 64.0 })
 }
 
 /// Winding lines through the tile with segments of about `segment_steps`.

@@ -49,7 +49,11 @@ fn tile(json: &Value) -> Tile {
     let triangles: Vec<[u32; 3]> = rows(&json["tin"]["triangles"]).map(corners).collect();
     let vertices = rows(&json["tin"]["vertices"]).map(vertex).collect();
     let tin = Tin::new(vertices, &triangles).expect("a stored TIN");
-    let placement = Placement { corner: LatticePoint::new(0, 0), node_steps, quantum_m: QUANTUM_M };
+    let placement = Placement {
+        corner: LatticePoint::new(0, 0),
+        node_steps: [node_steps; 2],
+        quantum_m: QUANTUM_M,
+    };
     let steps = |metres: f64| (metres / cell_m * node_steps as f64).round() as i64;
     let sv_lines: Vec<Polyline> = json["roads_sv"]
         .as_array()

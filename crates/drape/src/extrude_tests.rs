@@ -22,8 +22,11 @@ pub(crate) fn ground(
             }
         }
     }
-    let placement =
-        Placement { corner: LatticePoint::new(0, 16 * STEPS), node_steps: STEPS, quantum_m: 0.5 };
+    let placement = Placement {
+        corner: LatticePoint::new(0, 16 * STEPS),
+        node_steps: [STEPS; 2],
+        quantum_m: 0.5,
+    };
     Surface::new(&Tin::new(vertices, &triangles).unwrap(), placement)
 }
 

@@ -77,7 +77,7 @@ impl Case {
         let tin = terrain.make(&mut random)?;
         let steps = random.one_of(&[1, 2, 3, 4, 6, 12, 60, 1 << 9]);
         let corner = LatticePoint::new(random.around(1000), random.around(1000));
-        let placement = Placement { corner, node_steps: steps, quantum_m: QUANTUM_M };
+        let placement = Placement { corner, node_steps: [steps; 2], quantum_m: QUANTUM_M };
         let surface = Surface::new(&tin, placement);
         if surface.triangles().is_empty() {
             return None;
@@ -175,7 +175,11 @@ impl Case {
         let (wider, far) = (1_i64 << 24, 1_i64 << 55);
         let widen = |p: LatticePoint| LatticePoint::new(far + p.u * wider, p.v * wider - far);
         let corner = widen(placement.corner);
-        let wide = Placement { corner, node_steps: placement.node_steps * wider, ..*placement };
+        let wide = Placement {
+            corner,
+            node_steps: placement.node_steps.map(|steps| steps * wider),
+            ..*placement
+        };
         let points = line.points().iter().copied().map(widen).collect();
         let wide = drape(&Polyline::new(points).unwrap(), &Surface::new(tin, wide));
         assert_eq!(wide.lines, lines.iter().map(|part| moved(part, widen)).collect::<Vec<_>>());

@@ -50,7 +50,7 @@ impl Level {
         let spec = TinSpec { max_error_m: 1.0, quantum_m: 1.0 / 32.0 };
         let tin = triangulate(&heights, spec).unwrap();
         let corner = LatticePoint::new(x * SIDE, -y * SIDE);
-        let placement = Placement { corner, node_steps: STEPS, quantum_m: spec.quantum_m };
+        let placement = Placement { corner, node_steps: [STEPS; 2], quantum_m: spec.quantum_m };
         let min = LatticePoint::new(corner.u, corner.v - SIDE);
         let bounds = LatticeBounds { min, max: LatticePoint::new(corner.u + SIDE, corner.v) };
         let here = |cell: i64| cell.div_euclid(TILE_CELLS / CELLS) + 1;

@@ -25,7 +25,7 @@ fn surface() -> Surface {
     let tin = Tin::new(vertices, &triangles).unwrap();
     Surface::new(
         &tin,
-        Placement { corner: LatticePoint::new(0, 0), node_steps: 10, quantum_m: 1.0 },
+        Placement { corner: LatticePoint::new(0, 0), node_steps: [10; 2], quantum_m: 1.0 },
     )
 }
 
@@ -193,7 +193,7 @@ fn islands_that_touch_at_a_corner_are_connected_there() {
         nodes.iter().map(|&(row, column)| TinVertex { row, column, height_q: 3 }).collect();
     let tin = Tin::new(vertices, &[[0, 2, 1], [1, 2, 3], [3, 5, 4], [4, 5, 6]]).unwrap();
     let corner = LatticePoint::new(0, 0);
-    let surface = Surface::new(&tin, Placement { corner, node_steps: 10, quantum_m: 1.0 });
+    let surface = Surface::new(&tin, Placement { corner, node_steps: [10; 2], quantum_m: 1.0 });
     let across = ["s2,-2 1×2 @3 4×5 s18,-18"];
     assert_drapes_on(&surface, &[(2, -2), (18, -18)], &across, 0.0);
     assert_drapes_on(&surface, &[(0, -10), (20, -10)], &["s0,-10 @3 s20,-10"], 0.0);

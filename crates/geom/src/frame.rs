@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::{Bounds, LatticeBounds, LatticePoint, TileId};
+use crate::{Bounds, Cell, LatticeBounds, LatticePoint, TileId};
 
 /// Cells along one side of a tile.
 pub const TILE_CELLS: i64 = 256;
@@ -10,8 +10,6 @@ pub const TILE_NODES: usize = 257;
 /// them every lattice coordinate well within 62 bits.
 pub const MAX_LEVEL: u8 = 22;
 
-/// A lattice step is at most this long.
-const LATTICE_STEP_M: f64 = 0.001;
 /// Node indices stay below this, so that they and their differences fit what is stored of them.
 const MAX_INDEX: i64 = 1 << 32;
 /// Lattice coordinates stay below this, some 500 million km: an f64 then still tells an eighth of a step, which the
@@ -66,11 +64,19 @@ impl NodeWindow {
 /// Why numbers do not make a [`Frame`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FrameError {
-    /// The cell is not a usable length.
-    #[error("a cell of {cell_m} m is not usable; it must be between 0.001 m and 1000 km")]
+    /// The cell is not of usable lengths.
+    #[error("a cell of {cell} is not usable; its sides must be between 0.001 m and 1000 km")]
     Cell {
         /// The cell asked for.
-        cell_m: f64,
+        cell: Cell,
+    },
+    /// The cell's east side is not a whole number of lattice steps.
+    #[error("a cell of {cell} does not fit the lattice: its east side is {steps} steps")]
+    EastSide {
+        /// The cell given.
+        cell: Cell,
+        /// How many lattice steps its east side is long.
+        steps: f64,
     },
     /// The origin is not finite.
     #[error("the grid origin {origin_m:?} is not a position")]
@@ -79,16 +85,14 @@ pub enum FrameError {
         origin_m: [f64; 2],
     },
     /// The extent needs more levels than a package can have, or lies too far out.
-    #[error(
-        "{columns} × {rows} cells of {cell_m} m are too many for one package; use a larger --cell"
-    )]
+    #[error("{columns} × {rows} cells of {cell} are too many for one package; use a larger --cell")]
     Extent {
         /// Cells from west to east.
         columns: i64,
         /// Cells from south to north.
         rows: i64,
-        /// Length of a cell.
-        cell_m: f64,
+        /// The cell.
+        cell: Cell,
     },
     /// The corner of the root is not on a whole tile.
     #[error("the root tile's corner ({}, {}) is not a multiple of {TILE_CELLS} cells", corner.i, corner.j)]
@@ -98,16 +102,19 @@ pub enum FrameError {
     },
 }
 
-/// The global grid of a package, its tiles and its lattice, in the working CRS.
+/// The global grid of a package, its tiles and its lattice, in working metres: the CRS's coordinates, each times a
+/// factor that the package records.
 ///
 /// ```text
-///   root corner (node i0, j0)            x = origin_x + cell · i     i grows east
-///     o──────────┬──────────► x          y = origin_y + cell · j     j grows north
-///     │ z/0/0    │ z/1/0                 u = i · 2^bits, v = j · 2^bits
+///   root corner (node i0, j0)            x = origin_x + cell_east · i     i grows east
+///     o──────────┬──────────► x          y = origin_y + cell_north · j    j grows north
+///     │ z/0/0    │ z/1/0                 u = i · steps_east, v = j · 2^bits
 ///     ├──────────┼──────────
 ///     │ z/0/1    │ z/1/1                 a tile: 256 cells of its level
-///     ▼ tile row y
+///     ▼ tile row y                       a lattice step: cell_north / 2^bits = cell_east / steps_east
 /// ```
+///
+/// Cells are rectangles, the lattice is square.
 ///
 /// Positions come from the global integer indices, by the two formulas above and in no other way:
 /// `tile_min + k · cell` differs in its last bit between neighbours. The origin is the grid's phase (within
@@ -116,25 +123,26 @@ pub enum FrameError {
 #[serde(try_from = "FrameRecord", into = "FrameRecord")]
 pub struct Frame {
     origin_m: [f64; 2],
-    cell_m: f64,
+    cell: Cell,
     root_corner: NodeIndex,
     max_level: u8,
-    lattice_bits: u8,
+    /// Lattice steps to a cell, east and north.
+    steps: [i64; 2],
 }
 
 /// [`Frame`] as it is written down.
 #[derive(Serialize, Deserialize)]
 struct FrameRecord {
     origin_m: [f64; 2],
-    cell_m: f64,
+    cell_m: Cell,
     root_corner: NodeIndex,
     max_level: u8,
 }
 
 impl From<Frame> for FrameRecord {
     fn from(frame: Frame) -> Self {
-        let Frame { origin_m, cell_m, root_corner, max_level, .. } = frame;
-        Self { origin_m, cell_m, root_corner, max_level }
+        let Frame { origin_m, cell, root_corner, max_level, .. } = frame;
+        Self { origin_m, cell_m: cell, root_corner, max_level }
     }
 }
 
@@ -150,15 +158,17 @@ impl Frame {
     /// A frame from its parts, as a package records them.
     ///
     /// # Errors
-    /// When the parts are out of range or the corner is not on a whole tile.
+    /// When the parts are out of range, the corner is not on a whole tile, or the cell's east side is no whole number of
+    /// lattice steps ([`Cell::fitted`] makes it one).
     pub fn new(
         origin_m: [f64; 2],
-        cell_m: f64,
+        cell: impl Into<Cell>,
         root_corner: NodeIndex,
         max_level: u8,
     ) -> Result<Self, FrameError> {
-        if !(0.001..=1e6).contains(&cell_m) {
-            return Err(FrameError::Cell { cell_m });
+        let cell = cell.into();
+        if !cell.is_usable() {
+            return Err(FrameError::Cell { cell });
         }
         if !origin_m.iter().all(|metres| metres.is_finite()) {
             return Err(FrameError::Origin { origin_m });
@@ -167,19 +177,20 @@ impl Frame {
         let reach =
             root_corner.i.saturating_abs().max(root_corner.j.saturating_abs()).saturating_add(span);
         if max_level > MAX_LEVEL || reach > MAX_INDEX {
-            return Err(FrameError::Extent { columns: span, rows: span, cell_m });
+            return Err(FrameError::Extent { columns: span, rows: span, cell });
         }
         if root_corner.i % TILE_CELLS != 0 || root_corner.j % TILE_CELLS != 0 {
             return Err(FrameError::Corner { corner: root_corner });
         }
-        let mut lattice_bits = 0;
-        while cell_m / f64::from(1_u32 << lattice_bits) > LATTICE_STEP_M {
-            lattice_bits += 1;
+        let steps_east = cell.east_m / cell.lattice_step_m();
+        if cell.fitted().east_m.to_bits() != cell.east_m.to_bits() {
+            return Err(FrameError::EastSide { cell, steps: steps_east });
         }
-        if reach > MAX_LATTICE_STEPS >> lattice_bits {
-            return Err(FrameError::Extent { columns: span, rows: span, cell_m });
+        let steps = [steps_east.round() as i64, 1 << cell.lattice_bits()];
+        if steps.iter().any(|&steps| reach > MAX_LATTICE_STEPS / steps) {
+            return Err(FrameError::Extent { columns: span, rows: span, cell });
         }
-        Ok(Self { origin_m, cell_m, root_corner, max_level, lattice_bits })
+        Ok(Self { origin_m, cell, root_corner, max_level, steps })
     }
 
     /// The smallest frame whose root covers all nodes from `south_west` to `north_east`, both included.
@@ -188,10 +199,11 @@ impl Frame {
     /// When that takes more levels than a package can have.
     pub fn covering(
         origin_m: [f64; 2],
-        cell_m: f64,
+        cell: impl Into<Cell>,
         south_west: NodeIndex,
         north_east: NodeIndex,
     ) -> Result<Self, FrameError> {
+        let cell = cell.into();
         let down = |index: i64| index.div_euclid(TILE_CELLS);
         // A border node belongs to both tiles; one tile is enough for an extent that ends on a border.
         let up = |index: i64| {
@@ -205,12 +217,12 @@ impl Frame {
             max_level += 1;
             if max_level > MAX_LEVEL {
                 let (columns, rows) = (north_east.i - south_west.i, north_east.j - south_west.j);
-                return Err(FrameError::Extent { columns, rows, cell_m });
+                return Err(FrameError::Extent { columns, rows, cell });
             }
         }
         Self::new(
             origin_m,
-            cell_m,
+            cell,
             NodeIndex { i: west * TILE_CELLS, j: north * TILE_CELLS },
             max_level,
         )
@@ -222,10 +234,10 @@ impl Frame {
         self.origin_m
     }
 
-    /// Spacing of the finest level's nodes.
+    /// The cell of the finest level: the spacing of its nodes.
     #[must_use]
-    pub fn cell_m(&self) -> f64 {
-        self.cell_m
+    pub fn cell(&self) -> Cell {
+        self.cell
     }
 
     /// The finest level.
@@ -240,16 +252,19 @@ impl Frame {
         self.root_corner
     }
 
-    /// A cell is 2^bits lattice steps.
+    /// Lattice steps from one node of a level to the next, east and north.
+    ///
+    /// # Panics
+    /// When `level` is beyond the finest one.
     #[must_use]
-    pub fn lattice_bits(&self) -> u8 {
-        self.lattice_bits
+    pub fn node_steps(&self, level: u8) -> [i64; 2] {
+        self.steps.map(|steps| steps * self.stride(level))
     }
 
     /// Length of a lattice step: at most a millimetre.
     #[must_use]
     pub fn lattice_step_m(&self) -> f64 {
-        self.cell_m / (1_u64 << self.lattice_bits) as f64
+        self.cell.lattice_step_m()
     }
 
     /// Spacing of a level's nodes in finest cells.
@@ -262,31 +277,31 @@ impl Frame {
         1 << (self.max_level - level)
     }
 
-    /// Spacing of a level's nodes.
+    /// The cell of a level.
     ///
     /// # Panics
     /// When `level` is beyond the finest one.
     #[must_use]
-    pub fn level_cell_m(&self, level: u8) -> f64 {
-        self.cell_m * self.stride(level) as f64
+    pub fn level_cell(&self, level: u8) -> Cell {
+        self.cell.times(self.stride(level) as f64)
     }
 
     /// x of every node with index `i`.
     #[must_use]
     pub fn x_m(&self, i: i64) -> f64 {
-        self.origin_m[0] + self.cell_m * i as f64
+        self.origin_m[0] + self.cell.east_m * i as f64
     }
 
     /// y of every node with index `j`.
     #[must_use]
     pub fn y_m(&self, j: i64) -> f64 {
-        self.origin_m[1] + self.cell_m * j as f64
+        self.origin_m[1] + self.cell.north_m * j as f64
     }
 
     /// The lattice point under a node.
     #[must_use]
     pub fn lattice_of_node(&self, node: NodeIndex) -> LatticePoint {
-        LatticePoint::new(node.i << self.lattice_bits, node.j << self.lattice_bits)
+        LatticePoint::new(node.i * self.steps[0], node.j * self.steps[1])
     }
 
     /// Position of a lattice point; for a node's point the same bits as [`Frame::x_m`], [`Frame::y_m`].
@@ -298,20 +313,20 @@ impl Frame {
     /// Position of a point between lattice points, given in lattice steps.
     #[must_use]
     pub fn position_of_fraction_m(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        let steps_per_cell = (1_u64 << self.lattice_bits) as f64;
+        let [east, north] = self.steps.map(|steps| steps as f64);
         [
-            self.origin_m[0] + self.cell_m * (u / steps_per_cell),
-            self.origin_m[1] + self.cell_m * (v / steps_per_cell),
+            self.origin_m[0] + self.cell.east_m * (u / east),
+            self.origin_m[1] + self.cell.north_m * (v / north),
         ]
     }
 
     /// Where a position lies, in lattice steps: the other way round.
     #[must_use]
     pub fn fraction_of_position(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let steps_per_cell = (1_u64 << self.lattice_bits) as f64;
+        let [east, north] = self.steps.map(|steps| steps as f64);
         [
-            (x - self.origin_m[0]) / self.cell_m * steps_per_cell,
-            (y - self.origin_m[1]) / self.cell_m * steps_per_cell,
+            (x - self.origin_m[0]) / self.cell.east_m * east,
+            (y - self.origin_m[1]) / self.cell.north_m * north,
         ]
     }
 
@@ -379,12 +394,13 @@ impl Frame {
     #[must_use]
     pub fn tile_column_row(&self, level: u8, point: LatticePoint) -> [i64; 2] {
         let corner = self.lattice_of_node(self.root_corner);
-        let side = (TILE_CELLS * self.stride(level)) << self.lattice_bits;
-        [(point.u - corner.u).div_euclid(side), (corner.v - point.v).div_euclid(side)]
+        let [east, north] = self.node_steps(level).map(|steps| TILE_CELLS * steps);
+        [(point.u - corner.u).div_euclid(east), (corner.v - point.v).div_euclid(north)]
     }
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
 mod tests {
     use super::*;
     use proptest::prelude::*;
@@ -430,6 +446,21 @@ mod tests {
     }
 
     #[test]
+    fn a_cell_is_fitted_to_whole_steps_and_moves_by_less_than_a_millimetre() {
+        for sides in [[20.0, 30.0], [63.123_456, 92.654_321], [0.7, 1.0], [1000.1, 0.3]] {
+            let cell = Cell::from(sides).fitted();
+            let frame = Frame::new([0.0; 2], cell, NodeIndex { i: 0, j: 0 }, 1).unwrap();
+            assert!((cell.east_m - sides[0]).abs() <= 0.000_5 && cell.north_m == sides[1]);
+            let [east, north] = frame.node_steps(1);
+            let step_m = frame.lattice_step_m();
+            assert_eq!(east as f64 * step_m, cell.east_m);
+            assert_eq!(north as f64 * step_m, cell.north_m);
+        }
+        let off = Frame::new([0.0; 2], [20.000_1, 30.0], NodeIndex { i: 0, j: 0 }, 1);
+        assert!(matches!(off, Err(FrameError::EastSide { .. })), "{off:?}");
+    }
+
+    #[test]
     fn refuses_what_is_out_of_range() {
         let corner = NodeIndex { i: 0, j: 0 };
         assert!(Frame::new([0.0; 2], f64::NAN, corner, 2).is_err());
@@ -456,9 +487,11 @@ mod tests {
         /// A node has one position, whichever way it is reached.
         #[test]
         fn node_and_lattice_positions_have_the_same_bits(
-            i in -2_000_000_i64..2_000_000, j in -2_000_000_i64..2_000_000, cell_m in 0.1..1000.0_f64,
+            i in -2_000_000_i64..2_000_000, j in -2_000_000_i64..2_000_000, east_m in 0.1..1000.0_f64,
+            north_m in 0.1..1000.0_f64,
         ) {
-            let frame = Frame::new([0.07, 0.03], cell_m, NodeIndex { i: 0, j: 0 }, 4).unwrap();
+            let cell = Cell { east_m, north_m }.fitted();
+            let frame = Frame::new([0.07, 0.03], cell, NodeIndex { i: 0, j: 0 }, 4).unwrap();
             let at = frame.position_m(frame.lattice_of_node(NodeIndex { i, j }));
             prop_assert_eq!([at[0].to_bits(), at[1].to_bits()], [frame.x_m(i).to_bits(), frame.y_m(j).to_bits()]);
         }

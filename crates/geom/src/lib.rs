@@ -8,6 +8,7 @@
 
 mod barycentric;
 mod bounds;
+mod cell;
 mod coordinate_table;
 mod frame;
 mod geo_transform;
@@ -20,6 +21,7 @@ mod tile_id;
 
 pub use barycentric::barycentric;
 pub use bounds::{Bounds, LatticeBounds};
+pub use cell::Cell;
 pub use coordinate_table::{CoordinateTable, CoordinateTableError};
 pub use frame::{
     Frame, FrameError, MAX_LATTICE_STEPS, MAX_LEVEL, NodeIndex, NodeWindow, TILE_CELLS, TILE_NODES,

@@ -6,6 +6,7 @@ mod build;
 mod defect;
 mod error;
 mod observer;
+mod sample_error;
 mod settings;
 mod storage;
 mod verify;

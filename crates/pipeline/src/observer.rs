@@ -11,6 +11,8 @@ pub enum Stage {
     Mesh,
     /// Measure every tile against the full resolution. Counted in finest tiles.
     Errors,
+    /// Measure every level at the DEM's own samples, where they are not the nodes. Counted in blocks.
+    Samples,
     /// Read roads from the extract. Counted in roads; the total is unknown.
     Roads,
     /// Clip, drape and encode. Counted in tiles.
@@ -30,6 +32,7 @@ impl Stage {
             Self::Heights => "reading heights",
             Self::Mesh => "triangulating",
             Self::Errors => "measuring errors",
+            Self::Samples => "measuring at samples",
             Self::Roads => "reading roads",
             Self::Tiles => "draping and encoding",
             Self::Package => "writing package",

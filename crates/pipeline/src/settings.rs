@@ -1,3 +1,4 @@
+use corniche_geom::Cell;
 use std::path::PathBuf;
 
 use corniche_roads::{ClassFilter, FrcTable};
@@ -50,7 +51,11 @@ pub struct TerrainSettings {
     /// Value that means "no data" beside what the files say.
     pub nodata: Option<f64>,
     /// Spacing of the finest level; `None` takes the DEM's.
-    pub cell_m: Option<f64>,
+    pub cell: Option<Cell>,
+    /// Take every n-th sample of the DEM along both axes as node.
+    pub cell_every: Option<u32>,
+    /// Latitude at which lengths in the DEM's own CRS are true; `None` takes the data's middle, to half a degree.
+    pub scale_latitude_deg: Option<f64>,
     /// Largest vertical error of the finest level; `None` takes a quarter of the cell.
     pub max_error_m: Option<f64>,
     /// How far, in cells, data may lie in each of eight directions for a void node to be filled.

@@ -186,7 +186,7 @@ impl Parts {
         let frame = self.frame();
         let placement = Placement {
             corner: frame.lattice_of_node(frame.tile_corner(id)),
-            node_steps: frame.stride(id.z()) << frame.lattice_bits(),
+            node_steps: frame.node_steps(id.z()),
             quantum_m: self.manifest.vertical.quantum_m,
         };
         Surface::new(&self.terrain(id).expect("ground").tin, placement)

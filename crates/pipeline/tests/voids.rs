@@ -325,10 +325,10 @@ fn a_square_of_degrees_ends_where_its_samples_end() {
     // The whole square is ground, but for cells that its edge cuts: one cell around it.
     let finest = built.grounds().filter(|(id, _)| id.z() == frame.max_level());
     let doubled: i64 = finest.map(|(_, ground)| doubled_area(&ground.tin)).sum();
-    let ground_m2 = doubled as f64 / 2.0 * frame.cell_m().powi(2);
+    let ground_m2 = doubled as f64 / 2.0 * frame.cell().east_m * frame.cell().north_m;
     let side_m = (SAMPLES - 1) as f64 * STEP_DEG * 111_400.0;
     let square_m2 = side_m * side_m * f64::to_radians(60.05).cos();
-    let rim_m2 = 4.0 * side_m * 2.0 * frame.cell_m();
+    let rim_m2 = 4.0 * side_m * 2.0 * frame.cell().shorter_m();
     assert!(
         (square_m2 - rim_m2..square_m2 * 1.01).contains(&ground_m2),
         "{ground_m2} of {square_m2} m²"
@@ -449,10 +449,10 @@ fn check_roads_on_ground(built: &Built, truth: &Raster) -> usize {
         let surface = Surface::new(&ground.tin, placement);
         let (corner, stride) = (frame.tile_corner(id), frame.stride(id.z()));
         let on_ground = |at: [f64; 2]| {
-            let steps = placement.node_steps as f64;
+            let [east, north] = placement.node_steps.map(|steps| steps as f64);
             let place = [
-                (at[0] - placement.corner.u as f64) / steps,
-                (placement.corner.v as f64 - at[1]) / steps,
+                (at[0] - placement.corner.u as f64) / east,
+                (placement.corner.v as f64 - at[1]) / north,
             ];
             // On an edge either cell will do.
             let cells = |at: f64| [(at - 1e-6).floor() as i64, (at + 1e-6).floor() as i64];

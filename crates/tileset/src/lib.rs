@@ -17,7 +17,7 @@ mod payload;
 
 pub use manifest::{
     Counts, Distribution, GrowthRow, InputRecord, LevelRecord, Manifest, RoadLoss, SampleCounts,
-    SettingsRecord, VerticalRecord,
+    SampleErrorRecord, ScaleRecord, SettingsRecord, VerticalRecord,
 };
 pub use package::{
     ByteSource, FORMAT_VERSION, MemorySource, OpenError, Package, ReadError, SourceError,

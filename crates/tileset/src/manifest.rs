@@ -1,6 +1,6 @@
 mod check;
 
-use corniche_geom::{Bounds, CoordinateTable, Frame};
+use corniche_geom::{Bounds, Cell, CoordinateTable, Frame};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use check::{MAX_MEASURE_M, is_height_quantum};
@@ -16,20 +16,27 @@ pub struct Manifest {
     pub generator: String,
     /// Says that z/x/y is a local quadtree in the working CRS, not the web's.
     pub tiling: String,
-    /// Working CRS: "EPSG:…" where it has a code, else its name.
+    /// CRS: "EPSG:…" where it has a code, else its name. Its coordinates times `metres_per_unit` are working metres.
     pub crs: String,
-    /// Working CRS as WKT2.
+    /// CRS as WKT2.
     pub crs_wkt: String,
-    /// Length in the working CRS over true length, at the centre.
+    /// Working metres to a unit of the CRS's coordinates, east and north; negative where an axis counts westwards or
+    /// southwards.
+    pub metres_per_unit: [f64; 2],
+    /// Working metres to a true metre, at the centre: the geometric mean along both axes.
     pub point_scale: f64,
+    /// The same along each axis, at the centre and over the data's rim.
+    pub scale: ScaleRecord,
     /// The grid.
     pub frame: Frame,
-    /// Rectangle of the DEM's nodes in the working CRS.
+    /// Rectangle of the DEM's nodes, working metres.
     pub data_bounds: Bounds,
     /// The same in WGS84 degrees.
     pub wgs84_bounds: Bounds,
     /// How nodes relate to the DEM's samples, in words: "nodes are the DEM's samples", "bilinear from …".
     pub resampling: String,
+    /// Whether nodes and the DEM's samples are the same points: the error bounds then hold at every sample.
+    pub nodes_are_samples: bool,
     /// Heights.
     pub vertical: VerticalRecord,
     /// WGS84 ⇄ working CRS without PROJ.
@@ -48,6 +55,17 @@ pub struct Manifest {
     pub counts: Counts,
     /// What clipping costs, per level and class.
     pub growth: Vec<GrowthRow>,
+}
+
+/// Working metres to a true metre, along x and along y.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ScaleRecord {
+    /// In the middle of the data.
+    pub center: [f64; 2],
+    /// The smallest over corners, middles of sides and centre of every file.
+    pub least: [f64; 2],
+    /// The largest.
+    pub largest: [f64; 2],
 }
 
 /// Heights: step, unit, datum.
@@ -82,14 +100,16 @@ impl VerticalRecord {
 pub struct LevelRecord {
     /// Level, 0 = root.
     pub level: u8,
-    /// Spacing of its nodes.
-    pub cell_m: f64,
+    /// Spacing of its nodes, east and north.
+    pub cell_m: Cell,
     /// Meshing tolerance against the level's own raster.
     pub max_error_m: f64,
     /// Largest stored geometric error of its tiles.
     pub geometric_error_m: f64,
     /// Stored geometric errors of its tiles; `None` on a level without tiles.
     pub errors_m: Option<Distribution>,
+    /// How far its TINs are from the DEM's own samples.
+    pub sample_error: SampleErrorRecord,
     /// Stored error over the largest true one of the tile and its children, over the tiles where that is at least
     /// [`VerticalRecord::least_measured_error_m`]; `None` where there is no such tile.
     pub tightness: Option<Distribution>,
@@ -109,6 +129,22 @@ pub struct LevelRecord {
     pub terrain_bytes: u64,
     /// Full-resolution nodes with data that the level's TINs do not cover, next to voids and data edges.
     pub uncovered_nodes: u64,
+}
+
+/// How far a level's TINs are from the DEM's own samples: those that nodes are made from, each once, after nodata, units
+/// and shift; samples that lie on a border belong to the tile east or south of it.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct SampleErrorRecord {
+    /// Samples at which there is a TIN.
+    pub on_tin: u64,
+    /// Samples at which there is none: next to voids and the data's edge, or on tiles without ground.
+    pub off_tin: u64,
+    /// Largest vertical distance.
+    pub max_m: f64,
+    /// Root mean square.
+    pub rms_m: f64,
+    /// Distance that 99 % do not exceed, up to one height quantum too large.
+    pub p99_m: f64,
 }
 
 /// How values lie: nearest-rank quantiles.
@@ -163,7 +199,11 @@ pub struct SettingsRecord {
     /// `--crs`, if given.
     pub crs: Option<String>,
     /// `--cell`, if given.
-    pub cell_m: Option<f64>,
+    pub cell_m: Option<Cell>,
+    /// `--cell-every`, if given.
+    pub cell_every: Option<u32>,
+    /// `--scale-latitude`, if given.
+    pub scale_latitude_deg: Option<f64>,
     /// Name of the FRC table.
     pub frc_table: String,
     /// SHA-256 of the FRC table's text.

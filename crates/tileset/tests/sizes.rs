@@ -61,7 +61,7 @@ fn real_ground_and_roads_come_out_small_and_whole() {
         let frame = Frame::new([0.0; 2], CELL_M, NodeIndex { i: 0, j: 256 }, 0).unwrap();
         let id = TileId::ROOT;
         let corner = frame.lattice_of_node(frame.tile_corner(id));
-        let node_steps = frame.stride(0) << frame.lattice_bits();
+        let node_steps = frame.node_steps(0);
         let surface = Surface::new(&tin, Placement { corner, node_steps, quantum_m });
         let bounds = frame.tile_lattice_bounds(id);
         let mut roads = Vec::new();
@@ -77,7 +77,7 @@ fn real_ground_and_roads_come_out_small_and_whole() {
         let crossings = roads.iter().flat_map(|road| &road.line.vertices);
         let crossings =
             crossings.filter(|vertex| matches!(vertex, DrapedVertex::Crossing { .. })).count();
-        let normals = normals(&grid, &tin, CELL_M);
+        let normals = normals(&grid, &tin, CELL_M.into());
         let (vertices, triangles) = (tin.vertices().len() as f64, tin.triangles().len() as f64);
         let terrain = Terrain {
             tin,

@@ -56,7 +56,7 @@ fn measuring(c: &mut Criterion) {
         let placement =
             WindowPlacement { column: 128 * (stride - 1), row: 128 * (stride - 1), stride };
         group.bench_function(BenchmarkId::new("stride", stride), |b| {
-            b.iter(|| measure(black_box(&buckets), &window, placement, |_, _| ()));
+            b.iter(|| measure(black_box(&buckets), &window, placement, |_, _, _| ()));
         });
     }
     group.bench_function("buckets", |b| b.iter(|| TriangleBuckets::new(black_box(&tin), 0.125)));

@@ -157,8 +157,8 @@ impl TriangleBuckets {
 /// Measures a tile's TIN at every node with a height of `window`, a rectangle of the finest raster.
 ///
 /// Heights are compared in f64, at the quantized TIN. A node is counted once, also where triangles meet;
-/// `on_uncovered` is told column and row (in the window, in that order of rows) of each node with a height
-/// where there is no triangle.
+/// `each` is told column and row (in the window, row by row) of each node with a height, and how far the TIN is from it,
+/// metres: `None` where there is no triangle.
 ///
 /// # Panics
 /// When `placement.stride` is not above 0, or puts the tile's far corner or the window beyond 2^30 finest
@@ -167,7 +167,7 @@ pub fn measure(
     buckets: &TriangleBuckets,
     window: &HeightGrid,
     placement: WindowPlacement,
-    mut on_uncovered: impl FnMut(usize, usize),
+    mut each: impl FnMut(usize, usize, Option<f64>),
 ) -> Deviation {
     let WindowPlacement { column: west, row: north, stride } = placement;
     let (columns, rows) = (window.columns() as i64, window.rows() as i64);
@@ -180,17 +180,16 @@ pub fn measure(
         return Deviation::default();
     }
     let heights_m = window.raw();
-    let mut covered = vec![false; heights_m.len()];
-    let mut max_abs_m = 0.0_f64;
+    // NaN where no triangle was met. Where several meet, the largest distance: their planes differ by rounding.
+    let mut distances_m = vec![f64::NAN; heights_m.len()];
     let low = [west.div_euclid(stride), north.div_euclid(stride)];
     let high = [(west + columns - 1).div_euclid(stride), (north + rows - 1).div_euclid(stride)];
     buckets.for_each_near(low, high, |triangle| {
         let corners = triangle.corners.map(|corner| corner.map(|node| i64::from(node) * stride));
-        // All times this, so that a finest tile's error is exact before the one division.
+        // All times this: exact on finest tiles.
         let scale = triangle.double_area * stride as f64;
         let [at_m, east, south] = triangle.plane;
         let [from_column, from_row] = corners[0];
-        let mut largest = 0.0_f64;
         for_each_row(corners, north..=north + rows - 1, |row, first, last| {
             let (first, last) = (first.max(west), last.min(west + columns - 1));
             if last < first {
@@ -201,50 +200,30 @@ pub fn measure(
             let in_row = at_m * scale
                 + south * (row - from_row) as f64
                 + east * (first - from_column) as f64;
-            for covered in &mut covered[range.clone()] {
-                *covered = true;
+            let nodes = heights_m[range.clone()].iter().zip(&mut distances_m[range]);
+            // Division keeps the order, so a finest tile's largest error is exact but for this one rounding.
+            for (step, (&height_m, distance_m)) in nodes.enumerate() {
+                let scaled = f64::from(height_m) * scale - (in_row + east * step as f64);
+                *distance_m = distance_m.max(scaled.abs() / scale.abs());
             }
-            largest = largest.max(largest_distance(&heights_m[range], scale, in_row, east));
         });
-        max_abs_m = max_abs_m.max(largest / scale.abs());
     });
-    let mut deviation = Deviation { max_abs_m, ..Deviation::default() };
-    for (index, (covered, height_m)) in covered.iter().zip(heights_m).enumerate() {
+    let mut deviation = Deviation::default();
+    for (index, (&distance_m, height_m)) in distances_m.iter().zip(heights_m).enumerate() {
         if height_m.is_nan() {
             continue;
         }
-        if *covered {
-            deviation.covered_nodes += 1;
-        } else {
-            deviation.uncovered_nodes += 1;
-            on_uncovered(index % window.columns(), index / window.columns());
+        let distance_m = (!distance_m.is_nan()).then_some(distance_m);
+        match distance_m {
+            Some(distance_m) => {
+                deviation.covered_nodes += 1;
+                deviation.max_abs_m = deviation.max_abs_m.max(distance_m);
+            }
+            None => deviation.uncovered_nodes += 1,
         }
+        each(index % window.columns(), index / window.columns(), distance_m);
     }
     deviation
-}
-
-/// Largest distance of heights, times `scale`, from a line that starts at `from` and rises `rise` a node.
-/// Gaps do not count.
-#[inline]
-fn largest_distance(heights_m: &[f32], scale: f64, from: f64, rise: f64) -> f64 {
-    // Four maxima side by side, so that the compiler may use vector registers. Comparing with NaN is false.
-    let mut largest = [0.0_f64; 4];
-    let mut position = 0.0;
-    let mut chunks = heights_m.chunks_exact(4);
-    for chunk in &mut chunks {
-        for lane in 0..4 {
-            let distance =
-                (f64::from(chunk[lane]) * scale - (from + rise * (position + lane as f64))).abs();
-            largest[lane] = if distance > largest[lane] { distance } else { largest[lane] };
-        }
-        position += 4.0;
-    }
-    for (lane, &height_m) in chunks.remainder().iter().enumerate() {
-        let distance =
-            (f64::from(height_m) * scale - (from + rise * (position + lane as f64))).abs();
-        largest[lane] = if distance > largest[lane] { distance } else { largest[lane] };
-    }
-    largest.into_iter().fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -64,10 +64,13 @@ proptest! {
         let window = HeightGrid::from_fn(23, 19, |c, r| bumpy_m(c as i64 + column, r as i64 + row));
         let buckets = TriangleBuckets::new(&tin, spec.quantum_m);
         let mut uncovered = 0;
-        let found = measure(&buckets, &window, placement, |c, r| {
+        let mut largest_m = 0.0_f64;
+        let found = measure(&buckets, &window, placement, |c, r, distance_m| {
             assert!(window.has_height(c, r));
-            uncovered += 1;
+            uncovered += u64::from(distance_m.is_none());
+            largest_m = largest_m.max(distance_m.unwrap_or(0.0));
         });
+        prop_assert_eq!(largest_m.to_bits(), found.max_abs_m.to_bits());
         let wanted = by_hand(&tin, spec.quantum_m, &window, placement);
         prop_assert_eq!(uncovered, found.uncovered_nodes);
         prop_assert_eq!([found.covered_nodes, found.uncovered_nodes], [wanted.covered_nodes, wanted.uncovered_nodes]);
@@ -82,7 +85,7 @@ proptest! {
         let tin = triangulate(&heights, spec).unwrap();
         let placement = WindowPlacement { column: 0, row: 0, stride: 1 };
         let window = heights.window(1, 1, 65, 65);
-        let found = measure(&TriangleBuckets::new(&tin, spec.quantum_m), &window, placement, |_, _| ());
+        let found = measure(&TriangleBuckets::new(&tin, spec.quantum_m), &window, placement, |_, _, _| ());
         prop_assert!(found.max_abs_m <= max_error_m, "{found:?}");
         prop_assert_eq!(found.covered_nodes + found.uncovered_nodes, window.count_heights() as u64);
     }
@@ -96,8 +99,8 @@ fn a_node_where_triangles_meet_counts_once() {
     let tin = triangulate(&heights, spec(1.0)).unwrap();
     let buckets = TriangleBuckets::new(&tin, spec(1.0).quantum_m);
     let placement = WindowPlacement { column: 0, row: 0, stride: 1 };
-    let found = measure(&buckets, &heights.window(1, 1, 33, 33), placement, |c, r| {
-        panic!("{c} {r} not covered")
+    let found = measure(&buckets, &heights.window(1, 1, 33, 33), placement, |c, r, distance_m| {
+        assert!(distance_m.is_some(), "{c} {r} not covered");
     });
     assert_eq!((found.covered_nodes, found.uncovered_nodes), (33 * 33, 0));
 }
@@ -108,7 +111,7 @@ fn an_empty_tin_covers_nothing() {
     let window = HeightGrid::from_fn(3, 2, |c, _| if c == 0 { f32::NAN } else { 1.0 });
     let mut seen = Vec::new();
     let found =
-        measure(&buckets, &window, WindowPlacement { column: 5, row: 5, stride: 4 }, |c, r| {
+        measure(&buckets, &window, WindowPlacement { column: 5, row: 5, stride: 4 }, |c, r, _| {
             seen.push((c, r));
         });
     assert_eq!(found, Deviation { max_abs_m: 0.0, covered_nodes: 0, uncovered_nodes: 4 });

@@ -1,4 +1,4 @@
-use corniche_geom::HeightGrid;
+use corniche_geom::{Cell, HeightGrid};
 
 use crate::Tin;
 
@@ -6,21 +6,23 @@ use crate::Tin;
 ///
 /// From the gradient of `heights`, the tile's raster with one more node on each side, as
 /// [`triangulate`](crate::triangulate) takes it: central differences, one-sided next to a gap, level where
-/// both neighbours are gaps. `cell_m` is the distance of neighbouring nodes. The rule is local, so a node
+/// both neighbours are gaps. `cell` tells the distances of neighbouring nodes. The rule is local, so a node
 /// has the same normal in every tile that holds it.
 ///
 /// # Panics
 /// When a vertex lies outside the grid: `tin` was not made from these heights.
 #[must_use]
-pub fn normals(heights: &HeightGrid, tin: &Tin, cell_m: f64) -> Vec<[i8; 2]> {
+pub fn normals(heights: &HeightGrid, tin: &Tin, cell: Cell) -> Vec<[i8; 2]> {
     let height_m = |column: usize, row: usize| heights.height(column, row).map(f64::from);
     tin.vertices()
         .iter()
         .map(|vertex| {
             let (column, row) = (usize::from(vertex.column) + 1, usize::from(vertex.row) + 1);
             let here = height_m(column, row);
-            let east = slope(height_m(column - 1, row), here, height_m(column + 1, row), cell_m);
-            let north = slope(height_m(column, row + 1), here, height_m(column, row - 1), cell_m);
+            let east =
+                slope(height_m(column - 1, row), here, height_m(column + 1, row), cell.east_m);
+            let north =
+                slope(height_m(column, row + 1), here, height_m(column, row - 1), cell.north_m);
             encode_normal([-east, -north, 1.0])
         })
         .collect()
@@ -82,15 +84,15 @@ mod tests {
 
     #[test]
     fn a_plane_has_one_normal_also_beside_gaps() {
-        // Rises 3 m a cell of 10 m to the east, falls 1 m a cell to the south: rises to the north.
+        // Rises 3 m a cell of 10 m to the east, falls 1 m a cell of 20 m to the south: rises to the north.
         let heights = HeightGrid::from_fn(9, 9, |c, r| {
             if (c, r) == (0, 4) || r == 8 { f32::NAN } else { 3.0 * c as f32 - r as f32 }
         });
         let tin =
             triangulate(&heights, TinSpec { max_error_m: 1.0, quantum_m: 1.0 / 32.0 }).unwrap();
-        let codes = normals(&heights, &tin, 10.0);
+        let codes = normals(&heights, &tin, Cell { east_m: 10.0, north_m: 20.0 });
         assert_eq!(codes.len(), tin.vertices().len());
-        assert!(codes.iter().all(|&code| code == encode_normal([-0.3, -0.1, 1.0])), "{codes:?}");
+        assert!(codes.iter().all(|&code| code == encode_normal([-0.3, -0.05, 1.0])), "{codes:?}");
     }
 
     #[test]

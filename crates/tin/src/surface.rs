@@ -15,8 +15,8 @@ pub const NO_TWIN: u32 = u32::MAX;
 pub struct Placement {
     /// Lattice point of node column 0, row 0: the north-west corner.
     pub corner: LatticePoint,
-    /// Lattice steps from one node to the next.
-    pub node_steps: i64,
+    /// Lattice steps from one node to the next, east and north.
+    pub node_steps: [i64; 2],
     /// Height of one step of `height_q`, metres; a power of two, so heights in f64 are exact.
     pub quantum_m: f64,
 }
@@ -30,7 +30,7 @@ impl Placement {
     pub fn of_tile(frame: &Frame, id: TileId, quantum_m: f64) -> Self {
         Self {
             corner: frame.lattice_of_node(frame.tile_corner(id)),
-            node_steps: frame.stride(id.z()) << frame.lattice_bits(),
+            node_steps: frame.node_steps(id.z()),
             quantum_m,
         }
     }
@@ -68,13 +68,13 @@ impl Surface {
     /// Places `tin` on the lattice.
     #[must_use]
     pub fn new(tin: &Tin, placement: Placement) -> Self {
-        let Placement { corner, node_steps, quantum_m } = placement;
+        let Placement { corner, node_steps: [east, north], quantum_m } = placement;
         let points: Vec<LatticePoint> = tin
             .vertices()
             .iter()
             .map(|vertex| {
                 let (column, row) = (i64::from(vertex.column), i64::from(vertex.row));
-                LatticePoint::new(corner.u + column * node_steps, corner.v - row * node_steps)
+                LatticePoint::new(corner.u + column * east, corner.v - row * north)
             })
             .collect();
         let heights_m =

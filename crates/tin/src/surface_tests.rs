@@ -31,7 +31,11 @@ fn grid(columns: u16, rows: u16, diagonals: &[bool], holes: &[bool], heights: &[
 }
 
 fn placement(node_steps: i64) -> Placement {
-    Placement { corner: LatticePoint::new(-7, 1_000_000_007), node_steps, quantum_m: 0.25 }
+    Placement {
+        corner: LatticePoint::new(-7, 1_000_000_007),
+        node_steps: [node_steps, node_steps],
+        quantum_m: 0.25,
+    }
 }
 
 prop_compose! {
@@ -107,7 +111,8 @@ fn a_plane_is_reproduced_at_tile_scale() {
         rows.flat_map(|row| (0..257).map(move |c| 3 * c - 5 * i32::from(row))).collect();
     let tin = grid(257, 257, &[true, false, true], &[false], &heights);
     let corner = LatticePoint::new(1 << 33, 1 << 34);
-    let surface = Surface::new(&tin, Placement { corner, node_steps: 1 << 15, quantum_m: 0.125 });
+    let surface =
+        Surface::new(&tin, Placement { corner, node_steps: [1 << 15; 2], quantum_m: 0.125 });
     surface.check_invariants();
     for step in 0..10_000_i64 {
         let (east, south) = (step * 838, step * 7919 % (1 << 23));

@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 
 use corniche_dem::{Dem, OpenOptions, PlanOptions, Resampling};
-use corniche_geom::{HeightGrid, NodeWindow, Projection};
+use corniche_geom::{Cell, HeightGrid, NodeWindow, Projection};
 use gdal::Metadata;
 
 use crate::fixture::{Raster, all, check, open, options, plan};
@@ -25,7 +25,7 @@ fn aligned_nodes_are_the_samples() {
     let raster = Raster::new(32632, [60, 50], UTM);
     let dem = open(&[raster.write(folder.path(), "a.tif", |at| plane(at) as f32)]);
     let plan = plan(&dem);
-    assert_eq!((plan.case, plan.frame.cell_m()), (Resampling::Aligned, 10.0));
+    assert_eq!((plan.case, plan.frame.cell().north_m), (Resampling::Aligned, 10.0));
     assert_eq!((plan.crs.as_str(), plan.frame.origin_m()), ("EPSG:32632", [8.0, 2.0]));
     assert!((plan.point_scale - 0.9996).abs() < 1e-6);
     assert!(plan.libraries.starts_with("GDAL 3") && plan.libraries.contains("PROJ "));
@@ -73,7 +73,7 @@ fn a_rotated_grid_is_interpolated() {
     let dem = open(&[Raster::new(32632, [60, 50], turned).write(folder.path(), "r.tif", plane)]);
     let plan = plan(&dem);
     assert_eq!(plan.case, Resampling::Resampled);
-    assert!((plan.frame.cell_m() - 10.0).abs() < 1e-9);
+    assert!((plan.frame.cell().north_m - 10.0).abs() < 1e-9);
     let count = check(&mut dem.reader(&plan).unwrap(), &plan, HUNDREDTH_M, plane);
     assert!((2700..=3000).contains(&count), "{count} nodes within the turned rectangle");
 }
@@ -107,7 +107,7 @@ fn a_grid_in_feet_is_laid_out_in_metres() {
     })]);
     let plan = plan(&dem);
     assert_eq!(plan.case, Resampling::Aligned, "{}", plan.resampling);
-    assert!((plan.frame.cell_m() - 30.0 * foot_m).abs() < 1e-6);
+    assert!((plan.frame.cell().north_m - 30.0 * foot_m).abs() < 1e-6);
     let truth = |[x, y]: [f64; 2]| x / foot_m - 2_690_000.0 + 2.0 * (y / foot_m - 234_000.0);
     assert_eq!(check(&mut dem.reader(&plan).unwrap(), &plan, 0.05, truth), 1200);
 }
@@ -128,10 +128,10 @@ fn a_reprojected_plane_comes_back() {
     };
     let dem = open(&[raster.write(folder.path(), "ll.tif", height)]);
     for (cell_m, averaged) in [(None, false), (Some(15.0), false), (Some(97.0), true)] {
-        let plan = dem.plan(&PlanOptions { cell_m, ..options() }).unwrap();
+        let plan = dem.plan(&PlanOptions { cell: cell_m.map(Cell::from), ..options() }).unwrap();
         assert_eq!((plan.crs.as_str(), plan.case), ("EPSG:32632", Resampling::Resampled));
         assert_eq!(plan.resampling.contains("average"), averaged, "{}", plan.resampling);
-        let cell = plan.frame.cell_m();
+        let cell = plan.frame.cell().north_m;
         assert!(cell_m.is_some() || cell == 15.0, "two digits of 15.2 and 16.7, not {cell}");
         let hundredth_m = 0.01 * cell * 0.224 + 1e-3;
         let count = check(&mut dem.reader(&plan).unwrap(), &plan, hundredth_m, plane);
@@ -144,7 +144,7 @@ fn averages_of_a_plane_are_the_plane_also_in_its_own_crs() {
     let folder = folder();
     let dem = open(&[Raster::new(32632, [200, 180], UTM).write(folder.path(), "a.tif", plane)]);
     for cell_m in [20.0, 25.0, 73.0] {
-        let plan = dem.plan(&PlanOptions { cell_m: Some(cell_m), ..options() }).unwrap();
+        let plan = dem.plan(&PlanOptions { cell: Some((cell_m).into()), ..options() }).unwrap();
         let count = check(&mut dem.reader(&plan).unwrap(), &plan, 1e-3, plane);
         assert!(
             count as f64 > 0.9 * 200.0 * 180.0 * 100.0 / (cell_m * cell_m) - 60.0,
@@ -165,7 +165,7 @@ fn files_of_one_grid_are_one_raster() {
         if (at[1] as i64 / 10) % 2 == 0 { -1.0 } else { plane(at) + 1000.0 }
     });
     let whole = Raster::new(32632, [60, 50], UTM).write(folder.path(), "whole.tif", plane);
-    let off_grid = PlanOptions { cell_m: Some(7.0), ..options() };
+    let off_grid = PlanOptions { cell: Some(7.0_f64.into()), ..options() };
     let read = |files: &[PathBuf], options: &PlanOptions| {
         let dem = open(files);
         let plan = dem.plan(options).unwrap();
@@ -222,13 +222,13 @@ fn files_in_different_systems_serve_one_grid() {
     // The degrees are the finer ones; the cell follows them, the CRS the first file.
     assert_eq!(plan.crs, "EPSG:32632");
     assert!(
-        plan.frame.cell_m() < 8.0 && plan.resampling.contains("EPSG:4326"),
+        plan.frame.cell().north_m < 8.0 && plan.resampling.contains("EPSG:4326"),
         "{}",
         plan.resampling
     );
     let count = check(&mut dem.reader(&plan).unwrap(), &plan, HUNDREDTH_M, plane);
     assert!(
-        count as f64 > 0.9 * 220.0 * 100.0 * 7.6 * 11.1 / plan.frame.cell_m().powi(2),
+        count as f64 > 0.9 * 220.0 * 100.0 * 7.6 * 11.1 / plan.frame.cell().north_m.powi(2),
         "{count}"
     );
 }
@@ -240,7 +240,7 @@ fn original_samples_come_with_their_positions() {
     let dem =
         open(&[raster
             .write(folder.path(), "a.tif", |at| if at[0] < 500_100.0 { -1.0 } else { plane(at) })]);
-    let plan = dem.plan(&PlanOptions { cell_m: Some(33.0), ..options() }).unwrap();
+    let plan = dem.plan(&PlanOptions { cell: Some(33.0_f64.into()), ..options() }).unwrap();
     let mut count = 0;
     let mut reader = dem.reader(&plan).unwrap();
     let each = |block: &corniche_dem::SampleBlock| {
@@ -269,7 +269,7 @@ fn wide_and_polar_extents_get_an_equal_area_projection() {
     );
     for (file, name) in [(europe, "about 5"), (arctic, "about 89")] {
         let dem = open(&[file]);
-        let plan = dem.plan(&PlanOptions { cell_m: Some(10_000.0), ..options() }).unwrap();
+        let plan = dem.plan(&PlanOptions { cell: Some(10_000.0_f64.into()), ..options() }).unwrap();
         assert!(plan.crs.starts_with("Lambert") && plan.crs.contains(name), "{}", plan.crs);
         let window = dem.reader(&plan).unwrap().window(all(&plan)).unwrap();
         assert!(window.heights.count_heights() > 5000);
@@ -286,7 +286,7 @@ fn nodes_around_the_pole_are_transformed_one_by_one() {
         |at| at[1],
     );
     let dem = open(&[file]);
-    let plan = dem.plan(&PlanOptions { cell_m: Some(12_000.0), ..options() }).unwrap();
+    let plan = dem.plan(&PlanOptions { cell: Some(12_000.0_f64.into()), ..options() }).unwrap();
     let projection = dem.projection(&plan).unwrap();
     let count = check(&mut dem.reader(&plan).unwrap(), &plan, 0.002, |at| {
         let mut points = [at];
@@ -347,9 +347,9 @@ fn options_override_and_are_checked() {
     assert!(plan("EPSG:4326").unwrap_err().to_string().contains("projected"));
     assert!(plan("EPSG:2272").unwrap_err().to_string().contains("metres"));
     assert!(plan("EPSG:999999").unwrap_err().to_string().contains("--crs"));
-    assert!(dem.plan(&PlanOptions { cell_m: Some(-1.0), ..options() }).is_err());
+    assert!(dem.plan(&PlanOptions { cell: Some((-1.0).into()), ..options() }).is_err());
     assert!(
-        dem.plan(&PlanOptions { cell_m: Some(1e5), ..options() }).is_err(),
+        dem.plan(&PlanOptions { cell: Some(1e5_f64.into()), ..options() }).is_err(),
         "ten thousand samples a side"
     );
     assert!(dem.plan(&PlanOptions { fill_voids: 1_000_000, ..options() }).is_err());

@@ -173,7 +173,7 @@ pub(crate) fn plan(dem: &Dem) -> GridPlan {
 }
 
 pub(crate) fn options() -> PlanOptions {
-    PlanOptions { crs: None, cell_m: None, fill_voids: 0 }
+    PlanOptions { crs: None, cell: None, cell_every: None, scale_latitude_deg: None, fill_voids: 0 }
 }
 
 /// The window of all nodes at which data can lie.

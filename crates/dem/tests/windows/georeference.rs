@@ -184,7 +184,7 @@ fn a_global_grid_has_no_seam() {
             |[_, lat]| lat * 10.0,
         );
         let dem = open(&[path]);
-        let plan = dem.plan(&PlanOptions { cell_m: Some(80_000.0), ..options() }).unwrap();
+        let plan = dem.plan(&PlanOptions { cell: Some(80_000.0_f64.into()), ..options() }).unwrap();
         let projection = dem.projection(&plan).unwrap();
         let mut reader = dem.reader(&plan).unwrap();
         let truth = |at: [f64; 2]| {
@@ -229,7 +229,7 @@ fn the_poles_are_covered_as_far_as_samples_go() {
             truth,
         );
         let dem = open(std::slice::from_ref(&path));
-        let plan = dem.plan(&PlanOptions { cell_m: Some(12_000.0), ..options() }).unwrap();
+        let plan = dem.plan(&PlanOptions { cell: Some(12_000.0_f64.into()), ..options() }).unwrap();
         assert!(plan.crs.starts_with("Lambert"), "{}", plan.crs);
         let projection = dem.projection(&plan).unwrap();
         let count = check(&mut dem.reader(&plan).unwrap(), &plan, 0.02, |mut at| {

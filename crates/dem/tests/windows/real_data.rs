@@ -56,7 +56,7 @@ fn read_all(dem: &Dem, plan: &GridPlan) -> (usize, usize, u64, [f32; 2]) {
     println!(
         "{}: {nodes} nodes of {} m, {rate:.1} M nodes/s",
         plan.resampling,
-        plan.frame.cell_m()
+        plan.frame.cell().north_m
     );
     (nodes, heights, filled, range)
 }
@@ -68,7 +68,7 @@ fn two_srtm_squares_become_one_grid_in_utm() {
         return;
     };
     assert_eq!(
-        (plan.crs.as_str(), plan.case, plan.frame.cell_m()),
+        (plan.crs.as_str(), plan.case, plan.frame.cell().north_m),
         ("EPSG:32632", Resampling::Resampled, 63.0)
     );
     let (nodes, heights, filled, range) = read_all(&dem, &plan);
@@ -80,7 +80,7 @@ fn two_srtm_squares_become_one_grid_in_utm() {
 fn tirol_is_aligned() {
     let Some((dem, plan)) = open(&["tirol-5m/avaMal.tif"], None) else { return };
     assert_eq!(
-        (plan.crs.as_str(), plan.case, plan.frame.cell_m()),
+        (plan.crs.as_str(), plan.case, plan.frame.cell().north_m),
         ("EPSG:31287", Resampling::Aligned, 5.0)
     );
     let (nodes, heights, filled, range) = read_all(&dem, &plan);
@@ -97,7 +97,7 @@ fn tirol_in_another_datum_is_the_same_through_every_window() {
     let asked = PlanOptions { crs: Some("EPSG:25832".to_owned()), fill_voids: 8, ..options() };
     let plan = dem.plan(&asked).unwrap();
     assert_eq!(
-        (plan.crs.as_str(), plan.case, plan.frame.cell_m()),
+        (plan.crs.as_str(), plan.case, plan.frame.cell().north_m),
         ("EPSG:25832", Resampling::Resampled, 5.0)
     );
     let whole = all(&plan);
@@ -117,7 +117,7 @@ fn tirol_in_another_datum_is_the_same_through_every_window() {
 fn the_zone_follows_the_hemisphere_and_the_datum_is_no_obstacle() {
     let check = |name: &str, crs: &str, cell_m: f64, highest_m: f32| {
         let Some((dem, plan)) = open(&[name], None) else { return };
-        assert_eq!((plan.crs.as_str(), plan.frame.cell_m()), (crs, cell_m));
+        assert_eq!((plan.crs.as_str(), plan.frame.cell().north_m), (crs, cell_m));
         let (nodes, heights, _, range) = read_all(&dem, &plan);
         assert!(
             heights > nodes * 9 / 10 && range[1] <= highest_m && range[1] > 0.98 * highest_m,
@@ -132,7 +132,7 @@ fn the_zone_follows_the_hemisphere_and_the_datum_is_no_obstacle() {
 fn slovenia_is_aligned_to_whole_metres() {
     let Some((dem, plan)) = open(&["slovenia-1m/TM1_564_146.tif"], None) else { return };
     assert_eq!(
-        (plan.crs.as_str(), plan.frame.origin_m(), plan.frame.cell_m()),
+        (plan.crs.as_str(), plan.frame.origin_m(), plan.frame.cell().north_m),
         ("EPSG:3794", [0.0; 2], 1.0)
     );
     assert_eq!(plan.south_west, NodeIndex { i: 564_000, j: 146_000 });
@@ -147,7 +147,7 @@ fn crater_lake_needs_its_sentinel_named() {
     else {
         return;
     };
-    assert_eq!((plan.crs.as_str(), plan.frame.cell_m()), ("EPSG:32610", 22.0));
+    assert_eq!((plan.crs.as_str(), plan.frame.cell().north_m), ("EPSG:32610", 22.0));
     let (.., range) = read_all(&dem, &plan);
     assert!(range[0] >= 1289.0 && range[1] <= 1880.0, "{range:?}");
 }
@@ -156,7 +156,7 @@ fn crater_lake_needs_its_sentinel_named() {
 fn aletsch_is_aligned_in_spite_of_its_noisy_corner() {
     let Some((dem, plan)) = open(&["registry/aletsch.tif"], None) else { return };
     assert_eq!(
-        (plan.crs.as_str(), plan.case, plan.frame.cell_m()),
+        (plan.crs.as_str(), plan.case, plan.frame.cell().north_m),
         ("EPSG:2056", Resampling::Aligned, 200.0)
     );
     // Corner 2601099.999999999534, half a cell of 200.000000000000966 in: 2601200, a whole number of cells.
@@ -176,7 +176,7 @@ fn zurich_needs_a_crs() {
     )
     .unwrap();
     let plan = dem.plan(&options()).unwrap();
-    assert_eq!((plan.crs.as_str(), plan.frame.cell_m()), ("EPSG:21781", 25.0));
+    assert_eq!((plan.crs.as_str(), plan.frame.cell().north_m), ("EPSG:21781", 25.0));
     let (.., range) = read_all(&dem, &plan);
     assert_eq!(range, [393.0, 870.0]);
 }

@@ -94,6 +94,10 @@ fn a_file_that_lies_nowhere_is_named_also_among_others() {
     };
     let dem = open(&[square(9.0, "near.tif"), square(119.0, "far.tif")]);
     let gnomonic = "+proj=gnom +lat_0=0 +lon_0=9 +datum=WGS84 +units=m +type=crs";
-    let asked = PlanOptions { crs: Some(gnomonic.to_owned()), cell_m: Some(10_000.0), ..options() };
+    let asked = PlanOptions {
+        crs: Some(gnomonic.to_owned()),
+        cell: Some(10_000.0_f64.into()),
+        ..options()
+    };
     check_words(&dem.plan(&asked).unwrap_err(), &["far.tif", "no position in", "--crs"]);
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use corniche_dem::{Dem, DemError, OpenOptions, PlanOptions};
-use corniche_geom::{NodeIndex, NodeWindow, Projection};
+use corniche_geom::{Cell, NodeIndex, NodeWindow, Projection};
 use gdal::DriverManager;
 use gdal::raster::Buffer;
 use gdal::spatial_ref::SpatialRef;
@@ -142,7 +142,9 @@ fn the_offset_of_a_node_does_not_depend_on_the_window() {
     );
     let dem = Dem::open(&[file], &options_).unwrap();
     for cell_m in [None, Some(240.0)] {
-        let plan = dem.plan(&PlanOptions { cell_m, fill_voids: 5, crs: None }).unwrap();
+        let plan = dem
+            .plan(&PlanOptions { cell: cell_m.map(Cell::from), fill_voids: 5, ..options() })
+            .unwrap();
         let whole = all(&plan);
         let reference = dem.reader(&plan).unwrap().window(whole).unwrap().heights;
         let mut reader = dem.reader(&plan).unwrap();

@@ -1,5 +1,5 @@
 use corniche_dem::{Dem, OpenOptions, PlanOptions, Reader};
-use corniche_geom::{NodeIndex, NodeWindow};
+use corniche_geom::{Cell, NodeIndex, NodeWindow};
 use proptest::prelude::*;
 
 use crate::fixture::{Raster, all, open, options};
@@ -98,7 +98,7 @@ proptest! {
         let folder = tempfile::tempdir().unwrap();
         let dem = geographic(folder.path());
         let cell_m = [None, Some(30.0), Some(290.0)][case];
-        let plan = dem.plan(&PlanOptions { cell_m, fill_voids: 6, crs: None }).unwrap();
+        let plan = dem.plan(&PlanOptions { cell: cell_m.map(Cell::from), fill_voids: 6, ..options() }).unwrap();
         let whole = all(&plan);
         let mut reader = dem.reader(&plan).unwrap();
         let reference = bits(&mut reader, whole);

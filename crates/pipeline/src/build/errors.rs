@@ -10,7 +10,7 @@ use super::{
     levels::Levels,
     mesh::{self, Meshes},
 };
-use crate::{BuildError, Observer, Stage, Storage, workers};
+use crate::{BuildError, Observer, Stage, Storage, sample_error::SampleSums, workers};
 
 /// What a tile stores of its errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,12 +27,20 @@ pub(crate) struct TileErrors {
     by_tile: BTreeMap<TileId, TileError>,
     /// Per level, nodes with data under tiles without ground.
     under_absent: BTreeMap<u8, u64>,
+    /// Per level, root first: nodes that are no filled voids.
+    at_nodes: Vec<SampleSums>,
 }
 
 impl TileErrors {
     /// Nodes with data that no tile of the level covers because there is no tile above them.
     pub(crate) fn under_absent(&self, level: u8) -> u64 {
         self.under_absent.get(&level).copied().unwrap_or_default()
+    }
+
+    /// Per level, root first: how far the TINs are from the nodes that have their heights from the DEM. Where nodes are the
+    /// DEM's samples, that is the error at those.
+    pub(crate) fn at_nodes(&self) -> &[SampleSums] {
+        &self.at_nodes
     }
 
     /// The error of a tile that has a mesh. A tile of which no node was seen has none: its ground covers nothing
@@ -90,6 +98,8 @@ pub(crate) fn measure(
     observer.begin(Stage::Errors, Some(finest.len() as u64));
     let mut seen: BTreeMap<TileId, Seen> = BTreeMap::new();
     let mut under_absent: BTreeMap<u8, u64> = BTreeMap::new();
+    let none = vec![SampleSums::new(levels.quantum_m()); levels.numbers().count()];
+    let mut at_nodes = none.clone();
     workers::in_order(
         threads,
         subtrees.len(),
@@ -101,16 +111,20 @@ pub(crate) fn measure(
                 storage,
                 buckets: BTreeMap::new(),
                 seen: BTreeMap::new(),
+                at_nodes: none.clone(),
             };
             for &id in &subtrees[index] {
                 if observer.is_cancelled() {
                     return Err(BuildError::Interrupted);
                 }
-                subtree.look_at(id, &pyramid.tile(id, 0)?)?;
+                subtree.look_at(id, &pyramid.tile(id, 0)?, &pyramid.filled(id)?)?;
             }
-            Ok(subtree.seen)
+            Ok((subtree.seen, subtree.at_nodes))
         },
-        |index, found| {
+        |index, (found, nodes)| {
+            for (sums, found) in at_nodes.iter_mut().zip(&nodes) {
+                sums.merge(found);
+            }
             for (id, other) in found {
                 if meshes.contains_key(&id) {
                     seen.entry(id).or_default().merge(other);
@@ -123,7 +137,7 @@ pub(crate) fn measure(
         },
     )?;
     observer.end(Stage::Errors);
-    Ok(TileErrors { by_tile: stored(&seen, meshes), under_absent })
+    Ok(TileErrors { by_tile: stored(&seen, meshes), under_absent, at_nodes })
 }
 
 /// The work on one subtree.
@@ -133,11 +147,30 @@ struct Subtree<'a> {
     storage: &'a dyn Storage,
     buckets: BTreeMap<TileId, Option<TriangleBuckets>>,
     seen: BTreeMap<TileId, Seen>,
+    at_nodes: Vec<SampleSums>,
 }
 
 impl Subtree<'_> {
-    fn look_at(&mut self, finest: TileId, window: &HeightGrid) -> Result<(), BuildError> {
+    /// `filled` are the nodes of the window, by number, that are filled voids.
+    fn look_at(
+        &mut self,
+        finest: TileId,
+        window: &HeightGrid,
+        filled: &[usize],
+    ) -> Result<(), BuildError> {
         let frame = self.levels.frame();
+        let side = window.columns();
+        // Nodes on the east and south border belong to the next tile, if there can be one.
+        let last_tile = (1_u32 << finest.z()) - 1;
+        let own_columns = side - usize::from(finest.x() < last_tile);
+        let own_rows = window.rows() - usize::from(finest.y() < last_tile);
+        let mut is_sample = vec![true; side * window.rows()];
+        for &node in filled {
+            is_sample[node] = false;
+        }
+        let is_own_sample = |column: usize, row: usize| {
+            column < own_columns && row < own_rows && is_sample[row * side + column]
+        };
         // Tiles of a subtree come row by row; of the finest levels only the present one is needed again.
         self.buckets.retain(|&id, _| {
             finest.ancestor(id.z()) == id || id.z() + SUBTREE_LEVELS <= finest.z()
@@ -157,8 +190,16 @@ impl Subtree<'_> {
                 }
             };
             let Some(buckets) = buckets else {
-                let side = window.columns() - 1;
-                let uncovered_nodes = window.window(0, 0, side, side).count_heights() as u64;
+                let inner = side - 1;
+                let uncovered_nodes = window.window(0, 0, inner, inner).count_heights() as u64;
+                let sums = &mut self.at_nodes[usize::from(level)];
+                for row in 0..window.rows() {
+                    for column in 0..side {
+                        if window.has_height(column, row) && is_own_sample(column, row) {
+                            sums.add(None);
+                        }
+                    }
+                }
                 let seen = Seen { uncovered_nodes, ..Seen::default() };
                 self.seen.entry(id).or_default().merge(seen);
                 continue;
@@ -171,10 +212,15 @@ impl Subtree<'_> {
             };
             let last = window.columns() - 1;
             let mut uncovered_nodes = 0;
-            let deviation = corniche_tin::measure(buckets, window, placement, |column, row| {
+            let sums = &mut self.at_nodes[usize::from(level)];
+            let look = |column, row, distance_m: Option<f64>| {
                 // Nodes on the east and south border belong to the next tile, which counts them.
-                uncovered_nodes += u64::from(column < last && row < last);
-            });
+                uncovered_nodes += u64::from(distance_m.is_none() && column < last && row < last);
+                if is_own_sample(column, row) {
+                    sums.add(distance_m);
+                }
+            };
+            let deviation = corniche_tin::measure(buckets, window, placement, look);
             self.seen.entry(id).or_default().merge(Seen {
                 deviation,
                 range_m: window.range_m(),

@@ -6,7 +6,7 @@
 
 use std::{collections::BTreeMap, sync::Mutex, sync::PoisonError};
 
-use corniche_dem::{Dem, GridPlan};
+use corniche_dem::{Dem, DemWindow, GridPlan};
 use corniche_geom::{Frame, HeightGrid, LatticeBounds, NodeIndex, NodeWindow, TILE_CELLS, TileId};
 use corniche_tileset::SampleCounts;
 
@@ -60,8 +60,8 @@ pub(crate) fn read<'a>(
             }
             let window = reader.window(block_window(&frame, areas[index]))?;
             let mut spans = Vec::new();
-            for (id, block) in split(areas[index], &window.heights, frame.max_level()) {
-                spans.push((id, put(storage, &block)?));
+            for (id, block, filled) in split(areas[index], &window, frame.max_level()) {
+                spans.push((id, put(storage, &block, &filled)?));
             }
             kept.lock().unwrap_or_else(PoisonError::into_inner).extend(spans);
             Ok((window.heights.count_heights() as u64, window.filled, window.heights.range_m()))
@@ -155,17 +155,33 @@ fn block_window(frame: &Frame, (x, y, columns, rows): Area) -> NodeWindow {
 /// The blocks of an area that hold any height.
 fn split(
     (x, y, columns, rows): Area,
-    heights: &HeightGrid,
+    window: &DemWindow,
     level: u8,
-) -> impl Iterator<Item = (BlockId, HeightGrid)> + '_ {
+) -> impl Iterator<Item = (BlockId, HeightGrid, Vec<u16>)> + '_ {
     (0..rows).flat_map(move |r| (0..columns).map(move |c| (c, r))).filter_map(move |(c, r)| {
-        let block = heights.window(c as usize * BLOCK, r as usize * BLOCK, BLOCK, BLOCK);
-        (block.count_heights() > 0).then_some(((level, x + c, y + r), block))
+        let (left, top) = (c as usize * BLOCK, r as usize * BLOCK);
+        let block = window.heights.window(left, top, BLOCK, BLOCK);
+        let is_filled = |at: &u16| {
+            let (column, row) = (usize::from(*at) % BLOCK, usize::from(*at) / BLOCK);
+            window.is_filled[(top + row) * window.heights.columns() + left + column]
+        };
+        let filled = if window.is_filled.is_empty() {
+            Vec::new()
+        } else {
+            (0..=u16::MAX).filter(is_filled).collect()
+        };
+        (block.count_heights() > 0).then_some(((level, x + c, y + r), block, filled))
     })
 }
 
-fn put(storage: &dyn Storage, block: &HeightGrid) -> Result<Span, BuildError> {
-    let bytes: Vec<u8> = block.raw().iter().flat_map(|height_m| height_m.to_le_bytes()).collect();
+/// Bytes of a block's heights.
+const BLOCK_BYTES: u64 = (BLOCK * BLOCK * 4) as u64;
+
+/// Keeps a block's heights, and behind them which of its nodes are filled voids, by number.
+fn put(storage: &dyn Storage, block: &HeightGrid, filled: &[u16]) -> Result<Span, BuildError> {
+    let heights = block.raw().iter().flat_map(|height_m| height_m.to_le_bytes());
+    let filled = filled.iter().flat_map(|at| at.to_le_bytes());
+    let bytes: Vec<u8> = heights.chain(filled).collect();
     storage.append(Kind::Heights, &bytes).map_err(BuildError::Storage)
 }
 
@@ -244,9 +260,30 @@ impl Pyramid<'_> {
         Ok(HeightGrid::new(side, side, heights_m))
     }
 
+    /// Which nodes of a finest tile (257 × 257, row by row from the north) are filled voids; ascending.
+    pub(crate) fn filled(&self, id: TileId) -> Result<Vec<usize>, BuildError> {
+        let side = BLOCK + 1;
+        let mut nodes = Vec::new();
+        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let block = (id.z(), id.x() + dx, id.y() + dy);
+            let Some(&span) = self.blocks.get(&block) else { continue };
+            let filled = span.part(BLOCK_BYTES, span.length());
+            let bytes = self.storage.read(Kind::Heights, filled).map_err(BuildError::Storage)?;
+            nodes.extend(bytes.chunks_exact(2).filter_map(|b| {
+                let at = usize::from(u16::from_le_bytes([b[0], b[1]]));
+                let column = at % BLOCK + dx as usize * BLOCK;
+                let row = at / BLOCK + dy as usize * BLOCK;
+                (column < side && row < side).then_some(row * side + column)
+            }));
+        }
+        nodes.sort_unstable();
+        Ok(nodes)
+    }
+
     fn block(&self, id: BlockId) -> Result<Option<HeightGrid>, BuildError> {
         let Some(&span) = self.blocks.get(&id) else { return Ok(None) };
-        let bytes = self.storage.read(Kind::Heights, span).map_err(BuildError::Storage)?;
+        let heights = span.part(0, BLOCK_BYTES);
+        let bytes = self.storage.read(Kind::Heights, heights).map_err(BuildError::Storage)?;
         let heights_m =
             bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
         Ok(Some(HeightGrid::new(BLOCK, BLOCK, heights_m)))
@@ -292,7 +329,7 @@ impl Pyramid<'_> {
                 if block.count_heights() == 0 {
                     Ok(None)
                 } else {
-                    put(self.storage, &block).map(Some)
+                    put(self.storage, &block, &[]).map(Some)
                 }
             },
             |index, span| {

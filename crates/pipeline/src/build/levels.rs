@@ -64,7 +64,7 @@ impl Levels {
             Some(self.least_class)
         } else {
             self.filter
-                .least_class(self.frame.level_cell_m(level))
+                .least_class(self.frame.level_cell(level).shorter_m())
                 .map(|class| class.min(self.least_class))
         }
     }
@@ -74,7 +74,7 @@ impl Levels {
         if level == self.frame.max_level() {
             0.0
         } else {
-            self.simplify_cells * self.frame.level_cell_m(level)
+            self.simplify_cells * self.frame.level_cell(level).shorter_m()
         }
     }
 
@@ -83,19 +83,22 @@ impl Levels {
         self.simplify_tolerance_m(level) / self.frame.lattice_step_m()
     }
 
-    /// How far outside a tile its SV lines reach: whole cells of the finest level.
+    /// How far outside a tile its SV lines reach: whole cells of the finest level, by their shorter side.
     fn margin_cells(&self, level: u8) -> i64 {
-        let wanted_m = (MARGIN_CELLS * self.frame.level_cell_m(level)).max(MIN_MARGIN_M);
-        (wanted_m / self.frame.cell_m()).ceil() as i64
+        let wanted_m = (MARGIN_CELLS * self.frame.level_cell(level).shorter_m()).max(MIN_MARGIN_M);
+        (wanted_m / self.frame.cell().shorter_m()).ceil() as i64
     }
 
     /// The same in metres.
     pub(crate) fn margin_m(&self, level: u8) -> f64 {
-        self.margin_cells(level) as f64 * self.frame.cell_m()
+        self.margin_cells(level) as f64 * self.frame.cell().shorter_m()
     }
 
     /// The same in lattice steps.
     pub(crate) fn margin_steps(&self, level: u8) -> i64 {
-        self.margin_cells(level) << self.frame.lattice_bits()
+        {
+            let [east, north] = self.frame.node_steps(self.frame.max_level());
+            self.margin_cells(level) * east.min(north)
+        }
     }
 }

@@ -18,6 +18,7 @@ mod mesh;
 mod package;
 mod road_log;
 mod roads;
+mod samples;
 mod tiles;
 
 use std::{fs, path::Path};
@@ -116,10 +117,12 @@ fn run(
     )?;
     let plan = dem.plan(&PlanOptions {
         crs: terrain.crs.clone(),
-        cell_m: terrain.cell_m,
+        cell: terrain.cell,
+        cell_every: terrain.cell_every,
+        scale_latitude_deg: terrain.scale_latitude_deg,
         fill_voids: terrain.fill_voids,
     })?;
-    let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell_m() / 4.0);
+    let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell().shorter_m() / 4.0);
     if !MAX_ERRORS_M.contains(&max_error_m) {
         return Err(BuildError::MaxError { max_error_m });
     }
@@ -162,6 +165,11 @@ fn run(
         });
     }
     let errors = errors::measure(&pyramid, &meshes, &levels, threads, storage, observer)?;
+    let sample_errors = if plan.nodes_are_samples() {
+        errors.at_nodes().to_vec()
+    } else {
+        samples::measure(&dem, &plan, &meshes, &levels, threads, storage, observer)?
+    };
     let tiles = tiles::make(
         &tiles::TileInput {
             levels: &levels,
@@ -190,6 +198,7 @@ fn run(
         roads: roads.as_ref(),
         tiles: &tiles,
         errors: &errors,
+        sample_errors: &sample_errors,
     });
     if let (Some(osm), 0) = (&settings.osm, manifest.counts.roads_kept) {
         return Err(BuildError::NoGround { osm: osm.clone() });

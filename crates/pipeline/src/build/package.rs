@@ -6,12 +6,14 @@ use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{Bounds, CoordinateTable};
 use corniche_tileset::{
     Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest,
-    SampleCounts, SettingsRecord, VerticalRecord, Writer,
+    SampleCounts, ScaleRecord, SettingsRecord, VerticalRecord, Writer,
 };
 use sha2::{Digest, Sha256};
 
 use super::{errors::TileErrors, levels::Levels, losses, roads::ReadRoads, tiles::Tiles};
-use crate::{BuildError, BuildSettings, Observer, Stage, Storage, storage::Kind};
+use crate::{
+    BuildError, BuildSettings, Observer, Stage, Storage, sample_error::SampleSums, storage::Kind,
+};
 
 /// Positions interpolated from the manifest are this exact.
 const COORDINATE_TOLERANCE_M: f64 = 0.01;
@@ -30,14 +32,20 @@ pub(crate) struct Outcome<'a> {
     pub(crate) roads: Option<&'a ReadRoads<'a>>,
     pub(crate) tiles: &'a Tiles,
     pub(crate) errors: &'a TileErrors,
+    /// Per level, root first.
+    pub(crate) sample_errors: &'a [SampleSums],
 }
 
 /// Longitudes and latitudes over the data's rectangle, for readers without PROJ.
 pub(crate) fn coordinates(dem: &Dem, plan: &GridPlan) -> Result<CoordinateTable, BuildError> {
     let projection = dem.projection(plan)?;
     // With room around it, but not as far as the root's far corners: they can be a world away.
-    let room_m =
-        0.1 * plan.data_bounds.width().max(plan.data_bounds.height()).max(plan.frame.cell_m());
+    let room_m = 0.1
+        * plan
+            .data_bounds
+            .width()
+            .max(plan.data_bounds.height())
+            .max(plan.frame.cell().shorter_m());
     let around = Bounds {
         min_x: plan.data_bounds.min_x - room_m,
         min_y: plan.data_bounds.min_y - room_m,
@@ -64,11 +72,18 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
             .to_owned(),
         crs: plan.crs.clone(),
         crs_wkt: plan.crs_wkt.clone(),
+        metres_per_unit: plan.metres_per_unit,
         point_scale: plan.point_scale,
+        scale: ScaleRecord {
+            center: plan.scale.center,
+            least: plan.scale.least,
+            largest: plan.scale.largest,
+        },
         frame,
         data_bounds: plan.data_bounds,
         wgs84_bounds: plan.wgs84_bounds,
         resampling: plan.resampling.clone(),
+        nodes_are_samples: plan.nodes_are_samples(),
         vertical: VerticalRecord {
             quantum_m: levels.quantum_m(),
             unit: "metre".to_owned(),
@@ -99,7 +114,9 @@ fn settings_record(outcome: &Outcome<'_>) -> SettingsRecord {
         vertical_crs: terrain.vertical_crs.clone(),
         vertical_shift_m: terrain.vertical_shift_m,
         crs: terrain.crs.clone(),
-        cell_m: terrain.cell_m,
+        cell_m: terrain.cell,
+        cell_every: terrain.cell_every,
+        scale_latitude_deg: terrain.scale_latitude_deg,
         frc_table: roads.table.name().to_owned(),
         frc_table_sha256: hex(&Sha256::digest(roads.table.canonical_text())),
         class_max_cell_m: roads.filter.class_max_cell_m().to_vec(),
@@ -116,10 +133,11 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
             let errors_m = Distribution::of(sums.errors_m);
             LevelRecord {
                 level,
-                cell_m: levels.frame().level_cell_m(level),
+                cell_m: levels.frame().level_cell(level),
                 max_error_m: levels.max_error_m(level),
                 geometric_error_m: errors_m.map_or(0.0, |errors_m| errors_m.max),
                 errors_m,
+                sample_error: outcome.sample_errors[usize::from(level)].record(),
                 tightness: Distribution::of(sums.tightness),
                 least_class: levels
                     .least_class(level)

@@ -2,19 +2,19 @@
 
 use std::{collections::BTreeMap, rc::Rc};
 
-use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions, Reader};
+use corniche_dem::{Dem, DemWindow, GridPlan, OpenOptions, PlanOptions, Reader};
 use corniche_geom::{HeightGrid, NodeIndex, NodeWindow, TileId};
 use corniche_tileset::{
     Distribution, FilePackage, InputRecord, Manifest, Sections, VerticalRecord,
 };
 
 use super::{
-    Check, ErrorFigures, SampleFigures, VerifyError, VerifyReport, VerifySettings, ground::Ground,
+    Check, ErrorFigures, VerifyError, VerifyReport, VerifySettings, ground::Ground, samples,
 };
-use crate::{BuildError, Observer, Stage, build::input_record, workers};
+use crate::{BuildError, Observer, Stage, build::input_record, sample_error::SampleSums, workers};
 
 /// Slack for comparing two ways of computing the same height, metres.
-const ROUNDING_M: f64 = 1e-6;
+pub(super) const ROUNDING_M: f64 = 1e-6;
 /// The same for ratios of them.
 const RATIO_ROUNDING: f64 = 1e-3;
 /// P2's tightness: stored ≤ this × true + a quantum, for this share of tiles.
@@ -59,7 +59,8 @@ pub(crate) fn verify(
     let finest = crate::build::data_tiles(&plan);
     observer.begin(Stage::Errors, Some(finest.len() as u64));
     let mut truths: BTreeMap<TileId, Truth> = BTreeMap::new();
-    let mut samples = SampleSums::default();
+    let nodes_are_samples = plan.nodes_are_samples();
+    let mut at_samples = samples::none(manifest);
     workers::in_order(
         settings.threads,
         finest.len(),
@@ -69,7 +70,9 @@ pub(crate) fn verify(
                 return Err(VerifyError::Interrupted);
             }
             let id = finest[index];
-            let window = reader.window(manifest.frame.tile_window(id))?.heights;
+            let read = reader.window(manifest.frame.tile_window(id))?;
+            let mut found_at_samples = samples::none(manifest);
+            let window = &read.heights;
             // Of the levels above only the latest are kept: tiles come in an order that stays close.
             cache.retain(|cached, _| *cached == id.ancestor(cached.z()));
             let mut found = Vec::new();
@@ -82,16 +85,24 @@ pub(crate) fn verify(
                         payload.and_then(|payload| payload.terrain).map(|terrain| terrain.tin);
                     Rc::new(Ground::new(&tin.unwrap_or_default(), manifest.vertical.quantum_m))
                 }));
-                let (mut truth, bare) = compare(&ground, [id, ancestor], &window, manifest);
+                let sums = &mut found_at_samples[usize::from(level)];
+                let mut look = |[column, row]: [usize; 2], distance_m: Option<f64>| {
+                    if nodes_are_samples && is_own_sample(id, &read, [column, row]) {
+                        sums.add(distance_m);
+                    }
+                };
+                let (mut truth, bare) =
+                    compare(&ground, [id, ancestor], window, manifest, &mut look);
                 for (cell, nodes) in bare {
                     let stride = manifest.frame.stride(level);
                     truth.stray += if has_void_corner(cell, stride, reader)? { 0 } else { nodes };
                 }
                 found.push((ancestor, truth));
             }
-            Ok(found)
+            Ok((found, found_at_samples))
         },
-        |_, found: Vec<(TileId, Truth)>| {
+        |_, (found, found_at_samples): (Vec<(TileId, Truth)>, Vec<SampleSums>)| {
+            samples::merge(&mut at_samples, &found_at_samples);
             for (id, truth) in found {
                 truths.entry(id).or_default().merge(truth);
             }
@@ -99,10 +110,13 @@ pub(crate) fn verify(
             Ok(())
         },
     )?;
-    samples.measure(package, &dem, &plan, observer)?;
     observer.end(Stage::Errors);
+    if !nodes_are_samples {
+        at_samples = samples::measure(package, &dem, &plan, settings, observer)?;
+    }
     judge(package, &truths, report)?;
-    report.samples = Some(samples.figures());
+    report.checks.extend(samples::judge(manifest, &at_samples));
+    report.samples = at_samples.last().map(SampleSums::record);
     Ok(())
 }
 
@@ -142,7 +156,9 @@ fn open(
     }
     let plan = dem.plan(&PlanOptions {
         crs: record.crs.clone(),
-        cell_m: record.cell_m,
+        cell: record.cell_m,
+        cell_every: record.cell_every,
+        scale_latitude_deg: record.scale_latitude_deg,
         fill_voids: record.fill_voids,
     })?;
     if plan.frame == manifest.frame { Ok((dem, plan)) } else { Err(other()) }
@@ -155,6 +171,7 @@ fn compare(
     [finest, ancestor]: [TileId; 2],
     window: &HeightGrid,
     manifest: &Manifest,
+    look: &mut dyn FnMut([usize; 2], Option<f64>),
 ) -> (Truth, BTreeMap<NodeIndex, u64>) {
     let frame = &manifest.frame;
     let stride = frame.stride(ancestor.z());
@@ -165,10 +182,13 @@ fn compare(
         for column in 0..window.columns() {
             let Some(height_m) = window.height(column, row) else { continue };
             let cells = [corner.i - above.i + column as i64, above.j - corner.j + row as i64];
-            match ground.height_m(cells.map(|cells| cells as f64 / stride as f64)) {
-                Some(ground_m) => {
+            let ground_m = ground.height_m(cells.map(|cells| cells as f64 / stride as f64));
+            let distance_m = ground_m.map(|ground_m| (ground_m - f64::from(height_m)).abs());
+            look([column, row], distance_m);
+            match distance_m {
+                Some(distance_m) => {
                     truth.nodes += 1;
-                    truth.largest_m = truth.largest_m.max((ground_m - f64::from(height_m)).abs());
+                    truth.largest_m = truth.largest_m.max(distance_m);
                 }
                 // Border nodes belong to the tile east or south of them, which counts them.
                 None if column + 1 < window.columns() && row + 1 < window.rows() => {
@@ -181,6 +201,15 @@ fn compare(
         }
     }
     (truth, bare)
+}
+
+/// Whether a node of a finest tile's window is a sample, no filled void, that no other tile counts: those on the east and
+/// south border belong to the next tile, if there can be one.
+fn is_own_sample(id: TileId, read: &DemWindow, [column, row]: [usize; 2]) -> bool {
+    let (columns, rows) = (read.heights.columns(), read.heights.rows());
+    let last = (1_u32 << id.z()) - 1;
+    let is_own = (column + 1 < columns || id.x() == last) && (row + 1 < rows || id.y() == last);
+    is_own && read.is_filled.get(row * columns + column) != Some(&true)
 }
 
 /// Whether a cell of a level lacks ground because one of its corners is void or beyond the data: then every node
@@ -307,78 +336,5 @@ fn agree(said: Option<Distribution>, found: Option<Distribution>) -> bool {
         }
         (None, None) => true,
         (Some(_), None) | (None, Some(_)) => false,
-    }
-}
-
-/// Differences at the DEM's own samples.
-#[derive(Default)]
-struct SampleSums {
-    samples: u64,
-    uncovered: u64,
-    largest_m: f64,
-    squares: f64,
-}
-
-/// Tiles whose ground is kept while samples are looked at. Blocks of samples are compact, so a few rows of tiles
-/// are enough not to load any twice in a row.
-const GROUNDS: usize = 64;
-
-impl SampleSums {
-    /// Compares the finest level with every sample of the DEM.
-    fn measure(
-        &mut self,
-        package: &FilePackage,
-        dem: &Dem,
-        plan: &GridPlan,
-        observer: &dyn Observer,
-    ) -> Result<(), VerifyError> {
-        let manifest = package.manifest();
-        let frame = &manifest.frame;
-        let level = frame.max_level();
-        let last = (1_i64 << level) - 1;
-        let mut grounds: BTreeMap<TileId, Option<Ground>> = BTreeMap::new();
-        dem.reader(plan)?.for_each_sample_block(|block| {
-            if observer.is_cancelled() {
-                return;
-            }
-            for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
-                let Some(point) = frame.snap(position_m) else { continue };
-                let [column, row] =
-                    frame.tile_column_row(level, point).map(|at| at.clamp(0, last) as u32);
-                let Ok(id) = TileId::new(level, column, row) else { continue };
-                if grounds.len() >= GROUNDS && !grounds.contains_key(&id) {
-                    grounds.clear();
-                }
-                let ground = grounds.entry(id).or_insert_with(|| {
-                    let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
-                    let terrain = payload.and_then(|payload| payload.terrain);
-                    terrain.map(|terrain| Ground::new(&terrain.tin, manifest.vertical.quantum_m))
-                });
-                let corner = frame.tile_corner(id);
-                let at = [
-                    (position_m[0] - frame.x_m(corner.i)) / frame.cell_m(),
-                    (frame.y_m(corner.j) - position_m[1]) / frame.cell_m(),
-                ];
-                match ground.as_ref().and_then(|ground| ground.height_m(at)) {
-                    Some(ground_m) => {
-                        let difference_m = (ground_m - f64::from(height_m)).abs();
-                        self.samples += 1;
-                        self.largest_m = self.largest_m.max(difference_m);
-                        self.squares += difference_m * difference_m;
-                    }
-                    None => self.uncovered += 1,
-                }
-            }
-        })?;
-        if observer.is_cancelled() { Err(VerifyError::Interrupted) } else { Ok(()) }
-    }
-
-    fn figures(&self) -> SampleFigures {
-        SampleFigures {
-            samples: self.samples,
-            uncovered: self.uncovered,
-            largest_m: self.largest_m,
-            rms_m: (self.squares / self.samples.max(1) as f64).sqrt(),
-        }
     }
 }

@@ -3,13 +3,14 @@
 mod dem;
 mod ground;
 mod roads;
+mod samples;
 mod seams;
 mod sums;
 mod tiles;
 
 use std::path::PathBuf;
 
-use corniche_tileset::{Distribution, FilePackage, OpenError};
+use corniche_tileset::{Distribution, FilePackage, OpenError, SampleErrorRecord};
 
 use crate::Observer;
 
@@ -97,19 +98,6 @@ pub struct ErrorFigures {
     pub uncovered_nodes: u64,
 }
 
-/// How far the finest TINs are from the DEM's own samples, between which resampled nodes lie.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SampleFigures {
-    /// Samples compared.
-    pub samples: u64,
-    /// Samples not covered by a TIN: next to voids and data edges.
-    pub uncovered: u64,
-    /// Largest difference.
-    pub largest_m: f64,
-    /// Root mean square difference.
-    pub rms_m: f64,
-}
-
 /// What verification found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VerifyReport {
@@ -124,7 +112,7 @@ pub struct VerifyReport {
     /// With the DEM: stored errors beside true ones, per level.
     pub errors: Vec<ErrorFigures>,
     /// With the DEM: the finest level at the DEM's own samples.
-    pub samples: Option<SampleFigures>,
+    pub samples: Option<SampleErrorRecord>,
 }
 
 impl VerifyReport {

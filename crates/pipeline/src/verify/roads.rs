@@ -58,10 +58,10 @@ pub(crate) fn verify(
             }
         };
         let in_cells = |p: [f64; 3]| {
-            let node_steps = placement.node_steps as f64;
+            let [east, north] = placement.node_steps.map(|steps| steps as f64);
             [
-                (p[0] - placement.corner.u as f64) / node_steps,
-                (placement.corner.v as f64 - p[1]) / node_steps,
+                (p[0] - placement.corner.u as f64) / east,
+                (placement.corner.v as f64 - p[1]) / north,
                 p[2],
             ]
         };

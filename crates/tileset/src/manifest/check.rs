@@ -3,9 +3,9 @@
 //! Numbers of a package are foreign: a count of 2^64 − 1 would overflow the first sum, a coordinate of 1e308 the first
 //! product, and a not-a-number would pass every comparison the wrong way.
 
-use corniche_geom::Bounds;
+use corniche_geom::{Bounds, Cell};
 
-use super::{Counts, Distribution, GrowthRow, LevelRecord, Manifest};
+use super::{Counts, Distribution, GrowthRow, LevelRecord, Manifest, SampleErrorRecord};
 
 /// No length, height or coordinate is larger: far beyond every planet, and its square still fits an f32.
 pub(crate) const MAX_MEASURE_M: f64 = 1e18;
@@ -16,6 +16,8 @@ const QUANTUM_EXPONENTS: std::ops::RangeInclusive<i32> = -64..=27;
 const MAX_COUNT: u64 = 1 << 61;
 /// Length in the working CRS over true length: Mercator reaches 57 a degree from the pole.
 const POINT_SCALES: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
+/// Working metres to a unit of the CRS, without its sign: a millimetre to a radian, and far beyond both.
+const FACTORS: std::ops::RangeInclusive<f64> = 1e-6..=1e9;
 /// Classes 0 to 8.
 const CLASSES: usize = corniche_roads::FunctionalRoadClass::COUNT;
 
@@ -36,6 +38,17 @@ impl Manifest {
         bounds("wgs84_bounds", &self.wgs84_bounds, [720.0, 91.0])?;
         bounds("coordinates.bounds", &self.coordinates.bounds(), [MAX_MEASURE_M; 2])?;
         that(POINT_SCALES.contains(&self.point_scale), "point_scale", self.point_scale)?;
+        let scale = &self.scale;
+        for (name, values) in [
+            ("scale.center", scale.center),
+            ("scale.least", scale.least),
+            ("scale.largest", scale.largest),
+        ] {
+            that(values.iter().all(|value| POINT_SCALES.contains(value)), name, values)?;
+        }
+        // Degrees to metres is 1e5; the units of projections are much smaller.
+        let are_factors = self.metres_per_unit.iter().all(|factor| FACTORS.contains(&factor.abs()));
+        that(are_factors, "metres_per_unit", self.metres_per_unit)?;
         let quantum_m = self.vertical.quantum_m;
         that(is_height_quantum(quantum_m), "vertical.quantum_m", quantum_m)?;
         let [low_m, high_m] = self.vertical.range_m;
@@ -68,7 +81,7 @@ impl Manifest {
         let settings = &self.settings;
         measure("settings.max_error_m", settings.max_error_m)?;
         measure("settings.simplify_cells", settings.simplify_cells)?;
-        measure("settings.cell_m", settings.cell_m.unwrap_or(0.0))?;
+        all_positive("settings.cell_m", settings.cell_m.map_or([1.0; 2], Cell::to_array))?;
         all_measures("settings.vertical_shift_m", &[settings.vertical_shift_m])?;
         let cells = &settings.class_max_cell_m;
         that(cells.len() <= CLASSES, "the number of settings.class_max_cell_m", cells.len())?;
@@ -80,13 +93,16 @@ impl Manifest {
 
 fn check_level(level: usize, record: &LevelRecord) -> Result<(), String> {
     that(usize::from(record.level) == level, "levels.level", record.level)?;
-    that(record.cell_m > 0.0, "levels.cell_m", record.cell_m)?;
-    measure("levels.cell_m", record.cell_m)?;
+    all_positive("levels.cell_m", record.cell_m.to_array())?;
     measure("levels.max_error_m", record.max_error_m)?;
     measure("levels.geometric_error_m", record.geometric_error_m)?;
     for distribution in [record.errors_m, record.tightness].into_iter().flatten() {
         check_distribution(&distribution)?;
     }
+    let SampleErrorRecord { max_m, rms_m, p99_m, .. } = record.sample_error;
+    measure("levels.sample_error.max_m", max_m)?;
+    that(rms_m >= 0.0 && rms_m <= max_m, "levels.sample_error.rms_m", rms_m)?;
+    that(p99_m >= 0.0 && p99_m <= max_m, "levels.sample_error.p99_m", p99_m)?;
     measure("levels.simplify_tolerance_m", record.simplify_tolerance_m)?;
     measure("levels.width_margin_m", record.width_margin_m)?;
     let class = record.least_class.unwrap_or(0);
@@ -102,9 +118,10 @@ fn check_distribution(distribution: &Distribution) -> Result<(), String> {
     that(is_sorted, "a distribution", distribution)
 }
 
-fn level_counts(record: &LevelRecord) -> [u64; 5] {
+fn level_counts(record: &LevelRecord) -> [u64; 7] {
     let LevelRecord { tiles, triangles, vertices, terrain_bytes, uncovered_nodes, .. } = *record;
-    [tiles, triangles, vertices, terrain_bytes, uncovered_nodes]
+    let SampleErrorRecord { on_tin, off_tin, .. } = record.sample_error;
+    [tiles, triangles, vertices, terrain_bytes, uncovered_nodes, on_tin, off_tin]
 }
 
 fn growth_counts(row: &GrowthRow) -> [u64; 9] {
@@ -150,6 +167,14 @@ fn that(holds: bool, name: &str, value: impl std::fmt::Debug) -> Result<(), Stri
 /// A length: neither negative nor absurd.
 fn measure(name: &str, value_m: f64) -> Result<(), String> {
     that((0.0..=MAX_MEASURE_M).contains(&value_m), name, value_m)
+}
+
+/// Lengths that something is divided by.
+fn all_positive(name: &str, values_m: [f64; 2]) -> Result<(), String> {
+    values_m.iter().try_for_each(|&value_m| {
+        that(value_m > 0.0, name, value_m)?;
+        measure(name, value_m)
+    })
 }
 
 /// Coordinates or differences.

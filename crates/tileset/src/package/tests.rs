@@ -1,6 +1,8 @@
 use std::{fs, io::Cursor};
 
-use corniche_geom::{Bounds, CoordinateTable, Frame, NodeIndex, ProjectError, Projection, TileId};
+use corniche_geom::{
+    Bounds, Cell, CoordinateTable, Frame, NodeIndex, ProjectError, Projection, TileId,
+};
 use corniche_tin::{Tin, TinVertex};
 
 use super::{
@@ -8,8 +10,8 @@ use super::{
     directory::Directory, pmtiles_order,
 };
 use crate::{
-    Counts, LevelRecord, Manifest, PayloadContext, Sections, SettingsRecord, Terrain, TilePayload,
-    VerticalRecord, encode,
+    Counts, LevelRecord, Manifest, PayloadContext, SampleErrorRecord, ScaleRecord, Sections,
+    SettingsRecord, Terrain, TilePayload, VerticalRecord, encode,
 };
 
 /// Degrees that are metres / 100 km.
@@ -38,11 +40,14 @@ fn manifest(max_level: u8) -> Manifest {
         tiling: "local quadtree".to_owned(),
         crs: "EPSG:32632".to_owned(),
         crs_wkt: "PROJCRS[…]".to_owned(),
+        metres_per_unit: [1.0; 2],
         point_scale: 0.999_7,
+        scale: ScaleRecord { center: [1.0; 2], least: [1.0; 2], largest: [1.0; 2] },
         frame,
         data_bounds,
         wgs84_bounds: Bounds { min_x: 9.4, min_y: 47.0, max_x: 9.7, max_y: 47.3 },
         resampling: "nodes are the DEM's samples".to_owned(),
+        nodes_are_samples: true,
         vertical: VerticalRecord {
             quantum_m: 0.125,
             unit: "metre".to_owned(),
@@ -61,7 +66,9 @@ fn manifest(max_level: u8) -> Manifest {
             vertical_crs: None,
             vertical_shift_m: 0.0,
             crs: None,
-            cell_m: Some(1.0 / 3.0),
+            cell_m: Some(Cell { east_m: 1.0 / 3.0, north_m: 0.5 }),
+            cell_every: None,
+            scale_latitude_deg: None,
             frc_table: "default".to_owned(),
             frc_table_sha256: String::new(),
             class_max_cell_m: vec![None; 9],
@@ -78,10 +85,11 @@ fn manifest(max_level: u8) -> Manifest {
 fn level(level: u8) -> LevelRecord {
     LevelRecord {
         level,
-        cell_m: 1.0,
+        cell_m: Cell::from(1.0),
         max_error_m: 0.3,
         geometric_error_m: 0.0,
         errors_m: None,
+        sample_error: SampleErrorRecord::default(),
         tightness: None,
         least_class: None,
         simplify_tolerance_m: 0.0,

@@ -66,7 +66,7 @@ impl Context {
             placement,
             scale: Scale {
                 quantum_m,
-                cell_m: frame.level_cell_m(id.z()),
+                cell: frame.level_cell(id.z()),
                 nodes_beneath: (frame.stride(id.z()) as u64 * TILE_NODES as u64).pow(2),
             },
         })

@@ -1,6 +1,6 @@
 //! The TERRAIN section: vertices, triangles, heights, normals.
 
-use corniche_geom::TILE_NODES;
+use corniche_geom::{Cell, TILE_NODES};
 use corniche_tin::{Tin, TinVertex};
 use serde::{Deserialize, Serialize};
 
@@ -39,7 +39,8 @@ struct Record {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scale {
     pub(super) quantum_m: f64,
-    pub(super) cell_m: f64,
+    /// The level's.
+    pub(super) cell: Cell,
     /// No more full-resolution nodes than this lie beneath the tile, border nodes of its finest tiles counted for each.
     pub(super) nodes_beneath: u64,
 }
@@ -241,10 +242,10 @@ fn guess_normals(vertices: &[TinVertex], triangles: &[[u32; 3]], scale: Scale) -
             }
         }
     }
-    let steepness = scale.quantum_m / scale.cell_m;
+    let steepness = scale.cell.to_array().map(|side_m| scale.quantum_m / side_m);
     sums.iter()
         .map(|&[x, y, z]| {
-            let (x, y, z) = (x as f64 * steepness, y as f64 * steepness, z as f64);
+            let (x, y, z) = (x as f64 * steepness[0], y as f64 * steepness[1], z as f64);
             let length = x.abs() + y.abs() + z;
             // `as` turns the not-a-number of a vertex without triangles into 0.
             [x, y].map(|value| (value / length * 127.0).round() as i8)

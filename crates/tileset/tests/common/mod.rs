@@ -5,13 +5,14 @@ use std::io::{Cursor, Write};
 
 use corniche_drape::{SvLine, drape};
 use corniche_geom::{
-    Bounds, CoordinateTable, Frame, LatticePoint, NodeIndex, Polyline, ProjectError, Projection,
-    TileId,
+    Bounds, Cell, CoordinateTable, Frame, LatticePoint, NodeIndex, Polyline, ProjectError,
+    Projection, TileId,
 };
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_tileset::{
     Counts, FORMAT_VERSION, GeoRoad, GrowthRow, LevelRecord, Manifest, PayloadContext, RoadRecord,
-    SettingsRecord, SvRoad, Terrain, TilePayload, VerticalRecord, Writer, encode, pmtiles_order,
+    SampleErrorRecord, ScaleRecord, SettingsRecord, SvRoad, Terrain, TilePayload, VerticalRecord,
+    Writer, encode, pmtiles_order,
 };
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
@@ -52,10 +53,11 @@ pub(crate) fn ids() -> Vec<TileId> {
 fn level(level: u8) -> LevelRecord {
     LevelRecord {
         level,
-        cell_m: frame().level_cell_m(level),
+        cell_m: frame().level_cell(level),
         max_error_m: 8.0,
         geometric_error_m: 2.0,
         errors_m: None,
+        sample_error: SampleErrorRecord::default(),
         tightness: None,
         least_class: Some(7),
         simplify_tolerance_m: 0.0,
@@ -77,11 +79,14 @@ pub(crate) fn manifest() -> Manifest {
         tiling: "local quadtree".to_owned(),
         crs: "EPSG:32632".to_owned(),
         crs_wkt: "PROJCRS[…]".to_owned(),
+        metres_per_unit: [1.0; 2],
         point_scale: 0.9996,
+        scale: ScaleRecord { center: [1.0; 2], least: [1.0; 2], largest: [1.0; 2] },
         frame,
         data_bounds,
         wgs84_bounds: Bounds { min_x: 9.4, min_y: 47.0, max_x: 9.7, max_y: 47.3 },
         resampling: "nodes are the DEM's samples".to_owned(),
+        nodes_are_samples: true,
         vertical: VerticalRecord {
             quantum_m: QUANTUM_M,
             unit: "metre".to_owned(),
@@ -100,7 +105,9 @@ pub(crate) fn manifest() -> Manifest {
             vertical_crs: None,
             vertical_shift_m: 0.0,
             crs: None,
-            cell_m: Some(10.0),
+            cell_m: Some(Cell::from(10.0)),
+            cell_every: None,
+            scale_latitude_deg: None,
             frc_table: "default".to_owned(),
             frc_table_sha256: String::new(),
             class_max_cell_m: vec![None; 9],

@@ -96,7 +96,7 @@ fn volumes_agree_with_the_reference_on_packages() {
             let tiles = tiles_of(&package, level);
             for (place, found) in [("valley", busy_place(&tiles)), ("slope", steep_place(&tiles))] {
                 let Some(target) = found else { continue };
-                let cell_m = manifest.levels[usize::from(level)].cell_m;
+                let cell_m = manifest.levels[usize::from(level)].cell_m.shorter_m();
                 let (scene, camera) = scene_at(&tiles, cell_m, target);
                 measure(&gpu, &format!("{name}, level {level} alone, {place}"), &scene, &camera);
             }

@@ -42,7 +42,7 @@ pub(crate) fn interpolation_error_m(cell_m: f64) -> f64 {
 
 /// How far SV lines reach beyond their tile: eight cells of the level.
 pub(crate) fn width_margin_m(frame: &Frame, level: u8) -> f64 {
-    8.0 * frame.level_cell_m(level)
+    8.0 * frame.level_cell(level).shorter_m()
 }
 
 impl Country {
@@ -77,7 +77,7 @@ impl Country {
         let tin = triangulate(&heights, TinSpec { max_error_m, quantum_m: QUANTUM_M }).unwrap();
         let placement = Placement {
             corner: frame.lattice_of_node(frame.tile_corner(id)),
-            node_steps: stride << frame.lattice_bits(),
+            node_steps: frame.node_steps(id.z()),
             quantum_m: QUANTUM_M,
         };
         let surface = Surface::new(&tin, placement);
@@ -108,9 +108,10 @@ impl Country {
             }
         }
         let terrain = Terrain {
-            normals: normals(&heights, &tin, frame.level_cell_m(id.z())),
+            normals: normals(&heights, &tin, frame.level_cell(id.z())),
             tin,
-            geometric_error_m: max_error_m + interpolation_error_m(frame.level_cell_m(id.z())),
+            geometric_error_m: max_error_m
+                + interpolation_error_m(frame.level_cell(id.z()).shorter_m()),
             height_range_m: [90.0, 1910.0],
             uncovered_nodes: 0,
         };

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use corniche_geom::{Bounds, CoordinateTable, ProjectError, Projection, TileId};
 use corniche_tileset::{
-    Counts, FORMAT_VERSION, LevelRecord, Manifest, PayloadContext, SettingsRecord, VerticalRecord,
-    Writer, encode, pmtiles_order,
+    Counts, FORMAT_VERSION, LevelRecord, Manifest, PayloadContext, SampleErrorRecord, ScaleRecord,
+    SettingsRecord, VerticalRecord, Writer, encode, pmtiles_order,
 };
 
 use super::country::{Country, MAX_ERROR_M, QUANTUM_M, width_margin_m};
@@ -51,10 +51,11 @@ fn manifest(country: &Country) -> Manifest {
     let [[min_x, min_y], [max_x, max_y]] = corners;
     let level = |level| LevelRecord {
         level,
-        cell_m: frame.level_cell_m(level),
+        cell_m: frame.level_cell(level),
         max_error_m: MAX_ERROR_M * frame.stride(level) as f64,
         geometric_error_m: 100.0,
         errors_m: None,
+        sample_error: SampleErrorRecord::default(),
         tightness: None,
         least_class: Some(7),
         simplify_tolerance_m: 0.0,
@@ -75,6 +76,8 @@ fn manifest(country: &Country) -> Manifest {
         vertical_shift_m: 0.0,
         crs: None,
         cell_m: None,
+        cell_every: None,
+        scale_latitude_deg: None,
         frc_table: "none".to_owned(),
         frc_table_sha256: String::new(),
         class_max_cell_m: vec![None; 9],
@@ -86,11 +89,14 @@ fn manifest(country: &Country) -> Manifest {
         tiling: "local quadtree".to_owned(),
         crs: "flat".to_owned(),
         crs_wkt: String::new(),
+        metres_per_unit: [1.0; 2],
         point_scale: 1.0,
+        scale: ScaleRecord { center: [1.0; 2], least: [1.0; 2], largest: [1.0; 2] },
         frame,
         data_bounds,
         wgs84_bounds: Bounds { min_x, min_y, max_x, max_y },
         resampling: "none".to_owned(),
+        nodes_are_samples: true,
         vertical: VerticalRecord {
             quantum_m: QUANTUM_M,
             unit: "metre".to_owned(),

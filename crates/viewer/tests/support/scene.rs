@@ -55,7 +55,7 @@ impl Tile {
         skirt_depth_m: f64,
     ) -> Self {
         let frame = support::frame();
-        let margin_m = 8.0 * frame.level_cell_m(id.z());
+        let margin_m = 8.0 * frame.level_cell(id.z()).shorter_m();
         let bounds = frame.tile_bounds(id);
         let triangles = support::triangles(id, ground);
         let mut lines = TileLines { width_margin_m: margin_m, ..TileLines::default() };

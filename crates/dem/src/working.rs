@@ -1,0 +1,266 @@
+//! The working CRS: which one, and how its coordinates become working metres.
+
+use corniche_geom::Bounds;
+use gdal::errors::GdalError;
+use gdal::spatial_ref::SpatialRef;
+
+use crate::crs::Crs;
+use crate::mosaic::Mosaic;
+use crate::operation::Operation;
+use crate::scale::{self, Scale};
+use crate::{Dem, DemError};
+
+/// The DEM's own CRS is the working CRS where lengths are then true within this, all over the data: nodes that are the
+/// samples themselves are worth more than 3 % of a width.
+const OWN_TOLERANCE: f64 = 0.03;
+/// A projection this true to scale, along x and y and all over the data, keeps its unit; UTM is taken where it is so in
+/// all directions.
+const TRUE_TOLERANCE: f64 = 0.01;
+/// UTM is defined between these latitudes.
+const UTM_LATITUDES_DEG: [f64; 2] = [-80.0, 84.0];
+/// Significant digits of a factor that PROJ's scale decides: enough for a tenth of a millimetre in a hundred kilometres,
+/// few enough that versions of PROJ agree.
+const FACTOR_DIGITS: usize = 9;
+
+/// A CRS with the factors that make its coordinates working metres.
+///
+/// Working x = first coordinate × `metres_per_unit[0]`, y likewise. No PROJ method is invented for it: `eqc` is
+/// spherical in some versions of PROJ and ellipsoidal in others.
+#[derive(Debug, Clone)]
+pub(crate) struct Working {
+    pub(crate) crs: Crs,
+    /// East and north; negative for an axis that counts westwards or southwards.
+    pub(crate) metres_per_unit: [f64; 2],
+    /// First coordinate in the middle of the data: longitudes are the images nearest to it, beyond ±180° too.
+    pub(crate) middle: f64,
+}
+
+/// How long lengths come out in working metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanScale {
+    /// Working metres per true metre along x and y, in the middle of the data.
+    pub center: [f64; 2],
+    /// The smallest along x and y, over corners, middles of sides and centre of every file.
+    pub least: [f64; 2],
+    /// The largest.
+    pub largest: [f64; 2],
+}
+
+impl Working {
+    fn new(crs: Crs, metres_per_unit: [f64; 2], dem: &Dem) -> Self {
+        let own = &dem.mosaics[0];
+        let middle = if crs.is_same(&own.crs) { own.middle()[0] } else { dem.center_deg[0] };
+        Self { crs, metres_per_unit, middle }
+    }
+
+    /// The DEM's own CRS with the factors that make lengths true at the standard latitude; `None` where it has none.
+    fn own(dem: &Dem, latitude_deg: f64) -> Result<Option<Self>, DemError> {
+        let own = &dem.mosaics[0].crs;
+        let factors = match own.metres_per_turn_unit(latitude_deg)? {
+            Some(factors) => factors,
+            None => {
+                let unit = own.signs().map(|sign| sign * own.unit_m);
+                let plain = Self::new(own.clone(), unit, dem);
+                let is_true = plain.rim_scales(dem)?.is_some_and(|scales| {
+                    let off = |scale: &Scale| scale.along.map(|along| (along - 1.0).abs());
+                    scales.iter().flat_map(off).all(|off| off <= TRUE_TOLERANCE)
+                });
+                if is_true {
+                    return Ok(Some(plain));
+                }
+                let [lon, _] = dem.wgs84_bounds.center();
+                let Some(scale) = plain.scale_at(dem, [lon, latitude_deg])? else {
+                    return Ok(None);
+                };
+                [0, 1].map(|axis| rounded(unit[axis] / scale.along[axis], FACTOR_DIGITS))
+            }
+        };
+        Ok(Some(Self::new(own.clone(), factors, dem)))
+    }
+
+    /// Scale at a place.
+    fn scale_at(&self, dem: &Dem, place_deg: [f64; 2]) -> Result<Option<Scale>, DemError> {
+        let wgs84 = Crs::wgs84()?;
+        let mut points = [place_deg];
+        Operation::into_working(&wgs84, self, Some(dem.wgs84_bounds)).apply(&mut points)?;
+        let back = Operation::out_of_working(self, &wgs84, Some(dem.wgs84_bounds));
+        Ok(scale::scales(&back, &points)?[0])
+    }
+
+    /// Scales over corners, middles of sides and centre of every file; `None` when one of them lies outside the CRS.
+    fn rim_scales(&self, dem: &Dem) -> Result<Option<Vec<Scale>>, DemError> {
+        let wgs84 = Crs::wgs84()?;
+        let back = Operation::out_of_working(self, &wgs84, Some(dem.wgs84_bounds));
+        let mut all = Vec::new();
+        for mosaic in &dem.mosaics {
+            let mut points = rim_of(mosaic);
+            Operation::into_working(&mosaic.crs, self, Some(dem.wgs84_bounds))
+                .apply(&mut points)?;
+            match scale::scales(&back, &points)?.into_iter().collect::<Option<Vec<Scale>>>() {
+                Some(scales) => all.extend(scales),
+                None => return Ok(None),
+            }
+        }
+        Ok(Some(all))
+    }
+
+    /// Whether lengths are true within `tolerance` in every direction, all over the data.
+    fn is_true_within(&self, dem: &Dem, tolerance: f64) -> Result<bool, DemError> {
+        let scales = self.rim_scales(dem)?;
+        Ok(scales.is_some_and(|all| all.iter().all(|scale| scale.deviation <= tolerance)))
+    }
+
+    /// How long lengths come out.
+    pub(crate) fn scale(&self, dem: &Dem) -> Result<PlanScale, DemError> {
+        let outside = || DemError::OutsideCrs { crs: self.crs.label.clone() };
+        let center = self.scale_at(dem, dem.center_deg)?.ok_or_else(outside)?;
+        let mut scale =
+            PlanScale { center: center.along, least: center.along, largest: center.along };
+        // Corners beyond the CRS (of a CRS that was asked for) say nothing.
+        for Scale { along, .. } in self.rim_scales(dem)?.unwrap_or_default() {
+            for axis in 0..2 {
+                scale.least[axis] = scale.least[axis].min(along[axis]);
+                scale.largest[axis] = scale.largest[axis].max(along[axis]);
+            }
+        }
+        Ok(scale)
+    }
+}
+
+/// Chooses the working CRS; see [`Dem::plan`].
+pub(crate) fn choose(
+    dem: &Dem,
+    asked: Option<&str>,
+    scale_latitude_deg: Option<f64>,
+) -> Result<Working, DemError> {
+    let latitude_deg = match scale_latitude_deg {
+        Some(given) if (-89.0..=89.0).contains(&given) => given,
+        Some(given) => return Err(DemError::ScaleLatitude { latitude_deg: given }),
+        None => standard_latitude_deg(dem.wgs84_bounds),
+    };
+    let own = || Working::own(dem, latitude_deg);
+    match asked {
+        None => {}
+        Some("dem") => {
+            let crs = || dem.mosaics[0].crs.label.clone();
+            return match own()? {
+                Some(own) if is_right_handed(&own, dem)? => Ok(own),
+                _ => Err(DemError::OwnCrs { crs: crs() }),
+            };
+        }
+        Some("utm") => {
+            let bounds = dem.wgs84_bounds;
+            return utm(dem)?.ok_or(DemError::NoUtm { south: bounds.min_y, north: bounds.max_y });
+        }
+        Some(text) => {
+            let (crs, _) = Crs::from_text("--crs", text)?;
+            let refuse = || DemError::WorkingCrs { text: text.to_owned() };
+            if crs.is_same(&dem.mosaics[0].crs) {
+                let own = own()?.ok_or_else(refuse)?;
+                return if is_right_handed(&own, dem)? { Ok(own) } else { Err(refuse()) };
+            }
+            if !crs.is_projected() {
+                return Err(refuse());
+            }
+            let factors = crs.signs().map(|sign| sign * crs.unit_m);
+            let working = Working::new(crs, factors, dem);
+            let outside = || DemError::OutsideCrs { crs: working.crs.label.clone() };
+            let scale = working.scale_at(dem, dem.center_deg)?.ok_or_else(outside)?;
+            return if scale.deviation.is_finite() { Ok(working) } else { Err(refuse()) };
+        }
+    }
+    if let Some(own) = own()?
+        && own.is_true_within(dem, OWN_TOLERANCE)?
+    {
+        return Ok(own);
+    }
+    if let Some(utm) = utm(dem)?
+        && utm.is_true_within(dem, TRUE_TOLERANCE)?
+    {
+        return Ok(utm);
+    }
+    equal_area(dem)
+}
+
+/// Whether y lies to the left of x in the middle of the data.
+fn is_right_handed(working: &Working, dem: &Dem) -> Result<bool, DemError> {
+    let scale = working.scale_at(dem, dem.center_deg)?;
+    Ok(scale.is_some_and(|scale| scale.deviation.is_finite()))
+}
+
+/// The latitude at which lengths are true: the middle of the data, rounded to 10⁻⁶ degrees and then to the nearest half
+/// degree (ties towards the equator), so that small changes of the extent leave the grid where it is.
+fn standard_latitude_deg(bounds: Bounds) -> f64 {
+    let middle = (bounds.center()[1] * 1e6).round() / 1e6;
+    let halves = middle.abs() * 2.0;
+    // Just below the tie goes down.
+    let rounded = if halves.fract() > 0.5 { halves.ceil() } else { halves.floor() };
+    (rounded / 2.0).copysign(middle) + 0.0
+}
+
+/// The UTM zone of the data's centre; `None` where UTM is not defined.
+fn utm(dem: &Dem) -> Result<Option<Working>, DemError> {
+    let bounds = dem.wgs84_bounds;
+    if bounds.min_y < UTM_LATITUDES_DEG[0] || bounds.max_y > UTM_LATITUDES_DEG[1] {
+        return Ok(None);
+    }
+    let [lon, lat] = dem.center_deg;
+    let zone = (((lon + 180.0) / 6.0).floor() as u32).min(59) + 1;
+    let code = if lat < 0.0 { 32700 } else { 32600 } + zone;
+    let (crs, _) = Crs::from_text("the chosen", &format!("EPSG:{code}"))?;
+    Ok(Some(Working::new(crs, [1.0; 2], dem)))
+}
+
+/// Lambert azimuthal equal-area about the data's centre, rounded to whole degrees so that small changes of the
+/// extent leave the grid where it is.
+fn equal_area(dem: &Dem) -> Result<Working, DemError> {
+    let [lon, lat] = dem.center_deg.map(f64::round);
+    let text = format!(
+        "+proj=laea +lat_0={lat} +lon_0={lon} +x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs"
+    );
+    let reference = SpatialRef::from_proj4(&text).map_err(|source: GdalError| {
+        DemError::CrsText { option: "the chosen", text, source: source.into() }
+    })?;
+    let mut crs = Crs::from_spatial_ref(&reference)?;
+    crs.label = format!("Lambert azimuthal equal-area about {lat}, {lon}");
+    Ok(Working::new(crs, [1.0; 2], dem))
+}
+
+/// CRS positions of the corners, the middles of the sides and the centre of every file.
+fn rim_of(mosaic: &Mosaic) -> Vec<[f64; 2]> {
+    let mut points = Vec::new();
+    for file in &mosaic.files {
+        let ends = |axis: usize| {
+            let (low, high) = (file.rect.min[axis] as f64, (file.rect.max[axis] - 1) as f64);
+            [low, f64::midpoint(low, high), high]
+        };
+        for column in ends(0) {
+            points.extend(ends(1).map(|row| mosaic.crs_from_sample.crs_from_pixel([column, row])));
+        }
+    }
+    points
+}
+
+/// A number rounded to so many significant decimal digits.
+pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "half degrees are exact")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_standard_latitude_is_the_middle_to_half_a_degree() {
+        let of = |min_y: f64, max_y: f64| {
+            standard_latitude_deg(Bounds { min_x: 9.0, min_y, max_x: 10.0, max_y })
+        };
+        assert_eq!(of(47.0, 48.0), 47.5);
+        assert_eq!(of(46.999_999_9, 48.000_000_1), 47.5);
+        assert_eq!(of(47.0, 47.5), 47.0, "a tie goes towards the equator");
+        assert_eq!(of(-47.5, -47.0), -47.0, "also in the south");
+        assert_eq!(of(47.0, 47.500_01), 47.5);
+        assert_eq!(of(-0.2, 0.1), 0.0);
+    }
+}

@@ -1,0 +1,137 @@
+//! The error at the DEM's own samples: sums that can be merged in any order.
+
+use corniche_tileset::SampleErrorRecord;
+
+/// Distances are summed in whole parts of the height quantum: so many to one.
+const PARTS_TO_A_QUANTUM: f64 = 256.0;
+/// Distances beyond so many quanta share the last bin; it counts then as if all were as large as the largest.
+const MOST_BINS: usize = 1 << 20;
+/// Longest distance summed, in parts: its square times 2^60 samples fits 128 bits.
+const MOST_PARTS: f64 = (1_u64 << 33) as f64;
+
+/// How far a level's TINs are from samples of the DEM.
+///
+/// Integers and a maximum: what comes out does not depend on the order in which samples come or sums are merged.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct SampleSums {
+    quantum_m: f64,
+    on_tin: u64,
+    off_tin: u64,
+    max_m: f64,
+    /// Squares of distances in parts of a quantum.
+    squares: u128,
+    /// How many distances lie in each stretch of one quantum, from 0 on.
+    bins: Vec<u64>,
+}
+
+impl SampleSums {
+    pub(crate) fn new(quantum_m: f64) -> Self {
+        Self { quantum_m, on_tin: 0, off_tin: 0, max_m: 0.0, squares: 0, bins: Vec::new() }
+    }
+
+    /// Takes in a sample: its distance to the TIN, `None` where there is no triangle.
+    #[inline]
+    pub(crate) fn add(&mut self, distance_m: Option<f64>) {
+        let Some(distance_m) = distance_m else {
+            self.off_tin += 1;
+            return;
+        };
+        self.on_tin += 1;
+        self.max_m = self.max_m.max(distance_m);
+        let quanta = distance_m / self.quantum_m;
+        let parts = (quanta * PARTS_TO_A_QUANTUM).round().min(MOST_PARTS) as u64;
+        self.squares += u128::from(parts * parts);
+        let bin = (quanta as usize).min(MOST_BINS - 1);
+        if bin >= self.bins.len() {
+            self.bins.resize(bin + 1, 0);
+        }
+        self.bins[bin] += 1;
+    }
+
+    pub(crate) fn merge(&mut self, other: &Self) {
+        self.on_tin += other.on_tin;
+        self.off_tin += other.off_tin;
+        self.max_m = self.max_m.max(other.max_m);
+        self.squares += other.squares;
+        if other.bins.len() > self.bins.len() {
+            self.bins.resize(other.bins.len(), 0);
+        }
+        for (own, &others) in self.bins.iter_mut().zip(&other.bins) {
+            *own += others;
+        }
+    }
+
+    /// What the package stores of them.
+    pub(crate) fn record(&self) -> SampleErrorRecord {
+        let part_m = self.quantum_m / PARTS_TO_A_QUANTUM;
+        let mean = self.squares as f64 / self.on_tin.max(1) as f64;
+        SampleErrorRecord {
+            on_tin: self.on_tin,
+            off_tin: self.off_tin,
+            max_m: self.max_m,
+            rms_m: (mean.sqrt() * part_m).min(self.max_m),
+            p99_m: self.p99_m(),
+        }
+    }
+
+    /// The end of the bin in which the distance lies that 99 % of all do not exceed.
+    fn p99_m(&self) -> f64 {
+        let wanted = self.on_tin - self.on_tin / 100;
+        let mut seen = 0;
+        for (bin, &count) in self.bins.iter().enumerate() {
+            seen += count;
+            if seen >= wanted && bin < MOST_BINS - 1 {
+                return ((bin + 1) as f64 * self.quantum_m).min(self.max_m);
+            }
+        }
+        self.max_m
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn figures_of_an_even_spread() {
+        let mut sums = SampleSums::new(0.25);
+        (0..1000).for_each(|k| sums.add(Some(f64::from(k) / 100.0)));
+        sums.add(None);
+        let record = sums.record();
+        assert_eq!((record.on_tin, record.off_tin), (1000, 1));
+        assert!((record.max_m - 9.99).abs() < 1e-12);
+        // Of 0 to 10 evenly: 10 / √3.
+        assert!((record.rms_m - 5.771).abs() < 0.002, "{record:?}");
+        // 990 of them are below 9.9, in the bin from 9.75 to 10.
+        assert!((record.p99_m - 9.99).abs() < 1e-12, "{record:?}");
+        assert_eq!(SampleSums::new(1.0).record().on_tin, 0);
+    }
+
+    #[test]
+    fn absurd_distances_are_counted_and_do_not_overflow() {
+        let mut sums = SampleSums::new(1e-9);
+        (0..200).for_each(|_| sums.add(Some(1e18)));
+        let record = sums.record();
+        assert!((record.max_m - 1e18).abs() < 1.0 && (record.p99_m - 1e18).abs() < 1.0);
+    }
+
+    proptest! {
+        /// Any split and order gives the same record, to the last bit.
+        #[test]
+        fn order_does_not_matter(
+            distances_m in proptest::collection::vec(proptest::option::of(0.0..1e4_f64), 0..60), cut in 0_usize..60,
+        ) {
+            let sum = |distances_m: &[Option<f64>]| {
+                let mut sums = SampleSums::new(0.125);
+                distances_m.iter().for_each(|&distance_m| sums.add(distance_m));
+                sums
+            };
+            let (first, last) = distances_m.split_at(cut.min(distances_m.len()));
+            let mut turned = sum(last);
+            turned.merge(&sum(first));
+            prop_assert_eq!(turned, sum(&distances_m));
+        }
+    }
+}

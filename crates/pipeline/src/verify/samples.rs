@@ -1,0 +1,137 @@
+//! P2 at the DEM's own samples: the figures that the package states, found again.
+
+use std::collections::BTreeMap;
+
+use corniche_dem::{Dem, GridPlan};
+use corniche_geom::{Frame, TileId};
+use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, Sections};
+
+use super::{Check, VerifyError, VerifySettings, dem::ROUNDING_M, ground::Ground};
+use crate::{Observer, Stage, sample_error::SampleSums, workers};
+
+/// Tiles whose ground a worker keeps. Blocks of samples are compact, so these are enough not to load any twice in a row.
+const GROUNDS: usize = 64;
+
+/// Sums for every level, root first, with nothing in them.
+pub(super) fn none(manifest: &Manifest) -> Vec<SampleSums> {
+    let levels = usize::from(manifest.frame.max_level()) + 1;
+    vec![SampleSums::new(manifest.vertical.quantum_m); levels]
+}
+
+/// Takes others in, level by level.
+pub(super) fn merge(sums: &mut [SampleSums], others: &[SampleSums]) {
+    for (sums, others) in sums.iter_mut().zip(others) {
+        sums.merge(others);
+    }
+}
+
+/// Measures every level at every sample used; for a DEM whose samples are not the nodes.
+pub(super) fn measure(
+    package: &FilePackage,
+    dem: &Dem,
+    plan: &GridPlan,
+    settings: &VerifySettings,
+    observer: &dyn Observer,
+) -> Result<Vec<SampleSums>, VerifyError> {
+    let manifest = package.manifest();
+    let areas = dem.sample_areas();
+    let mut sums = none(manifest);
+    observer.begin(Stage::Samples, Some(areas.len() as u64));
+    workers::in_order(
+        settings.threads,
+        areas.len(),
+        || Ok((dem.reader(plan)?, BTreeMap::<TileId, Ground>::new())),
+        |(reader, grounds), index| {
+            if observer.is_cancelled() {
+                return Err(VerifyError::Interrupted);
+            }
+            let block = reader.used_samples(&areas[index])?;
+            let mut found = none(manifest);
+            for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
+                for (level, sums) in found.iter_mut().enumerate() {
+                    let id = tile_at(&manifest.frame, level as u8, position_m);
+                    let ground_m = id.and_then(|id| {
+                        if grounds.len() >= GROUNDS && !grounds.contains_key(&id) {
+                            grounds.clear();
+                        }
+                        let ground = grounds.entry(id).or_insert_with(|| load(package, id));
+                        ground.height_m(cells(&manifest.frame, id, position_m))
+                    });
+                    sums.add(ground_m.map(|ground_m| (ground_m - f64::from(height_m)).abs()));
+                }
+            }
+            Ok(found)
+        },
+        |_, found| {
+            merge(&mut sums, &found);
+            observer.advance(Stage::Samples, 1);
+            Ok(())
+        },
+    )?;
+    observer.end(Stage::Samples);
+    Ok(sums)
+}
+
+/// A tile's ground; one that is not there, or cannot be read, covers nothing.
+fn load(package: &FilePackage, id: TileId) -> Ground {
+    let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
+    let tin = payload.and_then(|payload| payload.terrain).map(|terrain| terrain.tin);
+    Ground::new(&tin.unwrap_or_default(), package.manifest().vertical.quantum_m)
+}
+
+/// The tile of a level that a position belongs to: on a border the one in the east or south, but for the root's own.
+fn tile_at(frame: &Frame, level: u8, position_m: [f64; 2]) -> Option<TileId> {
+    // To the lattice's half step, as the format has it.
+    let [x, y] = frame.position_m(frame.snap(position_m)?);
+    let root = frame.tile_bounds(TileId::ROOT);
+    let tiles = f64::from(1_u32 << level);
+    let column = (x - root.min_x) / root.width() * tiles;
+    let row = (root.max_y - y) / root.height() * tiles;
+    let index = |at: f64| {
+        // Borders are exact in nodes, and a sum of rounded numbers here.
+        let at = if (at - at.round()).abs() < 1e-10 * tiles { at.round() } else { at };
+        (0.0..=tiles).contains(&at).then(|| at.min(tiles - 1.0) as u32)
+    };
+    TileId::new(level, index(column)?, index(row)?).ok()
+}
+
+/// Where a position lies in a tile, in its own cells: column, row.
+fn cells(frame: &Frame, id: TileId, [x, y]: [f64; 2]) -> [f64; 2] {
+    let corner = frame.tile_corner(id);
+    let cell = frame.level_cell(id.z());
+    [(x - frame.x_m(corner.i)) / cell.east_m, (frame.y_m(corner.j) - y) / cell.north_m]
+}
+
+/// Puts the figures found beside those stated.
+pub(super) fn judge(manifest: &Manifest, sums: &[SampleSums]) -> [Check; 2] {
+    let mut stated = Check::new("P2: the error at the DEM's own samples is what levels say");
+    let mut bound = Check::new(
+        "P2: where nodes are samples, samples are within --max-error on the finest level",
+    );
+    let quantum_m = manifest.vertical.quantum_m;
+    for (record, sums) in manifest.levels.iter().zip(sums) {
+        let (said, found) = (record.sample_error, sums.record());
+        stated.look(agree(said, found, quantum_m), || {
+            format!("level {} says {said:?}, found {found:?}", record.level)
+        });
+    }
+    if manifest.nodes_are_samples
+        && let Some(finest) = sums.last()
+    {
+        let max_m = finest.record().max_m;
+        bound.look(max_m <= manifest.settings.max_error_m + quantum_m, || {
+            format!("{max_m} m at a sample, --max-error is {} m", manifest.settings.max_error_m)
+        });
+    }
+    [stated, bound]
+}
+
+/// Whether two figures are the same but for rounding: distances were computed in two ways.
+fn agree(said: SampleErrorRecord, found: SampleErrorRecord, quantum_m: f64) -> bool {
+    let near = |a: f64, b: f64, slack: f64| (a - b).abs() <= slack + 1e-9 * a.max(b);
+    said.on_tin == found.on_tin
+        && said.off_tin == found.off_tin
+        && near(said.max_m, found.max_m, ROUNDING_M)
+        && near(said.rms_m, found.rms_m, quantum_m / 100.0)
+        && near(said.p99_m, found.p99_m, quantum_m)
+}
