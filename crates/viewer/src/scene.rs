@@ -4,7 +4,6 @@ mod bridges;
 
 use std::slice;
 
-use corniche_geom::Bounds;
 use corniche_roads::FunctionalRoadClass;
 
 use crate::{
@@ -201,11 +200,10 @@ pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
     else {
         return false;
     };
-    let half_m = tile.width_m / 2.0;
-    let [x, y, _] = tile.reference_m;
-    let plan =
-        Bounds { min_x: x - half_m, min_y: y - half_m, max_x: x + half_m, max_y: y + half_m };
-    let ground = WorldBox::new(plan, summary.height_range_m.map(|m| m * view.vertical_scale()));
+    let ground = WorldBox::new(
+        tile.plan_bounds(),
+        summary.height_range_m.map(|m| m * view.vertical_scale()),
+    );
     let eye = view.camera.eye_in_world();
     let far_m = ground.corners().map(|corner| corner.distance(eye)).fold(0.0, f64::max);
     let scaling = view.roads.width_scaling(view.style);

@@ -36,7 +36,11 @@ fn tile(step: u16, height_m: impl Fn(f64, f64) -> f64, roads: &[(u8, [DVec2; 2])
     let mesh = triangles(TileId::ROOT, &ground);
     let lines =
         roads.iter().map(|(number, [from, to])| ground_line(*number, lay(*from, *to, &mesh)));
-    let lines = TileLines { ground: lines.collect(), ..TileLines::default() };
+    let lines = TileLines {
+        ground: lines.collect(),
+        plan: Vec::new(),
+        width_margin_m: support::WIDTH_MARGIN_M,
+    };
     TileGeometry::assemble(TileId::ROOT, Some(&ground), &lines, &frame(), support::QUANTUM_M)
 }
 

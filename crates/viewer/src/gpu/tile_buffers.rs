@@ -17,7 +17,7 @@ pub struct TileBuffers {
     pub(super) volumes: RoadBuffers,
     pub(super) reference_m: [f64; 3],
     pub(super) width_margin_m: f64,
-    pub(super) width_m: f64,
+    pub(super) size_m: [f64; 2],
     pub(super) id: TileId,
     triangles: u64,
 }
@@ -130,7 +130,7 @@ impl TileBuffers {
             volumes,
             reference_m: tile.reference_m,
             width_margin_m: tile.width_margin_m,
-            width_m: tile.width_m,
+            size_m: tile.size_m,
             id: tile.id,
             triangles: (tile.ground.surface_indices / 3) as u64,
         }

@@ -94,7 +94,7 @@ pub(super) fn tile_rows(view: &FrameView<'_>, tile: &DrawTile<'_>, number: u32) 
             height_m,
             tile.buffers.width_margin_m,
             f64::from(number),
-            NearHeights::reach_m(tile.buffers.width_m),
+            NearHeights::reach_m(tile.buffers.size_m),
         )),
     ]
 }

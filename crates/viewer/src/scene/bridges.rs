@@ -14,8 +14,8 @@ const MAX_OFFSET_SHARE: f64 = 2.0 / 256.0;
 pub struct BorderTile<'a> {
     /// Which.
     pub id: TileId,
-    /// Side of its square, metres.
-    pub width_m: f64,
+    /// The shorter of its sides, metres.
+    pub side_m: f64,
     /// How far its skirt hangs, true metres.
     pub skirt_depth_m: f64,
     /// Where its roads meet its border.
@@ -86,7 +86,7 @@ fn partner<'a>(end: &RoadEnd, beyond: &BorderTile<'a>) -> Option<&'a RoadEnd> {
         .ends
         .iter()
         .filter(|other| other.way_id == end.way_id && other.side == end.side.opposite())
-        .filter(|other| distance_m(other) <= MAX_OFFSET_SHARE * beyond.width_m)
+        .filter(|other| distance_m(other) <= MAX_OFFSET_SHARE * beyond.side_m)
         .min_by(|a, b| distance_m(a).total_cmp(&distance_m(b)))
 }
 
@@ -124,8 +124,8 @@ mod tests {
     fn check(coarse: &[RoadEnd], fine: &[RoadEnd], expected: &[[[f64; 2]; 2]]) {
         let id = |z, x, y| TileId::new(z, x, y).expect("a tile");
         let tiles = [
-            BorderTile { id: id(1, 0, 0), width_m: 200.0, skirt_depth_m: 5.0, ends: coarse },
-            BorderTile { id: id(2, 2, 0), width_m: 100.0, skirt_depth_m: 3.0, ends: fine },
+            BorderTile { id: id(1, 0, 0), side_m: 200.0, skirt_depth_m: 5.0, ends: coarse },
+            BorderTile { id: id(2, 2, 0), side_m: 100.0, skirt_depth_m: 3.0, ends: fine },
         ];
         let found: Vec<_> = bridges(&tiles).iter().map(|bridge| bridge.ends_m).collect();
         assert_eq!(found, expected);
@@ -156,8 +156,8 @@ mod tests {
         let coarse = [end(7, Side::East, [200.0, 150.0], 10.0)];
         let fine = [end(7, Side::West, [200.0, 150.0], 12.0)];
         let tiles = [
-            BorderTile { id: id(1, 0, 0), width_m: 200.0, skirt_depth_m: 5.0, ends: &coarse },
-            BorderTile { id: id(2, 2, 0), width_m: 100.0, skirt_depth_m: 3.0, ends: &fine },
+            BorderTile { id: id(1, 0, 0), side_m: 200.0, skirt_depth_m: 5.0, ends: &coarse },
+            BorderTile { id: id(2, 2, 0), side_m: 100.0, skirt_depth_m: 3.0, ends: &fine },
         ];
         let found = bridges(&tiles);
         assert_eq!((found[0].fine, found[0].coarse), (1, 0));

@@ -49,8 +49,8 @@ pub struct TileGeometry {
     pub volumes: RoadVolumes,
     /// Half widths beyond this are not drawn as volumes.
     pub width_margin_m: f64,
-    /// Side of its square.
-    pub width_m: f64,
+    /// Its sides, east and north.
+    pub size_m: [f64; 2],
 }
 
 impl TileGeometry {
@@ -102,7 +102,7 @@ impl TileGeometry {
                 relief.near(ends_m)
             }),
             width_margin_m: lines.width_margin_m,
-            width_m: bounds.width(),
+            size_m: [bounds.width(), bounds.height()],
         }
     }
 
@@ -121,6 +121,14 @@ impl TileGeometry {
         let surface = surface(id, terrain.filter(|_| has_roads), frame, quantum_m);
         let lines = TileLines::of_payload(payload, surface.as_ref(), frame, width_margin_m)?;
         Ok(Self::on_surface(id, terrain, surface.as_ref(), &lines, frame, quantum_m))
+    }
+
+    /// The rectangle that it covers in the working CRS.
+    #[must_use]
+    pub fn plan_bounds(&self) -> Bounds {
+        let ([x, y, _], [east_m, north_m]) =
+            (self.reference_m, self.size_m.map(|side_m| side_m / 2.0));
+        Bounds { min_x: x - east_m, min_y: y - north_m, max_x: x + east_m, max_y: y + north_m }
     }
 
     /// True height of the ground at a position in the working CRS; `None` where this tile has no ground.

@@ -3,7 +3,7 @@ use corniche_geom::{Bounds, Frame, TileId};
 use corniche_tin::Surface;
 
 use super::{
-    Bed, GroundLine, NearHeights,
+    Bed, GroundLine,
     roads::Piece,
     slopes::{Plane, Slopes},
 };
@@ -29,14 +29,15 @@ impl<'a> Relief<'a> {
         width_margin_m: f64,
     ) -> Self {
         let tile = frame.tile_bounds(id);
-        Self { frame, surface, tile, reaches_m: Bed::reaches_m(tile.width(), width_margin_m) }
+        let reaches_m = Bed::reaches_m([tile.width(), tile.height()], width_margin_m);
+        Self { frame, surface, tile, reaches_m }
     }
 
     /// True heights of the ground beneath a segment in plan and how many metres they rise per metre away from it;
     /// `None` when there is no ground within [`NearHeights::reach_m`].
     pub(super) fn near(&self, ends_m: [[f64; 2]; 2]) -> Option<([f64; 2], f64)> {
         let ends = ends_m.map(|at| self.frame.fraction_of_position(at));
-        let reach_m = NearHeights::reach_m(self.tile.width());
+        let [reach_m, ..] = self.reaches_m;
         let found = near_ground(ends, self.surface?, reach_m / self.frame.lattice_step_m())?;
         Some((found.range_m, found.rise_m / self.frame.lattice_step_m()))
     }

@@ -1,4 +1,4 @@
-use corniche_geom::{NodeIndex, TILE_CELLS, TileId};
+use corniche_geom::{Cell, NodeIndex, TILE_CELLS, TileId};
 use corniche_tin::{Placement, Tin, TinVertex};
 use proptest::prelude::*;
 
@@ -8,7 +8,13 @@ const STEP: u16 = 8;
 
 /// A tile with a vertex every eight nodes; heights by column and row of these, in steps of half a metre.
 fn ground(height_q: impl Fn(u16, u16) -> i32) -> (Frame, Surface) {
-    let frame = Frame::new([0.5, 0.25], 10.0, NodeIndex { i: 0, j: 256 }, 0).unwrap();
+    let frame = Frame::new(
+        [0.5, 0.25],
+        Cell { east_m: 10.0, north_m: 15.0 },
+        NodeIndex { i: 0, j: 256 },
+        0,
+    )
+    .unwrap();
     let count = TILE_CELLS as u16 / STEP + 1;
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for row in 0..count {
@@ -39,7 +45,7 @@ proptest! {
     #[test]
     fn no_ground_leaves_a_plane_by_more(
         seed in 0_i32..1000, steep in 1_i32..60, angle_rad in 0.0..6.3_f64,
-        at_m in [0.0..2560.0_f64, 0.0..2560.0_f64], half_m in [1.0..600.0_f64, 1.0..300.0_f64],
+        at_m in [0.0..2560.0_f64, 0.0..3840.0_f64], half_m in [1.0..600.0_f64, 1.0..300.0_f64],
         height_m in -500.0..3000.0_f64, gradient in [-1.0..1.0_f64, -1.0..1.0_f64],
         samples in prop::collection::vec([-1.0..=1.0_f64, -1.0..=1.0_f64], 60),
     ) {
@@ -66,8 +72,8 @@ proptest! {
 fn a_plane_does_not_leave_itself() {
     let (frame, surface) = ground(|column, row| 64 * i32::from(column) - 32 * i32::from(row));
     let slopes = Slopes::of_surface(&surface, frame.tile_bounds(TileId::ROOT), &frame);
-    // 32 m each 80 m eastwards, 16 m each 80 m northwards; at the south-west it is 32 rows of 16 m below sea level.
-    let plane = Plane { at_m: [0.5, 0.25], height_m: -512.0, gradient: [0.4, 0.2] };
+    // 32 m each 80 m eastwards, 16 m each 120 m northwards; at the south-west it is 32 rows of 16 m below sea level.
+    let plane = Plane { at_m: [0.5, 0.25], height_m: -512.0, gradient: [0.4, 16.0 / 120.0] };
     let leaving_m = slopes.leaving(&plane, turned([1280.0, 1280.0], 0.3, [400.0, 100.0]));
     assert!(leaving_m.iter().all(|m| *m < 1e-6), "{leaving_m:?}");
     // One that is as high in the south-west and level is left by 0.4 m a metre eastwards at most.

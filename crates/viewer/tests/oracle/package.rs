@@ -153,7 +153,7 @@ fn scene_at(tiles: &[Tile], cell_m: f64, target: DVec3) -> (Scene, Camera) {
         .iter()
         .filter(|tile| {
             let [x, y, _] = tile.geometry.reference_m;
-            (x - target.x).hypot(y - target.y) < 1.5 * tile.geometry.width_m
+            (x - target.x).hypot(y - target.y) < 1.5 * tile.geometry.size_m[0]
         })
         .cloned()
         .collect();

@@ -26,6 +26,8 @@ use glam::{DVec2, DVec3};
 
 pub(crate) const CELL_M: f64 = 10.0;
 pub(crate) const QUANTUM_M: f64 = 1.0 / 64.0;
+/// How wide roads may be drawn to each side where a test does not say it.
+pub(crate) const WIDTH_MARGIN_M: f64 = 1000.0;
 
 /// A device, or `None` and a line on the terminal; with `CORNICHE_REQUIRE_GPU=1` no device is a failure.
 pub(crate) fn gpu() -> Option<Gpu> {
@@ -253,7 +255,11 @@ pub(crate) fn draw_exaggerated(
     let buffers: Vec<(TileBuffers, f64)> = scene
         .iter()
         .map(|(id, terrain, lines, skirt_depth_m)| {
-            let lines = TileLines { ground: lines.clone(), ..TileLines::default() };
+            let lines = TileLines {
+                ground: lines.clone(),
+                plan: Vec::new(),
+                width_margin_m: WIDTH_MARGIN_M,
+            };
             let tile = TileGeometry::assemble(*id, Some(terrain), &lines, &frame(), QUANTUM_M);
             (TileBuffers::new(gpu, &tile), *skirt_depth_m)
         })

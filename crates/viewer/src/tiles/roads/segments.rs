@@ -41,10 +41,10 @@ pub struct Bed {
 }
 
 impl Bed {
-    /// How far from the piece each of the bounds holds, in a tile of this width whose roads are drawn so far.
+    /// How far from the piece each of the bounds holds, in a tile of this size whose roads are drawn so far to each side.
     #[must_use]
-    pub fn reaches_m(tile_width_m: f64, width_margin_m: f64) -> [f64; 3] {
-        let cell_m = NearHeights::reach_m(tile_width_m);
+    pub fn reaches_m(tile_size_m: [f64; 2], width_margin_m: f64) -> [f64; 3] {
+        let cell_m = NearHeights::reach_m(tile_size_m);
         [cell_m, 4.0 * cell_m, width_margin_m.max(8.0 * cell_m)]
     }
 }
@@ -74,11 +74,11 @@ pub struct NearHeights {
 }
 
 impl NearHeights {
-    /// How far away they hold, in a tile of this width: one of its cells. Roads that look wider are drawn on a finer
-    /// level, if there is one.
+    /// How far away they hold, in a tile of this size: the shorter side of one of its cells. Roads that look wider are drawn
+    /// on a finer level, if there is one.
     #[must_use]
-    pub fn reach_m(tile_width_m: f64) -> f64 {
-        tile_width_m / TILE_CELLS as f64
+    pub fn reach_m([east_m, north_m]: [f64; 2]) -> f64 {
+        east_m.min(north_m) / TILE_CELLS as f64
     }
 }
 
