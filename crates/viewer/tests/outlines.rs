@@ -38,8 +38,8 @@ fn tile(step: u16, height_m: impl Fn(f64, f64) -> f64, roads: &[(u8, [DVec2; 2])
         roads.iter().map(|(number, [from, to])| ground_line(*number, lay(*from, *to, &mesh)));
     let lines = TileLines {
         ground: lines.collect(),
-        plan: Vec::new(),
         width_margin_m: support::WIDTH_MARGIN_M,
+        ..TileLines::default()
     };
     TileGeometry::assemble(TileId::ROOT, Some(&ground), &lines, &frame(), support::QUANTUM_M)
 }

@@ -38,7 +38,12 @@ fn geometry(from: [f64; 2], to: [f64; 2]) -> TileGeometry {
         points_m: vec![from.to_array(), to.to_array()],
         ground_range_m: vec![ground.height_range_m],
     };
-    let lines = TileLines { ground: vec![line], plan: vec![plan], width_margin_m: 100.0 };
+    let lines = TileLines {
+        ground: vec![line],
+        plan: vec![plan],
+        width_margin_m: 100.0,
+        ..TileLines::default()
+    };
     TileGeometry::assemble(TileId::ROOT, Some(&ground), &lines, &frame(), support::QUANTUM_M)
 }
 

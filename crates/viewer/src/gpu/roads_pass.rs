@@ -52,6 +52,7 @@ impl Bridges {
                 end_in_tile: end,
                 height_range_in_tile,
                 near: NearHeights { range_in_tile: height_range_in_tile, rise: 0.0 },
+                width_factor: bridge.width_factor,
                 class: bridge.class,
             };
             (volume, bridge.coarse as u32 + 1)

@@ -99,12 +99,12 @@ impl RoadBuffers {
 
 /// Bytes of one ground vertex: position as three f32, normal and skirt flag as four i8.
 pub(super) const GROUND_STRIDE: u64 = 16;
-/// Bytes of one road segment: two plan positions as two f32 each, two shares, two slopes and a height as f32, class and
-/// flags as u32, eight bounds as f16.
-pub(super) const SEGMENT_STRIDE: u64 = 56;
-/// Bytes of one road volume: two plan positions and two height ranges as two f32 each, rise as f32, class and other
-/// tile as u32.
-pub(super) const VOLUME_STRIDE: u64 = 40;
+/// Bytes of one road segment: two plan positions as two f32 each, two shares, two slopes, a height and a width
+/// factor as f32, class and flags as u32, eight bounds as f16.
+pub(super) const SEGMENT_STRIDE: u64 = 60;
+/// Bytes of one road volume: two plan positions and two height ranges as two f32 each, rise and width factor as
+/// f32, class and other tile as u32.
+pub(super) const VOLUME_STRIDE: u64 = 44;
 
 impl TileBuffers {
     /// Uploads a tile.
@@ -176,6 +176,7 @@ fn segment_bytes(tile: &TileGeometry) -> Vec<u8> {
             bytes.extend_from_slice(bytemuck::cast_slice(&pair));
         }
         bytes.extend_from_slice(&segment.height_in_tile.to_ne_bytes());
+        bytes.extend_from_slice(&segment.width_factor.to_ne_bytes());
         let [at_start, at_end] = segment.has_caps;
         let flags = [at_start, at_end].into_iter().chain(leaves_tile);
         let flags = flags.zip(4..).fold(0, |flags, (flag, bit)| flags | u32::from(flag) << bit);
@@ -209,6 +210,7 @@ pub(super) fn volume_bytes(volumes: impl Iterator<Item = (RoadVolume, u32)>) -> 
         bytes.extend_from_slice(bytemuck::cast_slice(&volume.height_range_in_tile));
         bytes.extend_from_slice(bytemuck::cast_slice(&volume.near.range_in_tile));
         bytes.extend_from_slice(&volume.near.rise.to_ne_bytes());
+        bytes.extend_from_slice(&volume.width_factor.to_ne_bytes());
         let class = u32::from(volume.class.number());
         bytes.extend_from_slice(&(class | other << 4).to_ne_bytes());
     }

@@ -46,6 +46,8 @@ pub struct Bridge {
     pub ends_m: [[f64; 2]; 2],
     /// Lowest and highest true height that it may have to cover.
     pub height_range_m: [f64; 2],
+    /// Working metres across the road for each true metre across it.
+    pub width_factor: f32,
 }
 
 /// The bridges between tiles that are drawn together, in order of the finer tiles, then of class.
@@ -70,6 +72,7 @@ pub fn bridges(tiles: &[BorderTile<'_>]) -> Vec<Bridge> {
                 coarse,
                 class: end.class,
                 ends_m: [end.at_m, partner.at_m],
+                width_factor: end.width_factor,
                 height_range_m: [low[0].min(high[0]) - skirt_m, low[1].max(high[1]) + skirt_m],
             });
         }
@@ -117,7 +120,7 @@ mod tests {
 
     fn end(way_id: i64, side: Side, at_m: [f64; 2], height_m: f64) -> RoadEnd {
         let class = FunctionalRoadClass::new(3).expect("a class");
-        RoadEnd { way_id, class, side, at_m, height_range_m: [height_m; 2] }
+        RoadEnd { way_id, class, side, at_m, height_range_m: [height_m; 2], width_factor: 1.0 }
     }
 
     /// A coarse tile of 200 m, 1/0/0, and the finer 2/2/0 of 100 m to its east.

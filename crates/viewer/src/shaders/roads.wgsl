@@ -25,8 +25,8 @@ struct SegmentIn {
     @location(0) segment_in_tile: vec4<f32>,
     // xy: which part of it, from 0 to 1; zw: how the plane rises along the piece and to its left.
     @location(1) shares_slopes: vec4<f32>,
-    // Height of the piece's start.
-    @location(2) height_in_tile: f32,
+    // Height of the piece's start; world metres across the road for each true metre.
+    @location(2) height_width_factor: vec2<f32>,
     // Lowest four bits: class. Then a bit each: cap at the start, at the end; whether ground of other tiles may be
     // within each of the three reaches.
     @location(3) class_and_flags: u32,
@@ -42,6 +42,7 @@ struct VertexOut {
     @location(0) @interpolate(flat) start: vec2<f32>,
     @location(1) @interpolate(flat) start_to_end: vec2<f32>,
     @location(2) @interpolate(flat) road_class: u32,
+    @location(3) @interpolate(flat) width_factor: f32,
 }
 
 const AT_START = 0x10u;
@@ -152,14 +153,14 @@ fn least_of(values: vec4<f32>) -> f32 {
 @vertex
 fn vertex(in: SegmentIn) -> VertexOut {
     let vertical_scale = frame.background.w;
-    let road_class = in.class_and_flags & 15u;
+    let road = Road(in.class_and_flags & 15u, in.height_width_factor.y);
     let start = tile.offset.xy + in.segment_in_tile.xy;
     let start_to_end = in.segment_in_tile.zw - in.segment_in_tile.xy;
     let segment_m = length(start_to_end);
     let direction = select(vec2(1.0, 0.0), start_to_end / segment_m, segment_m > 1e-6);
     let left = vec2(-direction.y, direction.x);
     let slopes = in.shares_slopes.zw * vertical_scale;
-    let a = vec3(start + start_to_end * in.shares_slopes.x, tile.offset.z + in.height_in_tile * vertical_scale);
+    let a = vec3(start + start_to_end * in.shares_slopes.x, tile.offset.z + in.height_width_factor.x * vertical_scale);
     let length_m = segment_m * (in.shares_slopes.y - in.shares_slopes.x);
     let along = vec3(direction, slopes.x);
     let b = a + along * length_m;
@@ -169,7 +170,7 @@ fn vertex(in: SegmentIn) -> VertexOut {
     // Rounding of positions must not cut off ground at the rim; the fragment decides anyway.
     let pad_m = 1e-6 * far_m + 0.01;
     // As wide as roads may be, as for volumes: the neighbours know of no more.
-    let radius_m = min(bounding_radius_m(road_class, far_m, near_height_m), tile.base.y) + pad_m;
+    let radius_m = min(bounding_radius_m(road, far_m, near_height_m), tile.base.y) + pad_m;
     let leaving = leaving_m(in, radius_m) + pad_m * (1.0 + abs(slopes.x) + abs(slopes.y));
     let ends = vec2(
         -select(pad_m, radius_m, (in.class_and_flags & AT_START) != 0u),
@@ -200,7 +201,8 @@ fn vertex(in: SegmentIn) -> VertexOut {
     out.clip = frame.clip_from_relative * vec4(position * AWAY, 1.0);
     out.start = start;
     out.start_to_end = start_to_end;
-    out.road_class = road_class;
+    out.road_class = road.class_number;
+    out.width_factor = road.width_factor;
     return out;
 }
 
@@ -213,7 +215,8 @@ fn fragment(in: VertexOut) -> @location(0) f32 {
         discard;
     }
     let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
-    let label = label_at(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, in.road_class, tile.base.y);
+    let road = Road(in.road_class, in.width_factor);
+    let label = label_at(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, road, tile.base.y);
     if label == NOTHING {
         discard;
     }

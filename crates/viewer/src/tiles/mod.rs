@@ -9,6 +9,7 @@ mod ground;
 #[cfg(not(target_arch = "wasm32"))]
 mod on_disk;
 mod package;
+mod plan_scale;
 mod relief;
 mod roads;
 mod slopes;
@@ -25,6 +26,7 @@ use self::relief::Relief;
 pub use self::{
     ground::{GroundMesh, GroundVertex},
     package::PackageTiles,
+    plan_scale::PlanScale,
     roads::{
         BadRoad, Bed, GroundLine, NearHeights, PlanLine, RoadEnd, RoadList, RoadSegment,
         RoadSegments, RoadVolume, RoadVolumes, Side, TileLines,
@@ -47,8 +49,10 @@ pub struct TileGeometry {
     pub roads: RoadSegments,
     /// The roads on it as volumes (SV); empty if that section was not read.
     pub volumes: RoadVolumes,
-    /// Half widths beyond this are not drawn as volumes.
+    /// Half widths beyond this are not drawn.
     pub width_margin_m: f64,
+    /// Working metres across its roads for each true metre across them, where that is most.
+    pub most_width_factor: f64,
     /// Its sides, east and north.
     pub size_m: [f64; 2],
 }
@@ -90,15 +94,25 @@ impl TileGeometry {
         });
         let relief = Relief::new(id, surface, frame, lines.width_margin_m);
         let wide = relief.wide(&lines.ground);
+        let scale = &lines.scale;
+        let sources = lines.ground.iter().flat_map(|line| line.sources_m.iter().copied());
+        let in_plan = lines
+            .plan
+            .iter()
+            .flat_map(|line| line.points_m.windows(2))
+            .map(|pair| [pair[0], pair[1]]);
+        let most_width_factor =
+            sources.chain(in_plan).map(|ends_m| scale.across(ends_m)).fold(0.0, f64::max);
         Self {
             id,
             reference_m,
             summary,
             ground,
-            roads: RoadSegments::of_lines(&lines.ground, bounds, reference_m, |piece| {
+            most_width_factor,
+            roads: RoadSegments::of_lines(&lines.ground, bounds, reference_m, scale, |piece| {
                 relief.bed(piece, &wide)
             }),
-            volumes: RoadVolumes::new(&lines.plan, bounds, reference_m, |ends_m| {
+            volumes: RoadVolumes::new(&lines.plan, bounds, reference_m, scale, |ends_m| {
                 relief.near(ends_m)
             }),
             width_margin_m: lines.width_margin_m,
@@ -106,7 +120,7 @@ impl TileGeometry {
         }
     }
 
-    /// Decodes a tile's payload: terrain and what it has of roads. `width_margin_m` is its level's.
+    /// Decodes a tile's payload: terrain and what it has of roads. `width_margin_m` is its level's, `scale` the tile's.
     ///
     /// # Errors
     /// When a road does not fit the ground.
@@ -115,11 +129,13 @@ impl TileGeometry {
         frame: &Frame,
         quantum_m: f64,
         width_margin_m: f64,
+        scale: PlanScale,
     ) -> Result<Self, BadRoad> {
         let (id, terrain) = (payload.id, payload.terrain.as_ref());
         let has_roads = !payload.roads_geo.is_empty() || !payload.roads_sv.is_empty();
         let surface = surface(id, terrain.filter(|_| has_roads), frame, quantum_m);
         let lines = TileLines::of_payload(payload, surface.as_ref(), frame, width_margin_m)?;
+        let lines = TileLines { scale, ..lines };
         Ok(Self::on_surface(id, terrain, surface.as_ref(), &lines, frame, quantum_m))
     }
 

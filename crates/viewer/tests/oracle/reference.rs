@@ -130,8 +130,8 @@ impl PixelOracle<'_> {
                     continue;
                 };
                 let mut covered = Tri::No;
-                for (_, ends) in segments.iter().filter(|(number, _)| *number == class) {
-                    covered = covered.or(self.is_road(index, class, share, *ends, tile));
+                for (_, ends, factor) in segments.iter().filter(|(number, ..)| *number == class) {
+                    covered = covered.or(self.is_road(index, class, share, (*ends, *factor), tile));
                     if covered == Tri::Yes {
                         break;
                     }
@@ -146,7 +146,14 @@ impl PixelOracle<'_> {
         Verdict::Label(0)
     }
 
-    fn is_road(&self, index: usize, class: u8, share: f64, ends: [DVec2; 2], tile: &Tile) -> Tri {
+    fn is_road(
+        &self,
+        index: usize,
+        class: u8,
+        share: f64,
+        (ends, factor): ([DVec2; 2], f64),
+        tile: &Tile,
+    ) -> Tri {
         let widest_m = tile.geometry.width_margin_m;
         let (ground, depth_m) = self.ground(index).expect("the owner says there is ground");
         let from_eye = ground - self.camera.eye_in_world();
@@ -156,7 +163,7 @@ impl PixelOracle<'_> {
         let caps = self.options.caps;
         let plan_m = distance(ground.truncate(), ends, caps);
         let (half_m, least_px) = half_width(self.style, self.options, class, from_eye.length());
-        let wide = Tri::at_most(plan_m, share * half_m, band_m);
+        let wide = Tri::at_most(plan_m, share * half_m * factor, band_m);
         let stretch = (1.5 * from_eye.length() / from_eye.z.abs()).clamp(1.0, MAX_STRETCH);
         let near = Tri::at_most(plan_m, stretch * share * least_px * pixel_m, band_m);
         let thin = if near == Tri::No || wide == Tri::Yes {

@@ -11,7 +11,7 @@ pub(crate) mod package;
 pub(crate) mod scene;
 pub(crate) mod scenes;
 
-use corniche_geom::{Frame, NodeIndex, TILE_CELLS, TileId};
+use corniche_geom::{Cell, Frame, NodeIndex, TILE_CELLS, TileId};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::Terrain;
 use corniche_tin::{Tin, TinVertex};
@@ -41,9 +41,43 @@ pub(crate) fn gpu() -> Option<Gpu> {
     }
 }
 
+/// What the scenes of a test lie in.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct World {
+    /// How long cells are northwards over eastwards.
+    pub(crate) ratio: f64,
+    /// Working metres to a true metre, east and north.
+    pub(crate) scale: [f64; 2],
+}
+
+impl World {
+    pub(crate) fn cell(self, east_m: f64) -> Cell {
+        Cell { east_m, north_m: east_m * self.ratio }.fitted()
+    }
+}
+
+thread_local! {
+    static WORLD: std::cell::Cell<World> =
+        const { std::cell::Cell::new(World { ratio: 1.0, scale: [1.0; 2] }) };
+}
+
+/// The world of this test: square cells and true metres, unless it is `within` another.
+pub(crate) fn world() -> World {
+    WORLD.get()
+}
+
+/// Makes what is made of scenes meanwhile lie in another world.
+pub(crate) fn within<T>(world: World, make: impl FnOnce() -> T) -> T {
+    let before = WORLD.replace(world);
+    let made = make();
+    WORLD.set(before);
+    made
+}
+
 /// Two levels of a grid far from the origin, as real ones are.
 pub(crate) fn frame() -> Frame {
-    Frame::new([0.25, 0.75], CELL_M, NodeIndex { i: 51_200, j: 512_000 }, 1).unwrap()
+    let cell = world().cell(CELL_M);
+    Frame::new([0.25, 0.75], cell, NodeIndex { i: 51_200, j: 512_000 }, 1).unwrap()
 }
 
 pub(crate) fn class(number: u8) -> FunctionalRoadClass {
@@ -257,8 +291,8 @@ pub(crate) fn draw_exaggerated(
         .map(|(id, terrain, lines, skirt_depth_m)| {
             let lines = TileLines {
                 ground: lines.clone(),
-                plan: Vec::new(),
                 width_margin_m: WIDTH_MARGIN_M,
+                ..TileLines::default()
             };
             let tile = TileGeometry::assemble(*id, Some(terrain), &lines, &frame(), QUANTUM_M);
             (TileBuffers::new(gpu, &tile), *skirt_depth_m)

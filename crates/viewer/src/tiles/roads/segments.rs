@@ -3,7 +3,10 @@ use std::ops::Range;
 use corniche_geom::{Bounds, TILE_CELLS};
 use corniche_roads::FunctionalRoadClass;
 
-use super::{super::ground::relative, GroundLine, PlanLine, ground_ends, plan_ends};
+use super::{
+    super::{PlanScale, ground::relative},
+    GroundLine, PlanLine, ground_ends, plan_ends,
+};
 
 /// A straight piece of a road's centre-line on the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +22,8 @@ pub struct RoadSegment {
     pub height_in_tile: f32,
     /// Whether the road does not go straight on before and behind the piece.
     pub has_caps: [bool; 2],
+    /// Working metres across the segment for each true metre across it.
+    pub width_factor: f32,
     /// The ground beside it.
     pub bed: Bed,
     /// Functional road class.
@@ -60,6 +65,8 @@ pub struct RoadVolume {
     pub height_range_in_tile: [f32; 2],
     /// Closer bounds for roads that are not wide.
     pub near: NearHeights,
+    /// Working metres across it for each true metre across it.
+    pub width_factor: f32,
     /// Functional road class.
     pub class: FunctionalRoadClass,
 }
@@ -105,6 +112,8 @@ pub struct RoadEnd {
     pub at_m: [f64; 2],
     /// Lowest and highest true height that the ground may have there.
     pub height_range_m: [f64; 2],
+    /// Working metres across the road for each true metre across it.
+    pub width_factor: f32,
 }
 
 /// All pieces of the roads of a tile, as one method draws them, in order of class.
@@ -194,6 +203,7 @@ impl RoadList<RoadSegment> {
         lines: &[GroundLine],
         tile: Bounds,
         reference_m: [f64; 3],
+        scale: &PlanScale,
         bed: impl Fn(&Piece) -> Bed,
     ) -> Self {
         let place = |[x, y]: [f64; 2]| {
@@ -209,12 +219,13 @@ impl RoadList<RoadSegment> {
                     shares: piece.ends_m.map(|end| piece.share(end)),
                     height_in_tile: relative(piece.ends_m[0], reference_m)[2],
                     has_caps: piece.has_caps,
+                    width_factor: scale.across(piece.source_m) as f32,
                     bed: bed(&piece),
                     class: line.class,
                 }
             })
         });
-        Self::sorted(segments.collect(), |segment| segment.class, ground_ends(lines, tile))
+        Self::sorted(segments.collect(), |segment| segment.class, ground_ends(lines, tile, scale))
     }
 }
 
@@ -228,6 +239,7 @@ impl RoadList<RoadVolume> {
         lines: &[PlanLine],
         tile: Bounds,
         reference_m: [f64; 3],
+        scale: &PlanScale,
         near: impl Fn([[f64; 2]; 2]) -> Option<([f64; 2], f64)>,
     ) -> Self {
         let above = |[low_m, high_m]: [f64; 2]| {
@@ -251,11 +263,12 @@ impl RoadList<RoadVolume> {
                         range_in_tile: above(near_m),
                         rise: (rise as f32).next_up(),
                     },
+                    width_factor: scale.across([pair[0], pair[1]]) as f32,
                     class: line.class,
                 }
             })
         });
-        Self::sorted(volumes.collect(), |volume| volume.class, plan_ends(lines, tile))
+        Self::sorted(volumes.collect(), |volume| volume.class, plan_ends(lines, tile, scale))
     }
 }
 
