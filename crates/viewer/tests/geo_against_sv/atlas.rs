@@ -34,19 +34,19 @@ pub(crate) struct Atlas<'a> {
     gpu: &'a Gpu,
     renderer: Renderer,
     package: FilePackage,
-    source: PackageSource,
+    store: TileStore<'a>,
     buffers: BTreeMap<TileId, TileBuffers>,
     /// For the reference.
     tiles: BTreeMap<TileId, Tile>,
 }
 
 impl<'a> Atlas<'a> {
-    pub(crate) fn open(gpu: &'a Gpu, path: &Path) -> Self {
+    pub(crate) fn open(gpu: &'a Gpu, path: &Path, source: &'a PackageSource) -> Self {
         Self {
             gpu,
             renderer: Renderer::new(gpu),
             package: FilePackage::open(path).unwrap(),
-            source: PackageSource::open(path).unwrap(),
+            store: TileStore::new(source),
             buffers: BTreeMap::new(),
             tiles: BTreeMap::new(),
         }
@@ -78,8 +78,8 @@ impl<'a> Atlas<'a> {
     }
 
     /// `None` where there is no ground or the eye would be in it.
-    pub(crate) fn camera(&self, view: &View) -> Option<Camera> {
-        let mut store = TileStore::new(&self.source);
+    pub(crate) fn camera(&mut self, view: &View) -> Option<Camera> {
+        let store = &mut self.store;
         let [x, y] = view.place.at_m;
         let target = DVec3::new(x, y, store.ground_height_m([x, y]).unwrap()?);
         let camera = Camera::look_at(target, view.distance_m, view.orientation, SIZE);
@@ -95,10 +95,9 @@ impl<'a> Atlas<'a> {
 
     /// A drawing with these options against SV with round caps.
     pub(crate) fn compare_with(&mut self, camera: &Camera, options: RoadOptions) -> Seen {
-        let mut store = TileStore::new(&self.source);
-        let drawn = settle(&mut store, camera, QUALITY, &|| false).unwrap();
+        let drawn = settle(&mut self.store, camera, QUALITY, &|| false).unwrap();
         for drawn in &drawn {
-            let upload = || TileBuffers::new(self.gpu, store.get(drawn.id).unwrap());
+            let upload = || TileBuffers::new(self.gpu, self.store.get(drawn.id).unwrap());
             self.buffers.entry(drawn.id).or_insert_with(upload);
         }
         let style = Style::road_atlas();

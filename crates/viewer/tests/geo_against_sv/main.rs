@@ -25,7 +25,7 @@ mod views;
 
 use std::path::Path;
 
-use corniche_viewer::{RoadMethod, RoadOptions};
+use corniche_viewer::{RoadMethod, RoadOptions, tiles::PackageSource};
 
 use crate::{
     atlas::Atlas,
@@ -51,7 +51,8 @@ struct Found {
 impl Found {
     /// Looks at a package from `count` views.
     fn in_package(gpu: &corniche_viewer::gpu::Gpu, path: &Path, count: usize) -> Self {
-        let mut atlas = Atlas::open(gpu, path);
+        let source = PackageSource::open(path).unwrap();
+        let mut atlas = Atlas::open(gpu, path, &source);
         let mut found = Self {
             name: path.file_stem().unwrap().to_string_lossy().into_owned(),
             views: Vec::new(),
@@ -132,7 +133,9 @@ fn geometry_differs_from_volumes_in_three_pixels_of_a_thousand_at_most() {
 fn roads_without_their_caps_are_beyond_the_gate() {
     let Some(gpu) = gpu() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let mut atlas = Atlas::open(&gpu, &support::package::package(folder.path()));
+    let path = support::package::package(folder.path());
+    let source = PackageSource::open(&path).unwrap();
+    let mut atlas = Atlas::open(&gpu, &path, &source);
     let mut views = Views::new(atlas.places(), SEED);
     let camera = std::iter::repeat_with(|| views.next_view())
         .find_map(|view| {
