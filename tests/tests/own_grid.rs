@@ -70,7 +70,10 @@ fn tiles_in_crs_coordinates_have_the_samples_as_vertices() {
     let package = folder.path().join("a.pmtiles");
     assert_eq!(build(&package, &[&dem], &["--max-error", "4"]), "");
     let manifest = manifest(&package);
-    assert_eq!((&manifest["crs"], &manifest["nodes_are_samples"]), (&"EPSG:4326".into(), &true.into()));
+    assert_eq!(
+        (&manifest["crs"], &manifest["nodes_are_samples"]),
+        (&"EPSG:4326".into(), &true.into())
+    );
     let factors = numbers(&manifest["metres_per_unit"]);
     let cell_m = numbers(&manifest["frame"]["cell_m"]);
     for axis in 0..2 {
@@ -80,13 +83,15 @@ fn tiles_in_crs_coordinates_have_the_samples_as_vertices() {
     let tiles = json(&["info", text(&package), "--json"])["tiles"].clone();
     let mut vertices = 0;
     for id in tiles.as_array().unwrap().iter().map(|id| id.as_str().unwrap()) {
-        let dump = |which: &str| {
-            json(&["tile", text(&package), id, "--json", "--coordinates", which])
-        };
+        let dump =
+            |which: &str| json(&["tile", text(&package), id, "--json", "--coordinates", which]);
         let (degrees, metres) = (dump("crs"), dump("working"));
         assert_eq!(metres, json(&["tile", text(&package), id, "--json"]), "working is the default");
         assert_eq!(numbers(&metres["metres_per_unit"]), factors);
-        assert_eq!((&degrees["coordinates"], &metres["coordinates"]), (&"crs".into(), &"working".into()));
+        assert_eq!(
+            (&degrees["coordinates"], &metres["coordinates"]),
+            (&"crs".into(), &"working".into())
+        );
         assert_eq!(numbers(&metres["cell_m"]).len(), 2);
         let [in_degrees, in_metres] =
             [&degrees, &metres].map(|tile| tile["tin"]["vertices"].as_array().unwrap().clone());
@@ -121,7 +126,11 @@ fn cells_thinning_and_latitude_are_options_and_settings() {
     let grid = |options: &[&str]| {
         build(&at("a.pmtiles"), &[&dem], options);
         let manifest = manifest(&at("a.pmtiles"));
-        (manifest["frame"].clone(), manifest["metres_per_unit"].clone(), manifest["resampling"].clone())
+        (
+            manifest["frame"].clone(),
+            manifest["metres_per_unit"].clone(),
+            manifest["resampling"].clone(),
+        )
     };
     for (options, lines) in [
         (&["--cell", "60,90"][..], "cell = [60, 90]"),
@@ -178,7 +187,15 @@ fn files_on_another_grid_than_the_first_are_told() {
     assert!(resampling.starts_with("nodes are the samples of south.asc; "), "{resampling}");
     assert!(resampling.contains("between the samples of north.asc"), "{resampling}");
     let ran = corniche([
-        "build", "--dem", text(&south), text(&north), "--dem-crs", "EPSG:4326", "-o", text(&package), "-O",
+        "build",
+        "--dem",
+        text(&south),
+        text(&north),
+        "--dem-crs",
+        "EPSG:4326",
+        "-o",
+        text(&package),
+        "-O",
         "--json-progress",
     ]);
     let is_warning = |line: &str| {
@@ -205,7 +222,12 @@ fn info_tells_factors_scale_and_sides() {
     }
     // The bundled sample is in UTM: nothing to multiply by.
     let ran = corniche([
-        "build", "--dem", text(&sample("pass/pass-dem.tif")), "-o", text(&at("pass.pmtiles")), "--quiet",
+        "build",
+        "--dem",
+        text(&sample("pass/pass-dem.tif")),
+        "-o",
+        text(&at("pass.pmtiles")),
+        "--quiet",
     ]);
     assert_eq!(ran.code, 0, "{}", ran.err);
     let told = corniche(["info", text(&at("pass.pmtiles"))]).out;
@@ -226,11 +248,9 @@ fn four_samples_are_a_cell() {
 /// Real rasters in degrees: nodes are the samples, and the finest level is within the bound at every one on its TIN.
 #[test]
 fn rasters_in_degrees_are_not_resampled() {
-    for file in [
-        "liechtenstein/N47E009.hgt",
-        "portland/portland-ned.tif",
-        "swellendam/srtm_41_19_4326.tif",
-    ] {
+    for file in
+        ["liechtenstein/N47E009.hgt", "portland/portland-ned.tif", "swellendam/srtm_41_19_4326.tif"]
+    {
         let Some(dem) = real_data(file) else { continue };
         let folder = tempfile::tempdir().unwrap();
         let package = folder.path().join("real.pmtiles");

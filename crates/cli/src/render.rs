@@ -45,8 +45,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     );
     if report.clamped_tiles > 0 {
         eprintln!(
-            "note: in up to {} tiles roads may be drawn narrower than the style says, because their volumes reach no \
-             farther than the package's width margin",
+            "note: in up to {} tiles roads may be drawn narrower than the style says, because a tile knows of no roads \
+             farther away than the package's width margin",
             report.clamped_tiles
         );
     }
