@@ -11,7 +11,6 @@ use corniche_pipeline::{Defect, Observer, Stage};
 
 use crate::{
     failure::Failure,
-    interrupt,
     output::{self, Existing, Output},
     progress::Progress,
 };
@@ -106,7 +105,7 @@ impl Observer for Watch {
     }
 
     fn work_folder(&self, folder: &Path) {
-        interrupt::remove_at_end(folder);
+        self.progress.work_folder(folder);
     }
 
     fn warning(&self, text: &str) {
