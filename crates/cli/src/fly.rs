@@ -25,7 +25,7 @@ use crate::{
     args::{FlyArgs, Lod, Roads},
     exit::ExitCode,
     failure::Failure,
-    interrupt, progress, styles,
+    interrupt, presets, progress, styles,
 };
 use corniche_viewer::{
     Detail, FrameRecord, Lifted, Replay, ReplayError, ReplayOptions, default_flight,
@@ -88,7 +88,6 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let style = styles::style(&args.look.style)?;
     let methods = args.look.roads(&args.drawing.roads)?;
     let source = PackageSource::open(&args.package)?;
-    interrupt::watch()?;
     let flight = flight(args, &source)?;
     let plan = Plan { args, flight: &flight, style: &style, methods: &methods, outputs: &outputs };
     let Drawn { runs, adapter } =
@@ -106,6 +105,7 @@ fn flight(args: &FlyArgs, source: &PackageSource) -> Result<Flight, Failure> {
     };
     let unusable =
         |error: &dyn std::fmt::Display| Failure::unusable(format!("{}: {error}", path.display()));
+    presets::refuse_stream(path).map_err(|error| unusable(&error))?;
     let size_bytes = fs::metadata(path).map_err(|error| unusable(&error))?.len();
     if size_bytes > MAX_PATH_BYTES {
         return Err(unusable(&"too large for a flight"));

@@ -59,8 +59,8 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
         vertical.quantum_m
     ));
     say(format!("datum        {}; heights {}", plain(&vertical.datum), plain(&vertical.treatment)));
-    if let Some(warning) = odd_heights(manifest) {
-        say(warning);
+    for warning in warnings(manifest) {
+        say(format!("warning: {warning}"));
     }
     let samples = &manifest.counts.samples;
     say(format!(
@@ -189,21 +189,31 @@ pub(crate) fn or_dash(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"))
 }
 
+/// What may be wrong with a package and should be seen, also where little else is told.
+pub(crate) fn warnings(manifest: &Manifest) -> Vec<String> {
+    odd_heights(manifest).into_iter().collect()
+}
+
 /// What heights tell of an undeclared "no data": no land or sea floor lies so low or so high.
 ///
 /// Challenger Deep lies some 10 935 m below the sea, Everest 8 849 m above it.
+/// What was said to be allowed is not odd. A build refuses samples outside; what remains comes of a shift or of another
+/// vertical CRS, or of an older package.
 fn odd_heights(manifest: &Manifest) -> Option<String> {
     const PLAUSIBLE_M: [f64; 2] = [-12_000.0, 9_500.0];
     let [lowest_m, highest_m] = manifest.vertical.range_m;
-    let odd_m = if lowest_m < PLAUSIBLE_M[0] {
+    let plausible_m = manifest.settings.height_range_m.map_or(PLAUSIBLE_M, |[low_m, high_m]| {
+        [low_m.min(PLAUSIBLE_M[0]), high_m.max(PLAUSIBLE_M[1])]
+    });
+    let odd_m = if lowest_m < plausible_m[0] {
         lowest_m
-    } else if highest_m > PLAUSIBLE_M[1] {
+    } else if highest_m > plausible_m[1] {
         highest_m
     } else {
         return None;
     };
     Some(format!(
-        "warning: a height of {odd_m} m is none of this earth; if the files store a value that means \"no data\", give it \
+        "a height of {odd_m} m is none of this earth; is --vertical-shift right? If the files store a value that means \"no data\", give it \
          with --nodata as they store it (before scale, unit and shift)"
     ))
 }
@@ -254,6 +264,9 @@ fn roads(manifest: &Manifest) -> String {
     }
     for (value, number) in &counts.unknown_highways {
         let _ = writeln!(text, "highway={} is in no class: {}", plain(value), count(*number));
+    }
+    for (tag, number) in &counts.tags_taken_otherwise {
+        let _ = writeln!(text, "{} is taken for another value: {}", plain(tag), count(*number));
     }
     text
 }

@@ -3,6 +3,7 @@
 use std::{
     borrow::Cow,
     io::{IsTerminal as _, Write as _, stderr},
+    path::Path,
     sync::{Mutex, PoisonError},
     time::{Duration, Instant},
 };
@@ -125,6 +126,10 @@ impl Observer for Progress {
                 );
             }
         }
+    }
+
+    fn work_folder(&self, folder: &Path) {
+        interrupt::remove_at_end(folder);
     }
 
     /// Warnings are told to whoever asked for silence too.

@@ -5,7 +5,9 @@ use std::{
     io::{self, Write as _},
 };
 
-use corniche_pipeline::{VerifyReport, VerifySettings};
+use corniche_pipeline::{VerifyOsm, VerifyReport, VerifySettings};
+use corniche_presets::frc_preset;
+use corniche_tileset::FilePackage;
 use serde_json::json;
 
 use crate::{
@@ -14,16 +16,16 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     info::or_dash,
-    interrupt,
+    presets,
     progress::Progress,
     table::{Table, count},
 };
 
 pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
-    interrupt::watch()?;
     let settings = VerifySettings {
         package: args.package.clone(),
         dem: args.dem.clone(),
+        osm: extract(args)?,
         threads: threads(args.threads),
     };
     let report = corniche_pipeline::verify(&settings, &Progress::new(&args.report))?;
@@ -38,11 +40,36 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
     }
 }
 
+/// Memory for sorting roads by tile.
+const MEMORY_BYTES: u64 = 256 << 20;
+
+/// The extract to read again, with the FRC table that the package names: given, or the preset of that name.
+fn extract(args: &VerifyArgs) -> Result<Option<VerifyOsm>, Failure> {
+    let Some(path) = args.osm.clone() else { return Ok(None) };
+    let table = match &args.frc_table {
+        Some(table) => presets::frc_table(table)?,
+        None => {
+            let package =
+                FilePackage::open(&args.package).map_err(corniche_pipeline::VerifyError::from)?;
+            let name = &package.manifest().settings.frc_table;
+            if frc_preset(name).is_none() {
+                return Err(Failure::unusable(format!(
+                    "{} was made with the FRC table {name:?}, which is no preset; give its file with --frc-table",
+                    args.package.display()
+                )));
+            }
+            presets::frc_table(name)?
+        }
+    };
+    Ok(Some(VerifyOsm { path, table, memory_bytes: MEMORY_BYTES }))
+}
+
 fn to_text(report: &VerifyReport) -> String {
     let mut text = String::new();
     for check in &report.checks {
         let verdict = if check.holds() { "holds " } else { "BROKEN" };
-        let _ = write!(text, "{verdict}  {} ({} looked at", check.name, count(check.checked));
+        let (id, promise) = (check.id.id(), check.id.promise());
+        let _ = write!(text, "{verdict}  {id}: {promise} ({} looked at", count(check.checked));
         if !check.holds() {
             let _ = write!(text, ", {} broken", count(check.broken));
         }
@@ -114,7 +141,7 @@ fn to_json(report: &VerifyReport) -> serde_json::Value {
         "tiles": report.tiles,
         "borders": report.borders,
         "checks": report.checks.iter().map(|check| json!({
-            "name": check.name, "holds": check.holds(), "checked": check.checked, "broken": check.broken,
+            "id": check.id.id(), "promise": check.id.promise(), "holds": check.holds(), "checked": check.checked, "broken": check.broken,
             "examples": check.examples,
         })).collect::<Vec<_>>(),
         "gaps": report.gaps.iter().map(|gap| json!({

@@ -225,7 +225,7 @@ pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemErro
 }
 
 /// Spacing of a mosaic's columns and rows in working metres, at its centre; `None` outside the CRS.
-fn spacing_m(
+pub(crate) fn spacing_m(
     mosaic: &Mosaic,
     working: &Working,
     operation: &Operation,

@@ -36,8 +36,12 @@ fn roads(size: [usize; 2], shares: &[[f64; 4]]) -> Vec<StraightRoad> {
 
 /// What verify says of a package, with the DEM it is made of.
 fn report(package: &std::path::Path, dem: &std::path::Path) -> VerifyReport {
-    let settings =
-        VerifySettings { package: package.to_path_buf(), dem: vec![dem.to_path_buf()], threads: 2 };
+    let settings = VerifySettings {
+        package: package.to_path_buf(),
+        dem: vec![dem.to_path_buf()],
+        osm: None,
+        threads: 2,
+    };
     verify(&settings, &Silent).unwrap()
 }
 

@@ -51,12 +51,17 @@ fn built(epsg: u32, first: [f64; 2], spacing: f64) -> Built {
         let is_void = (60..110).contains(&column) && (40..120).contains(&row);
         if is_void { -9999.0 } else { 500.0 + (column as f32 / 9.0).sin() * 80.0 + row as f32 }
     };
-    write_samples(&dem, (200, 200), (epsg, first, spacing), (0..200 * 200).map(height_m).collect());
+    write_samples(
+        &dem,
+        (200, 200),
+        (epsg, first, [spacing; 2]),
+        (0..200 * 200).map(height_m).collect(),
+    );
     extract::write_lines(&osm, &roads());
     let built = build_files(&dem, Some(&osm), Options::plain(8.0)).unwrap();
     let package = folder.path().join("again.pmtiles");
     std::fs::write(&package, &built.bytes).unwrap();
-    let settings = VerifySettings { package, dem: vec![dem], threads: 2 };
+    let settings = VerifySettings { package, dem: vec![dem], osm: None, threads: 2 };
     let report = verify(&settings, &Silent).unwrap();
     let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
     assert!(broken.is_empty(), "EPSG:{epsg}: {broken:?}");

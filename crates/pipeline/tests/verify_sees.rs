@@ -3,202 +3,23 @@
 
 mod support;
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    sync::LazyLock,
-};
+use std::fs;
 
 use corniche_drape::DrapedVertex;
-use corniche_geom::{Frame, TileId};
-use corniche_pipeline::{Silent, VerifyReport, VerifySettings, build, verify};
-use corniche_tileset::{
-    EncodeError, FilePackage, Manifest, PayloadContext, Sections, Terrain, TilePayload, Writer,
-    encode,
+use corniche_geom::TileId;
+use corniche_pipeline::CheckId;
+use corniche_tileset::EncodeError;
+use corniche_tin::{NO_TWIN, Tin, TinVertex};
+use support::parts::{
+    Against, LAST_NODE, MAX_ERROR_M, Parts, SOUND, assert_broken, encode_in, report_on, write,
 };
-use corniche_tin::{NO_TWIN, Placement, Surface, Tin, TinVertex};
-use support::Options;
-
-/// Coarse, so that the sample is built and verified in seconds.
-const MAX_ERROR_M: f64 = 10.0;
-/// The last row and column of a tile's nodes.
-const LAST_NODE: u16 = 256;
-
-const WHOLE: &str = "every tile's sections are whole";
-const COUNT: &str = "tiles and their sums are those that the manifest counts";
-const ON_TIN: &str = "P1: GEO roads lie on their TIN";
-const BOUND: &str = "P2: no stored error is below the true one";
-const FINEST: &str = "P2: the finest level stays within --max-error";
-const STRAY: &str = "P2: nodes without ground lie within one cell of a void or an edge";
-const UNCOVERED: &str = "P2: uncovered nodes are as many as tiles and levels say";
-const SEAMS: &str = "P3: neighbours of one level share bit-identical border vertices";
-const RECORDED: &str = "P2: the recorded distributions of stored over true errors hold";
-const NESTING: &str = "a parent's error and height range are never below its children's";
-const LENGTH: &str = "P6: GEO roads of the finest level";
-const SETTINGS: &str = "tolerances follow from the settings";
-const RANGES: &str = "height ranges hold every node beneath";
-const SUMS: &str = "P6: what came in is what was kept";
-
-/// The sample's package, built once.
-static SOUND: LazyLock<Sound> = LazyLock::new(build_sample);
-
-struct Sound {
-    bytes: Vec<u8>,
-    parts: Parts,
-}
-
-/// A package taken apart; its tiles in the order of the file.
-#[derive(Clone)]
-struct Parts {
-    manifest: Manifest,
-    tiles: Vec<TilePayload>,
-}
-
-/// Whether the DEM is there to verify against.
-#[derive(Clone, Copy)]
-enum Against {
-    Itself,
-    Dem,
-}
-
-fn sample(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data-samples/pass").join(name)
-}
-
-fn build_sample() -> Sound {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("sound.pmtiles");
-    let options = Options { fill_voids: 32, ..Options::plain(MAX_ERROR_M) };
-    let (dem, osm) = (sample("pass-dem.tif"), sample("pass.osm.pbf"));
-    let mut settings = support::settings(dem, Some(osm), path.clone(), options);
-    settings.roads.simplify_cells = 0.5;
-    build(&settings, &Silent).expect("the sample can be built");
-    let package = FilePackage::open(&path).expect("the package can be opened");
-    let payload = |id| package.payload(id, Sections::ALL).expect("a whole tile");
-    let ids = package.tile_ids().expect("a list of tiles");
-    let parts = Parts {
-        manifest: package.manifest().clone(),
-        tiles: ids.into_iter().map(|id| payload(id).expect("a listed tile")).collect(),
-    };
-    Sound { bytes: fs::read(&path).expect("the package can be read"), parts }
-}
-
-fn encode_in(manifest: &Manifest, tile: &TilePayload) -> Result<Vec<u8>, EncodeError> {
-    let context = PayloadContext { frame: manifest.frame, quantum_m: manifest.vertical.quantum_m };
-    encode(tile, &context).map(|encoded| encoded.bytes)
-}
-
-fn write(path: &Path, manifest: &Manifest, tiles: &[(TileId, Vec<u8>)]) {
-    let mut writer = Writer::create(path, manifest).expect("a file for the package");
-    for (id, bytes) in tiles {
-        writer.add(*id, bytes).expect("tiles in their order");
-    }
-    writer.finish().expect("a finished package");
-}
-
-fn report_on(path: &Path, against: Against) -> VerifyReport {
-    let dem = match against {
-        Against::Itself => vec![],
-        Against::Dem => vec![sample("pass-dem.tif")],
-    };
-    verify(&VerifySettings { package: path.to_path_buf(), dem, threads: 2 }, &Silent)
-        .expect("the package can be verified")
-}
-
-/// Asserts that exactly the checks whose names begin so are broken, and returns the report.
-fn assert_broken(report: VerifyReport, expected: &[&str]) -> VerifyReport {
-    let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
-    let as_expected = broken.len() == expected.len()
-        && expected.iter().all(|name| broken.iter().any(|check| check.name.starts_with(name)));
-    assert!(as_expected, "expected {expected:?} to be broken, but it is {broken:#?}");
-    assert_eq!(report.holds(), expected.is_empty());
-    report
-}
-
-impl Parts {
-    fn sound() -> Self {
-        SOUND.parts.clone()
-    }
-
-    fn frame(&self) -> &Frame {
-        &self.manifest.frame
-    }
-
-    fn encoded(&self) -> Vec<(TileId, Vec<u8>)> {
-        let encoded = |tile| encode_in(&self.manifest, tile).expect("a tile that can be encoded");
-        self.tiles.iter().map(|tile| (tile.id, encoded(tile))).collect()
-    }
-
-    /// Verifies the package that these parts make, and asserts that exactly these checks are broken.
-    fn assert_breaks(&self, against: Against, expected: &[&str]) -> VerifyReport {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let path = folder.path().join("changed.pmtiles");
-        write(&path, &self.manifest, &self.encoded());
-        assert_broken(report_on(&path, against), expected)
-    }
-
-    fn index_of(&self, id: TileId) -> Option<usize> {
-        self.tiles.iter().position(|tile| tile.id == id)
-    }
-
-    fn terrain(&self, id: TileId) -> Option<&Terrain> {
-        self.tiles[self.index_of(id)?].terrain.as_ref()
-    }
-
-    fn terrain_mut(&mut self, id: TileId) -> &mut Terrain {
-        let index = self.index_of(id).expect("a tile of the package");
-        self.tiles[index].terrain.as_mut().expect("a tile with ground")
-    }
-
-    /// Tiles `above` levels above the finest.
-    fn tiles_above(&self, above: u8) -> impl Iterator<Item = &TilePayload> {
-        let level = self.frame().max_level() - above;
-        self.tiles.iter().filter(move |tile| tile.id.z() == level)
-    }
-
-    /// The finest tile with the largest stored error.
-    fn worst_finest(&self) -> TileId {
-        self.tiles_above(0)
-            .filter_map(|tile| Some((tile.terrain.as_ref()?.geometric_error_m, tile.id)))
-            .max_by(|a, b| a.0.total_cmp(&b.0))
-            .expect("a finest tile with ground")
-            .1
-    }
-
-    /// The first finest tile that no road meets.
-    fn finest_without_roads(&self) -> TileId {
-        self.tiles_above(0)
-            .find(|tile| tile.roads_geo.is_empty() && tile.roads_sv.is_empty())
-            .expect("a corner without roads")
-            .id
-    }
-
-    /// Lifts a vertex of a tile's TIN.
-    fn lift(&mut self, id: TileId, vertex: usize, steps: i32) {
-        let tin = &mut self.terrain_mut(id).tin;
-        let mut vertices = tin.vertices().to_vec();
-        vertices[vertex].height_q += steps;
-        *tin = Tin::from_canonical(vertices, tin.triangles().to_vec()).expect("the same triangles");
-    }
-
-    /// The tile's ground as lines are laid on it.
-    fn surface(&self, id: TileId) -> Surface {
-        let frame = self.frame();
-        let placement = Placement {
-            corner: frame.lattice_of_node(frame.tile_corner(id)),
-            node_steps: frame.node_steps(id.z()),
-            quantum_m: self.manifest.vertical.quantum_m,
-        };
-        Surface::new(&self.terrain(id).expect("ground").tin, placement)
-    }
-}
 
 #[test]
 fn nothing_broken_when_nothing_was_changed() {
     let parts = Parts::sound();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("same.pmtiles");
-    write(&path, &parts.manifest, &parts.encoded());
+    parts.write(&path).unwrap();
     // Whatever the other tests find is then due to their one change.
     assert!(
         fs::read(&path).unwrap() == SOUND.bytes,
@@ -215,7 +36,7 @@ fn a_stored_error_below_the_true_one() {
     let id = parts.worst_finest();
     parts.terrain_mut(id).geometric_error_m /= 2.0;
     // The manifest's figures tell of it too.
-    parts.assert_breaks(Against::Dem, &[BOUND, COUNT, RECORDED]);
+    parts.assert_breaks(Against::Dem, &[CheckId::Bound, CheckId::LevelSums, CheckId::Recorded]);
 }
 
 #[test]
@@ -239,8 +60,8 @@ fn a_border_vertex_that_the_neighbour_has_elsewhere() {
         })
         .unwrap();
     parts.lift(id, vertex, 3);
-    let report = parts.assert_breaks(Against::Itself, &[SEAMS]);
-    let seams = report.checks.iter().find(|check| check.name.starts_with(SEAMS)).unwrap();
+    let report = parts.assert_breaks(Against::Itself, &[CheckId::Seams]);
+    let seams = report.checks.iter().find(|check| check.id == CheckId::Seams).unwrap();
     assert_eq!(seams.broken, 1);
     let named = |id: TileId| seams.examples[0].contains(&id.to_string());
     assert!(named(id) && named(east), "{:?}", seams.examples);
@@ -253,7 +74,7 @@ fn a_child_with_a_larger_error_than_its_parent() {
     let parent = id.parent().unwrap();
     let above_m = parts.terrain(parent).unwrap().geometric_error_m;
     parts.terrain_mut(id).geometric_error_m = 2.0 * above_m;
-    parts.assert_breaks(Against::Itself, &[COUNT, NESTING]);
+    parts.assert_breaks(Against::Itself, &[CheckId::LevelSums, CheckId::Nested]);
 }
 
 #[test]
@@ -262,7 +83,7 @@ fn a_child_that_reaches_above_its_parent() {
     let id = parts.worst_finest();
     let top_m = parts.terrain(id.parent().unwrap()).unwrap().height_range_m[1];
     parts.terrain_mut(id).height_range_m[1] = top_m + 1.0;
-    parts.assert_breaks(Against::Itself, &[NESTING]);
+    parts.assert_breaks(Against::Itself, &[CheckId::Nested]);
 }
 
 /// Roads out of order never come into a package: the encoding refuses them.
@@ -286,18 +107,18 @@ fn a_road_dropped_from_a_finest_tile() {
     let id = parts.tiles_above(0).max_by_key(|tile| tile.roads_geo.len()).unwrap().id;
     let index = parts.index_of(id).unwrap();
     parts.tiles[index].roads_geo.pop();
-    parts.assert_breaks(Against::Itself, &[LENGTH]);
+    parts.assert_breaks(Against::Itself, &[CheckId::Methods, CheckId::Length, CheckId::Growth]);
 }
 
 #[test]
 fn sums_that_do_not_add_up() {
     let mut roads = Parts::sound();
     roads.manifest.counts.roads_kept += 1;
-    roads.assert_breaks(Against::Itself, &[SUMS]);
+    roads.assert_breaks(Against::Itself, &[CheckId::RoadSums]);
 
     let mut samples = Parts::sound();
     samples.manifest.counts.samples.filled += 1;
-    samples.assert_breaks(Against::Itself, &[SUMS]);
+    samples.assert_breaks(Against::Itself, &[CheckId::SampleSums]);
 }
 
 #[test]
@@ -305,7 +126,7 @@ fn a_tile_left_out() {
     let mut parts = Parts::sound();
     let id = parts.finest_without_roads();
     parts.tiles.retain(|tile| tile.id != id);
-    parts.assert_breaks(Against::Itself, &[COUNT]);
+    parts.assert_breaks(Against::Itself, &[CheckId::LevelSums]);
 }
 
 #[test]
@@ -313,7 +134,7 @@ fn a_parent_left_out_over_its_children() {
     let mut parts = Parts::sound();
     let parent = parts.worst_finest().parent().unwrap();
     parts.tiles.retain(|tile| tile.id != parent);
-    parts.assert_breaks(Against::Itself, &[COUNT]);
+    parts.assert_breaks(Against::Itself, &[CheckId::LevelSums, CheckId::Growth]);
 }
 
 #[test]
@@ -334,11 +155,17 @@ fn a_hole_in_the_ground() {
         .unwrap();
     triangles.remove(triangle);
     *tin = Tin::from_canonical(vertices, triangles).unwrap();
-    parts.assert_breaks(Against::Dem, &[COUNT, STRAY, UNCOVERED]);
+    parts.assert_breaks(
+        Against::Dem,
+        &[CheckId::LevelSums, CheckId::Samples, CheckId::Stray, CheckId::Uncovered],
+    );
 
     // Owning up to the hole does not close it.
     parts.terrain_mut(id).uncovered_nodes += nodes_inside(&hole);
-    parts.assert_breaks(Against::Dem, &[COUNT, STRAY, UNCOVERED]);
+    parts.assert_breaks(
+        Against::Dem,
+        &[CheckId::LevelSums, CheckId::Samples, CheckId::Stray, CheckId::Uncovered],
+    );
 }
 
 /// Twice a triangle's area in cells.
@@ -372,7 +199,7 @@ fn uncovered_nodes_that_are_not_counted() {
     let uncovered = &mut parts.terrain_mut(id).uncovered_nodes;
     assert!(*uncovered > 0, "the sample has voids and data edges");
     *uncovered -= 1;
-    parts.assert_breaks(Against::Dem, &[UNCOVERED]);
+    parts.assert_breaks(Against::Dem, &[CheckId::Uncovered]);
 }
 
 #[test]
@@ -387,7 +214,19 @@ fn a_finest_tile_off_by_more_than_the_bound() {
         .unwrap();
     let steps = (3.0 * MAX_ERROR_M / parts.manifest.vertical.quantum_m).ceil() as i32;
     parts.lift(id, vertex, steps);
-    parts.assert_breaks(Against::Dem, &[BOUND, FINEST, RECORDED]);
+    parts.assert_breaks(
+        Against::Dem,
+        &[
+            CheckId::Levels,
+            CheckId::SvRange,
+            CheckId::Bound,
+            CheckId::Finest,
+            CheckId::Recorded,
+            CheckId::Samples,
+            CheckId::SampleBound,
+            CheckId::Nodes,
+        ],
+    );
 
     // Owning up to the error does not make it a smaller one.
     let mut above = Some(id);
@@ -396,7 +235,18 @@ fn a_finest_tile_off_by_more_than_the_bound() {
         *stored_m = stored_m.max(4.5 * MAX_ERROR_M);
         above = ancestor.parent();
     }
-    parts.assert_breaks(Against::Dem, &[COUNT, FINEST, RECORDED]);
+    parts.assert_breaks(
+        Against::Dem,
+        &[
+            CheckId::SvRange,
+            CheckId::LevelSums,
+            CheckId::Finest,
+            CheckId::Recorded,
+            CheckId::Samples,
+            CheckId::SampleBound,
+            CheckId::Nodes,
+        ],
+    );
 }
 
 /// The tile, road and vertex of the first vertex inside a line that is as wanted, `above` the finest level.
@@ -424,7 +274,7 @@ fn a_line_that_skips_the_edge_it_crosses() {
     let index = parts.index_of(id).unwrap();
     // The line goes straight on, so that its length in plan stays what it was.
     parts.tiles[index].roads_geo[road].line.vertices.remove(vertex);
-    parts.assert_breaks(Against::Itself, &[ON_TIN]);
+    parts.assert_breaks(Against::Itself, &[CheckId::OnTin, CheckId::Growth]);
 }
 
 #[test]
@@ -458,31 +308,31 @@ fn a_line_with_a_point_moved_far_away() {
 
     parts.tiles[index].roads_geo[road].line.vertices[vertex] =
         DrapedVertex::Source { point: corner(far), triangle: far as u32 };
-    parts.assert_breaks(Against::Itself, &[ON_TIN]);
+    parts.assert_breaks(Against::Itself, &[CheckId::OnTin, CheckId::Methods]);
 }
 
 #[test]
 fn a_tile_with_a_flipped_bit() {
     let parts = Parts::sound();
     let id = parts.finest_without_roads();
-    let mut tiles = parts.encoded();
+    let mut tiles = parts.encoded().unwrap();
     let (_, bytes) = tiles.iter_mut().find(|(tile, _)| *tile == id).unwrap();
     *bytes.last_mut().unwrap() ^= 1;
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("damaged.pmtiles");
-    write(&path, &parts.manifest, &tiles);
-    assert_broken(report_on(&path, Against::Itself), &[WHOLE, COUNT]);
+    write(&path, &parts.manifest, &tiles).unwrap();
+    assert_broken(report_on(&path, Against::Itself), &[CheckId::Whole, CheckId::LevelSums]);
 }
 
 #[test]
 fn tolerances_that_were_loosened() {
     let mut settings = Parts::sound();
     settings.manifest.settings.max_error_m *= 100.0;
-    settings.assert_breaks(Against::Itself, &[SETTINGS]);
+    settings.assert_breaks(Against::Itself, &[CheckId::LevelRecords, CheckId::SettingsHash]);
 
     let mut level = Parts::sound();
     level.manifest.levels[0].max_error_m *= 100.0;
-    level.assert_breaks(Against::Itself, &[SETTINGS]);
+    level.assert_breaks(Against::Itself, &[CheckId::LevelRecords]);
 }
 
 #[test]
@@ -492,7 +342,16 @@ fn ground_that_was_taken_away_with_its_count() {
     parts.tiles.retain(|tile| tile.id != id);
     let level = parts.manifest.levels.last_mut().unwrap();
     level.tiles -= 1;
-    parts.assert_breaks(Against::Dem, &[COUNT, RECORDED, STRAY, UNCOVERED]);
+    parts.assert_breaks(
+        Against::Dem,
+        &[
+            CheckId::LevelSums,
+            CheckId::Recorded,
+            CheckId::Samples,
+            CheckId::Stray,
+            CheckId::Uncovered,
+        ],
+    );
 }
 
 #[test]
@@ -501,5 +360,5 @@ fn a_height_range_that_leaves_nodes_out() {
     let id = parts.finest_without_roads();
     let range_m = &mut parts.terrain_mut(id).height_range_m;
     range_m[1] = range_m[0];
-    parts.assert_breaks(Against::Dem, &[RANGES]);
+    parts.assert_breaks(Against::Dem, &[CheckId::Vertices, CheckId::Ranges]);
 }

@@ -1,6 +1,6 @@
 use std::{collections::BTreeMap, num::NonZeroUsize};
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 
 use crate::{PresetError, error::bounded};
 
@@ -26,7 +26,10 @@ pub struct TerrainConfig {
     pub vertical_crs: Option<String>,
     pub dem_vertical_crs: Option<String>,
     pub vertical_shift: Option<f64>,
-    pub nodata: Option<f64>,
+    /// One value or a list of them.
+    #[serde(deserialize_with = "one_or_many")]
+    pub nodata: Vec<f64>,
+    pub height_range: Option<[f64; 2]>,
     pub cell: Option<CellSides>,
     pub cell_every: Option<u32>,
     pub scale_latitude: Option<f64>,
@@ -77,6 +80,20 @@ pub struct ResourceConfig {
     pub memory: Option<String>,
 }
 
+/// A list of numbers, or one alone.
+fn one_or_many<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "expected a number or a list of numbers")]
+    enum OneOrMany {
+        One(f64),
+        Many(Vec<f64>),
+    }
+    Ok(match OneOrMany::deserialize(deserializer)? {
+        OneOrMany::One(value) => vec![value],
+        OneOrMany::Many(values) => values,
+    })
+}
+
 impl Config {
     /// Reads a settings file's text. Unknown sections and names are refused.
     ///
@@ -105,6 +122,18 @@ mod tests {
         {
             assert!(matches!(Config::parse(bad), Err(PresetError::Toml(_))), "{bad}");
         }
+    }
+
+    #[test]
+    fn one_value_for_no_data_is_said_as_shortly_as_before() {
+        let nodata = |text: &str| Config::parse(text).map(|config| config.terrain.nodata);
+        assert_eq!(nodata("[terrain]\nnodata = -9999\n").unwrap(), [-9999.0]);
+        assert_eq!(nodata("[terrain]\nnodata = [-9999, 0.5]\n").unwrap(), [-9999.0, 0.5]);
+        assert_eq!(nodata("[terrain]\n").unwrap(), [0.0; 0]);
+        assert!(nodata("[terrain]\nnodata = \"none\"\n").is_err());
+        let config = Config::parse("[terrain]\nheight-range = [-500, 9000]\n").unwrap();
+        assert_eq!(config.terrain.height_range, Some([-500.0, 9000.0]));
+        assert!(Config::parse("[terrain]\nheight-range = [1]\n").is_err());
     }
 
     #[test]

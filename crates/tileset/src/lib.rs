@@ -28,8 +28,8 @@ pub use package::{FilePackage, FileSource};
 #[cfg(feature = "write")]
 pub use package::{WriteError, Writer};
 pub use payload::{
-    Damage, DecodeError, EncodeError, GeoRoad, RoadRecord, SectionSize, Sections, SvRoad, Terrain,
-    TilePayload, decode,
+    Damage, DecodeError, EncodeError, GeoRoad, PayloadSizes, RoadRecord, SectionSize, Sections,
+    SvRoad, Terrain, TilePayload, decode, payload_sizes,
 };
 #[cfg(feature = "write")]
 pub use payload::{EncodedTile, PayloadContext, encode};

@@ -14,6 +14,7 @@ mod points;
 mod roads_geo;
 mod roads_sv;
 mod route;
+mod sizes;
 mod terrain;
 mod work;
 
@@ -27,6 +28,7 @@ pub use decode::{Sections, decode};
 #[cfg(feature = "write")]
 pub use encode::{EncodedTile, PayloadContext, encode};
 pub use envelope::SectionSize;
+pub use sizes::{PayloadSizes, payload_sizes};
 
 /// All that a tile holds, decoded. A section that is absent from the bytes is empty or `None` here.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,11 +1,23 @@
 //! Commands that tell what a package holds.
 
-use std::{num::NonZeroUsize, path::PathBuf};
+use std::{fmt::Write as _, num::NonZeroUsize, path::PathBuf};
 
 use clap::{Args, ValueEnum};
 use corniche_geom::TileId;
+use corniche_pipeline::CheckId;
 
 use super::ReportArgs;
+
+/// What `verify --help` ends with: the checks, by their ids.
+fn checks() -> String {
+    let mut text =
+        "Checks (docs/promises.md explains them); a broken one makes exit code 1:\n".to_owned();
+    for check in CheckId::ALL {
+        let needs = check.needs().text().replace('`', "");
+        let _ = writeln!(text, "  {:<21} {} [{needs}]", check.id(), check.promise());
+    }
+    text
+}
 
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
@@ -32,12 +44,19 @@ pub(crate) struct GrowthArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(after_long_help = checks())]
 pub(crate) struct VerifyArgs {
     /// The package
     pub(crate) package: PathBuf,
     /// The elevation rasters it was made from, in the same order: checks stored errors against true ones
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub(crate) dem: Vec<PathBuf>,
+    /// The extract it was made from: reads it again and checks roads, attributes and counts against it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) osm: Option<PathBuf>,
+    /// With --osm: the FRC table it was made with [default: the preset of the recorded name]
+    #[arg(long, value_name = "NAME|FILE", requires = "osm")]
+    pub(crate) frc_table: Option<String>,
     /// Worker threads [default: one per processor]
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,

@@ -39,7 +39,7 @@ fn check(case: &Case) -> Option<usize> {
     let files = data(&[case.name])?;
     let options = OpenOptions {
         dem_crs: case.dem_crs.map(str::to_owned),
-        nodata: case.nodata,
+        nodata: case.nodata.into_iter().collect(),
         ..OpenOptions::default()
     };
     let dem = Dem::open(&files, &options).unwrap_or_else(|error| panic!("{error}"));

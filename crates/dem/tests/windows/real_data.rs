@@ -21,7 +21,11 @@ pub(crate) fn data(names: &[&str]) -> Option<Vec<PathBuf>> {
 }
 
 fn open(names: &[&str], nodata: Option<f64>) -> Option<(Dem, GridPlan)> {
-    let dem = Dem::open(&data(names)?, &OpenOptions { nodata, ..OpenOptions::default() }).unwrap();
+    let dem = Dem::open(
+        &data(names)?,
+        &OpenOptions { nodata: nodata.into_iter().collect(), ..OpenOptions::default() },
+    )
+    .unwrap();
     let plan = dem.plan(&PlanOptions { fill_voids: 32, ..options() }).unwrap();
     Some((dem, plan))
 }

@@ -131,7 +131,7 @@ fn all_sorts_of_voids_are_voids() {
     let values = [5.0_f32, f32::NAN, f32::INFINITY, -3.4e38, 3.402_823_5e38, -9999.0, 4e-27];
     let float =
         Raster::new(32632, [7, 5], frame).write(folder.path(), "f.tif", |at| values[column(at)]);
-    let dem = Dem::open(&[float], &OpenOptions { nodata: Some(-9999.0), ..OpenOptions::default() })
+    let dem = Dem::open(&[float], &OpenOptions { nodata: vec![-9999.0], ..OpenOptions::default() })
         .unwrap();
     let plan = dem.plan(&options()).unwrap();
     let heights = dem.reader(&plan).unwrap().window(all(&plan)).unwrap().heights;

@@ -2,6 +2,7 @@
 
 use corniche_geom::Frame;
 use corniche_roads::{ClassFilter, FunctionalRoadClass};
+use corniche_tileset::Manifest;
 
 use crate::RoadSettings;
 
@@ -33,6 +34,20 @@ impl Levels {
             filter: roads.filter.clone(),
             simplify_cells: roads.simplify_cells,
         }
+    }
+
+    /// As a package records them; `None` where its record makes none.
+    pub(crate) fn recorded(manifest: &Manifest) -> Option<Self> {
+        let settings = &manifest.settings;
+        Some(Self {
+            frame: manifest.frame,
+            max_error_m: settings.max_error_m,
+            quantum_m: corniche_tin::height_quantum_m(settings.max_error_m),
+            // The finest level shows every class that the table lets in.
+            least_class: FunctionalRoadClass::new(manifest.levels.last()?.least_class?)?,
+            filter: recorded_filter(manifest)?,
+            simplify_cells: settings.simplify_cells,
+        })
     }
 
     pub(crate) fn frame(&self) -> &Frame {
@@ -101,4 +116,10 @@ impl Levels {
             self.margin_cells(level) * east.min(north)
         }
     }
+}
+
+/// Which levels show which class, as a package records it; `None` where its record makes no filter.
+pub(crate) fn recorded_filter(manifest: &Manifest) -> Option<ClassFilter> {
+    let cells = manifest.settings.class_max_cell_m.as_slice().try_into().ok()?;
+    ClassFilter::new(cells).ok()
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{Bounds, CoordinateTable};
+use corniche_roads::FrcTable;
 use corniche_tileset::{
     Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest,
     SampleCounts, ScaleRecord, SettingsRecord, VerticalRecord, Writer,
@@ -17,6 +18,10 @@ use crate::{
 
 /// Positions interpolated from the manifest are this exact.
 const COORDINATE_TOLERANCE_M: f64 = 0.01;
+
+/// What every package says of its tiles' numbers.
+pub(crate) const TILING: &str = "local quadtree in the working CRS: z from the root, x from the west, y from the \
+                                 north; not the web's tile scheme";
 
 /// Everything that the manifest tells of.
 pub(crate) struct Outcome<'a> {
@@ -67,9 +72,7 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
     Manifest {
         format_version: FORMAT_VERSION,
         generator: format!("{}, {}", settings.generator, plan.libraries),
-        tiling: "local quadtree in the working CRS: z from the root, x from the west, y from the north; not the \
-                 web's tile scheme"
-            .to_owned(),
+        tiling: TILING.to_owned(),
         crs: plan.crs.clone(),
         crs_wkt: plan.crs_wkt.clone(),
         metres_per_unit: plan.metres_per_unit,
@@ -108,7 +111,8 @@ fn settings_record(outcome: &Outcome<'_>) -> SettingsRecord {
     SettingsRecord {
         max_error_m: outcome.max_error_m,
         fill_voids: terrain.fill_voids,
-        nodata: terrain.nodata,
+        nodata: terrain.nodata.clone(),
+        height_range_m: terrain.height_range_m,
         dem_crs: terrain.dem_crs.clone(),
         dem_vertical_crs: terrain.dem_vertical_crs.clone(),
         vertical_crs: terrain.vertical_crs.clone(),
@@ -118,7 +122,7 @@ fn settings_record(outcome: &Outcome<'_>) -> SettingsRecord {
         cell_every: terrain.cell_every,
         scale_latitude_deg: terrain.scale_latitude_deg,
         frc_table: roads.table.name().to_owned(),
-        frc_table_sha256: hex(&Sha256::digest(roads.table.canonical_text())),
+        frc_table_sha256: table_sha256(&roads.table),
         class_max_cell_m: roads.filter.class_max_cell_m().to_vec(),
         simplify_cells: roads.simplify_cells,
     }
@@ -157,8 +161,15 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
 /// What came in, what was kept, what was lost and why: per road, then summed.
 fn counts(outcome: &Outcome<'_>) -> Counts {
     let samples = outcome.samples;
-    let Some(roads) = outcome.roads else { return Counts { samples, ..Counts::default() } };
-    let losses = losses::sums(roads, outcome.tiles);
+    match outcome.roads {
+        Some(roads) => road_counts(samples, roads, outcome.tiles),
+        None => Counts { samples, ..Counts::default() },
+    }
+}
+
+/// The same from roads and tiles alone.
+pub(crate) fn road_counts(samples: SampleCounts, roads: &ReadRoads<'_>, tiles: &Tiles) -> Counts {
+    let losses = losses::sums(roads, tiles);
     Counts {
         samples,
         roads_in: roads.lengths_um.len() as u64,
@@ -170,6 +181,12 @@ fn counts(outcome: &Outcome<'_>) -> Counts {
             .unknown_highways
             .iter()
             .map(|(value, &count)| (value.clone(), count))
+            .collect(),
+        tags_taken_otherwise: roads
+            .extract
+            .tags_taken_otherwise
+            .iter()
+            .map(|(tag, &count)| (tag.clone(), count))
             .collect(),
         blobs_passed_over: roads.extract.blobs_passed_over,
         highways_in: roads.extract.highway_ways,
@@ -249,6 +266,11 @@ pub(crate) fn settings_sha256(settings: &SettingsRecord) -> String {
     // A record of numbers and texts has no way to fail to be JSON; the text of its debugging form is as unique.
     let json = serde_json::to_string(settings).unwrap_or_else(|_| format!("{settings:?}"));
     hex(&Sha256::digest(json))
+}
+
+/// SHA-256 of an FRC table's text.
+pub(crate) fn table_sha256(table: &FrcTable) -> String {
+    hex(&Sha256::digest(table.canonical_text()))
 }
 
 /// Lower-case hexadecimal.

@@ -6,7 +6,7 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-use corniche_dem::Dem;
+use corniche_dem::{DemProjection, GridPlan};
 use corniche_drape::OwnedBorders;
 use corniche_geom::{Bounds, LatticeBounds, LatticePoint, ProjectError, Projection, TileId};
 use corniche_osm::ExtractSummary;
@@ -41,8 +41,7 @@ pub(crate) struct ReadRoads<'a> {
 pub(crate) struct RoadInput<'a> {
     pub(crate) osm: &'a std::path::Path,
     pub(crate) settings: &'a RoadSettings,
-    pub(crate) dem: &'a Dem,
-    pub(crate) plan: &'a corniche_dem::GridPlan,
+    pub(crate) projection: &'a DemProjection,
     pub(crate) levels: &'a Levels,
     pub(crate) lengths: &'a TrueLengths<'a>,
     /// The finest tiles on which the data's rectangle lies, all together.
@@ -77,7 +76,7 @@ pub(crate) fn read<'a>(
         failed: None,
     };
     let frame = *input.levels.frame();
-    let projection = input.dem.projection(input.plan)?;
+    let projection = input.projection;
     let unprojected = Mutex::new(None);
     let place = |positions_deg: &[[f64; 2]]| -> Vec<Option<LatticePoint>> {
         let mut positions = positions_deg.to_vec();
@@ -233,8 +232,9 @@ fn stretch_u([a, b]: [LatticePoint; 2], reach: [i64; 2]) -> [i64; 2] {
 pub(crate) fn check_overlap(
     roads: &ReadRoads<'_>,
     input: &RoadInput<'_>,
+    plan: &GridPlan,
 ) -> Result<(), BuildError> {
-    let (data_m, data_deg) = (&input.plan.data_bounds, &input.plan.wgs84_bounds);
+    let (data_m, data_deg) = (&plan.data_bounds, &plan.wgs84_bounds);
     let Some(bounds) = roads.bounds else { return Ok(()) };
     let frame = input.levels.frame();
     let [min, max] = [frame.position_m(bounds.min), frame.position_m(bounds.max)];
@@ -242,7 +242,7 @@ pub(crate) fn check_overlap(
     if roads_m.intersects(data_m) {
         return Ok(());
     }
-    let roads_deg = bounds_deg(roads_m, &input.dem.projection(input.plan)?);
+    let roads_deg = bounds_deg(roads_m, input.projection);
     Err(BuildError::NoOverlap {
         osm: input.osm.to_path_buf(),
         roads_deg: roads_deg.map_err(BuildError::Project)?.to_array(),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_drape::{Neighbours, OwnedBorders};
-use corniche_geom::TileId;
+use corniche_geom::{LatticeBounds, TileId};
 use corniche_roads::{FunctionalRoadClass, Road};
 use corniche_tileset::{
     EncodedTile, GeoRoad, PayloadContext, RoadRecord, SvRoad, Terrain, TilePayload, VerticalRecord,
@@ -114,12 +114,7 @@ pub(crate) fn make(
     ids.sort_unstable_by_key(|&id| pmtiles_order(id));
     observer.begin(Stage::Tiles, Some(ids.len() as u64));
     let road_count = roads.as_ref().map_or(0, |roads| roads.log.len());
-    let mut tiles = Tiles {
-        payloads: Vec::with_capacity(ids.len()),
-        levels: BTreeMap::new(),
-        classes: BTreeMap::new(),
-        roads: vec![RoadFate::default(); road_count],
-    };
+    let mut tiles = Tiles::of_roads(road_count);
     let mut roads = roads;
     // In batches, so that the lists of roads in memory stay few.
     for batch in ids.chunks(BATCH) {
@@ -178,10 +173,25 @@ impl Tiles {
                 sums.sv_stored_bytes += counted.sv_stored_bytes;
             }
         }
-        for &(ordinal, fate) in &made.fates {
+        self.add_fates(&made.fates);
+    }
+
+    /// Adds what became of roads in one tile.
+    pub(crate) fn add_fates(&mut self, fates: &[(u32, RoadFate)]) {
+        for &(ordinal, fate) in fates {
             let road = &mut self.roads[ordinal as usize];
             road.kept_um += fate.kept_um;
             road.void_um += fate.void_um;
+        }
+    }
+
+    /// Before the first tile, for so many roads.
+    pub(crate) fn of_roads(count: usize) -> Self {
+        Self {
+            payloads: Vec::new(),
+            levels: BTreeMap::new(),
+            classes: BTreeMap::new(),
+            roads: vec![RoadFate::default(); count],
         }
     }
 }
@@ -203,7 +213,7 @@ fn make_tile(
     let on = Ground { id, surface: &surface, owned: owned_borders(input, id, ordinals)? };
     for &ordinal in ordinals {
         if let Some(log) = log {
-            laid.lay(&log.load(ordinal)?, ordinal, &on, input);
+            laid.lay(&log.load(ordinal)?, ordinal, &on, levels, input.lengths);
         }
     }
     let fates = std::mem::take(&mut laid.fates);
@@ -228,10 +238,11 @@ fn make_tile(
 }
 
 /// What roads of a tile are laid on.
-struct Ground<'a> {
-    id: TileId,
-    surface: &'a Surface,
-    owned: OwnedBorders,
+pub(crate) struct Ground<'a> {
+    pub(crate) id: TileId,
+    pub(crate) surface: &'a Surface,
+    /// What of its borders is the tile's.
+    pub(crate) owned: OwnedBorders,
 }
 
 /// What the tile owns of its borders, by the ground on both sides of them.
@@ -277,33 +288,48 @@ fn lost_roads(
     let mut fates = Vec::new();
     for &ordinal in ordinals {
         let Some(log) = log else { continue };
-        let line = log.load(ordinal)?.line;
-        let segments_um = input.lengths.segments_um(&line);
-        let void_um = corniche_drape::clip_parts(&line, &bounds, owned)
-            .iter()
-            .flat_map(|part| pieces_um(&line, part, &segments_um))
-            .map(|[from, to]| to - from)
-            .sum();
-        fates.push((ordinal, RoadFate { kept_um: 0, void_um }));
+        fates.push((ordinal, lost_road(&log.load(ordinal)?, &bounds, owned, input.lengths)));
     }
     Ok(Made { kept: None, fates })
 }
 
+/// What becomes of a road on a finest tile without ground.
+pub(crate) fn lost_road(
+    road: &Road,
+    bounds: &LatticeBounds,
+    owned: OwnedBorders,
+    lengths: &TrueLengths<'_>,
+) -> RoadFate {
+    let segments_um = lengths.segments_um(&road.line);
+    let void_um = corniche_drape::clip_parts(&road.line, bounds, owned)
+        .iter()
+        .flat_map(|part| pieces_um(&road.line, part, &segments_um))
+        .map(|[from, to]| to - from)
+        .sum();
+    RoadFate { kept_um: 0, void_um }
+}
+
 /// The roads of one tile as they are laid.
 #[derive(Default)]
-struct Laid {
-    geo: Vec<GeoRoad>,
-    sv: Vec<SvRoad>,
-    attributes: BTreeMap<i64, RoadRecord>,
-    fates: Vec<(u32, RoadFate)>,
-    classes: BTreeMap<u8, ClassSums>,
+pub(crate) struct Laid {
+    pub(crate) geo: Vec<GeoRoad>,
+    pub(crate) sv: Vec<SvRoad>,
+    pub(crate) attributes: BTreeMap<i64, RoadRecord>,
+    pub(crate) fates: Vec<(u32, RoadFate)>,
+    pub(crate) classes: BTreeMap<u8, ClassSums>,
     /// Next part number of each way, GEO and SV.
     parts: BTreeMap<i64, [u32; 2]>,
 }
 
 impl Laid {
-    fn lay(&mut self, road: &Road, ordinal: u32, on: &Ground<'_>, input: &TileInput<'_>) {
-        let (levels, lengths) = (input.levels, input.lengths);
+    pub(crate) fn lay(
+        &mut self,
+        road: &Road,
+        ordinal: u32,
+        on: &Ground<'_>,
+        levels: &Levels,
+        lengths: &TrueLengths<'_>,
+    ) {
         let &Ground { id, surface, owned } = on;
         let frame = levels.frame();
         let bounds = frame.tile_lattice_bounds(id);
@@ -360,9 +386,14 @@ impl Laid {
         }
     }
 
-    fn into_payload(mut self, id: TileId, terrain: Terrain) -> TilePayload {
+    /// Puts roads into the order in which a payload has them.
+    pub(crate) fn sort(&mut self) {
         self.geo.sort_by_key(|road| (road.class, road.way_id, road.part));
         self.sv.sort_by_key(|road| (road.class, road.way_id, road.part));
+    }
+
+    fn into_payload(mut self, id: TileId, terrain: Terrain) -> TilePayload {
+        self.sort();
         TilePayload {
             id,
             terrain: Some(terrain),
@@ -416,7 +447,7 @@ fn class_sums(
 }
 
 /// The share of `total` that falls to `parts[index]`, so that all shares add up to `total` exactly.
-fn share(total: u64, parts: &[u64; FunctionalRoadClass::COUNT], index: usize) -> u64 {
+pub(crate) fn share(total: u64, parts: &[u64; FunctionalRoadClass::COUNT], index: usize) -> u64 {
     let sum: u64 = parts.iter().sum();
     if sum == 0 {
         return 0;

@@ -9,9 +9,15 @@ use corniche_tileset::{
 };
 
 use super::{
-    Check, ErrorFigures, VerifyError, VerifyReport, VerifySettings, ground::Ground, samples,
+    Check, CheckId, ErrorFigures, VerifyError, VerifyReport, VerifySettings, gradient,
+    ground::Ground, samples,
 };
-use crate::{BuildError, Observer, Stage, build::input_record, sample_error::SampleSums, workers};
+use crate::{
+    Observer, Stage,
+    inputs::{self, Inputs},
+    sample_error::SampleSums,
+    workers,
+};
 
 /// Slack for comparing two ways of computing the same height, metres.
 pub(super) const ROUNDING_M: f64 = 1e-6;
@@ -52,8 +58,26 @@ pub(crate) fn verify(
     report: &mut VerifyReport,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
+    let inputs = Inputs::find(&settings.dem, None)?;
+    let compared = compare_all(package, settings, &inputs, report, observer);
+    match &compared {
+        Err(VerifyError::Interrupted) => compared,
+        // What else is wrong may come of a change.
+        _ => inputs.check_unchanged().map_err(VerifyError::from).and(compared),
+    }
+}
+
+fn compare_all(
+    package: &FilePackage,
+    settings: &VerifySettings,
+    inputs: &Inputs,
+    report: &mut VerifyReport,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
     let manifest = package.manifest();
-    let (dem, plan) = open(settings, manifest, observer)?;
+    let Some((dem, plan)) = open(settings, inputs, manifest, report, observer)? else {
+        return Ok(());
+    };
     let max_level = manifest.frame.max_level();
     // All finest tiles of the data, those without ground too: a coarser level may cover their nodes.
     let finest = crate::build::data_tiles(&plan);
@@ -115,19 +139,23 @@ pub(crate) fn verify(
         at_samples = samples::measure(package, &dem, &plan, settings, observer)?;
     }
     judge(package, &truths, report)?;
+    gradient::verify(package, &dem, &plan, settings.threads, report, observer)?;
     report.checks.extend(samples::judge(manifest, &at_samples));
     report.samples = at_samples.last().map(SampleSums::record);
     Ok(())
 }
 
-/// Opens the DEM as the build did and makes sure that it is the same one and gives the same grid.
+/// Opens the DEM as the build did and makes sure that it is the same one. `None`, and a broken check, where it gives
+/// another grid than the package's: then nothing can be compared.
 fn open(
     settings: &VerifySettings,
+    inputs: &Inputs,
     manifest: &Manifest,
+    report: &mut VerifyReport,
     observer: &dyn Observer,
-) -> Result<(Dem, GridPlan), VerifyError> {
-    let expected: Vec<&InputRecord> =
-        manifest.inputs.iter().filter(|input| input.kind == "dem").collect();
+) -> Result<Option<(Dem, GridPlan)>, VerifyError> {
+    let is_dem = |input: &&InputRecord| input.kind == inputs::DEM || input.kind == inputs::DEM_PART;
+    let expected: Vec<&InputRecord> = manifest.inputs.iter().filter(is_dem).collect();
     let other = || VerifyError::OtherDem {
         expected: expected.iter().map(|input| input.name.clone()).collect(),
     };
@@ -136,24 +164,36 @@ fn open(
         &settings.dem,
         &OpenOptions {
             dem_crs: record.dem_crs.clone(),
-            nodata: record.nodata,
+            nodata: record.nodata.clone(),
             dem_vertical_crs: record.dem_vertical_crs.clone(),
             vertical_crs: record.vertical_crs.clone(),
             vertical_shift_m: record.vertical_shift_m,
         },
     )?;
-    let mut hashes = Vec::new();
-    for path in &settings.dem {
-        let given = input_record("dem", path, observer).map_err(|error| match error {
-            BuildError::Input { path, source } => VerifyError::Input { path, source },
-            _ => VerifyError::Interrupted,
-        })?;
-        hashes.push(given.sha256);
+    let given = inputs.hash(observer)?;
+    // By content, not by name: a file may have been moved or renamed since. The order of parts is that of their names.
+    let mut sizes = Check::new(CheckId::DemInputs);
+    for kind in [inputs::DEM, inputs::DEM_PART] {
+        let of_kind = |records: &mut dyn Iterator<Item = &InputRecord>| {
+            let mut found: Vec<InputRecord> =
+                records.filter(|record| record.kind == kind).cloned().collect();
+            if kind == inputs::DEM_PART {
+                found.sort_by(|a, b| a.sha256.cmp(&b.sha256));
+            }
+            found
+        };
+        let (said, found) = (of_kind(&mut expected.iter().copied()), of_kind(&mut given.iter()));
+        let hash = |record: &InputRecord| record.sha256.clone();
+        if !said.iter().map(hash).eq(found.iter().map(hash)) {
+            return Err(other());
+        }
+        for (said, found) in said.iter().zip(&found) {
+            sizes.look(said.bytes == found.bytes, || {
+                format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
+            });
+        }
     }
-    // By content, not by name: a file may have been moved or renamed since.
-    if !hashes.iter().eq(expected.iter().map(|input| &input.sha256)) {
-        return Err(other());
-    }
+    report.checks.push(sizes);
     let plan = dem.plan(&PlanOptions {
         crs: record.crs.clone(),
         cell: record.cell_m,
@@ -161,7 +201,35 @@ fn open(
         scale_latitude_deg: record.scale_latitude_deg,
         fill_voids: record.fill_voids,
     })?;
-    if plan.frame == manifest.frame { Ok((dem, plan)) } else { Err(other()) }
+    report.checks.push(check_plan(&plan, manifest));
+    Ok((plan.frame == manifest.frame).then_some((dem, plan)))
+}
+
+/// What the plan says that the build took over into the manifest.
+fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
+    let mut check = Check::new(CheckId::DemPlan);
+    let vertical = &manifest.vertical;
+    let mut same = |what: &str, said: &dyn std::fmt::Debug, found: &dyn std::fmt::Debug| {
+        let (said, found) = (format!("{said:?}"), format!("{found:?}"));
+        check.look(said == found, || {
+            format!("{what} is recorded as {said}, but comes out as {found}")
+        });
+    };
+    same("frame", &manifest.frame, &plan.frame);
+    same("crs", &manifest.crs, &plan.crs);
+    same("metres_per_unit", &manifest.metres_per_unit, &plan.metres_per_unit);
+    same("point_scale", &manifest.point_scale, &plan.point_scale);
+    let scale = (plan.scale.center, plan.scale.least, plan.scale.largest);
+    let said = (manifest.scale.center, manifest.scale.least, manifest.scale.largest);
+    same("scale", &said, &scale);
+    same("data_bounds", &manifest.data_bounds, &plan.data_bounds);
+    same("wgs84_bounds", &manifest.wgs84_bounds, &plan.wgs84_bounds);
+    same("nodes_are_samples", &manifest.nodes_are_samples, &plan.nodes_are_samples());
+    same("resampling", &manifest.resampling, &plan.resampling);
+    let datum = plan.vertical_datum.as_deref().unwrap_or("unknown");
+    same("vertical.datum", &vertical.datum.as_str(), &datum);
+    same("vertical.treatment", &vertical.treatment, &plan.vertical);
+    check
 }
 
 /// Compares an ancestor's TIN with the full resolution over one finest tile. Also gives the cells of the
@@ -237,14 +305,13 @@ fn judge(
 ) -> Result<(), VerifyError> {
     let manifest = package.manifest();
     let quantum_m = manifest.vertical.quantum_m;
-    let mut bound = Check::new("P2: no stored error is below the true one");
-    let mut finest = Check::new("P2: the finest level stays within --max-error");
-    let mut stray = Check::new("P2: nodes without ground lie within one cell of a void or an edge");
-    let mut tight =
-        Check::new("P2: stored errors are at most twice the true ones, for 95 % of tiles");
+    let mut bound = Check::new(CheckId::Bound);
+    let mut finest = Check::new(CheckId::Finest);
+    let mut stray = Check::new(CheckId::Stray);
+    let mut tight = Check::new(CheckId::Tight);
     let mut loose = 0_u64;
-    let mut counted = Check::new("P2: uncovered nodes are as many as tiles and levels say");
-    let mut ranges = Check::new("height ranges hold every node beneath");
+    let mut counted = Check::new(CheckId::Uncovered);
+    let mut ranges = Check::new(CheckId::Ranges);
     let mut stored = BTreeMap::new();
     for id in package.tile_ids()? {
         let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
@@ -255,9 +322,7 @@ fn judge(
                 format!("tile {id} says {said}, {} were found", truth.uncovered)
             });
             let [low, high] = terrain.height_range_m;
-            let holds = truth
-                .range_m
-                .is_none_or(|range| low <= f64::from(range[0]) && f64::from(range[1]) <= high);
+            let holds = truth.range_m.is_none_or(|range| range.map(f64::from) == [low, high]);
             ranges.look(holds, || {
                 format!("tile {id} says {low} to {high} m, nodes beneath: {:?}", truth.range_m)
             });
@@ -303,7 +368,7 @@ fn judge(
     tight.look(loose as f64 <= (1.0 - TIGHT_SHARE) * count as f64, || {
         format!("{loose} of {count} tiles are loose")
     });
-    let mut recorded = Check::new("P2: the recorded distributions of stored over true errors hold");
+    let mut recorded = Check::new(CheckId::Recorded);
     for (level, truth) in levels {
         let tightness = Distribution::of(ratios.remove(&level).unwrap_or_default());
         let said = manifest.levels.get(usize::from(level)).and_then(|record| record.tightness);

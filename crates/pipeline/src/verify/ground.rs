@@ -1,6 +1,9 @@
 //! A second opinion on TINs, written apart from the code that made them: plain f64 geometry in cells of the
 //! tile, a grid of buckets, no adjacency.
 
+use std::ops::RangeInclusive;
+
+use corniche_geom::{Frame, LatticePoint, NodeIndex, TileId};
 use corniche_tin::Tin;
 
 /// Buckets along one side of a tile.
@@ -10,17 +13,66 @@ const TILE_CELLS: f64 = 256.0;
 /// of a tile, far below the millimetre.
 const SLACK_CELLS: f64 = 1e-7;
 
+/// Parts of triangles shorter than this are not met by a line: a line is rounded to the lattice where it is cut.
+const MET_STEPS: f64 = 8.0;
+/// How far inside a triangle a line must run to meet it, for the same reason.
+const INSIDE_STEPS: f64 = 2.0;
+
 /// A tile's triangles, ready to be asked for heights. Positions are (column, row) in the tile's own cells.
 pub(crate) struct Ground {
     /// Corners of each triangle: column, row, height in metres.
     triangles: Vec<Corners>,
     buckets: Vec<Vec<u32>>,
+    /// Lattice steps to a cell, east and north.
+    steps: [f64; 2],
 }
 
 type Corners = [[f64; 3]; 3];
 
+/// Where a tile lies on the lattice.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    corner: LatticePoint,
+    /// Lattice steps to a cell of the tile, east and north.
+    pub(crate) steps: [f64; 2],
+}
+
+impl Place {
+    pub(crate) fn of(frame: &Frame, id: TileId) -> Self {
+        let (corner, stride) = (frame.tile_corner(id), frame.stride(id.z()));
+        let next = NodeIndex { i: corner.i + stride, j: corner.j + stride };
+        let (from, to) = (frame.lattice_of_node(corner), frame.lattice_of_node(next));
+        Self { corner: from, steps: [(to.u - from.u) as f64, (to.v - from.v) as f64] }
+    }
+
+    /// Steps east and north of the tile's corner: small numbers, of which f64 knows all fractions that matter.
+    pub(crate) fn local(&self, point: LatticePoint) -> [f64; 2] {
+        [(point.u - self.corner.u) as f64, (point.v - self.corner.v) as f64]
+    }
+
+    /// The same of a position in steps from the lattice's origin.
+    pub(crate) fn local_of(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        [u - self.corner.u as f64, v - self.corner.v as f64]
+    }
+
+    /// (column, row) of a local position.
+    pub(crate) fn cells(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        [u / self.steps[0], -v / self.steps[1]]
+    }
+
+    /// East and south end of the tile, in local steps: it reaches from 0 to the first, and from the second to 0.
+    pub(crate) fn reach(&self) -> [f64; 2] {
+        [TILE_CELLS * self.steps[0], -TILE_CELLS * self.steps[1]]
+    }
+}
+
 impl Ground {
     pub(crate) fn new(tin: &Tin, quantum_m: f64) -> Self {
+        Self::placed(tin, quantum_m, [1.0; 2])
+    }
+
+    /// The same for questions about lengths, with the lattice steps of a cell.
+    pub(crate) fn placed(tin: &Tin, quantum_m: f64, steps: [f64; 2]) -> Self {
         let triangles: Vec<Corners> = tin
             .triangles()
             .iter()
@@ -46,7 +98,7 @@ impl Ground {
                 }
             }
         }
-        Self { triangles, buckets }
+        Self { triangles, buckets, steps }
     }
 
     /// All triangles that hold the point, borders included.
@@ -76,6 +128,152 @@ impl Ground {
             })
             .reduce(f64::min)
     }
+
+    /// Triangles whose boxes meet a box, each once.
+    fn near(&self, [low, high]: [[f64; 2]; 2]) -> impl Iterator<Item = &Corners> + '_ {
+        let [columns, rows]: [RangeInclusive<usize>; 2] =
+            [0, 1].map(|axis| bucket(low[axis] - SLACK_CELLS)..=bucket(high[axis] + SLACK_CELLS));
+        let first = [*columns.start(), *rows.start()];
+        rows.flat_map(move |row| columns.clone().map(move |column| [column, row])).flat_map(
+            move |at| {
+                self.buckets[at[1] * BUCKETS + at[0]]
+                    .iter()
+                    .map(|&triangle| &self.triangles[triangle as usize])
+                    // Only in the first bucket that both have in common.
+                    .filter(move |corners| {
+                        (0..2).all(|axis| {
+                            let least =
+                                corners.iter().map(|c| c[axis]).fold(f64::INFINITY, f64::min);
+                            at[axis] == bucket(least - SLACK_CELLS).max(first[axis])
+                        })
+                    })
+            },
+        )
+    }
+
+    /// Lowest and highest ground in the rectangle along a segment that reaches `margin` lattice steps beyond it on
+    /// every side. `None` without ground there.
+    pub(crate) fn range_near(&self, [a, b]: [[f64; 2]; 2], margin: f64) -> Option<[f64; 2]> {
+        let in_steps = |[column, row]: [f64; 2]| [column * self.steps[0], -row * self.steps[1]];
+        let (p, q) = (in_steps(a), in_steps(b));
+        let length = (q[0] - p[0]).hypot(q[1] - p[1]);
+        let way = if length > 0.0 {
+            [(q[0] - p[0]) / length, (q[1] - p[1]) / length]
+        } else {
+            [1.0, 0.0]
+        };
+        // The rectangle's corners are at most this far from the ends along an axis.
+        let reach = [0, 1].map(|axis| margin * (way[0].abs() + way[1].abs()) / self.steps[axis]);
+        let low = [0, 1].map(|axis| a[axis].min(b[axis]) - reach[axis]);
+        let high = [0, 1].map(|axis| a[axis].max(b[axis]) + reach[axis]);
+        let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for corners in self.near([low, high]) {
+            let heights = corners.map(|corner| corner[2]);
+            // A triangle between the two cannot widen the range.
+            if heights.iter().all(|height| (lowest..=highest).contains(height)) {
+                continue;
+            }
+            let turned = corners.map(|[column, row, height]| {
+                let at = in_steps([column, row]);
+                let (du, dv) = (at[0] - p[0], at[1] - p[1]);
+                [du * way[0] + dv * way[1], dv * way[0] - du * way[1], height]
+            });
+            let mut part = turned.to_vec();
+            part = cut(&part, |[along, ..]| along + margin);
+            part = cut(&part, |[along, ..]| length + margin - along);
+            part = cut(&part, |[_, across, _]| across + margin);
+            part = cut(&part, |[_, across, _]| margin - across);
+            for [.., height] in part {
+                lowest = lowest.min(height);
+                highest = highest.max(height);
+            }
+        }
+        (lowest <= highest).then_some([lowest, highest])
+    }
+
+    /// Whether the segment runs inside a triangle for more than a few lattice steps.
+    pub(crate) fn meets(&self, [a, b]: [[f64; 2]; 2]) -> bool {
+        let low = [0, 1].map(|axis| a[axis].min(b[axis]));
+        let high = [0, 1].map(|axis| a[axis].max(b[axis]));
+        let in_steps = |[column, row]: [f64; 2]| [column * self.steps[0], -row * self.steps[1]];
+        let (p, q) = (in_steps(a), in_steps(b));
+        let length = (q[0] - p[0]).hypot(q[1] - p[1]);
+        self.near([low, high]).any(|corners| {
+            let at = corners.map(|corner| in_steps(flat(corner)));
+            let (mut from, mut to) = (0.0_f64, 1.0_f64);
+            for k in 0..3 {
+                let (c, d) = (at[k], at[(k + 1) % 3]);
+                // In steps north is up, so the inside is on the left.
+                let inside =
+                    |point| area(c, d, point) / (d[0] - c[0]).hypot(d[1] - c[1]) - INSIDE_STEPS;
+                let (here, there) = (inside(p), inside(q));
+                if here < 0.0 && there < 0.0 {
+                    return false;
+                }
+                if here < 0.0 {
+                    from = from.max(here / (here - there));
+                } else if there < 0.0 {
+                    to = to.min(here / (here - there));
+                }
+            }
+            (to - from) * length > MET_STEPS
+        })
+    }
+
+    /// Heights at a square of nodes, row by row: the first at (column, row) `first`, neighbours `step` cells apart.
+    /// NaN where there is no ground.
+    pub(crate) fn raster(&self, first: [f64; 2], step: f64, side: usize) -> Vec<f64> {
+        let mut heights = vec![f64::NAN; side * side];
+        let last = (side - 1) as f64;
+        let far = first.map(|cells| cells + last * step);
+        for corners in self.near([first, far]) {
+            let at = corners.map(|c| [(c[0] - first[0]) / step, (c[1] - first[1]) / step, c[2]]);
+            let rows = at.map(|corner| corner[1]);
+            let low = rows.into_iter().fold(f64::INFINITY, f64::min).max(0.0).ceil();
+            let high = rows.into_iter().fold(f64::NEG_INFINITY, f64::max).min(last).floor();
+            let mut row = low;
+            while row <= high {
+                let (mut west, mut east) = (0.0_f64, last);
+                for k in 0..3 {
+                    let (a, b) = (flat(at[k]), flat(at[(k + 1) % 3]));
+                    let (rise, reach) = (b[1] - a[1], (b[0] - a[0]) * (row - a[1]));
+                    let slack = SLACK_CELLS * (b[0] - a[0]).hypot(rise);
+                    // As in `holds`: reach − rise · (column − a) is at most the slack.
+                    if rise > 0.0 {
+                        west = west.max(a[0] + (reach - slack) / rise);
+                    } else if rise < 0.0 {
+                        east = east.min(a[0] + (reach - slack) / rise);
+                    } else if reach > slack {
+                        east = -1.0;
+                    }
+                }
+                let mut column = west.ceil();
+                while column <= east {
+                    heights[row as usize * side + column as usize] = height(&at, [column, row]);
+                    column += 1.0;
+                }
+                row += 1.0;
+            }
+        }
+        heights
+    }
+}
+
+/// What of a convex polygon lies where `inside`, an affine function, is at least 0.
+fn cut(corners: &[[f64; 3]], inside: impl Fn([f64; 3]) -> f64) -> Vec<[f64; 3]> {
+    let mut kept = Vec::with_capacity(corners.len() + 1);
+    for (k, &this) in corners.iter().enumerate() {
+        let next = corners[(k + 1) % corners.len()];
+        let (here, there) = (inside(this), inside(next));
+        if here >= 0.0 {
+            kept.push(this);
+        }
+        if (here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0) {
+            let part = here / (here - there);
+            kept.push([0, 1, 2].map(|axis| this[axis] + part * (next[axis] - this[axis])));
+        }
+    }
+    kept
 }
 
 fn bucket(cells: f64) -> usize {
@@ -146,5 +344,41 @@ mod tests {
         assert_eq!(ground.edge_gap_m([100.0, 10.0, 3.125], [150.0, 10.0, 3.3125]), None);
         let gap_m = ground.edge_gap_m([0.0, 3.0, 0.25], [1.0, 3.0, 4.0 / 128.0]).unwrap();
         assert!((gap_m - 0.25).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_range_around_a_segment_holds_the_ridge_only_where_it_reaches_it() {
+        let roof = roof();
+        // Cells of 3 by 2 steps.
+        let ground = Ground::placed(&roof, 0.5, [3.0, 2.0]);
+        let along = [[100.0, 10.0], [100.0, 40.0]];
+        // 20 cells east: 60 steps.
+        let [low_m, high_m] = ground.range_near(along, 60.0).unwrap();
+        assert!((low_m - 80.0 / 32.0).abs() < 1e-9 && (high_m - 120.0 / 32.0).abs() < 1e-9);
+        assert_eq!(ground.range_near(along, 90.0).unwrap()[1], 4.0);
+        assert!(ground.range_near([[300.0, 0.0], [310.0, 0.0]], 100.0).is_none());
+    }
+
+    #[test]
+    fn a_line_meets_ground_where_it_runs_inside_it() {
+        let roof = roof();
+        let ground = Ground::placed(&roof, 0.5, [1000.0, 1000.0]);
+        assert!(ground.meets([[-5.0, 20.0], [3.0, 20.0]]));
+        assert!(!ground.meets([[-5.0, 20.0], [0.005, 20.0]]));
+        assert!(!ground.meets([[0.0, 3.0], [0.0, 200.0]]), "along the outline");
+    }
+
+    #[test]
+    fn a_raster_has_the_heights_of_its_nodes() {
+        let roof = roof();
+        let ground = Ground::new(&roof, 0.5);
+        let heights = ground.raster([250.0, 100.0], 0.5, 20);
+        for (k, height_m) in heights.into_iter().enumerate() {
+            let at = [250.0 + 0.5 * (k % 20) as f64, 100.0 + 0.5 * (k / 20) as f64];
+            match ground.height_m(at) {
+                Some(expected_m) => assert!((height_m - expected_m).abs() < 1e-9, "{at:?}"),
+                None => assert!(height_m.is_nan(), "{at:?}"),
+            }
+        }
     }
 }

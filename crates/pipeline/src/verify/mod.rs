@@ -1,18 +1,31 @@
 //! Whether a package keeps its promises: every tile, no sampling.
 
+mod attributes;
+mod checks;
 mod dem;
+mod gradient;
+mod grid;
 mod ground;
+mod levels;
+mod methods;
+mod osm;
+mod place;
+mod records;
 mod roads;
 mod samples;
 mod seams;
+mod shown;
 mod sums;
 mod tiles;
 
 use std::path::PathBuf;
 
+use corniche_roads::FrcTable;
 use corniche_tileset::{Distribution, FilePackage, OpenError, SampleErrorRecord};
 
-use crate::Observer;
+pub use checks::{Check, CheckId, Needs};
+
+use crate::{BuildError, Observer};
 
 /// What to verify.
 #[derive(Debug, Clone)]
@@ -21,53 +34,21 @@ pub struct VerifySettings {
     pub package: PathBuf,
     /// The elevation files it was made from, to check errors against; empty leaves that out.
     pub dem: Vec<PathBuf>,
+    /// The extract it was made from, to check roads against; `None` leaves that out.
+    pub osm: Option<VerifyOsm>,
     /// Worker threads, at least 1.
     pub threads: usize,
 }
 
-/// One promise, how often it was looked at, and where it is broken.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Check {
-    /// The promise in words.
-    pub name: &'static str,
-    /// How many things were looked at.
-    pub checked: u64,
-    /// How many of them break it.
-    pub broken: u64,
-    /// The first few of those, in words.
-    pub examples: Vec<String>,
-}
-
-/// Examples kept of each broken promise.
-const EXAMPLES: usize = 5;
-
-impl Check {
-    pub(crate) fn new(name: &'static str) -> Self {
-        Self { name, checked: 0, broken: 0, examples: Vec::new() }
-    }
-
-    /// Whether nothing breaks it.
-    #[must_use]
-    pub fn holds(&self) -> bool {
-        self.broken == 0
-    }
-
-    pub(crate) fn look(&mut self, holds: bool, example: impl FnOnce() -> String) {
-        self.checked += 1;
-        if !holds {
-            self.broken += 1;
-            if self.examples.len() < EXAMPLES {
-                self.examples.push(example());
-            }
-        }
-    }
-
-    pub(crate) fn merge(&mut self, other: Self) {
-        self.checked += other.checked;
-        self.broken += other.broken;
-        let room = EXAMPLES - self.examples.len();
-        self.examples.extend(other.examples.into_iter().take(room));
-    }
+/// The extract that a package was made from, and how it was read.
+#[derive(Debug, Clone)]
+pub struct VerifyOsm {
+    /// The extract.
+    pub path: PathBuf,
+    /// The FRC table that the manifest names.
+    pub table: FrcTable,
+    /// Memory for sorting roads by tile, bytes.
+    pub memory_bytes: u64,
 }
 
 /// How far GEO roads are from their TIN on one level.
@@ -137,26 +118,75 @@ pub enum VerifyError {
          same order"
     )]
     OtherDem { expected: Vec<String> },
+    #[error(
+        "{path:?} is a pipe or a device; inputs are read more than once, so save it to a file first"
+    )]
+    Stream { path: PathBuf },
+    #[error("the name of {path:?} is not UTF-8; rename the file")]
+    InputName { path: PathBuf },
+    #[error("{path:?} changed while it was read; run the same command again when it is left alone")]
+    Changed { path: PathBuf },
+    #[error(
+        "{path:?} is not the extract that the package was made from; give {expected:?}, the same file"
+    )]
+    OtherOsm { path: PathBuf, expected: Vec<String> },
+    #[error(
+        "the FRC table {given:?} is not the one that the package was made with; give {expected:?} with --frc-table"
+    )]
+    OtherTable { given: String, expected: String },
+    #[error("the extract could not be laid on the package's tiles")]
+    Roads(#[source] BuildError),
     #[error("cannot read {path:?}")]
     Input { path: PathBuf, source: std::io::Error },
+    #[error(
+        "intermediate results could not be kept in the folder for temporary files (disk full?)"
+    )]
+    Work(#[source] std::io::Error),
     #[error("interrupted")]
     Interrupted,
 }
 
-/// Verifies a package: without other inputs P1, P3, P6, the order of roads, checksums and sections; with the DEM
-/// also P2.
+impl From<BuildError> for VerifyError {
+    fn from(error: BuildError) -> Self {
+        match error {
+            BuildError::Input { path, source } => Self::Input { path, source },
+            BuildError::InputName { path } => Self::InputName { path },
+            BuildError::Stream { path } => Self::Stream { path },
+            BuildError::Changed { path } => Self::Changed { path },
+            BuildError::Interrupted => Self::Interrupted,
+            BuildError::Dem(error) => Self::Dem(error),
+            other => Self::Roads(other),
+        }
+    }
+}
+
+/// Verifies a package: without other inputs all that the package says of itself; with the elevation files or the
+/// extract also what it says of them. [`CheckId`] lists what is looked at.
 ///
 /// # Errors
-/// When the package or the DEM cannot be read at all; a broken promise is a finding, not an error.
+/// When the package, the DEM or the extract cannot be read at all, or is another; a broken promise is a finding, not
+/// an error.
 pub fn verify(
     settings: &VerifySettings,
     observer: &dyn Observer,
 ) -> Result<VerifyReport, VerifyError> {
     let package = FilePackage::open(&settings.package)?;
-    let mut report = tiles::verify(&package, settings.threads, observer)?;
-    report.checks.extend(sums::verify(package.manifest()));
+    let mut given = vec![Needs::Package];
+    let (mut report, mut findings) = tiles::verify(&package, settings.threads, observer)?;
+    levels::verify(&package, settings.threads, &mut findings, observer)?;
+    sums::verify(package.manifest(), &mut findings);
+    records::verify(package.manifest(), &mut findings);
+    grid::verify(package.manifest(), &mut findings);
+    place::verify(package.manifest(), &mut findings);
     if !settings.dem.is_empty() {
+        given.push(Needs::Dem);
         dem::verify(&package, settings, &mut report, observer)?;
     }
+    if let Some(osm) = &settings.osm {
+        given.push(Needs::Osm);
+        osm::verify(&package, osm, settings.threads, &mut findings, observer)?;
+    }
+    findings.merge(std::mem::take(&mut report.checks));
+    report.checks = findings.into_checks(&given);
     Ok(report)
 }

@@ -1,18 +1,27 @@
-//! P1: every vertex and edge of a geometric road lies on the TIN of its tile, as stored and decoded.
+//! P1: every vertex and edge of a geometric road lies on the TIN of its tile, as stored and decoded; and the order
+//! of roads.
+
+use std::collections::BTreeMap;
 
 use corniche_geom::{Frame, TileId, wgs84};
+use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{Manifest, TilePayload};
-use corniche_tin::{Placement, Surface};
+use corniche_tin::{Placement, Surface, Tin};
 
-use super::{Check, GapFigures, ground::Ground};
+use super::{
+    GapFigures,
+    checks::{CheckId, Findings},
+    ground::{Ground, Place},
+};
 
-/// What was found about one tile's roads.
-pub(crate) struct RoadFindings {
-    pub(crate) on_tin: Check,
-    pub(crate) order: Check,
+/// What was found about the GEO roads of a tile.
+#[derive(Default)]
+pub(crate) struct OnTin {
     pub(crate) gaps: GapFigures,
-    /// True length in plan of the GEO lines.
+    /// True length in plan of the lines.
     pub(crate) length_m: f64,
+    /// Where the vertices of each line lie, as a reader computes them; `None` for a line that is none.
+    pub(crate) positions: Vec<Option<Vec<[f64; 3]>>>,
 }
 
 /// The gap that P1 allows on a level with this tolerance.
@@ -20,29 +29,42 @@ fn allowed_gap_m(max_error_m: f64) -> f64 {
     (max_error_m / 100.0).max(0.01)
 }
 
-pub(crate) fn verify(payload: &TilePayload, manifest: &Manifest, max_error_m: f64) -> RoadFindings {
+/// Looks at the order of roads and at the parts of ways.
+pub(crate) fn verify_order(payload: &TilePayload, findings: &mut Findings) {
     let id = payload.id;
-    let (frame, quantum_m) = (&manifest.frame, manifest.vertical.quantum_m);
-    let mut findings = RoadFindings {
-        on_tin: Check::new("P1: GEO roads lie on their TIN"),
-        order: Check::new("roads are sorted by class, way and part"),
-        gaps: GapFigures { level: id.z(), ..GapFigures::default() },
-        length_m: 0.0,
-    };
     let geo = payload.roads_geo.iter().map(|road| (road.class, road.way_id, road.part));
     let sv = payload.roads_sv.iter().map(|road| (road.class, road.way_id, road.part));
-    findings.order.look(geo.is_sorted_by(|a, b| a < b), || format!("GEO section of tile {id}"));
-    findings.order.look(sv.is_sorted_by(|a, b| a < b), || format!("SV section of tile {id}"));
-    let Some(terrain) = &payload.terrain else {
+    let sections: [(&str, Vec<(FunctionalRoadClass, i64, u32)>); 2] =
+        [("GEO", geo.collect()), ("SV", sv.collect())];
+    for (section, roads) in sections {
+        let sorted = roads.is_sorted_by(|a, b| a < b);
+        let mut next: BTreeMap<i64, u32> = BTreeMap::new();
+        let counted = roads.iter().all(|&(_, way_id, part)| {
+            let wanted = next.entry(way_id).or_default();
+            *wanted += 1;
+            part + 1 == *wanted
+        });
         findings
-            .on_tin
-            .look(payload.roads_geo.is_empty(), || format!("tile {id} has roads but no ground"));
-        return findings;
-    };
-    let placement = Placement::of_tile(frame, id, quantum_m);
+            .look(CheckId::Order, sorted && counted, || format!("{section} section of tile {id}"));
+    }
+}
+
+/// Lays every GEO line beside the ground.
+pub(crate) fn verify_on_tin(
+    payload: &TilePayload,
+    tin: &Tin,
+    ground: &Ground,
+    manifest: &Manifest,
+    findings: &mut Findings,
+) -> OnTin {
+    let (id, frame) = (payload.id, &manifest.frame);
+    let max_error_m =
+        manifest.levels.get(usize::from(id.z())).map_or(0.0, |level| level.max_error_m);
+    let mut found =
+        OnTin { gaps: GapFigures { level: id.z(), ..GapFigures::default() }, ..OnTin::default() };
     // The surface turns stored lines into positions, as a reader does; the ground judges them by itself.
-    let surface = Surface::new(&terrain.tin, placement);
-    let ground = Ground::new(&terrain.tin, quantum_m);
+    let surface = Surface::new(tin, Placement::of_tile(frame, id, manifest.vertical.quantum_m));
+    let place = Place::of(frame, id);
     let lon_lat = |[u, v, _]: [f64; 3]| {
         manifest.coordinates.wgs84_from_working(frame.position_of_fraction_m([u, v]))
     };
@@ -51,26 +73,24 @@ pub(crate) fn verify(payload: &TilePayload, manifest: &Manifest, max_error_m: f6
         let positions = match corniche_drape::positions(&road.line, &surface) {
             Ok(positions) => positions,
             Err(error) => {
-                findings.on_tin.look(false, || format!("{}: {error}", name()));
+                findings.look(CheckId::OnTin, false, || format!("{}: {error}", name()));
+                found.positions.push(None);
                 continue;
             }
         };
         let in_cells = |p: [f64; 3]| {
-            let [east, north] = placement.node_steps.map(|steps| steps as f64);
-            [
-                (p[0] - placement.corner.u as f64) / east,
-                (placement.corner.v as f64 - p[1]) / north,
-                p[2],
-            ]
+            let [column, row] = place.cells(place.local_of([p[0], p[1]]));
+            [column, row, p[2]]
         };
         for pair in positions.windows(2) {
             if counts_for_sums(id, frame) {
-                findings.length_m += wgs84::short_distance_m(lon_lat(pair[0]), lon_lat(pair[1]));
+                found.length_m += wgs84::short_distance_m(lon_lat(pair[0]), lon_lat(pair[1]));
             }
             let gap_m = ground.edge_gap_m(in_cells(pair[0]), in_cells(pair[1]));
-            findings.gaps.edges += 1;
-            findings.gaps.largest_m = findings.gaps.largest_m.max(gap_m.unwrap_or(0.0));
-            findings.on_tin.look(
+            found.gaps.edges += 1;
+            found.gaps.largest_m = found.gaps.largest_m.max(gap_m.unwrap_or(0.0));
+            findings.look(
+                CheckId::OnTin,
                 gap_m.is_some_and(|gap_m| gap_m <= allowed_gap_m(max_error_m)),
                 || match gap_m {
                     Some(gap_m) => format!("{} is {gap_m} m off", name()),
@@ -78,8 +98,9 @@ pub(crate) fn verify(payload: &TilePayload, manifest: &Manifest, max_error_m: f6
                 },
             );
         }
+        found.positions.push(Some(positions));
     }
-    findings
+    found
 }
 
 /// Whether a tile is at the finest level, where the lengths of roads add up to what the manifest says.

@@ -6,7 +6,7 @@ use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{Frame, TileId};
 use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, Sections};
 
-use super::{Check, VerifyError, VerifySettings, dem::ROUNDING_M, ground::Ground};
+use super::{Check, CheckId, VerifyError, VerifySettings, dem::ROUNDING_M, ground::Ground};
 use crate::{Observer, Stage, sample_error::SampleSums, workers};
 
 /// Tiles whose ground a worker keeps. Blocks of samples are compact, so these are enough not to load any twice in a row.
@@ -105,10 +105,8 @@ fn cells(frame: &Frame, id: TileId, [x, y]: [f64; 2]) -> [f64; 2] {
 
 /// Puts the figures found beside those stated.
 pub(super) fn judge(manifest: &Manifest, sums: &[SampleSums]) -> [Check; 2] {
-    let mut stated = Check::new("P2: the error at the DEM's own samples is what levels say");
-    let mut bound = Check::new(
-        "P2: where nodes are samples, samples are within --max-error on the finest level",
-    );
+    let mut stated = Check::new(CheckId::Samples);
+    let mut bound = Check::new(CheckId::SampleBound);
     let quantum_m = manifest.vertical.quantum_m;
     for (record, sums) in manifest.levels.iter().zip(sums) {
         let (said, found) = (record.sample_error, sums.record());

@@ -6,6 +6,7 @@
 
 pub(crate) mod agreement;
 pub(crate) mod extract;
+pub(crate) mod parts;
 pub(crate) mod rays;
 pub(crate) mod terrain;
 
@@ -132,12 +133,20 @@ pub(crate) struct Options {
     pub(crate) max_error_m: f64,
     pub(crate) fill_voids: u32,
     pub(crate) threads: usize,
+    pub(crate) height_range_m: Option<[f64; 2]>,
 }
 
 impl Options {
     /// The raster's own cell, nothing filled.
     pub(crate) fn plain(max_error_m: f64) -> Self {
-        Self { crs: None, cell_m: None, max_error_m, fill_voids: 0, threads: 2 }
+        Self {
+            crs: None,
+            cell_m: None,
+            max_error_m,
+            fill_voids: 0,
+            threads: 2,
+            height_range_m: None,
+        }
     }
 }
 
@@ -155,6 +164,35 @@ pub(crate) fn settings(
     output: PathBuf,
     options: Options,
 ) -> BuildSettings {
+    BuildSettings {
+        dem: vec![dem],
+        osm,
+        output,
+        existing: Existing::Keep,
+        terrain: TerrainSettings {
+            crs: options.crs.map(str::to_owned),
+            dem_crs: None,
+            dem_vertical_crs: None,
+            vertical_crs: None,
+            vertical_shift_m: 0.0,
+            nodata: Vec::new(),
+            height_range_m: options.height_range_m,
+            allow_fine_cell: false,
+            cell: options.cell_m.map(corniche_geom::Cell::from),
+            cell_every: None,
+            scale_latitude_deg: None,
+            max_error_m: Some(options.max_error_m),
+            fill_voids: options.fill_voids,
+        },
+        roads: RoadSettings { table: table(), filter: ClassFilter::usual(), simplify_cells: 0.25 },
+        resources: Resources { threads: options.threads, memory_bytes: 256 << 20 },
+        attribution: Vec::new(),
+        generator: "tests".to_owned(),
+    }
+}
+
+/// The FRC table of all tests.
+pub(crate) fn table() -> FrcTable {
     let classes = [
         ("motorway", 0),
         ("trunk", 1),
@@ -168,33 +206,7 @@ pub(crate) fn settings(
         ("track", 7),
     ];
     let classes = classes.map(|(value, class)| (value.to_owned(), class)).to_vec();
-    BuildSettings {
-        dem: vec![dem],
-        osm,
-        output,
-        existing: Existing::Keep,
-        terrain: TerrainSettings {
-            crs: options.crs.map(str::to_owned),
-            dem_crs: None,
-            dem_vertical_crs: None,
-            vertical_crs: None,
-            vertical_shift_m: 0.0,
-            nodata: None,
-            cell: options.cell_m.map(corniche_geom::Cell::from),
-            cell_every: None,
-            scale_latitude_deg: None,
-            max_error_m: Some(options.max_error_m),
-            fill_voids: options.fill_voids,
-        },
-        roads: RoadSettings {
-            table: FrcTable::new("test", classes, vec![], 7).unwrap(),
-            filter: ClassFilter::usual(),
-            simplify_cells: 0.25,
-        },
-        resources: Resources { threads: options.threads, memory_bytes: 256 << 20 },
-        attribution: Vec::new(),
-        generator: "tests".to_owned(),
-    }
+    FrcTable::new("test", classes, vec![], 7).unwrap()
 }
 
 /// Builds a package from files.

@@ -146,6 +146,15 @@ pub(super) fn section(
     }
 }
 
+/// How large the section of one kind is; 0 where it is absent.
+pub(super) fn size(sections: &[StoredSection<'_>], kind: Kind) -> SectionSize {
+    let of_kind = sections.iter().find(|section| section.kind == kind as u16);
+    of_kind.map_or_else(SectionSize::default, |section| SectionSize {
+        raw: u64::from(section.raw_length),
+        stored: section.bytes.len() as u64,
+    })
+}
+
 /// Checks sections of kinds that this version does not know, as far as it can.
 pub(super) fn check_unknown(sections: &[StoredSection<'_>]) -> Result<(), Damage> {
     let unknown =

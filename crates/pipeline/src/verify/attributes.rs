@@ -1,0 +1,87 @@
+//! What tiles say of ways: one class and one set of attributes, the same wherever the way is.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    hash::{DefaultHasher, Hash as _, Hasher as _},
+};
+
+use corniche_geom::TileId;
+use corniche_roads::RoadAttributes;
+use corniche_tileset::TilePayload;
+
+use super::checks::{CheckId, Findings};
+
+/// What one tile says of a way: 24 bytes, so that all ways of a country can be held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct WayFacts {
+    class: u8,
+    /// Hash of the attributes.
+    attributes: u64,
+}
+
+/// Looks at a tile by itself, and gives what it says of each way.
+pub(crate) fn of_tile(
+    payload: &TilePayload,
+    least_class: Option<u8>,
+    findings: &mut Findings,
+) -> Vec<(i64, WayFacts)> {
+    let id = payload.id;
+    let geo = payload.roads_geo.iter().map(|road| (road.way_id, road.class.number()));
+    let sv = payload.roads_sv.iter().map(|road| (road.way_id, road.class.number()));
+    let ways: BTreeSet<(i64, u8)> = geo.chain(sv).collect();
+    for &(way_id, class) in &ways {
+        findings.look(CheckId::Classes, least_class.is_some_and(|least| class <= least), || {
+            format!(
+                "tile {id} has way {way_id} of class {class}, its level shows up to {least_class:?}"
+            )
+        });
+    }
+    let named: Vec<i64> = payload.attributes.iter().map(|record| record.way_id).collect();
+    let mut here: Vec<i64> = ways.iter().map(|&(way_id, _)| way_id).collect();
+    here.dedup();
+    findings.look(CheckId::Attributes, named == here, || {
+        let missing = here.iter().find(|way| !named.contains(way));
+        let needless = named.iter().find(|way| !here.contains(way));
+        format!("tile {id}: a way without attributes: {missing:?}; attributes without a way: {needless:?}")
+    });
+    let attributes: BTreeMap<i64, u64> =
+        payload.attributes.iter().map(|record| (record.way_id, hash(&record.attributes))).collect();
+    ways.into_iter()
+        .map(|(way_id, class)| {
+            let attributes = attributes.get(&way_id).copied().unwrap_or_default();
+            (way_id, WayFacts { class, attributes })
+        })
+        .collect()
+}
+
+/// Every field counts: one that is added has to be named here before this compiles.
+fn hash(attributes: &RoadAttributes) -> u64 {
+    let RoadAttributes { form, structure, layer, oneway, name, reference, surface } = attributes;
+    let mut hasher = DefaultHasher::new();
+    (form, structure, layer, oneway, name, reference, surface).hash(&mut hasher);
+    hasher.finish()
+}
+
+/// What was said of each way first.
+#[derive(Default)]
+pub(crate) struct Ways {
+    by_id: BTreeMap<i64, (TileId, WayFacts)>,
+}
+
+impl Ways {
+    /// Compares what a tile says with what tiles before it said.
+    pub(crate) fn add(&mut self, id: TileId, facts: Vec<(i64, WayFacts)>, findings: &mut Findings) {
+        for (way_id, found) in facts {
+            let &mut (first, said) = self.by_id.entry(way_id).or_insert((id, found));
+            findings.look(CheckId::Classes, said.class == found.class, || {
+                format!(
+                    "way {way_id} is of class {} in tile {id} and of class {} in tile {first}",
+                    found.class, said.class
+                )
+            });
+            findings.look(CheckId::Attributes, said.attributes == found.attributes, || {
+                format!("way {way_id} has other attributes in tile {id} than in tile {first}")
+            });
+        }
+    }
+}

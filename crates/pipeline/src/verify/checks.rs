@@ -1,0 +1,231 @@
+//! Every check that there is: a short stable id, what holds, and what has to be given for it.
+
+/// What has to be given beside the package for a check to be made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Needs {
+    /// The package alone.
+    Package,
+    /// The elevation files (`--dem`).
+    Dem,
+    /// The extract (`--osm`).
+    Osm,
+}
+
+impl Needs {
+    /// As the list of checks writes it.
+    #[must_use]
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Package => "the package",
+            Self::Dem => "`--dem`",
+            Self::Osm => "`--osm`",
+        }
+    }
+}
+
+macro_rules! checks {
+    ($($variant:ident $id:literal $needs:ident $promise:literal)*) => {
+        /// A check, by what it looks at. The order is that of reports.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum CheckId {
+            $(#[doc = $promise] $variant,)*
+        }
+
+        impl CheckId {
+            /// All checks.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+
+            /// Its name: short, and the same in every version.
+            #[must_use]
+            pub fn id(self) -> &'static str {
+                match self { $(Self::$variant => $id),* }
+            }
+
+            /// What holds where it is not broken.
+            #[must_use]
+            pub fn promise(self) -> &'static str {
+                match self { $(Self::$variant => $promise),* }
+            }
+
+            /// What it needs.
+            #[must_use]
+            pub fn needs(self) -> Needs {
+                match self { $(Self::$variant => Needs::$needs),* }
+            }
+        }
+    };
+}
+
+checks! {
+    Whole "tiles.whole" Package "every tile's sections are whole and match their checksums"
+    Order "roads.order" Package "the roads of a tile are sorted by class, way and part, and parts are counted from 0"
+    OnTin "P1" Package "every edge of a GEO road lies on one triangle of its tile"
+    Seams "P3" Package "neighbours of one level share bit-identical border vertices"
+    Nested "P2.nested" Package "a parent's error and height range are never below its children's"
+    Levels "P2.levels" Package "at nodes that both cover, a child's TIN and its parent's differ by no more than their errors together"
+    Vertices "heights.vertices" Package "TIN vertices lie within their tile's height range"
+    Methods "sv.line" Package "within a tile, the GEO and the SV lines of a way are one line wherever there is ground"
+    SvRange "sv.range" Package "the height range of an SV segment is that of the ground within the margin around it, rounded outwards"
+    Shown "roads.levels" Package "a road is on every level that shows its class, within the simplification tolerance"
+    Classes "roads.classes" Package "a way has one class, and a level has no road of a class that it does not show"
+    Attributes "roads.attributes" Package "a way has one set of attributes, and exactly the ways of a tile have them there"
+    Length "P6.length" Package "GEO roads of the finest level are as long as the manifest says"
+    RoadSums "P6.roads" Package "roads that came in are those that were kept and those that were lost, by reason"
+    SampleSums "P6.samples" Package "nodes are those with data, those that were filled and those that are void"
+    LevelSums "levels.sums" Package "tiles, triangles, vertices, bytes and errors of each level are those of its tiles"
+    Growth "growth.sums" Package "the rows of the growth table are sums over the tiles"
+    LevelRecords "levels.derived" Package "cells, tolerances, margins and classes of the levels follow from grid and settings"
+    SettingsHash "settings.hash" Package "the settings match their hash"
+    Grid "manifest.grid" Package "the grid is the smallest one over the data's rectangle, whose corners are nodes"
+    Crs "manifest.crs" Package "the CRS's code or name is that of its WKT"
+    Scale "manifest.scale" Package "the scale is one that the CRS has over the data"
+    Bounds "manifest.bounds" Package "the rectangles in the working CRS and in degrees are the same place"
+    Coordinates "manifest.coordinates" Package "the table of longitudes and latitudes is what the CRS says, to a centimetre"
+    Texts "manifest.texts" Package "fixed texts are as the format has them, kinds of inputs are known, and extracts are credited"
+    DemInputs "dem.inputs" Dem "the elevation files are as long as the manifest says"
+    DemPlan "dem.plan" Dem "the elevation files and the settings give the grid, CRS and heights that the manifest tells of"
+    DemCounts "dem.counts" Dem "nodes with data, filled and void, and the lowest and highest, are those of the elevation files"
+    Bound "P2.bound" Dem "no stored error is below the true one"
+    Tight "P2.tight" Dem "stored errors are at most twice the true ones, for 95 % of tiles"
+    Recorded "P2.recorded" Dem "the recorded distributions of stored over true errors hold"
+    Finest "P2.finest" Dem "the finest level stays within --max-error"
+    Samples "P2.samples" Dem "the error at the DEM's own samples is what the levels say"
+    SampleBound "P2.bounded" Dem "where nodes are samples, samples are within --max-error of the finest level"
+    Stray "P2.stray" Dem "nodes without ground lie within one cell of a void or an edge"
+    Uncovered "P2.uncovered" Dem "uncovered nodes are as many as tiles and levels say"
+    Ranges "heights.ranges" Dem "the height range of a tile is that of the nodes beneath"
+    Nodes "heights.nodes" Dem "the height of a TIN vertex is the DEM's at its node, rounded to the height quantum"
+    Normals "heights.normals" Dem "the normal of a TIN vertex is that of the heights' gradient on its level"
+    OsmInputs "osm.inputs" Osm "the extract is as long as the manifest says, and the FRC table is the one it names"
+    OsmGeo "osm.geo" Osm "GEO roads are those of the extract, clipped and laid again, to the lattice step"
+    OsmSv "osm.sv" Osm "SV roads are those of the extract, clipped again, to the lattice step"
+    OsmAttributes "osm.attributes" Osm "classes and attributes of ways are those of the extract"
+    OsmCounts "osm.counts" Osm "counts and lengths of roads are those of the extract"
+    OsmGrowth "osm.growth" Osm "source and simplified points of the growth table are those of the extract"
+}
+
+/// One check, how often it was made, and where it failed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Check {
+    /// Which.
+    pub id: CheckId,
+    /// How many things were looked at.
+    pub checked: u64,
+    /// How many of them break it.
+    pub broken: u64,
+    /// The first few of those, in words.
+    pub examples: Vec<String>,
+}
+
+/// Examples kept of each broken promise.
+const EXAMPLES: usize = 5;
+
+impl Check {
+    pub(crate) fn new(id: CheckId) -> Self {
+        Self { id, checked: 0, broken: 0, examples: Vec::new() }
+    }
+
+    /// Whether nothing breaks it.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.broken == 0
+    }
+
+    pub(crate) fn look(&mut self, holds: bool, example: impl FnOnce() -> String) {
+        self.checked += 1;
+        if !holds {
+            self.broken += 1;
+            if self.examples.len() < EXAMPLES {
+                self.examples.push(example());
+            }
+        }
+    }
+
+    pub(crate) fn merge(&mut self, other: Self) {
+        self.checked += other.checked;
+        self.broken += other.broken;
+        let room = EXAMPLES - self.examples.len();
+        self.examples.extend(other.examples.into_iter().take(room));
+    }
+}
+
+/// Checks as they are made, each once.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Findings {
+    checks: Vec<Check>,
+}
+
+impl Findings {
+    /// Looks once more.
+    pub(crate) fn look(&mut self, id: CheckId, holds: bool, example: impl FnOnce() -> String) {
+        self.of(id).look(holds, example);
+    }
+
+    /// The check with this id, begun if it was not.
+    pub(crate) fn of(&mut self, id: CheckId) -> &mut Check {
+        let at = match self.checks.binary_search_by_key(&id, |check| check.id) {
+            Ok(at) => at,
+            Err(at) => {
+                self.checks.insert(at, Check::new(id));
+                at
+            }
+        };
+        &mut self.checks[at]
+    }
+
+    /// Adds what others found.
+    pub(crate) fn merge(&mut self, checks: impl IntoIterator<Item = Check>) {
+        for check in checks {
+            self.of(check.id).merge(check);
+        }
+    }
+
+    /// All checks that can be made with what is given, in the order of their list.
+    pub(crate) fn into_checks(mut self, given: &[Needs]) -> Vec<Check> {
+        for &id in CheckId::ALL.iter().filter(|id| given.contains(&id.needs())) {
+            self.of(id);
+        }
+        self.checks
+    }
+}
+
+impl IntoIterator for Findings {
+    type Item = Check;
+    type IntoIter = std::vec::IntoIter<Check>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.checks.into_iter()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_are_short_different_and_plain() {
+        let mut ids: Vec<_> = CheckId::ALL.iter().map(|check| check.id()).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!(ids.len(), CheckId::ALL.len());
+        let plain = |c: char| c.is_ascii_alphanumeric() || c == '.';
+        assert!(ids.iter().all(|id| id.len() <= 24 && id.chars().all(plain)), "{ids:?}");
+    }
+
+    #[test]
+    fn findings_of_two_workers_add_up_in_the_order_of_the_list() {
+        let (mut one, mut other) = (Findings::default(), Findings::default());
+        one.look(CheckId::Seams, true, String::new);
+        other.look(CheckId::Whole, false, || "a".to_owned());
+        other.look(CheckId::Seams, false, || "b".to_owned());
+        one.merge(other);
+        let checks = one.into_checks(&[Needs::Package]);
+        assert_eq!(
+            checks[0],
+            Check { id: CheckId::Whole, checked: 1, broken: 1, examples: vec!["a".to_owned()] }
+        );
+        let seams = checks.iter().find(|check| check.id == CheckId::Seams).unwrap();
+        assert_eq!((seams.checked, seams.broken), (2, 1));
+        assert!(checks.iter().all(|check| check.id.needs() == Needs::Package));
+    }
+}

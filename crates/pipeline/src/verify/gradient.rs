@@ -1,0 +1,142 @@
+//! The DEM on each level: what TIN vertices stand on, and what their normals follow. And how many nodes have data.
+
+use corniche_dem::{Dem, GridPlan};
+use corniche_geom::{HeightGrid, TileId};
+use corniche_tileset::{FilePackage, Sections, Terrain};
+
+use super::{
+    VerifyError, VerifyReport,
+    checks::{CheckId, Findings},
+};
+use crate::{
+    DiskStorage, Observer, Stage,
+    build::{Pyramid, read_heights},
+    workers,
+};
+
+/// Steps from the centre of the octahedron's square to its edge (Meyer et al. 2010, section 3).
+const STEPS: f64 = 127.0;
+/// A code is the nearest whole number, to the rounding of two ways of computing the same.
+const NEAREST: f64 = 0.5 + 1e-6;
+
+/// Compares vertices and normals with the rasters of their levels, which are kept in a temporary folder.
+pub(crate) fn verify(
+    package: &FilePackage,
+    dem: &Dem,
+    plan: &GridPlan,
+    threads: usize,
+    report: &mut VerifyReport,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
+    let work = tempfile::tempdir().map_err(VerifyError::Work)?;
+    let storage = DiskStorage::create(work.path()).map_err(VerifyError::Work)?;
+    let pyramid = read_heights(dem, plan, threads, &storage, observer)?;
+    let manifest = package.manifest();
+    let mut findings = Findings::default();
+    let (said, found) = (manifest.counts.samples, pyramid.samples());
+    findings
+        .look(CheckId::DemCounts, said == found, || format!("recorded {said:?}, found {found:?}"));
+    let (said_m, found_m) = (manifest.vertical.range_m, pyramid.range_m().map(f64::from));
+    findings.look(CheckId::DemCounts, said_m == found_m, || {
+        format!("heights from {said_m:?} are recorded, {found_m:?} were found")
+    });
+    let ids = package.tile_ids()?;
+    observer.begin(Stage::Verify, Some(ids.len() as u64));
+    workers::in_order(
+        threads,
+        ids.len(),
+        || Ok(()),
+        |(), index| {
+            if observer.is_cancelled() {
+                return Err(VerifyError::Interrupted);
+            }
+            look_at(package, &pyramid, ids[index])
+        },
+        |_, found: Findings| {
+            findings.merge(found);
+            observer.advance(Stage::Verify, 1);
+            Ok(())
+        },
+    )?;
+    observer.end(Stage::Verify);
+    report.checks.extend(findings);
+    Ok(())
+}
+
+fn look_at(
+    package: &FilePackage,
+    pyramid: &Pyramid<'_>,
+    id: TileId,
+) -> Result<Findings, VerifyError> {
+    let mut findings = Findings::default();
+    let manifest = package.manifest();
+    let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
+    let Some(Terrain { tin, normals, .. }) = payload.and_then(|payload| payload.terrain) else {
+        return Ok(findings);
+    };
+    let heights = pyramid.tile(id, 1)?;
+    let cell_m = manifest.frame.level_cell(id.z()).to_array();
+    for (vertex, normal) in tin.vertices().iter().zip(&normals) {
+        // One node of the neighbours lies around the tile's own.
+        let at = [usize::from(vertex.column) + 1, usize::from(vertex.row) + 1];
+        let wanted = heights
+            .height(at[0], at[1])
+            .map(|height_m| (f64::from(height_m) / manifest.vertical.quantum_m).round());
+        findings.look(CheckId::Nodes, wanted == Some(f64::from(vertex.height_q)), || {
+            format!(
+                "tile {id} has {} steps at node {}, {} of the tile, the DEM {wanted:?}",
+                vertex.height_q, vertex.column, vertex.row
+            )
+        });
+        let [east, north] = gradient(&heights, at, cell_m);
+        // Up, at a right angle to the slope, on the octahedron |x| + |y| + |z| = 1.
+        let size = east.abs() + north.abs() + 1.0;
+        let exact = [-east, -north].map(|slope| STEPS * slope / size);
+        let holds = (0..2).all(|axis| (f64::from(normal[axis]) - exact[axis]).abs() <= NEAREST);
+        findings.look(CheckId::Normals, holds, || {
+            format!(
+                "tile {id} has the normal {normal:?} at node {}, {} of the tile, the DEM {exact:?}",
+                vertex.column, vertex.row
+            )
+        });
+    }
+    Ok(findings)
+}
+
+/// Metres up for a metre east and for a metre north, from the nearest nodes with data on either side.
+fn gradient(heights: &HeightGrid, [column, row]: [usize; 2], cell_m: [f64; 2]) -> [f64; 2] {
+    let slope = |low: [usize; 2], high: [usize; 2], cell_m: f64| {
+        let at = |[column, row]: [usize; 2]| heights.height(column, row).map(f64::from);
+        let (before, here, after) = (at(low), at([column, row]), at(high));
+        match (before.or(here), after.or(here)) {
+            (Some(from), Some(to)) => {
+                let cells = f64::from(u8::from(before.is_some()) + u8::from(after.is_some()));
+                if cells > 0.0 { (to - from) / (cells * cell_m) } else { 0.0 }
+            }
+            _ => 0.0,
+        }
+    };
+    [
+        slope([column - 1, row], [column + 1, row], cell_m[0]),
+        slope([column, row + 1], [column, row - 1], cell_m[1]),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gradient_beside_a_gap_is_taken_from_one_side_and_between_gaps_is_none() {
+        // Rises 3 m a cell to the east and 1 m a cell to the south.
+        let heights = HeightGrid::from_fn(5, 5, |c, r| {
+            if (c == 3 && r == 2) || (c == 2 && r != 2) {
+                f32::NAN
+            } else {
+                3.0 * c as f32 + r as f32
+            }
+        });
+        assert_eq!(gradient(&heights, [1, 1], [10.0, 20.0]), [0.3, -0.05]);
+        assert_eq!(gradient(&heights, [2, 2], [10.0, 20.0]), [0.3, 0.0]);
+    }
+}

@@ -1,0 +1,250 @@
+//! The two ways in which a tile holds its roads, beside each other: the GEO lines lie on the SV lines, and wherever
+//! there is ground beneath an SV line, there is a GEO line on it. And the heights of the ground around SV lines.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use corniche_drape::{DrapedLine, DrapedVertex};
+use corniche_geom::LatticePoint;
+use corniche_tileset::TilePayload;
+
+use super::{
+    checks::{CheckId, Findings},
+    ground::{Ground, Place},
+};
+
+/// How far two lines that are one may lie apart, in lattice steps: each is rounded where it is cut.
+pub(crate) const SAME_LINE_STEPS: f64 = 2.0;
+/// Pieces shorter than this are no pieces.
+const LEAST_STEPS: f64 = 8.0;
+/// Ranges are widened by this part of the heights before they are rounded outwards (FORMAT.md, section 8) …
+const RANGE_PAD: f64 = 1e-6;
+/// … to this part of it: two ways of computing the same heights.
+const PAD_ROUNDING: f64 = 1e-3;
+
+/// A segment in local steps.
+pub(crate) type Segment = [[f64; 2]; 2];
+
+/// What a tile has of one way.
+#[derive(Default)]
+struct Way {
+    /// Source points and leads of its GEO lines.
+    points: BTreeSet<LatticePoint>,
+    /// Straight pieces of its GEO lines, as far as there is ground.
+    geo: Vec<Segment>,
+    /// Points of its SV lines.
+    sv_points: BTreeSet<LatticePoint>,
+    sv: Vec<Segment>,
+}
+
+/// A tile with its ground, and where both lie.
+pub(crate) struct View<'a> {
+    pub(crate) payload: &'a TilePayload,
+    pub(crate) ground: &'a Ground,
+    pub(crate) place: Place,
+    /// How far around an SV segment its range reaches, in lattice steps.
+    pub(crate) margin_steps: i64,
+    pub(crate) quantum_m: f64,
+}
+
+/// Compares the lines of both methods; `positions` are those of the GEO lines' vertices.
+pub(crate) fn verify_lines(
+    view: &View<'_>,
+    positions: &[Option<Vec<[f64; 3]>>],
+    findings: &mut Findings,
+) {
+    let id = view.payload.id;
+    for ((class, way_id), way) in ways(view, positions) {
+        let name = || format!("way {way_id} of class {class} in tile {id}");
+        for &point in &way.points {
+            let holds = way.sv_points.contains(&point)
+                || is_on(view.place.local(point), &way.sv, SAME_LINE_STEPS);
+            findings.look(CheckId::Methods, holds, || {
+                format!("{}: the GEO line is at {point:?}, no SV line is", name())
+            });
+        }
+        for &segment in &way.sv {
+            let bare = bare_pieces(view.place, segment, &way.geo);
+            let bare = bare
+                .into_iter()
+                .find(|&piece| view.ground.meets(piece.map(|point| view.place.cells(point))));
+            findings.look(CheckId::Methods, bare.is_none(), || {
+                format!(
+                    "{}: ground without a GEO line beneath the SV line from {:?}",
+                    name(),
+                    segment[0]
+                )
+            });
+        }
+    }
+}
+
+fn ways(view: &View<'_>, positions: &[Option<Vec<[f64; 3]>>]) -> BTreeMap<(u8, i64), Way> {
+    let place = view.place;
+    let mut ways: BTreeMap<(u8, i64), Way> = BTreeMap::new();
+    for (road, positions) in view.payload.roads_geo.iter().zip(positions) {
+        let way = ways.entry((road.class.number(), road.way_id)).or_default();
+        way.points.extend(road.line.lead_in.iter().chain(&road.line.lead_out));
+        let Some(positions) = positions else { continue };
+        let at = |index: usize| place.local_of([positions[index][0], positions[index][1]]);
+        let mut from = 0;
+        for (index, vertex) in road.line.vertices.iter().enumerate() {
+            let is_last = index + 1 == road.line.vertices.len();
+            if let DrapedVertex::Source { point, .. } = vertex {
+                way.points.insert(*point);
+            } else if !is_last {
+                continue;
+            }
+            if index > from {
+                way.geo.push([at(from), at(index)]);
+            }
+            from = index;
+        }
+    }
+    for road in &view.payload.roads_sv {
+        let way = ways.entry((road.class.number(), road.way_id)).or_default();
+        way.sv_points.extend(&road.line.points);
+        way.sv.extend(segments(&road.line.points, place));
+    }
+    ways
+}
+
+/// The segments of a line, in local steps.
+pub(crate) fn segments(
+    points: &[LatticePoint],
+    place: Place,
+) -> impl Iterator<Item = Segment> + '_ {
+    points.windows(2).map(move |pair| [place.local(pair[0]), place.local(pair[1])])
+}
+
+/// The source points of a GEO line, those beyond its ground included.
+pub(crate) fn source_points(line: &DrapedLine) -> impl Iterator<Item = LatticePoint> + '_ {
+    let own = line.vertices.iter().filter_map(|vertex| match vertex {
+        DrapedVertex::Source { point, .. } => Some(*point),
+        DrapedVertex::Crossing { .. } | DrapedVertex::Vertex { .. } => None,
+    });
+    line.lead_in.into_iter().chain(own).chain(line.lead_out)
+}
+
+/// Whether a point lies on one of the segments, to so many steps.
+pub(crate) fn is_on(point: [f64; 2], segments: &[Segment], steps: f64) -> bool {
+    segments.iter().any(|&[a, b]| {
+        let (du, dv) = (b[0] - a[0], b[1] - a[1]);
+        let part = ((point[0] - a[0]) * du + (point[1] - a[1]) * dv) / (du * du + dv * dv);
+        let part = part.clamp(0.0, 1.0);
+        (a[0] + part * du - point[0]).hypot(a[1] + part * dv - point[1]) <= steps
+    })
+}
+
+/// What of a segment lies in the tile, but on none of the lines. What runs along a border may be the neighbour's.
+fn bare_pieces(place: Place, segment: Segment, lines: &[Segment]) -> Vec<Segment> {
+    let [p, q] = segment;
+    let (du, dv) = (q[0] - p[0], q[1] - p[1]);
+    let length = du.hypot(dv);
+    let [east, south] = place.reach();
+    let is_on_border = |axis: usize, border: f64| p[axis] == border && q[axis] == border;
+    if [(0, 0.0), (0, east), (1, 0.0), (1, south)].iter().any(|&(axis, at)| is_on_border(axis, at))
+    {
+        return Vec::new();
+    }
+    let (mut from, mut to) = (0.0_f64, length);
+    for (at, way, low, high) in [(p[0], du / length, 0.0, east), (p[1], dv / length, south, 0.0)] {
+        if way == 0.0 {
+            if at < low || at > high {
+                return Vec::new();
+            }
+            continue;
+        }
+        let ends = [(low - at) / way, (high - at) / way];
+        from = from.max(ends[0].min(ends[1]));
+        to = to.min(ends[0].max(ends[1]));
+    }
+    let mut covered: Vec<[f64; 2]> = lines
+        .iter()
+        .filter_map(|ends| {
+            let [a, b] = ends.map(|[u, v]| {
+                let (u, v) = (u - p[0], v - p[1]);
+                [(u * du + v * dv) / length, (v * du - u * dv) / length]
+            });
+            let is_beside = a[1].abs().max(b[1].abs()) <= SAME_LINE_STEPS;
+            is_beside.then_some([a[0].min(b[0]), a[0].max(b[0])])
+        })
+        .collect();
+    covered.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+    covered.push([to, to]);
+    let mut pieces = Vec::new();
+    let mut at = from;
+    for [low, high] in covered {
+        if low.min(to) - at > LEAST_STEPS {
+            let point = |along: f64| [p[0] + along / length * du, p[1] + along / length * dv];
+            pieces.push([point(at), point(low.min(to))]);
+        }
+        at = at.max(high);
+    }
+    pieces
+}
+
+/// Looks at the height range of every SV segment.
+pub(crate) fn verify_ranges(view: &View<'_>, findings: &mut Findings) {
+    let id = view.payload.id;
+    // One step more than the margin says: ground on the very rim counts.
+    let margin = view.margin_steps as f64 + 1.0;
+    for road in &view.payload.roads_sv {
+        let lines = segments(&road.line.points, view.place).zip(&road.line.ground_range_m);
+        for (segment, &[low_m, high_m]) in lines {
+            let ends = segment.map(|point| view.place.cells(point));
+            let found = view.ground.range_near(ends, margin);
+            let holds = found.is_some_and(|[lowest_m, highest_m]| {
+                let size_m = lowest_m.abs().max(highest_m.abs()).max(highest_m - lowest_m);
+                let steps = |height_m: f64| height_m / view.quantum_m;
+                let [less_m, more_m] =
+                    [1.0 - PAD_ROUNDING, 1.0 + PAD_ROUNDING].map(|part| part * RANGE_PAD * size_m);
+                let lows = steps(lowest_m - more_m).floor()..=steps(lowest_m - less_m).floor();
+                let highs = steps(highest_m + less_m).ceil()..=steps(highest_m + more_m).ceil();
+                lows.contains(&steps(low_m)) && highs.contains(&steps(high_m))
+            });
+            findings.look(CheckId::SvRange, holds, || {
+                format!(
+                    "way {} part {} in tile {id} has a segment with ground from {low_m} to {high_m} m, but it is \
+                     {found:?}",
+                    road.way_id, road.part
+                )
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use corniche_geom::{Frame, NodeIndex, TileId};
+
+    use super::*;
+
+    fn place() -> Place {
+        let frame = Frame::new([0.0; 2], 1.0, NodeIndex { i: 0, j: 0 }, 0).unwrap();
+        Place::of(&frame, TileId::ROOT)
+    }
+
+    #[test]
+    fn a_piece_without_a_line_is_found_and_only_inside_the_tile() {
+        let line = [[-1000.0, -5000.0], [9000.0, -5000.0]];
+        let lines = [[[7000.0, -5001.0], [3000.0, -5000.0]], [[0.0, -5000.0], [2000.0, -5000.0]]];
+        let bare = bare_pieces(place(), line, &lines);
+        assert_eq!(
+            bare,
+            [[[2000.0, -5000.0], [3000.0, -5000.0]], [[7000.0, -5000.0], [9000.0, -5000.0]]]
+        );
+    }
+
+    #[test]
+    fn along_a_border_nothing_is_asked() {
+        assert!(bare_pieces(place(), [[0.0, -10.0], [0.0, -9000.0]], &[]).is_empty());
+        assert_eq!(bare_pieces(place(), [[1.0, -10.0], [1.0, -9000.0]], &[]).len(), 1);
+    }
+
+    #[test]
+    fn a_point_is_on_a_segment_and_not_beyond_its_end() {
+        let segments = [[[0.0, 0.0], [100.0, 0.0]]];
+        assert!(is_on([50.0, 1.5], &segments, 2.0) && is_on([101.0, 0.0], &segments, 2.0));
+        assert!(!is_on([50.0, 2.5], &segments, 2.0) && !is_on([103.0, 0.0], &segments, 2.0));
+    }
+}

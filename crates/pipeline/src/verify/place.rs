@@ -1,0 +1,170 @@
+//! Where on Earth a package lies: its CRS, and what it says in degrees.
+
+use corniche_dem::{DemError, RecordedCrs};
+use corniche_geom::{Bounds, Projection};
+use corniche_tileset::Manifest;
+
+use super::checks::{CheckId, Findings};
+
+/// Positions of the coordinate table and from it are this exact.
+const TABLE_M: f64 = 0.01;
+/// Metres to a degree of latitude, near enough for a tolerance.
+const METRES_PER_DEGREE: f64 = 111_320.0;
+/// Positions along each side at which rectangles and scales are looked at.
+const ALONG: usize = 33;
+/// Data that reach so far around the Earth hold a pole.
+const ALL_AROUND_DEG: f64 = 350.0;
+/// Rounding of a scale measured over a kilometre.
+const SCALE_ROUNDING: f64 = 1e-6;
+/// A rectangle around samples reaches half a pixel beyond them, nodes beyond the data one cell, and both are rounded.
+const RIM_CELLS: f64 = 3.0;
+
+pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
+    let crs = match recorded(manifest) {
+        Ok(crs) => crs,
+        Err(error) => {
+            findings.look(CheckId::Crs, false, || format!("the WKT cannot be used: {error}"));
+            return;
+        }
+    };
+    findings.look(CheckId::Crs, crs.label() == manifest.crs, || {
+        format!("the CRS is {:?}, its WKT is that of {:?}", manifest.crs, crs.label())
+    });
+    if let Err(error) = positions(manifest, &crs, findings) {
+        findings.look(CheckId::Crs, false, || format!("positions cannot be carried: {error}"));
+    }
+}
+
+/// The CRS with the factors of the package.
+pub(crate) fn recorded(manifest: &Manifest) -> Result<RecordedCrs, DemError> {
+    RecordedCrs::new(&manifest.crs_wkt, manifest.metres_per_unit, manifest.data_bounds)
+}
+
+fn positions(
+    manifest: &Manifest,
+    crs: &RecordedCrs,
+    findings: &mut Findings,
+) -> Result<(), DemError> {
+    let data = manifest.data_bounds;
+    let projection = crs.projection(manifest.wgs84_bounds)?;
+    let scales: Vec<[f64; 2]> =
+        crs.scales(&grid(data), manifest.wgs84_bounds)?.into_iter().flatten().collect();
+    check_scales(manifest, &scales, findings);
+    rectangles(manifest, &projection, findings);
+    table(manifest, &projection, findings);
+    Ok(())
+}
+
+/// The scales that are told lie among those over the data.
+fn check_scales(manifest: &Manifest, scales: &[[f64; 2]], findings: &mut Findings) {
+    let scale = &manifest.scale;
+    for axis in 0..2 {
+        let of_axis = || scales.iter().map(|along| along[axis]);
+        let least = of_axis().fold(f64::INFINITY, f64::min) - SCALE_ROUNDING;
+        let most = of_axis().fold(f64::NEG_INFINITY, f64::max) + SCALE_ROUNDING;
+        let said = [scale.least[axis], scale.center[axis], scale.largest[axis]];
+        let holds = least <= said[0] && said.is_sorted() && said[2] <= most;
+        findings.look(CheckId::Scale, holds, || {
+            format!("axis {axis}: scales {said:?} are recorded, there are {least} to {most} over the data")
+        });
+    }
+    let mean = (scale.center[0] * scale.center[1]).sqrt();
+    findings.look(CheckId::Scale, manifest.point_scale.to_bits() == mean.to_bits(), || {
+        format!("the scale is {}, its parts make {mean}", manifest.point_scale)
+    });
+}
+
+/// The rectangle in degrees is around the data, and the data's rectangle is around the one in degrees: each holds the
+/// other's outline to a few cells, less what the one shape reaches beyond the other by being turned or bent.
+fn rectangles(manifest: &Manifest, projection: &dyn Projection, findings: &mut Findings) {
+    let (data, degrees) = (manifest.data_bounds, manifest.wgs84_bounds);
+    if degrees.width() >= ALL_AROUND_DEG {
+        // Data around a pole: their outline tells nothing of the latitudes inside.
+        return;
+    }
+    let [east_m, north_m] = manifest.frame.cell().to_array();
+    let rim_m = RIM_CELLS * east_m.max(north_m);
+    let middle_deg = f64::midpoint(degrees.min_x, degrees.max_x);
+
+    let mut outline = outline(data);
+    let carried = projection.wgs84_from_working(&mut outline).is_ok();
+    let mut around = Bounds::EMPTY;
+    for [lon, lat] in outline.into_iter().filter(|at| at[0].is_finite()) {
+        around.include([lon - 360.0 * ((lon - middle_deg) / 360.0).round(), lat]);
+    }
+    let rim_deg = [
+        rim_m
+            / METRES_PER_DEGREE
+            / around.max_y.abs().max(around.min_y.abs()).to_radians().cos().max(0.01),
+        rim_m / METRES_PER_DEGREE,
+    ];
+    findings.look(CheckId::Bounds, carried && holds(around, degrees, rim_deg), || {
+        format!("degrees {degrees:?} reach beyond those of the data's rectangle, {around:?}")
+    });
+
+    let mut outline = self::outline(degrees);
+    let carried = projection.working_from_wgs84(&mut outline).is_ok();
+    let mut around = Bounds::EMPTY;
+    for at in outline.into_iter().filter(|at| at[0].is_finite() && at[1].is_finite()) {
+        around.include(at);
+    }
+    findings.look(CheckId::Bounds, carried && holds(around, data, [rim_m; 2]), || {
+        format!("the data's rectangle {data:?} reaches beyond that of the degrees, {around:?}")
+    });
+}
+
+/// Whether `outer`, widened by `rim`, holds `inner`.
+fn holds(outer: Bounds, inner: Bounds, rim: [f64; 2]) -> bool {
+    outer.min_x - rim[0] <= inner.min_x
+        && outer.min_y - rim[1] <= inner.min_y
+        && outer.max_x + rim[0] >= inner.max_x
+        && outer.max_y + rim[1] >= inner.max_y
+}
+
+/// Samples of the table, by their places in it, and what readers make of them halfway between.
+fn table(manifest: &Manifest, projection: &dyn Projection, findings: &mut Findings) {
+    let table = &manifest.coordinates;
+    let (bounds, data) = (table.bounds(), manifest.data_bounds);
+    findings.look(CheckId::Coordinates, holds(bounds, data, [0.0; 2]), || {
+        format!("the table covers {bounds:?}, the data lie in {data:?}")
+    });
+    // Samples are at every second of these, the worst places halfway between them at the others.
+    let last = 2 * (table.size() - 1);
+    let mut truth: Vec<[f64; 2]> = (0..=last)
+        .flat_map(|row| (0..=last).map(move |column| [column, row]))
+        .map(|[column, row]| at(bounds, [column, row], last))
+        .collect();
+    let places = truth.clone();
+    let carried = projection.wgs84_from_working(&mut truth).is_ok();
+    let worst_m = places.iter().zip(&truth).fold(0.0_f64, |worst_m, (&place, &[lon, lat])| {
+        let found = table.wgs84_from_working(place);
+        let turns = ((found[0] - lon) / 360.0).round();
+        let east_deg = (found[0] - lon - 360.0 * turns) * lat.to_radians().cos();
+        let off_m = east_deg.hypot(found[1] - lat) * METRES_PER_DEGREE;
+        if off_m.is_nan() { f64::INFINITY } else { worst_m.max(off_m) }
+    });
+    // A little more than the tolerance: the build looks at the middles of meshes alone.
+    findings.look(CheckId::Coordinates, carried && worst_m <= 1.5 * TABLE_M, || {
+        format!("the table is off by {worst_m} m")
+    });
+}
+
+/// A position in a rectangle, `of` steps along each side.
+fn at(bounds: Bounds, [column, row]: [usize; 2], of: usize) -> [f64; 2] {
+    let share = |index: usize| index as f64 / of as f64;
+    [bounds.min_x + bounds.width() * share(column), bounds.min_y + bounds.height() * share(row)]
+}
+
+fn grid(bounds: Bounds) -> Vec<[f64; 2]> {
+    (0..ALONG)
+        .flat_map(|row| (0..ALONG).map(move |column| at(bounds, [column, row], ALONG - 1)))
+        .collect()
+}
+
+fn outline(bounds: Bounds) -> Vec<[f64; 2]> {
+    let last = ALONG - 1;
+    (0..ALONG)
+        .flat_map(|k| [[k, 0], [k, last], [0, k], [last, k]])
+        .map(|index| at(bounds, index, last))
+        .collect()
+}

@@ -1,0 +1,84 @@
+//! What of the manifest follows from the rest of it: levels from the settings, and texts that are always the same.
+
+use corniche_tileset::Manifest;
+
+use super::checks::{CheckId, Findings};
+use crate::{
+    Loss,
+    build::{Levels, TILING, settings_sha256},
+    inputs,
+};
+
+/// Kinds of inputs.
+const KINDS: [&str; 3] = [inputs::DEM, inputs::DEM_PART, inputs::OSM];
+
+pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
+    let hash = settings_sha256(&manifest.settings);
+    findings.look(CheckId::SettingsHash, hash == manifest.settings_sha256, || {
+        "the settings do not match their hash".to_owned()
+    });
+    levels(manifest, findings);
+    texts(manifest, findings);
+}
+
+/// Tolerances are what the settings say: else every check that rests on them could be loosened.
+fn levels(manifest: &Manifest, findings: &mut Findings) {
+    let Some(levels) = Levels::recorded(manifest) else {
+        findings.look(CheckId::LevelRecords, false, || {
+            format!(
+                "no classes can be shown by {:?} and a least class of {:?}",
+                manifest.settings.class_max_cell_m,
+                manifest.levels.last().and_then(|level| level.least_class)
+            )
+        });
+        return;
+    };
+    let quantum_m = manifest.vertical.quantum_m;
+    findings.look(
+        CheckId::LevelRecords,
+        quantum_m.to_bits() == levels.quantum_m().to_bits(),
+        || format!("the height quantum is {quantum_m} m, not {} m", levels.quantum_m()),
+    );
+    for record in &manifest.levels {
+        let level = record.level;
+        let lengths = [record.max_error_m, record.simplify_tolerance_m, record.width_margin_m];
+        let said = (record.cell_m.to_array(), lengths);
+        let lengths =
+            [levels.max_error_m(level), levels.simplify_tolerance_m(level), levels.margin_m(level)];
+        let wanted = (manifest.frame.level_cell(level).to_array(), lengths);
+        let bits = |(cell, lengths): ([f64; 2], [f64; 3])| {
+            (cell.map(f64::to_bits), lengths.map(f64::to_bits))
+        };
+        // The build computes them so: equal to the last bit.
+        findings.look(CheckId::LevelRecords, bits(said) == bits(wanted), || {
+            format!("level {level} has cell, tolerances and margin {said:?}, not {wanted:?}")
+        });
+        let least = levels.least_class(level).map(corniche_roads::FunctionalRoadClass::number);
+        findings.look(CheckId::LevelRecords, record.least_class == least, || {
+            format!("level {level} shows classes up to {:?}, not {least:?}", record.least_class)
+        });
+    }
+}
+
+fn texts(manifest: &Manifest, findings: &mut Findings) {
+    let mut look =
+        |holds: bool, what: &dyn Fn() -> String| findings.look(CheckId::Texts, holds, what);
+    look(manifest.tiling == TILING, &|| format!("tiling is {:?}", manifest.tiling));
+    look(manifest.vertical.unit == "metre", &|| format!("unit is {:?}", manifest.vertical.unit));
+    for input in &manifest.inputs {
+        look(KINDS.contains(&input.kind.as_str()), &|| {
+            format!("{:?} is an input of kind {:?}", input.name, input.kind)
+        });
+    }
+    let has_roads = manifest.inputs.iter().any(|input| input.kind == "osm");
+    let credits = manifest.attribution.iter().any(|text| text == corniche_osm::ATTRIBUTION);
+    look(credits || !has_roads, &|| {
+        format!("no credit for the extract: {:?}", manifest.attribution)
+    });
+    let reasons = [Loss::OutsideData.reason(), Loss::NoGround.reason()];
+    for loss in &manifest.counts.roads_lost {
+        look(reasons.contains(&loss.reason.as_str()), &|| {
+            format!("roads lost as {:?}", loss.reason)
+        });
+    }
+}

@@ -1,0 +1,86 @@
+//! A road is on every level that shows its class: each tile beside its parent.
+
+use std::collections::BTreeMap;
+
+use corniche_geom::{LatticeBounds, LatticePoint};
+use corniche_tileset::TilePayload;
+
+use super::{
+    checks::{CheckId, Findings},
+    ground::{Ground, Place},
+    methods::{SAME_LINE_STEPS, Segment, is_on, segments, source_points},
+};
+use crate::build::Levels;
+
+/// One of the two tiles.
+pub(crate) struct Side<'a> {
+    pub(crate) payload: &'a TilePayload,
+    pub(crate) ground: &'a Ground,
+}
+
+/// Looks at the roads of a tile and of its parent.
+///
+/// Simplification moves no point of the source farther than the level's tolerance from the line, so wherever both
+/// tiles have ground, points of the one lie beside the line of the other, on the level of that line's tolerance.
+pub(crate) fn verify(
+    child: &Side<'_>,
+    parent: &Side<'_>,
+    levels: &Levels,
+    findings: &mut Findings,
+) {
+    let (id, above) = (child.payload.id, parent.payload.id);
+    let frame = levels.frame();
+    let bounds = frame.tile_lattice_bounds(id);
+    let place = Place::of(frame, above);
+    let own_place = Place::of(frame, id);
+    // Points on a border are cuts, which the source does not have.
+    let is_inside = |point: LatticePoint| {
+        let LatticeBounds { min, max } = bounds;
+        (min.u + 1..max.u).contains(&point.u) && (min.v + 1..max.v).contains(&point.v)
+    };
+
+    let tolerance = levels.simplify_tolerance_steps(above.z());
+    if tolerance <= levels.margin_steps(above.z()) as f64 {
+        let lines = sv_lines(parent.payload, place);
+        for road in &child.payload.roads_geo {
+            if !levels.shows(above.z(), road.class) {
+                continue;
+            }
+            let line = lines.get(&road.way_id).map_or(&[][..], Vec::as_slice);
+            for point in source_points(&road.line).filter(|&point| is_inside(point)) {
+                let at = place.local(point);
+                if parent.ground.height_m(place.cells(at)).is_none() {
+                    continue;
+                }
+                findings.look(CheckId::Shown, is_on(at, line, tolerance + SAME_LINE_STEPS), || {
+                    format!("way {} of tile {id} is not in tile {above} at {point:?}", road.way_id)
+                });
+            }
+        }
+    }
+
+    let tolerance = levels.simplify_tolerance_steps(id.z());
+    if tolerance <= levels.margin_steps(id.z()) as f64 {
+        let lines = sv_lines(child.payload, own_place);
+        for road in &parent.payload.roads_sv {
+            let line = lines.get(&road.way_id).map_or(&[][..], Vec::as_slice);
+            for &point in road.line.points.iter().filter(|&&point| is_inside(point)) {
+                let at = own_place.local(point);
+                if child.ground.height_m(own_place.cells(at)).is_none() {
+                    continue;
+                }
+                findings.look(CheckId::Shown, is_on(at, line, tolerance + SAME_LINE_STEPS), || {
+                    format!("way {} of tile {above} is not in tile {id} at {point:?}", road.way_id)
+                });
+            }
+        }
+    }
+}
+
+fn sv_lines(payload: &TilePayload, place: Place) -> BTreeMap<i64, Vec<Segment>> {
+    let mut lines: BTreeMap<i64, Vec<Segment>> = BTreeMap::new();
+    for road in &payload.roads_sv {
+        lines.entry(road.way_id).or_default().extend(segments(&road.line.points, place));
+    }
+    lines
+}

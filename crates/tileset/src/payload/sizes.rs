@@ -1,0 +1,55 @@
+//! How large the parts of a payload are, without decoding what they say.
+
+use corniche_geom::TileId;
+use corniche_roads::FunctionalRoadClass;
+
+use super::{
+    Damage, DecodeError, SectionSize, class_table,
+    codec::Cursor,
+    envelope::{self, Kind},
+};
+
+/// Sizes of the sections of a payload, and of the classes in its road sections.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PayloadSizes {
+    /// The terrain section; 0 where absent, as all that follow.
+    pub terrain: SectionSize,
+    /// The GEO roads section.
+    pub roads_geo: SectionSize,
+    /// The SV roads section.
+    pub roads_sv: SectionSize,
+    /// The road attributes section.
+    pub attributes: SectionSize,
+    /// Bytes of each class in the GEO section before compression.
+    pub geo_class_bytes: [u64; FunctionalRoadClass::COUNT],
+    /// The same for the SV section.
+    pub sv_class_bytes: [u64; FunctionalRoadClass::COUNT],
+}
+
+/// Sizes of the parts of a payload of tile `id`.
+///
+/// # Errors
+/// When the bytes are not a payload of that tile, or a road section is damaged.
+pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeError> {
+    let failed = |part| move |damage| DecodeError { tile: id, part, damage };
+    let sections = envelope::open(bytes, id).map_err(failed("header"))?;
+    let class_bytes = |kind: Kind| -> Result<[u64; FunctionalRoadClass::COUNT], Damage> {
+        let mut sizes = [0; FunctionalRoadClass::COUNT];
+        if let Some(raw) = envelope::section(&sections, kind)? {
+            for (class, _, bytes) in class_table::decode(&mut Cursor::new(&raw))? {
+                sizes[usize::from(class.number())] = bytes.len() as u64;
+            }
+        }
+        Ok(sizes)
+    };
+    let of_classes = |kind: Kind| class_bytes(kind).map_err(failed(kind.name()));
+    let size = |kind| envelope::size(&sections, kind);
+    Ok(PayloadSizes {
+        terrain: size(Kind::Terrain),
+        roads_geo: size(Kind::RoadsGeo),
+        roads_sv: size(Kind::RoadsSv),
+        attributes: size(Kind::Attributes),
+        geo_class_bytes: of_classes(Kind::RoadsGeo)?,
+        sv_class_bytes: of_classes(Kind::RoadsSv)?,
+    })
+}
