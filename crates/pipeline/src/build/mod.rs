@@ -24,7 +24,7 @@ pub(crate) mod tiles;
 
 use std::{fs, path::Path};
 
-use corniche_dem::{Dem, OpenOptions, PlanOptions};
+use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions};
 use corniche_tileset::Manifest;
 
 use crate::{
@@ -104,6 +104,15 @@ fn refuse_inputs_as_target(settings: &BuildSettings) -> Result<(), BuildError> {
     Ok(())
 }
 
+/// Tells which files are resampled onto the grid of the first one.
+fn warn_of_other_grids(plan: &GridPlan, observer: &dyn Observer) {
+    if let Some([files, first]) = &plan.resampled_onto_first {
+        observer.warning(&format!(
+            "{files}: samples lie on another grid than those of {first}, named first; they are resampled onto its grid"
+        ));
+    }
+}
+
 /// All stages in order; the package is written to `finished`.
 fn run(
     settings: &BuildSettings,
@@ -134,11 +143,7 @@ fn run(
         scale_latitude_deg: terrain.scale_latitude_deg,
         fill_voids: terrain.fill_voids,
     })?;
-    if let Some([files, first]) = &plan.resampled_onto_first {
-        observer.warning(&format!(
-            "{files}: samples lie on another grid than those of {first}, named first; they are resampled onto its grid"
-        ));
-    }
+    warn_of_other_grids(&plan, observer);
     let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell().shorter_m() / 4.0);
     if !MAX_ERRORS_M.contains(&max_error_m) {
         return Err(BuildError::MaxError { max_error_m });
