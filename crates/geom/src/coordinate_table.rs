@@ -335,12 +335,16 @@ mod tests {
 
     impl Projection for Geographic {
         fn working_from_wgs84(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
-            points.iter_mut().for_each(|p| *p = [p[0] * self.0[0], p[1] * self.0[1]]);
+            for p in points {
+                *p = [p[0] * self.0[0], p[1] * self.0[1]];
+            }
             Ok(())
         }
 
         fn wgs84_from_working(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
-            points.iter_mut().for_each(|p| *p = [p[0] / self.0[0], p[1] / self.0[1]]);
+            for p in points {
+                *p = [p[0] / self.0[0], p[1] / self.0[1]];
+            }
             Ok(())
         }
     }
