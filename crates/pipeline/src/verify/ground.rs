@@ -178,11 +178,17 @@ impl Ground {
                 let (du, dv) = (at[0] - p[0], at[1] - p[1]);
                 [du * way[0] + dv * way[1], dv * way[0] - du * way[1], height]
             });
-            let mut part = turned.to_vec();
-            part = cut(&part, |[along, ..]| along + margin);
-            part = cut(&part, |[along, ..]| length + margin - along);
-            part = cut(&part, |[_, across, _]| across + margin);
-            part = cut(&part, |[_, across, _]| margin - across);
+            let is_inside = |[along, across, _]: &[f64; 3]| {
+                (-margin..=length + margin).contains(along) && across.abs() <= margin
+            };
+            let part = if turned.iter().all(is_inside) {
+                turned.to_vec()
+            } else {
+                let part = cut(&turned, |[along, ..]| along + margin);
+                let part = cut(&part, |[along, ..]| length + margin - along);
+                let part = cut(&part, |[_, across, _]| across + margin);
+                cut(&part, |[_, across, _]| margin - across)
+            };
             for [.., height] in part {
                 lowest = lowest.min(height);
                 highest = highest.max(height);
@@ -228,6 +234,14 @@ impl Ground {
         let far = first.map(|cells| cells + last * step);
         for corners in self.near([first, far]) {
             let at = corners.map(|c| [(c[0] - first[0]) / step, (c[1] - first[1]) / step, c[2]]);
+            let [a, b, c] = at;
+            let whole = area(flat(a), flat(b), flat(c));
+            let rise = |axis: usize| {
+                let to = |p: [f64; 3]| p[1 - axis] - a[1 - axis];
+                let sign = if axis == 0 { 1.0 } else { -1.0 };
+                sign * ((b[2] - a[2]) * to(c) - (c[2] - a[2]) * to(b)) / whole
+            };
+            let [east_m, south_m] = [rise(0), rise(1)];
             let rows = at.map(|corner| corner[1]);
             let low = rows.into_iter().fold(f64::INFINITY, f64::min).max(0.0).ceil();
             let high = rows.into_iter().fold(f64::NEG_INFINITY, f64::max).min(last).floor();
@@ -249,7 +263,8 @@ impl Ground {
                 }
                 let mut column = west.ceil();
                 while column <= east {
-                    heights[row as usize * side + column as usize] = height(&at, [column, row]);
+                    heights[row as usize * side + column as usize] =
+                        a[2] + (column - a[0]) * east_m + (row - a[1]) * south_m;
                     column += 1.0;
                 }
                 row += 1.0;
