@@ -23,6 +23,8 @@ pub(crate) struct Ground {
     /// Corners of each triangle: column, row, height in metres.
     triangles: Vec<Corners>,
     buckets: Vec<Vec<u32>>,
+    /// Column and row of each triangle's first bucket.
+    first: Vec<[u8; 2]>,
     /// Lattice steps to a cell, east and north.
     steps: [f64; 2],
 }
@@ -85,6 +87,7 @@ impl Ground {
             })
             .collect();
         let mut buckets = vec![Vec::new(); BUCKETS * BUCKETS];
+        let mut first = Vec::with_capacity(triangles.len());
         for (index, corners) in triangles.iter().enumerate() {
             let range = |axis: usize| {
                 let values = corners.map(|corner| corner[axis]);
@@ -92,13 +95,15 @@ impl Ground {
                 let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
                 bucket(low - SLACK_CELLS)..=bucket(high + SLACK_CELLS)
             };
-            for row in range(1) {
-                for column in range(0) {
+            let [columns, rows] = [range(0), range(1)];
+            first.push([*columns.start() as u8, *rows.start() as u8]);
+            for row in rows {
+                for column in columns.clone() {
                     buckets[row * BUCKETS + column].push(index as u32);
                 }
             }
         }
-        Self { triangles, buckets, steps }
+        Self { triangles, buckets, first, steps }
     }
 
     /// All triangles that hold the point, borders included.
@@ -138,15 +143,13 @@ impl Ground {
             move |at| {
                 self.buckets[at[1] * BUCKETS + at[0]]
                     .iter()
-                    .map(|&triangle| &self.triangles[triangle as usize])
+                    .map(|&triangle| triangle as usize)
                     // Only in the first bucket that both have in common.
-                    .filter(move |corners| {
-                        (0..2).all(|axis| {
-                            let least =
-                                corners.iter().map(|c| c[axis]).fold(f64::INFINITY, f64::min);
-                            at[axis] == bucket(least - SLACK_CELLS).max(first[axis])
-                        })
+                    .filter(move |&triangle| {
+                        let own = self.first[triangle].map(usize::from);
+                        [own[0].max(first[0]), own[1].max(first[1])] == at
                     })
+                    .map(|triangle| &self.triangles[triangle])
             },
         )
     }
