@@ -58,7 +58,8 @@ class Tile:
         self.id = record["id"]
         self.z, self.x, self.y = (int(part) for part in self.id.split("/"))
         self.bounds = [float(v) for v in record["bounds"]]
-        self.cell_m = float(record["cell_m"])
+        # East and north.
+        self.cell_m = np.array([float(side) for side in record["cell_m"]])
         self.max_error_m = float(record.get("max_error_m") or 0.0)
         self.error_m = record.get("geometric_error_m")
         tin = record.get("tin") or {"vertices": [], "triangles": []}
@@ -114,7 +115,7 @@ def check_tin(tile, found):
             continue
         inner += 1
         steps = np.array([a[:2], b[:2]]) / tile.cell_m
-        if not along or np.abs(steps - np.round(steps)).max() * tile.cell_m > IN_PLAN_M:
+        if not along or np.abs((steps - np.round(steps)) * tile.cell_m).max() > IN_PLAN_M:
             found.add("outline", tile.id, f"edge {a.tolist()}–{b.tolist()} is open but no border or cell edge")
     if inner == 0 and abs(total - whole) > AREA_SHARE * whole:
         found.add("outline", tile.id, f"no void, yet {total} m² of {whole} m² are covered")

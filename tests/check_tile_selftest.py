@@ -4,7 +4,7 @@ import copy
 
 from check_tile import Tile, check_tiles
 
-CELL_M = 10.0
+CELL_EAST_M, CELL_NORTH_M = 10.0, 15.0
 SIDE = 4
 X0, Y0 = 534005.0, 5199995.0
 
@@ -22,7 +22,7 @@ def made(x, void=None):
     def vertex(i, j):
         if (i, j) not in ids:
             ids[i, j] = len(vertices)
-            vertices.append([X0 + CELL_M * i, Y0 + CELL_M * j, height(i, j)])
+            vertices.append([X0 + CELL_EAST_M * i, Y0 + CELL_NORTH_M * j, height(i, j)])
         return ids[i, j]
 
     for i in range(first, first + SIDE):
@@ -33,13 +33,13 @@ def made(x, void=None):
     # Along y = 1.5 cells: through a–c at the middle of each cell, through b–c at its side.
     line = []
     for i in range(first, first + SIDE + 1):
-        line.append([X0 + CELL_M * i, Y0 + CELL_M * 1.5, 0.5 * (height(i, 1) + height(i, 2))])
+        line.append([X0 + CELL_EAST_M * i, Y0 + CELL_NORTH_M * 1.5, 0.5 * (height(i, 1) + height(i, 2))])
         if i < first + SIDE:
-            line.append([X0 + CELL_M * (i + 0.5), Y0 + CELL_M * 1.5, 0.5 * (height(i, 1) + height(i + 1, 2))])
+            line.append([X0 + CELL_EAST_M * (i + 0.5), Y0 + CELL_NORTH_M * 1.5, 0.5 * (height(i, 1) + height(i + 1, 2))])
     plan = [[line[0][0] - 5.0, line[0][1]], [line[4][0], line[4][1]], [line[-1][0] + 5.0, line[-1][1]]]
     return {
-        "id": f"1/{x}/0", "crs": "EPSG:32632", "cell_m": CELL_M, "max_error_m": 2.5, "geometric_error_m": 1.0,
-        "bounds": [X0 + CELL_M * first, Y0, X0 + CELL_M * (first + SIDE), Y0 + CELL_M * SIDE],
+        "id": f"1/{x}/0", "crs": "EPSG:32632", "cell_m": [CELL_EAST_M, CELL_NORTH_M], "max_error_m": 2.5, "geometric_error_m": 1.0,
+        "bounds": [X0 + CELL_EAST_M * first, Y0, X0 + CELL_EAST_M * (first + SIDE), Y0 + CELL_NORTH_M * SIDE],
         "height_range_m": [880.0, 1000.0], "tin": {"vertices": vertices, "triangles": triangles},
         "roads_geo": [{"way_id": 7, "part": 0, "frc": 2, "line": line},
                       {"way_id": 9, "part": 0, "frc": 4, "line": line}],
@@ -51,10 +51,10 @@ def made(x, void=None):
 def parent():
     """Tile 0/0/0 over both, coarse and without roads."""
     size = 2 * SIDE
-    corners = [[X0 + CELL_M * i, Y0 + CELL_M * j, height(i, j)] for i, j in ((0, 0), (size, 0), (size, size), (0, size))]
+    corners = [[X0 + CELL_EAST_M * i, Y0 + CELL_NORTH_M * j, height(i, j)] for i, j in ((0, 0), (size, 0), (size, size), (0, size))]
     return {
-        "id": "0/0/0", "crs": "EPSG:32632", "cell_m": 2 * CELL_M, "max_error_m": 5.0, "geometric_error_m": 9.0,
-        "bounds": [X0, Y0, X0 + CELL_M * size, Y0 + CELL_M * size], "height_range_m": [880.0, 1000.0],
+        "id": "0/0/0", "crs": "EPSG:32632", "cell_m": [2 * CELL_EAST_M, 2 * CELL_NORTH_M], "max_error_m": 5.0, "geometric_error_m": 9.0,
+        "bounds": [X0, Y0, X0 + CELL_EAST_M * size, Y0 + CELL_NORTH_M * size], "height_range_m": [880.0, 1000.0],
         "tin": {"vertices": corners, "triangles": [[0, 1, 2], [0, 2, 3]]}, "roads_geo": [], "roads_sv": [],
     }  # fmt: skip
 

@@ -86,6 +86,50 @@ fn refuses_settings_that_make_no_sense() {
 }
 
 #[test]
+fn refuses_a_cell_far_finer_than_the_samples_unless_forced() {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = folder.path().join("small.asc");
+    let grid = "ncols 20\nnrows 20\nxllcorner 500000\nyllcorner 5200000\ncellsize 10\n";
+    fs::write(&dem, format!("{grid}{}", "1 2 3 4 5 6 7 8 9 8 7 6 5 4 3 2 1 0 1 2\n".repeat(20)))
+        .unwrap();
+    // The raster's spacing is 10 m: 16 nodes to a sample are allowed, 20 are not.
+    let raster = ["--dem", text(&dem), "--dem-crs", "EPSG:32632"];
+    let fine = [&raster[..], &["--cell", "0.5"]].concat();
+    refuses(folder.path(), &fine, 2, &["20 nodes", "--cell", "--force"]);
+    let target = folder.path().join("out.pmtiles");
+    let coarse = ["--max-error", "20", "--quiet", "-o", text(&target)];
+    let ran = corniche([&["build", "--cell", "0.625"], &raster[..], &coarse[..]].concat());
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let ran = corniche([&["build"], &fine[..], &["--force", "-O"], &coarse[..]].concat());
+    assert_eq!(ran.code, 0, "{}", ran.err);
+}
+
+#[test]
+fn a_terabyte_is_a_size() {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = sample("pass/pass-dem.tif");
+    let target = folder.path().join("out.pmtiles");
+    let line = ["build", "--dem", text(&dem), "--quiet", "-o", text(&target), "--memory", "1T"];
+    let ran = corniche(line);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+}
+
+/// The name says what a picture is, and pictures are PNG.
+#[test]
+fn refuses_a_picture_that_its_name_makes_something_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("pass.pmtiles");
+    build_pass(&package, &["--quiet"]);
+    for name in ["a.jpg", "a.jpeg", "a.tif", "a.webp"] {
+        let picture = folder.path().join(name);
+        let ran = corniche(["render", text(&package), "-o", text(&picture)]);
+        assert_eq!(ran.code, 2, "{name}: {}", ran.err);
+        assert!(ran.err.contains(name) && ran.err.contains(".png"), "{name}: {}", ran.err);
+        assert!(!picture.exists());
+    }
+}
+
+#[test]
 fn keeps_what_exists_unless_told_to_replace_it() {
     let folder = tempfile::tempdir().unwrap();
     let target = folder.path().join("pass.pmtiles");

@@ -77,7 +77,7 @@ fn the_list_of_defects_is_what_the_summary_counts() {
     let void = "where the data have no ground (void or edge)";
     let listed_m: f64 =
         rows.iter().filter(|row| row[0] == void).map(|row| row[4].parse::<f64>().unwrap()).sum();
-    let lost_m = counts["roads_lost"][1]["length_m"].as_f64().unwrap();
+    let lost_m = counts["roads_lost"][1]["length_um"].as_f64().unwrap() / 1e6;
     assert!(lost_m > 100.0, "the sample has a road across a void");
     assert!((listed_m - lost_m).abs() < 1.0, "{listed_m} m listed, {lost_m} m lost");
 
@@ -103,12 +103,12 @@ fn pass_accounts_for_every_road() {
     let counts = &json(&["info", text(&package), "--json"])["manifest"]["counts"];
     let number = |value: &Value| value.as_f64().unwrap();
     let lost = counts["roads_lost"].as_array().unwrap();
-    let (roads, metres) = lost.iter().fold((0.0, 0.0), |(roads, metres), loss| {
-        (roads + number(&loss["roads"]), metres + number(&loss["length_m"]))
-    });
+    let whole = |value: &Value| value.as_u64().unwrap();
+    let roads: f64 = lost.iter().map(|loss| number(&loss["roads"])).sum();
+    let lost_um: u64 = lost.iter().map(|loss| whole(&loss["length_um"])).sum();
     assert!((number(&counts["roads_in"]) - number(&counts["roads_kept"]) - roads).abs() < 0.5);
-    let in_m = number(&counts["roads_in_m"]);
-    assert!((in_m - number(&counts["roads_kept_m"]) - metres).abs() < 1e-5 * in_m);
+    let in_um = whole(&counts["roads_in_um"]);
+    assert_eq!(in_um, whole(&counts["roads_kept_um"]) + lost_um);
     assert!(number(&counts["roads_in"]) > 20.0);
     // The generator's own record of what it laid: every drivable road comes in, and as long as it was made.
     let truth = fs::read_to_string(sample("pass/truth.json")).unwrap();
@@ -126,7 +126,8 @@ fn pass_accounts_for_every_road() {
     for (class, values) in values.iter().enumerate() {
         let sum =
             |of: &str| values.iter().map(|value| number(&truth["osm"][of][value])).sum::<f64>();
-        let [roads, metres] = [0, 1].map(|part| number(&counts["classes"][class][part]));
+        let [roads, micrometres] = [0, 1].map(|part| number(&counts["classes"][class][part]));
+        let metres = micrometres / 1e6;
         assert!((roads - sum("ways_per_highway")).abs() < 0.5, "class {class}");
         // Coordinates were rounded to 1e-7 degrees, a centimetre a point.
         assert!(
@@ -144,7 +145,7 @@ fn pass_accounts_for_every_road() {
         .iter()
         .find(|loss| loss["reason"] == "where the data have no ground (void or edge)")
         .unwrap();
-    assert!(number(&over_void["length_m"]) > 100.0, "way 158 ends in the large void");
+    assert!(number(&over_void["length_um"]) > 100e6, "way 158 ends in the large void");
     for class in 0..8 {
         assert!(number(&counts["classes"][class][0]) > 0.0, "class {class} is missing");
     }

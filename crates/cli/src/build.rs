@@ -6,18 +6,20 @@ use std::{
     thread,
 };
 
+use corniche_geom::Cell;
 use corniche_pipeline::{
     BuildError, BuildSettings, Existing, Resources, RoadSettings, TerrainSettings,
 };
 use corniche_presets::{Config, class_filter};
 use corniche_roads::ClassFilter;
+use corniche_tileset::Manifest;
 
 use crate::{
-    args::BuildArgs,
+    args::{BuildArgs, check_cell, parse_bytes},
     defects::{DefectList, Watch},
     exit::ExitCode,
     failure::Failure,
-    info, interrupt, output, presets,
+    info, output, presets,
     progress::Progress,
 };
 
@@ -28,13 +30,16 @@ const SIMPLIFY_CELLS: f64 = 0.25;
 const FILL_VOIDS: u32 = 32;
 /// Memory for buffers and caches unless said otherwise.
 const MEMORY_BYTES: u64 = 1 << 30;
+/// As many values for "no data" as a package's manifest may list.
+const MAX_NODATA: usize = 64;
 /// With less than this the stages cannot hold a tile each.
 const MIN_MEMORY_BYTES: u64 = 64 << 20;
 
 pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
-    interrupt::watch()?;
+    output::writable(&args.output)?;
     let progress = Progress::new(&args.report);
-    let quiet = args.report.quiet || args.report.json_progress;
+    let is_json = args.report.json_progress;
+    let quiet = args.report.quiet || is_json;
     let defects = match &args.defects {
         Some(path) => {
             let existing =
@@ -59,11 +64,24 @@ pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
     let listed = watch.defects.filter(|_| is_complete).map_or(Ok(()), DefectList::finish);
     let summary = built?;
     listed?;
-    if !quiet {
+    if quiet {
+        tell_warnings(&summary.manifest, is_json);
+    } else {
         eprintln!("\n{}", info::to_text(&summary.manifest, summary.package_bytes));
         eprintln!("wrote {}", settings.output.display());
     }
     Ok(ExitCode::Done)
+}
+
+/// Warnings are told to whoever asked for silence too.
+fn tell_warnings(manifest: &Manifest, as_json: bool) {
+    for warning in info::warnings(manifest) {
+        if as_json {
+            eprintln!("{}", serde_json::json!({ "warning": warning }));
+        } else {
+            eprintln!("corniche: warning: {warning}");
+        }
+    }
 }
 
 /// The only way from text to settings: command line before settings file before defaults.
@@ -72,12 +90,24 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
         Some(path) => presets::read_config(path)?,
         None => Config::default(),
     };
-    let nodata = args.terrain.nodata.or(config.terrain.nodata);
-    if let Some(value) = nodata.filter(|value| !value.is_finite()) {
+    let nodata = nodata(args.terrain.nodata, config.terrain.nodata)?;
+    let height_range_m = args.terrain.height_range.or(config.terrain.height_range);
+    if let Some([low, high]) =
+        height_range_m.filter(|[low, high]| !(low < high && (high - low).is_finite()))
+    {
         return Err(Failure::unusable(format!(
-            "--nodata {value} is needless: what is no finite number is no height anyway; leave it out"
+            "height-range of {low}, {high} has no two ends in order; write it like [-500, 9000]"
         )));
     }
+    // Two ways to say one thing: what the command line says of it goes before all that the file says.
+    let (cell, cell_every) = match (args.terrain.cell, args.terrain.cell_every) {
+        (None, None) => {
+            let cell = config.terrain.cell.map(|sides| check_cell(sides.to_array())).transpose();
+            let cell = cell.map_err(|error| Failure::unusable(format!("cell: {error}")))?;
+            (cell, config.terrain.cell_every)
+        }
+        said => said,
+    };
     let terrain = TerrainSettings {
         crs: args.terrain.crs.or(config.terrain.crs),
         dem_crs: args.terrain.dem_crs.or(config.terrain.dem_crs),
@@ -89,10 +119,11 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
             .or(config.terrain.vertical_shift)
             .unwrap_or(0.0),
         nodata,
-        cell: positive("--cell", args.terrain.cell.or(config.terrain.cell))?
-            .map(corniche_geom::Cell::from),
-        cell_every: None,
-        scale_latitude_deg: None,
+        height_range_m,
+        allow_fine_cell: args.terrain.force,
+        cell: cell.map(Cell::from),
+        cell_every,
+        scale_latitude_deg: args.terrain.scale_latitude.or(config.terrain.scale_latitude),
         max_error_m: positive("--max-error", args.terrain.max_error.or(config.terrain.max_error))?,
         fill_voids: args.terrain.fill_voids.or(config.terrain.fill_voids).unwrap_or(FILL_VOIDS),
     };
@@ -152,22 +183,32 @@ pub(crate) fn threads(asked: Option<NonZeroUsize>) -> usize {
     asked.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
 }
 
-/// Bytes from `512M`, `4G`, `1073741824`.
+/// What `--memory` says, if it is enough to work in.
 fn parse_memory(text: &str) -> Result<u64, Failure> {
-    let bad = || {
-        Failure::unusable(format!(
-            "--memory {text:?} is not a size of at least 64M; write it like 512M or 4G"
-        ))
-    };
-    let (digits, unit) = match text.char_indices().last() {
-        Some((at, 'K' | 'k')) => (&text[..at], 1 << 10),
-        Some((at, 'M' | 'm')) => (&text[..at], 1 << 20),
-        Some((at, 'G' | 'g')) => (&text[..at], 1 << 30),
-        _ => (text, 1),
-    };
-    let size =
-        digits.parse::<u64>().ok().and_then(|number| number.checked_mul(unit)).ok_or_else(bad)?;
-    if size >= MIN_MEMORY_BYTES { Ok(size) } else { Err(bad()) }
+    match parse_bytes(text) {
+        Ok(size_bytes) if size_bytes >= MIN_MEMORY_BYTES => Ok(size_bytes),
+        _ => Err(Failure::unusable(format!(
+            "--memory {text:?} is not a size of at least 64M; write it like 512M, 4G or 1T"
+        ))),
+    }
+}
+
+/// Values that mean "no data": the command line's, else the settings file's.
+fn nodata(given: Vec<f64>, config: Vec<f64>) -> Result<Vec<f64>, Failure> {
+    let values = if given.is_empty() { config } else { given };
+    if let Some(value) = values.iter().find(|value| !value.is_finite()) {
+        return Err(Failure::unusable(format!(
+            "--nodata {value} is needless: what is no finite number is no height anyway; leave it out"
+        )));
+    }
+    if values.len() > MAX_NODATA {
+        return Err(Failure::unusable(format!(
+            "--nodata is given {} times, more than {MAX_NODATA}; convert the files so that they say themselves what \
+             means \"no data\" (gdal_translate -a_nodata)",
+            values.len()
+        )));
+    }
+    Ok(values)
 }
 
 #[cfg(test)]
@@ -179,15 +220,16 @@ mod tests {
         assert_eq!(parse_memory("512M").unwrap(), 512 << 20);
         assert_eq!(parse_memory("4G").unwrap(), 4 << 30);
         assert_eq!(parse_memory("1073741824").unwrap(), 1 << 30);
-        for bad in ["", "G", "-1G", "1T", "1M", "99999999999G", "ä"] {
+        assert_eq!(parse_memory("1T").unwrap(), 1 << 40);
+        for bad in ["", "G", "-1G", "1M", "99999999999G", "ä"] {
             assert!(parse_memory(bad).is_err(), "{bad}");
         }
     }
 
     #[test]
     fn lengths_must_be_lengths() {
-        assert!(positive("--cell", Some(0.0)).is_err());
-        assert!(positive("--cell", Some(f64::NAN)).is_err());
-        assert_eq!(positive("--cell", Some(2.5)).unwrap(), Some(2.5));
+        assert!(positive("--max-error", Some(0.0)).is_err());
+        assert!(positive("--max-error", Some(f64::NAN)).is_err());
+        assert_eq!(positive("--max-error", Some(2.5)).unwrap(), Some(2.5));
     }
 }

@@ -104,6 +104,14 @@ impl Observer for Watch {
         }
     }
 
+    fn work_folder(&self, folder: &Path) {
+        self.progress.work_folder(folder);
+    }
+
+    fn warning(&self, text: &str) {
+        self.progress.warning(text);
+    }
+
     fn is_cancelled(&self) -> bool {
         self.progress.is_cancelled()
     }

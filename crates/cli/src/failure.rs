@@ -75,6 +75,7 @@ impl From<VerifyError> for Failure {
     fn from(error: VerifyError) -> Self {
         let code = match &error {
             VerifyError::Interrupted => ExitCode::Interrupted,
+            VerifyError::Changed { .. } => ExitCode::Failed,
             _ => ExitCode::Unusable,
         };
         Self::new(code, error)

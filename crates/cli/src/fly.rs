@@ -25,11 +25,11 @@ use crate::{
     args::{FlyArgs, Lod, Roads},
     exit::ExitCode,
     failure::Failure,
-    interrupt, progress, styles,
+    interrupt, presets, progress, styles,
 };
 use corniche_viewer::{
     Detail, FrameRecord, Lifted, Replay, ReplayError, ReplayOptions, default_flight,
-    flight::Flight,
+    flight::{Flight, WorkingCrs},
     gpu::{Gpu, PassTimes},
     stream::StreamBudget,
     style::Style,
@@ -88,13 +88,12 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let style = styles::style(&args.look.style)?;
     let methods = args.look.roads(&args.drawing.roads)?;
     let source = PackageSource::open(&args.package)?;
-    interrupt::watch()?;
     let flight = flight(args, &source)?;
     let plan = Plan { args, flight: &flight, style: &style, methods: &methods, outputs: &outputs };
     let Drawn { runs, adapter } =
         if args.window { plan.fly_in_a_window()? } else { plan.fly(None)? };
 
-    outputs.finish(&flight, &source.manifest().crs, &runs, &adapter)?;
+    outputs.finish(&flight, WorkingCrs::of(source.manifest()), &runs, &adapter)?;
     io::stdout().lock().write_all(summary::to_text(&runs).as_bytes())?;
     Ok(ExitCode::Done)
 }
@@ -106,13 +105,15 @@ fn flight(args: &FlyArgs, source: &PackageSource) -> Result<Flight, Failure> {
     };
     let unusable =
         |error: &dyn std::fmt::Display| Failure::unusable(format!("{}: {error}", path.display()));
+    presets::refuse_stream(path).map_err(|error| unusable(&error))?;
     let size_bytes = fs::metadata(path).map_err(|error| unusable(&error))?.len();
     if size_bytes > MAX_PATH_BYTES {
         return Err(unusable(&"too large for a flight"));
     }
     let text = fs::read_to_string(path).map_err(|error| unusable(&error))?;
     let manifest = source.manifest();
-    Flight::parse(&text, &manifest.crs, &manifest.coordinates).map_err(|error| unusable(&error))
+    Flight::parse(&text, WorkingCrs::of(manifest), &manifest.coordinates)
+        .map_err(|error| unusable(&error))
 }
 
 fn options(

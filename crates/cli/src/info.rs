@@ -6,7 +6,8 @@ use std::{
     io::{self, Write as _},
 };
 
-use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord};
+use corniche_geom::Cell;
+use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, ScaleRecord};
 use serde_json::json;
 
 use crate::{
@@ -45,11 +46,12 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
         manifest.format_version,
         plain(&manifest.generator)
     ));
-    say(format!("CRS          {}, point scale {:.6}", plain(&manifest.crs), manifest.point_scale));
+    say(format!("CRS          {}, {}", plain(&manifest.crs), factors(manifest.metres_per_unit)));
+    say(format!("scale        {}", scales(&manifest.scale)));
     say(format!(
         "extent       {west:.5} {south:.5} {east:.5} {north:.5} (west south east north, degrees)"
     ));
-    say(format!("grid         cell {}, {}", frame.cell(), plain(&manifest.resampling)));
+    say(format!("grid         cell {} m, {}", sides(frame.cell()), plain(&manifest.resampling)));
     let vertical = &manifest.vertical;
     let [lowest_m, highest_m] = vertical.range_m;
     say(format!(
@@ -57,8 +59,8 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
         vertical.quantum_m
     ));
     say(format!("datum        {}; heights {}", plain(&vertical.datum), plain(&vertical.treatment)));
-    if let Some(warning) = odd_heights(manifest) {
-        say(warning);
+    for warning in warnings(manifest) {
+        say(format!("warning: {warning}"));
     }
     let samples = &manifest.counts.samples;
     say(format!(
@@ -99,8 +101,8 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
     for level in &manifest.levels {
         levels.row([
             level.level.to_string(),
-            format!("{}", level.cell_m),
-            format!("{}", level.max_error_m),
+            sides(level.cell_m),
+            rounded(level.max_error_m),
             format!("{:.2}", level.geometric_error_m),
             or_dash(level.errors_m.map(|errors_m| errors_m.median), 2),
             or_dash(level.errors_m.map(|errors_m| errors_m.p95), 2),
@@ -142,6 +144,41 @@ fn sample_errors(manifest: &Manifest) -> String {
     format!("{what}:\n{}\n", table.to_text())
 }
 
+/// What makes working metres of a CRS's coordinates.
+fn factors([east, north]: [f64; 2]) -> String {
+    if [east, north].iter().all(|factor| factor.to_bits() == 1.0_f64.to_bits()) {
+        return "working metres are its coordinates".to_owned();
+    }
+    format!("working metres are its coordinates times {east} (east) and {north} (north)")
+}
+
+/// How long lengths come out, along both axes.
+fn scales(scale: &ScaleRecord) -> String {
+    let along = |axis: usize, name: &str| {
+        format!(
+            "{name} {:.4} at the centre, {:.4} to {:.4} over the rim",
+            scale.center[axis], scale.least[axis], scale.largest[axis]
+        )
+    };
+    format!("working metres to a true metre: {}; {}", along(0, "east"), along(1, "north"))
+}
+
+/// A cell's sides: "30", "63.1 × 92.7".
+fn sides(cell: Cell) -> String {
+    let [east, north] = cell.to_array().map(rounded);
+    if east == north { north } else { format!("{east} × {north}") }
+}
+
+/// A length to three digits at least, without zeros at its end.
+fn rounded(metres: f64) -> String {
+    let digits = (2.0 - metres.abs().log10().floor()).clamp(0.0, 9.0) as usize;
+    let text = format!("{metres:.digits$}");
+    if digits == 0 {
+        return text;
+    }
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
 /// Foreign text for a terminal: its control characters must neither colour nor forge lines.
 fn plain(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
@@ -152,21 +189,31 @@ pub(crate) fn or_dash(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"))
 }
 
+/// What may be wrong with a package and should be seen, also where little else is told.
+pub(crate) fn warnings(manifest: &Manifest) -> Vec<String> {
+    odd_heights(manifest).into_iter().collect()
+}
+
 /// What heights tell of an undeclared "no data": no land or sea floor lies so low or so high.
 ///
 /// Challenger Deep lies some 10 935 m below the sea, Everest 8 849 m above it.
+/// What was said to be allowed is not odd. A build refuses samples outside; what remains comes of a shift or of another
+/// vertical CRS, or of an older package.
 fn odd_heights(manifest: &Manifest) -> Option<String> {
     const PLAUSIBLE_M: [f64; 2] = [-12_000.0, 9_500.0];
     let [lowest_m, highest_m] = manifest.vertical.range_m;
-    let odd_m = if lowest_m < PLAUSIBLE_M[0] {
+    let plausible_m = manifest.settings.height_range_m.map_or(PLAUSIBLE_M, |[low_m, high_m]| {
+        [low_m.min(PLAUSIBLE_M[0]), high_m.max(PLAUSIBLE_M[1])]
+    });
+    let odd_m = if lowest_m < plausible_m[0] {
         lowest_m
-    } else if highest_m > PLAUSIBLE_M[1] {
+    } else if highest_m > plausible_m[1] {
         highest_m
     } else {
         return None;
     };
     Some(format!(
-        "warning: a height of {odd_m} m is none of this earth; if the files store a value that means \"no data\", give it \
+        "a height of {odd_m} m is none of this earth; is --vertical-shift right? If the files store a value that means \"no data\", give it \
          with --nodata as they store it (before scale, unit and shift)"
     ))
 }
@@ -218,5 +265,36 @@ fn roads(manifest: &Manifest) -> String {
     for (value, number) in &counts.unknown_highways {
         let _ = writeln!(text, "highway={} is in no class: {}", plain(value), count(*number));
     }
+    for (tag, number) in &counts.tags_taken_otherwise {
+        let _ = writeln!(text, "{} is taken for another value: {}", plain(tag), count(*number));
+    }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sides_of_cells_are_told_to_three_digits() {
+        for (cell, expected) in [
+            ([63.073_2, 92.650_49], "63.1 × 92.7"),
+            ([30.0, 30.0], "30"),
+            ([5.0, 5.0], "5"),
+            ([20.0, 30.0], "20 × 30"),
+            ([0.5, 0.5], "0.5"),
+            ([0.25, 0.333_333], "0.25 × 0.333"),
+            ([1000.0, 1536.7], "1000 × 1537"),
+            ([1e6, 0.001], "1000000 × 0.001"),
+        ] {
+            assert_eq!(sides(Cell::from(cell)), expected);
+        }
+    }
+
+    #[test]
+    fn factors_are_told_where_there_are_any() {
+        assert_eq!(factors([1.0, 1.0]), "working metres are its coordinates");
+        let told = factors([-1.0, 111_180.5]);
+        assert!(told.ends_with("times -1 (east) and 111180.5 (north)"), "{told}");
+    }
 }

@@ -54,6 +54,7 @@ fn main() -> process::ExitCode {
 }
 
 fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
+    interrupt::watch()?;
     match arguments.command {
         Command::Build(args) => build::run(args),
         Command::Info(args) => info::run(&args),

@@ -7,10 +7,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use corniche_pipeline::file_target;
 use image::RgbaImage;
 use tempfile::NamedTempFile;
 
-use crate::{exit::ExitCode, failure::Failure};
+use crate::{exit::ExitCode, failure::Failure, interrupt};
 
 /// What to do with a file that exists at the target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,19 +69,18 @@ impl Output {
         let unusable = |reason: &dyn Display| {
             Failure::unusable(format!("cannot write {}: {reason}", target.display()))
         };
-        if target.is_dir() {
-            return Err(unusable(&"it is a folder"));
-        }
-        let place = place_of(target);
+        let named = target;
+        let target = writable(named)?;
+        let place = place_of(&target);
         if others.iter().any(|other| place_of(other) == place) {
             return Err(unusable(&"the command uses that file itself; choose another name"));
         }
-        if existing == Existing::Keep && target.symlink_metadata().is_ok() {
-            return Err(exists(target));
+        if existing == Existing::Keep && named.symlink_metadata().is_ok() {
+            return Err(exists(named));
         }
         if let Existing::ReplaceLike(kind) = existing
             && target.exists()
-            && !kind.is_of(target).map_err(|error| unusable(&error))?
+            && !kind.is_of(&target).map_err(|error| unusable(&error))?
         {
             let what = format!("{} exists already and is no {}", target.display(), kind.name());
             let advice = "choose another name, or delete it first";
@@ -95,7 +95,8 @@ impl Output {
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let file = builder.tempfile_in(folder).map_err(|error| unusable(&error))?;
-        Ok(Self { target: target.to_path_buf(), existing, file: BufWriter::new(file) })
+        interrupt::remove_at_end(file.path());
+        Ok(Self { target, existing, file: BufWriter::new(file) })
     }
 
     /// Puts the file in its place.
@@ -155,6 +156,12 @@ impl Write for Output {
     fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
     }
+}
+
+/// Where a file that is wanted at `target` goes: there, or to the file that a link there leads to. A place that is neither
+/// free nor a regular file's is refused, with `-O` too: devices, pipes and folders are never replaced.
+pub(crate) fn writable(target: &Path) -> Result<PathBuf, Failure> {
+    file_target(target).map_err(|error| Failure::new(ExitCode::Unusable, error))
 }
 
 /// Where a file is or will be, whatever way its path is written: for one that does not exist yet, its folder's place.

@@ -1,6 +1,10 @@
 //! Presets by name, settings files by path: files to text, which `corniche-presets` reads.
 
-use std::{fs, io::Read as _, path::Path};
+use std::{
+    fs,
+    io::{self, Read as _},
+    path::Path,
+};
 
 use corniche_presets::{Config, PresetError, frc_preset, frc_preset_names, parse_frc_table};
 use corniche_roads::FrcTable;
@@ -37,8 +41,20 @@ pub(crate) fn refuse(what: &str, error: &PresetError) -> Failure {
     Failure::unusable(format!("{what}: {error}"))
 }
 
-pub(crate) fn read_text(path: &Path) -> std::io::Result<String> {
+pub(crate) fn read_text(path: &Path) -> io::Result<String> {
+    refuse_stream(path)?;
     let mut text = String::new();
     fs::File::open(path)?.take(MAX_FILE_BYTES).read_to_string(&mut text)?;
     Ok(text)
+}
+
+/// Refuses what is no file: to open a pipe is to wait for who writes into it, and texts are read again when they change.
+pub(crate) fn refuse_stream(path: &Path) -> io::Result<()> {
+    if fs::metadata(path)?.file_type().is_file() {
+        Ok(())
+    } else if path.is_dir() {
+        Err(io::ErrorKind::IsADirectory.into())
+    } else {
+        Err(io::Error::other("it is a pipe or a device; save it to a file first"))
+    }
 }

@@ -3,6 +3,7 @@
 use std::{
     borrow::Cow,
     io::{IsTerminal as _, Write as _, stderr},
+    path::Path,
     sync::{Mutex, PoisonError},
     time::{Duration, Instant},
 };
@@ -124,6 +125,26 @@ impl Observer for Progress {
                     running.done
                 );
             }
+        }
+    }
+
+    fn work_folder(&self, folder: &Path) {
+        interrupt::remove_at_end(folder);
+    }
+
+    /// Warnings are told to whoever asked for silence too.
+    fn warning(&self, text: &str) {
+        let line = match self.manner {
+            Manner::Json => json!({ "warning": text }).to_string(),
+            Manner::Quiet | Manner::Bars | Manner::Lines => format!("corniche: warning: {text}"),
+        };
+        let running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
+        let tell = || {
+            let _ = writeln!(stderr(), "{line}");
+        };
+        match running.as_ref().and_then(|running| running.bar.as_ref()) {
+            Some(bar) => bar.suspend(tell),
+            None => tell(),
         }
     }
 

@@ -31,7 +31,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         style,
     };
     let output = Output::create(&args.output, Existing::ReplaceLike(Kind::Png), &used)?;
-    interrupt::watch()?;
+    refuse_other_formats(&args.output)?;
     let rendered = render(&request, &interrupt::is_noted)?;
     output.write_whole(&png(&rendered.picture)?)?;
     let report = &rendered.report;
@@ -45,12 +45,25 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     );
     if report.clamped_tiles > 0 {
         eprintln!(
-            "note: in up to {} tiles roads may be drawn narrower than the style says, because their volumes reach no \
-             farther than the package's width margin",
+            "note: in up to {} tiles roads may be drawn narrower than the style says, because a tile knows of no roads \
+             farther away than the package's width margin",
             report.clamped_tiles
         );
     }
     Ok(ExitCode::Done)
+}
+
+/// A picture is a PNG: a name that says something else would lie.
+fn refuse_other_formats(path: &Path) -> Result<(), Failure> {
+    match path.extension() {
+        Some(extension) if !extension.eq_ignore_ascii_case("png") => {
+            Err(Failure::unusable(format!(
+                "cannot write {}: pictures are PNG; give a name that ends in .png",
+                path.display()
+            )))
+        }
+        _ => Ok(()),
+    }
 }
 
 impl From<RenderError> for Failure {

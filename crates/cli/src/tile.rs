@@ -2,12 +2,13 @@
 
 use std::io::{self, BufWriter, Write as _};
 
+use corniche_geom::Bounds;
 use corniche_tileset::{FilePackage, Sections, TilePayload};
 use corniche_tin::{Placement, Surface};
 use serde_json::{Value, json};
 
 use crate::{
-    args::TileArgs,
+    args::{Coordinates, TileArgs},
     exit::ExitCode,
     failure::Failure,
     table::{Table, count},
@@ -25,7 +26,7 @@ pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
     };
     let mut out = BufWriter::new(io::stdout().lock());
     if args.json {
-        writeln!(out, "{}", to_json(&package, &payload)?)?;
+        writeln!(out, "{}", to_json(&package, &payload, args.coordinates)?)?;
     } else {
         out.write_all(to_text(&payload).as_bytes())?;
     }
@@ -51,15 +52,35 @@ fn to_text(payload: &TilePayload) -> String {
 }
 
 /// The schema is a promise to programs: keys are added, never changed.
-fn to_json(package: &FilePackage, payload: &TilePayload) -> Result<Value, Failure> {
+fn to_json(
+    package: &FilePackage,
+    payload: &TilePayload,
+    coordinates: Coordinates,
+) -> Result<Value, Failure> {
     let manifest = package.manifest();
     let frame = &manifest.frame;
     let id = payload.id;
+    // What working metres are divided by.
+    let [unit_x, unit_y] = match coordinates {
+        Coordinates::Working => [1.0; 2],
+        Coordinates::Crs => manifest.metres_per_unit,
+    };
+    let place = |[x, y]: [f64; 2]| [x / unit_x, y / unit_y];
+    let Bounds { min_x, min_y, max_x, max_y } = frame.tile_bounds(id);
+    // Where an axis counts back, its smallest coordinate is that of the other end.
+    let mut bounds = Bounds::EMPTY;
+    bounds.include(place([min_x, min_y]));
+    bounds.include(place([max_x, max_y]));
     let level = manifest.levels.get(usize::from(id.z()));
     let mut value = json!({
         "id": id.to_string(),
         "crs": manifest.crs,
-        "bounds": frame.tile_bounds(id).to_array(),
+        "coordinates": match coordinates {
+            Coordinates::Working => "working",
+            Coordinates::Crs => "crs",
+        },
+        "metres_per_unit": manifest.metres_per_unit,
+        "bounds": bounds.to_array(),
         "cell_m": frame.level_cell(id.z()).to_array(),
         "max_error_m": level.map(|level| level.max_error_m),
         "geometric_error_m": null,
@@ -68,7 +89,7 @@ fn to_json(package: &FilePackage, payload: &TilePayload) -> Result<Value, Failur
         "roads_geo": [],
         "roads_sv": payload.roads_sv.iter().map(|road| json!({
             "way_id": road.way_id, "part": road.part, "frc": road.class.number(),
-            "line": road.line.points.iter().map(|&point| frame.position_m(point)).collect::<Vec<_>>(),
+            "line": road.line.points.iter().map(|&point| place(frame.position_m(point))).collect::<Vec<_>>(),
             "ground_range_m": road.line.ground_range_m,
         })).collect::<Vec<_>>(),
     });
@@ -80,11 +101,11 @@ fn to_json(package: &FilePackage, payload: &TilePayload) -> Result<Value, Failur
         .vertices()
         .iter()
         .map(|vertex| {
-            [
+            let [x, y] = place([
                 frame.x_m(corner.i + i64::from(vertex.column) * stride),
                 frame.y_m(corner.j - i64::from(vertex.row) * stride),
-                f64::from(vertex.height_q) * manifest.vertical.quantum_m,
-            ]
+            ]);
+            [x, y, f64::from(vertex.height_q) * manifest.vertical.quantum_m]
         })
         .collect();
     let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
@@ -95,7 +116,7 @@ fn to_json(package: &FilePackage, payload: &TilePayload) -> Result<Value, Failur
             .map_err(|error| Failure::new(ExitCode::Unusable, error))?
             .into_iter()
             .map(|[u, v, z]| {
-                let [x, y] = frame.position_of_fraction_m([u, v]);
+                let [x, y] = place(frame.position_of_fraction_m([u, v]));
                 [x, y, z]
             })
             .collect::<Vec<_>>();

@@ -16,13 +16,12 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     info::or_dash,
-    interrupt, presets,
+    presets,
     progress::Progress,
     table::{Table, count},
 };
 
 pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
-    interrupt::watch()?;
     let settings = VerifySettings {
         package: args.package.clone(),
         dem: args.dem.clone(),

@@ -92,7 +92,6 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         )));
     }
     let source = PackageSource::open(&args.package)?;
-    interrupt::watch()?;
     let request = WindowRequest {
         name: args.package.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         source: Arc::new(source),

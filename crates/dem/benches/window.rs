@@ -6,7 +6,7 @@ use std::hint::black_box;
 use std::path::PathBuf;
 
 use corniche_dem::{Dem, OpenOptions, PlanOptions};
-use corniche_geom::{Cell, NodeIndex, NodeWindow};
+use corniche_geom::{NodeIndex, NodeWindow};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use gdal::DriverManager;
 use gdal::raster::Buffer;
@@ -39,6 +39,17 @@ fn ground(folder: &std::path::Path, epsg: u32, void_every: usize) -> PathBuf {
     path
 }
 
+/// A grid with square cells; degrees are carried to UTM.
+fn options(cell_m: f64) -> PlanOptions {
+    PlanOptions {
+        crs: Some("utm".to_owned()),
+        cell: Some(cell_m.into()),
+        cell_every: None,
+        scale_latitude_deg: None,
+        fill_voids: 32,
+    }
+}
+
 fn window(c: &mut Criterion) {
     let folder = tempfile::tempdir().unwrap();
     let mut group = c.benchmark_group("dem::Reader::window");
@@ -53,15 +64,7 @@ fn window(c: &mut Criterion) {
     ] {
         let file = ground(folder.path(), epsg, void_every);
         let dem = Dem::open(&[file], &OpenOptions::default()).unwrap();
-        let plan = dem
-            .plan(&PlanOptions {
-                crs: Some("utm".to_owned()),
-                cell: Some(Cell::from(cell_m)),
-                cell_every: None,
-                scale_latitude_deg: None,
-                fill_voids: 32,
-            })
-            .unwrap();
+        let plan = dem.plan(&options(cell_m)).unwrap();
         let middle = |low: i64, high: i64| i64::midpoint(low, high);
         let corner = NodeIndex {
             i: middle(plan.south_west.i, plan.north_east.i) - NODES as i64 / 2,

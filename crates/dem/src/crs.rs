@@ -167,6 +167,7 @@ pub(crate) fn wkt2(reference: &SpatialRef) -> Result<String, GdalError> {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "signs are exact")]
 mod tests {
     use super::*;
 

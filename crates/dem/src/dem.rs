@@ -96,7 +96,7 @@ impl Dem {
 }
 
 /// Keeps GDAL and PROJ from writing to standard error: what they say comes back in errors.
-fn quiet() {
+pub(crate) fn quiet() {
     static QUIET: Once = Once::new();
     QUIET.call_once(|| gdal::config::set_error_handler(|_, _, words| library::hear(words)));
 }

@@ -13,6 +13,14 @@ pub enum DemError {
     NoFiles,
     #[error("cannot open DEM {path:?}")]
     Missing { path: PathBuf, source: std::io::Error },
+    #[error(
+        "{path:?} is {found}, not a file; a raster is read in any order and more than once, so save it to a file first"
+    )]
+    Stream { path: PathBuf, found: &'static str },
+    #[error(
+        "the name of DEM {path:?} is not UTF-8, and GDAL takes no other names here; rename the file (or its folder)"
+    )]
+    NotUtf8 { path: PathBuf },
     #[error("{path:?} is not a file; name the raster itself")]
     NotAFile { path: PathBuf },
     #[error("{path:?} is empty (0 bytes); fetch it again")]
@@ -147,6 +155,10 @@ pub enum DemError {
     Downsampling { cell: Cell, samples: f64, limit: f64 },
     #[error("--cell-every {every} is not usable; give a number from 1 to {limit}")]
     CellEvery { every: u32, limit: i64 },
+    #[error(
+        "--cell-every {every} leaves {columns} × {rows} nodes; ground lies between nodes, so give a smaller number that leaves at least 2 × 2"
+    )]
+    CellEveryLeaves { every: u32, columns: i64, rows: i64 },
     #[error("--cell and --cell-every both say what a cell is; give one of them")]
     CellTwice,
     #[error(
@@ -163,6 +175,41 @@ pub enum DemError {
         "UTM is defined from 80° south to 84° north, and the DEM reaches from {south:.3}° to {north:.3}°; leave out --crs utm"
     )]
     NoUtm { south: f64, north: f64 },
+    #[error(
+        "a cell of {cell} puts {nodes:.0} nodes along a side of each DEM sample, more than {limit}: all but one of them \
+         would be interpolated; use a larger --cell, or give --force if it is meant"
+    )]
+    Oversampling { cell: Cell, nodes: f64, limit: f64 },
+    #[error(
+        "{count} of {samples} samples of {files} hold {stored}, {gap_m:.0} m {side} all others: a value that means \"no \
+         data\" and is not declared as such; give it with --nodata {stored}, or if they are heights of {height_m} m allow \
+         them with --height-range {low_m},{high_m}"
+    )]
+    Sentinel {
+        files: String,
+        stored: String,
+        count: u64,
+        samples: u64,
+        height_m: f64,
+        gap_m: f64,
+        side: &'static str,
+        low_m: f64,
+        high_m: f64,
+    },
+    #[error(
+        "{count} of {samples} samples of {path:?} are no heights between {low_m} and {high_m} m: one is {height_m} m, stored \
+         as {stored}; if that means \"no data\" give it with --nodata {stored}, if it is a height say what is allowed with \
+         --height-range LOW,HIGH (metres)"
+    )]
+    OutOfRange {
+        path: PathBuf,
+        count: u64,
+        samples: u64,
+        height_m: f64,
+        stored: String,
+        low_m: f64,
+        high_m: f64,
+    },
     #[error("--fill-voids {cells} is too far; at most {limit} cells")]
     FillVoids { cells: u32, limit: u32 },
     #[error("the DEM's grid cannot be made")]

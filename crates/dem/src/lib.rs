@@ -15,6 +15,11 @@
 mod dem;
 mod source;
 
+mod audit;
+mod files;
+mod oversampling;
+mod vsi;
+
 mod plan;
 mod reader;
 mod samples;
@@ -39,8 +44,10 @@ mod working;
 mod error;
 mod library;
 
+pub use audit::{Audit, AuditBlock, AuditPart, Auditor, SURFACE_RANGE_M};
 pub use dem::{Dem, limit_block_cache};
 pub use error::DemError;
+pub use files::raster_files;
 pub use library::LibraryError;
 pub use plan::{GridPlan, PlanOptions, Resampling};
 pub use projection::DemProjection;
@@ -48,4 +55,5 @@ pub use reader::{DemWindow, Reader, SampleBlock};
 pub use recorded::RecordedCrs;
 pub use samples::SampleArea;
 pub use source::OpenOptions;
+pub use vsi::VirtualFile;
 pub use working::PlanScale;

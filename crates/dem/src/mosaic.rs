@@ -226,7 +226,8 @@ impl OpenFiles {
         Ok(())
     }
 
-    fn dataset(&mut self, index: usize, source: &Source) -> Result<&Dataset, DemError> {
+    /// A file, opened if need be.
+    pub(crate) fn dataset(&mut self, index: usize, source: &Source) -> Result<&Dataset, DemError> {
         if let Some(at) = self.open.iter().position(|(open, _)| *open == index) {
             self.open[..=at].rotate_right(1);
         } else {

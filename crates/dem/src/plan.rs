@@ -4,7 +4,7 @@ use corniche_geom::{Bounds, Cell, Frame, NodeIndex};
 use gdal::version::VersionInfo;
 
 use crate::kernel::Kernel;
-use crate::mosaic::Mosaic;
+use crate::mosaic::{Mosaic, Placed};
 use crate::operation::Operation;
 use crate::positions::NodePositions;
 use crate::working::{PlanScale, Working, rounded};
@@ -12,15 +12,21 @@ use crate::{Dem, DemError, outline, working};
 
 /// Nodes coincide with samples when none is farther off than this, in cells.
 const ALIGNED_CELLS: f64 = 1e-3;
-/// Rounding of a grid's phase, to a unit or, in degrees, to a cell: it hides the noise of corner coordinates and moves
-/// nothing.
+/// What numbers of few digits may move samples by, over the whole extent, in cells.
+const NOISE_CELLS: f64 = 5e-4;
+/// Rounding of a grid's phase, steps to a unit: it hides the noise of corner coordinates and moves nothing.
 const PHASE_STEPS: f64 = 1e6;
+/// The same in degrees, steps to a cell: degrees are written with fewer digits. It moves nodes by half of this at most.
+const PHASE_STEPS_DEGREES: f64 = 1e4;
 /// Most samples along an axis of which one is taken.
 const MAX_EVERY: i64 = 1000;
 /// Most samples averaged along a side of a cell; bounds the memory that one node can ask for.
 const MAX_SAMPLES_PER_NODE: f64 = 1000.0;
 /// Farthest that voids can be filled; bounds the halo.
 const MAX_FILL_VOIDS: u32 = 1024;
+
+/// Most files of one grid that the words about it name.
+const MAX_NAMES: usize = 3;
 
 /// What the user may say about the grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,6 +83,8 @@ pub struct GridPlan {
     pub case: Resampling,
     /// The case in words.
     pub resampling: String,
+    /// Names, without folders, of the files that are resampled onto the grid of the first one, and of that one. `None` where no file is, or all are.
+    pub resampled_onto_first: Option<[String; 2]>,
     /// What the resulting heights are measured from, as far as files or options name it.
     pub vertical_datum: Option<String>,
     /// What was done to the files' heights, in words; with the offset at the DEM's centre where PROJ carried them.
@@ -160,6 +168,13 @@ pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemErro
             ]
         })
         .ok_or_else(|| DemError::OutsideCrs { crs: layout.working.crs.label.clone() })?;
+    let [columns, rows] = [north_east.i - south_west.i + 1, north_east.j - south_west.j + 1];
+    if let Some(every) = options.cell_every
+        && columns.min(rows) < 2
+    {
+        let [columns, rows] = [columns, rows].map(|nodes| nodes.max(0));
+        return Err(DemError::CellEveryLeaves { every, columns, rows });
+    }
     let frame = Frame::covering(layout.origin_m, layout.cell, south_west, north_east)?;
     let mut layers = Vec::new();
     for (((mosaic, working_from_crs), nodes), spacing) in
@@ -199,6 +214,7 @@ pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemErro
             Resampling::Resampled
         },
         resampling: describe(dem, &layers),
+        resampled_onto_first: resampled_onto_first(dem, &layers),
         vertical_datum: dem.heights.datum.clone(),
         vertical: dem.heights.words.clone(),
         libraries: libraries(),
@@ -209,7 +225,7 @@ pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemErro
 }
 
 /// Spacing of a mosaic's columns and rows in working metres, at its centre; `None` outside the CRS.
-fn spacing_m(
+pub(crate) fn spacing_m(
     mosaic: &Mosaic,
     working: &Working,
     operation: &Operation,
@@ -247,7 +263,7 @@ fn layout(
 ) -> Result<Layout, DemError> {
     let first = &dem.mosaics[0];
     let every = i64::from(options.cell_every.unwrap_or(1));
-    if every < 1 || every > MAX_EVERY {
+    if !(1..=MAX_EVERY).contains(&every) {
         return Err(DemError::CellEvery {
             every: options.cell_every.unwrap_or(0),
             limit: MAX_EVERY,
@@ -263,16 +279,15 @@ fn layout(
     if options.cell_every.is_some() {
         return Err(DemError::CellEveryResampled { crs: working.crs.label.clone() });
     }
-    let cell = match options.cell {
-        Some(cell) => cell,
-        None => {
-            let operations = into_working(&working);
-            let spacing_m = spacing_m(first, &working, &operations[0])?
-                .ok_or_else(|| DemError::OutsideCrs { crs: working.crs.label.clone() })?;
-            let shorter_m = spacing_m[0].min(spacing_m[1]);
-            let is_turned = first.crs.is_same(&working.crs);
-            Cell::from(rounded(shorter_m, if is_turned { 9 } else { 2 }))
-        }
+    let cell = if let Some(cell) = options.cell {
+        cell
+    } else {
+        let operations = into_working(&working);
+        let spacing_m = spacing_m(first, &working, &operations[0])?
+            .ok_or_else(|| DemError::OutsideCrs { crs: working.crs.label.clone() })?;
+        let shorter_m = spacing_m[0].min(spacing_m[1]);
+        let is_turned = first.crs.is_same(&working.crs);
+        Cell::from(rounded(shorter_m, if is_turned { 9 } else { 2 }))
     };
     if cell.to_array().iter().any(|side_m| !(0.001..=1e6).contains(side_m)) {
         return Err(DemError::Cell { cell });
@@ -392,7 +407,7 @@ impl Layout {
 /// A spacing without the noise of its division by whoever wrote the file: a whole number of samples to a unit (1/1200 of a
 /// degree), or few decimal digits; as it is where neither is meant.
 fn nice(spacing: f64, reach: f64) -> f64 {
-    let is_noise = |nice: f64| (nice - spacing).abs() * reach <= 1e-4 * spacing;
+    let is_noise = |nice: f64| (nice - spacing).abs() * reach <= NOISE_CELLS * spacing;
     let digits = rounded(spacing, 9);
     let to_a_unit = 1.0 / (1.0 / spacing).round();
     [to_a_unit, digits]
@@ -403,10 +418,11 @@ fn nice(spacing: f64, reach: f64) -> f64 {
 
 /// Where samples lie between two multiples of their spacing, so that adjoining files of one product have the same grid.
 fn phase(at: f64, spacing: f64, is_degrees: bool) -> f64 {
-    // Degrees are written with fewer digits than metres: a millionth of a cell hides that and moves nothing.
-    let unit = if is_degrees { spacing } else { 1.0 };
-    let phase = (at.rem_euclid(spacing) / unit * PHASE_STEPS).round() / PHASE_STEPS * unit;
-    if spacing - phase < unit / PHASE_STEPS { 0.0 } else { phase }
+    let (unit, steps) =
+        if is_degrees { (spacing, PHASE_STEPS_DEGREES) } else { (1.0, PHASE_STEPS) };
+    let phase = (at.rem_euclid(spacing) / unit * steps).round() / steps * unit;
+    // A hair below a multiple is the multiple.
+    if spacing - phase < 0.5 * unit / steps { 0.0 } else { phase }
 }
 
 fn resample(
@@ -430,30 +446,63 @@ fn resample(
     Ok(Method::Resampled(Box::new(positions), Kernel::new(samples_per_node)))
 }
 
+/// How nodes relate to samples. One grid is "the DEM"; of several each names its files, the first named first.
 fn describe(dem: &Dem, layers: &[Layer]) -> String {
+    let is_one = dem.mosaics.len() == 1;
     let mut texts: Vec<String> = Vec::new();
     for (mosaic, layer) in dem.mosaics.iter().zip(layers) {
+        let whose = if is_one { String::new() } else { format!(" of {}", names(dem, mosaic)) };
         let text = match &layer.method {
-            Method::Aligned(Alignment { every: 1, .. }) => "nodes are the DEM's samples".to_owned(),
             Method::Aligned(Alignment { every, .. }) => {
-                format!("nodes are every {every}th of the DEM's samples, along both axes")
+                let nodes =
+                    if is_one { "nodes are the DEM's samples" } else { "nodes are the samples" };
+                let share = match every {
+                    1 => String::new(),
+                    every => format!(", one in {every} along both axes"),
+                };
+                format!("{nodes}{whose}{share}")
             }
             Method::Resampled(positions, kernel) => {
                 let how = if kernel.is_average() { "area average of" } else { "bilinear between" };
+                let the = if is_one { "" } else { "the " };
                 let step = positions.step();
                 let exact = if step == 1 {
                     "every node transformed".to_owned()
                 } else {
                     format!("positions interpolated over {step} × {step} nodes")
                 };
-                format!("{how} samples in {}, {exact}", mosaic.crs.label)
+                format!("{how} {the}samples{whose} in {}, {exact}", mosaic.crs.label)
             }
         };
-        if !texts.contains(&text) {
-            texts.push(text);
-        }
+        texts.push(text);
     }
-    texts.join("; where the former have no data: ")
+    texts.join("; where those have no data: ")
+}
+
+/// Files on other grids than the first one's, whose samples are nodes, and the first one.
+fn resampled_onto_first(dem: &Dem, layers: &[Layer]) -> Option<[String; 2]> {
+    let is_resampled = |layer: &Layer| matches!(layer.method, Method::Resampled(..));
+    let (_, others) = layers.split_first().filter(|(first, _)| !is_resampled(first))?;
+    let told: Vec<String> = dem.mosaics[1..]
+        .iter()
+        .zip(others)
+        .filter(|(_, layer)| is_resampled(layer))
+        .map(|(mosaic, _)| names(dem, mosaic))
+        .collect();
+    (!told.is_empty()).then(|| [told.join(", "), names(dem, &dem.mosaics[0])])
+}
+
+/// The names of a mosaic's files, without folders.
+fn names(dem: &Dem, mosaic: &Mosaic) -> String {
+    let name = |file: &Placed| {
+        let path = &dem.sources[file.index].path;
+        path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+    };
+    let told: Vec<String> = mosaic.files.iter().take(MAX_NAMES).map(name).collect();
+    match mosaic.files.len().saturating_sub(MAX_NAMES) {
+        0 => told.join(", "),
+        more => format!("{} and {more} more", told.join(", ")),
+    }
 }
 
 fn libraries() -> String {

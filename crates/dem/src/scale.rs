@@ -1,5 +1,7 @@
 //! How true to scale working metres are.
 
+use std::ops::RangeInclusive;
+
 use crate::DemError;
 use crate::operation::Operation;
 
@@ -8,6 +10,9 @@ const SEMI_MAJOR_M: f64 = 6_378_137.0;
 const FLATTENING: f64 = 1.0 / 298.257_223_563;
 /// Half the length over which scale is measured: long against PROJ's rounding, short against its curvature.
 const HALF_SPAN_M: f64 = 500.0;
+
+/// Scales that a package can record. At a pole a degree of longitude has no length, and the scale is infinite.
+pub(crate) const SCALES: RangeInclusive<f64> = 0.001..=1000.0;
 
 /// Scale around a point: working metres over true metres.
 #[derive(Debug, Clone, Copy)]
@@ -47,7 +52,7 @@ fn scale(ends_deg: &[[f64; 2]]) -> Option<Scale> {
         .collect();
     // The chord is shorter than the arc by one part in 10^9 here.
     let scales: Vec<f64> = vectors.iter().map(|v| 2.0 * HALF_SPAN_M / dot(v, v).sqrt()).collect();
-    if !scales.iter().all(|scale| scale.is_finite()) {
+    if scales.iter().any(|scale| scale.is_nan()) {
         return None;
     }
     let (x, y, up) = (vectors[0], vectors[1], normal(ends_deg[0]));

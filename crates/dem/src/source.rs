@@ -21,8 +21,8 @@ const TIE_POINT_PX: f64 = 0.01;
 pub struct OpenOptions {
     /// CRS, "EPSG:n" or WKT, of the files that name none. A file that names one keeps it.
     pub dem_crs: Option<String>,
-    /// A stored value that means "no height", besides the one that the file declares.
-    pub nodata: Option<f64>,
+    /// Stored values that mean "no height", besides the one that the file declares.
+    pub nodata: Vec<f64>,
     /// Vertical CRS, "EPSG:n" or WKT, of the files that name none; with its unit and direction. A file that names
     /// one keeps it.
     pub dem_vertical_crs: Option<String>,
@@ -50,6 +50,8 @@ pub(crate) struct Source {
     /// What its heights are measured from, as the file or `--dem-vertical-crs` says.
     pub(crate) vertical: Option<VerticalCrs>,
     values: Values,
+    /// Stored in whole rows rather than in tiles.
+    pub(crate) is_striped: bool,
     /// Number of the band in which 0 means that there is no sample.
     alpha_band: Option<usize>,
     /// To the vertical CRS asked for, where that is another one.
@@ -94,6 +96,7 @@ impl Source {
             crs,
             values: Values::of(path, &band, vertical.as_ref(), options)?,
             vertical,
+            is_striped: band.block_size().0 == columns,
             alpha_band: alpha_band(&dataset),
             to_target: None,
             shift_m: 0.0,
@@ -108,18 +111,49 @@ impl Source {
         [columns, rows]: [usize; 2],
         heights_m: &mut Vec<f64>,
     ) -> Result<(), DemError> {
+        self.read_stored(dataset, [column, row], [columns, rows], heights_m)?;
+        self.values.convert(heights_m);
+        if let Some(operation) = &self.to_target {
+            operation.apply(&self.path, &self.crs_from_pixel, [column, row], columns, heights_m)?;
+        }
+        if self.shift_m != 0.0 {
+            for height_m in heights_m.iter_mut() {
+                *height_m += self.shift_m;
+            }
+        }
+        Ok(())
+    }
+
+    /// Stored values to metres, in place; NaN where there is no height. Without the vertical CRS and the shift asked for.
+    pub(crate) fn convert(&self, values: &mut [f64]) {
+        self.values.convert(values);
+    }
+
+    /// A stored value as `--nodata` takes it.
+    pub(crate) fn stored_text(&self, value: f64) -> String {
+        self.values.stored_text(value)
+    }
+
+    /// The values of a rectangle of pixels as they are stored, row by row, NaN where a mask says that there is none.
+    pub(crate) fn read_stored(
+        &self,
+        dataset: &Dataset,
+        [column, row]: [usize; 2],
+        [columns, rows]: [usize; 2],
+        values: &mut Vec<f64>,
+    ) -> Result<(), DemError> {
         let (start, size) = ((column as isize, row as isize), (columns, rows));
         let mut read = || -> Result<(), GdalError> {
-            heights_m.resize(columns * rows, 0.0);
+            values.resize(columns * rows, 0.0);
             let band = dataset.rasterband(1)?;
-            band.read_into_slice(start, size, size, heights_m, None)?;
+            band.read_into_slice(start, size, size, values, None)?;
             if self.values.has_mask {
                 let mask = band.open_mask_band()?.read_as::<u8>(start, size, size, None)?;
-                masked(heights_m, mask.data().iter().map(|&valid| valid == 0));
+                masked(values, mask.data().iter().map(|&valid| valid == 0));
             }
             if let Some(alpha) = self.alpha_band {
                 let alpha = dataset.rasterband(alpha)?.read_as::<f64>(start, size, size, None)?;
-                masked(heights_m, alpha.data().iter().map(|&opacity| opacity == 0.0));
+                masked(values, alpha.data().iter().map(|&opacity| opacity == 0.0));
             }
             Ok(())
         };
@@ -131,17 +165,7 @@ impl Source {
             columns,
             rows,
             source: source.into(),
-        })?;
-        self.values.convert(heights_m);
-        if let Some(operation) = &self.to_target {
-            operation.apply(&self.path, &self.crs_from_pixel, [column, row], columns, heights_m)?;
-        }
-        if self.shift_m != 0.0 {
-            for height_m in heights_m.iter_mut() {
-                *height_m += self.shift_m;
-            }
-        }
-        Ok(())
+        })
     }
 }
 
@@ -163,12 +187,21 @@ fn alpha_band(dataset: &Dataset) -> Option<usize> {
 /// Opens a file, with an error that says which of the usual things went wrong.
 pub(crate) fn open_dataset(path: &Path) -> Result<Dataset, DemError> {
     let own = || path.to_path_buf();
+    if path.to_str().is_none() {
+        return Err(DemError::NotUtf8 { path: own() });
+    }
+    if path.starts_with("/vsistdin") {
+        return Err(DemError::Stream { path: own(), found: "standard input" });
+    }
     // GDAL's virtual files and subdatasets ("/vsizip/…", "NETCDF:…") are no names of files.
     let is_virtual =
         path.to_str().is_some_and(|text| text.starts_with("/vsi") || text.contains(':'));
     match std::fs::metadata(path) {
         Ok(found) if found.is_file() && found.len() == 0 => {
             return Err(DemError::Empty { path: own() });
+        }
+        Ok(found) if !found.is_file() && !found.is_dir() => {
+            return Err(DemError::Stream { path: own(), found: "a pipe or a device" });
         }
         Err(source) if !is_virtual => return Err(DemError::Missing { path: own(), source }),
         // Some formats are folders; GDAL says below whether this is one of them.

@@ -44,7 +44,8 @@ impl Values {
         if kind == GdalDataType::Unknown {
             return Err(DemError::SampleType { path: path.to_path_buf() });
         }
-        let mut nodata: Vec<f64> = declared(band, kind).into_iter().chain(options.nodata).collect();
+        let mut nodata: Vec<f64> =
+            declared(band, kind).into_iter().chain(options.nodata.iter().copied()).collect();
         if kind == GdalDataType::Int16 {
             nodata.push(SRTM_VOID);
         }
@@ -68,6 +69,15 @@ impl Values {
             // all types. A nodata mask of the whole dataset is another thing: its item NODATA_VALUES, which no band has.
             has_mask: !flags.is_all_valid() && !flags.is_alpha() && !is_own_nodata,
         })
+    }
+
+    /// A stored value in words, as the sentinel that it may be: no more digits than the file has.
+    pub(crate) fn stored_text(&self, value: f64) -> String {
+        match value {
+            value if self.is_signed_byte && value > 127.0 => (value - 256.0).to_string(),
+            value if self.is_f32 => (value as f32).to_string(),
+            value => value.to_string(),
+        }
     }
 
     /// Stored values to metres, in place; what is no height becomes NaN.

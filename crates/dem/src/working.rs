@@ -7,7 +7,7 @@ use gdal::spatial_ref::SpatialRef;
 use crate::crs::Crs;
 use crate::mosaic::Mosaic;
 use crate::operation::Operation;
-use crate::scale::{self, Scale};
+use crate::scale::{self, SCALES, Scale};
 use crate::{Dem, DemError};
 
 /// The DEM's own CRS is the working CRS where lengths are then true within this, all over the data: nodes that are the
@@ -35,7 +35,7 @@ pub(crate) struct Working {
     pub(crate) middle: f64,
 }
 
-/// How long lengths come out in working metres.
+/// How long lengths come out in working metres; scales beyond 0.001 to 1000 are given as these.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanScale {
     /// Working metres per true metre along x and y, in the middle of the data.
@@ -53,29 +53,31 @@ impl Working {
         Self { crs, metres_per_unit, middle }
     }
 
-    /// The DEM's own CRS with the factors that make lengths true at the standard latitude; `None` where it has none.
-    fn own(dem: &Dem, latitude_deg: f64) -> Result<Option<Self>, DemError> {
-        let own = &dem.mosaics[0].crs;
-        let factors = match own.metres_per_turn_unit(latitude_deg)? {
-            Some(factors) => factors,
-            None => {
-                let unit = own.signs().map(|sign| sign * own.unit_m);
-                let plain = Self::new(own.clone(), unit, dem);
-                let is_true = plain.rim_scales(dem)?.is_some_and(|scales| {
-                    let off = |scale: &Scale| scale.along.map(|along| (along - 1.0).abs());
-                    scales.iter().flat_map(off).all(|off| off <= TRUE_TOLERANCE)
-                });
-                if is_true {
-                    return Ok(Some(plain));
-                }
-                let [lon, _] = dem.wgs84_bounds.center();
-                let Some(scale) = plain.scale_at(dem, [lon, latitude_deg])? else {
-                    return Ok(None);
-                };
-                [0, 1].map(|axis| rounded(unit[axis] / scale.along[axis], FACTOR_DIGITS))
+    /// A CRS with the factors that make lengths true at the standard latitude; `None` where it has none, outside its reach.
+    fn with_true_lengths(
+        dem: &Dem,
+        crs: &Crs,
+        latitude_deg: f64,
+    ) -> Result<Option<Self>, DemError> {
+        let factors = if let Some(factors) = crs.metres_per_turn_unit(latitude_deg)? {
+            factors
+        } else {
+            let unit = crs.signs().map(|sign| sign * crs.unit_m);
+            let plain = Self::new(crs.clone(), unit, dem);
+            let is_true = |scale: &Option<Scale>| {
+                let is_near = |along: &f64| (along - 1.0).abs() <= TRUE_TOLERANCE;
+                scale.is_some_and(|scale| scale.along.iter().all(is_near))
+            };
+            if plain.rim_scales(dem)?.iter().all(is_true) {
+                return Ok(Some(plain));
             }
+            let [lon, _] = dem.wgs84_bounds.center();
+            let scale = plain.scale_at(dem, [lon, latitude_deg])?;
+            let is_usable = |scale: &Scale| scale.along.iter().all(|at| SCALES.contains(at));
+            let Some(scale) = scale.filter(is_usable) else { return Ok(None) };
+            [0, 1].map(|axis| rounded(unit[axis] / scale.along[axis], FACTOR_DIGITS))
         };
-        Ok(Some(Self::new(own.clone(), factors, dem)))
+        Ok(Some(Self::new(crs.clone(), factors, dem)))
     }
 
     /// Scale at a place.
@@ -87,8 +89,8 @@ impl Working {
         Ok(scale::scales(&back, &points)?[0])
     }
 
-    /// Scales over corners, middles of sides and centre of every file; `None` when one of them lies outside the CRS.
-    fn rim_scales(&self, dem: &Dem) -> Result<Option<Vec<Scale>>, DemError> {
+    /// Scales over corners, middles of sides and centre of every file; `None` for one that lies outside the CRS.
+    fn rim_scales(&self, dem: &Dem) -> Result<Vec<Option<Scale>>, DemError> {
         let wgs84 = Crs::wgs84()?;
         let back = Operation::out_of_working(self, &wgs84, Some(dem.wgs84_bounds));
         let mut all = Vec::new();
@@ -96,18 +98,16 @@ impl Working {
             let mut points = rim_of(mosaic);
             Operation::into_working(&mosaic.crs, self, Some(dem.wgs84_bounds))
                 .apply(&mut points)?;
-            match scale::scales(&back, &points)?.into_iter().collect::<Option<Vec<Scale>>>() {
-                Some(scales) => all.extend(scales),
-                None => return Ok(None),
-            }
+            all.extend(scale::scales(&back, &points)?);
         }
-        Ok(Some(all))
+        Ok(all)
     }
 
     /// Whether lengths are true within `tolerance` in every direction, all over the data.
     fn is_true_within(&self, dem: &Dem, tolerance: f64) -> Result<bool, DemError> {
-        let scales = self.rim_scales(dem)?;
-        Ok(scales.is_some_and(|all| all.iter().all(|scale| scale.deviation <= tolerance)))
+        let is_true =
+            |scale: &Option<Scale>| scale.is_some_and(|scale| scale.deviation <= tolerance);
+        Ok(self.rim_scales(dem)?.iter().all(is_true))
     }
 
     /// How long lengths come out.
@@ -117,13 +117,19 @@ impl Working {
         let mut scale =
             PlanScale { center: center.along, least: center.along, largest: center.along };
         // Corners beyond the CRS (of a CRS that was asked for) say nothing.
-        for Scale { along, .. } in self.rim_scales(dem)?.unwrap_or_default() {
-            for axis in 0..2 {
-                scale.least[axis] = scale.least[axis].min(along[axis]);
-                scale.largest[axis] = scale.largest[axis].max(along[axis]);
-            }
+        for Scale { along, .. } in self.rim_scales(dem)?.into_iter().flatten() {
+            let merge = |known: [f64; 2], pick: fn(f64, f64) -> f64| {
+                [pick(known[0], along[0]), pick(known[1], along[1])]
+            };
+            scale.least = merge(scale.least, f64::min);
+            scale.largest = merge(scale.largest, f64::max);
         }
-        Ok(scale)
+        let recorded = |along: [f64; 2]| along.map(|at| at.clamp(*SCALES.start(), *SCALES.end()));
+        Ok(PlanScale {
+            center: recorded(scale.center),
+            least: recorded(scale.least),
+            largest: recorded(scale.largest),
+        })
     }
 }
 
@@ -138,7 +144,7 @@ pub(crate) fn choose(
         Some(given) => return Err(DemError::ScaleLatitude { latitude_deg: given }),
         None => standard_latitude_deg(dem.wgs84_bounds),
     };
-    let own = || Working::own(dem, latitude_deg);
+    let own = || Working::with_true_lengths(dem, &dem.mosaics[0].crs, latitude_deg);
     match asked {
         None => {}
         Some("dem") => {
@@ -155,18 +161,13 @@ pub(crate) fn choose(
         Some(text) => {
             let (crs, _) = Crs::from_text("--crs", text)?;
             let refuse = || DemError::WorkingCrs { text: text.to_owned() };
-            if crs.is_same(&dem.mosaics[0].crs) {
-                let own = own()?.ok_or_else(refuse)?;
-                return if is_right_handed(&own, dem)? { Ok(own) } else { Err(refuse()) };
-            }
-            if !crs.is_projected() {
+            if !crs.is_projected() && !crs.is_same(&dem.mosaics[0].crs) {
                 return Err(refuse());
             }
-            let factors = crs.signs().map(|sign| sign * crs.unit_m);
-            let working = Working::new(crs, factors, dem);
-            let outside = || DemError::OutsideCrs { crs: working.crs.label.clone() };
-            let scale = working.scale_at(dem, dem.center_deg)?.ok_or_else(outside)?;
-            return if scale.deviation.is_finite() { Ok(working) } else { Err(refuse()) };
+            let outside = || DemError::OutsideCrs { crs: crs.label.clone() };
+            let working =
+                Working::with_true_lengths(dem, &crs, latitude_deg)?.ok_or_else(outside)?;
+            return if is_right_handed(&working, dem)? { Ok(working) } else { Err(refuse()) };
         }
     }
     if let Some(own) = own()?

@@ -18,6 +18,9 @@ pub(crate) struct Around {
     east: f64,
     north: f64,
     length: f64,
+    /// How far it reaches beyond the start and the end.
+    beyond: [f64; 2],
+    /// How far it reaches to both sides.
     margin: f64,
 }
 
@@ -27,17 +30,29 @@ impl Around {
         let (du, dv) = (q[0] - p[0], q[1] - p[1]);
         let length = du.hypot(dv);
         let [east, north] = if length > 0.0 { [du / length, dv / length] } else { [1.0, 0.0] };
-        Self { p, east, north, length, margin }
+        Self { p, east, north, length, beyond: [margin; 2], margin }
+    }
+
+    /// Beside `length` steps from `p` on in a direction of length 1, reaching `margin` to both sides, and beyond the start
+    /// and the end by so much.
+    pub(crate) fn beside(
+        p: [f64; 2],
+        [east, north]: [f64; 2],
+        length: f64,
+        margin: f64,
+        beyond: [f64; 2],
+    ) -> Self {
+        Self { p, east, north, length, beyond, margin }
     }
 
     /// Its area, square steps.
     pub(crate) fn area(&self) -> f64 {
-        (self.length + 2.0 * self.margin) * 2.0 * self.margin
+        (self.length + self.beyond[0] + self.beyond[1]) * 2.0 * self.margin
     }
 
     /// What of a triangle lies in the rectangle.
     pub(crate) fn part_of(&self, triangle: u32, surface: &Surface) -> Polygon {
-        let Self { p, east, north, length, margin } = *self;
+        let Self { p, east, north, length, beyond, margin } = *self;
         let corners = surface.triangles()[triangle as usize].map(|vertex| {
             let point = surface.points()[vertex as usize];
             let (du, dv) = (point.u as f64 - p[0], point.v as f64 - p[1]);
@@ -50,7 +65,7 @@ impl Around {
             [a.min(b).min(c), a.max(b).max(c)]
         };
         let ([along_min, along_max], [across_min, across_max]) = (range(0), range(1));
-        let (last, first) = (length + margin, -margin);
+        let (last, first) = (length + beyond[1], -beyond[0]);
         if along_max < first || along_min > last || across_max < -margin || across_min > margin {
             return Polygon::NONE;
         }

@@ -20,6 +20,7 @@ mod near_ground;
 mod owned_borders;
 mod positions;
 mod ray;
+mod road_bed;
 mod walk;
 
 pub use check::check;
@@ -28,7 +29,8 @@ pub use draped_line::{DrapedLine, DrapedVertex, SvLine};
 pub use extrude::extrude;
 pub use near_ground::{NearGround, near_ground};
 pub use owned_borders::{Neighbours, OwnedBorders};
-pub use positions::{BadLine, positions};
+pub use positions::{BadLine, positions, source_segments};
+pub use road_bed::{RoadBed, RoadPiece, road_bed};
 pub use walk::{Drape, Gap, drape};
 
 #[cfg(test)]

@@ -120,6 +120,33 @@ pub fn positions(line: &DrapedLine, surface: &Surface) -> Result<Vec<[f64; 3]>, 
     Ok(positions)
 }
 
+/// The segment of the source line that each edge of `line` is a piece of, one fewer than vertices.
+///
+/// For a line that [`positions`] accepts; where another has no source point on one side, the one on the other stands for
+/// it, and a line without any has no segments.
+#[must_use]
+pub fn source_segments(line: &DrapedLine) -> Vec<[LatticePoint; 2]> {
+    let source = |vertex: &DrapedVertex| match vertex {
+        DrapedVertex::Source { point, .. } => Some(*point),
+        _ => None,
+    };
+    let edges = line.vertices.len().saturating_sub(1);
+    let mut starts = Vec::with_capacity(edges);
+    let mut before = line.lead_in;
+    for vertex in &line.vertices[..edges] {
+        before = source(vertex).or(before);
+        starts.push(before);
+    }
+    let mut segments = Vec::with_capacity(edges);
+    let mut after = line.lead_out;
+    for (start, vertex) in starts.iter().zip(line.vertices.iter().skip(1)).rev() {
+        after = source(vertex).or(after);
+        segments.extend(start.or(after).zip(after.or(*start)).map(|(start, end)| [start, end]));
+    }
+    segments.reverse();
+    segments
+}
+
 /// Visits every vertex with its index and the segment it lies on (for a source point twice that point), once
 /// its indices, its range and, for a crossing, the sides of its edge's ends are known to be good.
 pub(crate) fn for_each_vertex(

@@ -74,6 +74,11 @@ pub enum CoordinateTableError {
 }
 
 const MAX_SIZE: usize = 129;
+/// Over how many working metres the scale is measured: far more than the table's rounding, far less than its changes.
+const SCALE_SPAN_M: f64 = 1000.0;
+/// WGS84's semi-major axis and flattening, by definition.
+const WGS84_MAJOR_M: f64 = 6_378_137.0;
+const WGS84_FLATTENING: f64 = 1.0 / 298.257_223_563;
 /// Metres to a degree of latitude, near enough to turn a tolerance into degrees.
 const METRES_PER_DEGREE: f64 = 111_320.0;
 
@@ -178,6 +183,28 @@ impl CoordinateTable {
         sum
     }
 
+    /// Working metres to a true metre at a position, along the working CRS's east and north: by how far longitude and
+    /// latitude change from half a kilometre on one side to half a kilometre on the other, and the radii of curvature of the
+    /// WGS84 ellipsoid there. `None` where that is no positive number.
+    #[must_use]
+    pub fn scale_at(&self, at: [f64; 2]) -> Option<[f64; 2]> {
+        let [_, lat_deg] = self.wgs84_from_working(at);
+        let [parallel_m, meridian_m] = wgs84_radii_m(lat_deg);
+        let along = |axis: usize| {
+            let beside = |by_m: f64| {
+                let mut beside = at;
+                beside[axis] += by_m;
+                self.wgs84_from_working(beside)
+            };
+            let (behind, ahead) = (beside(-SCALE_SPAN_M / 2.0), beside(SCALE_SPAN_M / 2.0));
+            let east_m = (ahead[0] - behind[0]).to_radians() * parallel_m;
+            let north_m = (ahead[1] - behind[1]).to_radians() * meridian_m;
+            SCALE_SPAN_M / east_m.hypot(north_m)
+        };
+        let scale = [along(0), along(1)];
+        scale.iter().all(|scale| scale.is_finite() && *scale > 0.0).then_some(scale)
+    }
+
     /// Position in the working CRS of `[lon_deg, lat_deg]`; `None` where the table knows no way back
     /// (a position far outside).
     #[must_use]
@@ -217,6 +244,32 @@ impl CoordinateTable {
         }
         None
     }
+}
+
+/// Metres to a radian of longitude and of latitude on the WGS84 ellipsoid.
+fn wgs84_radii_m(lat_deg: f64) -> [f64; 2] {
+    let (sin, cos) = lat_deg.to_radians().sin_cos();
+    let squared = WGS84_FLATTENING * (2.0 - WGS84_FLATTENING);
+    let root = (1.0 - squared * sin * sin).sqrt();
+    [WGS84_MAJOR_M * cos / root, WGS84_MAJOR_M * (1.0 - squared) / root.powi(3)]
+}
+
+/// Working metres across a line for each true metre across it, where a true metre is `scale` working metres east and
+/// north. `direction` is the line's in the working CRS, of any length above 0; without one it counts as eastwards.
+///
+/// ```text
+///     true: a band 1 wide             working: stretched by [sx, sy]
+///
+///       ╱ ╱                              _.-' _.-'        Areas grow by sx · sy and lengths along the line by s, so
+///      ╱ ╱ ⟂ 1                        .-' _.-' ⟂ f        its width grows by f = sx · sy / s. Where d is the working
+///     ╱ ╱                            _.-'                 direction of length 1, s is 1 / |[dx / sx, dy / sy]|.
+/// ```
+#[must_use]
+pub fn width_factor(scale: [f64; 2], direction: [f64; 2]) -> f64 {
+    let length = direction[0].hypot(direction[1]);
+    let [dx, dy] = if length > 0.0 { direction.map(|part| part / length) } else { [1.0, 0.0] };
+    let [sx, sy] = scale;
+    sx * sy * (dx / sx).hypot(dy / sy)
 }
 
 /// First sample and the four weights of Lagrange's cubic at `t`, in units of the spacing.
@@ -286,6 +339,67 @@ mod tests {
                 "{at:?} came back as {back:?}"
             );
         }
+    }
+
+    /// Degrees times two factors: what a geographic DEM's working metres are.
+    struct Geographic([f64; 2]);
+
+    impl Projection for Geographic {
+        fn working_from_wgs84(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
+            points.iter_mut().for_each(|p| *p = [p[0] * self.0[0], p[1] * self.0[1]]);
+            Ok(())
+        }
+
+        fn wgs84_from_working(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
+            points.iter_mut().for_each(|p| *p = [p[0] / self.0[0], p[1] / self.0[1]]);
+            Ok(())
+        }
+    }
+
+    /// Degrees of the WGS84 ellipsoid at 47° N, from tables: 76 056.0 m of longitude, 111 170.8 m of latitude.
+    #[test]
+    fn the_scale_of_degrees_is_what_tables_of_their_lengths_say() {
+        let factors = [80_000.0, 100_000.0];
+        let bounds = Bounds { min_x: 9.0 * 8e4, min_y: 46.5e5, max_x: 10.0 * 8e4, max_y: 47.5e5 };
+        let table = CoordinateTable::sample(&Geographic(factors), bounds, 0.01).unwrap();
+        let [east, north] = table.scale_at([9.5 * 8e4, 47.0e5]).unwrap();
+        assert!((east - factors[0] / 76_056.0).abs() < 1e-5, "{east}");
+        assert!((north - factors[1] / 111_170.8).abs() < 1e-5, "{north}");
+    }
+
+    /// On a sphere of radius R Mercator's scale is 1 / cos φ both ways; that of the ellipsoid is off by its radii.
+    #[test]
+    fn the_scale_of_mercator_is_one_over_the_cosine() {
+        let table = table();
+        for y in [5.95e6, 6.1e6, 6.3e6] {
+            let lat_rad = (y / R).sinh().atan();
+            let [parallel_m, meridian_m] = wgs84_radii_m(lat_rad.to_degrees());
+            let [east, north] = table.scale_at([1e5, y]).unwrap();
+            assert!((east - R / parallel_m).abs() < 1e-6, "{east} at {y}");
+            // Over a kilometre a degree of latitude hardly changes.
+            assert!((north - R / lat_rad.cos() / meridian_m).abs() < 1e-6, "{north} at {y}");
+        }
+        assert_eq!(table.scale_at([f64::NAN, 6e6]), None);
+    }
+
+    /// A true circle is an ellipse in working metres: what lies between two tangents of it in a direction is twice the
+    /// radius across, times the factor.
+    #[test]
+    fn a_circle_is_as_wide_across_any_direction_as_the_factor_says() {
+        let scale = [1.5, 0.8];
+        for k in 0..36 {
+            let (sin, cos) = (f64::from(k) * 0.17).sin_cos();
+            let across = (0..10_000)
+                .map(|n| {
+                    let (y, x) = (f64::from(n) * std::f64::consts::TAU / 10_000.0).sin_cos();
+                    scale[1] * y * cos - scale[0] * x * sin
+                })
+                .fold(0.0, f64::max);
+            let factor = width_factor(scale, [cos * 7.0, sin * 7.0]);
+            assert!((factor - across).abs() < 1e-6, "{factor} {across}");
+        }
+        assert!((width_factor([2.0, 2.0], [0.3, -4.0]) - 2.0).abs() < 1e-12);
+        assert!((width_factor(scale, [0.0; 2]) - 0.8).abs() < 1e-12);
     }
 
     #[test]

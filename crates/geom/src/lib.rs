@@ -23,7 +23,7 @@ pub mod wgs84;
 pub use barycentric::barycentric;
 pub use bounds::{Bounds, LatticeBounds};
 pub use cell::Cell;
-pub use coordinate_table::{CoordinateTable, CoordinateTableError};
+pub use coordinate_table::{CoordinateTable, CoordinateTableError, width_factor};
 pub use frame::{
     Frame, FrameError, MAX_LATTICE_STEPS, MAX_LEVEL, NodeIndex, NodeWindow, TILE_CELLS, TILE_NODES,
 };

@@ -29,6 +29,13 @@ pub enum Defect {
         /// The way.
         way_id: i64,
     },
+    /// A tag of a road is taken for something else than it says; see [`corniche_roads::tags_taken_otherwise`].
+    TagTakenOtherwise {
+        /// The way.
+        way_id: i64,
+        /// `key=value`.
+        tag: String,
+    },
     /// A way of one node or none; it is left out.
     TooFewNodes {
         /// The way.
@@ -107,6 +114,7 @@ impl Defect {
             Self::DuplicateWay { .. } => "duplicate way",
             Self::DamagedText { .. } => "damaged text",
             Self::LongText { .. } => "long text",
+            Self::TagTakenOtherwise { .. } => "tag taken for another value",
             Self::TooFewNodes { .. } => "too few nodes",
             Self::MissingNodes { .. } => "missing nodes",
             Self::OutOfRange { .. } => "coordinates out of range",
@@ -129,6 +137,7 @@ impl Defect {
             | Self::DuplicateWay { way_id }
             | Self::DamagedText { way_id }
             | Self::LongText { way_id }
+            | Self::TagTakenOtherwise { way_id, .. }
             | Self::TooFewNodes { way_id, .. }
             | Self::MissingNodes { way_id, .. }
             | Self::OutOfRange { way_id, .. }
@@ -155,6 +164,7 @@ impl Defect {
             | Self::DuplicatePoints { points: count, .. }
             | Self::SelfCrossing { crossings: count, .. } => Some(count),
             Self::UnknownHighway { .. }
+            | Self::TagTakenOtherwise { .. }
             | Self::Area { .. }
             | Self::DuplicateWay { .. }
             | Self::DamagedText { .. }
@@ -167,7 +177,11 @@ impl Defect {
     /// The value that it is about, where it has one.
     #[must_use]
     pub fn detail(&self) -> Option<&str> {
-        if let Self::UnknownHighway { value, .. } = self { Some(value) } else { None }
+        match self {
+            Self::UnknownHighway { value, .. } => Some(value),
+            Self::TagTakenOtherwise { tag, .. } => Some(tag),
+            _ => None,
+        }
     }
 
     /// Whether the whole way is left out for it, rather than a part of it, or nothing.

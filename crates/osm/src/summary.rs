@@ -36,6 +36,9 @@ pub struct ExtractSummary {
     pub highways: BTreeMap<String, HighwayCount>,
     /// Per `highway` value that the table does not list: how many ways have it.
     pub unknown_highways: BTreeMap<String, u64>,
+    /// Tags of roads that are taken for something else than they say, such as "layer=1000" and "tunnel=culvert": on how many
+    /// ways.
+    pub tags_taken_otherwise: BTreeMap<String, u64>,
     /// The box that the file's header gives: west, south, east, north, degrees. `None` without one on Earth, and, like
     /// what else the header says, where the file is several in a row.
     pub header_bounds_deg: Option<[f64; 4]>,

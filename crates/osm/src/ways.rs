@@ -4,6 +4,7 @@ use std::{borrow::Cow, collections::BTreeMap};
 
 use corniche_roads::{
     Classified, FrcTable, FunctionalRoadClass, NotARoad, RoadAttributes, attributes,
+    tags_taken_otherwise,
 };
 use osmpbf::{PrimitiveBlock, Way};
 
@@ -85,7 +86,7 @@ impl Ways {
     }
 
     fn push_defect(&mut self, defect: Defect) {
-        // The values of unknown highways stand in the summary too.
+        // Values stand in the summary too.
         let text_bytes = 2 * defect.detail().map_or(0, str::len);
         self.held_bytes += (2 * size_of::<Defect>() + text_bytes) as u64;
         self.defects.push(defect);
@@ -98,7 +99,10 @@ impl Ways {
         self.summary.highway_ways += 1;
         let left_out = &mut self.summary.left_out;
         match table.classify(tags) {
-            Classified::Road(class) => self.take(way, class, attributes(tags)),
+            Classified::Road(class) => {
+                self.take(way, class, attributes(tags));
+                self.count_tags_taken_otherwise(way_id, tags);
+            }
             Classified::NotShown(_) => left_out.class_off += 1,
             Classified::NotARoad(NotARoad::Area) => {
                 left_out.area += 1;
@@ -122,6 +126,14 @@ impl Ways {
             None => drop(
                 self.summary.highways.insert(highway.to_owned(), HighwayCount { class, ways: 1 }),
             ),
+        }
+    }
+
+    fn count_tags_taken_otherwise(&mut self, way_id: i64, tags: &[(&str, &str)]) {
+        for (key, value) in tags_taken_otherwise(tags) {
+            let tag = format!("{key}={value}");
+            *self.summary.tags_taken_otherwise.entry(tag.clone()).or_default() += 1;
+            self.push_defect(Defect::TagTakenOtherwise { way_id, tag });
         }
     }
 
@@ -171,6 +183,7 @@ impl Ways {
         own.left_out.unknown += other.left_out.unknown;
         own.left_out.area += other.left_out.area;
         add_counts(&mut own.unknown_highways, other.unknown_highways);
+        add_counts(&mut own.tags_taken_otherwise, other.tags_taken_otherwise);
         for (value, count) in other.highways {
             own.highways.entry(value).and_modify(|own| own.ways += count.ways).or_insert(count);
         }

@@ -29,6 +29,48 @@ fn check(block: &Block, roads: &[(i64, &[i64])], defects: &[Defect]) {
     assert_eq!(extract.defects, defects);
 }
 
+/// A layer that does not fit, a tunnel beside the road: the road stays, and each value is counted and listed.
+#[test]
+fn tags_taken_for_another_value_are_counted_by_value() {
+    let mut block = Block::with_row_of_nodes(3);
+    let tags: [&[(&str, &str)]; 6] = [
+        &[("highway", "track"), ("layer", "1000")],
+        &[("highway", "track"), ("layer", "-5"), ("tunnel", "yes")],
+        &[("highway", "track"), ("tunnel", "culvert"), ("layer", "1000")],
+        &[("highway", "track"), ("tunnel", "building_passage")],
+        &[("highway", "track"), ("layer", "1;2")],
+        // No road, so its tags mean nothing.
+        &[("highway", "proposed"), ("layer", "5000")],
+    ];
+    for (id, tags) in (1..).zip(tags) {
+        block.way(id, tags, &[1, 2]);
+    }
+    let extract = read_bytes(&file(&block)).unwrap();
+    assert_eq!(extract.roads.len(), 5);
+    let counted = [
+        ("layer=1000", 2),
+        ("layer=1;2", 1),
+        ("tunnel=building_passage", 1),
+        ("tunnel=culvert", 1),
+    ];
+    let counted = counted.map(|(tag, ways)| (tag.to_owned(), ways));
+    assert_eq!(extract.summary.tags_taken_otherwise, BTreeMap::from(counted));
+    let listed: Vec<(i64, &str)> = extract
+        .defects
+        .iter()
+        .filter(|defect| matches!(defect, Defect::TagTakenOtherwise { .. }))
+        .map(|defect| (defect.object().1, defect.detail().unwrap()))
+        .collect();
+    let expected = [
+        (1, "layer=1000"),
+        (3, "layer=1000"),
+        (3, "tunnel=culvert"),
+        (4, "tunnel=building_passage"),
+        (5, "layer=1;2"),
+    ];
+    assert_eq!(listed, expected);
+}
+
 #[test]
 fn ways_of_every_shape_are_roads_or_defects() {
     let row = || Block::with_row_of_nodes(5);

@@ -1,5 +1,7 @@
 use std::{io, path::PathBuf};
 
+use crate::TargetError;
+
 /// Why a package could not be built.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
@@ -7,6 +9,8 @@ use std::{io, path::PathBuf};
 pub enum BuildError {
     #[error("{path:?} exists already; give -O to replace it")]
     Exists { path: PathBuf },
+    #[error("the package cannot be written")]
+    NoTarget(#[from] TargetError),
     #[error("cannot write in {folder:?}; choose another place for the package")]
     Target { folder: PathBuf, source: io::Error },
     #[error(
@@ -15,6 +19,19 @@ pub enum BuildError {
     TargetIsInput { path: PathBuf },
     #[error("cannot read {path:?}")]
     Input { path: PathBuf, source: io::Error },
+    #[error(
+        "{path:?} is a pipe or a device; inputs are read more than once, so save it to a file first"
+    )]
+    Stream { path: PathBuf },
+    #[error(
+        "the name of {path:?} is not UTF-8, and a package records the names of its inputs as text; rename the file"
+    )]
+    InputName { path: PathBuf },
+    #[error(
+        "{path:?} changed while it was read, so that nobody knows which of its content the package would hold; nothing was \
+         written, run the same command again when it is left alone"
+    )]
+    Changed { path: PathBuf },
     #[error(transparent)]
     Dem(#[from] corniche_dem::DemError),
     #[error(transparent)]
@@ -72,7 +89,10 @@ impl BuildError {
         matches!(
             self,
             Self::Target { .. }
+                | Self::NoTarget(_)
                 | Self::TargetIsInput { .. }
+                | Self::Stream { .. }
+                | Self::InputName { .. }
                 | Self::Input { .. }
                 | Self::Dem(_)
                 | Self::Osm(_)

@@ -5,10 +5,12 @@
 mod build;
 mod defect;
 mod error;
+mod inputs;
 mod observer;
 mod sample_error;
 mod settings;
 mod storage;
+mod target;
 mod verify;
 mod workers;
 
@@ -19,6 +21,7 @@ pub use error::BuildError;
 pub use observer::{Observer, Silent, Stage};
 pub use settings::{BuildSettings, Existing, Resources, RoadSettings, TerrainSettings};
 pub use storage::{DiskStorage, Kind, MemoryStorage, Span, Storage};
+pub use target::{TargetError, file_target};
 pub use verify::{
     Check, CheckId, ErrorFigures, GapFigures, Needs, VerifyError, VerifyOsm, VerifyReport,
     VerifySettings, verify,

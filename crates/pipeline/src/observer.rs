@@ -1,3 +1,5 @@
+use std::path::Path;
+
 use crate::Defect;
 
 /// A stage of a run, in the order in which they come.
@@ -5,6 +7,8 @@ use crate::Defect;
 pub enum Stage {
     /// Hash the input files.
     Hash,
+    /// Look at every sample of the DEM for values that are no heights. Counted in blocks.
+    Audit,
     /// Read the DEM, reproject it, fill its voids, make the level rasters. Counted in blocks.
     Heights,
     /// Triangulate all tiles of all levels. Counted in tiles.
@@ -29,6 +33,7 @@ impl Stage {
     pub fn title(self) -> &'static str {
         match self {
             Self::Hash => "hashing inputs",
+            Self::Audit => "checking heights",
             Self::Heights => "reading heights",
             Self::Mesh => "triangulating",
             Self::Errors => "measuring errors",
@@ -54,6 +59,13 @@ pub trait Observer: Sync {
 
     /// Something is wrong with the input, was survived and is counted. In an order that the inputs alone determine.
     fn defect(&self, _: &Defect) {}
+
+    /// The run keeps what it needs on its way in this folder, and removes it when it ends. Whoever ends the program
+    /// without waiting for that removes it.
+    fn work_folder(&self, _: &Path) {}
+
+    /// Something about the inputs that their owner should know, in words.
+    fn warning(&self, _: &str) {}
 
     /// Whether to stop at the next opportunity; the run then fails with `Interrupted`.
     fn is_cancelled(&self) -> bool {

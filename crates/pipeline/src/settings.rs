@@ -48,8 +48,13 @@ pub struct TerrainSettings {
     pub vertical_crs: Option<String>,
     /// Added to every height last, metres.
     pub vertical_shift_m: f64,
-    /// Value that means "no data" beside what the files say.
-    pub nodata: Option<f64>,
+    /// Values that mean "no data" beside what the files say.
+    pub nodata: Vec<f64>,
+    /// Lowest and highest height that samples may have, metres, as the files give them. `None` allows what the earth's
+    /// surface has, and no repeated value far beyond all others.
+    pub height_range_m: Option<[f64; 2]>,
+    /// Whether a cell may be far smaller than the spacing of samples.
+    pub allow_fine_cell: bool,
     /// Spacing of the finest level; `None` takes the DEM's.
     pub cell: Option<Cell>,
     /// Take every n-th sample of the DEM along both axes as node.

@@ -4,10 +4,12 @@
 
 mod support;
 
-use std::{fs, path::Path};
+use std::{fs, path::Path, sync::Mutex};
 
-use corniche_pipeline::BuildError;
-use support::{Options, Raster, build_files, build_raster, terrain::waves};
+use corniche_pipeline::{
+    BuildError, Observer, Silent, Stage, VerifyError, VerifySettings, build, verify,
+};
+use support::{Options, Raster, build_files, build_raster, settings, terrain::waves};
 
 fn hills() -> Raster {
     Raster::new([300, 200], [5, 9], |column, row| 100.0 * waves(column, row))
@@ -25,7 +27,9 @@ fn a_raster_inside_another_file_is_read() {
     let built = build_files(Path::new(&inside), None, Options::plain(5.0)).unwrap();
     let plain = build_files(&dem, None, Options::plain(5.0)).unwrap();
     assert_eq!(built.tiles, plain.tiles);
-    assert_eq!(built.manifest.inputs[0].sha256, "not hashed: virtual");
+    // What GDAL delivers is what is hashed.
+    let [inside, whole] = [&built, &plain].map(|built| &built.manifest.inputs[0]);
+    assert_eq!((inside.bytes, &inside.sha256), (bytes.len() as u64, &whole.sha256));
 }
 
 /// A raster is named inside its container; the container is hashed, and no folder gets into the package.
@@ -48,11 +52,90 @@ fn a_height_that_steps_do_not_reach_is_refused_as_bad_input() {
     for (height_m, max_error_m) in [(6e6_f32, 0.05), (-6e6, 0.05), (600.0, 1e-5)] {
         let mut raster = hills();
         raster.heights_m[150 * 300 + 100] = height_m;
-        let refused = build_raster(&raster, Options::plain(max_error_m)).err().unwrap();
+        // Allowed by hand: else the samples are refused before.
+        let options = Options { height_range_m: Some([-1e7, 1e7]), ..Options::plain(max_error_m) };
+        let refused = build_raster(&raster, options).err().unwrap();
         assert!(refused.is_unusable_input(), "{height_m}: {refused}");
         let reason = std::error::Error::source(&refused).unwrap().to_string();
         assert!(reason.contains(&height_m.to_string()) && reason.contains("nodata"), "{reason}");
     }
+}
+
+/// Wherever in the run an input is exchanged, its time put back: no package.
+#[test]
+fn an_input_exchanged_at_any_stage_ends_the_build() {
+    let folder = tempfile::tempdir().unwrap();
+    let [dem, output] = ["dem.tif", "out.pmtiles"].map(|name| folder.path().join(name));
+    for stage in
+        [Stage::Hash, Stage::Audit, Stage::Heights, Stage::Mesh, Stage::Errors, Stage::Tiles]
+    {
+        hills().write(&dem);
+        let exchange = At { stage, act: Mutex::new(Some(Box::new(|| exchange(&dem)))) };
+        let refused =
+            build(&settings(dem.clone(), None, output.clone(), Options::plain(5.0)), &exchange);
+        let refused = refused.err().unwrap();
+        assert!(
+            matches!(&refused, BuildError::Changed { path } if *path == dem),
+            "{stage:?}: {refused}"
+        );
+        assert!(!refused.is_unusable_input(), "{stage:?}: the input is not to blame");
+        assert!(exchange.act.into_inner().unwrap().is_none(), "{stage:?} did not begin");
+        assert!(!output.exists(), "{stage:?}");
+    }
+    // As it is now it can be used.
+    build(&settings(dem, None, output, Options::plain(5.0)), &Silent).unwrap();
+}
+
+/// Does something once, when a stage begins.
+struct At<'a> {
+    stage: Stage,
+    act: Mutex<Option<Box<dyn FnOnce() + Send + 'a>>>,
+}
+
+impl Observer for At<'_> {
+    fn begin(&self, stage: Stage, _: Option<u64>) {
+        let act = if stage == self.stage { self.act.lock().unwrap().take() } else { None };
+        if let Some(act) = act {
+            act();
+        }
+    }
+
+    fn advance(&self, _: Stage, _: u64) {}
+    fn end(&self, _: Stage) {}
+}
+
+/// Puts other heights in a raster's place, as long and as old.
+fn exchange(path: &Path) {
+    let time = fs::metadata(path).unwrap().modified().unwrap();
+    let other = path.with_extension("other.tif");
+    Raster::new([300, 200], [5, 9], |column, row| 90.0 * waves(column, row)).write(&other);
+    assert_eq!(fs::metadata(&other).unwrap().len(), fs::metadata(path).unwrap().len());
+    fs::File::options().write(true).open(&other).unwrap().set_modified(time).unwrap();
+    fs::rename(&other, path).unwrap();
+}
+
+/// What is repeated and far beyond all others is found whatever the threads, and named with its exact count.
+#[test]
+fn a_value_that_no_height_has_is_refused_before_anything_is_made_of_it() {
+    let mut raster = hills();
+    for k in 0..41 {
+        raster.heights_m[1000 + 7 * k] = -32_767.0;
+    }
+    let refusal = |threads, height_range_m| {
+        let options = Options { threads, height_range_m, ..Options::plain(5.0) };
+        build_raster(&raster, options).err().map(|refused| {
+            assert!(refused.is_unusable_input(), "{refused}");
+            let text = refused.to_string();
+            // The folder's name is this run's own.
+            text.split_once("hold").map_or(text.clone(), |(_, rest)| rest.to_owned())
+        })
+    };
+    let expected = refusal(1, None).unwrap();
+    assert!(expected.contains("--nodata -32767"), "{expected}");
+    for threads in [2, 3, 8] {
+        assert_eq!(refusal(threads, None).as_ref(), Some(&expected));
+    }
+    assert_eq!(refusal(2, Some([-40_000.0, 9000.0])), None);
 }
 
 #[test]
@@ -68,4 +151,21 @@ fn a_tolerance_beyond_what_numbers_hold_is_refused_as_such() {
     let level = Raster::new([300, 200], [5, 9], |_, _| 0.0);
     let built = build_raster(&level, Options::plain(1e-9)).unwrap();
     assert!(built.grounds().all(|(_, ground)| ground.geometric_error_m == 0.0));
+}
+
+/// What is verified against must stay as it is meanwhile, too.
+#[test]
+fn a_raster_exchanged_while_it_is_verified_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let [dem, output] = ["dem.tif", "out.pmtiles"].map(|name| folder.path().join(name));
+    hills().write(&dem);
+    build(&settings(dem.clone(), None, output.clone(), Options::plain(5.0)), &Silent).unwrap();
+    let request = VerifySettings { package: output, dem: vec![dem.clone()], osm: None, threads: 2 };
+    assert!(verify(&request, &Silent).unwrap().holds());
+    for stage in [Stage::Hash, Stage::Errors] {
+        let change = At { stage, act: Mutex::new(Some(Box::new(|| exchange(&dem)))) };
+        let refused = verify(&request, &change).err().unwrap();
+        assert!(matches!(&refused, VerifyError::Changed { path } if *path == dem), "{refused}");
+        hills().write(&dem);
+    }
 }

@@ -298,7 +298,8 @@ fn a_square_of_degrees_ends_where_its_samples_end() {
     let folder = tempfile::tempdir().unwrap();
     let dem = folder.path().join("square.tif");
     support::write_degrees(&dem, SAMPLES, [west_deg, north_deg], STEP_DEG, height_m);
-    let built = build_files(&dem, None, Options::plain(5.0)).unwrap();
+    let options = Options { crs: Some("utm"), ..Options::plain(5.0) };
+    let built = build_files(&dem, None, options).unwrap();
     let frame = built.frame();
     let mut vertices = 0;
     for (id, ground) in built.grounds() {
@@ -398,11 +399,13 @@ fn roads_end_where_the_ground_ends() {
     }
     let counts = &built.manifest.counts;
     assert_eq!((counts.roads_in, counts.roads_kept), (roads.len() as u64, roads.len() as u64 - 1));
-    let lost_m: f64 = counts.roads_lost.iter().map(|loss| loss.length_m).sum();
-    assert!(lost_m > 1000.0 && counts.roads_lost.iter().any(|loss| loss.roads == 1));
-    assert!((counts.roads_in_m - counts.roads_kept_m - lost_m).abs() < 1e-6 * counts.roads_in_m);
+    let lost_um: u64 = counts.roads_lost.iter().map(|loss| loss.length_um).sum();
+    assert!(lost_um > 1_000_000_000 && counts.roads_lost.iter().any(|loss| loss.roads == 1));
+    assert_eq!(counts.roads_in_um, counts.roads_kept_um + lost_um);
     let kept_m: f64 = (1..=roads.len() as i64).map(|way| kept_length_m(&built, way)).sum();
-    assert!((kept_m - counts.roads_kept_m).abs() < 1e-6 * kept_m, "{kept_m} m lie in the tiles");
+    let true_m = counts.roads_kept_um as f64 / 1e6;
+    let scaled_m = true_m * built.manifest.point_scale;
+    assert!((kept_m - scaled_m).abs() < 1e-4 * kept_m, "{kept_m} m lie in the tiles, {scaled_m}");
     assert!(check_roads_on_ground(&built, &truth) > 1000);
 }
 

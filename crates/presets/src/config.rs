@@ -1,6 +1,6 @@
 use std::{collections::BTreeMap, num::NonZeroUsize};
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 
 use crate::{PresetError, error::bounded};
 
@@ -26,11 +26,37 @@ pub struct TerrainConfig {
     pub vertical_crs: Option<String>,
     pub dem_vertical_crs: Option<String>,
     pub vertical_shift: Option<f64>,
-    pub nodata: Option<f64>,
-    pub cell: Option<f64>,
+    /// One value or a list of them.
+    #[serde(deserialize_with = "one_or_many")]
+    pub nodata: Vec<f64>,
+    pub height_range: Option<[f64; 2]>,
+    pub cell: Option<CellSides>,
+    pub cell_every: Option<u32>,
+    pub scale_latitude: Option<f64>,
     pub max_error: Option<f64>,
     pub fill_voids: Option<u32>,
     pub attribution: Vec<String>,
+}
+
+/// A cell: one number is a square's side, two are east and north; metres.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "expected a number or two of them, [east, north]")]
+pub enum CellSides {
+    /// The side of a square.
+    Square(f64),
+    /// East and north.
+    Rectangle([f64; 2]),
+}
+
+impl CellSides {
+    /// East and north, metres.
+    #[must_use]
+    pub fn to_array(self) -> [f64; 2] {
+        match self {
+            Self::Square(side_m) => [side_m; 2],
+            Self::Rectangle(sides_m) => sides_m,
+        }
+    }
 }
 
 /// How roads are made: the options of the same names.
@@ -52,6 +78,20 @@ pub struct RoadConfig {
 pub struct ResourceConfig {
     pub threads: Option<NonZeroUsize>,
     pub memory: Option<String>,
+}
+
+/// A list of numbers, or one alone.
+fn one_or_many<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "expected a number or a list of numbers")]
+    enum OneOrMany {
+        One(f64),
+        Many(Vec<f64>),
+    }
+    Ok(match OneOrMany::deserialize(deserializer)? {
+        OneOrMany::One(value) => vec![value],
+        OneOrMany::Many(values) => values,
+    })
 }
 
 impl Config {
@@ -82,6 +122,38 @@ mod tests {
         {
             assert!(matches!(Config::parse(bad), Err(PresetError::Toml(_))), "{bad}");
         }
+    }
+
+    #[test]
+    fn one_value_for_no_data_is_said_as_shortly_as_before() {
+        let nodata = |text: &str| Config::parse(text).map(|config| config.terrain.nodata);
+        assert_eq!(nodata("[terrain]\nnodata = -9999\n").unwrap(), [-9999.0]);
+        assert_eq!(nodata("[terrain]\nnodata = [-9999, 0.5]\n").unwrap(), [-9999.0, 0.5]);
+        assert_eq!(nodata("[terrain]\n").unwrap(), [0.0; 0]);
+        assert!(nodata("[terrain]\nnodata = \"none\"\n").is_err());
+        let config = Config::parse("[terrain]\nheight-range = [-500, 9000]\n").unwrap();
+        assert_eq!(config.terrain.height_range, Some([-500.0, 9000.0]));
+        assert!(Config::parse("[terrain]\nheight-range = [1]\n").is_err());
+    }
+
+    #[test]
+    fn a_cell_is_a_square_or_a_rectangle() {
+        let cell = |text: &str| {
+            let config = Config::parse(&format!("[terrain]\ncell = {text}\n"));
+            config.map(|config| config.terrain.cell.map(CellSides::to_array))
+        };
+        assert_eq!(cell("30").unwrap(), Some([30.0, 30.0]));
+        assert_eq!(cell("2.5").unwrap(), Some([2.5, 2.5]));
+        assert_eq!(cell("[20, 30.5]").unwrap(), Some([20.0, 30.5]));
+        for bad in ["[]", "[1]", "[1, 2, 3]", "\"30\"", "true", "{ east = 1 }"] {
+            let said = cell(bad).unwrap_err().to_string();
+            assert!(said.contains("[east, north]"), "{bad}: {said}");
+        }
+        let rest = "[terrain]\ncrs = \"dem\"\ncell-every = 3\nscale-latitude = -46.5\n";
+        let terrain = Config::parse(rest).unwrap().terrain;
+        assert_eq!((terrain.crs.as_deref(), terrain.cell_every), (Some("dem"), Some(3)));
+        assert_eq!(terrain.scale_latitude, Some(-46.5));
+        assert!(Config::parse("[terrain]\ncell-every = -1\n").is_err());
     }
 
     #[test]

@@ -11,7 +11,7 @@ mod style;
 mod error;
 
 pub use class_cells::class_filter;
-pub use config::{Config, ResourceConfig, RoadConfig, TerrainConfig};
+pub use config::{CellSides, Config, ResourceConfig, RoadConfig, TerrainConfig};
 pub use error::PresetError;
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};
 pub use style::{

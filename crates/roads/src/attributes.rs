@@ -42,9 +42,27 @@ pub fn attributes(tags: &[(&str, &str)]) -> RoadAttributes {
     }
 }
 
+/// The tags that [`attributes`] takes for something else than they say, as `(key, value)`: a `layer` that is no whole number
+/// or too large, which is taken for 0 or the largest; a `tunnel` that the road does not lie in, which is taken for none.
+pub fn tags_taken_otherwise<'t>(
+    tags: &[(&'t str, &'t str)],
+) -> impl Iterator<Item = (&'static str, &'t str)> + use<'t> {
+    let value = |key| tag(tags, key).map(str::trim).unwrap_or_default();
+    let (layer, tunnel) = (value("layer"), value("tunnel"));
+    let is_layer = layer.is_empty() || layer.parse::<i8>().is_ok();
+    [("layer", layer, !is_layer), ("tunnel", tunnel, BESIDE_TUNNELS.contains(&tunnel))]
+        .into_iter()
+        .filter(|(.., is_otherwise)| *is_otherwise)
+        .map(|(key, value, _)| (key, value))
+}
+
+/// Values of `tunnel` that do not put the road underground: the water is in a culvert, a building passage is at ground level.
+const BESIDE_TUNNELS: [&str; 2] = ["culvert", "building_passage"];
+
 fn structure(bridge: &str, tunnel: &str, layer: i8) -> Structure {
     let is_bridge = !matches!(bridge, "" | "no" | "false" | "0");
-    let is_tunnel = !matches!(tunnel, "" | "no" | "false" | "0" | "culvert" | "building_passage");
+    let is_tunnel =
+        !matches!(tunnel, "" | "no" | "false" | "0") && !BESIDE_TUNNELS.contains(&tunnel);
     match (is_bridge, is_tunnel) {
         (false, false) => Structure::Ground,
         (true, true) if layer < 0 => Structure::Tunnel,
@@ -142,6 +160,26 @@ mod tests {
             ("ground", 0),
         ] {
             assert_eq!(attributes(&[("layer", text)]).layer, expected, "{text:?}");
+        }
+    }
+
+    /// What the values above come to is told, and what is as it says is not.
+    #[test]
+    fn tags_that_are_taken_for_something_else_are_named() {
+        let told = |tags: &[(&'static str, &'static str)]| -> Vec<(&'static str, &'static str)> {
+            tags_taken_otherwise(tags).collect()
+        };
+        for value in ["1000", "-1000", "128", "1.5", "1;2", "ground", "99999999999999999999"] {
+            assert_eq!(told(&[("layer", value)]), [("layer", value)]);
+        }
+        for value in ["", "0", "+2", "-5", " 3 ", "127", "-128"] {
+            assert_eq!(told(&[("layer", value)]), [], "{value:?}");
+        }
+        for value in ["culvert", "building_passage"] {
+            assert_eq!(told(&[("tunnel", value), ("layer", "-1")]), [("tunnel", value)]);
+        }
+        for value in ["yes", "no", "avalanche_protector", ""] {
+            assert_eq!(told(&[("tunnel", value)]), [], "{value:?}");
         }
     }
 

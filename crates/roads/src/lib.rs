@@ -14,7 +14,7 @@ mod frc_table;
 mod road;
 mod simplify;
 
-pub use attributes::attributes;
+pub use attributes::{attributes, tags_taken_otherwise};
 pub use class_filter::{ClassFilter, ClassFilterError};
 pub use frc_table::{Classified, FrcTable, FrcTableError, NotARoad};
 pub use road::{Form, FunctionalRoadClass, Oneway, Road, RoadAttributes, Structure};

@@ -132,7 +132,7 @@ pub struct LevelRecord {
 }
 
 /// How far a level's TINs are from the DEM's own samples: those that nodes are made from, each once, after nodata, units
-/// and shift; samples that lie on a border belong to the tile east or south of it.
+/// and shift, at the nearest lattice point; samples that lie on a border belong to the tile east or south of it.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct SampleErrorRecord {
     /// Samples at which there is a TIN.
@@ -186,8 +186,10 @@ pub struct SettingsRecord {
     pub max_error_m: f64,
     /// `--fill-voids`.
     pub fill_voids: u32,
-    /// `--nodata`, if given.
-    pub nodata: Option<f64>,
+    /// Each `--nodata`, in their order.
+    pub nodata: Vec<f64>,
+    /// `--height-range`, if given.
+    pub height_range_m: Option<[f64; 2]>,
     /// `--dem-crs`, if given.
     pub dem_crs: Option<String>,
     /// `--dem-vertical-crs`, if given.
@@ -217,13 +219,13 @@ pub struct SettingsRecord {
 /// An input file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct InputRecord {
-    /// "dem" or "osm".
+    /// "dem"; "dem-part", a file that the one before it refers to or that belongs to it; or "osm".
     pub kind: String,
     /// File name without folders.
     pub name: String,
-    /// Size of the file.
+    /// Size of the file; of a file inside an archive or on a server, of what GDAL delivers.
     pub bytes: u64,
-    /// SHA-256 of the file.
+    /// SHA-256 of as many bytes.
     pub sha256: String,
 }
 
@@ -246,6 +248,9 @@ pub struct Counts {
     pub defects: Vec<(String, u64)>,
     /// Ways by `highway` value that the FRC table does not know. Sorted by value.
     pub unknown_highways: Vec<(String, u64)>,
+    /// Tags of roads that are taken for something else than they say ("layer=1000", "tunnel=culvert"): on how many ways.
+    /// Sorted by tag.
+    pub tags_taken_otherwise: Vec<(String, u64)>,
     /// Blobs of the extract of a type that readers pass over, as its format asks; 0 in the extracts of common tools.
     pub blobs_passed_over: u64,
     /// Ways with a `highway` tag in the extract.

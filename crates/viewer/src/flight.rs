@@ -2,10 +2,11 @@
 //!
 //! ```toml
 //! crs = "EPSG:2056"   # of x_m and y_m; may be left out
+//! metres_per_unit = [1.0, 1.0]   # x_m and y_m are coordinates of that CRS times these; if left out, the package's
 //!
 //! [[keyframe]]
 //! time_s = 0.0
-//! lon_deg = 9.52      # WGS84; or x_m and y_m, in the package's working CRS
+//! lon_deg = 9.52      # WGS84; or x_m and y_m, in working metres
 //! lat_deg = 47.14
 //! height_m = 1800.0   # of the eye: true height, in the package's vertical datum
 //! heading_deg = 45.0  # clockwise from north
@@ -22,6 +23,7 @@
 mod over;
 
 use corniche_geom::CoordinateTable;
+use corniche_tileset::Manifest;
 use serde::{Deserialize, Serialize};
 
 use crate::camera::Orientation;
@@ -34,7 +36,7 @@ const MOST: f64 = 1e9;
 /// Where the eye is and how it looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
-    /// The eye: x, y in the working CRS and true height, metres.
+    /// The eye: x, y in working metres and true height, metres.
     pub eye_m: [f64; 3],
     /// Direction of view.
     pub orientation: Orientation,
@@ -85,6 +87,27 @@ pub enum FlightError {
          they are the same, remove the line crs"
     )]
     OtherCrs { flight: String, package: String },
+    #[error(
+        "its metres_per_unit of {factors:?} are no factors; give those of the package it was made on"
+    )]
+    Factors { factors: [f64; 2] },
+}
+
+/// What x and y of a package are: coordinates of a CRS times factors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WorkingCrs<'a> {
+    /// Its name, as packages have it.
+    pub crs: &'a str,
+    /// Working metres to a unit of its coordinates, east and north.
+    pub metres_per_unit: [f64; 2],
+}
+
+impl<'a> WorkingCrs<'a> {
+    /// Of a package.
+    #[must_use]
+    pub fn of(manifest: &'a Manifest) -> Self {
+        Self { crs: &manifest.crs, metres_per_unit: manifest.metres_per_unit }
+    }
 }
 
 impl Flight {
@@ -118,37 +141,45 @@ impl Flight {
         Ok(Self { times_s, values, slopes })
     }
 
-    /// Reads the text of a flight, as described at the top of this module. `crs` and `coordinates` are the package's.
+    /// Reads the text of a flight, as described at the top of this module. `working` and `coordinates` are the package's.
+    ///
+    /// Metres of the same CRS and other factors are another place: they are carried over by both factors.
     ///
     /// # Errors
     /// When it is no such text, or says something impossible; the message names the line or the keyframe. When it is meant
     /// for a package in another CRS.
     pub fn parse(
         text: &str,
-        crs: &str,
+        working: WorkingCrs<'_>,
         coordinates: &CoordinateTable,
     ) -> Result<Self, FlightError> {
         let file: FlightFile = toml::from_str(text)
             .map_err(|error| FlightError::Syntax { message: error.to_string() })?;
-        if let Some(flight) = file.crs.filter(|known| known != crs)
+        if let Some(flight) = file.crs.filter(|known| known != working.crs)
             && file.keyframe.iter().any(|record| record.x_m.is_some())
         {
-            return Err(FlightError::OtherCrs { flight, package: crs.to_owned() });
+            return Err(FlightError::OtherCrs { flight, package: working.crs.to_owned() });
         }
+        let factors = file.metres_per_unit.unwrap_or(working.metres_per_unit);
+        if factors.iter().any(|factor| !factor.is_normal()) {
+            return Err(FlightError::Factors { factors });
+        }
+        // 1 exactly where both have the same factors.
+        let carry = [0, 1].map(|axis| working.metres_per_unit[axis] / factors[axis]);
         let keyframes: Result<Vec<Keyframe>, FlightError> = file
             .keyframe
             .iter()
             .zip(1..)
-            .map(|(record, number)| record.place(number, coordinates))
+            .map(|(record, number)| record.place(number, carry, coordinates))
             .collect();
         Self::new(&keyframes?)
     }
 
-    /// The text of this flight, in the working CRS, whose name is `crs`: [`Self::parse`] reads back the same flight.
+    /// The text of this flight, in the working metres of a package: [`Self::parse`] reads back the same flight.
     ///
     /// # Errors
     /// Never for a flight made here; the writer of the text is another's.
-    pub fn to_text(&self, crs: &str) -> Result<String, FlightError> {
+    pub fn to_text(&self, working: WorkingCrs<'_>) -> Result<String, FlightError> {
         let keyframe = self.keyframes().map(|Keyframe { time_s, pose }| {
             let [x, y, height_m] = pose.eye_m;
             KeyframeRecord {
@@ -162,8 +193,12 @@ impl Flight {
                 pitch_deg: pose.orientation.pitch_deg,
             }
         });
-        toml::to_string(&FlightFile { crs: Some(crs.to_owned()), keyframe: keyframe.collect() })
-            .map_err(|error| FlightError::Syntax { message: error.to_string() })
+        let file = FlightFile {
+            crs: Some(working.crs.to_owned()),
+            metres_per_unit: Some(working.metres_per_unit),
+            keyframe: keyframe.collect(),
+        };
+        toml::to_string(&file).map_err(|error| FlightError::Syntax { message: error.to_string() })
     }
 
     /// Its keyframes in order. Headings may be beyond a full turn.
@@ -264,6 +299,8 @@ fn slopes(times_s: &[f64], values: &[[f64; 5]]) -> Vec<[f64; 5]> {
 struct FlightFile {
     #[serde(skip_serializing_if = "Option::is_none")]
     crs: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    metres_per_unit: Option<[f64; 2]>,
     keyframe: Vec<KeyframeRecord>,
 }
 
@@ -285,9 +322,15 @@ struct KeyframeRecord {
 }
 
 impl KeyframeRecord {
-    fn place(&self, number: usize, coordinates: &CoordinateTable) -> Result<Keyframe, FlightError> {
+    /// The keyframe, x and y times `carry`.
+    fn place(
+        &self,
+        number: usize,
+        carry: [f64; 2],
+        coordinates: &CoordinateTable,
+    ) -> Result<Keyframe, FlightError> {
         let [x, y] = match (self.lon_deg, self.lat_deg, self.x_m, self.y_m) {
-            (None, None, Some(x), Some(y)) => [x, y],
+            (None, None, Some(x), Some(y)) => [x * carry[0], y * carry[1]],
             (Some(lon_deg), Some(lat_deg), None, None) => {
                 for (name, value, most, range) in [
                     ("lon_deg", lon_deg, 360.0, "within ±360 degrees"),

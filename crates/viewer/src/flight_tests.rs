@@ -22,7 +22,8 @@ impl Projection for Flat {
     }
 }
 
-const CRS: &str = "EPSG:2056";
+const NAME: &str = "EPSG:2056";
+const CRS: WorkingCrs<'_> = WorkingCrs { crs: NAME, metres_per_unit: [1.0, 1.0] };
 const PLAN: Bounds = Bounds { min_x: 5000.0, min_y: 20_000.0, max_x: 15_000.0, max_y: 45_000.0 };
 
 fn table() -> CoordinateTable {
@@ -57,8 +58,9 @@ fn a_text_becomes_the_flight_it_describes() {
 #[test]
 fn metres_of_another_crs_are_refused_and_degrees_are_not() {
     let flight = Flight::new(&[0.0, 1.0].map(|t| keyframe(t, [t; 3], 0.0, 0.0))).unwrap();
-    let said = Flight::parse(&flight.to_text("EPSG:25832").unwrap(), CRS, &table()).unwrap_err();
-    assert!(["EPSG:25832", CRS].iter().all(|name| said.to_string().contains(name)), "{said}");
+    let other = WorkingCrs { crs: "EPSG:25832", ..CRS };
+    let said = Flight::parse(&flight.to_text(other).unwrap(), CRS, &table()).unwrap_err();
+    assert!(["EPSG:25832", NAME].iter().all(|name| said.to_string().contains(name)), "{said}");
     let degrees = |time_s: u32| {
         format!(
             "[[keyframe]]\ntime_s = {time_s}\nlon_deg = 10\nlat_deg = 30\nheight_m = 7\nheading_deg = 0\npitch_deg = 9\n"
@@ -66,6 +68,38 @@ fn metres_of_another_crs_are_refused_and_degrees_are_not() {
     };
     let anywhere = format!("crs = \"EPSG:25832\"\n{}{}", degrees(0), degrees(1));
     assert!(Flight::parse(&anywhere, CRS, &table()).is_ok());
+}
+
+/// A way in degrees times other factors is the same way over the ground.
+#[test]
+fn metres_of_other_factors_are_carried_to_those_of_the_package() {
+    let degrees = |metres_per_unit| WorkingCrs { crs: "EPSG:4326", metres_per_unit };
+    let (own, other) = (degrees([75_000.0, 111_000.0]), degrees([60_000.0, 111_000.0]));
+    let eye = |lon: f64, lat: f64| [lon * 60_000.0, lat * 111_000.0, 900.0];
+    let places = [[9.5, 47.0], [9.25, 47.5]];
+    let flown = |t: f64| keyframe(t, eye(places[t as usize][0], places[t as usize][1]), 0.0, 0.0);
+    let flight = Flight::new(&[0.0, 1.0].map(flown)).unwrap();
+    let text = flight.to_text(other).unwrap();
+    let same = Flight::parse(&text, other, &table()).unwrap();
+    assert_eq!(same, flight, "to the bit where the factors are the same");
+    let carried = Flight::parse(&text, own, &table()).unwrap();
+    for (t, [lon, lat]) in [0.0, 1.0].into_iter().zip(places) {
+        let [x, y, height_m] = carried.at(t).eye_m;
+        assert!((x - lon * 75_000.0).abs() < 1e-6 && (y - lat * 111_000.0).abs() < 1e-6);
+        assert_eq!(height_m, 900.0);
+    }
+    // Without them x_m and y_m are the package's.
+    let bare: String = text
+        .lines()
+        .filter(|line| !line.starts_with("metres"))
+        .fold(String::new(), |text, line| format!("{text}{line}\n"));
+    assert_eq!(Flight::parse(&bare, own, &table()).unwrap(), flight);
+    for factors in ["[0.0, 1.0]", "[nan, 1.0]", "[1.0, inf]"] {
+        let bad = text.replace("[60000.0, 111000.0]", factors);
+        assert_ne!(bad, text);
+        let said = Flight::parse(&bad, own, &table()).unwrap_err().to_string();
+        assert!(said.contains("metres_per_unit"), "{said}");
+    }
 }
 
 #[test]

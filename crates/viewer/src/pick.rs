@@ -104,12 +104,16 @@ impl Ray {
 /// All ground of a tile; `None` without any.
 fn world_box(tile: &TileGeometry, vertical_scale: f64) -> Option<WorldBox> {
     let [low_m, high_m] = tile.summary?.height_range_m.map(|height_m| height_m * vertical_scale);
-    let [x, y, _] = tile.reference_m;
     // Positions were rounded to f32, and triangles are larger than they are.
-    let slack_m = 2.0 * SLACK * (tile.width_m + high_m - low_m);
-    let half_m = tile.width_m / 2.0 + slack_m;
-    let plan =
-        Bounds { min_x: x - half_m, min_y: y - half_m, max_x: x + half_m, max_y: y + half_m };
+    let [east_m, north_m] = tile.size_m;
+    let slack_m = 2.0 * SLACK * (east_m.max(north_m) + high_m - low_m);
+    let Bounds { min_x, min_y, max_x, max_y } = tile.plan_bounds();
+    let plan = Bounds {
+        min_x: min_x - slack_m,
+        min_y: min_y - slack_m,
+        max_x: max_x + slack_m,
+        max_y: max_y + slack_m,
+    };
     Some(WorldBox::new(plan, [low_m - slack_m, high_m + slack_m]))
 }
 

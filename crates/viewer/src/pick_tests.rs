@@ -35,7 +35,8 @@ fn tile(x: f64, y: f64, height_m: impl Fn(f64, f64) -> f64) -> TileGeometry {
         roads: RoadSegments::default(),
         volumes: RoadVolumes::default(),
         width_margin_m: 0.0,
-        width_m: 100.0,
+        size_m: [100.0; 2],
+        most_width_factor: 1.0,
     }
 }
 

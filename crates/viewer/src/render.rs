@@ -60,7 +60,7 @@ pub struct RenderReport {
     pub triangles: u64,
     /// Road segments drawn.
     pub road_segments: u64,
-    /// Tiles in which volumes may have been drawn narrower than asked, because half their width is more than the
+    /// Tiles in which roads may have been drawn narrower than asked, because half their width is more than the
     /// level's width margin somewhere.
     pub clamped_tiles: u64,
     /// Tiles drawn per level, coarse levels first.

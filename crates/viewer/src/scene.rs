@@ -4,7 +4,6 @@ mod bridges;
 
 use std::slice;
 
-use corniche_geom::Bounds;
 use corniche_roads::FunctionalRoadClass;
 
 use crate::{
@@ -194,28 +193,28 @@ pub fn draw_list<'a>(
     drawn.iter().filter_map(|drawn| Some((store.get(drawn.id)?, drawn.skirt_depth_m)))
 }
 
-/// Whether some volume of a tile is to be drawn wider than its margin allows; never false when one is.
+/// Whether some road of a tile is to be drawn wider than its margin allows; never false when one is.
 #[must_use]
 pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
-    let Some(summary) = tile.summary.filter(|_| view.roads.method == RoadMethod::ShadowVolumes)
-    else {
-        return false;
-    };
-    let half_m = tile.width_m / 2.0;
-    let [x, y, _] = tile.reference_m;
-    let plan =
-        Bounds { min_x: x - half_m, min_y: y - half_m, max_x: x + half_m, max_y: y + half_m };
-    let ground = WorldBox::new(plan, summary.height_range_m.map(|m| m * view.vertical_scale()));
+    let Some(summary) = tile.summary else { return false };
+    let ground = WorldBox::new(
+        tile.plan_bounds(),
+        summary.height_range_m.map(|m| m * view.vertical_scale()),
+    );
     let eye = view.camera.eye_in_world();
     let far_m = ground.corners().map(|corner| corner.distance(eye)).fold(0.0, f64::max);
     let scaling = view.roads.width_scaling(view.style);
     FunctionalRoadClass::all()
         .filter(|class| view.roads.classes.contains(*class))
-        .filter(|class| !tile.volumes.range_of(*class).is_empty())
+        .filter(|class| match view.roads.method {
+            RoadMethod::Geometry => !tile.roads.range_of(*class).is_empty(),
+            RoadMethod::ShadowVolumes => !tile.volumes.range_of(*class).is_empty(),
+            RoadMethod::None => false,
+        })
         .any(|class| {
             let road = &view.style.roads[usize::from(class.number())];
             let width_m = f64::from(road.width_m)
-                * view.point_scale
+                * tile.most_width_factor
                 * scaling.factor(far_m / view.point_scale);
             let pixel_m = view.camera.pixel_at_unit_depth_m() * far_m;
             let least_m = f64::from(road.min_width_px) * pixel_m;

@@ -6,14 +6,11 @@
 mod support;
 
 use corniche_geom::TileId;
-use corniche_viewer::{
-    camera::{Camera, Orientation},
-    tiles::GroundLine,
-};
+use corniche_viewer::camera::{Camera, Orientation};
 use glam::{DVec2, DVec3};
 use support::{
-    SceneTile, cast, class, draw, draw_exaggerated, frame, gpu, lay, plain_style, plan_distance_m,
-    terrain, triangles,
+    SceneTile, cast, draw, draw_exaggerated, frame, gpu, ground_line, lay, plain_style,
+    plan_distance_m, terrain, triangles,
 };
 
 const SIZE: [u32; 2] = [640, 480];
@@ -43,14 +40,8 @@ fn scene(
     let line = |from: [f64; 2], to: [f64; 2]| {
         lay(center() + DVec2::from_array(from), center() + DVec2::from_array(to), &mesh)
     };
-    let lines = roads
-        .iter()
-        .map(|(number, from, to)| GroundLine {
-            way_id: 1,
-            class: class(*number),
-            points_m: line(*from, *to),
-        })
-        .collect();
+    let lines =
+        roads.iter().map(|(number, from, to)| ground_line(*number, line(*from, *to))).collect();
     (TileId::ROOT, ground, lines, 0.0)
 }
 
@@ -352,7 +343,7 @@ fn more_important_roads_lie_above_across_tiles() {
     let tile = |id, number, reach_m: f64| {
         let ground = terrain(id, 64, |_, _| 100.0);
         let points_m = lay(middle, middle + DVec2::new(reach_m, 0.0), &triangles(id, &ground));
-        let line = GroundLine { way_id: 1, class: class(number), points_m };
+        let line = ground_line(number, points_m);
         (id, ground, vec![line], 0.0)
     };
     let camera = Camera::look_at(

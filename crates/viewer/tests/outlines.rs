@@ -11,10 +11,10 @@ use corniche_viewer::{
     camera::{Camera, Orientation},
     gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers, Wireframe},
     style::{RoadStyle, Style},
-    tiles::{GroundLine, TileGeometry, TileLines},
+    tiles::{TileGeometry, TileLines},
 };
 use glam::DVec2;
-use support::{class, frame, gpu, lay, plain_style, terrain, triangles};
+use support::{frame, gpu, ground_line, lay, plain_style, terrain, triangles};
 
 /// As in `shaders/composite.wgsl`.
 const FARTHER: f32 = 1.1;
@@ -34,12 +34,13 @@ fn style(width_m: f32) -> Style {
 fn tile(step: u16, height_m: impl Fn(f64, f64) -> f64, roads: &[(u8, [DVec2; 2])]) -> TileGeometry {
     let ground = terrain(TileId::ROOT, step, height_m);
     let mesh = triangles(TileId::ROOT, &ground);
-    let lines = roads.iter().map(|(number, [from, to])| GroundLine {
-        way_id: 1,
-        class: class(*number),
-        points_m: lay(*from, *to, &mesh),
-    });
-    let lines = TileLines { ground: lines.collect(), ..TileLines::default() };
+    let lines =
+        roads.iter().map(|(number, [from, to])| ground_line(*number, lay(*from, *to, &mesh)));
+    let lines = TileLines {
+        ground: lines.collect(),
+        width_margin_m: support::WIDTH_MARGIN_M,
+        ..TileLines::default()
+    };
     TileGeometry::assemble(TileId::ROOT, Some(&ground), &lines, &frame(), support::QUANTUM_M)
 }
 

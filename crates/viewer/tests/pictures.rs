@@ -14,10 +14,10 @@ use corniche_viewer::{
         Targets, TileBuffers, Wireframe,
     },
     style::Style,
-    tiles::{GroundLine, PlanLine, TileGeometry, TileLines},
+    tiles::{PlanLine, TileGeometry, TileLines},
 };
 use glam::DVec2;
-use support::{class, frame, gpu, lay, plain_style, terrain, triangles};
+use support::{class, frame, gpu, ground_line, lay, plain_style, terrain, triangles};
 
 const SIZE: [u32; 2] = [200, 150];
 
@@ -31,14 +31,19 @@ fn geometry(from: [f64; 2], to: [f64; 2]) -> TileGeometry {
         terrain(TileId::ROOT, 16, |x, y| 300.0 + 50.0 * (x / 200.0).sin() * (y / 150.0).cos());
     let [from, to] = [from, to].map(|at| center() + DVec2::from_array(at));
     let points_m = lay(from, to, &triangles(TileId::ROOT, &ground));
-    let line = GroundLine { way_id: 1, class: class(2), points_m };
+    let line = ground_line(2, points_m);
     let plan = PlanLine {
         way_id: 1,
         class: class(2),
         points_m: vec![from.to_array(), to.to_array()],
         ground_range_m: vec![ground.height_range_m],
     };
-    let lines = TileLines { ground: vec![line], plan: vec![plan], width_margin_m: 100.0 };
+    let lines = TileLines {
+        ground: vec![line],
+        plan: vec![plan],
+        width_margin_m: 100.0,
+        ..TileLines::default()
+    };
     TileGeometry::assemble(TileId::ROOT, Some(&ground), &lines, &frame(), support::QUANTUM_M)
 }
 

@@ -13,7 +13,7 @@ use std::{collections::VecDeque, sync::Arc};
 use corniche_viewer::{
     RoadMethod,
     camera::Camera,
-    flight::Pose,
+    flight::{Pose, WorkingCrs},
     gpu::{GpuError, PassTimes, Wireframe},
     lod::Quality,
     style::Rgb,
@@ -508,7 +508,7 @@ impl App {
         let facts = Facts {
             adapter: &self.adapter,
             attribution: &manifest.attribution,
-            crs: &manifest.crs,
+            crs: WorkingCrs::of(manifest),
             cursor: self.seen.cursor.filter(|_| is_over_map).map(|(point, _)| point),
             pose: self.pose(),
             metres_per_point: self.seen.middle_pixel_m.map(|pixel_m| pixel_m * points),

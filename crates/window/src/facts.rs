@@ -1,6 +1,11 @@
 //! What the window tells a person in a frame, and what the person asks for: values between the map and the panel.
 
-use corniche_viewer::{RoadMethod, flight::Pose, gpu::PassTimes, style::Rgb};
+use corniche_viewer::{
+    RoadMethod,
+    flight::{Pose, WorkingCrs},
+    gpu::PassTimes,
+    style::Rgb,
+};
 
 use crate::{controls::Mode, frame_times::FrameTimes, notices::Notice};
 
@@ -19,8 +24,8 @@ pub(crate) struct Facts<'a> {
     pub(crate) adapter: &'a str,
     /// The package's credits.
     pub(crate) attribution: &'a [String],
-    /// Name of the working CRS.
-    pub(crate) crs: &'a str,
+    /// The package's CRS and what makes working metres of its coordinates.
+    pub(crate) crs: WorkingCrs<'a>,
     /// The ground under the cursor; `None` over sky, voids and the panel.
     pub(crate) cursor: Option<GroundPoint>,
     /// The camera; height is true.

@@ -62,7 +62,7 @@ pub(crate) fn status_line(ui: &mut Ui, facts: &Facts<'_>, panel: PanelRoom) {
             Some(point) => {
                 let [x, y, height_m] = point.at_m;
                 tell(small(words::position(point.lon_lat_deg)));
-                tell(small(format!("{}  {x:.1}  {y:.1}", facts.crs)));
+                tell(small(words::coordinates(facts.crs, [x, y])));
                 tell(small(format!("ground {height_m:.1} m")));
             }
             None => {

@@ -209,7 +209,7 @@ impl Ground for ShownGround<'_> {
 }
 
 fn holds(tile: &TileGeometry, at: [f64; 2]) -> bool {
-    (0..2).all(|axis| (at[axis] - tile.reference_m[axis]).abs() <= tile.width_m / 2.0)
+    (0..2).all(|axis| (at[axis] - tile.reference_m[axis]).abs() <= tile.size_m[axis] / 2.0)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use corniche_viewer::RoadMethod;
+use corniche_viewer::{RoadMethod, flight::WorkingCrs};
 
 /// A length on the ground: "350 m", "12.5 km".
 pub(crate) fn length(m: f64) -> String {
@@ -54,6 +54,17 @@ pub(crate) fn mebibytes(bytes: u64) -> String {
     format!("{:.0} MiB", bytes as f64 / f64::from(1 << 20))
 }
 
+/// "EPSG:32632  539512.3  5221456.8": coordinates of the CRS, to a decimetre.
+pub(crate) fn coordinates(working: WorkingCrs<'_>, at_m: [f64; 2]) -> String {
+    let [x, y] = [0, 1].map(|axis: usize| {
+        let unit_m = working.metres_per_unit[axis];
+        // Six more digits for degrees.
+        let digits = if unit_m.abs() > 1000.0 { 6 } else { 1 };
+        format!("{:.digits$}", at_m[axis] / unit_m)
+    });
+    format!("{}  {x}  {y}", working.crs)
+}
+
 /// "47.14012° N, 9.52201° E".
 pub(crate) fn position([lon_deg, lat_deg]: [f64; 2]) -> String {
     let side = |value: f64, positive, negative| if value < 0.0 { negative } else { positive };
@@ -83,6 +94,19 @@ pub(crate) fn with_causes(error: &dyn Error) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn coordinates_are_those_of_the_crs() {
+        let utm = WorkingCrs { crs: "EPSG:32632", metres_per_unit: [1.0, 1.0] };
+        assert_eq!(coordinates(utm, [539_512.25, 5_221_456.75]), "EPSG:32632  539512.2  5221456.8");
+        let degrees = WorkingCrs { crs: "EPSG:4326", metres_per_unit: [75_000.0, 111_000.0] };
+        assert_eq!(
+            coordinates(degrees, [750_000.0, 5_272_500.0]),
+            "EPSG:4326  10.000000  47.500000"
+        );
+        let turned = WorkingCrs { crs: "EPSG:2053", metres_per_unit: [-1.0, -1.0] };
+        assert_eq!(coordinates(turned, [-99_995.0, -2.0]), "EPSG:2053  99995.0  2.0");
+    }
 
     #[test]
     fn numbers_read_as_people_write_them() {

@@ -2,6 +2,8 @@ use std::{num::NonZeroUsize, path::PathBuf};
 
 use clap::Args;
 
+use super::values::{parse_cell, parse_range};
+
 #[derive(Debug, Args)]
 pub(crate) struct BuildArgs {
     /// Elevation rasters, any format GDAL reads; where they overlap, the first has precedence
@@ -13,7 +15,7 @@ pub(crate) struct BuildArgs {
     /// The package to write (.pmtiles)
     #[arg(short, long, value_name = "PACKAGE")]
     pub(crate) output: PathBuf,
-    /// Replace the package if it exists, once the new one is complete
+    /// Replace the package if it exists, once the new one is complete; of a link, the file it leads to
     #[arg(short = 'O', long)]
     pub(crate) overwrite: bool,
     /// Also list every defect of the extract and every road lost, one per line (CSV); an existing list is kept
@@ -39,8 +41,9 @@ pub(crate) struct BuildArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Terrain")]
 pub(crate) struct TerrainArgs {
-    /// Working CRS, projected, in metres [default: the DEM's if it is projected and true to scale, else UTM]
-    #[arg(long, value_name = "EPSG:N")]
+    /// Working CRS: dem (the first raster's own, so that nodes are its samples), utm, or any projected one
+    /// [default: dem where lengths are then true within 3 %, else utm]
+    #[arg(long, value_name = "dem|utm|EPSG:N|WKT")]
     pub(crate) crs: Option<String>,
     /// CRS of rasters that name none
     #[arg(long, value_name = "EPSG:N")]
@@ -54,12 +57,27 @@ pub(crate) struct TerrainArgs {
     /// Added to every height, in metres [default: 0]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub(crate) vertical_shift: Option<f64>,
-    /// Height that means "no data", beside what the files say
+    /// Value that means "no data" as the files store it, beside what they say themselves; may be given several times
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
-    pub(crate) nodata: Option<f64>,
-    /// Spacing of the finest level, in metres [default: the DEM's]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
-    pub(crate) cell: Option<f64>,
+    pub(crate) nodata: Vec<f64>,
+    /// Heights that samples may have, in metres, before --vertical-shift; what lies in it is believed, however odd
+    /// [default: -12000,9000, and no repeated value 1000 m beyond all others]
+    #[arg(long, value_name = "LOW,HIGH", value_parser = parse_range, allow_hyphen_values = true)]
+    pub(crate) height_range: Option<[f64; 2]>,
+    /// Latitude, in degrees, at which lengths are true in a CRS that is not true to scale, such as degrees; packages of
+    /// adjoining regions fit when it is the same [default: the middle of the DEM, to half a degree]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub(crate) scale_latitude: Option<f64>,
+    /// Spacing of the finest level, in metres: of a square, or of a rectangle, east and north; heights are interpolated
+    /// [default: the DEM's own]
+    #[arg(long, value_name = "METRES|EAST,NORTH", value_parser = parse_cell, allow_hyphen_values = true)]
+    pub(crate) cell: Option<[f64; 2]>,
+    /// Take one in K of the DEM's samples along both axes as the finest level, as they are
+    #[arg(long, value_name = "K", conflicts_with = "cell")]
+    pub(crate) cell_every: Option<u32>,
+    /// Build with more than 16 nodes to a DEM sample, too
+    #[arg(long)]
+    pub(crate) force: bool,
     /// Largest vertical error of the finest level, in metres [default: a quarter of the cell]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub(crate) max_error: Option<f64>,
@@ -89,7 +107,7 @@ pub(crate) struct ResourceArgs {
     /// Worker threads [default: one per processor]
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,
-    /// Memory for buffers and caches, such as 512M or 4G [default: 1G]
+    /// Memory for buffers and caches, such as 512M, 4G or 1T [default: 1G]
     #[arg(long, value_name = "BYTES")]
     pub(crate) memory: Option<String>,
 }
@@ -97,7 +115,7 @@ pub(crate) struct ResourceArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Progress")]
 pub(crate) struct ReportArgs {
-    /// Say nothing but errors
+    /// Say nothing but errors and warnings
     #[arg(short, long, conflicts_with = "json_progress")]
     pub(crate) quiet: bool,
     /// Progress as one JSON object a line on standard error

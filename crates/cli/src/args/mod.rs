@@ -13,8 +13,8 @@ pub(crate) use build::{BuildArgs, ReportArgs};
 pub(crate) use camera::CameraArgs;
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use look::{LookArgs, Roads};
-pub(crate) use reading::{GrowthArgs, InfoArgs, TileArgs, VerifyArgs};
-pub(crate) use values::{parse_bytes, parse_size};
+pub(crate) use reading::{Coordinates, GrowthArgs, InfoArgs, TileArgs, VerifyArgs};
+pub(crate) use values::{check_cell, parse_bytes, parse_size};
 
 use crate::view::ViewArgs;
 

@@ -2,7 +2,7 @@
 
 use std::{fmt::Write as _, num::NonZeroUsize, path::PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use corniche_geom::TileId;
 use corniche_pipeline::CheckId;
 
@@ -67,6 +67,16 @@ pub(crate) struct VerifyArgs {
     pub(crate) report: ReportArgs,
 }
 
+/// Of what coordinates are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(crate) enum Coordinates {
+    /// Working metres: the CRS's coordinates times the package's `metres_per_unit`
+    #[default]
+    Working,
+    /// The package's CRS: degrees, feet or metres; longitudes may run on past 180
+    Crs,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct TileArgs {
     /// The package
@@ -74,7 +84,10 @@ pub(crate) struct TileArgs {
     /// The tile: level, column from the west, row from the north
     #[arg(value_name = "Z/X/Y")]
     pub(crate) id: TileId,
-    /// For programs: everything, in working-CRS coordinates
+    /// For programs: everything, in working metres
     #[arg(long)]
     pub(crate) json: bool,
+    /// Of what x and y in the JSON are: working metres, or coordinates of the package's CRS
+    #[arg(long, value_enum, default_value_t, requires = "json")]
+    pub(crate) coordinates: Coordinates,
 }

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use corniche_viewer::{Replay, flight::Flight};
+use corniche_viewer::{
+    Replay,
+    flight::{Flight, WorkingCrs},
+};
 
 use super::{Run, list, pictures::Pictures};
 use crate::{
@@ -43,7 +46,7 @@ impl Outputs {
         self.pictures.as_ref().map_or(Ok(()), |pictures| pictures.add(name, replay))
     }
 
-    /// Writes everything, the flight in the working CRS, `crs`; and then puts everything in its place, the list last: where
+    /// Writes everything, the flight in working metres; and then puts everything in its place, the list last: where
     /// it stands, all else stands too.
     ///
     /// What can still go wrong is a place that has been taken or closed to us since the flight began; then what took its
@@ -51,7 +54,7 @@ impl Outputs {
     pub(super) fn finish(
         self,
         flight: &Flight,
-        crs: &str,
+        working: WorkingCrs<'_>,
         runs: &[Run],
         adapter: &str,
     ) -> Result<(), Failure> {
@@ -62,7 +65,7 @@ impl Outputs {
             written.push(svg.fill(drawing.as_bytes())?);
         }
         if let Some(save_path) = save_path {
-            let text = flight.to_text(crs).map_err(failed)?;
+            let text = flight.to_text(working).map_err(failed)?;
             written.push(save_path.fill(text.as_bytes())?);
         }
         written.push(csv.fill(list::to_csv(runs).as_bytes())?);

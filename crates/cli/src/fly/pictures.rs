@@ -9,6 +9,7 @@ use tempfile::TempDir;
 use crate::{
     exit::ExitCode,
     failure::Failure,
+    interrupt,
     output::{self, png},
 };
 
@@ -25,6 +26,9 @@ impl Pictures {
         };
         if used.contains(&target) {
             return Err(unusable(&"the command uses that file itself; choose another name"));
+        }
+        if target.metadata().is_ok_and(|found| !found.is_dir() && !found.is_file()) {
+            return Err(unusable(&"it is a device or a pipe; name a new folder"));
         }
         if target.symlink_metadata().is_ok() {
             return Err(Failure::new(
@@ -44,6 +48,7 @@ impl Pictures {
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
         let folder = builder.tempdir_in(parent).map_err(|error| unusable(&error))?;
+        interrupt::remove_at_end(folder.path());
         Ok(Self { target: target.to_path_buf(), folder })
     }
 

@@ -1,10 +1,10 @@
 use std::path::PathBuf;
 
-use corniche_dem::{Dem, OpenOptions, PlanOptions, Resampling};
-use corniche_geom::{Cell, HeightGrid, NodeWindow, Projection};
+use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions, Resampling};
+use corniche_geom::{Cell, Frame, HeightGrid, NodeWindow, Projection};
 use gdal::Metadata;
 
-use crate::fixture::{Raster, all, check, open, options, plan};
+use crate::fixture::{Raster, all, check, check_near, degree_m, in_utm, open, options, plan};
 
 /// A plane in UTM 32N that rises 1 m in 10 m eastwards and 1 m in 5 m northwards.
 fn plane([x, y]: [f64; 2]) -> f64 {
@@ -107,7 +107,9 @@ fn a_grid_in_feet_is_laid_out_in_metres() {
     })]);
     let plan = plan(&dem);
     assert_eq!(plan.case, Resampling::Aligned, "{}", plan.resampling);
-    assert!((plan.frame.cell().north_m - 30.0 * foot_m).abs() < 1e-6);
+    assert_eq!(plan.crs, "EPSG:2272");
+    check_near(plan.metres_per_unit, [foot_m; 2], 1e-12);
+    check_near(plan.frame.cell().to_array(), [30.0 * foot_m; 2], 1e-12);
     let truth = |[x, y]: [f64; 2]| x / foot_m - 2_690_000.0 + 2.0 * (y / foot_m - 234_000.0);
     assert_eq!(check(&mut dem.reader(&plan).unwrap(), &plan, 0.05, truth), 1200);
 }
@@ -128,7 +130,7 @@ fn a_reprojected_plane_comes_back() {
     };
     let dem = open(&[raster.write(folder.path(), "ll.tif", height)]);
     for (cell_m, averaged) in [(None, false), (Some(15.0), false), (Some(97.0), true)] {
-        let plan = dem.plan(&PlanOptions { cell: cell_m.map(Cell::from), ..options() }).unwrap();
+        let plan = dem.plan(&PlanOptions { cell: cell_m.map(Cell::from), ..in_utm() }).unwrap();
         assert_eq!((plan.crs.as_str(), plan.case), ("EPSG:32632", Resampling::Resampled));
         assert_eq!(plan.resampling.contains("average"), averaged, "{}", plan.resampling);
         let cell = plan.frame.cell().north_m;
@@ -203,6 +205,11 @@ fn files_of_one_grid_are_one_raster() {
     }
 }
 
+/// The frame of the first file's grid over all nodes of a plan.
+fn grown(first: &Frame, plan: &GridPlan) -> Frame {
+    Frame::covering(first.origin_m(), first.cell(), plan.south_west, plan.north_east).unwrap()
+}
+
 #[test]
 fn files_in_different_systems_serve_one_grid() {
     let folder = folder();
@@ -219,18 +226,24 @@ fn files_in_different_systems_serve_one_grid() {
     });
     let dem = open(&[own, degrees]);
     let plan = plan(&dem);
-    // The degrees are the finer ones; the cell follows them, the CRS the first file.
-    assert_eq!(plan.crs, "EPSG:32632");
-    assert!(
-        plan.frame.cell().north_m < 8.0 && plan.resampling.contains("EPSG:4326"),
-        "{}",
-        plan.resampling
-    );
-    let count = check(&mut dem.reader(&plan).unwrap(), &plan, HUNDREDTH_M, plane);
-    assert!(
-        count as f64 > 0.9 * 220.0 * 100.0 * 7.6 * 11.1 / plan.frame.cell().north_m.powi(2),
-        "{count}"
-    );
+    // The degrees are the finer ones; CRS and cell are the first file's all the same.
+    assert_eq!((plan.crs.as_str(), plan.frame), ("EPSG:32632", grown(&alone_plan.frame, &plan)));
+    assert_eq!((plan.case, plan.frame.cell()), (Resampling::Resampled, Cell::from(10.0)));
+    let told = plan.resampling.as_str();
+    for words in ["samples of a.tif", "bilinear between the samples of b.tif in EPSG:4326"] {
+        assert!(told.contains(words), "{words:?} is not in: {told}");
+    }
+    let mut reader = dem.reader(&plan).unwrap();
+    let count = check(&mut reader, &plan, HUNDREDTH_M, plane);
+    assert!(count as f64 > 0.9 * 220.0 * 100.0 * 7.6 * 11.1 / 100.0, "{count}");
+    // Where the first file has data its samples come out bit for bit.
+    let whole = all(&plan);
+    let heights = reader.window(whole).unwrap().heights;
+    let window = all(&alone_plan);
+    let samples = alone.reader(&alone_plan).unwrap().window(window).unwrap().heights;
+    let (left, top) = (window.corner.i - whole.corner.i, whole.corner.j - window.corner.j);
+    let seen = heights.window(left as usize, top as usize, 60, 50);
+    assert!(seen.raw().iter().zip(samples.raw()).all(|(a, b)| a.to_bits() == b.to_bits()));
 }
 
 #[test]
@@ -301,17 +314,34 @@ fn the_antimeridian_is_no_border() {
     let folder = folder();
     let raster = Raster::new(4326, [200, 100], [179.9, 0.001, 0.0, -16.9, 0.0, -0.001]);
     let dem = open(&[raster.write(folder.path(), "fiji.tif", |at| (at[0] - 180.0) * 1000.0)]);
+    for (options, tolerance_m, is_own) in [(options(), 1e-4, true), (in_utm(), 0.02, false)] {
+        let plan = dem.plan(&options).unwrap();
+        let crs = plan.crs.as_str();
+        assert!(if is_own {
+            crs == "EPSG:4326"
+        } else {
+            crs == "EPSG:32701" || crs == "EPSG:32760"
+        });
+        assert!(plan.wgs84_bounds.width() < 0.21, "{:?}", plan.wgs84_bounds);
+        let projection = dem.projection(&plan).unwrap();
+        let count = check(&mut dem.reader(&plan).unwrap(), &plan, tolerance_m, |at| {
+            let mut points = [at];
+            projection.wgs84_from_working(&mut points).unwrap();
+            (points[0][0].rem_euclid(360.0) - 180.0) * 1000.0
+        });
+        assert!(if is_own { count == 20_000 } else { count > 15_000 }, "{count}");
+    }
+    // In degrees nodes go on past 180, and places named from either side fall there.
     let plan = plan(&dem);
-    assert!(plan.crs == "EPSG:32701" || plan.crs == "EPSG:32760", "{}", plan.crs);
-    assert!(plan.wgs84_bounds.width() < 0.21, "{:?}", plan.wgs84_bounds);
-    let projection = dem.projection(&plan).unwrap();
-    let count = check(&mut dem.reader(&plan).unwrap(), &plan, 0.02, |at| {
-        let mut points = [at];
-        projection.wgs84_from_working(&mut points).unwrap();
-        let lon = points[0][0];
-        (if lon < 0.0 { lon + 180.0 } else { lon - 180.0 }) * 1000.0
-    });
-    assert!(count > 15_000, "{count}");
+    // The east factor is adjusted by half a lattice step a cell at most: 0.5 mm of 106 m.
+    check_near(plan.metres_per_unit, degree_m(-17.0), 5e-6);
+    let [east_m, _] = plan.metres_per_unit;
+    let (west, east) = (plan.data_bounds.min_x / east_m, plan.data_bounds.max_x / east_m);
+    assert!((west - 179.9005).abs() < 1e-9 && (east - 180.0995).abs() < 1e-9, "{west} {east}");
+    let mut points = [[-179.95, -16.95], [180.05, -16.95], [179.95, -16.95]];
+    dem.projection(&plan).unwrap().working_from_wgs84(&mut points).unwrap();
+    assert!((points[0][0] - 180.05 * east_m).abs() < 1e-6, "{points:?}");
+    assert!((points[1][0] - 180.05 * east_m).abs() < 1e-6 && points[2][0] < 180.0 * east_m);
 }
 
 fn is_send<T: Send + Sync>(_: &T) {}
@@ -345,7 +375,9 @@ fn options_override_and_are_checked() {
     let plan = |crs: &str| dem.plan(&PlanOptions { crs: Some(crs.to_owned()), ..options() });
     assert_eq!(plan("EPSG:3035").unwrap().crs, "EPSG:3035");
     assert!(plan("EPSG:4326").unwrap_err().to_string().contains("projected"));
-    assert!(plan("EPSG:2272").unwrap_err().to_string().contains("metres"));
+    let feet = plan("EPSG:2272").unwrap();
+    assert_eq!((feet.crs.as_str(), feet.case), ("EPSG:2272", Resampling::Resampled));
+    check_near(feet.metres_per_unit, [1200.0 / 3937.0; 2], 1e-12);
     assert!(plan("EPSG:999999").unwrap_err().to_string().contains("--crs"));
     assert!(dem.plan(&PlanOptions { cell: Some((-1.0).into()), ..options() }).is_err());
     assert!(

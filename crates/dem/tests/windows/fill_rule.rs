@@ -4,13 +4,14 @@ use std::fs;
 use std::path::PathBuf;
 
 use corniche_dem::{DemWindow, OpenOptions, PlanOptions, Reader};
-use corniche_geom::{NodeIndex, NodeWindow};
+use corniche_geom::{Cell, NodeIndex, NodeWindow};
 use proptest::prelude::*;
 
-use crate::fixture::{Raster, all, options};
+use crate::fixture::{Raster, all, in_utm, options};
 
 const SIZE: [usize; 2] = [46, 38];
-const FRAME: [f64; 6] = [500_000.0, 10.0, 0.0, 5_200_380.0, 0.0, -10.0];
+/// Cells of 10 × 15 m.
+const FRAME: [f64; 6] = [500_000.0, 10.0, 0.0, 5_200_570.0, 0.0, -15.0];
 
 /// A hole in the data, or an island in a void.
 #[derive(Debug, Clone)]
@@ -75,7 +76,7 @@ impl Mask {
     }
 
     /// What the rule gives for a void: every void is looked at from each of its sides, step by step.
-    fn filled(&self, column: i64, row: i64, reach: i64) -> Option<f64> {
+    fn filled(&self, column: i64, row: i64, reach: i64, cell: Cell) -> Option<f64> {
         let (mut sum, mut weights) = (0.0, 0.0);
         for down in -1..=1_i64 {
             for right in -1..=1_i64 {
@@ -84,9 +85,10 @@ impl Mask {
                 }
                 let seen = |steps: i64| self.data(column + steps * right, row + steps * down);
                 let (steps, found_m) = (1..=reach).find_map(|steps| Some((steps, seen(steps)?)))?;
-                let distance = ((steps * right) as f64).hypot((steps * down) as f64);
-                sum += f64::from(found_m) / distance;
-                weights += 1.0 / distance;
+                let distance_m = ((steps * right) as f64 * cell.east_m)
+                    .hypot((steps * down) as f64 * cell.north_m);
+                sum += f64::from(found_m) / distance_m;
+                weights += 1.0 / distance_m;
             }
         }
         Some(sum / weights)
@@ -95,7 +97,7 @@ impl Mask {
     fn write(&self, folder: &std::path::Path) -> PathBuf {
         Raster::new(32632, SIZE, FRAME).nodata(-9999.0).write(folder, "mask.tif", |[x, y]| {
             let column = ((x - FRAME[0]) / 10.0).floor() as i64;
-            let row = ((FRAME[3] - y) / 10.0).floor() as i64;
+            let row = ((FRAME[3] - y) / 15.0).floor() as i64;
             self.data(column, row).unwrap_or(-9999.0)
         })
     }
@@ -121,7 +123,8 @@ proptest! {
         let mask = Mask::new(is_ground, &shapes);
         let dem = corniche_dem::Dem::open(&[mask.write(folder.path())], &OpenOptions::default()).unwrap();
         let plan = dem.plan(&PlanOptions { fill_voids: reach, ..options() }).unwrap();
-        let whole = all(&plan);
+        let (whole, cell) = (all(&plan), plan.frame.cell());
+        prop_assert!((cell.east_m - 10.0).abs() < 0.001 && cell.north_m == 15.0);
         prop_assert_eq!([whole.columns, whole.rows], SIZE);
         let mut reader = dem.reader(&plan).unwrap();
         let reference = read(&mut reader, whole);
@@ -133,7 +136,7 @@ proptest! {
                     prop_assert_eq!(found, Some(data));
                     continue;
                 }
-                let expected = mask.filled(column as i64, row as i64, i64::from(reach));
+                let expected = mask.filled(column as i64, row as i64, i64::from(reach), cell);
                 prop_assert_eq!(found.is_some(), expected.is_some(), "node {}, {}", column, row);
                 if let (Some(found), Some(expected)) = (found, expected) {
                     prop_assert!((f64::from(found) - expected).abs() < 2e-4, "{} for {}", found, expected);
@@ -167,12 +170,12 @@ fn nothing_is_filled_beyond_the_edge_of_reprojected_squares() {
     let frame = [10.5, 0.001, 0.0, 60.5, 0.0, -0.001];
     let file = Raster::new(4326, [240, 200], frame).write(folder.path(), "ll.tif", |at| at[1]);
     let dem = crate::fixture::open(&[file]);
-    let bare = dem.plan(&options()).unwrap();
+    let bare = dem.plan(&in_utm()).unwrap();
     let window = all(&bare);
     let bare = read(&mut dem.reader(&bare).unwrap(), window);
     assert!(bare.heights.count_heights() * 20 < window.columns * window.rows * 19, "edges slant");
     for reach in [1, 3, 32, 500] {
-        let plan = dem.plan(&PlanOptions { fill_voids: reach, ..options() }).unwrap();
+        let plan = dem.plan(&PlanOptions { fill_voids: reach, ..in_utm() }).unwrap();
         let filled = read(&mut dem.reader(&plan).unwrap(), window);
         assert_eq!(filled.filled, 0, "reach {reach}");
         let bits = |read: &DemWindow| -> Vec<u32> {

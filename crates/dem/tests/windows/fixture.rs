@@ -176,6 +176,31 @@ pub(crate) fn options() -> PlanOptions {
     PlanOptions { crs: None, cell: None, cell_every: None, scale_latitude_deg: None, fill_voids: 0 }
 }
 
+/// Options for tests of resampling: a geographic DEM is carried to UTM.
+pub(crate) fn in_utm() -> PlanOptions {
+    PlanOptions { crs: Some("utm".to_owned()), ..options() }
+}
+
+/// Metres to a degree of longitude and of latitude on WGS84, by the usual series; an oracle that shares nothing with the
+/// closed formula under test.
+///
+/// Source: National Geospatial-Intelligence Agency, *Length of a Degree of Latitude and Longitude*.
+pub(crate) fn degree_m(latitude_deg: f64) -> [f64; 2] {
+    let cos = |times: f64| (times * latitude_deg).to_radians().cos();
+    [
+        111_412.84 * cos(1.0) - 93.5 * cos(3.0) + 0.118 * cos(5.0),
+        111_132.92 - 559.82 * cos(2.0) + 1.175 * cos(4.0) - 0.0023 * cos(6.0),
+    ]
+}
+
+/// Both numbers agree to a share of themselves.
+pub(crate) fn check_near(found: [f64; 2], expected: [f64; 2], share: f64) {
+    for axis in 0..2 {
+        let off = (found[axis] / expected[axis] - 1.0).abs();
+        assert!(off <= share, "{found:?}, not {expected:?}: {off:e} off");
+    }
+}
+
 /// The window of all nodes at which data can lie.
 pub(crate) fn all(plan: &GridPlan) -> NodeWindow {
     NodeWindow {

@@ -13,6 +13,8 @@ mod fill_rule;
 mod fixture;
 mod formats;
 mod georeference;
+mod own_crs;
+mod own_grid;
 mod real_data;
 mod refusals;
 mod samples;

@@ -4,7 +4,7 @@ use std::time::Instant;
 use corniche_dem::{Dem, DemError, GridPlan, OpenOptions, PlanOptions, Resampling};
 use corniche_geom::{NodeIndex, NodeWindow};
 
-use crate::fixture::{all, options};
+use crate::fixture::{all, check_near, degree_m, in_utm, options};
 
 /// Files of the real data, or `None` with a line that says so.
 pub(crate) fn data(names: &[&str]) -> Option<Vec<PathBuf>> {
@@ -21,7 +21,11 @@ pub(crate) fn data(names: &[&str]) -> Option<Vec<PathBuf>> {
 }
 
 fn open(names: &[&str], nodata: Option<f64>) -> Option<(Dem, GridPlan)> {
-    let dem = Dem::open(&data(names)?, &OpenOptions { nodata, ..OpenOptions::default() }).unwrap();
+    let dem = Dem::open(
+        &data(names)?,
+        &OpenOptions { nodata: nodata.into_iter().collect(), ..OpenOptions::default() },
+    )
+    .unwrap();
     let plan = dem.plan(&PlanOptions { fill_voids: 32, ..options() }).unwrap();
     Some((dem, plan))
 }
@@ -62,18 +66,18 @@ fn read_all(dem: &Dem, plan: &GridPlan) -> (usize, usize, u64, [f32; 2]) {
 }
 
 #[test]
-fn two_srtm_squares_become_one_grid_in_utm() {
+fn two_srtm_squares_become_one_grid_of_their_own_samples() {
     let Some((dem, plan)) = open(&["liechtenstein/N47E009.hgt", "liechtenstein/N47E010.hgt"], None)
     else {
         return;
     };
-    assert_eq!(
-        (plan.crs.as_str(), plan.case, plan.frame.cell().north_m),
-        ("EPSG:32632", Resampling::Resampled, 63.0)
-    );
+    assert_eq!((plan.crs.as_str(), plan.case), ("EPSG:4326", Resampling::Aligned));
+    let side_m = degree_m(47.5).map(|metres| metres / 1200.0);
+    check_near(plan.frame.cell().to_array(), side_m, 1e-5);
     let (nodes, heights, filled, range) = read_all(&dem, &plan);
+    assert_eq!(nodes, 2401 * 1201);
     assert!(heights > nodes * 9 / 10 && filled > 1000, "{heights} of {nodes}, {filled} filled");
-    assert!(range[0] > 380.0 && range[1] <= 3370.0, "{range:?}");
+    assert!(range == [388.0, 3370.0], "{range:?}");
 }
 
 #[test]
@@ -116,7 +120,8 @@ fn tirol_in_another_datum_is_the_same_through_every_window() {
 #[test]
 fn the_zone_follows_the_hemisphere_and_the_datum_is_no_obstacle() {
     let check = |name: &str, crs: &str, cell_m: f64, highest_m: f32| {
-        let Some((dem, plan)) = open(&[name], None) else { return };
+        let Some((dem, _)) = open(&[name], None) else { return };
+        let plan = dem.plan(&PlanOptions { fill_voids: 32, ..in_utm() }).unwrap();
         assert_eq!((plan.crs.as_str(), plan.frame.cell().north_m), (crs, cell_m));
         let (nodes, heights, _, range) = read_all(&dem, &plan);
         assert!(
@@ -147,7 +152,9 @@ fn crater_lake_needs_its_sentinel_named() {
     else {
         return;
     };
-    assert_eq!((plan.crs.as_str(), plan.frame.cell().north_m), ("EPSG:32610", 22.0));
+    assert_eq!((plan.crs.as_str(), plan.case), ("EPSG:4326", Resampling::Aligned));
+    let side_m = degree_m(43.0).map(|metres| metres * 0.000_269_97);
+    check_near(plan.frame.cell().to_array(), side_m, 1e-4);
     let (.., range) = read_all(&dem, &plan);
     assert!(range[0] >= 1289.0 && range[1] <= 1880.0, "{range:?}");
 }

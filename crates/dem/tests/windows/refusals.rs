@@ -57,8 +57,8 @@ fn names_of_coordinate_systems_are_refused_in_words() {
         ("", "EPSG:n or WKT"),
         ("PROJCS[\"half a", "EPSG:n or WKT"),
         ("EPSG:5773", "neither projected nor geographic"),
-        ("EPSG:4326", "projected coordinate system in metres"),
-        ("EPSG:2272", "metres"),
+        ("EPSG:4326", "not a projected coordinate system"),
+        ("EPSG:4269", "nor the DEM's own"),
     ] {
         let asked = PlanOptions { crs: Some(text.to_owned()), ..options() };
         let error = dem.plan(&asked).unwrap_err();

@@ -114,7 +114,7 @@ fn huge_values_and_sentinels_are_void() {
     let values = [-9999.9_f32, -9999.0, 0.0, 4e-27];
     let tagged = row(at, "precise.tif", raster().nodata(-9999.9), &values);
     check("precise", tagged.clone(), &given, &[None, Some(-9999.0), Some(0.0), Some(4e-27)]);
-    let more = OpenOptions { nodata: Some(0.0), ..given };
+    let more = OpenOptions { nodata: vec![0.0], ..given };
     check("--nodata", tagged, &more, &[None, Some(-9999.0), None, Some(4e-27)]);
 }
 

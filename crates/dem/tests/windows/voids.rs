@@ -25,18 +25,21 @@ fn geographic(folder: &std::path::Path) -> Dem {
     open(&[path])
 }
 
-/// The rule, written down once more without any cleverness: eight directions, original data only.
+/// The rule, written down once more without any cleverness: eight directions, original data only, lengths in
+/// working metres.
 fn filled_by_rule(
     data: impl Fn(i64, i64) -> Option<f32>,
     i: i64,
     j: i64,
     reach: i64,
+    cell: Cell,
 ) -> Option<f64> {
     let mut found = Vec::new();
     for (di, dj) in [(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1)] {
         let hit =
             (1..=reach).find_map(|k| data(i + k * di, j + k * dj).map(|height_m| (k, height_m)))?;
-        let length = hit.0 as f64 * ((di * di + dj * dj) as f64).sqrt();
+        let [east_m, north_m] = [di as f64 * cell.east_m, dj as f64 * cell.north_m];
+        let length = hit.0 as f64 * (east_m * east_m + north_m * north_m).sqrt();
         found.push((1.0 / length, f64::from(hit.1)));
     }
     let weight: f64 = found.iter().map(|(weight, _)| weight).sum();
@@ -51,6 +54,8 @@ fn voids_are_filled_by_the_rule_and_by_nothing_else() {
     let window = all(&raw_plan);
     let raw = dem.reader(&raw_plan).unwrap().window(window).unwrap();
     assert_eq!((raw.filled, raw.is_filled.len()), (0, 0));
+    let cell = raw_plan.frame.cell();
+    assert!(cell.east_m < 0.7 * cell.north_m, "rectangles: {cell}");
     for reach in [1, 4, 9, 32] {
         let plan = dem.plan(&PlanOptions { fill_voids: reach, ..options() }).unwrap();
         let read = dem.reader(&plan).unwrap().window(window).unwrap();
@@ -68,7 +73,8 @@ fn voids_are_filled_by_the_rule_and_by_nothing_else() {
                     assert_eq!(before, after);
                     continue;
                 }
-                let expected = filled_by_rule(data, column as i64, row as i64, i64::from(reach));
+                let at = (column as i64, row as i64);
+                let expected = filled_by_rule(data, at.0, at.1, i64::from(reach), cell);
                 assert_eq!(after.is_some(), expected.is_some(), "reach {reach} at {column}, {row}");
                 if let (Some(after), Some(expected)) = (after, expected) {
                     assert!((f64::from(after) - expected).abs() < 1e-3);
@@ -125,7 +131,7 @@ fn all_sorts_of_voids_are_voids() {
     let values = [5.0_f32, f32::NAN, f32::INFINITY, -3.4e38, 3.402_823_5e38, -9999.0, 4e-27];
     let float =
         Raster::new(32632, [7, 5], frame).write(folder.path(), "f.tif", |at| values[column(at)]);
-    let dem = Dem::open(&[float], &OpenOptions { nodata: Some(-9999.0), ..OpenOptions::default() })
+    let dem = Dem::open(&[float], &OpenOptions { nodata: vec![-9999.0], ..OpenOptions::default() })
         .unwrap();
     let plan = dem.plan(&options()).unwrap();
     let heights = dem.reader(&plan).unwrap().window(all(&plan)).unwrap().heights;

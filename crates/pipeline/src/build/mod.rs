@@ -9,9 +9,9 @@
 //! Each stage is a module; what one hands to the next is kept in [`Storage`](crate::Storage), in a work folder
 //! beside the target that is gone when the run ends, however it ends.
 
+mod audit;
 mod errors;
 mod heights;
-mod inputs;
 mod lengths;
 mod levels;
 mod losses;
@@ -27,13 +27,15 @@ use std::{fs, path::Path};
 use corniche_dem::{Dem, OpenOptions, PlanOptions};
 use corniche_tileset::Manifest;
 
-use crate::{BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage};
+use crate::{
+    BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage, file_target,
+    inputs::Inputs,
+};
 
 pub(crate) use heights::{Pyramid, data_tiles, read as read_heights};
-pub(crate) use inputs::record as input_record;
 pub(crate) use lengths::TrueLengths;
 pub(crate) use levels::{Levels, recorded_filter};
-pub(crate) use package::{TILING, road_counts, settings_sha256, table_sha256};
+pub(crate) use package::{TILING, hex, road_counts, settings_sha256, table_sha256};
 pub(crate) use tiles::share;
 
 /// Tolerances of the finest level that can be used. Beyond them, the root's or the height quantum is no number that a
@@ -57,15 +59,12 @@ pub fn build(
     settings: &BuildSettings,
     observer: &dyn Observer,
 ) -> Result<BuildSummary, BuildError> {
-    let target = &settings.output;
+    let target = &file_target(&settings.output)?;
     let folder = match target.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
     let unusable = |source| BuildError::Target { folder: folder.to_path_buf(), source };
-    if target.is_dir() || target.file_name().is_none() {
-        return Err(unusable(std::io::Error::other("the package's name is that of a folder")));
-    }
     if settings.existing == Existing::Keep && fs::symlink_metadata(target).is_ok() {
         return Err(BuildError::Exists { path: target.clone() });
     }
@@ -78,9 +77,18 @@ pub fn build(
         .suffix(".work")
         .tempdir_in(folder)
         .map_err(unusable)?;
+    observer.work_folder(work.path());
     let storage = DiskStorage::create(work.path()).map_err(unusable)?;
     let finished = work.path().join("package");
-    let manifest = run(settings, &finished, &storage, observer)?;
+    let inputs = Inputs::find(&settings.dem, settings.osm.as_deref())?;
+    let manifest = run(settings, &inputs, &finished, &storage, observer).map_err(|error| {
+        // What else is wrong may come of the change.
+        let changed = match &error {
+            BuildError::Interrupted => None,
+            _ => inputs.check_unchanged().err(),
+        };
+        changed.map_or(error, BuildError::from)
+    })?;
     let package_bytes = place(&finished, target, settings.existing)?;
     Ok(BuildSummary { manifest, package_bytes })
 }
@@ -99,6 +107,7 @@ fn refuse_inputs_as_target(settings: &BuildSettings) -> Result<(), BuildError> {
 /// All stages in order; the package is written to `finished`.
 fn run(
     settings: &BuildSettings,
+    inputs: &Inputs,
     finished: &Path,
     storage: &dyn Storage,
     observer: &dyn Observer,
@@ -112,7 +121,7 @@ fn run(
         &settings.dem,
         &OpenOptions {
             dem_crs: terrain.dem_crs.clone(),
-            nodata: terrain.nodata,
+            nodata: terrain.nodata.clone(),
             dem_vertical_crs: terrain.dem_vertical_crs.clone(),
             vertical_crs: terrain.vertical_crs.clone(),
             vertical_shift_m: terrain.vertical_shift_m,
@@ -125,6 +134,11 @@ fn run(
         scale_latitude_deg: terrain.scale_latitude_deg,
         fill_voids: terrain.fill_voids,
     })?;
+    if let Some([files, first]) = &plan.resampled_onto_first {
+        observer.warning(&format!(
+            "{files}: samples lie on another grid than those of {first}, named first; they are resampled onto its grid"
+        ));
+    }
     let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell().shorter_m() / 4.0);
     if !MAX_ERRORS_M.contains(&max_error_m) {
         return Err(BuildError::MaxError { max_error_m });
@@ -134,7 +148,10 @@ fn run(
     let coordinates = package::coordinates(&dem, &plan)?;
     let projection = dem.projection(&plan)?;
     let lengths = TrueLengths::new(plan.frame, &coordinates, &projection);
-    let inputs = inputs::hash(settings, observer)?;
+    if !terrain.allow_fine_cell {
+        dem.refuse_oversampling(&plan)?;
+    }
+    let records = inputs.hash(observer)?;
 
     // Roads come before the long work on heights: an extract that is no use is told at once.
     let data_tiles = heights::data_tiles(&plan);
@@ -160,6 +177,7 @@ fn run(
         }
         None => None,
     };
+    audit::check(&dem, terrain.height_range_m, threads, observer)?;
     let pyramid = heights::read(&dem, &plan, threads, storage, observer)?;
     let meshes = mesh::mesh(&pyramid, &levels, threads, storage, observer)?;
     if meshes.is_empty() {
@@ -198,7 +216,7 @@ fn run(
         plan: &plan,
         levels: &levels,
         coordinates: &coordinates,
-        inputs,
+        inputs: records,
         samples: pyramid.samples(),
         range_m: pyramid.range_m(),
         roads: roads.as_ref(),
@@ -209,6 +227,8 @@ fn run(
     if let (Some(osm), 0) = (&settings.osm, manifest.counts.roads_kept) {
         return Err(BuildError::NoGround { osm: osm.clone() });
     }
+    // All has been read: what is recorded of the inputs is what the package is made of.
+    inputs.check_unchanged()?;
     package::write(finished, &settings.output, &manifest, &tiles, storage, observer)?;
     Ok(manifest)
 }

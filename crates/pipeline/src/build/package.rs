@@ -111,7 +111,8 @@ fn settings_record(outcome: &Outcome<'_>) -> SettingsRecord {
     SettingsRecord {
         max_error_m: outcome.max_error_m,
         fill_voids: terrain.fill_voids,
-        nodata: terrain.nodata,
+        nodata: terrain.nodata.clone(),
+        height_range_m: terrain.height_range_m,
         dem_crs: terrain.dem_crs.clone(),
         dem_vertical_crs: terrain.dem_vertical_crs.clone(),
         vertical_crs: terrain.vertical_crs.clone(),
@@ -180,6 +181,12 @@ pub(crate) fn road_counts(samples: SampleCounts, roads: &ReadRoads<'_>, tiles: &
             .unknown_highways
             .iter()
             .map(|(value, &count)| (value.clone(), count))
+            .collect(),
+        tags_taken_otherwise: roads
+            .extract
+            .tags_taken_otherwise
+            .iter()
+            .map(|(tag, &count)| (tag.clone(), count))
             .collect(),
         blobs_passed_over: roads.extract.blobs_passed_over,
         highways_in: roads.extract.highway_ways,

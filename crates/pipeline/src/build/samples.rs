@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use corniche_dem::{Dem, GridPlan};
-use corniche_geom::{Frame, TileId};
+use corniche_geom::{Frame, LatticePoint, TileId};
 use corniche_tin::{Placement, Surface};
 
 use super::{
@@ -44,7 +44,8 @@ pub(crate) fn measure(
             let block = reader.used_samples(&areas[index])?;
             let mut found = none.clone();
             for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
-                grounds.look(position_m, f64::from(height_m), &mut found)?;
+                let point = levels.frame().snap(position_m);
+                grounds.look(point, f64::from(height_m), &mut found)?;
             }
             Ok(found)
         },
@@ -62,8 +63,7 @@ pub(crate) fn measure(
 
 /// The tile of a level to which a position belongs: on a border the one in the east or south; the root's own east and south
 /// border belong to its last tiles. `None` outside the root.
-fn tile_at(frame: &Frame, level: u8, position_m: [f64; 2]) -> Option<TileId> {
-    let point = frame.snap(position_m)?;
+fn tile_at(frame: &Frame, level: u8, point: LatticePoint) -> Option<TileId> {
     let last = (1_i64 << level) - 1;
     let [x, y] = frame.tile_column_row(level, point);
     let inside = frame.tile_lattice_bounds(TileId::ROOT).contains(point);
@@ -81,17 +81,18 @@ struct Grounds<'a> {
 }
 
 impl Grounds<'_> {
-    /// Takes a sample into the sums of all levels.
+    /// Takes a sample into the sums of all levels. It lies where the lattice has it, as roads do.
     fn look(
         &mut self,
-        position_m: [f64; 2],
+        point: Option<LatticePoint>,
         height_m: f64,
         sums: &mut [SampleSums],
     ) -> Result<(), BuildError> {
         let frame = *self.levels.frame();
         for (level, sums) in self.levels.numbers().zip(sums) {
-            let distance_m = match tile_at(&frame, level, position_m) {
-                Some(id) => self.ground_m(id, position_m)?.map(|m| (m - height_m).abs()),
+            let place = point.and_then(|point| Some((tile_at(&frame, level, point)?, point)));
+            let distance_m = match place {
+                Some((id, point)) => self.ground_m(id, point)?.map(|m| (m - height_m).abs()),
                 None => None,
             };
             sums.add(distance_m);
@@ -99,8 +100,8 @@ impl Grounds<'_> {
         Ok(())
     }
 
-    /// Height of a tile's ground at a position, to the millimetre in plan.
-    fn ground_m(&mut self, id: TileId, position_m: [f64; 2]) -> Result<Option<f64>, BuildError> {
+    /// Height of a tile's ground at a point.
+    fn ground_m(&mut self, id: TileId, point: LatticePoint) -> Result<Option<f64>, BuildError> {
         let Some(&span) = self.meshes.get(&id) else { return Ok(None) };
         self.clock += 1;
         if !self.surfaces.contains_key(&id) {
@@ -114,12 +115,10 @@ impl Grounds<'_> {
             let placement = Placement::of_tile(self.levels.frame(), id, self.levels.quantum_m());
             self.surfaces.insert(id, (0, Surface::new(&meshed.tin, placement)));
         }
-        let frame = self.levels.frame();
         Ok(self.surfaces.get_mut(&id).and_then(|(asked, surface)| {
             *asked = self.clock;
-            let triangle = surface.locate(frame.snap(position_m)?)?;
-            let at = frame.fraction_of_position(position_m);
-            Some(surface.height_in_triangle_m(triangle, at))
+            let triangle = surface.locate(point)?;
+            Some(surface.height_at_point_m(triangle, point))
         }))
     }
 }

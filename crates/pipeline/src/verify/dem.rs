@@ -12,7 +12,12 @@ use super::{
     Check, CheckId, ErrorFigures, VerifyError, VerifyReport, VerifySettings, gradient,
     ground::Ground, samples,
 };
-use crate::{Observer, Stage, build::input_record, sample_error::SampleSums, workers};
+use crate::{
+    Observer, Stage,
+    inputs::{self, Inputs},
+    sample_error::SampleSums,
+    workers,
+};
 
 /// Slack for comparing two ways of computing the same height, metres.
 pub(super) const ROUNDING_M: f64 = 1e-6;
@@ -53,8 +58,26 @@ pub(crate) fn verify(
     report: &mut VerifyReport,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
+    let inputs = Inputs::find(&settings.dem, None)?;
+    let compared = compare_all(package, settings, &inputs, report, observer);
+    match &compared {
+        Err(VerifyError::Interrupted) => compared,
+        // What else is wrong may come of a change.
+        _ => inputs.check_unchanged().map_err(VerifyError::from).and(compared),
+    }
+}
+
+fn compare_all(
+    package: &FilePackage,
+    settings: &VerifySettings,
+    inputs: &Inputs,
+    report: &mut VerifyReport,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
     let manifest = package.manifest();
-    let Some((dem, plan)) = open(settings, manifest, report, observer)? else { return Ok(()) };
+    let Some((dem, plan)) = open(settings, inputs, manifest, report, observer)? else {
+        return Ok(());
+    };
     let max_level = manifest.frame.max_level();
     // All finest tiles of the data, those without ground too: a coarser level may cover their nodes.
     let finest = crate::build::data_tiles(&plan);
@@ -126,12 +149,13 @@ pub(crate) fn verify(
 /// another grid than the package's: then nothing can be compared.
 fn open(
     settings: &VerifySettings,
+    inputs: &Inputs,
     manifest: &Manifest,
     report: &mut VerifyReport,
     observer: &dyn Observer,
 ) -> Result<Option<(Dem, GridPlan)>, VerifyError> {
-    let expected: Vec<&InputRecord> =
-        manifest.inputs.iter().filter(|input| input.kind == "dem").collect();
+    let is_dem = |input: &&InputRecord| input.kind == inputs::DEM || input.kind == inputs::DEM_PART;
+    let expected: Vec<&InputRecord> = manifest.inputs.iter().filter(is_dem).collect();
     let other = || VerifyError::OtherDem {
         expected: expected.iter().map(|input| input.name.clone()).collect(),
     };
@@ -140,28 +164,36 @@ fn open(
         &settings.dem,
         &OpenOptions {
             dem_crs: record.dem_crs.clone(),
-            nodata: record.nodata,
+            nodata: record.nodata.clone(),
             dem_vertical_crs: record.dem_vertical_crs.clone(),
             vertical_crs: record.vertical_crs.clone(),
             vertical_shift_m: record.vertical_shift_m,
         },
     )?;
-    let mut given = Vec::new();
-    for path in &settings.dem {
-        given.push(input_record("dem", path, observer)?);
+    let given = inputs.hash(observer)?;
+    // By content, not by name: a file may have been moved or renamed since. The order of parts is that of their names.
+    let mut sizes = Check::new(CheckId::DemInputs);
+    for kind in [inputs::DEM, inputs::DEM_PART] {
+        let of_kind = |records: &mut dyn Iterator<Item = &InputRecord>| {
+            let mut found: Vec<InputRecord> =
+                records.filter(|record| record.kind == kind).cloned().collect();
+            if kind == inputs::DEM_PART {
+                found.sort_by(|a, b| a.sha256.cmp(&b.sha256));
+            }
+            found
+        };
+        let (said, found) = (of_kind(&mut expected.iter().copied()), of_kind(&mut given.iter()));
+        let hash = |record: &InputRecord| record.sha256.clone();
+        if !said.iter().map(hash).eq(found.iter().map(hash)) {
+            return Err(other());
+        }
+        for (said, found) in said.iter().zip(&found) {
+            sizes.look(said.bytes == found.bytes, || {
+                format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
+            });
+        }
     }
-    // By content, not by name: a file may have been moved or renamed since.
-    let hashes = given.iter().map(|input| &input.sha256);
-    if !hashes.eq(expected.iter().map(|input| &input.sha256)) {
-        return Err(other());
-    }
-    let mut inputs = Check::new(CheckId::DemInputs);
-    for (said, found) in expected.iter().zip(&given) {
-        inputs.look(said.bytes == found.bytes, || {
-            format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
-        });
-    }
-    report.checks.push(inputs);
+    report.checks.push(sizes);
     let plan = dem.plan(&PlanOptions {
         crs: record.crs.clone(),
         cell: record.cell_m,

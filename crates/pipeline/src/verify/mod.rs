@@ -119,6 +119,14 @@ pub enum VerifyError {
     )]
     OtherDem { expected: Vec<String> },
     #[error(
+        "{path:?} is a pipe or a device; inputs are read more than once, so save it to a file first"
+    )]
+    Stream { path: PathBuf },
+    #[error("the name of {path:?} is not UTF-8; rename the file")]
+    InputName { path: PathBuf },
+    #[error("{path:?} changed while it was read; run the same command again when it is left alone")]
+    Changed { path: PathBuf },
+    #[error(
         "{path:?} is not the extract that the package was made from; give {expected:?}, the same file"
     )]
     OtherOsm { path: PathBuf, expected: Vec<String> },
@@ -142,6 +150,9 @@ impl From<BuildError> for VerifyError {
     fn from(error: BuildError) -> Self {
         match error {
             BuildError::Input { path, source } => Self::Input { path, source },
+            BuildError::InputName { path } => Self::InputName { path },
+            BuildError::Stream { path } => Self::Stream { path },
+            BuildError::Changed { path } => Self::Changed { path },
             BuildError::Interrupted => Self::Interrupted,
             BuildError::Dem(error) => Self::Dem(error),
             other => Self::Roads(other),

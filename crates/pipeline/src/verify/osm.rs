@@ -19,11 +19,12 @@ use super::{
 use crate::{
     BuildError, DiskStorage, Observer, RoadSettings, Stage,
     build::{
-        Levels, TrueLengths, input_record, recorded_filter, road_counts,
+        Levels, TrueLengths, recorded_filter, road_counts,
         roads::{ReadRoads, RoadInput, read},
         table_sha256,
         tiles::{self, ClassSums, Laid, RoadFate, Tiles},
     },
+    inputs::{self, Inputs},
     workers,
 };
 
@@ -37,8 +38,25 @@ pub(crate) fn verify(
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
+    let inputs = Inputs::find(&[], Some(&osm.path))?;
+    let compared = compare_all(package, osm, threads, &inputs, findings, observer);
+    match &compared {
+        Err(VerifyError::Interrupted) => compared,
+        // What else is wrong may come of a change.
+        _ => inputs.check_unchanged().map_err(VerifyError::from).and(compared),
+    }
+}
+
+fn compare_all(
+    package: &FilePackage,
+    osm: &VerifyOsm,
+    threads: usize,
+    inputs: &Inputs,
+    findings: &mut Findings,
+    observer: &dyn Observer,
+) -> Result<(), VerifyError> {
     let manifest = package.manifest();
-    check_inputs(manifest, osm, findings, observer)?;
+    check_inputs(manifest, osm, inputs, findings, observer)?;
     // Without either, `levels.derived` or `manifest.crs` is broken, and there is nothing to lay roads by.
     let (Some(filter), Some([first, last])) =
         (recorded_filter(manifest), grid::data_tiles(manifest))
@@ -56,6 +74,7 @@ pub(crate) fn verify(
     let levels = Levels::new(frame, manifest.settings.max_error_m, &settings);
     let lengths = TrueLengths::new(frame, &manifest.coordinates, &projection);
     let work = tempfile::tempdir().map_err(VerifyError::Work)?;
+    observer.work_folder(work.path());
     let storage = DiskStorage::create(work.path()).map_err(VerifyError::Work)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
@@ -91,12 +110,16 @@ pub(crate) fn verify(
 fn check_inputs(
     manifest: &Manifest,
     osm: &VerifyOsm,
+    inputs: &Inputs,
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let found = input_record("osm", &osm.path, observer)?;
-    let extracts = || manifest.inputs.iter().filter(|input| input.kind == "osm");
-    let Some(said) = extracts().find(|input| input.sha256 == found.sha256) else {
+    let given = inputs.hash(observer)?;
+    let extracts = || manifest.inputs.iter().filter(|input| input.kind == inputs::OSM);
+    let pair = given
+        .iter()
+        .find_map(|found| Some((extracts().find(|input| input.sha256 == found.sha256)?, found)));
+    let Some((said, found)) = pair else {
         let expected = extracts().map(|input| input.name.clone()).collect();
         return Err(VerifyError::OtherOsm { path: osm.path.clone(), expected });
     };

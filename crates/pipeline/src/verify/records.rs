@@ -6,7 +6,11 @@ use super::checks::{CheckId, Findings};
 use crate::{
     Loss,
     build::{Levels, TILING, settings_sha256},
+    inputs,
 };
+
+/// Kinds of inputs.
+const KINDS: [&str; 3] = [inputs::DEM, inputs::DEM_PART, inputs::OSM];
 
 pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     let hash = settings_sha256(&manifest.settings);
@@ -62,7 +66,7 @@ fn texts(manifest: &Manifest, findings: &mut Findings) {
     look(manifest.tiling == TILING, &|| format!("tiling is {:?}", manifest.tiling));
     look(manifest.vertical.unit == "metre", &|| format!("unit is {:?}", manifest.vertical.unit));
     for input in &manifest.inputs {
-        look(matches!(input.kind.as_str(), "dem" | "osm"), &|| {
+        look(KINDS.contains(&input.kind.as_str()), &|| {
             format!("{:?} is an input of kind {:?}", input.name, input.kind)
         });
     }

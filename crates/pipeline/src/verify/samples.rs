@@ -48,14 +48,17 @@ pub(super) fn measure(
             let block = reader.used_samples(&areas[index])?;
             let mut found = none(manifest);
             for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
+                // Where the lattice has it: beside the ground's outline half a millimetre decides.
+                let frame = &manifest.frame;
+                let position_m = frame.snap(position_m).map(|point| frame.position_m(point));
                 for (level, sums) in found.iter_mut().enumerate() {
-                    let id = tile_at(&manifest.frame, level as u8, position_m);
-                    let ground_m = id.and_then(|id| {
+                    let ground_m = position_m.and_then(|position_m| {
+                        let id = tile_at(frame, level as u8, position_m)?;
                         if grounds.len() >= GROUNDS && !grounds.contains_key(&id) {
                             grounds.clear();
                         }
                         let ground = grounds.entry(id).or_insert_with(|| load(package, id));
-                        ground.height_m(cells(&manifest.frame, id, position_m))
+                        ground.height_m(cells(frame, id, position_m))
                     });
                     sums.add(ground_m.map(|ground_m| (ground_m - f64::from(height_m)).abs()));
                 }
@@ -80,9 +83,7 @@ fn load(package: &FilePackage, id: TileId) -> Ground {
 }
 
 /// The tile of a level that a position belongs to: on a border the one in the east or south, but for the root's own.
-fn tile_at(frame: &Frame, level: u8, position_m: [f64; 2]) -> Option<TileId> {
-    // To the lattice's half step, as the format has it.
-    let [x, y] = frame.position_m(frame.snap(position_m)?);
+fn tile_at(frame: &Frame, level: u8, [x, y]: [f64; 2]) -> Option<TileId> {
     let root = frame.tile_bounds(TileId::ROOT);
     let tiles = f64::from(1_u32 << level);
     let column = (x - root.min_x) / root.width() * tiles;

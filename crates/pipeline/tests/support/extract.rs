@@ -4,7 +4,7 @@ use std::{fs, path::Path};
 
 use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 
-use super::{CELL_M, EPSG, Raster};
+use super::{EPSG, Raster};
 
 /// A straight road from one (column, row) of a raster to another, fractions allowed.
 #[derive(Debug, Clone, Copy)]
@@ -15,22 +15,26 @@ pub(crate) struct StraightRoad {
 
 /// Writes roads as an extract; the first has way id 1.
 pub(crate) fn write(path: &Path, raster: &Raster, roads: &[StraightRoad]) {
+    let line = |road: &StraightRoad| [road.from, road.to].map(|at| to_degrees(raster, at)).to_vec();
+    write_lines(path, &roads.iter().map(line).collect::<Vec<_>>());
+}
+
+/// Writes roads, given by longitude and latitude, as an extract; the first has way id 1. Coordinates are rounded to 1e-7
+/// degrees.
+pub(crate) fn write_lines(path: &Path, lines_deg: &[Vec<[f64; 2]>]) {
     let (mut nodes, mut ways) = (Vec::new(), Vec::new());
-    for (way, road) in (1_i64..).zip(roads) {
-        let mut ids = Vec::new();
-        for (end, at) in [(0, road.from), (1, road.to)] {
-            let id = 2 * way + end;
-            let [lon_deg, lat_deg] = to_degrees(raster, at);
+    let mut last = 0_i64;
+    for (way, line) in (1_i64..).zip(lines_deg) {
+        let mut refs = Vec::new();
+        for (index, [lon_deg, lat_deg]) in line.iter().enumerate() {
+            last += 1;
             let mut node = Vec::new();
-            number(&mut node, 1, zigzag(id));
+            number(&mut node, 1, zigzag(last));
             number(&mut node, 8, zigzag((lat_deg * 1e7).round() as i64));
             number(&mut node, 9, zigzag((lon_deg * 1e7).round() as i64));
             bytes(&mut nodes, 1, &node);
-            ids.push(id);
+            varint(&mut refs, zigzag(if index == 0 { last } else { 1 }));
         }
-        let mut refs = Vec::new();
-        varint(&mut refs, zigzag(ids[0]));
-        varint(&mut refs, zigzag(ids[1] - ids[0]));
         let mut record = Vec::new();
         number(&mut record, 1, way as u64);
         // highway=primary: strings 1 and 2 of the table.
@@ -56,9 +60,8 @@ pub(crate) fn write(path: &Path, raster: &Raster, roads: &[StraightRoad]) {
 }
 
 /// Longitude and latitude of a (column, row) of a raster.
-fn to_degrees(raster: &Raster, [column, row]: [f64; 2]) -> [f64; 2] {
-    let x_m = (raster.west as f64 + column) * CELL_M;
-    utm_to_degrees(&[[x_m, (raster.north as f64 - row) * CELL_M]])[0]
+fn to_degrees(raster: &Raster, at: [f64; 2]) -> [f64; 2] {
+    utm_to_degrees(&[raster.position_m(at)])[0]
 }
 
 /// Longitude and latitude of positions in the rasters' CRS.

@@ -4,6 +4,7 @@
 #![allow(dead_code, reason = "each test binary uses its own part")]
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 
+pub(crate) mod agreement;
 pub(crate) mod extract;
 pub(crate) mod parts;
 pub(crate) mod rays;
@@ -41,6 +42,8 @@ pub(crate) struct Raster {
     pub(crate) north: i64,
     /// Row by row from the north, NaN where there is no data.
     pub(crate) heights_m: Vec<f32>,
+    /// Spacing east and north.
+    pub(crate) cell_m: [f64; 2],
 }
 
 impl Raster {
@@ -56,7 +59,18 @@ impl Raster {
             .flat_map(|row| (0..columns as i64).map(move |column| (column, row)))
             .map(|(column, row)| height_m(column, row))
             .collect();
-        Self { columns, rows, west, north, heights_m }
+        Self { columns, rows, west, north, heights_m, cell_m: [CELL_M; 2] }
+    }
+
+    /// The same samples with other cells, east and north.
+    pub(crate) fn with_cells(self, cell_m: [f64; 2]) -> Self {
+        Self { cell_m, ..self }
+    }
+
+    /// x and y of a (column, row) in the raster's CRS, fractions allowed.
+    pub(crate) fn position_m(&self, [column, row]: [f64; 2]) -> [f64; 2] {
+        let (i, j) = (self.west as f64 + column, self.north as f64 - row);
+        [i * self.cell_m[0], j * self.cell_m[1]]
     }
 
     /// The height of a global node, `None` in voids and outside.
@@ -71,9 +85,9 @@ impl Raster {
 
     /// Writes a GeoTIFF.
     pub(crate) fn write(&self, path: &Path) {
-        let (x_m, y_m) = (self.west as f64 * CELL_M, self.north as f64 * CELL_M);
         let values = self.heights_m.iter().map(|h| if h.is_nan() { -9999.0 } else { *h }).collect();
-        write_samples(path, (self.columns, self.rows), (EPSG, [x_m, y_m], CELL_M), values);
+        let first = self.position_m([0.0; 2]);
+        write_samples(path, (self.columns, self.rows), (EPSG, first, self.cell_m), values);
     }
 }
 
@@ -89,21 +103,21 @@ pub(crate) fn write_degrees(
         [north_west[0] + column as f64 * step_deg, north_west[1] - row as f64 * step_deg]
     };
     let values = (0..side * side).map(|k| height_m(at(k / side, k % side)) as f32).collect();
-    write_samples(path, (side, side), (4326, north_west, step_deg), values);
+    write_samples(path, (side, side), (4326, north_west, [step_deg; 2]), values);
 }
 
 /// Writes samples of a grid: EPSG code, position of the first sample, spacing. −9999 is nodata.
-fn write_samples(
+pub(crate) fn write_samples(
     path: &Path,
     size: (usize, usize),
-    (epsg, first, spacing): (u32, [f64; 2], f64),
+    (epsg, first, [east, north]): (u32, [f64; 2], [f64; 2]),
     values: Vec<f32>,
 ) {
     let driver = DriverManager::get_driver_by_name("GTiff").unwrap();
     let mut dataset = driver.create_with_band_type::<f32, _>(path, size.0, size.1, 1).unwrap();
     // Pixels are areas: a sample is the centre of its pixel.
-    let [x, y] = [first[0] - spacing / 2.0, first[1] + spacing / 2.0];
-    dataset.set_geo_transform(&[x, spacing, 0.0, y, 0.0, -spacing]).unwrap();
+    let [x, y] = [first[0] - east / 2.0, first[1] + north / 2.0];
+    dataset.set_geo_transform(&[x, east, 0.0, y, 0.0, -north]).unwrap();
     dataset.set_spatial_ref(&SpatialRef::from_epsg(epsg).unwrap()).unwrap();
     let mut band = dataset.rasterband(1).unwrap();
     band.set_no_data_value(Some(-9999.0)).unwrap();
@@ -113,16 +127,26 @@ fn write_samples(
 /// How a package is built.
 #[derive(Clone, Copy)]
 pub(crate) struct Options {
+    /// Working CRS, where it is not the raster's own.
+    pub(crate) crs: Option<&'static str>,
     pub(crate) cell_m: Option<f64>,
     pub(crate) max_error_m: f64,
     pub(crate) fill_voids: u32,
     pub(crate) threads: usize,
+    pub(crate) height_range_m: Option<[f64; 2]>,
 }
 
 impl Options {
     /// The raster's own cell, nothing filled.
     pub(crate) fn plain(max_error_m: f64) -> Self {
-        Self { cell_m: None, max_error_m, fill_voids: 0, threads: 2 }
+        Self {
+            crs: None,
+            cell_m: None,
+            max_error_m,
+            fill_voids: 0,
+            threads: 2,
+            height_range_m: None,
+        }
     }
 }
 
@@ -146,12 +170,14 @@ pub(crate) fn settings(
         output,
         existing: Existing::Keep,
         terrain: TerrainSettings {
-            crs: None,
+            crs: options.crs.map(str::to_owned),
             dem_crs: None,
             dem_vertical_crs: None,
             vertical_crs: None,
             vertical_shift_m: 0.0,
-            nodata: None,
+            nodata: Vec::new(),
+            height_range_m: options.height_range_m,
+            allow_fine_cell: false,
             cell: options.cell_m.map(corniche_geom::Cell::from),
             cell_every: None,
             scale_latitude_deg: None,

@@ -18,6 +18,8 @@ const MAX_COUNT: u64 = 1 << 61;
 const POINT_SCALES: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 /// Working metres to a unit of the CRS, without its sign: a millimetre to a radian, and far beyond both.
 const FACTORS: std::ops::RangeInclusive<f64> = 1e-6..=1e9;
+/// More values that mean "no data" than any set of files has.
+const MAX_NODATA: usize = 64;
 /// Classes 0 to 8.
 const CLASSES: usize = corniche_roads::FunctionalRoadClass::COUNT;
 
@@ -83,6 +85,20 @@ impl Manifest {
         measure("settings.simplify_cells", settings.simplify_cells)?;
         all_positive("settings.cell_m", settings.cell_m.map_or([1.0; 2], Cell::to_array))?;
         all_measures("settings.vertical_shift_m", &[settings.vertical_shift_m])?;
+        that(
+            settings.nodata.len() <= MAX_NODATA,
+            "the number of settings.nodata",
+            settings.nodata.len(),
+        )?;
+        that(
+            settings.nodata.iter().all(|value| value.is_finite()),
+            "settings.nodata",
+            &settings.nodata,
+        )?;
+        if let Some([low_m, high_m]) = settings.height_range_m {
+            all_measures("settings.height_range_m", &[low_m, high_m])?;
+            that(low_m <= high_m, "settings.height_range_m", [low_m, high_m])?;
+        }
         let cells = &settings.class_max_cell_m;
         that(cells.len() <= CLASSES, "the number of settings.class_max_cell_m", cells.len())?;
         cells
@@ -148,7 +164,12 @@ fn check_counts(counts: &Counts) -> Result<(), String> {
     check_sum("counts", [counts.roads_kept_um])?;
     check_sum("counts.roads_lost", counts.roads_lost.iter().map(|loss| loss.roads))?;
     check_sum("counts.roads_lost", counts.roads_lost.iter().map(|loss| loss.length_um))?;
-    let names = [&counts.defects, &counts.unknown_highways, &counts.highways_left_out];
+    let names = [
+        &counts.defects,
+        &counts.unknown_highways,
+        &counts.tags_taken_otherwise,
+        &counts.highways_left_out,
+    ];
     for list in names {
         check_sum("counts", list.iter().map(|&(_, count)| count))?;
     }

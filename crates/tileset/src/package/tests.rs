@@ -60,7 +60,8 @@ fn manifest(max_level: u8) -> Manifest {
         settings: SettingsRecord {
             max_error_m: 0.1 + 0.2,
             fill_voids: 32,
-            nodata: None,
+            nodata: Vec::new(),
+            height_range_m: None,
             dem_crs: None,
             dem_vertical_crs: None,
             vertical_crs: None,

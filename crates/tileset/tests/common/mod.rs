@@ -99,7 +99,8 @@ pub(crate) fn manifest() -> Manifest {
         settings: SettingsRecord {
             max_error_m: 8.0,
             fill_voids: 32,
-            nodata: None,
+            nodata: Vec::new(),
+            height_range_m: None,
             dem_crs: None,
             dem_vertical_crs: None,
             vertical_crs: None,

@@ -71,11 +71,11 @@ pub(crate) fn all() -> Vec<Case> {
         (
             "losses that overflow",
             "/counts/roads_lost",
-            json!([{ "reason": "a", "roads": huge, "length_m": 0.0 }, { "reason": "b", "roads": 1, "length_m": 0.0 }]),
+            json!([{ "reason": "a", "roads": huge, "length_um": 0 }, { "reason": "b", "roads": 1, "length_um": 0 }]),
             "add up",
         ),
-        ("lengths of 1e308", "/counts/roads_kept_m", json!(1e308), "counts.roads_kept_m"),
-        ("ten classes", "/counts/classes", json!(vec![(1, 1.0); 10]), "counts.classes is 10"),
+        ("lengths of 2^64 - 1", "/counts/roads_kept_um", json!(huge), "add up"),
+        ("ten classes", "/counts/classes", json!(vec![(1, 1); 10]), "counts.classes is 10"),
         ("growth of a level that is not", "/growth/0/level", json!(3), "growth.level is 3"),
         ("growth of class 9", "/growth/0/class", json!(9), "growth.class is 9"),
         (
@@ -140,7 +140,7 @@ pub(crate) fn all() -> Vec<Case> {
     let texts = format!("[\"\"{}]", ",\"\"".repeat(5_500_000));
     cases.push(read("five million empty texts", with_attribution(&texts), 320));
     let mut long = metadata();
-    long["corniche"]["counts"]["roads_in_m"] = json!("HERE");
+    long["corniche"]["point_scale"] = json!("HERE");
     let long = long.to_string().replace("\"HERE\"", &format!("0.{}", "7".repeat(8_000_000)));
     cases.push(read("a number of eight million digits", with_metadata(long.as_bytes()), 64));
     cases

@@ -56,10 +56,11 @@ pub(super) struct Pipelines {
 impl Pipelines {
     pub(super) fn new(device: &Device, layouts: &Layouts) -> Self {
         let ground_attributes = vertex_attr_array![0 => Float32x3, 1 => Snorm8x4];
-        let segment_attributes =
-            vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32, 3 => Uint32];
+        let segment_attributes = vertex_attr_array![
+            0 => Float32x4, 1 => Float32x4, 2 => Float32x2, 3 => Uint32, 4 => Float16x4, 5 => Float16x4
+        ];
         let volume_attributes = vertex_attr_array![
-            0 => Float32x2, 1 => Float32x2, 2 => Float32x2, 3 => Float32x2, 4 => Float32, 5 => Uint32
+            0 => Float32x2, 1 => Float32x2, 2 => Float32x2, 3 => Float32x2, 4 => Float32x2, 5 => Uint32
         ];
         let terrain_groups = [Some(&layouts.frame), Some(&layouts.tile)];
         let terrain = |constants| Recipe {

@@ -34,7 +34,7 @@ impl Bridges {
             .iter()
             .map(|tile| BorderTile {
                 id: tile.buffers.id,
-                width_m: tile.buffers.width_m,
+                side_m: tile.buffers.size_m[0].min(tile.buffers.size_m[1]),
                 skirt_depth_m: tile.skirt_depth_m,
                 ends: tile.buffers.roads(roads.method).map_or(&[], |roads| &roads.ends),
             })
@@ -52,6 +52,7 @@ impl Bridges {
                 end_in_tile: end,
                 height_range_in_tile,
                 near: NearHeights { range_in_tile: height_range_in_tile, rise: 0.0 },
+                width_factor: bridge.width_factor,
                 class: bridge.class,
             };
             (volume, bridge.coarse as u32 + 1)

@@ -7,7 +7,7 @@ use wgpu::{Buffer, BufferUsages};
 use super::Gpu;
 use crate::{
     ClassSet, RoadMethod, RoadOptions,
-    tiles::{RoadEnd, RoadList, RoadVolume, TileGeometry},
+    tiles::{Bed, RoadEnd, RoadList, RoadVolume, TileGeometry},
 };
 
 /// A tile on the graphics card.
@@ -17,7 +17,7 @@ pub struct TileBuffers {
     pub(super) volumes: RoadBuffers,
     pub(super) reference_m: [f64; 3],
     pub(super) width_margin_m: f64,
-    pub(super) width_m: f64,
+    pub(super) size_m: [f64; 2],
     pub(super) id: TileId,
     triangles: u64,
 }
@@ -99,11 +99,12 @@ impl RoadBuffers {
 
 /// Bytes of one ground vertex: position as three f32, normal and skirt flag as four i8.
 pub(super) const GROUND_STRIDE: u64 = 16;
-/// Bytes of one road segment: two positions as three f32 each, cross slope as f32, class as u32.
-pub(super) const SEGMENT_STRIDE: u64 = 32;
-/// Bytes of one road volume: two plan positions and two height ranges as two f32 each, rise as f32, class and other
-/// tile as u32.
-pub(super) const VOLUME_STRIDE: u64 = 40;
+/// Bytes of one road segment: two plan positions as two f32 each, two shares, two slopes, a height and a width
+/// factor as f32, class and flags as u32, eight bounds as f16.
+pub(super) const SEGMENT_STRIDE: u64 = 60;
+/// Bytes of one road volume: two plan positions and two height ranges as two f32 each, rise and width factor as
+/// f32, class and other tile as u32.
+pub(super) const VOLUME_STRIDE: u64 = 44;
 
 impl TileBuffers {
     /// Uploads a tile.
@@ -129,7 +130,7 @@ impl TileBuffers {
             volumes,
             reference_m: tile.reference_m,
             width_margin_m: tile.width_margin_m,
-            width_m: tile.width_m,
+            size_m: tile.size_m,
             id: tile.id,
             triangles: (tile.ground.surface_indices / 3) as u64,
         }
@@ -170,12 +171,34 @@ fn ground_bytes(tile: &TileGeometry) -> Vec<u8> {
 fn segment_bytes(tile: &TileGeometry) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(tile.roads.all().len() * SEGMENT_STRIDE as usize);
     for segment in tile.roads.all() {
-        bytes.extend_from_slice(bytemuck::cast_slice(&segment.start_in_tile));
-        bytes.extend_from_slice(bytemuck::cast_slice(&segment.end_in_tile));
-        bytes.extend_from_slice(&segment.cross_slope.to_ne_bytes());
-        bytes.extend_from_slice(&u32::from(segment.class.number()).to_ne_bytes());
+        let Bed { slopes, rises, most_m, leaves_tile } = segment.bed;
+        for pair in [segment.start_in_tile, segment.end_in_tile, segment.shares, slopes] {
+            bytes.extend_from_slice(bytemuck::cast_slice(&pair));
+        }
+        bytes.extend_from_slice(&segment.height_in_tile.to_ne_bytes());
+        bytes.extend_from_slice(&segment.width_factor.to_ne_bytes());
+        let [at_start, at_end] = segment.has_caps;
+        let flags = [at_start, at_end].into_iter().chain(leaves_tile);
+        let flags = flags.zip(4..).fold(0, |flags, (flag, bit)| flags | u32::from(flag) << bit);
+        bytes.extend_from_slice(&(u32::from(segment.class.number()) | flags).to_ne_bytes());
+        for bound in [rises].iter().chain(&most_m).flatten() {
+            bytes.extend_from_slice(&f16_above(*bound).to_ne_bytes());
+        }
     }
     bytes
+}
+
+/// The bits of a 16-bit float that is not below a number from 0 up: the nearest such, or a little more.
+fn f16_above(value: f32) -> u16 {
+    // 2^-14, below which its digits get fewer, and the greatest there is.
+    const LEAST: f32 = 6.103_515_6e-5;
+    const MOST: f32 = 65_504.0;
+    if value <= 0.0 {
+        return 0;
+    }
+    // Both count exponent and digits in one number; the exponents differ by 112, the digits by 13 bits.
+    let bits = value.clamp(LEAST, MOST).to_bits();
+    (((bits + 0x1FFF) >> 13) - (112 << 10)) as u16
 }
 
 /// Volumes, each with the number of the other tile it belongs to, 0 for those that are no bridges.
@@ -187,6 +210,7 @@ pub(super) fn volume_bytes(volumes: impl Iterator<Item = (RoadVolume, u32)>) -> 
         bytes.extend_from_slice(bytemuck::cast_slice(&volume.height_range_in_tile));
         bytes.extend_from_slice(bytemuck::cast_slice(&volume.near.range_in_tile));
         bytes.extend_from_slice(&volume.near.rise.to_ne_bytes());
+        bytes.extend_from_slice(&volume.width_factor.to_ne_bytes());
         let class = u32::from(volume.class.number());
         bytes.extend_from_slice(&(class | other << 4).to_ne_bytes());
     }
@@ -211,6 +235,23 @@ mod tests {
         check(&[4], std::slice::from_ref(&(0..9)));
         check(&[2], &[0..2, 5..9]);
         check(&[0, 6], std::slice::from_ref(&(2..6)));
+    }
+
+    #[test]
+    fn bounds_in_16_bits_are_never_too_low_and_hardly_too_high() {
+        // As IEEE 754 has it: 10 digits after the first.
+        let value_of = |bits: u16| {
+            let digits = 1.0 + f64::from(bits & 0x3FF) / 1024.0;
+            digits * 2.0_f64.powi(i32::from(bits >> 10) - 15)
+        };
+        assert_eq!((f16_above(0.0), f16_above(1.0), f16_above(65_504.0)), (0, 0x3C00, 0x7BFF));
+        for k in 0..4000 {
+            let value = 1e-4 * 1.005_f32.powi(k);
+            let coded = value_of(f16_above(value));
+            let exact = f64::from(value.min(65_504.0));
+            assert!((exact..=exact * 1.001).contains(&coded), "{value} became {coded}");
+        }
+        assert!(value_of(f16_above(1e-9)) < 1e-4 && value_of(f16_above(f32::INFINITY)) > 65_503.0);
     }
 
     #[test]

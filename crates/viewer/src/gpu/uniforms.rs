@@ -56,7 +56,7 @@ pub(super) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
     rows.push([
         if view.roads.caps == Caps::Round { 1.0 } else { 0.0 },
         if view.roads.cap_test == CapTest::PaperQuadratic { 1.0 } else { 0.0 },
-        0.0,
+        view.point_scale as f32,
         0.0,
     ]);
     rows.push([lowest_m as f32, (1.0 / (highest_m - lowest_m).max(1.0)) as f32, 0.0, 0.0]);
@@ -64,7 +64,7 @@ pub(super) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
     rows.extend(style.roads.iter().map(|road| {
         let center_share = road.center.map_or(-1.0, |center| center.width_share);
         [
-            road.width_m / 2.0 * scaling.constant * view.point_scale as f32,
+            road.width_m / 2.0 * scaling.constant,
             road.min_width_px / 2.0 * samples,
             center_share,
             0.0,
@@ -94,7 +94,7 @@ pub(super) fn tile_rows(view: &FrameView<'_>, tile: &DrawTile<'_>, number: u32) 
             height_m,
             tile.buffers.width_margin_m,
             f64::from(number),
-            NearHeights::reach_m(tile.buffers.width_m),
+            NearHeights::reach_m(tile.buffers.size_m),
         )),
     ]
 }

@@ -14,8 +14,8 @@ const MAX_OFFSET_SHARE: f64 = 2.0 / 256.0;
 pub struct BorderTile<'a> {
     /// Which.
     pub id: TileId,
-    /// Side of its square, metres.
-    pub width_m: f64,
+    /// The shorter of its sides, metres.
+    pub side_m: f64,
     /// How far its skirt hangs, true metres.
     pub skirt_depth_m: f64,
     /// Where its roads meet its border.
@@ -46,6 +46,8 @@ pub struct Bridge {
     pub ends_m: [[f64; 2]; 2],
     /// Lowest and highest true height that it may have to cover.
     pub height_range_m: [f64; 2],
+    /// Working metres across the road for each true metre across it.
+    pub width_factor: f32,
 }
 
 /// The bridges between tiles that are drawn together, in order of the finer tiles, then of class.
@@ -70,6 +72,7 @@ pub fn bridges(tiles: &[BorderTile<'_>]) -> Vec<Bridge> {
                 coarse,
                 class: end.class,
                 ends_m: [end.at_m, partner.at_m],
+                width_factor: end.width_factor,
                 height_range_m: [low[0].min(high[0]) - skirt_m, low[1].max(high[1]) + skirt_m],
             });
         }
@@ -86,7 +89,7 @@ fn partner<'a>(end: &RoadEnd, beyond: &BorderTile<'a>) -> Option<&'a RoadEnd> {
         .ends
         .iter()
         .filter(|other| other.way_id == end.way_id && other.side == end.side.opposite())
-        .filter(|other| distance_m(other) <= MAX_OFFSET_SHARE * beyond.width_m)
+        .filter(|other| distance_m(other) <= MAX_OFFSET_SHARE * beyond.side_m)
         .min_by(|a, b| distance_m(a).total_cmp(&distance_m(b)))
 }
 
@@ -117,15 +120,15 @@ mod tests {
 
     fn end(way_id: i64, side: Side, at_m: [f64; 2], height_m: f64) -> RoadEnd {
         let class = FunctionalRoadClass::new(3).expect("a class");
-        RoadEnd { way_id, class, side, at_m, height_range_m: [height_m; 2] }
+        RoadEnd { way_id, class, side, at_m, height_range_m: [height_m; 2], width_factor: 1.0 }
     }
 
     /// A coarse tile of 200 m, 1/0/0, and the finer 2/2/0 of 100 m to its east.
     fn check(coarse: &[RoadEnd], fine: &[RoadEnd], expected: &[[[f64; 2]; 2]]) {
         let id = |z, x, y| TileId::new(z, x, y).expect("a tile");
         let tiles = [
-            BorderTile { id: id(1, 0, 0), width_m: 200.0, skirt_depth_m: 5.0, ends: coarse },
-            BorderTile { id: id(2, 2, 0), width_m: 100.0, skirt_depth_m: 3.0, ends: fine },
+            BorderTile { id: id(1, 0, 0), side_m: 200.0, skirt_depth_m: 5.0, ends: coarse },
+            BorderTile { id: id(2, 2, 0), side_m: 100.0, skirt_depth_m: 3.0, ends: fine },
         ];
         let found: Vec<_> = bridges(&tiles).iter().map(|bridge| bridge.ends_m).collect();
         assert_eq!(found, expected);
@@ -156,8 +159,8 @@ mod tests {
         let coarse = [end(7, Side::East, [200.0, 150.0], 10.0)];
         let fine = [end(7, Side::West, [200.0, 150.0], 12.0)];
         let tiles = [
-            BorderTile { id: id(1, 0, 0), width_m: 200.0, skirt_depth_m: 5.0, ends: &coarse },
-            BorderTile { id: id(2, 2, 0), width_m: 100.0, skirt_depth_m: 3.0, ends: &fine },
+            BorderTile { id: id(1, 0, 0), side_m: 200.0, skirt_depth_m: 5.0, ends: &coarse },
+            BorderTile { id: id(2, 2, 0), side_m: 100.0, skirt_depth_m: 3.0, ends: &fine },
         ];
         let found = bridges(&tiles);
         assert_eq!((found[0].fine, found[0].coarse), (1, 0));

@@ -25,13 +25,14 @@ struct Frame {
     // x: distance up to which road widths are true; y: exponent beyond; z: radius of the outline kernel in
     // pixels of this target; w: how many of these pixels make one pixel of the final picture.
     road_scale: vec4<f32>,
-    // x: 1 with caps, 0 without; y: 1 for the paper's test in the fragments of volumes.
+    // x: 1 with caps, 0 without; y: 1 for the paper's test in the fragments of volumes; z: world metres to
+    // a true metre, on the whole.
     road_options: vec4<f32>,
     // x: lowest ground; y: 1 / height range.
     heights: vec4<f32>,
     // rgb; w: share of the height range.
     tint: array<vec4<f32>, TINT_STOPS>,
-    // x: half width in world metres; y: least half width in pixels of this target; z: share of the width that
+    // x: half width in true metres near the eye; y: least half width in pixels of this target; z: share of the width that
     // the centre line takes, -1 without one.
     road_widths: array<vec4<f32>, CLASSES>,
     road_fills: array<vec4<f32>, CLASSES>,
@@ -52,13 +53,19 @@ fn view_depth_of(depth_buffer: f32) -> f32 {
     return frame.forward.w / depth_buffer;
 }
 
+// How a road is drawn: its class, and how many world metres there are across it for each true metre.
+struct Road {
+    class_number: u32,
+    width_factor: f32,
+}
+
 // Half width of a road in world metres before it is kept from getting thinner than a pixel.
-fn scaled_half_width_m(road_class: u32, distance_m: f32) -> f32 {
+fn scaled_half_width_m(road: Road, distance_m: f32) -> f32 {
     let growth = pow(max(distance_m / frame.road_scale.x, 1.0), frame.road_scale.y);
-    return frame.road_widths[road_class].x * growth;
+    return frame.road_widths[road.class_number].x * road.width_factor * growth;
 }
 
 // Least half width in world metres at a depth.
-fn least_half_width_m(road_class: u32, view_depth: f32) -> f32 {
-    return frame.road_widths[road_class].y * frame.sky.w * view_depth;
+fn least_half_width_m(road: Road, view_depth: f32) -> f32 {
+    return frame.road_widths[road.class_number].y * frame.sky.w * view_depth;
 }

@@ -52,7 +52,9 @@ fn background_at(ray: vec3<f32>) -> vec3<f32> {
 
 // Width of a road at a place in pixels of the final picture, before it is kept from getting too thin.
 fn width_px(road_class: u32, distance_m: f32, depth: f32) -> f32 {
-    return 2.0 * scaled_half_width_m(road_class, distance_m) / (frame.sky.w * depth * frame.road_scale.w);
+    // Whose pixel it is, is not known here, so neither in which direction the road runs: as wide as on the whole.
+    let road = Road(road_class, frame.road_options.z);
+    return 2.0 * scaled_half_width_m(road, distance_m) / (frame.sky.w * depth * frame.road_scale.w);
 }
 
 // What a pixel sees of ground or sky.

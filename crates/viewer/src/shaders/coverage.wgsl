@@ -115,7 +115,7 @@ fn seen_px(right: vec2<f32>, down: vec2<f32>, from_start: vec2<f32>, start_to_en
 
 // What the ground at a pixel is to a segment: 0 nothing, else a label.
 fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
-    road_class: u32, widest_m: f32) -> u32 {
+    road: Road, widest_m: f32) -> u32 {
     let position = position_at(center, depth_buffer);
     let distance_m = length(position);
     let plan_m = length(from_segment(position.xy - start, start_to_end));
@@ -123,34 +123,34 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, start: vec2<
         return NOTHING;
     }
     // The centre line is a road of its own, narrower in all respects.
-    let share = center_share(road_class);
-    let half_m = scaled_half_width_m(road_class, distance_m);
+    let share = center_share(road.class_number);
+    let half_m = scaled_half_width_m(road, distance_m);
     if share > 0.0 && plan_m <= share * half_m {
-        return center_label(road_class);
+        return center_label(road.class_number);
     }
     let looks_m = stretch_of(distance_m, position.z)
-        * least_half_width_m(road_class, view_depth_of(depth_buffer));
+        * least_half_width_m(road, view_depth_of(depth_buffer));
     let is_within = plan_m <= half_m;
     if plan_m > looks_m * select(1.0, share, is_within) {
-        return select(NOTHING, fill_label(road_class), is_within);
+        return select(NOTHING, fill_label(road.class_number), is_within);
     }
     let right = plan_step(pixel, vec2(1, 0), depth_buffer, position.xy, start, start_to_end);
     let down = plan_step(pixel, vec2(0, 1), depth_buffer, position.xy, start, start_to_end);
     let seen = seen_px(right, down, position.xy - start, start_to_end);
-    let least_px = frame.road_widths[road_class].y;
+    let least_px = frame.road_widths[road.class_number].y;
     if plan_m <= share * looks_m && seen <= share * least_px {
-        return center_label(road_class);
+        return center_label(road.class_number);
     }
-    return select(NOTHING, fill_label(road_class), is_within || seen <= least_px);
+    return select(NOTHING, fill_label(road.class_number), is_within || seen <= least_px);
 }
 
 // Bounds on the half width of a road none of which is farther away than `far_m` or nearer in height to the eye
 // than `near_height_m`.
-fn bounding_radius_m(road_class: u32, far_m: f32, near_height_m: f32) -> f32 {
-    let first = max(scaled_half_width_m(road_class, far_m), MAX_STRETCH * least_half_width_m(road_class, far_m));
+fn bounding_radius_m(road: Road, far_m: f32, near_height_m: f32) -> f32 {
+    let first = max(scaled_half_width_m(road, far_m), MAX_STRETCH * least_half_width_m(road, far_m));
     let reach_m = far_m + 2.0 * first;
     let stretch = stretch_of(reach_m, near_height_m);
-    return max(scaled_half_width_m(road_class, reach_m), stretch * least_half_width_m(road_class, reach_m));
+    return max(scaled_half_width_m(road, reach_m), stretch * least_half_width_m(road, reach_m));
 }
 
 // More important classes have larger labels; the centre line of a class lies above its fill.

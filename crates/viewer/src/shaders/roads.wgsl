@@ -1,28 +1,40 @@
-// Roads as geometry (GEO): one quad per segment around both caps, caps cut in the fragment shader.
+// Roads as geometry (GEO): one quad per piece of a road in one triangle of the ground.
 //
-// Source: Vaaraniemi, Treib & Westermann 2011, High-Quality Cartographic Roads on High-Resolution DEMs,
-// section 4. The quad lies in the plane of the triangle beneath the segment:
+// Source: Vaaraniemi, Treib & Westermann 2011, High-Quality Cartographic Roads on High-Resolution DEMs, section 4.
+// The paper's quad lies level under a segment and the caps around its ends. Ground that bends within the road's width
+// is then beside the quad as the eye sees it, most of all at a grazing angle, and the road is too narrow there or breaks
+// into dashes (its Fig. 15). Here a quad stands for a *bed*: what lies beside the piece, as far as the road is wide,
+// between the lowest and the highest ground there, measured from the plane that the piece lies in.
 //
-//      ┌──────────────────────────────────┐  ─ across = +radius
-//      │  ╭─ a ────────────────────── b ─╮│
-//      │  ╰──────────────────────────────╯│
-//      └──────────────────────────────────┘  ─ across = −radius
-//   −radius  0                    length  length + radius     = along
+//       from the side               from above                            as the eye sees it
+//                                    ┌───┬─────┬───────────┐                ┌──────────────┐
+//     ─ ─ ─ ─ ─ ─ ─ above          ╭─┤   │     │           ├─╮              │  ╱‾‾‾‾‾‾‾╲   │   the quad turns about
+//       ╱‾╲__ ground               │ a───x─────x───────────b │              │ ╱ the bed ╲  │   the piece towards the
+//     ─ ─ ─ ─ ─ ─ ─ plane          ╰─┤   │     │           ├─╯              │ ╲_________╱  │   eye and hides the bed
+//     ─ ─ ─ ─ ─ ─ ─ below            └───┴─────┴───────────┘                └──────────────┘
+//                                  caps where the road does not
+//                                  go straight on, at a and b
 //
-// What we changed: the paper's quad is level across the road, so that on a cross slope the road is too narrow (its
-// Fig. 15). Ours has the slope of the ground and is wrong only where that changes within the road's width: there it
-// is still too narrow. The paper cuts the caps by the fragment's own place in the quad and tests its depth against
-// the terrain's. Here the ground seen at the pixel decides (coverage.wgsl). One test cuts body and caps, and
-// replaces the depth test with its bias: ground within the road's half width is painted though the quad dips below
-// it, and nothing is painted that hangs over a crest or lies behind a ridge.
+// Which of the pixels behind the quad are road is decided by the ground seen there (coverage.wgsl), with the whole
+// segment of which this is a piece. That replaces the paper's depth test with its bias: what is not near the road on
+// the ground is not painted, be it in front of the road, behind a ridge or beside the piece.
 
 struct SegmentIn {
     @builtin(vertex_index) corner: u32,
-    @location(0) start_in_tile: vec3<f32>,
-    @location(1) end_in_tile: vec3<f32>,
-    // Metres that the ground rises per metre to the left.
-    @location(2) cross_slope: f32,
-    @location(3) road_class: u32,
+    // The segment that this is a piece of, in plan: start and end.
+    @location(0) segment_in_tile: vec4<f32>,
+    // xy: which part of it, from 0 to 1; zw: how the plane rises along the piece and to its left.
+    @location(1) shares_slopes: vec4<f32>,
+    // Height of the piece's start; world metres across the road for each true metre.
+    @location(2) height_width_factor: vec2<f32>,
+    // Lowest four bits: class. Then a bit each: cap at the start, at the end; whether ground of other tiles may be
+    // within each of the three reaches.
+    @location(3) class_and_flags: u32,
+    // How far the ground leaves the plane, downwards and upwards. xy: for each metre away, within the first reach;
+    // zw: at most within the first reach.
+    @location(4) rises_near: vec4<f32>,
+    // At most within the second and the third.
+    @location(5) farther: vec4<f32>,
 }
 
 struct VertexOut {
@@ -30,36 +42,167 @@ struct VertexOut {
     @location(0) @interpolate(flat) start: vec2<f32>,
     @location(1) @interpolate(flat) start_to_end: vec2<f32>,
     @location(2) @interpolate(flat) road_class: u32,
+    @location(3) @interpolate(flat) width_factor: f32,
+}
+
+const AT_START = 0x10u;
+const AT_END = 0x20u;
+const LEAVES_TILE = 0x40u;
+// So many times as far away the quad looks the same, and the near plane does not cut it.
+const AWAY = 1024.0;
+// A quad shows a bed of which no point is nearer than this share of the way to it.
+const LEAST_NEAREST = 0.05;
+
+// How far the ground within a radius leaves the plane, downwards and upwards, world metres.
+fn leaving_m(in: SegmentIn, radius_m: f32) -> vec2<f32> {
+    let near_m = tile.base.w;
+    var most = min(in.rises_near.xy * radius_m, in.rises_near.zw);
+    var leaves_tile = in.class_and_flags & LEAVES_TILE;
+    if radius_m > 4.0 * near_m {
+        most = in.farther.zw;
+        leaves_tile = in.class_and_flags & (LEAVES_TILE << 2u);
+    } else if radius_m > near_m {
+        most = in.farther.xy;
+        leaves_tile = in.class_and_flags & (LEAVES_TILE << 1u);
+    }
+    // A neighbour's ground lies higher or lower than this tile's by no more than skirts are deep.
+    return most * frame.background.w + select(0.0, tile.offset.w, leaves_tile != 0u);
+}
+
+// A bed: its points are start + along · x + across · y + up · z, with x, y and z within these ranges.
+struct RoadBed {
+    start: vec3<f32>,
+    along: vec3<f32>,
+    across: vec3<f32>,
+    x: vec2<f32>,
+    y: vec2<f32>,
+    z: vec2<f32>,
+}
+
+// A plane across the way from the eye, a multiple of `plane_m` along `normal` away from it, and where on it, along `u` and
+// `v`, a bed is seen.
+struct Shown {
+    u: vec3<f32>,
+    v: vec3<f32>,
+    normal: vec3<f32>,
+    plane_m: f32,
+    least: vec2<f32>,
+    most: vec2<f32>,
+    // The same as of the plane for the point of the bed that is nearest along the normal, over that of the plane.
+    nearest: f32,
+}
+
+// On a plane that turns about the bed's axis towards the eye: the bed is hidden by as little as can be.
+fn shown_about_axis(bed: RoadBed) -> Shown {
+    var out: Shown;
+    let along_m = length(bed.along);
+    out.u = bed.along / along_m;
+    let to_axis = bed.start - out.u * dot(bed.start, out.u);
+    out.plane_m = length(to_axis);
+    out.normal = to_axis / max(out.plane_m, 1e-9);
+    out.v = cross(out.normal, out.u);
+    // Neither the normal nor v has a part along the axis.
+    let start_u = dot(bed.start, out.u);
+    let across = vec3(dot(bed.across, out.u), dot(bed.across, out.v), dot(bed.across, out.normal));
+    let up = vec3(out.u.z, out.v.z, out.normal.z);
+    let ends = start_u + bed.x * along_m;
+    // The four edges along the axis.
+    let y = vec4(bed.y.x, bed.y.y, bed.y.x, bed.y.y);
+    let z = vec4(bed.z.xx, bed.z.yy);
+    let away = (out.plane_m + across.z * y + up.z * z) / max(out.plane_m, 1e-9);
+    let seen_v = (across.y * y + up.y * z) / away;
+    let aside = across.x * y + up.x * z;
+    let first = (ends.x + aside) / away;
+    let last = (ends.y + aside) / away;
+    out.least = vec2(least_of(min(first, last)), least_of(seen_v));
+    out.most = vec2(-least_of(-max(first, last)), -least_of(-seen_v));
+    out.nearest = least_of(away);
+    return out;
+}
+
+// On the plane through the bed's middle, for an eye that is in the bed's axis or near it.
+fn shown_from_its_end(bed: RoadBed) -> Shown {
+    var out: Shown;
+    let middle = bed.start + bed.along * (0.5 * (bed.x.x + bed.x.y));
+    out.plane_m = length(middle);
+    out.normal = middle / max(out.plane_m, 1e-9);
+    let aside = select(vec3(0.0, 0.0, 1.0), vec3(1.0, 0.0, 0.0), abs(out.normal.z) > 0.9);
+    out.u = normalize(cross(out.normal, aside));
+    out.v = cross(out.normal, out.u);
+    out.least = vec2(NEVER);
+    out.most = vec2(-NEVER);
+    out.nearest = NEVER;
+    for (var k = 0u; k < 8u; k++) {
+        let x = select(bed.x.x, bed.x.y, (k & 1u) != 0u);
+        let y = select(bed.y.x, bed.y.y, (k & 2u) != 0u);
+        let z = select(bed.z.x, bed.z.y, (k & 4u) != 0u);
+        let corner = bed.start + bed.along * x + bed.across * y + vec3(0.0, 0.0, z);
+        let away = dot(corner, out.normal) / max(out.plane_m, 1e-9);
+        let seen = vec2(dot(corner, out.u), dot(corner, out.v)) / away;
+        out.least = min(out.least, seen);
+        out.most = max(out.most, seen);
+        out.nearest = min(out.nearest, away);
+    }
+    return out;
+}
+
+fn least_of(values: vec4<f32>) -> f32 {
+    return min(min(values.x, values.y), min(values.z, values.w));
 }
 
 @vertex
 fn vertex(in: SegmentIn) -> VertexOut {
-    let exaggerated = vec3(1.0, 1.0, frame.background.w);
-    let a = tile.offset.xyz + in.start_in_tile * exaggerated;
-    let ab = (in.end_in_tile - in.start_in_tile) * exaggerated;
-    let length_m = length(ab.xy);
-    let direction = select(vec2(1.0, 0.0), ab.xy / length_m, length_m > 1e-6);
-    let far_m = max(length(a), length(a + ab));
-    let radius_m = bounding_radius_m(in.road_class, far_m, min(abs(a.z), abs(a.z + ab.z)));
+    let vertical_scale = frame.background.w;
+    let road = Road(in.class_and_flags & 15u, in.height_width_factor.y);
+    let start = tile.offset.xy + in.segment_in_tile.xy;
+    let start_to_end = in.segment_in_tile.zw - in.segment_in_tile.xy;
+    let segment_m = length(start_to_end);
+    let direction = select(vec2(1.0, 0.0), start_to_end / segment_m, segment_m > 1e-6);
+    let left = vec2(-direction.y, direction.x);
+    let slopes = in.shares_slopes.zw * vertical_scale;
+    let a = vec3(start + start_to_end * in.shares_slopes.x, tile.offset.z + in.height_width_factor.x * vertical_scale);
+    let length_m = segment_m * (in.shares_slopes.y - in.shares_slopes.x);
+    let along = vec3(direction, slopes.x);
+    let b = a + along * length_m;
 
-    // Beyond its ends the quad goes on with the segment's slope. The slope of a segment much shorter than the
-    // road is wide says nothing about the ground under its caps.
-    let slope = ab.z / max(length_m, 0.5 * radius_m);
-    let side = f32(in.corner & 1u) * 2.0 - 1.0;
-    let at_end = f32(in.corner >> 1u);
-    let beyond = (at_end * 2.0 - 1.0) * radius_m;
-    let plan = direction * beyond + vec2(-direction.y, direction.x) * side * radius_m;
-    // A quad that is wider than the road, so that it is a pixel wide, reaches over ground that this triangle tells
-    // nothing about; and level it hides least behind itself.
-    let road_share = min(1.0, scaled_half_width_m(in.road_class, far_m) / radius_m);
-    let cross_slope = in.cross_slope * frame.background.w * road_share;
-    let position = a + ab * at_end + vec3(plan, slope * beyond + cross_slope * side * radius_m);
+    let far_m = max(length(a), length(b));
+    let near_height_m = select(0.0, min(abs(a.z), abs(b.z)), a.z * b.z > 0.0);
+    // Rounding of positions must not cut off ground at the rim; the fragment decides anyway.
+    let pad_m = 1e-6 * far_m + 0.01;
+    // As wide as roads may be, as for volumes: the neighbours know of no more.
+    let radius_m = min(bounding_radius_m(road, far_m, near_height_m), tile.base.y) + pad_m;
+    let leaving = leaving_m(in, radius_m) + pad_m * (1.0 + abs(slopes.x) + abs(slopes.y));
+    let ends = vec2(
+        -select(pad_m, radius_m, (in.class_and_flags & AT_START) != 0u),
+        length_m + select(pad_m, radius_m, (in.class_and_flags & AT_END) != 0u),
+    );
+
+    var bed: RoadBed;
+    bed.start = a;
+    bed.along = along;
+    bed.across = vec3(left, slopes.y);
+    bed.x = ends;
+    bed.y = vec2(-radius_m, radius_m);
+    bed.z = vec2(-leaving.x, leaving.y);
+    var shown = shown_about_axis(bed);
+    if shown.nearest < LEAST_NEAREST {
+        shown = shown_from_its_end(bed);
+    }
+    let side = vec2(f32(in.corner & 1u), f32(in.corner >> 1u));
+    let at = mix(shown.least, shown.most, side);
+    var position = shown.u * at.x + shown.v * at.y + shown.normal * shown.plane_m;
+    // The eye is in the bed, or as good as: it may be anywhere in the picture.
+    if shown.nearest < LEAST_NEAREST {
+        let everywhere = 1.01 * (2.0 * side - 1.0);
+        position = frame.forward.xyz + everywhere.x * frame.right.xyz + everywhere.y * frame.up.xyz;
+    }
 
     var out: VertexOut;
-    out.clip = frame.clip_from_relative * vec4(position, 1.0);
-    out.start = a.xy;
-    out.start_to_end = ab.xy;
-    out.road_class = in.road_class;
+    out.clip = frame.clip_from_relative * vec4(position * AWAY, 1.0);
+    out.start = start;
+    out.start_to_end = start_to_end;
+    out.road_class = road.class_number;
+    out.width_factor = road.width_factor;
     return out;
 }
 
@@ -72,7 +215,8 @@ fn fragment(in: VertexOut) -> @location(0) f32 {
         discard;
     }
     let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
-    let label = label_at(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, in.road_class, NEVER);
+    let road = Road(in.road_class, in.width_factor);
+    let label = label_at(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, road, tile.base.y);
     if label == NOTHING {
         discard;
     }

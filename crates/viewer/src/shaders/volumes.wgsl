@@ -24,7 +24,8 @@ struct VolumeIn {
     @location(2) height_range_in_tile: vec2<f32>,
     // Ground beneath the segment, and how much lower or higher it may be per metre away from it, up to `tile.base.w`.
     @location(3) near_range_in_tile: vec2<f32>,
-    @location(4) near_rise: f32,
+    // y: world metres across the road for each true metre.
+    @location(4) near_rise_width_factor: vec2<f32>,
     // Lowest four bits: class. Above, for a bridge, the number of the other tile it belongs to, else 0.
     @location(5) class_and_other: u32,
 }
@@ -34,6 +35,7 @@ struct VertexOut {
     @location(0) @interpolate(flat) start: vec2<f32>,
     @location(1) @interpolate(flat) start_to_end: vec2<f32>,
     @location(2) @interpolate(flat) class_and_other: u32,
+    @location(3) @interpolate(flat) width_factor: f32,
 }
 
 // The corners of a box as one strip of twelve triangles, all counter-clockwise seen from outside:
@@ -47,22 +49,22 @@ struct Reach {
 }
 
 // Half the width of a road whose ground lies between these heights, with them.
-fn reach_over(heights: vec2<f32>, road_class: u32, plan_m: f32) -> Reach {
+fn reach_over(heights: vec2<f32>, road: Road, plan_m: f32) -> Reach {
     let far_m = length(vec2(plan_m, max(abs(heights.x), abs(heights.y))));
     let near_height_m = select(0.0, min(abs(heights.x), abs(heights.y)), heights.x * heights.y > 0.0);
     // The ground was searched within the margin.
-    return Reach(min(bounding_radius_m(road_class, far_m, near_height_m), tile.base.y), heights);
+    return Reach(min(bounding_radius_m(road, far_m, near_height_m), tile.base.y), heights);
 }
 
 // Half the width of the box, and between which heights ground so near to the segment lies.
-fn reach_of(in: VolumeIn, road_class: u32, plan_m: f32) -> Reach {
+fn reach_of(in: VolumeIn, road: Road, plan_m: f32) -> Reach {
     let vertical_scale = frame.background.w;
     let all = tile.offset.z + in.height_range_in_tile * vertical_scale;
-    let rise = vec2(-1.0, 1.0) * in.near_rise;
+    let rise = vec2(-1.0, 1.0) * in.near_rise_width_factor.x;
     let near = tile.offset.z + (in.near_range_in_tile + rise * tile.base.w) * vertical_scale;
-    var reach = reach_over(clamp(near, all.xx, all.yy), road_class, plan_m);
+    var reach = reach_over(clamp(near, all.xx, all.yy), road, plan_m);
     if reach.radius_m > tile.base.w {
-        return reach_over(all, road_class, plan_m);
+        return reach_over(all, road, plan_m);
     }
     let nearer = tile.offset.z + (in.near_range_in_tile + rise * reach.radius_m) * vertical_scale;
     reach.heights = clamp(nearer, all.xx, all.yy);
@@ -72,7 +74,7 @@ fn reach_of(in: VolumeIn, road_class: u32, plan_m: f32) -> Reach {
 @vertex
 fn vertex(in: VolumeIn) -> VertexOut {
     let vertical_scale = frame.background.w;
-    let road_class = in.class_and_other & 15u;
+    let road = Road(in.class_and_other & 15u, in.near_rise_width_factor.y);
     let is_bridge = in.class_and_other > 15u;
     let a = tile.offset.xy + in.start_in_tile;
     let ab = in.end_in_tile - in.start_in_tile;
@@ -80,7 +82,7 @@ fn vertex(in: VolumeIn) -> VertexOut {
     let direction = select(vec2(1.0, 0.0), ab / length_m, length_m > 1e-6);
 
     let plan_m = max(length(a), length(a + ab));
-    let reach = reach_of(in, road_class, plan_m);
+    let reach = reach_of(in, road, plan_m);
     let radius_m = reach.radius_m;
     // Rounding of positions must not cut off ground at the rim; the fragment decides anyway. Beside a bridge the
     // ground was not searched, but rises or falls by more than the road is wide only on cliffs.
@@ -101,6 +103,7 @@ fn vertex(in: VolumeIn) -> VertexOut {
     out.start = a;
     out.start_to_end = ab;
     out.class_and_other = in.class_and_other;
+    out.width_factor = road.width_factor;
     return out;
 }
 
@@ -128,12 +131,12 @@ fn through_slab(origin: f32, speed: f32, low: f32, high: f32) -> vec2<f32> {
 
 // The paper's test, section 5.2: z0 < zt < z1. `share` of the road's width.
 fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
-    road_class: u32, share: f32) -> bool {
+    road: Road, share: f32) -> bool {
     let position = position_at(center, depth_buffer);
     let ground = length(position);
     let ray = normalize(ray_at(center));
     let radius_m = min(tile.base.y, share
-        * max(scaled_half_width_m(road_class, ground), least_half_width_m(road_class, view_depth_of(depth_buffer))));
+        * max(scaled_half_width_m(road, ground), least_half_width_m(road, view_depth_of(depth_buffer))));
 
     let length_m = length(start_to_end);
     let direction = select(vec2(1.0, 0.0), start_to_end / length_m, length_m > 1e-6);
@@ -153,13 +156,13 @@ fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, 
 }
 
 fn label_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
-    road_class: u32) -> u32 {
-    let share = center_share(road_class);
-    if share > 0.0 && is_road_by_the_paper(center, depth_buffer, start, start_to_end, road_class, share) {
-        return center_label(road_class);
+    road: Road) -> u32 {
+    let share = center_share(road.class_number);
+    if share > 0.0 && is_road_by_the_paper(center, depth_buffer, start, start_to_end, road, share) {
+        return center_label(road.class_number);
     }
-    let is_road = is_road_by_the_paper(center, depth_buffer, start, start_to_end, road_class, 1.0);
-    return select(NOTHING, fill_label(road_class), is_road);
+    let is_road = is_road_by_the_paper(center, depth_buffer, start, start_to_end, road, 1.0);
+    return select(NOTHING, fill_label(road.class_number), is_road);
 }
 
 @fragment
@@ -173,13 +176,13 @@ fn fragment(in: VertexOut) -> @location(0) f32 {
     if !is_mine && !is_bridged {
         discard;
     }
-    let road_class = in.class_and_other & 15u;
+    let road = Road(in.class_and_other & 15u, in.width_factor);
     let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
     var label: u32;
     if frame.road_options.y > 0.5 {
-        label = label_by_the_paper(in.clip.xy, depth_buffer, in.start, in.start_to_end, road_class);
+        label = label_by_the_paper(in.clip.xy, depth_buffer, in.start, in.start_to_end, road);
     } else {
-        label = label_at(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, road_class, tile.base.y);
+        label = label_at(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, road, tile.base.y);
     }
     if label == NOTHING {
         discard;

@@ -9,8 +9,10 @@ mod ground;
 #[cfg(not(target_arch = "wasm32"))]
 mod on_disk;
 mod package;
+mod plan_scale;
 mod relief;
 mod roads;
+mod slopes;
 
 use std::collections::BTreeMap;
 
@@ -24,9 +26,10 @@ use self::relief::Relief;
 pub use self::{
     ground::{GroundMesh, GroundVertex},
     package::PackageTiles,
+    plan_scale::PlanScale,
     roads::{
-        BadRoad, GroundLine, NearHeights, PlanLine, RoadEnd, RoadList, RoadSegment, RoadSegments,
-        RoadVolume, RoadVolumes, Side, TileLines,
+        BadRoad, Bed, GroundLine, NearHeights, PlanLine, RoadEnd, RoadList, RoadSegment,
+        RoadSegments, RoadVolume, RoadVolumes, Side, TileLines,
     },
 };
 use crate::lod::{GroundSummary, Node, Request, TileTree};
@@ -46,10 +49,12 @@ pub struct TileGeometry {
     pub roads: RoadSegments,
     /// The roads on it as volumes (SV); empty if that section was not read.
     pub volumes: RoadVolumes,
-    /// Half widths beyond this are not drawn as volumes.
+    /// Half widths beyond this are not drawn.
     pub width_margin_m: f64,
-    /// Side of its square.
-    pub width_m: f64,
+    /// Working metres across its roads for each true metre across them, where that is most.
+    pub most_width_factor: f64,
+    /// Its sides, east and north.
+    pub size_m: [f64; 2],
 }
 
 impl TileGeometry {
@@ -87,24 +92,35 @@ impl TileGeometry {
             geometric_error_m: terrain.geometric_error_m,
             height_range_m: terrain.height_range_m,
         });
-        let relief = Relief::new(id, surface, frame);
+        let relief = Relief::new(id, surface, frame, lines.width_margin_m);
+        let wide = relief.wide(&lines.ground);
+        let scale = &lines.scale;
+        let sources = lines.ground.iter().flat_map(|line| line.sources_m.iter().copied());
+        let in_plan = lines
+            .plan
+            .iter()
+            .flat_map(|line| line.points_m.windows(2))
+            .map(|pair| [pair[0], pair[1]]);
+        let most_width_factor =
+            sources.chain(in_plan).map(|ends_m| scale.across(ends_m)).fold(0.0, f64::max);
         Self {
             id,
             reference_m,
             summary,
             ground,
-            roads: RoadSegments::new(&lines.ground, bounds, reference_m, |at_m| {
-                relief.gradient(at_m)
+            most_width_factor,
+            roads: RoadSegments::of_lines(&lines.ground, bounds, reference_m, scale, |piece| {
+                relief.bed(piece, &wide)
             }),
-            volumes: RoadVolumes::new(&lines.plan, bounds, reference_m, |ends_m| {
+            volumes: RoadVolumes::new(&lines.plan, bounds, reference_m, scale, |ends_m| {
                 relief.near(ends_m)
             }),
             width_margin_m: lines.width_margin_m,
-            width_m: bounds.width(),
+            size_m: [bounds.width(), bounds.height()],
         }
     }
 
-    /// Decodes a tile's payload: terrain and what it has of roads. `width_margin_m` is its level's.
+    /// Decodes a tile's payload: terrain and what it has of roads. `width_margin_m` is its level's, `scale` the tile's.
     ///
     /// # Errors
     /// When a road does not fit the ground.
@@ -113,12 +129,22 @@ impl TileGeometry {
         frame: &Frame,
         quantum_m: f64,
         width_margin_m: f64,
+        scale: PlanScale,
     ) -> Result<Self, BadRoad> {
         let (id, terrain) = (payload.id, payload.terrain.as_ref());
         let has_roads = !payload.roads_geo.is_empty() || !payload.roads_sv.is_empty();
         let surface = surface(id, terrain.filter(|_| has_roads), frame, quantum_m);
         let lines = TileLines::of_payload(payload, surface.as_ref(), frame, width_margin_m)?;
+        let lines = TileLines { scale, ..lines };
         Ok(Self::on_surface(id, terrain, surface.as_ref(), &lines, frame, quantum_m))
+    }
+
+    /// The rectangle that it covers in the working CRS.
+    #[must_use]
+    pub fn plan_bounds(&self) -> Bounds {
+        let ([x, y, _], [east_m, north_m]) =
+            (self.reference_m, self.size_m.map(|side_m| side_m / 2.0));
+        Bounds { min_x: x - east_m, min_y: y - north_m, max_x: x + east_m, max_y: y + north_m }
     }
 
     /// True height of the ground at a position in the working CRS; `None` where this tile has no ground.

@@ -3,7 +3,7 @@ use std::collections::BTreeSet;
 use corniche_geom::{Frame, TileId};
 use corniche_tileset::{ByteSource, Manifest, OpenError, Package, Sections};
 
-use super::{LoadTileError, TileGeometry, TileLines};
+use super::{LoadTileError, PlanScale, TileGeometry, TileLines};
 use crate::RoadMethod;
 
 /// A package as tiles, wherever its bytes come from: it never waits by itself. [`PackageSource`](super::PackageSource) is
@@ -75,7 +75,9 @@ impl<S: ByteSource> PackageTiles<S> {
                 // The manifest has a record for every level of the frame: its reader checks.
                 let level = &self.manifest().levels[usize::from(id.z())];
                 let (frame, margin_m) = (self.frame(), level.width_margin_m);
-                TileGeometry::from_payload(&payload, frame, quantum_m, margin_m)
+                let Manifest { coordinates, point_scale, .. } = self.manifest();
+                let scale = PlanScale::of_tile(coordinates, frame.tile_bounds(id), *point_scale);
+                TileGeometry::from_payload(&payload, frame, quantum_m, margin_m, scale)
                     .map_err(|error| failed(error.into()))
             }
             // Not stored itself, but something beneath it is.

@@ -1,8 +1,12 @@
-use corniche_drape::near_ground;
-use corniche_geom::{Frame, TileId};
+use corniche_drape::{RoadPiece, near_ground, road_bed};
+use corniche_geom::{Bounds, Frame, TileId};
 use corniche_tin::Surface;
 
-use super::NearHeights;
+use super::{
+    Bed, GroundLine,
+    roads::Piece,
+    slopes::{Plane, Slopes},
+};
 
 /// What the roads of a tile are told of its ground when they are placed.
 ///
@@ -11,31 +15,100 @@ pub(super) struct Relief<'a> {
     frame: &'a Frame,
     /// `None` without ground, or without roads to ask.
     surface: Option<&'a Surface>,
-    reach_steps: f64,
+    tile: Bounds,
+    /// Metres within which a bed holds.
+    reaches_m: [f64; 3],
 }
 
 impl<'a> Relief<'a> {
-    /// The ground of tile `id`.
-    pub(super) fn new(id: TileId, surface: Option<&'a Surface>, frame: &'a Frame) -> Self {
-        let reach_m = NearHeights::reach_m(frame.tile_bounds(id).width());
-        Self { frame, surface, reach_steps: reach_m / frame.lattice_step_m() }
+    /// The ground of tile `id`, whose roads are drawn up to `width_margin_m` wide to each side.
+    pub(super) fn new(
+        id: TileId,
+        surface: Option<&'a Surface>,
+        frame: &'a Frame,
+        width_margin_m: f64,
+    ) -> Self {
+        let tile = frame.tile_bounds(id);
+        let reaches_m = Bed::reaches_m([tile.width(), tile.height()], width_margin_m);
+        Self { frame, surface, tile, reaches_m }
     }
 
     /// True heights of the ground beneath a segment in plan and how many metres they rise per metre away from it;
     /// `None` when there is no ground within [`NearHeights::reach_m`].
     pub(super) fn near(&self, ends_m: [[f64; 2]; 2]) -> Option<([f64; 2], f64)> {
         let ends = ends_m.map(|at| self.frame.fraction_of_position(at));
-        let found = near_ground(ends, self.surface?, self.reach_steps)?;
+        let [reach_m, ..] = self.reaches_m;
+        let found = near_ground(ends, self.surface?, reach_m / self.frame.lattice_step_m())?;
         Some((found.range_m, found.rise_m / self.frame.lattice_step_m()))
     }
 
-    /// How many true metres the ground at a position rises per metre east and per metre north; level where there is
-    /// none.
-    pub(super) fn gradient(&self, at_m: [f64; 2]) -> [f64; 2] {
-        let found = self.surface.and_then(|surface| {
-            let triangle = surface.locate(self.frame.snap(at_m)?)?;
-            Some(surface.gradient_m(triangle).map(|rise_m| rise_m / self.frame.lattice_step_m()))
-        });
-        found.unwrap_or_default()
+    /// The ground as roads far wider than a cell ask for it; `None` when there is none of the one or of the others.
+    pub(super) fn wide(&self, lines: &[GroundLine]) -> Option<Slopes> {
+        let surface = self.surface.filter(|_| !lines.is_empty())?;
+        Some(Slopes::of_surface(surface, self.tile, self.frame))
     }
+
+    /// The ground beside a piece of a road; `wide` is the same ground. Level without any.
+    pub(super) fn bed(&self, piece: &Piece, wide: &Option<Slopes>) -> Bed {
+        let (Some(surface), Some(wide)) = (self.surface, wide) else { return Bed::default() };
+        let step_m = self.frame.lattice_step_m();
+        let [[x, y, height_m], [_, _, end_height_m]] = piece.ends_m;
+        let (direction, length_m) = (piece.direction(), piece.length_m());
+        let road_piece = RoadPiece {
+            start: self.frame.fraction_of_position([x, y]),
+            direction,
+            length: length_m / step_m,
+            heights_m: [height_m, end_height_m],
+            has_caps: piece.has_caps,
+        };
+        let near = road_bed(&road_piece, surface, self.reaches_m[0] / step_m);
+        let along = if length_m > 0.0 { (end_height_m - height_m) / length_m } else { 0.0 };
+        let across = near.cross_rise_m / step_m;
+        let [east, north] = direction;
+        let plane = Plane {
+            at_m: [x, y],
+            height_m,
+            gradient: [along * east - across * north, along * north + across * east],
+        };
+        let mut most_m = [near.most_m; 3];
+        let mut leaves_tile = [false; 3];
+        for (k, reach_m) in self.reaches_m.into_iter().enumerate() {
+            let corners_m = corners(piece, reach_m);
+            if k > 0 {
+                let found = wide.leaving(&plane, corners_m);
+                // A narrower strip's ground is the wider one's too.
+                most_m[k] = [0, 1].map(|side| found[side].max(most_m[k - 1][side]));
+            }
+            let Bounds { min_x, min_y, max_x, max_y } = self.tile;
+            leaves_tile[k] = corners_m
+                .iter()
+                .any(|[x, y]| !(min_x..=max_x).contains(x) || !(min_y..=max_y).contains(y));
+        }
+        for (most_m, leaves_tile) in most_m.iter_mut().zip(leaves_tile) {
+            if leaves_tile {
+                // The neighbour's ground goes on from the border as rough as this one's, as far as this one knows.
+                *most_m = [2.0 * most_m[0].max(most_m[1]); 2];
+            }
+        }
+        let rises = near.rises_m.map(|rise_m| rise_m / step_m);
+        let rises = if leaves_tile[0] { [2.0 * rises[0].max(rises[1]); 2] } else { rises };
+        Bed {
+            slopes: [along, across].map(|slope| slope as f32),
+            rises: rises.map(|rise| (rise as f32).next_up()),
+            most_m: most_m.map(|most_m| most_m.map(|most_m| (most_m as f32).next_up())),
+            leaves_tile,
+        }
+    }
+}
+
+/// The corners of what is beside a piece of a road, caps included, counter-clockwise.
+fn corners(piece: &Piece, reach_m: f64) -> [[f64; 2]; 4] {
+    let ([x, y, _], [east, north]) = (piece.ends_m[0], piece.direction());
+    let beyond_m = piece.has_caps.map(|has_cap| if has_cap { reach_m } else { 0.0 });
+    let (first_m, last_m) = (-beyond_m[0], piece.length_m() + beyond_m[1]);
+    [[first_m, -reach_m], [last_m, -reach_m], [last_m, reach_m], [first_m, reach_m]].map(
+        |[along_m, left_m]| {
+            [x + along_m * east - left_m * north, y + along_m * north + left_m * east]
+        },
+    )
 }

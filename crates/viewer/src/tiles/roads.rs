@@ -4,10 +4,13 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::TilePayload;
 use corniche_tin::Surface;
 
+use super::PlanScale;
+
 mod segments;
 
+pub(super) use self::segments::Piece;
 pub use self::segments::{
-    NearHeights, RoadEnd, RoadList, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, Side,
+    Bed, NearHeights, RoadEnd, RoadList, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, Side,
 };
 
 /// A road on the ground (GEO): its centre-line as it lies on the tile's TIN.
@@ -19,6 +22,19 @@ pub struct GroundLine {
     pub class: FunctionalRoadClass,
     /// x, y in the working CRS and true height of each vertex.
     pub points_m: Vec<[f64; 3]>,
+    /// For each piece between two vertices the ends, in plan, of the segment of the source line that it is a piece of.
+    /// Between pieces of one segment the road goes straight on.
+    pub sources_m: Vec<[[f64; 2]; 2]>,
+}
+
+impl GroundLine {
+    /// A line whose vertices are all points of the source line.
+    #[must_use]
+    pub fn of_source(way_id: i64, class: FunctionalRoadClass, points_m: Vec<[f64; 3]>) -> Self {
+        let plan = |[x, y, _]: [f64; 3]| [x, y];
+        let sources_m = points_m.windows(2).map(|pair| [plan(pair[0]), plan(pair[1])]).collect();
+        Self { way_id, class, points_m, sources_m }
+    }
 }
 
 /// A road in plan (SV), in the tile and its margin.
@@ -43,6 +59,8 @@ pub struct TileLines {
     pub plan: Vec<PlanLine>,
     /// How far the plan lines reach beyond the tile; half widths beyond it are not drawn.
     pub width_margin_m: f64,
+    /// Working metres to a true metre; 1 by default.
+    pub scale: PlanScale,
 }
 
 /// Why a road of a tile cannot be drawn: the package is damaged.
@@ -67,7 +85,8 @@ impl TileLines {
     ) -> Result<Self, BadRoad> {
         let ground =
             surface.map_or(Ok(Vec::new()), |surface| ground_lines(payload, surface, frame))?;
-        Ok(Self { ground, plan: plan_lines(payload, frame), width_margin_m })
+        let scale = PlanScale::default();
+        Ok(Self { ground, plan: plan_lines(payload, frame), width_margin_m, scale })
     }
 }
 
@@ -89,6 +108,10 @@ fn ground_lines(
             way_id: road.way_id,
             class: road.class,
             points_m: positions.into_iter().map(place).collect(),
+            sources_m: corniche_drape::source_segments(&road.line)
+                .into_iter()
+                .map(|ends| ends.map(|point| frame.position_m(point)))
+                .collect(),
         });
     }
     Ok(lines)
@@ -105,10 +128,14 @@ fn plan_lines(payload: &TilePayload, frame: &Frame) -> Vec<PlanLine> {
 }
 
 /// Where lines on the ground end on the tile's border.
-fn ground_ends(lines: &[GroundLine], tile: Bounds) -> Vec<RoadEnd> {
+fn ground_ends(lines: &[GroundLine], tile: Bounds, scale: &PlanScale) -> Vec<RoadEnd> {
     let mut ends = Vec::new();
     for line in lines {
-        for point in [line.points_m.first(), line.points_m.last()].into_iter().flatten() {
+        let points = [
+            line.points_m.first().zip(line.sources_m.first()),
+            line.points_m.last().zip(line.sources_m.last()),
+        ];
+        for (point, source_m) in points.into_iter().flatten() {
             let [x, y, height_m] = *point;
             if let Some(side) = Side::of([x, y], tile) {
                 ends.push(RoadEnd {
@@ -117,6 +144,7 @@ fn ground_ends(lines: &[GroundLine], tile: Bounds) -> Vec<RoadEnd> {
                     side,
                     at_m: [x, y],
                     height_range_m: [height_m; 2],
+                    width_factor: scale.across(*source_m) as f32,
                 });
             }
         }
@@ -125,7 +153,7 @@ fn ground_ends(lines: &[GroundLine], tile: Bounds) -> Vec<RoadEnd> {
 }
 
 /// Where lines in plan cross the tile's border.
-fn plan_ends(lines: &[PlanLine], tile: Bounds) -> Vec<RoadEnd> {
+fn plan_ends(lines: &[PlanLine], tile: Bounds, scale: &PlanScale) -> Vec<RoadEnd> {
     let mut ends = Vec::new();
     for line in lines {
         for (pair, height_range_m) in line.points_m.windows(2).zip(&line.ground_range_m) {
@@ -136,6 +164,7 @@ fn plan_ends(lines: &[PlanLine], tile: Bounds) -> Vec<RoadEnd> {
                     side,
                     at_m,
                     height_range_m: *height_range_m,
+                    width_factor: scale.across([pair[0], pair[1]]) as f32,
                 });
             }
         }

@@ -9,7 +9,7 @@ fn class(number: u8) -> FunctionalRoadClass {
 }
 
 fn ground_line(number: u8, points_m: Vec<[f64; 3]>) -> GroundLine {
-    GroundLine { way_id: 1, class: class(number), points_m }
+    GroundLine::of_source(1, class(number), points_m)
 }
 
 #[test]
@@ -18,16 +18,34 @@ fn segments_are_relative_and_sorted_by_class() {
         ground_line(6, vec![[10.0, 20.0, 1.0], [11.0, 20.0, 1.5], [12.0, 20.0, 1.0]]),
         ground_line(0, vec![[0.0, 0.0, 0.0], [10.0, 20.0, 1.0]]),
     ];
-    let gradient = |[x, _]: [f64; 2]| if x > 10.0 { [0.25, 0.5] } else { [3.0, -4.0] };
-    let roads = RoadSegments::new(&lines, TILE, [10.0, 20.0, 1.0], gradient);
+    let roads =
+        RoadSegments::of_lines(&lines, TILE, [10.0, 20.0, 1.0], &PlanScale::default(), |_| {
+            Bed::default()
+        });
     assert_eq!(roads.range_of(class(0)), 0..1);
     assert_eq!(roads.range_of(class(6)), 1..3);
     assert!(roads.range_of(class(3)).is_empty());
-    assert_eq!(roads.all()[0].end_in_tile, [0.0; 3]);
-    assert_eq!(roads.all()[1].end_in_tile, [1.0, 0.0, 0.5]);
-    assert_eq!(roads.all()[1].cross_slope, 0.5, "north is left of east");
-    // To the left of (1, 2) is (−2, 1).
-    assert!((roads.all()[0].cross_slope - -10.0 / 5.0_f32.sqrt()).abs() < 1e-6);
+    assert_eq!(roads.all()[0].end_in_tile, [0.0; 2]);
+    assert_eq!(roads.all()[1].end_in_tile, [1.0, 0.0]);
+    assert_eq!(roads.all()[2].height_in_tile, 0.5);
+}
+
+#[test]
+fn pieces_of_a_segment_have_caps_at_its_ends_only() {
+    let points_m = vec![[10.0, 20.0, 1.0], [11.0, 20.0, 1.5], [14.0, 20.0, 1.0], [14.0, 30.0, 1.0]];
+    let segment = [[10.0, 20.0], [14.0, 20.0]];
+    let sources_m = vec![segment, segment, [[14.0, 20.0], [14.0, 40.0]]];
+    let line = GroundLine { sources_m, ..ground_line(2, points_m) };
+    let roads =
+        RoadSegments::of_lines(&[line], TILE, [10.0, 20.0, 1.0], &PlanScale::default(), |_| {
+            Bed::default()
+        });
+    let found: Vec<_> = roads.all().iter().map(|piece| (piece.shares, piece.has_caps)).collect();
+    // The last ends halfway, at the tile's border or beside a void.
+    let expected =
+        [([0.0, 0.25], [true, false]), ([0.25, 1.0], [false, true]), ([0.0, 0.5], [true, true])];
+    assert_eq!(found, expected);
+    assert_eq!(roads.all()[1].end_in_tile, [4.0, 0.0]);
 }
 
 #[test]
@@ -40,7 +58,7 @@ fn volumes_are_relative_sorted_by_class_and_never_lower_or_shallower_than_the_gr
     };
     let lines = [line(5, [10.0, 20.0], [7.1, 9.3]), line(2, [20.0, 20.0], [1.0, 2.0])];
     let near = |[start, _]: [[f64; 2]; 2]| (start == [10.0, 20.0]).then_some(([8.1, 8.3], 0.7));
-    let roads = RoadVolumes::new(&lines, TILE, [10.0, 20.0, 1.0], near);
+    let roads = RoadVolumes::new(&lines, TILE, [10.0, 20.0, 1.0], &PlanScale::default(), near);
     assert_eq!((roads.range_of(class(2)), roads.range_of(class(5))), (0..1, 1..2));
     assert_eq!(roads.all()[0].start_in_tile, [10.0, 0.0]);
     let [low, high] = roads.all()[1].height_range_in_tile.map(f64::from);
@@ -58,7 +76,7 @@ fn volumes_are_relative_sorted_by_class_and_never_lower_or_shallower_than_the_gr
 #[test]
 fn a_line_on_the_ground_ends_on_the_border_it_was_cut_at() {
     let check = |points_m: Vec<[f64; 3]>, expected: &[(Side, f64)]| {
-        let ends = ground_ends(&[ground_line(4, points_m)], TILE);
+        let ends = ground_ends(&[ground_line(4, points_m)], TILE, &PlanScale::default());
         let found: Vec<_> = ends.iter().map(|end| (end.side, end.height_range_m[0])).collect();
         assert_eq!(found, expected);
     };
@@ -73,7 +91,7 @@ fn a_line_in_plan_crosses_the_border_where_it_passes_to_the_other_side() {
     let check = |points_m: Vec<[f64; 2]>, expected: &[(Side, [f64; 2])]| {
         let ground_range_m = vec![[1.0, 2.0]; points_m.len() - 1];
         let line = PlanLine { way_id: 1, class: class(4), points_m, ground_range_m };
-        let ends = plan_ends(&[line], TILE);
+        let ends = plan_ends(&[line], TILE, &PlanScale::default());
         let found: Vec<_> = ends.iter().map(|end| (end.side, end.at_m)).collect();
         assert_eq!(found, expected);
     };

@@ -95,11 +95,11 @@ pub(crate) fn compare(
         let class = scene.tiles[hit.tile]
             .segments
             .iter()
-            .filter(|(class, ends)| {
+            .filter(|(class, ends, factor)| {
                 let (half_m, _) = half_width(&scene.style, options, *class, distance_m);
-                distance(hit.at.truncate(), *ends, options.caps) <= half_m
+                distance(hit.at.truncate(), *ends, options.caps) <= half_m * factor
             })
-            .map(|(class, _)| *class)
+            .map(|(class, ..)| *class)
             .min();
         class.map_or(0, |class| (9 - class) * 2)
     };

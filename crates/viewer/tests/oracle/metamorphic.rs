@@ -6,9 +6,10 @@ use corniche_viewer::{RoadMethod, RoadOptions};
 use crate::{
     reference::DepthOracle,
     support::{
-        Drawing, gpu,
+        Drawing, World, gpu,
         scene::Scene,
         scenes::{self, Road, camera, hills, one_tile, style, tile},
+        within,
     },
 };
 
@@ -99,6 +100,17 @@ fn a_world_moved_by_a_thousand_kilometres_looks_the_same() {
     let differing = a.labels.iter().zip(&b.labels).filter(|(a, b)| a != b).count();
     let covered = a.labels.iter().filter(|label| **label != 0).count();
     assert!(covered > 1000 && differing <= covered / 2000, "{differing} of {covered}");
+}
+
+#[test]
+fn on_oblong_cells_what_must_not_change_a_picture_does_not_either() {
+    within(World { ratio: 1.5, scale: [1.2, 0.9] }, || {
+        a_segment_split_in_two_looks_the_same();
+        a_segment_reversed_looks_the_same();
+        a_tile_split_into_four_looks_the_same();
+        skirts_carry_no_road();
+        a_volume_paints_the_ground_of_its_own_tile_only();
+    });
 }
 
 #[test]

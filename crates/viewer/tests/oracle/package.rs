@@ -10,7 +10,7 @@ use corniche_viewer::{
     style::Style,
     tiles::{PackageSource, TileStore},
 };
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::{
     measures,
@@ -132,8 +132,11 @@ fn steep_place(tiles: &[Tile]) -> Option<DVec3> {
         let reference = DVec3::from_array(tile.geometry.reference_m);
         places.extend(tile.geometry.roads.all().iter().map(|segment| {
             let ends = [segment.start_in_tile, segment.end_in_tile];
-            let [start, end] = ends.map(|end| reference + DVec3::from_array(end.map(f64::from)));
-            (segment.cross_slope.abs(), start.midpoint(end))
+            let [start, end] = ends.map(|[x, y]| DVec2::new(f64::from(x), f64::from(y)));
+            let [first, last] = segment.shares.map(f64::from);
+            let middle = start.lerp(end, f64::midpoint(first, last));
+            let height_m = f64::from(segment.height_in_tile);
+            (segment.bed.slopes[1].abs(), reference + middle.extend(height_m))
         }));
     }
     places.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -150,7 +153,7 @@ fn scene_at(tiles: &[Tile], cell_m: f64, target: DVec3) -> (Scene, Camera) {
         .iter()
         .filter(|tile| {
             let [x, y, _] = tile.geometry.reference_m;
-            (x - target.x).hypot(y - target.y) < 1.5 * tile.geometry.width_m
+            (x - target.x).hypot(y - target.y) < 1.5 * tile.geometry.size_m[0]
         })
         .cloned()
         .collect();

@@ -5,7 +5,7 @@ use glam::{DMat2, DVec2, DVec3};
 
 use crate::support::{
     Drawing,
-    scene::{PlanSegment, Scene},
+    scene::{Scene, Tile},
 };
 
 /// Ground may be painted so many least half widths away in plan, at most.
@@ -72,7 +72,7 @@ pub(crate) struct Comparison {
     pub(crate) ground: usize,
 }
 
-/// The reference for one drawing.
+/// The reference for one drawing of a scene.
 pub(crate) struct DepthOracle<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) camera: &'a Camera,
@@ -84,15 +84,15 @@ pub(crate) struct DepthOracle<'a> {
 impl DepthOracle<'_> {
     /// Compares every pixel that shows ground.
     pub(crate) fn compare(&self) -> Comparison {
+        let Self { scene, camera, options, drawing, band_px } = *self;
+        let pixels = PixelOracle { style: &scene.style, camera, options, drawing, band_px };
         let mut sum = Comparison::default();
         for (index, _) in self.drawing.pixels() {
             let Owner::Ground(tile) = self.drawing.owners[index] else { continue };
             sum.ground += 1;
             // Not left out: this reference sees the silhouette that the card sees.
             sum.at_jumps += usize::from(self.drawing.is_at_jump(index));
-            let (ground, _) = self.ground(index).expect("the owner says there is ground");
-            let near = self.scene.tiles[tile].segments_near(ground.truncate());
-            match self.verdict(index, near) {
+            match pixels.verdict(index, &self.scene.tiles[tile]) {
                 Verdict::InBand => sum.in_band += 1,
                 Verdict::Label(label) => {
                     let drawn = self.drawing.labels[index];
@@ -103,12 +103,25 @@ impl DepthOracle<'_> {
         }
         sum
     }
+}
 
-    /// The label of a pixel by the lines of its tile.
-    pub(crate) fn verdict(&self, index: usize, segments: &[PlanSegment]) -> Verdict {
+/// The reference for single pixels of a drawing.
+pub(crate) struct PixelOracle<'a> {
+    pub(crate) style: &'a Style,
+    pub(crate) camera: &'a Camera,
+    pub(crate) options: RoadOptions,
+    pub(crate) drawing: &'a Drawing,
+    pub(crate) band_px: f64,
+}
+
+impl PixelOracle<'_> {
+    /// The label of a pixel that shows the ground of `tile`, by that tile's lines.
+    pub(crate) fn verdict(&self, index: usize, tile: &Tile) -> Verdict {
+        let (ground, _) = self.ground(index).expect("the owner says there is ground");
+        let segments = tile.segments_near(ground.truncate());
         for class in 0..9_u8 {
             for is_center in [true, false] {
-                let center = self.scene.style.roads[usize::from(class)].center;
+                let center = self.style.roads[usize::from(class)].center;
                 let Some(share) = (if is_center {
                     center.map(|center| f64::from(center.width_share))
                 } else {
@@ -117,8 +130,8 @@ impl DepthOracle<'_> {
                     continue;
                 };
                 let mut covered = Tri::No;
-                for (_, ends) in segments.iter().filter(|(number, _)| *number == class) {
-                    covered = covered.or(self.is_road(index, class, share, *ends));
+                for (_, ends, factor) in segments.iter().filter(|(number, ..)| *number == class) {
+                    covered = covered.or(self.is_road(index, class, share, (*ends, *factor), tile));
                     if covered == Tri::Yes {
                         break;
                     }
@@ -133,9 +146,15 @@ impl DepthOracle<'_> {
         Verdict::Label(0)
     }
 
-    fn is_road(&self, index: usize, class: u8, share: f64, ends: [DVec2; 2]) -> Tri {
-        let Owner::Ground(tile) = self.drawing.owners[index] else { return Tri::No };
-        let widest_m = self.scene.tiles[tile].geometry.width_margin_m;
+    fn is_road(
+        &self,
+        index: usize,
+        class: u8,
+        share: f64,
+        (ends, factor): ([DVec2; 2], f64),
+        tile: &Tile,
+    ) -> Tri {
+        let widest_m = tile.geometry.width_margin_m;
         let (ground, depth_m) = self.ground(index).expect("the owner says there is ground");
         let from_eye = ground - self.camera.eye_in_world();
         let pixel_m = self.camera.pixel_at_unit_depth_m() * depth_m;
@@ -143,9 +162,8 @@ impl DepthOracle<'_> {
         let band_m = self.band_px * pixel_m;
         let caps = self.options.caps;
         let plan_m = distance(ground.truncate(), ends, caps);
-        let (half_m, least_px) =
-            half_width(&self.scene.style, self.options, class, from_eye.length());
-        let wide = Tri::at_most(plan_m, share * half_m, band_m);
+        let (half_m, least_px) = half_width(self.style, self.options, class, from_eye.length());
+        let wide = Tri::at_most(plan_m, share * half_m * factor, band_m);
         let stretch = (1.5 * from_eye.length() / from_eye.z.abs()).clamp(1.0, MAX_STRETCH);
         let near = Tri::at_most(plan_m, stretch * share * least_px * pixel_m, band_m);
         let thin = if near == Tri::No || wide == Tri::Yes {

@@ -4,7 +4,7 @@ use corniche_drape::{OwnedBorders, clip, clip_closed, drape, extrude};
 use corniche_geom::{Frame, HeightGrid, NodeIndex, Polyline, TILE_NODES, TileId};
 use corniche_tileset::{GeoRoad, SvRoad, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface, TinSpec, normals, triangulate};
-use corniche_viewer::tiles::{LoadTileError, TileGeometry, TileSource};
+use corniche_viewer::tiles::{LoadTileError, PlanScale, TileGeometry, TileSource};
 
 use super::class;
 
@@ -47,8 +47,13 @@ pub(crate) fn width_margin_m(frame: &Frame, level: u8) -> f64 {
 
 impl Country {
     pub(crate) fn new() -> Self {
-        let frame =
-            Frame::new([0.0; 2], CELL_M, NodeIndex { i: 25_600, j: 204_800 }, MAX_LEVEL).unwrap();
+        let frame = Frame::new(
+            [0.0; 2],
+            super::world().cell(CELL_M),
+            NodeIndex { i: 25_600, j: 204_800 },
+            MAX_LEVEL,
+        )
+        .unwrap();
         let [cx, cy] = frame.tile_bounds(TileId::ROOT).center();
         let road = |points: &[[f64; 2]]| {
             let points =
@@ -130,7 +135,13 @@ impl TileSource for Country {
 
     fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
         let margin_m = width_margin_m(&self.frame, id.z());
-        TileGeometry::from_payload(&self.payload(id), &self.frame, QUANTUM_M, margin_m)
-            .map_err(|error| LoadTileError { id, source: error.into() })
+        TileGeometry::from_payload(
+            &self.payload(id),
+            &self.frame,
+            QUANTUM_M,
+            margin_m,
+            PlanScale::default(),
+        )
+        .map_err(|error| LoadTileError { id, source: error.into() })
     }
 }

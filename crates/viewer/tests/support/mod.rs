@@ -11,7 +11,7 @@ pub(crate) mod package;
 pub(crate) mod scene;
 pub(crate) mod scenes;
 
-use corniche_geom::{Frame, NodeIndex, TILE_CELLS, TileId};
+use corniche_geom::{Cell, Frame, NodeIndex, TILE_CELLS, TileId};
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::Terrain;
 use corniche_tin::{Tin, TinVertex};
@@ -26,6 +26,8 @@ use glam::{DVec2, DVec3};
 
 pub(crate) const CELL_M: f64 = 10.0;
 pub(crate) const QUANTUM_M: f64 = 1.0 / 64.0;
+/// How wide roads may be drawn to each side where a test does not say it.
+pub(crate) const WIDTH_MARGIN_M: f64 = 1000.0;
 
 /// A device, or `None` and a line on the terminal; with `CORNICHE_REQUIRE_GPU=1` no device is a failure.
 pub(crate) fn gpu() -> Option<Gpu> {
@@ -39,9 +41,43 @@ pub(crate) fn gpu() -> Option<Gpu> {
     }
 }
 
+/// What the scenes of a test lie in.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct World {
+    /// How long cells are northwards over eastwards.
+    pub(crate) ratio: f64,
+    /// Working metres to a true metre, east and north.
+    pub(crate) scale: [f64; 2],
+}
+
+impl World {
+    pub(crate) fn cell(self, east_m: f64) -> Cell {
+        Cell { east_m, north_m: east_m * self.ratio }.fitted()
+    }
+}
+
+thread_local! {
+    static WORLD: std::cell::Cell<World> =
+        const { std::cell::Cell::new(World { ratio: 1.0, scale: [1.0; 2] }) };
+}
+
+/// The world of this test: square cells and true metres, unless it is `within` another.
+pub(crate) fn world() -> World {
+    WORLD.get()
+}
+
+/// Makes what is made of scenes meanwhile lie in another world.
+pub(crate) fn within<T>(world: World, make: impl FnOnce() -> T) -> T {
+    let before = WORLD.replace(world);
+    let made = make();
+    WORLD.set(before);
+    made
+}
+
 /// Two levels of a grid far from the origin, as real ones are.
 pub(crate) fn frame() -> Frame {
-    Frame::new([0.25, 0.75], CELL_M, NodeIndex { i: 51_200, j: 512_000 }, 1).unwrap()
+    let cell = world().cell(CELL_M);
+    Frame::new([0.25, 0.75], cell, NodeIndex { i: 51_200, j: 512_000 }, 1).unwrap()
 }
 
 pub(crate) fn class(number: u8) -> FunctionalRoadClass {
@@ -131,6 +167,14 @@ pub(crate) fn height_at(at: DVec2, ground: &[[DVec3; 3]]) -> Option<f64> {
         let (wa, wb, wc) = (weight(b, c), weight(c, a), weight(a, b));
         (wa.min(wb).min(wc) >= -1e-9).then_some(wa * a.z + wb * b.z + wc * c.z)
     })
+}
+
+/// A straight road as it was laid on the ground.
+pub(crate) fn ground_line(number: u8, points_m: Vec<[f64; 3]>) -> GroundLine {
+    let plan = |[x, y, _]: [f64; 3]| [x, y];
+    let source = [plan(points_m[0]), plan(points_m[points_m.len() - 1])];
+    let sources_m = vec![source; points_m.len() - 1];
+    GroundLine { way_id: 1, class: class(number), points_m, sources_m }
 }
 
 /// Depth at which a ray (of depth 1) first meets a triangle.
@@ -245,7 +289,11 @@ pub(crate) fn draw_exaggerated(
     let buffers: Vec<(TileBuffers, f64)> = scene
         .iter()
         .map(|(id, terrain, lines, skirt_depth_m)| {
-            let lines = TileLines { ground: lines.clone(), ..TileLines::default() };
+            let lines = TileLines {
+                ground: lines.clone(),
+                width_margin_m: WIDTH_MARGIN_M,
+                ..TileLines::default()
+            };
             let tile = TileGeometry::assemble(*id, Some(terrain), &lines, &frame(), QUANTUM_M);
             (TileBuffers::new(gpu, &tile), *skirt_depth_m)
         })

@@ -69,7 +69,8 @@ fn manifest(country: &Country) -> Manifest {
     let settings = SettingsRecord {
         max_error_m: MAX_ERROR_M,
         fill_voids: 0,
-        nodata: None,
+        nodata: Vec::new(),
+        height_range_m: None,
         dem_crs: None,
         dem_vertical_crs: None,
         vertical_crs: None,

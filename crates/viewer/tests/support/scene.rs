@@ -10,15 +10,15 @@ use corniche_viewer::{
     camera::Camera,
     gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers, Wireframe},
     style::Style,
-    tiles::{GroundLine, PlanLine, TileGeometry, TileLines},
+    tiles::{GroundLine, PlanLine, PlanScale, TileGeometry, TileLines},
 };
 use glam::{DVec2, DVec3};
 
 use super::Drawing;
 use crate::support;
 
-/// A segment of a road in plan: class and ends.
-pub(crate) type PlanSegment = (u8, [DVec2; 2]);
+/// A segment of a road in plan: class, ends and working metres across it for each true metre.
+pub(crate) type PlanSegment = (u8, [DVec2; 2], f64);
 
 /// A tile of a scene.
 #[derive(Clone)]
@@ -58,7 +58,8 @@ impl Tile {
         let margin_m = 8.0 * frame.level_cell(id.z()).shorter_m();
         let bounds = frame.tile_bounds(id);
         let triangles = support::triangles(id, ground);
-        let mut lines = TileLines { width_margin_m: margin_m, ..TileLines::default() };
+        let scale = PlanScale::uniform(support::world().scale);
+        let mut lines = TileLines { width_margin_m: margin_m, scale, ..TileLines::default() };
         for (way_id, number, points) in roads {
             let class = support::class(*number);
             for pair in points.windows(2) {
@@ -73,7 +74,8 @@ impl Tile {
                 }
                 if let Some([a, b]) = clip([pair[0], pair[1]], bounds) {
                     let points_m = support::lay(a, b, &triangles);
-                    lines.ground.push(GroundLine { way_id: *way_id, class, points_m });
+                    let line = support::ground_line(*number, points_m);
+                    lines.ground.push(GroundLine { way_id: *way_id, ..line });
                 }
             }
         }
@@ -110,6 +112,10 @@ impl Tile {
                         [x, y, height_m]
                     })
                     .collect(),
+                sources_m: corniche_drape::source_segments(&road.line)
+                    .into_iter()
+                    .map(|ends| ends.map(|point| frame.position_m(point)))
+                    .collect(),
             })
             .collect();
         let plan = payload
@@ -122,7 +128,8 @@ impl Tile {
                 ground_range_m: road.line.ground_range_m.clone(),
             })
             .collect();
-        let lines = TileLines { ground: centers, plan, width_margin_m: margin_m };
+        let lines =
+            TileLines { ground: centers, plan, width_margin_m: margin_m, ..TileLines::default() };
         let corner = |vertex: u32| {
             let [x, y] = frame.position_m(surface.points()[vertex as usize]);
             DVec3::new(x, y, surface.heights_m()[vertex as usize])
@@ -156,7 +163,7 @@ impl Tile {
             .flat_map(|line| {
                 line.points_m.windows(2).map(|pair| {
                     let ends = [pair[0], pair[1]].map(DVec2::from_array);
-                    (line.class.number(), ends)
+                    (line.class.number(), ends, lines.scale.across([pair[0], pair[1]]))
                 })
             })
             .collect();

@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 
-use corniche_viewer::{draw_attribution, flight::Pose};
+use corniche_viewer::{
+    draw_attribution,
+    flight::{Pose, WorkingCrs},
+};
 use egui_wgpu::ScreenDescriptor;
 use image::RgbaImage;
 
@@ -42,7 +45,7 @@ impl App {
     /// Fails when something was being recorded and there is nothing to save of it.
     fn save_recording(&mut self, now_s: f64) -> Result<(), NotSaved> {
         let Some(recorder) = self.recorder.take() else { return Ok(()) };
-        let text = recorder.finish(now_s)?.to_text(&self.source.manifest().crs)?;
+        let text = recorder.finish(now_s)?.to_text(WorkingCrs::of(self.source.manifest()))?;
         self.shots.save_flight(text);
         Ok(())
     }

@@ -1,5 +1,10 @@
 use corniche_roads::FunctionalRoadClass;
-use corniche_viewer::{RoadMethod, camera::Orientation, flight::Pose, gpu::PassTimes};
+use corniche_viewer::{
+    RoadMethod,
+    camera::Orientation,
+    flight::{Pose, WorkingCrs},
+    gpu::PassTimes,
+};
 use egui::{Event, PointerButton, RawInput, Shape, vec2};
 
 use super::*;
@@ -48,7 +53,7 @@ impl Told {
         Facts {
             adapter: "llvmpipe (LLVM 15.0.6, 256 bits) (vulkan)",
             attribution: &self.attribution,
-            crs: "EPSG:32632",
+            crs: WorkingCrs { crs: "EPSG:32632", metres_per_unit: [1.0, 1.0] },
             cursor: Some(GroundPoint {
                 lon_lat_deg: [9.521_23, 47.140_12],
                 at_m: [539_512.25, 5_221_456.75, 1455.5],

@@ -3,19 +3,55 @@ use std::ops::Range;
 use corniche_geom::{Bounds, TILE_CELLS};
 use corniche_roads::FunctionalRoadClass;
 
-use super::{super::ground::relative, GroundLine, PlanLine, ground_ends, plan_ends};
+use super::{
+    super::{PlanScale, ground::relative},
+    GroundLine, PlanLine, ground_ends, plan_ends,
+};
 
 /// A straight piece of a road's centre-line on the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoadSegment {
-    /// Metres from the tile's reference point; z is true height, before exaggeration.
-    pub start_in_tile: [f32; 3],
-    /// The other end.
-    pub end_in_tile: [f32; 3],
-    /// True metres that the ground rises per metre to the left of the way from start to end.
-    pub cross_slope: f32,
+    /// The segment of the source line that it is a piece of: its start, metres east and north of the tile's reference
+    /// point.
+    pub start_in_tile: [f32; 2],
+    /// Its end.
+    pub end_in_tile: [f32; 2],
+    /// Which part of that segment it is: 0 is the start, 1 the end.
+    pub shares: [f32; 2],
+    /// True height of the piece's start above the reference point.
+    pub height_in_tile: f32,
+    /// Whether the road does not go straight on before and behind the piece.
+    pub has_caps: [bool; 2],
+    /// Working metres across the segment for each true metre across it.
+    pub width_factor: f32,
+    /// The ground beside it.
+    pub bed: Bed,
     /// Functional road class.
     pub class: FunctionalRoadClass,
+}
+
+/// A plane through a piece of a road, and how far the ground beside it leaves that plane: true metres.
+///
+/// Of each pair the first is downwards, the second upwards; neither is below 0.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Bed {
+    /// Metres that the plane rises for each metre along the piece and for each metre to its left.
+    pub slopes: [f32; 2],
+    /// Metres that the ground leaves it for each metre away from the piece, up to [`Bed::reaches_m`]'s first.
+    pub rises: [f32; 2],
+    /// Metres that it leaves it at most within each of [`Bed::reaches_m`].
+    pub most_m: [[f32; 2]; 3],
+    /// Whether ground of other tiles may be within each of those.
+    pub leaves_tile: [bool; 3],
+}
+
+impl Bed {
+    /// How far from the piece each of the bounds holds, in a tile of this size whose roads are drawn so far to each side.
+    #[must_use]
+    pub fn reaches_m(tile_size_m: [f64; 2], width_margin_m: f64) -> [f64; 3] {
+        let cell_m = NearHeights::reach_m(tile_size_m);
+        [cell_m, 4.0 * cell_m, width_margin_m.max(8.0 * cell_m)]
+    }
 }
 
 /// A straight piece of a road in plan with the heights that its volume spans.
@@ -29,6 +65,8 @@ pub struct RoadVolume {
     pub height_range_in_tile: [f32; 2],
     /// Closer bounds for roads that are not wide.
     pub near: NearHeights,
+    /// Working metres across it for each true metre across it.
+    pub width_factor: f32,
     /// Functional road class.
     pub class: FunctionalRoadClass,
 }
@@ -43,11 +81,11 @@ pub struct NearHeights {
 }
 
 impl NearHeights {
-    /// How far away they hold, in a tile of this width: one of its cells. Roads that look wider are drawn on a finer
-    /// level, if there is one.
+    /// How far away they hold, in a tile of this size: the shorter side of one of its cells. Roads that look wider are drawn
+    /// on a finer level, if there is one.
     #[must_use]
-    pub fn reach_m(tile_width_m: f64) -> f64 {
-        tile_width_m / TILE_CELLS as f64
+    pub fn reach_m([east_m, north_m]: [f64; 2]) -> f64 {
+        east_m.min(north_m) / TILE_CELLS as f64
     }
 }
 
@@ -74,6 +112,8 @@ pub struct RoadEnd {
     pub at_m: [f64; 2],
     /// Lowest and highest true height that the ground may have there.
     pub height_range_m: [f64; 2],
+    /// Working metres across the road for each true metre across it.
+    pub width_factor: f32,
 }
 
 /// All pieces of the roads of a tile, as one method draws them, in order of class.
@@ -107,32 +147,85 @@ impl Side {
     }
 }
 
+/// A piece of a line on the ground, before it is placed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::tiles) struct Piece {
+    /// x, y in the working CRS and true heights of its ends.
+    pub(in crate::tiles) ends_m: [[f64; 3]; 2],
+    /// The ends of its source segment in plan.
+    pub(in crate::tiles) source_m: [[f64; 2]; 2],
+    pub(in crate::tiles) has_caps: [bool; 2],
+}
+
+impl Piece {
+    fn all_of(line: &GroundLine) -> impl Iterator<Item = Self> {
+        let sources_m = &line.sources_m;
+        line.points_m.windows(2).zip(sources_m).enumerate().map(move |(k, (pair, source_m))| {
+            let goes_on = |other: Option<&[[f64; 2]; 2]>| other == Some(source_m);
+            Self {
+                ends_m: [pair[0], pair[1]],
+                source_m: *source_m,
+                has_caps: [
+                    !goes_on(k.checked_sub(1).and_then(|k| sources_m.get(k))),
+                    !goes_on(sources_m.get(k + 1)),
+                ],
+            }
+        })
+    }
+
+    /// Its direction in plan, of length 1.
+    pub(in crate::tiles) fn direction(&self) -> [f64; 2] {
+        let [p, q] = self.source_m;
+        let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+        let length_m = dx.hypot(dy);
+        if length_m > 0.0 { [dx / length_m, dy / length_m] } else { [1.0, 0.0] }
+    }
+
+    /// How long it is in plan.
+    pub(in crate::tiles) fn length_m(&self) -> f64 {
+        let [[x, y, _], [to_x, to_y, _]] = self.ends_m;
+        (to_x - x).hypot(to_y - y)
+    }
+
+    /// How far along its source segment a position lies.
+    fn share(&self, [x, y, _]: [f64; 3]) -> f32 {
+        let [p, q] = self.source_m;
+        let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+        let squared = dx * dx + dy * dy;
+        if squared > 0.0 { (((x - p[0]) * dx + (y - p[1]) * dy) / squared) as f32 } else { 0.0 }
+    }
+}
+
 impl RoadList<RoadSegment> {
-    /// Cuts lines of the tile with these bounds into segments. `gradient` tells, for a position in the working CRS, how
-    /// many true metres the ground there rises per metre east and per metre north.
+    /// Cuts lines of the tile with these bounds into segments. `bed` tells of the ground beside a piece.
     #[must_use]
-    pub fn new(
+    pub(in crate::tiles) fn of_lines(
         lines: &[GroundLine],
         tile: Bounds,
         reference_m: [f64; 3],
-        gradient: impl Fn([f64; 2]) -> [f64; 2],
+        scale: &PlanScale,
+        bed: impl Fn(&Piece) -> Bed,
     ) -> Self {
-        // A segment lies in one triangle, and its middle not on the rim, unless all of it does.
-        let cross_slope = |[x, y, _]: [f64; 3], [to_x, to_y, _]: [f64; 3]| {
-            let (dx, dy) = (to_x - x, to_y - y);
-            let length_m = dx.hypot(dy);
-            let [east, north] = gradient([f64::midpoint(x, to_x), f64::midpoint(y, to_y)]);
-            if length_m > 0.0 { ((north * dx - east * dy) / length_m) as f32 } else { 0.0 }
+        let place = |[x, y]: [f64; 2]| {
+            let [x, y, _] = relative([x, y, 0.0], reference_m);
+            [x, y]
         };
         let segments = lines.iter().flat_map(|line| {
-            line.points_m.windows(2).map(|pair| RoadSegment {
-                start_in_tile: relative(pair[0], reference_m),
-                end_in_tile: relative(pair[1], reference_m),
-                cross_slope: cross_slope(pair[0], pair[1]),
-                class: line.class,
+            Piece::all_of(line).map(|piece| {
+                let [start_in_tile, end_in_tile] = piece.source_m.map(place);
+                RoadSegment {
+                    start_in_tile,
+                    end_in_tile,
+                    shares: piece.ends_m.map(|end| piece.share(end)),
+                    height_in_tile: relative(piece.ends_m[0], reference_m)[2],
+                    has_caps: piece.has_caps,
+                    width_factor: scale.across(piece.source_m) as f32,
+                    bed: bed(&piece),
+                    class: line.class,
+                }
             })
         });
-        Self::sorted(segments.collect(), |segment| segment.class, ground_ends(lines, tile))
+        Self::sorted(segments.collect(), |segment| segment.class, ground_ends(lines, tile, scale))
     }
 }
 
@@ -146,6 +239,7 @@ impl RoadList<RoadVolume> {
         lines: &[PlanLine],
         tile: Bounds,
         reference_m: [f64; 3],
+        scale: &PlanScale,
         near: impl Fn([[f64; 2]; 2]) -> Option<([f64; 2], f64)>,
     ) -> Self {
         let above = |[low_m, high_m]: [f64; 2]| {
@@ -169,11 +263,12 @@ impl RoadList<RoadVolume> {
                         range_in_tile: above(near_m),
                         rise: (rise as f32).next_up(),
                     },
+                    width_factor: scale.across([pair[0], pair[1]]) as f32,
                     class: line.class,
                 }
             })
         });
-        Self::sorted(volumes.collect(), |volume| volume.class, plan_ends(lines, tile))
+        Self::sorted(volumes.collect(), |volume| volume.class, plan_ends(lines, tile, scale))
     }
 }
 

@@ -1,0 +1,327 @@
+//! Heights that cannot be: found by looking at every sample once.
+//!
+//! A file that writes −9999 for "no data" and does not say so would have holes of −9999 m. Such a value gives itself
+//! away: it is repeated, and lies far beyond all true heights.
+//!
+//! ```text
+//!   how often │                                                ▄▄▄
+//!             │ █                                           ▄▄█████▄
+//!             │ █                                         ▄███████████▄
+//!             └─┴───────────── 1000 m or more ────────────┴────────────► height
+//!             −9999
+//! ```
+
+use std::path::Path;
+
+use gdal::Dataset;
+
+use crate::{Dem, DemError, mosaic::OpenFiles};
+
+/// What the surface of the earth has: Challenger Deep lies some 10 935 m below the sea, Everest 8 849 m above it.
+pub const SURFACE_RANGE_M: [f64; 2] = [-12_000.0, 9_000.0];
+
+/// A repeated value so far beyond all others is no height.
+const FAR_M: f64 = 1000.0;
+/// Repeated: more than one sample in so many.
+const ONE_IN: u64 = 10_000;
+/// Values that are kept of each end. Beyond the outermost ones nothing is judged.
+const KEPT: usize = 16;
+/// Side of the blocks that are looked at; of files stored in rows, so many samples in whole rows.
+const BLOCK_SAMPLES: usize = 512;
+
+/// A rectangle of one file's samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct AuditBlock {
+    file: usize,
+    start: [usize; 2],
+    size: [usize; 2],
+}
+
+/// A height at one end, and how often it was met.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Entry {
+    height_m: f64,
+    /// As the file stores it.
+    stored: f64,
+    count: u64,
+}
+
+/// The outermost different heights at one end, the outermost first, at most [`KEPT`]; their counts are exact.
+///
+/// An entry leaves only for [`KEPT`] others farther out, which never leave for one farther in: it cannot come back. So
+/// neither the order of samples nor that of merges matters.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct End {
+    entries: Vec<Entry>,
+}
+
+/// What the samples of one block were found to be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AuditPart {
+    file: usize,
+    found: FileAudit,
+}
+
+/// What the samples of a DEM were found to be, in bounded memory; parts of it merge in any order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Audit {
+    range_m: [f64; 2],
+    files: Vec<FileAudit>,
+}
+
+#[derive(Debug, Clone, PartialEq, Default)]
+struct FileAudit {
+    /// With a height.
+    samples: u64,
+    lowest: End,
+    highest: End,
+    outside: u64,
+}
+
+/// Looks at blocks of samples. One per thread: it keeps files open.
+pub struct Auditor<'a> {
+    dem: &'a Dem,
+    range_m: [f64; 2],
+    files: OpenFiles,
+    stored: Vec<f64>,
+    heights_m: Vec<f64>,
+}
+
+impl Dem {
+    /// All samples of all files, each in one block, in a fixed order.
+    #[must_use]
+    pub fn audit_blocks(&self) -> Vec<AuditBlock> {
+        let mut blocks = Vec::new();
+        for (file, source) in self.sources.iter().enumerate() {
+            let size = [source.columns as usize, source.rows as usize];
+            // Whoever cuts rows into columns unpacks each row many times.
+            let most = if source.is_striped {
+                [size[0], (BLOCK_SAMPLES * BLOCK_SAMPLES / size[0].max(1)).max(1)]
+            } else {
+                [BLOCK_SAMPLES; 2]
+            };
+            for row in (0..size[1]).step_by(most[1]) {
+                for column in (0..size[0]).step_by(most[0].max(1)) {
+                    let start = [column, row];
+                    let side = |axis: usize| most[axis].min(size[axis] - start[axis]);
+                    blocks.push(AuditBlock { file, start, size: [side(0), side(1)] });
+                }
+            }
+        }
+        blocks
+    }
+
+    /// Looks at samples; `range_m` is what heights may be, in metres.
+    #[must_use]
+    pub fn auditor(&self, range_m: [f64; 2]) -> Auditor<'_> {
+        Auditor {
+            dem: self,
+            range_m,
+            files: OpenFiles::new(),
+            stored: Vec::new(),
+            heights_m: Vec::new(),
+        }
+    }
+}
+
+impl Auditor<'_> {
+    /// Looks at every sample of a block, in metres as the file gives them: after scale and unit, before a vertical CRS or
+    /// a shift that was asked for. Memory is bounded by the block.
+    ///
+    /// # Errors
+    /// When the file cannot be read.
+    pub fn look(&mut self, block: &AuditBlock) -> Result<AuditPart, DemError> {
+        let source = &self.dem.sources[block.file];
+        let dataset: &Dataset = self.files.dataset(block.file, source)?;
+        source.read_stored(dataset, block.start, block.size, &mut self.stored)?;
+        self.heights_m.clone_from(&self.stored);
+        source.convert(&mut self.heights_m);
+        let mut found = FileAudit::default();
+        for (&stored, &height_m) in self.stored.iter().zip(&self.heights_m) {
+            found.add(stored, height_m, self.range_m);
+        }
+        Ok(AuditPart { file: block.file, found })
+    }
+}
+
+impl FileAudit {
+    fn add(&mut self, stored: f64, height_m: f64, range_m: [f64; 2]) {
+        if height_m.is_nan() {
+            return;
+        }
+        self.samples += 1;
+        self.outside += u64::from(!(range_m[0]..=range_m[1]).contains(&height_m));
+        let entry = Entry { height_m, stored, count: 1 };
+        self.lowest.add(entry, 1.0);
+        self.highest.add(entry, -1.0);
+    }
+
+    fn merge(&mut self, other: &Self) {
+        self.samples += other.samples;
+        self.outside += other.outside;
+        other.lowest.entries.iter().for_each(|&entry| self.lowest.add(entry, 1.0));
+        other.highest.entries.iter().for_each(|&entry| self.highest.add(entry, -1.0));
+    }
+
+    /// The value that gives itself away as "no data", and how far inwards the next one lies.
+    fn sentinel(&self) -> Option<(Entry, f64)> {
+        let [low, high] = [&self.lowest, &self.highest].map(|end| end.sentinel(self.samples));
+        match (low, high) {
+            // Two values alone, each far from the other: the one nearer to the sea is the ground.
+            (Some(low), Some(high)) if self.lowest.entries.len() == 2 => {
+                let is_low = low.0.height_m.abs() >= high.0.height_m.abs();
+                Some(if is_low { low } else { high })
+            }
+            (low, high) => low.or(high),
+        }
+    }
+
+    /// How often an outermost value was met.
+    fn count_of(&self, height_m: f64) -> u64 {
+        let entries = self.lowest.entries.iter().chain(&self.highest.entries);
+        entries
+            .into_iter()
+            .find(|entry| entry.height_m - height_m == 0.0)
+            .map_or(0, |entry| entry.count)
+    }
+
+    /// Lowest and highest sample.
+    fn range_m(&self) -> Option<[f64; 2]> {
+        let [low, high] = [&self.lowest, &self.highest].map(|end| end.entries.first());
+        Some([low?.height_m, high?.height_m])
+    }
+}
+
+impl End {
+    /// `towards` is 1 at the low end and −1 at the high one.
+    fn add(&mut self, entry: Entry, towards: f64) {
+        let inwards = |other: &Entry| (other.height_m - entry.height_m) * towards;
+        if self.entries.len() == KEPT && self.entries.last().is_some_and(|last| inwards(last) < 0.0)
+        {
+            return;
+        }
+        let at = self.entries.iter().position(|other| inwards(other) >= 0.0);
+        match at {
+            Some(at) if inwards(&self.entries[at]) == 0.0 => {
+                let found = &mut self.entries[at];
+                found.count += entry.count;
+                // Where files store one height differently; any will do, but always the same.
+                found.stored = found.stored.min(entry.stored);
+            }
+            Some(at) => self.entries.insert(at, entry),
+            None => self.entries.push(entry),
+        }
+        self.entries.truncate(KEPT);
+    }
+
+    fn sentinel(&self, samples: u64) -> Option<(Entry, f64)> {
+        let gap_m = |pair: &[Entry]| (pair[1].height_m - pair[0].height_m).abs();
+        self.entries
+            .windows(2)
+            .find(|pair| {
+                let count = pair[0].count;
+                count > 1 && count > samples / ONE_IN && gap_m(pair) >= FAR_M
+            })
+            .map(|pair| (pair[0], gap_m(pair)))
+    }
+}
+
+impl Audit {
+    fn new(files: usize, range_m: [f64; 2]) -> Self {
+        Self { range_m, files: vec![FileAudit::default(); files] }
+    }
+
+    /// Of a DEM of which nothing has been looked at yet.
+    #[must_use]
+    pub fn none_of(dem: &Dem, range_m: [f64; 2]) -> Self {
+        Self::new(dem.sources.len(), range_m)
+    }
+
+    /// Adds what was found in a block of the same DEM.
+    pub fn merge(&mut self, part: &AuditPart) {
+        if let Some(file) = self.files.get_mut(part.file) {
+            file.merge(&part.found);
+        }
+    }
+
+    /// Refuses values that are no heights: of each file, then of all files together.
+    ///
+    /// - One that is repeated in more than 0.01 % of the samples and lies 1000 m or more beyond all others means "no data";
+    ///   where several such values are found, the outermost is named. `is_range_given` leaves this out: who says what is
+    ///   allowed has looked.
+    /// - None may lie outside the range.
+    ///
+    /// # Errors
+    /// [`DemError::Sentinel`] or [`DemError::OutOfRange`].
+    pub fn check(&self, dem: &Dem, is_range_given: bool) -> Result<(), DemError> {
+        if !is_range_given && let Some(error) = self.sentinel_error(dem) {
+            return Err(error);
+        }
+        let outside = dem.sources.iter().zip(&self.files).find(|(_, file)| file.outside > 0);
+        let Some((source, file)) = outside else { return Ok(()) };
+        let [low_m, high_m] = self.range_m;
+        let ends = [&file.lowest, &file.highest].map(|end| end.entries.first());
+        let worst = match ends {
+            [Some(low), Some(high)] if low_m - low.height_m >= high.height_m - high_m => low,
+            [_, Some(high)] => high,
+            _ => return Ok(()),
+        };
+        Err(DemError::OutOfRange {
+            path: source.path.clone(),
+            count: file.outside,
+            samples: file.samples,
+            height_m: worst.height_m,
+            stored: source.stored_text(worst.stored),
+            low_m,
+            high_m,
+        })
+    }
+
+    fn sentinel_error(&self, dem: &Dem) -> Option<DemError> {
+        let files = || dem.sources.iter().zip(&self.files);
+        let mut all = FileAudit::default();
+        self.files.iter().for_each(|file| all.merge(file));
+        // A file's own, with all files that have the same; else one that only stands out beside other files.
+        let own = self.files.iter().find_map(FileAudit::sentinel);
+        let (entry, gap_m) = own.or_else(|| all.sentinel())?;
+        let count_in = |file: &FileAudit| match file.sentinel() {
+            _ if own.is_none() => file.count_of(entry.height_m),
+            Some((same, _)) if same.height_m - entry.height_m == 0.0 => same.count,
+            _ => 0,
+        };
+        let holders: Vec<_> = files().filter(|(_, file)| count_in(file) > 0).collect();
+        let (first, _) = holders.first()?;
+        let samples = match own {
+            Some(_) => holders.iter().map(|(_, file)| file.samples).sum(),
+            None => all.samples,
+        };
+        let [low_m, high_m] = all.range_m()?;
+        let names: Vec<&Path> = holders.iter().map(|(source, _)| source.path.as_path()).collect();
+        Some(DemError::Sentinel {
+            files: list(&names),
+            stored: first.stored_text(entry.stored),
+            count: holders.iter().map(|(_, file)| count_in(file)).sum(),
+            samples,
+            height_m: entry.height_m,
+            gap_m,
+            side: if entry.height_m <= low_m.midpoint(high_m) { "below" } else { "above" },
+            low_m: low_m.floor(),
+            high_m: high_m.ceil(),
+        })
+    }
+}
+
+/// The first few files by name, and how many more there are.
+fn list(files: &[&Path]) -> String {
+    const NAMED: usize = 3;
+    let names: Vec<String> =
+        files.iter().take(NAMED).map(|path| path.display().to_string()).collect();
+    match files.len().saturating_sub(NAMED) {
+        0 => names.join(", "),
+        more => format!("{} and {more} more", names.join(", ")),
+    }
+}
+
+#[cfg(test)]
+#[path = "audit_tests.rs"]
+mod tests;

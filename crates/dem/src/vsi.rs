@@ -1,0 +1,98 @@
+//! Two things of GDAL's that the `gdal` crate does not hand out: the files of a raster, and GDAL's virtual files.
+
+#![expect(unsafe_code, reason = "GDALGetFileList and VSI*L have no safe wrapper in the gdal crate")]
+
+use std::{
+    ffi::{CStr, CString},
+    io::{self, Read},
+    path::{Path, PathBuf},
+    ptr::NonNull,
+};
+
+use gdal::Dataset;
+
+/// The files that GDAL names for a raster: its own, those beside it, and of a virtual raster the files it refers to.
+pub(crate) fn file_list(dataset: &Dataset) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    // SAFETY: the handle is that of an open dataset. What comes back is null, or an array of C strings that ends with a
+    // null; it is ours, and is read before it is destroyed.
+    unsafe {
+        let list = gdal_sys::GDALGetFileList(dataset.c_dataset());
+        if list.is_null() {
+            return files;
+        }
+        let mut at = list;
+        while !(*at).is_null() {
+            files.push(PathBuf::from(CStr::from_ptr(*at).to_string_lossy().into_owned()));
+            at = at.add(1);
+        }
+        gdal_sys::CSLDestroy(list);
+    }
+    files
+}
+
+/// A file as GDAL's virtual file systems (`/vsizip/…`, `/vsicurl/…`) deliver it: the bytes that GDAL decodes.
+#[derive(Debug)]
+pub struct VirtualFile {
+    handle: NonNull<gdal_sys::VSILFILE>,
+}
+
+impl VirtualFile {
+    /// Opens a file for reading.
+    ///
+    /// # Errors
+    /// When the name holds a zero byte, or GDAL finds no such file.
+    pub fn open(path: &Path) -> io::Result<Self> {
+        let name = c_name(path)?;
+        // SAFETY: both are C strings that outlive the call; the handle is checked for null.
+        let handle = unsafe { gdal_sys::VSIFOpenL(name.as_ptr(), c"rb".as_ptr()) };
+        let not_found = || io::Error::new(io::ErrorKind::NotFound, "GDAL finds no such file");
+        Ok(Self { handle: NonNull::new(handle).ok_or_else(not_found)? })
+    }
+
+    /// How many bytes it has.
+    ///
+    /// # Errors
+    /// When GDAL cannot find its end.
+    pub fn into_size(self) -> io::Result<u64> {
+        const FROM_END: i32 = 2;
+        // SAFETY: the handle is open until this is dropped.
+        let (moved, size) = unsafe {
+            let handle = self.handle.as_ptr();
+            (gdal_sys::VSIFSeekL(handle, 0, FROM_END), gdal_sys::VSIFTellL(handle))
+        };
+        if moved == 0 { Ok(size) } else { Err(io::Error::other("GDAL cannot find its end")) }
+    }
+}
+
+impl Read for VirtualFile {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if buffer.is_empty() {
+            return Ok(0);
+        }
+        // SAFETY: the handle is open until this is dropped, and GDAL writes at most the buffer's length into it.
+        let (read, is_end) = unsafe {
+            let handle = self.handle.as_ptr();
+            let read = gdal_sys::VSIFReadL(buffer.as_mut_ptr().cast(), 1, buffer.len(), handle);
+            (read, gdal_sys::VSIFEofL(handle) != 0)
+        };
+        if read == 0 && !is_end {
+            return Err(io::Error::other("GDAL cannot read it to its end; it may be damaged"));
+        }
+        Ok(read)
+    }
+}
+
+impl Drop for VirtualFile {
+    fn drop(&mut self) {
+        // SAFETY: the handle is open and is not used afterwards. It was only read from, so nothing can be lost.
+        unsafe {
+            gdal_sys::VSIFCloseL(self.handle.as_ptr());
+        }
+    }
+}
+
+fn c_name(path: &Path) -> io::Result<CString> {
+    let text = path.to_str().ok_or_else(|| io::Error::other("its name is not UTF-8"))?;
+    CString::new(text).map_err(io::Error::other)
+}

@@ -1,0 +1,121 @@
+use corniche_geom::{LatticeBounds, LatticePoint};
+use corniche_tin::Surface;
+
+use crate::around::{Around, padded};
+
+/// What of the rectangle beside a piece may lack ground and still count as covered: rounding of areas.
+const UNCOVERED: f64 = 1e-9;
+
+/// A straight piece of a road on the ground, in one triangle. Plan positions are in lattice steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoadPiece {
+    /// Where it starts.
+    pub start: [f64; 2],
+    /// East and north parts of its direction, of length 1.
+    pub direction: [f64; 2],
+    /// How long it is in plan.
+    pub length: f64,
+    /// Heights of the ground at its start and its end, metres.
+    pub heights_m: [f64; 2],
+    /// Whether the road has a cap at its start and at its end: where it does not go straight on.
+    pub has_caps: [bool; 2],
+}
+
+/// A plane through a piece of a road, and how far the ground beside the piece leaves it.
+///
+/// ```text
+///     height │          ╱‾‾╲___   ground       The plane holds the piece and rises across it as the ground does on the
+///            │ ─ ─ ─ ─╱─ ─ ─ ─ ─ above         whole. At a distance d from the piece the ground is below it by no more
+///            │    ___╳─────────── plane        than `below_rise_m` · d, and by `below_m` nowhere within the reach;
+///            │ ──╱─ ╱ ─ ─ ─ ─ ─ ─ below        likewise above. Beside the piece is what lies across it, and around its
+///            └──────┴───────► across           end where the road has a cap.
+///                 piece
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoadBed {
+    /// Metres that the plane rises for each lattice step to the left of the piece.
+    pub cross_rise_m: f64,
+    /// Metres that the ground leaves the plane downwards and upwards for each lattice step away from the piece; infinite
+    /// where there is not ground everywhere near.
+    pub rises_m: [f64; 2],
+    /// Metres that it leaves the plane downwards and upwards at most.
+    pub most_m: [f64; 2],
+}
+
+/// The bed of a piece, for ground within `reach` lattice steps of it.
+#[must_use]
+pub fn road_bed(piece: &RoadPiece, surface: &Surface, reach: f64) -> RoadBed {
+    let RoadPiece { start, direction, length, heights_m, has_caps } = *piece;
+    let beyond = has_caps.map(|has_cap| if has_cap { reach } else { 0.0 });
+    // A piece may be shorter than rounding: grow it a little, for something to have an area.
+    let slack = 1e-3_f64.min(reach);
+    let beside =
+        Around::beside(start, direction, length, reach, beyond.map(|beyond| beyond.max(slack)));
+    let mut triangles = Vec::new();
+    surface.triangles_near(bounds(piece, reach), &mut triangles);
+    let parts: Vec<_> = triangles
+        .into_iter()
+        .filter_map(|triangle| {
+            let part = beside.part_of(triangle, surface);
+            let [east_m, north_m] = surface.gradient_m(triangle);
+            // Rise along the piece and to its left.
+            let rise_m = [
+                east_m * direction[0] + north_m * direction[1],
+                north_m * direction[0] - east_m * direction[1],
+            ];
+            (!part.corners().is_empty()).then_some((part, rise_m))
+        })
+        .collect();
+    let (covered, weighed) = parts.iter().fold((0.0, 0.0), |(covered, weighed), (part, rise_m)| {
+        let area = part.area();
+        (covered + area, weighed + area * rise_m[1])
+    });
+    let cross_rise_m = if covered > 0.0 { weighed / covered } else { 0.0 };
+    let along_rise_m = if length > 0.0 { (heights_m[1] - heights_m[0]) / length } else { 0.0 };
+    let (mut range_m, mut rises_m) = ([0.0_f64; 2], [0.0_f64; 2]);
+    for (part, [along_m, left_m]) in &parts {
+        let bend_m = [along_m - along_rise_m, left_m - cross_rise_m];
+        for &[along, across, height_m] in part.corners() {
+            let plane_m = heights_m[0] + along_rise_m * along + cross_rise_m * across;
+            widen(&mut range_m, height_m - plane_m);
+            // From beneath the piece, the way to the ground beside it is straight across; around an end it may go anywhere.
+            if along < -slack || along > length + slack {
+                let most_m = bend_m[0].hypot(bend_m[1]);
+                widen(&mut rises_m, most_m);
+                widen(&mut rises_m, -most_m);
+            } else {
+                widen(&mut rises_m, bend_m[1] * across.signum());
+            }
+        }
+    }
+    let is_covered = covered >= (1.0 - UNCOVERED) * beside.area();
+    let [lowest_m, highest_m] = padded(range_m);
+    RoadBed {
+        cross_rise_m,
+        rises_m: if is_covered { [-rises_m[0], rises_m[1]] } else { [f64::INFINITY; 2] },
+        most_m: [-lowest_m, highest_m],
+    }
+}
+
+fn widen([least, most]: &mut [f64; 2], value: f64) {
+    *least = least.min(value);
+    *most = most.max(value);
+}
+
+/// Whatever lies in the rectangle beside a piece, and more.
+fn bounds(piece: &RoadPiece, reach: f64) -> LatticeBounds {
+    let RoadPiece { start, direction, length, .. } = *piece;
+    let end = [0, 1].map(|axis| start[axis] + length * direction[axis]);
+    // A corner is √2 reaches from its end.
+    let around = 1.5 * reach + 1.0;
+    let least = |axis: usize| (start[axis].min(end[axis]) - around).floor() as i64;
+    let most = |axis: usize| (start[axis].max(end[axis]) + around).ceil() as i64;
+    LatticeBounds {
+        min: LatticePoint::new(least(0), least(1)),
+        max: LatticePoint::new(most(0), most(1)),
+    }
+}
+
+#[cfg(test)]
+#[path = "road_bed_tests.rs"]
+mod tests;

@@ -1,0 +1,233 @@
+//! The files that a run reads: what they are called, their content's hash, and whether they stayed as they were.
+//!
+//! GDAL reads a raster's blocks in any order, and an extract is read twice, so content is not hashed while it is used. It is
+//! hashed once, in one pass before, and what proves that the bytes used are those hashed is the file system: size, times
+//! and inode are noted before anything of a file is read and compared after the last of it was.
+//!
+//! ```text
+//!   stamp ─► open ─► hash ─► roads, heights … ─► stamp again ─► package
+//! ```
+
+mod stamp;
+
+use std::{
+    fs::{self, File},
+    io::{self, Read},
+    path::{Path, PathBuf},
+};
+
+use corniche_dem::{DemError, VirtualFile, raster_files};
+use corniche_tileset::InputRecord;
+use sha2::{Digest, Sha256};
+
+use self::stamp::Stamp;
+use crate::{BuildError, Observer, Stage, VerifyError, build::hex};
+
+/// A raster that was named.
+pub(crate) const DEM: &str = "dem";
+/// A file that one of them refers to, or that lies beside it and belongs to it.
+pub(crate) const DEM_PART: &str = "dem-part";
+/// The extract.
+pub(crate) const OSM: &str = "osm";
+
+/// All files of a run, as they were before anything of them was read.
+#[derive(Debug)]
+pub(crate) struct Inputs {
+    files: Vec<Input>,
+}
+
+#[derive(Debug)]
+struct Input {
+    kind: &'static str,
+    /// As it was given.
+    path: PathBuf,
+    name: String,
+    content: Content,
+    stamp: Stamp,
+}
+
+/// What is hashed of an input.
+#[derive(Debug)]
+enum Content {
+    File(PathBuf),
+    /// What GDAL's virtual file system delivers by this name.
+    Virtual(PathBuf),
+    /// A folder, which has no bytes of its own; its files are parts.
+    Folder,
+}
+
+/// Why inputs cannot be used.
+#[derive(Debug)]
+pub(crate) enum InputError {
+    Read { path: PathBuf, source: io::Error },
+    Name { path: PathBuf },
+    Stream { path: PathBuf },
+    Dem(DemError),
+    Changed { path: PathBuf },
+    Interrupted,
+}
+
+impl Inputs {
+    /// Finds all files and notes what they are, before anything of them is read for use.
+    pub(crate) fn find(dem: &[PathBuf], osm: Option<&Path>) -> Result<Self, InputError> {
+        let mut files: Vec<Input> = Vec::new();
+        for path in dem {
+            // First the stamp, then what the file says of its parts.
+            let input = Input::new(DEM, path)?;
+            let parts = raster_files(path).map_err(InputError::Dem)?;
+            let is_own = |part: &PathBuf| match &input.content {
+                Content::File(own) | Content::Virtual(own) => part == own || part == path,
+                Content::Folder => part == path,
+            };
+            let parts: Vec<PathBuf> = parts.into_iter().filter(|part| !is_own(part)).collect();
+            files.push(input);
+            for part in parts {
+                files.push(Input::new(DEM_PART, &part)?);
+            }
+        }
+        if let Some(path) = osm {
+            files.push(Input::new(OSM, path)?);
+        }
+        Ok(Self { files })
+    }
+
+    /// Hashes the content of every file. The parts of a raster come after it, sorted.
+    pub(crate) fn hash(&self, observer: &dyn Observer) -> Result<Vec<InputRecord>, InputError> {
+        observer.begin(Stage::Hash, Some(self.files.len() as u64));
+        let mut records: Vec<InputRecord> = Vec::new();
+        for input in &self.files {
+            records.push(input.hash(observer)?);
+            observer.advance(Stage::Hash, 1);
+        }
+        for parts in records.chunk_by_mut(|a, b| a.kind == DEM_PART && b.kind == DEM_PART) {
+            parts.sort_by(|a, b| (&a.name, &a.sha256).cmp(&(&b.name, &b.sha256)));
+        }
+        observer.end(Stage::Hash);
+        Ok(records)
+    }
+
+    /// Fails if a file is no longer what it was when it was found.
+    pub(crate) fn check_unchanged(&self) -> Result<(), InputError> {
+        match self.files.iter().find(|input| !input.stamp.still_holds()) {
+            Some(input) => Err(InputError::Changed { path: input.path.clone() }),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Input {
+    fn new(kind: &'static str, path: &Path) -> Result<Self, InputError> {
+        let failed = |source| InputError::Read { path: path.to_path_buf(), source };
+        // To open a pipe is to wait for who writes into it, and it cannot be read twice.
+        if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
+            return Err(InputError::Stream { path: path.to_path_buf() });
+        }
+        let (content, name) = named(path).ok_or(InputError::Name { path: path.to_path_buf() })?;
+        let stamp = match &content {
+            Content::File(file) => Stamp::of_file(file),
+            Content::Folder => Stamp::of_file(path),
+            Content::Virtual(name) => Stamp::of_virtual(name),
+        };
+        let stamp = stamp.map_err(failed)?;
+        Ok(Self { kind, path: path.to_path_buf(), name, content, stamp })
+    }
+
+    fn hash(&self, observer: &dyn Observer) -> Result<InputRecord, InputError> {
+        let failed = |source: io::Error| InputError::Read { path: self.path.clone(), source };
+        let mut hasher = Sha256::new();
+        let bytes = match &self.content {
+            Content::Folder => Some(0),
+            Content::File(path) => {
+                let mut file = File::open(path).map_err(failed)?;
+                digest(&mut file, &mut hasher, observer).map_err(failed)?
+            }
+            Content::Virtual(path) => {
+                let mut file = VirtualFile::open(path).map_err(failed)?;
+                digest(&mut file, &mut hasher, observer).map_err(failed)?
+            }
+        };
+        Ok(InputRecord {
+            kind: self.kind.to_owned(),
+            name: self.name.clone(),
+            bytes: bytes.ok_or(InputError::Interrupted)?,
+            sha256: hex(&hasher.finalize()),
+        })
+    }
+}
+
+/// How many bytes were hashed; `None` when the run was interrupted.
+fn digest(
+    file: &mut dyn Read,
+    hasher: &mut Sha256,
+    observer: &dyn Observer,
+) -> io::Result<Option<u64>> {
+    let mut buffer = vec![0; 1 << 20];
+    let mut bytes = 0;
+    loop {
+        if observer.is_cancelled() {
+            return Ok(None);
+        }
+        match file.read(&mut buffer) {
+            Ok(0) => return Ok(Some(bytes)),
+            Ok(read) => {
+                hasher.update(&buffer[..read]);
+                bytes += read as u64;
+            }
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// What holds the bytes of an input, and the input's name without folders; `None` where the name is not UTF-8.
+///
+/// They differ for a raster inside a container, as GDAL names it (`GPKG:dem.gpkg:heights`, `NETCDF:"dem.nc":Band1`).
+fn named(path: &Path) -> Option<(Content, String)> {
+    let short = |path: &Path| path.file_name().unwrap_or_default().to_str().map(str::to_owned);
+    if path.is_dir() {
+        return Some((Content::Folder, short(path)?));
+    }
+    if path.exists() {
+        return Some((Content::File(path.to_path_buf()), short(path)?));
+    }
+    let text = path.to_str()?;
+    // By text: `Path::starts_with` compares whole names, and they go on, as in /vsizip/ and /vsicurl/.
+    if text.starts_with("/vsi") {
+        return Some((Content::Virtual(path.to_path_buf()), short(path)?));
+    }
+    let container =
+        text.split(':').map(|part| part.trim_matches('"')).find(|part| Path::new(part).is_file());
+    match container {
+        Some(container) => {
+            let name = text.replace(container, &short(Path::new(container))?);
+            Some((Content::File(PathBuf::from(container)), name))
+        }
+        None => Some((Content::File(path.to_path_buf()), short(path)?)),
+    }
+}
+
+impl From<InputError> for BuildError {
+    fn from(error: InputError) -> Self {
+        match error {
+            InputError::Read { path, source } => Self::Input { path, source },
+            InputError::Name { path } => Self::InputName { path },
+            InputError::Stream { path } => Self::Stream { path },
+            InputError::Dem(error) => Self::Dem(error),
+            InputError::Changed { path } => Self::Changed { path },
+            InputError::Interrupted => Self::Interrupted,
+        }
+    }
+}
+
+impl From<InputError> for VerifyError {
+    fn from(error: InputError) -> Self {
+        match error {
+            InputError::Read { path, source } => Self::Input { path, source },
+            InputError::Name { path } => Self::InputName { path },
+            InputError::Stream { path } => Self::Stream { path },
+            InputError::Dem(error) => Self::Dem(error),
+            InputError::Changed { path } => Self::Changed { path },
+            InputError::Interrupted => Self::Interrupted,
+        }
+    }
+}

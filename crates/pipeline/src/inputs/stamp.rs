@@ -1,0 +1,168 @@
+//! What a file system says of a file, by which a change of its content is seen.
+
+use std::{
+    fs::{self, Metadata},
+    io,
+    path::{Path, PathBuf},
+    thread,
+    time::{Duration, SystemTime},
+};
+
+use corniche_dem::VirtualFile;
+
+/// Times of files are no finer than this on any common file system but FAT: two writes within it may carry one time.
+const CLOCK: Duration = Duration::from_millis(20);
+
+/// What is noted of a file before it is read.
+#[derive(Debug)]
+pub(super) enum Stamp {
+    /// On disk: of a raster in an archive, the archive.
+    File(PathBuf, FileState),
+    /// On a server: its size is all that is known of it.
+    Remote(PathBuf, u64),
+}
+
+/// Content cannot change without one of these, be it written over, exchanged, or exchanged and given its old time.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct FileState {
+    size: u64,
+    modified: Option<SystemTime>,
+    /// Device and inode, and the time of the last change of anything, which nobody can set.
+    #[cfg(unix)]
+    identity: [i64; 4],
+}
+
+impl Stamp {
+    pub(super) fn of_file(path: &Path) -> io::Result<Self> {
+        Ok(Self::File(path.to_path_buf(), settled(path)?))
+    }
+
+    /// Of a name that GDAL's virtual file systems understand.
+    pub(super) fn of_virtual(path: &Path) -> io::Result<Self> {
+        match path.to_str().and_then(container) {
+            Some(container) => Self::of_file(&container),
+            None => Ok(Self::Remote(path.to_path_buf(), VirtualFile::open(path)?.into_size()?)),
+        }
+    }
+
+    /// Whether the file is still what it was.
+    pub(super) fn still_holds(&self) -> bool {
+        match self {
+            Self::File(path, state) => {
+                fs::metadata(path).is_ok_and(|now| FileState::of(&now) == *state)
+            }
+            Self::Remote(path, size) => VirtualFile::open(path)
+                .and_then(VirtualFile::into_size)
+                .is_ok_and(|now| now == *size),
+        }
+    }
+}
+
+impl FileState {
+    fn of(found: &Metadata) -> Self {
+        Self {
+            size: found.len(),
+            modified: found.modified().ok(),
+            #[cfg(unix)]
+            identity: {
+                use std::os::unix::fs::MetadataExt as _;
+                [
+                    found.dev().cast_signed(),
+                    found.ino().cast_signed(),
+                    found.ctime(),
+                    found.ctime_nsec(),
+                ]
+            },
+        }
+    }
+}
+
+/// The state of a file, once enough time has passed since its last change for the next one to carry another time.
+fn settled(path: &Path) -> io::Result<FileState> {
+    let mut found = fs::metadata(path)?;
+    // A file that is being written all the time never settles; then its next change shows.
+    for _ in 0..3 {
+        let age = found.modified().ok().and_then(|time| time.elapsed().ok());
+        if age.is_none_or(|age| age >= CLOCK) {
+            break;
+        }
+        thread::sleep(CLOCK);
+        found = fs::metadata(path)?;
+    }
+    Ok(FileState::of(&found))
+}
+
+/// The file on disk in which a virtual one lies: `/vsizip//data/a.zip/inner.hgt`, `/vsisubfile/7_100,/data/a`,
+/// `/vsizip/{/data/a}/inner.hgt`.
+fn container(name: &str) -> Option<PathBuf> {
+    let starts = name.match_indices(['/', ',', '{']).flat_map(|(at, sign)| {
+        let is_root = sign == "/" && at > 0;
+        is_root.then_some(at).into_iter().chain([at + 1])
+    });
+    for start in starts {
+        let rest = &name[start..];
+        let ends = rest.match_indices(['/', '}', '?']).map(|(at, _)| at).chain([rest.len()]);
+        let file = ends.map(|end| Path::new(&rest[..end])).find(|path| path.is_file());
+        if let Some(file) = file {
+            return Some(file.to_path_buf());
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_file_around_a_virtual_one_is_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let archive = folder.path().join("a.zip");
+        fs::write(&archive, b"archive").unwrap();
+        let file = archive.to_str().unwrap();
+        for name in [
+            format!("/vsizip/{file}/inner.hgt"),
+            format!("/vsizip/{{{file}}}/folder/inner.hgt"),
+            format!("/vsisubfile/7_100,{file}"),
+            format!("/vsigzip/{file}"),
+            format!("/vsizip/vsigzip/{file}/inner.hgt"),
+        ] {
+            assert_eq!(container(&name).as_deref(), Some(archive.as_path()), "{name}");
+        }
+        for name in ["/vsicurl/https://example.org/dem.tif", "/vsizip//no/such/folder.zip/inner"] {
+            assert_eq!(container(name), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn whatever_is_done_to_a_file_shows() {
+        type Change = fn(&Path);
+        let changes: [(&str, Change); 4] = [
+            ("longer", |path| fs::write(path, b"longer than before").unwrap()),
+            ("as long", |path| fs::write(path, b"new").unwrap()),
+            ("exchanged, with its old time", |path| {
+                let time = fs::metadata(path).unwrap().modified().unwrap();
+                let other = path.with_extension("other");
+                fs::write(&other, b"new").unwrap();
+                fs::File::options().write(true).open(&other).unwrap().set_modified(time).unwrap();
+                fs::rename(other, path).unwrap();
+            }),
+            ("written over, with its old time", |path| {
+                let time = fs::metadata(path).unwrap().modified().unwrap();
+                fs::write(path, b"new").unwrap();
+                fs::File::options().write(true).open(path).unwrap().set_modified(time).unwrap();
+            }),
+        ];
+        for (what, change) in changes {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("dem.tif");
+            fs::write(&path, b"old").unwrap();
+            let stamp = Stamp::of_file(&path).unwrap();
+            assert!(stamp.still_holds(), "{what}: before");
+            change(&path);
+            assert!(!stamp.still_holds(), "{what}");
+            fs::remove_file(&path).unwrap();
+            assert!(!stamp.still_holds(), "{what}: gone");
+        }
+    }
+}

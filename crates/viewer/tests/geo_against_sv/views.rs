@@ -1,0 +1,82 @@
+//! Views of a package, drawn from a seed.
+
+use std::fmt;
+
+use corniche_viewer::camera::Orientation;
+
+/// A place on a road in plan, with its longitude and latitude.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    pub(crate) at_m: [f64; 2],
+    pub(crate) lon_lat_deg: [f64; 2],
+}
+
+/// Where to look from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct View {
+    pub(crate) place: Place,
+    pub(crate) distance_m: f64,
+    pub(crate) orientation: Orientation,
+}
+
+impl fmt::Display for View {
+    /// As the options of `corniche render`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([lon_deg, lat_deg], Orientation { heading_deg, pitch_deg }) =
+            (self.place.lon_lat_deg, self.orientation);
+        let distance_m = self.distance_m;
+        write!(
+            f,
+            "--look-at {lon_deg:.6},{lat_deg:.6} --distance {distance_m:.1} --heading {heading_deg:.2} --pitch {pitch_deg:.2}"
+        )
+    }
+}
+
+/// What two drawings of a view have in common.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Seen {
+    /// Pixels of roads in SV.
+    pub(crate) of_roads: usize,
+    /// Pixels whose labels differ, outside the band.
+    pub(crate) differing: usize,
+    /// Of these, without any road in the drawing that is compared.
+    pub(crate) missing: usize,
+}
+
+impl Seen {
+    pub(crate) fn share(&self) -> f64 {
+        self.differing as f64 / self.of_roads.max(1) as f64
+    }
+}
+
+/// Views without end, the same ones for the same places and seed.
+pub(crate) struct Views {
+    places: Vec<Place>,
+    state: u64,
+}
+
+impl Views {
+    pub(crate) fn new(places: Vec<Place>, seed: u64) -> Self {
+        assert!(!places.is_empty(), "a package without roads");
+        Self { places, state: seed }
+    }
+
+    pub(crate) fn next_view(&mut self) -> View {
+        let index = (self.share() * self.places.len() as f64) as usize;
+        let place = self.places[index];
+        let distance_m = 300.0 * 100.0_f64.powf(self.share());
+        let heading_deg = 360.0 * self.share();
+        let pitch_deg = 85.0 * self.share();
+        View { place, distance_m, orientation: Orientation { heading_deg, pitch_deg } }
+    }
+
+    /// From 0 to below 1, by splitmix64 (Steele, Lea & Flood 2014, *Fast Splittable Pseudorandom Number Generators*).
+    fn share(&mut self) -> f64 {
+        self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^= z >> 31;
+        (z >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
