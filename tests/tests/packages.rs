@@ -57,6 +57,40 @@ fn pass_keeps_its_promises_and_damage_is_named() {
     assert!(ran.out.contains("tile"), "{}", ran.out);
 }
 
+/// With the extract beside it too, and every check by its id.
+#[test]
+fn pass_is_what_its_extract_says_and_checks_have_ids() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("pass.pmtiles");
+    build_pass(&package, &["--quiet"]);
+    let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
+    let arguments =
+        ["verify", text(&package), "--dem", text(&dem), "--osm", text(&osm), "--json", "--quiet"];
+    let report = json(&arguments);
+    assert_eq!(report["holds"], true, "{report}");
+    let checks = report["checks"].as_array().unwrap();
+    for id in ["P1", "P2.bound", "P3", "sv.range", "manifest.crs", "osm.geo", "osm.counts"] {
+        let check = checks.iter().find(|check| check["id"] == id);
+        assert!(check.is_some_and(|check| check["checked"].as_u64() > Some(0)), "{id}: {report}");
+    }
+    let help = corniche(["verify", "--help"]).out;
+    assert!(checks.iter().all(|check| help.contains(check["id"].as_str().unwrap())), "{help}");
+
+    // Another extract, and another table, are told from a broken package.
+    let other = folder.path().join("other.osm.pbf");
+    let mut bytes = fs::read(&osm).unwrap();
+    bytes.push(0);
+    fs::write(&other, bytes).unwrap();
+    let ran = corniche(["verify", text(&package), "--osm", text(&other), "--quiet"]);
+    assert_eq!(ran.code, 2, "{}{}", ran.out, ran.err);
+    assert!(ran.err.contains("pass.osm.pbf"), "{}", ran.err);
+    let arguments =
+        ["verify", text(&package), "--osm", text(&osm), "--frc-table", "valhalla", "--quiet"];
+    let ran = corniche(arguments);
+    assert_eq!(ran.code, 2, "{}{}", ran.out, ran.err);
+    assert!(ran.err.contains("--frc-table"), "{}", ran.err);
+}
+
 /// P6: the list names what the manifest counts, defect by defect and loss by loss.
 #[test]
 fn the_list_of_defects_is_what_the_summary_counts() {

@@ -75,7 +75,8 @@ impl From<VerifyError> for Failure {
     fn from(error: VerifyError) -> Self {
         let code = match &error {
             VerifyError::Interrupted => ExitCode::Interrupted,
-            VerifyError::Changed { .. } => ExitCode::Failed,
+            VerifyError::Changed { .. } | VerifyError::Work(_) => ExitCode::Failed,
+            VerifyError::Roads(error) if !error.is_unusable_input() => ExitCode::Failed,
             _ => ExitCode::Unusable,
         };
         Self::new(code, error)

@@ -1,5 +1,6 @@
 use std::sync::Arc;
 
+use corniche_geom::wgs84;
 use gdal::config;
 use gdal::errors::GdalError;
 use gdal::spatial_ref::{AxisMappingStrategy, SpatialRef};
@@ -96,8 +97,6 @@ impl Crs {
 
     /// Metres to a unit of longitude and of latitude at a latitude, by the radii of curvature of the system's ellipsoid;
     /// `None` when projected.
-    ///
-    /// Source: Snyder 1987, *Map Projections: A Working Manual*, equations 4-18 to 4-21.
     pub(crate) fn metres_per_turn_unit(
         &self,
         latitude_deg: f64,
@@ -109,7 +108,8 @@ impl Crs {
         let major_m = reference.semi_major().map_err(unreadable)?;
         let minor_m = reference.semi_minor().map_err(unreadable)?;
         let radians = std::f64::consts::TAU / turn;
-        let [parallel_m, meridian_m] = radii_m([major_m, minor_m], latitude_deg.to_radians());
+        let eccentricity_2 = 1.0 - (minor_m / major_m).powi(2);
+        let [parallel_m, meridian_m] = wgs84::radii_of_m(major_m, eccentricity_2, latitude_deg);
         Ok(Some([parallel_m * radians, meridian_m * radians]))
     }
 
@@ -136,14 +136,6 @@ impl Crs {
                 _ => false,
             }
     }
-}
-
-/// Radius of the parallel and radius of curvature of the meridian at a latitude, of an ellipsoid by its semi-axes.
-fn radii_m([major_m, minor_m]: [f64; 2], latitude_rad: f64) -> [f64; 2] {
-    let eccentricity_2 = 1.0 - (minor_m / major_m).powi(2);
-    let w_2 = 1.0 - eccentricity_2 * latitude_rad.sin().powi(2);
-    let across_m = major_m / w_2.sqrt();
-    [across_m * latitude_rad.cos(), across_m * (1.0 - eccentricity_2) / w_2]
 }
 
 /// Whether a part of a compound system says where, not how high.

@@ -2,12 +2,11 @@
 
 use std::ops::RangeInclusive;
 
+use corniche_geom::wgs84::{ECCENTRICITY_2, SEMI_MAJOR_M};
+
 use crate::DemError;
 use crate::operation::Operation;
 
-/// WGS84: semi-major axis and flattening.
-const SEMI_MAJOR_M: f64 = 6_378_137.0;
-const FLATTENING: f64 = 1.0 / 298.257_223_563;
 /// Half the length over which scale is measured: long against PROJ's rounding, short against its curvature.
 const HALF_SPAN_M: f64 = 500.0;
 
@@ -93,9 +92,8 @@ fn normal([lon, lat]: [f64; 2]) -> [f64; 3] {
 
 fn geocentric_m(point_deg: [f64; 2]) -> [f64; 3] {
     let n = normal(point_deg);
-    let eccentricity_2 = FLATTENING * (2.0 - FLATTENING);
-    let radius_m = SEMI_MAJOR_M / (1.0 - eccentricity_2 * n[2] * n[2]).sqrt();
-    [radius_m * n[0], radius_m * n[1], radius_m * (1.0 - eccentricity_2) * n[2]]
+    let radius_m = SEMI_MAJOR_M / (1.0 - ECCENTRICITY_2 * n[2] * n[2]).sqrt();
+    [radius_m * n[0], radius_m * n[1], radius_m * (1.0 - ECCENTRICITY_2) * n[2]]
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::{Bounds, ProjectError, Projection};
+use crate::{Bounds, ProjectError, Projection, wgs84};
 
 /// WGS84 positions sampled over the working CRS, from which a reader interpolates both ways without PROJ.
 ///
@@ -76,9 +76,6 @@ pub enum CoordinateTableError {
 const MAX_SIZE: usize = 129;
 /// Over how many working metres the scale is measured: far more than the table's rounding, far less than its changes.
 const SCALE_SPAN_M: f64 = 1000.0;
-/// WGS84's semi-major axis and flattening, by definition.
-const WGS84_MAJOR_M: f64 = 6_378_137.0;
-const WGS84_FLATTENING: f64 = 1.0 / 298.257_223_563;
 /// Metres to a degree of latitude, near enough to turn a tolerance into degrees.
 const METRES_PER_DEGREE: f64 = 111_320.0;
 
@@ -189,7 +186,7 @@ impl CoordinateTable {
     #[must_use]
     pub fn scale_at(&self, at: [f64; 2]) -> Option<[f64; 2]> {
         let [_, lat_deg] = self.wgs84_from_working(at);
-        let [parallel_m, meridian_m] = wgs84_radii_m(lat_deg);
+        let [parallel_m, meridian_m] = wgs84::radii_m(lat_deg);
         let along = |axis: usize| {
             let beside = |by_m: f64| {
                 let mut beside = at;
@@ -244,14 +241,6 @@ impl CoordinateTable {
         }
         None
     }
-}
-
-/// Metres to a radian of longitude and of latitude on the WGS84 ellipsoid.
-fn wgs84_radii_m(lat_deg: f64) -> [f64; 2] {
-    let (sin, cos) = lat_deg.to_radians().sin_cos();
-    let squared = WGS84_FLATTENING * (2.0 - WGS84_FLATTENING);
-    let root = (1.0 - squared * sin * sin).sqrt();
-    [WGS84_MAJOR_M * cos / root, WGS84_MAJOR_M * (1.0 - squared) / root.powi(3)]
 }
 
 /// Working metres across a line for each true metre across it, where a true metre is `scale` working metres east and
@@ -346,12 +335,16 @@ mod tests {
 
     impl Projection for Geographic {
         fn working_from_wgs84(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
-            points.iter_mut().for_each(|p| *p = [p[0] * self.0[0], p[1] * self.0[1]]);
+            for p in points {
+                *p = [p[0] * self.0[0], p[1] * self.0[1]];
+            }
             Ok(())
         }
 
         fn wgs84_from_working(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
-            points.iter_mut().for_each(|p| *p = [p[0] / self.0[0], p[1] / self.0[1]]);
+            for p in points {
+                *p = [p[0] / self.0[0], p[1] / self.0[1]];
+            }
             Ok(())
         }
     }
@@ -373,7 +366,7 @@ mod tests {
         let table = table();
         for y in [5.95e6, 6.1e6, 6.3e6] {
             let lat_rad = (y / R).sinh().atan();
-            let [parallel_m, meridian_m] = wgs84_radii_m(lat_rad.to_degrees());
+            let [parallel_m, meridian_m] = wgs84::radii_m(lat_rad.to_degrees());
             let [east, north] = table.scale_at([1e5, y]).unwrap();
             assert!((east - R / parallel_m).abs() < 1e-6, "{east} at {y}");
             // Over a kilometre a degree of latitude hardly changes.

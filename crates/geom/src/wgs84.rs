@@ -1,20 +1,26 @@
-//! Lengths on the WGS84 ellipsoid.
+//! Lengths on the WGS84 ellipsoid, and on others.
 
 /// Semi-major axis.
-const SEMI_MAJOR_M: f64 = 6_378_137.0;
-/// Flattening.
+pub const SEMI_MAJOR_M: f64 = 6_378_137.0;
+/// Square of the eccentricity, from a flattening of 1 / 298.257223563.
+pub const ECCENTRICITY_2: f64 = FLATTENING * (2.0 - FLATTENING);
 const FLATTENING: f64 = 1.0 / 298.257_223_563;
 
 /// Radius of the parallel and radius of curvature of the meridian at a latitude, metres: what a radian of longitude and
 /// one of latitude are long there.
+#[must_use]
+pub fn radii_m(latitude_deg: f64) -> [f64; 2] {
+    radii_of_m(SEMI_MAJOR_M, ECCENTRICITY_2, latitude_deg)
+}
+
+/// The same on an ellipsoid by its semi-major axis and the square of its eccentricity.
 ///
 /// Source: Snyder 1987, *Map Projections: A Working Manual*, equations 4-18 to 4-21.
 #[must_use]
-pub fn radii_m(latitude_deg: f64) -> [f64; 2] {
+pub fn radii_of_m(semi_major_m: f64, eccentricity_2: f64, latitude_deg: f64) -> [f64; 2] {
     let (sin, cos) = latitude_deg.to_radians().sin_cos();
-    let eccentricity_2 = FLATTENING * (2.0 - FLATTENING);
     let w_2 = 1.0 - eccentricity_2 * sin * sin;
-    let across_m = SEMI_MAJOR_M / w_2.sqrt();
+    let across_m = semi_major_m / w_2.sqrt();
     [across_m * cos, across_m * (1.0 - eccentricity_2) / w_2]
 }
 

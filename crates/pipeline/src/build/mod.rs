@@ -32,6 +32,7 @@ use crate::{
     inputs::Inputs,
 };
 
+pub(crate) use audit::check as check_heights;
 pub(crate) use heights::{Pyramid, data_tiles, read as read_heights};
 pub(crate) use lengths::TrueLengths;
 pub(crate) use levels::{Levels, recorded_filter};

@@ -84,7 +84,7 @@ checks! {
     Texts "manifest.texts" Package "fixed texts are as the format has them, kinds of inputs are known, and extracts are credited"
     DemInputs "dem.inputs" Dem "the elevation files are as long as the manifest says"
     DemPlan "dem.plan" Dem "the elevation files and the settings give the grid, CRS and heights that the manifest tells of"
-    DemCounts "dem.counts" Dem "nodes with data, filled and void, and the lowest and highest, are those of the elevation files"
+    DemCounts "dem.counts" Dem "nodes with data, filled and void, and the lowest and highest, are those of the elevation files, and the settings allow them"
     Bound "P2.bound" Dem "no stored error is below the true one"
     Tight "P2.tight" Dem "stored errors are at most twice the true ones, for 95 % of tiles"
     Recorded "P2.recorded" Dem "the recorded distributions of stored over true errors hold"

@@ -9,8 +9,8 @@ use super::{
     checks::{CheckId, Findings},
 };
 use crate::{
-    DiskStorage, Observer, Stage,
-    build::{Pyramid, read_heights},
+    BuildError, DiskStorage, Observer, Stage,
+    build::{Pyramid, check_heights, read_heights},
     workers,
 };
 
@@ -33,6 +33,14 @@ pub(crate) fn verify(
     let pyramid = read_heights(dem, plan, threads, &storage, observer)?;
     let manifest = package.manifest();
     let mut findings = Findings::default();
+    let allowed = check_heights(dem, manifest.settings.height_range_m, threads, observer);
+    if matches!(allowed, Err(BuildError::Interrupted)) {
+        return Err(VerifyError::Interrupted);
+    }
+    findings.look(CheckId::DemCounts, allowed.is_ok(), || match allowed {
+        Err(error) => format!("heights that the settings do not allow: {error}"),
+        Ok(()) => String::new(),
+    });
     let (said, found) = (manifest.counts.samples, pyramid.samples());
     findings
         .look(CheckId::DemCounts, said == found, || format!("recorded {said:?}, found {found:?}"));

@@ -23,6 +23,8 @@ pub(crate) struct Ground {
     /// Corners of each triangle: column, row, height in metres.
     triangles: Vec<Corners>,
     buckets: Vec<Vec<u32>>,
+    /// Column and row of each triangle's first bucket.
+    first: Vec<[u8; 2]>,
     /// Lattice steps to a cell, east and north.
     steps: [f64; 2],
 }
@@ -85,6 +87,7 @@ impl Ground {
             })
             .collect();
         let mut buckets = vec![Vec::new(); BUCKETS * BUCKETS];
+        let mut first = Vec::with_capacity(triangles.len());
         for (index, corners) in triangles.iter().enumerate() {
             let range = |axis: usize| {
                 let values = corners.map(|corner| corner[axis]);
@@ -92,13 +95,15 @@ impl Ground {
                 let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
                 bucket(low - SLACK_CELLS)..=bucket(high + SLACK_CELLS)
             };
-            for row in range(1) {
-                for column in range(0) {
+            let [columns, rows] = [range(0), range(1)];
+            first.push([*columns.start() as u8, *rows.start() as u8]);
+            for row in rows {
+                for column in columns.clone() {
                     buckets[row * BUCKETS + column].push(index as u32);
                 }
             }
         }
-        Self { triangles, buckets, steps }
+        Self { triangles, buckets, first, steps }
     }
 
     /// All triangles that hold the point, borders included.
@@ -138,15 +143,13 @@ impl Ground {
             move |at| {
                 self.buckets[at[1] * BUCKETS + at[0]]
                     .iter()
-                    .map(|&triangle| &self.triangles[triangle as usize])
+                    .map(|&triangle| triangle as usize)
                     // Only in the first bucket that both have in common.
-                    .filter(move |corners| {
-                        (0..2).all(|axis| {
-                            let least =
-                                corners.iter().map(|c| c[axis]).fold(f64::INFINITY, f64::min);
-                            at[axis] == bucket(least - SLACK_CELLS).max(first[axis])
-                        })
+                    .filter(move |&triangle| {
+                        let own = self.first[triangle].map(usize::from);
+                        [own[0].max(first[0]), own[1].max(first[1])] == at
                     })
+                    .map(|triangle| &self.triangles[triangle])
             },
         )
     }
@@ -178,11 +181,17 @@ impl Ground {
                 let (du, dv) = (at[0] - p[0], at[1] - p[1]);
                 [du * way[0] + dv * way[1], dv * way[0] - du * way[1], height]
             });
-            let mut part = turned.to_vec();
-            part = cut(&part, |[along, ..]| along + margin);
-            part = cut(&part, |[along, ..]| length + margin - along);
-            part = cut(&part, |[_, across, _]| across + margin);
-            part = cut(&part, |[_, across, _]| margin - across);
+            let is_inside = |[along, across, _]: &[f64; 3]| {
+                (-margin..=length + margin).contains(along) && across.abs() <= margin
+            };
+            let part = if turned.iter().all(is_inside) {
+                turned.to_vec()
+            } else {
+                let part = cut(&turned, |[along, ..]| along + margin);
+                let part = cut(&part, |[along, ..]| length + margin - along);
+                let part = cut(&part, |[_, across, _]| across + margin);
+                cut(&part, |[_, across, _]| margin - across)
+            };
             for [.., height] in part {
                 lowest = lowest.min(height);
                 highest = highest.max(height);
@@ -228,6 +237,14 @@ impl Ground {
         let far = first.map(|cells| cells + last * step);
         for corners in self.near([first, far]) {
             let at = corners.map(|c| [(c[0] - first[0]) / step, (c[1] - first[1]) / step, c[2]]);
+            let [a, b, c] = at;
+            let whole = area(flat(a), flat(b), flat(c));
+            let rise = |axis: usize| {
+                let to = |p: [f64; 3]| p[1 - axis] - a[1 - axis];
+                let sign = if axis == 0 { 1.0 } else { -1.0 };
+                sign * ((b[2] - a[2]) * to(c) - (c[2] - a[2]) * to(b)) / whole
+            };
+            let [east_m, south_m] = [rise(0), rise(1)];
             let rows = at.map(|corner| corner[1]);
             let low = rows.into_iter().fold(f64::INFINITY, f64::min).max(0.0).ceil();
             let high = rows.into_iter().fold(f64::NEG_INFINITY, f64::max).min(last).floor();
@@ -249,7 +266,8 @@ impl Ground {
                 }
                 let mut column = west.ceil();
                 while column <= east {
-                    heights[row as usize * side + column as usize] = height(&at, [column, row]);
+                    heights[row as usize * side + column as usize] =
+                        a[2] + (column - a[0]) * east_m + (row - a[1]) * south_m;
                     column += 1.0;
                 }
                 row += 1.0;

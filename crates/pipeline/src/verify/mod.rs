@@ -173,7 +173,6 @@ pub fn verify(
     let package = FilePackage::open(&settings.package)?;
     let mut given = vec![Needs::Package];
     let (mut report, mut findings) = tiles::verify(&package, settings.threads, observer)?;
-    levels::verify(&package, settings.threads, &mut findings, observer)?;
     sums::verify(package.manifest(), &mut findings);
     records::verify(package.manifest(), &mut findings);
     grid::verify(package.manifest(), &mut findings);

@@ -359,6 +359,7 @@ fn check_counts(
     same("defects", &said.defects, &wanted.defects);
     same("unknown_highways", &said.unknown_highways, &wanted.unknown_highways);
     same("blobs_passed_over", &said.blobs_passed_over, &wanted.blobs_passed_over);
+    same("tags_taken_otherwise", &said.tags_taken_otherwise, &wanted.tags_taken_otherwise);
     same("highways_in", &said.highways_in, &wanted.highways_in);
     same("highways_left_out", &said.highways_left_out, &wanted.highways_left_out);
     same("roads_in_um", &said.roads_in_um, &wanted.roads_in_um);

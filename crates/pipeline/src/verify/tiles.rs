@@ -14,6 +14,7 @@ use super::{
     attributes::{self, WayFacts, Ways},
     checks::{CheckId, Findings},
     ground::{Ground, Place},
+    levels::{self, Level},
     methods,
     roads::{self, counts_for_sums},
     seams::{self, Borders},
@@ -65,14 +66,14 @@ struct Row {
     inner_points: u64,
 }
 
-/// A tile with its ground, kept for its children.
+/// A tile with its ground, kept for the tiles beneath.
 struct Parent {
     payload: TilePayload,
     ground: Ground,
 }
 
-/// The parent of the tiles looked at last: its children come one after the other.
-type LatestParent = Option<(TileId, Option<Rc<Parent>>)>;
+/// The tiles above the one looked at last, as far as they were asked for: the next one has most of them, too.
+type Above = BTreeMap<TileId, Option<Rc<Parent>>>;
 
 pub(crate) fn verify(
     package: &FilePackage,
@@ -94,12 +95,12 @@ pub(crate) fn verify(
     workers::in_order(
         threads,
         ids.len(),
-        || Ok(LatestParent::None),
-        |latest, index| {
+        || Ok(Above::new()),
+        |above, index| {
             if observer.is_cancelled() {
                 Err(VerifyError::Interrupted)
             } else {
-                Ok(look_at(package, ids[index], levels.as_ref(), latest))
+                Ok(look_at(package, ids[index], levels.as_ref(), above))
             }
         },
         |index, found: Found| {
@@ -147,12 +148,7 @@ pub(crate) fn verify(
     Ok((report, findings))
 }
 
-fn look_at(
-    package: &FilePackage,
-    id: TileId,
-    levels: Option<&Levels>,
-    latest: &mut LatestParent,
-) -> Found {
+fn look_at(package: &FilePackage, id: TileId, levels: Option<&Levels>, above: &mut Above) -> Found {
     let manifest = package.manifest();
     let quantum_m = manifest.vertical.quantum_m;
     let bytes = match package.tile(id) {
@@ -197,11 +193,23 @@ fn look_at(
             methods::View { payload: &payload, ground: &ground, place, margin_steps, quantum_m };
         methods::verify_lines(&view, &on_tin.positions, &mut findings);
         methods::verify_ranges(&view, &mut findings);
-        if let Some(parent) = parent_of(package, id, latest) {
+        let parent = id.parent().and_then(|parent| ancestor(package, id, parent, above));
+        if let Some(parent) = parent {
             let above = shown::Side { payload: &parent.payload, ground: &parent.ground };
             let own = shown::Side { payload: &payload, ground: &ground };
             shown::verify(&own, &above, levels, &mut findings);
         }
+    }
+    if id.z() == manifest.frame.max_level() {
+        let parents: Vec<Rc<Parent>> = (0..id.z())
+            .rev()
+            .filter_map(|level| ancestor(package, id, id.ancestor(level), above))
+            .collect();
+        let own = Level { id, ground: &ground, error_m: terrain.geometric_error_m };
+        let levels: Vec<Level<'_>> = std::iter::once(own)
+            .chain(parents.iter().filter_map(|parent| parent.level()))
+            .collect();
+        levels::verify(&manifest.frame, &levels, &mut findings);
     }
     found.kept = Some(Kept {
         vertices: terrain.tin.vertices().len() as u64,
@@ -213,24 +221,31 @@ fn look_at(
     Found { findings, ..found }
 }
 
-/// The tile's parent; `None` where it has no ground or cannot be read, which is told where it is looked at itself.
-fn parent_of(package: &FilePackage, id: TileId, latest: &mut LatestParent) -> Option<Rc<Parent>> {
-    let above = id.parent()?;
-    if let Some((kept, parent)) = latest
-        && *kept == above
-    {
-        return parent.clone();
-    }
-    let manifest = package.manifest();
-    let payload = package.payload(above, Sections::ALL).ok().flatten();
-    let parent = payload.and_then(|payload| {
+/// A tile above `id`; `None` where it has no ground or cannot be read, which is told where it is looked at itself.
+fn ancestor(
+    package: &FilePackage,
+    id: TileId,
+    wanted: TileId,
+    above: &mut Above,
+) -> Option<Rc<Parent>> {
+    // One tile a level is kept: memory does not grow with the package.
+    above.retain(|&kept, _| kept.z() < id.z() && kept == id.ancestor(kept.z()));
+    let load = || {
+        let manifest = package.manifest();
+        let payload = package.payload(wanted, Sections::ALL).ok().flatten()?;
         let tin = &payload.terrain.as_ref()?.tin;
-        let steps = Place::of(&manifest.frame, above).steps;
+        let steps = Place::of(&manifest.frame, wanted).steps;
         let ground = Ground::placed(tin, manifest.vertical.quantum_m, steps);
         Some(Rc::new(Parent { payload, ground }))
-    });
-    *latest = Some((above, parent.clone()));
-    parent
+    };
+    above.entry(wanted).or_insert_with(load).clone()
+}
+
+impl Parent {
+    fn level(&self) -> Option<Level<'_>> {
+        let error_m = self.payload.terrain.as_ref()?.geometric_error_m;
+        Some(Level { id: self.payload.id, ground: &self.ground, error_m })
+    }
 }
 
 impl TileSums {

@@ -110,7 +110,7 @@ impl TileGeometry {
             ground,
             most_width_factor,
             roads: RoadSegments::of_lines(&lines.ground, bounds, reference_m, scale, |piece| {
-                relief.bed(piece, &wide)
+                relief.bed(piece, wide.as_ref())
             }),
             volumes: RoadVolumes::new(&lines.plan, bounds, reference_m, scale, |ends_m| {
                 relief.near(ends_m)

@@ -77,12 +77,16 @@ mod tests {
 
     impl Projection for Geographic {
         fn working_from_wgs84(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
-            points.iter_mut().for_each(|p| *p = [p[0] * 8e4, p[1] * 1e5]);
+            for p in points {
+                *p = [p[0] * 8e4, p[1] * 1e5];
+            }
             Ok(())
         }
 
         fn wgs84_from_working(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
-            points.iter_mut().for_each(|p| *p = [p[0] / 8e4, p[1] / 1e5]);
+            for p in points {
+                *p = [p[0] / 8e4, p[1] / 1e5];
+            }
             Ok(())
         }
     }

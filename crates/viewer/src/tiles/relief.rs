@@ -49,7 +49,7 @@ impl<'a> Relief<'a> {
     }
 
     /// The ground beside a piece of a road; `wide` is the same ground. Level without any.
-    pub(super) fn bed(&self, piece: &Piece, wide: &Option<Slopes>) -> Bed {
+    pub(super) fn bed(&self, piece: &Piece, wide: Option<&Slopes>) -> Bed {
         let (Some(surface), Some(wide)) = (self.surface, wide) else { return Bed::default() };
         let step_m = self.frame.lattice_step_m();
         let [[x, y, height_m], [_, _, end_height_m]] = piece.ends_m;
