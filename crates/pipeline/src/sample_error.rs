@@ -40,7 +40,7 @@ impl SampleSums {
         self.max_m = self.max_m.max(distance_m);
         let quanta = distance_m / self.quantum_m;
         let parts = (quanta * PARTS_TO_A_QUANTUM).round().min(MOST_PARTS) as u64;
-        self.squares += u128::from(parts * parts);
+        self.squares += u128::from(parts) * u128::from(parts);
         let bin = (quanta as usize).min(MOST_BINS - 1);
         if bin >= self.bins.len() {
             self.bins.resize(bin + 1, 0);
