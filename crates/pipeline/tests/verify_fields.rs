@@ -3,6 +3,8 @@
 //! The fields of the manifest are the leaves of its JSON; those of a payload are listed by patterns that name every
 //! field, so that a new one does not compile. A field that is in neither list below fails the test.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
+
 mod support;
 
 use std::{collections::BTreeMap, path::Path};
