@@ -1,5 +1,7 @@
 //! Where the vertices of GEO lines lie, by the formulas of FORMAT.md, section 7, written apart from the code.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
+
 mod support;
 
 use corniche_drape::{DrapedLine, DrapedVertex};

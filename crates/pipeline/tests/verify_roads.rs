@@ -1,5 +1,7 @@
 //! `verify` sees what is wrong with roads across tiles, levels and methods, and beside the extract.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
+
 mod support;
 
 use std::collections::BTreeMap;

@@ -322,7 +322,9 @@ fn judge(
                 format!("tile {id} says {said}, {} were found", truth.uncovered)
             });
             let [low, high] = terrain.height_range_m;
-            let holds = truth.range_m.is_none_or(|range| range.map(f64::from) == [low, high]);
+            let said = [low, high].map(f64::to_bits);
+            let holds =
+                truth.range_m.is_none_or(|range| range.map(|m| f64::from(m).to_bits()) == said);
             ranges.look(holds, || {
                 format!("tile {id} says {low} to {high} m, nodes beneath: {:?}", truth.range_m)
             });

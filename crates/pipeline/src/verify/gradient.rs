@@ -45,7 +45,8 @@ pub(crate) fn verify(
     findings
         .look(CheckId::DemCounts, said == found, || format!("recorded {said:?}, found {found:?}"));
     let (said_m, found_m) = (manifest.vertical.range_m, pyramid.range_m().map(f64::from));
-    findings.look(CheckId::DemCounts, said_m == found_m, || {
+    let same_range = said_m.map(f64::to_bits) == found_m.map(f64::to_bits);
+    findings.look(CheckId::DemCounts, same_range, || {
         format!("heights from {said_m:?} are recorded, {found_m:?} were found")
     });
     let ids = package.tile_ids()?;

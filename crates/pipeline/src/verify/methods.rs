@@ -141,7 +141,9 @@ fn bare_pieces(place: Place, segment: Segment, lines: &[Segment]) -> Vec<Segment
     let (du, dv) = (q[0] - p[0], q[1] - p[1]);
     let length = du.hypot(dv);
     let [east, south] = place.reach();
-    let is_on_border = |axis: usize, border: f64| p[axis] == border && q[axis] == border;
+    // Whole numbers.
+    let is_at = |at: f64, border: f64| (at - border).abs() < 0.5;
+    let is_on_border = |axis: usize, border: f64| is_at(p[axis], border) && is_at(q[axis], border);
     if [(0, 0.0), (0, east), (1, 0.0), (1, south)].iter().any(|&(axis, at)| is_on_border(axis, at))
     {
         return Vec::new();

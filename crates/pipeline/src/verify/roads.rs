@@ -24,6 +24,9 @@ pub(crate) struct OnTin {
     pub(crate) positions: Vec<Option<Vec<[f64; 3]>>>,
 }
 
+/// By what roads of a section are sorted: class, way id, part.
+type Key = (FunctionalRoadClass, i64, u32);
+
 /// The gap that P1 allows on a level with this tolerance.
 fn allowed_gap_m(max_error_m: f64) -> f64 {
     (max_error_m / 100.0).max(0.01)
@@ -34,8 +37,7 @@ pub(crate) fn verify_order(payload: &TilePayload, findings: &mut Findings) {
     let id = payload.id;
     let geo = payload.roads_geo.iter().map(|road| (road.class, road.way_id, road.part));
     let sv = payload.roads_sv.iter().map(|road| (road.class, road.way_id, road.part));
-    let sections: [(&str, Vec<(FunctionalRoadClass, i64, u32)>); 2] =
-        [("GEO", geo.collect()), ("SV", sv.collect())];
+    let sections: [(&str, Vec<Key>); 2] = [("GEO", geo.collect()), ("SV", sv.collect())];
     for (section, roads) in sections {
         let sorted = roads.is_sorted_by(|a, b| a < b);
         let mut next: BTreeMap<i64, u32> = BTreeMap::new();
