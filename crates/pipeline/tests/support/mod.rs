@@ -8,6 +8,7 @@ pub(crate) mod agreement;
 pub(crate) mod extract;
 pub(crate) mod parts;
 pub(crate) mod rays;
+pub(crate) mod seen;
 pub(crate) mod terrain;
 
 use std::{
