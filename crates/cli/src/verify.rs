@@ -46,20 +46,19 @@ const MEMORY_BYTES: u64 = 256 << 20;
 /// The extract to read again, with the FRC table that the package names: given, or the preset of that name.
 fn extract(args: &VerifyArgs) -> Result<Option<VerifyOsm>, Failure> {
     let Some(path) = args.osm.clone() else { return Ok(None) };
-    let table = match &args.frc_table {
-        Some(table) => presets::frc_table(table)?,
-        None => {
-            let package =
-                FilePackage::open(&args.package).map_err(corniche_pipeline::VerifyError::from)?;
-            let name = &package.manifest().settings.frc_table;
-            if frc_preset(name).is_none() {
-                return Err(Failure::unusable(format!(
-                    "{} was made with the FRC table {name:?}, which is no preset; give its file with --frc-table",
-                    args.package.display()
-                )));
-            }
-            presets::frc_table(name)?
+    let table = if let Some(table) = &args.frc_table {
+        presets::frc_table(table)?
+    } else {
+        let package =
+            FilePackage::open(&args.package).map_err(corniche_pipeline::VerifyError::from)?;
+        let name = &package.manifest().settings.frc_table;
+        if frc_preset(name).is_none() {
+            return Err(Failure::unusable(format!(
+                "{} was made with the FRC table {name:?}, which is no preset; give its file with --frc-table",
+                args.package.display()
+            )));
         }
+        presets::frc_table(name)?
     };
     Ok(Some(VerifyOsm { path, table, memory_bytes: MEMORY_BYTES }))
 }

@@ -125,7 +125,9 @@ mod tests {
         ) {
             let sum = |distances_m: &[Option<f64>]| {
                 let mut sums = SampleSums::new(0.125);
-                distances_m.iter().for_each(|&distance_m| sums.add(distance_m));
+                for &distance_m in distances_m {
+                    sums.add(distance_m);
+                }
                 sums
             };
             let (first, last) = distances_m.split_at(cut.min(distances_m.len()));

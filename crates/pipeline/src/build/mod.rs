@@ -22,14 +22,17 @@ pub(crate) mod roads;
 mod samples;
 pub(crate) mod tiles;
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions};
 use corniche_tileset::Manifest;
 
 use crate::{
-    BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage, file_target,
-    inputs::Inputs,
+    BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage, TerrainSettings,
+    file_target, inputs::Inputs,
 };
 
 pub(crate) use audit::check as check_heights;
@@ -114,21 +117,10 @@ fn warn_of_other_grids(plan: &GridPlan, observer: &dyn Observer) {
     }
 }
 
-/// All stages in order; the package is written to `finished`.
-fn run(
-    settings: &BuildSettings,
-    inputs: &Inputs,
-    finished: &Path,
-    storage: &dyn Storage,
-    observer: &dyn Observer,
-) -> Result<Manifest, BuildError> {
-    let threads = settings.resources.threads;
-    let terrain = &settings.terrain;
-    let start = |error: &dyn std::fmt::Display| BuildError::Start { what: error.to_string() };
-    corniche_dem::limit_block_cache(settings.resources.memory_bytes / 4)
-        .map_err(|error| start(&error))?;
+/// Looks into the elevation files and lays out the grid.
+fn open(files: &[PathBuf], terrain: &TerrainSettings) -> Result<(Dem, GridPlan), BuildError> {
     let dem = Dem::open(
-        &settings.dem,
+        files,
         &OpenOptions {
             dem_crs: terrain.dem_crs.clone(),
             nodata: terrain.nodata.clone(),
@@ -144,6 +136,26 @@ fn run(
         scale_latitude_deg: terrain.scale_latitude_deg,
         fill_voids: terrain.fill_voids,
     })?;
+    if !terrain.allow_fine_cell {
+        dem.refuse_oversampling(&plan)?;
+    }
+    Ok((dem, plan))
+}
+
+/// All stages in order; the package is written to `finished`.
+fn run(
+    settings: &BuildSettings,
+    inputs: &Inputs,
+    finished: &Path,
+    storage: &dyn Storage,
+    observer: &dyn Observer,
+) -> Result<Manifest, BuildError> {
+    let threads = settings.resources.threads;
+    let terrain = &settings.terrain;
+    let start = |error: &dyn std::fmt::Display| BuildError::Start { what: error.to_string() };
+    corniche_dem::limit_block_cache(settings.resources.memory_bytes / 4)
+        .map_err(|error| start(&error))?;
+    let (dem, plan) = open(&settings.dem, terrain)?;
     warn_of_other_grids(&plan, observer);
     let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell().shorter_m() / 4.0);
     if !MAX_ERRORS_M.contains(&max_error_m) {
@@ -154,9 +166,6 @@ fn run(
     let coordinates = package::coordinates(&dem, &plan)?;
     let projection = dem.projection(&plan)?;
     let lengths = TrueLengths::new(plan.frame, &coordinates, &projection);
-    if !terrain.allow_fine_cell {
-        dem.refuse_oversampling(&plan)?;
-    }
     let records = inputs.hash(observer)?;
 
     // Roads come before the long work on heights: an extract that is no use is told at once.

@@ -132,6 +132,7 @@ fn gradient(heights: &HeightGrid, [column, row]: [usize; 2], cell_m: [f64; 2]) -
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
 mod tests {
     use super::*;
 

@@ -324,6 +324,7 @@ fn height(corners: &Corners, at: [f64; 2]) -> f64 {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
 mod tests {
     use corniche_tin::TinVertex;
 
