@@ -26,6 +26,10 @@ const FAR_M: f64 = 1000.0;
 const ONE_IN: u64 = 10_000;
 /// Values that are kept of each end. Beyond the outermost ones nothing is judged.
 const KEPT: usize = 16;
+/// Sea levels are within this of 0, whatever they are measured from.
+const SEA_LEVEL_M: f64 = 12.0;
+/// No dry land lies lower: files that hold one value alone, and a lower one, hold none. (The Dead Sea: −430 m.)
+const LOWEST_LAND_M: f64 = -500.0;
 /// Side of the blocks that are looked at; of files stored in rows, so many samples in whole rows.
 const BLOCK_SAMPLES: usize = 512;
 
@@ -164,8 +168,14 @@ impl FileAudit {
     }
 
     /// The value that gives itself away as "no data", and how far inwards the next one lies.
+    ///
+    /// At the high end it is farther from sea level than the next: else it is the next that is odd, a single −9999 in a
+    /// plateau say.
     fn sentinel(&self) -> Option<(Entry, f64)> {
-        let [low, high] = [&self.lowest, &self.highest].map(|end| end.sentinel(self.samples));
+        let low = self.lowest.sentinel(self.samples, |_| true);
+        let high = self
+            .highest
+            .sentinel(self.samples, |[outer, inner]| outer.height_m.abs() > inner.height_m.abs());
         match (low, high) {
             // Two values alone, each far from the other: the one nearer to the sea is the ground.
             (Some(low), Some(high)) if self.lowest.entries.len() == 2 => {
@@ -214,13 +224,15 @@ impl End {
         self.entries.truncate(KEPT);
     }
 
-    fn sentinel(&self, samples: u64) -> Option<(Entry, f64)> {
-        let gap_m = |pair: &[Entry]| (pair[1].height_m - pair[0].height_m).abs();
+    /// The outermost value that is repeated and far from the next, of those pairs that `may_be` one.
+    fn sentinel(&self, samples: u64, may_be: impl Fn([Entry; 2]) -> bool) -> Option<(Entry, f64)> {
+        let gap_m = |[outer, inner]: [Entry; 2]| (inner.height_m - outer.height_m).abs();
         self.entries
             .windows(2)
-            .find(|pair| {
+            .map(|pair| [pair[0], pair[1]])
+            .find(|&pair| {
                 let count = pair[0].count;
-                count > 1 && count > samples / ONE_IN && gap_m(pair) >= FAR_M
+                count > 1 && count > samples / ONE_IN && gap_m(pair) >= FAR_M && may_be(pair)
             })
             .map(|pair| (pair[0], gap_m(pair)))
     }
@@ -249,12 +261,16 @@ impl Audit {
     /// - One that is repeated in more than 0.01 % of the samples and lies 1000 m or more beyond all others means "no data";
     ///   where several such values are found, the outermost is named. `is_range_given` leaves this out: who says what is
     ///   allowed has looked.
+    /// - One that all samples have is no height below −500 m.
     /// - None may lie outside the range.
     ///
     /// # Errors
     /// [`DemError::Sentinel`] or [`DemError::OutOfRange`].
     pub fn check(&self, dem: &Dem, is_range_given: bool) -> Result<(), DemError> {
         if !is_range_given && let Some(error) = self.sentinel_error(dem) {
+            return Err(error);
+        }
+        if !is_range_given && let Some(error) = self.nothing_error(dem) {
             return Err(error);
         }
         let outside = dem.sources.iter().zip(&self.files).find(|(_, file)| file.outside > 0);
@@ -277,13 +293,32 @@ impl Audit {
         })
     }
 
+    /// All files hold one and the same value, and it is none of dry land.
+    fn nothing_error(&self, dem: &Dem) -> Option<DemError> {
+        let mut all = FileAudit::default();
+        self.files.iter().for_each(|file| all.merge(file));
+        let [only] = all.lowest.entries.as_slice() else { return None };
+        let source = dem.sources.first()?;
+        (only.height_m < LOWEST_LAND_M).then(|| DemError::OutOfRange {
+            path: source.path.clone(),
+            count: only.count,
+            samples: all.samples,
+            height_m: only.height_m,
+            stored: source.stored_text(only.stored),
+            low_m: LOWEST_LAND_M,
+            high_m: self.range_m[1],
+        })
+    }
+
     fn sentinel_error(&self, dem: &Dem) -> Option<DemError> {
         let files = || dem.sources.iter().zip(&self.files);
         let mut all = FileAudit::default();
         self.files.iter().for_each(|file| all.merge(file));
         // A file's own, with all files that have the same; else one that only stands out beside other files.
         let own = self.files.iter().find_map(FileAudit::sentinel);
-        let (entry, gap_m) = own.or_else(|| all.sentinel())?;
+        // A file of nothing but sea beside files of high land is no file of nothing.
+        let across = || all.sentinel().filter(|(entry, _)| entry.height_m.abs() > SEA_LEVEL_M);
+        let (entry, gap_m) = own.or_else(across)?;
         let count_in = |file: &FileAudit| match file.sentinel() {
             _ if own.is_none() => file.count_of(entry.height_m),
             Some((same, _)) if same.height_m - entry.height_m == 0.0 => same.count,

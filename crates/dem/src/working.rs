@@ -113,10 +113,15 @@ impl Working {
     /// How long lengths come out.
     pub(crate) fn scale(&self, dem: &Dem) -> Result<PlanScale, DemError> {
         let outside = || DemError::OutsideCrs { crs: self.crs.label.clone() };
-        let center = self.scale_at(dem, dem.center_deg)?.ok_or_else(outside)?;
+        // The middle of the rectangle has the latitude at which lengths are true; the mean of positions may lie far from
+        // all data.
+        let center = match self.scale_at(dem, dem.wgs84_bounds.center())? {
+            Some(center) => center,
+            None => self.scale_at(dem, dem.center_deg)?.ok_or_else(outside)?,
+        };
+        // Corners beyond the CRS (of a CRS that was asked for) say nothing.
         let mut scale =
             PlanScale { center: center.along, least: center.along, largest: center.along };
-        // Corners beyond the CRS (of a CRS that was asked for) say nothing.
         for Scale { along, .. } in self.rim_scales(dem)?.into_iter().flatten() {
             let merge = |known: [f64; 2], pick: fn(f64, f64) -> f64| {
                 [pick(known[0], along[0]), pick(known[1], along[1])]

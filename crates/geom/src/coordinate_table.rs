@@ -120,9 +120,24 @@ impl CoordinateTable {
             }
         }
         projection.wgs84_from_working(&mut samples_deg)?;
-        let center_lon = samples_deg[samples_deg.len() / 2][0];
-        for sample in &mut samples_deg {
-            sample[0] = near_longitude(sample[0], center_lon);
+        // Each beside its neighbour: a table may be wider than half the earth.
+        let center = size / 2;
+        let unwrap = |samples_deg: &mut [[f64; 2]], at: usize, beside: usize| {
+            samples_deg[at][0] = near_longitude(samples_deg[at][0], samples_deg[beside][0]);
+        };
+        for row in (0..center).rev() {
+            unwrap(&mut samples_deg, row * size + center, (row + 1) * size + center);
+        }
+        for row in center + 1..size {
+            unwrap(&mut samples_deg, row * size + center, (row - 1) * size + center);
+        }
+        for row in 0..size {
+            for column in (0..center).rev() {
+                unwrap(&mut samples_deg, row * size + column, row * size + column + 1);
+            }
+            for column in center + 1..size {
+                unwrap(&mut samples_deg, row * size + column, row * size + column - 1);
+            }
         }
         TableRecord { bounds, size, samples_deg }.try_into()
     }

@@ -193,7 +193,9 @@ fn named(path: &Path) -> Option<(Content, String)> {
     let text = path.to_str()?;
     // By text: `Path::starts_with` compares whole names, and they go on, as in /vsizip/ and /vsicurl/.
     if text.starts_with("/vsi") {
-        return Some((Content::Virtual(path.to_path_buf()), short(path)?));
+        // What follows a question mark may be a key to the server.
+        let shown = short(Path::new(text.split('?').next().unwrap_or(text)))?;
+        return Some((Content::Virtual(path.to_path_buf()), shown));
     }
     let container =
         text.split(':').map(|part| part.trim_matches('"')).find(|part| Path::new(part).is_file());

@@ -4,8 +4,8 @@ use corniche_tileset::SampleErrorRecord;
 
 /// Distances are summed in whole parts of the height quantum: so many to one.
 const PARTS_TO_A_QUANTUM: f64 = 256.0;
-/// Distances beyond so many quanta share the last bin; it counts then as if all were as large as the largest.
-const MOST_BINS: usize = 1 << 20;
+/// Distances are binned by whole quanta up to so many of them; beyond, bins are a 4096th of themselves wide.
+const FINE_BINS: u64 = 1 << 12;
 /// Longest distance summed, in parts: its square times 2^60 samples fits 128 bits.
 const MOST_PARTS: f64 = (1_u64 << 33) as f64;
 
@@ -20,7 +20,7 @@ pub(crate) struct SampleSums {
     max_m: f64,
     /// Squares of distances in parts of a quantum.
     squares: u128,
-    /// How many distances lie in each stretch of one quantum, from 0 on.
+    /// How many distances lie in each bin, from 0 on.
     bins: Vec<u64>,
 }
 
@@ -41,7 +41,7 @@ impl SampleSums {
         let quanta = distance_m / self.quantum_m;
         let parts = (quanta * PARTS_TO_A_QUANTUM).round().min(MOST_PARTS) as u64;
         self.squares += u128::from(parts) * u128::from(parts);
-        let bin = (quanta as usize).min(MOST_BINS - 1);
+        let bin = bin_of(quanta as u64);
         if bin >= self.bins.len() {
             self.bins.resize(bin + 1, 0);
         }
@@ -74,18 +74,39 @@ impl SampleSums {
         }
     }
 
-    /// The end of the bin in which the distance lies that 99 % of all do not exceed.
+    /// The end, or the largest distance, of the bin in which the distance lies that 99 % of all do not exceed.
     fn p99_m(&self) -> f64 {
         let wanted = self.on_tin - self.on_tin / 100;
         let mut seen = 0;
         for (bin, &count) in self.bins.iter().enumerate() {
             seen += count;
-            if seen >= wanted && bin < MOST_BINS - 1 {
-                return ((bin + 1) as f64 * self.quantum_m).min(self.max_m);
+            if seen >= wanted {
+                return (end_of(bin) * self.quantum_m).min(self.max_m);
             }
         }
         self.max_m
     }
+}
+
+/// The bin of a distance of so many whole quanta.
+fn bin_of(quanta: u64) -> usize {
+    // How often it is halved to be less than two times `FINE_BINS`.
+    let halved = (quanta / FINE_BINS).checked_ilog2().unwrap_or(0);
+    if quanta < FINE_BINS {
+        quanta as usize
+    } else {
+        (u64::from(halved) * FINE_BINS + (quanta >> halved)) as usize
+    }
+}
+
+/// Where a bin ends, in quanta.
+fn end_of(bin: usize) -> f64 {
+    let bin = bin as u64;
+    if bin < FINE_BINS {
+        return (bin + 1) as f64;
+    }
+    let halved = bin / FINE_BINS - 1;
+    ((bin - halved * FINE_BINS + 1) as f64) * 2_f64.powi(halved as i32)
 }
 
 #[cfg(test)]
@@ -107,6 +128,19 @@ mod tests {
         // 990 of them are below 9.9, in the bin from 9.75 to 10.
         assert!((record.p99_m - 9.99).abs() < 1e-12, "{record:?}");
         assert_eq!(SampleSums::new(1.0).record().on_tin, 0);
+    }
+
+    #[test]
+    fn bins_hold_what_they_are_for_and_are_a_4096th_wide_at_most() {
+        let mut last = 0;
+        for quanta in (0..20_000).chain((15..63).flat_map(|k| [(1 << k) - 1, 1 << k, 3 << (k - 1)]))
+        {
+            let bin = bin_of(quanta);
+            assert!(end_of(bin) > quanta as f64 || quanta > 1 << 52, "{quanta}");
+            assert!(end_of(bin) <= (quanta + 1) as f64 * (1.0 + 1.0 / 4096.0), "{quanta}");
+            last = last.max(bin);
+        }
+        assert!(last < 52 * 4096 + 4096 && bin_of(u64::MAX) < 54 * 4096, "{last}");
     }
 
     #[test]

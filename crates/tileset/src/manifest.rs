@@ -143,7 +143,7 @@ pub struct SampleErrorRecord {
     pub max_m: f64,
     /// Root mean square.
     pub rms_m: f64,
-    /// Distance that 99 % do not exceed, up to one height quantum too large.
+    /// Distance that 99 % do not exceed, up to one height quantum, or a 4096th of itself, too large.
     pub p99_m: f64,
 }
 

@@ -9,7 +9,7 @@ use crate::RoadSettings;
 /// Half widths up to this many cells of a level can be drawn from its SV lines: at a screen-space error of two
 /// pixels a cell of the level is some sixteen pixels wide, so that is a hundred pixels and more.
 const MARGIN_CELLS: f64 = 8.0;
-/// And never less than this: half the width of any road, on the finest of levels.
+/// And never less than this, in true metres: half the width of any road, on the finest of levels.
 const MIN_MARGIN_M: f64 = 40.0;
 
 /// Tolerances and margins of all levels.
@@ -22,11 +22,20 @@ pub(crate) struct Levels {
     least_class: FunctionalRoadClass,
     filter: ClassFilter,
     simplify_cells: f64,
+    /// The most working metres to a true metre, along an axis, over the data.
+    most_scale: f64,
 }
 
 impl Levels {
-    pub(crate) fn new(frame: Frame, max_error_m: f64, roads: &RoadSettings) -> Self {
+    /// `most_scale` is the largest number of working metres to a true metre over the data.
+    pub(crate) fn new(
+        frame: Frame,
+        max_error_m: f64,
+        roads: &RoadSettings,
+        most_scale: f64,
+    ) -> Self {
         Self {
+            most_scale,
             frame,
             max_error_m,
             quantum_m: corniche_tin::height_quantum_m(max_error_m),
@@ -47,6 +56,7 @@ impl Levels {
             least_class: FunctionalRoadClass::new(manifest.levels.last()?.least_class?)?,
             filter: recorded_filter(manifest)?,
             simplify_cells: settings.simplify_cells,
+            most_scale: most_scale(manifest.scale.largest),
         })
     }
 
@@ -100,7 +110,8 @@ impl Levels {
 
     /// How far outside a tile its SV lines reach: whole cells of the finest level, by their shorter side.
     fn margin_cells(&self, level: u8) -> i64 {
-        let wanted_m = (MARGIN_CELLS * self.frame.level_cell(level).shorter_m()).max(MIN_MARGIN_M);
+        let wanted_m = (MARGIN_CELLS * self.frame.level_cell(level).shorter_m())
+            .max(MIN_MARGIN_M * self.most_scale);
         (wanted_m / self.frame.cell().shorter_m()).ceil() as i64
     }
 
@@ -111,14 +122,17 @@ impl Levels {
 
     /// The same in lattice steps.
     pub(crate) fn margin_steps(&self, level: u8) -> i64 {
-        {
-            let [east, north] = self.frame.node_steps(self.frame.max_level());
-            self.margin_cells(level) * east.min(north)
-        }
+        let [east, north] = self.frame.node_steps(self.frame.max_level());
+        self.margin_cells(level) * east.min(north)
     }
 }
 
 /// Which levels show which class, as a package records it; `None` where its record makes no filter.
+/// The larger of the largest scales along both axes.
+pub(crate) fn most_scale(largest: [f64; 2]) -> f64 {
+    largest[0].max(largest[1])
+}
+
 pub(crate) fn recorded_filter(manifest: &Manifest) -> Option<ClassFilter> {
     let cells = manifest.settings.class_max_cell_m.as_slice().try_into().ok()?;
     ClassFilter::new(cells).ok()

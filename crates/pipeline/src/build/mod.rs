@@ -38,7 +38,7 @@ use crate::{
 pub(crate) use audit::check as check_heights;
 pub(crate) use heights::{Pyramid, data_tiles, read as read_heights};
 pub(crate) use lengths::TrueLengths;
-pub(crate) use levels::{Levels, recorded_filter};
+pub(crate) use levels::{Levels, most_scale, recorded_filter};
 pub(crate) use package::{TILING, hex, road_counts, settings_sha256, table_sha256};
 pub(crate) use tiles::share;
 
@@ -161,7 +161,8 @@ fn run(
     if !MAX_ERRORS_M.contains(&max_error_m) {
         return Err(BuildError::MaxError { max_error_m });
     }
-    let levels = Levels::new(plan.frame, max_error_m, &settings.roads);
+    let widest = most_scale(plan.scale.largest);
+    let levels = Levels::new(plan.frame, max_error_m, &settings.roads, widest);
     // Files too far apart for one package are found out here, before the long work.
     let coordinates = package::coordinates(&dem, &plan)?;
     let projection = dem.projection(&plan)?;
@@ -206,7 +207,9 @@ fn run(
     let sample_errors = if plan.nodes_are_samples() {
         errors.at_nodes().to_vec()
     } else {
-        samples::measure(&dem, &plan, &meshes, &levels, threads, storage, observer)?
+        let bytes = settings.resources.memory_bytes / 4 / threads.max(1) as u64;
+        let grounds = samples::GroundInput { meshes: &meshes, levels: &levels, storage, bytes };
+        samples::measure(&dem, &plan, &grounds, threads, observer)?
     };
     let tiles = tiles::make(
         &tiles::TileInput {

@@ -12,20 +12,28 @@ use super::{
 };
 use crate::{BuildError, Observer, Stage, Storage, sample_error::SampleSums, workers};
 
-/// Surfaces that a worker keeps. Blocks of samples are compact and come row by row: few tiles of each level are needed
-/// again soon.
-const SURFACES: usize = 48;
+/// Memory of a surface to a triangle: corners, adjacency, fans, vertices, buckets.
+const TRIANGLE_BYTES: u64 = 120;
+
+/// What samples are measured against.
+pub(crate) struct GroundInput<'a> {
+    pub(crate) meshes: &'a Meshes,
+    pub(crate) levels: &'a Levels,
+    pub(crate) storage: &'a dyn Storage,
+    /// Memory in which a worker keeps tiles that it has asked. Blocks of samples are compact and come row by row, so few
+    /// tiles of each level are needed again soon; the one asked last is kept in any case.
+    pub(crate) bytes: u64,
+}
 
 /// Sums of every level, root first.
 pub(crate) fn measure(
     dem: &Dem,
     plan: &GridPlan,
-    meshes: &Meshes,
-    levels: &Levels,
+    input: &GroundInput<'_>,
     threads: usize,
-    storage: &dyn Storage,
     observer: &dyn Observer,
 ) -> Result<Vec<SampleSums>, BuildError> {
+    let levels = input.levels;
     let areas = dem.sample_areas();
     let none = vec![SampleSums::new(levels.quantum_m()); levels.numbers().count()];
     let mut sums = none.clone();
@@ -34,7 +42,7 @@ pub(crate) fn measure(
         threads,
         areas.len(),
         || {
-            let grounds = Grounds { meshes, levels, storage, surfaces: BTreeMap::new(), clock: 0 };
+            let grounds = Grounds { input, surfaces: BTreeMap::new(), bytes: 0, clock: 0 };
             Ok((dem.reader(plan)?, grounds))
         },
         |(reader, grounds), index| {
@@ -61,6 +69,10 @@ pub(crate) fn measure(
     Ok(sums)
 }
 
+fn memory_of(surface: &Surface) -> u64 {
+    surface.triangles().len() as u64 * TRIANGLE_BYTES
+}
+
 /// The tile of a level to which a position belongs: on a border the one in the east or south; the root's own east and south
 /// border belong to its last tiles. `None` outside the root.
 fn tile_at(frame: &Frame, level: u8, point: LatticePoint) -> Option<TileId> {
@@ -72,11 +84,11 @@ fn tile_at(frame: &Frame, level: u8, point: LatticePoint) -> Option<TileId> {
 
 /// The ground of the tiles looked at last.
 struct Grounds<'a> {
-    meshes: &'a Meshes,
-    levels: &'a Levels,
-    storage: &'a dyn Storage,
+    input: &'a GroundInput<'a>,
     /// With the time at which each was last asked.
     surfaces: BTreeMap<TileId, (u64, Surface)>,
+    /// Memory of all of them, about.
+    bytes: u64,
     clock: u64,
 }
 
@@ -88,8 +100,9 @@ impl Grounds<'_> {
         height_m: f64,
         sums: &mut [SampleSums],
     ) -> Result<(), BuildError> {
-        let frame = *self.levels.frame();
-        for (level, sums) in self.levels.numbers().zip(sums) {
+        let levels = self.input.levels;
+        let frame = *levels.frame();
+        for (level, sums) in levels.numbers().zip(sums) {
             let place = point.and_then(|point| Some((tile_at(&frame, level, point)?, point)));
             let distance_m = match place {
                 Some((id, point)) => self.ground_m(id, point)?.map(|m| (m - height_m).abs()),
@@ -102,18 +115,22 @@ impl Grounds<'_> {
 
     /// Height of a tile's ground at a point.
     fn ground_m(&mut self, id: TileId, point: LatticePoint) -> Result<Option<f64>, BuildError> {
-        let Some(&span) = self.meshes.get(&id) else { return Ok(None) };
+        let GroundInput { meshes, levels, storage, bytes } = *self.input;
+        let Some(&span) = meshes.get(&id) else { return Ok(None) };
         self.clock += 1;
         if !self.surfaces.contains_key(&id) {
-            if self.surfaces.len() >= SURFACES {
+            let meshed = mesh::load(storage, id, span)?;
+            let placement = Placement::of_tile(levels.frame(), id, levels.quantum_m());
+            let surface = Surface::new(&meshed.tin, placement);
+            self.bytes += memory_of(&surface);
+            while self.bytes > bytes {
                 let oldest = self.surfaces.iter().min_by_key(|(_, (asked, _))| *asked);
-                if let Some(oldest) = oldest.map(|(&id, _)| id) {
-                    self.surfaces.remove(&oldest);
+                let Some(oldest) = oldest.map(|(&id, _)| id) else { break };
+                if let Some((_, surface)) = self.surfaces.remove(&oldest) {
+                    self.bytes -= memory_of(&surface);
                 }
             }
-            let meshed = mesh::load(self.storage, id, span)?;
-            let placement = Placement::of_tile(self.levels.frame(), id, self.levels.quantum_m());
-            self.surfaces.insert(id, (0, Surface::new(&meshed.tin, placement)));
+            self.surfaces.insert(id, (0, surface));
         }
         Ok(self.surfaces.get_mut(&id).and_then(|(asked, surface)| {
             *asked = self.clock;

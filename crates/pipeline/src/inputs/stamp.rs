@@ -94,7 +94,19 @@ fn settled(path: &Path) -> io::Result<FileState> {
 
 /// The file on disk in which a virtual one lies: `/vsizip//data/a.zip/inner.hgt`, `/vsisubfile/7_100,/data/a`,
 /// `/vsizip/{/data/a}/inner.hgt`.
+///
+/// `None` of a file that is elsewhere: what its name has in common with a local one says nothing.
 fn container(name: &str) -> Option<PathBuf> {
+    const LOCAL: [&str; 7] =
+        ["vsizip", "vsigzip", "vsitar", "vsi7z", "vsirar", "vsisubfile", "vsisparse"];
+    let handlers = name.match_indices("/vsi").map(|(at, _)| {
+        let rest = &name[at + 1..];
+        &rest[..rest.find('/').unwrap_or(rest.len())]
+    });
+    let mut handlers = handlers.map(|handler| LOCAL.contains(&handler)).peekable();
+    if handlers.peek().is_none() || handlers.any(|is_local| !is_local) {
+        return None;
+    }
     let starts = name.match_indices(['/', ',', '{']).flat_map(|(at, sign)| {
         let is_root = sign == "/" && at > 0;
         is_root.then_some(at).into_iter().chain([at + 1])

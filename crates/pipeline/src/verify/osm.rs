@@ -19,7 +19,7 @@ use super::{
 use crate::{
     BuildError, DiskStorage, Observer, RoadSettings, Stage,
     build::{
-        Levels, TrueLengths, recorded_filter, road_counts,
+        Levels, TrueLengths, most_scale, recorded_filter, road_counts,
         roads::{ReadRoads, RoadInput, read},
         table_sha256,
         tiles::{self, ClassSums, Laid, RoadFate, Tiles},
@@ -71,7 +71,8 @@ fn compare_all(
         filter,
         simplify_cells: manifest.settings.simplify_cells,
     };
-    let levels = Levels::new(frame, manifest.settings.max_error_m, &settings);
+    let widest = most_scale(manifest.scale.largest);
+    let levels = Levels::new(frame, manifest.settings.max_error_m, &settings, widest);
     let lengths = TrueLengths::new(frame, &manifest.coordinates, &projection);
     let work = tempfile::tempdir().map_err(VerifyError::Work)?;
     observer.work_folder(work.path());
