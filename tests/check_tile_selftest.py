@@ -85,14 +85,14 @@ def move_border_up(tiles):
 
 def move_inner(tiles):
     # In plan only: its own triangles follow, so the area stays; the road's edges no longer fit them.
-    vertex = next(v for v in tiles[0]["tin"]["vertices"] if v[:2] == [X0 + 20.0, Y0 + 10.0])
+    vertex = next(v for v in tiles[0]["tin"]["vertices"] if v[:2] == [X0 + 2 * CELL_EAST_M, Y0 + CELL_NORTH_M])
     vertex[1] += 0.4
 
 
 def extra_border_vertex(tiles):
     tin = tiles[0]["tin"]
     east = tiles[0]["bounds"][2]
-    ends = [k for k, v in enumerate(tin["vertices"]) if v[0] == east and v[1] in (Y0, Y0 + 10.0)]
+    ends = [k for k, v in enumerate(tin["vertices"]) if v[0] == east and v[1] in (Y0, Y0 + CELL_NORTH_M)]
     for k, t in enumerate(tin["triangles"]):
         if set(ends) <= set(t):
             while t[2] in ends:
