@@ -166,11 +166,17 @@ fn vertex(in: SegmentIn) -> VertexOut {
     let b = a + along * length_m;
 
     let far_m = max(length(a), length(b));
-    let near_height_m = select(0.0, min(abs(a.z), abs(b.z)), a.z * b.z > 0.0);
     // Rounding of positions must not cut off ground at the rim; the fragment decides anyway.
     let pad_m = 1e-6 * far_m + 0.01;
     // As wide as roads may be, as for volumes: the neighbours know of no more.
-    let radius_m = min(bounding_radius_m(road, far_m, near_height_m), tile.base.y) + pad_m;
+    let widest_m = min(bounding_radius_m(road, far_m, 0.0), tile.base.y) + pad_m;
+    // The fragment goes by the ground it sees, which may be nearer to the eye's height than the piece is, or farther away.
+    let tilted_m = widest_m * length(slopes);
+    let beside_m = leaving_m(in, widest_m) + tilted_m;
+    let heights = vec2(min(a.z, b.z) - beside_m.x, max(a.z, b.z) + beside_m.y);
+    let near_height_m = select(0.0, min(abs(heights.x), abs(heights.y)), heights.x * heights.y > 0.0);
+    let ground_far_m = far_m + max(beside_m.x, beside_m.y);
+    let radius_m = min(bounding_radius_m(road, ground_far_m, near_height_m), tile.base.y) + pad_m;
     let leaving = leaving_m(in, radius_m) + pad_m * (1.0 + abs(slopes.x) + abs(slopes.y));
     let ends = vec2(
         -select(pad_m, radius_m, (in.class_and_flags & AT_START) != 0u),

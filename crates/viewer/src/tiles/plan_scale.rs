@@ -3,7 +3,7 @@ use corniche_geom::{Bounds, CoordinateTable, width_factor};
 /// Working metres to a true metre over a tile, along the working CRS's east and north: what makes roads as wide as they
 /// are.
 ///
-/// Known at four corners and interpolated between them, for it changes by a millionth part over a hundred metres or so.
+/// Known at four corners and interpolated between them: it changes evenly, by 10⁻⁴ or so over a kilometre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanScale {
     corners: Bounds,

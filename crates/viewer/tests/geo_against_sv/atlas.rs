@@ -148,10 +148,6 @@ impl<'a> Atlas<'a> {
     }
 
     fn tile(&self, id: TileId) -> Tile {
-        let manifest = self.package.manifest();
-        let payload = self.package.payload(id, Sections::ALL).unwrap().unwrap();
-        let margin_m = manifest.levels[usize::from(id.z())].width_margin_m;
-        let quantum_m = manifest.vertical.quantum_m;
-        Tile::of_payload(&payload, &manifest.frame, quantum_m, margin_m, 0.0)
+        Tile::of_package(&self.package, id, 0.0)
     }
 }

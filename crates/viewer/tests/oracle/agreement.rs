@@ -17,7 +17,7 @@ use crate::{
     reference::{Comparison, DepthOracle},
     support::{
         World,
-        country::{Country, QUANTUM_M, width_margin_m},
+        country::{Country, QUANTUM_M},
         gpu,
         scene::{Scene, Tile},
         scenes::{self, Named, four_tiles, one_tile, style},
@@ -170,9 +170,9 @@ pub(crate) fn country_scene(
     let tiles = drawn
         .iter()
         .map(|drawn| {
-            let margin_m = width_margin_m(&country.frame, drawn.id.z());
             let payload = country.payload(drawn.id);
-            Tile::of_payload(&payload, &country.frame, QUANTUM_M, margin_m, drawn.skirt_depth_m)
+            let widths = country.widths(drawn.id);
+            Tile::of_payload(&payload, &country.frame, QUANTUM_M, widths, drawn.skirt_depth_m)
         })
         .collect();
     Scene { tiles, style }
@@ -237,8 +237,8 @@ fn stepped(country: &Country) -> Scene {
     let tiles = ids
         .map(|(z, x, y)| {
             let id = TileId::new(z, x, y).unwrap();
-            let margin_m = width_margin_m(&country.frame, z);
-            Tile::of_payload(&country.payload(id), &country.frame, QUANTUM_M, margin_m, 120.0)
+            let (payload, widths) = (country.payload(id), country.widths(id));
+            Tile::of_payload(&payload, &country.frame, QUANTUM_M, widths, 120.0)
         })
         .to_vec();
     Scene { tiles, style: Style::road_atlas() }

@@ -29,18 +29,12 @@ fn scene_of(
     camera: &Camera,
     error_px: f64,
 ) -> Scene {
-    let manifest = package.manifest();
     let mut store = TileStore::new(source);
     let quality = Quality { screen_space_error_px: error_px, vertical_scale: 1.0 };
     let drawn = settle(&mut store, camera, quality, &|| false).unwrap();
     let tiles = drawn
         .iter()
-        .map(|drawn| {
-            let payload = package.payload(drawn.id, Sections::ALL).unwrap().unwrap();
-            let margin_m = manifest.levels[usize::from(drawn.id.z())].width_margin_m;
-            let quantum_m = manifest.vertical.quantum_m;
-            Tile::of_payload(&payload, &manifest.frame, quantum_m, margin_m, drawn.skirt_depth_m)
-        })
+        .map(|drawn| Tile::of_package(package, drawn.id, drawn.skirt_depth_m))
         .collect();
     Scene { tiles, style: Style::road_atlas() }
 }
@@ -106,16 +100,13 @@ fn volumes_agree_with_the_reference_on_packages() {
 
 /// The tiles of a level that have ground.
 fn tiles_of(package: &FilePackage, level: u8) -> Vec<Tile> {
-    let manifest = package.manifest();
-    let margin_m = manifest.levels[usize::from(level)].width_margin_m;
     let ids = package.tile_ids().unwrap().into_iter().filter(|id| id.z() == level);
-    ids.filter_map(|id| package.payload(id, Sections::ALL).unwrap())
-        .filter(|payload| payload.terrain.is_some())
-        .map(|payload| {
-            let (frame, quantum_m) = (&manifest.frame, manifest.vertical.quantum_m);
-            Tile::of_payload(&payload, frame, quantum_m, margin_m, 0.0)
-        })
-        .collect()
+    ids.filter(|id| {
+        let payload = package.payload(*id, Sections::ALL).unwrap();
+        payload.is_some_and(|payload| payload.terrain.is_some())
+    })
+    .map(|id| Tile::of_package(package, id, 0.0))
+    .collect()
 }
 
 /// Along the longest line of the tile with most roads: as a rule in a valley.

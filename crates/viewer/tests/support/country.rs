@@ -6,7 +6,7 @@ use corniche_tileset::{GeoRoad, SvRoad, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface, TinSpec, normals, triangulate};
 use corniche_viewer::tiles::{LoadTileError, PlanScale, TileGeometry, TileSource};
 
-use super::class;
+use super::{class, scene::Widths};
 
 pub(crate) const CELL_M: f64 = 25.0;
 pub(crate) const MAX_LEVEL: u8 = 4;
@@ -46,6 +46,11 @@ pub(crate) fn width_margin_m(frame: &Frame, level: u8) -> f64 {
 }
 
 impl Country {
+    /// Of a tile's roads: its working metres are true ones.
+    pub(crate) fn widths(&self, id: TileId) -> Widths {
+        Widths { margin_m: width_margin_m(&self.frame, id.z()), scale: PlanScale::default() }
+    }
+
     pub(crate) fn new() -> Self {
         let frame = Frame::new(
             [0.0; 2],

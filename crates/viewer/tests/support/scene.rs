@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use corniche_geom::{Bounds, Frame, TileId};
-use corniche_tileset::{Terrain, TilePayload};
+use corniche_tileset::{FilePackage, Sections, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 use corniche_viewer::{
     RoadOptions,
@@ -37,6 +37,13 @@ pub(crate) struct Tile {
     frame: Frame,
     quantum_m: f64,
     lines: TileLines,
+}
+
+/// How wide the roads of a tile may be, and how true widths become working metres.
+#[derive(Clone, Copy)]
+pub(crate) struct Widths {
+    pub(crate) margin_m: f64,
+    pub(crate) scale: PlanScale,
 }
 
 /// Tiles and how their roads look.
@@ -87,12 +94,25 @@ impl Tile {
         self.near.get(&square(at, self.geometry.width_margin_m)).map_or(&[], Vec::as_slice)
     }
 
-    /// A tile as a package has it.
+    /// A tile as a package on disk has it, with the widths of its roads as the card draws them.
+    pub(crate) fn of_package(package: &FilePackage, id: TileId, skirt_depth_m: f64) -> Self {
+        let manifest = package.manifest();
+        let payload = package.payload(id, Sections::ALL).unwrap().unwrap();
+        let bounds = manifest.frame.tile_bounds(id);
+        let widths = Widths {
+            margin_m: manifest.levels[usize::from(id.z())].width_margin_m,
+            scale: PlanScale::of_tile(&manifest.coordinates, bounds, manifest.point_scale),
+        };
+        let quantum_m = manifest.vertical.quantum_m;
+        Self::of_payload(&payload, &manifest.frame, quantum_m, widths, skirt_depth_m)
+    }
+
+    /// A tile of a payload.
     pub(crate) fn of_payload(
         payload: &TilePayload,
         frame: &Frame,
         quantum_m: f64,
-        margin_m: f64,
+        widths: Widths,
         skirt_depth_m: f64,
     ) -> Self {
         let ground = payload.terrain.as_ref().unwrap();
@@ -128,8 +148,8 @@ impl Tile {
                 ground_range_m: road.line.ground_range_m.clone(),
             })
             .collect();
-        let lines =
-            TileLines { ground: centers, plan, width_margin_m: margin_m, ..TileLines::default() };
+        let Widths { margin_m, scale } = widths;
+        let lines = TileLines { ground: centers, plan, width_margin_m: margin_m, scale };
         let corner = |vertex: u32| {
             let [x, y] = frame.position_m(surface.points()[vertex as usize]);
             DVec3::new(x, y, surface.heights_m()[vertex as usize])
