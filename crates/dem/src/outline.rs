@@ -6,6 +6,7 @@ use crate::DemError;
 use crate::mosaic::{Mosaic, SampleRect};
 use crate::operation::Operation;
 use crate::source::Source;
+use crate::turns::turns;
 
 /// Positions along each side of a file. Between two of them a side bends by 1/4096 of its whole sagitta.
 const SIDE_POSITIONS: usize = 65;
@@ -140,9 +141,7 @@ fn turns_beside(lon_deg: f64, bounds: Bounds) -> f64 {
     if bounds.is_empty() {
         return 0.0;
     }
-    let turns = (lon_deg - bounds.center()[0]) / 360.0;
-    // On the other side of the earth both ways are as long: it stays.
-    if turns.abs() <= 0.5 + 1e-9 { 0.0 } else { turns.round() }
+    turns(lon_deg - bounds.center()[0], 360.0)
 }
 
 /// The image of a longitude that is nearest to another one.
