@@ -39,6 +39,8 @@ mod positions;
 mod projection;
 mod recorded;
 mod scale;
+mod spacing;
+mod turns;
 mod working;
 
 mod error;

@@ -6,6 +6,8 @@ use gdal::Dataset;
 use crate::DemError;
 use crate::crs::Crs;
 use crate::source::{self, Source};
+use crate::spacing::nice;
+use crate::turns::turns;
 
 /// Grids are the same when, over the whole extent, their samples are no farther apart than this.
 const SAME_GRID_PX: f64 = 1e-3;
@@ -94,10 +96,12 @@ pub(crate) fn group(sources: &[Source]) -> Vec<Mosaic> {
     mosaics
 }
 
-/// Columns of a geographic grid to a full turn; `None` when the turn is no whole number of them.
+/// Columns of a geographic grid to a full turn; `None` when the turn is no whole number of them. A spacing that is written
+/// with few digits counts as what it is meant to be.
 fn period(source: &Source) -> Option<i64> {
     let transform = &source.crs_from_pixel;
-    let columns = source.crs.turn? / transform.coefficients[1].abs();
+    let reach = source.columns.max(source.rows) as f64;
+    let columns = source.crs.turn? / nice(transform.coefficients[1].abs(), reach);
     let is_whole = (columns - columns.round()).abs() <= SAME_PLACE_PX && columns >= 2.0;
     (transform.is_axis_parallel() && is_whole).then_some(columns.round() as i64)
 }
@@ -157,20 +161,18 @@ impl Mosaic {
     /// Where the file's first sample lies on this grid; `None` when it is of another one.
     fn place(&self, source: &Source) -> Option<[i64; 2]> {
         let own = from_centres(&source.crs_from_pixel);
-        let corner = |c: i64, r: i64| {
-            self.crs_from_sample.pixel_from_crs(own.crs_from_pixel([c as f64, r as f64]))
-        };
-        let mut first = corner(0, 0)?;
-        // The way around the earth that is the shorter one: files on both sides of the antimeridian are neighbours.
-        let turns =
-            self.period.map_or(0.0, |period| period as f64 * (first[0] / period as f64).round());
-        first[0] -= turns;
-        let min = first.map(f64::round);
         let [columns, rows] = [source.columns, source.rows];
+        // The way around the earth that is the shorter one: files on both sides of the antimeridian are neighbours.
+        let middle = own.crs_from_pixel([columns, rows].map(|samples| (samples - 1) as f64 / 2.0));
+        let moved = self.turn().map_or(0.0, |[turn, near]| turn * turns(middle[0] - near, turn));
+        let corner = |c: i64, r: i64| {
+            let [x, y] = own.crs_from_pixel([c as f64, r as f64]);
+            self.crs_from_sample.pixel_from_crs([x - moved, y])
+        };
+        let min = corner(0, 0)?.map(f64::round);
         for (c, r) in [(0, 0), (columns, 0), (0, rows), (columns, rows)] {
             let at = corner(c, r)?;
-            let miss =
-                (at[0] - turns - min[0] - c as f64).abs().max((at[1] - min[1] - r as f64).abs());
+            let miss = (at[0] - min[0] - c as f64).abs().max((at[1] - min[1] - r as f64).abs());
             if miss.is_nan() || miss > SAME_GRID_PX || min[0].abs().max(min[1].abs()) > 1e12 {
                 return None;
             }

@@ -6,6 +6,7 @@ use crate::DemError;
 use crate::mosaic::{Mosaic, SampleRect};
 use crate::operation::Operation;
 use crate::source::Source;
+use crate::turns::turns;
 
 /// Positions along each side of a file. Between two of them a side bends by 1/4096 of its whole sagitta.
 const SIDE_POSITIONS: usize = 65;
@@ -77,28 +78,73 @@ pub(crate) fn wgs84(
 ) -> Result<(Vec<[f64; 2]>, Bounds), DemError> {
     let mut all = Vec::new();
     let mut bounds = Bounds::EMPTY;
-    let mut first_lon = None;
     for (mosaic, operation) in mosaics.iter().zip(operations) {
+        // Degrees of one grid belong together already: they are moved by the same turns.
+        let degrees = mosaic.turn().map(|[turn, middle]| (360.0 / turn, middle * 360.0 / turn));
+        let of_mosaic = degrees.map(|(_, middle_deg)| turns_beside(middle_deg, bounds));
         for file in &mosaic.files {
-            let mut points = positions(mosaic, &file.rect);
+            let own = positions(mosaic, &file.rect);
+            let mut points = own.clone();
             operation.apply(&mut points)?;
-            let mut previous = first_lon;
-            for point in points.iter_mut().filter(|point| point[0].is_finite()) {
-                if let Some(near) = previous {
-                    let turns: f64 = (point[0] - near) / 360.0;
-                    point[0] -= 360.0 * turns.round();
+            if let Some((to_degrees, _)) = degrees {
+                for (point, own) in points.iter_mut().zip(&own) {
+                    point[0] = near_longitude(point[0], own[0] * to_degrees);
                 }
-                previous = Some(point[0]);
-                first_lon = first_lon.or(previous);
-                bounds.include(*point);
+            } else {
+                unwrap(&mut points);
             }
-            let known = all.len();
-            all.extend(points.into_iter().filter(|point| point[0].is_finite()));
-            if all.len() == known {
+            points.retain(|point| point[0].is_finite() && point[1].is_finite());
+            if points.is_empty() {
                 let path = sources[file.index].path.clone();
                 return Err(DemError::Nowhere { path, crs: mosaic.crs.label.clone() });
             }
+            let turns =
+                of_mosaic.unwrap_or_else(|| turns_beside(around(&points).center()[0], bounds));
+            for point in &mut points {
+                point[0] -= 360.0 * turns;
+                bounds.include(*point);
+            }
+            all.extend(points);
         }
     }
     Ok((all, bounds))
+}
+
+/// Longitudes of a projected file made continuous: along the rim each beside the one before, which is near it; inside each
+/// beside the middle of the rim. From one inner row to the next the way is most of the width and tells nothing.
+fn unwrap(points: &mut [[f64; 2]]) {
+    let (rim, inside) = points.split_at_mut(4 * SIDE_POSITIONS);
+    let mut previous: Option<f64> = None;
+    for point in rim.iter_mut().filter(|point| point[0].is_finite()) {
+        point[0] = previous.map_or(point[0], |near| near_longitude(point[0], near));
+        previous = Some(point[0]);
+    }
+    let middle = if previous.is_some() { Some(around(rim).center()[0]) } else { None };
+    // Without a rim on earth any inner position is as good.
+    let mut near = middle;
+    for point in inside.iter_mut().filter(|point| point[0].is_finite()) {
+        point[0] = near_longitude(point[0], *near.get_or_insert(point[0]));
+    }
+}
+
+/// The rectangle around those positions that are somewhere.
+fn around(points: &[[f64; 2]]) -> Bounds {
+    let mut bounds = Bounds::EMPTY;
+    for &point in points.iter().filter(|point| point[0].is_finite() && point[1].is_finite()) {
+        bounds.include(point);
+    }
+    bounds
+}
+
+/// Full turns that a longitude is away from the middle of a rectangle; none from half a turn, and none from an empty one.
+fn turns_beside(lon_deg: f64, bounds: Bounds) -> f64 {
+    if bounds.is_empty() {
+        return 0.0;
+    }
+    turns(lon_deg - bounds.center()[0], 360.0)
+}
+
+/// The image of a longitude that is nearest to another one.
+fn near_longitude(lon_deg: f64, near_deg: f64) -> f64 {
+    lon_deg - 360.0 * ((lon_deg - near_deg) / 360.0).round()
 }

@@ -7,17 +7,13 @@ use crate::kernel::Kernel;
 use crate::mosaic::{Mosaic, Placed};
 use crate::operation::Operation;
 use crate::positions::NodePositions;
+use crate::spacing::{nice, phase};
+use crate::turns::turns;
 use crate::working::{PlanScale, Working, rounded};
 use crate::{Dem, DemError, outline, working};
 
 /// Nodes coincide with samples when none is farther off than this, in cells.
 const ALIGNED_CELLS: f64 = 1e-3;
-/// What numbers of few digits may move samples by, over the whole extent, in cells.
-const NOISE_CELLS: f64 = 5e-4;
-/// Rounding of a grid's phase, steps to a unit: it hides the noise of corner coordinates and moves nothing.
-const PHASE_STEPS: f64 = 1e6;
-/// The same in degrees, steps to a cell: degrees are written with fewer digits. It moves nodes by half of this at most.
-const PHASE_STEPS_DEGREES: f64 = 1e4;
 /// Most samples along an axis of which one is taken.
 const MAX_EVERY: i64 = 1000;
 /// Most samples averaged along a side of a cell; bounds the memory that one node can ask for.
@@ -130,6 +126,15 @@ impl Alignment {
             self.way[0] * (self.every * node.i - self.first[0]),
             self.way[1] * (self.every * node.j - self.first[1]),
         ]
+    }
+}
+
+impl GridPlan {
+    /// The poles' distance from zero along y, working metres, where the working CRS counts in degrees; `None` in a
+    /// projection. Positions beyond it have no longitude.
+    #[must_use]
+    pub fn poles_y_m(&self) -> Option<f64> {
+        self.working.crs.turn.map(|turn| turn / 4.0 * self.metres_per_unit[1].abs())
     }
 }
 
@@ -342,8 +347,13 @@ impl Layout {
         let factor = self.working.metres_per_unit;
         // A cell between samples, when only every n-th is taken.
         let between = self.cell.times(1.0 / self.every as f64).to_array();
+        // Past the antimeridian the mosaic lies where the data's middle is near.
+        let moved = mosaic
+            .turn()
+            .map_or(0.0, |[turn, middle]| turn * turns(middle - self.working.middle, turn));
         let cells = |sample: [i64; 2]| {
-            let at = transform.crs_from_pixel(sample.map(|index| index as f64));
+            let mut at = transform.crs_from_pixel(sample.map(|index| index as f64));
+            at[0] -= moved;
             [0, 1].map(|axis| (at[axis] * factor[axis] - self.origin_m[axis]) / between[axis])
         };
         let c = transform.coefficients;
@@ -402,27 +412,6 @@ impl Layout {
             corner(cells(bounds.max_x, 0).ceil(), cells(bounds.max_y, 1).ceil()),
         ])
     }
-}
-
-/// A spacing without the noise of its division by whoever wrote the file: a whole number of samples to a unit (1/1200 of a
-/// degree), or few decimal digits; as it is where neither is meant.
-fn nice(spacing: f64, reach: f64) -> f64 {
-    let is_noise = |nice: f64| (nice - spacing).abs() * reach <= NOISE_CELLS * spacing;
-    let digits = rounded(spacing, 9);
-    let to_a_unit = 1.0 / (1.0 / spacing).round();
-    [to_a_unit, digits]
-        .into_iter()
-        .find(|&nice| nice.is_finite() && is_noise(nice))
-        .unwrap_or(spacing)
-}
-
-/// Where samples lie between two multiples of their spacing, so that adjoining files of one product have the same grid.
-fn phase(at: f64, spacing: f64, is_degrees: bool) -> f64 {
-    let (unit, steps) =
-        if is_degrees { (spacing, PHASE_STEPS_DEGREES) } else { (1.0, PHASE_STEPS) };
-    let phase = (at.rem_euclid(spacing) / unit * steps).round() / steps * unit;
-    // A hair below a multiple is the multiple.
-    if spacing - phase < 0.5 * unit / steps { 0.0 } else { phase }
 }
 
 fn resample(

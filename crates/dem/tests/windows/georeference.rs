@@ -257,3 +257,106 @@ fn the_poles_are_covered_as_far_as_samples_go() {
         assert_eq!(count, 101 * 101);
     }
 }
+
+/// Wider than half the earth: the rectangle in WGS84 is that of the file, whatever the CRS's coordinates are.
+#[test]
+fn bounds_of_wide_files_are_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let per_degree = 20_037_508.342_789_244 / 180.0;
+    let files = [
+        (4326, 240, -120.0, 1.0),
+        (4326, 360, -180.0, 1.0),
+        (4326, 360, 0.0, 1.0),
+        // NAD27: PROJ moves positions and names them from −180 to 180.
+        (4267, 300, -150.0, 1.0),
+        (4087, 240, -120.0, per_degree),
+        (4087, 360, -180.0, per_degree),
+    ];
+    for (epsg, columns, west, unit) in files {
+        let map = [west * unit, unit, 0.0, 10.0 * unit, 0.0, -unit];
+        let name = format!("{epsg} {columns} {west}.tif");
+        let file = Raster::new(epsg, [columns, 20], map).write(folder.path(), &name, |_| 1.0_f32);
+        let found = open(&[file]).plan(&own_crs()).unwrap().wgs84_bounds;
+        let east = west + columns as f64;
+        for (found, expected) in
+            found.to_array().into_iter().zip([west + 0.5, -9.5, east - 0.5, 9.5])
+        {
+            assert!((found - expected).abs() < 0.01, "{name}: {found}, not {expected}");
+        }
+    }
+}
+
+/// Halves of the globe side by side make a globe, not two turns of it.
+#[test]
+fn halves_of_the_globe_are_one_turn() {
+    let folder = tempfile::tempdir().unwrap();
+    let per_degree = 20_037_508.342_789_244 / 180.0;
+    for (epsg, unit) in [(4326, 1.0), (4087, per_degree)] {
+        let half = |west: f64| {
+            let map = [west * unit, unit, 0.0, 10.0 * unit, 0.0, -unit];
+            let name = format!("{epsg} {west}.tif");
+            Raster::new(epsg, [180, 20], map).write(folder.path(), &name, |_| 1.0_f32)
+        };
+        let found = open(&[half(-180.0), half(0.0)]).plan(&own_crs()).unwrap().wgs84_bounds;
+        assert!(
+            (found.min_x + 179.5).abs() < 0.01 && (found.max_x - 179.5).abs() < 0.01,
+            "{epsg}: {found:?}"
+        );
+    }
+}
+
+fn own_crs() -> PlanOptions {
+    PlanOptions { crs: Some("dem".to_owned()), ..options() }
+}
+
+/// A spacing written with few digits is meant as 1/120 of a degree: files on both sides of the antimeridian are
+/// neighbours, in either order.
+#[test]
+fn few_digits_do_not_part_files_at_the_antimeridian() {
+    let folder = tempfile::tempdir().unwrap();
+    let square = |name: &str, west: f64| {
+        let map = [west, 0.008_333_33, 0.0, 1.0, 0.0, -0.008_333_33];
+        Raster::new(4326, [120, 120], map).write(folder.path(), name, |at| at[1] as f32)
+    };
+    let (east, west) = (square("east.tif", 179.0), square("west.tif", -180.0));
+    for files in [[east.clone(), west.clone()], [west, east]] {
+        let dem = open(&files);
+        let plan = plan(&dem);
+        assert_eq!(plan.case, Resampling::Aligned, "{}", plan.resampling);
+        assert_eq!(plan.north_east.i - plan.south_west.i, 239, "{files:?}");
+        assert_eq!(plan.north_east.j - plan.south_west.j, 119);
+        assert!(
+            (plan.wgs84_bounds.width() - 2.0 + 0.008_333_33).abs() < 1e-4,
+            "{:?}",
+            plan.wgs84_bounds
+        );
+        assert_eq!(
+            check(&mut dem.reader(&plan).unwrap(), &plan, 1e-3, |[_, y]| y / plan.metres_per_unit
+                [1]),
+            240 * 120
+        );
+    }
+}
+
+/// So far from the first file that few digits make another grid of it, on the other side of the antimeridian: its samples
+/// are nodes beside those of the first.
+#[test]
+fn aligned_files_far_across_the_antimeridian_are_near() {
+    let folder = tempfile::tempdir().unwrap();
+    let square = |name: &str, west: f64| {
+        let map = [west, 0.008_333_33, 0.0, 1.0, 0.0, -0.008_333_33];
+        Raster::new(4326, [120, 120], map).write(folder.path(), name, |at| at[1] as f32)
+    };
+    let (east, west) = (square("east.tif", 160.0), square("west.tif", -170.0));
+    for files in [[east.clone(), west.clone()], [west, east]] {
+        let dem = open(&files);
+        let plan = plan(&dem);
+        assert_eq!(plan.case, Resampling::Aligned, "{}", plan.resampling);
+        assert_eq!(plan.north_east.i - plan.south_west.i, 31 * 120 - 1, "{files:?}");
+        assert_eq!(
+            check(&mut dem.reader(&plan).unwrap(), &plan, 1e-3, |[_, y]| y / plan.metres_per_unit
+                [1]),
+            240 * 120
+        );
+    }
+}
