@@ -7,11 +7,15 @@ use std::fs;
 
 use corniche_drape::DrapedVertex;
 use corniche_geom::TileId;
-use corniche_pipeline::CheckId;
+use corniche_pipeline::{CheckId, Silent, VerifySettings, build, verify};
 use corniche_tileset::EncodeError;
 use corniche_tin::{NO_TWIN, Tin, TinVertex};
-use support::parts::{
-    Against, LAST_NODE, MAX_ERROR_M, Parts, SOUND, assert_broken, encode_in, report_on, write,
+use support::{
+    Options,
+    parts::{
+        Against, LAST_NODE, MAX_ERROR_M, Parts, SOUND, assert_broken, encode_in, report_on, write,
+    },
+    settings, write_degrees,
 };
 
 #[test]
@@ -361,4 +365,19 @@ fn a_height_range_that_leaves_nodes_out() {
     let range_m = &mut parts.terrain_mut(id).height_range_m;
     range_m[1] = range_m[0];
     parts.assert_breaks(Against::Dem, &[CheckId::Vertices, CheckId::Ranges]);
+}
+
+/// The scales that are recorded are those at the files' corners, which every 7th sample need not reach.
+#[test]
+fn a_package_of_every_seventh_sample_keeps_its_promises() {
+    let folder = tempfile::tempdir().unwrap();
+    let (dem, output) = (folder.path().join("dem.tif"), folder.path().join("built.pmtiles"));
+    let height_m = |[lon, lat]: [f64; 2]| 500.0 + 300.0 * (lon * 200.0).sin() * (lat * 150.0).cos();
+    // Three arc seconds.
+    write_degrees(&dem, 361, [9.0, 47.3], 1.0 / 1200.0, height_m);
+    let mut settings = settings(dem.clone(), None, output.clone(), Options::plain(MAX_ERROR_M));
+    settings.terrain.cell_every = Some(7);
+    build(&settings, &Silent).unwrap();
+    let settings = VerifySettings { package: output, dem: vec![dem], osm: None, threads: 2 };
+    assert_broken(verify(&settings, &Silent).unwrap(), &[]);
 }

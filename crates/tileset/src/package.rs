@@ -6,6 +6,7 @@ mod file_package;
 mod header;
 mod reader;
 mod source;
+mod tool_record;
 #[cfg(feature = "write")]
 mod writer;
 
@@ -18,6 +19,7 @@ pub use reader::{OpenError, Package, ReadError};
 #[cfg(not(target_arch = "wasm32"))]
 pub use source::FileSource;
 pub use source::{ByteSource, MemorySource, SourceError};
+pub use tool_record::ToolRecord;
 #[cfg(feature = "write")]
 pub use writer::{WriteError, Writer};
 
@@ -36,6 +38,21 @@ struct Metadata<M> {
     #[serde(default)]
     attribution: String,
     corniche: M,
+}
+
+impl<'a> Metadata<&'a crate::Manifest> {
+    /// What goes with a manifest.
+    fn of(manifest: &'a crate::Manifest) -> Self {
+        Self {
+            name: "Corniche package".to_owned(),
+            description: format!(
+                "Terrain and roads by {}; z/x/y is a local quadtree in {}",
+                manifest.generator, manifest.crs
+            ),
+            attribution: manifest.attribution.join(", "),
+            corniche: manifest,
+        }
+    }
 }
 
 /// Place of a tile in a package: PMTiles' tile id, which counts tiles level by level along a Hilbert curve.

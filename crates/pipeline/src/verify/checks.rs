@@ -58,6 +58,7 @@ macro_rules! checks {
 
 checks! {
     Whole "tiles.whole" Package "every tile's sections are whole and match their checksums"
+    Header "package.header" Package "what the file says for PMTiles tools follows from manifest and tiles"
     Order "roads.order" Package "the roads of a tile are sorted by class, way and part, and parts are counted from 0"
     OnTin "P1" Package "every edge of a GEO road lies on one triangle of its tile"
     Seams "P3" Package "neighbours of one level share bit-identical border vertices"

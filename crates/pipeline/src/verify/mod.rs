@@ -6,6 +6,7 @@ mod dem;
 mod gradient;
 mod grid;
 mod ground;
+mod header;
 mod levels;
 mod methods;
 mod osm;
@@ -175,6 +176,7 @@ pub fn verify(
     let (mut report, mut findings) = tiles::verify(&package, settings.threads, observer)?;
     sums::verify(package.manifest(), &mut findings);
     records::verify(package.manifest(), &mut findings);
+    header::verify(&package, &mut findings)?;
     grid::verify(package.manifest(), &mut findings);
     place::verify(package.manifest(), &mut findings);
     if !settings.dem.is_empty() {

@@ -47,21 +47,29 @@ fn positions(
 ) -> Result<(), DemError> {
     let data = manifest.data_bounds;
     let projection = crs.projection(manifest.wgs84_bounds)?;
-    let scales: Vec<[f64; 2]> =
-        crs.scales(&grid(data), manifest.wgs84_bounds)?.into_iter().flatten().collect();
+    // Scales are recorded at the corners of files, which may lie up to a cell beyond the outermost nodes.
+    let [east_m, north_m] = manifest.frame.cell().to_array();
+    let files = Bounds {
+        min_x: data.min_x - east_m,
+        min_y: data.min_y - north_m,
+        max_x: data.max_x + east_m,
+        max_y: data.max_y + north_m,
+    };
+    let scales = crs.scales(&grid(files), manifest.wgs84_bounds)?;
     check_scales(manifest, &scales, findings);
     rectangles(manifest, &projection, findings);
     table(manifest, &projection, findings);
     Ok(())
 }
 
-/// The scales that are told lie among those over the data.
-fn check_scales(manifest: &Manifest, scales: &[[f64; 2]], findings: &mut Findings) {
+/// The scales that are told lie among those over the data: `scales` at the positions of [`grid`].
+fn check_scales(manifest: &Manifest, scales: &[Option<[f64; 2]>], findings: &mut Findings) {
     let scale = &manifest.scale;
     for axis in 0..2 {
-        let of_axis = || scales.iter().map(|along| along[axis]);
-        let least = of_axis().fold(f64::INFINITY, f64::min) - SCALE_ROUNDING;
-        let most = of_axis().fold(f64::NEG_INFINITY, f64::max) + SCALE_ROUNDING;
+        let of_axis = || scales.iter().flatten().map(|along| along[axis]);
+        let slack = SCALE_ROUNDING + between(scales, axis);
+        let least = of_axis().fold(f64::INFINITY, f64::min) - slack;
+        let most = of_axis().fold(f64::NEG_INFINITY, f64::max) + slack;
         let said = [scale.least[axis], scale.center[axis], scale.largest[axis]];
         let holds = least <= said[0] && said.is_sorted() && said[2] <= most;
         findings.look(CheckId::Scale, holds, || {
@@ -72,6 +80,25 @@ fn check_scales(manifest: &Manifest, scales: &[[f64; 2]], findings: &mut Finding
     findings.look(CheckId::Scale, manifest.point_scale.to_bits() == mean.to_bits(), || {
         format!("the scale is {}, its parts make {mean}", manifest.point_scale)
     });
+}
+
+/// How far an extreme between positions of [`grid`] may lie beyond the values at them: of a parabola an eighth of the
+/// second difference, in each direction.
+fn between(scales: &[Option<[f64; 2]>], axis: usize) -> f64 {
+    let value = |row: usize, column: usize| scales[row * ALONG + column].map(|along| along[axis]);
+    let mut largest = 0.0_f64;
+    for line in 0..ALONG {
+        for at in 1..ALONG - 1 {
+            let row = [at - 1, at, at + 1].map(|column| value(line, column));
+            let column = [at - 1, at, at + 1].map(|row| value(row, line));
+            for values in [row, column] {
+                if let [Some(before), Some(here), Some(after)] = values {
+                    largest = largest.max((before - 2.0 * here + after).abs());
+                }
+            }
+        }
+    }
+    largest / 4.0
 }
 
 /// The rectangle in degrees is around the data, and the data's rectangle is around the one in degrees: each holds the

@@ -2,7 +2,7 @@ use std::path::{Path, PathBuf};
 
 use corniche_geom::TileId;
 
-use super::{FileSource, OpenError, Package, ReadError};
+use super::{FileSource, OpenError, Package, ReadError, ToolRecord};
 use crate::{Manifest, Sections, TilePayload};
 
 /// A package on disk, for callers that wait: the same as [`Package`] without `async`.
@@ -40,6 +40,15 @@ impl FilePackage {
     #[must_use]
     pub fn manifest(&self) -> &Manifest {
         self.package.manifest()
+    }
+
+    /// See [`Package::tool_record`].
+    ///
+    /// # Errors
+    /// As [`Package::tool_record`], with the name of the file.
+    pub fn tool_record(&self) -> Result<ToolRecord, OpenError> {
+        pollster::block_on(self.package.tool_record())
+            .map_err(|source| OpenError::File { path: self.path.clone(), source: Box::new(source) })
     }
 
     /// See [`Package::tile_ids`].

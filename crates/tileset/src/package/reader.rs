@@ -7,7 +7,7 @@ use corniche_geom::TileId;
 use serde::{Deserialize, de::IgnoredAny};
 
 use super::{
-    FORMAT_VERSION, Metadata, SourceError,
+    FORMAT_VERSION, Metadata, SourceError, ToolRecord,
     directory::{self, Directory, Entry},
     header::{HEADER_BYTES, Header, INITIAL_BYTES, Span},
     pmtiles_order,
@@ -140,9 +140,7 @@ impl<S: ByteSource> Package<S> {
         let initial = source.read(0, length.min(INITIAL_BYTES as u64) as usize).await?;
         let header = Header::parse(&initial, length)?;
         // Before the directory: what is another's PMTiles file is told so, whatever else is wrong with it.
-        let metadata =
-            directory::gunzip(&read_span(&source, header.metadata).await?, MAX_METADATA_BYTES)
-                .ok_or(OpenError::Damaged { what: "the metadata" })?;
+        let metadata = read_metadata(&source, &header).await?;
         let manifest = parse_manifest(&metadata)?;
         let root_in_initial = usize::try_from(header.root.offset)
             .ok()
@@ -160,6 +158,15 @@ impl<S: ByteSource> Package<S> {
     #[must_use]
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
+    }
+
+    /// What the file says for PMTiles tools. It is read from the file again.
+    ///
+    /// # Errors
+    /// When header or metadata cannot be read.
+    pub async fn tool_record(&self) -> Result<ToolRecord, OpenError> {
+        let header = self.source.read(0, HEADER_BYTES).await?;
+        ToolRecord::parse(&header, &read_metadata(&self.source, &self.header).await?)
     }
 
     /// All tiles, in the order in which they are stored: by level, then along a Hilbert curve.
@@ -294,6 +301,12 @@ impl<S: ByteSource> Package<S> {
 async fn read_span(source: &impl ByteSource, span: Span) -> Result<Vec<u8>, SourceError> {
     // The header's limits keep lengths far below what a usize holds.
     source.read(span.offset, span.length as usize).await
+}
+
+/// The metadata's JSON.
+async fn read_metadata(source: &impl ByteSource, header: &Header) -> Result<Vec<u8>, OpenError> {
+    directory::gunzip(&read_span(source, header.metadata).await?, MAX_METADATA_BYTES)
+        .ok_or(OpenError::Damaged { what: "the metadata" })
 }
 
 fn parse_manifest(metadata: &[u8]) -> Result<Manifest, OpenError> {

@@ -150,16 +150,7 @@ fn to_json(manifest: &Manifest) -> Result<String, WriteError> {
     }
     manifest.check().map_err(|reason| WriteError::Manifest { reason })?;
     let failed = |error: serde_json::Error| WriteError::Manifest { reason: error.to_string() };
-    let metadata = Metadata {
-        name: "Corniche package".to_owned(),
-        description: format!(
-            "Terrain and roads by {}; z/x/y is a local quadtree in {}",
-            manifest.generator, manifest.crs
-        ),
-        attribution: manifest.attribution.join(", "),
-        corniche: manifest,
-    };
-    let json = serde_json::to_string(&metadata).map_err(failed)?;
+    let json = serde_json::to_string(&Metadata::of(manifest)).map_err(failed)?;
     let back: Metadata<Manifest> = serde_json::from_str(&json).map_err(failed)?;
     if back.corniche != *manifest {
         return Err(WriteError::Manifest {

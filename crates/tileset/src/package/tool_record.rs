@@ -1,0 +1,99 @@
+//! What a package says for PMTiles tools, beside its manifest.
+
+use serde::de::IgnoredAny;
+
+use super::{Metadata, OpenError, header::HEADER_BYTES};
+use crate::Manifest;
+
+/// Steps of the header's degrees in a degree.
+const STEPS_PER_DEGREE: f64 = 1e7;
+
+/// What PMTiles tools show of a package: fields of the file's header, and the texts beside the manifest. This reader
+/// uses none of it.
+///
+/// Source: PMTiles version 3 specification, sections 3 and 5.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ToolRecord {
+    /// Tiles.
+    pub addressed_tiles: u64,
+    /// Directory entries that are tiles.
+    pub tile_entries: u64,
+    /// Different payloads.
+    pub tile_contents: u64,
+    /// 1 where tiles lie in the order of their ids.
+    pub clustered: u8,
+    /// Least and largest level.
+    pub zooms: [u8; 2],
+    /// West, south, east and north, 10⁻⁷ degrees.
+    pub bounds_e7: [i32; 4],
+    /// Level at which tools begin.
+    pub center_zoom: u8,
+    /// Longitude and latitude, 10⁻⁷ degrees.
+    pub center_e7: [i32; 2],
+    /// What the file is called.
+    pub name: String,
+    /// What is in it.
+    pub description: String,
+    /// All credits in one line.
+    pub attribution: String,
+}
+
+impl ToolRecord {
+    /// What a package of this manifest and so many tiles says.
+    #[must_use]
+    pub fn of(manifest: &Manifest, tiles: u64) -> Self {
+        let bounds = manifest.wgs84_bounds;
+        let Metadata { name, description, attribution, .. } = Metadata::of(manifest);
+        Self {
+            addressed_tiles: tiles,
+            tile_entries: tiles,
+            tile_contents: tiles,
+            clustered: 1,
+            zooms: [0, manifest.frame.max_level()],
+            bounds_e7: bounds.to_array().map(e7),
+            center_zoom: 0,
+            center_e7: bounds.center().map(e7),
+            name,
+            description,
+            attribution,
+        }
+    }
+
+    /// From the header's bytes and the metadata's JSON.
+    pub(super) fn parse(header: &[u8], metadata: &[u8]) -> Result<Self, OpenError> {
+        let Some(bytes) = header.first_chunk::<HEADER_BYTES>() else {
+            let actual = header.len() as u64;
+            return Err(OpenError::Truncated { needed: HEADER_BYTES as u64, actual });
+        };
+        let count = |at: usize| {
+            let mut eight = [0; 8];
+            eight.copy_from_slice(&bytes[at..at + 8]);
+            u64::from_le_bytes(eight)
+        };
+        let degrees = |at: usize| {
+            let mut four = [0; 4];
+            four.copy_from_slice(&bytes[at..at + 4]);
+            i32::from_le_bytes(four)
+        };
+        let texts: Metadata<IgnoredAny> = serde_json::from_slice(metadata)
+            .map_err(|error| OpenError::Manifest { reason: error.to_string() })?;
+        Ok(Self {
+            addressed_tiles: count(72),
+            tile_entries: count(80),
+            tile_contents: count(88),
+            clustered: bytes[96],
+            zooms: [bytes[100], bytes[101]],
+            bounds_e7: [102, 106, 110, 114].map(degrees),
+            center_zoom: bytes[118],
+            center_e7: [119, 123].map(degrees),
+            name: texts.name,
+            description: texts.description,
+            attribution: texts.attribution,
+        })
+    }
+}
+
+/// Degrees in the header's steps.
+fn e7(degrees: f64) -> i32 {
+    (degrees * STEPS_PER_DEGREE).round() as i32
+}
