@@ -66,7 +66,8 @@ impl Dem {
     ///   the radii of curvature of the ellipsoid. In a projection: its unit, where that is true to scale within 1 % along
     ///   both axes and all over the data; else the unit divided by the scale along each axis, at the standard latitude and
     ///   the middle longitude. Axes that count westwards or southwards are turned. The standard latitude is the middle of
-    ///   the data to half a degree, or `options.scale_latitude_deg`.
+    ///   the data to half a degree, or `options.scale_latitude_deg`; one that is given decides, at the middle longitude
+    ///   alone, whether a projection keeps its unit.
     /// - Cell: `options.cell`; else the spacing of the first file's samples, a rectangle; where that file is in another CRS
     ///   or turned against it, a square with the shorter spacing as side (two significant digits in another CRS).
     /// - Where the cell is the spacing of the first file's samples, or a multiple by `options.cell_every`, nodes coincide

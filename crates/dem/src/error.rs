@@ -78,6 +78,10 @@ pub enum DemError {
     #[error("{option} {text:?} is not a coordinate system that PROJ knows; write EPSG:n or WKT")]
     CrsText { option: &'static str, text: String, source: Box<LibraryError> },
     #[error(
+        "--crs {text:?} is not a coordinate system that PROJ knows; write dem (the DEM's own), utm, EPSG:n or WKT"
+    )]
+    WorkingCrsText { text: String, source: Box<LibraryError> },
+    #[error(
         "{option} {text:?} is neither projected nor geographic; write EPSG:n or WKT of one that is"
     )]
     CrsKind { option: &'static str, text: String },
@@ -150,6 +154,10 @@ pub enum DemError {
     )]
     Cell { cell: Cell },
     #[error(
+        "the samples of {path:?} make a cell of {cell} in {crs}, and a side has 0.001 to 1000000 m; give --crs dem, which keeps the file's own grid, or --cell"
+    )]
+    CellOfFile { path: PathBuf, cell: Cell, crs: String },
+    #[error(
         "a cell of {cell} averages {samples:.0} DEM samples along a side, more than {limit}; use a smaller --cell"
     )]
     Downsampling { cell: Cell, samples: f64, limit: f64 },
@@ -162,11 +170,15 @@ pub enum DemError {
     #[error("--cell and --cell-every both say what a cell is; give one of them")]
     CellTwice,
     #[error(
-        "--cell-every needs nodes that are the DEM's samples, and in {crs} they are not; leave out --crs or give --crs dem, or give --cell"
+        "--cell-every needs nodes that are the DEM's samples, and in {crs} they are not; {way_out}"
     )]
-    CellEveryResampled { crs: String },
+    CellEveryResampled { crs: String, way_out: &'static str },
     #[error("--scale-latitude {latitude_deg} is not usable; give degrees between -89 and 89")]
     ScaleLatitude { latitude_deg: f64 },
+    #[error(
+        "--scale-latitude {latitude_deg} and --crs utm do not go together: UTM has a scale of its own; leave out one of them"
+    )]
+    ScaleLatitudeUtm { latitude_deg: f64 },
     #[error(
         "the DEM's own coordinate system {crs} does not do as working CRS here: its y does not lie to the left of its x, or the DEM's middle lies outside it; leave out --crs dem"
     )]

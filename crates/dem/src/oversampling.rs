@@ -17,9 +17,11 @@ impl Dem {
         let cell = plan.frame.cell();
         let mut fewest: Option<f64> = None;
         for (mosaic, layer) in self.mosaics.iter().zip(&plan.layers) {
-            let spacing_m = plan::spacing_m(mosaic, &plan.working, &layer.working_from_crs)?;
-            let Some([across, down]) = spacing_m else { continue };
-            let nodes = (across / cell.east_m).max(down / cell.north_m);
+            let steps = plan::steps_m(mosaic, &plan.working, &layer.working_from_crs)?;
+            let Some(samples) = steps.map(|steps| plan::samples_to_a_cell(steps, cell)) else {
+                continue;
+            };
+            let nodes = samples[0].recip().max(samples[1].recip());
             fewest = Some(fewest.map_or(nodes, |fewest| fewest.min(nodes)));
         }
         match fewest {

@@ -27,7 +27,7 @@ const MAX_NAMES: usize = 3;
 /// What the user may say about the grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanOptions {
-    /// Working CRS: "dem" (the first file's own), "utm", "EPSG:n" or WKT; `None` chooses one.
+    /// Working CRS: "dem" (the first file's own), "utm" (both in any case), "EPSG:n" or WKT; `None` chooses one.
     pub crs: Option<String>,
     /// Spacing of the nodes, working metres; `None` takes the DEM's.
     pub cell: Option<Cell>,
@@ -130,6 +130,13 @@ impl Alignment {
 }
 
 impl GridPlan {
+    /// Whether working metres depend on the standard latitude: in UTM and in projections that are true to scale they do not,
+    /// and `--scale-latitude` changes nothing.
+    #[must_use]
+    pub fn has_standard_latitude(&self) -> bool {
+        self.working.is_scaled
+    }
+
     /// The poles' distance from zero along y, working metres, where the working CRS counts in degrees; `None` in a
     /// projection. Positions beyond it have no longitude.
     #[must_use]
@@ -151,11 +158,11 @@ pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemErro
     let layout = layout(dem, options, working, &into_working)?;
     let scale = layout.working.scale(dem)?;
     let operations = into_working(&layout.working);
-    let spacings: Vec<Option<[f64; 2]>> = dem
+    let steps: Vec<Option<[[f64; 2]; 2]>> = dem
         .mosaics
         .iter()
         .zip(&operations)
-        .map(|(mosaic, operation)| spacing_m(mosaic, &layout.working, operation))
+        .map(|(mosaic, operation)| steps_m(mosaic, &layout.working, operation))
         .collect::<Result<_, _>>()?;
     let extents: Vec<[NodeIndex; 2]> = dem
         .mosaics
@@ -182,12 +189,12 @@ pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemErro
     }
     let frame = Frame::covering(layout.origin_m, layout.cell, south_west, north_east)?;
     let mut layers = Vec::new();
-    for (((mosaic, working_from_crs), nodes), spacing) in
-        dem.mosaics.iter().zip(operations).zip(extents).zip(spacings)
+    for (((mosaic, working_from_crs), nodes), steps) in
+        dem.mosaics.iter().zip(operations).zip(extents).zip(steps)
     {
         let method = match layout.alignment(mosaic) {
             Some(alignment) => Method::Aligned(alignment),
-            None => resample(dem, mosaic, &frame, &layout.working, nodes, spacing)?,
+            None => resample(dem, mosaic, &frame, &layout.working, nodes, steps)?,
         };
         layers.push(Layer { nodes, method, working_from_crs });
     }
@@ -230,24 +237,45 @@ pub(crate) fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemErro
 }
 
 /// Spacing of a mosaic's columns and rows in working metres, at its centre; `None` outside the CRS.
-pub(crate) fn spacing_m(
+fn spacing_m(
     mosaic: &Mosaic,
     working: &Working,
     operation: &Operation,
 ) -> Result<Option<[f64; 2]>, DemError> {
+    let steps = steps_m(mosaic, working, operation)?;
+    Ok(steps.map(|steps| steps.map(|[x, y]| x.hypot(y))))
+}
+
+/// The way from a sample to the next column and to the next row, at a mosaic's centre: working metres east and north each;
+/// `None` outside the CRS.
+pub(crate) fn steps_m(
+    mosaic: &Mosaic,
+    working: &Working,
+    operation: &Operation,
+) -> Result<Option<[[f64; 2]; 2]>, DemError> {
     let c = mosaic.crs_from_sample.coefficients;
     if mosaic.crs.is_same(&working.crs) {
         let [fx, fy] = working.metres_per_unit;
-        return Ok(Some([(c[1] * fx).hypot(c[4] * fy), (c[2] * fx).hypot(c[5] * fy)]));
+        return Ok(Some([[c[1] * fx, c[4] * fy], [c[2] * fx, c[5] * fy]]));
     }
     let [x, y] =
         [0, 1].map(|axis| (mosaic.extent.min[axis] + mosaic.extent.max[axis] - 1) as f64 / 2.0);
     let ends = [[x - 0.5, y], [x + 0.5, y], [x, y - 0.5], [x, y + 0.5]];
     let mut ends = ends.map(|sample| mosaic.crs_from_sample.crs_from_pixel(sample));
     operation.apply(&mut ends)?;
-    let length = |from: [f64; 2], to: [f64; 2]| (to[0] - from[0]).hypot(to[1] - from[1]);
-    let spacing = [length(ends[0], ends[1]), length(ends[2], ends[3])];
-    Ok(spacing.iter().all(|metres| metres.is_finite() && *metres > 0.0).then_some(spacing))
+    let way = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
+    let steps = [way(ends[0], ends[1]), way(ends[2], ends[3])];
+    let is_way = |[x, y]: &[f64; 2]| x.is_finite() && y.is_finite() && x.hypot(*y) > 0.0;
+    Ok(steps.iter().all(is_way).then_some(steps))
+}
+
+/// Columns and rows of samples that a cell is long: one cell east and one north, carried among the samples.
+pub(crate) fn samples_to_a_cell([column, row]: [[f64; 2]; 2], cell: Cell) -> [f64; 2] {
+    let area = column[0] * row[1] - column[1] * row[0];
+    [
+        (row[1] * cell.east_m / area).hypot(row[0] * cell.north_m / area),
+        (column[1] * cell.east_m / area).hypot(column[0] * cell.north_m / area),
+    ]
 }
 
 /// Cell, phase and the working CRS with its final factors.
@@ -282,7 +310,18 @@ fn layout(
         return Ok(Layout::of_samples(first, working, every));
     }
     if options.cell_every.is_some() {
-        return Err(DemError::CellEveryResampled { crs: working.crs.label.clone() });
+        let is_turned = first.crs.is_same(&working.crs);
+        let way_out = match options.crs {
+            _ if is_turned => {
+                "the DEM's rows and columns do not run along its axes, so give --cell"
+            }
+            Some(_) => "give --crs dem, or --cell in place of --cell-every",
+            None => {
+                "that CRS is taken because lengths in the DEM's own are not true within 3 %; give --crs dem, or --cell in \
+                 place of --cell-every"
+            }
+        };
+        return Err(DemError::CellEveryResampled { crs: working.crs.label.clone(), way_out });
     }
     let cell = if let Some(cell) = options.cell {
         cell
@@ -295,7 +334,11 @@ fn layout(
         Cell::from(rounded(shorter_m, if is_turned { 9 } else { 2 }))
     };
     if cell.to_array().iter().any(|side_m| !(0.001..=1e6).contains(side_m)) {
-        return Err(DemError::Cell { cell });
+        if options.cell.is_some() {
+            return Err(DemError::Cell { cell });
+        }
+        let path = dem.sources[first.files[0].index].path.clone();
+        return Err(DemError::CellOfFile { path, cell, crs: working.crs.label.clone() });
     }
     let cell = cell.fitted();
     if is_own {
@@ -420,11 +463,13 @@ fn resample(
     frame: &Frame,
     working: &Working,
     nodes: [NodeIndex; 2],
-    spacing: Option<[f64; 2]>,
+    steps: Option<[[f64; 2]; 2]>,
 ) -> Result<Method, DemError> {
     let cell = frame.cell();
-    let samples_per_node = spacing
-        .map_or([1.0; 2], |[columns_m, rows_m]| [cell.east_m / columns_m, cell.north_m / rows_m]);
+    let samples_per_node = steps
+        .map(|steps| samples_to_a_cell(steps, cell))
+        .filter(|samples| samples.iter().all(|count| count.is_finite()))
+        .unwrap_or([1.0; 2]);
     let most = samples_per_node[0].max(samples_per_node[1]);
     if most > MAX_SAMPLES_PER_NODE {
         return Err(DemError::Downsampling { cell, samples: most, limit: MAX_SAMPLES_PER_NODE });

@@ -20,7 +20,9 @@ impl RecordedCrs {
     pub fn new(text: &str, metres_per_unit: [f64; 2], data: Bounds) -> Result<Self, DemError> {
         let crs = Crs::from_text("the package's", text)?.0;
         let middle = data.center()[0] / metres_per_unit[0];
-        Ok(Self { working: Working { crs, metres_per_unit, middle } })
+        let is_unit = |factor: f64| factor.abs().to_bits() == crs.unit_m.to_bits();
+        let is_scaled = !(crs.is_projected() && metres_per_unit.into_iter().all(is_unit));
+        Ok(Self { working: Working { crs, metres_per_unit, middle, is_scaled } })
     }
 
     /// "EPSG:…" where it has a code, else its name.

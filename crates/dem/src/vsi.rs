@@ -3,8 +3,9 @@
 #![expect(unsafe_code, reason = "GDALGetFileList and VSI*L have no safe wrapper in the gdal crate")]
 
 use std::{
-    ffi::{CStr, CString},
+    ffi::{CStr, CString, OsStr},
     io::{self, Read},
+    os::unix::ffi::OsStrExt,
     path::{Path, PathBuf},
     ptr::NonNull,
 };
@@ -23,7 +24,7 @@ pub(crate) fn file_list(dataset: &Dataset) -> Vec<PathBuf> {
         }
         let mut at = list;
         while !(*at).is_null() {
-            files.push(PathBuf::from(CStr::from_ptr(*at).to_string_lossy().into_owned()));
+            files.push(PathBuf::from(OsStr::from_bytes(CStr::from_ptr(*at).to_bytes())));
             at = at.add(1);
         }
         gdal_sys::CSLDestroy(list);

@@ -33,6 +33,16 @@ pub(crate) struct Working {
     pub(crate) metres_per_unit: [f64; 2],
     /// First coordinate in the middle of the data: longitudes are the images nearest to it, beyond ±180° too.
     pub(crate) middle: f64,
+    /// Whether the factors make lengths true at the standard latitude; the plain unit has nothing to do with it.
+    pub(crate) is_scaled: bool,
+}
+
+/// The latitude at which lengths are true.
+#[derive(Debug, Clone, Copy)]
+struct StandardLatitude {
+    deg: f64,
+    /// Whether it was asked for, and does not follow the data.
+    is_given: bool,
 }
 
 /// How long lengths come out in working metres; scales beyond 0.001 to 1000 are given as these.
@@ -50,34 +60,44 @@ impl Working {
     fn new(crs: Crs, metres_per_unit: [f64; 2], dem: &Dem) -> Self {
         let own = &dem.mosaics[0];
         let middle = if crs.is_same(&own.crs) { own.middle()[0] } else { dem.center_deg[0] };
-        Self { crs, metres_per_unit, middle }
+        Self { crs, metres_per_unit, middle, is_scaled: false }
     }
 
     /// A CRS with the factors that make lengths true at the standard latitude; `None` where it has none, outside its reach.
+    ///
+    /// Whether a projection is true to scale without factors is asked all over the data; with a latitude that was given,
+    /// there and at the middle longitude alone, so that packages of adjoining regions fit.
     fn with_true_lengths(
         dem: &Dem,
         crs: &Crs,
-        latitude_deg: f64,
+        latitude: StandardLatitude,
     ) -> Result<Option<Self>, DemError> {
-        let factors = if let Some(factors) = crs.metres_per_turn_unit(latitude_deg)? {
-            factors
-        } else {
-            let unit = crs.signs().map(|sign| sign * crs.unit_m);
-            let plain = Self::new(crs.clone(), unit, dem);
-            let is_true = |scale: &Option<Scale>| {
-                let is_near = |along: &f64| (along - 1.0).abs() <= TRUE_TOLERANCE;
-                scale.is_some_and(|scale| scale.along.iter().all(is_near))
-            };
-            if plain.rim_scales(dem)?.iter().all(is_true) {
-                return Ok(Some(plain));
-            }
-            let [lon, _] = dem.wgs84_bounds.center();
-            let scale = plain.scale_at(dem, [lon, latitude_deg])?;
-            let is_usable = |scale: &Scale| scale.along.iter().all(|at| SCALES.contains(at));
-            let Some(scale) = scale.filter(is_usable) else { return Ok(None) };
-            [0, 1].map(|axis| rounded(unit[axis] / scale.along[axis], FACTOR_DIGITS))
+        let scaled = |factors: [f64; 2]| {
+            let plain = Self::new(crs.clone(), factors, dem);
+            Ok(Some(Self { is_scaled: true, ..plain }))
         };
-        Ok(Some(Self::new(crs.clone(), factors, dem)))
+        if let Some(factors) = crs.metres_per_turn_unit(latitude.deg)? {
+            return scaled(factors);
+        }
+        let unit = crs.signs().map(|sign| sign * crs.unit_m);
+        let plain = Self::new(crs.clone(), unit, dem);
+        let is_true = |scale: &Option<Scale>| {
+            let is_near = |along: &f64| (along - 1.0).abs() <= TRUE_TOLERANCE;
+            scale.is_some_and(|scale| scale.along.iter().all(is_near))
+        };
+        let [lon, _] = dem.wgs84_bounds.center();
+        let scale = plain.scale_at(dem, [lon, latitude.deg])?;
+        let is_plain = if latitude.is_given {
+            is_true(&scale)
+        } else {
+            plain.rim_scales(dem)?.iter().all(is_true)
+        };
+        if is_plain {
+            return Ok(Some(plain));
+        }
+        let is_usable = |scale: &Scale| scale.along.iter().all(|at| SCALES.contains(at));
+        let Some(scale) = scale.filter(is_usable) else { return Ok(None) };
+        scaled([0, 1].map(|axis| rounded(unit[axis] / scale.along[axis], FACTOR_DIGITS)))
     }
 
     /// Scale at a place.
@@ -144,13 +164,16 @@ pub(crate) fn choose(
     asked: Option<&str>,
     scale_latitude_deg: Option<f64>,
 ) -> Result<Working, DemError> {
-    let latitude_deg = match scale_latitude_deg {
-        Some(given) if (-89.0..=89.0).contains(&given) => given,
+    let latitude = match scale_latitude_deg {
+        Some(given) if (-89.0..=89.0).contains(&given) => {
+            StandardLatitude { deg: given, is_given: true }
+        }
         Some(given) => return Err(DemError::ScaleLatitude { latitude_deg: given }),
-        None => standard_latitude_deg(dem.wgs84_bounds),
+        None => StandardLatitude { deg: standard_latitude_deg(dem.wgs84_bounds), is_given: false },
     };
-    let own = || Working::with_true_lengths(dem, &dem.mosaics[0].crs, latitude_deg);
-    match asked {
+    let own = || Working::with_true_lengths(dem, &dem.mosaics[0].crs, latitude);
+    let word = asked.map(str::to_ascii_lowercase);
+    match word.as_deref() {
         None => {}
         Some("dem") => {
             let crs = || dem.mosaics[0].crs.label.clone();
@@ -160,18 +183,24 @@ pub(crate) fn choose(
             };
         }
         Some("utm") => {
+            if let Some(latitude_deg) = scale_latitude_deg {
+                return Err(DemError::ScaleLatitudeUtm { latitude_deg });
+            }
             let bounds = dem.wgs84_bounds;
             return utm(dem)?.ok_or(DemError::NoUtm { south: bounds.min_y, north: bounds.max_y });
         }
-        Some(text) => {
-            let (crs, _) = Crs::from_text("--crs", text)?;
+        Some(_) => {
+            let text = asked.unwrap_or_default();
+            let (crs, _) = Crs::from_text("--crs", text).map_err(|error| match error {
+                DemError::CrsText { text, source, .. } => DemError::WorkingCrsText { text, source },
+                other => other,
+            })?;
             let refuse = || DemError::WorkingCrs { text: text.to_owned() };
             if !crs.is_projected() && !crs.is_same(&dem.mosaics[0].crs) {
                 return Err(refuse());
             }
             let outside = || DemError::OutsideCrs { crs: crs.label.clone() };
-            let working =
-                Working::with_true_lengths(dem, &crs, latitude_deg)?.ok_or_else(outside)?;
+            let working = Working::with_true_lengths(dem, &crs, latitude)?.ok_or_else(outside)?;
             return if is_right_handed(&working, dem)? { Ok(working) } else { Err(refuse()) };
         }
     }

@@ -75,7 +75,7 @@ pub enum BuildError {
     #[error("{path:?} could not be put in its place")]
     Rename { path: PathBuf, source: io::Error },
     #[error(
-        "the data do not fit one package; are the files of one region, and is --crs right for it?"
+        "the data do not fit one package, their longitudes and latitudes cannot be tabulated: give files of one region without a pole inside; a DEM in degrees fits as a whole with --crs dem"
     )]
     Coordinates(#[from] corniche_geom::CoordinateTableError),
     #[error("interrupted; nothing was written, run the same command again")]

@@ -389,3 +389,22 @@ fn options_override_and_are_checked() {
     let coarse = NodeWindow { stride: 2, ..all(&own) };
     assert!(dem.reader(&own).unwrap().window(coarse).is_err());
 }
+
+/// A second file turned by a quarter, whose rows run east and whose columns run north: its samples are where nodes are,
+/// one to a node along either axis, though its own axes are 20 m and 10 m long.
+#[test]
+fn a_file_turned_by_a_quarter_is_not_averaged_along_the_wrong_axis() {
+    let folder = tempfile::tempdir().unwrap();
+    let wave = |[x, y]: [f64; 2]| 10.0 * (x / 13.0).sin() + 10.0 * (y / 25.0).cos();
+    let sample = |at: [f64; 2]| wave(at) as f32;
+    let upright = Raster::new(32632, [60, 60], [500_000.0, 10.0, 0.0, 5_200_000.0, 0.0, -20.0])
+        .write(folder.path(), "upright.tif", sample);
+    let turned = Raster::new(32632, [60, 60], [500_600.0, 0.0, 10.0, 5_198_800.0, 20.0, 0.0])
+        .write(folder.path(), "turned.tif", sample);
+    let dem = open(&[upright, turned]);
+    let plan = plan(&dem);
+    assert_eq!(plan.frame.cell().to_array(), [10.0, 20.0]);
+    assert!(!plan.resampling.contains("average"), "{}", plan.resampling);
+    let count = check(&mut dem.reader(&plan).unwrap(), &plan, 1e-3, wave);
+    assert!(count >= 3600 + 58 * 58, "{count}");
+}

@@ -298,3 +298,20 @@ fn cut_anywhere_a_file_gives_true_heights_or_none() {
     println!("{refused} cuts refused, {read} read");
     assert!(refused > bytes.len() / 2);
 }
+
+/// A part of a virtual raster is named by the bytes of its name, UTF-8 or not, so that whoever records it can say so.
+#[cfg(target_os = "linux")]
+#[test]
+fn parts_keep_the_bytes_of_their_names() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = tempfile::tempdir().unwrap();
+    let written = raster().write(folder.path(), "part.tif", plane);
+    let part = folder.path().join(std::ffi::OsStr::from_bytes(b"part-\xff.tif"));
+    fs::rename(written, &part).unwrap();
+    let text = vrt(&[("part-@.tif", 0)]);
+    let bytes: Vec<u8> = text.bytes().map(|byte| if byte == b'@' { 0xff } else { byte }).collect();
+    let path = folder.path().join("named.vrt");
+    fs::write(&path, bytes).unwrap();
+    let files = corniche_dem::raster_files(&path).unwrap();
+    assert!(files.contains(&part), "{files:?}");
+}

@@ -308,3 +308,57 @@ fn the_globe_can_be_had_in_its_own_degrees() {
         check_near([plan.scale.largest[0], 1.0], [largest, 1.0], 1e-4);
     }
 }
+
+/// `--crs DEM` and `--crs Utm` are words, whatever their case; what is none of the words is told of both.
+#[test]
+fn words_for_the_working_crs_have_any_case() {
+    let folder = tempfile::tempdir().unwrap();
+    let map = [9.0, 0.001, 0.0, 47.3, 0.0, -0.001];
+    let dem = open(&[Raster::new(4326, [40, 30], map).write(folder.path(), "a.tif", |_| 1.0_f32)]);
+    let asked = |word: &str| dem.plan(&PlanOptions { crs: Some(word.to_owned()), ..options() });
+    for (words, expected) in
+        [(["dem", "DEM", "Dem"], "EPSG:4326"), (["utm", "UTM", "Utm"], "EPSG:32632")]
+    {
+        for word in words {
+            assert_eq!(asked(word).unwrap().crs, expected, "{word}");
+        }
+    }
+    check_words(&asked("mercator please").unwrap_err(), &["--crs", "write dem", "utm", "EPSG:n"]);
+}
+
+/// A latitude at which lengths are true says nothing in UTM.
+#[test]
+fn a_given_latitude_does_not_go_with_utm() {
+    let folder = tempfile::tempdir().unwrap();
+    let map = [9.0, 0.001, 0.0, 47.3, 0.0, -0.001];
+    let dem = open(&[Raster::new(4326, [40, 30], map).write(folder.path(), "a.tif", |_| 1.0_f32)]);
+    for word in ["utm", "UTM"] {
+        let asked =
+            PlanOptions { crs: Some(word.to_owned()), scale_latitude_deg: Some(47.0), ..options() };
+        check_words(&dem.plan(&asked).unwrap_err(), &["--scale-latitude 47", "--crs utm"]);
+    }
+}
+
+/// Web Mercator near the equator: one square is true to scale within 1 % all over, the one north of it is not. With one
+/// latitude for both, they have the same factors.
+#[test]
+fn a_given_latitude_alone_decides_whether_a_projection_is_true_to_scale() {
+    let folder = tempfile::tempdir().unwrap();
+    let northing = |lat: f64| 6_378_137.0 * (lat.to_radians().tan().asinh());
+    let factors = |name: &str, south: f64, north: f64, latitude_deg: Option<f64>| {
+        let step = (northing(north) - northing(south)) / 40.0;
+        let map = [1_000_000.0, step, 0.0, northing(north), 0.0, -step];
+        let file = Raster::new(3857, [40, 40], map).write(folder.path(), name, |_| 1.0_f32);
+        let asked = PlanOptions { scale_latitude_deg: latitude_deg, ..options() };
+        open(&[file]).plan(&asked).unwrap().metres_per_unit
+    };
+    let both = |latitude_deg: Option<f64>| {
+        [factors("south.tif", 3.4, 4.2, latitude_deg), factors("north.tif", 4.2, 5.6, latitude_deg)]
+    };
+    let [south, north] = both(None);
+    assert!(south[1] > 0.999 && north[1] < 0.995, "{south:?} {north:?}");
+    let [south, north] = both(Some(4.0));
+    assert!(south[1] > 0.999 && north[1] > 0.999, "{south:?} {north:?}");
+    let [south, north] = both(Some(5.4));
+    assert!(south[1] < 0.995 && north[1] < 0.995, "{south:?} {north:?}");
+}

@@ -186,6 +186,17 @@ fn thinning_is_refused_where_nodes_are_no_samples() {
         PlanOptions { crs: Some("utm".to_owned()), ..every(2) },
         &["--cell-every", "--crs dem"],
     );
+    // Nobody gave --crs: lengths far north are not true, and UTM was chosen.
+    let far = [9.0, 0.1, 0.0, 70.0, 0.0, -0.1];
+    let far = open(&[Raster::new(4326, [40, 60], far).write(folder.path(), "f.tif", |_| 1.0_f32)]);
+    let text = far.plan(&every(2)).unwrap_err().to_string();
+    assert!(text.contains("give --crs dem") && text.contains("within 3 %"), "{text}");
+    assert!(!text.contains("leave out"), "{text}");
+    // Turned against its own CRS, --crs dem is no way out.
+    let turned = [500_000.0, 8.0, 6.0, 5_200_000.0, 6.0, -8.0];
+    let turned = Raster::new(32632, [40, 30], turned).write(folder.path(), "t.tif", |_| 1.0_f32);
+    let text = open(&[turned]).plan(&every(2)).unwrap_err().to_string();
+    assert!(text.contains("give --cell") && !text.contains("--crs"), "{text}");
     // So few samples that none, or a single row, is left.
     refused(every(500), &["--cell-every 500", "2 × 2"]);
 }

@@ -117,6 +117,17 @@ fn warn_of_other_grids(plan: &GridPlan, observer: &dyn Observer) {
     }
 }
 
+/// Tells of a latitude that was given and changes nothing.
+fn warn_of_unused_latitude(terrain: &TerrainSettings, plan: &GridPlan, observer: &dyn Observer) {
+    if let Some(latitude_deg) = terrain.scale_latitude_deg.filter(|_| !plan.has_standard_latitude())
+    {
+        observer.warning(&format!(
+            "--scale-latitude {latitude_deg} changes nothing: lengths in {} are taken as they are",
+            plan.crs
+        ));
+    }
+}
+
 /// Looks into the elevation files and lays out the grid.
 fn open(files: &[PathBuf], terrain: &TerrainSettings) -> Result<(Dem, GridPlan), BuildError> {
     let dem = Dem::open(
@@ -157,6 +168,7 @@ fn run(
         .map_err(|error| start(&error))?;
     let (dem, plan) = open(&settings.dem, terrain)?;
     warn_of_other_grids(&plan, observer);
+    warn_of_unused_latitude(terrain, &plan, observer);
     let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell().shorter_m() / 4.0);
     if !MAX_ERRORS_M.contains(&max_error_m) {
         return Err(BuildError::MaxError { max_error_m });

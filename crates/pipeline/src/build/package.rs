@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use corniche_dem::{Dem, GridPlan};
-use corniche_geom::{Bounds, CoordinateTable};
+use corniche_geom::{Bounds, CoordinateTable, CoordinateTableError};
 use corniche_roads::FrcTable;
 use corniche_tileset::{
     Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest,
@@ -42,22 +42,25 @@ pub(crate) struct Outcome<'a> {
 }
 
 /// Longitudes and latitudes over the data's rectangle, for readers without PROJ.
+///
+/// With room around it, but not as far as the root's far corners: they can be a world away. The room ends at the poles;
+/// where a projection ends within the room, there is none.
 pub(crate) fn coordinates(dem: &Dem, plan: &GridPlan) -> Result<CoordinateTable, BuildError> {
     let projection = dem.projection(plan)?;
-    // With room around it, but not as far as the root's far corners: they can be a world away.
-    let room_m = 0.1
-        * plan
-            .data_bounds
-            .width()
-            .max(plan.data_bounds.height())
-            .max(plan.frame.cell().shorter_m());
+    let data = plan.data_bounds;
+    let room_m = 0.1 * data.width().max(data.height()).max(plan.frame.cell().shorter_m());
+    let pole_m = plan.poles_y_m().unwrap_or(f64::INFINITY);
     let around = Bounds {
-        min_x: plan.data_bounds.min_x - room_m,
-        min_y: plan.data_bounds.min_y - room_m,
-        max_x: plan.data_bounds.max_x + room_m,
-        max_y: plan.data_bounds.max_y + room_m,
+        min_x: data.min_x - room_m,
+        min_y: (data.min_y - room_m).max(-pole_m).min(data.min_y),
+        max_x: data.max_x + room_m,
+        max_y: (data.max_y + room_m).min(pole_m).max(data.max_y),
     };
-    Ok(CoordinateTable::sample(&projection, around, COORDINATE_TOLERANCE_M)?)
+    let sample = |bounds| CoordinateTable::sample(&projection, bounds, COORDINATE_TOLERANCE_M);
+    match sample(around) {
+        Err(CoordinateTableError::TooCurved { .. }) => Ok(sample(data)?),
+        found => Ok(found?),
+    }
 }
 
 /// Puts the manifest together.
