@@ -91,6 +91,27 @@ fn pass_is_what_its_extract_says_and_checks_have_ids() {
     assert!(ran.err.contains("--frc-table"), "{}", ran.err);
 }
 
+/// A table from a file may have the name of a preset, and is then asked for.
+#[test]
+fn verify_asks_for_a_table_that_is_called_like_a_preset() {
+    let folder = tempfile::tempdir().unwrap();
+    let (package, table) = (folder.path().join("pass.pmtiles"), folder.path().join("own.toml"));
+    let preset = concat!(env!("CARGO_MANIFEST_DIR"), "/../config/frc/valhalla.toml");
+    let own = fs::read_to_string(preset).unwrap().replace("\"bus_stop\", ", "");
+    assert!(own.contains("name = \"valhalla\"") && !own.contains("bus_stop"), "{own}");
+    fs::write(&table, own).unwrap();
+    build_pass(&package, &["--quiet", "--max-error", "10", "--frc-table", text(&table)]);
+    let osm = sample("pass/pass.osm.pbf");
+    let verify = ["verify", text(&package), "--osm", text(&osm), "--quiet"];
+    let ran = corniche(verify);
+    assert_eq!(ran.code, 2, "{}{}", ran.out, ran.err);
+    for part in ["another FRC table", "\"valhalla\"", "give that file with --frc-table"] {
+        assert!(ran.err.contains(part), "{}", ran.err);
+    }
+    let ran = corniche(verify.into_iter().chain(["--frc-table", text(&table)]));
+    assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
+}
+
 /// P6: the list names what the manifest counts, defect by defect and loss by loss.
 #[test]
 fn the_list_of_defects_is_what_the_summary_counts() {
@@ -242,6 +263,13 @@ fn terrain_alone_is_a_package_too() {
     ]);
     assert_eq!(ran.code, 0, "{}", ran.err);
     assert_eq!(json(&["verify", text(&package), "--json", "--quiet"])["holds"], true);
+    let osm = sample("pass/pass.osm.pbf");
+    for table in [&[][..], &["--frc-table", "default"]] {
+        let arguments = ["verify", text(&package), "--osm", text(&osm), "--quiet"];
+        let ran = corniche(arguments.into_iter().chain(table.iter().copied()));
+        assert_eq!(ran.code, 2, "{}{}", ran.out, ran.err);
+        assert!(ran.err.contains("made without an extract; leave --osm out"), "{}", ran.err);
+    }
     let ran = corniche(["growth", text(&package)]);
     assert_eq!(ran.code, 2);
     assert!(ran.err.contains("--osm"), "{}", ran.err);

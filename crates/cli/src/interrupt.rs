@@ -3,8 +3,8 @@
 //!
 //! ```text
 //!   first signal ─► noted ─┬─ asked for within half a second: the run ends itself, in ten seconds at most
-//!                          └─ not asked for: the end
-//!   second signal ─► the end
+//!                          └─ not asked for: the program removes temporary files and exits
+//!   second signal ─► the program removes temporary files and exits
 //! ```
 
 use std::{
@@ -26,7 +26,7 @@ static NOTED: AtomicBool = AtomicBool::new(false);
 /// The run knows of it.
 static SEEN: AtomicBool = AtomicBool::new(false);
 /// What is removed when the program ends early: temporary files and folders beside targets.
-static LITTER: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+static TEMPORARY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// A run that can stop asks more often than this.
 const ASKS_WITHIN: Duration = Duration::from_millis(500);
@@ -60,28 +60,28 @@ pub(crate) fn is_noted() -> bool {
     is_noted
 }
 
-/// A temporary file or folder, which goes when the program ends early. That it is gone already does no harm.
+/// A temporary file or folder, which is removed when the program ends early. It may be gone already.
 pub(crate) fn remove_at_end(path: &Path) {
-    LITTER.lock().unwrap_or_else(PoisonError::into_inner).push(path.to_path_buf());
+    TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner).push(path.to_path_buf());
 }
 
 fn end() -> ! {
-    let litter =
-        LITTER.lock().map_or_else(|poisoned| poisoned.into_inner().clone(), |all| all.clone());
-    // Other threads are still at work: what they add while a folder is emptied takes another turn.
+    let temporary =
+        TEMPORARY.lock().map_or_else(|poisoned| poisoned.into_inner().clone(), |all| all.clone());
+    // Other threads are still at work and may add files while a folder is emptied, so it is tried again.
     for _ in 0..3 {
-        for path in litter.iter().filter(|path| path.symlink_metadata().is_ok()) {
+        for path in temporary.iter().filter(|path| path.symlink_metadata().is_ok()) {
             let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
         }
     }
-    // Whoever reads our words may have stopped reading, and then to say one is to wait for ever.
+    // A message can wait for ever when the reader of a full pipe has stopped, so it gets a limited time.
     let (said, waits) = mpsc::channel();
     thread::spawn(move || {
         Failure::interrupted().tell();
         said.send(())
     });
     let _ = waits.recv_timeout(ASKS_WITHIN);
-    // Not the orderly way out, which waits for what other threads hold.
+    // A normal exit would wait for locks of other threads.
     #[cfg(unix)]
     signal_hook::low_level::exit(4);
     #[cfg(not(unix))]

@@ -48,7 +48,8 @@ pub(crate) fn read_text(path: &Path) -> io::Result<String> {
     Ok(text)
 }
 
-/// Refuses what is no file: to open a pipe is to wait for who writes into it, and texts are read again when they change.
+/// Refuses what is no file. Opening a pipe waits until another program writes into it; and texts are read again when they
+/// change.
 pub(crate) fn refuse_stream(path: &Path) -> io::Result<()> {
     if fs::metadata(path)?.file_type().is_file() {
         Ok(())

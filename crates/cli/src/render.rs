@@ -53,7 +53,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::Done)
 }
 
-/// A picture is a PNG: a name that says something else would lie.
+/// Pictures are PNG files. A name with the extension of another format is refused.
 fn refuse_other_formats(path: &Path) -> Result<(), Failure> {
     match path.extension() {
         Some(extension) if !extension.eq_ignore_ascii_case("png") => {

@@ -5,7 +5,7 @@ use std::{
     io::{self, Write as _},
 };
 
-use corniche_pipeline::{VerifyOsm, VerifyReport, VerifySettings};
+use corniche_pipeline::{VerifyError, VerifyOsm, VerifyReport, VerifySettings};
 use corniche_presets::frc_preset;
 use corniche_tileset::FilePackage;
 use serde_json::json;
@@ -49,9 +49,12 @@ fn extract(args: &VerifyArgs) -> Result<Option<VerifyOsm>, Failure> {
     let table = if let Some(table) = &args.frc_table {
         presets::frc_table(table)?
     } else {
-        let package =
-            FilePackage::open(&args.package).map_err(corniche_pipeline::VerifyError::from)?;
-        let name = &package.manifest().settings.frc_table;
+        let package = FilePackage::open(&args.package).map_err(VerifyError::from)?;
+        let manifest = package.manifest();
+        if manifest.inputs.iter().all(|input| input.kind != "osm") {
+            return Err(VerifyError::NoExtract.into());
+        }
+        let name = &manifest.settings.frc_table;
         if frc_preset(name).is_none() {
             return Err(Failure::unusable(format!(
                 "{} was made with the FRC table {name:?}, which is no preset; give its file with --frc-table",
@@ -66,7 +69,11 @@ fn extract(args: &VerifyArgs) -> Result<Option<VerifyOsm>, Failure> {
 fn to_text(report: &VerifyReport) -> String {
     let mut text = String::new();
     for check in &report.checks {
-        let verdict = if check.holds() { "holds " } else { "BROKEN" };
+        let verdict = match check.verdict() {
+            Some(true) => "holds   ",
+            Some(false) => "BROKEN  ",
+            None => "not made",
+        };
         let (id, promise) = (check.id.id(), check.id.promise());
         let _ = write!(text, "{verdict}  {id}: {promise} ({} looked at", count(check.checked));
         if !check.holds() {
@@ -74,7 +81,7 @@ fn to_text(report: &VerifyReport) -> String {
         }
         text.push_str(")\n");
         for example in &check.examples {
-            let _ = writeln!(text, "          {example}");
+            let _ = writeln!(text, "            {example}");
         }
     }
     let largest_m = report.gaps.iter().map(|gap| gap.largest_m).fold(0.0, f64::max);
@@ -140,7 +147,7 @@ fn to_json(report: &VerifyReport) -> serde_json::Value {
         "tiles": report.tiles,
         "borders": report.borders,
         "checks": report.checks.iter().map(|check| json!({
-            "id": check.id.id(), "promise": check.id.promise(), "holds": check.holds(), "checked": check.checked, "broken": check.broken,
+            "id": check.id.id(), "promise": check.id.promise(), "holds": check.verdict(), "checked": check.checked, "broken": check.broken,
             "examples": check.examples,
         })).collect::<Vec<_>>(),
         "gaps": report.gaps.iter().map(|gap| json!({
@@ -153,4 +160,36 @@ fn to_json(report: &VerifyReport) -> serde_json::Value {
         })).collect::<Vec<_>>(),
         "samples": report.samples,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use corniche_pipeline::{Check, CheckId};
+
+    use super::*;
+
+    #[test]
+    fn a_check_of_an_input_that_looked_at_nothing_is_not_made() {
+        let check = |id, checked| Check { id, checked, broken: 0, examples: Vec::new() };
+        let report = VerifyReport {
+            tiles: 1,
+            checks: vec![
+                check(CheckId::Seams, 0),
+                check(CheckId::DemPlan, 1),
+                check(CheckId::Bound, 0),
+            ],
+            gaps: Vec::new(),
+            borders: 0,
+            errors: Vec::new(),
+            samples: None,
+        };
+        let text = to_text(&report);
+        let verdict = |id: &str| text.lines().find(|line| line.contains(id)).map(|line| &line[..8]);
+        assert_eq!(verdict(" P3:"), Some("holds   "));
+        assert_eq!(verdict(" dem.plan:"), Some("holds   "));
+        assert_eq!(verdict(" P2.bound:"), Some("not made"));
+        let checks = to_json(&report)["checks"].clone();
+        assert_eq!(checks[1]["holds"], true);
+        assert!(checks[2]["holds"].is_null(), "{checks}");
+    }
 }

@@ -381,3 +381,28 @@ fn a_package_of_every_seventh_sample_keeps_its_promises() {
     let settings = VerifySettings { package: output, dem: vec![dem], osm: None, threads: 2 };
     assert_broken(verify(&settings, &Silent).unwrap(), &[]);
 }
+
+#[test]
+fn heights_of_the_package_that_are_not_the_root_tiles() {
+    let mut parts = Parts::sound();
+    parts.manifest.vertical.range_m[1] += 1.0;
+    parts.assert_breaks(Against::Itself, &[CheckId::RootHeights]);
+}
+
+/// With another grid than the elevation files give, what was not looked at does not hold.
+#[test]
+fn checks_that_could_not_be_made_do_not_hold() {
+    let mut parts = Parts::sound();
+    parts.manifest.settings.cell_every = Some(2);
+    let report = parts.assert_breaks(Against::Dem, &[CheckId::SettingsHash, CheckId::DemPlan]);
+    for check in report.checks {
+        match check.id {
+            CheckId::Bound | CheckId::Nodes | CheckId::Samples => {
+                assert_eq!(check.verdict(), None, "{check:?}");
+            }
+            CheckId::DemInputs => assert_eq!(check.verdict(), Some(true)),
+            CheckId::DemPlan => assert_eq!(check.verdict(), Some(false)),
+            _ => {}
+        }
+    }
+}

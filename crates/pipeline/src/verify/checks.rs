@@ -65,6 +65,7 @@ checks! {
     Nested "P2.nested" Package "a parent's error and height range are never below its children's"
     Levels "P2.levels" Package "at nodes that both cover, a child's TIN and its parent's differ by no more than their errors together"
     Vertices "heights.vertices" Package "TIN vertices lie within their tile's height range"
+    RootHeights "heights.root" Package "the lowest and the highest height of the package are those of the root tile"
     Methods "sv.line" Package "within a tile, the GEO and the SV lines of a way are one line wherever there is ground"
     SvRange "sv.range" Package "the height range of an SV segment is that of the ground within the margin around it, rounded outwards"
     Shown "roads.levels" Package "a road is on every level that shows its class, within the simplification tolerance"
@@ -130,6 +131,14 @@ impl Check {
     #[must_use]
     pub fn holds(&self) -> bool {
         self.broken == 0
+    }
+
+    /// Whether nothing breaks it; `None` where it needs the elevation files or the extract and was not made. That is so
+    /// where another check is broken on which it rests, or where the package has nothing of the kind.
+    #[must_use]
+    pub fn verdict(&self) -> Option<bool> {
+        let made = self.id.needs() == Needs::Package || self.checked > 0;
+        made.then(|| self.holds())
     }
 
     pub(crate) fn look(&mut self, holds: bool, example: impl FnOnce() -> String) {

@@ -29,10 +29,6 @@ pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     findings.look(CheckId::SampleSums, said == nodes, || {
         format!("{said} nodes are counted, the data's rectangle has {nodes}")
     });
-    let [low_m, high_m] = manifest.vertical.range_m;
-    findings.look(CheckId::SampleSums, low_m.is_finite() && high_m.is_finite(), || {
-        format!("heights from {low_m} to {high_m} m")
-    });
 }
 
 /// South-western and north-eastern node of the data's rectangle.

@@ -135,6 +135,13 @@ pub enum VerifyError {
         "the FRC table {given:?} is not the one that the package was made with; give {expected:?} with --frc-table"
     )]
     OtherTable { given: String, expected: String },
+    #[error("the package was made without an extract; leave --osm out")]
+    NoExtract,
+    #[error(
+        "the package was made with another FRC table that is called {name:?}, too, read from a file; give that file with \
+         --frc-table"
+    )]
+    OtherTableOfThatName { name: String },
     #[error("the extract could not be laid on the package's tiles")]
     Roads(#[source] BuildError),
     #[error("cannot read {path:?}")]

@@ -115,6 +115,9 @@ fn check_inputs(
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
+    if manifest.inputs.iter().all(|input| input.kind != inputs::OSM) {
+        return Err(VerifyError::NoExtract);
+    }
     let given = inputs.hash(observer)?;
     let extracts = || manifest.inputs.iter().filter(|input| input.kind == inputs::OSM);
     let pair = given
@@ -129,9 +132,11 @@ fn check_inputs(
     });
     let settings = &manifest.settings;
     if table_sha256(&osm.table) != settings.frc_table_sha256 {
-        return Err(VerifyError::OtherTable {
-            given: osm.table.name().to_owned(),
-            expected: settings.frc_table.clone(),
+        let (given, expected) = (osm.table.name().to_owned(), settings.frc_table.clone());
+        return Err(if given == expected {
+            VerifyError::OtherTableOfThatName { name: expected }
+        } else {
+            VerifyError::OtherTable { given, expected }
         });
     }
     findings.look(CheckId::OsmInputs, osm.table.name() == settings.frc_table, || {

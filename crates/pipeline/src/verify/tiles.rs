@@ -129,6 +129,7 @@ pub(crate) fn verify(
     observer.end(Stage::Verify);
     let borders = check_seams(&kept, &mut findings);
     check_nesting(&kept, &mut findings);
+    check_heights(manifest.vertical.range_m, &kept, &mut findings);
     let expected_m = manifest.counts.roads_kept_um as f64 / 1e6;
     findings.look(
         CheckId::Length,
@@ -415,6 +416,16 @@ fn check_seams(kept: &BTreeMap<TileId, Kept>, findings: &mut Findings) -> u64 {
         }
     }
     findings.of(CheckId::Seams).checked
+}
+
+/// The root tile lies over all heights of the package.
+fn check_heights(said_m: [f64; 2], kept: &BTreeMap<TileId, Kept>, findings: &mut Findings) {
+    let Some(root) = kept.get(&TileId::ROOT) else { return };
+    let root_m = root.height_range_m;
+    let same = said_m.iter().zip(root_m).all(|(said_m, m)| (said_m - m).abs() <= 0.0);
+    findings.look(CheckId::RootHeights, same, || {
+        format!("heights from {said_m:?} are recorded, the root tile has {root_m:?}")
+    });
 }
 
 fn check_nesting(kept: &BTreeMap<TileId, Kept>, findings: &mut Findings) {

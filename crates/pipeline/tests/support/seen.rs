@@ -58,7 +58,8 @@ pub(crate) fn check(path: &Path, seen: Seen) -> Result<(), String> {
             Err(
                 VerifyError::OtherDem { .. }
                 | VerifyError::OtherOsm { .. }
-                | VerifyError::OtherTable { .. },
+                | VerifyError::OtherTable { .. }
+                | VerifyError::OtherTableOfThatName { .. },
             ) => return Ok(()),
             // The options that are recorded do not go with these files.
             Err(VerifyError::Dem(_)) if against == Against::Dem => return Ok(()),
