@@ -80,8 +80,10 @@ impl SampleSums {
         let mut seen = 0;
         for (bin, &count) in self.bins.iter().enumerate() {
             seen += count;
-            if seen >= wanted {
-                return (end_of(bin) * self.quantum_m).min(self.max_m);
+            let end = end_of(bin);
+            // What is beyond all 64 bits shares the last bin.
+            if seen >= wanted && end < 2_f64.powi(63) {
+                return (end * self.quantum_m).min(self.max_m);
             }
         }
         self.max_m

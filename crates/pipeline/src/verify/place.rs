@@ -62,6 +62,11 @@ fn positions(
     Ok(())
 }
 
+/// Data that reach this latitude are at a pole.
+const POLAR_DEG: f64 = 89.0;
+/// The largest scale that a package can record.
+const LARGEST_SCALE: f64 = 1000.0;
+
 /// The scales that are told lie among those over the data: `scales` at the positions of [`grid`].
 fn check_scales(manifest: &Manifest, scales: &[Option<[f64; 2]>], findings: &mut Findings) {
     let scale = &manifest.scale;
@@ -71,6 +76,10 @@ fn check_scales(manifest: &Manifest, scales: &[Option<[f64; 2]>], findings: &mut
         let least = of_axis().fold(f64::INFINITY, f64::min) - slack;
         let most = of_axis().fold(f64::NEG_INFINITY, f64::max) + slack;
         let said = [scale.least[axis], scale.center[axis], scale.largest[axis]];
+        // Towards a pole the scale of degrees has no end; there the record says as much as the format takes.
+        let degrees = manifest.wgs84_bounds;
+        let is_at_pole = degrees.max_y >= POLAR_DEG || degrees.min_y <= -POLAR_DEG;
+        let most = if is_at_pole { most.max(LARGEST_SCALE) } else { most };
         let holds = least <= said[0] && said.is_sorted() && said[2] <= most;
         findings.look(CheckId::Scale, holds, || {
             format!("axis {axis}: scales {said:?} are recorded, there are {least} to {most} over the data")
