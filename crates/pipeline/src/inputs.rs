@@ -223,13 +223,6 @@ impl From<InputError> for BuildError {
 
 impl From<InputError> for VerifyError {
     fn from(error: InputError) -> Self {
-        match error {
-            InputError::Read { path, source } => Self::Input { path, source },
-            InputError::Name { path } => Self::InputName { path },
-            InputError::Stream { path } => Self::Stream { path },
-            InputError::Dem(error) => Self::Dem(error),
-            InputError::Changed { path } => Self::Changed { path },
-            InputError::Interrupted => Self::Interrupted,
-        }
+        BuildError::from(error).into()
     }
 }
