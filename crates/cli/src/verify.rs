@@ -163,33 +163,5 @@ fn to_json(report: &VerifyReport) -> serde_json::Value {
 }
 
 #[cfg(test)]
-mod tests {
-    use corniche_pipeline::{Check, CheckId};
-
-    use super::*;
-
-    #[test]
-    fn a_check_of_an_input_that_looked_at_nothing_is_not_made() {
-        let check = |id, checked| Check { id, checked, broken: 0, examples: Vec::new() };
-        let report = VerifyReport {
-            tiles: 1,
-            checks: vec![
-                check(CheckId::Seams, 0),
-                check(CheckId::DemPlan, 1),
-                check(CheckId::Bound, 0),
-            ],
-            gaps: Vec::new(),
-            borders: 0,
-            errors: Vec::new(),
-            samples: None,
-        };
-        let text = to_text(&report);
-        let verdict = |id: &str| text.lines().find(|line| line.contains(id)).map(|line| &line[..8]);
-        assert_eq!(verdict(" P3:"), Some("holds   "));
-        assert_eq!(verdict(" dem.plan:"), Some("holds   "));
-        assert_eq!(verdict(" P2.bound:"), Some("not made"));
-        let checks = to_json(&report)["checks"].clone();
-        assert_eq!(checks[1]["holds"], true);
-        assert!(checks[2]["holds"].is_null(), "{checks}");
-    }
-}
+#[path = "verify_tests.rs"]
+mod tests;

@@ -101,13 +101,5 @@ impl fmt::Display for Cell {
 
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "these numbers are exact")]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn cells_are_told_as_squares_or_rectangles() {
-        assert_eq!(Cell::from(30.0).to_string(), "30 m");
-        assert_eq!(Cell::from([20.0, 30.0]).to_string(), "20 × 30 m");
-        assert_eq!(Cell::from([20.0, 30.0]).shorter_m(), 20.0);
-    }
-}
+#[path = "cell_tests.rs"]
+mod tests;

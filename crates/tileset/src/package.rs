@@ -72,4 +72,5 @@ fn tile_at(order: u64) -> Option<TileId> {
 }
 
 #[cfg(test)]
+#[path = "package_tests.rs"]
 mod tests;

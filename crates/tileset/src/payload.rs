@@ -97,6 +97,7 @@ pub struct RoadRecord {
 }
 
 #[cfg(test)]
+#[path = "payload_tests.rs"]
 mod tests;
 #[cfg(test)]
 mod work_tests;

@@ -354,5 +354,5 @@ fn filter(scene: &Scene) -> wgpu::FilterMode {
 }
 
 #[cfg(test)]
-#[path = "canvas/canvas_tests.rs"]
+#[path = "canvas_tests.rs"]
 pub(crate) mod tests;

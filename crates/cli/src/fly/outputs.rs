@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// Files and a folder beside their targets, which nothing has touched yet.
-pub(super) struct Outputs {
+pub(crate) struct Outputs {
     csv: Output,
     svg: Option<Output>,
     save_path: Option<Output>,
@@ -27,7 +27,7 @@ pub(super) struct Outputs {
 
 impl Outputs {
     /// Begins what is asked for; none of it is what the command reads, and no two are one.
-    pub(super) fn create(args: &FlyArgs) -> Result<Self, Failure> {
+    pub(crate) fn create(args: &FlyArgs) -> Result<Self, Failure> {
         let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
         let mut used: Vec<&Path> = vec![&args.package];
         used.extend(args.flight.path.as_deref());
@@ -42,7 +42,7 @@ impl Outputs {
     }
 
     /// Adds the frame drawn last, where pictures are wanted.
-    pub(super) fn add_picture(&self, name: &str, replay: &Replay<'_>) -> Result<(), Failure> {
+    pub(crate) fn add_picture(&self, name: &str, replay: &Replay<'_>) -> Result<(), Failure> {
         self.pictures.as_ref().map_or(Ok(()), |pictures| pictures.add(name, replay))
     }
 
@@ -51,7 +51,7 @@ impl Outputs {
     ///
     /// What can still go wrong is a place that has been taken or closed to us since the flight began; then what took its
     /// place before stays, and the list is missing.
-    pub(super) fn finish(
+    pub(crate) fn finish(
         self,
         flight: &Flight,
         working: WorkingCrs<'_>,

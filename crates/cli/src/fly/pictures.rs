@@ -14,13 +14,13 @@ use crate::{
 };
 
 /// A folder of pictures that takes its place when it is complete.
-pub(super) struct Pictures {
+pub(crate) struct Pictures {
     target: PathBuf,
     folder: TempDir,
 }
 
 impl Pictures {
-    pub(super) fn create(target: &Path, used: &[&Path]) -> Result<Self, Failure> {
+    pub(crate) fn create(target: &Path, used: &[&Path]) -> Result<Self, Failure> {
         let unusable = |reason: &dyn std::fmt::Display| {
             Failure::unusable(format!("cannot write pictures to {}: {reason}", target.display()))
         };
@@ -52,12 +52,12 @@ impl Pictures {
         Ok(Self { target: target.to_path_buf(), folder })
     }
 
-    pub(super) fn add(&self, name: &str, replay: &Replay<'_>) -> Result<(), Failure> {
+    pub(crate) fn add(&self, name: &str, replay: &Replay<'_>) -> Result<(), Failure> {
         let path = self.folder.path().join(name);
         fs::write(&path, png(&replay.picture()?)?).map_err(|error| output::failed(&path, &error))
     }
 
-    pub(super) fn finish(self) -> Result<(), Failure> {
+    pub(crate) fn finish(self) -> Result<(), Failure> {
         let Self { target, folder } = self;
         fs::rename(folder.path(), &target).map_err(|error| {
             Failure::new(
@@ -72,26 +72,5 @@ impl Pictures {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pictures_take_their_place_together_or_leave_nothing() {
-        let folder = tempfile::tempdir().unwrap();
-        let target = folder.path().join("frames");
-        let pictures = Pictures::create(&target, &[]).unwrap();
-        fs::write(pictures.folder.path().join("a.png"), b"a").unwrap();
-        assert!(!target.exists());
-        drop(pictures);
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "litter");
-        let pictures = Pictures::create(&target, &[]).unwrap();
-        fs::write(pictures.folder.path().join("a.png"), b"a").unwrap();
-        pictures.finish().unwrap();
-        assert_eq!(fs::read(target.join("a.png")).unwrap(), b"a");
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "litter");
-        let refused = Pictures::create(&target, &[]).err().unwrap();
-        assert_eq!(refused.code(), ExitCode::Exists);
-        let list = folder.path().join("list.csv");
-        assert_eq!(Pictures::create(&list, &[&list]).err().unwrap().code(), ExitCode::Unusable);
-    }
-}
+#[path = "pictures_tests.rs"]
+mod tests;

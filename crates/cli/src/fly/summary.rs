@@ -11,7 +11,7 @@ use crate::{
     table::{Table, bytes, count},
 };
 
-pub(super) fn to_text(runs: &[Run]) -> String {
+pub(crate) fn to_text(runs: &[Run]) -> String {
     let mut text = drawn(runs);
     text.push('\n');
     text.push_str(&times(runs));

@@ -9,10 +9,10 @@ use crate::{DrapedLine, DrapedVertex};
 
 /// A position along a segment: numerator and denominator, which is above 0.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Along(i128, i128);
+pub(crate) struct Along(i128, i128);
 
-pub(super) const START: Along = Along(0, 1);
-pub(super) const END: Along = Along(1, 1);
+pub(crate) const START: Along = Along(0, 1);
+pub(crate) const END: Along = Along(1, 1);
 
 impl Along {
     fn new(n: i128, d: i128) -> Self {
@@ -65,7 +65,7 @@ fn wide_product(a: i128, b: i128) -> (bool, [i128; 4]) {
 }
 
 /// Twice the area of a, b, c, written down once more.
-pub(super) fn area(a: LatticePoint, b: LatticePoint, c: LatticePoint) -> i128 {
+pub(crate) fn area(a: LatticePoint, b: LatticePoint, c: LatticePoint) -> i128 {
     let wide = |x: i64, y: i64| i128::from(x) - i128::from(y);
     wide(b.u, a.u) * wide(c.v, a.v) - wide(b.v, a.v) * wide(c.u, a.u)
 }
@@ -145,7 +145,7 @@ fn events(surface: &Surface, p: LatticePoint, q: LatticePoint) -> Vec<(Along, Dr
 }
 
 /// What `drape` should make: the parts, and the length over no ground.
-pub(super) fn expected(line: &Polyline, surface: &Surface) -> (Vec<DrapedLine>, f64) {
+pub(crate) fn expected(line: &Polyline, surface: &Surface) -> (Vec<DrapedLine>, f64) {
     let source = |point| {
         let mut triangles = 0..surface.triangles().len() as u32;
         let triangle = triangles.find(|&t| surface.triangle_holds(t, point)).unwrap();
@@ -182,7 +182,7 @@ pub(super) fn expected(line: &Polyline, surface: &Surface) -> (Vec<DrapedLine>, 
 }
 
 /// Where segment p → q crosses the edge between TIN vertices a and b: u, v in steps and the height in quanta.
-pub(super) fn crossing(
+pub(crate) fn crossing(
     surface: &Surface,
     [p, q]: [LatticePoint; 2],
     ends: [u32; 2],
@@ -197,7 +197,7 @@ pub(super) fn crossing(
 }
 
 /// Height of a triangle's plane above a point, in quanta.
-pub(super) fn height(
+pub(crate) fn height(
     surface: &Surface,
     corners: [u32; 3],
     point: LatticePoint,

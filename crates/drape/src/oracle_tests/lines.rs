@@ -6,7 +6,7 @@ use corniche_tin::Surface;
 use super::random::Random;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Course {
+pub(crate) enum Course {
     /// Two to seven points, of every kind below.
     Mixed,
     /// Through TIN vertices, and beyond them.
@@ -34,7 +34,7 @@ pub(super) enum Course {
 }
 
 impl Course {
-    pub(super) const ALL: [Self; 12] = [
+    pub(crate) const ALL: [Self; 12] = [
         Self::Mixed,
         Self::ThroughVertices,
         Self::AlongEdges,
@@ -50,7 +50,7 @@ impl Course {
     ];
 
     /// Two points or more; neighbours may be equal.
-    pub(super) fn make(self, random: &mut Random, surface: &Surface) -> Vec<LatticePoint> {
+    pub(crate) fn make(self, random: &mut Random, surface: &Surface) -> Vec<LatticePoint> {
         let mut place = Places { random, surface, bounds: bounds(surface) };
         let count = 2 + place.random.below(6) as usize;
         match self {

@@ -1,7 +1,7 @@
 //! A source of cases that is the same everywhere.
 
 /// Source: Steele, Lea & Flood 2014, *Fast Splittable Pseudorandom Number Generators* (splitmix64).
-pub(super) struct Random(pub(super) u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
     fn next(&mut self) -> u64 {
@@ -13,16 +13,16 @@ impl Random {
     }
 
     /// From 0 to below `limit`, which is above 0.
-    pub(super) fn below(&mut self, limit: i64) -> i64 {
+    pub(crate) fn below(&mut self, limit: i64) -> i64 {
         (self.next() % limit as u64) as i64
     }
 
     /// From −`reach` to `reach`.
-    pub(super) fn around(&mut self, reach: i64) -> i64 {
+    pub(crate) fn around(&mut self, reach: i64) -> i64 {
         self.below(2 * reach + 1) - reach
     }
 
-    pub(super) fn one_of<T: Copy>(&mut self, list: &[T]) -> T {
+    pub(crate) fn one_of<T: Copy>(&mut self, list: &[T]) -> T {
         list[self.below(list.len() as i64) as usize]
     }
 }

@@ -6,7 +6,7 @@ use corniche_tin::{Tin, TinSpec, TinVertex, triangulate};
 use super::random::Random;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Terrain {
+pub(crate) enum Terrain {
     /// Up to 5 × 5 quadrangles with shifted corners and either diagonal; some triangles missing.
     Quadrangles,
     /// One triangle, any shape.
@@ -24,7 +24,7 @@ pub(super) enum Terrain {
 }
 
 impl Terrain {
-    pub(super) const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 7] = [
         Self::Quadrangles,
         Self::OneTriangle,
         Self::TwoFlat,
@@ -35,7 +35,7 @@ impl Terrain {
     ];
 
     /// `None` where chance leaves nothing.
-    pub(super) fn make(self, random: &mut Random) -> Option<Tin> {
+    pub(crate) fn make(self, random: &mut Random) -> Option<Tin> {
         match self {
             Self::Quadrangles => quadrangles(random),
             Self::OneTriangle => one_triangle(random),

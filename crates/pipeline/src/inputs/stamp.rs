@@ -15,7 +15,7 @@ const CLOCK: Duration = Duration::from_millis(20);
 
 /// What is noted of a file before it is read.
 #[derive(Debug)]
-pub(super) enum Stamp {
+pub(crate) enum Stamp {
     /// On disk: of a raster in an archive, the archive.
     File(PathBuf, FileState),
     /// On a server: its size is all that is known of it.
@@ -24,7 +24,7 @@ pub(super) enum Stamp {
 
 /// Content cannot change without one of these, be it written over, exchanged, or exchanged and given its old time.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct FileState {
+pub(crate) struct FileState {
     size: u64,
     modified: Option<SystemTime>,
     /// Device and inode, and the time of the last change of anything, which nobody can set.
@@ -33,12 +33,12 @@ pub(super) struct FileState {
 }
 
 impl Stamp {
-    pub(super) fn of_file(path: &Path) -> io::Result<Self> {
+    pub(crate) fn of_file(path: &Path) -> io::Result<Self> {
         Ok(Self::File(path.to_path_buf(), settled(path)?))
     }
 
     /// Of a name that GDAL's virtual file systems understand.
-    pub(super) fn of_virtual(path: &Path) -> io::Result<Self> {
+    pub(crate) fn of_virtual(path: &Path) -> io::Result<Self> {
         match path.to_str().and_then(container) {
             Some(container) => Self::of_file(&container),
             None => Ok(Self::Remote(path.to_path_buf(), VirtualFile::open(path)?.into_size()?)),
@@ -46,7 +46,7 @@ impl Stamp {
     }
 
     /// Whether the file is still what it was.
-    pub(super) fn still_holds(&self) -> bool {
+    pub(crate) fn still_holds(&self) -> bool {
         match self {
             Self::File(path, state) => {
                 fs::metadata(path).is_ok_and(|now| FileState::of(&now) == *state)
@@ -123,58 +123,5 @@ fn container(name: &str) -> Option<PathBuf> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_file_around_a_virtual_one_is_found() {
-        let folder = tempfile::tempdir().unwrap();
-        let archive = folder.path().join("a.zip");
-        fs::write(&archive, b"archive").unwrap();
-        let file = archive.to_str().unwrap();
-        for name in [
-            format!("/vsizip/{file}/inner.hgt"),
-            format!("/vsizip/{{{file}}}/folder/inner.hgt"),
-            format!("/vsisubfile/7_100,{file}"),
-            format!("/vsigzip/{file}"),
-            format!("/vsizip/vsigzip/{file}/inner.hgt"),
-        ] {
-            assert_eq!(container(&name).as_deref(), Some(archive.as_path()), "{name}");
-        }
-        for name in ["/vsicurl/https://example.org/dem.tif", "/vsizip//no/such/folder.zip/inner"] {
-            assert_eq!(container(name), None, "{name}");
-        }
-    }
-
-    #[test]
-    fn whatever_is_done_to_a_file_shows() {
-        type Change = fn(&Path);
-        let changes: [(&str, Change); 4] = [
-            ("longer", |path| fs::write(path, b"longer than before").unwrap()),
-            ("as long", |path| fs::write(path, b"new").unwrap()),
-            ("exchanged, with its old time", |path| {
-                let time = fs::metadata(path).unwrap().modified().unwrap();
-                let other = path.with_extension("other");
-                fs::write(&other, b"new").unwrap();
-                fs::File::options().write(true).open(&other).unwrap().set_modified(time).unwrap();
-                fs::rename(other, path).unwrap();
-            }),
-            ("written over, with its old time", |path| {
-                let time = fs::metadata(path).unwrap().modified().unwrap();
-                fs::write(path, b"new").unwrap();
-                fs::File::options().write(true).open(path).unwrap().set_modified(time).unwrap();
-            }),
-        ];
-        for (what, change) in changes {
-            let folder = tempfile::tempdir().unwrap();
-            let path = folder.path().join("dem.tif");
-            fs::write(&path, b"old").unwrap();
-            let stamp = Stamp::of_file(&path).unwrap();
-            assert!(stamp.still_holds(), "{what}: before");
-            change(&path);
-            assert!(!stamp.still_holds(), "{what}");
-            fs::remove_file(&path).unwrap();
-            assert!(!stamp.still_holds(), "{what}: gone");
-        }
-    }
-}
+#[path = "stamp_tests.rs"]
+mod tests;

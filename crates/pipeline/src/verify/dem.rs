@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// Slack for comparing two ways of computing the same height, metres.
-pub(super) const ROUNDING_M: f64 = 1e-6;
+pub(crate) const ROUNDING_M: f64 = 1e-6;
 /// The same for ratios of them.
 const RATIO_ROUNDING: f64 = 1e-3;
 /// P2's tightness: stored ≤ this × true + a quantum, for this share of tiles.

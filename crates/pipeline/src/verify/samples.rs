@@ -13,20 +13,20 @@ use crate::{Observer, Stage, sample_error::SampleSums, workers};
 const GROUNDS: usize = 24;
 
 /// Sums for every level, root first, with nothing in them.
-pub(super) fn none(manifest: &Manifest) -> Vec<SampleSums> {
+pub(crate) fn none(manifest: &Manifest) -> Vec<SampleSums> {
     let levels = usize::from(manifest.frame.max_level()) + 1;
     vec![SampleSums::new(manifest.vertical.quantum_m); levels]
 }
 
 /// Takes others in, level by level.
-pub(super) fn merge(sums: &mut [SampleSums], others: &[SampleSums]) {
+pub(crate) fn merge(sums: &mut [SampleSums], others: &[SampleSums]) {
     for (sums, others) in sums.iter_mut().zip(others) {
         sums.merge(others);
     }
 }
 
 /// Measures every level at every sample used; for a DEM whose samples are not the nodes.
-pub(super) fn measure(
+pub(crate) fn measure(
     package: &FilePackage,
     dem: &Dem,
     plan: &GridPlan,
@@ -104,7 +104,7 @@ fn cells(frame: &Frame, id: TileId, [x, y]: [f64; 2]) -> [f64; 2] {
 }
 
 /// Puts the figures found beside those stated.
-pub(super) fn judge(manifest: &Manifest, sums: &[SampleSums]) -> [Check; 2] {
+pub(crate) fn judge(manifest: &Manifest, sums: &[SampleSums]) -> [Check; 2] {
     let mut stated = Check::new(CheckId::Samples);
     let mut bound = Check::new(CheckId::SampleBound);
     let quantum_m = manifest.vertical.quantum_m;

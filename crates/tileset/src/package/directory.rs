@@ -8,18 +8,18 @@ use crate::limits::{MAX_DIRECTORY_BYTES, MAX_DIRECTORY_ENTRIES, MIN_PAYLOAD_BYTE
 
 /// One tile, `first`, with a `run` of 1; or, with a `run` of 0, a leaf directory of the tiles from `first` on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Entry {
-    pub(super) first: u64,
-    pub(super) run: u32,
+pub(crate) struct Entry {
+    pub(crate) first: u64,
+    pub(crate) run: u32,
     /// Relative to the data, or to the leaves.
-    pub(super) offset: u64,
-    pub(super) length: u32,
+    pub(crate) offset: u64,
+    pub(crate) length: u32,
 }
 
 /// Entries by ascending tile.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Directory {
-    pub(super) entries: Vec<Entry>,
+pub(crate) struct Directory {
+    pub(crate) entries: Vec<Entry>,
 }
 
 impl Directory {
@@ -29,7 +29,7 @@ impl Directory {
     /// offset 0 for "right after the entry before".
     ///
     /// Memory: the decompressed bytes and 24 bytes an entry.
-    pub(super) fn parse(stored: &[u8]) -> Option<Self> {
+    pub(crate) fn parse(stored: &[u8]) -> Option<Self> {
         let bytes = gunzip(stored, MAX_DIRECTORY_BYTES)?;
         let mut bytes = bytes.as_slice();
         let count = usize::try_from(varint(&mut bytes)?).ok()?;
@@ -78,7 +78,7 @@ impl Directory {
     }
 
     /// The entry that holds a tile, or the leaf that might.
-    pub(super) fn find(&self, order: u64) -> Option<Entry> {
+    pub(crate) fn find(&self, order: u64) -> Option<Entry> {
         let after = self.entries.partition_point(|entry| entry.first <= order);
         let entry = *self.entries.get(after.checked_sub(1)?)?;
         (entry.run == 0 || order == entry.first).then_some(entry)
@@ -86,7 +86,7 @@ impl Directory {
 }
 
 /// Decompresses gzip of at most `limit` bytes; `None` when it is damaged, unfinished or larger.
-pub(super) fn gunzip(stored: &[u8], limit: usize) -> Option<Vec<u8>> {
+pub(crate) fn gunzip(stored: &[u8], limit: usize) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
     GzDecoder::new(stored).take(limit as u64 + 1).read_to_end(&mut bytes).ok()?;
     (bytes.len() <= limit).then_some(bytes)

@@ -4,15 +4,15 @@ use super::OpenError;
 use crate::limits::{MAX_DIRECTORY_BYTES, MAX_METADATA_BYTES};
 
 /// Bytes of the header.
-pub(super) const HEADER_BYTES: usize = 127;
+pub(crate) const HEADER_BYTES: usize = 127;
 /// Header and root directory lie within the first bytes of the file.
-pub(super) const INITIAL_BYTES: usize = 16_384;
+pub(crate) const INITIAL_BYTES: usize = 16_384;
 
 /// Bytes of the file, from and how many.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Span {
-    pub(super) offset: u64,
-    pub(super) length: u64,
+pub(crate) struct Span {
+    pub(crate) offset: u64,
+    pub(crate) length: u64,
 }
 
 /// What a reader needs of the header.
@@ -24,18 +24,18 @@ pub(super) struct Span {
 ///
 /// Source: PMTiles version 3 specification, section 3.
 #[derive(Debug, Clone)]
-pub(super) struct Header {
-    pub(super) root: Span,
-    pub(super) metadata: Span,
-    pub(super) leaves: Span,
-    pub(super) data: Span,
+pub(crate) struct Header {
+    pub(crate) root: Span,
+    pub(crate) metadata: Span,
+    pub(crate) leaves: Span,
+    pub(crate) data: Span,
     /// How many tiles there are; 0 where the writer did not know.
-    pub(super) tiles: u64,
+    pub(crate) tiles: u64,
 }
 
 impl Header {
     /// Reads the header of a file of `file_length` bytes from its first bytes.
-    pub(super) fn parse(bytes: &[u8], file_length: u64) -> Result<Self, OpenError> {
+    pub(crate) fn parse(bytes: &[u8], file_length: u64) -> Result<Self, OpenError> {
         if !bytes.starts_with(b"PMTiles") {
             return Err(OpenError::NotPmtiles);
         }

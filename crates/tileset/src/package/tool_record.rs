@@ -60,7 +60,7 @@ impl ToolRecord {
     }
 
     /// From the header's bytes and the metadata's JSON.
-    pub(super) fn parse(header: &[u8], metadata: &[u8]) -> Result<Self, OpenError> {
+    pub(crate) fn parse(header: &[u8], metadata: &[u8]) -> Result<Self, OpenError> {
         let Some(bytes) = header.first_chunk::<HEADER_BYTES>() else {
             let actual = header.len() as u64;
             return Err(OpenError::Truncated { needed: HEADER_BYTES as u64, actual });

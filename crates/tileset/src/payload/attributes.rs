@@ -29,7 +29,7 @@ const FORMS: [Form; 4] = [Form::Ordinary, Form::DualCarriageway, Form::Link, For
 const STRUCTURES: [Structure; 3] = [Structure::Ground, Structure::Bridge, Structure::Tunnel];
 const ONEWAYS: [Oneway; 3] = [Oneway::No, Oneway::Forward, Oneway::Backward];
 
-pub(super) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
+pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
     let mut rest = bytes;
     let record = Record {
         texts: list(&mut rest, 3 * MAX_WAYS)?,
@@ -112,7 +112,7 @@ fn list<T: DeserializeOwned>(bytes: &mut &[u8], limit: usize) -> Result<Vec<T>, 
 
 /// The section's bytes, or what of the roads cannot be encoded.
 #[cfg(feature = "write")]
-pub(super) fn encode(roads: &[RoadRecord]) -> Result<Vec<u8>, &'static str> {
+pub(crate) fn encode(roads: &[RoadRecord]) -> Result<Vec<u8>, &'static str> {
     if !roads.is_sorted_by(|a, b| a.way_id < b.way_id) {
         return Err("ways that are not sorted by id, or occur twice");
     }

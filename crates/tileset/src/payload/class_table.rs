@@ -9,10 +9,10 @@ use super::{
 use crate::limits::{MAX_LINES, MAX_POINTS};
 
 /// Class, number of lines, and their bytes.
-pub(super) type ClassBlob<'a> = (FunctionalRoadClass, usize, &'a [u8]);
+pub(crate) type ClassBlob<'a> = (FunctionalRoadClass, usize, &'a [u8]);
 
 /// The lines of each class that has any, by class.
-pub(super) fn decode<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<ClassBlob<'a>>, Damage> {
+pub(crate) fn decode<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<ClassBlob<'a>>, Damage> {
     let mut counts = Vec::with_capacity(FunctionalRoadClass::COUNT);
     let mut all_lines = 0;
     for class in FunctionalRoadClass::all() {
@@ -40,26 +40,26 @@ pub(super) fn decode<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<ClassBlob<'a>>, 
 
 /// What is told of a line before its points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Head {
-    pub(super) way_id: i64,
-    pub(super) part: u32,
+pub(crate) struct Head {
+    pub(crate) way_id: i64,
+    pub(crate) part: u32,
     /// How many points it has.
-    pub(super) points: usize,
+    pub(crate) points: usize,
     /// Two bits, as the section says.
-    pub(super) flags: u8,
+    pub(crate) flags: u8,
 }
 
 /// The heads of a class.
-pub(super) struct Heads {
-    pub(super) heads: Vec<Head>,
+pub(crate) struct Heads {
+    pub(crate) heads: Vec<Head>,
     /// Points of all of them.
-    pub(super) points: usize,
+    pub(crate) points: usize,
 }
 
 impl Heads {
     /// Way ids as differences, all of them; then parts; then points and flags. Points are taken from the `room`
     /// that the section has left.
-    pub(super) fn decode(
+    pub(crate) fn decode(
         cursor: &mut Cursor<'_>,
         lines: usize,
         room: &mut usize,
@@ -97,7 +97,7 @@ impl Heads {
 }
 
 #[cfg(feature = "write")]
-pub(super) use write::{encode, put_heads};
+pub(crate) use write::{encode, put_heads};
 
 #[cfg(feature = "write")]
 mod write {
@@ -105,7 +105,7 @@ mod write {
     use crate::payload::codec::{put_varint, zigzag};
 
     /// Writes the table, and each class's lines by `put`; tells how many bytes each class takes.
-    pub(in super::super) fn encode<R>(
+    pub(crate) fn encode<R>(
         roads: &[R],
         key: impl Fn(&R) -> (FunctionalRoadClass, i64, u32),
         mut put: impl FnMut(&[R], &mut Vec<u8>) -> Result<(), &'static str>,
@@ -134,7 +134,7 @@ mod write {
     }
 
     /// The inverse of [`Heads::decode`](super::Heads::decode).
-    pub(in super::super) fn put_heads(out: &mut Vec<u8>, heads: &[Head]) {
+    pub(crate) fn put_heads(out: &mut Vec<u8>, heads: &[Head]) {
         let mut previous = 0_i64;
         for head in heads {
             put_varint(out, zigzag(head.way_id.wrapping_sub(previous)));

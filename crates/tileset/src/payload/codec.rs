@@ -4,7 +4,7 @@ use super::Damage;
 
 /// Writes little-endian base-128: seven bits a byte, the top bit set on all but the last.
 #[cfg(any(feature = "write", test))]
-pub(super) fn put_varint(out: &mut Vec<u8>, mut value: u64) {
+pub(crate) fn put_varint(out: &mut Vec<u8>, mut value: u64) {
     while value >= 0x80 {
         out.push(value as u8 | 0x80);
         value >>= 7;
@@ -14,12 +14,12 @@ pub(super) fn put_varint(out: &mut Vec<u8>, mut value: u64) {
 
 /// 0, −1, 1, −2, 2 … → 0, 1, 2, 3, 4 …
 #[cfg(any(feature = "write", test))]
-pub(super) fn zigzag(value: i64) -> u64 {
+pub(crate) fn zigzag(value: i64) -> u64 {
     ((value << 1) ^ (value >> 63)) as u64
 }
 
 /// The inverse of [`zigzag`].
-pub(super) fn unzigzag(value: u64) -> i64 {
+pub(crate) fn unzigzag(value: u64) -> i64 {
     (value >> 1) as i64 ^ -((value & 1) as i64)
 }
 
@@ -30,7 +30,7 @@ pub(super) fn unzigzag(value: u64) -> i64 {
 ///   n │ byte 0 of v0 v1 v2 … │ byte 1 of v0 v1 v2 … │ … n planes
 /// ```
 #[cfg(any(feature = "write", test))]
-pub(super) fn put_planes(out: &mut Vec<u8>, values: &[u64]) {
+pub(crate) fn put_planes(out: &mut Vec<u8>, values: &[u64]) {
     let all = values.iter().fold(0, |all, value| all | value);
     let planes = (64 - all.leading_zeros()).div_ceil(8);
     out.push(planes as u8);
@@ -41,14 +41,14 @@ pub(super) fn put_planes(out: &mut Vec<u8>, values: &[u64]) {
 
 /// Numbers in byte planes, put together one by one: a count that no bytes stand for takes no memory either.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Planes<'a> {
+pub(crate) struct Planes<'a> {
     bytes: &'a [u8],
     count: usize,
 }
 
 impl<'a> Planes<'a> {
     /// The numbers.
-    pub(super) fn iter(self) -> impl Iterator<Item = u64> + 'a {
+    pub(crate) fn iter(self) -> impl Iterator<Item = u64> + 'a {
         (0..self.count).map(move |index| {
             let bytes = self.bytes.iter().skip(index).step_by(self.count.max(1));
             bytes.zip(0..).fold(0, |value, (&byte, plane)| value | u64::from(byte) << (8 * plane))
@@ -56,39 +56,39 @@ impl<'a> Planes<'a> {
     }
 
     /// Whether all numbers are 0 because no byte stands for any of them.
-    pub(super) fn is_absent(self) -> bool {
+    pub(crate) fn is_absent(self) -> bool {
         self.bytes.is_empty()
     }
 }
 
 /// Takes values off the front of a byte slice.
 #[derive(Debug, Clone)]
-pub(super) struct Cursor<'a> {
+pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
 }
 
 impl<'a> Cursor<'a> {
-    pub(super) fn new(bytes: &'a [u8]) -> Self {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
         Self { bytes }
     }
 
-    pub(super) fn take(&mut self, length: usize) -> Result<&'a [u8], Damage> {
+    pub(crate) fn take(&mut self, length: usize) -> Result<&'a [u8], Damage> {
         let (head, rest) = self.bytes.split_at_checked(length).ok_or(Damage::TooShort)?;
         self.bytes = rest;
         Ok(head)
     }
 
-    pub(super) fn array<const N: usize>(&mut self) -> Result<[u8; N], Damage> {
+    pub(crate) fn array<const N: usize>(&mut self) -> Result<[u8; N], Damage> {
         let (head, rest) = self.bytes.split_first_chunk().ok_or(Damage::TooShort)?;
         self.bytes = rest;
         Ok(*head)
     }
 
-    pub(super) fn byte(&mut self) -> Result<u8, Damage> {
+    pub(crate) fn byte(&mut self) -> Result<u8, Damage> {
         self.array().map(|[byte]| byte)
     }
 
-    pub(super) fn varint(&mut self) -> Result<u64, Damage> {
+    pub(crate) fn varint(&mut self) -> Result<u64, Damage> {
         let mut value = 0_u64;
         for shift in (0..64).step_by(7) {
             let byte = self.byte()?;
@@ -105,13 +105,13 @@ impl<'a> Cursor<'a> {
     }
 
     /// A varint that may not be above `limit`; `what` names it in the error.
-    pub(super) fn bounded(&mut self, limit: usize, what: &'static str) -> Result<usize, Damage> {
+    pub(crate) fn bounded(&mut self, limit: usize, what: &'static str) -> Result<usize, Damage> {
         let value = self.varint()?;
         usize::try_from(value).ok().filter(|&value| value <= limit).ok_or(Damage::Invalid { what })
     }
 
     /// What [`put_planes`] wrote for `count` values. The caller bounds `count`.
-    pub(super) fn planes(&mut self, count: usize) -> Result<Planes<'a>, Damage> {
+    pub(crate) fn planes(&mut self, count: usize) -> Result<Planes<'a>, Damage> {
         let planes = self.byte()?;
         if planes > 8 {
             return Err(Damage::Invalid { what: "more than eight byte planes" });
@@ -119,17 +119,17 @@ impl<'a> Cursor<'a> {
         Ok(Planes { bytes: self.take(count * usize::from(planes))?, count })
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
 
     /// How many bytes are left.
-    pub(super) fn left(&self) -> usize {
+    pub(crate) fn left(&self) -> usize {
         self.bytes.len()
     }
 
     /// Asserts that everything was taken.
-    pub(super) fn finish(&self) -> Result<(), Damage> {
+    pub(crate) fn finish(&self) -> Result<(), Damage> {
         if self.is_empty() {
             Ok(())
         } else {
@@ -139,42 +139,5 @@ impl<'a> Cursor<'a> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        #[test]
-        fn varints_and_zigzag_come_back(values in prop::collection::vec(any::<i64>(), 0..40)) {
-            let mut bytes = Vec::new();
-            for &value in &values {
-                put_varint(&mut bytes, zigzag(value));
-            }
-            let mut cursor = Cursor::new(&bytes);
-            for value in values {
-                prop_assert_eq!(unzigzag(cursor.varint().unwrap()), value);
-            }
-            prop_assert!(cursor.finish().is_ok());
-        }
-
-        #[test]
-        fn planes_come_back(values in prop::collection::vec(any::<u64>(), 0..40), shift in 0..64_u32) {
-            let values: Vec<u64> = values.iter().map(|value| value >> shift).collect();
-            let mut bytes = Vec::new();
-            put_planes(&mut bytes, &values);
-            let mut cursor = Cursor::new(&bytes);
-            prop_assert_eq!(cursor.planes(values.len()).unwrap().iter().collect::<Vec<_>>(), values);
-            prop_assert!(cursor.finish().is_ok());
-        }
-    }
-
-    #[test]
-    fn overlong_and_cut_varints_are_refused() {
-        assert!(Cursor::new(&[0xff; 10]).varint().is_err());
-        assert!(Cursor::new(&[0x80, 0x80]).varint().is_err());
-        assert_eq!(
-            Cursor::new(&[0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 1]).varint(),
-            Ok(u64::MAX)
-        );
-    }
-}
+#[path = "codec_tests.rs"]
+mod tests;

@@ -25,18 +25,18 @@ use std::collections::{BTreeMap, VecDeque};
 use super::{Damage, nodes::Nodes, work::Work};
 
 /// There is no triangle on the left of the gate.
-pub(super) const NONE: u8 = 0;
+pub(crate) const NONE: u8 = 0;
 /// Guesses 1 … 6 have their own symbols.
-pub(super) const GUESSES: u8 = 6;
+pub(crate) const GUESSES: u8 = 6;
 /// The vertex is named.
-pub(super) const NAMED: u8 = GUESSES + 1;
+pub(crate) const NAMED: u8 = GUESSES + 1;
 
 /// A vertex, and what was known when the walk came to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Reached {
-    pub(super) vertex: u32,
+pub(crate) struct Reached {
+    pub(crate) vertex: u32,
     /// `[a, b, d]` of the gate; the vertex itself three times where a walk starts.
-    pub(super) gate: [u32; 3],
+    pub(crate) gate: [u32; 3],
 }
 
 /// Directed edges with the corner to their left.
@@ -44,7 +44,7 @@ pub(super) struct Reached {
 /// The first few of each origin are in a list: most vertices have six, and lists lie where the walk is (a hash table
 /// of all took half as long again). The others are in a tree, so that a vertex of a thousand triangles is no trap.
 #[derive(Debug)]
-pub(super) struct Edges<'w> {
+pub(crate) struct Edges<'w> {
     first: Vec<u32>,
     /// How long each list is.
     lengths: Vec<u8>,
@@ -61,7 +61,7 @@ const LIST_EDGES: u8 = 16;
 
 impl<'w> Edges<'w> {
     /// Looking at an edge counts as `work`.
-    pub(super) fn new(vertices: usize, work: &'w Work) -> Self {
+    pub(crate) fn new(vertices: usize, work: &'w Work) -> Self {
         Self {
             first: vec![END; vertices],
             lengths: vec![0; vertices],
@@ -71,7 +71,7 @@ impl<'w> Edges<'w> {
         }
     }
 
-    pub(super) fn corner(&self, a: u32, b: u32) -> Option<u32> {
+    pub(crate) fn corner(&self, a: u32, b: u32) -> Option<u32> {
         let mut at = self.first[a as usize];
         let mut steps = 0;
         let mut found = None;
@@ -104,7 +104,7 @@ impl<'w> Edges<'w> {
     }
 
     /// Adds a triangle; an edge that has a triangle on that side already makes it fail.
-    pub(super) fn add(&mut self, [a, b, c]: [u32; 3]) -> Result<(), Damage> {
+    pub(crate) fn add(&mut self, [a, b, c]: [u32; 3]) -> Result<(), Damage> {
         for [from, to, corner] in [[a, b, c], [b, c, a], [c, a, b]] {
             if from == to || self.corner(from, to).is_some() {
                 return Err(Damage::Invalid { what: "two triangles on the same side of an edge" });
@@ -116,7 +116,7 @@ impl<'w> Edges<'w> {
 }
 
 /// Who decides what the walk finds: the triangles, when writing, or the symbols, when reading.
-pub(super) trait Guide {
+pub(crate) trait Guide {
     /// A triangle to start from, not found yet.
     fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage>;
     /// The vertex to the left of the gate a ► b, if there is a triangle. `guess` takes the vertices
@@ -130,7 +130,7 @@ pub(super) trait Guide {
 
 /// Walks until `count` triangles are found; gives them and the vertices in the order of the walk. Fails when that
 /// takes more than the work allowed to `nodes`.
-pub(super) fn walk(
+pub(crate) fn walk(
     nodes: &Nodes<'_>,
     count: usize,
     guide: &mut impl Guide,
@@ -186,28 +186,5 @@ pub(super) fn walk(
 }
 
 #[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-
-    proptest! {
-        /// Edges are found, whatever was added before, and no others.
-        #[test]
-        fn edges_are_what_was_added(triangles in prop::collection::vec([0..40_u32, 0..40, 0..40], 0..300)) {
-            let work = Work::new(u64::MAX);
-            let (mut edges, mut expected) = (Edges::new(40, &work), BTreeMap::new());
-            for [a, b, c] in triangles {
-                let sides = [([a, b], c), ([b, c], a), ([c, a], b)];
-                if a == b || b == c || c == a || sides.iter().any(|(side, _)| expected.contains_key(side)) {
-                    continue;
-                }
-                prop_assert!(edges.add([a, b, c]).is_ok());
-                expected.extend(sides);
-            }
-            for (a, b) in (0..40).flat_map(|a| (0..40).map(move |b| (a, b))) {
-                prop_assert_eq!(edges.corner(a, b), expected.get(&[a, b]).copied());
-            }
-        }
-    }
-}
+#[path = "connectivity_tests.rs"]
+mod tests;

@@ -46,14 +46,14 @@ impl BitOr for Sections {
 
 /// What positions and heights in a payload are relative to.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Context {
-    pub(super) corner: LatticePoint,
-    pub(super) placement: Placement,
-    pub(super) scale: Scale,
+pub(crate) struct Context {
+    pub(crate) corner: LatticePoint,
+    pub(crate) placement: Placement,
+    pub(crate) scale: Scale,
 }
 
 impl Context {
-    pub(super) fn new(id: TileId, frame: &Frame, quantum_m: f64) -> Result<Self, Damage> {
+    pub(crate) fn new(id: TileId, frame: &Frame, quantum_m: f64) -> Result<Self, Damage> {
         if id.z() > frame.max_level() {
             return Err(Damage::Level { level: id.z(), finest: frame.max_level() });
         }

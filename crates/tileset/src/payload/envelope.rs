@@ -9,9 +9,9 @@ use super::{Damage, codec::Cursor};
 use crate::limits::MAX_SECTION_BYTES;
 
 /// First bytes of every payload: "Corniche Tile".
-pub(super) const MAGIC: [u8; 4] = *b"CRNT";
+pub(crate) const MAGIC: [u8; 4] = *b"CRNT";
 /// Version of the payload's layout.
-pub(super) const VERSION: u16 = 0;
+pub(crate) const VERSION: u16 = 0;
 /// Bytes before the section table.
 #[cfg(feature = "write")]
 const HEADER_BYTES: usize = 16;
@@ -19,14 +19,14 @@ const HEADER_BYTES: usize = 16;
 #[cfg(feature = "write")]
 const ENTRY_BYTES: usize = 20;
 /// Stored bytes follow without compression.
-pub(super) const STORED: u8 = 0;
+pub(crate) const STORED: u8 = 0;
 /// Stored bytes are one zstd frame.
-pub(super) const ZSTD: u8 = 1;
+pub(crate) const ZSTD: u8 = 1;
 
 /// The kinds of section that this version knows; a reader skips others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u16)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     Terrain = 1,
     RoadsGeo = 2,
     RoadsSv = 3,
@@ -37,7 +37,7 @@ impl Kind {
     const KNOWN: [Self; 4] = [Self::Terrain, Self::RoadsGeo, Self::RoadsSv, Self::Attributes];
 
     /// What errors call it.
-    pub(super) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Terrain => "terrain section",
             Self::RoadsGeo => "GEO roads section",
@@ -49,7 +49,7 @@ impl Kind {
 
 /// A section as it lies in the payload.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct StoredSection<'a> {
+pub(crate) struct StoredSection<'a> {
     kind: u16,
     compression: u8,
     raw_length: u32,
@@ -59,7 +59,7 @@ pub(super) struct StoredSection<'a> {
 
 /// Takes a payload apart. Sections are not looked into yet; they lie end to end up to the payload's last byte, so
 /// that each byte is covered by one checksum.
-pub(super) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, Damage> {
+pub(crate) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, Damage> {
     let mut cursor = Cursor::new(bytes);
     if cursor.array::<4>()? != MAGIC {
         return Err(Damage::Magic);
@@ -118,7 +118,7 @@ pub(super) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, D
 }
 
 /// The bytes of the section of one kind, decompressed and checked; `None` where it is absent.
-pub(super) fn section(
+pub(crate) fn section(
     sections: &[StoredSection<'_>],
     kind: Kind,
 ) -> Result<Option<Vec<u8>>, Damage> {
@@ -147,7 +147,7 @@ pub(super) fn section(
 }
 
 /// How large the section of one kind is; 0 where it is absent.
-pub(super) fn size(sections: &[StoredSection<'_>], kind: Kind) -> SectionSize {
+pub(crate) fn size(sections: &[StoredSection<'_>], kind: Kind) -> SectionSize {
     let of_kind = sections.iter().find(|section| section.kind == kind as u16);
     of_kind.map_or_else(SectionSize::default, |section| SectionSize {
         raw: u64::from(section.raw_length),
@@ -156,7 +156,7 @@ pub(super) fn size(sections: &[StoredSection<'_>], kind: Kind) -> SectionSize {
 }
 
 /// Checks sections of kinds that this version does not know, as far as it can.
-pub(super) fn check_unknown(sections: &[StoredSection<'_>]) -> Result<(), Damage> {
+pub(crate) fn check_unknown(sections: &[StoredSection<'_>]) -> Result<(), Damage> {
     let unknown =
         |section: &&StoredSection<'_>| Kind::KNOWN.iter().all(|&kind| section.kind != kind as u16);
     let intact = |section: &StoredSection<'_>| crc32fast::hash(section.bytes) == section.checksum;
@@ -210,7 +210,7 @@ const COMPRESSION_LEVEL: i32 = 16;
 
 /// Puts header, table and sections together; compresses each section where that makes it smaller.
 #[cfg(feature = "write")]
-pub(super) fn seal(
+pub(crate) fn seal(
     id: TileId,
     sections: &[(Kind, Vec<u8>)],
 ) -> Result<(Vec<u8>, Vec<SectionSize>), super::EncodeError> {

@@ -6,7 +6,7 @@ use super::work::Work;
 
 /// Rows and columns of vertices sorted by row, then column.
 #[derive(Debug)]
-pub(super) struct Nodes<'w> {
+pub(crate) struct Nodes<'w> {
     /// Column and row.
     at: Vec<[i64; 2]>,
     /// Vertices of row r are `row_starts[r]..row_starts[r + 1]`.
@@ -30,7 +30,7 @@ struct Best {
 
 impl<'w> Nodes<'w> {
     /// `at` holds columns and rows below [`TILE_NODES`], sorted by row, then column. Searches count as `work`.
-    pub(super) fn new(at: impl Iterator<Item = [u16; 2]>, work: &'w Work) -> Self {
+    pub(crate) fn new(at: impl Iterator<Item = [u16; 2]>, work: &'w Work) -> Self {
         let at: Vec<[i64; 2]> = at.map(|node| node.map(i64::from)).collect();
         let row_starts = (0..=TILE_NODES as i64)
             .map(|row| at.partition_point(|node| node[1] < row) as u32)
@@ -38,12 +38,12 @@ impl<'w> Nodes<'w> {
         Self { at, row_starts, work }
     }
 
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.at.len()
     }
 
     /// What searches count as.
-    pub(super) fn work(&self) -> &'w Work {
+    pub(crate) fn work(&self) -> &'w Work {
         self.work
     }
 
@@ -53,7 +53,7 @@ impl<'w> Nodes<'w> {
     /// Rows are searched outwards from the gate until they leave the circle through the best vertex so far.
     /// Floating point only bounds the search, by more than its error; decisions are exact. Once the work is too
     /// much it gives up: the caller checks.
-    pub(super) fn best_corner(&self, gate: [u32; 2], allowed: impl Fn(u32) -> bool) -> Option<u32> {
+    pub(crate) fn best_corner(&self, gate: [u32; 2], allowed: impl Fn(u32) -> bool) -> Option<u32> {
         // Nearly every corner sees its gate under more than 27° or 4°: try small circles before the half-plane.
         let within = |cot| self.best_corner_within(gate, cot, &allowed);
         within(Some(2)).or_else(|| within(Some(16))).or_else(|| within(None))
@@ -160,34 +160,5 @@ fn circle(vertex: u32, dot: i64, cross: i64, [[ac, ar], [bc, br]]: [[i64; 2]; 2]
 }
 
 #[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-
-    proptest! {
-        /// The bounded search finds what a search through all vertices finds.
-        #[test]
-        fn agrees_with_trying_all(
-            set in prop::collection::btree_set((0..30_u16, 0..30_u16), 3..60), a in any::<prop::sample::Index>(),
-            b in any::<prop::sample::Index>(),
-        ) {
-            let at: Vec<[u16; 2]> = set.iter().map(|&(row, column)| [column, row]).collect();
-            let work = Work::new(u64::MAX);
-            let nodes = Nodes::new(at.iter().copied(), &work);
-            let (a, b) = (a.index(at.len()), b.index(at.len()));
-            prop_assume!(a != b);
-            let xy = |k: usize| [f64::from(at[k][0]), -f64::from(at[k][1])];
-            let angle = |c: usize| {
-                let ([ax, ay], [bx, by], [cx, cy]) = (xy(a), xy(b), xy(c));
-                let cross = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
-                let dot = (ax - cx) * (bx - cx) + (ay - cy) * (by - cy);
-                (cross > 0.0).then(|| dot / cross)
-            };
-            let expected = (0..at.len())
-                .filter_map(|c| angle(c).map(|cot| (cot, c as u32)))
-                .min_by(|p, q| p.partial_cmp(q).unwrap());
-            prop_assert_eq!(nodes.best_corner([a as u32, b as u32], |_| true), expected.map(|(_, c)| c));
-        }
-    }
-}
+#[path = "nodes_tests.rs"]
+mod tests;

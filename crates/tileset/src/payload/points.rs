@@ -12,7 +12,7 @@ use super::{
 const REACH_STEPS: i64 = 1 << 55;
 
 /// The points of all lines of a class, the first relative to `corner`. Neighbours in a line differ.
-pub(super) fn decode_points(
+pub(crate) fn decode_points(
     cursor: &mut Cursor<'_>,
     heads: &Heads,
     corner: LatticePoint,
@@ -47,7 +47,7 @@ pub(super) fn decode_points(
 
 /// The inverse of [`decode_points`].
 #[cfg(feature = "write")]
-pub(super) fn put_points(
+pub(crate) fn put_points(
     out: &mut Vec<u8>,
     points: &[LatticePoint],
     corner: LatticePoint,

@@ -20,7 +20,7 @@ const SOURCE: u8 = 1;
 const CROSSING: u8 = 2;
 const VERTEX: u8 = 3;
 
-pub(super) fn decode(
+pub(crate) fn decode(
     bytes: &[u8],
     corner: LatticePoint,
     surface: &Surface,
@@ -146,7 +146,7 @@ fn decode_surprise(
 }
 
 #[cfg(feature = "write")]
-pub(super) use write::encode;
+pub(crate) use write::encode;
 
 #[cfg(feature = "write")]
 mod write {
@@ -159,7 +159,7 @@ mod write {
     use crate::payload::{class_table::Head, codec::put_varint, points::put_points};
 
     /// The section's bytes and how many of them each class takes, or what of the roads cannot be encoded.
-    pub(in super::super) fn encode(
+    pub(crate) fn encode(
         roads: &[GeoRoad],
         corner: LatticePoint,
         surface: &Surface,

@@ -14,7 +14,7 @@ use crate::limits::MAX_POINTS;
 /// Heights stay below this many quanta, where f64 knows every whole number.
 const REACH_Q: f64 = (1_u64 << 53) as f64;
 
-pub(super) fn decode(
+pub(crate) fn decode(
     bytes: &[u8],
     corner: LatticePoint,
     quantum_m: f64,
@@ -56,7 +56,7 @@ pub(super) fn decode(
 }
 
 #[cfg(feature = "write")]
-pub(super) use write::encode;
+pub(crate) use write::encode;
 
 #[cfg(feature = "write")]
 mod write {
@@ -70,7 +70,7 @@ mod write {
     };
 
     /// The section's bytes and how many of them each class takes, or what of the roads cannot be encoded.
-    pub(in super::super) fn encode(
+    pub(crate) fn encode(
         roads: &[SvRoad],
         corner: LatticePoint,
         quantum_m: f64,

@@ -20,7 +20,7 @@ use corniche_tin::{NO_TWIN, Surface};
 use super::{Damage, work::Work};
 
 /// Follows one line; asked for a guess, then told the truth, vertex by vertex.
-pub(super) struct Route<'a> {
+pub(crate) struct Route<'a> {
     surface: &'a Surface,
     /// All points: lead-in, source points, lead-out.
     points: &'a [LatticePoint],
@@ -49,7 +49,7 @@ enum Place {
 impl<'a> Route<'a> {
     /// `leads` tells whether the first and the last of `points` are lead-in and lead-out. Looking at triangles and
     /// edges counts as `work`.
-    pub(super) fn new(
+    pub(crate) fn new(
         surface: &'a Surface,
         points: &'a [LatticePoint],
         leads: [bool; 2],
@@ -60,18 +60,18 @@ impl<'a> Route<'a> {
     }
 
     /// The TIN it goes over.
-    pub(super) fn surface(&self) -> &'a Surface {
+    pub(crate) fn surface(&self) -> &'a Surface {
         self.surface
     }
 
     /// The next source point to be reached.
-    pub(super) fn next_source(&self) -> Option<LatticePoint> {
+    pub(crate) fn next_source(&self) -> Option<LatticePoint> {
         self.points[..self.end].get(self.next).copied()
     }
 
     /// The next vertex, as far as the points tell; `None` where they say that the line ends. Fails when that took
     /// more work than is allowed.
-    pub(super) fn guess(&self) -> Result<Option<DrapedVertex>, Damage> {
+    pub(crate) fn guess(&self) -> Result<Option<DrapedVertex>, Damage> {
         let vertex = self.best_guess();
         self.work.check()?;
         Ok(vertex)
@@ -98,7 +98,7 @@ impl<'a> Route<'a> {
 
     /// Goes to `vertex`, whatever the guess was. Indices must be within the TIN. Fails when that took more work than
     /// is allowed.
-    pub(super) fn go(&mut self, vertex: DrapedVertex) -> Result<(), Damage> {
+    pub(crate) fn go(&mut self, vertex: DrapedVertex) -> Result<(), Damage> {
         self.place = match vertex {
             DrapedVertex::Source { triangle, .. } => {
                 self.next += 1;

@@ -37,15 +37,15 @@ struct Record {
 
 /// What turns slopes of the TIN, in height steps per node, into metres per metre.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scale {
-    pub(super) quantum_m: f64,
+pub(crate) struct Scale {
+    pub(crate) quantum_m: f64,
     /// The level's.
-    pub(super) cell: Cell,
+    pub(crate) cell: Cell,
     /// No more full-resolution nodes than this lie beneath the tile, border nodes of its finest tiles counted for each.
-    pub(super) nodes_beneath: u64,
+    pub(crate) nodes_beneath: u64,
 }
 
-pub(super) fn decode(bytes: &[u8], scale: Scale) -> Result<Terrain, Damage> {
+pub(crate) fn decode(bytes: &[u8], scale: Scale) -> Result<Terrain, Damage> {
     let mut cursor = Cursor::new(bytes);
     let config = bincode::config::legacy().with_limit::<RECORD_BYTES>();
     let (record, _): (Record, usize) =
@@ -254,9 +254,9 @@ fn guess_normals(vertices: &[TinVertex], triangles: &[[u32; 3]], scale: Scale) -
 }
 
 #[cfg(test)]
-pub(super) use write::Recorder;
+pub(crate) use write::Recorder;
 #[cfg(feature = "write")]
-pub(super) use write::encode;
+pub(crate) use write::encode;
 
 #[cfg(feature = "write")]
 mod write {
@@ -268,10 +268,7 @@ mod write {
     use crate::payload::codec::{put_planes, put_varint, zigzag};
 
     /// The section's bytes, or what of the ground cannot be encoded.
-    pub(in super::super) fn encode(
-        terrain: &Terrain,
-        scale: Scale,
-    ) -> Result<Vec<u8>, &'static str> {
+    pub(crate) fn encode(terrain: &Terrain, scale: Scale) -> Result<Vec<u8>, &'static str> {
         let vertices = terrain.tin.vertices();
         if vertices.len() != terrain.normals.len() {
             return Err("normals that are not one for each vertex");
@@ -357,7 +354,7 @@ mod write {
     }
 
     /// Finds triangles by looking them up, and writes the symbols.
-    pub(in super::super) struct Recorder<'a> {
+    pub(crate) struct Recorder<'a> {
         triangles: &'a [[u32; 3]],
         /// Triangles before this one have been found.
         next: usize,
@@ -368,7 +365,7 @@ mod write {
     }
 
     impl<'a> Recorder<'a> {
-        pub(in super::super) fn new(
+        pub(crate) fn new(
             vertices: usize,
             triangles: &'a [[u32; 3]],
             work: &'a Work,

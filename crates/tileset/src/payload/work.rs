@@ -6,34 +6,34 @@ use super::Damage;
 
 /// Steps done and allowed. Steps are counted, not timed: a tile is refused everywhere or nowhere.
 #[derive(Debug)]
-pub(super) struct Work {
+pub(crate) struct Work {
     limit: u64,
     done: Cell<u64>,
 }
 
 impl Work {
-    pub(super) fn new(limit: u64) -> Self {
+    pub(crate) fn new(limit: u64) -> Self {
         Self { limit, done: Cell::new(0) }
     }
 
     /// Counts `steps` more.
-    pub(super) fn add(&self, steps: usize) {
+    pub(crate) fn add(&self, steps: usize) {
         self.done.set(self.done.get().saturating_add(steps as u64));
     }
 
     /// Whether more was done than is allowed. A search then gives up; what it found means nothing.
-    pub(super) fn is_too_much(&self) -> bool {
+    pub(crate) fn is_too_much(&self) -> bool {
         self.done.get() > self.limit
     }
 
     /// An error when more was done than is allowed.
-    pub(super) fn check(&self) -> Result<(), Damage> {
+    pub(crate) fn check(&self) -> Result<(), Damage> {
         if self.is_too_much() { Err(Damage::TooMuchWork { limit: self.limit }) } else { Ok(()) }
     }
 
     /// Steps done.
     #[cfg(test)]
-    pub(super) fn done(&self) -> u64 {
+    pub(crate) fn done(&self) -> u64 {
         self.done.get()
     }
 }

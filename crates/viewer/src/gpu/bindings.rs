@@ -9,17 +9,17 @@ use super::{
 };
 
 /// What the passes of one frame share.
-pub(super) struct FrameBindings {
-    pub(super) frame: BindGroup,
+pub(crate) struct FrameBindings {
+    pub(crate) frame: BindGroup,
     tiles: BindGroup,
     tile_stride: u32,
-    pub(super) ground: BindGroup,
-    pub(super) blocks: BindGroup,
-    pub(super) composite: BindGroup,
+    pub(crate) ground: BindGroup,
+    pub(crate) blocks: BindGroup,
+    pub(crate) composite: BindGroup,
 }
 
 impl FrameBindings {
-    pub(super) fn new(
+    pub(crate) fn new(
         gpu: &Gpu,
         layouts: &Layouts,
         view: &FrameView<'_>,
@@ -61,13 +61,13 @@ impl FrameBindings {
     }
 
     /// Sets the block of the tile with this index in the list.
-    pub(super) fn set_tile(&self, pass: &mut wgpu::RenderPass<'_>, index: usize) {
+    pub(crate) fn set_tile(&self, pass: &mut wgpu::RenderPass<'_>, index: usize) {
         pass.set_bind_group(1, &self.tiles, &[index as u32 * self.tile_stride]);
     }
 }
 
 /// Binds textures, 0 first.
-pub(super) fn textures(
+pub(crate) fn textures(
     gpu: &Gpu,
     layout: &wgpu::BindGroupLayout,
     views: &[&TextureView],

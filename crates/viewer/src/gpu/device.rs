@@ -39,8 +39,8 @@ pub enum GpuError {
 pub struct Gpu {
     adapter: wgpu::Adapter,
     adapter_name: String,
-    pub(super) device: wgpu::Device,
-    pub(super) queue: wgpu::Queue,
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
     faults: Arc<Faults>,
 }
 
@@ -195,14 +195,14 @@ impl Gpu {
     }
 
     /// Fails when something went wrong since the last time.
-    pub(super) fn check(&self) -> Result<(), ReadBackError> {
+    pub(crate) fn check(&self) -> Result<(), ReadBackError> {
         self.take_fault().map_or(Ok(()), |what| Err(ReadBackError::Fault { what }))
     }
 
     /// A buffer with these contents, whose length is a multiple of 4.
     ///
     /// `wgpu`'s own helper maps the buffer instead and panics when the device is lost.
-    pub(super) fn buffer(
+    pub(crate) fn buffer(
         &self,
         label: &str,
         contents: &[u8],

@@ -9,18 +9,18 @@ use super::uniforms::TILE_BYTES;
 /// has no other way.
 const UNFILTERED: TextureSampleType = TextureSampleType::Float { filterable: false };
 /// What the shaders bind.
-pub(super) struct Layouts {
-    pub(super) frame: BindGroupLayout,
-    pub(super) tile: BindGroupLayout,
-    pub(super) ground: BindGroupLayout,
-    pub(super) blocks: BindGroupLayout,
-    pub(super) composite: BindGroupLayout,
-    pub(super) average: BindGroupLayout,
-    pub(super) difference: BindGroupLayout,
+pub(crate) struct Layouts {
+    pub(crate) frame: BindGroupLayout,
+    pub(crate) tile: BindGroupLayout,
+    pub(crate) ground: BindGroupLayout,
+    pub(crate) blocks: BindGroupLayout,
+    pub(crate) composite: BindGroupLayout,
+    pub(crate) average: BindGroupLayout,
+    pub(crate) difference: BindGroupLayout,
 }
 
 impl Layouts {
-    pub(super) fn new(device: &Device) -> Self {
+    pub(crate) fn new(device: &Device) -> Self {
         let layout = |label, entries: &[BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&BindGroupLayoutDescriptor {
                 label: Some(label),

@@ -37,24 +37,24 @@ const LARGEST: BlendComponent = BlendComponent {
     operation: BlendOperation::Max,
 };
 
-pub(super) struct Pipelines {
-    pub(super) terrain: RenderPipeline,
-    pub(super) skirts: RenderPipeline,
-    pub(super) wires: RenderPipeline,
-    pub(super) segments: RenderPipeline,
-    pub(super) volumes: RenderPipeline,
-    pub(super) blocks: RenderPipeline,
+pub(crate) struct Pipelines {
+    pub(crate) terrain: RenderPipeline,
+    pub(crate) skirts: RenderPipeline,
+    pub(crate) wires: RenderPipeline,
+    pub(crate) segments: RenderPipeline,
+    pub(crate) volumes: RenderPipeline,
+    pub(crate) blocks: RenderPipeline,
     /// Ground and sky, everywhere.
-    pub(super) composite: RenderPipeline,
+    pub(crate) composite: RenderPipeline,
     /// The same with roads, block by block.
-    pub(super) composite_roads: RenderPipeline,
+    pub(crate) composite_roads: RenderPipeline,
     /// Of 2, 3 and 4 samples on each side of a pixel.
-    pub(super) averages: [RenderPipeline; MAX_SAMPLES_PER_SIDE as usize - 1],
-    pub(super) difference: RenderPipeline,
+    pub(crate) averages: [RenderPipeline; MAX_SAMPLES_PER_SIDE as usize - 1],
+    pub(crate) difference: RenderPipeline,
 }
 
 impl Pipelines {
-    pub(super) fn new(device: &Device, layouts: &Layouts) -> Self {
+    pub(crate) fn new(device: &Device, layouts: &Layouts) -> Self {
         let ground_attributes = vertex_attr_array![0 => Float32x3, 1 => Snorm8x4];
         let segment_attributes = vertex_attr_array![
             0 => Float32x4, 1 => Float32x4, 2 => Float32x2, 3 => Uint32, 4 => Float16x4, 5 => Float16x4

@@ -2,7 +2,7 @@ use wgpu::{Extent3d, TextureFormat, TextureUsages, TextureView};
 
 use super::{Gpu, GpuError, ReadBack, ReadBackError, read_texture};
 
-pub(super) const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
+pub(crate) const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
 
 /// Samples on each side of a pixel, at most. Sums of so many colours stay exact, and sixteen are more than one sees.
 pub const MAX_SAMPLES_PER_SIDE: u32 = 4;
@@ -18,9 +18,9 @@ pub struct Picture {
 }
 
 /// A texture and its only view.
-pub(super) struct Plane {
+pub(crate) struct Plane {
     texture: wgpu::Texture,
-    pub(super) view: TextureView,
+    pub(crate) view: TextureView,
 }
 
 impl Picture {
@@ -78,17 +78,17 @@ impl Picture {
     }
 
     /// What is drawn into: the samples, or the pixels where there is one sample each.
-    pub(super) fn drawn(&self) -> &TextureView {
+    pub(crate) fn drawn(&self) -> &TextureView {
         self.samples.as_ref().map_or(&self.pixels.view, |samples| &samples.view)
     }
 
     /// The samples, where there are several a pixel.
-    pub(super) fn samples(&self) -> Option<&TextureView> {
+    pub(crate) fn samples(&self) -> Option<&TextureView> {
         self.samples.as_ref().map(|samples| &samples.view)
     }
 
     /// Width and height in samples.
-    pub(super) fn sampled_px(&self) -> [u32; 2] {
+    pub(crate) fn sampled_px(&self) -> [u32; 2] {
         self.size_px.map(|side| side * self.samples_per_side)
     }
 }
@@ -109,7 +109,7 @@ fn sampled_px(gpu: &Gpu, size_px: [u32; 2], samples_per_side: u32) -> Result<[u3
 }
 
 impl Plane {
-    pub(super) fn new(gpu: &Gpu, label: &str, format: TextureFormat, size_px: [u32; 2]) -> Self {
+    pub(crate) fn new(gpu: &Gpu, label: &str, format: TextureFormat, size_px: [u32; 2]) -> Self {
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: Extent3d { width: size_px[0], height: size_px[1], depth_or_array_layers: 1 },
@@ -127,7 +127,7 @@ impl Plane {
     }
 
     /// Its texels, row by row from the top.
-    pub(super) fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
+    pub(crate) fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
         read_texture(gpu, &self.texture)
     }
 }

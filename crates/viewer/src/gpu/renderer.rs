@@ -51,8 +51,8 @@ pub struct DrawTile<'a> {
 
 /// Knows how to draw tiles; holds nothing of any frame.
 pub struct Renderer {
-    pub(super) layouts: Layouts,
-    pub(super) pipelines: Pipelines,
+    pub(crate) layouts: Layouts,
+    pub(crate) pipelines: Pipelines,
 }
 
 impl Renderer {
@@ -100,7 +100,7 @@ impl Renderer {
 }
 
 /// A pass that starts from nothing: colours 0, depth 0 (infinitely far).
-pub(super) fn begin<'e>(
+pub(crate) fn begin<'e>(
     encoder: &'e mut CommandEncoder,
     label: &str,
     colors: &[&wgpu::TextureView],

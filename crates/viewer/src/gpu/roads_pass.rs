@@ -22,14 +22,14 @@ const SEGMENT_CORNERS: Range<u32> = 0..4;
 const VOLUME_CORNERS: Range<u32> = 0..14;
 
 /// The bridges of a frame, in order of the finer tile.
-pub(super) struct Bridges {
+pub(crate) struct Bridges {
     list: Vec<Bridge>,
     instances: Option<wgpu::Buffer>,
 }
 
 impl Bridges {
     /// Finds them and uploads their volumes, each relative to the finer of its tiles.
-    pub(super) fn new(gpu: &Gpu, roads: RoadOptions, tiles: &[DrawTile<'_>]) -> Self {
+    pub(crate) fn new(gpu: &Gpu, roads: RoadOptions, tiles: &[DrawTile<'_>]) -> Self {
         let border_tiles: Vec<BorderTile<'_>> = tiles
             .iter()
             .map(|tile| BorderTile {
@@ -77,7 +77,7 @@ impl Bridges {
 impl Renderer {
     /// One draw per tile: the target keeps the largest label, so that neither the order of classes nor that of tiles
     /// matters.
-    pub(super) fn roads_pass(
+    pub(crate) fn roads_pass(
         &self,
         encoder: &mut CommandEncoder,
         bindings: &FrameBindings,

@@ -71,7 +71,7 @@ impl Renderer {
 
     /// Ground and sky everywhere, then the blocks with roads once more, with them. Two draws, because one that looks its
     /// block up for each pixel took about twice as long on software Vulkan, which runs both branches of a condition.
-    pub(super) fn composite_pass(
+    pub(crate) fn composite_pass(
         &self,
         encoder: &mut CommandEncoder,
         bindings: &FrameBindings,
@@ -100,7 +100,7 @@ impl Renderer {
     }
 
     /// The mean of the samples of each pixel; nothing to do where there is one.
-    pub(super) fn average_pass(&self, gpu: &Gpu, encoder: &mut CommandEncoder, picture: &Picture) {
+    pub(crate) fn average_pass(&self, gpu: &Gpu, encoder: &mut CommandEncoder, picture: &Picture) {
         let Some(samples) = picture.samples() else { return };
         let bound = textures(gpu, &self.layouts.average, &[samples]);
         let pipeline = &self.pipelines.averages[picture.samples_per_side() as usize - 2];

@@ -6,23 +6,23 @@ use super::{
     picture::{COLOR, Picture, Plane},
 };
 
-pub(super) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
-pub(super) const LABEL: TextureFormat = TextureFormat::R8Unorm;
-pub(super) const OWNER: TextureFormat = TextureFormat::R32Uint;
+pub(crate) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
+pub(crate) const LABEL: TextureFormat = TextureFormat::R8Unorm;
+pub(crate) const OWNER: TextureFormat = TextureFormat::R32Uint;
 /// Samples on each side of a block. Smaller ones lie closer around roads, larger ones are fewer to ask for: on software
 /// Vulkan 8, 16 and 32 cost the same within its noise.
-pub(super) const BLOCK: u32 = 16;
+pub(crate) const BLOCK: u32 = 16;
 /// Set in the owner of a sample that shows a skirt.
 const SKIRT_BIT: u32 = 1 << 31;
 
 /// What the passes draw into: a picture and, sample for sample, what it is made of.
 pub struct Targets {
-    pub(super) ground: Plane,
-    pub(super) depth: Plane,
-    pub(super) owners: Plane,
-    pub(super) labels: Plane,
+    pub(crate) ground: Plane,
+    pub(crate) depth: Plane,
+    pub(crate) owners: Plane,
+    pub(crate) labels: Plane,
     /// The largest label in or near each block of samples.
-    pub(super) road_blocks: Plane,
+    pub(crate) road_blocks: Plane,
     picture: Picture,
 }
 
@@ -94,7 +94,7 @@ impl Targets {
     }
 
     /// How many blocks its samples are cut into; those on the right and at the bottom may reach beyond them.
-    pub(super) fn block_count(&self) -> u32 {
+    pub(crate) fn block_count(&self) -> u32 {
         self.picture.sampled_px().map(|side| side.div_ceil(BLOCK)).iter().product()
     }
 

@@ -8,7 +8,7 @@ use super::{
 };
 
 impl Renderer {
-    pub(super) fn terrain_pass(
+    pub(crate) fn terrain_pass(
         &self,
         gpu: &Gpu,
         encoder: &mut CommandEncoder,

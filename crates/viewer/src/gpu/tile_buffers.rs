@@ -12,22 +12,22 @@ use crate::{
 
 /// A tile on the graphics card.
 pub struct TileBuffers {
-    pub(super) ground: Option<GroundBuffers>,
-    pub(super) segments: RoadBuffers,
-    pub(super) volumes: RoadBuffers,
-    pub(super) reference_m: [f64; 3],
-    pub(super) width_margin_m: f64,
-    pub(super) size_m: [f64; 2],
-    pub(super) id: TileId,
+    pub(crate) ground: Option<GroundBuffers>,
+    pub(crate) segments: RoadBuffers,
+    pub(crate) volumes: RoadBuffers,
+    pub(crate) reference_m: [f64; 3],
+    pub(crate) width_margin_m: f64,
+    pub(crate) size_m: [f64; 2],
+    pub(crate) id: TileId,
     triangles: u64,
 }
 
-pub(super) struct GroundBuffers {
-    pub(super) vertices: Buffer,
-    pub(super) indices: Buffer,
+pub(crate) struct GroundBuffers {
+    pub(crate) vertices: Buffer,
+    pub(crate) indices: Buffer,
     /// Indices of the ground, then of the skirts.
-    pub(super) surface: Range<u32>,
-    pub(super) skirts: Range<u32>,
+    pub(crate) surface: Range<u32>,
+    pub(crate) skirts: Range<u32>,
     /// Three per triangle of the ground: what the edges are made of.
     triangles: Vec<u32>,
     edges: OnceLock<Buffer>,
@@ -35,14 +35,14 @@ pub(super) struct GroundBuffers {
 
 impl GroundBuffers {
     /// Two indices for each edge of the ground, made when they are first drawn: few pictures show them.
-    pub(super) fn edges(&self, gpu: &Gpu) -> &Buffer {
+    pub(crate) fn edges(&self, gpu: &Gpu) -> &Buffer {
         self.edges.get_or_init(|| {
             gpu.buffer("edges", bytemuck::cast_slice(&edges(&self.triangles)), BufferUsages::INDEX)
         })
     }
 
     /// The buffer above, if it was made.
-    pub(super) fn drawn_edges(&self) -> Option<&Buffer> {
+    pub(crate) fn drawn_edges(&self) -> Option<&Buffer> {
         self.edges.get()
     }
 }
@@ -61,12 +61,12 @@ fn edges(triangles: &[u32]) -> Vec<[u32; 2]> {
 
 /// What one method draws of a tile's roads.
 #[derive(Default)]
-pub(super) struct RoadBuffers {
+pub(crate) struct RoadBuffers {
     /// One instance per segment, in order of class; `None` without any.
-    pub(super) instances: Option<Buffer>,
-    pub(super) class_ranges: [Range<u32>; FunctionalRoadClass::COUNT],
+    pub(crate) instances: Option<Buffer>,
+    pub(crate) class_ranges: [Range<u32>; FunctionalRoadClass::COUNT],
     /// Where the roads meet the tile's border.
-    pub(super) ends: Vec<RoadEnd>,
+    pub(crate) ends: Vec<RoadEnd>,
 }
 
 impl RoadBuffers {
@@ -82,7 +82,7 @@ impl RoadBuffers {
     }
 
     /// The instances of some classes, in as few pieces as may be.
-    pub(super) fn runs(&self, classes: ClassSet) -> Vec<Range<u32>> {
+    pub(crate) fn runs(&self, classes: ClassSet) -> Vec<Range<u32>> {
         let mut runs: Vec<Range<u32>> = Vec::new();
         for (class, range) in FunctionalRoadClass::all().zip(&self.class_ranges) {
             if range.is_empty() || !classes.contains(class) {
@@ -98,13 +98,13 @@ impl RoadBuffers {
 }
 
 /// Bytes of one ground vertex: position as three f32, normal and skirt flag as four i8.
-pub(super) const GROUND_STRIDE: u64 = 16;
+pub(crate) const GROUND_STRIDE: u64 = 16;
 /// Bytes of one road segment: two plan positions as two f32 each, two shares, two slopes, a height and a width
 /// factor as f32, class and flags as u32, eight bounds as f16.
-pub(super) const SEGMENT_STRIDE: u64 = 60;
+pub(crate) const SEGMENT_STRIDE: u64 = 60;
 /// Bytes of one road volume: two plan positions and two height ranges as two f32 each, rise and width factor as
 /// f32, class and other tile as u32.
-pub(super) const VOLUME_STRIDE: u64 = 44;
+pub(crate) const VOLUME_STRIDE: u64 = 44;
 
 impl TileBuffers {
     /// Uploads a tile.
@@ -150,7 +150,7 @@ impl TileBuffers {
         drawn.map(|range| u64::from(range.end - range.start)).sum()
     }
 
-    pub(super) fn roads(&self, method: RoadMethod) -> Option<&RoadBuffers> {
+    pub(crate) fn roads(&self, method: RoadMethod) -> Option<&RoadBuffers> {
         match method {
             RoadMethod::Geometry => Some(&self.segments),
             RoadMethod::ShadowVolumes => Some(&self.volumes),
@@ -202,7 +202,7 @@ fn f16_above(value: f32) -> u16 {
 }
 
 /// Volumes, each with the number of the other tile it belongs to, 0 for those that are no bridges.
-pub(super) fn volume_bytes(volumes: impl Iterator<Item = (RoadVolume, u32)>) -> Vec<u8> {
+pub(crate) fn volume_bytes(volumes: impl Iterator<Item = (RoadVolume, u32)>) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(volumes.size_hint().0 * VOLUME_STRIDE as usize);
     for (volume, other) in volumes {
         bytes.extend_from_slice(bytemuck::cast_slice(&volume.start_in_tile));
@@ -218,45 +218,5 @@ pub(super) fn volume_bytes(volumes: impl Iterator<Item = (RoadVolume, u32)>) -> 
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn classes_side_by_side_are_drawn_at_once() {
-        let class = |number| FunctionalRoadClass::new(number).unwrap();
-        let class_ranges = [0..2, 2..2, 2..5, 5..6, 6..6, 6..6, 6..9, 9..9, 9..9];
-        let roads = RoadBuffers { class_ranges, ..RoadBuffers::default() };
-        let check = |left_out: &[u8], expected: &[Range<u32>]| {
-            let classes =
-                left_out.iter().fold(ClassSet::ALL, |set, number| set.without(class(*number)));
-            assert_eq!(roads.runs(classes), expected);
-        };
-        check(&[], std::slice::from_ref(&(0..9)));
-        check(&[4], std::slice::from_ref(&(0..9)));
-        check(&[2], &[0..2, 5..9]);
-        check(&[0, 6], std::slice::from_ref(&(2..6)));
-    }
-
-    #[test]
-    fn bounds_in_16_bits_are_never_too_low_and_hardly_too_high() {
-        // As IEEE 754 has it: 10 digits after the first.
-        let value_of = |bits: u16| {
-            let digits = 1.0 + f64::from(bits & 0x3FF) / 1024.0;
-            digits * 2.0_f64.powi(i32::from(bits >> 10) - 15)
-        };
-        assert_eq!((f16_above(0.0), f16_above(1.0), f16_above(65_504.0)), (0, 0x3C00, 0x7BFF));
-        for k in 0..4000 {
-            let value = 1e-4 * 1.005_f32.powi(k);
-            let coded = value_of(f16_above(value));
-            let exact = f64::from(value.min(65_504.0));
-            assert!((exact..=exact * 1.001).contains(&coded), "{value} became {coded}");
-        }
-        assert!(value_of(f16_above(1e-9)) < 1e-4 && value_of(f16_above(f32::INFINITY)) > 65_503.0);
-    }
-
-    #[test]
-    fn triangles_that_share_an_edge_have_it_once() {
-        assert_eq!(edges(&[0, 1, 2, 2, 1, 3]), [[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]]);
-        assert!(edges(&[]).is_empty());
-    }
-}
+#[path = "tile_buffers_tests.rs"]
+mod tests;

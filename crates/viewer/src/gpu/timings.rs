@@ -52,7 +52,7 @@ type Mapped = (usize, Result<(), wgpu::BufferAsyncError>);
 
 impl PassTimer {
     /// What the device must be able to do.
-    pub(super) const FEATURES: Features =
+    pub(crate) const FEATURES: Features =
         Features::TIMESTAMP_QUERY.union(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
 
     /// `None` when the adapter has no clock.
@@ -88,7 +88,7 @@ impl PassTimer {
     }
 
     /// The pass with this number, 0 first, begins; with [`MARKS`] − 1 the last has ended.
-    pub(super) fn mark(&mut self, encoder: &mut CommandEncoder, number: u32) {
+    pub(crate) fn mark(&mut self, encoder: &mut CommandEncoder, number: u32) {
         if number == 0 {
             self.current = self.free.pop();
         }

@@ -6,10 +6,10 @@ use super::renderer::{DrawTile, FrameView};
 use crate::{CapTest, Caps, RoadMethod, tiles::NearHeights};
 
 /// Bytes of a tile's block.
-pub(super) const TILE_BYTES: u64 = 32;
+pub(crate) const TILE_BYTES: u64 = 32;
 
 /// The frame's block. Its length follows from the style's arrays and matches `struct Frame`.
-pub(super) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f32; 4]> {
+pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f32; 4]> {
     let style = view.style;
     // To the passes a sample is a pixel.
     let camera = view.camera.supersampled(samples_per_side);
@@ -84,7 +84,7 @@ pub(super) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
 /// A tile's block: the reference point relative to the eye and the skirt's depth; then its true height, the widest
 /// half width of volumes, the tile's number in the frame and how far near heights hold. Numbers below 2^24 are exact in
 /// f32.
-pub(super) fn tile_rows(view: &FrameView<'_>, tile: &DrawTile<'_>, number: u32) -> [[f32; 4]; 2] {
+pub(crate) fn tile_rows(view: &FrameView<'_>, tile: &DrawTile<'_>, number: u32) -> [[f32; 4]; 2] {
     let [x, y, height_m] = tile.buffers.reference_m;
     let reference_in_world = DVec3::new(x, y, height_m * view.vertical_scale());
     let offset = reference_in_world - view.camera.eye_in_world();

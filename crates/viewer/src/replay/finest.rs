@@ -11,14 +11,14 @@ use crate::{
 };
 
 /// All tiles without tiles beneath them, loaded before the flight begins.
-pub(super) struct Finest {
+pub(crate) struct Finest {
     buffers: BTreeMap<TileId, TileBuffers>,
     /// Between which true heights their ground lies; those without ground are left out.
     height_ranges_m: BTreeMap<TileId, [f64; 2]>,
 }
 
 impl Finest {
-    pub(super) fn load(
+    pub(crate) fn load(
         gpu: &Gpu,
         source: &PackageSource,
         budget_bytes: u64,
@@ -53,18 +53,18 @@ impl Finest {
         Ok(finest)
     }
 
-    pub(super) fn buffers(&self) -> &BTreeMap<TileId, TileBuffers> {
+    pub(crate) fn buffers(&self) -> &BTreeMap<TileId, TileBuffers> {
         &self.buffers
     }
 
     /// Draws all of them.
-    pub(super) fn all(&self) -> Work {
+    pub(crate) fn all(&self) -> Work {
         let started = Instant::now();
         self.choose(started, |_, _| true)
     }
 
     /// Draws those in view. Heights in the world are true heights times `vertical_scale`.
-    pub(super) fn in_view(
+    pub(crate) fn in_view(
         &self,
         source: &PackageSource,
         camera: &Camera,

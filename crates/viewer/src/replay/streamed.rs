@@ -13,7 +13,7 @@ use crate::{
 
 /// How long a frame may wait for its tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Patience {
+pub(crate) enum Patience {
     /// It is drawn with what there is; what it asks for comes with the next.
     None,
     /// It is drawn when nothing is missing, or no more fits.
@@ -21,7 +21,7 @@ pub(super) enum Patience {
 }
 
 /// Tiles that come and go as a [`Streamer`] plans; each arrives in the frame after it was asked for.
-pub(super) struct Streamed<'a> {
+pub(crate) struct Streamed<'a> {
     gpu: &'a Gpu,
     source: &'a PackageSource,
     budget: StreamBudget,
@@ -32,7 +32,7 @@ pub(super) struct Streamed<'a> {
 }
 
 impl<'a> Streamed<'a> {
-    pub(super) fn new(gpu: &'a Gpu, source: &'a PackageSource, budget: StreamBudget) -> Self {
+    pub(crate) fn new(gpu: &'a Gpu, source: &'a PackageSource, budget: StreamBudget) -> Self {
         Self {
             gpu,
             source,
@@ -43,12 +43,12 @@ impl<'a> Streamed<'a> {
         }
     }
 
-    pub(super) fn buffers(&self) -> &BTreeMap<TileId, TileBuffers> {
+    pub(crate) fn buffers(&self) -> &BTreeMap<TileId, TileBuffers> {
         &self.buffers
     }
 
     /// Gets ready for a frame seen from `camera`, loading also for where it will be, `ahead`.
-    pub(super) fn advance(
+    pub(crate) fn advance(
         &mut self,
         camera: &Camera,
         ahead: Option<&Camera>,

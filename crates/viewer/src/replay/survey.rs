@@ -36,11 +36,11 @@ pub struct Lifted {
 
 /// How the eye stands above the ground in one frame.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Stand {
+pub(crate) struct Stand {
     /// It is lifted by so much, true metres.
-    pub(super) lift_m: f64,
+    pub(crate) lift_m: f64,
     /// How far away it looks, world metres.
-    pub(super) focus_m: f64,
+    pub(crate) focus_m: f64,
 }
 
 /// How the eye stands in every frame of a flight.
@@ -48,7 +48,7 @@ pub(super) struct Stand {
 /// A window lifts the eye where ground is in its way, and looks as far as the ground beneath it is away; so does a flight,
 /// for the same path to give the same pictures. Between two keyframes a path may cut through a ridge, and a window that
 /// recorded it may have known coarser ground only; but nobody can have flown beneath even the coarsest.
-pub(super) struct Survey {
+pub(crate) struct Survey {
     stands: Vec<Stand>,
     lifted: Lifted,
 }
@@ -59,7 +59,7 @@ impl Survey {
     /// # Errors
     /// When a keyframe is farther under the ground than the coarsest ground is from the true one, a tile cannot be had, or
     /// it was stopped.
-    pub(super) fn new(
+    pub(crate) fn new(
         source: &PackageSource,
         timetable: Timetable<'_>,
         options: &ReplayOptions,
@@ -100,12 +100,12 @@ impl Survey {
     }
 
     /// Of a frame of the flight.
-    pub(super) fn stand(&self, frame: u32) -> Stand {
+    pub(crate) fn stand(&self, frame: u32) -> Stand {
         self.stands[frame as usize]
     }
 
     /// Frames in which the eye was too low.
-    pub(super) fn lifted(&self) -> Lifted {
+    pub(crate) fn lifted(&self) -> Lifted {
         self.lifted
     }
 }

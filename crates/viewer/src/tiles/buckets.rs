@@ -33,7 +33,7 @@ pub(crate) struct Buckets {
 
 impl Buckets {
     /// Of triangles given by three indices each.
-    pub(super) fn new(vertices: &[GroundVertex], surface: &[u32]) -> Self {
+    pub(crate) fn new(vertices: &[GroundVertex], surface: &[u32]) -> Self {
         let boxes: Vec<[[f64; 2]; 2]> = surface
             .chunks_exact(3)
             .map(|corners| {

@@ -31,7 +31,7 @@ pub struct GroundMesh {
 
 impl GroundMesh {
     /// Places `tin`, whose vertices have these octahedron-coded normals, relative to `reference_m`.
-    pub(super) fn new(
+    pub(crate) fn new(
         id: TileId,
         tin: &Tin,
         normals: &[[i8; 2]],
@@ -112,42 +112,11 @@ fn on_border(tin: &Tin, from: u32, to: u32) -> bool {
 }
 
 /// Difference in f64, then rounded: the only way from a position in the working CRS to f32.
-pub(super) fn relative(position_m: [f64; 3], reference_m: [f64; 3]) -> [f32; 3] {
+pub(crate) fn relative(position_m: [f64; 3], reference_m: [f64; 3]) -> [f32; 3] {
     [0, 1, 2].map(|axis| (position_m[axis] - reference_m[axis]) as f32)
 }
 
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "these numbers are exact")]
-mod tests {
-    use corniche_geom::NodeIndex;
-    use corniche_tin::TinVertex;
-
-    use super::*;
-
-    /// Two triangles over a whole tile of 10 m cells, 256 steps high in the east.
-    fn square() -> GroundMesh {
-        let vertex = |row, column, height_q| TinVertex { row, column, height_q };
-        let corners =
-            vec![vertex(0, 0, 0), vertex(0, 256, 256), vertex(256, 0, 0), vertex(256, 256, 256)];
-        let tin = Tin::new(corners, &[[0, 2, 1], [1, 2, 3]]).unwrap();
-        let frame = Frame::new([0.0; 2], 10.0, NodeIndex { i: 0, j: 256 }, 0).unwrap();
-        GroundMesh::new(TileId::ROOT, &tin, &[[0, 0]; 4], &frame, 0.5, [1280.0, 1280.0, 64.0])
-    }
-
-    #[test]
-    fn vertices_are_relative_to_the_reference_point() {
-        let mesh = square();
-        assert_eq!(mesh.vertices[0].position_in_tile, [-1280.0, 1280.0, -64.0], "north-west");
-        assert_eq!(mesh.vertices[3].position_in_tile, [1280.0, -1280.0, 64.0], "south-east");
-        assert_eq!(mesh.vertices[0].normal_skirt, [0, 0, 127, 0]);
-    }
-
-    #[test]
-    fn skirts_hang_from_the_four_borders_and_not_from_the_diagonal() {
-        let mesh = square();
-        assert_eq!(mesh.surface_indices, 6);
-        assert_eq!(mesh.indices.len(), 6 + 4 * 6);
-        assert_eq!(mesh.vertices.len(), 4 + 4 * 2);
-        assert!(mesh.vertices[4..].iter().all(|vertex| vertex.normal_skirt[3] == 127));
-    }
-}
+#[path = "ground_tests.rs"]
+mod tests;

@@ -11,7 +11,7 @@ use super::{
 /// What the roads of a tile are told of its ground when they are placed.
 ///
 /// Found when a tile is decoded and not stored: it follows from what is stored, and takes a few microseconds a segment.
-pub(super) struct Relief<'a> {
+pub(crate) struct Relief<'a> {
     frame: &'a Frame,
     /// `None` without ground, or without roads to ask.
     surface: Option<&'a Surface>,
@@ -22,7 +22,7 @@ pub(super) struct Relief<'a> {
 
 impl<'a> Relief<'a> {
     /// The ground of tile `id`, whose roads are drawn up to `width_margin_m` wide to each side.
-    pub(super) fn new(
+    pub(crate) fn new(
         id: TileId,
         surface: Option<&'a Surface>,
         frame: &'a Frame,
@@ -35,7 +35,7 @@ impl<'a> Relief<'a> {
 
     /// True heights of the ground beneath a segment in plan and how many metres they rise per metre away from it;
     /// `None` when there is no ground within [`NearHeights::reach_m`].
-    pub(super) fn near(&self, ends_m: [[f64; 2]; 2]) -> Option<([f64; 2], f64)> {
+    pub(crate) fn near(&self, ends_m: [[f64; 2]; 2]) -> Option<([f64; 2], f64)> {
         let ends = ends_m.map(|at| self.frame.fraction_of_position(at));
         let [reach_m, ..] = self.reaches_m;
         let found = near_ground(ends, self.surface?, reach_m / self.frame.lattice_step_m())?;
@@ -43,13 +43,13 @@ impl<'a> Relief<'a> {
     }
 
     /// The ground as roads far wider than a cell ask for it; `None` when there is none of the one or of the others.
-    pub(super) fn wide(&self, lines: &[GroundLine]) -> Option<Slopes> {
+    pub(crate) fn wide(&self, lines: &[GroundLine]) -> Option<Slopes> {
         let surface = self.surface.filter(|_| !lines.is_empty())?;
         Some(Slopes::of_surface(surface, self.tile, self.frame))
     }
 
     /// The ground beside a piece of a road; `wide` is the same ground. Level without any.
-    pub(super) fn bed(&self, piece: &Piece, wide: Option<&Slopes>) -> Bed {
+    pub(crate) fn bed(&self, piece: &Piece, wide: Option<&Slopes>) -> Bed {
         let (Some(surface), Some(wide)) = (self.surface, wide) else { return Bed::default() };
         let step_m = self.frame.lattice_step_m();
         let [[x, y, height_m], [_, _, end_height_m]] = piece.ends_m;

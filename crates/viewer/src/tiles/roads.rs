@@ -8,7 +8,7 @@ use super::PlanScale;
 
 mod segments;
 
-pub(super) use self::segments::Piece;
+pub(crate) use self::segments::Piece;
 pub use self::segments::{
     Bed, NearHeights, RoadEnd, RoadList, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, Side,
 };
@@ -77,7 +77,7 @@ pub struct BadRoad {
 
 impl TileLines {
     /// Places the roads of a payload, as far as it has them, on its `surface`. `width_margin_m` is the level's.
-    pub(super) fn of_payload(
+    pub(crate) fn of_payload(
         payload: &TilePayload,
         surface: Option<&Surface>,
         frame: &Frame,

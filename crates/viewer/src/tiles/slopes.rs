@@ -8,13 +8,13 @@ const SIDE: usize = 128;
 
 /// A plane over the working CRS; heights are true ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Plane {
+pub(crate) struct Plane {
     /// A position on it.
-    pub(super) at_m: [f64; 2],
+    pub(crate) at_m: [f64; 2],
     /// Its height there.
-    pub(super) height_m: f64,
+    pub(crate) height_m: f64,
     /// Metres that it rises per metre east and per metre north.
-    pub(super) gradient: [f64; 2],
+    pub(crate) gradient: [f64; 2],
 }
 
 impl Plane {
@@ -29,7 +29,7 @@ impl Plane {
 ///
 /// Bounds on how far the ground around a wide road leaves a plane, for roads as wide as many triangles; they are no
 /// tighter than two cells allow.
-pub(super) struct Slopes {
+pub(crate) struct Slopes {
     tile: Bounds,
     side_m: [f64; 2],
     /// Row by row from the south; `None` without ground.
@@ -51,7 +51,7 @@ struct Triangle {
 }
 
 impl Slopes {
-    pub(super) fn of_surface(surface: &Surface, tile: Bounds, frame: &Frame) -> Self {
+    pub(crate) fn of_surface(surface: &Surface, tile: Bounds, frame: &Frame) -> Self {
         let side_m = [tile.width() / SIDE as f64, tile.height() / SIDE as f64];
         let mut slopes = Self { tile, side_m, squares: vec![None; SIDE * SIDE] };
         let triangles: Vec<Triangle> = (0_u32..)
@@ -96,7 +96,7 @@ impl Slopes {
 
     /// How far the ground leaves a plane downwards and upwards, at most, within a rectangle that may be turned; its
     /// corners go around it. 0 both without ground there.
-    pub(super) fn leaving(&self, plane: &Plane, corners_m: [[f64; 2]; 4]) -> [f64; 2] {
+    pub(crate) fn leaving(&self, plane: &Plane, corners_m: [[f64; 2]; 4]) -> [f64; 2] {
         let (low, high) = corners_m.iter().fold(
             ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]),
             |(low, high), at| {

@@ -36,7 +36,7 @@ impl App {
         saved
     }
 
-    pub(super) fn stop_recording(&mut self, now_s: f64) {
+    pub(crate) fn stop_recording(&mut self, now_s: f64) {
         if let Err(lost) = self.save_recording(now_s) {
             self.notice(words::with_causes(&lost));
         }
@@ -51,7 +51,7 @@ impl App {
     }
 
     /// Begins the pictures that are wanted, and saves those whose pixels have come back, in the order of the wishes.
-    pub(super) fn take_shots(
+    pub(crate) fn take_shots(
         &mut self,
         canvas: &mut Canvas,
         primitives: &[egui::ClippedPrimitive],
@@ -101,7 +101,7 @@ impl App {
     }
 
     /// The pictures that were being taken went with the device.
-    pub(super) fn forget_pictures(&mut self) {
+    pub(crate) fn forget_pictures(&mut self) {
         if !self.developing.is_empty() {
             self.developing.clear();
             self.notice(words::with_causes(&NotSaved::DeviceLost));
@@ -109,7 +109,7 @@ impl App {
     }
 
     /// Asks the graphics card how long the last frames took.
-    pub(super) fn take_times(&mut self, canvas: &mut Canvas) -> Result<(), WindowError> {
+    pub(crate) fn take_times(&mut self, canvas: &mut Canvas) -> Result<(), WindowError> {
         match canvas.times() {
             Ok(times) => self.passes = times,
             Err(error) if canvas.gpu().is_lost() => return Err(error.into()),
@@ -121,7 +121,7 @@ impl App {
         Ok(())
     }
 
-    pub(super) fn write_trace(&mut self, pose: Pose, size_px: [u32; 2]) -> Result<(), WindowError> {
+    pub(crate) fn write_trace(&mut self, pose: Pose, size_px: [u32; 2]) -> Result<(), WindowError> {
         let line = TraceLine {
             frame: self.frame,
             cursor_px: self.cursor_px,

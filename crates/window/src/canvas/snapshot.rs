@@ -19,7 +19,7 @@ struct Part {
 
 impl Snapshot {
     /// Of one picture of the map, or of two: the second from `column` on.
-    pub(super) fn of_map(gpu: &Gpu, left: &Picture, right: Option<&Picture>, column: u32) -> Self {
+    pub(crate) fn of_map(gpu: &Gpu, left: &Picture, right: Option<&Picture>, column: u32) -> Self {
         let part = |picture: &Picture| Part {
             size_px: picture.size_px(),
             has_blue_first: false,
@@ -29,7 +29,7 @@ impl Snapshot {
     }
 
     /// Of what is painted into such a [`texture`].
-    pub(super) fn of_window(gpu: &Gpu, texture: &wgpu::Texture) -> Self {
+    pub(crate) fn of_window(gpu: &Gpu, texture: &wgpu::Texture) -> Self {
         let part = Part {
             size_px: [texture.width(), texture.height()],
             has_blue_first: matches!(
@@ -89,7 +89,7 @@ impl Part {
 }
 
 /// Something to paint the window into and read.
-pub(super) fn texture(
+pub(crate) fn texture(
     gpu: &Gpu,
     format: TextureFormat,
     [width, height]: [u32; 2],

@@ -15,7 +15,7 @@ const SPEED_RANGE: [f64; 2] = [1.0 / 64.0, 64.0];
 
 /// What fly mode remembers.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Flying {
+pub(crate) struct Flying {
     held: BTreeSet<Key>,
     is_fast: bool,
     /// Notches of the wheel so far.
@@ -23,41 +23,41 @@ pub(super) struct Flying {
 }
 
 impl Flying {
-    pub(super) fn press(&mut self, key: Key) {
+    pub(crate) fn press(&mut self, key: Key) {
         self.held.insert(key);
     }
 
-    pub(super) fn release(&mut self, key: Key) {
+    pub(crate) fn release(&mut self, key: Key) {
         self.held.remove(&key);
     }
 
-    pub(super) fn let_go(&mut self) {
+    pub(crate) fn let_go(&mut self) {
         self.held.clear();
         self.is_fast = false;
     }
 
-    pub(super) fn set_fast(&mut self, is_fast: bool) {
+    pub(crate) fn set_fast(&mut self, is_fast: bool) {
         self.is_fast = is_fast;
     }
 
-    pub(super) fn turn_wheel(&mut self, notches: f64) {
+    pub(crate) fn turn_wheel(&mut self, notches: f64) {
         let most = SPEED_RANGE[1].ln() / SPEED_PER_NOTCH.ln();
         self.notches = (self.notches + notches).clamp(-most, most);
     }
 
-    pub(super) fn is_moving(&self) -> bool {
+    pub(crate) fn is_moving(&self) -> bool {
         !self.held.is_empty()
     }
 
     /// Speed along an axis: the higher above the ground, the faster; a view's focus is a measure of it.
-    pub(super) fn speed_m_per_s(&self, view: &View) -> f64 {
+    pub(crate) fn speed_m_per_s(&self, view: &View) -> f64 {
         let wheel = SPEED_PER_NOTCH.powf(self.notches).clamp(SPEED_RANGE[0], SPEED_RANGE[1]);
         let fast = if self.is_fast { FAST } else { 1.0 };
         view.focus_m.max(10.0) * 0.5 * wheel * fast
     }
 
     /// Where the eye is after some time of the keys held now.
-    pub(super) fn moved(&self, view: &View, dt_s: f64) -> DVec3 {
+    pub(crate) fn moved(&self, view: &View, dt_s: f64) -> DVec3 {
         let axes = view.world_from_view();
         let direction: DVec3 = self
             .held

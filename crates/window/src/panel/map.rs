@@ -7,7 +7,7 @@ use crate::{
 };
 
 /// Style, heights, detail.
-pub(super) fn show(ui: &mut Ui, settings: &mut Settings, facts: &Facts<'_>) {
+pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, facts: &Facts<'_>) {
     ui.horizontal(|ui| {
         ui.label("Style");
         let chosen = facts.style_names.get(settings.style).map_or("", String::as_str);

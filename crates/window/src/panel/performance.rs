@@ -6,7 +6,7 @@ use crate::{facts::Facts, frame_times::FrameTimes, words};
 const GRAPH_MS: f64 = 33.3;
 
 /// What a frame costs.
-pub(super) fn show(ui: &mut Ui, facts: &Facts<'_>) {
+pub(crate) fn show(ui: &mut Ui, facts: &Facts<'_>) {
     let times = facts.frame_times;
     let ms = |value: Option<f64>| value.map_or("–".to_owned(), |ms| format!("{ms:.1}"));
     ui.label(format!(

@@ -6,7 +6,7 @@ use crate::{
 };
 
 /// What moves the camera besides the mouse.
-pub(super) fn camera(ui: &mut Ui, facts: &Facts<'_>, commands: &mut Vec<Command>) {
+pub(crate) fn camera(ui: &mut Ui, facts: &Facts<'_>, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let fly = if facts.mode == Mode::Fly { "Back to map (F)" } else { "Fly (F)" };
         for (words, command) in [
@@ -22,7 +22,7 @@ pub(super) fn camera(ui: &mut Ui, facts: &Facts<'_>, commands: &mut Vec<Command>
 }
 
 /// Pictures, and the way of the camera.
-pub(super) fn show(ui: &mut Ui, facts: &Facts<'_>, commands: &mut Vec<Command>) {
+pub(crate) fn show(ui: &mut Ui, facts: &Facts<'_>, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         for (words, shot) in [("Map (P)", Shot::Map), ("Window (Shift P)", Shot::Window)] {
             if ui.button(words).on_hover_text("Saves a picture").clicked() {

@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// The method, what two of them are compared by, and how roads look in either.
-pub(super) fn show(ui: &mut Ui, settings: &mut Settings) {
+pub(crate) fn show(ui: &mut Ui, settings: &mut Settings) {
     ui.horizontal(|ui| {
         ui.label("Compare");
         let compare = &mut settings.compare;
@@ -74,7 +74,7 @@ fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, all: &[(T
 }
 
 /// Which classes are shown, and how wide.
-pub(super) fn classes(ui: &mut Ui, settings: &mut Settings, facts: &Facts<'_>) {
+pub(crate) fn classes(ui: &mut Ui, settings: &mut Settings, facts: &Facts<'_>) {
     Grid::new("classes").num_columns(3).min_col_width(0.0).show(ui, |ui| {
         for (class, factor) in FunctionalRoadClass::all().zip(&mut settings.width_factors) {
             let color = facts.road_colors.get(usize::from(class.number()));

@@ -4,7 +4,7 @@ use egui::{Response, Slider, SliderClamping, Ui, emath::Numeric};
 
 /// A slider on a factor or a size, logarithmic. A value beyond its range or finer than it shows, as the command line may
 /// have it, stays as it is until it is moved.
-pub(super) fn slide<T: Numeric>(
+pub(crate) fn slide<T: Numeric>(
     ui: &mut Ui,
     value: &mut T,
     range: RangeInclusive<T>,

@@ -17,7 +17,7 @@ const POINTS_PER_NOTCH: f64 = 50.0;
 
 /// What is held down, and where.
 #[derive(Debug, Default)]
-pub(super) struct Inputs {
+pub(crate) struct Inputs {
     modifiers: Modifiers,
     cursor_px: DVec2,
     /// Where the cursor went last and when, not yet handed on: each place costs a search of the ground, and mice tell of
@@ -26,7 +26,7 @@ pub(super) struct Inputs {
 }
 
 /// Whether this event is the key that shows and hides the panel, which the panel's toolkit would take for itself.
-pub(super) fn is_panel_key(event: &WindowEvent) -> bool {
+pub(crate) fn is_panel_key(event: &WindowEvent) -> bool {
     matches!(event, WindowEvent::KeyboardInput { event, .. }
         if event.logical_key == winit::keyboard::Key::Named(NamedKey::Tab))
 }
@@ -36,14 +36,14 @@ pub(super) fn is_panel_key(event: &WindowEvent) -> bool {
 /// Held down a little too long in another window it must not end this one too, when that gives it the keyboard: the window
 /// library tells of keys that are held down then as synthetic presses, and after that of their repetition as of new ones.
 #[derive(Debug, Default)]
-pub(super) struct EndKey {
+pub(crate) struct EndKey {
     is_control_down: bool,
     is_held_from_before: bool,
 }
 
 impl EndKey {
     /// Whether this event ends the program.
-    pub(super) fn take(&mut self, event: &WindowEvent) -> bool {
+    pub(crate) fn take(&mut self, event: &WindowEvent) -> bool {
         match event {
             WindowEvent::ModifiersChanged(modifiers) => {
                 self.is_control_down = modifiers.state().control_key();
@@ -69,14 +69,14 @@ fn is_q(logical: &winit::keyboard::Key) -> bool {
 
 impl Inputs {
     /// Hands on where the cursor is, if it moved; for each frame, and before whatever else happens there.
-    pub(super) fn hand_on_move(&mut self, app: &mut App) {
+    pub(crate) fn hand_on_move(&mut self, app: &mut App) {
         if let Some((at_px, moved_s)) = self.moved.take() {
             app.input(&Input::Move { at_px }, moved_s);
         }
     }
 
     /// Hands an event on, or keeps it for [`Inputs::hand_on_move`]; tells whether it changed anything.
-    pub(super) fn take(
+    pub(crate) fn take(
         &mut self,
         event: &WindowEvent,
         app: &mut App,
@@ -231,40 +231,5 @@ fn command(logical: &winit::keyboard::Key, modifiers: Modifiers) -> Option<Comma
 }
 
 #[cfg(test)]
-mod tests {
-    use winit::keyboard::Key as Logical;
-
-    use super::*;
-
-    #[test]
-    fn shift_makes_a_picture_of_the_window() {
-        let letter = |letter: &str| Logical::Character(letter.into());
-        let shift = Modifiers { shift: true, control: false };
-        assert_eq!(command(&letter("p"), Modifiers::default()), Some(Command::Take(Shot::Map)));
-        assert_eq!(command(&letter("P"), shift), Some(Command::Take(Shot::Window)));
-        assert_eq!(command(&letter("x"), shift), None);
-    }
-
-    #[test]
-    fn control_q_ends_the_program_unless_it_was_held_down_before() {
-        let control = |is_control_down| EndKey { is_control_down, is_held_from_before: false };
-        assert!(control(true).press(true, false));
-        assert!(!control(false).press(true, false), "a letter alone");
-        let mut end_key = control(true);
-        assert!(!end_key.press(true, true), "held down when the keyboard comes");
-        assert!(!end_key.press(true, false), "repeated");
-        assert!(!end_key.press(false, false), "let go");
-        assert!(end_key.press(true, false), "and pressed here");
-    }
-
-    #[test]
-    fn fly_mode_goes_by_the_place_of_keys_and_zoom_by_their_signs() {
-        let key = |sign: &str, code| {
-            moving_key(&Logical::Character(sign.into()), PhysicalKey::Code(code))
-        };
-        // A French keyboard has a z where an English one has a w.
-        assert_eq!(key("z", KeyCode::KeyW), Some(Key::Ahead));
-        assert_eq!(key("+", KeyCode::BracketRight), Some(Key::ZoomIn));
-        assert_eq!(key("n", KeyCode::KeyN), None);
-    }
-}
+#[path = "inputs_tests.rs"]
+mod tests;

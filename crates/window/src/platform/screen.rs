@@ -12,7 +12,7 @@ use winit::{event_loop::ActiveEventLoop, window::Window};
 use crate::{WindowError, canvas::Canvas};
 
 /// The surface and the size of what is painted on it.
-pub(super) struct Screen {
+pub(crate) struct Screen {
     surface: Surface<'static>,
     instance: Instance,
     configuration: SurfaceConfiguration,
@@ -22,7 +22,7 @@ pub(super) struct Screen {
 }
 
 /// What there is to paint into.
-pub(super) enum Acquired {
+pub(crate) enum Acquired {
     /// This.
     Texture(SurfaceTexture),
     /// Nothing just now; it is worth trying again at once.
@@ -33,7 +33,7 @@ pub(super) enum Acquired {
 
 impl Screen {
     /// The surface of a window and a device that draws on it; OpenGL only if there is nothing better.
-    pub(super) fn new(
+    pub(crate) fn new(
         event_loop: &ActiveEventLoop,
         window: &Arc<Window>,
     ) -> Result<(Self, Gpu), WindowError> {
@@ -60,18 +60,18 @@ impl Screen {
     }
 
     /// Colours as they are painted: encoded as sRGB, without the surface's doing.
-    pub(super) fn format(&self) -> TextureFormat {
+    pub(crate) fn format(&self) -> TextureFormat {
         self.configuration.format
     }
 
     /// Width and height of what is painted; 0 while the window is minimised on some systems. No side is larger than the
     /// device's textures, which a window across many screens may be: the system fits the picture into it.
-    pub(super) fn size_px(&self) -> [u32; 2] {
+    pub(crate) fn size_px(&self) -> [u32; 2] {
         self.size_px
     }
 
     /// The window has another size.
-    pub(super) fn resize(&mut self, canvas: &Canvas, size_px: [u32; 2]) {
+    pub(crate) fn resize(&mut self, canvas: &Canvas, size_px: [u32; 2]) {
         self.size_px = drawable_px(canvas.gpu(), size_px);
         // Of many sizes in a row only the last is painted.
         self.is_configured = false;
@@ -97,7 +97,7 @@ impl Screen {
     }
 
     /// Gets something to paint into; once for each way of losing it, the surface is made anew.
-    pub(super) fn acquire(
+    pub(crate) fn acquire(
         &mut self,
         canvas: &Canvas,
         window: &Arc<Window>,
@@ -136,7 +136,7 @@ impl Screen {
     }
 
     /// A new surface and a new device, in the place of those lost.
-    pub(super) fn rebuild(&mut self, window: &Arc<Window>) -> Result<Gpu, WindowError> {
+    pub(crate) fn rebuild(&mut self, window: &Arc<Window>) -> Result<Gpu, WindowError> {
         self.is_configured = false;
         self.surface = new_surface(&self.instance, window)?;
         let gpu = Gpu::for_window(&self.instance, &self.surface)?;

@@ -132,7 +132,7 @@ pub type RoadVolumes = RoadList<RoadVolume>;
 
 impl Side {
     /// The side of `tile` that a point lies on, if any.
-    pub(super) fn of([x, y]: [f64; 2], tile: Bounds) -> Option<Self> {
+    pub(crate) fn of([x, y]: [f64; 2], tile: Bounds) -> Option<Self> {
         // Roads are cut on the border exactly; positions are sums of f64.
         let slack_m = 1e-9 * tile.width();
         let on = |a: f64, b: f64| (a - b).abs() <= slack_m;
@@ -149,12 +149,12 @@ impl Side {
 
 /// A piece of a line on the ground, before it is placed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::tiles) struct Piece {
+pub(crate) struct Piece {
     /// x, y in the working CRS and true heights of its ends.
-    pub(in crate::tiles) ends_m: [[f64; 3]; 2],
+    pub(crate) ends_m: [[f64; 3]; 2],
     /// The ends of its source segment in plan.
-    pub(in crate::tiles) source_m: [[f64; 2]; 2],
-    pub(in crate::tiles) has_caps: [bool; 2],
+    pub(crate) source_m: [[f64; 2]; 2],
+    pub(crate) has_caps: [bool; 2],
 }
 
 impl Piece {
@@ -174,7 +174,7 @@ impl Piece {
     }
 
     /// Its direction in plan, of length 1.
-    pub(in crate::tiles) fn direction(&self) -> [f64; 2] {
+    pub(crate) fn direction(&self) -> [f64; 2] {
         let [p, q] = self.source_m;
         let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
         let length_m = dx.hypot(dy);
@@ -182,7 +182,7 @@ impl Piece {
     }
 
     /// How long it is in plan.
-    pub(in crate::tiles) fn length_m(&self) -> f64 {
+    pub(crate) fn length_m(&self) -> f64 {
         let [[x, y, _], [to_x, to_y, _]] = self.ends_m;
         (to_x - x).hypot(to_y - y)
     }
@@ -199,7 +199,7 @@ impl Piece {
 impl RoadList<RoadSegment> {
     /// Cuts lines of the tile with these bounds into segments. `bed` tells of the ground beside a piece.
     #[must_use]
-    pub(in crate::tiles) fn of_lines(
+    pub(crate) fn of_lines(
         lines: &[GroundLine],
         tile: Bounds,
         reference_m: [f64; 3],

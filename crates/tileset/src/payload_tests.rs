@@ -474,7 +474,7 @@ fn the_smallest_tile_has_these_bytes() {
     let geo =
         super::roads_geo::encode(&payload.roads_geo, corner, &surface(&ground.tin)).unwrap().0;
     let raw = super::terrain::encode(ground, scale).unwrap();
-    let page = include_str!("../../FORMAT.md");
+    let page = include_str!("../FORMAT.md");
     let parts = [encode(&payload, &context()).unwrap().bytes, raw, geo].map(|bytes| {
         let line = |bytes: &[u8]| {
             bytes.iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().join(" ")

@@ -1,0 +1,28 @@
+use clap::Parser;
+
+use super::*;
+
+#[derive(Parser)]
+struct Line {
+    #[command(flatten)]
+    camera: CameraArgs,
+}
+
+#[test]
+fn a_place_is_looked_at_from_where_the_options_say() {
+    let check = |line: &str, expected: Option<CameraRequest>| {
+        let line = Line::try_parse_from(line.split_whitespace());
+        assert_eq!(line.ok().map(|line| line.camera.request()), expected);
+    };
+    let place = |distance_m, heading_deg, pitch_deg| CameraRequest::LookAt {
+        lon_deg: -9.5,
+        lat_deg: 47.0,
+        distance_m,
+        orientation: Orientation { heading_deg, pitch_deg },
+    };
+    check("corniche", Some(CameraRequest::FrameAll));
+    check("corniche --look-at -9.5,47", Some(place(5000.0, 0.0, 60.0)));
+    let all = "corniche --look-at -9.5,47 --distance 20 --heading -30 --pitch 5";
+    check(all, Some(place(20.0, -30.0, 5.0)));
+    check("corniche --distance 20", None);
+}

@@ -1,0 +1,96 @@
+use std::fs;
+
+use super::*;
+
+#[test]
+fn nothing_stands_at_the_target_before_the_file_is_complete() {
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("list.csv");
+    let mut output = Output::create(&target, Existing::Keep, &[]).unwrap();
+    output.write_all(b"half").unwrap();
+    assert!(!target.exists());
+    drop(output);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "litter");
+    Output::create(&target, Existing::Keep, &[]).unwrap().write_whole(b"whole").unwrap();
+    assert_eq!(fs::read(&target).unwrap(), b"whole");
+}
+
+#[test]
+fn what_is_there_is_kept_unless_said_otherwise() {
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("list.csv");
+    let late = Output::create(&target, Existing::Keep, &[]).unwrap();
+    fs::write(&target, b"precious").unwrap();
+    let kept = [late.write_whole(b"new"), Output::create(&target, Existing::Keep, &[]).map(drop)];
+    for refused in kept {
+        assert_eq!(refused.unwrap_err().code(), ExitCode::Exists);
+    }
+    assert_eq!(fs::read(&target).unwrap(), b"precious");
+    Output::create(&target, Existing::Replace, &[]).unwrap().write_whole(b"new").unwrap();
+    assert_eq!(fs::read(&target).unwrap(), b"new");
+}
+
+#[test]
+fn a_picture_takes_the_place_of_a_picture_and_of_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("map.png");
+    let create = |kind| Output::create(&target, Existing::ReplaceLike(kind), &[]);
+    create(Kind::Png).unwrap().write_whole(b"\x89PNG old").unwrap();
+    create(Kind::Png).unwrap().write_whole(b"\x89PNG new").unwrap();
+    assert_eq!(fs::read(&target).unwrap(), b"\x89PNG new");
+    let refused = create(Kind::Svg).unwrap_err();
+    assert_eq!(refused.code(), ExitCode::Exists);
+    assert!(refused.to_string().contains("map.png exists already and is no SVG"), "{refused}");
+    assert_eq!(fs::read(&target).unwrap(), b"\x89PNG new");
+    fs::write(&target, b"").unwrap();
+    create(Kind::Svg).unwrap().write_whole(b"<svg").unwrap();
+}
+
+#[test]
+fn files_that_belong_together_are_all_written_before_one_takes_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let targets = ["a.csv", "b.svg"].map(|name| folder.path().join(name));
+    let complete = targets
+        .each_ref()
+        .map(|target| Output::create(target, Existing::Keep, &[]).unwrap().fill(b"whole").unwrap());
+    assert!(targets.iter().all(|target| !target.exists()));
+    for file in complete {
+        file.place().unwrap();
+    }
+    assert!(targets.iter().all(|target| fs::read(target).unwrap() == b"whole"));
+}
+
+#[test]
+fn a_place_where_no_file_can_be_is_wrong_usage() {
+    let folder = tempfile::tempdir().unwrap();
+    for place in [folder.path().to_path_buf(), folder.path().join("missing/list.csv")] {
+        let refused = Output::create(&place, Existing::Replace, &[]).unwrap_err();
+        assert_eq!(refused.code(), ExitCode::Unusable);
+        assert!(refused.to_string().contains(&place.display().to_string()));
+    }
+}
+
+#[test]
+fn a_command_does_not_replace_what_it_reads() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("a.pmtiles");
+    fs::write(&package, b"precious").unwrap();
+    let other_name = folder.path().join(".").join("a.pmtiles");
+    let refused = Output::create(&other_name, Existing::Replace, &[&package]).unwrap_err();
+    assert_eq!(refused.code(), ExitCode::Unusable);
+    assert_eq!(fs::read(&package).unwrap(), b"precious");
+}
+
+#[test]
+fn what_a_command_will_write_is_the_same_file_by_any_path() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("new.pmtiles");
+    fs::create_dir(folder.path().join("sub")).unwrap();
+    for way in [".", "sub/.."] {
+        let list = folder.path().join(way).join("new.pmtiles");
+        let refused = Output::create(&list, Existing::Replace, &[&package]).unwrap_err();
+        assert_eq!(refused.code(), ExitCode::Unusable, "{way}");
+    }
+    let other = folder.path().join("other.csv");
+    assert!(Output::create(&other, Existing::Replace, &[&package]).is_ok());
+}

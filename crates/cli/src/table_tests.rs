@@ -1,0 +1,15 @@
+use super::*;
+
+#[test]
+fn columns_line_up() {
+    let mut table = Table::new(["level", "tiles"]);
+    table.row(["0".into(), "1".into()]);
+    table.row(["10".into(), "123456".into()]);
+    assert_eq!(table.to_text(), "level   tiles\n0           1\n10     123456\n");
+}
+
+#[test]
+fn thousands_are_apart() {
+    assert_eq!(count(7), "7");
+    assert_eq!(count(1_234_567), "1\u{202f}234\u{202f}567");
+}

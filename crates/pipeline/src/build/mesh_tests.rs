@@ -1,0 +1,14 @@
+use super::*;
+
+#[test]
+fn reads_back_what_it_wrote_and_refuses_a_cut() {
+    let node = |row, column, height_q| TinVertex { row, column, height_q };
+    let vertices = vec![node(0, 0, -5), node(0, 256, 7), node(256, 0, 1 << 20), node(256, 256, 0)];
+    let tin = Tin::new(vertices, &[[0, 2, 1], [1, 2, 3]]).unwrap();
+    let meshed = Meshed { tin, normals: vec![[0, 0], [1, -1], [127, -127], [3, 4]] };
+    let bytes = to_bytes(&meshed);
+    assert_eq!(from_bytes(&bytes), Some(meshed));
+    for cut in 0..bytes.len() {
+        assert_eq!(from_bytes(&bytes[..cut]), None);
+    }
+}

@@ -1,0 +1,32 @@
+use corniche_geom::{Frame, NodeIndex, TileId};
+
+use super::*;
+
+fn place() -> Place {
+    let frame = Frame::new([0.0; 2], 1.0, NodeIndex { i: 0, j: 0 }, 0).unwrap();
+    Place::of(&frame, TileId::ROOT)
+}
+
+#[test]
+fn a_piece_without_a_line_is_found_and_only_inside_the_tile() {
+    let line = [[-1000.0, -5000.0], [9000.0, -5000.0]];
+    let lines = [[[7000.0, -5001.0], [3000.0, -5000.0]], [[0.0, -5000.0], [2000.0, -5000.0]]];
+    let bare = bare_pieces(place(), line, &lines);
+    assert_eq!(
+        bare,
+        [[[2000.0, -5000.0], [3000.0, -5000.0]], [[7000.0, -5000.0], [9000.0, -5000.0]]]
+    );
+}
+
+#[test]
+fn along_a_border_nothing_is_asked() {
+    assert!(bare_pieces(place(), [[0.0, -10.0], [0.0, -9000.0]], &[]).is_empty());
+    assert_eq!(bare_pieces(place(), [[1.0, -10.0], [1.0, -9000.0]], &[]).len(), 1);
+}
+
+#[test]
+fn a_point_is_on_a_segment_and_not_beyond_its_end() {
+    let segments = [[[0.0, 0.0], [100.0, 0.0]]];
+    assert!(is_on([50.0, 1.5], &segments, 2.0) && is_on([101.0, 0.0], &segments, 2.0));
+    assert!(!is_on([50.0, 2.5], &segments, 2.0) && !is_on([103.0, 0.0], &segments, 2.0));
+}

@@ -1,0 +1,56 @@
+use super::*;
+
+#[test]
+fn settings_files_are_read_whole_or_refused() {
+    let config = Config::parse(
+        "[terrain]\nmax-error = 5.0\nvertical-shift = -1.5\n[roads]\nsimplify = 0.5\n[resources]\nthreads = 2\n",
+    )
+    .unwrap();
+    assert_eq!(config.terrain.max_error, Some(5.0));
+    assert_eq!(config.terrain.vertical_shift, Some(-1.5));
+    assert_eq!(config.roads.simplify, Some(0.5));
+    assert_eq!(config.resources.threads, NonZeroUsize::new(2));
+    for bad in ["[terrain]\nmaxerror = 5.0\n", "[terain]\n", "[resources]\nthreads = 0\n", "a"] {
+        assert!(matches!(Config::parse(bad), Err(PresetError::Toml(_))), "{bad}");
+    }
+}
+
+#[test]
+fn one_value_for_no_data_is_said_as_shortly_as_before() {
+    let nodata = |text: &str| Config::parse(text).map(|config| config.terrain.nodata);
+    assert_eq!(nodata("[terrain]\nnodata = -9999\n").unwrap(), [-9999.0]);
+    assert_eq!(nodata("[terrain]\nnodata = [-9999, 0.5]\n").unwrap(), [-9999.0, 0.5]);
+    assert_eq!(nodata("[terrain]\n").unwrap(), [0.0; 0]);
+    assert!(nodata("[terrain]\nnodata = \"none\"\n").is_err());
+    let config = Config::parse("[terrain]\nheight-range = [-500, 9000]\n").unwrap();
+    assert_eq!(config.terrain.height_range, Some([-500.0, 9000.0]));
+    assert!(Config::parse("[terrain]\nheight-range = [1]\n").is_err());
+}
+
+#[test]
+fn a_cell_is_a_square_or_a_rectangle() {
+    let cell = |text: &str| {
+        let config = Config::parse(&format!("[terrain]\ncell = {text}\n"));
+        config.map(|config| config.terrain.cell.map(CellSides::to_array))
+    };
+    assert_eq!(cell("30").unwrap(), Some([30.0, 30.0]));
+    assert_eq!(cell("2.5").unwrap(), Some([2.5, 2.5]));
+    assert_eq!(cell("[20, 30.5]").unwrap(), Some([20.0, 30.5]));
+    for bad in ["[]", "[1]", "[1, 2, 3]", "\"30\"", "true", "{ east = 1 }"] {
+        let said = cell(bad).unwrap_err().to_string();
+        assert!(said.contains("[east, north]"), "{bad}: {said}");
+    }
+    let rest = "[terrain]\ncrs = \"dem\"\ncell-every = 3\nscale-latitude = -46.5\n";
+    let terrain = Config::parse(rest).unwrap().terrain;
+    assert_eq!((terrain.crs.as_deref(), terrain.cell_every), (Some("dem"), Some(3)));
+    assert_eq!(terrain.scale_latitude, Some(-46.5));
+    assert!(Config::parse("[terrain]\ncell-every = -1\n").is_err());
+}
+
+#[test]
+fn a_text_that_is_no_settings_is_not_even_parsed() {
+    let long = "#".repeat(crate::error::MAX_TEXT_BYTES + 1);
+    assert!(matches!(Config::parse(&long), Err(PresetError::TooLong { .. })));
+    let deep = format!("a = {}{}", "[".repeat(100_000), "]".repeat(100_000));
+    assert!(matches!(Config::parse(&deep), Err(PresetError::Toml(_))));
+}

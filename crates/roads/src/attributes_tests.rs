@@ -1,0 +1,106 @@
+use super::*;
+
+fn of(text: &str) -> RoadAttributes {
+    let tags: Vec<(&str, &str)> =
+        text.split_whitespace().map(|tag| tag.split_once('=').unwrap()).collect();
+    attributes(&tags)
+}
+
+#[test]
+fn form_follows_junction_then_link_then_carriageway() {
+    let check = |tags, expected| assert_eq!(of(tags).form, expected, "{tags}");
+    check("highway=primary", Form::Ordinary);
+    check("highway=primary oneway=yes", Form::Ordinary);
+    check("highway=primary oneway=yes dual_carriageway=yes", Form::DualCarriageway);
+    check("highway=motorway", Form::DualCarriageway);
+    check("highway=motorway oneway=no", Form::Ordinary);
+    check("highway=trunk", Form::Ordinary);
+    check("highway=trunk oneway=-1", Form::DualCarriageway);
+    check("highway=trunk_link oneway=yes", Form::Link);
+    check("highway=residential junction=roundabout", Form::Roundabout);
+    check("highway=trunk_link junction=circular", Form::Roundabout);
+    check("highway=residential junction=intersection", Form::Ordinary);
+}
+
+#[test]
+fn oneway_is_as_tagged_or_implied() {
+    let check = |tags, expected| assert_eq!(of(tags).oneway, expected, "{tags}");
+    check("highway=primary", Oneway::No);
+    for yes in ["yes", "true", "1"] {
+        assert_eq!(attributes(&[("oneway", yes)]).oneway, Oneway::Forward);
+    }
+    check("oneway=-1", Oneway::Backward);
+    check("oneway=reverse junction=roundabout", Oneway::Backward);
+    check("highway=motorway", Oneway::Forward);
+    check("highway=motorway_link", Oneway::No);
+    check("highway=motorway oneway=no", Oneway::No);
+    check("highway=motorway oneway=reversible", Oneway::No);
+    check("highway=service junction=roundabout", Oneway::Forward);
+    check("oneway=alternating", Oneway::No);
+}
+
+#[test]
+fn structure_is_what_carries_the_road() {
+    let check = |tags, expected| assert_eq!(of(tags).structure, expected, "{tags}");
+    check("highway=primary covered=yes", Structure::Ground);
+    check("bridge=yes", Structure::Bridge);
+    check("bridge=viaduct", Structure::Bridge);
+    check("bridge=no tunnel=no", Structure::Ground);
+    check("tunnel=yes", Structure::Tunnel);
+    check("tunnel=avalanche_protector", Structure::Tunnel);
+    check("tunnel=culvert", Structure::Ground);
+    check("tunnel=building_passage", Structure::Ground);
+    check("bridge=yes tunnel=yes layer=1", Structure::Bridge);
+    check("bridge=yes tunnel=yes layer=-1", Structure::Tunnel);
+}
+
+#[test]
+fn layers_are_whole_numbers_that_fit() {
+    for (text, expected) in [
+        ("", 0),
+        ("0", 0),
+        ("+2", 2),
+        ("-5", -5),
+        (" 3 ", 3),
+        ("1000", 127),
+        ("-1000", -128),
+        ("1.5", 0),
+        ("1;2", 0),
+        ("99999999999999999999", 0),
+        ("ground", 0),
+    ] {
+        assert_eq!(attributes(&[("layer", text)]).layer, expected, "{text:?}");
+    }
+}
+
+/// What the values above come to is told, and what is as it says is not.
+#[test]
+fn tags_that_are_taken_for_something_else_are_named() {
+    let told = |tags: &[(&'static str, &'static str)]| -> Vec<(&'static str, &'static str)> {
+        tags_taken_otherwise(tags).collect()
+    };
+    for value in ["1000", "-1000", "128", "1.5", "1;2", "ground", "99999999999999999999"] {
+        assert_eq!(told(&[("layer", value)]), [("layer", value)]);
+    }
+    for value in ["", "0", "+2", "-5", " 3 ", "127", "-128"] {
+        assert_eq!(told(&[("layer", value)]), [], "{value:?}");
+    }
+    for value in ["culvert", "building_passage"] {
+        assert_eq!(told(&[("tunnel", value), ("layer", "-1")]), [("tunnel", value)]);
+    }
+    for value in ["yes", "no", "avalanche_protector", ""] {
+        assert_eq!(told(&[("tunnel", value)]), [], "{value:?}");
+    }
+}
+
+#[test]
+fn keeps_the_names() {
+    let road = attributes(&[
+        ("name", "Hauptstraße"),
+        ("ref", "16"),
+        ("surface", "asphalt"),
+        ("name", "second"),
+    ]);
+    assert_eq!((&*road.name, &*road.reference, &*road.surface), ("Hauptstraße", "16", "asphalt"));
+    assert_eq!(attributes(&[]), RoadAttributes::default());
+}

@@ -1,0 +1,29 @@
+use proptest::prelude::*;
+
+use super::*;
+
+proptest! {
+    /// The bounded search finds what a search through all vertices finds.
+    #[test]
+    fn agrees_with_trying_all(
+        set in prop::collection::btree_set((0..30_u16, 0..30_u16), 3..60), a in any::<prop::sample::Index>(),
+        b in any::<prop::sample::Index>(),
+    ) {
+        let at: Vec<[u16; 2]> = set.iter().map(|&(row, column)| [column, row]).collect();
+        let work = Work::new(u64::MAX);
+        let nodes = Nodes::new(at.iter().copied(), &work);
+        let (a, b) = (a.index(at.len()), b.index(at.len()));
+        prop_assume!(a != b);
+        let xy = |k: usize| [f64::from(at[k][0]), -f64::from(at[k][1])];
+        let angle = |c: usize| {
+            let ([ax, ay], [bx, by], [cx, cy]) = (xy(a), xy(b), xy(c));
+            let cross = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+            let dot = (ax - cx) * (bx - cx) + (ay - cy) * (by - cy);
+            (cross > 0.0).then(|| dot / cross)
+        };
+        let expected = (0..at.len())
+            .filter_map(|c| angle(c).map(|cot| (cot, c as u32)))
+            .min_by(|p, q| p.partial_cmp(q).unwrap());
+        prop_assert_eq!(nodes.best_corner([a as u32, b as u32], |_| true), expected.map(|(_, c)| c));
+    }
+}

@@ -1,0 +1,32 @@
+use super::*;
+use crate::{TinSpec, triangulate};
+use proptest::prelude::*;
+
+proptest! {
+    /// A decoded normal is of unit length and within a degree of the direction encoded.
+    #[test]
+    fn decodes_what_was_encoded(x in -3.0_f64..3.0, y in -3.0_f64..3.0) {
+        let length = (x * x + y * y + 1.0).sqrt();
+        let back = decode_normal(encode_normal([x, y, 1.0])).map(f64::from);
+        let cosine = (back[0] * x + back[1] * y + back[2]) / length;
+        prop_assert!((back.iter().map(|v| v * v).sum::<f64>() - 1.0).abs() < 1e-6);
+        prop_assert!(cosine > 1.0_f64.to_radians().cos(), "{cosine}");
+    }
+}
+
+#[test]
+fn a_plane_has_one_normal_also_beside_gaps() {
+    // Rises 3 m a cell of 10 m to the east, falls 1 m a cell of 20 m to the south: rises to the north.
+    let heights = HeightGrid::from_fn(9, 9, |c, r| {
+        if (c, r) == (0, 4) || r == 8 { f32::NAN } else { 3.0 * c as f32 - r as f32 }
+    });
+    let tin = triangulate(&heights, TinSpec { max_error_m: 1.0, quantum_m: 1.0 / 32.0 }).unwrap();
+    let codes = normals(&heights, &tin, Cell { east_m: 10.0, north_m: 20.0 });
+    assert_eq!(codes.len(), tin.vertices().len());
+    assert!(codes.iter().all(|&code| code == encode_normal([-0.3, -0.05, 1.0])), "{codes:?}");
+}
+
+#[test]
+fn level_ground_points_up() {
+    assert_eq!(decode_normal([0, 0]).map(f32::to_bits), [0.0_f32, 0.0, 1.0].map(f32::to_bits));
+}

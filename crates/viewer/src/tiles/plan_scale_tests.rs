@@ -1,0 +1,41 @@
+use corniche_geom::{ProjectError, Projection};
+
+use super::*;
+
+/// Degrees times 80 000 and 100 000.
+struct Geographic;
+
+impl Projection for Geographic {
+    fn working_from_wgs84(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
+        for p in points {
+            *p = [p[0] * 8e4, p[1] * 1e5];
+        }
+        Ok(())
+    }
+
+    fn wgs84_from_working(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
+        for p in points {
+            *p = [p[0] / 8e4, p[1] / 1e5];
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn between_the_corners_of_a_tile_the_scale_is_that_of_the_table() {
+    let bounds = Bounds { min_x: 7.2e5, min_y: 4.65e6, max_x: 8.0e5, max_y: 4.75e6 };
+    let table = CoordinateTable::sample(&Geographic, bounds, 0.01).unwrap();
+    // Reaches beyond the data in the north-east.
+    let tile = Bounds { min_x: 7.7e5, min_y: 4.73e6, max_x: 8.3e5, max_y: 4.79e6 };
+    let scale = PlanScale::of_tile(&table, tile, 1.0);
+    for at in [[7.7e5, 4.73e6], [7.9e5, 4.742e6], [8.0e5, 4.75e6]] {
+        let ([east, north], truth) = (scale.at(at), table.scale_at(at).unwrap());
+        assert!((east / truth[0] - 1.0).abs() < 1e-5, "{east} {truth:?}");
+        assert!((north / truth[1] - 1.0).abs() < 1e-5, "{north} {truth:?}");
+    }
+    let [east, north] = scale.at([7.8e5, 4.74e6]);
+    let across = |by: [f64; 2]| scale.across([[7.8e5, 4.74e6], [7.8e5 + by[0], 4.74e6 + by[1]]]);
+    // An eastward road is wide northwards, a northward one eastwards.
+    assert!((across([10.0, 0.0]) / north - 1.0).abs() < 1e-5);
+    assert!((across([0.0, -10.0]) / east - 1.0).abs() < 1e-5);
+}
