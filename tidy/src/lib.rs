@@ -1,0 +1,27 @@
+//! The house rules that no compiler checks: which module uses which, and how large things are.
+//!
+//! ```text
+//!  crates/*/src ──► source: modules, what they define and import, every path in them
+//!                      │
+//!                      ├──► uses: which file uses which, through re-exports ──► graph: cycles, ranks
+//!                      └──► figures: lines, functions, public items
+//! ```
+//!
+//! `cargo run -p corniche-tidy` prints the picture of every crate; `tests/` holds the rules.
+//!
+//! Only paths are seen. A method called on a value whose type is never named makes no edge, and neither does code that
+//! a macro generates. Test code is left out: a test may use whatever it tests.
+//!
+//! This package never changes a file and no product crate depends on it.
+
+mod source;
+
+mod uses;
+
+mod figures;
+mod graph;
+
+pub use figures::{CrateFigures, Function, figures};
+pub use graph::{Cycle, Graph};
+pub use source::{Crate, Module, crates_of, read_crate};
+pub use uses::{Use, uses};

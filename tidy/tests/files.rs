@@ -1,0 +1,67 @@
+//! Where tests lie, what is visible and how long files are: the rules, held against the workspace itself.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// Lines beyond which a file is split.
+const MAX_FILE_LINES: usize = 600;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("lies in the workspace").to_owned()
+}
+
+/// Every file of Rust below `folder`, build output left out.
+fn rust_files(folder: &Path, into: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("the folder can be listed") {
+        let path = entry.expect("the folder can be listed").path();
+        let name = path.file_name().expect("has a name").to_string_lossy().into_owned();
+        if path.is_dir() && name != "target" && !name.starts_with('.') {
+            rust_files(&path, into);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            into.push(path);
+        }
+    }
+}
+
+fn all_rust_files() -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for part in ["crates", "tests", "fuzz", "tidy"] {
+        rust_files(&root().join(part), &mut files);
+    }
+    assert!(files.len() > 100, "the workspace has more files than {}", files.len());
+    files
+}
+
+/// Unit tests lie in `NAME_tests.rs` beside the code, integration tests in `tests/`.
+#[test]
+fn unit_tests_lie_beside_the_code() {
+    for file in all_rust_files() {
+        let text = fs::read_to_string(&file).unwrap();
+        let inline = text.lines().any(|line| line.trim_start().starts_with("mod tests {"));
+        assert!(!inline, "{} has a module of tests inside", file.display());
+    }
+}
+
+/// Inside a crate things are visible everywhere, `pub(crate)`, or nowhere.
+#[test]
+fn visibility_inside_a_crate_has_one_form() {
+    let others = [concat!("pub(", "super)"), concat!("pub(", "in ")];
+    for file in all_rust_files() {
+        let text = fs::read_to_string(&file).unwrap();
+        assert!(
+            !others.iter().any(|form| text.contains(form)),
+            "{}: use pub(crate)",
+            file.display()
+        );
+    }
+}
+
+#[test]
+fn files_stay_short() {
+    for file in all_rust_files() {
+        let lines = fs::read_to_string(&file).unwrap().lines().count();
+        assert!(lines <= MAX_FILE_LINES, "{} has {lines} lines", file.display());
+    }
+}

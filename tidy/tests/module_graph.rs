@@ -1,0 +1,85 @@
+//! Modules and crates use each other in one direction: the rule, held against the workspace itself.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use corniche_tidy::{Graph, crates_of, read_crate, uses};
+
+/// Which crates of the workspace each crate may use, beyond what those use (`ARCHITECTURE.md`, "The crates").
+const MAY_USE: [(&str, &[&str]); 12] = [
+    ("cli", &["window", "viewer", "pipeline", "presets"]),
+    ("window", &["viewer"]),
+    ("viewer", &["tileset"]),
+    ("pipeline", &["tileset", "osm", "dem"]),
+    ("tileset", &["drape", "tin", "roads"]),
+    ("osm", &["roads"]),
+    ("dem", &["geom"]),
+    ("presets", &["roads"]),
+    ("drape", &["tin", "geom"]),
+    ("roads", &["geom"]),
+    ("tin", &["geom"]),
+    ("geom", &[]),
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("lies in the workspace").to_owned()
+}
+
+fn all_below<'a>(name: &'a str, found: &mut Vec<&'a str>) {
+    if found.contains(&name) {
+        return;
+    }
+    found.push(name);
+    let (_, direct) =
+        MAY_USE.iter().find(|(of, _)| *of == name).expect("the crate is in the table");
+    for below in *direct {
+        all_below(below, found);
+    }
+}
+
+/// No two modules of a crate use each other, neither files nor folders.
+#[test]
+fn modules_use_each_other_in_one_direction() {
+    let mut cycles = Vec::new();
+    for folder in crates_of(&root()).unwrap() {
+        let read = read_crate(&folder).unwrap();
+        let found = uses(&read);
+        let files = Graph::of_files(&read, &found);
+        assert!(files.nodes.len() == 1 || !files.edges.is_empty(), "{} has no edges", read.name);
+        cycles.extend(files.cycles());
+        cycles.extend(Graph::of_children(&read, &found).iter().flat_map(Graph::cycles));
+    }
+    let texts: Vec<String> = cycles.iter().map(ToString::to_string).collect();
+    assert!(texts.is_empty(), "modules use each other:\n{}", texts.join("\n"));
+}
+
+/// Each crate depends on what `ARCHITECTURE.md` draws below it, and on nothing else of the workspace.
+#[test]
+fn crates_depend_on_what_is_drawn_below_them() {
+    let folders = crates_of(&root()).unwrap();
+    for folder in &folders {
+        let name = folder.file_name().unwrap().to_string_lossy().into_owned();
+        let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+        let manifest: toml::Table = manifest.parse().unwrap();
+        let mut allowed = Vec::new();
+        let is_development = name == "testing";
+        if !is_development {
+            let (name, _) = MAY_USE.iter().find(|(of, _)| *of == name).unwrap_or_else(|| {
+                panic!("{name} is a new crate: add it to this table and to ARCHITECTURE.md")
+            });
+            all_below(name, &mut allowed);
+        }
+        for table in ["dependencies", "build-dependencies"] {
+            let Some(dependencies) = manifest.get(table).and_then(toml::Value::as_table) else {
+                continue;
+            };
+            for used in dependencies.keys().filter_map(|key| key.strip_prefix("corniche-")) {
+                assert!(used != "testing", "{name} is a product and depends on `testing`");
+                assert!(used != "tidy", "{name} depends on `tidy`");
+                assert!(is_development || allowed.contains(&used), "{name} may not use {used}");
+            }
+        }
+    }
+}
