@@ -1,4 +1,5 @@
-use corniche_presets::{Config, class_filter, parse_frc_table, parse_style};
+use corniche_presets::{Config, class_filter, parse_frc_table};
+use corniche_styles::parse_style;
 
 /// A settings file, an FRC table and a style of these bytes are read or refused; what is read keeps its own promises.
 ///
@@ -29,12 +30,8 @@ pub fn config(data: &[u8]) {
     match parse_style(text) {
         Ok(style) => {
             // What the shaders divide by.
-            assert!(style.width_scaling.threshold_m >= 1.0 && style.background.haze_reach > 0.0);
-            assert!(
-                style.tint.is_sorted_by(|a, b| (a.share as f32) < b.share as f32),
-                "{:?}",
-                style.tint
-            );
+            assert!(style.width_scaling.threshold_m >= 1.0 && style.haze_reach > 0.0);
+            assert!(style.tint.is_sorted_by(|(a, _), (b, _)| a < b), "{:?}", style.tint);
             for road in style.roads {
                 assert!(road.width_m > 0.0 && road.min_width_px > 0.0, "{road:?}");
                 assert!(road.width_m.is_finite() && road.min_width_px.is_finite(), "{road:?}");

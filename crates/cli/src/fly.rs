@@ -27,12 +27,12 @@ use crate::{
     failure::Failure,
     interrupt, presets, progress, styles,
 };
+use corniche_styles::Style;
 use corniche_viewer::{
     Detail, FrameRecord, Lifted, Replay, ReplayError, ReplayOptions, default_flight,
     flight::{Flight, WorkingCrs},
     gpu::{Gpu, PassTimes},
     stream::StreamBudget,
-    style::Style,
     tiles::PackageSource,
 };
 use corniche_window::{Watched, watch};

@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-use corniche_presets::{Config, PresetError, frc_preset, frc_preset_names, parse_frc_table};
+use corniche_presets::{Config, frc_preset, frc_preset_names, parse_frc_table};
 use corniche_roads::FrcTable;
 
 use crate::failure::Failure;
@@ -37,7 +37,7 @@ pub(crate) fn read_config(path: &Path) -> Result<Config, Failure> {
     Config::parse(&text).map_err(|error| refuse(&format!("settings {}", path.display()), &error))
 }
 
-pub(crate) fn refuse(what: &str, error: &PresetError) -> Failure {
+pub(crate) fn refuse(what: &str, error: &dyn std::error::Error) -> Failure {
     Failure::unusable(format!("{what}: {error}"))
 }
 

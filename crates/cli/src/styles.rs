@@ -1,14 +1,11 @@
-//! Styles by name or path: texts to what the viewer draws with.
+//! Styles by name or path: files are read here, and read again when they change.
 
 use std::{
     io,
     path::{Path, PathBuf},
 };
 
-use corniche_presets::{
-    CenterSheet, Rgb8, RoadSheet, StyleSheet, parse_style, style_preset, style_preset_names,
-};
-use corniche_viewer::style::{CenterLine, Rgb, RoadStyle, Style, WidthScaling};
+use corniche_styles::{Style, parse_style, style_preset, style_preset_names};
 
 use crate::{
     failure::Failure,
@@ -40,7 +37,7 @@ fn read(path: &Path) -> Result<Style, Failure> {
 }
 
 fn parse(what: &str, text: &str) -> Result<Style, Failure> {
-    parse_style(text).map(|sheet| of_sheet(&sheet)).map_err(|error| refuse(what, &error))
+    parse_style(text).map_err(|error| refuse(what, &error))
 }
 
 /// The file of a style, looked at again and again while a window shows it.
@@ -91,44 +88,6 @@ fn said(path: &Path) -> Option<Result<String, String>> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => None,
         said => Some(said.map_err(|error| error.to_string())),
     }
-}
-
-fn of_sheet(sheet: &StyleSheet) -> Style {
-    let StyleSheet { outline_px, width_scaling, light, background, tint, roads } = sheet;
-    Style {
-        roads: roads.map(road),
-        width_scaling: WidthScaling {
-            threshold_m: width_scaling.threshold_m as f32,
-            exponent: width_scaling.exponent as f32,
-            constant: width_scaling.constant as f32,
-        },
-        outline_px: *outline_px,
-        tint: tint.map(|stop| (stop.share as f32, color(stop.color))),
-        light_azimuth_deg: light.azimuth_deg,
-        light_altitude_deg: light.altitude_deg,
-        hillshade: light.hillshade as f32,
-        haze: color(background.haze),
-        sky: color(background.sky),
-        void: color(background.void),
-        haze_reach: background.haze_reach as f32,
-    }
-}
-
-fn road(sheet: RoadSheet) -> RoadStyle {
-    RoadStyle {
-        width_m: sheet.width_m as f32,
-        min_width_px: sheet.min_width_px as f32,
-        color: color(sheet.color),
-        outline: color(sheet.outline),
-        center: sheet.center.map(|CenterSheet { width_share, color: of_center }| CenterLine {
-            width_share: width_share as f32,
-            color: color(of_center),
-        }),
-    }
-}
-
-fn color(Rgb8(channels): Rgb8) -> Rgb {
-    channels.map(|channel| f32::from(channel) / 255.0)
 }
 
 #[cfg(test)]

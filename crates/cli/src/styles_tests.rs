@@ -6,12 +6,6 @@ use std::{
 use super::*;
 
 #[test]
-fn the_default_style_is_the_viewers_own() {
-    assert_eq!(style("road-atlas").unwrap(), Style::road_atlas());
-    assert_ne!(style("dark").unwrap(), Style::road_atlas());
-}
-
-#[test]
 fn what_is_no_style_is_refused_by_its_name() {
     let message = style("no-such-style").unwrap_err().to_string();
     for word in ["no-such-style", "road-atlas, dark", "No such file"] {

@@ -7,7 +7,7 @@ use std::{
 };
 
 use clap::{Args, ValueEnum};
-use corniche_presets::style_preset_names;
+use corniche_styles::style_preset_names;
 use corniche_viewer::{stream::StreamBudget, tiles::PackageSource};
 use corniche_window::{
     BeginTrace, Closed, End, NamedStyle, Reload, WindowError, WindowRequest, controls::Inertia,

@@ -1,6 +1,6 @@
 use corniche_roads::{ClassFilterError, FrcTableError};
 
-/// Why a text is no settings file, table or style. Which file it came from the caller knows.
+/// Why a text is no settings file or FRC table. The caller knows which file the text came from.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
@@ -15,16 +15,6 @@ pub enum PresetError {
     Class { text: String },
     #[error("class-max-cell: {0}")]
     ClassFilter(#[from] ClassFilterError),
-    #[error("{entry} of {value} is out of range; it must be {least} to {most}")]
-    StyleRange { entry: String, value: f64, least: f64, most: f64 },
-    #[error("roads.{text:?} is no class; classes are 0 to 8")]
-    StyleClass { text: String },
-    #[error("[roads.{class}] is missing; a style says of every class, 0 to 8, how it looks")]
-    MissingClass { class: String },
-    #[error("a style has {needed} [[tint]] entries, not {count}")]
-    TintCount { count: usize, needed: usize },
-    #[error("the shares of [[tint]] must ascend from 0 to 1, both included, by 0.001 or more")]
-    TintOrder,
 }
 
 /// Longest text that is read. The longest preset has some 3 kB.

@@ -31,11 +31,11 @@ mod render;
 mod replay;
 pub mod scene;
 pub mod stream;
-pub mod style;
 pub mod tiles;
 mod viewpoint;
 
 pub use attribution::draw_attribution;
+pub use corniche_styles as style;
 pub use range::OutOfRange;
 #[cfg(not(target_arch = "wasm32"))]
 pub use render::{RenderError, RenderReport, RenderRequest, Rendered, render};

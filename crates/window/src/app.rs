@@ -10,13 +10,13 @@ pub(crate) use self::start::Package;
 
 use std::{collections::VecDeque, sync::Arc};
 
+use corniche_styles::Rgb;
 use corniche_viewer::{
     RoadMethod,
     camera::Camera,
     flight::{Pose, WorkingCrs},
     gpu::{GpuError, PassTimes, Wireframe},
     lod::Quality,
-    style::Rgb,
     tiles::PackageSource,
 };
 use egui::{Rect, pos2};

@@ -6,6 +6,7 @@ mod snapshot;
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
+use corniche_styles::Style;
 use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::Camera,
@@ -14,7 +15,6 @@ use corniche_viewer::{
         Targets, TileBuffers, Wireframe,
     },
     lod::Drawn,
-    style::Style,
 };
 use egui::{ClippedPrimitive, TextureId, TexturesDelta};
 use egui_wgpu::ScreenDescriptor;

@@ -4,8 +4,9 @@ use corniche_viewer::{
     RoadMethod,
     flight::{Pose, WorkingCrs},
     gpu::PassTimes,
-    style::Rgb,
 };
+
+use corniche_styles::Rgb;
 
 use crate::{controls::Mode, frame_times::FrameTimes, notices::Notice};
 

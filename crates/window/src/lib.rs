@@ -34,11 +34,11 @@ mod words;
 
 use std::{io, path::PathBuf, sync::Arc};
 
+use corniche_styles::Style;
 use corniche_viewer::{
     CameraRequest, OffGround, OutOfRange, RoadOptions, ViewpointError,
     gpu::{GpuError, ReadBackError},
     stream::StreamBudget,
-    style::Style,
     tiles::{LoadTileError, PackageSource},
 };
 

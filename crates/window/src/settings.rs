@@ -1,7 +1,8 @@
 //! What can be changed while the window is open, as plain values.
 
 use corniche_roads::FunctionalRoadClass;
-use corniche_viewer::{RoadMethod, RoadOptions, style::Style};
+use corniche_styles::Style;
+use corniche_viewer::{RoadMethod, RoadOptions};
 
 /// Whether one method is shown or two are set against each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,4 +1,5 @@
 use super::*;
+use crate::{style_preset, style_preset_names};
 
 fn atlas() -> &'static str {
     style_preset("road-atlas").expect("the default style is there")
@@ -18,7 +19,7 @@ fn refuses(from: &str, to: &str, words: &[&str]) {
 fn the_styles_that_come_along_are_styles_of_ordered_roads() {
     assert_eq!(style_preset_names().collect::<Vec<_>>(), ["road-atlas", "dark"]);
     for name in style_preset_names() {
-        let style = parse_style(style_preset(name).unwrap()).unwrap();
+        let style = parse_sheet(style_preset(name).unwrap()).unwrap();
         assert!(
             style
                 .roads
@@ -42,7 +43,7 @@ fn luminance(Rgb8(rgb): Rgb8) -> f64 {
 /// The contrast of main roads, tracks and edges with ground that lies flat in the light.
 #[test]
 fn dark_roads_glow_and_their_edges_are_darker_than_any_ground() {
-    let style = parse_style(style_preset("dark").unwrap()).unwrap();
+    let style = parse_sheet(style_preset("dark").unwrap()).unwrap();
     let contrast = |a: Rgb8, b: Rgb8| {
         let [a, b] = [a, b].map(luminance);
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
@@ -67,6 +68,13 @@ fn colours_are_six_hexadecimal_digits() {
         assert!(Rgb8::try_from(bad.to_owned()).is_err(), "{bad}");
     }
     refuses("\"#D93A2B\"", "\"#D93A2\"", &["line", "#D93A2", "colour"]);
+}
+
+#[test]
+fn the_default_style_is_the_viewers_own() {
+    let parsed = |name| parse_style(style_preset(name).unwrap()).unwrap();
+    assert_eq!(parsed("road-atlas"), Style::road_atlas());
+    assert_ne!(parsed("dark"), Style::road_atlas());
 }
 
 #[test]
@@ -98,7 +106,7 @@ fn what_is_unknown_or_left_out_is_named() {
     let without = atlas().split("[roads.8]").next().expect("split gives one part at least");
     let error = parse_style(without).unwrap_err().to_string();
     assert!(error.contains("roads.8") && error.contains("missing"), "{error}");
-    assert!(matches!(parse_style(&"#".repeat(2 << 20)), Err(PresetError::TooLong { .. })));
+    assert!(matches!(parse_style(&"#".repeat(2 << 20)), Err(StyleError::TooLong { .. })));
 }
 
 #[test]

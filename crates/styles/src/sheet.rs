@@ -1,119 +1,115 @@
+//! The text of a style: TOML, checked entry by entry, and then turned into the values that are drawn with.
+
 use std::{collections::BTreeMap, ops::RangeInclusive};
 
 use corniche_roads::FunctionalRoadClass;
 use serde::Deserialize;
 
-use crate::{PresetError, error::bounded};
+use crate::{CenterLine, Rgb, RoadStyle, Style, StyleError, TINT_STOPS, WidthScaling};
 
-/// Styles that come with the program.
-const PRESETS: [(&str, &str); 2] = [
-    ("road-atlas", include_str!("../../../config/styles/road-atlas.toml")),
-    ("dark", include_str!("../../../config/styles/dark.toml")),
-];
+/// Longest text that is read. The longest preset has some 3 kB.
+const MAX_TEXT_BYTES: usize = 1 << 20;
 
-/// How many colours the tint has.
-pub const TINT_COLORS: usize = 6;
-
-/// From one share of the tint to the next. What draws divides by it, in f32.
+/// Least difference between one share of the tint and the next. The shaders divide by it, in f32.
 const LEAST_STEP: f64 = 0.001;
 
 /// A colour as red, green, blue in sRGB.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
-pub struct Rgb8(pub [u8; 3]);
+pub(crate) struct Rgb8(pub(crate) [u8; 3]);
 
-/// How a map looks, as it is written down. `config/styles/road-atlas.toml` tells what each entry means.
+/// A style in the units and types of its text, checked. `config/styles/road-atlas.toml` tells what each entry means.
 #[derive(Debug, Clone, PartialEq)]
-pub struct StyleSheet {
+pub(crate) struct StyleSheet {
     /// Width of the edge of roads, 0 to 4 pixels.
-    pub outline_px: u32,
+    pub(crate) outline_px: u32,
     /// Growth with distance.
-    pub width_scaling: WidthScalingSheet,
+    pub(crate) width_scaling: WidthScalingSheet,
     /// Light and shade.
-    pub light: LightSheet,
+    pub(crate) light: LightSheet,
     /// Sky, haze and void.
-    pub background: BackgroundSheet,
+    pub(crate) background: BackgroundSheet,
     /// Height tint, lowest first; shares ascend from 0 to 1.
-    pub tint: [TintSheet; TINT_COLORS],
+    pub(crate) tint: [TintSheet; TINT_STOPS],
     /// By class, 0 first.
-    pub roads: [RoadSheet; FunctionalRoadClass::COUNT],
+    pub(crate) roads: [RoadSheet; FunctionalRoadClass::COUNT],
 }
 
 /// How far roads grow with distance.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct WidthScalingSheet {
+pub(crate) struct WidthScalingSheet {
     /// Distance from the eye up to which widths are true, 1 to 1e7 m.
-    pub threshold_m: f64,
+    pub(crate) threshold_m: f64,
     /// 0 to 1.
-    pub exponent: f64,
+    pub(crate) exponent: f64,
     /// Factor on all widths when they grow by a constant, 0.1 to 100.
-    pub constant: f64,
+    pub(crate) constant: f64,
 }
 
 /// Where the light comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct LightSheet {
+pub(crate) struct LightSheet {
     /// Clockwise from north, 0 to 360.
-    pub azimuth_deg: f64,
+    pub(crate) azimuth_deg: f64,
     /// Above the horizon, 0 to 90.
-    pub altitude_deg: f64,
+    pub(crate) altitude_deg: f64,
     /// How strongly slopes are shaded, 0 to 1.
-    pub hillshade: f64,
+    pub(crate) hillshade: f64,
 }
 
 /// What is seen where no near ground is.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct BackgroundSheet {
+pub(crate) struct BackgroundSheet {
     /// Far ground and the sky at the horizon.
-    pub haze: Rgb8,
+    pub(crate) haze: Rgb8,
     /// The sky far above the horizon.
-    pub sky: Rgb8,
+    pub(crate) sky: Rgb8,
     /// Where there is no ground, below the horizon.
-    pub void: Rgb8,
+    pub(crate) void: Rgb8,
     /// Ground so many times as far as what is looked at has lost two thirds of its colour; 0.1 to 1000.
-    pub haze_reach: f64,
+    pub(crate) haze_reach: f64,
 }
 
 /// One colour of the tint.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct TintSheet {
+pub(crate) struct TintSheet {
     /// Where in the height range, 0 to 1.
-    pub share: f64,
+    pub(crate) share: f64,
     /// The colour there.
-    pub color: Rgb8,
+    pub(crate) color: Rgb8,
 }
 
 /// How the roads of one class are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RoadSheet {
+pub(crate) struct RoadSheet {
     /// Width on the ground, 0.1 to 500 m.
-    pub width_m: f64,
+    pub(crate) width_m: f64,
     /// Never drawn thinner than this, 0.1 to 50 pixels.
-    pub min_width_px: f64,
+    pub(crate) min_width_px: f64,
     /// Fill.
-    pub color: Rgb8,
+    pub(crate) color: Rgb8,
     /// Edge.
-    pub outline: Rgb8,
+    pub(crate) outline: Rgb8,
     /// A line along the middle.
-    pub center: Option<CenterSheet>,
+    pub(crate) center: Option<CenterSheet>,
 }
 
 /// The line along the middle of a road of two colours.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct CenterSheet {
+pub(crate) struct CenterSheet {
     /// Share of the road's width, 0.01 to 0.99.
-    pub width_share: f64,
+    pub(crate) width_share: f64,
     /// Its colour.
-    pub color: Rgb8,
+    pub(crate) color: Rgb8,
 }
 
-/// A style as it stands in the file: lists and tables of any length.
+/// A style as it stands in the text, not yet checked: lists and tables of any length.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StyleFile {
@@ -125,24 +121,20 @@ struct StyleFile {
     roads: BTreeMap<String, RoadSheet>,
 }
 
-/// Names of the styles that come with the program, the default one first.
-pub fn style_preset_names() -> impl Iterator<Item = &'static str> {
-    PRESETS.iter().map(|(name, _)| *name)
-}
-
-/// The text of the style of this name that comes with the program, for [`parse_style`].
-#[must_use]
-pub fn style_preset(name: &str) -> Option<&'static str> {
-    PRESETS.iter().find(|(preset, _)| *preset == name).map(|(_, text)| *text)
-}
-
 /// Reads a style's text.
 ///
 /// # Errors
 /// When it is no TOML, leaves something out or says something unknown (the message names the line); when a number is
 /// out of its range, a class is missing, or the tint does not ascend from 0 to 1 (the message names the entry).
-pub fn parse_style(text: &str) -> Result<StyleSheet, PresetError> {
-    let file: StyleFile = toml::from_str(bounded(text)?)?;
+pub fn parse_style(text: &str) -> Result<Style, StyleError> {
+    parse_sheet(text).map(|sheet| Style::from(&sheet))
+}
+
+fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
+    if text.len() > MAX_TEXT_BYTES {
+        return Err(StyleError::TooLong { bytes: text.len(), limit: MAX_TEXT_BYTES });
+    }
+    let file: StyleFile = toml::from_str(text)?;
     let StyleFile { outline_px, width_scaling, light, background, tint, roads } = file;
     let sheet = StyleSheet {
         outline_px,
@@ -158,13 +150,13 @@ pub fn parse_style(text: &str) -> Result<StyleSheet, PresetError> {
 
 /// The tint, if it has as many colours as are needed, lowest first, from 0 to 1.
 #[expect(clippy::float_cmp, reason = "the ends of the tint are given exactly or not at all")]
-fn ascending(tint: Vec<TintSheet>) -> Result<[TintSheet; TINT_COLORS], PresetError> {
+fn ascending(tint: Vec<TintSheet>) -> Result<[TintSheet; TINT_STOPS], StyleError> {
     let count = tint.len();
-    let tint: [TintSheet; TINT_COLORS] =
-        tint.try_into().map_err(|_| PresetError::TintCount { count, needed: TINT_COLORS })?;
-    let ends = [tint[0].share, tint[TINT_COLORS - 1].share];
+    let tint: [TintSheet; TINT_STOPS] =
+        tint.try_into().map_err(|_| StyleError::TintCount { count, needed: TINT_STOPS })?;
+    let ends = [tint[0].share, tint[TINT_STOPS - 1].share];
     if ends != [0.0, 1.0] || !tint.is_sorted_by(|a, b| a.share + LEAST_STEP <= b.share) {
-        return Err(PresetError::TintOrder);
+        return Err(StyleError::TintOrder);
     }
     Ok(tint)
 }
@@ -172,23 +164,23 @@ fn ascending(tint: Vec<TintSheet>) -> Result<[TintSheet; TINT_COLORS], PresetErr
 /// The roads by class, if there are all of them and no others.
 fn all_classes(
     roads: &BTreeMap<String, RoadSheet>,
-) -> Result<[RoadSheet; FunctionalRoadClass::COUNT], PresetError> {
+) -> Result<[RoadSheet; FunctionalRoadClass::COUNT], StyleError> {
     let names: [String; FunctionalRoadClass::COUNT] =
         std::array::from_fn(|class| class.to_string());
     if let Some(text) = roads.keys().find(|text| !names.contains(text)) {
-        return Err(PresetError::StyleClass { text: text.clone() });
+        return Err(StyleError::Class { text: text.clone() });
     }
     // Keys of one digit each: in the order of their names they are in the order of their numbers.
     let known: Vec<RoadSheet> = roads.values().copied().collect();
     known.try_into().map_err(|_| {
         let missing = names.into_iter().find(|name| !roads.contains_key(name)).unwrap_or_default();
-        PresetError::MissingClass { class: missing }
+        StyleError::MissingClass { class: missing }
     })
 }
 
 impl StyleSheet {
     /// Checks every number against its range.
-    fn check(&self) -> Result<(), PresetError> {
+    fn check(&self) -> Result<(), StyleError> {
         let Self { outline_px, width_scaling: scaling, light, background, roads, .. } = self;
         // The kernel looks at (2 r + 1)² places for every pixel.
         within("outline_px", f64::from(*outline_px), 0.0..=4.0)?;
@@ -211,12 +203,12 @@ impl StyleSheet {
     }
 }
 
-fn within(entry: &str, value: f64, range: RangeInclusive<f64>) -> Result<(), PresetError> {
+fn within(entry: &str, value: f64, range: RangeInclusive<f64>) -> Result<(), StyleError> {
     // What is not a number is in no range.
     if range.contains(&value) {
         return Ok(());
     }
-    Err(PresetError::StyleRange {
+    Err(StyleError::Range {
         entry: entry.to_owned(),
         value,
         least: *range.start(),
@@ -241,6 +233,50 @@ impl TryFrom<String> for Rgb8 {
     }
 }
 
+impl From<&StyleSheet> for Style {
+    fn from(sheet: &StyleSheet) -> Self {
+        let StyleSheet { outline_px, width_scaling, light, background, tint, roads } = sheet;
+        Self {
+            roads: roads.map(RoadStyle::from),
+            width_scaling: WidthScaling {
+                threshold_m: width_scaling.threshold_m as f32,
+                exponent: width_scaling.exponent as f32,
+                constant: width_scaling.constant as f32,
+            },
+            outline_px: *outline_px,
+            tint: tint.map(|stop| (stop.share as f32, Rgb::from(stop.color))),
+            light_azimuth_deg: light.azimuth_deg,
+            light_altitude_deg: light.altitude_deg,
+            hillshade: light.hillshade as f32,
+            haze: background.haze.into(),
+            sky: background.sky.into(),
+            void: background.void.into(),
+            haze_reach: background.haze_reach as f32,
+        }
+    }
+}
+
+impl From<RoadSheet> for RoadStyle {
+    fn from(sheet: RoadSheet) -> Self {
+        Self {
+            width_m: sheet.width_m as f32,
+            min_width_px: sheet.min_width_px as f32,
+            color: sheet.color.into(),
+            outline: sheet.outline.into(),
+            center: sheet.center.map(|CenterSheet { width_share, color }| CenterLine {
+                width_share: width_share as f32,
+                color: color.into(),
+            }),
+        }
+    }
+}
+
+impl From<Rgb8> for Rgb {
+    fn from(Rgb8(channels): Rgb8) -> Self {
+        channels.map(|channel| f32::from(channel) / 255.0)
+    }
+}
+
 #[cfg(test)]
-#[path = "style_tests.rs"]
+#[path = "sheet_tests.rs"]
 mod tests;

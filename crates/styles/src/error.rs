@@ -1,0 +1,20 @@
+/// Why a text is no style. The caller knows which file the text came from.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum StyleError {
+    #[error("it holds {bytes} bytes, far more than any settings; at most {limit} are read")]
+    TooLong { bytes: usize, limit: usize },
+    #[error(transparent)]
+    Toml(#[from] toml::de::Error),
+    #[error("{entry} of {value} is out of range; it must be {least} to {most}")]
+    Range { entry: String, value: f64, least: f64, most: f64 },
+    #[error("roads.{text:?} is no class; classes are 0 to 8")]
+    Class { text: String },
+    #[error("[roads.{class}] is missing; a style says of every class, 0 to 8, how it looks")]
+    MissingClass { class: String },
+    #[error("a style has {needed} [[tint]] entries, not {count}")]
+    TintCount { count: usize, needed: usize },
+    #[error("the shares of [[tint]] must ascend from 0 to 1, both included, by 0.001 or more")]
+    TintOrder,
+}

@@ -1,0 +1,20 @@
+//! How the map looks: the values that the viewer draws with, the TOML text in which people write them, and the styles that
+//! come with the program.
+//!
+//! ```text
+//!  text (TOML) ──► parse_style ──► Style ──► viewer, window
+//!       ▲
+//!  style_preset
+//! ```
+//!
+//! This crate never opens a file, never draws and knows no graphics card, so that it also builds for WebAssembly.
+
+mod error;
+mod presets;
+mod sheet;
+mod style;
+
+pub use error::StyleError;
+pub use presets::{style_preset, style_preset_names};
+pub use sheet::parse_style;
+pub use style::{CenterLine, Rgb, RoadStyle, Style, TINT_STOPS, TintStop, WidthScaling};

@@ -1,0 +1,16 @@
+/// Styles that come with the program, the default one first.
+const PRESETS: [(&str, &str); 2] = [
+    ("road-atlas", include_str!("../../../config/styles/road-atlas.toml")),
+    ("dark", include_str!("../../../config/styles/dark.toml")),
+];
+
+/// Names of the styles that come with the program, the default one first.
+pub fn style_preset_names() -> impl Iterator<Item = &'static str> {
+    PRESETS.iter().map(|(name, _)| *name)
+}
+
+/// The text of the style of this name that comes with the program, for [`parse_style`](crate::parse_style).
+#[must_use]
+pub fn style_preset(name: &str) -> Option<&'static str> {
+    PRESETS.iter().find(|(preset, _)| *preset == name).map(|(_, text)| *text)
+}
