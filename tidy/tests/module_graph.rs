@@ -8,15 +8,16 @@ use std::{
 use corniche_tidy::{Graph, crates_of, read_crate, uses};
 
 /// Which crates of the workspace each crate may use, beyond what those use (`ARCHITECTURE.md`, "The crates").
-const MAY_USE: [(&str, &[&str]); 12] = [
+const MAY_USE: [(&str, &[&str]); 13] = [
     ("cli", &["window", "viewer", "pipeline", "presets"]),
     ("window", &["viewer"]),
-    ("viewer", &["tileset"]),
+    ("viewer", &["tileset", "styles"]),
     ("pipeline", &["tileset", "osm", "dem"]),
     ("tileset", &["drape", "tin", "roads"]),
     ("osm", &["roads"]),
     ("dem", &["geom"]),
     ("presets", &["roads"]),
+    ("styles", &["roads"]),
     ("drape", &["tin", "geom"]),
     ("roads", &["geom"]),
     ("tin", &["geom"]),
