@@ -5,10 +5,15 @@
 mod build;
 mod defect;
 mod error;
+mod heights;
 mod inputs;
+mod levels;
 mod observer;
+mod records;
+mod roads;
 mod sample_error;
 mod settings;
+mod stages;
 mod storage;
 mod target;
 mod verify;

@@ -80,7 +80,7 @@ fn compare_all(
     };
     let max_level = manifest.frame.max_level();
     // All finest tiles of the data, those without ground too: a coarser level may cover their nodes.
-    let finest = crate::build::data_tiles(&plan);
+    let finest = crate::heights::pyramid::data_tiles(&plan);
     observer.begin(Stage::Errors, Some(finest.len() as u64));
     let mut truths: BTreeMap<TileId, Truth> = BTreeMap::new();
     let nodes_are_samples = plan.nodes_are_samples();

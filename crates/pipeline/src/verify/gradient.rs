@@ -10,7 +10,10 @@ use super::{
 };
 use crate::{
     BuildError, DiskStorage, Observer, Stage,
-    build::{Pyramid, check_heights, read_heights},
+    heights::{
+        audit,
+        pyramid::{self, Pyramid},
+    },
     workers,
 };
 
@@ -30,10 +33,10 @@ pub(crate) fn verify(
 ) -> Result<(), VerifyError> {
     let work = tempfile::tempdir().map_err(VerifyError::Work)?;
     let storage = DiskStorage::create(work.path()).map_err(VerifyError::Work)?;
-    let pyramid = read_heights(dem, plan, threads, &storage, observer)?;
+    let pyramid = pyramid::read(dem, plan, threads, &storage, observer)?;
     let manifest = package.manifest();
     let mut findings = Findings::default();
-    let allowed = check_heights(dem, manifest.settings.height_range_m, threads, observer);
+    let allowed = audit::check(dem, manifest.settings.height_range_m, threads, observer);
     if matches!(allowed, Err(BuildError::Interrupted)) {
         return Err(VerifyError::Interrupted);
     }

@@ -18,13 +18,15 @@ use super::{
 };
 use crate::{
     BuildError, DiskStorage, Observer, RoadSettings, Stage,
-    build::{
-        Levels, TrueLengths, most_scale, recorded_filter, road_counts,
-        roads::{ReadRoads, RoadInput, read},
-        table_sha256,
-        tiles::{self, ClassSums, Laid, RoadFate, Tiles},
-    },
     inputs::{self, Inputs},
+    levels::{Levels, most_scale, recorded_filter},
+    records::table_sha256,
+    roads::{
+        counts::road_counts,
+        lay::{self, ClassSums, Laid, LaidSums, RoadFate, TileToLayOn},
+        lengths::TrueLengths,
+        read::{ReadRoads, RoadInput, read},
+    },
     workers,
 };
 
@@ -95,15 +97,15 @@ fn compare_all(
         &storage,
         observer,
     )?;
-    let tiles = lay(
+    let laid = lay(
         &Laying { package, levels: &levels, lengths: &lengths, data: [first, last] },
         &mut roads,
         threads,
         findings,
         observer,
     )?;
-    check_counts(manifest, &roads, &tiles, findings);
-    check_growth(manifest, &tiles, findings);
+    check_counts(manifest, &roads, &laid, findings);
+    check_growth(manifest, &laid, findings);
     Ok(())
 }
 
@@ -169,7 +171,7 @@ fn lay(
     threads: usize,
     findings: &mut Findings,
     observer: &dyn Observer,
-) -> Result<Tiles, VerifyError> {
+) -> Result<LaidSums, VerifyError> {
     let [first, last] = laying.data;
     let mut ids = laying.package.tile_ids()?;
     for y in first.y()..=last.y() {
@@ -180,7 +182,7 @@ fn lay(
     ids.sort_unstable_by_key(|&id| pmtiles_order(id));
     ids.dedup();
     observer.begin(Stage::Tiles, Some(ids.len() as u64));
-    let mut tiles = Tiles::of_roads(roads.log.len());
+    let mut sums = LaidSums::of_roads(roads.log.len());
     for batch in ids.chunks(BATCH) {
         let mut lists = Vec::with_capacity(batch.len());
         for &id in batch {
@@ -204,11 +206,11 @@ fn lay(
             },
             |index, found: Found| {
                 findings.merge(found.findings);
-                tiles.add_fates(&found.fates);
-                for (class, sums) in found.classes {
-                    let all = tiles.classes.entry((batch[index].z(), class)).or_default();
-                    all.source_vertices += sums.source_vertices;
-                    all.simplified_vertices += sums.simplified_vertices;
+                sums.add_fates(&found.fates);
+                for (class, found) in found.classes {
+                    let all = sums.classes.entry((batch[index].z(), class)).or_default();
+                    all.source_vertices += found.source_vertices;
+                    all.simplified_vertices += found.simplified_vertices;
                 }
                 observer.advance(Stage::Tiles, 1);
                 Ok(())
@@ -216,7 +218,7 @@ fn lay(
         )?;
     }
     observer.end(Stage::Tiles);
-    Ok(tiles)
+    Ok(sums)
 }
 
 fn look_at(laying: &Laying<'_>, grounds: &mut Grounds, id: TileId, roads: &[(u32, Road)]) -> Found {
@@ -231,7 +233,7 @@ fn look_at(laying: &Laying<'_>, grounds: &mut Grounds, id: TileId, roads: &[(u32
             let owned = grounds.owned_borders(laying, id, !roads.is_empty());
             let bounds = frame.tile_lattice_bounds(id);
             found.fates.extend(roads.iter().map(|(ordinal, road)| {
-                (*ordinal, tiles::lost_road(road, &bounds, owned, laying.lengths))
+                (*ordinal, lay::lost_road(road, &bounds, owned, laying.lengths))
             }));
         }
         return found;
@@ -239,7 +241,7 @@ fn look_at(laying: &Laying<'_>, grounds: &mut Grounds, id: TileId, roads: &[(u32
     let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
     let surface = Surface::new(&terrain.tin, placement);
     let owned = grounds.owned_borders(laying, id, !roads.is_empty());
-    let on = tiles::Ground { id, surface: &surface, owned };
+    let on = TileToLayOn { id, surface: &surface, owned };
     let mut laid = Laid::default();
     for (ordinal, road) in roads {
         laid.lay(road, *ordinal, &on, laying.levels, laying.lengths);
@@ -349,11 +351,11 @@ impl Grounds {
 fn check_counts(
     manifest: &Manifest,
     roads: &ReadRoads<'_>,
-    tiles: &Tiles,
+    laid: &LaidSums,
     findings: &mut Findings,
 ) {
     let said = &manifest.counts;
-    let wanted = road_counts(said.samples, roads, tiles);
+    let wanted = road_counts(said.samples, roads, laid);
     let mut same = |what: &str, said: &dyn std::fmt::Debug, found: &dyn std::fmt::Debug| {
         let (said, found) = (format!("{said:?}"), format!("{found:?}"));
         findings.look(CheckId::OsmCounts, said == found, || {
@@ -375,8 +377,8 @@ fn check_counts(
 }
 
 /// Source and simplified points of each level and class.
-fn check_growth(manifest: &Manifest, tiles: &Tiles, findings: &mut Findings) {
-    let wanted: BTreeMap<(u8, u8), [u64; 2]> = tiles
+fn check_growth(manifest: &Manifest, laid: &LaidSums, findings: &mut Findings) {
+    let wanted: BTreeMap<(u8, u8), [u64; 2]> = laid
         .classes
         .iter()
         .filter(|(_, sums)| sums.source_vertices > 0)

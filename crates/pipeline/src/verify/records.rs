@@ -4,9 +4,9 @@ use corniche_tileset::Manifest;
 
 use super::checks::{CheckId, Findings};
 use crate::{
-    Loss,
-    build::{Levels, TILING, settings_sha256},
-    inputs,
+    Loss, inputs,
+    levels::Levels,
+    records::{TILING, settings_sha256},
 };
 
 /// Kinds of inputs.

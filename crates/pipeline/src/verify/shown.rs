@@ -10,7 +10,7 @@ use super::{
     ground::{Ground, Place},
     methods::{SAME_LINE_STEPS, Segment, is_on, segments, source_points},
 };
-use crate::build::Levels;
+use crate::levels::Levels;
 
 /// One of the two tiles.
 pub(crate) struct Side<'a> {

@@ -21,11 +21,7 @@ use super::{
     shown,
     sums::LENGTH_SHARE,
 };
-use crate::{
-    Observer, Stage,
-    build::{Levels, share},
-    workers,
-};
+use crate::{Observer, Stage, levels::Levels, roads::shares::share, workers};
 
 /// What is kept of a tile to compare it with others.
 struct Kept {

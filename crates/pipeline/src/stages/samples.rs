@@ -6,11 +6,10 @@ use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{Frame, LatticePoint, TileId};
 use corniche_tin::{Placement, Surface};
 
-use super::{
-    levels::Levels,
-    mesh::{self, Meshes},
+use super::mesh::{self, Meshes};
+use crate::{
+    BuildError, Observer, Stage, Storage, levels::Levels, sample_error::SampleSums, workers,
 };
-use crate::{BuildError, Observer, Stage, Storage, sample_error::SampleSums, workers};
 
 /// Memory of a surface to a triangle: corners, adjacency, fans, vertices, buckets.
 const TRIANGLE_BYTES: u64 = 120;

@@ -3,24 +3,32 @@
 use std::collections::BTreeMap;
 
 use corniche_drape::{Neighbours, OwnedBorders};
-use corniche_geom::{LatticeBounds, TileId};
-use corniche_roads::{FunctionalRoadClass, Road};
+use corniche_geom::TileId;
+use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{
-    EncodedTile, GeoRoad, PayloadContext, RoadRecord, SvRoad, Terrain, TilePayload, VerticalRecord,
-    pmtiles_order,
+    EncodedTile, PayloadContext, Terrain, TilePayload, VerticalRecord, pmtiles_order,
 };
 use corniche_tin::{Placement, Surface};
 
 use super::{
-    errors::TileErrors,
-    heights::Pyramid,
-    lengths::{TrueLengths, gaps_um, pieces_um},
-    levels::Levels,
+    deviations::TileErrors,
     mesh::{self, Meshes},
-    road_log::RoadLog,
-    roads::ReadRoads,
 };
-use crate::{BuildError, Observer, Stage, Storage, storage::Kind, storage::Span, workers};
+use crate::{
+    BuildError, Observer, Stage, Storage,
+    heights::pyramid::Pyramid,
+    levels::Levels,
+    roads::{
+        lay::{ClassSums, Laid, LaidSums, RoadFate, TileToLayOn, lost_road},
+        lengths::TrueLengths,
+        log::RoadLog,
+        read::ReadRoads,
+        shares::share,
+    },
+    storage::Kind,
+    storage::Span,
+    workers,
+};
 
 /// Tiles whose lists of roads are in memory at once.
 const BATCH: usize = 1024;
@@ -30,9 +38,7 @@ pub(crate) struct Tiles {
     /// Payloads in package order.
     pub(crate) payloads: Vec<(TileId, Span)>,
     pub(crate) levels: BTreeMap<u8, LevelSums>,
-    pub(crate) classes: BTreeMap<(u8, u8), ClassSums>,
-    /// Per road, at the finest level.
-    pub(crate) roads: Vec<RoadFate>,
+    pub(crate) roads: LaidSums,
 }
 
 /// Sums over the tiles of a level.
@@ -47,28 +53,6 @@ pub(crate) struct LevelSums {
     /// Stored over true errors of its tiles, where those can be measured.
     pub(crate) tightness: Vec<f64>,
     pub(crate) uncovered_nodes: u64,
-}
-
-/// Sums over the roads of a class on a level.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct ClassSums {
-    /// Points of the source lines that lie in tiles with ground.
-    pub(crate) source_vertices: u64,
-    /// The same of the level's simplified lines.
-    pub(crate) simplified_vertices: u64,
-    pub(crate) geo_vertices: u64,
-    pub(crate) sv_vertices: u64,
-    pub(crate) geo_stored_bytes: u64,
-    pub(crate) sv_stored_bytes: u64,
-}
-
-/// What became of a road at the finest level.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct RoadFate {
-    /// True length that lies on a TIN, micrometres.
-    pub(crate) kept_um: u64,
-    /// True length on the data's tiles, but where there is no ground, micrometres.
-    pub(crate) void_um: u64,
 }
 
 /// What every tile needs.
@@ -114,7 +98,11 @@ pub(crate) fn make(
     ids.sort_unstable_by_key(|&id| pmtiles_order(id));
     observer.begin(Stage::Tiles, Some(ids.len() as u64));
     let road_count = roads.as_ref().map_or(0, |roads| roads.log.len());
-    let mut tiles = Tiles::of_roads(road_count);
+    let mut tiles = Tiles {
+        payloads: Vec::new(),
+        levels: BTreeMap::new(),
+        roads: LaidSums::of_roads(road_count),
+    };
     let mut roads = roads;
     // In batches, so that the lists of roads in memory stay few.
     for batch in ids.chunks(BATCH) {
@@ -164,7 +152,7 @@ impl Tiles {
             }
             level.uncovered_nodes += errors.uncovered_nodes;
             for (&class, counted) in &kept.classes {
-                let sums = self.classes.entry((id.z(), class)).or_default();
+                let sums = self.roads.classes.entry((id.z(), class)).or_default();
                 sums.source_vertices += counted.source_vertices;
                 sums.simplified_vertices += counted.simplified_vertices;
                 sums.geo_vertices += counted.geo_vertices;
@@ -173,26 +161,7 @@ impl Tiles {
                 sums.sv_stored_bytes += counted.sv_stored_bytes;
             }
         }
-        self.add_fates(&made.fates);
-    }
-
-    /// Adds what became of roads in one tile.
-    pub(crate) fn add_fates(&mut self, fates: &[(u32, RoadFate)]) {
-        for &(ordinal, fate) in fates {
-            let road = &mut self.roads[ordinal as usize];
-            road.kept_um += fate.kept_um;
-            road.void_um += fate.void_um;
-        }
-    }
-
-    /// Before the first tile, for so many roads.
-    pub(crate) fn of_roads(count: usize) -> Self {
-        Self {
-            payloads: Vec::new(),
-            levels: BTreeMap::new(),
-            classes: BTreeMap::new(),
-            roads: vec![RoadFate::default(); count],
-        }
+        self.roads.add_fates(&made.fates);
     }
 }
 
@@ -210,7 +179,7 @@ fn make_tile(
     let meshed = mesh::load(input.storage, id, *span)?;
     let surface = Surface::new(&meshed.tin, Placement::of_tile(frame, id, levels.quantum_m()));
     let mut laid = Laid::default();
-    let on = Ground { id, surface: &surface, owned: owned_borders(input, id, ordinals)? };
+    let on = TileToLayOn { id, surface: &surface, owned: owned_borders(input, id, ordinals)? };
     for &ordinal in ordinals {
         if let Some(log) = log {
             laid.lay(&log.load(ordinal)?, ordinal, &on, levels, input.lengths);
@@ -235,14 +204,6 @@ fn make_tile(
     let (vertices, triangles) = counts;
     let kept = Kept { span, vertices, triangles, terrain_bytes: encoded.terrain.stored, classes };
     Ok(Made { kept: Some(kept), fates })
-}
-
-/// What roads of a tile are laid on.
-pub(crate) struct Ground<'a> {
-    pub(crate) id: TileId,
-    pub(crate) surface: &'a Surface,
-    /// What of its borders is the tile's.
-    pub(crate) owned: OwnedBorders,
 }
 
 /// What the tile owns of its borders, by the ground on both sides of them.
@@ -293,130 +254,6 @@ fn lost_roads(
     Ok(Made { kept: None, fates })
 }
 
-/// What becomes of a road on a finest tile without ground.
-pub(crate) fn lost_road(
-    road: &Road,
-    bounds: &LatticeBounds,
-    owned: OwnedBorders,
-    lengths: &TrueLengths<'_>,
-) -> RoadFate {
-    let segments_um = lengths.segments_um(&road.line);
-    let void_um = corniche_drape::clip_parts(&road.line, bounds, owned)
-        .iter()
-        .flat_map(|part| pieces_um(&road.line, part, &segments_um))
-        .map(|[from, to]| to - from)
-        .sum();
-    RoadFate { kept_um: 0, void_um }
-}
-
-/// The roads of one tile as they are laid.
-#[derive(Default)]
-pub(crate) struct Laid {
-    pub(crate) geo: Vec<GeoRoad>,
-    pub(crate) sv: Vec<SvRoad>,
-    pub(crate) attributes: BTreeMap<i64, RoadRecord>,
-    pub(crate) fates: Vec<(u32, RoadFate)>,
-    pub(crate) classes: BTreeMap<u8, ClassSums>,
-    /// Next part number of each way, GEO and SV.
-    parts: BTreeMap<i64, [u32; 2]>,
-}
-
-impl Laid {
-    pub(crate) fn lay(
-        &mut self,
-        road: &Road,
-        ordinal: u32,
-        on: &Ground<'_>,
-        levels: &Levels,
-        lengths: &TrueLengths<'_>,
-    ) {
-        let &Ground { id, surface, owned } = on;
-        let frame = levels.frame();
-        let bounds = frame.tile_lattice_bounds(id);
-        let simplified = corniche_roads::simplify(road, levels.simplify_tolerance_steps(id.z()));
-        let mut fate = RoadFate::default();
-        let sums = self.classes.entry(road.class.number()).or_default();
-        sums.source_vertices += points_of_tile(&road.line, id, levels);
-        sums.simplified_vertices += points_of_tile(&simplified, id, levels);
-        let parts = self.parts.entry(road.way_id).or_default();
-        let mut laid = 0;
-        // There the line is the source line: nothing is simplified.
-        let is_finest = id.z() == frame.max_level();
-        let segments_um = if is_finest { lengths.segments_um(&simplified) } else { Vec::new() };
-        for part in corniche_drape::clip_parts(&simplified, &bounds, owned) {
-            let draped = corniche_drape::drape(&part.line, surface);
-            if is_finest {
-                let pieces: Vec<[u64; 2]> = pieces_um(&simplified, &part, &segments_um).collect();
-                let void_um = gaps_um(&pieces, &draped.gaps);
-                fate.void_um += void_um;
-                fate.kept_um += pieces.iter().map(|[from, to]| to - from).sum::<u64>() - void_um;
-            }
-            for line in draped.lines {
-                self.geo.push(GeoRoad {
-                    way_id: road.way_id,
-                    part: parts[0],
-                    class: road.class,
-                    line,
-                });
-                parts[0] += 1;
-                laid += 1;
-            }
-        }
-        let margin = levels.margin_steps(id.z());
-        for part in corniche_drape::clip_closed(&simplified, &bounds.expanded(margin)) {
-            for line in corniche_drape::extrude(&part, surface, margin) {
-                self.sv.push(SvRoad {
-                    way_id: road.way_id,
-                    part: parts[1],
-                    class: road.class,
-                    line,
-                });
-                parts[1] += 1;
-                laid += 1;
-            }
-        }
-        if laid > 0 {
-            self.attributes.entry(road.way_id).or_insert_with(|| RoadRecord {
-                way_id: road.way_id,
-                attributes: road.attributes.clone(),
-            });
-        }
-        if fate != RoadFate::default() {
-            self.fates.push((ordinal, fate));
-        }
-    }
-
-    /// Puts roads into the order in which a payload has them.
-    pub(crate) fn sort(&mut self) {
-        self.geo.sort_by_key(|road| (road.class, road.way_id, road.part));
-        self.sv.sort_by_key(|road| (road.class, road.way_id, road.part));
-    }
-
-    fn into_payload(mut self, id: TileId, terrain: Terrain) -> TilePayload {
-        self.sort();
-        TilePayload {
-            id,
-            terrain: Some(terrain),
-            roads_geo: self.geo,
-            roads_sv: self.sv,
-            attributes: self.attributes.into_values().collect(),
-        }
-    }
-}
-
-/// How many of a line's points belong to a tile: each point belongs to one tile of a level.
-fn points_of_tile(line: &corniche_geom::Polyline, id: TileId, levels: &Levels) -> u64 {
-    let last = (1_i64 << id.z()) - 1;
-    let own = [i64::from(id.x()), i64::from(id.y())];
-    let outer = levels.frame().tile_lattice_bounds(TileId::ROOT);
-    let is_own = |&&point: &&corniche_geom::LatticePoint| {
-        // The root's own east and south border belong to its last tiles.
-        let at = levels.frame().tile_column_row(id.z(), point);
-        outer.contains(point) && at.map(|index| index.min(last)) == own
-    };
-    line.points().iter().filter(is_own).count() as u64
-}
-
 /// Adds vertices by class, and each section's stored bytes shared out by the classes' encoded lengths.
 fn class_sums(
     mut classes: BTreeMap<u8, ClassSums>,
@@ -445,19 +282,3 @@ fn class_sums(
     }
     classes
 }
-
-/// The share of `total` that falls to `parts[index]`, so that all shares add up to `total` exactly.
-pub(crate) fn share(total: u64, parts: &[u64; FunctionalRoadClass::COUNT], index: usize) -> u64 {
-    let sum: u64 = parts.iter().sum();
-    if sum == 0 {
-        return 0;
-    }
-    let up_to = |end: usize| {
-        (u128::from(total) * u128::from(parts[..end].iter().sum::<u64>()) / u128::from(sum)) as u64
-    };
-    up_to(index + 1) - up_to(index)
-}
-
-#[cfg(test)]
-#[path = "tiles_tests.rs"]
-mod tests;

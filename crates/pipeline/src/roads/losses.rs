@@ -3,9 +3,9 @@
 use corniche_tileset::RoadLoss;
 
 use super::{
+    lay::{LaidSums, RoadFate},
     lengths::UM,
-    roads::ReadRoads,
-    tiles::{RoadFate, Tiles},
+    read::ReadRoads,
 };
 use crate::{BuildError, Defect, Loss, Observer};
 
@@ -37,10 +37,10 @@ impl Lengths {
     }
 }
 
-fn lengths(roads: &ReadRoads<'_>, tiles: &Tiles) -> impl Iterator<Item = Lengths> {
-    roads.outside_um.iter().zip(&tiles.roads).map(
-        |(&outside_um, &RoadFate { kept_um, void_um })| Lengths { kept_um, outside_um, void_um },
-    )
+fn lengths(roads: &ReadRoads<'_>, laid: &LaidSums) -> impl Iterator<Item = Lengths> {
+    roads.outside_um.iter().zip(&laid.fates).map(|(&outside_um, &RoadFate { kept_um, void_um })| {
+        Lengths { kept_um, outside_um, void_um }
+    })
 }
 
 /// Sums over all roads.
@@ -51,10 +51,10 @@ pub(crate) struct Sums {
 }
 
 /// Roads kept and lost, in count and length.
-pub(crate) fn sums(roads: &ReadRoads<'_>, tiles: &Tiles) -> Sums {
+pub(crate) fn sums(roads: &ReadRoads<'_>, laid: &LaidSums) -> Sums {
     let mut sums = Sums { roads_kept: 0, roads_kept_um: 0, lost: Vec::new() };
     let mut losses = [(Loss::OutsideData, 0, 0), (Loss::NoGround, 0, 0)];
-    for road in lengths(roads, tiles) {
+    for road in lengths(roads, laid) {
         sums.roads_kept_um += road.kept_um;
         sums.roads_kept += u64::from(road.is_kept());
         for ((loss, count, length_um), (_, lost_um)) in losses.iter_mut().zip(road.losses()) {
@@ -76,10 +76,10 @@ pub(crate) fn sums(roads: &ReadRoads<'_>, tiles: &Tiles) -> Sums {
 /// Tells of every road that was lost, or lost in part, in the order in which roads were read.
 pub(crate) fn report(
     roads: &ReadRoads<'_>,
-    tiles: &Tiles,
+    laid: &LaidSums,
     observer: &dyn Observer,
 ) -> Result<(), BuildError> {
-    for (ordinal, road) in (0..).zip(lengths(roads, tiles)) {
+    for (ordinal, road) in (0..).zip(lengths(roads, laid)) {
         for (loss, lost_um) in road.losses() {
             // A road of no length to speak of is lost as a whole, or not at all.
             let is_counted = !road.is_kept() && road.reason() == loss;

@@ -4,24 +4,23 @@ use std::path::Path;
 
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{Bounds, CoordinateTable, CoordinateTableError};
-use corniche_roads::FrcTable;
 use corniche_tileset::{
     Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest,
     SampleCounts, ScaleRecord, SettingsRecord, VerticalRecord, Writer,
 };
-use sha2::{Digest, Sha256};
 
-use super::{errors::TileErrors, levels::Levels, losses, roads::ReadRoads, tiles::Tiles};
+use super::{deviations::TileErrors, tiles::Tiles};
 use crate::{
-    BuildError, BuildSettings, Observer, Stage, Storage, sample_error::SampleSums, storage::Kind,
+    BuildError, BuildSettings, Observer, Stage, Storage,
+    levels::Levels,
+    records::{TILING, settings_sha256, table_sha256},
+    roads::{counts::road_counts, read::ReadRoads},
+    sample_error::SampleSums,
+    storage::Kind,
 };
 
 /// Positions interpolated from the manifest are this exact.
 const COORDINATE_TOLERANCE_M: f64 = 0.01;
-
-/// What every package says of its tiles' numbers.
-pub(crate) const TILING: &str = "local quadtree in the working CRS: z from the root, x from the west, y from the \
-                                 north; not the web's tile scheme";
 
 /// Everything that the manifest tells of.
 pub(crate) struct Outcome<'a> {
@@ -165,61 +164,15 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
 fn counts(outcome: &Outcome<'_>) -> Counts {
     let samples = outcome.samples;
     match outcome.roads {
-        Some(roads) => road_counts(samples, roads, outcome.tiles),
+        Some(roads) => road_counts(samples, roads, &outcome.tiles.roads),
         None => Counts { samples, ..Counts::default() },
     }
-}
-
-/// The same from roads and tiles alone.
-pub(crate) fn road_counts(samples: SampleCounts, roads: &ReadRoads<'_>, tiles: &Tiles) -> Counts {
-    let losses = losses::sums(roads, tiles);
-    Counts {
-        samples,
-        roads_in: roads.lengths_um.len() as u64,
-        roads_in_um: roads.lengths_um.iter().sum(),
-        classes: roads.classes.clone(),
-        defects: roads.defects.iter().map(|(name, &count)| (name.clone(), count)).collect(),
-        unknown_highways: roads
-            .extract
-            .unknown_highways
-            .iter()
-            .map(|(value, &count)| (value.clone(), count))
-            .collect(),
-        tags_taken_otherwise: roads
-            .extract
-            .tags_taken_otherwise
-            .iter()
-            .map(|(tag, &count)| (tag.clone(), count))
-            .collect(),
-        blobs_passed_over: roads.extract.blobs_passed_over,
-        highways_in: roads.extract.highway_ways,
-        highways_left_out: left_out(&roads.extract),
-        roads_kept: losses.roads_kept,
-        roads_kept_um: losses.roads_kept_um,
-        roads_lost: losses.lost,
-    }
-}
-
-/// Ways with a `highway` tag that are no roads here, by reason.
-fn left_out(extract: &corniche_osm::ExtractSummary) -> Vec<(String, u64)> {
-    let left_out = &extract.left_out;
-    [
-        ("listed as no road", left_out.listed),
-        ("class is off", left_out.class_off),
-        ("value in no class", left_out.unknown),
-        ("an area", left_out.area),
-        ("id occurs twice", left_out.duplicate),
-        ("no line is left", left_out.without_line),
-    ]
-    .into_iter()
-    .filter(|&(_, ways)| ways > 0)
-    .map(|(reason, ways)| (reason.to_owned(), ways))
-    .collect()
 }
 
 fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {
     outcome
         .tiles
+        .roads
         .classes
         .iter()
         .filter(|(_, sums)| sums.source_vertices > 0)
@@ -262,25 +215,4 @@ pub(crate) fn write(
     writer.finish().map_err(failed)?;
     observer.end(Stage::Package);
     Ok(())
-}
-
-/// SHA-256 of settings as JSON.
-pub(crate) fn settings_sha256(settings: &SettingsRecord) -> String {
-    // A record of numbers and texts has no way to fail to be JSON; the text of its debugging form is as unique.
-    let json = serde_json::to_string(settings).unwrap_or_else(|_| format!("{settings:?}"));
-    hex(&Sha256::digest(json))
-}
-
-/// SHA-256 of an FRC table's text.
-pub(crate) fn table_sha256(table: &FrcTable) -> String {
-    hex(&Sha256::digest(table.canonical_text()))
-}
-
-/// Lower-case hexadecimal.
-pub(crate) fn hex(bytes: &[u8]) -> String {
-    use std::fmt::Write as _;
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
 }

@@ -233,5 +233,5 @@ fn from_bytes(bytes: &[u8]) -> Option<Road> {
 }
 
 #[cfg(test)]
-#[path = "road_log_tests.rs"]
+#[path = "log_tests.rs"]
 mod tests;

@@ -5,12 +5,11 @@ use std::collections::BTreeMap;
 use corniche_geom::{HeightGrid, TileId};
 use corniche_tin::{Deviation, TriangleBuckets, WindowPlacement};
 
-use super::{
-    heights::Pyramid,
-    levels::Levels,
-    mesh::{self, Meshes},
+use super::mesh::{self, Meshes};
+use crate::{
+    BuildError, Observer, Stage, Storage, heights::pyramid::Pyramid, levels::Levels,
+    sample_error::SampleSums, workers,
 };
-use crate::{BuildError, Observer, Stage, Storage, sample_error::SampleSums, workers};
 
 /// What a tile stores of its errors.
 #[derive(Debug, Clone, Copy, PartialEq)]

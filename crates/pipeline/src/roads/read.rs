@@ -14,10 +14,9 @@ use corniche_roads::{FunctionalRoadClass, Road};
 
 use super::{
     lengths::{TrueLengths, pieces_um},
-    levels::Levels,
-    road_log::{RoadLog, RoadTileCursor, RoadTiles},
+    log::{RoadLog, RoadTileCursor, RoadTiles},
 };
-use crate::{BuildError, Defect, Observer, RoadSettings, Stage, Storage};
+use crate::{BuildError, Defect, Observer, RoadSettings, Stage, Storage, levels::Levels};
 
 /// All that later stages need to know of the roads.
 pub(crate) struct ReadRoads<'a> {
@@ -263,5 +262,5 @@ fn bounds_deg(bounds_m: Bounds, projection: &impl Projection) -> Result<Bounds, 
 }
 
 #[cfg(test)]
-#[path = "roads_tests.rs"]
+#[path = "read_tests.rs"]
 mod tests;

@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 use corniche_geom::{HeightGrid, TileId};
 use corniche_tin::{Tin, TinSpec, TinVertex};
 
-use super::{heights::Pyramid, levels::Levels};
-use crate::{BuildError, Observer, Stage, Storage, storage::Kind, storage::Span, workers};
+use crate::{
+    BuildError, Observer, Stage, Storage, heights::pyramid::Pyramid, levels::Levels, storage::Kind,
+    storage::Span, workers,
+};
 
 /// A tile's ground as meshed, before it is measured.
 #[derive(Debug, Clone, PartialEq)]

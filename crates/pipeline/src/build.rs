@@ -6,21 +6,8 @@
 //! roads ─────────────────────┘
 //! ```
 //!
-//! Each stage is a module; what one hands to the next is kept in [`Storage`](crate::Storage), in a work folder
+//! Each stage is a module of [`heights`](crate::heights), [`roads`](crate::roads) or [`stages`](crate::stages); what one hands to the next is kept in [`Storage`](crate::Storage), in a work folder
 //! beside the target that is gone when the run ends, however it ends.
-
-mod audit;
-mod errors;
-mod heights;
-mod lengths;
-mod levels;
-mod losses;
-mod mesh;
-mod package;
-mod road_log;
-pub(crate) mod roads;
-mod samples;
-pub(crate) mod tiles;
 
 use std::{
     fs,
@@ -32,15 +19,13 @@ use corniche_tileset::Manifest;
 
 use crate::{
     BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage, TerrainSettings,
-    file_target, inputs::Inputs,
+    file_target,
+    heights::{audit, pyramid},
+    inputs::Inputs,
+    levels::{Levels, most_scale},
+    roads::{lengths::TrueLengths, losses, read},
+    stages::{deviations, mesh, package, samples, tiles},
 };
-
-pub(crate) use audit::check as check_heights;
-pub(crate) use heights::{Pyramid, data_tiles, read as read_heights};
-pub(crate) use lengths::TrueLengths;
-pub(crate) use levels::{Levels, most_scale, recorded_filter};
-pub(crate) use package::{TILING, hex, road_counts, settings_sha256, table_sha256};
-pub(crate) use tiles::share;
 
 /// Tolerances of the finest level that can be used. Beyond them, the root's or the height quantum is no number that a
 /// package can hold.
@@ -182,31 +167,31 @@ fn run(
     let records = inputs.hash(observer)?;
 
     // Roads come before the long work on heights: an extract that is no use is told at once.
-    let data_tiles = heights::data_tiles(&plan);
+    let data_tiles = pyramid::data_tiles(&plan);
     let mut roads = match &settings.osm {
         Some(osm) => {
             let pool = rayon::ThreadPoolBuilder::new()
                 .num_threads(threads)
                 .build()
                 .map_err(|error| start(&error))?;
-            let input = roads::RoadInput {
+            let input = read::RoadInput {
                 osm,
                 settings: &settings.roads,
                 projection: &projection,
                 levels: &levels,
                 lengths: &lengths,
-                data_bounds: heights::data_tile_bounds(&plan),
+                data_bounds: pyramid::data_tile_bounds(&plan),
                 pool: &pool,
                 memory_bytes: settings.resources.memory_bytes / 4,
             };
-            let read = roads::read(&input, storage, observer)?;
-            roads::check_overlap(&read, &input, &plan)?;
-            Some(read)
+            let roads = read::read(&input, storage, observer)?;
+            read::check_overlap(&roads, &input, &plan)?;
+            Some(roads)
         }
         None => None,
     };
     audit::check(&dem, terrain.height_range_m, threads, observer)?;
-    let pyramid = heights::read(&dem, &plan, threads, storage, observer)?;
+    let pyramid = pyramid::read(&dem, &plan, threads, storage, observer)?;
     let meshes = mesh::mesh(&pyramid, &levels, threads, storage, observer)?;
     if meshes.is_empty() {
         let dem = settings.dem.clone();
@@ -215,7 +200,7 @@ fn run(
             nodes => BuildError::NoCell { dem, nodes },
         });
     }
-    let errors = errors::measure(&pyramid, &meshes, &levels, threads, storage, observer)?;
+    let errors = deviations::measure(&pyramid, &meshes, &levels, threads, storage, observer)?;
     let sample_errors = if plan.nodes_are_samples() {
         errors.at_nodes().to_vec()
     } else {
@@ -238,7 +223,7 @@ fn run(
         observer,
     )?;
     if let Some(roads) = &roads {
-        losses::report(roads, &tiles, observer)?;
+        losses::report(roads, &tiles.roads, observer)?;
     }
     let manifest = package::manifest(&package::Outcome {
         settings,
