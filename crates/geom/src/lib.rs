@@ -13,6 +13,7 @@ mod coordinate_table;
 mod frame;
 mod geo_transform;
 mod height_grid;
+mod index_lists;
 mod lattice;
 mod orientation;
 mod polyline;
@@ -29,6 +30,7 @@ pub use frame::{
 };
 pub use geo_transform::GeoTransform;
 pub use height_grid::HeightGrid;
+pub use index_lists::IndexLists;
 pub use lattice::LatticePoint;
 pub use orientation::{Side, cross, side};
 pub use polyline::{Polyline, PolylineError};

@@ -1,4 +1,4 @@
-use corniche_geom::HeightGrid;
+use corniche_geom::{HeightGrid, IndexLists};
 
 use crate::Tin;
 use crate::triangle_rows::for_each_row;
@@ -40,9 +40,8 @@ pub struct TriangleBuckets {
     planes: Vec<Triangle>,
     /// Buckets from west to east and from north to south.
     size: [usize; 2],
-    /// Where each bucket begins in `members`, and the end.
-    starts: Vec<u32>,
-    members: Vec<u32>,
+    /// The triangles of each bucket, row by row.
+    members: IndexLists,
 }
 
 /// Nodes on a side of a bucket. A window of a finest tile far beneath lies in one bucket, and some hundred
@@ -108,23 +107,10 @@ impl TriangleBuckets {
             (low[1]..=high[1])
                 .flat_map(move |row| (low[0]..=high[0]).map(move |column| row * size[0] + column))
         };
-        // Count, then fill.
-        let mut starts = vec![0_u32; size[0] * size[1] + 1];
-        for bucket in planes.iter().flat_map(buckets_of) {
-            starts[bucket + 1] += 1;
-        }
-        for bucket in 1..starts.len() {
-            starts[bucket] += starts[bucket - 1];
-        }
-        let mut next = starts.clone();
-        let mut members = vec![0; starts[starts.len() - 1] as usize];
-        for (index, triangle) in planes.iter().enumerate() {
-            for bucket in buckets_of(triangle) {
-                members[next[bucket] as usize] = index as u32;
-                next[bucket] += 1;
-            }
-        }
-        Self { planes, size, starts, members }
+        let members = IndexLists::new(size[0] * size[1], planes.len(), |triangle| {
+            buckets_of(&planes[triangle])
+        });
+        Self { planes, size, members }
     }
 
     /// Calls `each` once for every triangle whose bounding box may meet the nodes `low` to `high` of the tile.
@@ -137,10 +123,7 @@ impl TriangleBuckets {
         for row in first[1] as i64..=last[1] {
             for column in first[0] as i64..=last[0] {
                 let (row, column) = (row as usize, column as usize);
-                let index = row * self.size[0] + column;
-                for &member in
-                    &self.members[self.starts[index] as usize..self.starts[index + 1] as usize]
-                {
+                for &member in self.members.of(row * self.size[0] + column) {
                     let triangle = &self.planes[member as usize];
                     // A triangle is in all buckets it meets: take it in the first that is looked at.
                     let taken_at =

@@ -2,7 +2,7 @@
 
 mod buckets;
 
-use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId, cross};
+use corniche_geom::{Frame, IndexLists, LatticeBounds, LatticePoint, TileId, cross};
 
 use crate::Tin;
 use buckets::Buckets;
@@ -54,9 +54,8 @@ pub struct Surface {
     heights_m: Vec<f64>,
     triangles: Vec<[u32; 3]>,
     twins: Vec<u32>,
-    /// Half-edges sorted by origin; those of vertex v are `fans[fan_starts[v]..fan_starts[v + 1]]`.
-    fans: Vec<u32>,
-    fan_starts: Vec<u32>,
+    /// The half-edges that start at each vertex.
+    fans: IndexLists,
     /// Half-edges without a twin, ascending.
     outline: Vec<u32>,
     triangle_buckets: Buckets,
@@ -80,14 +79,16 @@ impl Surface {
         let heights_m =
             tin.vertices().iter().map(|vertex| f64::from(vertex.height_q) * quantum_m).collect();
         let triangles = tin.triangles().to_vec();
-        let (fan_starts, fans) = fans(points.len(), &triangles);
+        let corners = triangles.as_flattened();
+        let fans = IndexLists::new(points.len(), corners.len(), |half_edge| {
+            std::iter::once(corners[half_edge] as usize)
+        });
         let mut surface = Self {
             points,
             heights_m,
             triangles,
             twins: Vec::new(),
             fans,
-            fan_starts,
             outline: Vec::new(),
             triangle_buckets: Buckets::default(),
             outline_buckets: Buckets::default(),
@@ -144,8 +145,7 @@ impl Surface {
     /// Half-edges that start at `vertex`, ascending: one for each triangle around it.
     #[must_use]
     pub fn fan(&self, vertex: u32) -> &[u32] {
-        let v = vertex as usize;
-        &self.fans[self.fan_starts[v] as usize..self.fan_starts[v + 1] as usize]
+        self.fans.of(vertex as usize)
     }
 
     /// The triangle with the smallest index that holds `point`, borders included; `None` off the ground.
@@ -299,24 +299,6 @@ impl Surface {
 /// The half-edge before this one in its triangle.
 fn previous(half_edge: u32) -> u32 {
     if half_edge.is_multiple_of(3) { half_edge + 2 } else { half_edge - 1 }
-}
-
-/// Half-edges by the vertex they start at: count, then fill.
-fn fans(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<u32>) {
-    let mut starts = vec![0_u32; vertices + 1];
-    for &corner in triangles.iter().flatten() {
-        starts[corner as usize + 1] += 1;
-    }
-    for vertex in 0..vertices {
-        starts[vertex + 1] += starts[vertex];
-    }
-    let mut next = starts.clone();
-    let mut fans = vec![0; 3 * triangles.len()];
-    for (half_edge, &corner) in triangles.iter().flatten().enumerate() {
-        fans[next[corner as usize] as usize] = half_edge as u32;
-        next[corner as usize] += 1;
-    }
-    (starts, fans)
 }
 
 #[cfg(test)]

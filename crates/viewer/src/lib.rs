@@ -17,12 +17,14 @@
 //! This crate never depends on `pipeline`, `dem` or `osm`: it learns everything from the package. It never
 //! writes a file.
 
-pub mod above;
 mod attribution;
 pub mod camera;
+pub mod eye_height;
 pub mod flight;
+mod frame_view;
 pub mod gpu;
 pub mod lod;
+mod options;
 pub mod pick;
 pub mod range;
 #[cfg(not(target_arch = "wasm32"))]
@@ -36,10 +38,10 @@ mod viewpoint;
 
 pub use attribution::draw_attribution;
 pub use corniche_styles as style;
+pub use options::{CapTest, Caps, ClassSet, Outline, RoadMethod, RoadOptions, WidthGrowth};
 pub use range::OutOfRange;
 #[cfg(not(target_arch = "wasm32"))]
 pub use render::{RenderError, RenderReport, RenderRequest, Rendered, render};
 #[cfg(not(target_arch = "wasm32"))]
 pub use replay::{Detail, FrameRecord, Lifted, Replay, ReplayError, ReplayOptions, default_flight};
-pub use scene::{CapTest, Caps, ClassSet, Outline, RoadMethod, RoadOptions, WidthGrowth};
 pub use viewpoint::{CameraRequest, OffGround, ViewpointError};

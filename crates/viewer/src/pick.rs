@@ -62,11 +62,12 @@ struct Ray {
 
 impl Ray {
     /// Depth of the first hit; infinite without one. Looks at the triangles beneath the ray, column by column of the
-    /// tile's buckets, until one of them is nearer than all to come.
+    /// tile's grid of triangles, until one of them is nearer than all to come.
     fn first_in_tile(&self, tile: &TileGeometry, vertical_scale: f64) -> f64 {
         let plan = |depth: f64| (self.eye + self.way * depth).truncate().to_array();
         let mut nearest = f64::INFINITY;
-        for (share, triangles) in tile.ground.buckets().along(plan(self.enters), plan(self.leaves))
+        for (share, triangles) in
+            tile.ground.triangle_grid().along(plan(self.enters), plan(self.leaves))
         {
             if self.enters + share * (self.leaves - self.enters) > nearest {
                 break;

@@ -96,7 +96,7 @@ proptest! {
 
     /// Whatever the ray and however rough the ground, the hit is the nearest among all triangles.
     #[test]
-    fn buckets_find_what_a_look_at_all_triangles_finds(
+    fn the_grid_of_triangles_finds_what_a_look_at_all_triangles_finds(
         eye in prop::array::uniform3(-90.0..90.0_f64),
         target in prop::array::uniform3(-55.0..55.0_f64),
         level in 0..3_u8,

@@ -4,16 +4,17 @@ use corniche_tileset::OpenError;
 use image::RgbaImage;
 
 use crate::{
-    above::{clearance_m, told_m},
     attribution::draw_attribution,
     camera::Camera,
+    eye_height::{clearance_m, rounded_up_m},
     gpu::{
         DrawTile, FrameView, Gpu, GpuError, ReadBackError, Renderer, Targets, TileBuffers,
         Wireframe,
     },
     lod::Quality,
+    options::RoadOptions,
     range::{self, OutOfRange},
-    scene::{self, RoadOptions, SettleError},
+    scene::{self, SettleError},
     style::Style,
     tiles::{LoadTileError, PackageSource, TileStore},
     viewpoint::{CameraRequest, OffGround, ViewpointError},
@@ -219,7 +220,7 @@ fn check_above_ground(
     let Some(ground_m) = store.ground_height_m([eye.x, eye.y])? else { return Ok(()) };
     let lacking_m = ground_m * vertical_scale + clearance_m(point_scale) - eye.z;
     if lacking_m > 0.0 {
-        return Err(RenderError::EyeUnderGround { depth_m: told_m(lacking_m) });
+        return Err(RenderError::EyeUnderGround { depth_m: rounded_up_m(lacking_m) });
     }
     Ok(())
 }

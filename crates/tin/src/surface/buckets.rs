@@ -1,6 +1,6 @@
 //! A grid of buckets over bounding boxes.
 
-use corniche_geom::{LatticeBounds, LatticePoint};
+use corniche_geom::{IndexLists, LatticeBounds, LatticePoint};
 
 /// Indices of boxes by the squares they meet, each square's in ascending order.
 ///
@@ -11,16 +11,15 @@ pub(crate) struct Buckets {
     shift: u32,
     columns: usize,
     rows: usize,
-    /// Bucket b holds `items[starts[b]..starts[b + 1]]`.
-    starts: Vec<u32>,
-    items: Vec<u32>,
+    /// The boxes of each square, row by row.
+    items: IndexLists,
 }
 
 impl Default for Buckets {
     fn default() -> Self {
         // Bounds that hold no point: nothing is ever found.
         let bounds = LatticeBounds { min: LatticePoint::new(1, 1), max: LatticePoint::new(0, 0) };
-        Self { bounds, shift: 0, columns: 0, rows: 0, starts: vec![0], items: Vec::new() }
+        Self { bounds, shift: 0, columns: 0, rows: 0, items: IndexLists::default() }
     }
 }
 
@@ -98,33 +97,18 @@ impl Buckets {
     }
 
     fn bucket(&self, column: usize, row: usize) -> &[u32] {
-        let bucket = row * self.columns + column;
-        &self.items[self.starts[bucket] as usize..self.starts[bucket + 1] as usize]
+        self.items.of(row * self.columns + column)
     }
 
-    /// Count, then fill.
+    /// Puts each box into the squares that it meets.
     fn fill(&mut self, boxes: &[LatticeBounds]) {
         let columns = self.columns;
-        let squares = |grid: &Self, b: &LatticeBounds| {
-            let ([west, south], [east, north]) = (grid.square(b.min), grid.square(b.max));
+        let squares = |index: usize| {
+            let LatticeBounds { min, max } = boxes[index];
+            let ([west, south], [east, north]) = (self.square(min), self.square(max));
             (south..=north)
                 .flat_map(move |row| (west..=east).map(move |column| row * columns + column))
         };
-        let mut starts = vec![0_u32; self.columns * self.rows + 1];
-        for b in boxes {
-            squares(self, b).for_each(|square| starts[square + 1] += 1);
-        }
-        for square in 0..self.columns * self.rows {
-            starts[square + 1] += starts[square];
-        }
-        let mut next = starts.clone();
-        self.items = vec![0; starts[self.columns * self.rows] as usize];
-        for (index, b) in boxes.iter().enumerate() {
-            for square in squares(self, b) {
-                self.items[next[square] as usize] = index as u32;
-                next[square] += 1;
-            }
-        }
-        self.starts = starts;
+        self.items = IndexLists::new(self.columns * self.rows, boxes.len(), squares);
     }
 }

@@ -1,12 +1,7 @@
 use wgpu::{BindGroup, BindGroupEntry, BindingResource, BufferUsages, TextureView};
 
-use super::{
-    Gpu,
-    layouts::Layouts,
-    renderer::{DrawTile, FrameView},
-    targets::Targets,
-    uniforms,
-};
+use super::{Gpu, layouts::Layouts, renderer::DrawTile, targets::Targets, uniforms};
+use crate::frame_view::FrameView;
 
 /// What the passes of one frame share.
 pub(crate) struct FrameBindings {

@@ -51,10 +51,11 @@ pub use self::{
     device::{Gpu, GpuError},
     picture::{MAX_SAMPLES_PER_SIDE, Picture},
     read_back::{ReadBack, ReadBackError, read_texture},
-    renderer::{DrawTile, FrameView, Renderer, Wireframe},
+    renderer::{DrawTile, Renderer},
     screen_passes::{DIFFERENCE_COLORS, DifferenceColors},
     targets::{Owner, Targets, label_class},
     tile_buffers::TileBuffers,
     tile_bytes::tile_bytes,
     timings::{PassTimer, PassTimes},
 };
+pub use crate::frame_view::{FrameView, Wireframe};

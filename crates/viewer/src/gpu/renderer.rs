@@ -1,45 +1,10 @@
 use wgpu::{CommandEncoder, LoadOp, Operations, StoreOp};
 
 use super::{
-    Gpu, bindings::FrameBindings, layouts::Layouts, passes::Pipelines, roads_pass::Bridges,
+    Gpu, bindings::FrameBindings, layouts::Layouts, passes::Pipelines, roads_pass::LevelConnectors,
     targets::Targets, tile_buffers::TileBuffers, timings::PassTimer,
 };
-use crate::{RoadOptions, camera::Camera, style::Style};
-
-/// What a picture shows and how, apart from the tiles.
-#[derive(Debug, Clone, Copy)]
-pub struct FrameView<'a> {
-    /// The eye; its size is the picture's.
-    pub camera: &'a Camera,
-    /// Colours and widths.
-    pub style: &'a Style,
-    /// How roads are drawn.
-    pub roads: RoadOptions,
-    /// Factor on heights.
-    pub exaggeration: f64,
-    /// Length in the working CRS over true length: heights and widths are multiplied by it.
-    pub point_scale: f64,
-    /// True heights that the tint spans.
-    pub height_range_m: [f64; 2],
-    /// Whether the triangles of the ground show.
-    pub wireframe: Wireframe,
-}
-
-/// Whether the edges of the ground's triangles are drawn, beneath the roads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "says it all")]
-pub enum Wireframe {
-    Hidden,
-    Shown,
-}
-
-impl FrameView<'_> {
-    /// World height of one metre of true height.
-    #[must_use]
-    pub fn vertical_scale(&self) -> f64 {
-        self.exaggeration * self.point_scale
-    }
-}
+use crate::frame_view::FrameView;
 
 /// A tile to draw in this frame.
 pub struct DrawTile<'a> {
@@ -79,7 +44,7 @@ impl Renderer {
         mut timer: Option<&mut PassTimer>,
     ) {
         let bindings = FrameBindings::new(gpu, &self.layouts, view, tiles, targets);
-        let bridges = Bridges::new(gpu, view.roads, tiles);
+        let connectors = LevelConnectors::new(gpu, view.roads, tiles);
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
         let mut mark = |encoder: &mut CommandEncoder, number| {
@@ -90,7 +55,7 @@ impl Renderer {
         mark(&mut encoder, 0);
         self.terrain_pass(gpu, &mut encoder, &bindings, tiles, view, targets);
         mark(&mut encoder, 1);
-        self.roads_pass(&mut encoder, &bindings, tiles, &bridges, view, targets);
+        self.roads_pass(&mut encoder, &bindings, tiles, &connectors, view, targets);
         mark(&mut encoder, 2);
         self.composite_pass(&mut encoder, &bindings, view.roads.method, targets);
         self.average_pass(gpu, &mut encoder, targets.picture());

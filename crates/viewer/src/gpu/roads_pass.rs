@@ -6,13 +6,14 @@ use super::{
     Gpu,
     bindings::FrameBindings,
     passes::Pipelines,
-    renderer::{DrawTile, FrameView, Renderer, begin},
+    renderer::{DrawTile, Renderer, begin},
     targets::Targets,
     tile_buffers::volume_bytes,
 };
 use crate::{
-    RoadMethod, RoadOptions,
-    scene::{BorderTile, Bridge, bridges},
+    frame_view::FrameView,
+    options::{RoadMethod, RoadOptions},
+    scene::{BorderTile, LevelConnector, level_connectors},
     tiles::{NearHeights, RoadVolume},
 };
 
@@ -21,13 +22,13 @@ const SEGMENT_CORNERS: Range<u32> = 0..4;
 /// Corners of the strip around a volume's box, as `shaders/volumes.wgsl` counts them.
 const VOLUME_CORNERS: Range<u32> = 0..14;
 
-/// The bridges of a frame, in order of the finer tile.
-pub(crate) struct Bridges {
-    list: Vec<Bridge>,
+/// The connectors of a frame, in order of the finer tile.
+pub(crate) struct LevelConnectors {
+    list: Vec<LevelConnector>,
     instances: Option<wgpu::Buffer>,
 }
 
-impl Bridges {
+impl LevelConnectors {
     /// Finds them and uploads their volumes, each relative to the finer of its tiles.
     pub(crate) fn new(gpu: &Gpu, roads: RoadOptions, tiles: &[DrawTile<'_>]) -> Self {
         let border_tiles: Vec<BorderTile<'_>> = tiles
@@ -39,27 +40,27 @@ impl Bridges {
                 ends: tile.buffers.roads(roads.method).map_or(&[], |roads| &roads.ends),
             })
             .collect();
-        let mut list = bridges(&border_tiles);
-        list.retain(|bridge| roads.classes.contains(bridge.class));
-        let volumes = list.iter().map(|bridge| {
-            let reference_m = tiles[bridge.fine].buffers.reference_m;
+        let mut list = level_connectors(&border_tiles);
+        list.retain(|connector| roads.classes.contains(connector.class));
+        let volumes = list.iter().map(|connector| {
+            let reference_m = tiles[connector.fine].buffers.reference_m;
             let place = |at: [f64; 2]| [0, 1].map(|k| (at[k] - reference_m[k]) as f32);
-            let [start, end] = bridge.ends_m.map(place);
+            let [start, end] = connector.ends_m.map(place);
             let height_range_in_tile =
-                bridge.height_range_m.map(|height_m| (height_m - reference_m[2]) as f32);
+                connector.height_range_m.map(|height_m| (height_m - reference_m[2]) as f32);
             let volume = RoadVolume {
                 start_in_tile: start,
                 end_in_tile: end,
                 height_range_in_tile,
                 near: NearHeights { range_in_tile: height_range_in_tile, rise: 0.0 },
-                width_factor: bridge.width_factor,
-                class: bridge.class,
+                width_factor: connector.width_factor,
+                class: connector.class,
             };
-            (volume, bridge.coarse as u32 + 1)
+            (volume, connector.coarse as u32 + 1)
         });
         let bytes = volume_bytes(volumes);
         let instances =
-            (!bytes.is_empty()).then(|| gpu.buffer("bridges", &bytes, BufferUsages::VERTEX));
+            (!bytes.is_empty()).then(|| gpu.buffer("connectors", &bytes, BufferUsages::VERTEX));
         Self { list, instances }
     }
 
@@ -82,7 +83,7 @@ impl Renderer {
         encoder: &mut CommandEncoder,
         bindings: &FrameBindings,
         tiles: &[DrawTile<'_>],
-        bridges: &Bridges,
+        connectors: &LevelConnectors,
         view: &FrameView<'_>,
         targets: &Targets,
     ) {
@@ -106,10 +107,10 @@ impl Renderer {
                 pass.draw(corners.clone(), range);
             }
         }
-        let Some(instances) = &bridges.instances else { return };
+        let Some(instances) = &connectors.instances else { return };
         pass.set_pipeline(volumes);
         pass.set_vertex_buffer(0, instances.slice(..));
-        for (place, range) in bridges.runs() {
+        for (place, range) in connectors.runs() {
             bindings.set_tile(&mut pass, place);
             pass.draw(VOLUME_CORNERS, range);
         }

@@ -9,7 +9,7 @@ use super::{
     renderer::{Renderer, begin},
     targets::Targets,
 };
-use crate::{RoadMethod, style::Rgb};
+use crate::{options::RoadMethod, style::Rgb};
 
 /// Corners of a block's two triangles, as `shaders/composite.wgsl` counts them.
 const BLOCK_CORNERS: u32 = 6;

@@ -3,9 +3,10 @@ use wgpu::{CommandEncoder, IndexFormat};
 use super::{
     Gpu,
     bindings::FrameBindings,
-    renderer::{DrawTile, FrameView, Renderer, Wireframe, begin},
+    renderer::{DrawTile, Renderer, begin},
     targets::Targets,
 };
+use crate::frame_view::{FrameView, Wireframe};
 
 impl Renderer {
     pub(crate) fn terrain_pass(

@@ -6,7 +6,7 @@ use wgpu::{Buffer, BufferUsages};
 
 use super::Gpu;
 use crate::{
-    ClassSet, RoadMethod, RoadOptions,
+    options::{ClassSet, RoadMethod, RoadOptions},
     tiles::{Bed, RoadEnd, RoadList, RoadVolume, TileGeometry},
 };
 
@@ -201,7 +201,7 @@ fn f16_above(value: f32) -> u16 {
     (((bits + 0x1FFF) >> 13) - (112 << 10)) as u16
 }
 
-/// Volumes, each with the number of the other tile it belongs to, 0 for those that are no bridges.
+/// Volumes, each with the number of the other tile it belongs to, 0 for those that are no connectors.
 pub(crate) fn volume_bytes(volumes: impl Iterator<Item = (RoadVolume, u32)>) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(volumes.size_hint().0 * VOLUME_STRIDE as usize);
     for (volume, other) in volumes {

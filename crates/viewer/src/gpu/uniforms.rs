@@ -2,8 +2,12 @@
 
 use glam::{DVec3, DVec4};
 
-use super::renderer::{DrawTile, FrameView};
-use crate::{CapTest, Caps, RoadMethod, tiles::NearHeights};
+use super::renderer::DrawTile;
+use crate::{
+    frame_view::FrameView,
+    options::{CapTest, Caps, RoadMethod},
+    tiles::NearHeights,
+};
 
 /// Bytes of a tile's block.
 pub(crate) const TILE_BYTES: u64 = 32;

@@ -2,7 +2,7 @@
 
 use super::{ReplayError, ReplayOptions, Timetable};
 use crate::{
-    above::{clearance_m, focus_m, told_m},
+    eye_height::{clearance_m, focus_m, rounded_up_m},
     flight::{Flight, Pose},
     lod::GroundSummary,
     tiles::{PackageSource, TileStore},
@@ -72,7 +72,7 @@ impl Survey {
             if let Some(ground_m) = ground.height_m([x, y])?
                 && ground_m - height_m > coarsest.geometric_error_m
             {
-                let depth_m = told_m(ground_m - height_m);
+                let depth_m = rounded_up_m(ground_m - height_m);
                 return Err(ReplayError::UnderGround { time_s: keyframe.time_s, depth_m });
             }
         }
@@ -91,7 +91,7 @@ impl Survey {
             });
             if lift_m > 0.0 {
                 lifted.frames += 1;
-                lifted.most_m = lifted.most_m.max(told_m(lift_m));
+                lifted.most_m = lifted.most_m.max(rounded_up_m(lift_m));
             }
             let above_m = (height_m + lift_m - beneath_m.unwrap_or(base_m)) * scale;
             stands.push(Stand { lift_m, focus_m: focus_m(above_m, orientation.pitch_deg) });

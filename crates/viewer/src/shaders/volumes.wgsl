@@ -15,7 +15,7 @@
 //
 // A volume paints the ground of its own tile alone. Every tile has all lines within the width margin around it, so
 // wide roads are not cut at borders, and where levels meet, no tile's roads smear over the other's ground. Skirts
-// are no ground; only bridges (scene/bridges.rs) go over them.
+// are no ground; only connectors (scene/level_connectors.rs) go over them.
 
 struct VolumeIn {
     @builtin(vertex_index) corner: u32,
@@ -26,7 +26,7 @@ struct VolumeIn {
     @location(3) near_range_in_tile: vec2<f32>,
     // y: world metres across the road for each true metre.
     @location(4) near_rise_width_factor: vec2<f32>,
-    // Lowest four bits: class. Above, for a bridge, the number of the other tile it belongs to, else 0.
+    // Lowest four bits: class. Above, for a connector, the number of the other tile it belongs to, else 0.
     @location(5) class_and_other: u32,
 }
 
@@ -75,7 +75,7 @@ fn reach_of(in: VolumeIn, road: Road, plan_m: f32) -> Reach {
 fn vertex(in: VolumeIn) -> VertexOut {
     let vertical_scale = frame.background.w;
     let road = Road(in.class_and_other & 15u, in.near_rise_width_factor.y);
-    let is_bridge = in.class_and_other > 15u;
+    let is_connector = in.class_and_other > 15u;
     let a = tile.offset.xy + in.start_in_tile;
     let ab = in.end_in_tile - in.start_in_tile;
     let length_m = length(ab);
@@ -84,10 +84,10 @@ fn vertex(in: VolumeIn) -> VertexOut {
     let plan_m = max(length(a), length(a + ab));
     let reach = reach_of(in, road, plan_m);
     let radius_m = reach.radius_m;
-    // Rounding of positions must not cut off ground at the rim; the fragment decides anyway. Beside a bridge the
+    // Rounding of positions must not cut off ground at the rim; the fragment decides anyway. Beside a connector the
     // ground was not searched, but rises or falls by more than the road is wide only on cliffs.
     let pad_m = 1e-6 * length(vec3(plan_m, reach.heights)) + 0.01;
-    let pad_height_m = pad_m + select(0.0, 2.0 * radius_m * vertical_scale, is_bridge);
+    let pad_height_m = pad_m + select(0.0, 2.0 * radius_m * vertical_scale, is_connector);
     let heights = reach.heights + vec2(-pad_height_m, pad_height_m);
 
     let corner = STRIP[in.corner];
@@ -172,8 +172,8 @@ fn fragment(in: VertexOut) -> @location(0) f32 {
     let own = u32(tile.base.z);
     let other = in.class_and_other >> 4u;
     let is_mine = owner == own;
-    let is_bridged = other != 0u && ((owner & ~SKIRT) == own || (owner & ~SKIRT) == other);
-    if !is_mine && !is_bridged {
+    let is_connected = other != 0u && ((owner & ~SKIRT) == own || (owner & ~SKIRT) == other);
+    if !is_mine && !is_connected {
         discard;
     }
     let road = Road(in.class_and_other & 15u, in.width_factor);

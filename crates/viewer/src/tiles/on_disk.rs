@@ -4,7 +4,7 @@ use corniche_geom::{Frame, TileId};
 use corniche_tileset::{FilePackage, FileSource, Manifest, OpenError};
 
 use super::{LoadTileError, PackageTiles, TileGeometry, TileSource};
-use crate::RoadMethod;
+use crate::options::RoadMethod;
 
 /// A package on disk as a source of tiles, for threads that wait.
 #[derive(Debug)]

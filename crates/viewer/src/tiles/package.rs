@@ -4,7 +4,7 @@ use corniche_geom::{Frame, TileId};
 use corniche_tileset::{ByteSource, Manifest, OpenError, Package, Sections};
 
 use super::{LoadTileError, PlanScale, TileGeometry, TileLines};
-use crate::RoadMethod;
+use crate::options::RoadMethod;
 
 /// A package as tiles, wherever its bytes come from: it never waits by itself. [`PackageSource`](super::PackageSource) is
 /// one on disk, for threads that wait.

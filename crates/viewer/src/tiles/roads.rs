@@ -1,196 +1,21 @@
-use corniche_drape::BadLine;
-use corniche_geom::{Bounds, Frame};
-use corniche_roads::FunctionalRoadClass;
-use corniche_tileset::TilePayload;
-use corniche_tin::Surface;
+//! The roads of a tile: lines as the package has them, cut into the pieces that are uploaded.
 
-use super::PlanScale;
-
+mod ends;
+mod ground_beside;
+mod lines;
+mod list;
 mod segments;
+mod volumes;
 
 pub(crate) use self::segments::Piece;
-pub use self::segments::{
-    Bed, NearHeights, RoadEnd, RoadList, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, Side,
+pub use self::{
+    ends::{RoadEnd, Side},
+    ground_beside::{Bed, NearHeights},
+    lines::{BadRoad, GroundLine, PlanLine, TileLines},
+    list::RoadList,
+    segments::{RoadSegment, RoadSegments},
+    volumes::{RoadVolume, RoadVolumes},
 };
-
-/// A road on the ground (GEO): its centre-line as it lies on the tile's TIN.
-#[derive(Debug, Clone, PartialEq)]
-pub struct GroundLine {
-    /// OSM's id of the way.
-    pub way_id: i64,
-    /// Functional road class.
-    pub class: FunctionalRoadClass,
-    /// x, y in the working CRS and true height of each vertex.
-    pub points_m: Vec<[f64; 3]>,
-    /// For each piece between two vertices the ends, in plan, of the segment of the source line that it is a piece of.
-    /// Between pieces of one segment the road goes straight on.
-    pub sources_m: Vec<[[f64; 2]; 2]>,
-}
-
-impl GroundLine {
-    /// A line whose vertices are all points of the source line.
-    #[must_use]
-    pub fn of_source(way_id: i64, class: FunctionalRoadClass, points_m: Vec<[f64; 3]>) -> Self {
-        let plan = |[x, y, _]: [f64; 3]| [x, y];
-        let sources_m = points_m.windows(2).map(|pair| [plan(pair[0]), plan(pair[1])]).collect();
-        Self { way_id, class, points_m, sources_m }
-    }
-}
-
-/// A road in plan (SV), in the tile and its margin.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PlanLine {
-    /// OSM's id of the way.
-    pub way_id: i64,
-    /// Functional road class.
-    pub class: FunctionalRoadClass,
-    /// x, y in the working CRS.
-    pub points_m: Vec<[f64; 2]>,
-    /// Per segment the lowest and highest ground of the tile within the width margin, true height.
-    pub ground_range_m: Vec<[f64; 2]>,
-}
-
-/// The roads of a tile.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct TileLines {
-    /// On the ground; empty if that section was not read.
-    pub ground: Vec<GroundLine>,
-    /// In plan; empty if that section was not read.
-    pub plan: Vec<PlanLine>,
-    /// How far the plan lines reach beyond the tile; half widths beyond it are not drawn.
-    pub width_margin_m: f64,
-    /// Working metres to a true metre; 1 by default.
-    pub scale: PlanScale,
-}
-
-/// Why a road of a tile cannot be drawn: the package is damaged.
-#[derive(Debug, thiserror::Error)]
-#[error("part {part} of way {way_id} does not fit the tile's ground")]
-pub struct BadRoad {
-    /// OSM's id of the way.
-    pub way_id: i64,
-    /// Which piece of it.
-    pub part: u32,
-    /// What is wrong.
-    pub source: BadLine,
-}
-
-impl TileLines {
-    /// Places the roads of a payload, as far as it has them, on its `surface`. `width_margin_m` is the level's.
-    pub(crate) fn of_payload(
-        payload: &TilePayload,
-        surface: Option<&Surface>,
-        frame: &Frame,
-        width_margin_m: f64,
-    ) -> Result<Self, BadRoad> {
-        let ground =
-            surface.map_or(Ok(Vec::new()), |surface| ground_lines(payload, surface, frame))?;
-        let scale = PlanScale::default();
-        Ok(Self { ground, plan: plan_lines(payload, frame), width_margin_m, scale })
-    }
-}
-
-/// Recomputes the positions of a tile's clipped roads from its ground.
-fn ground_lines(
-    payload: &TilePayload,
-    surface: &Surface,
-    frame: &Frame,
-) -> Result<Vec<GroundLine>, BadRoad> {
-    let place = |[u, v, height_m]: [f64; 3]| {
-        let [x, y] = frame.position_of_fraction_m([u, v]);
-        [x, y, height_m]
-    };
-    let mut lines = Vec::with_capacity(payload.roads_geo.len());
-    for road in &payload.roads_geo {
-        let positions = corniche_drape::positions(&road.line, surface)
-            .map_err(|source| BadRoad { way_id: road.way_id, part: road.part, source })?;
-        lines.push(GroundLine {
-            way_id: road.way_id,
-            class: road.class,
-            points_m: positions.into_iter().map(place).collect(),
-            sources_m: corniche_drape::source_segments(&road.line)
-                .into_iter()
-                .map(|ends| ends.map(|point| frame.position_m(point)))
-                .collect(),
-        });
-    }
-    Ok(lines)
-}
-
-fn plan_lines(payload: &TilePayload, frame: &Frame) -> Vec<PlanLine> {
-    let place = |road: &corniche_tileset::SvRoad| PlanLine {
-        way_id: road.way_id,
-        class: road.class,
-        points_m: road.line.points.iter().map(|point| frame.position_m(*point)).collect(),
-        ground_range_m: road.line.ground_range_m.clone(),
-    };
-    payload.roads_sv.iter().map(place).collect()
-}
-
-/// Where lines on the ground end on the tile's border.
-fn ground_ends(lines: &[GroundLine], tile: Bounds, scale: &PlanScale) -> Vec<RoadEnd> {
-    let mut ends = Vec::new();
-    for line in lines {
-        let points = [
-            line.points_m.first().zip(line.sources_m.first()),
-            line.points_m.last().zip(line.sources_m.last()),
-        ];
-        for (point, source_m) in points.into_iter().flatten() {
-            let [x, y, height_m] = *point;
-            if let Some(side) = Side::of([x, y], tile) {
-                ends.push(RoadEnd {
-                    way_id: line.way_id,
-                    class: line.class,
-                    side,
-                    at_m: [x, y],
-                    height_range_m: [height_m; 2],
-                    width_factor: scale.across(*source_m) as f32,
-                });
-            }
-        }
-    }
-    ends
-}
-
-/// Where lines in plan cross the tile's border.
-fn plan_ends(lines: &[PlanLine], tile: Bounds, scale: &PlanScale) -> Vec<RoadEnd> {
-    let mut ends = Vec::new();
-    for line in lines {
-        for (pair, height_range_m) in line.points_m.windows(2).zip(&line.ground_range_m) {
-            for (side, at_m) in crossings([pair[0], pair[1]], tile) {
-                ends.push(RoadEnd {
-                    way_id: line.way_id,
-                    class: line.class,
-                    side,
-                    at_m,
-                    height_range_m: *height_range_m,
-                    width_factor: scale.across([pair[0], pair[1]]) as f32,
-                });
-            }
-        }
-    }
-    ends
-}
-
-/// Where a segment passes from one side of a border of the tile to the other.
-fn crossings([p, q]: [[f64; 2]; 2], tile: Bounds) -> impl Iterator<Item = (Side, [f64; 2])> {
-    let sides = [
-        (Side::West, 0, tile.min_x),
-        (Side::East, 0, tile.max_x),
-        (Side::South, 1, tile.min_y),
-        (Side::North, 1, tile.max_y),
-    ];
-    sides.into_iter().filter_map(move |(side, axis, border)| {
-        // A point on the border counts as beyond it, so that a line through one crosses once.
-        ((p[axis] < border) != (q[axis] < border)).then_some(())?;
-        let share = (border - p[axis]) / (q[axis] - p[axis]);
-        let along = p[1 - axis] + share * (q[1 - axis] - p[1 - axis]);
-        let range = [[tile.min_y, tile.max_y], [tile.min_x, tile.max_x]][axis];
-        let mut at_m = [border; 2];
-        at_m[1 - axis] = along;
-        (range[0]..=range[1]).contains(&along).then_some((side, at_m))
-    })
-}
 
 #[cfg(test)]
 #[path = "roads_tests.rs"]

@@ -1,6 +1,13 @@
 #![expect(clippy::float_cmp, reason = "these numbers are exact")]
 
-use super::*;
+use corniche_geom::Bounds;
+use corniche_roads::FunctionalRoadClass;
+
+use super::{
+    super::PlanScale,
+    ends::{ground_ends, plan_ends},
+    *,
+};
 
 const TILE: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 100.0, max_y: 100.0 };
 

@@ -6,8 +6,8 @@ use corniche_geom::TileId;
 use corniche_tileset::{FilePackage, Sections};
 use corniche_viewer::{
     RoadMethod, RoadOptions,
-    above::clearance_m,
     camera::Camera,
+    eye_height::clearance_m,
     gpu::{DrawTile, Gpu, Owner, Renderer, Targets, TileBuffers},
     lod::Quality,
     scene::settle,

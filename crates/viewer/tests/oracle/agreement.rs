@@ -245,7 +245,7 @@ fn stepped(country: &Country) -> Scene {
 }
 
 #[test]
-fn bridges_close_the_step_between_levels_and_without_them_it_gapes() {
+fn connectors_close_the_step_between_levels_and_without_them_it_gapes() {
     let Some(gpu) = gpu() else { return };
     let country = Country::new();
     let with = stepped(&country);
@@ -277,7 +277,7 @@ fn bridges_close_the_step_between_levels_and_without_them_it_gapes() {
     }
     for (method, [with, without]) in METHODS.into_iter().zip(sums) {
         println!(
-            "{}: over steps between levels {:.1} of {:.1} px of centre-line missing, {:.1} px without bridges",
+            "{}: over steps between levels {:.1} of {:.1} px of centre-line missing, {:.1} px without connectors",
             name_of(method),
             with.missing_px,
             with.seen_px,

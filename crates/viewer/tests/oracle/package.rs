@@ -60,7 +60,7 @@ fn measure(gpu: &Gpu, name: &str, scene: &Scene, camera: &Camera) {
             lines.seen_px,
         );
         if method == RoadMethod::ShadowVolumes {
-            // Bridges between simplified lines are drawn and not in the reference: few pixels, at borders alone.
+            // Connectors between simplified lines are drawn and not in the reference: few pixels, at borders alone.
             assert!(found.wrong as f64 <= 2e-3 * found.compared as f64, "{name}: {}", found.wrong);
         }
     }

@@ -6,8 +6,8 @@ use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::{
     CameraRequest,
-    above::clearance_m,
     camera::{Camera, Orientation},
+    eye_height::clearance_m,
     gpu::tile_bytes,
     range,
     tiles::{PackageSource, TileSource as _},

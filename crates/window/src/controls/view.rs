@@ -1,6 +1,6 @@
 use corniche_viewer::{
-    above,
     camera::{Camera, Orientation},
+    eye_height,
 };
 use glam::{DMat3, DVec2, DVec3};
 
@@ -113,7 +113,7 @@ impl View {
     pub fn refocused(&self, ground: &dyn Ground) -> Self {
         let eye = self.eye_in_world;
         let below_m = ground.height([eye.x, eye.y]).unwrap_or_else(|| ground.base_height());
-        let focus_m = above::focus_m(eye.z - below_m, self.orientation.pitch_deg);
+        let focus_m = eye_height::focus_m(eye.z - below_m, self.orientation.pitch_deg);
         Self { focus_m, ..*self }
     }
 }

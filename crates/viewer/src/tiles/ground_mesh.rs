@@ -1,7 +1,7 @@
 use corniche_geom::{Frame, TILE_CELLS, TileId};
 use corniche_tin::{Tin, decode_normal};
 
-use super::buckets::Buckets;
+use super::triangle_grid::TriangleGrid;
 
 /// A vertex of the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,7 +17,7 @@ pub struct GroundVertex {
 /// A skirt hangs from every edge on the tile's border. Its lower vertices have the place and normal of the
 /// upper ones and a flag; the vertex shader lowers them, as deep as the neighbours drawn make necessary.
 ///
-/// What is near a place is looked up in buckets that belong to the triangles: once made, a mesh is not to be changed.
+/// What is near a place is looked up in a grid made from the triangles: once made, a mesh must not be changed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct GroundMesh {
     /// Vertices of the TIN in its order, then the lower vertices of the skirts.
@@ -26,7 +26,7 @@ pub struct GroundMesh {
     pub indices: Vec<u32>,
     /// How many of the indices are ground.
     pub surface_indices: usize,
-    buckets: Buckets,
+    triangle_grid: TriangleGrid,
 }
 
 impl GroundMesh {
@@ -62,13 +62,19 @@ impl GroundMesh {
         indices: impl Iterator<Item = u32>,
     ) -> Self {
         let indices: Vec<u32> = indices.collect();
-        let buckets = Buckets::new(&vertices, &indices);
-        Self { surface_indices: indices.len(), vertices, indices, buckets }
+        let corners_in_plan = indices.as_chunks::<3>().0.iter().map(|corners| {
+            corners.map(|index| {
+                let [x, y, _] = vertices[index as usize].position_in_tile;
+                [f64::from(x), f64::from(y)]
+            })
+        });
+        let triangle_grid = TriangleGrid::new(corners_in_plan);
+        Self { surface_indices: indices.len(), vertices, indices, triangle_grid }
     }
 
     /// Which triangles of the ground are near a place.
-    pub(crate) fn buckets(&self) -> &Buckets {
-        &self.buckets
+    pub(crate) fn triangle_grid(&self) -> &TriangleGrid {
+        &self.triangle_grid
     }
 
     /// The corners of a triangle of the ground, from the tile's reference point, true heights.
@@ -118,5 +124,5 @@ pub(crate) fn relative(position_m: [f64; 3], reference_m: [f64; 3]) -> [f32; 3] 
 
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "these numbers are exact")]
-#[path = "ground_tests.rs"]
+#[path = "ground_mesh_tests.rs"]
 mod tests;

@@ -1,4 +1,5 @@
 use super::*;
+use crate::tiles::Side;
 
 fn end(way_id: i64, side: Side, at_m: [f64; 2], height_m: f64) -> RoadEnd {
     let class = FunctionalRoadClass::new(3).expect("a class");
@@ -12,12 +13,12 @@ fn check(coarse: &[RoadEnd], fine: &[RoadEnd], expected: &[[[f64; 2]; 2]]) {
         BorderTile { id: id(1, 0, 0), side_m: 200.0, skirt_depth_m: 5.0, ends: coarse },
         BorderTile { id: id(2, 2, 0), side_m: 100.0, skirt_depth_m: 3.0, ends: fine },
     ];
-    let found: Vec<_> = bridges(&tiles).iter().map(|bridge| bridge.ends_m).collect();
+    let found: Vec<_> = level_connectors(&tiles).iter().map(|connector| connector.ends_m).collect();
     assert_eq!(found, expected);
 }
 
 #[test]
-fn a_way_is_bridged_to_where_it_goes_on() {
+fn a_way_is_connected_to_where_it_goes_on() {
     let coarse = [
         end(7, Side::East, [200.0, 150.0], 10.0),
         end(7, Side::East, [200.0, 141.0], 10.0),
@@ -28,7 +29,7 @@ fn a_way_is_bridged_to_where_it_goes_on() {
 }
 
 #[test]
-fn ends_far_apart_or_on_other_sides_are_not_bridged() {
+fn ends_far_apart_or_on_other_sides_are_not_connected() {
     let coarse = [end(7, Side::East, [200.0, 150.0], 10.0)];
     check(&coarse, &[end(7, Side::West, [200.0, 140.0], 12.0)], &[]);
     check(&coarse, &[end(7, Side::North, [200.0, 150.0], 12.0)], &[]);
@@ -36,7 +37,7 @@ fn ends_far_apart_or_on_other_sides_are_not_bridged() {
 }
 
 #[test]
-fn a_bridge_reaches_over_both_heights_and_the_deeper_skirt() {
+fn a_connector_reaches_over_both_heights_and_the_deeper_skirt() {
     let id = |z, x, y| TileId::new(z, x, y).expect("a tile");
     let coarse = [end(7, Side::East, [200.0, 150.0], 10.0)];
     let fine = [end(7, Side::West, [200.0, 150.0], 12.0)];
@@ -44,7 +45,7 @@ fn a_bridge_reaches_over_both_heights_and_the_deeper_skirt() {
         BorderTile { id: id(1, 0, 0), side_m: 200.0, skirt_depth_m: 5.0, ends: &coarse },
         BorderTile { id: id(2, 2, 0), side_m: 100.0, skirt_depth_m: 3.0, ends: &fine },
     ];
-    let found = bridges(&tiles);
+    let found = level_connectors(&tiles);
     assert_eq!((found[0].fine, found[0].coarse), (1, 0));
     let [low_m, high_m] = found[0].height_range_m;
     assert!((low_m - 5.0).abs() < 1e-9 && (high_m - 17.0).abs() < 1e-9);

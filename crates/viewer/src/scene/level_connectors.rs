@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
 
-use crate::tiles::{RoadEnd, Side};
+use crate::tiles::RoadEnd;
 
 /// Ends of one way in two tiles belong together if they are at most this share of the coarser tile apart: two of
 /// its cells, far more than simplification moves a line.
@@ -11,15 +11,15 @@ const MAX_OFFSET_SHARE: f64 = 2.0 / 256.0;
 
 /// A tile that is drawn, as far as its roads' ends go.
 #[derive(Debug, Clone, Copy)]
-pub struct BorderTile<'a> {
+pub(crate) struct BorderTile<'a> {
     /// Which.
-    pub id: TileId,
+    pub(crate) id: TileId,
     /// The shorter of its sides, metres.
-    pub side_m: f64,
+    pub(crate) side_m: f64,
     /// How far its skirt hangs, true metres.
-    pub skirt_depth_m: f64,
+    pub(crate) skirt_depth_m: f64,
     /// Where its roads meet its border.
-    pub ends: &'a [RoadEnd],
+    pub(crate) ends: &'a [RoadEnd],
 }
 
 /// A piece of road over the step between two tiles of different levels.
@@ -28,31 +28,30 @@ pub struct BorderTile<'a> {
 ///     coarse │ fine            Both tiles end the road exactly on their common border, but on their own ground,
 ///            │  ●━━━━━━━       and, where the coarse line is simplified, beside each other. Between the ends
 ///            │ ╱  skirt        there is the step, closed by a skirt, which is no ground and carries no road.
-///   ━━━━━━━━━●                 The bridge ╱ does: it belongs to both tiles and to their skirts.
+///   ━━━━━━━━━●                 The connector ╱ does: it belongs to both tiles and to their skirts.
 /// ```
 ///
 /// Agrawal, Radhakrishna & Joshi 2006, *Geometry-based Mapping and Rendering of Vector Data over LOD Phototextured
 /// 3D Terrain Models*, section 4.4.2 (special case 2), move the vector points onto the triangles that fill the
 /// crack. Our cracks are filled by vertical skirts, where there is nothing to move a point onto.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bridge {
+pub(crate) struct LevelConnector {
     /// Index of the finer tile in the list.
-    pub fine: usize,
+    pub(crate) fine: usize,
     /// Index of the coarser one.
-    pub coarse: usize,
+    pub(crate) coarse: usize,
     /// Functional road class.
-    pub class: FunctionalRoadClass,
+    pub(crate) class: FunctionalRoadClass,
     /// Its ends in plan, working CRS: in the finer tile, in the coarser.
-    pub ends_m: [[f64; 2]; 2],
+    pub(crate) ends_m: [[f64; 2]; 2],
     /// Lowest and highest true height that it may have to cover.
-    pub height_range_m: [f64; 2],
+    pub(crate) height_range_m: [f64; 2],
     /// Working metres across the road for each true metre across it.
-    pub width_factor: f32,
+    pub(crate) width_factor: f32,
 }
 
-/// The bridges between tiles that are drawn together, in order of the finer tiles, then of class.
-#[must_use]
-pub fn bridges(tiles: &[BorderTile<'_>]) -> Vec<Bridge> {
+/// The connectors between tiles that are drawn together, in order of the finer tiles, then of class.
+pub(crate) fn level_connectors(tiles: &[BorderTile<'_>]) -> Vec<LevelConnector> {
     let index_of: BTreeMap<TileId, usize> =
         tiles.iter().enumerate().map(|(index, tile)| (tile.id, index)).collect();
     let mut found = Vec::new();
@@ -67,7 +66,7 @@ pub fn bridges(tiles: &[BorderTile<'_>]) -> Vec<Bridge> {
             let Some(partner) = partner(end, beyond) else { continue };
             let skirt_m = tile.skirt_depth_m.max(beyond.skirt_depth_m);
             let [low, high] = [end.height_range_m, partner.height_range_m];
-            found.push(Bridge {
+            found.push(LevelConnector {
                 fine,
                 coarse,
                 class: end.class,
@@ -77,7 +76,7 @@ pub fn bridges(tiles: &[BorderTile<'_>]) -> Vec<Bridge> {
             });
         }
     }
-    found.sort_by_key(|bridge| (bridge.fine, bridge.class));
+    found.sort_by_key(|connector| (connector.fine, connector.class));
     found
 }
 
@@ -93,27 +92,6 @@ fn partner<'a>(end: &RoadEnd, beyond: &BorderTile<'a>) -> Option<&'a RoadEnd> {
         .min_by(|a, b| distance_m(a).total_cmp(&distance_m(b)))
 }
 
-impl Side {
-    /// The tile beyond: columns to the east, rows to the south.
-    fn offset(self) -> (i32, i32) {
-        match self {
-            Self::West => (-1, 0),
-            Self::East => (1, 0),
-            Self::North => (0, -1),
-            Self::South => (0, 1),
-        }
-    }
-
-    fn opposite(self) -> Self {
-        match self {
-            Self::West => Self::East,
-            Self::East => Self::West,
-            Self::North => Self::South,
-            Self::South => Self::North,
-        }
-    }
-}
-
 #[cfg(test)]
-#[path = "bridges_tests.rs"]
+#[path = "level_connectors_tests.rs"]
 mod tests;

@@ -1,0 +1,74 @@
+/// Lists of indices, one list for each place: triangles by the cells of a grid, half-edges by their vertex.
+///
+/// ```text
+///  starts   0   2   2   5 …     one more than there are places
+///           │       │   │
+///  indices  7 9     1 7 8 …     the list of each place, ascending
+/// ```
+///
+/// Two flat arrays take 4 bytes for each place and for each entry, and are allocated once, with their final lengths: the
+/// entries are counted first, then filled in.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct IndexLists {
+    /// The list of place p is `indices[starts[p]..starts[p + 1]]`.
+    starts: Vec<u32>,
+    indices: Vec<u32>,
+}
+
+impl IndexLists {
+    /// Lists for `places` places. The items are numbered from 0; item k goes into the list of each of `places_of(k)`, which
+    /// is asked twice and gives the same places both times, all below `places`.
+    #[must_use]
+    pub fn new<P: Iterator<Item = usize>>(
+        places: usize,
+        items: usize,
+        places_of: impl Fn(usize) -> P,
+    ) -> Self {
+        let mut starts = vec![0_u32; places + 1];
+        for place in (0..items).flat_map(&places_of) {
+            starts[place + 1] += 1;
+        }
+        for place in 0..places {
+            starts[place + 1] += starts[place];
+        }
+        let mut next = starts.clone();
+        let mut indices = vec![0; starts[places] as usize];
+        for item in 0..items {
+            for place in places_of(item) {
+                indices[next[place] as usize] = item as u32;
+                next[place] += 1;
+            }
+        }
+        Self { starts, indices }
+    }
+
+    /// The list of a place, ascending.
+    #[inline]
+    #[must_use]
+    pub fn of(&self, place: usize) -> &[u32] {
+        &self.indices[self.starts[place] as usize..self.starts[place + 1] as usize]
+    }
+
+    /// How many entries all lists have together.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.indices.len()
+    }
+
+    /// Whether all lists are empty.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.indices.is_empty()
+    }
+}
+
+impl Default for IndexLists {
+    /// No place, no list.
+    fn default() -> Self {
+        Self { starts: vec![0], indices: Vec::new() }
+    }
+}
+
+#[cfg(test)]
+#[path = "index_lists_tests.rs"]
+mod tests;

@@ -1,0 +1,144 @@
+use corniche_geom::{Bounds, Frame, TileId, barycentric};
+use corniche_tileset::{Terrain, TilePayload};
+use corniche_tin::{Placement, Surface};
+
+use super::{BadRoad, GroundMesh, PlanScale, RoadSegments, RoadVolumes, TileLines, relief::Relief};
+use crate::lod::GroundSummary;
+
+/// A tile, decoded to what is uploaded: positions in f32 relative to the tile's reference point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TileGeometry {
+    /// Which tile.
+    pub id: TileId,
+    /// The reference point: x and y in the working CRS, true height. All positions are relative to it.
+    pub reference_m: [f64; 3],
+    /// Errors and heights; `None` without ground.
+    pub summary: Option<GroundSummary>,
+    /// The ground and its skirts.
+    pub ground: GroundMesh,
+    /// The roads on it as geometry (GEO); empty if that section was not read.
+    pub roads: RoadSegments,
+    /// The roads on it as volumes (SV); empty if that section was not read.
+    pub volumes: RoadVolumes,
+    /// Half widths beyond this are not drawn.
+    pub width_margin_m: f64,
+    /// Working metres across its roads for each true metre across them, where that is most.
+    pub most_width_factor: f64,
+    /// Its sides, east and north.
+    pub size_m: [f64; 2],
+}
+
+impl TileGeometry {
+    /// Puts a decoded tile together. `quantum_m` is the height of one step of the TIN's heights.
+    #[must_use]
+    pub fn assemble(
+        id: TileId,
+        terrain: Option<&Terrain>,
+        lines: &TileLines,
+        frame: &Frame,
+        quantum_m: f64,
+    ) -> Self {
+        let has_roads = !lines.ground.is_empty() || !lines.plan.is_empty();
+        let surface = surface(id, terrain.filter(|_| has_roads), frame, quantum_m);
+        Self::on_surface(id, terrain, surface.as_ref(), lines, frame, quantum_m)
+    }
+
+    /// The same where the `surface` of the terrain is known, if there are roads on it.
+    fn on_surface(
+        id: TileId,
+        terrain: Option<&Terrain>,
+        surface: Option<&Surface>,
+        lines: &TileLines,
+        frame: &Frame,
+        quantum_m: f64,
+    ) -> Self {
+        let bounds = frame.tile_bounds(id);
+        let [x, y] = bounds.center();
+        let [low_m, high_m] = terrain.map_or([0.0; 2], |terrain| terrain.height_range_m);
+        let reference_m = [x, y, f64::midpoint(low_m, high_m)];
+        let ground = terrain.map_or_else(GroundMesh::default, |terrain| {
+            GroundMesh::new(id, &terrain.tin, &terrain.normals, frame, quantum_m, reference_m)
+        });
+        let summary = terrain.map(|terrain| GroundSummary {
+            geometric_error_m: terrain.geometric_error_m,
+            height_range_m: terrain.height_range_m,
+        });
+        let relief = Relief::new(id, surface, frame, lines.width_margin_m);
+        let wide = relief.wide(&lines.ground);
+        let scale = &lines.scale;
+        let sources = lines.ground.iter().flat_map(|line| line.sources_m.iter().copied());
+        let in_plan = lines
+            .plan
+            .iter()
+            .flat_map(|line| line.points_m.windows(2))
+            .map(|pair| [pair[0], pair[1]]);
+        let most_width_factor =
+            sources.chain(in_plan).map(|ends_m| scale.across(ends_m)).fold(0.0, f64::max);
+        Self {
+            id,
+            reference_m,
+            summary,
+            ground,
+            most_width_factor,
+            roads: RoadSegments::of_lines(&lines.ground, bounds, reference_m, scale, |piece| {
+                relief.bed(piece, wide.as_ref())
+            }),
+            volumes: RoadVolumes::new(&lines.plan, bounds, reference_m, scale, |ends_m| {
+                relief.near(ends_m)
+            }),
+            width_margin_m: lines.width_margin_m,
+            size_m: [bounds.width(), bounds.height()],
+        }
+    }
+
+    /// Decodes a tile's payload: terrain and what it has of roads. `width_margin_m` is its level's, `scale` the tile's.
+    ///
+    /// # Errors
+    /// When a road does not fit the ground.
+    pub fn from_payload(
+        payload: &TilePayload,
+        frame: &Frame,
+        quantum_m: f64,
+        width_margin_m: f64,
+        scale: PlanScale,
+    ) -> Result<Self, BadRoad> {
+        let (id, terrain) = (payload.id, payload.terrain.as_ref());
+        let has_roads = !payload.roads_geo.is_empty() || !payload.roads_sv.is_empty();
+        let surface = surface(id, terrain.filter(|_| has_roads), frame, quantum_m);
+        let lines = TileLines::of_payload(payload, surface.as_ref(), frame, width_margin_m)?;
+        let lines = TileLines { scale, ..lines };
+        Ok(Self::on_surface(id, terrain, surface.as_ref(), &lines, frame, quantum_m))
+    }
+
+    /// The rectangle that it covers in the working CRS.
+    #[must_use]
+    pub fn plan_bounds(&self) -> Bounds {
+        let ([x, y, _], [east_m, north_m]) =
+            (self.reference_m, self.size_m.map(|side_m| side_m / 2.0));
+        Bounds { min_x: x - east_m, min_y: y - north_m, max_x: x + east_m, max_y: y + north_m }
+    }
+
+    /// True height of the ground at a position in the working CRS; `None` where this tile has no ground.
+    #[must_use]
+    pub fn ground_height_m(&self, [x, y]: [f64; 2]) -> Option<f64> {
+        let at = [x - self.reference_m[0], y - self.reference_m[1]];
+        self.ground.triangle_grid().at(at).iter().find_map(|triangle| {
+            let [a, b, c] = self.ground.corners(*triangle);
+            let weights = barycentric(at, [a[0], a[1]], [b[0], b[1]], [c[0], c[1]]);
+            // A millionth of slack: positions were rounded to f32 and the query must not fall between triangles.
+            weights.iter().all(|weight| *weight >= -1e-6).then(|| {
+                self.reference_m[2] + weights[0] * a[2] + weights[1] * b[2] + weights[2] * c[2]
+            })
+        })
+    }
+}
+
+/// A tile's ground as roads ask for it.
+fn surface(
+    id: TileId,
+    terrain: Option<&Terrain>,
+    frame: &Frame,
+    quantum_m: f64,
+) -> Option<Surface> {
+    terrain.map(|terrain| Surface::new(&terrain.tin, Placement::of_tile(frame, id, quantum_m)))
+}

@@ -1,0 +1,121 @@
+use corniche_drape::BadLine;
+use corniche_geom::Frame;
+use corniche_roads::FunctionalRoadClass;
+use corniche_tileset::TilePayload;
+use corniche_tin::Surface;
+
+use super::super::PlanScale;
+
+/// A road on the ground (GEO): its centre-line as it lies on the tile's TIN.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GroundLine {
+    /// OSM's id of the way.
+    pub way_id: i64,
+    /// Functional road class.
+    pub class: FunctionalRoadClass,
+    /// x, y in the working CRS and true height of each vertex.
+    pub points_m: Vec<[f64; 3]>,
+    /// For each piece between two vertices the ends, in plan, of the segment of the source line that it is a piece of.
+    /// Between pieces of one segment the road goes straight on.
+    pub sources_m: Vec<[[f64; 2]; 2]>,
+}
+
+impl GroundLine {
+    /// A line whose vertices are all points of the source line.
+    #[must_use]
+    pub fn of_source(way_id: i64, class: FunctionalRoadClass, points_m: Vec<[f64; 3]>) -> Self {
+        let plan = |[x, y, _]: [f64; 3]| [x, y];
+        let sources_m = points_m.windows(2).map(|pair| [plan(pair[0]), plan(pair[1])]).collect();
+        Self { way_id, class, points_m, sources_m }
+    }
+}
+
+/// A road in plan (SV), in the tile and its margin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanLine {
+    /// OSM's id of the way.
+    pub way_id: i64,
+    /// Functional road class.
+    pub class: FunctionalRoadClass,
+    /// x, y in the working CRS.
+    pub points_m: Vec<[f64; 2]>,
+    /// Per segment the lowest and highest ground of the tile within the width margin, true height.
+    pub ground_range_m: Vec<[f64; 2]>,
+}
+
+/// The roads of a tile.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TileLines {
+    /// On the ground; empty if that section was not read.
+    pub ground: Vec<GroundLine>,
+    /// In plan; empty if that section was not read.
+    pub plan: Vec<PlanLine>,
+    /// How far the plan lines reach beyond the tile; half widths beyond it are not drawn.
+    pub width_margin_m: f64,
+    /// Working metres to a true metre; 1 by default.
+    pub scale: PlanScale,
+}
+
+/// Why a road of a tile cannot be drawn: the package is damaged.
+#[derive(Debug, thiserror::Error)]
+#[error("part {part} of way {way_id} does not fit the tile's ground")]
+pub struct BadRoad {
+    /// OSM's id of the way.
+    pub way_id: i64,
+    /// Which piece of it.
+    pub part: u32,
+    /// What is wrong.
+    pub source: BadLine,
+}
+
+impl TileLines {
+    /// Places the roads of a payload, as far as it has them, on its `surface`. `width_margin_m` is the level's.
+    pub(crate) fn of_payload(
+        payload: &TilePayload,
+        surface: Option<&Surface>,
+        frame: &Frame,
+        width_margin_m: f64,
+    ) -> Result<Self, BadRoad> {
+        let ground =
+            surface.map_or(Ok(Vec::new()), |surface| ground_lines(payload, surface, frame))?;
+        let scale = PlanScale::default();
+        Ok(Self { ground, plan: plan_lines(payload, frame), width_margin_m, scale })
+    }
+}
+
+/// Recomputes the positions of a tile's clipped roads from its ground.
+fn ground_lines(
+    payload: &TilePayload,
+    surface: &Surface,
+    frame: &Frame,
+) -> Result<Vec<GroundLine>, BadRoad> {
+    let place = |[u, v, height_m]: [f64; 3]| {
+        let [x, y] = frame.position_of_fraction_m([u, v]);
+        [x, y, height_m]
+    };
+    let mut lines = Vec::with_capacity(payload.roads_geo.len());
+    for road in &payload.roads_geo {
+        let positions = corniche_drape::positions(&road.line, surface)
+            .map_err(|source| BadRoad { way_id: road.way_id, part: road.part, source })?;
+        lines.push(GroundLine {
+            way_id: road.way_id,
+            class: road.class,
+            points_m: positions.into_iter().map(place).collect(),
+            sources_m: corniche_drape::source_segments(&road.line)
+                .into_iter()
+                .map(|ends| ends.map(|point| frame.position_m(point)))
+                .collect(),
+        });
+    }
+    Ok(lines)
+}
+
+fn plan_lines(payload: &TilePayload, frame: &Frame) -> Vec<PlanLine> {
+    let place = |road: &corniche_tileset::SvRoad| PlanLine {
+        way_id: road.way_id,
+        class: road.class,
+        points_m: road.line.points.iter().map(|point| frame.position_m(*point)).collect(),
+        ground_range_m: road.line.ground_range_m.clone(),
+    };
+    payload.roads_sv.iter().map(place).collect()
+}

@@ -1,0 +1,56 @@
+use std::ops::Range;
+
+use corniche_roads::FunctionalRoadClass;
+
+use super::RoadEnd;
+
+/// All pieces of the roads of a tile, as one method draws them, in order of class.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RoadList<T> {
+    pieces: Vec<T>,
+    ranges: [Range<u32>; FunctionalRoadClass::COUNT],
+    ends: Vec<RoadEnd>,
+}
+
+impl<T> RoadList<T> {
+    /// Sorts pieces by class.
+    pub(crate) fn sorted(
+        mut pieces: Vec<T>,
+        class_of: impl Fn(&T) -> FunctionalRoadClass,
+        ends: Vec<RoadEnd>,
+    ) -> Self {
+        pieces.sort_by_key(&class_of);
+        let mut ranges = [const { 0..0 }; FunctionalRoadClass::COUNT];
+        for (class, range) in FunctionalRoadClass::all().zip(&mut ranges) {
+            let start = pieces.partition_point(|piece| class_of(piece) < class);
+            let end = pieces.partition_point(|piece| class_of(piece) <= class);
+            *range = start as u32..end as u32;
+        }
+        Self { pieces, ranges, ends }
+    }
+
+    /// The pieces, most important class first.
+    #[must_use]
+    pub fn all(&self) -> &[T] {
+        &self.pieces
+    }
+
+    /// Where the pieces of a class are.
+    #[must_use]
+    pub fn range_of(&self, class: FunctionalRoadClass) -> Range<u32> {
+        self.ranges[usize::from(class.number())].clone()
+    }
+
+    /// Where they meet the tile's border.
+    #[must_use]
+    pub fn ends(&self) -> &[RoadEnd] {
+        &self.ends
+    }
+}
+
+impl<T> Default for RoadList<T> {
+    fn default() -> Self {
+        let ranges = [const { 0..0 }; FunctionalRoadClass::COUNT];
+        Self { pieces: Vec::new(), ranges, ends: Vec::new() }
+    }
+}

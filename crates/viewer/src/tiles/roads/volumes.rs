@@ -1,0 +1,71 @@
+use corniche_geom::Bounds;
+use corniche_roads::FunctionalRoadClass;
+
+use super::{
+    super::{PlanScale, ground_mesh::relative},
+    NearHeights, PlanLine, RoadList,
+    ends::plan_ends,
+};
+
+/// A straight piece of a road in plan with the heights that its volume spans.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoadVolume {
+    /// Metres from the tile's reference point, east and north.
+    pub start_in_tile: [f32; 2],
+    /// The other end.
+    pub end_in_tile: [f32; 2],
+    /// Lowest and highest ground within the width margin, true metres above the reference point, rounded outwards.
+    pub height_range_in_tile: [f32; 2],
+    /// Closer bounds for roads that are not wide.
+    pub near: NearHeights,
+    /// Working metres across it for each true metre across it.
+    pub width_factor: f32,
+    /// Functional road class.
+    pub class: FunctionalRoadClass,
+}
+
+/// All volumes of a tile.
+pub type RoadVolumes = RoadList<RoadVolume>;
+
+impl RoadList<RoadVolume> {
+    /// Cuts lines of the tile with these bounds into volumes.
+    ///
+    /// `near` tells, for the ends of a segment in the working CRS, the ground's true heights beneath it and how they
+    /// rise per metre; `None` when no ground is within [`NearHeights::reach_m`].
+    #[must_use]
+    pub fn new(
+        lines: &[PlanLine],
+        tile: Bounds,
+        reference_m: [f64; 3],
+        scale: &PlanScale,
+        near: impl Fn([[f64; 2]; 2]) -> Option<([f64; 2], f64)>,
+    ) -> Self {
+        let above = |[low_m, high_m]: [f64; 2]| {
+            let [low, high] = [low_m, high_m].map(|height_m| (height_m - reference_m[2]) as f32);
+            [low.next_down(), high.next_up()]
+        };
+        let place = |[x, y]: [f64; 2]| {
+            let [x, y, _] = relative([x, y, 0.0], reference_m);
+            [x, y]
+        };
+        let volumes = lines.iter().flat_map(|line| {
+            line.points_m.windows(2).zip(&line.ground_range_m).map(|(pair, range_m)| {
+                // Without ground near, a box as good as flat.
+                let (near_m, rise) = near([pair[0], pair[1]])
+                    .unwrap_or(([f64::midpoint(range_m[0], range_m[1]); 2], 0.0));
+                RoadVolume {
+                    start_in_tile: place(pair[0]),
+                    end_in_tile: place(pair[1]),
+                    height_range_in_tile: above(*range_m),
+                    near: NearHeights {
+                        range_in_tile: above(near_m),
+                        rise: (rise as f32).next_up(),
+                    },
+                    width_factor: scale.across([pair[0], pair[1]]) as f32,
+                    class: line.class,
+                }
+            })
+        });
+        Self::sorted(volumes.collect(), |volume| volume.class, plan_ends(lines, tile, scale))
+    }
+}

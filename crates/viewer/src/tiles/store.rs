@@ -1,0 +1,110 @@
+use std::collections::BTreeMap;
+
+use corniche_geom::{Bounds, TileId};
+
+use super::{LoadTileError, TileGeometry, TileSource};
+use crate::lod::{GroundSummary, Node, Request, TileTree};
+
+/// The tiles loaded so far.
+pub struct TileStore<'a> {
+    source: &'a dyn TileSource,
+    tiles: BTreeMap<TileId, TileGeometry>,
+}
+
+impl<'a> TileStore<'a> {
+    /// Nothing loaded yet.
+    #[must_use]
+    pub fn new(source: &'a dyn TileSource) -> Self {
+        Self { source, tiles: BTreeMap::new() }
+    }
+
+    /// Loads what is asked for, in order.
+    ///
+    /// # Errors
+    /// At the first tile that cannot be had.
+    pub fn load(&mut self, requests: &[Request]) -> Result<(), LoadTileError> {
+        for request in requests {
+            if !self.tiles.contains_key(&request.id) {
+                self.tiles.insert(request.id, self.source.load(request.id)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the tile or anything beneath it exists.
+    #[must_use]
+    pub fn exists(&self, id: TileId) -> bool {
+        self.source.exists(id)
+    }
+
+    /// How many tiles are loaded.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.tiles.len()
+    }
+
+    /// Whether no tile is loaded.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.tiles.is_empty()
+    }
+
+    /// A loaded tile.
+    #[must_use]
+    pub fn get(&self, id: TileId) -> Option<&TileGeometry> {
+        self.tiles.get(&id)
+    }
+
+    /// The root's ground: between which true heights all ground lies, and how far off the coarsest is; `None` without
+    /// any. Loads the root.
+    ///
+    /// # Errors
+    /// When the root cannot be had.
+    pub fn coarsest_ground(&mut self) -> Result<Option<GroundSummary>, LoadTileError> {
+        if !self.exists(TileId::ROOT) {
+            return Ok(None);
+        }
+        self.load(&[Request { id: TileId::ROOT, priority_px: f64::INFINITY }])?;
+        Ok(self.get(TileId::ROOT).and_then(|root| root.summary))
+    }
+
+    /// True height of the ground at a position, from the finest tile there; loads the tiles down to it.
+    ///
+    /// # Errors
+    /// When a tile cannot be had.
+    pub fn ground_height_m(&mut self, at: [f64; 2]) -> Result<Option<f64>, LoadTileError> {
+        let mut found = None;
+        let mut next = self.source.exists(TileId::ROOT).then_some(TileId::ROOT);
+        while let Some(id) = next {
+            self.load(&[Request { id, priority_px: f64::INFINITY }])?;
+            found = self.get(id).and_then(|tile| tile.ground_height_m(at)).or(found);
+            next = (id.z() < self.max_level())
+                .then(|| id.children().find(|child| holds(&self.plan_bounds(*child), at)))
+                .flatten()
+                .filter(|child| self.source.exists(*child));
+        }
+        Ok(found)
+    }
+}
+
+impl TileTree for TileStore<'_> {
+    fn node(&self, id: TileId) -> Node {
+        match self.tiles.get(&id) {
+            Some(tile) => Node::Loaded(tile.summary),
+            None if self.source.exists(id) => Node::Listed,
+            None => Node::Absent,
+        }
+    }
+
+    fn plan_bounds(&self, id: TileId) -> Bounds {
+        self.source.frame().tile_bounds(id)
+    }
+
+    fn max_level(&self) -> u8 {
+        self.source.frame().max_level()
+    }
+}
+
+fn holds(bounds: &Bounds, [x, y]: [f64; 2]) -> bool {
+    (bounds.min_x..=bounds.max_x).contains(&x) && (bounds.min_y..=bounds.max_y).contains(&y)
+}
