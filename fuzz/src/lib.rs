@@ -17,5 +17,5 @@ mod payload;
 pub use config::config;
 pub use drape::drape;
 pub use osm::osm;
-pub use package::package;
+pub use package::{package, package_of};
 pub use payload::payload;

@@ -4,6 +4,7 @@ use corniche_geom::LatticePoint;
 use corniche_osm::{Defect, ReadOsmError, ReadRequest, read_roads_from};
 use corniche_presets::parse_frc_table;
 use corniche_roads::FrcTable;
+use corniche_testing::pbf::{header, raw};
 
 /// An extract of these bytes is read or refused, and every way with a `highway` tag is a road or counted under one reason.
 ///
@@ -19,21 +20,9 @@ pub fn osm(data: &[u8]) {
     }
 }
 
-/// A file of a header and one raw block.
+/// A file of a header and one uncompressed block.
 fn file_of(block: &[u8]) -> Vec<u8> {
-    const HEADER: &[u8] = b"\0\0\0\x0d\x0a\x09OSMHeader\x18\x12\x0a\x10\x22\x0eOsmSchema-V0.6";
-    let varint = |mut number: usize| {
-        let mut bytes = Vec::new();
-        while number > 0x7f {
-            bytes.push(number as u8 | 0x80);
-            number >>= 7;
-        }
-        bytes.push(number as u8);
-        bytes
-    };
-    let blob = [b"\x0a", &varint(block.len())[..], block].concat();
-    let header = [b"\x0a\x07OSMData\x18", &varint(blob.len())[..]].concat();
-    [HEADER, &(header.len() as u32).to_be_bytes(), &header, &blob].concat()
+    [header(&["OsmSchema-V0.6"]), raw(b"OSMData", block)].concat()
 }
 
 thread_local! {

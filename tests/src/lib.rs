@@ -12,36 +12,9 @@ use std::{
     time::{Duration, Instant},
 };
 
+pub use corniche_testing::{real_data, root, sample};
 #[cfg(target_os = "linux")]
 pub use display::{Display, without_display};
-
-/// The repository's root.
-#[must_use]
-pub fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(Path::to_path_buf).unwrap_or_default()
-}
-
-/// A file of the bundled samples.
-#[must_use]
-pub fn sample(path: &str) -> PathBuf {
-    root().join("data-samples").join(path)
-}
-
-/// The developers' real data, if they are here: `CORNICHE_DATA`, else `../shared/data`. Says so when not.
-#[must_use]
-#[expect(clippy::print_stderr, reason = "a test that is skipped says so")]
-pub fn real_data(path: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("CORNICHE_DATA").map_or_else(
-        || root().parent().map(|up| up.join("shared/data")).unwrap_or_default(),
-        PathBuf::from,
-    );
-    let file = folder.join(path);
-    if file.exists() {
-        return Some(file);
-    }
-    eprintln!("skipped: {} is not here; set CORNICHE_DATA to a folder that has it", file.display());
-    None
-}
 
 /// The binary under test, built before the scenarios by cargo in the same target folder.
 ///

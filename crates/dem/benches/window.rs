@@ -7,10 +7,8 @@ use std::path::PathBuf;
 
 use corniche_dem::{Dem, OpenOptions, PlanOptions};
 use corniche_geom::{NodeIndex, NodeWindow};
+use corniche_testing::Raster;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use gdal::DriverManager;
-use gdal::raster::Buffer;
-use gdal::spatial_ref::SpatialRef;
 
 /// Samples along each side of the raster, and nodes along each side of the window.
 const SAMPLES: usize = 3000;
@@ -19,12 +17,9 @@ const NODES: usize = 1024;
 /// A rolling ground of 30 m samples in UTM, or of 0.0003° in degrees, with a void in every 1000 samples if asked.
 fn ground(folder: &std::path::Path, epsg: u32, void_every: usize) -> PathBuf {
     let path = folder.join(format!("{epsg}-{void_every}.tif"));
-    let driver = DriverManager::get_driver_by_name("GTiff").unwrap();
-    let mut dataset = driver.create_with_band_type::<f32, _>(&path, SAMPLES, SAMPLES, 1).unwrap();
     let (west, north, step) =
         if epsg == 4326 { (8.5, 47.5, 0.0003) } else { (450_000.0, 5_250_000.0, 30.0) };
-    dataset.set_geo_transform(&[west, step, 0.0, north, 0.0, -step]).unwrap();
-    dataset.set_spatial_ref(&SpatialRef::from_epsg(epsg).unwrap()).unwrap();
+    let raster = Raster::new(epsg, [SAMPLES; 2], [west, step, 0.0, north, 0.0, -step]);
     let height = |k: usize| {
         let (c, r) = ((k % SAMPLES) as f32, (k / SAMPLES) as f32);
         if k % void_every == void_every - 1 {
@@ -33,9 +28,7 @@ fn ground(folder: &std::path::Path, epsg: u32, void_every: usize) -> PathBuf {
             900.0 + 300.0 * (c / 90.0).sin() * (r / 70.0).cos()
         }
     };
-    let heights = (0..SAMPLES * SAMPLES).map(height).collect();
-    let mut band = dataset.rasterband(1).unwrap();
-    band.write((0, 0), (SAMPLES, SAMPLES), &mut Buffer::new((SAMPLES, SAMPLES), heights)).unwrap();
+    raster.write_values(&path, (0..SAMPLES * SAMPLES).map(height).collect());
     path
 }
 

@@ -2,19 +2,18 @@
 
 mod exact;
 mod lines;
-mod random;
 mod terrains;
 
 use std::collections::BTreeMap;
 
 use corniche_geom::{LatticePoint, Polyline};
+use corniche_testing::Random;
 use corniche_tin::{Placement, Surface, Tin};
 use proptest::prelude::*;
 
 use self::{
     exact::{crossing, expected, height},
     lines::Course,
-    random::Random,
     terrains::Terrain,
 };
 use crate::{DrapedLine, DrapedVertex, check, drape, positions};
@@ -71,7 +70,7 @@ struct Case {
 impl Case {
     /// `None` where chance makes no TIN, or a line of one point.
     fn new(seed: u64) -> Option<Self> {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let terrain = random.one_of(&Terrain::ALL);
         let course = random.one_of(&Course::ALL);
         let tin = terrain.make(&mut random)?;

@@ -1,27 +1,6 @@
-use std::io::Write;
-
-use flate2::{Compression, write::ZlibEncoder};
+use corniche_testing::pbf::{field, number, zlib};
 
 use super::*;
-
-fn field(number: u8, content: &[u8]) -> Vec<u8> {
-    let mut bytes = vec![number << 3 | 2];
-    push_varint(&mut bytes, content.len() as u64);
-    bytes.extend_from_slice(content);
-    bytes
-}
-
-fn number(field: u8, value: i64) -> Vec<u8> {
-    let mut bytes = vec![field << 3];
-    push_varint(&mut bytes, value.cast_unsigned());
-    bytes
-}
-
-fn zlib(content: &[u8]) -> Vec<u8> {
-    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
-    encoder.write_all(content).expect("memory takes all");
-    encoder.finish().expect("memory takes all")
-}
 
 /// `expected` is the block, or words of the reason.
 #[track_caller]

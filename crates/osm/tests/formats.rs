@@ -10,11 +10,11 @@ mod common;
 
 use std::{fs, path::Path, process::Command};
 
-use common::{
-    fixture, read, read_bytes,
-    writer::{Block, field, frame, header, number, packed_blob, plain_header, raw, written, zlib},
-};
+use common::{fixture, read, read_bytes, written};
 use corniche_osm::ReadOsmError;
+use corniche_testing::pbf::{
+    Block, field, frame, header, number, packed_blob, plain_header, raw, zlib,
+};
 
 /// The message names the file, and says all of these words.
 #[track_caller]
@@ -215,7 +215,7 @@ fn a_file_begins_with_its_header() {
 fn several_files_in_a_row_are_one_and_have_no_box() {
     let header = |west: i64| {
         let side = |number: u8, value: i64| {
-            [vec![number << 3], common::writer::zigzag(value * 1_000_000_000)].concat()
+            [vec![number << 3], corniche_testing::pbf::zigzag(value * 1_000_000_000)].concat()
         };
         let bbox = [side(1, west), side(2, 10), side(3, 48), side(4, 47)].concat();
         raw(b"OSMHeader", &[field(1, &bbox), field(16, b"test")].concat())

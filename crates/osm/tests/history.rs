@@ -4,11 +4,9 @@
 
 mod common;
 
-use common::{
-    fixture, read, read_bytes,
-    writer::{Block, deltas, field, file, number, plain_header, raw},
-};
+use common::{fixture, read, read_bytes};
 use corniche_osm::{Defect, ReadOsmError};
+use corniche_testing::pbf::{Block, deltas, field, file, number, plain_header, raw};
 use proptest::prelude::*;
 
 /// What is known of an object: its version, and whether it is there.

@@ -6,14 +6,12 @@ mod common;
 
 use std::fs;
 
-use common::{
-    Extract, fixture, read, read_bytes,
-    writer::{
-        Block, deltas, field, file, frame, frame_with, number, packed_blob, plain_header, raw,
-        varint, written, zigzags,
-    },
-};
+use common::{Extract, fixture, read, read_bytes, written};
 use corniche_osm::ReadOsmError;
+use corniche_testing::pbf::{
+    Block, deltas, field, file, frame, frame_with, number, packed_blob, plain_header, raw, varint,
+    zigzags,
+};
 
 /// Where blobs end, by the framing alone: `BlobHeader` ends in field 3, its blob's size as a varint.
 fn blob_ends(bytes: &[u8]) -> Vec<usize> {
@@ -145,7 +143,7 @@ fn sizes_that_cannot_be_are_damage() {
 
     let with_data = |blob: Vec<u8>| [plain_header(), frame(b"OSMData", &blob)].concat();
     let block = Block::with_row_of_nodes(20).bytes();
-    let packed = common::writer::zlib(&block);
+    let packed = corniche_testing::pbf::zlib(&block);
     let len = block.len() as i64;
     for (promised, words) in [
         (len - 1, "it unpacks to more than"),
@@ -158,7 +156,7 @@ fn sizes_that_cannot_be_are_damage() {
     }
     check_damaged(&with_data(field(3, &packed[..packed.len() / 2])), "is cut off");
     check_damaged(
-        &with_data(field(3, &common::writer::zlib(&vec![0; 40 << 20]))),
+        &with_data(field(3, &corniche_testing::pbf::zlib(&vec![0; 40 << 20]))),
         "more than 33554431",
     );
     check_damaged(&with_data(field(1, &vec![0; 32 << 20])), "bytes long");

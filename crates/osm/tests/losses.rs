@@ -6,11 +6,9 @@ mod common;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use common::{
-    Extract, read_bytes,
-    writer::{Block, deltas, field, file, number, packed_blob, plain_header, raw},
-};
+use common::{Extract, read_bytes};
 use corniche_osm::Defect;
+use corniche_testing::pbf::{Block, deltas, field, file, number, packed_blob, plain_header, raw};
 use proptest::prelude::*;
 
 /// The points of each road, west to east in hundredths of the row's spacing, and the defects.

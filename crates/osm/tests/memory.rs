@@ -10,10 +10,8 @@ mod common;
 
 use std::{fs, time::Instant};
 
-use common::{
-    read_bytes_in,
-    writer::{Block, field, frame, number, packed_blob, plain_header, zlib},
-};
+use common::read_bytes_in;
+use corniche_testing::pbf::{Block, field, frame, number, packed_blob, plain_header, zlib};
 
 /// A line of the system's account of this process, MiB; `None` where it keeps none.
 fn memory_mib(name: &str) -> Option<u64> {

@@ -6,8 +6,9 @@ mod common;
 
 use std::collections::BTreeMap;
 
-use common::{Extract, read, read_with, shared_data, to_lattice};
+use common::{Extract, read, read_with, to_lattice};
 use corniche_osm::ReadOsmError;
+use corniche_testing::real_data;
 
 /// Ways per `highway` value, from `osmium tags-filter -R FILE w/highway` and `osmium tags-count`.
 #[track_caller]
@@ -25,7 +26,7 @@ fn check_counts(extract: &Extract, expected: &[(&str, u64)]) {
 
 #[test]
 fn liechtenstein_2021_is_counted_as_osmium_counts_it() {
-    let Some(path) = shared_data("liechtenstein/liechtenstein-2021-10-28.osm.pbf") else { return };
+    let Some(path) = real_data("liechtenstein/liechtenstein-2021-10-28.osm.pbf") else { return };
     let extract = read(&path).unwrap();
     let expected = [
         ("service", 1637),
@@ -79,7 +80,7 @@ struct Figures {
 
 #[track_caller]
 fn check_figures(name: &str, expected: &Figures) {
-    let Some(path) = shared_data(name) else { return };
+    let Some(path) = real_data(name) else { return };
     let extract = read(&path).unwrap();
     let summary = &extract.summary;
     assert_eq!((summary.nodes_seen, summary.ways_seen), (expected.nodes, expected.ways), "{name}");
@@ -136,7 +137,7 @@ fn every_extract_of_the_data_set_gives_the_figures_counted_apart() {
 
 #[test]
 fn portland_is_read_although_it_is_not_sorted() {
-    let Some(path) = shared_data("portland/portland-central-filtered.osm.pbf") else { return };
+    let Some(path) = real_data("portland/portland-central-filtered.osm.pbf") else { return };
     let extract = read(&path).unwrap();
     assert_eq!((extract.summary.nodes_seen, extract.summary.ways_seen), (42_293, 7188));
     assert_eq!(
@@ -152,7 +153,7 @@ fn every_number_of_threads_gives_the_same() {
         "liechtenstein/liechtenstein-2021-10-28.osm.pbf",
         "portland/portland-central-filtered.osm.pbf",
     ] {
-        let Some(path) = shared_data(name) else { return };
+        let Some(path) = real_data(name) else { return };
         let alone = read_with(&path, 1, &to_lattice).unwrap();
         assert_eq!(alone, read_with(&path, 2, &to_lattice).unwrap());
         assert_eq!(alone, read_with(&path, 8, &to_lattice).unwrap());
@@ -161,7 +162,7 @@ fn every_number_of_threads_gives_the_same() {
 
 #[test]
 fn extracts_that_cannot_be_read_are_refused_with_the_reason() {
-    let error = |name: &str| Some(read(&shared_data(name)?).unwrap_err());
+    let error = |name: &str| Some(read(&real_data(name)?).unwrap_err());
     if let Some(error) = error("nasty/osm/deleted_nodes.osh.pbf") {
         assert!(matches!(error, ReadOsmError::History { .. }), "{error}");
     }

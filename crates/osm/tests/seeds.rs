@@ -6,9 +6,9 @@ mod common;
 
 use std::{collections::BTreeMap, fs, path::PathBuf};
 
-use common::{
-    fixture,
-    writer::{Block, deltas, field, file, frame, header, number, packed_blob, plain_header, raw},
+use common::fixture;
+use corniche_testing::pbf::{
+    Block, deltas, field, file, frame, header, number, packed_blob, plain_header, raw,
 };
 
 /// Whole files, and blocks alone, which the target wraps itself.

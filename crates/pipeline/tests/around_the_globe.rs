@@ -20,7 +20,7 @@ fn degrees(path: &Path, size: [usize; 2], [west, north]: [f64; 2]) {
     let first = [west + 0.5, north - 0.5];
     let height_m = |k: usize| ((k % size[0]) * 7 + (k / size[0]) * 11) % 900;
     let values = (0..size[0] * size[1]).map(|k| height_m(k) as f32).collect();
-    write_samples(path, (size[0], size[1]), (4326, first, [1.0; 2]), values);
+    write_samples(path, [size[0], size[1]], (4326, first, [1.0; 2]), values);
 }
 
 /// Builds and verifies with the DEM: no check is broken.
@@ -89,7 +89,7 @@ fn what_has_longitudes_all_over_is_built() {
     let dem = folder.path().join("plate.tif");
     let north_west = [-179.5 * DEGREE_M, 89.5 * DEGREE_M];
     let values = (0..360 * 180).map(|k| (k % 77) as f32).collect();
-    write_samples(&dem, (360, 180), (4087, north_west, [DEGREE_M; 2]), values);
+    write_samples(&dem, [360, 180], (4087, north_west, [DEGREE_M; 2]), values);
     check_bounds(&checked(&dem, options), [-179.5, -89.5, 179.5, 89.5]);
     let dem = folder.path().join("arctic.tif");
     degrees(&dem, [360, 20], [-180.0, 90.0]);
@@ -121,7 +121,7 @@ fn what_does_not_fit_one_package_is_refused() {
     check(&refused(&arctic, None), &["do not fit one package", "a pole", "--crs dem"]);
     let pole = folder.path().join("pole.tif");
     let values = vec![1.0; 101 * 101];
-    write_samples(&pole, (101, 101), (3413, [-500_000.0, 500_000.0], [10_000.0; 2]), values);
+    write_samples(&pole, [101, 101], (3413, [-500_000.0, 500_000.0], [10_000.0; 2]), values);
     check(&refused(&pole, None), &["do not fit one package", "a pole"]);
 }
 
@@ -147,7 +147,7 @@ fn a_latitude_that_changes_nothing_is_told() {
     for (epsg, north_west, step, is_told) in
         [(32632, [500_000.0, 5_200_000.0], 10.0, true), (4326, [9.0, 47.0], 0.001, false)]
     {
-        write_samples(&dem, (40, 40), (epsg, north_west, [step; 2]), values.clone());
+        write_samples(&dem, [40, 40], (epsg, north_west, [step; 2]), values.clone());
         let output = folder.path().join(format!("{epsg}.pmtiles"));
         let mut asked = settings(dem.clone(), None, output, Options::plain(5.0));
         asked.terrain.scale_latitude_deg = Some(46.5);

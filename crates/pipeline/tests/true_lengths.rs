@@ -53,7 +53,7 @@ fn built(epsg: u32, first: [f64; 2], spacing: f64) -> Built {
     };
     write_samples(
         &dem,
-        (200, 200),
+        [200, 200],
         (epsg, first, [spacing; 2]),
         (0..200 * 200).map(height_m).collect(),
     );

@@ -4,15 +4,11 @@
 
 mod support;
 
-use std::{
-    fs,
-    io::{Read as _, Write as _},
-    ops::Range,
-    path::Path,
-};
+use std::{fs, io::Read as _, ops::Range, path::Path};
 
 use corniche_pipeline::{CheckId, VerifyError};
-use flate2::{Compression, read::GzDecoder, write::GzEncoder};
+use corniche_testing::pmtiles::gzip;
+use flate2::read::GzDecoder;
 use serde_json::{Value, json};
 use support::parts::{Against, SOUND, assert_broken, report_on, verify_against};
 
@@ -58,9 +54,7 @@ fn with_metadata(change: impl FnOnce(&mut Value)) -> Vec<u8> {
     GzDecoder::new(&bytes[from..from + length]).read_to_string(&mut text).unwrap();
     let mut metadata = serde_json::from_str(&text).unwrap();
     change(&mut metadata);
-    let mut packed = GzEncoder::new(Vec::new(), Compression::default());
-    packed.write_all(metadata.to_string().as_bytes()).unwrap();
-    let packed = packed.finish().unwrap();
+    let packed = gzip(metadata.to_string().as_bytes());
     let span = [bytes.len() as u64, packed.len() as u64];
     bytes[METADATA].copy_from_slice(&span.map(u64::to_le_bytes).concat());
     bytes.extend(packed);

@@ -70,7 +70,3 @@ fn tile_at(order: u64) -> Option<TileId> {
     let coord = pmtiles::TileCoord::from(pmtiles::TileId::new(order).ok()?);
     TileId::new(coord.z(), coord.x(), coord.y()).ok()
 }
-
-#[cfg(test)]
-#[path = "package_tests.rs"]
-mod tests;

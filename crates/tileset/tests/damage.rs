@@ -5,9 +5,8 @@
     reason = "a test may unwrap, and this one prints figures"
 )]
 
-mod common;
-
 use corniche_geom::TileId;
+use corniche_testing::package::{encoded, ids, written};
 use corniche_tileset::{Manifest, MemorySource, Package, Sections, TilePayload};
 
 type Content = (Manifest, Vec<TileId>, Vec<TilePayload>);
@@ -28,8 +27,8 @@ fn read(bytes: Vec<u8>) -> Result<Content, String> {
 
 #[test]
 fn every_cut_is_refused() {
-    let whole = common::written();
-    assert_eq!(read(whole.clone()).unwrap().1, common::ids());
+    let whole = written();
+    assert_eq!(read(whole.clone()).unwrap().1, ids());
     for length in 0..whole.len() {
         assert!(read(whole[..length].to_vec()).is_err(), "cut to {length} bytes");
     }
@@ -38,7 +37,7 @@ fn every_cut_is_refused() {
 /// No flipped bit changes what is read: it is noticed, or lies where nothing is read from.
 #[test]
 fn no_flipped_bit_changes_the_content() {
-    let whole = common::written();
+    let whole = written();
     let content = read(whole.clone()).unwrap();
     let number = |at: usize| u64::from_le_bytes(whole[at..at + 8].try_into().unwrap()) as usize;
     let (root, metadata, data) =
@@ -76,10 +75,10 @@ fn no_flipped_bit_changes_the_content() {
 /// A whole payload in the place of another tile's is noticed by the tile that it names.
 #[test]
 fn tiles_exchanged_are_refused() {
-    let ids = common::ids();
-    let (first, second) = (common::encoded(ids[2]), common::encoded(ids[3]));
+    let ids = ids();
+    let (first, second) = (encoded(ids[2]), encoded(ids[3]));
     assert_eq!(first.len(), second.len(), "else they cannot change places");
-    let whole = common::written();
+    let whole = written();
     let find = |tile: &[u8]| whole.windows(tile.len()).position(|at| at == tile).unwrap();
     let (at_first, at_second) = (find(&first), find(&second));
     let mut exchanged = whole.clone();
@@ -88,14 +87,4 @@ fn tiles_exchanged_are_refused() {
     let error = read(exchanged).unwrap_err();
     let expected = format!("tile {}, header: the bytes are those of tile {}", ids[2], ids[3]);
     assert!(error.starts_with(&expected), "{error}");
-}
-
-/// The fuzz target `package` takes its manifest from a file, to look at what lies behind.
-#[test]
-fn fuzzing_knows_the_manifest_of_today() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/package/metadata.json");
-    let kept: serde_json::Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
-    let manifest = serde_json::to_value(common::manifest()).unwrap();
-    let expected = serde_json::json!({ "name": "test", "corniche": manifest });
-    assert!(kept == expected, "put this into {path}:\n{expected}");
 }

@@ -5,29 +5,14 @@
     reason = "a test may unwrap, and this one prints figures"
 )]
 
-use std::{fs, path::Path};
-
 use corniche_drape::{DrapedVertex, drape};
-use corniche_geom::{Frame, HeightGrid, LatticePoint, NodeIndex, Polyline, TileId};
+use corniche_geom::{Frame, LatticePoint, NodeIndex, Polyline, TileId};
 use corniche_roads::FunctionalRoadClass;
+use corniche_testing::srtm_heights;
 use corniche_tileset::{GeoRoad, PayloadContext, Sections, Terrain, TilePayload, decode, encode};
 use corniche_tin::{Placement, Surface, TinSpec, height_quantum_m, normals, triangulate};
 
 const CELL_M: f64 = 90.0;
-
-/// One of the squares of an SRTM file, with a halo: 259 × 259 nodes; `None` without the data.
-fn heights(column: usize, row: usize) -> Option<HeightGrid> {
-    let data = std::env::var("CORNICHE_DATA").unwrap_or_else(|_| {
-        concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data").to_owned()
-    });
-    let bytes = fs::read(Path::new(&data).join("liechtenstein/N47E009.hgt")).ok()?;
-    let height = |c: usize, r: usize| {
-        let at = 2 * ((row + r) * 1201 + column + c);
-        f32::from(i16::from_be_bytes([bytes[at], bytes[at + 1]]))
-    };
-    let known = |c, r| Some(height(c, r)).filter(|&h| h > -32768.0).unwrap_or(f32::NAN);
-    Some(HeightGrid::from_fn(259, 259, known))
-}
 
 /// A wandering line within the tile, as roads do: 30 m segments that turn a little each time.
 fn road(seed: u64, min: LatticePoint, side: i64, step: f64) -> Polyline {
@@ -52,10 +37,7 @@ fn road(seed: u64, min: LatticePoint, side: i64, step: f64) -> Polyline {
 #[test]
 fn real_ground_and_roads_come_out_small_and_whole() {
     for max_error_m in [22.5, 5.0] {
-        let Some(grid) = heights(300, 500) else {
-            println!("skipped: no N47E009.hgt");
-            return;
-        };
+        let Some(grid) = srtm_heights("liechtenstein/N47E009.hgt", 300, 500) else { return };
         let quantum_m = height_quantum_m(max_error_m);
         let tin = triangulate(&grid, TinSpec { max_error_m, quantum_m }).unwrap();
         let frame = Frame::new([0.0; 2], CELL_M, NodeIndex { i: 0, j: 256 }, 0).unwrap();

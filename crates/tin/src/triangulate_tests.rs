@@ -1,7 +1,6 @@
 use std::collections::BTreeSet;
-use std::fs;
-use std::path::Path;
 
+use corniche_testing::srtm_heights;
 use proptest::prelude::*;
 
 use super::*;
@@ -199,18 +198,7 @@ fn quantum_is_a_power_of_two_below_a_thirty_second() {
 
 #[test]
 fn real_tile_has_known_counts() {
-    let path = std::env::var("CORNICHE_DATA").unwrap_or_else(|_| {
-        concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data").to_owned()
-    });
-    let Ok(bytes) = fs::read(Path::new(&path).join("liechtenstein/N47E010.hgt")) else {
-        println!("skipped: no sample data; set CORNICHE_DATA to its folder");
-        return;
-    };
-    let heights = HeightGrid::from_fn(259, 259, |c, r| {
-        let at = 2 * ((r + 400) * 1201 + c + 600);
-        let sample = i16::from_be_bytes([bytes[at], bytes[at + 1]]);
-        if sample == i16::MIN { GAP } else { f32::from(sample) }
-    });
+    let Some(heights) = srtm_heights("liechtenstein/N47E010.hgt", 600, 400) else { return };
     let counts = [5.0, 20.0, 80.0].map(|max_error_m| {
         size(&check(&heights, TinSpec { max_error_m, quantum_m: height_quantum_m(max_error_m) }))
     });

@@ -1,26 +1,8 @@
-use corniche_geom::{Bounds, ProjectError, Projection};
+use corniche_geom::Bounds;
+use corniche_testing::FlatProjection;
 use proptest::prelude::*;
 
 use super::*;
-
-/// Degrees are thousandths of the metres.
-struct Flat;
-
-impl Projection for Flat {
-    fn working_from_wgs84(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
-        for point in points {
-            *point = point.map(|part| part * 1e3);
-        }
-        Ok(())
-    }
-
-    fn wgs84_from_working(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
-        for point in points {
-            *point = point.map(|part| part / 1e3);
-        }
-        Ok(())
-    }
-}
 
 const NAME: &str = "EPSG:2056";
 const CRS: WorkingCrs<'_> = WorkingCrs { crs: NAME, metres_per_unit: [1.0, 1.0] };
@@ -28,7 +10,9 @@ const PLAN: Bounds = Bounds { min_x: 5000.0, min_y: 20_000.0, max_x: 15_000.0, m
 
 fn table() -> CoordinateTable {
     // A tolerance that a table of straight lines meets at any size.
-    CoordinateTable::sample(&Flat, PLAN, 1.0).expect("straight lines are in reach of a table")
+    // Degrees are thousandths of the metres.
+    let flat = FlatProjection::new([1e3; 2]);
+    CoordinateTable::sample(&flat, PLAN, 1.0).expect("straight lines are in reach of a table")
 }
 
 fn keyframe(time_s: f64, eye_m: [f64; 3], heading_deg: f64, pitch_deg: f64) -> Keyframe {

@@ -4,92 +4,9 @@ use std::path::{Path, PathBuf};
 
 use corniche_dem::{Dem, DemError, GridPlan, OpenOptions, PlanOptions, Reader};
 use corniche_geom::{NodeWindow, Projection};
-use gdal::raster::{Buffer, GdalType, RasterCreationOptions};
-use gdal::spatial_ref::SpatialRef;
+pub(crate) use corniche_testing::Raster;
+use corniche_testing::raster_creation_options;
 use gdal::{Dataset, DriverManager};
-
-pub(crate) struct Raster<'a> {
-    pub(crate) epsg: u32,
-    pub(crate) size: [usize; 2],
-    pub(crate) geo_transform: [f64; 6],
-    pub(crate) nodata: Option<f64>,
-    /// Creation options of GDAL's GeoTIFF driver.
-    pub(crate) creation: &'a [&'a str],
-    pub(crate) bands: usize,
-    pub(crate) tag: Box<dyn Fn(&mut gdal::Dataset) + 'a>,
-}
-
-impl<'a> Raster<'a> {
-    pub(crate) fn new(epsg: u32, size: [usize; 2], geo_transform: [f64; 6]) -> Self {
-        let tag = Box::new(|_: &mut Dataset| {});
-        Self { epsg, size, geo_transform, nodata: None, creation: &[], bands: 1, tag }
-    }
-
-    pub(crate) fn tagged(self, tag: impl Fn(&mut gdal::Dataset) + 'a) -> Self {
-        Self { tag: Box::new(tag), ..self }
-    }
-
-    pub(crate) fn created(self, creation: &'a [&'a str]) -> Self {
-        Self { creation, ..self }
-    }
-
-    pub(crate) fn bands(self, bands: usize) -> Self {
-        Self { bands, ..self }
-    }
-
-    pub(crate) fn nodata(self, nodata: f64) -> Self {
-        Self { nodata: Some(nodata), ..self }
-    }
-
-    /// CRS position of a sample: the centre of its pixel.
-    pub(crate) fn sample_at(&self, column: usize, row: usize) -> [f64; 2] {
-        let g = self.geo_transform;
-        let (c, r) = (column as f64 + 0.5, row as f64 + 0.5);
-        [g[0] + g[1] * c + g[2] * r, g[3] + g[4] * c + g[5] * r]
-    }
-
-    /// Writes values given at CRS positions.
-    pub(crate) fn write<T: GdalType + Copy>(
-        &self,
-        folder: &Path,
-        name: &str,
-        value: impl Fn([f64; 2]) -> T,
-    ) -> PathBuf {
-        let path = folder.join(name);
-        let [columns, rows] = self.size;
-        let driver = DriverManager::get_driver_by_name("GTiff").unwrap();
-        let mut dataset = driver
-            .create_with_band_type_with_options::<T, _>(
-                &path,
-                columns,
-                rows,
-                self.bands,
-                &creation(self.creation),
-            )
-            .unwrap();
-        if self.geo_transform != [0.0; 6] {
-            dataset.set_geo_transform(&self.geo_transform).unwrap();
-        }
-        if self.epsg != 0 {
-            dataset.set_spatial_ref(&SpatialRef::from_epsg(self.epsg).unwrap()).unwrap();
-        }
-        (self.tag)(&mut dataset);
-        let mut values = Vec::new();
-        for row in 0..rows {
-            values.extend((0..columns).map(|column| value(self.sample_at(column, row))));
-        }
-        let mut band = dataset.rasterband(1).unwrap();
-        if self.nodata.is_some() {
-            band.set_no_data_value(self.nodata).unwrap();
-        }
-        band.write((0, 0), self.size.into(), &mut Buffer::new(self.size.into(), values)).unwrap();
-        path
-    }
-}
-
-fn creation(options: &[&str]) -> RasterCreationOptions {
-    options.iter().copied().collect()
-}
 
 /// Another format of a raster, written by GDAL; `None`, with a line that says so, when this GDAL cannot.
 pub(crate) fn converted(
@@ -104,7 +21,11 @@ pub(crate) fn converted(
     };
     let target = path.with_file_name(name);
     let dataset = Dataset::open(path).unwrap();
-    dataset.create_copy(&driver, &target, &creation(options)).unwrap().close().unwrap();
+    dataset
+        .create_copy(&driver, &target, &raster_creation_options(options))
+        .unwrap()
+        .close()
+        .unwrap();
     Some(target)
 }
 

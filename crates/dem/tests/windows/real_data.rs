@@ -1,23 +1,16 @@
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use corniche_dem::{Dem, DemError, GridPlan, OpenOptions, PlanOptions, Resampling};
 use corniche_geom::{NodeIndex, NodeWindow};
 
+use corniche_testing::real_data;
+
 use crate::fixture::{all, check_near, degree_m, in_utm, options};
 
-/// Files of the real data, or `None` with a line that says so.
+/// Files of the real data; `None`, with a line that says so, if one is missing.
 pub(crate) fn data(names: &[&str]) -> Option<Vec<PathBuf>> {
-    let folder = std::env::var_os("CORNICHE_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        PathBuf::from,
-    );
-    let files: Vec<PathBuf> = names.iter().map(|name| folder.join(name)).collect();
-    let is_there = files.iter().all(|file| file.exists());
-    if !is_there {
-        println!("skipped: no real data at {}", folder.display());
-    }
-    is_there.then_some(files)
+    names.iter().map(|name| real_data(name)).collect()
 }
 
 fn open(names: &[&str], nodata: Option<f64>) -> Option<(Dem, GridPlan)> {

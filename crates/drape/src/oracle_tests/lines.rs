@@ -3,7 +3,7 @@
 use corniche_geom::{LatticeBounds, LatticePoint};
 use corniche_tin::Surface;
 
-use super::random::Random;
+use corniche_testing::Random;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Course {

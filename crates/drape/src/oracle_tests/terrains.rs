@@ -3,7 +3,7 @@
 use corniche_geom::HeightGrid;
 use corniche_tin::{Tin, TinSpec, TinVertex, triangulate};
 
-use super::random::Random;
+use corniche_testing::Random;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Terrain {

@@ -1,13 +1,7 @@
 //! What the tests of this crate share: the default table, a plain projection, a reader that gathers everything.
 
 #![allow(dead_code, reason = "each test binary uses its own part")]
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test may unwrap and says what it skips"
-)]
-
-pub(crate) mod writer;
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -21,25 +15,13 @@ use corniche_geom::LatticePoint;
 use corniche_osm::{
     Defect, ExtractSummary, Place, ReadOsmError, ReadRequest, read_roads, read_roads_from,
 };
+use corniche_presets::parse_frc_table;
 use corniche_roads::{FrcTable, Road};
 use rayon::ThreadPool;
-use serde::Deserialize;
-
-#[derive(Deserialize)]
-struct Preset {
-    name: String,
-    least_class: u8,
-    not_roads: Vec<String>,
-    classes: BTreeMap<String, u8>,
-}
 
 /// The preset `config/frc/default.toml`.
 pub(crate) fn default_table() -> FrcTable {
-    let text =
-        fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/frc/default.toml"));
-    let preset: Preset = toml::from_str(&text.unwrap()).unwrap();
-    let classes = preset.classes.into_iter().collect();
-    FrcTable::new(preset.name, classes, preset.not_roads, preset.least_class).unwrap()
+    parse_frc_table(include_str!("../../../../config/frc/default.toml")).unwrap()
 }
 
 /// A lattice of 1e-7 degrees, so that every coordinate of the data can be told from its point.
@@ -149,14 +131,10 @@ pub(crate) fn fixture(name: &str) -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures")).join(name)
 }
 
-/// A file of the developers' data set; `None`, with a line that says so, where it is not at hand.
-pub(crate) fn shared_data(name: &str) -> Option<PathBuf> {
-    let default = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
-    let path = std::env::var_os("CORNICHE_DATA").map_or_else(default, PathBuf::from).join(name);
-    if path.exists() {
-        Some(path)
-    } else {
-        println!("skipped: {name} is not there; set CORNICHE_DATA to the data set");
-        None
-    }
+/// The bytes as a file, which is deleted together with the folder.
+pub(crate) fn written(name: &str, bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    fs::write(&path, bytes).unwrap();
+    (folder, path)
 }

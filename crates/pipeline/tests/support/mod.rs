@@ -24,7 +24,6 @@ use corniche_pipeline::{
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_tileset::{FilePackage, Manifest, Sections, Terrain, TilePayload};
 use corniche_tin::Tin;
-use gdal::{DriverManager, raster::Buffer, spatial_ref::SpatialRef};
 
 /// Spacing of the tests' rasters.
 pub(crate) const CELL_M: f64 = 10.0;
@@ -88,7 +87,7 @@ impl Raster {
     pub(crate) fn write(&self, path: &Path) {
         let values = self.heights_m.iter().map(|h| if h.is_nan() { -9999.0 } else { *h }).collect();
         let first = self.position_m([0.0; 2]);
-        write_samples(path, (self.columns, self.rows), (EPSG, first, self.cell_m), values);
+        write_samples(path, [self.columns, self.rows], (EPSG, first, self.cell_m), values);
     }
 }
 
@@ -104,25 +103,20 @@ pub(crate) fn write_degrees(
         [north_west[0] + column as f64 * step_deg, north_west[1] - row as f64 * step_deg]
     };
     let values = (0..side * side).map(|k| height_m(at(k / side, k % side)) as f32).collect();
-    write_samples(path, (side, side), (4326, north_west, [step_deg; 2]), values);
+    write_samples(path, [side, side], (4326, north_west, [step_deg; 2]), values);
 }
 
 /// Writes samples of a grid: EPSG code, position of the first sample, spacing. −9999 is nodata.
 pub(crate) fn write_samples(
     path: &Path,
-    size: (usize, usize),
+    size: [usize; 2],
     (epsg, first, [east, north]): (u32, [f64; 2], [f64; 2]),
     values: Vec<f32>,
 ) {
-    let driver = DriverManager::get_driver_by_name("GTiff").unwrap();
-    let mut dataset = driver.create_with_band_type::<f32, _>(path, size.0, size.1, 1).unwrap();
     // Pixels are areas: a sample is the centre of its pixel.
     let [x, y] = [first[0] - east / 2.0, first[1] + north / 2.0];
-    dataset.set_geo_transform(&[x, east, 0.0, y, 0.0, -north]).unwrap();
-    dataset.set_spatial_ref(&SpatialRef::from_epsg(epsg).unwrap()).unwrap();
-    let mut band = dataset.rasterband(1).unwrap();
-    band.set_no_data_value(Some(-9999.0)).unwrap();
-    band.write((0, 0), size, &mut Buffer::new(size, values)).unwrap();
+    let raster = corniche_testing::Raster::new(epsg, size, [x, east, 0.0, y, 0.0, -north]);
+    raster.nodata(-9999.0).write_values(path, values);
 }
 
 /// How a package is built.

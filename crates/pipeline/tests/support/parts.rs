@@ -49,7 +49,7 @@ pub(crate) enum Against {
 }
 
 pub(crate) fn sample(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data-samples/pass").join(name)
+    corniche_testing::sample(&format!("pass/{name}"))
 }
 
 pub(crate) fn build_sample() -> Sound {

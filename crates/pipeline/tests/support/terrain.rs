@@ -1,5 +1,7 @@
 //! Made-up terrains, as heights by column and row.
 
+use corniche_testing::Random;
+
 /// A terrain by name.
 pub(crate) type Terrain = (&'static str, fn(i64, i64) -> f32);
 
@@ -23,14 +25,9 @@ pub(crate) fn noise(column: i64, row: i64) -> f32 {
     (bits(column, row, 0) >> 40) as f32 / (1 << 23) as f32 - 1.0
 }
 
-/// Bits that look random: the finisher of Splitmix64 (Steele, Lea & Flood 2014, *Fast Splittable Pseudorandom
-/// Number Generators*).
+/// Bits that look random, for each node and seed.
 pub(crate) fn bits(column: i64, row: i64, seed: u64) -> u64 {
-    let mut value = (column as u64) << 32 ^ (row as u64 & 0xffff_ffff) ^ seed << 57;
-    value = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    value = (value ^ value >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    value = (value ^ value >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    value ^ value >> 31
+    Random::new((column as u64) << 32 ^ (row as u64 & 0xffff_ffff) ^ seed << 57).bits()
 }
 
 /// Random voids: single nodes, and blocks of many sizes.

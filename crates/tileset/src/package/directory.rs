@@ -108,3 +108,7 @@ fn varint(bytes: &mut &[u8]) -> Option<u64> {
     }
     None
 }
+
+#[cfg(test)]
+#[path = "directory_tests.rs"]
+mod tests;

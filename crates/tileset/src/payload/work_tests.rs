@@ -1,16 +1,17 @@
 //! How far real and hard tiles stay below the limits of work. Prints figures; run with `--nocapture`.
 #![allow(clippy::print_stdout, reason = "these tests print figures")]
 
-use std::{fs, path::Path};
-
 use corniche_drape::{DrapedVertex, drape};
 use corniche_geom::{Frame, HeightGrid, LatticePoint, NodeIndex, Polyline, TileId};
+use corniche_testing::srtm_heights;
 use corniche_tin::{Placement, Surface, Tin, TinSpec, TinVertex, height_quantum_m, triangulate};
 
 use super::{
     Damage, connectivity::walk, nodes::Nodes, route::Route, terrain::Recorder, work::Work,
 };
 use crate::limits::{MAX_ROUTE_STEPS, max_walk_steps};
+
+const SRTM: &str = "liechtenstein/N47E009.hgt";
 
 /// Steps of the writer's walk, which looks at no less than a reader's, and what it may take.
 fn walk_steps(tin: &Tin) -> [u64; 2] {
@@ -37,19 +38,6 @@ fn check(name: &str, heights: &HeightGrid, max_error_m: f64, factor: u64) {
         allowed / steps.max(1)
     );
     assert!(steps * factor <= allowed, "{name}: {steps} steps of {allowed}");
-}
-
-/// 259 × 259 nodes of an SRTM file; `None` without the data.
-fn srtm(column: usize, row: usize) -> Option<HeightGrid> {
-    let data = std::env::var("CORNICHE_DATA").unwrap_or_else(|_| {
-        concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data").to_owned()
-    });
-    let bytes = fs::read(Path::new(&data).join("liechtenstein/N47E009.hgt")).ok()?;
-    Some(HeightGrid::from_fn(259, 259, |c, r| {
-        let at = 2 * ((row + r) * 1201 + column + c);
-        let height = f32::from(i16::from_be_bytes([bytes[at], bytes[at + 1]]));
-        if height > -32768.0 { height } else { f32::NAN }
-    }))
 }
 
 /// Noise of ±50 m by node, the same every time.
@@ -99,10 +87,7 @@ fn a_walk_beyond_its_limit_is_refused() {
 #[test]
 fn real_tiles_stay_far_below_the_limits() {
     for (column, row) in [(0, 0), (300, 500), (700, 100), (900, 900)] {
-        let Some(heights) = srtm(column, row) else {
-            println!("skipped: no N47E009.hgt");
-            return;
-        };
+        let Some(heights) = srtm_heights(SRTM, column, row) else { return };
         for max_error_m in [0.5, 5.0, 22.5] {
             check("SRTM", &heights, max_error_m, 25);
         }
@@ -153,10 +138,7 @@ fn hard_outlines_stay_below_the_limits() {
 /// Long lines over real ground, each with hundreds of crossings.
 #[test]
 fn following_roads_stays_far_below_the_limit() {
-    let Some(heights) = srtm(300, 500) else {
-        println!("skipped: no N47E009.hgt");
-        return;
-    };
+    let Some(heights) = srtm_heights(SRTM, 300, 500) else { return };
     let spec = TinSpec { max_error_m: 5.0, quantum_m: 0.125 };
     let tin = triangulate(&heights, spec).expect("usable heights");
     let frame = Frame::new([0.0; 2], 90.0, NodeIndex { i: 0, j: 256 }, 0).expect("a frame");

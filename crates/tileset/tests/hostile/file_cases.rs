@@ -2,12 +2,12 @@
 
 use corniche_tileset::limits::MAX_DIRECTORY_ENTRIES;
 
-use crate::{
-    Case, Outcome, common,
-    common::gzip,
-    parts::{Entry, Parts, directory, varint},
-    refused,
+use corniche_testing::{
+    package,
+    pmtiles::{Entry, directory, gzip, put_varint},
 };
+
+use crate::{Case, Outcome, parts::Parts, refused};
 
 /// A directory of one entry at most, and the tiles of the good package after it.
 fn with_root(entries: &[Entry]) -> Vec<u8> {
@@ -42,7 +42,7 @@ pub(crate) fn all() -> Vec<Case> {
         },
         Case {
             name: "the good package, by the writer",
-            bytes: common::written(),
+            bytes: package::written(),
             outcome: Outcome::Read,
             limit_mib: 2,
         },
@@ -79,7 +79,7 @@ pub(crate) fn all() -> Vec<Case> {
         ),
     ];
     let mut endless = Vec::new();
-    varint(&mut endless, 1 << 63);
+    put_varint(&mut endless, 1 << 63);
     let raw = |bytes: &[u8]| Parts { root: gzip(bytes), ..good() }.assemble();
     let too_many: Vec<Entry> = (0..=MAX_DIRECTORY_ENTRIES as u64)
         .map(|k| Entry { step: k.min(1), run: 1, length: 20, offset: u64::from(k == 0) })

@@ -9,8 +9,6 @@
 )]
 #![allow(clippy::too_many_lines, reason = "tables of cases are as long as they are")]
 
-#[path = "../common/mod.rs"]
-mod common;
 mod file_cases;
 mod metadata_cases;
 mod parts;

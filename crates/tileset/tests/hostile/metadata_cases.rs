@@ -2,9 +2,10 @@
 
 use serde_json::{Value, json};
 
+use corniche_testing::pmtiles::gzip;
+
 use crate::{
     Case, Outcome,
-    common::gzip,
     parts::{Parts, metadata},
     refused,
 };

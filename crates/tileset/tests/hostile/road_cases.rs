@@ -2,13 +2,17 @@
 
 use corniche_drape::{DrapedLine, DrapedVertex};
 use corniche_roads::FunctionalRoadClass;
+use corniche_testing::{
+    package::{QUANTUM_M, context, frame},
+    payload::Section,
+    pmtiles::put_varint,
+};
 use corniche_tileset::{GeoRoad, Terrain, TilePayload, encode};
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
 use crate::{
     Case, Outcome,
-    common::{self, context, frame},
-    parts::{Section, payload, raw_sections, varint},
+    parts::{payload, raw_sections, zstd_section},
     refused,
     tile_cases::{with_sections, with_tile},
 };
@@ -32,7 +36,7 @@ fn road_section(lines: u32, blob: &[u8]) -> Vec<u8> {
 fn heads(lines: usize, points: u64) -> Vec<u8> {
     let mut blob = vec![2; lines];
     blob.resize(2 * lines, 0);
-    (0..lines).for_each(|_| varint(&mut blob, 4 * points));
+    (0..lines).for_each(|_| put_varint(&mut blob, 4 * points));
     blob
 }
 
@@ -80,7 +84,7 @@ fn around_a_hub(crossings: usize) -> Vec<u8> {
     let triangles: Vec<[u32; 3]> = (1..at.len() as u32 - 1).map(|k| [0, k + 1, k]).collect();
     let tin = Tin::new(vertices, &triangles).unwrap();
     let id = "0/0/0".parse().unwrap();
-    let surface = Surface::new(&tin, Placement::of_tile(&frame(), id, common::QUANTUM_M));
+    let surface = Surface::new(&tin, Placement::of_tile(&frame(), id, QUANTUM_M));
     let bounds = frame().tile_lattice_bounds(id);
     let side = bounds.max.u - bounds.min.u;
     // From the east to the west, south of the corner: the corner is on the right, the far ends on the left.
@@ -142,11 +146,11 @@ fn around_a_hub_for_ever() -> Vec<u8> {
     let one = [&[0][..], &blob[surprises + 2..end]].concat();
     let count = 600_000;
     let mut longer = blob[..surprises].to_vec();
-    varint(&mut longer, count);
+    put_varint(&mut longer, count);
     longer.push(1);
     longer.extend(&one[1..]);
     (1..count).for_each(|_| longer.extend(&one));
-    payload(&[Section::zstd(1, &terrain), Section::zstd(GEO, &road_section(1, &longer))])
+    payload(&[zstd_section(1, &terrain), zstd_section(GEO, &road_section(1, &longer))])
 }
 
 fn varint_length(bytes: &[u8]) -> usize {
@@ -157,7 +161,7 @@ pub(crate) fn all() -> Vec<Case> {
     let limited = |limit_mib, case: Case| Case { limit_mib, ..case };
     let read = |name, limit_mib, bytes| Case { name, bytes, outcome: Outcome::Read, limit_mib };
     let raws = raw_sections();
-    let alone = |kind: u16, raw: &[u8]| with_sections(&[Section::zstd(kind, raw)]);
+    let alone = |kind: u16, raw: &[u8]| with_sections(&[zstd_section(kind, raw)]);
     let over_ground = |raw: &[u8]| {
         with_sections(&[Section::plain(1, raws[0].clone()), Section::plain(GEO, raw.to_vec())])
     };
@@ -185,7 +189,7 @@ pub(crate) fn all() -> Vec<Case> {
         let mut blob = heads(1, 2);
         planes(&mut blob, 1, 2, 4);
         planes(&mut blob, 0, 2, 0);
-        varint(&mut blob, count);
+        put_varint(&mut blob, count);
         over_ground(&road_section(1, &blob))
     };
     let long_text = vec![b'x'; 1 << 20];

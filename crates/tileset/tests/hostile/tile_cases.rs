@@ -1,8 +1,10 @@
 //! A payload's envelope and its terrain.
 
+use corniche_testing::{package, payload::Section, pmtiles::put_varint};
+
 use crate::{
-    Case, Outcome, common,
-    parts::{Parts, Section, payload, raw_sections, resealed, varint},
+    Case, Outcome,
+    parts::{Parts, payload, raw_sections, resealed, zstd_section},
     refused,
 };
 
@@ -16,7 +18,7 @@ pub(crate) fn with_sections(sections: &[Section]) -> Vec<u8> {
 }
 
 fn good() -> Vec<u8> {
-    common::encoded("0/0/0".parse().unwrap())
+    package::encoded("0/0/0".parse().unwrap())
 }
 
 /// The good terrain with other bytes at a place of its record.
@@ -40,10 +42,10 @@ fn grid(gaps: &[u64], triangles: u32, symbols: &[u8], names: &[u8]) -> Vec<u8> {
     }
     raw.push(0);
     for _ in 0..257 {
-        varint(&mut raw, gaps.len() as u64);
+        put_varint(&mut raw, gaps.len() as u64);
     }
     for &gap in (0..257).flat_map(|_| gaps) {
-        varint(&mut raw, gap);
+        put_varint(&mut raw, gap);
     }
     raw.extend(symbols);
     raw.extend(names);
@@ -58,7 +60,7 @@ fn across_each_other() -> Vec<u8> {
     for (i, j) in (0..34).flat_map(|i| (0..300).map(move |j| (i, j))) {
         let [a, b, c] = [i, 300 + j, 600 + (i + j) % 300];
         for gap in [a - last, b - a - 1, c - a - 1] {
-            varint(&mut names, gap);
+            put_varint(&mut names, gap);
         }
         last = a;
     }
@@ -69,7 +71,7 @@ fn across_each_other() -> Vec<u8> {
 fn long_gates() -> Vec<u8> {
     let mut names = Vec::new();
     for gap in [0, 255, 66_047] {
-        varint(&mut names, gap);
+        put_varint(&mut names, gap);
     }
     grid(&[0; 257], 2_000, &vec![6; 131_072], &names)
 }
@@ -93,7 +95,7 @@ fn frame_of(raw_length: u32, stored: Vec<u8>) -> Vec<u8> {
 pub(crate) fn all() -> Vec<Case> {
     let limited = |limit_mib, case: Case| Case { limit_mib, ..case };
     let raws = raw_sections();
-    let terrain = || Section::zstd(1, &raws[0]);
+    let terrain = || zstd_section(1, &raws[0]);
     // The first entry of the section table: kind, compression, reserved, offset, stored, raw, checksum.
     let entry = |at: usize, value: u32| with_tile(resealed(good(), 16 + at, &value.to_le_bytes()));
     let two = |second: Section| payload(&[terrain(), second]);
@@ -106,7 +108,7 @@ pub(crate) fn all() -> Vec<Case> {
         refused("another version", with_tile(resealed(good(), 4, &[1])), "payload version 1"),
         refused(
             "another tile",
-            with_tile(common::encoded("1/1/0".parse().unwrap())),
+            with_tile(package::encoded("1/1/0".parse().unwrap())),
             "those of tile 1/1/0",
         ),
         refused(
@@ -135,7 +137,7 @@ pub(crate) fn all() -> Vec<Case> {
         refused(
             "sections that overlap",
             with_tile({
-                let bytes = two(Section::zstd(4, &raws[3]));
+                let bytes = two(zstd_section(4, &raws[3]));
                 let first = u32::from_le_bytes(bytes[20..24].try_into().unwrap());
                 resealed(bytes, 40, &first.to_le_bytes())
             }),
@@ -242,7 +244,7 @@ pub(crate) fn all() -> Vec<Case> {
             8,
             refused(
                 "ten thousand triangles across each other",
-                with_sections(&[Section::zstd(1, &across_each_other())]),
+                with_sections(&[zstd_section(1, &across_each_other())]),
                 "terrain section",
             ),
         ),
@@ -250,7 +252,7 @@ pub(crate) fn all() -> Vec<Case> {
             12,
             refused(
                 "gates across the tile",
-                with_sections(&[Section::zstd(1, &long_gates())]),
+                with_sections(&[zstd_section(1, &long_gates())]),
                 "terrain section",
             ),
         ),

@@ -1,30 +1,16 @@
-use corniche_geom::{ProjectError, Projection};
+use corniche_testing::FlatProjection;
 
 use super::*;
 
-/// Degrees times 80 000 and 100 000.
-struct Geographic;
-
-impl Projection for Geographic {
-    fn working_from_wgs84(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
-        for p in points {
-            *p = [p[0] * 8e4, p[1] * 1e5];
-        }
-        Ok(())
-    }
-
-    fn wgs84_from_working(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
-        for p in points {
-            *p = [p[0] / 8e4, p[1] / 1e5];
-        }
-        Ok(())
-    }
+/// What a geographic DEM's working metres are.
+fn geographic() -> FlatProjection {
+    FlatProjection::new([8e4, 1e5])
 }
 
 #[test]
 fn between_the_corners_of_a_tile_the_scale_is_that_of_the_table() {
     let bounds = Bounds { min_x: 7.2e5, min_y: 4.65e6, max_x: 8.0e5, max_y: 4.75e6 };
-    let table = CoordinateTable::sample(&Geographic, bounds, 0.01).unwrap();
+    let table = CoordinateTable::sample(&geographic(), bounds, 0.01).unwrap();
     // Reaches beyond the data in the north-east.
     let tile = Bounds { min_x: 7.7e5, min_y: 4.73e6, max_x: 8.3e5, max_y: 4.79e6 };
     let scale = PlanScale::of_tile(&table, tile, 1.0);

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use corniche_testing::Random;
 use corniche_viewer::camera::Orientation;
 
 /// A place on a road in plan, with its longitude and latitude.
@@ -52,31 +53,21 @@ impl Seen {
 /// Views without end, the same ones for the same places and seed.
 pub(crate) struct Views {
     places: Vec<Place>,
-    state: u64,
+    random: Random,
 }
 
 impl Views {
     pub(crate) fn new(places: Vec<Place>, seed: u64) -> Self {
         assert!(!places.is_empty(), "a package without roads");
-        Self { places, state: seed }
+        Self { places, random: Random::new(seed) }
     }
 
     pub(crate) fn next_view(&mut self) -> View {
-        let index = (self.share() * self.places.len() as f64) as usize;
+        let index = (self.random.share() * self.places.len() as f64) as usize;
         let place = self.places[index];
-        let distance_m = 300.0 * 100.0_f64.powf(self.share());
-        let heading_deg = 360.0 * self.share();
-        let pitch_deg = 85.0 * self.share();
+        let distance_m = 300.0 * 100.0_f64.powf(self.random.share());
+        let heading_deg = 360.0 * self.random.share();
+        let pitch_deg = 85.0 * self.random.share();
         View { place, distance_m, orientation: Orientation { heading_deg, pitch_deg } }
-    }
-
-    /// From 0 to below 1, by splitmix64 (Steele, Lea & Flood 2014, *Fast Splittable Pseudorandom Number Generators*).
-    fn share(&mut self) -> f64 {
-        self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^= z >> 31;
-        (z >> 11) as f64 / (1_u64 << 53) as f64
     }
 }

@@ -1,12 +1,10 @@
-//! A small package, and what it is made of, for tests that damage it.
-#![allow(dead_code, reason = "each test binary takes what it needs")]
+//! A small package of four tiles with all sections, what it is made of, and a manifest for packages of other frames.
 
-use std::io::{Cursor, Write};
+use std::io::Cursor;
 
 use corniche_drape::{SvLine, drape};
 use corniche_geom::{
-    Bounds, Cell, CoordinateTable, Frame, LatticePoint, NodeIndex, Polyline, ProjectError,
-    Projection, TileId,
+    Bounds, Cell, CoordinateTable, Frame, LatticePoint, NodeIndex, Polyline, TileId,
 };
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_tileset::{
@@ -16,62 +14,44 @@ use corniche_tileset::{
 };
 use corniche_tin::{Placement, Surface, Tin, TinVertex};
 
-pub(crate) const QUANTUM_M: f64 = 0.25;
-pub(crate) const MAX_LEVEL: u8 = 2;
+use crate::FlatProjection;
 
-/// Degrees that are metres / 100 km.
-struct Flat;
+/// Height quantum of the small package.
+pub const QUANTUM_M: f64 = 0.25;
+/// Finest level of the small package.
+pub const MAX_LEVEL: u8 = 2;
 
-impl Projection for Flat {
-    fn working_from_wgs84(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
-        points.iter_mut().flatten().for_each(|value| *value *= 1e5);
-        Ok(())
-    }
-
-    fn wgs84_from_working(&self, points: &mut [[f64; 2]]) -> Result<(), ProjectError> {
-        points.iter_mut().flatten().for_each(|value| *value /= 1e5);
-        Ok(())
-    }
-}
-
-pub(crate) fn frame() -> Frame {
+/// Grid of the small package.
+#[must_use]
+pub fn frame() -> Frame {
     Frame::new([0.5, 0.25], 10.0, NodeIndex { i: -512, j: 1024 }, MAX_LEVEL).unwrap()
 }
 
-pub(crate) fn context() -> PayloadContext {
+/// What the tiles of the small package are encoded with.
+#[must_use]
+pub fn context() -> PayloadContext {
     PayloadContext { frame: frame(), quantum_m: QUANTUM_M }
 }
 
-/// The tiles of the package, in its order.
-pub(crate) fn ids() -> Vec<TileId> {
+/// The tiles of the small package, in its order.
+#[must_use]
+pub fn ids() -> Vec<TileId> {
     let mut ids: Vec<TileId> =
         ["0/0/0", "1/1/0", "2/3/1", "2/2/1"].map(|text| text.parse().unwrap()).to_vec();
     ids.sort_by_key(|&id| pmtiles_order(id));
     ids
 }
 
-fn level(level: u8) -> LevelRecord {
-    LevelRecord {
-        level,
-        cell_m: frame().level_cell(level),
-        max_error_m: 8.0,
-        geometric_error_m: 2.0,
-        errors_m: None,
-        sample_error: SampleErrorRecord::default(),
-        tightness: None,
-        least_class: Some(7),
-        simplify_tolerance_m: 0.0,
-        width_margin_m: 40.0,
-        tiles: 1,
-        triangles: 24,
-        vertices: 25,
-        terrain_bytes: 300,
-        uncovered_nodes: 0,
-    }
+/// The small package's manifest.
+#[must_use]
+pub fn manifest() -> Manifest {
+    manifest_of(frame())
 }
 
-pub(crate) fn manifest() -> Manifest {
-    let frame = frame();
+/// The same manifest for another grid; its world is flat, 100 km to a degree. Tests set the fields they are about.
+#[must_use]
+pub fn manifest_of(frame: Frame) -> Manifest {
+    let projection = FlatProjection::new([1e5; 2]);
     let data_bounds = frame.tile_bounds(TileId::ROOT);
     Manifest {
         format_version: FORMAT_VERSION,
@@ -94,8 +74,8 @@ pub(crate) fn manifest() -> Manifest {
             treatment: "as in the files".to_owned(),
             range_m: [0.0, 400.0],
         },
-        coordinates: CoordinateTable::sample(&Flat, data_bounds, 1.0).unwrap(),
-        levels: (0..=MAX_LEVEL).map(level).collect(),
+        coordinates: CoordinateTable::sample(&projection, data_bounds, 1.0).unwrap(),
+        levels: (0..=frame.max_level()).map(|z| level(&frame, z)).collect(),
         settings: SettingsRecord {
             max_error_m: 8.0,
             fill_voids: 32,
@@ -122,8 +102,38 @@ pub(crate) fn manifest() -> Manifest {
     }
 }
 
-/// A tile with all sections.
-pub(crate) fn payload(id: TileId) -> TilePayload {
+/// A level of `frame` with a root tile of the small package.
+#[must_use]
+pub fn level(frame: &Frame, level: u8) -> LevelRecord {
+    LevelRecord {
+        level,
+        cell_m: frame.level_cell(level),
+        max_error_m: 8.0,
+        geometric_error_m: 2.0,
+        errors_m: None,
+        sample_error: SampleErrorRecord::default(),
+        tightness: None,
+        least_class: Some(7),
+        simplify_tolerance_m: 0.0,
+        width_margin_m: 40.0,
+        tiles: 1,
+        triangles: 24,
+        vertices: 25,
+        terrain_bytes: 300,
+        uncovered_nodes: 0,
+    }
+}
+
+/// A package's JSON metadata: the manifest under a key of its own.
+#[must_use]
+pub fn metadata(manifest: &Manifest) -> serde_json::Value {
+    let manifest = serde_json::to_value(manifest).unwrap();
+    serde_json::json!({ "name": "test", "corniche": manifest })
+}
+
+/// A tile of the small package, with all sections.
+#[must_use]
+pub fn payload(id: TileId) -> TilePayload {
     let mut vertices = Vec::new();
     for (row, column) in (0..5_u16).flat_map(|row| (0..5_u16).map(move |column| (row, column))) {
         let height_q = i32::from(column * column * 10 + row * 30);
@@ -165,23 +175,29 @@ pub(crate) fn payload(id: TileId) -> TilePayload {
     }
 }
 
-pub(crate) fn encoded(id: TileId) -> Vec<u8> {
+/// The same tile as bytes.
+#[must_use]
+pub fn encoded(id: TileId) -> Vec<u8> {
     encode(&payload(id), &context()).unwrap().bytes
 }
 
-/// The package as the writer writes it.
-pub(crate) fn written() -> Vec<u8> {
+/// The small package as the writer writes it.
+#[must_use]
+pub fn written() -> Vec<u8> {
+    written_with(&manifest(), ids().into_iter().map(|id| (id, encoded(id))))
+}
+
+/// A package as the writer writes it, of encoded tiles in the order of packages.
+#[must_use]
+pub fn written_with(
+    manifest: &Manifest,
+    tiles: impl IntoIterator<Item = (TileId, Vec<u8>)>,
+) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
-    let mut writer = Writer::new(&mut bytes, &manifest()).unwrap();
-    for id in ids() {
-        writer.add(id, &encoded(id)).unwrap();
+    let mut writer = Writer::new(&mut bytes, manifest).unwrap();
+    for (id, tile) in tiles {
+        writer.add(id, &tile).unwrap();
     }
     writer.finish().unwrap();
     bytes.into_inner()
-}
-
-pub(crate) fn gzip(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
-    encoder.write_all(bytes).unwrap();
-    encoder.finish().unwrap()
 }

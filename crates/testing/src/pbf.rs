@@ -1,10 +1,14 @@
-//! A writer of extracts that makes whatever it is told to, right or wrong.
+//! A writer of OpenStreetMap extracts (PBF) that writes what it is given, right or wrong.
+//!
+//! Source: OpenStreetMap's `fileformat.proto` and `osmformat.proto`, and the wire format of Protocol Buffers.
 
-use std::{io::Write, path::PathBuf};
+use std::io::Write as _;
 
 use flate2::{Compression, write::ZlibEncoder};
 
-pub(crate) fn varint(mut value: u64) -> Vec<u8> {
+/// Seven bits per byte, the lowest first.
+#[must_use]
+pub fn varint(mut value: u64) -> Vec<u8> {
     let mut bytes = Vec::new();
     while value > 127 {
         bytes.push(value as u8 | 0x80);
@@ -15,26 +19,32 @@ pub(crate) fn varint(mut value: u64) -> Vec<u8> {
 }
 
 /// A field that holds a number.
-pub(crate) fn number(field: u64, value: i64) -> Vec<u8> {
+#[must_use]
+pub fn number(field: u64, value: i64) -> Vec<u8> {
     [varint(field << 3), varint(value.cast_unsigned())].concat()
 }
 
 /// A field that holds bytes: a text, a message, packed numbers.
-pub(crate) fn field(number: u64, content: &[u8]) -> Vec<u8> {
+#[must_use]
+pub fn field(number: u64, content: &[u8]) -> Vec<u8> {
     [varint(number << 3 | 2), varint(content.len() as u64), content.to_vec()].concat()
 }
 
-pub(crate) fn zigzag(value: i64) -> Vec<u8> {
+/// A signed number as Protocol Buffers write it: the sign is the lowest bit.
+#[must_use]
+pub fn zigzag(value: i64) -> Vec<u8> {
     varint(((value << 1) ^ (value >> 63)).cast_unsigned())
 }
 
 /// Zigzag numbers as they are.
-pub(crate) fn zigzags(values: &[i64]) -> Vec<u8> {
+#[must_use]
+pub fn zigzags(values: &[i64]) -> Vec<u8> {
     values.iter().flat_map(|&value| zigzag(value)).collect()
 }
 
 /// Differences of neighbours as zigzag numbers; they may wrap.
-pub(crate) fn deltas(values: &[i64]) -> Vec<u8> {
+#[must_use]
+pub fn deltas(values: &[i64]) -> Vec<u8> {
     let mut previous = 0_i64;
     let step = |&value: &i64| value.wrapping_sub(std::mem::replace(&mut previous, value));
     zigzags(&values.iter().map(step).collect::<Vec<_>>())
@@ -44,63 +54,110 @@ fn packed(values: &[u64]) -> Vec<u8> {
     values.iter().flat_map(|&value| varint(value)).collect()
 }
 
-/// A frame with its blob header and blob, whatever that is.
-pub(crate) fn frame(kind: &[u8], blob: &[u8]) -> Vec<u8> {
+/// A frame: the blob header for a blob of this kind, then the blob, whatever it holds.
+#[must_use]
+pub fn frame(kind: &[u8], blob: &[u8]) -> Vec<u8> {
     frame_with([field(1, kind), number(3, blob.len() as i64)].concat(), blob)
 }
 
-pub(crate) fn frame_with(header: Vec<u8>, blob: &[u8]) -> Vec<u8> {
+/// A frame with this blob header.
+#[must_use]
+pub fn frame_with(header: Vec<u8>, blob: &[u8]) -> Vec<u8> {
     [(header.len() as u32).to_be_bytes().to_vec(), header, blob.to_vec()].concat()
 }
 
-/// A raw blob.
-pub(crate) fn raw(kind: &[u8], block: &[u8]) -> Vec<u8> {
+/// A frame with an uncompressed blob.
+#[must_use]
+pub fn raw(kind: &[u8], block: &[u8]) -> Vec<u8> {
     frame(kind, &field(1, block))
 }
 
-pub(crate) fn zlib(content: &[u8]) -> Vec<u8> {
+/// The bytes, compressed by zlib.
+#[must_use]
+pub fn zlib(content: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
     encoder.write_all(content).unwrap();
     encoder.finish().unwrap()
 }
 
-/// A packed blob.
-pub(crate) fn packed_blob(kind: &[u8], block: &[u8]) -> Vec<u8> {
+/// A frame with a blob compressed by zlib.
+#[must_use]
+pub fn packed_blob(kind: &[u8], block: &[u8]) -> Vec<u8> {
     frame(kind, &[number(2, block.len() as i64), field(3, &zlib(block))].concat())
 }
 
 /// The header blob of a file that asks for these features.
-pub(crate) fn header(features: &[&str]) -> Vec<u8> {
+#[must_use]
+pub fn header(features: &[&str]) -> Vec<u8> {
     let block: Vec<u8> = features.iter().flat_map(|name| field(4, name.as_bytes())).collect();
     raw(b"OSMHeader", &block)
 }
 
 /// The usual header.
-pub(crate) fn plain_header() -> Vec<u8> {
+#[must_use]
+pub fn plain_header() -> Vec<u8> {
     header(&["OsmSchema-V0.6", "DenseNodes"])
 }
 
 /// A file of the usual header and one raw block.
-pub(crate) fn file(block: &Block) -> Vec<u8> {
+#[must_use]
+pub fn file(block: &Block) -> Vec<u8> {
     [plain_header(), raw(b"OSMData", &block.bytes())].concat()
 }
 
-/// A block in the making. Places are in units of its granularity, 1e-7 degrees unless told otherwise.
+/// A way to write: its tags, and its points as longitude and latitude.
 #[derive(Debug, Clone)]
-pub(crate) struct Block {
-    pub(crate) texts: Vec<Vec<u8>>,
-    pub(crate) groups: Vec<Vec<u8>>,
+#[expect(missing_docs, reason = "the type's own line tells both")]
+pub struct Line<'a> {
+    pub tags: Vec<(&'a str, &'a str)>,
+    pub points_deg: Vec<[f64; 2]>,
+}
+
+/// Ways as a file of two blocks: the nodes, then the ways. Every point is a node of its own. Ids of nodes and of ways
+/// count from 1. Coordinates are rounded to 1e-7 degrees. `texts` come first in the blocks' table of texts.
+#[must_use]
+pub fn extract(texts: &[&str], lines: &[Line<'_>]) -> Vec<u8> {
+    let mut block = Block::new();
+    for text in texts {
+        block.text(text.as_bytes());
+    }
+    let (mut nodes, mut ways) = (Vec::new(), Vec::new());
+    for (way_id, line) in (1..).zip(lines) {
+        let first = nodes.len() as i64 + 1;
+        let round = |deg: f64| (deg * 1e7).round() as i64;
+        let points = (first..).zip(&line.points_deg);
+        nodes.extend(points.map(|(id, &[lon, lat])| (id, round(lat), round(lon))));
+        let node_ids: Vec<i64> = (first..=nodes.len() as i64).collect();
+        ways.extend(field(3, &block.way_message(way_id, &line.tags, &node_ids)));
+    }
+    let mut block_of_nodes = block.clone();
+    block_of_nodes.plain(&nodes);
+    block.groups.push(ways);
+    let data = [block_of_nodes, block].map(|block| raw(b"OSMData", &block.bytes()));
+    [header(&["OsmSchema-V0.6"]), data.concat()].concat()
+}
+
+/// A block that grows. Places are in units of its granularity: 1e-7 degrees unless `frame` says otherwise.
+#[derive(Debug, Clone, Default)]
+pub struct Block {
+    /// The table of texts; text 0 is empty, as the format demands.
+    pub texts: Vec<Vec<u8>>,
+    /// Groups of primitives, encoded.
+    pub groups: Vec<Vec<u8>>,
     /// Further fields: granularity, offsets.
-    pub(crate) frame: Vec<u8>,
+    pub frame: Vec<u8>,
 }
 
 impl Block {
-    pub(crate) fn new() -> Self {
+    /// Without nodes and ways.
+    #[must_use]
+    pub fn new() -> Self {
         Self { texts: vec![Vec::new()], groups: Vec::new(), frame: Vec::new() }
     }
 
     /// Nodes 1, 2, 3, … in a row to the east, 1e-5 degrees apart, at latitude 47 and longitude 9.
-    pub(crate) fn with_row_of_nodes(count: i64) -> Self {
+    #[must_use]
+    pub fn with_row_of_nodes(count: i64) -> Self {
         let mut block = Self::new();
         let nodes: Vec<_> =
             (1..=count).map(|id| (id, 470_000_000, 90_000_000 + 100 * id)).collect();
@@ -108,7 +165,8 @@ impl Block {
         block
     }
 
-    pub(crate) fn text(&mut self, text: &[u8]) -> u64 {
+    /// Index of a text in the table of texts, where it is added if it is missing.
+    pub fn text(&mut self, text: &[u8]) -> u64 {
         let found = self.texts.iter().position(|own| own == text);
         let index = found.unwrap_or_else(|| {
             self.texts.push(text.to_vec());
@@ -118,7 +176,7 @@ impl Block {
     }
 
     /// A group of dense nodes: id, latitude, longitude.
-    pub(crate) fn dense(&mut self, nodes: &[(i64, i64, i64)]) {
+    pub fn dense(&mut self, nodes: &[(i64, i64, i64)]) {
         let column =
             |of: fn(&(i64, i64, i64)) -> i64| deltas(&nodes.iter().map(of).collect::<Vec<_>>());
         let dense = [
@@ -129,8 +187,8 @@ impl Block {
         self.groups.push(field(2, &dense.concat()));
     }
 
-    /// A group of plain nodes.
-    pub(crate) fn plain(&mut self, nodes: &[(i64, i64, i64)]) {
+    /// A group of plain nodes: id, latitude, longitude.
+    pub fn plain(&mut self, nodes: &[(i64, i64, i64)]) {
         let node = |&(id, lat, lon): &(i64, i64, i64)| {
             let key = |number: u8| vec![number << 3];
             field(1, &[key(1), zigzag(id), key(8), zigzag(lat), key(9), zigzag(lon)].concat())
@@ -139,12 +197,7 @@ impl Block {
     }
 
     /// The message of a way.
-    pub(crate) fn way_message(
-        &mut self,
-        id: i64,
-        tags: &[(&str, &str)],
-        node_ids: &[i64],
-    ) -> Vec<u8> {
+    pub fn way_message(&mut self, id: i64, tags: &[(&str, &str)], node_ids: &[i64]) -> Vec<u8> {
         let keys: Vec<u64> = tags.iter().map(|(key, _)| self.text(key.as_bytes())).collect();
         let values: Vec<u64> = tags.iter().map(|(_, value)| self.text(value.as_bytes())).collect();
         [
@@ -157,26 +210,21 @@ impl Block {
     }
 
     /// A way in a group of its own.
-    pub(crate) fn way(&mut self, id: i64, tags: &[(&str, &str)], node_ids: &[i64]) {
+    pub fn way(&mut self, id: i64, tags: &[(&str, &str)], node_ids: &[i64]) {
         let message = self.way_message(id, tags, node_ids);
         self.groups.push(field(3, &message));
     }
 
-    pub(crate) fn track(&mut self, id: i64, node_ids: &[i64]) {
+    /// A way with the tag `highway=track`.
+    pub fn track(&mut self, id: i64, node_ids: &[i64]) {
         self.way(id, &[("highway", "track")], node_ids);
     }
 
-    pub(crate) fn bytes(&self) -> Vec<u8> {
+    /// The block, encoded.
+    #[must_use]
+    pub fn bytes(&self) -> Vec<u8> {
         let texts: Vec<u8> = self.texts.iter().flat_map(|text| field(1, text)).collect();
         let groups: Vec<u8> = self.groups.iter().flat_map(|group| field(2, group)).collect();
         [field(1, &texts), groups, self.frame.clone()].concat()
     }
-}
-
-/// The bytes as a file, which goes when the folder does.
-pub(crate) fn written(name: &str, bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join(name);
-    std::fs::write(&path, bytes).unwrap();
-    (folder, path)
 }

@@ -1,0 +1,49 @@
+//! Where sample data and real data lie.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use corniche_geom::HeightGrid;
+
+/// The repository's root.
+#[must_use]
+pub fn root() -> PathBuf {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent();
+    crates.and_then(Path::parent).map(Path::to_path_buf).unwrap_or_default()
+}
+
+/// A file of the bundled samples, such as `pass/pass-dem.tif`.
+#[must_use]
+pub fn sample(path: &str) -> PathBuf {
+    root().join("data-samples").join(path)
+}
+
+/// A file of the real data, which are not part of the repository: under the folder that `CORNICHE_DATA` names, else
+/// under `../shared/data`. Where it does not exist, the result is `None`, and a line on standard error says so.
+#[must_use]
+pub fn real_data(path: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os("CORNICHE_DATA").map_or_else(
+        || root().parent().map(|up| up.join("shared/data")).unwrap_or_default(),
+        PathBuf::from,
+    );
+    let file = folder.join(path);
+    if file.exists() {
+        return Some(file);
+    }
+    eprintln!("skipped: {} is not here; set CORNICHE_DATA to a folder that has it", file.display());
+    None
+}
+
+/// 259 × 259 samples (a tile with a halo of one node) of an SRTM file of 1201 × 1201 samples, the first at
+/// `column` and `row`; voids are NaN. `None` without the data, as [`real_data`] says.
+#[must_use]
+pub fn srtm_heights(path: &str, column: usize, row: usize) -> Option<HeightGrid> {
+    let bytes = fs::read(real_data(path)?).ok()?;
+    Some(HeightGrid::from_fn(259, 259, |c, r| {
+        let at = 2 * ((row + r) * 1201 + column + c);
+        let height_m = i16::from_be_bytes([bytes[at], bytes[at + 1]]);
+        if height_m == i16::MIN { f32::NAN } else { f32::from(height_m) }
+    }))
+}

@@ -1,0 +1,32 @@
+//! What the tests, benchmarks and examples of several crates share: extracts, packages and rasters made by hand,
+//! projections of closed form, reproducible random numbers, and the places of sample data.
+//!
+//! No product crate depends on this crate except under `[dev-dependencies]`; `tidy` checks it. A unit test
+//! within `src/` of a crate must not take from here what holds types of that same crate: it would see two versions
+//! of them.
+//!
+//! What stays beside a test: oracles, which must share nothing with each other or with the code under test, and what
+//! only one crate needs.
+#![allow(
+    clippy::unwrap_used,
+    clippy::missing_panics_doc,
+    clippy::print_stderr,
+    reason = "this is test code: it may unwrap, and says what is skipped"
+)]
+
+mod data;
+#[cfg(feature = "packages")]
+pub mod package;
+pub mod payload;
+pub mod pbf;
+pub mod pmtiles;
+mod projection;
+mod random;
+#[cfg(feature = "rasters")]
+mod raster;
+
+pub use data::{real_data, root, sample, srtm_heights};
+pub use projection::FlatProjection;
+pub use random::Random;
+#[cfg(feature = "rasters")]
+pub use raster::{Raster, raster_creation_options};

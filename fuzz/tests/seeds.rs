@@ -1,0 +1,81 @@
+//! The seeds of the fuzz target `package` (`corpus/package`) are made here and are what the target reads to its end.
+//! `CORNICHE_WRITE_SEEDS=1` writes them anew. Those of `osm` are made by `crates/osm/tests/seeds.rs`.
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+use std::{collections::BTreeMap, fs, path::Path};
+
+use corniche_testing::{
+    package::{encoded, ids, manifest, metadata},
+    pmtiles::{Entry, directory, file, gzip},
+};
+use corniche_tileset::{MemorySource, Package, Sections, pmtiles_order};
+
+/// A root directory, a leaf directory and tiles, as the target takes them apart.
+fn parts(root: &[u8], leaf: &[u8], tiles: &[Vec<u8>]) -> Vec<u8> {
+    let lengths = [root.len() as u16, leaf.len() as u16].map(u16::to_le_bytes).concat();
+    [&[2], &lengths[..], root, leaf, &tiles.concat()].concat()
+}
+
+/// The first tiles of the small package, in a directory of their own.
+fn tiles(count: usize) -> (Vec<u8>, Vec<Vec<u8>>) {
+    let tiles: Vec<Vec<u8>> = ids().into_iter().take(count).map(encoded).collect();
+    let (mut last, mut offset) = (0, 1);
+    let mut entries = Vec::new();
+    for (id, tile) in ids().into_iter().zip(&tiles) {
+        let (order, length) = (pmtiles_order(id), tile.len() as u64);
+        entries.push(Entry { step: order - last, run: 1, length, offset });
+        (last, offset) = (order, offset + length);
+    }
+    (directory(&entries), tiles)
+}
+
+fn seeds() -> BTreeMap<&'static str, Vec<u8>> {
+    let (four, four_tiles) = tiles(4);
+    let (one, one_tile) = tiles(1);
+    let to_leaf = Entry { step: 0, run: 0, length: gzip(&one).len() as u64, offset: 1 };
+    let text = metadata(&manifest()).to_string();
+    let whole = file([&gzip(&four), &gzip(text.as_bytes()), &[], &four_tiles.concat()], 4);
+    BTreeMap::from([
+        ("whole", [&[0], &whole[..]].concat()),
+        ("four-tiles", parts(&four, &[], &four_tiles)),
+        ("one-tile", parts(&one, &[], &one_tile)),
+        ("leaf", parts(&directory(&[to_leaf]), &one, &one_tile)),
+        ("metadata-small", [&[1], text.as_bytes()].concat()),
+        ("metadata-other-version", b"\x01{\"corniche\":{\"format_version\":7}}".to_vec()),
+    ])
+}
+
+#[test]
+fn the_seeds_of_the_fuzz_target_are_as_they_are_made_here() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus/package");
+    for (name, bytes) in seeds() {
+        assert!(bytes.len() <= 4096, "{name}: {} bytes", bytes.len());
+        let path = folder.join(name);
+        if std::env::var_os("CORNICHE_WRITE_SEEDS").is_some() {
+            fs::write(&path, &bytes).unwrap();
+        }
+        let kept = fs::read(&path).unwrap();
+        assert!(kept == bytes, "{name} is out of date; CORNICHE_WRITE_SEEDS=1 writes it anew");
+    }
+}
+
+/// How many tiles the target reads of a seed; fails if it refuses any part of it.
+fn tiles_read(seed: &[u8]) -> usize {
+    let package = corniche_fuzz::package_of(seed).expect("a seed");
+    let package = pollster::block_on(Package::open(MemorySource::new(package))).unwrap();
+    let ids = pollster::block_on(package.tile_ids()).unwrap();
+    for id in &ids {
+        assert!(pollster::block_on(package.payload(*id, Sections::ALL)).unwrap().is_some());
+    }
+    ids.len()
+}
+
+#[test]
+fn the_target_reads_its_seeds_to_their_end() {
+    let seeds = seeds();
+    for (name, tiles) in
+        [("whole", 4), ("four-tiles", 4), ("one-tile", 1), ("leaf", 1), ("metadata-small", 0)]
+    {
+        assert_eq!(tiles_read(&seeds[name]), tiles, "{name}");
+    }
+}
