@@ -11,11 +11,11 @@
 //!             −9999
 //! ```
 
-use std::path::Path;
-
 use gdal::Dataset;
 
-use crate::{Dem, DemError, mosaic::OpenFiles};
+use crate::file_names::first_names;
+use crate::mosaics::open_files::OpenFiles;
+use crate::{Dem, DemError};
 
 /// What the surface of the earth has: Challenger Deep lies some 10 935 m below the sea, Everest 8 849 m above it.
 pub const SURFACE_RANGE_M: [f64; 2] = [-12_000.0, 9_000.0];
@@ -331,9 +331,9 @@ impl Audit {
             None => all.samples,
         };
         let [low_m, high_m] = all.range_m()?;
-        let names: Vec<&Path> = holders.iter().map(|(source, _)| source.path.as_path()).collect();
+        let names = holders.iter().map(|(source, _)| source.path.display().to_string());
         Some(DemError::Sentinel {
-            files: list(&names),
+            files: first_names(names),
             stored: first.stored_text(entry.stored),
             count: holders.iter().map(|(_, file)| count_in(file)).sum(),
             samples,
@@ -343,17 +343,6 @@ impl Audit {
             low_m: low_m.floor(),
             high_m: high_m.ceil(),
         })
-    }
-}
-
-/// The first few files by name, and how many more there are.
-fn list(files: &[&Path]) -> String {
-    const NAMED: usize = 3;
-    let names: Vec<String> =
-        files.iter().take(NAMED).map(|path| path.display().to_string()).collect();
-    match files.len().saturating_sub(NAMED) {
-        0 => names.join(", "),
-        more => format!("{} and {more} more", names.join(", ")),
     }
 }
 

@@ -1,164 +1,17 @@
-use std::sync::Arc;
+//! Coordinate systems, horizontal and vertical, and PROJ's operations between them. Knows no file.
 
-use corniche_geom::wgs84;
-use gdal::config;
-use gdal::errors::GdalError;
-use gdal::spatial_ref::{AxisMappingStrategy, SpatialRef};
+pub(crate) mod horizontal;
+pub(crate) mod vertical;
+pub(crate) mod wkt;
 
-use crate::vertical::VerticalCrs;
-use crate::wkt::{child, children, keyword};
-use crate::{DemError, library};
+pub(crate) mod compound;
+pub(crate) mod working;
 
-/// A horizontal coordinate system, kept as text: PROJ's objects belong to one thread.
-#[derive(Debug, Clone)]
-pub(crate) struct Crs {
-    /// WKT2 where it can be written so.
-    pub(crate) wkt: Arc<str>,
-    /// "EPSG:…" where it has a code, else its name.
-    pub(crate) label: String,
-    /// Period of the first coordinate: a full turn in the system's angular unit, `None` when projected.
-    pub(crate) turn: Option<f64>,
-    /// Metres to a unit of the coordinates; 1 for a geographic system.
-    pub(crate) unit_m: f64,
-}
+pub(crate) mod operation;
 
-impl Crs {
-    pub(crate) fn from_spatial_ref(reference: &SpatialRef) -> Result<Self, DemError> {
-        let name = reference.name().unwrap_or_else(|| "unnamed".to_owned());
-        let wkt = wkt2(reference)
-            .map_err(|source| DemError::Wkt { name: name.clone(), source: source.into() })?;
-        let projected = reference.is_projected();
-        Ok(Self {
-            wkt: wkt.into(),
-            label: reference.authority().unwrap_or(name),
-            turn: (!projected).then(|| std::f64::consts::TAU / reference.angular_units()),
-            unit_m: if projected { reference.linear_units() } else { 1.0 },
-        })
-    }
+pub(crate) mod height_operation;
+pub(crate) mod projection;
+pub(crate) mod recorded;
+pub(crate) mod scale;
 
-    /// From "EPSG:n" or WKT, as `option` gave it.
-    pub(crate) fn from_text(
-        option: &'static str,
-        text: &str,
-    ) -> Result<(Self, Option<VerticalCrs>), DemError> {
-        library::forget();
-        let reference = SpatialRef::from_definition(text).map_err(|source| DemError::CrsText {
-            option,
-            text: text.to_owned(),
-            source: source.into(),
-        })?;
-        let kind = || DemError::CrsKind { option, text: text.to_owned() };
-        Self::horizontal(&reference)?.ok_or_else(kind)
-    }
-
-    /// The horizontal part of a system and the vertical one, if any; `None` when it is neither projected nor
-    /// geographic.
-    pub(crate) fn horizontal(
-        reference: &SpatialRef,
-    ) -> Result<Option<(Self, Option<VerticalCrs>)>, DemError> {
-        let mut reference = reference.clone();
-        let name = reference.name().unwrap_or_default();
-        let as_wkt =
-            |source: GdalError| DemError::Wkt { name: name.clone(), source: source.into() };
-        let wkt = wkt2(&reference).map_err(as_wkt)?;
-        let vertical = VerticalCrs::of_wkt(&wkt)?;
-        if reference.is_compound() {
-            // The heights' own system must not take part: it would ask PROJ for geoid grids.
-            let Some(text) = children(&wkt).into_iter().find(|part| is_horizontal(part)) else {
-                return Ok(None);
-            };
-            reference = SpatialRef::from_wkt(&text).map_err(as_wkt)?;
-        }
-        if !(reference.is_projected() || reference.is_geographic()) || reference.is_local() {
-            return Ok(None);
-        }
-        Ok(Some((Self::from_spatial_ref(&reference)?, vertical)))
-    }
-
-    pub(crate) fn wgs84() -> Result<Self, DemError> {
-        let reference = SpatialRef::from_epsg(4326).map_err(|source| DemError::CrsText {
-            option: "the built-in",
-            text: "EPSG:4326".to_owned(),
-            source: source.into(),
-        })?;
-        Self::from_spatial_ref(&reference)
-    }
-
-    /// PROJ's object for this thread, in traditional axis order: x or longitude first.
-    pub(crate) fn spatial_ref(&self) -> Result<SpatialRef, GdalError> {
-        let mut reference = SpatialRef::from_wkt(&self.wkt)?;
-        reference.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
-        Ok(reference)
-    }
-
-    pub(crate) fn is_projected(&self) -> bool {
-        self.turn.is_none()
-    }
-
-    /// Metres to a unit of longitude and of latitude at a latitude, by the radii of curvature of the system's ellipsoid;
-    /// `None` when projected.
-    pub(crate) fn metres_per_turn_unit(
-        &self,
-        latitude_deg: f64,
-    ) -> Result<Option<[f64; 2]>, DemError> {
-        let Some(turn) = self.turn else { return Ok(None) };
-        let unreadable =
-            |source: GdalError| DemError::Wkt { name: self.label.clone(), source: source.into() };
-        let reference = self.spatial_ref().map_err(unreadable)?;
-        let major_m = reference.semi_major().map_err(unreadable)?;
-        let minor_m = reference.semi_minor().map_err(unreadable)?;
-        let radians = std::f64::consts::TAU / turn;
-        let eccentricity_2 = 1.0 - (minor_m / major_m).powi(2);
-        let [parallel_m, meridian_m] = wgs84::radii_of_m(major_m, eccentricity_2, latitude_deg);
-        Ok(Some([parallel_m * radians, meridian_m * radians]))
-    }
-
-    /// For each of the two coordinates 1, or −1 where it counts westwards or southwards. A polar system's axes all run
-    /// south or north and are taken as they are.
-    pub(crate) fn signs(&self) -> [f64; 2] {
-        let bound = child(&self.wkt, &["SOURCECRS"]).and_then(|source| children(&source).pop());
-        let axes: Vec<String> = children(bound.as_deref().unwrap_or(&self.wkt))
-            .into_iter()
-            .filter(|part| keyword(part) == "AXIS")
-            .filter_map(|axis| children(&axis).first().cloned())
-            .collect();
-        let has = |way: &str| axes.iter().any(|axis| axis.eq_ignore_ascii_case(way));
-        let is_polar = !(has("west") || has("east"));
-        let sign = |counts_back: bool| if counts_back { -1.0 } else { 1.0 };
-        [sign(has("west")), sign(!is_polar && has("south"))]
-    }
-
-    /// Whether both describe the same system, whatever they call it.
-    pub(crate) fn is_same(&self, other: &Self) -> bool {
-        self.wkt == other.wkt
-            || match (self.spatial_ref(), other.spatial_ref()) {
-                (Ok(own), Ok(others)) => own == others,
-                _ => false,
-            }
-    }
-}
-
-/// Whether a part of a compound system says where, not how high.
-fn is_horizontal(wkt: &str) -> bool {
-    if keyword(wkt) == "BOUNDCRS" {
-        let bound = child(wkt, &["SOURCECRS"]).map(|source| children(&source));
-        return bound
-            .and_then(|inner| inner.into_iter().next())
-            .is_some_and(|wkt| is_horizontal(&wkt));
-    }
-    ["PROJ", "GEOG", "GEOD"].iter().any(|word| keyword(wkt).starts_with(word))
-}
-
-/// The definition as WKT2, on this thread alone.
-pub(crate) fn wkt2(reference: &SpatialRef) -> Result<String, GdalError> {
-    const FORMAT: &str = "OSR_WKT_FORMAT";
-    config::set_thread_local_config_option(FORMAT, "WKT2_2018")?;
-    let wkt = reference.to_wkt();
-    config::clear_thread_local_config_option(FORMAT)?;
-    wkt
-}
-
-#[cfg(test)]
-#[expect(clippy::float_cmp, reason = "signs are exact")]
-#[path = "crs_tests.rs"]
-mod tests;
+pub(crate) mod full_turns;

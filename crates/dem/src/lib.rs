@@ -13,49 +13,27 @@
 //! datum means.
 
 mod dem;
-mod source;
 
 mod audit;
-mod files;
-mod oversampling;
-mod vsi;
-
-mod plan;
-mod reader;
-mod samples;
-
 mod crs;
-mod heights;
-mod values;
-mod vertical;
-mod wkt;
-
-mod fill;
-mod kernel;
-mod mosaic;
-mod operation;
-mod outline;
-mod positions;
-mod projection;
-mod recorded;
-mod scale;
-mod spacing;
-mod turns;
-mod working;
+mod files;
+mod mosaics;
+mod plan;
+mod reading;
 
 mod error;
-mod library;
+mod file_names;
+mod library_error;
 
 pub use audit::{Audit, AuditBlock, AuditPart, Auditor, SURFACE_RANGE_M};
+pub use crs::projection::DemProjection;
+pub use crs::recorded::RecordedCrs;
 pub use dem::{Dem, limit_block_cache};
 pub use error::DemError;
-pub use files::raster_files;
-pub use library::LibraryError;
-pub use plan::{GridPlan, PlanOptions, Resampling};
-pub use projection::DemProjection;
-pub use reader::{DemWindow, Reader, SampleBlock};
-pub use recorded::RecordedCrs;
-pub use samples::SampleArea;
-pub use source::OpenOptions;
-pub use vsi::VirtualFile;
-pub use working::PlanScale;
+pub use files::open_options::OpenOptions;
+pub use files::raster_files::raster_files;
+pub use files::vsi::VirtualFile;
+pub use library_error::LibraryError;
+pub use plan::grid_plan::{GridPlan, PlanOptions, PlanScale, Resampling};
+pub use reading::reader::{DemWindow, Reader};
+pub use reading::samples::{SampleArea, SampleBlock};

@@ -4,9 +4,9 @@ use corniche_geom::{LatticePoint, Polyline};
 use corniche_roads::Road;
 
 use crate::{
-    Defect, ReadOsmError,
-    nodes::{self, NodeTable},
-    read_roads::Place,
+    Defect, ReadOsmError, location,
+    nodes::NodeTable,
+    read_request::Place,
     self_crossings::self_crossings,
     ways::{RoadWay, Ways},
 };
@@ -30,14 +30,14 @@ pub(crate) fn assemble(
     for way in some {
         for &id in ways.node_ids_of(way) {
             let number = table.ids.number(id);
-            let location = number.map_or(nodes::MISSING, |number| table.places.location(number));
-            let position_deg = nodes::degrees(location);
+            let found = number.map_or(location::MISSING, |number| table.places.location(number));
+            let position_deg = location::degrees(found);
             positions_deg.extend(position_deg);
             stops.push(Stop {
                 is_fixed: number.is_some_and(|number| table.ids.is_shared(number)),
                 place: match position_deg {
                     Some(_) => StopPlace::Known,
-                    None if location == nodes::OUT_OF_RANGE => StopPlace::OutOfRange,
+                    None if found == location::OUT_OF_RANGE => StopPlace::OutOfRange,
                     None => StopPlace::Missing,
                 },
             });

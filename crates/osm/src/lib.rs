@@ -13,6 +13,7 @@
 //!
 //! This crate never judges which road matters at which level, never guesses a class, and starts no threads.
 
+mod read_request;
 mod read_roads;
 
 mod audit;
@@ -22,6 +23,7 @@ mod formats;
 mod wire;
 
 mod assemble;
+mod location;
 mod nodes;
 mod self_crossings;
 mod versions;
@@ -33,5 +35,6 @@ mod summary;
 
 pub use defect::Defect;
 pub use error::ReadOsmError;
-pub use read_roads::{Place, ReadRequest, read_roads, read_roads_from};
+pub use read_request::{Place, ReadRequest};
+pub use read_roads::{read_roads, read_roads_from};
 pub use summary::{ATTRIBUTION, ExtractSummary, HighwayCount, LeftOut};

@@ -10,7 +10,7 @@ use osmpbf::{PrimitiveBlock, Way};
 
 use crate::{
     Defect, ExtractSummary, HighwayCount,
-    nodes::{Location, location_from_nano},
+    location::{Location, location_from_nano},
     versions::{known_version, two_versions},
 };
 

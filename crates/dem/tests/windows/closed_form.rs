@@ -4,7 +4,9 @@ use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions, Resampling};
 use corniche_geom::{Cell, Frame, HeightGrid, NodeWindow, Projection};
 use gdal::Metadata;
 
-use crate::fixture::{Raster, all, check, check_near, degree_m, in_utm, open, options, plan};
+use crate::fixture::{
+    Raster, all, check, check_near, degree_m, in_utm, open, options, plan, sample_blocks,
+};
 
 /// A plane in UTM 32N that rises 1 m in 10 m eastwards and 1 m in 5 m northwards.
 fn plane([x, y]: [f64; 2]) -> f64 {
@@ -25,12 +27,12 @@ fn aligned_nodes_are_the_samples() {
     let raster = Raster::new(32632, [60, 50], UTM);
     let dem = open(&[raster.write(folder.path(), "a.tif", |at| plane(at) as f32)]);
     let plan = plan(&dem);
-    assert_eq!((plan.case, plan.frame.cell().north_m), (Resampling::Aligned, 10.0));
+    assert_eq!((plan.resampling, plan.frame.cell().north_m), (Resampling::Aligned, 10.0));
     assert_eq!((plan.crs.as_str(), plan.frame.origin_m()), ("EPSG:32632", [8.0, 2.0]));
     assert!((plan.point_scale - 0.9996).abs() < 1e-6);
     assert!(plan.libraries.starts_with("GDAL 3") && plan.libraries.contains("PROJ "));
     assert_eq!(plan.data_bounds.to_array(), [500_008.0, 5_200_012.0, 500_598.0, 5_200_502.0]);
-    let mut reader = dem.reader(&plan).unwrap();
+    let mut reader = dem.reader(&plan);
     assert_eq!(check(&mut reader, &plan, 1e-4, plane), 3000);
     let heights = reader.window(all(&plan)).unwrap().heights;
     for (column, row) in [(0, 0), (59, 0), (17, 31), (59, 49)] {
@@ -46,8 +48,8 @@ fn south_up_is_turned_over() {
     let read = |path: PathBuf| {
         let dem = open(&[path]);
         let plan = plan(&dem);
-        assert_eq!(plan.case, Resampling::Aligned);
-        (plan.frame, dem.reader(&plan).unwrap().window(all(&plan)).unwrap())
+        assert_eq!(plan.resampling, Resampling::Aligned);
+        (plan.frame, dem.reader(&plan).window(all(&plan)).unwrap())
     };
     let a = read(south_up.write(folder.path(), "s.tif", |at| plane(at) as f32));
     assert_eq!(a, read(north_up.write(folder.path(), "n.tif", |at| plane(at) as f32)));
@@ -62,7 +64,7 @@ fn pixel_is_point_lies_where_its_samples_lie() {
     let dem = open(&[point.write(folder.path(), "point.tif", |at| plane(at) as f32)]);
     let plan = plan(&dem);
     assert_eq!(plan.frame.origin_m(), [8.0, 2.0]);
-    assert_eq!(check(&mut dem.reader(&plan).unwrap(), &plan, 1e-4, plane), 3000);
+    assert_eq!(check(&mut dem.reader(&plan), &plan, 1e-4, plane), 3000);
 }
 
 #[test]
@@ -72,9 +74,9 @@ fn a_rotated_grid_is_interpolated() {
     let turned = [500_100.0, 10.0 * cos, 10.0 * sin, 5_200_600.0, 10.0 * sin, -10.0 * cos];
     let dem = open(&[Raster::new(32632, [60, 50], turned).write(folder.path(), "r.tif", plane)]);
     let plan = plan(&dem);
-    assert_eq!(plan.case, Resampling::Resampled);
+    assert_eq!(plan.resampling, Resampling::Resampled);
     assert!((plan.frame.cell().north_m - 10.0).abs() < 1e-9);
-    let count = check(&mut dem.reader(&plan).unwrap(), &plan, HUNDREDTH_M, plane);
+    let count = check(&mut dem.reader(&plan), &plan, HUNDREDTH_M, plane);
     assert!((2700..=3000).contains(&count), "{count} nodes within the turned rectangle");
 }
 
@@ -93,7 +95,7 @@ fn feet_scale_and_offset_become_metres() {
     std::fs::write(folder.path().join("feet.tif.aux.xml"), aux).unwrap();
     let dem = open(&[path]);
     let plan = plan(&dem);
-    assert_eq!(check(&mut dem.reader(&plan).unwrap(), &plan, 0.13 * 0.3048, plane), 3000);
+    assert_eq!(check(&mut dem.reader(&plan), &plan, 0.13 * 0.3048, plane), 3000);
 }
 
 #[test]
@@ -106,12 +108,12 @@ fn a_grid_in_feet_is_laid_out_in_metres() {
         (x - 2_690_000.0 + 2.0 * (y - 234_000.0)) as f32
     })]);
     let plan = plan(&dem);
-    assert_eq!(plan.case, Resampling::Aligned, "{}", plan.resampling);
+    assert_eq!(plan.resampling, Resampling::Aligned, "{}", plan.resampling_text);
     assert_eq!(plan.crs, "EPSG:2272");
     check_near(plan.metres_per_unit, [foot_m; 2], 1e-12);
     check_near(plan.frame.cell().to_array(), [30.0 * foot_m; 2], 1e-12);
     let truth = |[x, y]: [f64; 2]| x / foot_m - 2_690_000.0 + 2.0 * (y / foot_m - 234_000.0);
-    assert_eq!(check(&mut dem.reader(&plan).unwrap(), &plan, 0.05, truth), 1200);
+    assert_eq!(check(&mut dem.reader(&plan), &plan, 0.05, truth), 1200);
 }
 
 /// A plane of UTM seen through longitude and latitude comes back to a hundredth of a cell.
@@ -131,12 +133,12 @@ fn a_reprojected_plane_comes_back() {
     let dem = open(&[raster.write(folder.path(), "ll.tif", height)]);
     for (cell_m, averaged) in [(None, false), (Some(15.0), false), (Some(97.0), true)] {
         let plan = dem.plan(&PlanOptions { cell: cell_m.map(Cell::from), ..in_utm() }).unwrap();
-        assert_eq!((plan.crs.as_str(), plan.case), ("EPSG:32632", Resampling::Resampled));
-        assert_eq!(plan.resampling.contains("average"), averaged, "{}", plan.resampling);
+        assert_eq!((plan.crs.as_str(), plan.resampling), ("EPSG:32632", Resampling::Resampled));
+        assert_eq!(plan.resampling_text.contains("average"), averaged, "{}", plan.resampling_text);
         let cell = plan.frame.cell().north_m;
         assert!(cell_m.is_some() || cell == 15.0, "two digits of 15.2 and 16.7, not {cell}");
         let hundredth_m = 0.01 * cell * 0.224 + 1e-3;
-        let count = check(&mut dem.reader(&plan).unwrap(), &plan, hundredth_m, plane);
+        let count = check(&mut dem.reader(&plan), &plan, hundredth_m, plane);
         assert!(count as f64 > 0.9 * 300.0 * 250.0 * 15.2 * 16.7 / (cell * cell), "{count} nodes");
     }
 }
@@ -147,7 +149,7 @@ fn averages_of_a_plane_are_the_plane_also_in_its_own_crs() {
     let dem = open(&[Raster::new(32632, [200, 180], UTM).write(folder.path(), "a.tif", plane)]);
     for cell_m in [20.0, 25.0, 73.0] {
         let plan = dem.plan(&PlanOptions { cell: Some((cell_m).into()), ..options() }).unwrap();
-        let count = check(&mut dem.reader(&plan).unwrap(), &plan, 1e-3, plane);
+        let count = check(&mut dem.reader(&plan), &plan, 1e-3, plane);
         assert!(
             count as f64 > 0.9 * 200.0 * 180.0 * 100.0 / (cell_m * cell_m) - 60.0,
             "{count} nodes"
@@ -171,7 +173,7 @@ fn files_of_one_grid_are_one_raster() {
     let read = |files: &[PathBuf], options: &PlanOptions| {
         let dem = open(files);
         let plan = dem.plan(options).unwrap();
-        let mut reader = dem.reader(&plan).unwrap();
+        let mut reader = dem.reader(&plan);
         reader.window(all(&plan)).unwrap().heights
     };
     // Another first file shifts the samples' numbering, and with it the last bit of interpolation.
@@ -228,19 +230,19 @@ fn files_in_different_systems_serve_one_grid() {
     let plan = plan(&dem);
     // The degrees are the finer ones; CRS and cell are the first file's all the same.
     assert_eq!((plan.crs.as_str(), plan.frame), ("EPSG:32632", grown(&alone_plan.frame, &plan)));
-    assert_eq!((plan.case, plan.frame.cell()), (Resampling::Resampled, Cell::from(10.0)));
-    let told = plan.resampling.as_str();
+    assert_eq!((plan.resampling, plan.frame.cell()), (Resampling::Resampled, Cell::from(10.0)));
+    let told = plan.resampling_text.as_str();
     for words in ["samples of a.tif", "bilinear between the samples of b.tif in EPSG:4326"] {
         assert!(told.contains(words), "{words:?} is not in: {told}");
     }
-    let mut reader = dem.reader(&plan).unwrap();
+    let mut reader = dem.reader(&plan);
     let count = check(&mut reader, &plan, HUNDREDTH_M, plane);
     assert!(count as f64 > 0.9 * 220.0 * 100.0 * 7.6 * 11.1 / 100.0, "{count}");
     // Where the first file has data its samples come out bit for bit.
     let whole = all(&plan);
     let heights = reader.window(whole).unwrap().heights;
     let window = all(&alone_plan);
-    let samples = alone.reader(&alone_plan).unwrap().window(window).unwrap().heights;
+    let samples = alone.reader(&alone_plan).window(window).unwrap().heights;
     let (left, top) = (window.corner.i - whole.corner.i, whole.corner.j - window.corner.j);
     let seen = heights.window(left as usize, top as usize, 60, 50);
     assert!(seen.raw().iter().zip(samples.raw()).all(|(a, b)| a.to_bits() == b.to_bits()));
@@ -255,15 +257,13 @@ fn original_samples_come_with_their_positions() {
             .write(folder.path(), "a.tif", |at| if at[0] < 500_100.0 { -1.0 } else { plane(at) })]);
     let plan = dem.plan(&PlanOptions { cell: Some(33.0_f64.into()), ..options() }).unwrap();
     let mut count = 0;
-    let mut reader = dem.reader(&plan).unwrap();
-    let each = |block: &corniche_dem::SampleBlock| {
-        assert_eq!((block.layer, block.positions_m.len()), (0, block.heights_m.len()));
+    for block in sample_blocks(&dem, &plan) {
+        assert_eq!(block.positions_m.len(), block.heights_m.len());
         for (&at, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
             assert!((f64::from(height_m) - plane(at)).abs() < 1e-3);
             count += 1;
         }
-    };
-    reader.for_each_sample_block(each).unwrap();
+    }
     assert_eq!(count, 290 * 50);
 }
 
@@ -284,7 +284,7 @@ fn wide_and_polar_extents_get_an_equal_area_projection() {
         let dem = open(&[file]);
         let plan = dem.plan(&PlanOptions { cell: Some(10_000.0_f64.into()), ..options() }).unwrap();
         assert!(plan.crs.starts_with("Lambert") && plan.crs.contains(name), "{}", plan.crs);
-        let window = dem.reader(&plan).unwrap().window(all(&plan)).unwrap();
+        let window = dem.reader(&plan).window(all(&plan)).unwrap();
         assert!(window.heights.count_heights() > 5000);
     }
 }
@@ -301,7 +301,7 @@ fn nodes_around_the_pole_are_transformed_one_by_one() {
     let dem = open(&[file]);
     let plan = dem.plan(&PlanOptions { cell: Some(12_000.0_f64.into()), ..options() }).unwrap();
     let projection = dem.projection(&plan).unwrap();
-    let count = check(&mut dem.reader(&plan).unwrap(), &plan, 0.002, |at| {
+    let count = check(&mut dem.reader(&plan), &plan, 0.002, |at| {
         let mut points = [at];
         projection.wgs84_from_working(&mut points).unwrap();
         points[0][1]
@@ -324,7 +324,7 @@ fn the_antimeridian_is_no_border() {
         });
         assert!(plan.wgs84_bounds.width() < 0.21, "{:?}", plan.wgs84_bounds);
         let projection = dem.projection(&plan).unwrap();
-        let count = check(&mut dem.reader(&plan).unwrap(), &plan, tolerance_m, |at| {
+        let count = check(&mut dem.reader(&plan), &plan, tolerance_m, |at| {
             let mut points = [at];
             projection.wgs84_from_working(&mut points).unwrap();
             (points[0][0].rem_euclid(360.0) - 180.0) * 1000.0
@@ -360,7 +360,7 @@ fn positions_out_of_range_are_not_a_number() {
     );
     projection.wgs84_from_working(&mut points).unwrap();
     assert!((points[0][0] - 9.0).abs() < 1e-9 && points[1][0].is_nan());
-    fits_another_thread(&dem.reader(&plan).unwrap());
+    fits_another_thread(&dem.reader(&plan));
     is_send(&projection);
     is_send(&dem);
     is_send(&plan);
@@ -376,7 +376,7 @@ fn options_override_and_are_checked() {
     assert_eq!(plan("EPSG:3035").unwrap().crs, "EPSG:3035");
     assert!(plan("EPSG:4326").unwrap_err().to_string().contains("projected"));
     let feet = plan("EPSG:2272").unwrap();
-    assert_eq!((feet.crs.as_str(), feet.case), ("EPSG:2272", Resampling::Resampled));
+    assert_eq!((feet.crs.as_str(), feet.resampling), ("EPSG:2272", Resampling::Resampled));
     check_near(feet.metres_per_unit, [1200.0 / 3937.0; 2], 1e-12);
     assert!(plan("EPSG:999999").unwrap_err().to_string().contains("--crs"));
     assert!(dem.plan(&PlanOptions { cell: Some((-1.0).into()), ..options() }).is_err());
@@ -387,7 +387,7 @@ fn options_override_and_are_checked() {
     assert!(dem.plan(&PlanOptions { fill_voids: 1_000_000, ..options() }).is_err());
     let own = dem.plan(&options()).unwrap();
     let coarse = NodeWindow { stride: 2, ..all(&own) };
-    assert!(dem.reader(&own).unwrap().window(coarse).is_err());
+    assert!(dem.reader(&own).window(coarse).is_err());
 }
 
 /// A second file turned by a quarter, whose rows run east and whose columns run north: its samples are where nodes are,
@@ -404,7 +404,7 @@ fn a_file_turned_by_a_quarter_is_not_averaged_along_the_wrong_axis() {
     let dem = open(&[upright, turned]);
     let plan = plan(&dem);
     assert_eq!(plan.frame.cell().to_array(), [10.0, 20.0]);
-    assert!(!plan.resampling.contains("average"), "{}", plan.resampling);
-    let count = check(&mut dem.reader(&plan).unwrap(), &plan, 1e-3, wave);
+    assert!(!plan.resampling_text.contains("average"), "{}", plan.resampling_text);
+    let count = check(&mut dem.reader(&plan), &plan, 1e-3, wave);
     assert!(count >= 3600 + 58 * 58, "{count}");
 }

@@ -126,7 +126,7 @@ proptest! {
         let (whole, cell) = (all(&plan), plan.frame.cell());
         prop_assert!((cell.east_m - 10.0).abs() < 0.001 && cell.north_m == 15.0);
         prop_assert_eq!([whole.columns, whole.rows], SIZE);
-        let mut reader = dem.reader(&plan).unwrap();
+        let mut reader = dem.reader(&plan);
         let reference = read(&mut reader, whole);
         let mut filled = 0;
         for row in 0..SIZE[1] {
@@ -172,11 +172,11 @@ fn nothing_is_filled_beyond_the_edge_of_reprojected_squares() {
     let dem = crate::fixture::open(&[file]);
     let bare = dem.plan(&in_utm()).unwrap();
     let window = all(&bare);
-    let bare = read(&mut dem.reader(&bare).unwrap(), window);
+    let bare = read(&mut dem.reader(&bare), window);
     assert!(bare.heights.count_heights() * 20 < window.columns * window.rows * 19, "edges slant");
     for reach in [1, 3, 32, 500] {
         let plan = dem.plan(&PlanOptions { fill_voids: reach, ..in_utm() }).unwrap();
-        let filled = read(&mut dem.reader(&plan).unwrap(), window);
+        let filled = read(&mut dem.reader(&plan), window);
         assert_eq!(filled.filled, 0, "reach {reach}");
         let bits = |read: &DemWindow| -> Vec<u32> {
             read.heights.raw().iter().map(|height_m| height_m.to_bits()).collect()

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_dem::{Dem, DemError, GridPlan, OpenOptions, PlanOptions, Reader};
+use corniche_dem::{Dem, DemError, GridPlan, OpenOptions, PlanOptions, Reader, SampleBlock};
 use corniche_geom::{NodeWindow, Projection};
 pub(crate) use corniche_testing::Raster;
 use corniche_testing::raster_creation_options;
@@ -49,7 +49,7 @@ pub(crate) fn check_heights(
     let dem = Dem::open(files, options).unwrap_or_else(|error| panic!("{name}: {error}"));
     let plan = plan(&dem);
     let projection = dem.projection(&plan).unwrap();
-    check(&mut dem.reader(&plan).unwrap(), &plan, tolerance_m, |mut at| {
+    check(&mut dem.reader(&plan), &plan, tolerance_m, |mut at| {
         if let Space::Degrees = space {
             projection.wgs84_from_working(std::slice::from_mut(&mut at)).unwrap();
         }
@@ -62,7 +62,7 @@ pub(crate) fn check_refused(files: &[PathBuf], options: &OpenOptions, words: &[&
     let read = || {
         let dem = Dem::open(files, options)?;
         let plan = dem.plan(&self::options())?;
-        dem.reader(&plan)?.window(all(&plan)).map(|_| ())
+        dem.reader(&plan).window(all(&plan)).map(|_| ())
     };
     let error = read().expect_err(&format!("{files:?} was read"));
     check_words(&error, words);
@@ -130,6 +130,12 @@ pub(crate) fn all(plan: &GridPlan) -> NodeWindow {
         columns: (plan.north_east.i - plan.south_west.i + 1) as usize,
         rows: (plan.north_east.j - plan.south_west.j + 1) as usize,
     }
+}
+
+/// All samples that have a height, area by area.
+pub(crate) fn sample_blocks(dem: &Dem, plan: &GridPlan) -> Vec<SampleBlock> {
+    let mut reader = dem.reader(plan);
+    dem.sample_areas().iter().map(|area| reader.samples(area).unwrap()).collect()
 }
 
 /// Compares every node with `truth` at its position; returns how many have a height.

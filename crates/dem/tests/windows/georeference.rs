@@ -165,7 +165,7 @@ fn utm_crosses_the_antimeridian() {
     let dem = open(std::slice::from_ref(&path));
     let plan = plan(&dem);
     assert!(plan.wgs84_bounds.min_x < 180.0 && plan.wgs84_bounds.max_x > 180.0);
-    assert_eq!((plan.crs.as_str(), plan.case), ("EPSG:32760", Resampling::Aligned));
+    assert_eq!((plan.crs.as_str(), plan.resampling), ("EPSG:32760", Resampling::Aligned));
     let given = OpenOptions::default();
     assert_eq!(check_heights("UTM 60", &[path], &given, (Space::Working, 1e-3), truth), 4800);
 }
@@ -186,7 +186,7 @@ fn a_global_grid_has_no_seam() {
         let dem = open(&[path]);
         let plan = dem.plan(&PlanOptions { cell: Some(80_000.0_f64.into()), ..options() }).unwrap();
         let projection = dem.projection(&plan).unwrap();
-        let mut reader = dem.reader(&plan).unwrap();
+        let mut reader = dem.reader(&plan);
         let truth = |at: [f64; 2]| {
             let mut points = [at];
             projection.wgs84_from_working(&mut points).unwrap();
@@ -232,7 +232,7 @@ fn the_poles_are_covered_as_far_as_samples_go() {
         let plan = dem.plan(&PlanOptions { cell: Some(12_000.0_f64.into()), ..options() }).unwrap();
         assert!(plan.crs.starts_with("Lambert"), "{}", plan.crs);
         let projection = dem.projection(&plan).unwrap();
-        let count = check(&mut dem.reader(&plan).unwrap(), &plan, 0.02, |mut at| {
+        let count = check(&mut dem.reader(&plan), &plan, 0.02, |mut at| {
             projection.wgs84_from_working(std::slice::from_mut(&mut at)).unwrap();
             truth(at)
         });
@@ -250,7 +250,7 @@ fn the_poles_are_covered_as_far_as_samples_go() {
         );
         let dem = open(std::slice::from_ref(&path));
         let plan = plan(&dem);
-        assert_eq!((plan.crs, plan.case), (format!("EPSG:{epsg}"), Resampling::Aligned));
+        assert_eq!((plan.crs, plan.resampling), (format!("EPSG:{epsg}"), Resampling::Aligned));
         let factors = plan.metres_per_unit;
         let own = move |[x, y]: [f64; 2]| truth([x / factors[0], y / factors[1]]);
         let count = check_heights("polar", &[path], &given, (Space::Working, 1e-3), own);
@@ -322,7 +322,7 @@ fn few_digits_do_not_part_files_at_the_antimeridian() {
     for files in [[east.clone(), west.clone()], [west, east]] {
         let dem = open(&files);
         let plan = plan(&dem);
-        assert_eq!(plan.case, Resampling::Aligned, "{}", plan.resampling);
+        assert_eq!(plan.resampling, Resampling::Aligned, "{}", plan.resampling_text);
         assert_eq!(plan.north_east.i - plan.south_west.i, 239, "{files:?}");
         assert_eq!(plan.north_east.j - plan.south_west.j, 119);
         assert!(
@@ -331,8 +331,7 @@ fn few_digits_do_not_part_files_at_the_antimeridian() {
             plan.wgs84_bounds
         );
         assert_eq!(
-            check(&mut dem.reader(&plan).unwrap(), &plan, 1e-3, |[_, y]| y / plan.metres_per_unit
-                [1]),
+            check(&mut dem.reader(&plan), &plan, 1e-3, |[_, y]| y / plan.metres_per_unit[1]),
             240 * 120
         );
     }
@@ -351,11 +350,10 @@ fn aligned_files_far_across_the_antimeridian_are_near() {
     for files in [[east.clone(), west.clone()], [west, east]] {
         let dem = open(&files);
         let plan = plan(&dem);
-        assert_eq!(plan.case, Resampling::Aligned, "{}", plan.resampling);
+        assert_eq!(plan.resampling, Resampling::Aligned, "{}", plan.resampling_text);
         assert_eq!(plan.north_east.i - plan.south_west.i, 31 * 120 - 1, "{files:?}");
         assert_eq!(
-            check(&mut dem.reader(&plan).unwrap(), &plan, 1e-3, |[_, y]| y / plan.metres_per_unit
-                [1]),
+            check(&mut dem.reader(&plan), &plan, 1e-3, |[_, y]| y / plan.metres_per_unit[1]),
             240 * 120
         );
     }

@@ -63,7 +63,10 @@ fn projections_that_stretch_get_true_lengths_and_keep_their_samples() {
         let truth = plane_about([x, y], 0.1);
         let dem = open(&[raster.write(folder.path(), &format!("{epsg}.tif"), &truth)]);
         let plan = plan(&dem);
-        assert_eq!((plan.crs.as_str(), plan.case), (&*format!("EPSG:{epsg}"), Resampling::Aligned));
+        assert_eq!(
+            (plan.crs.as_str(), plan.resampling),
+            (&*format!("EPSG:{epsg}"), Resampling::Aligned)
+        );
         // PROJ's own scale along both axes.
         let step_deg = 0.0005;
         let by_proj = [[step_deg, 0.0], [0.0, step_deg]].map(|[east, north]| {
@@ -89,7 +92,7 @@ fn projections_that_stretch_get_true_lengths_and_keep_their_samples() {
         check_near(lengths, [degree_east_m / 1000.0, degree_north_m / 1000.0], 1e-4);
         let [east, north] = plan.metres_per_unit;
         let on_nodes = |[x, y]: [f64; 2]| truth([x / east, y / north]);
-        assert_eq!(check(&mut dem.reader(&plan).unwrap(), &plan, 1e-3, on_nodes), 3000);
+        assert_eq!(check(&mut dem.reader(&plan), &plan, 1e-3, on_nodes), 3000);
     }
 }
 
@@ -114,13 +117,16 @@ fn a_unit_of_a_geographic_system_is_as_long_as_on_its_ellipsoid() {
         let truth = plane_about(corner, 1000.0);
         let dem = open(&[raster.write(folder.path(), &format!("{epsg}.tif"), &truth)]);
         let plan = plan(&dem);
-        assert_eq!((plan.crs.as_str(), plan.case), (&*format!("EPSG:{epsg}"), Resampling::Aligned));
+        assert_eq!(
+            (plan.crs.as_str(), plan.resampling),
+            (&*format!("EPSG:{epsg}"), Resampling::Aligned)
+        );
         let expected = degree_on(ellipsoid, 50.0).map(|metres| metres * unit_deg);
         check_near(plan.metres_per_unit, expected, 1e-5);
         let [east, north] = plan.metres_per_unit;
         check_near(plan.frame.cell().to_array(), [east * step, north * step], 1e-12);
         let on_nodes = |[x, y]: [f64; 2]| truth([x / east, y / north]);
-        assert_eq!(check(&mut dem.reader(&plan).unwrap(), &plan, 1e-3, on_nodes), 10_000);
+        assert_eq!(check(&mut dem.reader(&plan), &plan, 1e-3, on_nodes), 10_000);
         // The middle, in WGS84: datums differ by some hundred metres at most.
         let bounds = plan.data_bounds;
         let mut middle = [bounds.center()];
@@ -147,9 +153,9 @@ fn systems_that_count_westwards_and_southwards_are_turned() {
     for (name, map) in tables {
         let dem = open(&[Raster::new(2053, [60, 50], map).write(folder.path(), name, &truth)]);
         let plan = plan(&dem);
-        assert_eq!((plan.crs.as_str(), plan.case), ("EPSG:2053", Resampling::Aligned));
+        assert_eq!((plan.crs.as_str(), plan.resampling), ("EPSG:2053", Resampling::Aligned));
         assert_eq!(plan.metres_per_unit, [-1.0, -1.0]);
-        let mut reader = dem.reader(&plan).unwrap();
+        let mut reader = dem.reader(&plan);
         assert_eq!(check(&mut reader, &plan, 1e-3, |[x, y]| truth([-x, -y])), 3000);
         // Corners, in degrees, from PROJ alone.
         let bounds = plan.data_bounds;
@@ -197,7 +203,12 @@ fn polar_systems_are_kept_where_lengths_are_true_within_three_percent() {
         let dem = open(&[raster.write(folder.path(), &name, &truth)]);
         let plan = plan(&dem);
         assert_eq!(plan.crs == format!("EPSG:{epsg}"), is_own, "{name}: {}", plan.crs);
-        assert_eq!(plan.case == Resampling::Aligned, is_own, "{name}: {}", plan.resampling);
+        assert_eq!(
+            plan.resampling == Resampling::Aligned,
+            is_own,
+            "{name}: {}",
+            plan.resampling_text
+        );
         if !is_own {
             continue;
         }
@@ -211,7 +222,7 @@ fn polar_systems_are_kept_where_lengths_are_true_within_three_percent() {
         assert!(ends.iter().all(|scale| (scale - 1.0).abs() <= 0.03), "{name}: {ends:?}");
         let [east, north] = plan.metres_per_unit;
         let on_nodes = |[x, y]: [f64; 2]| truth([x / east, y / north]);
-        let read = check(&mut dem.reader(&plan).unwrap(), &plan, 1e-3, on_nodes);
+        let read = check(&mut dem.reader(&plan), &plan, 1e-3, on_nodes);
         assert_eq!(read, count * count);
     }
 }
@@ -227,17 +238,20 @@ fn beyond_three_percent_utm_is_taken_and_dem_overrides() {
     };
     // cos 44 / cos 42.7 is 0.979, cos 44 / cos 41.9 is 0.966.
     let short = plan(&square(42.7, 130, "short.tif"));
-    assert_eq!((short.crs.as_str(), short.case), ("EPSG:4326", Resampling::Aligned));
+    assert_eq!((short.crs.as_str(), short.resampling), ("EPSG:4326", Resampling::Aligned));
     let tall = square(41.9, 210, "tall.tif");
     let by_default = plan(&tall);
-    assert_eq!((by_default.crs.as_str(), by_default.case), ("EPSG:32632", Resampling::Resampled));
+    assert_eq!(
+        (by_default.crs.as_str(), by_default.resampling),
+        ("EPSG:32632", Resampling::Resampled)
+    );
     for text in ["dem", "EPSG:4326"] {
         let asked = PlanOptions { crs: Some(text.to_owned()), ..options() };
         let own = tall.plan(&asked).unwrap();
-        assert_eq!((own.crs.as_str(), own.case), ("EPSG:4326", Resampling::Aligned));
+        assert_eq!((own.crs.as_str(), own.resampling), ("EPSG:4326", Resampling::Aligned));
         check_near(own.metres_per_unit, degree_m(44.0), 1e-5);
         assert_eq!(
-            check(&mut tall.reader(&own).unwrap(), &own, 1e-3, |[x, y]| {
+            check(&mut tall.reader(&own), &own, 1e-3, |[x, y]| {
                 truth([x / own.metres_per_unit[0], y / own.metres_per_unit[1]])
             }),
             50 * 210
@@ -263,7 +277,7 @@ fn a_given_latitude_pins_the_factors() {
         let asked = PlanOptions { scale_latitude_deg: Some(latitude_deg), ..options() };
         let pinned = dem.plan(&asked).unwrap();
         check_near(pinned.metres_per_unit, degree_m(latitude_deg), 1e-5);
-        assert_eq!(pinned.case, Resampling::Aligned);
+        assert_eq!(pinned.resampling, Resampling::Aligned);
     }
     // So far away that lengths are no longer true within 3 %.
     let far = PlanOptions { scale_latitude_deg: Some(30.0), ..options() };
@@ -282,7 +296,7 @@ fn lengths_are_true_in_a_projection_that_is_asked_for() {
     let dem = open(&[Raster::new(4326, [40, 30], map).write(folder.path(), "a.tif", |_| 1.0_f32)]);
     let asked = PlanOptions { crs: Some("EPSG:3857".to_owned()), ..options() };
     let plan = dem.plan(&asked).unwrap();
-    assert_eq!((plan.crs.as_str(), plan.case), ("EPSG:3857", Resampling::Resampled));
+    assert_eq!((plan.crs.as_str(), plan.resampling), ("EPSG:3857", Resampling::Resampled));
     check_near(plan.scale.center, [1.0; 2], 0.01);
 }
 
@@ -303,7 +317,7 @@ fn the_globe_can_be_had_in_its_own_degrees() {
         check_near(plan.metres_per_unit, degree_m(0.0), 1e-5);
         let [east, north] = plan.metres_per_unit;
         let on_nodes = |[x, y]: [f64; 2]| truth([x / east, y / north]);
-        let read = check(&mut dem.reader(&plan).unwrap(), &plan, 1e-3, on_nodes);
+        let read = check(&mut dem.reader(&plan), &plan, 1e-3, on_nodes);
         assert_eq!(read, 360 * rows);
         check_near([plan.scale.largest[0], 1.0], [largest, 1.0], 1e-4);
     }

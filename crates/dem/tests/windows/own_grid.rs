@@ -54,11 +54,11 @@ fn adjoining_squares_fit_when_their_latitude_is_pinned() {
     assert_eq!(grid(&planned(&[&south], None)), grid(&planned(&[&east], None)));
     let pinned = Some(47.5);
     let together = planned(&[&south, &north, &east], pinned);
-    assert_eq!(together.case, Resampling::Aligned);
+    assert_eq!(together.resampling, Resampling::Aligned);
     let [columns, rows] = borders(&together);
     for file in [&south, &north, &east] {
         let alone = planned(&[file], pinned);
-        assert_eq!(alone.case, Resampling::Aligned);
+        assert_eq!(alone.resampling, Resampling::Aligned);
         assert_eq!(grid(&alone), grid(&together));
         let [own_columns, own_rows] = borders(&alone);
         let shared = |own: &[u64], all: &[u64]| own.iter().filter(|x| all.contains(x)).count();
@@ -98,7 +98,7 @@ fn digits_left_out_of_a_geotransform_change_no_grid() {
             ("cut-off", [down(west), down(step), 0.0, down(north), 0.0, -down(step)]),
         ] {
             let noisy = planned(&format!("{how}-{digits}.tif"), map);
-            assert_eq!(noisy.case, Resampling::Aligned, "{how}, {digits} digits");
+            assert_eq!(noisy.resampling, Resampling::Aligned, "{how}, {digits} digits");
             assert_eq!(noisy.frame, exact.frame, "{how}, {digits} digits");
             assert_eq!(noisy.metres_per_unit, exact.metres_per_unit, "{how}, {digits} digits");
         }
@@ -124,12 +124,12 @@ fn every_nth_sample_is_taken_with_its_bits() {
             assert_eq!(plan.frame.cell(), Cell::from(side_m));
             assert_eq!(plan.frame.origin_m(), [8.0, 2.0]);
             let case = if every == 1 { Resampling::Aligned } else { Resampling::Thinned };
-            assert_eq!(plan.case, case);
+            assert_eq!(plan.resampling, case);
             let said = format!("one in {every}");
-            assert_eq!(plan.resampling.contains(&said), every > 1, "{}", plan.resampling);
+            assert_eq!(plan.resampling_text.contains(&said), every > 1, "{}", plan.resampling_text);
             let mut taken = 0;
             let window = all(&plan);
-            let heights = dem.reader(&plan).unwrap().window(window).unwrap().heights;
+            let heights = dem.reader(&plan).window(window).unwrap().heights;
             for row in 0..52 {
                 for column in 0..61 {
                     let at = raster.sample_at(column, row);
@@ -158,11 +158,11 @@ fn thinning_of_degrees_counts_from_the_whole_degree() {
     for every in [2_u32, 3, 5] {
         let plan = dem.plan(&PlanOptions { cell_every: Some(every), ..options() }).unwrap();
         let whole = i64::from(1200 / every);
-        assert_eq!(plan.case, Resampling::Thinned);
+        assert_eq!(plan.resampling, Resampling::Thinned);
         // 9° and 48° are multiples of the cell for all of these.
         assert_eq!(plan.south_west, NodeIndex { i: 9 * whole, j: 47 * whole });
         assert_eq!(plan.north_east, NodeIndex { i: 10 * whole, j: 48 * whole });
-        let heights = dem.reader(&plan).unwrap().window(all(&plan)).unwrap().heights;
+        let heights = dem.reader(&plan).window(all(&plan)).unwrap().heights;
         for (column, row) in [(0, 0), (1, 0), (0, 1), (100, 37), (240, 240)] {
             let (c, r) = (column * every as usize, row * every as usize);
             assert_eq!(heights.height(column, row), Some((500 + c as i32 - r as i32) as f32));
@@ -209,9 +209,13 @@ fn a_cell_may_be_a_rectangle() {
     let truth = |[lon, lat]: [f64; 2]| 500.0 + 3000.0 * (lon - 9.0) - 5000.0 * (lat - 47.0);
     let dem = open(&[Raster::new(4326, [300, 280], map).write(folder.path(), "a.tif", truth)]);
     let own = plan(&dem);
-    assert_eq!(own.case, Resampling::Aligned);
+    assert_eq!(own.resampling, Resampling::Aligned);
     let same = dem.plan(&PlanOptions { cell: Some(own.frame.cell()), ..options() }).unwrap();
-    assert_eq!((same.case, same.frame), (Resampling::Aligned, own.frame), "its own, as numbers");
+    assert_eq!(
+        (same.resampling, same.frame),
+        (Resampling::Aligned, own.frame),
+        "its own, as numbers"
+    );
     for (sides, averaged) in
         [([20.0, 30.0], false), ([45.0, 30.0], false), ([30.0, 30.0], false), ([97.0, 20.0], true)]
     {
@@ -220,12 +224,17 @@ fn a_cell_may_be_a_rectangle() {
             let plan = dem.plan(&PlanOptions { cell: Some(cell), ..asked }).unwrap();
             assert_eq!(plan.frame.cell().north_m, cell.north_m);
             assert!((plan.frame.cell().east_m - cell.east_m).abs() < 0.0005);
-            assert_eq!((plan.case, plan.frame.origin_m()), (Resampling::Resampled, [0.0; 2]));
-            assert_eq!(plan.resampling.contains("average"), averaged, "{}", plan.resampling);
+            assert_eq!((plan.resampling, plan.frame.origin_m()), (Resampling::Resampled, [0.0; 2]));
+            assert_eq!(
+                plan.resampling_text.contains("average"),
+                averaged,
+                "{}",
+                plan.resampling_text
+            );
             let projection = dem.projection(&plan).unwrap();
             // A hundredth of the cell on this slope: 4 cm a metre east, 4.5 cm a metre north.
             let tolerance_m = 0.01 * (0.04 * sides[0]).hypot(0.045 * sides[1]) + 1e-3;
-            let count = check(&mut dem.reader(&plan).unwrap(), &plan, tolerance_m, |at| {
+            let count = check(&mut dem.reader(&plan), &plan, tolerance_m, |at| {
                 let mut points = [at];
                 corniche_geom::Projection::wgs84_from_working(&projection, &mut points).unwrap();
                 truth(points[0])
@@ -257,19 +266,19 @@ fn the_first_named_file_defines_the_grid() {
         let dem = open(&[first.clone(), other.clone()]);
         let asked = PlanOptions { scale_latitude_deg: Some(50.0), ..options() };
         let plan = dem.plan(&asked).unwrap();
-        assert_eq!((plan.crs.as_str(), plan.case), ("EPSG:4326", Resampling::Resampled));
+        assert_eq!((plan.crs.as_str(), plan.resampling), ("EPSG:4326", Resampling::Resampled));
         assert_eq!(plan.frame.cell(), alone.frame.cell());
         assert_eq!(plan.frame.origin_m(), alone.frame.origin_m());
         let [resampled, onto] = plan.resampled_onto_first.clone().unwrap();
         assert_eq!([onto.as_str(), resampled.as_str()], names);
         assert_eq!(dem.plan(&in_utm()).unwrap().resampled_onto_first, None, "all are resampled");
-        let told = plan.resampling.as_str();
+        let told = plan.resampling_text.as_str();
         assert!(told.starts_with(&format!("nodes are the samples of {}", names[0])), "{told}");
         assert!(told.contains(&format!("between the samples of {}", names[1])), "{told}");
         let [east, north] = plan.metres_per_unit;
         assert!((plan.frame.cell().east_m / east - step).abs() < 1e-12);
         let on_nodes = |[x, y]: [f64; 2]| truth([x / east, y / north]);
-        let read = check(&mut dem.reader(&plan).unwrap(), &plan, 0.03, on_nodes);
+        let read = check(&mut dem.reader(&plan), &plan, 0.03, on_nodes);
         assert!(read as f64 > 0.98 * 0.3 / step * 200.0, "{read}");
     }
 }
@@ -286,12 +295,12 @@ fn files_of_one_phase_are_one_grid() {
         (0..5).map(|k| file(format!("{k}.tif"), 9.0 + 0.1 * f64::from(k), 0.001)).collect();
     let one = plan(&open(&files));
     assert_eq!(
-        (one.case, one.resampling.as_str()),
+        (one.resampling, one.resampling_text.as_str()),
         (Resampling::Aligned, "nodes are the DEM's samples")
     );
     assert_eq!(one.resampled_onto_first, None);
     files.push(file("other.tif".to_owned(), 9.7, 0.0015));
-    let told = plan(&open(&files)).resampling;
+    let told = plan(&open(&files)).resampling_text;
     assert!(
         told.starts_with("nodes are the samples of 0.tif, 1.tif, 2.tif and 2 more; "),
         "{told}"
@@ -324,7 +333,7 @@ proptest! {
         };
         prop_assert_eq!(plan.frame.cell(), Cell::from([20.0, 30.0]).times(f64::from(every)).fitted());
         let window = all(&plan);
-        let heights = dem.reader(&plan).unwrap().window(window).unwrap().heights;
+        let heights = dem.reader(&plan).window(window).unwrap().heights;
         for row in 0..window.rows {
             for column in 0..window.columns {
                 let node = window.node(column, row);

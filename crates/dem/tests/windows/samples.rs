@@ -26,7 +26,7 @@ fn raster<'a>() -> Raster<'a> {
 fn check(name: &str, path: PathBuf, options: &OpenOptions, expected: &[Option<f64>]) {
     let dem = Dem::open(&[path], options).unwrap_or_else(|error| panic!("{name}: {error}"));
     let plan = plan(&dem);
-    let heights = dem.reader(&plan).unwrap().window(all(&plan)).unwrap().heights;
+    let heights = dem.reader(&plan).window(all(&plan)).unwrap().heights;
     let found: Vec<Option<f32>> = (0..expected.len()).map(|c| heights.height(c, 2)).collect();
     let expected: Vec<Option<f32>> =
         expected.iter().map(|height_m| height_m.map(|height_m| height_m as f32)).collect();
@@ -277,6 +277,6 @@ fn lone_heights_stay_where_all_else_is_void() {
     let path = row(folder.path(), "void.tif", raster().nodata(0.0), &[0_i16, 0, 0]);
     let dem = open(&[path]);
     let plan = plan(&dem);
-    let heights = dem.reader(&plan).unwrap().window(all(&plan)).unwrap().heights;
+    let heights = dem.reader(&plan).window(all(&plan)).unwrap().heights;
     assert_eq!(heights.count_heights(), 0);
 }

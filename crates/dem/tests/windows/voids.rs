@@ -52,13 +52,13 @@ fn voids_are_filled_by_the_rule_and_by_nothing_else() {
     let dem = geographic(folder.path());
     let raw_plan = dem.plan(&options()).unwrap();
     let window = all(&raw_plan);
-    let raw = dem.reader(&raw_plan).unwrap().window(window).unwrap();
+    let raw = dem.reader(&raw_plan).window(window).unwrap();
     assert_eq!((raw.filled, raw.is_filled.len()), (0, 0));
     let cell = raw_plan.frame.cell();
     assert!(cell.east_m < 0.7 * cell.north_m, "rectangles: {cell}");
     for reach in [1, 4, 9, 32] {
         let plan = dem.plan(&PlanOptions { fill_voids: reach, ..options() }).unwrap();
-        let read = dem.reader(&plan).unwrap().window(window).unwrap();
+        let read = dem.reader(&plan).window(window).unwrap();
         let data = |i: i64, j: i64| {
             let is_inside =
                 (0..window.columns as i64).contains(&i) && (0..window.rows as i64).contains(&j);
@@ -106,12 +106,12 @@ proptest! {
         let cell_m = [None, Some(30.0), Some(290.0)][case];
         let plan = dem.plan(&PlanOptions { cell: cell_m.map(Cell::from), fill_voids: 6, ..options() }).unwrap();
         let whole = all(&plan);
-        let mut reader = dem.reader(&plan).unwrap();
+        let mut reader = dem.reader(&plan);
         let reference = bits(&mut reader, whole);
         let (left, top) = (left % whole.columns as i64, top % whole.rows as i64);
         let corner = NodeIndex { i: whole.corner.i + left, j: whole.corner.j - top };
         let window = NodeWindow { corner, stride: 1, columns, rows };
-        let seen = bits(&mut dem.reader(&plan).unwrap(), window);
+        let seen = bits(&mut dem.reader(&plan), window);
         for row in 0..rows {
             for column in 0..columns {
                 let (c, r) = (left as usize + column, top as usize + row);
@@ -134,7 +134,7 @@ fn all_sorts_of_voids_are_voids() {
     let dem = Dem::open(&[float], &OpenOptions { nodata: vec![-9999.0], ..OpenOptions::default() })
         .unwrap();
     let plan = dem.plan(&options()).unwrap();
-    let heights = dem.reader(&plan).unwrap().window(all(&plan)).unwrap().heights;
+    let heights = dem.reader(&plan).window(all(&plan)).unwrap().heights;
     let has: Vec<bool> = (0..7).map(|c| heights.has_height(c, 2)).collect();
     assert_eq!(has, [true, false, false, false, false, false, true]);
 
@@ -144,7 +144,7 @@ fn all_sorts_of_voids_are_voids() {
         .write(folder.path(), "i.tif", |at| values[column(at)]);
     let dem = open(&[int]);
     let plan = dem.plan(&options()).unwrap();
-    let heights = dem.reader(&plan).unwrap().window(all(&plan)).unwrap().heights;
+    let heights = dem.reader(&plan).window(all(&plan)).unwrap().heights;
     let row: Vec<Option<f32>> = (0..5).map(|c| heights.height(c, 0)).collect();
     assert_eq!(row, [None, Some(7.0), Some(-32767.0), None, Some(9.0)]);
 }

@@ -53,7 +53,7 @@ pub(crate) fn read<'a>(
     workers::in_order(
         threads,
         areas.len(),
-        || dem.reader(plan).map_err(BuildError::from),
+        || Ok(dem.reader(plan)),
         |reader, index| {
             if observer.is_cancelled() {
                 return Err(BuildError::Interrupted);

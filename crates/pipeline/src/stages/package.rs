@@ -87,7 +87,7 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
         frame,
         data_bounds: plan.data_bounds,
         wgs84_bounds: plan.wgs84_bounds,
-        resampling: plan.resampling.clone(),
+        resampling: plan.resampling_text.clone(),
         nodes_are_samples: plan.nodes_are_samples(),
         vertical: VerticalRecord {
             quantum_m: levels.quantum_m(),

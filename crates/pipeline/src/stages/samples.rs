@@ -42,7 +42,7 @@ pub(crate) fn measure(
         areas.len(),
         || {
             let grounds = Grounds { input, surfaces: BTreeMap::new(), bytes: 0, clock: 0 };
-            Ok((dem.reader(plan)?, grounds))
+            Ok((dem.reader(plan), grounds))
         },
         |(reader, grounds), index| {
             if observer.is_cancelled() {

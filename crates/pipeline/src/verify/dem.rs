@@ -88,7 +88,7 @@ fn compare_all(
     workers::in_order(
         settings.threads,
         finest.len(),
-        || Ok((dem.reader(&plan)?, BTreeMap::<TileId, Rc<Ground>>::new())),
+        || Ok((dem.reader(&plan), BTreeMap::<TileId, Rc<Ground>>::new())),
         |(reader, cache), index| {
             if observer.is_cancelled() {
                 return Err(VerifyError::Interrupted);
@@ -225,7 +225,7 @@ fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
     same("data_bounds", &manifest.data_bounds, &plan.data_bounds);
     same("wgs84_bounds", &manifest.wgs84_bounds, &plan.wgs84_bounds);
     same("nodes_are_samples", &manifest.nodes_are_samples, &plan.nodes_are_samples());
-    same("resampling", &manifest.resampling, &plan.resampling);
+    same("resampling", &manifest.resampling, &plan.resampling_text);
     let datum = plan.vertical_datum.as_deref().unwrap_or("unknown");
     same("vertical.datum", &vertical.datum.as_str(), &datum);
     same("vertical.treatment", &vertical.treatment, &plan.vertical);

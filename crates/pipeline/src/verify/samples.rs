@@ -40,7 +40,7 @@ pub(crate) fn measure(
     workers::in_order(
         settings.threads,
         areas.len(),
-        || Ok((dem.reader(plan)?, BTreeMap::<TileId, Ground>::new())),
+        || Ok((dem.reader(plan), BTreeMap::<TileId, Ground>::new())),
         |(reader, grounds), index| {
             if observer.is_cancelled() {
                 return Err(VerifyError::Interrupted);

@@ -1,0 +1,166 @@
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use corniche_geom::Bounds;
+use gdal::errors::GdalError;
+use gdal::spatial_ref::{CoordTransform, CoordTransformOptions};
+
+use crate::DemError;
+use crate::crs::horizontal::Crs;
+use crate::crs::working::Working;
+
+/// A coordinate operation between two systems, pinned to one area of interest.
+///
+/// PROJ picks among the operations it knows by the area and by the position transformed, and by nothing else:
+/// what comes out for a position depends neither on its neighbours nor on what was asked before.
+/// The description may go to any thread; PROJ's own object is made once per thread.
+#[derive(Debug, Clone)]
+pub(crate) struct Operation {
+    from: Crs,
+    to: Crs,
+    area_deg: Option<[f64; 4]>,
+    /// Operations that ignore what PROJ lacks the data for ("ballpark") are not allowed.
+    is_exact: bool,
+    /// Working metres are divided by these before.
+    divide: [f64; 2],
+    /// And these make them after.
+    multiply: [f64; 2],
+    /// A full turn of the first coordinate of what comes out, and what it is to be near to.
+    turn: Option<[f64; 2]>,
+    key: String,
+}
+
+thread_local! {
+    static TRANSFORMS: RefCell<HashMap<String, Rc<CoordTransform>>> = RefCell::new(HashMap::new());
+}
+
+/// Operations kept per thread; more than a run needs, so that a program of many runs does not grow.
+const KEPT: usize = 64;
+
+impl Operation {
+    /// From one system to another for data inside `area_deg` (WGS84; past the antimeridian beyond ±180).
+    pub(crate) fn new(from: &Crs, to: &Crs, area_deg: Option<Bounds>) -> Self {
+        let wrap = |lon: f64| lon - 360.0 * ((lon + 180.0) / 360.0).floor();
+        let area_deg = area_deg.filter(|area| !area.is_empty()).map(|area| {
+            let (south, north) = (area.min_y.max(-90.0), area.max_y.min(90.0));
+            if area.width() >= 360.0 {
+                [-180.0, south, 180.0, north]
+            } else {
+                [wrap(area.min_x), south, wrap(area.max_x), north]
+            }
+        });
+        let key = format!("{}→{}@{area_deg:?}", from.wkt, to.wkt);
+        Self {
+            from: from.clone(),
+            to: to.clone(),
+            area_deg,
+            is_exact: false,
+            divide: [1.0; 2],
+            multiply: [1.0; 2],
+            turn: None,
+            key,
+        }
+    }
+
+    /// From a system to working metres. Longitudes come out as those images that are nearest to the data's middle.
+    pub(crate) fn into_working(from: &Crs, working: &Working, area_deg: Option<Bounds>) -> Self {
+        let turn = working.crs.turn.map(|turn| [turn, working.middle]);
+        let multiply = working.metres_per_unit;
+        Self { multiply, turn, ..Self::new(from, &working.crs, area_deg) }
+    }
+
+    /// From working metres to a system.
+    pub(crate) fn out_of_working(working: &Working, to: &Crs, area_deg: Option<Bounds>) -> Self {
+        Self { divide: working.metres_per_unit, ..Self::new(&working.crs, to, area_deg) }
+    }
+
+    /// The same, with what comes out moved by whole turns: `[turn, near]` of the first coordinate.
+    pub(crate) fn around(self, turn: Option<[f64; 2]>) -> Self {
+        Self { turn, ..self }
+    }
+
+    /// The same where an approximation for want of a grid is no answer; for heights.
+    pub(crate) fn exact(from: &Crs, to: &Crs, area_deg: Bounds) -> Self {
+        let found = Self::new(from, to, Some(area_deg));
+        Self { is_exact: true, key: format!("{} exact", found.key), ..found }
+    }
+
+    /// Replaces each height at its position by its image, in the unit and direction of the systems' third axes;
+    /// NaN where there is none.
+    pub(crate) fn apply_heights(
+        &self,
+        points: &[[f64; 2]],
+        heights: &mut [f64],
+    ) -> Result<(), DemError> {
+        let transform = self.transform().map_err(|source| self.failed(source))?;
+        let mut xs: Vec<f64> = points.iter().map(|point| point[0]).collect();
+        let mut ys: Vec<f64> = points.iter().map(|point| point[1]).collect();
+        let _some_failed = transform.transform_coords(&mut xs, &mut ys, heights);
+        for (height, (x, y)) in heights.iter_mut().zip(xs.iter().zip(&ys)) {
+            if !(height.is_finite() && x.is_finite() && y.is_finite()) {
+                *height = f64::NAN;
+            }
+        }
+        Ok(())
+    }
+
+    fn failed(&self, source: GdalError) -> DemError {
+        DemError::Transform {
+            from: self.from.label.clone(),
+            to: self.to.label.clone(),
+            source: source.into(),
+        }
+    }
+
+    /// Replaces each position by its image; NaN where there is none.
+    pub(crate) fn apply(&self, points: &mut [[f64; 2]]) -> Result<(), DemError> {
+        let mut xs: Vec<f64> = points.iter().map(|point| point[0] / self.divide[0]).collect();
+        let mut ys: Vec<f64> = points.iter().map(|point| point[1] / self.divide[1]).collect();
+        // PROJ is not asked for what it would only wrap or round.
+        if self.from.wkt != self.to.wkt {
+            let transform = self.transform().map_err(|source| self.failed(source))?;
+            // An error here means that some positions have no image; those come out as infinite.
+            let _some_failed = transform.transform_coords(&mut xs, &mut ys, &mut []);
+        }
+        for ((point, mut x), y) in points.iter_mut().zip(xs).zip(ys) {
+            let image_exists =
+                x.is_finite() && y.is_finite() && point[0].is_finite() && point[1].is_finite();
+            if let Some([turn, near]) = self.turn {
+                x -= turn * ((x - near) / turn).round();
+            }
+            *point = if image_exists {
+                [x * self.multiply[0], y * self.multiply[1]]
+            } else {
+                [f64::NAN; 2]
+            };
+        }
+        Ok(())
+    }
+
+    fn transform(&self) -> Result<Rc<CoordTransform>, GdalError> {
+        TRANSFORMS.with_borrow_mut(|transforms| {
+            if let Some(transform) = transforms.get(&self.key) {
+                return Ok(Rc::clone(transform));
+            }
+            let mut options = CoordTransformOptions::new()?;
+            if let Some([west, south, east, north]) = self.area_deg {
+                options.set_area_of_interest(west, south, east, north)?;
+            }
+            if self.is_exact {
+                options.set_ballpark_allowed(false)?;
+            }
+            let transform = CoordTransform::new_with_options(
+                &self.from.spatial_ref()?,
+                &self.to.spatial_ref()?,
+                &options,
+            )?;
+            if transforms.len() >= KEPT {
+                transforms.clear();
+            }
+            let transform = Rc::new(transform);
+            transforms.insert(self.key.clone(), Rc::clone(&transform));
+            Ok(transform)
+        })
+    }
+}

@@ -1,0 +1,61 @@
+use corniche_geom::Bounds;
+
+use crate::crs::horizontal::Crs;
+use crate::crs::operation::Operation;
+use crate::crs::working::Working;
+use crate::crs::{compound, scale};
+use crate::{DemError, DemProjection};
+
+/// The working CRS of a package, from what the package records of it: without the elevation files.
+#[derive(Debug, Clone)]
+pub struct RecordedCrs {
+    working: Working,
+}
+
+impl RecordedCrs {
+    /// From its WKT or a code such as "EPSG:32632", the working metres to a unit of its coordinates, and the rectangle of
+    /// the data in working metres.
+    ///
+    /// # Errors
+    /// When PROJ cannot read it, or it is neither projected nor geographic.
+    pub fn new(text: &str, metres_per_unit: [f64; 2], data: Bounds) -> Result<Self, DemError> {
+        let crs = compound::from_text("the package's", text)?.0;
+        let middle = data.center()[0] / metres_per_unit[0];
+        let is_unit = |factor: f64| factor.abs().to_bits() == crs.unit_m.to_bits();
+        let is_scaled = !(crs.is_projected() && metres_per_unit.into_iter().all(is_unit));
+        Ok(Self { working: Working { crs, metres_per_unit, middle, is_scaled } })
+    }
+
+    /// "EPSG:…" where it has a code, else its name.
+    #[must_use]
+    pub fn label(&self) -> &str {
+        &self.working.crs.label
+    }
+
+    /// WGS84 ⇄ working metres over a rectangle in degrees: the same positions, to the last bit, as when the package was
+    /// built with the same rectangle.
+    ///
+    /// # Errors
+    /// When PROJ knows no operation.
+    pub fn projection(&self, wgs84_bounds: Bounds) -> Result<DemProjection, DemError> {
+        DemProjection::new(&self.working, wgs84_bounds)
+    }
+
+    /// Working metres to a true metre along x and along y at each of `points_m`; `None` where the CRS ends.
+    ///
+    /// # Errors
+    /// When PROJ knows no operation.
+    pub fn scales(
+        &self,
+        points_m: &[[f64; 2]],
+        wgs84_bounds: Bounds,
+    ) -> Result<Vec<Option<[f64; 2]>>, DemError> {
+        let back = Operation::out_of_working(&self.working, &Crs::wgs84()?, Some(wgs84_bounds));
+        let scales = scale::scales(&back, points_m)?;
+        Ok(scales.into_iter().map(|scale| scale.map(|scale| scale.along)).collect())
+    }
+}
+
+#[cfg(test)]
+#[path = "recorded_tests.rs"]
+mod tests;

@@ -1,0 +1,38 @@
+use std::path::Path;
+
+use gdal::Dataset;
+
+use crate::{DemError, library_error};
+
+/// Opens a file, with an error that says which of the usual things went wrong.
+pub(crate) fn open_dataset(path: &Path) -> Result<Dataset, DemError> {
+    let own = || path.to_path_buf();
+    if path.to_str().is_none() {
+        return Err(DemError::NotUtf8 { path: own() });
+    }
+    if path.starts_with("/vsistdin") {
+        return Err(DemError::Stream { path: own(), found: "standard input" });
+    }
+    // GDAL's virtual files and subdatasets ("/vsizip/…", "NETCDF:…") are no names of files.
+    let is_virtual =
+        path.to_str().is_some_and(|text| text.starts_with("/vsi") || text.contains(':'));
+    match std::fs::metadata(path) {
+        Ok(found) if found.is_file() && found.len() == 0 => {
+            return Err(DemError::Empty { path: own() });
+        }
+        Ok(found) if !found.is_file() && !found.is_dir() => {
+            return Err(DemError::Stream { path: own(), found: "a pipe or a device" });
+        }
+        Err(source) if !is_virtual => return Err(DemError::Missing { path: own(), source }),
+        // Some formats are folders; GDAL says below whether this is one of them.
+        Ok(_) | Err(_) => {}
+    }
+    library_error::forget();
+    Dataset::open(path).map_err(|source| {
+        if path.is_dir() {
+            DemError::NotAFile { path: own() }
+        } else {
+            DemError::Open { path: own(), source: source.into() }
+        }
+    })
+}

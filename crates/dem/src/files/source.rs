@@ -1,0 +1,205 @@
+//! One elevation file: what it says about itself, and its samples as metres.
+
+use std::path::{Path, PathBuf};
+
+use corniche_geom::GeoTransform;
+use gdal::errors::GdalError;
+use gdal::raster::{ColorInterpretation, RasterBand};
+use gdal::{Dataset, Metadata};
+
+use crate::crs::height_operation::HeightOperation;
+use crate::crs::horizontal::Crs;
+use crate::crs::vertical::VerticalCrs;
+use crate::files::georeference::{crs_of, geo_transform, refuse_off_globe};
+use crate::files::open::open_dataset;
+use crate::files::stored_values::StoredValues;
+use crate::{DemError, OpenOptions};
+
+/// An elevation file, described but not held open.
+#[derive(Debug, Clone)]
+pub(crate) struct Source {
+    pub(crate) path: PathBuf,
+    pub(crate) columns: i64,
+    pub(crate) rows: i64,
+    /// Pixel to CRS.
+    pub(crate) crs_from_pixel: GeoTransform,
+    pub(crate) crs: Crs,
+    /// What its heights are measured from, as the file or `--dem-vertical-crs` says.
+    pub(crate) vertical: Option<VerticalCrs>,
+    values: StoredValues,
+    /// Stored in whole rows rather than in tiles.
+    pub(crate) is_striped: bool,
+    /// Number of the band in which 0 means that there is no sample.
+    alpha_band: Option<usize>,
+    /// To the vertical CRS asked for, where that is another one.
+    pub(crate) to_target: Option<HeightOperation>,
+    pub(crate) shift_m: f64,
+}
+
+impl Source {
+    pub(crate) fn open(path: &Path, options: &OpenOptions) -> Result<Self, DemError> {
+        let dataset = open_dataset(path)?;
+        let own = || path.to_path_buf();
+        let broken = |source: GdalError| DemError::Open { path: own(), source: source.into() };
+        if dataset.raster_count() == 0 {
+            return Err(no_band(path, &dataset));
+        }
+        let band = dataset.rasterband(1).map_err(broken)?;
+        refuse_imagery(path, &dataset, &band)?;
+        let (columns, rows) = dataset.raster_size();
+        let (crs_from_pixel, is_tied) = geo_transform(path, &dataset)?;
+        let reference =
+            if is_tied { dataset.gcp_spatial_ref() } else { dataset.spatial_ref().ok() };
+        let (crs, vertical) = crs_of(path, reference, options)?;
+        if crs_from_pixel.pixel_from_crs([0.0, 0.0]).is_none()
+            || !crs_from_pixel.coefficients.iter().all(|value| value.is_finite())
+        {
+            return Err(DemError::GeoTransform {
+                path: own(),
+                coefficients: crs_from_pixel.coefficients,
+            });
+        }
+        refuse_off_globe(path, &crs, &crs_from_pixel, dataset.raster_size())?;
+        let given = || {
+            let text = options.dem_vertical_crs.as_deref();
+            text.map(|text| VerticalCrs::from_text("--dem-vertical-crs", text)).transpose()
+        };
+        let vertical = if vertical.is_some() { vertical } else { given()? };
+        Ok(Self {
+            path: own(),
+            columns: columns as i64,
+            rows: rows as i64,
+            crs_from_pixel,
+            crs,
+            values: StoredValues::of(path, &band, vertical.as_ref(), options)?,
+            vertical,
+            is_striped: band.block_size().0 == columns,
+            alpha_band: alpha_band(&dataset),
+            to_target: None,
+            shift_m: 0.0,
+        })
+    }
+
+    /// The samples of a rectangle of pixels as metres, row by row, NaN where there is none.
+    pub(crate) fn read(
+        &self,
+        dataset: &Dataset,
+        [column, row]: [usize; 2],
+        [columns, rows]: [usize; 2],
+        heights_m: &mut Vec<f64>,
+    ) -> Result<(), DemError> {
+        self.read_stored(dataset, [column, row], [columns, rows], heights_m)?;
+        self.values.convert(heights_m);
+        if let Some(operation) = &self.to_target {
+            operation.apply(&self.path, &self.crs_from_pixel, [column, row], columns, heights_m)?;
+        }
+        if self.shift_m != 0.0 {
+            for height_m in heights_m.iter_mut() {
+                *height_m += self.shift_m;
+            }
+        }
+        Ok(())
+    }
+
+    /// Stored values to metres, in place; NaN where there is no height. Without the vertical CRS and the shift asked for.
+    pub(crate) fn convert(&self, values: &mut [f64]) {
+        self.values.convert(values);
+    }
+
+    /// A stored value as `--nodata` takes it.
+    pub(crate) fn stored_text(&self, value: f64) -> String {
+        self.values.stored_text(value)
+    }
+
+    /// The values of a rectangle of pixels as they are stored, row by row, NaN where a mask says that there is none.
+    pub(crate) fn read_stored(
+        &self,
+        dataset: &Dataset,
+        [column, row]: [usize; 2],
+        [columns, rows]: [usize; 2],
+        values: &mut Vec<f64>,
+    ) -> Result<(), DemError> {
+        let (start, size) = ((column as isize, row as isize), (columns, rows));
+        let mut read = || -> Result<(), GdalError> {
+            values.resize(columns * rows, 0.0);
+            let band = dataset.rasterband(1)?;
+            band.read_into_slice(start, size, size, values, None)?;
+            if self.values.has_mask {
+                let mask = band.open_mask_band()?.read_as::<u8>(start, size, size, None)?;
+                masked(values, mask.data().iter().map(|&valid| valid == 0));
+            }
+            if let Some(alpha) = self.alpha_band {
+                let alpha = dataset.rasterband(alpha)?.read_as::<f64>(start, size, size, None)?;
+                masked(values, alpha.data().iter().map(|&opacity| opacity == 0.0));
+            }
+            Ok(())
+        };
+        let path = || self.path.clone();
+        read().map_err(|source| DemError::Read {
+            path: path(),
+            column,
+            row,
+            columns,
+            rows,
+            source: source.into(),
+        })
+    }
+}
+
+/// Takes away values.
+fn masked(values: &mut [f64], is_void: impl Iterator<Item = bool>) {
+    for (value, _) in values.iter_mut().zip(is_void).filter(|(_, is_void)| *is_void) {
+        *value = f64::NAN;
+    }
+}
+
+fn alpha_band(dataset: &Dataset) -> Option<usize> {
+    (2..=dataset.raster_count()).find(|&index| {
+        dataset
+            .rasterband(index)
+            .is_ok_and(|band| band.color_interpretation() == ColorInterpretation::AlphaBand)
+    })
+}
+
+/// Why a container without a band of its own is no DEM: it may hold several.
+fn no_band(path: &Path, dataset: &Dataset) -> DemError {
+    let names: Vec<String> = dataset
+        .metadata_domain("SUBDATASETS")
+        .unwrap_or_default()
+        .iter()
+        .filter_map(|line| line.split_once('='))
+        .filter(|(key, _)| key.ends_with("_NAME"))
+        .map(|(_, name)| name.to_owned())
+        .collect();
+    let path = path.to_path_buf();
+    if names.is_empty() {
+        DemError::NoBand { path }
+    } else {
+        DemError::Subdatasets { path, names: names.join(", ") }
+    }
+}
+
+/// Colour bands are no heights. A palette alone is no reason to refuse: DEMs carry one for display.
+fn refuse_imagery(path: &Path, dataset: &Dataset, band: &RasterBand<'_>) -> Result<(), DemError> {
+    use ColorInterpretation as C;
+    let interpretation = band.color_interpretation();
+    let is_colour = matches!(
+        interpretation,
+        C::RedBand
+            | C::GreenBand
+            | C::BlueBand
+            | C::AlphaBand
+            | C::CyanBand
+            | C::MagentaBand
+            | C::YellowBand
+            | C::BlackBand
+    );
+    if is_colour && dataset.raster_count() >= 3 {
+        return Err(DemError::Imagery {
+            path: path.to_path_buf(),
+            bands: dataset.raster_count(),
+            interpretation: interpretation.name().to_lowercase(),
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,154 @@
+//! From stored values to heights in metres.
+
+use std::path::Path;
+
+use gdal::Metadata;
+use gdal::raster::{GdalDataType, RasterBand};
+
+use crate::crs::vertical::VerticalCrs;
+use crate::{DemError, OpenOptions};
+
+/// Beyond this no value is a height: writers use ±3.4e38, 1e20 and the like for "nothing here", and nothing on earth
+/// is farther from the sea's level than its centre, 6 400 km.
+const NO_HEIGHT_M: f64 = 1e7;
+/// What SRTM's 16-bit files write for "nothing here", declared or not.
+const SRTM_VOID: f64 = -32768.0;
+/// Units of a band and of its vertical CRS are the same within this: "ft" is often written for survey feet.
+const SAME_UNIT: f64 = 1e-5;
+
+/// From stored values to heights.
+#[derive(Debug, Clone)]
+pub(crate) struct StoredValues {
+    nodata: Vec<f64>,
+    /// Stored as 32-bit floats, so that sentinels are compared in that precision.
+    is_f32: bool,
+    /// Bytes with a sign, which GDAL hands out without one.
+    is_signed_byte: bool,
+    scale: f64,
+    offset: f64,
+    /// Metres upwards to a unit; negative for depths.
+    unit_m: f64,
+    /// GDAL gives a mask that says more than the sentinels.
+    pub(crate) has_mask: bool,
+}
+
+impl StoredValues {
+    pub(crate) fn of(
+        path: &Path,
+        band: &RasterBand<'_>,
+        vertical: Option<&VerticalCrs>,
+        options: &OpenOptions,
+    ) -> Result<Self, DemError> {
+        let kind = band.band_type();
+        // Complex numbers of all kinds are among the unknown here.
+        if kind == GdalDataType::Unknown {
+            return Err(DemError::SampleType { path: path.to_path_buf() });
+        }
+        let mut nodata: Vec<f64> =
+            declared(band, kind).into_iter().chain(options.nodata.iter().copied()).collect();
+        if kind == GdalDataType::Int16 {
+            nodata.push(SRTM_VOID);
+        }
+        let (scale, offset) = (band.scale().unwrap_or(1.0), band.offset().unwrap_or(0.0));
+        if !(scale.is_finite() && offset.is_finite()) || scale == 0.0 {
+            return Err(DemError::Scale { path: path.to_path_buf(), scale, offset });
+        }
+        let flags = band
+            .mask_flags()
+            .map_err(|source| DemError::Open { path: path.to_path_buf(), source: source.into() })?;
+        let is_own_nodata = flags.is_nodata() && !flags.is_per_dataset();
+        let pixel_type = band.metadata_item("PIXELTYPE", "IMAGE_STRUCTURE");
+        Ok(Self {
+            nodata,
+            is_f32: kind == GdalDataType::Float32,
+            is_signed_byte: pixel_type.as_deref() == Some("SIGNEDBYTE"),
+            scale,
+            offset,
+            unit_m: m_per_value(path, &band.unit(), vertical)?,
+            // Of the band's nodata and of some alpha bands GDAL makes masks too; looking ourselves is exact, and covers
+            // all types. A nodata mask of the whole dataset is another thing: its item NODATA_VALUES, which no band has.
+            has_mask: !flags.is_all_valid() && !flags.is_alpha() && !is_own_nodata,
+        })
+    }
+
+    /// A stored value in words, as the sentinel that it may be: no more digits than the file has.
+    pub(crate) fn stored_text(&self, value: f64) -> String {
+        match value {
+            value if self.is_signed_byte && value > 127.0 => (value - 256.0).to_string(),
+            value if self.is_f32 => (value as f32).to_string(),
+            value => value.to_string(),
+        }
+    }
+
+    /// Stored values to metres, in place; what is no height becomes NaN.
+    #[expect(clippy::float_cmp, reason = "a sentinel is one value, not a neighbourhood")]
+    pub(crate) fn convert(&self, values: &mut [f64]) {
+        for value in values {
+            if self.is_signed_byte && *value > 127.0 {
+                *value -= 256.0;
+            }
+            let is_sentinel = self.nodata.iter().any(|&sentinel| {
+                // A 32-bit file holds its sentinel rounded to 32 bits; its tag has all digits.
+                *value == sentinel || self.is_f32 && *value == f64::from(sentinel as f32)
+            });
+            let height_m = (*value * self.scale + self.offset) * self.unit_m;
+            let is_height = !is_sentinel && height_m.abs() <= NO_HEIGHT_M;
+            *value = if is_height { height_m } else { f64::NAN };
+        }
+    }
+}
+
+/// The value that the file declares to mean nothing.
+fn declared(band: &RasterBand<'_>, kind: GdalDataType) -> Option<f64> {
+    match kind {
+        // GDAL keeps these apart, as not all of them are floating-point numbers; neither are the samples read.
+        GdalDataType::Int64 => band.no_data_value_i64().map(|value| value as f64),
+        GdalDataType::UInt64 => band.no_data_value_u64().map(|value| value as f64),
+        _ => band.no_data_value(),
+    }
+}
+
+/// Metres upwards to a value: by the band's unit, by the vertical CRS, or metres where neither says.
+fn m_per_value(
+    path: &Path,
+    band_unit: &str,
+    vertical: Option<&VerticalCrs>,
+) -> Result<f64, DemError> {
+    let named =
+        match band_unit.trim() {
+            "" => None,
+            unit => Some(unit_m(unit).ok_or_else(|| DemError::Unit {
+                path: path.to_path_buf(),
+                unit: unit.to_owned(),
+            })?),
+        };
+    let Some(vertical) = vertical else { return Ok(named.unwrap_or(1.0)) };
+    if named.is_some_and(|unit_m| (unit_m / vertical.unit_m - 1.0).abs() > SAME_UNIT) {
+        return Err(DemError::UnitsDisagree {
+            path: path.to_path_buf(),
+            unit: band_unit.trim().to_owned(),
+            vertical: vertical.name.clone(),
+            vertical_unit_m: vertical.unit_m,
+        });
+    }
+    Ok(vertical.m_per_value())
+}
+
+/// Metres to a unit of length as raster bands name it.
+fn unit_m(name: &str) -> Option<f64> {
+    Some(match name.to_lowercase().as_str() {
+        "m" | "metre" | "metres" | "meter" | "meters" => 1.0,
+        "km" | "kilometre" | "kilometer" => 1000.0,
+        "dm" | "decimetre" | "decimeter" => 0.1,
+        "cm" | "centimetre" | "centimeter" | "centimetres" | "centimeters" => 0.01,
+        "mm" | "millimetre" | "millimeter" => 0.001,
+        "ft" | "foot" | "feet" | "international foot" | "international feet" => 0.3048,
+        "us-ft" | "us ft" | "us_ft" | "ftus" | "us survey foot" | "us survey feet" | "us foot"
+        | "us feet" | "foot_us" | "sft" | "survey foot" | "us_survey_foot" => 1200.0 / 3937.0,
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+#[path = "stored_values_tests.rs"]
+mod tests;

@@ -1,0 +1,67 @@
+//! What GDAL and PROJ say when something fails, in words fit to be shown.
+
+use std::cell::RefCell;
+use std::sync::Once;
+
+use gdal::errors::GdalError;
+
+thread_local! {
+    static LAST_WORDS: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// The reason that GDAL or PROJ gave for a failure, in its own words.
+#[derive(Debug, thiserror::Error)]
+#[error("{words}")]
+pub struct LibraryError {
+    words: String,
+}
+
+/// Text longer than this is a dump of definitions; its beginning says what happened.
+const MOST_LETTERS: usize = 300;
+
+impl LibraryError {
+    /// From an error that was just returned on this thread.
+    pub(crate) fn new(error: &GdalError) -> Self {
+        let own = match error {
+            GdalError::CplError { msg, .. } | GdalError::NullPointer { msg, .. } => msg.clone(),
+            GdalError::BadArgument(text) => text.clone(),
+            // Says no more than a number; PROJ may have said why.
+            GdalError::OgrError { .. } => String::new(),
+            other => other.to_string(),
+        };
+        let heard = LAST_WORDS.with_borrow(String::clone);
+        let words = [own, heard].into_iter().find(|words| !words.trim().is_empty());
+        Self::shortened(words.as_deref().unwrap_or("GDAL gives no reason"))
+    }
+
+    fn shortened(words: &str) -> Self {
+        let words = words.trim();
+        let words = match words.char_indices().nth(MOST_LETTERS) {
+            Some((end, _)) => format!("{} …", &words[..end]),
+            None => words.to_owned(),
+        };
+        Self { words }
+    }
+}
+
+impl From<GdalError> for Box<LibraryError> {
+    fn from(error: GdalError) -> Self {
+        Box::new(LibraryError::new(&error))
+    }
+}
+
+/// Keeps GDAL and PROJ from writing to standard error: what they say comes back in errors.
+pub(crate) fn quiet() {
+    static QUIET: Once = Once::new();
+    QUIET.call_once(|| gdal::config::set_error_handler(|_, _, words| hear(words)));
+}
+
+/// Remembers what was said on this thread, in the place of GDAL's printing it.
+fn hear(words: &str) {
+    LAST_WORDS.with_borrow_mut(|last| words.clone_into(last));
+}
+
+/// Forgets what was said, so that the next failure is not explained by an earlier one.
+pub(crate) fn forget() {
+    LAST_WORDS.with_borrow_mut(String::clear);
+}

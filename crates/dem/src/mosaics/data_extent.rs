@@ -1,0 +1,151 @@
+//! Where a DEM's files lie: their outlines, densely sampled.
+
+use corniche_geom::Bounds;
+
+use crate::DemError;
+use crate::crs::full_turns::turns;
+use crate::crs::operation::Operation;
+use crate::files::source::Source;
+use crate::mosaics::mosaic::Mosaic;
+use crate::mosaics::sample_rect::SampleRect;
+
+/// Positions along each side of a file. Between two of them a side bends by 1/4096 of its whole sagitta.
+const SIDE_POSITIONS: usize = 65;
+/// Positions across the inside of a file, each way: a pole may lie there.
+const INNER_POSITIONS: usize = 9;
+
+/// Positions of samples on the rim and inside of a rectangle: the rim first, all the way around.
+pub(crate) fn positions(mosaic: &Mosaic, rect: &SampleRect) -> Vec<[f64; 2]> {
+    let [west, north] = rect.min.map(|index| index as f64);
+    let [east, south] = rect.max.map(|index| (index - 1) as f64);
+    let corners = [[west, north], [east, north], [east, south], [west, south]];
+    let between = |from: f64, to: f64, t: f64| from + (to - from) * t;
+    let mut samples = Vec::new();
+    for side in 0..4 {
+        let (from, to) = (corners[side], corners[(side + 1) % 4]);
+        for k in 0..SIDE_POSITIONS {
+            let t = k as f64 / (SIDE_POSITIONS - 1) as f64;
+            samples.push([between(from[0], to[0], t), between(from[1], to[1], t)]);
+        }
+    }
+    for r in 1..=INNER_POSITIONS {
+        for c in 1..=INNER_POSITIONS {
+            let part = |k: usize| k as f64 / (INNER_POSITIONS + 1) as f64;
+            samples.push([between(west, east, part(c)), between(north, south, part(r))]);
+        }
+    }
+    samples.iter().map(|&sample| mosaic.crs_from_sample.crs_from_pixel(sample)).collect()
+}
+
+/// The rectangle around a file's samples in the CRS that `operation` leads to, the bend between rim positions
+/// included; empty where the CRS does not reach.
+pub(crate) fn bounds(
+    mosaic: &Mosaic,
+    rect: &SampleRect,
+    operation: &Operation,
+) -> Result<Bounds, DemError> {
+    let mut points = positions(mosaic, rect);
+    operation.apply(&mut points)?;
+    let mut bounds = Bounds::EMPTY;
+    let is_point = |p: &[f64; 2]| p[0].is_finite() && p[1].is_finite();
+    for &point in points.iter().filter(|point| is_point(point)) {
+        bounds.include(point);
+    }
+    // How far a middle one of three lies off the chord of its neighbours is 4 times the bend in between.
+    let mut bend = 0.0_f64;
+    for side in points[..4 * SIDE_POSITIONS].chunks_exact(SIDE_POSITIONS) {
+        for [a, b, c] in side.windows(3).filter_map(|three| <[[f64; 2]; 3]>::try_from(three).ok()) {
+            let off = (b[0] - f64::midpoint(a[0], c[0])).hypot(b[1] - f64::midpoint(a[1], c[1]));
+            bend = if off.is_finite() { bend.max(off) } else { bend };
+        }
+    }
+    if !bounds.is_empty() {
+        bounds = Bounds {
+            min_x: bounds.min_x - bend,
+            min_y: bounds.min_y - bend,
+            max_x: bounds.max_x + bend,
+            max_y: bounds.max_y + bend,
+        };
+    }
+    Ok(bounds)
+}
+
+/// All files' outlines in WGS84 and the rectangle around them. Longitudes are continuous: past the antimeridian
+/// they go on beyond ±180. Refuses a file of which no position is on earth.
+pub(crate) fn wgs84(
+    sources: &[Source],
+    mosaics: &[Mosaic],
+    operations: &[Operation],
+) -> Result<(Vec<[f64; 2]>, Bounds), DemError> {
+    let mut all = Vec::new();
+    let mut bounds = Bounds::EMPTY;
+    for (mosaic, operation) in mosaics.iter().zip(operations) {
+        // Degrees of one grid belong together already: they are moved by the same turns.
+        let degrees = mosaic.turn().map(|[turn, middle]| (360.0 / turn, middle * 360.0 / turn));
+        let of_mosaic = degrees.map(|(_, middle_deg)| turns_beside(middle_deg, bounds));
+        for file in &mosaic.files {
+            let own = positions(mosaic, &file.rect);
+            let mut points = own.clone();
+            operation.apply(&mut points)?;
+            if let Some((to_degrees, _)) = degrees {
+                for (point, own) in points.iter_mut().zip(&own) {
+                    point[0] = near_longitude(point[0], own[0] * to_degrees);
+                }
+            } else {
+                unwrap(&mut points);
+            }
+            points.retain(|point| point[0].is_finite() && point[1].is_finite());
+            if points.is_empty() {
+                let path = sources[file.index].path.clone();
+                return Err(DemError::Nowhere { path, crs: mosaic.crs.label.clone() });
+            }
+            let turns =
+                of_mosaic.unwrap_or_else(|| turns_beside(around(&points).center()[0], bounds));
+            for point in &mut points {
+                point[0] -= 360.0 * turns;
+                bounds.include(*point);
+            }
+            all.extend(points);
+        }
+    }
+    Ok((all, bounds))
+}
+
+/// Longitudes of a projected file made continuous: along the rim each beside the one before, which is near it; inside each
+/// beside the middle of the rim. From one inner row to the next the way is most of the width and tells nothing.
+fn unwrap(points: &mut [[f64; 2]]) {
+    let (rim, inside) = points.split_at_mut(4 * SIDE_POSITIONS);
+    let mut previous: Option<f64> = None;
+    for point in rim.iter_mut().filter(|point| point[0].is_finite()) {
+        point[0] = previous.map_or(point[0], |near| near_longitude(point[0], near));
+        previous = Some(point[0]);
+    }
+    let middle = if previous.is_some() { Some(around(rim).center()[0]) } else { None };
+    // Without a rim on earth any inner position is as good.
+    let mut near = middle;
+    for point in inside.iter_mut().filter(|point| point[0].is_finite()) {
+        point[0] = near_longitude(point[0], *near.get_or_insert(point[0]));
+    }
+}
+
+/// The rectangle around those positions that are somewhere.
+fn around(points: &[[f64; 2]]) -> Bounds {
+    let mut bounds = Bounds::EMPTY;
+    for &point in points.iter().filter(|point| point[0].is_finite() && point[1].is_finite()) {
+        bounds.include(point);
+    }
+    bounds
+}
+
+/// Full turns that a longitude is away from the middle of a rectangle; none from half a turn, and none from an empty one.
+fn turns_beside(lon_deg: f64, bounds: Bounds) -> f64 {
+    if bounds.is_empty() {
+        return 0.0;
+    }
+    turns(lon_deg - bounds.center()[0], 360.0)
+}
+
+/// The image of a longitude that is nearest to another one.
+fn near_longitude(lon_deg: f64, near_deg: f64) -> f64 {
+    lon_deg - 360.0 * ((lon_deg - near_deg) / 360.0).round()
+}

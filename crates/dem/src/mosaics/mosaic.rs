@@ -1,0 +1,147 @@
+//! Files of one grid as one raster of samples.
+
+use corniche_geom::GeoTransform;
+
+use crate::DemError;
+use crate::crs::full_turns::turns;
+use crate::crs::horizontal::Crs;
+use crate::files::source::Source;
+use crate::mosaics::sample_rect::SampleRect;
+use crate::mosaics::spacing::nice;
+
+/// Grids are the same when, over the whole extent, their samples are no farther apart than this.
+const SAME_GRID_PX: f64 = 1e-3;
+/// A full turn of longitude meets its start within this, in samples.
+const SAME_PLACE_PX: f64 = 0.01;
+
+/// Files whose samples lie on one grid, addressed by global sample indices: sample (0, 0) is the first of the
+/// first file, and a position between samples has fractions.
+#[derive(Debug, Clone)]
+pub(crate) struct Mosaic {
+    pub(crate) crs: Crs,
+    /// CRS position of a *sample* (its centre), in the order of [`GeoTransform`].
+    pub(crate) crs_from_sample: GeoTransform,
+    /// First named first: it wins where files overlap.
+    pub(crate) files: Vec<Placed>,
+    /// First and one past the last sample, both axes.
+    pub(crate) extent: SampleRect,
+    /// Columns all around the earth where that is a whole number: column c + `period` is column c.
+    period: Option<i64>,
+}
+
+/// A file in its mosaic.
+#[derive(Debug, Clone)]
+pub(crate) struct Placed {
+    /// Its place among all files of the DEM.
+    pub(crate) index: usize,
+    pub(crate) rect: SampleRect,
+}
+
+/// Sorts files into mosaics, in the order in which their grids are first named.
+pub(crate) fn group(sources: &[Source]) -> Vec<Mosaic> {
+    let mut mosaics: Vec<Mosaic> = Vec::new();
+    for (index, source) in sources.iter().enumerate() {
+        let size = [source.columns, source.rows];
+        let place =
+            mosaics.iter_mut().find_map(|mosaic| mosaic.place(source).map(|min| (mosaic, min)));
+        let rect = |min: [i64; 2]| SampleRect { min, max: [min[0] + size[0], min[1] + size[1]] };
+        if let Some((mosaic, min)) = place {
+            mosaic.extent = mosaic.extent.union(&rect(min));
+            mosaic.files.push(Placed { index, rect: rect(min) });
+        } else {
+            mosaics.push(Mosaic {
+                crs: source.crs.clone(),
+                crs_from_sample: from_centres(&source.crs_from_pixel),
+                files: vec![Placed { index, rect: rect([0, 0]) }],
+                extent: rect([0, 0]),
+                period: period(source),
+            });
+        }
+    }
+    mosaics
+}
+
+/// Columns of a geographic grid to a full turn; `None` when the turn is no whole number of them. A spacing that is written
+/// with few digits counts as what it is meant to be.
+fn period(source: &Source) -> Option<i64> {
+    let transform = &source.crs_from_pixel;
+    let reach = source.columns.max(source.rows) as f64;
+    let columns = source.crs.turn? / nice(transform.coefficients[1].abs(), reach);
+    let is_whole = (columns - columns.round()).abs() <= SAME_PLACE_PX && columns >= 2.0;
+    (transform.is_axis_parallel() && is_whole).then_some(columns.round() as i64)
+}
+
+/// Refuses grids of a single row or column: there is no ground between their samples.
+pub(crate) fn refuse_lines(sources: &[Source], mosaics: &[Mosaic]) -> Result<(), DemError> {
+    match mosaics.iter().find(|mosaic| mosaic.extent.columns() < 2 || mosaic.extent.rows() < 2) {
+        Some(Mosaic { extent, files, .. }) => Err(DemError::Line {
+            path: sources[files[0].index].path.clone(),
+            columns: extent.columns(),
+            rows: extent.rows(),
+        }),
+        None => Ok(()),
+    }
+}
+
+/// The same map from sample indices: sample (0, 0) lies at the centre of pixel (0, 0), half a pixel in.
+fn from_centres(crs_from_pixel: &GeoTransform) -> GeoTransform {
+    let mut coefficients = crs_from_pixel.coefficients;
+    [coefficients[0], coefficients[3]] = crs_from_pixel.crs_from_pixel([0.5, 0.5]);
+    GeoTransform { coefficients }
+}
+
+impl Mosaic {
+    /// CRS position of the middle.
+    pub(crate) fn middle(&self) -> [f64; 2] {
+        let middle =
+            [0, 1].map(|axis| (self.extent.min[axis] + self.extent.max[axis] - 1) as f64 / 2.0);
+        self.crs_from_sample.crs_from_pixel(middle)
+    }
+
+    /// A full turn of longitude and the longitude in the middle; `None` for projected CRSs.
+    pub(crate) fn turn(&self) -> Option<[f64; 2]> {
+        self.crs.turn.map(|turn| [turn, self.middle()[0]])
+    }
+
+    /// Samples that positions can ask for: all around the earth, where columns come round.
+    pub(crate) fn reachable(&self) -> SampleRect {
+        let around = self.period.unwrap_or(0);
+        let SampleRect { min, max } = self.extent;
+        SampleRect { min: [min[0] - around, min[1]], max: [max[0] + around, max[1]] }
+    }
+
+    /// The rectangles at which a file is met within `rect`, its own first, others a turn away.
+    pub(crate) fn images(&self, file: &Placed, rect: &SampleRect) -> Vec<SampleRect> {
+        let moved = |columns: i64| SampleRect {
+            min: [file.rect.min[0] + columns, file.rect.min[1]],
+            max: [file.rect.max[0] + columns, file.rect.max[1]],
+        };
+        let turns = self.period.into_iter().flat_map(|period| [moved(-period), moved(period)]);
+        std::iter::once(file.rect)
+            .chain(turns)
+            .filter(|image| !image.intersection(rect).is_empty())
+            .collect()
+    }
+
+    /// Where the file's first sample lies on this grid; `None` when it is of another one.
+    fn place(&self, source: &Source) -> Option<[i64; 2]> {
+        let own = from_centres(&source.crs_from_pixel);
+        let [columns, rows] = [source.columns, source.rows];
+        // The way around the earth that is the shorter one: files on both sides of the antimeridian are neighbours.
+        let middle = own.crs_from_pixel([columns, rows].map(|samples| (samples - 1) as f64 / 2.0));
+        let moved = self.turn().map_or(0.0, |[turn, near]| turn * turns(middle[0] - near, turn));
+        let corner = |c: i64, r: i64| {
+            let [x, y] = own.crs_from_pixel([c as f64, r as f64]);
+            self.crs_from_sample.pixel_from_crs([x - moved, y])
+        };
+        let min = corner(0, 0)?.map(f64::round);
+        for (c, r) in [(0, 0), (columns, 0), (0, rows), (columns, rows)] {
+            let at = corner(c, r)?;
+            let miss = (at[0] - min[0] - c as f64).abs().max((at[1] - min[1] - r as f64).abs());
+            if miss.is_nan() || miss > SAME_GRID_PX || min[0].abs().max(min[1].abs()) > 1e12 {
+                return None;
+            }
+        }
+        self.crs.is_same(&source.crs).then_some([min[0] as i64, min[1] as i64])
+    }
+}

@@ -1,0 +1,126 @@
+use corniche_geom::{Bounds, Cell, Frame, NodeIndex};
+
+use crate::crs::operation::Operation;
+use crate::crs::working::Working;
+use crate::plan::alignment::Alignment;
+use crate::plan::kernel::Kernel;
+use crate::plan::node_positions::NodePositions;
+
+/// What the user may say about the grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanOptions {
+    /// Working CRS: "dem" (the first file's own), "utm" (both in any case), "EPSG:n" or WKT; `None` chooses one.
+    pub crs: Option<String>,
+    /// Spacing of the nodes, working metres; `None` takes the DEM's.
+    pub cell: Option<Cell>,
+    /// Take every n-th sample along both axes as node, of those whose indices, counted as tiles are aligned, are multiples
+    /// of n. Not together with `cell`.
+    pub cell_every: Option<u32>,
+    /// Latitude at which lengths in the DEM's own CRS are true; `None` takes the data's middle, to half a degree.
+    pub scale_latitude_deg: Option<f64>,
+    /// A void is filled from data within this many cells; 0 fills nothing.
+    pub fill_voids: u32,
+}
+
+/// Whether nodes are the DEM's samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Resampling {
+    /// Nodes are samples, and samples are nodes: nothing is resampled.
+    Aligned,
+    /// Nodes are samples, but only every n-th one is a node.
+    Thinned,
+    /// Heights at nodes are interpolated or averaged, from some files at least.
+    Resampled,
+}
+
+/// How long lengths come out in working metres; scales beyond 0.001 to 1000 are given as these.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanScale {
+    /// Working metres per true metre along x and y, in the middle of the data.
+    pub center: [f64; 2],
+    /// The smallest along x and y, over corners, middles of sides and centre of every file.
+    pub least: [f64; 2],
+    /// The largest.
+    pub largest: [f64; 2],
+}
+
+/// The grid of a package and how its heights come about.
+#[derive(Debug, Clone)]
+pub struct GridPlan {
+    /// Nodes, tiles and levels.
+    pub frame: Frame,
+    /// South-westernmost node at which data can lie.
+    pub south_west: NodeIndex,
+    /// North-easternmost node at which data can lie.
+    pub north_east: NodeIndex,
+    /// Working CRS: "EPSG:…" where it has a code, else its name.
+    pub crs: String,
+    /// Working CRS as WKT2.
+    pub crs_wkt: String,
+    /// Working metres to a unit of the CRS's coordinates, east and north. Negative where an axis counts westwards or
+    /// southwards.
+    pub metres_per_unit: [f64; 2],
+    /// Working metres to a true metre, at the centre: the geometric mean along both axes.
+    pub point_scale: f64,
+    /// The same along each axis, at the centre and over the data's rim.
+    pub scale: PlanScale,
+    /// Rectangle of the nodes from `south_west` to `north_east`, working metres.
+    pub data_bounds: Bounds,
+    /// Rectangle around the files in WGS84 degrees. Past the antimeridian longitudes go on beyond ±180.
+    pub wgs84_bounds: Bounds,
+    /// Whether nodes are the DEM's samples.
+    pub resampling: Resampling,
+    /// How nodes relate to samples, in words.
+    pub resampling_text: String,
+    /// Names, without folders, of the files that are resampled onto the grid of the first one, and of that one. `None` where no file is, or all are.
+    pub resampled_onto_first: Option<[String; 2]>,
+    /// What the resulting heights are measured from, as far as files or options name it.
+    pub vertical_datum: Option<String>,
+    /// What was done to the files' heights, in words; with the offset at the DEM's centre where PROJ carried them.
+    pub vertical: String,
+    /// Releases of GDAL and PROJ, on which the heights' last bits depend.
+    pub libraries: String,
+    /// A void is filled from data within this many cells.
+    pub fill_voids: u32,
+    /// One per mosaic of the DEM, in its order.
+    pub(crate) roles: Vec<MosaicRole>,
+    pub(crate) working: Working,
+}
+
+/// What one mosaic does for the grid: which nodes it can serve, and how.
+#[derive(Debug, Clone)]
+pub(crate) struct MosaicRole {
+    /// South-western and north-eastern node between which it can have data.
+    pub(crate) nodes: [NodeIndex; 2],
+    pub(crate) method: Method,
+    /// From the mosaic's CRS to working metres.
+    pub(crate) working_from_crs: Operation,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) enum Method {
+    Aligned(Alignment),
+    Resampled(Box<NodePositions>, Kernel),
+}
+
+impl GridPlan {
+    /// Whether the DEM's samples and the package's nodes are the same points.
+    #[must_use]
+    pub fn nodes_are_samples(&self) -> bool {
+        self.resampling == Resampling::Aligned
+    }
+
+    /// Whether working metres depend on the standard latitude: in UTM and in projections that are true to scale they do not,
+    /// and `--scale-latitude` changes nothing.
+    #[must_use]
+    pub fn has_standard_latitude(&self) -> bool {
+        self.working.is_scaled
+    }
+
+    /// The poles' distance from zero along y, working metres, where the working CRS counts in degrees; `None` in a
+    /// projection. Positions beyond it have no longitude.
+    #[must_use]
+    pub fn poles_y_m(&self) -> Option<f64> {
+        self.working.crs.turn.map(|turn| turn / 4.0 * self.metres_per_unit[1].abs())
+    }
+}

@@ -1,0 +1,213 @@
+//! Where nodes lie: cell, phase, and the factors of the working CRS that go with them.
+
+use corniche_geom::{Bounds, Cell, NodeIndex};
+
+use crate::crs::full_turns::turns;
+use crate::crs::operation::Operation;
+use crate::crs::working::Working;
+use crate::mosaics::data_extent;
+use crate::mosaics::mosaic::Mosaic;
+use crate::mosaics::spacing::{nice, phase, rounded};
+use crate::plan::alignment::Alignment;
+use crate::plan::grid_plan::PlanOptions;
+use crate::plan::sample_steps::spacing_m;
+use crate::{Dem, DemError};
+
+/// Nodes coincide with samples when none is farther off than this, in cells.
+const ALIGNED_CELLS: f64 = 1e-3;
+/// Most samples along an axis of which one is taken.
+const MAX_EVERY: i64 = 1000;
+
+/// Cell, phase and the working CRS with its final factors.
+pub(crate) struct Layout {
+    pub(crate) working: Working,
+    pub(crate) origin_m: [f64; 2],
+    pub(crate) cell: Cell,
+    /// The samples taken are those whose index, counted as tiles are aligned, is a multiple of this.
+    every: i64,
+}
+
+/// The cell as asked, else the first mosaic's: its samples, or every n-th of them, are then the nodes.
+pub(crate) fn layout(
+    dem: &Dem,
+    options: &PlanOptions,
+    working: Working,
+    into_working: &dyn Fn(&Working) -> Vec<Operation>,
+) -> Result<Layout, DemError> {
+    let first = &dem.mosaics[0];
+    let every = i64::from(options.cell_every.unwrap_or(1));
+    if !(1..=MAX_EVERY).contains(&every) {
+        return Err(DemError::CellEvery {
+            every: options.cell_every.unwrap_or(0),
+            limit: MAX_EVERY,
+        });
+    }
+    if options.cell_every.is_some() && options.cell.is_some() {
+        return Err(DemError::CellTwice);
+    }
+    let is_own = first.crs.is_same(&working.crs) && first.crs_from_sample.is_axis_parallel();
+    if is_own && options.cell.is_none() {
+        return Ok(Layout::of_samples(first, working, every));
+    }
+    if options.cell_every.is_some() {
+        return Err(not_samples(first, options, &working));
+    }
+    let cell = asked_or_square(dem, options, &working, into_working)?;
+    let cell = cell.fitted();
+    if is_own {
+        // A cell that is the DEM's own, given as a number.
+        let of_samples = Layout::of_samples(first, working.clone(), 1);
+        let is_near = |axis: usize| {
+            let (own, asked) = (of_samples.cell.to_array()[axis], cell.to_array()[axis]);
+            let reach = first.extent.columns().max(first.extent.rows()) as f64;
+            (own - asked).abs() * reach <= ALIGNED_CELLS * asked
+        };
+        if is_near(0) && is_near(1) {
+            return Ok(of_samples);
+        }
+    }
+    Ok(Layout { working, origin_m: [0.0; 2], cell, every: 1 })
+}
+
+/// Every n-th sample was asked for, and nodes are not samples: what to do instead.
+fn not_samples(first: &Mosaic, options: &PlanOptions, working: &Working) -> DemError {
+    let is_turned = first.crs.is_same(&working.crs);
+    let way_out = match options.crs {
+        _ if is_turned => "the DEM's rows and columns do not run along its axes, so give --cell",
+        Some(_) => "give --crs dem, or --cell in place of --cell-every",
+        None => {
+            "that CRS is taken because lengths in the DEM's own are not true within 3 %; give --crs dem, or --cell in \
+             place of --cell-every"
+        }
+    };
+    DemError::CellEveryResampled { crs: working.crs.label.clone(), way_out }
+}
+
+/// The cell as asked, else a square with the shorter spacing of the first mosaic's samples as side.
+fn asked_or_square(
+    dem: &Dem,
+    options: &PlanOptions,
+    working: &Working,
+    into_working: &dyn Fn(&Working) -> Vec<Operation>,
+) -> Result<Cell, DemError> {
+    let first = &dem.mosaics[0];
+    let cell = if let Some(cell) = options.cell {
+        cell
+    } else {
+        let operations = into_working(working);
+        let spacing_m = spacing_m(first, working, &operations[0])?
+            .ok_or_else(|| DemError::OutsideCrs { crs: working.crs.label.clone() })?;
+        let shorter_m = spacing_m[0].min(spacing_m[1]);
+        let is_turned = first.crs.is_same(&working.crs);
+        Cell::from(rounded(shorter_m, if is_turned { 9 } else { 2 }))
+    };
+    if cell.to_array().iter().any(|side_m| !(0.001..=1e6).contains(side_m)) {
+        if options.cell.is_some() {
+            return Err(DemError::Cell { cell });
+        }
+        let path = dem.sources[first.files[0].index].path.clone();
+        return Err(DemError::CellOfFile { path, cell, crs: working.crs.label.clone() });
+    }
+    Ok(cell)
+}
+
+impl Layout {
+    /// Nodes at every `every`-th sample of a mosaic that lies along the axes of the working CRS.
+    ///
+    /// The east factor changes by less than a millimetre a cell, so that the cell's east side is a whole number of
+    /// lattice steps.
+    fn of_samples(mosaic: &Mosaic, mut working: Working, every: i64) -> Self {
+        let c = mosaic.crs_from_sample.coefficients;
+        let reach = mosaic.extent.columns().max(mosaic.extent.rows()) as f64;
+        let spacing = [c[1], c[5]].map(|step| nice(step.abs(), reach));
+        let factor = working.metres_per_unit;
+        let side_m = |axis: usize| spacing[axis] * factor[axis].abs() * every as f64;
+        let cell = Cell { east_m: side_m(0), north_m: side_m(1) }.fitted();
+        if cell.east_m.to_bits() != side_m(0).to_bits() {
+            let east = cell.east_m / (spacing[0] * every as f64);
+            working.metres_per_unit[0] = east.copysign(factor[0]);
+        }
+        let is_degrees = mosaic.crs.turn.is_some();
+        let origin_m = [0, 1].map(|axis| {
+            let factor = working.metres_per_unit[axis];
+            let at = [c[0], c[3]][axis] * factor.signum();
+            phase(at, spacing[axis], is_degrees) * factor.abs()
+        });
+        Self { working, origin_m, cell, every }
+    }
+
+    /// How the mosaic's samples are nodes; `None` when they are not.
+    pub(crate) fn alignment(&self, mosaic: &Mosaic) -> Option<Alignment> {
+        let transform = &mosaic.crs_from_sample;
+        if !transform.is_axis_parallel() || !mosaic.crs.is_same(&self.working.crs) {
+            return None;
+        }
+        let factor = self.working.metres_per_unit;
+        // A cell between samples, when only every n-th is taken.
+        let between = self.cell.times(1.0 / self.every as f64).to_array();
+        // Past the antimeridian the mosaic lies where the data's middle is near.
+        let moved = mosaic
+            .turn()
+            .map_or(0.0, |[turn, middle]| turn * turns(middle - self.working.middle, turn));
+        let cells = |sample: [i64; 2]| {
+            let mut at = transform.crs_from_pixel(sample.map(|index| index as f64));
+            at[0] -= moved;
+            [0, 1].map(|axis| (at[axis] * factor[axis] - self.origin_m[axis]) / between[axis])
+        };
+        let c = transform.coefficients;
+        let steps = [c[1] * factor[0], c[5] * factor[1]];
+        let way = steps.map(|step| step.signum() as i64);
+        let [i, j] = cells([0, 0]).map(|cells| cells.round() as i64);
+        let (low, high) = (mosaic.extent.min, mosaic.extent.max.map(|index| index - 1));
+        let fits = [low, high].iter().all(|&sample| {
+            let at = cells(sample);
+            let off =
+                [at[0] - (i + way[0] * sample[0]) as f64, at[1] - (j + way[1] * sample[1]) as f64];
+            off.iter().all(|off| off.abs() <= ALIGNED_CELLS)
+        });
+        // A single row or column says nothing of its own spacing; both must be the cell.
+        let is_cell = [0, 1]
+            .iter()
+            .all(|&axis| (steps[axis].abs() / between[axis] - 1.0).abs() <= ALIGNED_CELLS);
+        (fits && is_cell).then_some(Alignment { first: [i, j], way, every: self.every })
+    }
+
+    /// South-western and north-eastern node between which a mosaic can have data.
+    pub(crate) fn nodes(
+        &self,
+        dem: &Dem,
+        mosaic: &Mosaic,
+        operation: &Operation,
+    ) -> Result<[NodeIndex; 2], DemError> {
+        if let Some(Alignment { first, way, every }) = self.alignment(mosaic) {
+            let (low, high) = (mosaic.extent.min, mosaic.extent.max.map(|index| index - 1));
+            let ends = |axis: usize| {
+                let (a, b) =
+                    (first[axis] + way[axis] * low[axis], first[axis] + way[axis] * high[axis]);
+                // Rounded inwards: between two nodes there may be samples and no node.
+                (-(-a.min(b)).div_euclid(every), a.max(b).div_euclid(every))
+            };
+            let ((west, east), (south, north)) = (ends(0), ends(1));
+            return Ok([NodeIndex { i: west, j: south }, NodeIndex { i: east, j: north }]);
+        }
+        let mut bounds = Bounds::EMPTY;
+        for file in &mosaic.files {
+            let found = data_extent::bounds(mosaic, &file.rect, operation)?;
+            if found.is_empty() {
+                // Leaving it out would lose its heights in silence.
+                let path = dem.sources[file.index].path.clone();
+                let crs = self.working.crs.label.clone();
+                return Err(DemError::FileOutsideCrs { path, crs });
+            }
+            bounds.include([found.min_x, found.min_y]);
+            bounds.include([found.max_x, found.max_y]);
+        }
+        let cells =
+            |metres: f64, axis: usize| (metres - self.origin_m[axis]) / self.cell.to_array()[axis];
+        let corner = |x: f64, y: f64| NodeIndex { i: x as i64, j: y as i64 };
+        Ok([
+            corner(cells(bounds.min_x, 0).floor(), cells(bounds.min_y, 1).floor()),
+            corner(cells(bounds.max_x, 0).ceil(), cells(bounds.max_y, 1).ceil()),
+        ])
+    }
+}

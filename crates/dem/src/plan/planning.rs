@@ -1,0 +1,186 @@
+//! From a DEM and what the user says to the grid of a package.
+
+use corniche_geom::{Bounds, Frame, NodeIndex};
+use gdal::version::VersionInfo;
+
+use crate::crs::operation::Operation;
+use crate::crs::working::Working;
+use crate::mosaics::mosaic::Mosaic;
+use crate::plan::description::{describe, resampled_onto_first};
+use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, Resampling};
+use crate::plan::kernel::Kernel;
+use crate::plan::layout;
+use crate::plan::node_positions::NodePositions;
+use crate::plan::sample_steps::{samples_to_a_cell, steps_m};
+use crate::plan::working_crs;
+use crate::{Dem, DemError, DemProjection};
+
+/// Most samples averaged along a side of a cell; bounds the memory that one node can ask for.
+const MAX_SAMPLES_PER_NODE: f64 = 1000.0;
+/// Farthest that voids can be filled; bounds the halo.
+const MAX_FILL_VOIDS: u32 = 1024;
+
+impl Dem {
+    /// Chooses working CRS, cell and extent.
+    ///
+    /// - Working CRS: `options.crs`; else the first file's own, if lengths in working metres are then true within 3 % all
+    ///   over the data; else the UTM zone of the centre, if it is true to scale within 1 % all over the data and the data
+    ///   lies between 80° S and 84° N; else Lambert's azimuthal equal-area about the centre.
+    /// - Working metres are its coordinates times two factors. In degrees: metres per degree at the standard latitude, by
+    ///   the radii of curvature of the ellipsoid. In a projection: its unit, where that is true to scale within 1 % along
+    ///   both axes and all over the data; else the unit divided by the scale along each axis, at the standard latitude and
+    ///   the middle longitude. Axes that count westwards or southwards are turned. The standard latitude is the middle of
+    ///   the data to half a degree, or `options.scale_latitude_deg`; one that is given decides, at the middle longitude
+    ///   alone, whether a projection keeps its unit.
+    /// - Cell: `options.cell`; else the spacing of the first file's samples, a rectangle; where that file is in another CRS
+    ///   or turned against it, a square with the shorter spacing as side (two significant digits in another CRS).
+    /// - Where the cell is the spacing of the first file's samples, or a multiple by `options.cell_every`, nodes coincide
+    ///   with samples; otherwise node (0, 0) is the CRS's zero. Files on other grids are resampled.
+    ///
+    /// # Errors
+    /// When the options are not usable, the files lie outside the CRS, or the grid is too large.
+    pub fn plan(&self, options: &PlanOptions) -> Result<GridPlan, DemError> {
+        plan(self, options)
+    }
+
+    /// WGS84 ⇄ the plan's working CRS. May be sent to and shared between threads.
+    ///
+    /// # Errors
+    /// When PROJ knows no operation.
+    pub fn projection(&self, plan: &GridPlan) -> Result<DemProjection, DemError> {
+        DemProjection::new(&plan.working, plan.wgs84_bounds)
+    }
+}
+
+fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
+    if options.fill_voids > MAX_FILL_VOIDS {
+        return Err(DemError::FillVoids { cells: options.fill_voids, limit: MAX_FILL_VOIDS });
+    }
+    let working = working_crs::choose(dem, options.crs.as_deref(), options.scale_latitude_deg)?;
+    let into_working = |working: &Working| -> Vec<Operation> {
+        let of =
+            |mosaic: &Mosaic| Operation::into_working(&mosaic.crs, working, Some(dem.wgs84_bounds));
+        dem.mosaics.iter().map(of).collect()
+    };
+    let layout = layout::layout(dem, options, working, &into_working)?;
+    let scale = layout.working.scale(dem)?;
+    let operations = into_working(&layout.working);
+    let steps: Vec<Option<[[f64; 2]; 2]>> = dem
+        .mosaics
+        .iter()
+        .zip(&operations)
+        .map(|(mosaic, operation)| steps_m(mosaic, &layout.working, operation))
+        .collect::<Result<_, _>>()?;
+    let extents: Vec<[NodeIndex; 2]> = dem
+        .mosaics
+        .iter()
+        .zip(&operations)
+        .map(|(mosaic, operation)| layout.nodes(dem, mosaic, operation))
+        .collect::<Result<_, _>>()?;
+    let [south_west, north_east] = around(&extents)
+        .ok_or_else(|| DemError::OutsideCrs { crs: layout.working.crs.label.clone() })?;
+    if let Some(every) = options.cell_every {
+        refuse_line(every, [south_west, north_east])?;
+    }
+    let frame = Frame::covering(layout.origin_m, layout.cell, south_west, north_east)?;
+    let mut roles = Vec::new();
+    for (((mosaic, working_from_crs), nodes), steps) in
+        dem.mosaics.iter().zip(operations).zip(extents).zip(steps)
+    {
+        let method = match layout.alignment(mosaic) {
+            Some(alignment) => Method::Aligned(alignment),
+            None => resample(dem, mosaic, &frame, &layout.working, nodes, steps)?,
+        };
+        roles.push(MosaicRole { nodes, method, working_from_crs });
+    }
+    let working = layout.working;
+    Ok(GridPlan {
+        frame,
+        south_west,
+        north_east,
+        crs: working.crs.label.clone(),
+        crs_wkt: working.crs.wkt.to_string(),
+        metres_per_unit: working.metres_per_unit,
+        point_scale: (scale.center[0] * scale.center[1]).sqrt(),
+        scale,
+        data_bounds: Bounds {
+            min_x: frame.x_m(south_west.i),
+            min_y: frame.y_m(south_west.j),
+            max_x: frame.x_m(north_east.i),
+            max_y: frame.y_m(north_east.j),
+        },
+        wgs84_bounds: dem.wgs84_bounds,
+        resampling: resampling(&roles),
+        resampling_text: describe(dem, &roles),
+        resampled_onto_first: resampled_onto_first(dem, &roles),
+        vertical_datum: dem.heights.datum.clone(),
+        vertical: dem.heights.conversion.clone(),
+        libraries: libraries(),
+        fill_voids: options.fill_voids,
+        roles,
+        working,
+    })
+}
+
+/// The south-western and north-eastern node around those of all mosaics.
+fn around(extents: &[[NodeIndex; 2]]) -> Option<[NodeIndex; 2]> {
+    extents.iter().copied().reduce(|[sw, ne], [low, high]| {
+        [
+            NodeIndex { i: sw.i.min(low.i), j: sw.j.min(low.j) },
+            NodeIndex { i: ne.i.max(high.i), j: ne.j.max(high.j) },
+        ]
+    })
+}
+
+/// Refuses to take so few samples that a single row or column of nodes is left.
+fn refuse_line(every: u32, [south_west, north_east]: [NodeIndex; 2]) -> Result<(), DemError> {
+    let [columns, rows] = [north_east.i - south_west.i + 1, north_east.j - south_west.j + 1];
+    if columns.min(rows) >= 2 {
+        return Ok(());
+    }
+    let [columns, rows] = [columns, rows].map(|nodes| nodes.max(0));
+    Err(DemError::CellEveryLeaves { every, columns, rows })
+}
+
+fn resampling(roles: &[MosaicRole]) -> Resampling {
+    let is_every_sample =
+        |role: &MosaicRole| matches!(role.method, Method::Aligned(found) if found.every == 1);
+    let is_aligned = |role: &MosaicRole| matches!(role.method, Method::Aligned(_));
+    if roles.iter().all(is_every_sample) {
+        Resampling::Aligned
+    } else if roles.iter().all(is_aligned) {
+        Resampling::Thinned
+    } else {
+        Resampling::Resampled
+    }
+}
+
+fn resample(
+    dem: &Dem,
+    mosaic: &Mosaic,
+    frame: &Frame,
+    working: &Working,
+    nodes: [NodeIndex; 2],
+    steps: Option<[[f64; 2]; 2]>,
+) -> Result<Method, DemError> {
+    let cell = frame.cell();
+    let samples_per_node = steps
+        .map(|steps| samples_to_a_cell(steps, cell))
+        .filter(|samples| samples.iter().all(|count| count.is_finite()))
+        .unwrap_or([1.0; 2]);
+    let most = samples_per_node[0].max(samples_per_node[1]);
+    if most > MAX_SAMPLES_PER_NODE {
+        return Err(DemError::Downsampling { cell, samples: most, limit: MAX_SAMPLES_PER_NODE });
+    }
+    let back = Operation::out_of_working(working, &mosaic.crs, Some(dem.wgs84_bounds));
+    let least = samples_per_node[0].min(samples_per_node[1]);
+    let positions = NodePositions::new(mosaic, back, frame, nodes, least)?;
+    Ok(Method::Resampled(Box::new(positions), Kernel::new(samples_per_node)))
+}
+
+fn libraries() -> String {
+    let proj = VersionInfo::build_info()
+        .remove("PROJ_RUNTIME_VERSION")
+        .unwrap_or_else(|| "unknown".to_owned());
+    format!("GDAL {}, PROJ {proj}", VersionInfo::release_name())
+}

@@ -1,0 +1,50 @@
+//! How far a mosaic's samples lie from each other in working metres.
+
+use corniche_geom::Cell;
+
+use crate::DemError;
+use crate::crs::operation::Operation;
+use crate::crs::working::Working;
+use crate::mosaics::mosaic::Mosaic;
+
+/// Spacing of a mosaic's columns and rows in working metres, at its centre; `None` outside the CRS.
+pub(crate) fn spacing_m(
+    mosaic: &Mosaic,
+    working: &Working,
+    operation: &Operation,
+) -> Result<Option<[f64; 2]>, DemError> {
+    let steps = steps_m(mosaic, working, operation)?;
+    Ok(steps.map(|steps| steps.map(|[x, y]| x.hypot(y))))
+}
+
+/// The way from a sample to the next column and to the next row, at a mosaic's centre: working metres east and north each;
+/// `None` outside the CRS.
+pub(crate) fn steps_m(
+    mosaic: &Mosaic,
+    working: &Working,
+    operation: &Operation,
+) -> Result<Option<[[f64; 2]; 2]>, DemError> {
+    let c = mosaic.crs_from_sample.coefficients;
+    if mosaic.crs.is_same(&working.crs) {
+        let [fx, fy] = working.metres_per_unit;
+        return Ok(Some([[c[1] * fx, c[4] * fy], [c[2] * fx, c[5] * fy]]));
+    }
+    let [x, y] =
+        [0, 1].map(|axis| (mosaic.extent.min[axis] + mosaic.extent.max[axis] - 1) as f64 / 2.0);
+    let ends = [[x - 0.5, y], [x + 0.5, y], [x, y - 0.5], [x, y + 0.5]];
+    let mut ends = ends.map(|sample| mosaic.crs_from_sample.crs_from_pixel(sample));
+    operation.apply(&mut ends)?;
+    let way = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
+    let steps = [way(ends[0], ends[1]), way(ends[2], ends[3])];
+    let is_way = |[x, y]: &[f64; 2]| x.is_finite() && y.is_finite() && x.hypot(*y) > 0.0;
+    Ok(steps.iter().all(is_way).then_some(steps))
+}
+
+/// Columns and rows of samples that a cell is long: one cell east and one north, carried among the samples.
+pub(crate) fn samples_to_a_cell([column, row]: [[f64; 2]; 2], cell: Cell) -> [f64; 2] {
+    let area = column[0] * row[1] - column[1] * row[0];
+    [
+        (row[1] * cell.east_m / area).hypot(row[0] * cell.north_m / area),
+        (column[1] * cell.east_m / area).hypot(column[0] * cell.north_m / area),
+    ]
+}

@@ -1,0 +1,260 @@
+//! The working CRS: which one, and how its coordinates become working metres.
+
+use corniche_geom::Bounds;
+use gdal::errors::GdalError;
+use gdal::spatial_ref::SpatialRef;
+
+use crate::crs::compound;
+use crate::crs::horizontal::Crs;
+use crate::crs::operation::Operation;
+use crate::crs::scale::{self, SCALES, Scale};
+use crate::crs::working::Working;
+use crate::mosaics::mosaic::Mosaic;
+use crate::mosaics::spacing::rounded;
+use crate::plan::grid_plan::PlanScale;
+use crate::{Dem, DemError};
+
+/// The DEM's own CRS is the working CRS where lengths are then true within this, all over the data: nodes that are the
+/// samples themselves are worth more than 3 % of a width.
+const OWN_TOLERANCE: f64 = 0.03;
+/// A projection this true to scale, along x and y and all over the data, keeps its unit; UTM is taken where it is so in
+/// all directions.
+const TRUE_TOLERANCE: f64 = 0.01;
+/// UTM is defined between these latitudes.
+const UTM_LATITUDES_DEG: [f64; 2] = [-80.0, 84.0];
+/// Significant digits of a factor that PROJ's scale decides: enough for a tenth of a millimetre in a hundred kilometres,
+/// few enough that versions of PROJ agree.
+const FACTOR_DIGITS: usize = 9;
+
+/// The latitude at which lengths are true.
+#[derive(Debug, Clone, Copy)]
+struct StandardLatitude {
+    deg: f64,
+    /// Whether it was asked for, and does not follow the data.
+    is_given: bool,
+}
+
+impl Working {
+    fn new(crs: Crs, metres_per_unit: [f64; 2], dem: &Dem) -> Self {
+        let own = &dem.mosaics[0];
+        let middle = if crs.is_same(&own.crs) { own.middle()[0] } else { dem.center_deg[0] };
+        Self { crs, metres_per_unit, middle, is_scaled: false }
+    }
+
+    /// A CRS with the factors that make lengths true at the standard latitude; `None` where it has none, outside its reach.
+    ///
+    /// Whether a projection is true to scale without factors is asked all over the data; with a latitude that was given,
+    /// there and at the middle longitude alone, so that packages of adjoining regions fit.
+    fn with_true_lengths(
+        dem: &Dem,
+        crs: &Crs,
+        latitude: StandardLatitude,
+    ) -> Result<Option<Self>, DemError> {
+        let scaled = |factors: [f64; 2]| {
+            let plain = Self::new(crs.clone(), factors, dem);
+            Ok(Some(Self { is_scaled: true, ..plain }))
+        };
+        if let Some(factors) = crs.metres_per_turn_unit(latitude.deg)? {
+            return scaled(factors);
+        }
+        let unit = crs.signs().map(|sign| sign * crs.unit_m);
+        let plain = Self::new(crs.clone(), unit, dem);
+        let is_true = |scale: &Option<Scale>| {
+            let is_near = |along: &f64| (along - 1.0).abs() <= TRUE_TOLERANCE;
+            scale.is_some_and(|scale| scale.along.iter().all(is_near))
+        };
+        let [lon, _] = dem.wgs84_bounds.center();
+        let scale = plain.scale_at(dem, [lon, latitude.deg])?;
+        let is_plain = if latitude.is_given {
+            is_true(&scale)
+        } else {
+            plain.rim_scales(dem)?.iter().all(is_true)
+        };
+        if is_plain {
+            return Ok(Some(plain));
+        }
+        let is_usable = |scale: &Scale| scale.along.iter().all(|at| SCALES.contains(at));
+        let Some(scale) = scale.filter(is_usable) else { return Ok(None) };
+        scaled([0, 1].map(|axis| rounded(unit[axis] / scale.along[axis], FACTOR_DIGITS)))
+    }
+
+    /// Scale at a place.
+    fn scale_at(&self, dem: &Dem, place_deg: [f64; 2]) -> Result<Option<Scale>, DemError> {
+        let wgs84 = Crs::wgs84()?;
+        let mut points = [place_deg];
+        Operation::into_working(&wgs84, self, Some(dem.wgs84_bounds)).apply(&mut points)?;
+        let back = Operation::out_of_working(self, &wgs84, Some(dem.wgs84_bounds));
+        Ok(scale::scales(&back, &points)?[0])
+    }
+
+    /// Scales over corners, middles of sides and centre of every file; `None` for one that lies outside the CRS.
+    fn rim_scales(&self, dem: &Dem) -> Result<Vec<Option<Scale>>, DemError> {
+        let wgs84 = Crs::wgs84()?;
+        let back = Operation::out_of_working(self, &wgs84, Some(dem.wgs84_bounds));
+        let mut all = Vec::new();
+        for mosaic in &dem.mosaics {
+            let mut points = rim_of(mosaic);
+            Operation::into_working(&mosaic.crs, self, Some(dem.wgs84_bounds))
+                .apply(&mut points)?;
+            all.extend(scale::scales(&back, &points)?);
+        }
+        Ok(all)
+    }
+
+    /// Whether lengths are true within `tolerance` in every direction, all over the data.
+    fn is_true_within(&self, dem: &Dem, tolerance: f64) -> Result<bool, DemError> {
+        let is_true =
+            |scale: &Option<Scale>| scale.is_some_and(|scale| scale.deviation <= tolerance);
+        Ok(self.rim_scales(dem)?.iter().all(is_true))
+    }
+
+    /// How long lengths come out.
+    pub(crate) fn scale(&self, dem: &Dem) -> Result<PlanScale, DemError> {
+        let outside = || DemError::OutsideCrs { crs: self.crs.label.clone() };
+        // The middle of the rectangle has the latitude at which lengths are true; the mean of positions may lie far from
+        // all data.
+        let center = match self.scale_at(dem, dem.wgs84_bounds.center())? {
+            Some(center) => center,
+            None => self.scale_at(dem, dem.center_deg)?.ok_or_else(outside)?,
+        };
+        // Corners beyond the CRS (of a CRS that was asked for) say nothing.
+        let mut scale =
+            PlanScale { center: center.along, least: center.along, largest: center.along };
+        for Scale { along, .. } in self.rim_scales(dem)?.into_iter().flatten() {
+            let merge = |known: [f64; 2], pick: fn(f64, f64) -> f64| {
+                [pick(known[0], along[0]), pick(known[1], along[1])]
+            };
+            scale.least = merge(scale.least, f64::min);
+            scale.largest = merge(scale.largest, f64::max);
+        }
+        let recorded = |along: [f64; 2]| along.map(|at| at.clamp(*SCALES.start(), *SCALES.end()));
+        Ok(PlanScale {
+            center: recorded(scale.center),
+            least: recorded(scale.least),
+            largest: recorded(scale.largest),
+        })
+    }
+}
+
+/// Chooses the working CRS; see [`Dem::plan`].
+pub(crate) fn choose(
+    dem: &Dem,
+    asked: Option<&str>,
+    scale_latitude_deg: Option<f64>,
+) -> Result<Working, DemError> {
+    let latitude = match scale_latitude_deg {
+        Some(given) if (-89.0..=89.0).contains(&given) => {
+            StandardLatitude { deg: given, is_given: true }
+        }
+        Some(given) => return Err(DemError::ScaleLatitude { latitude_deg: given }),
+        None => StandardLatitude { deg: standard_latitude_deg(dem.wgs84_bounds), is_given: false },
+    };
+    let own = || Working::with_true_lengths(dem, &dem.mosaics[0].crs, latitude);
+    let word = asked.map(str::to_ascii_lowercase);
+    match word.as_deref() {
+        None => {}
+        Some("dem") => {
+            let crs = || dem.mosaics[0].crs.label.clone();
+            return match own()? {
+                Some(own) if is_right_handed(&own, dem)? => Ok(own),
+                _ => Err(DemError::OwnCrs { crs: crs() }),
+            };
+        }
+        Some("utm") => {
+            if let Some(latitude_deg) = scale_latitude_deg {
+                return Err(DemError::ScaleLatitudeUtm { latitude_deg });
+            }
+            let bounds = dem.wgs84_bounds;
+            return utm(dem)?.ok_or(DemError::NoUtm { south: bounds.min_y, north: bounds.max_y });
+        }
+        Some(_) => {
+            let text = asked.unwrap_or_default();
+            let (crs, _) = compound::from_text("--crs", text).map_err(|error| match error {
+                DemError::CrsText { text, source, .. } => DemError::WorkingCrsText { text, source },
+                other => other,
+            })?;
+            let refuse = || DemError::WorkingCrs { text: text.to_owned() };
+            if !crs.is_projected() && !crs.is_same(&dem.mosaics[0].crs) {
+                return Err(refuse());
+            }
+            let outside = || DemError::OutsideCrs { crs: crs.label.clone() };
+            let working = Working::with_true_lengths(dem, &crs, latitude)?.ok_or_else(outside)?;
+            return if is_right_handed(&working, dem)? { Ok(working) } else { Err(refuse()) };
+        }
+    }
+    if let Some(own) = own()?
+        && own.is_true_within(dem, OWN_TOLERANCE)?
+    {
+        return Ok(own);
+    }
+    if let Some(utm) = utm(dem)?
+        && utm.is_true_within(dem, TRUE_TOLERANCE)?
+    {
+        return Ok(utm);
+    }
+    equal_area(dem)
+}
+
+/// Whether y lies to the left of x in the middle of the data.
+fn is_right_handed(working: &Working, dem: &Dem) -> Result<bool, DemError> {
+    let scale = working.scale_at(dem, dem.center_deg)?;
+    Ok(scale.is_some_and(|scale| scale.deviation.is_finite()))
+}
+
+/// The latitude at which lengths are true: the middle of the data, rounded to 10⁻⁶ degrees and then to the nearest half
+/// degree (ties towards the equator), so that small changes of the extent leave the grid where it is.
+fn standard_latitude_deg(bounds: Bounds) -> f64 {
+    let middle = (bounds.center()[1] * 1e6).round() / 1e6;
+    let halves = middle.abs() * 2.0;
+    // Just below the tie goes down.
+    let rounded = if halves.fract() > 0.5 { halves.ceil() } else { halves.floor() };
+    (rounded / 2.0).copysign(middle) + 0.0
+}
+
+/// The UTM zone of the data's centre; `None` where UTM is not defined.
+fn utm(dem: &Dem) -> Result<Option<Working>, DemError> {
+    let bounds = dem.wgs84_bounds;
+    if bounds.min_y < UTM_LATITUDES_DEG[0] || bounds.max_y > UTM_LATITUDES_DEG[1] {
+        return Ok(None);
+    }
+    let [lon, lat] = dem.center_deg;
+    let zone = (((lon + 180.0) / 6.0).floor() as u32).min(59) + 1;
+    let code = if lat < 0.0 { 32700 } else { 32600 } + zone;
+    let (crs, _) = compound::from_text("the chosen", &format!("EPSG:{code}"))?;
+    Ok(Some(Working::new(crs, [1.0; 2], dem)))
+}
+
+/// Lambert azimuthal equal-area about the data's centre, rounded to whole degrees so that small changes of the
+/// extent leave the grid where it is.
+fn equal_area(dem: &Dem) -> Result<Working, DemError> {
+    let [lon, lat] = dem.center_deg.map(f64::round);
+    let text = format!(
+        "+proj=laea +lat_0={lat} +lon_0={lon} +x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs"
+    );
+    let reference = SpatialRef::from_proj4(&text).map_err(|source: GdalError| {
+        DemError::CrsText { option: "the chosen", text, source: source.into() }
+    })?;
+    let mut crs = Crs::from_spatial_ref(&reference)?;
+    crs.label = format!("Lambert azimuthal equal-area about {lat}, {lon}");
+    Ok(Working::new(crs, [1.0; 2], dem))
+}
+
+/// CRS positions of the corners, the middles of the sides and the centre of every file.
+fn rim_of(mosaic: &Mosaic) -> Vec<[f64; 2]> {
+    let mut points = Vec::new();
+    for file in &mosaic.files {
+        let ends = |axis: usize| {
+            let (low, high) = (file.rect.min[axis] as f64, (file.rect.max[axis] - 1) as f64);
+            [low, f64::midpoint(low, high), high]
+        };
+        for column in ends(0) {
+            points.extend(ends(1).map(|row| mosaic.crs_from_sample.crs_from_pixel([column, row])));
+        }
+    }
+    points
+}
+
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "half degrees are exact")]
+#[path = "working_crs_tests.rs"]
+mod tests;

@@ -1,0 +1,6 @@
+//! Heights read from the files: windows of nodes, and the DEM's own samples.
+
+pub(crate) mod fill_voids;
+pub(crate) mod reader;
+pub(crate) mod samples;
+pub(crate) mod window_parts;

@@ -1,0 +1,237 @@
+use corniche_geom::{HeightGrid, NodeWindow};
+
+use crate::mosaics::mosaic::Mosaic;
+use crate::mosaics::open_files::OpenFiles;
+use crate::mosaics::sample_rect::SampleRect;
+use crate::plan::alignment::Alignment;
+use crate::plan::grid_plan::Method;
+use crate::plan::kernel::{Kernel, Samples, Scratch};
+use crate::reading::fill_voids;
+use crate::reading::window_parts::{Part, Target, intersection};
+use crate::{Dem, DemError, GridPlan};
+
+/// Samples held in memory at once for one window; larger windows are read in parts. 32 MB.
+pub(crate) const MOST_SAMPLES: usize = 1 << 22;
+
+/// Heights of a window of nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DemWindow {
+    /// The heights, metres.
+    pub heights: HeightGrid,
+    /// How many of the nodes were void and are filled from their surroundings.
+    pub filled: u64,
+    /// Per node, row by row from the north, whether it was filled; empty when none was.
+    pub is_filled: Vec<bool>,
+}
+
+/// Reads windows of heights. One per thread: it keeps files open and buffers at hand.
+pub struct Reader<'a> {
+    pub(crate) dem: &'a Dem,
+    pub(crate) plan: &'a GridPlan,
+    pub(crate) files: OpenFiles,
+    pub(crate) samples: Vec<f64>,
+    pub(crate) scratch: Scratch,
+}
+
+impl Dem {
+    /// A reader of windows, for one thread at a time. It opens files as it needs them.
+    #[must_use]
+    pub fn reader<'a>(&'a self, plan: &'a GridPlan) -> Reader<'a> {
+        Reader {
+            dem: self,
+            plan,
+            files: OpenFiles::new(),
+            samples: Vec::new(),
+            scratch: Scratch::default(),
+        }
+    }
+}
+
+impl Reader<'_> {
+    /// The heights of a window of stride 1, voids filled. Nodes outside the data are gaps.
+    ///
+    /// A node has the same bits whichever window it is read through.
+    ///
+    /// # Errors
+    /// When the stride is not 1 or a file cannot be read.
+    pub fn window(&mut self, window: NodeWindow) -> Result<DemWindow, DemError> {
+        if window.stride != 1 {
+            return Err(DemError::Stride { stride: window.stride });
+        }
+        let mut heights_m = self.nodes(window)?;
+        let mut is_filled = Vec::new();
+        let mut filled = 0;
+        let reach = self.plan.fill_voids as usize;
+        // The halo is read only where it can matter; nodes do not depend on it otherwise.
+        if reach > 0 && heights_m.iter().any(|height_m| height_m.is_nan()) {
+            let wide = self.with_halo(window, &heights_m, reach)?;
+            let columns = window.columns + 2 * reach;
+            for (at, height_m) in fill_voids::fill(&wide, columns, reach, self.plan.frame.cell()) {
+                let inner = (at / columns - reach) * window.columns + at % columns - reach;
+                heights_m[inner] = height_m;
+                is_filled.resize(heights_m.len(), false);
+                is_filled[inner] = true;
+                filled += 1;
+            }
+        }
+        Ok(DemWindow {
+            heights: HeightGrid::new(window.columns, window.rows, heights_m),
+            filled,
+            is_filled,
+        })
+    }
+
+    /// The heights of a window widened by `reach` nodes on every side, of which the inside is known.
+    fn with_halo(
+        &mut self,
+        window: NodeWindow,
+        inside_m: &[f32],
+        reach: usize,
+    ) -> Result<Vec<f32>, DemError> {
+        let wide = window.with_halo(reach);
+        let mut heights_m = vec![f32::NAN; wide.columns * wide.rows];
+        let mut put = |[left, top]: [usize; 2], columns: usize, part_m: &[f32]| {
+            for (row, line) in part_m.chunks_exact(columns).enumerate() {
+                let at = (top + row) * wide.columns + left;
+                heights_m[at..at + columns].copy_from_slice(line);
+            }
+        };
+        put([reach, reach], window.columns, inside_m);
+        // North and south over the whole width, west and east between them.
+        let (right, bottom) = (reach + window.columns, reach + window.rows);
+        for ([left, top], columns, rows) in [
+            ([0, 0], wide.columns, reach),
+            ([0, bottom], wide.columns, reach),
+            ([0, reach], reach, window.rows),
+            ([right, reach], reach, window.rows),
+        ] {
+            let strip = NodeWindow { corner: wide.node(left, top), stride: 1, columns, rows };
+            put([left, top], columns, &self.nodes(strip)?);
+        }
+        Ok(heights_m)
+    }
+
+    /// Heights of nodes as the layers have them, NaN in voids, row by row from the north.
+    fn nodes(&mut self, window: NodeWindow) -> Result<Vec<f32>, DemError> {
+        let (dem, plan) = (self.dem, self.plan);
+        let mut heights_m = vec![f32::NAN; window.columns * window.rows];
+        for (role, mosaic) in plan.roles.iter().zip(&dem.mosaics) {
+            let Some(part) = intersection(&window, role.nodes) else {
+                continue;
+            };
+            let target = Target::new(&window, &part);
+            match &role.method {
+                Method::Aligned(alignment) => {
+                    self.copy(mosaic, *alignment, &part, &target, &mut heights_m)?;
+                }
+                Method::Resampled(positions, kernel) => {
+                    let at = positions.of(&plan.frame, &part)?;
+                    let all = Part { column: 0, row: 0, columns: part.columns, rows: part.rows };
+                    self.interpolate(mosaic, kernel, &at, &all, &target, &mut heights_m)?;
+                }
+            }
+        }
+        Ok(heights_m)
+    }
+
+    /// Samples that are nodes.
+    fn copy(
+        &mut self,
+        mosaic: &Mosaic,
+        alignment: Alignment,
+        part: &NodeWindow,
+        target: &Target,
+        heights_m: &mut [f32],
+    ) -> Result<(), DemError> {
+        // Bands of rows, so that a window of any size needs bounded memory.
+        let every = alignment.every as usize;
+        let band = (MOST_SAMPLES / (part.columns * every * every)).max(1);
+        for top in (0..part.rows).step_by(band) {
+            let rows = band.min(part.rows - top);
+            let sample = |column: usize, row: usize| alignment.sample(part.node(column, row));
+            let (a, b) = (sample(0, top), sample(part.columns - 1, top + rows - 1));
+            let rect = SampleRect {
+                min: [a[0].min(b[0]), a[1].min(b[1])],
+                max: [a[0].max(b[0]) + 1, a[1].max(b[1]) + 1],
+            };
+            self.files.read(&self.dem.sources, mosaic, &rect, &mut self.samples)?;
+            let width = rect.columns();
+            for row in 0..rows {
+                let [_, line] = sample(0, top + row);
+                let from = (line - rect.min[1]) as usize * width;
+                let line = &self.samples[from..from + width];
+                for column in 0..part.columns {
+                    let at = column * every;
+                    let found_m = line[if alignment.way[0] > 0 { at } else { width - 1 - at }];
+                    let height_m = &mut heights_m[target.at(column, top + row)];
+                    if height_m.is_nan() {
+                        *height_m = found_m as f32;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Nodes between samples: those of `area`, whose positions are in `at`.
+    fn interpolate(
+        &mut self,
+        mosaic: &Mosaic,
+        kernel: &Kernel,
+        at: &[[f64; 2]],
+        area: &Part,
+        target: &Target,
+        heights_m: &mut [f32],
+    ) -> Result<(), DemError> {
+        let open = area.nodes().filter(|&(c, r)| heights_m[target.at(c, r)].is_nan());
+        let Some(rect) =
+            around(open.map(|(c, r)| at[r * target.columns + c]), kernel, &mosaic.reachable())
+        else {
+            return Ok(());
+        };
+        if rect.columns() * rect.rows() > MOST_SAMPLES && area.columns * area.rows > 1 {
+            for half in area.halves() {
+                self.interpolate(mosaic, kernel, at, &half, target, heights_m)?;
+            }
+            return Ok(());
+        }
+        self.files.read(&self.dem.sources, mosaic, &rect, &mut self.samples)?;
+        let samples = Samples { rect, heights_m: &self.samples };
+        for (column, row) in area.nodes() {
+            let position = at[row * target.columns + column];
+            let height_m = &mut heights_m[target.at(column, row)];
+            if height_m.is_nan() && position[0].is_finite() {
+                *height_m = kernel.height_m(&samples, position, &mut self.scratch) as f32;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The samples that heights at some positions can depend on; `None` when there are none.
+pub(crate) fn around(
+    positions: impl Iterator<Item = [f64; 2]>,
+    kernel: &Kernel,
+    extent: &SampleRect,
+) -> Option<SampleRect> {
+    let mut low = [f64::INFINITY; 2];
+    let mut high = [f64::NEG_INFINITY; 2];
+    for position in positions {
+        // Not a number leaves both as they are.
+        for axis in 0..2 {
+            low[axis] = low[axis].min(position[axis]);
+            high[axis] = high[axis].max(position[axis]);
+        }
+    }
+    if !(low[0] <= high[0] && low[1] <= high[1]) {
+        return None;
+    }
+    let reach = kernel.reach();
+    let bound = |value: f64| value.clamp(-1e15, 1e15) as i64;
+    let rect = SampleRect {
+        min: [0, 1].map(|axis| bound(low[axis].floor()) - reach[axis]),
+        max: [0, 1].map(|axis| bound(high[axis].ceil()) + reach[axis] + 1),
+    };
+    let rect = rect.intersection(extent);
+    (!rect.is_empty()).then_some(rect)
+}

@@ -1,0 +1,137 @@
+//! The DEM's own samples, as far as a package can be built from them.
+
+use crate::crs::operation::Operation;
+use crate::mosaics::mosaic::Mosaic;
+use crate::mosaics::sample_rect::SampleRect;
+use crate::plan::kernel::{Kernel, Samples};
+use crate::reading::reader::{MOST_SAMPLES, Reader, around};
+use crate::{Dem, DemError};
+
+/// Side of the blocks in which samples are handed out.
+const BLOCK_SAMPLES: i64 = 256;
+
+/// A block of samples of one of the DEM's grids.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SampleArea {
+    /// Which of the DEM's grids: the place of its mosaic.
+    mosaic: usize,
+    rect: SampleRect,
+}
+
+/// Original samples of the DEM that have a height.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SampleBlock {
+    /// Positions in the working CRS, metres; NaN where it does not reach.
+    pub positions_m: Vec<[f64; 2]>,
+    /// Heights, metres, as long as `positions_m`.
+    pub heights_m: Vec<f32>,
+}
+
+impl Dem {
+    /// All blocks of samples, in a fixed order: 256 × 256 samples at most, those of no file left out.
+    #[must_use]
+    pub fn sample_areas(&self) -> Vec<SampleArea> {
+        let mut areas = Vec::new();
+        for (index, mosaic) in self.mosaics.iter().enumerate() {
+            let SampleRect { min, max } = mosaic.extent;
+            for row in (min[1]..max[1]).step_by(BLOCK_SAMPLES as usize) {
+                for column in (min[0]..max[0]).step_by(BLOCK_SAMPLES as usize) {
+                    let end = [column + BLOCK_SAMPLES, row + BLOCK_SAMPLES];
+                    let rect =
+                        mosaic.extent.intersection(&SampleRect { min: [column, row], max: end });
+                    if mosaic.files.iter().any(|file| !file.rect.intersection(&rect).is_empty()) {
+                        areas.push(SampleArea { mosaic: index, rect });
+                    }
+                }
+            }
+        }
+        areas
+    }
+}
+
+impl Reader<'_> {
+    /// The samples of an area that have a height: after nodata, units and shift; where files of one grid overlap, those of
+    /// the file named first.
+    ///
+    /// # Errors
+    /// When a file cannot be read.
+    pub fn samples(&mut self, area: &SampleArea) -> Result<SampleBlock, DemError> {
+        let mosaic = &self.dem.mosaics[area.mosaic];
+        self.files.read(&self.dem.sources, mosaic, &area.rect, &mut self.samples)?;
+        let mut block = SampleBlock::default();
+        for (k, height_m) in self.samples.iter().enumerate() {
+            if height_m.is_nan() {
+                continue;
+            }
+            let (column, row) = (k % area.rect.columns(), k / area.rect.columns());
+            let sample = [area.rect.min[0] + column as i64, area.rect.min[1] + row as i64];
+            let at = sample.map(|index| index as f64);
+            block.positions_m.push(mosaic.crs_from_sample.crs_from_pixel(at));
+            block.heights_m.push(*height_m as f32);
+        }
+        self.plan.roles[area.mosaic].working_from_crs.apply(&mut block.positions_m)?;
+        Ok(block)
+    }
+
+    /// Of those, the ones that nodes are made from: not hidden by a grid that was named earlier and has data there.
+    ///
+    /// # Errors
+    /// When a file cannot be read.
+    pub fn used_samples(&mut self, area: &SampleArea) -> Result<SampleBlock, DemError> {
+        let mut block = self.samples(area)?;
+        for earlier in 0..area.mosaic {
+            let hidden = self.is_covered(earlier, &block.positions_m)?;
+            let mut is_hidden = hidden.iter();
+            block.positions_m.retain(|_| !is_hidden.next().copied().unwrap_or(false));
+            let mut is_hidden = hidden.iter();
+            block.heights_m.retain(|_| !is_hidden.next().copied().unwrap_or(false));
+        }
+        Ok(block)
+    }
+
+    /// For each position, working metres, whether a mosaic has all samples around it.
+    fn is_covered(
+        &mut self,
+        mosaic: usize,
+        positions_m: &[[f64; 2]],
+    ) -> Result<Vec<bool>, DemError> {
+        let (dem, plan) = (self.dem, self.plan);
+        let mosaic = &dem.mosaics[mosaic];
+        let mut at = positions_m.to_vec();
+        Operation::out_of_working(&plan.working, &mosaic.crs, Some(dem.wgs84_bounds))
+            .around(mosaic.turn())
+            .apply(&mut at)?;
+        for position in &mut at {
+            let sample = mosaic.crs_from_sample.pixel_from_crs(*position);
+            *position = sample.unwrap_or([f64::NAN; 2]);
+        }
+        let mut covered = vec![false; at.len()];
+        self.look(mosaic, &at, &mut covered)?;
+        Ok(covered)
+    }
+
+    /// The same for positions among a mosaic's samples, in parts of bounded memory.
+    fn look(
+        &mut self,
+        mosaic: &Mosaic,
+        at: &[[f64; 2]],
+        covered: &mut [bool],
+    ) -> Result<(), DemError> {
+        let kernel = Kernel::new([0.0; 2]);
+        let Some(rect) = around(at.iter().copied(), &kernel, &mosaic.reachable()) else {
+            return Ok(());
+        };
+        if rect.columns() * rect.rows() > MOST_SAMPLES && at.len() > 1 {
+            let half = at.len() / 2;
+            let (first, last) = covered.split_at_mut(half);
+            self.look(mosaic, &at[..half], first)?;
+            return self.look(mosaic, &at[half..], last);
+        }
+        self.files.read(&self.dem.sources, mosaic, &rect, &mut self.samples)?;
+        let samples = Samples { rect, heights_m: &self.samples };
+        for (position, covered) in at.iter().zip(covered).filter(|(at, _)| at[0].is_finite()) {
+            *covered = !kernel.height_m(&samples, *position, &mut self.scratch).is_nan();
+        }
+        Ok(())
+    }
+}
