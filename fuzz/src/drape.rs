@@ -96,8 +96,15 @@ fn check_drape(line: &Polyline, surface: &Surface) {
         // The next part may begin on the segment that this one leaves.
         from += first + own.len() - 1 - usize::from(part.lead_out.is_some());
     }
-    let error = (on_steps + draped.off_ground_steps - total).abs();
-    assert!(error <= ROUNDING * total, "{on_steps} on, {} off, {total}", draped.off_ground_steps);
+    let length_of =
+        |segment: usize| line.points()[segment].distance_steps(line.points()[segment + 1]);
+    let off_steps: f64 = draped
+        .gaps
+        .iter()
+        .map(|gap| (gap.shares[1] - gap.shares[0]) * length_of(gap.segment))
+        .sum();
+    let error = (on_steps + off_steps - total).abs();
+    assert!(error <= ROUNDING * total, "{on_steps} on, {off_steps} off, {total}");
     let ground_steps: f64 =
         line.points().windows(2).map(|pair| over_ground([pair[0], pair[1]], surface)).sum();
     assert!(

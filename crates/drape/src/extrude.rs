@@ -3,10 +3,7 @@ use std::ops::Range;
 use corniche_geom::{LatticeBounds, LatticePoint, Polyline};
 use corniche_tin::Surface;
 
-use crate::{
-    SvLine,
-    around::{Around, padded},
-};
+use crate::{SvLine, height_range::padded, segment_rectangle::SegmentRectangle};
 
 /// The plan line for shadow volumes, with the lowest and highest ground of this tile around each segment.
 ///
@@ -106,7 +103,7 @@ impl Near<'_> {
 
     /// Lowest and highest ground around one of the segments; `None` without ground there.
     fn ground_range_m(&self, [p, q]: [LatticePoint; 2], margin: i64) -> Option<[f64; 2]> {
-        let around = Around::new([p, q].map(LatticePoint::in_steps), margin as f64);
+        let around = SegmentRectangle::new([p, q].map(LatticePoint::in_steps), margin as f64);
         let (mut lowest_m, mut highest_m) = (f64::INFINITY, f64::NEG_INFINITY);
         let look = |triangle: u32, [lowest_m, highest_m]: [&mut f64; 2]| {
             for &[.., height_m] in around.part_of(triangle, self.surface).corners() {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::around::PAD;
+use crate::height_range::PAD;
 use corniche_tin::{Placement, Tin, TinVertex};
 use proptest::prelude::*;
 
@@ -110,7 +110,7 @@ proptest! {
         let Ok(line) = Polyline::new(points.collect()) else { return Ok(()) };
         let mut expected = Vec::new();
         for pair in line.points().windows(2) {
-            let around = Around::new([pair[0], pair[1]].map(LatticePoint::in_steps), (margin + 1) as f64);
+            let around = SegmentRectangle::new([pair[0], pair[1]].map(LatticePoint::in_steps), (margin + 1) as f64);
             let parts = (0..surface.triangles().len() as u32).map(|t| around.part_of(t, &surface));
             let heights_m: Vec<f64> = parts.flat_map(|part| part.corners().iter().map(|c| c[2]).collect::<Vec<_>>()).collect();
             let low = heights_m.iter().copied().fold(f64::INFINITY, f64::min);

@@ -10,28 +10,33 @@
 //!
 //! This crate never knows what a line means, and never reads a file.
 
-mod around;
-mod check;
-mod clip;
 mod draped_line;
-mod extrude;
-mod fraction;
-mod near_ground;
 mod owned_borders;
-mod positions;
-mod ray;
-mod road_bed;
-mod walk;
 
-pub use check::check;
+mod clip;
+mod drape;
+mod draped_line_check;
+mod line_positions;
+
+mod extrude;
+mod near_ground;
+mod road_bed;
+
+mod cut_polygon;
+mod fraction;
+mod height_range;
+mod ray;
+mod segment_rectangle;
+
 pub use clip::{ClippedPart, clip, clip_closed, clip_parts};
+pub use drape::{Drape, Gap, drape};
 pub use draped_line::{DrapedLine, DrapedVertex, SvLine};
+pub use draped_line_check::check;
 pub use extrude::extrude;
+pub use line_positions::{BadLine, positions, source_segments};
 pub use near_ground::{NearGround, near_ground};
 pub use owned_borders::{Neighbours, OwnedBorders};
-pub use positions::{BadLine, positions, source_segments};
 pub use road_bed::{RoadBed, RoadPiece, road_bed};
-pub use walk::{Drape, Gap, drape};
 
 #[cfg(test)]
 mod oracle_tests;

@@ -1,7 +1,8 @@
 use corniche_geom::{LatticeBounds, LatticePoint};
 use corniche_tin::Surface;
 
-use crate::around::{Around, padded};
+use crate::height_range::padded;
+use crate::segment_rectangle::SegmentRectangle;
 
 /// What of the rectangle around a segment may lack ground and still count as covered: rounding of areas.
 const UNCOVERED: f64 = 1e-9;
@@ -32,7 +33,8 @@ pub struct NearGround {
 /// the caps.
 #[must_use]
 pub fn near_ground(ends: [[f64; 2]; 2], surface: &Surface, reach: f64) -> Option<NearGround> {
-    let (near, beneath) = (Around::new(ends, reach), Around::new(ends, reach.min(1.0)));
+    let (near, beneath) =
+        (SegmentRectangle::new(ends, reach), SegmentRectangle::new(ends, reach.min(1.0)));
     let mut triangles = Vec::new();
     surface.triangles_near(bounds(ends, reach), &mut triangles);
     triangles.sort_unstable();

@@ -3,7 +3,7 @@ use corniche_geom::{TILE_CELLS, TileId};
 /// Which stretches of its four borders a tile owns: what runs exactly along a border of two tiles must be kept
 /// by one of them, and only one, so that nothing is drawn twice and lengths add up.
 ///
-/// Ground is closed: its outline belongs to it. So a stretch of border belongs to the tile that has ground
+/// Ground is closed: its boundary belongs to it. So a stretch of border belongs to the tile that has ground
 /// beside it, and where that does not decide, to the tile in the east or south, as in `Frame::tile_column_row`.
 /// Both tiles see the cells on both sides (the other's through their halo) and decide alike, cell by cell:
 ///

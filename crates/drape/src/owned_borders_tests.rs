@@ -5,6 +5,7 @@ use corniche_tin::{Placement, Surface, TinSpec, triangulate};
 use proptest::prelude::*;
 
 use super::*;
+use crate::oracle_tests::off_ground_steps;
 use crate::{DrapedLine, clip, clip_closed, drape, positions};
 
 /// Cells along a tile of these tests; each stands for 256 / 8 cells of a border.
@@ -124,7 +125,7 @@ fn check_segment(level: &Level, p: LatticePoint, q: LatticePoint) {
     for tile in level.tiles() {
         for part in clip(&line, &tile.bounds, tile.owned) {
             let draped = drape(&part, &tile.surface);
-            off += draped.off_ground_steps;
+            off += off_ground_steps(&part, &draped);
             kept += part.length_steps();
             laid.extend(draped.lines.iter().map(|part| span_steps(part, &tile.surface, p)));
         }
@@ -214,7 +215,7 @@ proptest! {
             for part in clip(&line, &tile.bounds, tile.owned) {
                 let draped = drape(&part, &tile.surface);
                 kept += part.length_steps();
-                off += draped.off_ground_steps;
+                off += off_ground_steps(&part, &draped);
                 for at in draped.lines.iter().map(|line| positions(line, &tile.surface)) {
                     on += at.unwrap().windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).sum::<f64>();
                 }
@@ -300,8 +301,10 @@ fn a_border_with_voids_on_both_sides_is_counted_by_the_eastern_tile() {
         LatticePoint::new(SIDE, -3 * STEPS),
         LatticePoint::new(SIDE, -5 * STEPS),
     ]);
-    let draped = drape(&line.unwrap(), &east.surface);
-    assert_eq!((draped.lines, draped.off_ground_steps), (vec![], 2.0 * STEPS as f64));
+    let line = line.unwrap();
+    let draped = drape(&line, &east.surface);
+    assert_eq!(draped.lines, []);
+    assert_eq!(off_ground_steps(&line, &draped).to_bits(), (2.0 * STEPS as f64).to_bits());
 }
 
 #[test]

@@ -1,7 +1,8 @@
 use corniche_geom::{LatticeBounds, LatticePoint};
 use corniche_tin::Surface;
 
-use crate::around::{Around, padded};
+use crate::height_range::padded;
+use crate::segment_rectangle::SegmentRectangle;
 
 /// What of the rectangle beside a piece may lack ground and still count as covered: rounding of areas.
 const UNCOVERED: f64 = 1e-9;
@@ -49,8 +50,13 @@ pub fn road_bed(piece: &RoadPiece, surface: &Surface, reach: f64) -> RoadBed {
     let beyond = has_caps.map(|has_cap| if has_cap { reach } else { 0.0 });
     // A piece may be shorter than rounding: grow it a little, for something to have an area.
     let slack = 1e-3_f64.min(reach);
-    let beside =
-        Around::beside(start, direction, length, reach, beyond.map(|beyond| beyond.max(slack)));
+    let beside = SegmentRectangle::beside(
+        start,
+        direction,
+        length,
+        reach,
+        beyond.map(|beyond| beyond.max(slack)),
+    );
     let mut triangles = Vec::new();
     surface.triangles_near(bounds(piece, reach), &mut triangles);
     let parts: Vec<_> = triangles

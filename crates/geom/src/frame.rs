@@ -1,65 +1,14 @@
 use serde::{Deserialize, Serialize};
 
+use crate::node::{NodeIndex, NodeWindow};
+use crate::tile_size::{MAX_LEVEL, TILE_CELLS, TILE_NODES};
 use crate::{Bounds, Cell, LatticeBounds, LatticePoint, TileId};
-
-/// Cells along one side of a tile.
-pub const TILE_CELLS: i64 = 256;
-/// Nodes along one side of a tile; border nodes are shared with the neighbour.
-pub const TILE_NODES: usize = 257;
-/// Deepest level a package can have. 2^22 tiles of 256 cells keep node indices within 31 bits, and with
-/// them every lattice coordinate well within 62 bits.
-pub const MAX_LEVEL: u8 = 22;
 
 /// Node indices stay below this, so that they and their differences fit what is stored of them.
 const MAX_INDEX: i64 = 1 << 32;
 /// Lattice coordinates stay below this, some 500 million km: an f64 then still tells an eighth of a step, which the
 /// positions of crossings need, and products of two differences fit 128 bits many times over.
 pub const MAX_LATTICE_STEPS: i64 = 1 << 50;
-
-/// A node of the package's global grid at the finest level.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub struct NodeIndex {
-    /// Nodes east of the frame's origin.
-    pub i: i64,
-    /// Nodes north of the frame's origin.
-    pub j: i64,
-}
-
-/// A rectangle of nodes of one level: north-west node, spacing and count.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct NodeWindow {
-    /// North-west node.
-    pub corner: NodeIndex,
-    /// Spacing in finest cells: 1 at the finest level, 2 one above.
-    pub stride: i64,
-    /// Nodes from west to east.
-    pub columns: usize,
-    /// Nodes from north to south.
-    pub rows: usize,
-}
-
-impl NodeWindow {
-    /// The node in `column` from the west and `row` from the north.
-    #[must_use]
-    pub fn node(&self, column: usize, row: usize) -> NodeIndex {
-        NodeIndex {
-            i: self.corner.i + column as i64 * self.stride,
-            j: self.corner.j - row as i64 * self.stride,
-        }
-    }
-
-    /// The same window with `halo` more nodes on every side.
-    #[must_use]
-    pub fn with_halo(&self, halo: usize) -> Self {
-        let reach = halo as i64 * self.stride;
-        Self {
-            corner: NodeIndex { i: self.corner.i - reach, j: self.corner.j + reach },
-            stride: self.stride,
-            columns: self.columns + 2 * halo,
-            rows: self.rows + 2 * halo,
-        }
-    }
-}
 
 /// Why numbers do not make a [`Frame`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -15,24 +15,26 @@ mod geo_transform;
 mod height_grid;
 mod index_lists;
 mod lattice;
+mod node;
 mod orientation;
 mod polyline;
 mod projection;
 mod tile_id;
+mod tile_size;
 pub mod wgs84;
 
 pub use barycentric::barycentric;
 pub use bounds::{Bounds, LatticeBounds};
 pub use cell::Cell;
 pub use coordinate_table::{CoordinateTable, CoordinateTableError, width_factor};
-pub use frame::{
-    Frame, FrameError, MAX_LATTICE_STEPS, MAX_LEVEL, NodeIndex, NodeWindow, TILE_CELLS, TILE_NODES,
-};
+pub use frame::{Frame, FrameError, MAX_LATTICE_STEPS};
 pub use geo_transform::GeoTransform;
 pub use height_grid::HeightGrid;
 pub use index_lists::IndexLists;
 pub use lattice::LatticePoint;
+pub use node::{NodeIndex, NodeWindow};
 pub use orientation::{Side, cross, side};
 pub use polyline::{Polyline, PolylineError};
 pub use projection::{ProjectError, Projection};
 pub use tile_id::{TileId, TileIdError};
+pub use tile_size::{MAX_LEVEL, TILE_CELLS, TILE_NODES};

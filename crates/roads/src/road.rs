@@ -15,7 +15,7 @@ impl FunctionalRoadClass {
     /// The class with this number; `None` above 8.
     #[must_use]
     pub const fn new(class: u8) -> Option<Self> {
-        if class < 9 { Some(Self(class)) } else { None }
+        if (class as usize) < Self::COUNT { Some(Self(class)) } else { None }
     }
 
     /// Its number.
@@ -26,7 +26,7 @@ impl FunctionalRoadClass {
 
     /// All classes, most important first.
     pub fn all() -> impl DoubleEndedIterator<Item = Self> {
-        (0..9).map(Self)
+        (0..Self::COUNT as u8).map(Self)
     }
 }
 
@@ -36,42 +36,68 @@ impl fmt::Display for FunctionalRoadClass {
     }
 }
 
-/// How a road is built, as far as the tags say.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
-pub enum Form {
-    /// One carriageway, or unknown.
-    #[default]
-    Ordinary,
-    /// One of two separate carriageways.
-    DualCarriageway,
-    /// A slip road (`*_link`).
-    Link,
-    /// A roundabout.
-    Roundabout,
+/// Declares an enum together with the list of its variants, so that the list has all of them.
+macro_rules! listed {
+    (
+        $(#[$about:meta])*
+        pub enum $name:ident {
+            $($(#[$of_variant:meta])* $variant:ident,)+
+        }
+    ) => {
+        $(#[$about])*
+        pub enum $name {
+            $($(#[$of_variant])* $variant,)+
+        }
+
+        impl $name {
+            /// All of them, in the order of their numbers, which are their indices here.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+        }
+    };
 }
 
-/// What carries a road where the ground does not.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
-pub enum Structure {
-    /// The ground.
-    #[default]
-    Ground,
-    /// A bridge.
-    Bridge,
-    /// A tunnel.
-    Tunnel,
+listed! {
+    /// How a road is built, as far as the tags say.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+    pub enum Form {
+        /// One carriageway, or unknown.
+        #[default]
+        Ordinary,
+        /// One of two separate carriageways.
+        DualCarriageway,
+        /// A slip road (`*_link`).
+        Link,
+        /// A roundabout.
+        Roundabout,
+    }
 }
 
-/// Permitted direction relative to the way's own.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
-pub enum Oneway {
-    /// Both directions.
-    #[default]
-    No,
-    /// Along the way.
-    Forward,
-    /// Against the way.
-    Backward,
+listed! {
+    /// What carries a road where the ground does not.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+    pub enum Structure {
+        /// The ground.
+        #[default]
+        Ground,
+        /// A bridge.
+        Bridge,
+        /// A tunnel.
+        Tunnel,
+    }
+}
+
+listed! {
+    /// Permitted direction relative to the way's own.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+    pub enum Oneway {
+        /// Both directions.
+        #[default]
+        No,
+        /// Along the way.
+        Forward,
+        /// Against the way.
+        Backward,
+    }
 }
 
 /// What is kept of a way's tags.
@@ -108,3 +134,7 @@ pub struct Road {
     /// another road shares (junctions). Ascending.
     pub fixed: Vec<u32>,
 }
+
+#[cfg(test)]
+#[path = "road_tests.rs"]
+mod tests;

@@ -1,103 +1,40 @@
 //! A tile's payload: what it holds, and its bytes.
 
-mod attributes;
-mod class_table;
-mod codec;
-mod connectivity;
-mod damage;
+mod section_kind;
+mod tile_payload;
+
 mod decode;
 #[cfg(feature = "write")]
 mod encode;
+mod sizes;
+
+mod context;
 mod envelope;
-mod nodes;
-mod points;
+
+mod attributes;
 mod roads_geo;
 mod roads_sv;
-mod route;
-mod sizes;
 mod terrain;
-mod work;
 
-use corniche_drape::{DrapedLine, SvLine};
-use corniche_geom::TileId;
-use corniche_roads::{FunctionalRoadClass, RoadAttributes};
-use corniche_tin::Tin;
+mod class_table;
+mod connectivity;
+mod corner_guess;
+mod number_codes;
+mod points;
+mod route_guess;
+mod work_limit;
+
+mod damage;
 
 pub use damage::{Damage, DecodeError, EncodeError};
-pub use decode::{Sections, decode};
+pub use decode::decode;
 #[cfg(feature = "write")]
 pub use encode::{EncodedTile, PayloadContext, encode};
 pub use envelope::SectionSize;
+pub use section_kind::Sections;
 pub use sizes::{PayloadSizes, payload_sizes};
-
-/// All that a tile holds, decoded. A section that is absent from the bytes is empty or `None` here.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TilePayload {
-    /// Which tile.
-    pub id: TileId,
-    /// Its ground; `None` for a tile without any.
-    pub terrain: Option<Terrain>,
-    /// Centre-lines on the TIN, sorted by class, way id, part.
-    pub roads_geo: Vec<GeoRoad>,
-    /// Plan lines for shadow volumes, sorted by class, way id, part.
-    pub roads_sv: Vec<SvRoad>,
-    /// What is known of each way that occurs in this tile, sorted by way id.
-    pub attributes: Vec<RoadRecord>,
-}
-
-/// The ground of a tile.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Terrain {
-    /// The triangles.
-    pub tin: Tin,
-    /// Unit normal of the DEM at each vertex, octahedron-coded (Meyer et al. 2010, *On Floating-Point Normal
-    /// Vectors*), in steps of 1/127.
-    pub normals: Vec<[i8; 2]>,
-    /// Error of drawing this tile instead of the full-resolution DEM; never below its children's.
-    pub geometric_error_m: f64,
-    /// Lowest and highest full-resolution node beneath.
-    pub height_range_m: [f64; 2],
-    /// Full-resolution nodes with data beneath that the TIN does not cover (next to voids and data edges).
-    pub uncovered_nodes: u64,
-}
-
-/// A road in a tile's GEO section.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct GeoRoad {
-    /// OSM's id of the way.
-    pub way_id: i64,
-    /// Number of this piece along the way within the tile, from 0.
-    pub part: u32,
-    /// Functional road class.
-    pub class: FunctionalRoadClass,
-    /// The line.
-    pub line: DrapedLine,
-}
-
-/// A road in a tile's SV section.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SvRoad {
-    /// OSM's id of the way.
-    pub way_id: i64,
-    /// Number of this piece along the way within the tile, from 0.
-    pub part: u32,
-    /// Functional road class.
-    pub class: FunctionalRoadClass,
-    /// The line.
-    pub line: SvLine,
-}
-
-/// What is known of a way.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct RoadRecord {
-    /// OSM's id of the way.
-    pub way_id: i64,
-    /// What its tags say.
-    pub attributes: RoadAttributes,
-}
+pub use tile_payload::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};
 
 #[cfg(test)]
 #[path = "payload_tests.rs"]
 mod tests;
-#[cfg(test)]
-mod work_tests;

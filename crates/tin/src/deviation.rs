@@ -8,7 +8,7 @@ use crate::triangle_rows::for_each_row;
 pub struct Deviation {
     /// Largest vertical distance between the TIN and a node it covers, metres; 0 when it covers none.
     pub max_abs_m: f64,
-    /// Nodes with a height that the TIN covers, its outline included.
+    /// Nodes with a height that the TIN covers, its boundary included.
     pub covered_nodes: u64,
     /// Nodes with a height where the TIN has no triangle.
     pub uncovered_nodes: u64,

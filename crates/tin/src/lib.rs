@@ -6,20 +6,22 @@
 //! This crate never sees a road or a file, and never looks at a neighbouring tile's result: what two tiles
 //! share they both compute from the same nodes.
 
-mod candidate_queue;
-mod check;
-mod deviation;
-mod normals;
-mod outline;
-mod refine;
-mod surface;
-mod tile_raster;
 mod tin;
-mod triangle_rows;
 mod triangulate;
 
-pub use check::check_covers_ground;
+mod boundary;
+mod candidate_queue;
+mod refine;
+mod tile_raster;
+mod triangle_rows;
+
+mod deviation;
+mod invariants;
+mod normals;
+mod surface;
+
 pub use deviation::{Deviation, TriangleBuckets, WindowPlacement, measure};
+pub use invariants::check_covers_ground;
 pub use normals::{decode_normal, normals};
 pub use surface::{NO_TWIN, Placement, Surface};
 pub use tin::{Tin, TinError, TinVertex};

@@ -37,7 +37,7 @@ impl HasPosition for Node {
 
 /// Inserts nodes of `tile` into `mesh` until none inside its ground is farther than `max_error_m` from it.
 ///
-/// The mesh holds border and outlines, which insertion never touches. After an insertion, the changed faces
+/// The mesh holds border and boundaries, which insertion never touches. After an insertion, the changed faces
 /// are those around the new vertex, its star: in a (constrained) Delaunay triangulation every edge that
 /// flips comes to end there. Only they are scanned again.
 pub(crate) fn refine<T>(
@@ -107,7 +107,7 @@ impl Scan<'_> {
         let [a, b, c] = at;
         let (ab, ac) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
         let double_area = ab[0] * ac[1] - ab[1] * ac[0];
-        // Pick's theorem: 2 · area = 2 · nodes inside + nodes on the outline − 2. At 1 there are but three.
+        // Pick's theorem: 2 · area = 2 · nodes inside + nodes on the boundary − 2. At 1 there are but three.
         if double_area.abs() <= 1 {
             return None;
         }

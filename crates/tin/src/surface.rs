@@ -7,7 +7,7 @@ use corniche_geom::{Frame, IndexLists, LatticeBounds, LatticePoint, TileId, cros
 use crate::Tin;
 use buckets::Buckets;
 
-/// Marks a half-edge without a neighbour in [`Surface::twin`]'s table: it lies on the outline of the ground.
+/// Marks a half-edge without a neighbour in [`Surface::twin`]'s table: it lies on the boundary of the ground.
 pub const NO_TWIN: u32 = u32::MAX;
 
 /// Where a tile's TIN lies on the lattice and how high its steps are.
@@ -44,7 +44,7 @@ impl Placement {
 ///            corner 2
 ///             /    \
 ///    3t + 2  /      \  3t + 1        the half-edge on the other side of an edge is its twin;
-///           v        \               where there is none, the edge is part of the outline of the ground
+///           v        \               where there is none, the edge is part of the boundary of the ground
 ///     corner 0 ──► corner 1
 ///             3t + 0
 /// ```
@@ -57,10 +57,10 @@ pub struct Surface {
     /// The half-edges that start at each vertex.
     fans: IndexLists,
     /// Half-edges without a twin, ascending.
-    outline: Vec<u32>,
+    boundary: Vec<u32>,
     triangle_buckets: Buckets,
-    /// Over indices into `outline`.
-    outline_buckets: Buckets,
+    /// Over indices into `boundary`.
+    boundary_buckets: Buckets,
 }
 
 impl Surface {
@@ -89,21 +89,21 @@ impl Surface {
             triangles,
             twins: Vec::new(),
             fans,
-            outline: Vec::new(),
+            boundary: Vec::new(),
             triangle_buckets: Buckets::default(),
-            outline_buckets: Buckets::default(),
+            boundary_buckets: Buckets::default(),
         };
         surface.twins =
             (0..3 * surface.triangles.len() as u32).map(|h| surface.find_twin(h)).collect();
-        surface.outline = (0..surface.twins.len() as u32)
+        surface.boundary = (0..surface.twins.len() as u32)
             .filter(|&h| surface.twins[h as usize] == NO_TWIN)
             .collect();
         let boxes: Vec<_> =
             surface.triangles.iter().map(|corners| surface.bounds_of(corners)).collect();
         surface.triangle_buckets = Buckets::new(&boxes);
         let boxes: Vec<_> =
-            surface.outline.iter().map(|&h| surface.bounds_of(&surface.ends(h))).collect();
-        surface.outline_buckets = Buckets::new(&boxes);
+            surface.boundary.iter().map(|&h| surface.bounds_of(&surface.ends(h))).collect();
+        surface.boundary_buckets = Buckets::new(&boxes);
         surface
     }
 
@@ -126,7 +126,7 @@ impl Surface {
     }
 
     /// The half-edge on the other side of half-edge `3 · triangle + k` (from corner k to corner k + 1);
-    /// [`NO_TWIN`] on the outline of the ground.
+    /// [`NO_TWIN`] on the boundary of the ground.
     #[must_use]
     #[inline]
     pub fn twin(&self, half_edge: u32) -> u32 {
@@ -213,10 +213,10 @@ impl Surface {
 
     /// All half-edges without a twin whose bounding boxes meet `bounds`, in ascending order, without
     /// repetition, put into `out` in place of what it held.
-    pub fn outline_near(&self, bounds: LatticeBounds, out: &mut Vec<u32>) {
-        self.outline_buckets.near(bounds, out);
+    pub fn boundary_near(&self, bounds: LatticeBounds, out: &mut Vec<u32>) {
+        self.boundary_buckets.near(bounds, out);
         for index in out.iter_mut() {
-            *index = self.outline[*index as usize];
+            *index = self.boundary[*index as usize];
         }
         out.retain(|&half_edge| self.bounds_of(&self.ends(half_edge)).intersects(&bounds));
     }

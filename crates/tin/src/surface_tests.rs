@@ -77,7 +77,7 @@ proptest! {
         let all = 0..surface.triangles().len() as u32;
         let expected: Vec<u32> = all.clone().filter(|&t| meets(&surface.triangles()[t as usize])).collect();
         prop_assert_eq!(&found, &expected);
-        surface.outline_near(window, &mut found);
+        surface.boundary_near(window, &mut found);
         let half_edges = 0..3 * all.end;
         let expected: Vec<u32> =
             half_edges.filter(|&h| surface.twin(h) == NO_TWIN && meets(&surface.ends(h))).collect();

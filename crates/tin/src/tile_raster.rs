@@ -82,7 +82,7 @@ impl<'a> TileRaster<'a> {
     }
 
     /// Heights of the nodes that may be inserted: those inside the ground. NaN on the tile's border, on
-    /// outlines of voids and off the ground. Row by row, `columns` × `rows`.
+    /// boundaries of voids and off the ground. Row by row, `columns` × `rows`.
     pub(crate) fn inner_heights_m(&self) -> Vec<f32> {
         let (columns, rows) = (self.columns(), self.rows());
         let width = columns + 1;

@@ -3,7 +3,7 @@ use spade::{
     ConstrainedDelaunayTriangulation, DelaunayTriangulation, InsertionError, Triangulation,
 };
 
-use crate::outline::{Stretch, stretches};
+use crate::boundary::{Stretch, stretches};
 use crate::refine::{Node, refine};
 use crate::tile_raster::TileRaster;
 use crate::{Tin, TinError, TinVertex};
@@ -79,7 +79,7 @@ pub fn height_quantum_m(max_error_m: f64) -> f64 {
 ///
 /// Source: Garland & Heckbert 1995, *Fast Polygonal Approximation of Terrains and Height Fields*, algorithm
 /// III (only changed triangles are rescanned), over a constrained Delaunay triangulation. What we changed:
-/// residuals are taken against quantized vertices, border and outlines are settled first, in one dimension,
+/// residuals are taken against quantized vertices, border and boundaries are settled first, in one dimension,
 /// and never added to.
 ///
 /// # Errors
@@ -146,7 +146,7 @@ where
     let mut triangles = Vec::with_capacity(mesh.num_inner_faces());
     for face in mesh.inner_faces() {
         let corners = face.vertices();
-        // Outlines are edges, so a face is all ground or all void, and so is every cell that its inside
+        // Boundaries are edges, so a face is all ground or all void, and so is every cell that its inside
         // meets: the one around its centroid decides, exactly, also when the centroid is on a cell's edge.
         let (column, row) = corners.iter().fold((0, 0), |(column, row), corner| {
             (column + usize::from(corner.data().column), row + usize::from(corner.data().row))

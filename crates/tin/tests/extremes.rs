@@ -219,7 +219,7 @@ fn a_tolerance_of_almost_nothing_makes_every_uneven_node_a_vertex() {
 }
 
 #[test]
-fn a_huge_tolerance_leaves_the_outline_alone() {
+fn a_huge_tolerance_leaves_the_boundary_alone() {
     let noise = tile(17, |c, r| ((c * c * 7919 + r * r * 10_473 + c * r * 31) % 1009) as f32);
     for max_error_m in [2048.0, 1e9, 1e30, f64::MAX] {
         let tin = triangulate(&noise, spec(max_error_m)).unwrap();
@@ -358,7 +358,7 @@ fn window() -> impl Strategy<Value = HeightGrid> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1500))]
 
-    /// Whatever the heights: exact invariants, exact outline, and no covered node farther than the tolerance, by
+    /// Whatever the heights: exact invariants, exact boundary, and no covered node farther than the tolerance, by
     /// integer arithmetic over every node and every triangle.
     #[test]
     fn any_small_window_is_kept(heights in window(), tolerance in 0_usize..6) {

@@ -5,7 +5,9 @@
 
 use corniche_geom::{Bounds, Cell};
 
-use super::{Counts, Distribution, GrowthRow, LevelRecord, Manifest, SampleErrorRecord};
+use crate::manifest::contents::Manifest;
+use crate::manifest::counts::{Counts, GrowthRow};
+use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord};
 
 /// No length, height or coordinate is larger: far beyond every planet, and its square still fits an f32.
 pub(crate) const MAX_MEASURE_M: f64 = 1e18;

@@ -2,7 +2,10 @@ use std::path::{Path, PathBuf};
 
 use corniche_geom::TileId;
 
-use super::{FileSource, OpenError, Package, ReadError, ToolRecord};
+use crate::package::error::{OpenError, ReadError};
+use crate::package::reader::Package;
+use crate::package::source::FileSource;
+use crate::package::tool_record::ToolRecord;
 use crate::{Manifest, Sections, TilePayload};
 
 /// A package on disk, for callers that wait: the same as [`Package`] without `async`.

@@ -1,7 +1,7 @@
 //! The fixed header of a PMTiles file.
 
-use super::OpenError;
 use crate::limits::{MAX_DIRECTORY_BYTES, MAX_METADATA_BYTES};
+use crate::package::error::OpenError;
 
 /// Bytes of the header.
 pub(crate) const HEADER_BYTES: usize = 127;

@@ -2,8 +2,10 @@
 
 use serde::de::IgnoredAny;
 
-use super::{Metadata, OpenError, header::HEADER_BYTES};
 use crate::Manifest;
+use crate::package::error::OpenError;
+use crate::package::header::HEADER_BYTES;
+use crate::package::metadata::Metadata;
 
 /// Steps of the header's degrees in a degree.
 const STEPS_PER_DEGREE: f64 = 1e7;

@@ -8,7 +8,8 @@ use std::{
 use corniche_geom::TileId;
 use pmtiles::{Compression, PmTilesStreamWriter, PmTilesWriter, PmtError, TileCoord, TileType};
 
-use super::{FORMAT_VERSION, Metadata, pmtiles_order};
+use crate::package::metadata::{FORMAT_VERSION, Metadata};
+use crate::package::tile_order::pmtiles_order;
 use crate::{
     Manifest,
     limits::{MAX_METADATA_BYTES, MAX_PAYLOAD_BYTES, MIN_PAYLOAD_BYTES},

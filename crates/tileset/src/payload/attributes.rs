@@ -3,8 +3,9 @@
 use corniche_roads::{Form, Oneway, RoadAttributes, Structure};
 use serde::de::DeserializeOwned;
 
-use super::{Damage, RoadRecord};
 use crate::limits::{MAX_SECTION_BYTES, MAX_TEXT_BYTES, MAX_WAYS};
+use crate::payload::damage::Damage;
+use crate::payload::tile_payload::RoadRecord;
 
 /// The whole section, in `bincode`'s legacy layout: every list starts with its length as u64. Lists after
 /// `texts` have one item per way.
@@ -24,10 +25,6 @@ struct Record {
     references: Vec<u32>,
     surfaces: Vec<u32>,
 }
-
-const FORMS: [Form; 4] = [Form::Ordinary, Form::DualCarriageway, Form::Link, Form::Roundabout];
-const STRUCTURES: [Structure; 3] = [Structure::Ground, Structure::Bridge, Structure::Tunnel];
-const ONEWAYS: [Oneway; 3] = [Oneway::No, Oneway::Forward, Oneway::Backward];
 
 pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
     let mut rest = bytes;
@@ -82,10 +79,12 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
         }
         way_id = way_id.checked_add(step).ok_or(Damage::Invalid { what: "a way id" })?;
         let attributes = RoadAttributes {
-            form: *FORMS.get(usize::from(record.forms[k])).ok_or(known.clone())?,
-            structure: *STRUCTURES.get(usize::from(record.structures[k])).ok_or(known.clone())?,
+            form: *Form::ALL.get(usize::from(record.forms[k])).ok_or(known.clone())?,
+            structure: *Structure::ALL
+                .get(usize::from(record.structures[k]))
+                .ok_or(known.clone())?,
             layer: record.layers[k],
-            oneway: *ONEWAYS.get(usize::from(record.oneways[k])).ok_or(known.clone())?,
+            oneway: *Oneway::ALL.get(usize::from(record.oneways[k])).ok_or(known.clone())?,
             name: text(record.names[k])?,
             reference: text(record.references[k])?,
             surface: text(record.surfaces[k])?,
@@ -144,7 +143,7 @@ pub(crate) fn encode(roads: &[RoadRecord]) -> Result<Vec<u8>, &'static str> {
             .way_id_steps
             .push(way_id.checked_sub(previous).ok_or("way ids that are too far apart")?);
         previous = *way_id;
-        // Discriminants are the numbers that the tables above are indexed with.
+        // A variant's number is its index in the list `ALL`, by which it is read.
         record.forms.push(attributes.form as u8);
         record.structures.push(attributes.structure as u8);
         record.layers.push(attributes.layer);

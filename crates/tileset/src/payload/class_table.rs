@@ -2,11 +2,9 @@
 
 use corniche_roads::FunctionalRoadClass;
 
-use super::{
-    Damage,
-    codec::{Cursor, unzigzag},
-};
 use crate::limits::{MAX_LINES, MAX_POINTS};
+use crate::payload::damage::Damage;
+use crate::payload::number_codes::{Cursor, unzigzag};
 
 /// Class, number of lines, and their bytes.
 pub(crate) type ClassBlob<'a> = (FunctionalRoadClass, usize, &'a [u8]);
@@ -102,7 +100,7 @@ pub(crate) use write::{encode, put_heads};
 #[cfg(feature = "write")]
 mod write {
     use super::{FunctionalRoadClass, Head, MAX_LINES, MAX_POINTS};
-    use crate::payload::codec::{put_varint, zigzag};
+    use crate::payload::number_codes::{put_varint, zigzag};
 
     /// Writes the table, and each class's lines by `put`; tells how many bytes each class takes.
     pub(crate) fn encode<R>(

@@ -14,7 +14,7 @@
 //! ```
 //!
 //! The guesses are exact integer arithmetic. Rebuilding the Delaunay triangulation itself would not do: nodes of
-//! a grid are often on one circle, and outlines are constrained edges.
+//! a grid are often on one circle, and boundaries are constrained edges.
 //!
 //! Source for the walk: Touma & Gotsman 1998, *Triangle Mesh Compression*, and for guessing connectivity from
 //! positions: Lewiner, Lopes, Mello & Velho 2005, *`GEncode`: Geometry-driven compression for general meshes*.
@@ -22,7 +22,9 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use super::{Damage, nodes::Nodes, work::Work};
+use crate::payload::corner_guess::Nodes;
+use crate::payload::damage::Damage;
+use crate::payload::work_limit::Work;
 
 /// There is no triangle on the left of the gate.
 pub(crate) const NONE: u8 = 0;

@@ -1,77 +1,11 @@
-use std::ops::BitOr;
+use corniche_geom::{Frame, TileId};
+use corniche_tin::Surface;
 
-use corniche_geom::{Frame, LatticePoint, TILE_NODES, TileId};
-use corniche_tin::{Placement, Surface};
-
-use super::{
-    Damage, DecodeError, TilePayload, attributes,
-    envelope::{self, Kind},
-    roads_geo, roads_sv,
-    terrain::{self, Scale},
-};
-use crate::manifest::is_height_quantum;
-
-/// Which sections of a payload to decode; combine them with `|`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Sections(u8);
-
-impl Sections {
-    /// None: checks the header alone.
-    pub const NONE: Self = Self(0);
-    /// The ground.
-    pub const TERRAIN: Self = Self(1);
-    /// Centre-lines on the TIN. Reads the ground too, which they lie on.
-    pub const ROADS_GEO: Self = Self(2);
-    /// Plan lines for shadow volumes.
-    pub const ROADS_SV: Self = Self(4);
-    /// What is known of each way.
-    pub const ATTRIBUTES: Self = Self(8);
-    /// Everything, checksums of sections of unknown kinds included.
-    pub const ALL: Self = Self(15);
-
-    /// Whether all of `other` are among these.
-    #[must_use]
-    pub const fn contains(self, other: Self) -> bool {
-        self.0 & other.0 == other.0
-    }
-}
-
-impl BitOr for Sections {
-    type Output = Self;
-
-    fn bitor(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-}
-
-/// What positions and heights in a payload are relative to.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Context {
-    pub(crate) corner: LatticePoint,
-    pub(crate) placement: Placement,
-    pub(crate) scale: Scale,
-}
-
-impl Context {
-    pub(crate) fn new(id: TileId, frame: &Frame, quantum_m: f64) -> Result<Self, Damage> {
-        if id.z() > frame.max_level() {
-            return Err(Damage::Level { level: id.z(), finest: frame.max_level() });
-        }
-        if !is_height_quantum(quantum_m) {
-            return Err(Damage::Invalid { what: "the height quantum" });
-        }
-        let placement = Placement::of_tile(frame, id, quantum_m);
-        Ok(Self {
-            corner: placement.corner,
-            placement,
-            scale: Scale {
-                quantum_m,
-                cell: frame.level_cell(id.z()),
-                nodes_beneath: (frame.stride(id.z()) as u64 * TILE_NODES as u64).pow(2),
-            },
-        })
-    }
-}
+use crate::payload::context::Context;
+use crate::payload::damage::{Damage, DecodeError};
+use crate::payload::section_kind::{Kind, Sections};
+use crate::payload::tile_payload::TilePayload;
+use crate::payload::{attributes, envelope, roads_geo, roads_sv, terrain};
 
 /// Reads the wanted sections of a payload; sections that are absent or not wanted are empty or `None`.
 ///

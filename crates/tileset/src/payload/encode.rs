@@ -2,12 +2,12 @@ use corniche_geom::Frame;
 use corniche_roads::FunctionalRoadClass;
 use corniche_tin::Surface;
 
-use super::{
-    EncodeError, SectionSize, TilePayload, attributes,
-    decode::Context,
-    envelope::{self, Kind},
-    roads_geo, roads_sv, terrain,
-};
+use crate::payload::context::Context;
+use crate::payload::damage::EncodeError;
+use crate::payload::envelope::SectionSize;
+use crate::payload::section_kind::Kind;
+use crate::payload::tile_payload::TilePayload;
+use crate::payload::{attributes, envelope, roads_geo, roads_sv, terrain};
 
 /// What positions and heights are relative to; the package's manifest records it.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,8 +5,10 @@ use std::io::Read;
 use corniche_geom::TileId;
 use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 
-use super::{Damage, codec::Cursor};
 use crate::limits::MAX_SECTION_BYTES;
+use crate::payload::damage::Damage;
+use crate::payload::number_codes::Cursor;
+use crate::payload::section_kind::Kind;
 
 /// First bytes of every payload: "Corniche Tile".
 pub(crate) const MAGIC: [u8; 4] = *b"CRNT";
@@ -22,30 +24,6 @@ const ENTRY_BYTES: usize = 20;
 pub(crate) const STORED: u8 = 0;
 /// Stored bytes are one zstd frame.
 pub(crate) const ZSTD: u8 = 1;
-
-/// The kinds of section that this version knows; a reader skips others.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u16)]
-pub(crate) enum Kind {
-    Terrain = 1,
-    RoadsGeo = 2,
-    RoadsSv = 3,
-    Attributes = 4,
-}
-
-impl Kind {
-    const KNOWN: [Self; 4] = [Self::Terrain, Self::RoadsGeo, Self::RoadsSv, Self::Attributes];
-
-    /// What errors call it.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Terrain => "terrain section",
-            Self::RoadsGeo => "GEO roads section",
-            Self::RoadsSv => "SV roads section",
-            Self::Attributes => "road attributes section",
-        }
-    }
-}
 
 /// A section as it lies in the payload.
 #[derive(Debug, Clone, Copy)]
@@ -158,7 +136,7 @@ pub(crate) fn size(sections: &[StoredSection<'_>], kind: Kind) -> SectionSize {
 /// Checks sections of kinds that this version does not know, as far as it can.
 pub(crate) fn check_unknown(sections: &[StoredSection<'_>]) -> Result<(), Damage> {
     let unknown =
-        |section: &&StoredSection<'_>| Kind::KNOWN.iter().all(|&kind| section.kind != kind as u16);
+        |section: &&StoredSection<'_>| Kind::ALL.iter().all(|&kind| section.kind != kind as u16);
     let intact = |section: &StoredSection<'_>| crc32fast::hash(section.bytes) == section.checksum;
     if sections.iter().filter(unknown).all(intact) { Ok(()) } else { Err(Damage::Checksum) }
 }
@@ -213,8 +191,8 @@ const COMPRESSION_LEVEL: i32 = 16;
 pub(crate) fn seal(
     id: TileId,
     sections: &[(Kind, Vec<u8>)],
-) -> Result<(Vec<u8>, Vec<SectionSize>), super::EncodeError> {
-    use super::EncodeError;
+) -> Result<(Vec<u8>, Vec<SectionSize>), crate::payload::damage::EncodeError> {
+    use crate::payload::damage::EncodeError;
 
     let mut table = Vec::with_capacity(HEADER_BYTES + sections.len() * ENTRY_BYTES + 4);
     table.extend(MAGIC);

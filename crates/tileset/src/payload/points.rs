@@ -2,11 +2,9 @@
 
 use corniche_geom::LatticePoint;
 
-use super::{
-    Damage,
-    class_table::Heads,
-    codec::{Cursor, unzigzag},
-};
+use crate::payload::class_table::Heads;
+use crate::payload::damage::Damage;
+use crate::payload::number_codes::{Cursor, unzigzag};
 
 /// Points lie within this many lattice steps of the tile's corner, so that orientations stay exact.
 const REACH_STEPS: i64 = 1 << 55;
@@ -52,7 +50,7 @@ pub(crate) fn put_points(
     points: &[LatticePoint],
     corner: LatticePoint,
 ) -> Result<(), &'static str> {
-    use super::codec::{put_planes, zigzag};
+    use crate::payload::number_codes::{put_planes, zigzag};
 
     let far =
         |at: i64, corner: i64| i128::from(at).abs_diff(i128::from(corner)) > REACH_STEPS as u128;

@@ -4,15 +4,14 @@ use corniche_drape::{DrapedLine, DrapedVertex};
 use corniche_geom::LatticePoint;
 use corniche_tin::Surface;
 
-use super::{
-    Damage, GeoRoad,
-    class_table::{self, Heads},
-    codec::Cursor,
-    points::decode_points,
-    route::Route,
-    work::Work,
-};
 use crate::limits::{MAX_LINE_VERTICES, MAX_POINTS, MAX_ROUTE_STEPS};
+use crate::payload::class_table::{self, Heads};
+use crate::payload::damage::Damage;
+use crate::payload::number_codes::Cursor;
+use crate::payload::points::decode_points;
+use crate::payload::route_guess::Route;
+use crate::payload::tile_payload::GeoRoad;
+use crate::payload::work_limit::Work;
 
 /// Kinds of vertices that are not as guessed.
 const END: u8 = 0;
@@ -156,7 +155,7 @@ mod write {
         CROSSING, Damage, DrapedLine, DrapedVertex, END, GeoRoad, LatticePoint, MAX_LINE_VERTICES,
         MAX_POINTS, MAX_ROUTE_STEPS, Route, SOURCE, Surface, VERTEX, Work, class_table,
     };
-    use crate::payload::{class_table::Head, codec::put_varint, points::put_points};
+    use crate::payload::{class_table::Head, number_codes::put_varint, points::put_points};
 
     /// The section's bytes and how many of them each class takes, or what of the roads cannot be encoded.
     pub(crate) fn encode(

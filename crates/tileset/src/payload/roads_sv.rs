@@ -3,13 +3,12 @@
 use corniche_drape::SvLine;
 use corniche_geom::LatticePoint;
 
-use super::{
-    Damage, SvRoad,
-    class_table::{self, Heads},
-    codec::{Cursor, unzigzag},
-    points::decode_points,
-};
 use crate::limits::MAX_POINTS;
+use crate::payload::class_table::{self, Heads};
+use crate::payload::damage::Damage;
+use crate::payload::number_codes::{Cursor, unzigzag};
+use crate::payload::points::decode_points;
+use crate::payload::tile_payload::SvRoad;
 
 /// Heights stay below this many quanta, where f64 knows every whole number.
 const REACH_Q: f64 = (1_u64 << 53) as f64;
@@ -65,7 +64,7 @@ mod write {
     use super::{LatticePoint, MAX_POINTS, REACH_Q, SvRoad, class_table};
     use crate::payload::{
         class_table::Head,
-        codec::{put_planes, zigzag},
+        number_codes::{put_planes, zigzag},
         points::put_points,
     };
 

@@ -3,11 +3,11 @@
 use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
 
-use super::{
-    Damage, DecodeError, SectionSize, class_table,
-    codec::Cursor,
-    envelope::{self, Kind},
-};
+use crate::payload::damage::{Damage, DecodeError};
+use crate::payload::envelope::SectionSize;
+use crate::payload::number_codes::Cursor;
+use crate::payload::section_kind::Kind;
+use crate::payload::{class_table, envelope};
 
 /// Sizes of the sections of a payload, and of the classes in its road sections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

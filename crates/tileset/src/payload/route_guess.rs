@@ -17,7 +17,8 @@ use corniche_drape::DrapedVertex;
 use corniche_geom::{LatticeBounds, LatticePoint, cross};
 use corniche_tin::{NO_TWIN, Surface};
 
-use super::{Damage, work::Work};
+use crate::payload::damage::Damage;
+use crate::payload::work_limit::Work;
 
 /// Follows one line; asked for a guess, then told the truth, vertex by vertex.
 pub(crate) struct Route<'a> {
@@ -42,7 +43,7 @@ enum Place {
     HalfEdge(u32),
     /// At a TIN vertex.
     Vertex(u32),
-    /// On the outline, going out.
+    /// On the boundary, going out.
     Outside,
 }
 
@@ -79,7 +80,7 @@ impl<'a> Route<'a> {
 
     fn best_guess(&self) -> Option<DrapedVertex> {
         if let Place::Start = self.place {
-            // A line with a lead-in starts on the outline; finding where would be a search.
+            // A line with a lead-in starts on the boundary; finding where would be a search.
             let point = if self.next == 0 { self.next_source()? } else { return None };
             return locate(self.surface, point, self.work)
                 .map(|triangle| DrapedVertex::Source { point, triangle });

@@ -59,8 +59,8 @@ pub fn check_covers_ground(tin: &Tin, heights: &HeightGrid) {
     assert_eq!(double_area, 2 * ground_cells, "twice the area of the ground");
     for &(from, to) in edges.iter().filter(|&&(from, to)| !edges.contains(&(to, from))) {
         let (p, q) = (at(from), at(to));
-        assert!(p[0] == q[0] || p[1] == q[1], "the outline {p:?}–{q:?} runs across cells");
-        // One side of every unit step of an outline is ground, the other is not.
+        assert!(p[0] == q[0] || p[1] == q[1], "the boundary {p:?}–{q:?} runs across cells");
+        // One side of every unit step of a boundary is ground, the other is not.
         let (low, high) = (p.min(q), p.max(q));
         for step in 0..(high[0] - low[0]).max(high[1] - low[1]) {
             let sides = if p[1] == q[1] {
@@ -68,7 +68,7 @@ pub fn check_covers_ground(tin: &Tin, heights: &HeightGrid) {
             } else {
                 [ground(low[0] - 1, low[1] + step), ground(low[0], low[1] + step)]
             };
-            assert_ne!(sides[0], sides[1], "the outline {p:?}–{q:?} is not one of the ground");
+            assert_ne!(sides[0], sides[1], "the boundary {p:?}–{q:?} is not one of the ground");
         }
     }
 }

@@ -1,11 +1,11 @@
-//! What is settled before greedy insertion starts: vertices on the tile's border and on outlines of voids.
+//! What is settled before greedy insertion starts: vertices on the tile's border and on boundaries of voids.
 
 use crate::tile_raster::TileRaster;
 
-/// A straight stretch of border or outline, simplified: nodes `[column, row]`, west to east or north to south.
+/// A straight stretch of border or boundary, simplified: nodes `[column, row]`, west to east or north to south.
 pub(crate) type Stretch = Vec<[usize; 2]>;
 
-/// All stretches of the tile's border and of the outlines of its voids, each simplified on its own.
+/// All stretches of the tile's border and of the boundaries of its voids, each simplified on its own.
 ///
 /// A grid line is cut where what lies beside it changes. On the border that is seen through the halo:
 ///
@@ -17,7 +17,7 @@ pub(crate) type Stretch = Vec<[usize; 2]>;
 ///
 /// The neighbour sees the same two sides with their names exchanged, cuts at the same nodes, and simplifies
 /// the same heights in the same direction: both get the same vertices wherever both have ground. An end of
-/// a stretch is a vertex, so corners of outlines are, and corners of the tile.
+/// a stretch is a vertex, so corners of boundaries are, and corners of the tile.
 pub(crate) fn stretches(tile: &TileRaster<'_>, max_error_m: f64, quantum_m: f64) -> Vec<Stretch> {
     let (columns, rows) = (tile.columns(), tile.rows());
     let mut found = Vec::new();

@@ -1,6 +1,6 @@
 //! The small codes that all sections are made of: varints, zigzag, byte planes.
 
-use super::Damage;
+use crate::payload::damage::Damage;
 
 /// Writes little-endian base-128: seven bits a byte, the top bit set on all but the last.
 #[cfg(any(feature = "write", test))]
@@ -139,5 +139,5 @@ impl<'a> Cursor<'a> {
 }
 
 #[cfg(test)]
-#[path = "codec_tests.rs"]
+#[path = "number_codes_tests.rs"]
 mod tests;

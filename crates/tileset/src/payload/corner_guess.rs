@@ -2,7 +2,7 @@
 
 use corniche_geom::TILE_NODES;
 
-use super::work::Work;
+use crate::payload::work_limit::Work;
 
 /// Rows and columns of vertices sorted by row, then column.
 #[derive(Debug)]
@@ -160,5 +160,5 @@ fn circle(vertex: u32, dot: i64, cross: i64, [[ac, ar], [bc, br]]: [[i64; 2]; 2]
 }
 
 #[cfg(test)]
-#[path = "nodes_tests.rs"]
+#[path = "corner_guess_tests.rs"]
 mod tests;

@@ -12,9 +12,7 @@ use crate::{
 pub struct Drape {
     /// The parts over ground, in order.
     pub lines: Vec<DrapedLine>,
-    /// Length in plan that is over no ground, in lattice steps.
-    pub off_ground_steps: f64,
-    /// Where that is, in order.
+    /// What lies over no ground, in order.
     pub gaps: Vec<Gap>,
 }
 
@@ -30,7 +28,7 @@ pub struct Gap {
 /// Lays `line` on `surface`: a vertex at every source point, at every TIN edge crossed in its inside, and at
 /// every TIN vertex passed through. What lies over no ground is cut out and measured.
 ///
-/// The outline of the ground is ground: a line along it is kept. A line that only touches ground at a point
+/// The boundary of the ground is ground: a line along it is kept. A line that only touches ground at a point
 /// leaves nothing. A source point on an edge or a TIN vertex is a source point and nothing else, and names the
 /// triangle with the smallest index of those that hold it. Coordinates are below 2^60, so that products of their
 /// differences fit 128 bits.
@@ -104,13 +102,13 @@ impl Walk<'_> {
                 Next::Ends => {
                     self.close(Some(q));
                     let Some((back, entry)) = self.entry_after(&ray, last) else {
-                        self.leave_out([last.to_f64(), 1.0], p.distance_steps(q));
+                        self.leave_out([last.to_f64(), 1.0]);
                         // The end may still touch ground, and the next segment go on from there.
                         let place = Place::of(q, self.surface);
                         self.arrive(q, place);
                         return place;
                     };
-                    self.leave_out([last.to_f64(), back.to_f64()], p.distance_steps(q));
+                    self.leave_out([last.to_f64(), back.to_f64()]);
                     last = back;
                     let (first, next) = match entry {
                         Entry::Edge(half_edge) => {
@@ -139,7 +137,7 @@ impl Walk<'_> {
     fn entry_after(&mut self, ray: &Ray, last: Fraction) -> Option<(Fraction, Entry)> {
         let Ray { p, q, .. } = *ray;
         let bounds = LatticeBounds::of(&[p, q])?;
-        self.surface.outline_near(bounds, &mut self.near);
+        self.surface.boundary_near(bounds, &mut self.near);
         let mut first: Option<(Fraction, Entry)> = None;
         for &half_edge in &self.near {
             let [a, b] = self.surface.ends(half_edge);
@@ -165,9 +163,8 @@ impl Walk<'_> {
         first
     }
 
-    /// Counts a stretch of the segment, which is so long, as off the ground.
-    fn leave_out(&mut self, shares: [f64; 2], length_steps: f64) {
-        self.drape.off_ground_steps += (shares[1] - shares[0]) * length_steps;
+    /// Notes a stretch of the segment as off the ground.
+    fn leave_out(&mut self, shares: [f64; 2]) {
         self.drape.gaps.push(Gap { segment: self.segment, shares });
     }
 
@@ -205,5 +202,5 @@ impl Walk<'_> {
 }
 
 #[cfg(test)]
-#[path = "walk_tests.rs"]
+#[path = "drape_tests.rs"]
 mod tests;

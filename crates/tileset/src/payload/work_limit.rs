@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::Damage;
+use crate::payload::damage::Damage;
 
 /// Steps done and allowed. Steps are counted, not timed: a tile is refused everywhere or nowhere.
 #[derive(Debug)]
@@ -37,3 +37,7 @@ impl Work {
         self.done.get()
     }
 }
+
+#[cfg(test)]
+#[path = "work_limit_tests.rs"]
+mod tests;

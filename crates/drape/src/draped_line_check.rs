@@ -1,7 +1,9 @@
 use corniche_geom::{LatticePoint, cross};
 use corniche_tin::{NO_TWIN, Surface};
 
-use crate::{BadLine, DrapedLine, DrapedVertex, fraction::Fraction, positions::for_each_vertex};
+use crate::{
+    BadLine, DrapedLine, DrapedVertex, fraction::Fraction, line_positions::for_each_vertex,
+};
 
 /// Whether `line` is what [`drape`](crate::drape()) could have made on `surface`, exactly: its indices exist, every
 /// source point lies in its triangle, every crossing and TIN vertex lies on its segment in order, and

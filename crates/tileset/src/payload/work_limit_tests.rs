@@ -6,10 +6,12 @@ use corniche_geom::{Frame, HeightGrid, LatticePoint, NodeIndex, Polyline, TileId
 use corniche_testing::srtm_heights;
 use corniche_tin::{Placement, Surface, Tin, TinSpec, TinVertex, height_quantum_m, triangulate};
 
-use super::{
-    Damage, connectivity::walk, nodes::Nodes, route::Route, terrain::Recorder, work::Work,
-};
+use super::*;
 use crate::limits::{MAX_ROUTE_STEPS, max_walk_steps};
+use crate::payload::connectivity::walk;
+use crate::payload::corner_guess::Nodes;
+use crate::payload::route_guess::Route;
+use crate::payload::terrain::encode::Recorder;
 
 const SRTM: &str = "liechtenstein/N47E009.hgt";
 
@@ -95,7 +97,7 @@ fn real_tiles_stay_far_below_the_limits() {
 }
 
 #[test]
-fn hard_outlines_stay_below_the_limits() {
+fn hard_boundaries_stay_below_the_limits() {
     type Hole = fn(usize, usize) -> bool;
     let cases: [(&str, Hole); 9] = [
         ("no voids", |_, _| false),

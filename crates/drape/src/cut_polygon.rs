@@ -1,0 +1,65 @@
+//! A triangle of the ground, cut by straight lines.
+
+/// A convex polygon of a triangle cut by up to four lines: at most seven corners, in place.
+/// A corner is [along, across, height].
+#[derive(Clone, Copy)]
+pub(crate) struct Polygon {
+    corners: [[f64; 3]; 8],
+    count: usize,
+}
+
+impl Polygon {
+    pub(crate) const NONE: Self = Self { corners: [[0.0; 3]; 8], count: 0 };
+
+    pub(crate) fn of([a, b, c]: [[f64; 3]; 3]) -> Self {
+        let mut corners = [[0.0; 3]; 8];
+        corners[..3].copy_from_slice(&[a, b, c]);
+        Self { corners, count: 3 }
+    }
+
+    /// In order around it; none where nothing is left.
+    pub(crate) fn corners(&self) -> &[[f64; 3]] {
+        &self.corners[..self.count]
+    }
+
+    /// Its area in plan, square steps.
+    pub(crate) fn area(&self) -> f64 {
+        let corners = self.corners();
+        let doubled: f64 = (1..corners.len().max(1) - 1)
+            .map(|k| {
+                let [a, b, c] = [corners[0], corners[k], corners[k + 1]];
+                (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
+            })
+            .sum();
+        doubled.abs() / 2.0
+    }
+
+    /// What lies where `inside`, an affine function, is at least 0.
+    pub(crate) fn cut(&self, inside: impl Fn([f64; 3]) -> f64) -> Self {
+        let mut kept = Self::NONE;
+        for (k, &this) in self.corners().iter().enumerate() {
+            let next = self.corners[(k + 1) % self.count];
+            let (here, there) = (inside(this), inside(next));
+            if here >= 0.0 {
+                kept.push(this);
+            }
+            if (here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0) {
+                let part = here / (here - there);
+                let mut cut = [0, 1, 2].map(|axis| this[axis] + part * (next[axis] - this[axis]));
+                // Rounding must not lift a cut above its edge: the order of the search would show.
+                cut[2] = cut[2].clamp(this[2].min(next[2]), this[2].max(next[2]));
+                kept.push(cut);
+            }
+        }
+        kept
+    }
+
+    /// Rounding can make a polygon so thin that it is cut once too often; its corners then lie on one
+    /// another, and the last may be left out.
+    fn push(&mut self, corner: [f64; 3]) {
+        if self.count < self.corners.len() {
+            self.corners[self.count] = corner;
+            self.count += 1;
+        }
+    }
+}

@@ -1,0 +1,145 @@
+use corniche_geom::{Bounds, Cell, CoordinateTable, Frame};
+use serde::{Deserialize, Serialize};
+
+use crate::manifest::counts::{Counts, GrowthRow};
+use crate::manifest::levels::LevelRecord;
+
+/// The table of contents of a package: its JSON metadata.
+///
+/// Nothing here depends on threads, memory, dates or paths: inputs are named by file name and hash.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of the encodings; readers refuse any other.
+    pub format_version: u32,
+    /// Program and version that wrote the package, with its GDAL and PROJ.
+    pub generator: String,
+    /// Says that z/x/y is a local quadtree in the working CRS, not the web's.
+    pub tiling: String,
+    /// CRS: "EPSG:…" where it has a code, else its name. Its coordinates times `metres_per_unit` are working metres.
+    pub crs: String,
+    /// CRS as WKT2.
+    pub crs_wkt: String,
+    /// Working metres to a unit of the CRS's coordinates, east and north; negative where an axis counts westwards or
+    /// southwards.
+    pub metres_per_unit: [f64; 2],
+    /// Working metres to a true metre, at the centre: the geometric mean along both axes.
+    pub point_scale: f64,
+    /// The same along each axis, at the centre and over the data's rim.
+    pub scale: ScaleRecord,
+    /// The grid.
+    pub frame: Frame,
+    /// Rectangle of the DEM's nodes, working metres.
+    pub data_bounds: Bounds,
+    /// The same in WGS84 degrees.
+    pub wgs84_bounds: Bounds,
+    /// How nodes relate to the DEM's samples, in words: "nodes are the DEM's samples", "bilinear from …".
+    pub resampling: String,
+    /// Whether nodes and the DEM's samples are the same points: the error bounds then hold at every sample.
+    pub nodes_are_samples: bool,
+    /// Heights.
+    pub vertical: VerticalRecord,
+    /// WGS84 ⇄ working CRS without PROJ.
+    pub coordinates: CoordinateTable,
+    /// One record per level, root first.
+    pub levels: Vec<LevelRecord>,
+    /// Settings that determine the bytes.
+    pub settings: SettingsRecord,
+    /// SHA-256 of the settings as JSON.
+    pub settings_sha256: String,
+    /// What was read.
+    pub inputs: Vec<InputRecord>,
+    /// Credits to show wherever the package is shown.
+    pub attribution: Vec<String>,
+    /// What came in, what was kept, what was lost and why.
+    pub counts: Counts,
+    /// What clipping costs, per level and class.
+    pub growth: Vec<GrowthRow>,
+}
+
+/// Working metres to a true metre, along x and along y.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ScaleRecord {
+    /// In the middle of the data.
+    pub center: [f64; 2],
+    /// The smallest over corners, middles of sides and centre of every file.
+    pub least: [f64; 2],
+    /// The largest.
+    pub largest: [f64; 2],
+}
+
+/// Heights: step, unit, datum.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct VerticalRecord {
+    /// One step of `height_q`, metres; a power of two.
+    pub quantum_m: f64,
+    /// Always "metre": other units are converted on reading.
+    pub unit: String,
+    /// Vertical datum as far as the inputs name one, else "unknown".
+    pub datum: String,
+    /// What was done to the inputs' heights, in words: "as in the files", a transformation, a shift.
+    pub treatment: String,
+    /// Lowest and highest node, metres. Values that no land has tell of an undeclared "no data".
+    pub range_m: [f64; 2],
+}
+
+impl VerticalRecord {
+    /// Ratios of errors are taken of errors at least so large: below, they are ratios of rounding.
+    ///
+    /// A height quantum over √2. Errors that are simple fractions of a quantum are common (they are differences of
+    /// heights that are whole steps), and none of them lies on this limit, so that two ways of computing them agree
+    /// on which side of it they are.
+    #[must_use]
+    pub fn least_measured_error_m(quantum_m: f64) -> f64 {
+        quantum_m * std::f64::consts::FRAC_1_SQRT_2
+    }
+}
+
+/// Settings that determine the bytes of a package.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SettingsRecord {
+    /// `--max-error`.
+    pub max_error_m: f64,
+    /// `--fill-voids`.
+    pub fill_voids: u32,
+    /// Each `--nodata`, in their order.
+    pub nodata: Vec<f64>,
+    /// `--height-range`, if given.
+    pub height_range_m: Option<[f64; 2]>,
+    /// `--dem-crs`, if given.
+    pub dem_crs: Option<String>,
+    /// `--dem-vertical-crs`, if given.
+    pub dem_vertical_crs: Option<String>,
+    /// `--vertical-crs`, if given.
+    pub vertical_crs: Option<String>,
+    /// `--vertical-shift`; 0 when not given.
+    pub vertical_shift_m: f64,
+    /// `--crs`, if given.
+    pub crs: Option<String>,
+    /// `--cell`, if given.
+    pub cell_m: Option<Cell>,
+    /// `--cell-every`, if given.
+    pub cell_every: Option<u32>,
+    /// `--scale-latitude`, if given.
+    pub scale_latitude_deg: Option<f64>,
+    /// Name of the FRC table.
+    pub frc_table: String,
+    /// SHA-256 of the FRC table's text.
+    pub frc_table_sha256: String,
+    /// Coarsest cell, metres, at which each class is still shown; by class, 0 first; `None`: on every level.
+    pub class_max_cell_m: Vec<Option<f64>>,
+    /// Simplification tolerance in cells of the level; 0 is off.
+    pub simplify_cells: f64,
+}
+
+/// An input file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct InputRecord {
+    /// "dem"; "dem-part", a file that the one before it refers to or that belongs to it; or "osm".
+    pub kind: String,
+    /// File name without folders.
+    pub name: String,
+    /// Size of the file; of a file inside an archive or on a server, of what GDAL delivers.
+    pub bytes: u64,
+    /// SHA-256 of as many bytes.
+    pub sha256: String,
+}

@@ -1,0 +1,17 @@
+use corniche_geom::TileId;
+
+/// Place of a tile in a package: PMTiles' tile id, which counts tiles level by level along a Hilbert curve.
+///
+/// Source: PMTiles version 3 specification, section 4.1.
+#[must_use]
+pub fn pmtiles_order(id: TileId) -> u64 {
+    // A tile id is valid from construction, and PMTiles knows more levels than we do.
+    pmtiles::TileCoord::new(id.z(), id.x(), id.y())
+        .map_or(u64::MAX, |coord| pmtiles::TileId::from(coord).value())
+}
+
+/// The tile at a place; `None` for places beyond the deepest level.
+pub(crate) fn tile_at(order: u64) -> Option<TileId> {
+    let coord = pmtiles::TileCoord::from(pmtiles::TileId::new(order).ok()?);
+    TileId::new(coord.z(), coord.x(), coord.y()).ok()
+}

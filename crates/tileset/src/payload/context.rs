@@ -1,0 +1,35 @@
+use corniche_geom::{Frame, LatticePoint, TILE_NODES, TileId};
+use corniche_tin::Placement;
+
+use crate::manifest::check::is_height_quantum;
+use crate::payload::damage::Damage;
+use crate::payload::terrain::record::Scale;
+
+/// What positions and heights in a payload are relative to.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Context {
+    pub(crate) corner: LatticePoint,
+    pub(crate) placement: Placement,
+    pub(crate) scale: Scale,
+}
+
+impl Context {
+    pub(crate) fn new(id: TileId, frame: &Frame, quantum_m: f64) -> Result<Self, Damage> {
+        if id.z() > frame.max_level() {
+            return Err(Damage::Level { level: id.z(), finest: frame.max_level() });
+        }
+        if !is_height_quantum(quantum_m) {
+            return Err(Damage::Invalid { what: "the height quantum" });
+        }
+        let placement = Placement::of_tile(frame, id, quantum_m);
+        Ok(Self {
+            corner: placement.corner,
+            placement,
+            scale: Scale {
+                quantum_m,
+                cell: frame.level_cell(id.z()),
+                nodes_beneath: (frame.stride(id.z()) as u64 * TILE_NODES as u64).pow(2),
+            },
+        })
+    }
+}

@@ -1,0 +1,85 @@
+//! The sections that a payload can have.
+
+use std::ops::BitOr;
+
+/// Declares the kinds, so that the list of all kinds has every kind.
+macro_rules! kinds {
+    ($($kind:ident = $number:literal, $name:literal;)+) => {
+        /// The kinds of section that this version knows, by the number that a payload stores; a reader skips others.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[repr(u16)]
+        pub(crate) enum Kind {
+            $($kind = $number,)+
+        }
+
+        impl Kind {
+            /// All kinds.
+            pub(crate) const ALL: &'static [Self] = &[$(Self::$kind),+];
+
+            /// What errors call it.
+            pub(crate) fn name(self) -> &'static str {
+                match self {
+                    $(Self::$kind => $name,)+
+                }
+            }
+        }
+    };
+}
+
+kinds! {
+    Terrain = 1, "terrain section";
+    RoadsGeo = 2, "GEO roads section";
+    RoadsSv = 3, "SV roads section";
+    Attributes = 4, "road attributes section";
+}
+
+/// Which sections of a payload to decode; combine them with `|`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sections(u8);
+
+impl Sections {
+    /// None: checks the header alone.
+    pub const NONE: Self = Self(0);
+    /// The ground.
+    pub const TERRAIN: Self = Self::of(Kind::Terrain);
+    /// Centre-lines on the TIN. Reads the ground too, which they lie on.
+    pub const ROADS_GEO: Self = Self::of(Kind::RoadsGeo);
+    /// Plan lines for shadow volumes.
+    pub const ROADS_SV: Self = Self::of(Kind::RoadsSv);
+    /// What is known of each way.
+    pub const ATTRIBUTES: Self = Self::of(Kind::Attributes);
+    /// Everything, checksums of sections of unknown kinds included.
+    pub const ALL: Self = Self::all();
+
+    /// One bit for each kind, by its number.
+    const fn of(kind: Kind) -> Self {
+        Self(1 << (kind as u16 - 1))
+    }
+
+    const fn all() -> Self {
+        let (mut all, mut k) = (Self::NONE, 0);
+        while k < Kind::ALL.len() {
+            all.0 |= Self::of(Kind::ALL[k]).0;
+            k += 1;
+        }
+        all
+    }
+
+    /// Whether all of `other` are among these.
+    #[must_use]
+    pub const fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+}
+
+impl BitOr for Sections {
+    type Output = Self;
+
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+#[cfg(test)]
+#[path = "section_kind_tests.rs"]
+mod tests;

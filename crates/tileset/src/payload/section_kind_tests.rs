@@ -1,0 +1,25 @@
+use super::*;
+
+#[test]
+fn each_kind_has_a_bit_of_its_own_and_all_has_every_bit() {
+    let mut seen = Sections::NONE;
+    for &kind in Kind::ALL {
+        let section = Sections::of(kind);
+        assert_eq!(section.0.count_ones(), 1, "{kind:?}");
+        assert_eq!(seen.0 & section.0, 0, "{kind:?} shares its bit");
+        assert!(Sections::ALL.contains(section), "{kind:?}");
+        seen = seen | section;
+    }
+    assert_eq!(seen, Sections::ALL);
+    let named = [Sections::TERRAIN, Sections::ROADS_GEO, Sections::ROADS_SV, Sections::ATTRIBUTES];
+    assert_eq!(named.into_iter().fold(Sections::NONE, BitOr::bitor), Sections::ALL);
+    assert_eq!(named.len(), Kind::ALL.len());
+}
+
+#[test]
+fn the_specification_lists_each_kind_by_its_number() {
+    let text = include_str!("../../FORMAT.md");
+    for &kind in Kind::ALL {
+        assert!(text.contains(&format!(" section (kind {})", kind as u16)), "{kind:?}");
+    }
+}
