@@ -33,7 +33,7 @@ use corniche_viewer::{
     flight::{Flight, WorkingCrs},
     gpu::{Gpu, PassTimes},
     stream::StreamBudget,
-    tiles::PackageSource,
+    tiles::{MapPackage, PackageSource},
 };
 use corniche_window::{Watched, watch};
 
@@ -99,7 +99,7 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
 }
 
 /// The flight asked for, else a pass along the data.
-fn flight(args: &FlyArgs, source: &PackageSource) -> Result<Flight, Failure> {
+fn flight(args: &FlyArgs, source: &dyn MapPackage) -> Result<Flight, Failure> {
     let Some(path) = &args.flight.path else {
         return Ok(default_flight(source, &interrupt::is_noted)?);
     };

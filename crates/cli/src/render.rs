@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use corniche_viewer::{RenderError, RenderRequest, render};
+use corniche_viewer::{RenderError, RenderRequest, render, tiles::PackageSource};
 
 use crate::{
     args::RenderArgs,
@@ -21,7 +21,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let style = styles::style(&args.look.style)?;
     let roads = args.look.roads(&[args.roads])?[0];
     let request = RenderRequest {
-        package: args.package.clone(),
+        name: args.package.display().to_string(),
         size_px: args.size,
         roads: args.look.road_options(roads),
         camera: args.camera.request(),
@@ -32,7 +32,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     };
     let output = Output::create(&args.output, Existing::ReplaceLike(Kind::Png), &used)?;
     refuse_other_formats(&args.output)?;
-    let rendered = render(&request, &interrupt::is_noted)?;
+    let package = PackageSource::open(&args.package)?.for_method(request.roads.method);
+    let rendered = render(&request, &package, &interrupt::is_noted)?;
     output.write_whole(&png(&rendered.picture)?)?;
     let report = &rendered.report;
     eprintln!(

@@ -1,6 +1,3 @@
-use std::path::PathBuf;
-
-use corniche_tileset::OpenError;
 use image::RgbaImage;
 
 use crate::{
@@ -16,15 +13,15 @@ use crate::{
     range::{self, OutOfRange},
     scene::{self, SettleError},
     style::Style,
-    tiles::{LoadTileError, PackageSource, TileStore},
+    tiles::{LoadTileError, MapPackage, TileStore},
     viewpoint::{CameraRequest, OffGround, ViewpointError},
 };
 
 /// What to render.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RenderRequest {
-    /// The package.
-    pub package: PathBuf,
+    /// What messages call the package.
+    pub name: String,
     /// Width and height of the picture.
     pub size_px: [u32; 2],
     /// How roads are drawn.
@@ -78,15 +75,13 @@ pub struct RenderReport {
 #[non_exhaustive]
 pub enum RenderError {
     #[error(transparent)]
-    Open(#[from] OpenError),
-    #[error(transparent)]
     Load(#[from] LoadTileError),
     #[error(transparent)]
     Gpu(#[from] GpuError),
     #[error(transparent)]
     ReadBack(#[from] ReadBackError),
-    #[error("{package:?} has no ground to show")]
-    NoGround { package: PathBuf },
+    #[error("{name:?} has no ground to show")]
+    NoGround { name: String },
     #[error(transparent)]
     OffGround(#[from] OffGround),
     #[error(
@@ -117,32 +112,32 @@ impl From<ViewpointError> for RenderError {
     }
 }
 
-/// Renders a picture of a package, without a window.
+/// Renders a picture of `package`, without a window.
 ///
 /// The picture is the same, byte for byte, each time on the same adapter and driver. `is_stopped` is asked before each
 /// tile of the view is read, and once more at the end.
 ///
 /// # Errors
-/// When the request makes no sense, the package cannot be read, there is no graphics adapter, or it was stopped.
+/// When the request makes no sense, a tile cannot be read, there is no graphics adapter, or it was stopped.
 pub fn render(
     request: &RenderRequest,
+    package: &dyn MapPackage,
     is_stopped: &dyn Fn() -> bool,
 ) -> Result<Rendered, RenderError> {
     check(request)?;
-    let source = PackageSource::open(&request.package)?.for_method(request.roads.method);
-    let mut store = TileStore::new(&source);
-    let point_scale = source.manifest().point_scale;
+    let mut store = TileStore::new(package);
+    let point_scale = package.manifest().point_scale;
     let quality = Quality {
         screen_space_error_px: request.screen_space_error_px,
         vertical_scale: request.exaggeration * point_scale,
     };
     let height_range_m = store
         .coarsest_ground()?
-        .ok_or_else(|| RenderError::NoGround { package: request.package.clone() })?
+        .ok_or_else(|| RenderError::NoGround { name: request.name.clone() })?
         .height_range_m;
     let camera = request.camera.camera(
-        source.manifest(),
-        &source,
+        package.manifest(),
+        package,
         height_range_m,
         quality.vertical_scale,
         request.size_px,
@@ -176,7 +171,7 @@ pub fn render(
     if is_stopped() {
         return Err(RenderError::Stopped);
     }
-    draw_attribution(&mut picture, &source.manifest().attribution);
+    draw_attribution(&mut picture, &package.manifest().attribution);
 
     let mut levels: Vec<(u8, u64)> = Vec::new();
     for tile in &drawn {

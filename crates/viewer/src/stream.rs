@@ -25,7 +25,7 @@ use corniche_geom::{Bounds, TileId};
 use crate::{
     camera::Camera,
     lod::{self, Drawn, GroundSummary, Node, Quality, Request, Selection, TileTree},
-    tiles::TileSource,
+    tiles::TileCatalog,
 };
 
 /// How much is done in a frame and kept.
@@ -118,16 +118,16 @@ impl Streamer {
     /// Plans the next frame, seen from `camera`; `ahead` is where the camera will soon be, to load for in advance.
     pub fn plan(
         &mut self,
-        source: &dyn TileSource,
+        catalog: &dyn TileCatalog,
         camera: &Camera,
         ahead: Option<&Camera>,
         quality: Quality,
     ) -> Plan {
         self.frame += 1;
         let mut plan = Plan::default();
-        let before = self.select(source, camera, quality);
+        let before = self.select(catalog, camera, quality);
         self.touch(&before);
-        let coming = ahead.map(|ahead| self.select(source, ahead, quality)).unwrap_or_default();
+        let coming = ahead.map(|ahead| self.select(catalog, ahead, quality)).unwrap_or_default();
 
         // What the coming view shows may go for the present one, but not for more of the coming one.
         let mut left_bytes = self.budget.upload_bytes_per_frame;
@@ -138,7 +138,7 @@ impl Streamer {
         let shown = if plan.upload.is_empty() {
             before
         } else {
-            let shown = self.select(source, camera, quality);
+            let shown = self.select(catalog, camera, quality);
             self.touch(&shown);
             shown
         };
@@ -148,8 +148,8 @@ impl Streamer {
         plan
     }
 
-    fn select(&self, source: &dyn TileSource, camera: &Camera, quality: Quality) -> Selection {
-        lod::select(&ResidentTree { source, resident: &self.resident }, camera, quality)
+    fn select(&self, catalog: &dyn TileCatalog, camera: &Camera, quality: Quality) -> Selection {
+        lod::select(&ResidentTree { catalog, resident: &self.resident }, camera, quality)
     }
 
     /// Tiles that a selection needs to stay as it is: those drawn, those above them, and of each of these all children,
@@ -253,7 +253,7 @@ impl Streamer {
 
 /// The package's tiles; those on the graphics card count as loaded.
 struct ResidentTree<'a> {
-    source: &'a dyn TileSource,
+    catalog: &'a dyn TileCatalog,
     resident: &'a BTreeMap<TileId, Resident>,
 }
 
@@ -261,17 +261,17 @@ impl TileTree for ResidentTree<'_> {
     fn node(&self, id: TileId) -> Node {
         match self.resident.get(&id) {
             Some(tile) => Node::Loaded(tile.facts.ground),
-            None if self.source.exists(id) => Node::Listed,
+            None if self.catalog.exists(id) => Node::Listed,
             None => Node::Absent,
         }
     }
 
     fn plan_bounds(&self, id: TileId) -> Bounds {
-        self.source.frame().tile_bounds(id)
+        self.catalog.frame().tile_bounds(id)
     }
 
     fn max_level(&self) -> u8 {
-        self.source.frame().max_level()
+        self.catalog.frame().max_level()
     }
 }
 

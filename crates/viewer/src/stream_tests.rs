@@ -3,10 +3,7 @@ use glam::DVec3;
 use proptest::prelude::*;
 
 use super::*;
-use crate::{
-    camera::{Orientation, WorldBox},
-    tiles::{LoadTileError, TileGeometry},
-};
+use crate::camera::{Orientation, WorldBox};
 
 const MAX_LEVEL: u8 = 5;
 const HEIGHT_RANGE_M: [f64; 2] = [0.0, 900.0];
@@ -40,17 +37,13 @@ fn facts(id: TileId) -> TileFacts {
     }
 }
 
-impl TileSource for World {
+impl TileCatalog for World {
     fn frame(&self) -> &Frame {
         &self.frame
     }
 
     fn exists(&self, _: TileId) -> bool {
         true
-    }
-
-    fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
-        Err(LoadTileError { id, source: "these tests have no tiles".into() })
     }
 }
 

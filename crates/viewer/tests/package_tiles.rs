@@ -14,7 +14,7 @@ use corniche_geom::TileId;
 use corniche_tileset::{ByteSource, MemorySource, Package, SourceError};
 use corniche_viewer::{
     RoadMethod,
-    tiles::{PackageSource, PackageTiles, TileSource as _},
+    tiles::{PackageSource, PackageTiles, TileCatalog as _, TileSource as _},
 };
 use support::package::package;
 

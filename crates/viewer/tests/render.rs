@@ -7,7 +7,7 @@ use std::{cell::Cell, path::Path};
 
 use corniche_viewer::{
     CameraRequest, RenderError, RenderRequest, Rendered, RoadMethod, RoadOptions,
-    camera::Orientation, style::Style,
+    camera::Orientation, style::Style, tiles::PackageSource,
 };
 use image::RgbaImage;
 use support::{
@@ -17,7 +17,7 @@ use support::{
 
 fn request(package: &Path) -> RenderRequest {
     RenderRequest {
-        package: package.to_path_buf(),
+        name: package.to_str().unwrap().to_owned(),
         size_px: [480, 320],
         roads: RoadOptions::of(RoadMethod::Geometry),
         camera: CameraRequest::FrameAll,
@@ -34,7 +34,12 @@ fn look_at(lon_deg: f64, lat_deg: f64) -> CameraRequest {
 }
 
 fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
-    corniche_viewer::render(request, &|| false)
+    corniche_viewer::render(request, &opened(request), &|| false)
+}
+
+/// The package of a request, whose name is its path.
+fn opened(request: &RenderRequest) -> PackageSource {
+    PackageSource::open(Path::new(&request.name)).unwrap().for_method(request.roads.method)
 }
 
 /// Pixels that look like the motorway of the style.
@@ -112,7 +117,7 @@ fn a_picture_can_be_stopped_at_any_tile() {
     let asked = Cell::new(0);
     let ask = |stop_at: u32| {
         asked.set(0);
-        corniche_viewer::render(&near, &|| {
+        corniche_viewer::render(&near, &opened(&near), &|| {
             asked.set(asked.get() + 1);
             asked.get() == stop_at
         })
@@ -129,8 +134,8 @@ fn a_picture_can_be_stopped_at_any_tile() {
 #[test]
 fn requests_that_make_no_sense_say_what_is_wrong() {
     let folder = tempfile::tempdir().unwrap();
-    let missing = request(&folder.path().join("nothing.pmtiles"));
-    assert!(render(&missing).unwrap_err().to_string().contains("nothing.pmtiles"));
+    let missing = PackageSource::open(&folder.path().join("nothing.pmtiles"));
+    assert!(missing.unwrap_err().to_string().contains("nothing.pmtiles"));
     let package = package(folder.path());
     let off = RenderRequest { camera: look_at(20.0, 10.0), ..request(&package) };
     assert!(matches!(render(&off), Err(RenderError::OffGround { .. })));

@@ -15,12 +15,13 @@ use corniche_viewer::{
         Targets, TileBuffers, Wireframe,
     },
     lod::Drawn,
+    tiles::TileGeometry,
 };
 use egui::{ClippedPrimitive, TextureId, TexturesDelta};
 use egui_wgpu::ScreenDescriptor;
 
 pub(crate) use self::snapshot::Snapshot;
-use crate::{panel::Pictures, settings::Compare, tiles::Changes};
+use crate::{map_pictures::Pictures, settings::Compare};
 
 /// What the map shows. Two equal scenes look the same, as long as their tiles lie on the graphics card.
 #[derive(Debug, Clone, PartialEq)]
@@ -116,11 +117,11 @@ impl Canvas {
     }
 
     /// Removes tiles and uploads others.
-    pub(crate) fn change(&mut self, changes: &Changes) {
-        for id in &changes.evict {
+    pub(crate) fn change(&mut self, evict: &[TileId], upload: &[TileGeometry]) {
+        for id in evict {
             self.tiles.remove(id);
         }
-        for tile in &changes.upload {
+        for tile in upload {
             self.tiles.insert(tile.id, TileBuffers::new(&self.gpu, tile));
         }
     }

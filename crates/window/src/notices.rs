@@ -24,6 +24,11 @@ impl Notices {
         self.add(words, None);
     }
 
+    /// Says several things, if there are any, that stay.
+    pub(crate) fn warn_all(&mut self, words: impl IntoIterator<Item = String>) {
+        words.into_iter().for_each(|words| self.warn(words));
+    }
+
     /// Says something that goes by itself.
     pub(crate) fn tell(&mut self, words: String, now_s: f64) {
         self.add(words, Some(now_s + NEWS_S));

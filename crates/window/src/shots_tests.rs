@@ -4,6 +4,11 @@ use std::{
 };
 
 use super::*;
+use crate::platform::FileWriter;
+
+fn shots_in(folder: PathBuf) -> Shots {
+    Shots::new(Box::new(FileWriter::new(folder, std::sync::Arc::new(|| ()))))
+}
 
 fn news_of(shots: &mut Shots, count: usize) -> Vec<Result<PathBuf, NotSaved>> {
     let begun = Instant::now();
@@ -20,7 +25,7 @@ fn news_of(shots: &mut Shots, count: usize) -> Vec<Result<PathBuf, NotSaved>> {
 fn files_are_numbered_and_never_replaced() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("corniche-001.png"), b"mine").unwrap();
-    let mut shots = Shots::new(folder.path().join("."), Arc::new(|| ()));
+    let mut shots = shots_in(folder.path().join("."));
     for _ in 0..2 {
         shots.save_picture(RgbaImage::from_pixel(3, 2, image::Rgba([1, 2, 3, 255])));
         let news = news_of(&mut shots, 1);
@@ -34,7 +39,7 @@ fn files_are_numbered_and_never_replaced() {
 #[test]
 fn files_get_their_numbers_in_the_order_of_the_wishes() {
     let folder = tempfile::tempdir().unwrap();
-    let mut shots = Shots::new(folder.path().to_owned(), Arc::new(|| ()));
+    let mut shots = shots_in(folder.path().to_owned());
     // The larger one takes longer to encode.
     for side in [1500, 2] {
         shots.save_picture(RgbaImage::from_fn(side, side, |x, y| {
@@ -56,7 +61,7 @@ fn what_cannot_be_written_is_said() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, b"no folder").unwrap();
-    let mut shots = Shots::new(file, Arc::new(|| ()));
+    let mut shots = shots_in(file);
     shots.save_flight("text".to_owned());
     let news = news_of(&mut shots, 1);
     assert!(matches!(news[0], Err(NotSaved::File { .. })), "{news:?}");
@@ -65,7 +70,7 @@ fn what_cannot_be_written_is_said() {
 #[test]
 fn a_file_under_way_is_written_before_all_ends() {
     let folder = tempfile::tempdir().unwrap();
-    let mut shots = Shots::new(folder.path().to_owned(), Arc::new(|| ()));
+    let mut shots = shots_in(folder.path().to_owned());
     shots.save_flight("the way".to_owned());
     drop(shots);
     let path = folder.path().join("flight-001.toml");
@@ -75,7 +80,7 @@ fn a_file_under_way_is_written_before_all_ends() {
 #[test]
 fn at_the_end_it_waits_and_tells_what_was_not_yet_told() {
     let folder = tempfile::tempdir().unwrap();
-    let mut shots = Shots::new(folder.path().to_owned(), Arc::new(|| ()));
+    let mut shots = shots_in(folder.path().to_owned());
     shots.save_flight("the way".to_owned());
     let news = shots.finish();
     let place = folder.path().join("flight-001.toml");

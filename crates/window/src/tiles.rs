@@ -1,6 +1,9 @@
-//! The tiles of the window: loaded by threads, chosen by the streamer, their ground kept for rays and heights.
+//! The tiles of the window: chosen by the streamer, loaded by a [`TileLoader`]. Their ground is kept for rays and heights.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 use corniche_geom::TileId;
 use corniche_viewer::{
@@ -9,53 +12,52 @@ use corniche_viewer::{
     lod::{Drawn, Quality},
     pick,
     stream::{Plan, StreamBudget, Streamer, TileFacts},
-    tiles::{TileGeometry, TileLines},
+    tiles::{TileCatalog, TileGeometry, TileLines},
 };
 use glam::DVec3;
 
-use crate::{
-    controls::Ground,
-    platform::{Loader, SharedSource},
-};
+use crate::{controls::KnownGround, tile_loader::TileLoader};
 
-/// All tiles, from being asked for to being drawn.
+/// All tiles, from the request to the drawing.
 pub(crate) struct Tiles {
-    source: SharedSource,
+    catalog: Arc<dyn TileCatalog>,
     quantum_m: f64,
-    loader: Loader,
+    loader: Box<dyn TileLoader>,
     budget: StreamBudget,
     streamer: Streamer,
-    /// Decoded, not on the graphics card.
+    /// Tiles that are decoded and not yet on the graphics card.
     waiting: BTreeMap<TileId, TileGeometry>,
-    /// On the graphics card; here is their ground alone.
+    /// The ground of the tiles that are on the graphics card.
     resident: BTreeMap<TileId, TileGeometry>,
     drawn: Vec<Drawn>,
     missing: usize,
     loading: BTreeSet<TileId>,
     is_full: bool,
+    /// Whether [`Tiles::is_full_for_the_first_time`] has told that it is full.
+    was_full: bool,
 }
 
 /// What a frame has to do on the graphics card, in this order.
 #[derive(Default)]
 pub(crate) struct Changes {
-    /// To remove.
+    /// Tiles to remove.
     pub(crate) evict: Vec<TileId>,
-    /// To hand over, and then back to [`Tiles::keep_ground`].
+    /// Tiles to upload, and then to hand to [`Tiles::keep_ground`].
     pub(crate) upload: Vec<TileGeometry>,
-    /// Something was asked for, handed over or removed: the next frame may have more to do.
+    /// Whether tiles were requested, uploaded or removed: then the next frame may have more to do.
     pub(crate) is_under_way: bool,
 }
 
 impl Tiles {
     /// Nothing loaded yet. `quantum_m` is the package's height step.
     pub(crate) fn new(
-        source: SharedSource,
+        catalog: Arc<dyn TileCatalog>,
         quantum_m: f64,
-        loader: Loader,
+        loader: Box<dyn TileLoader>,
         budget: StreamBudget,
     ) -> Self {
         Self {
-            source,
+            catalog,
             quantum_m,
             loader,
             budget,
@@ -66,23 +68,24 @@ impl Tiles {
             missing: 0,
             loading: BTreeSet::new(),
             is_full: false,
+            was_full: false,
         }
     }
 
-    /// Takes what the threads have loaded; tells of tiles that cannot be had.
+    /// Takes the tiles that have arrived. Returns messages about those that cannot be had.
     ///
-    /// Such a tile counts as one without ground: what lies beneath it is shown as far as it can be had, else a hole.
+    /// Such a tile counts as one without ground: finer tiles beneath it are shown where there are any, and else a hole.
     pub(crate) fn take_arrivals(&mut self) -> Vec<String> {
         let mut defects = Vec::new();
         for loaded in self.loader.arrivals() {
             if !self.loading.remove(&loaded.id) {
-                // Asked for before everything was lost, and here a second time.
+                // It was requested before the device was lost, and again after that; this is the second answer.
                 continue;
             }
             let tile = loaded.tile.unwrap_or_else(|error| {
                 let cause = std::error::Error::source(&error).map(ToString::to_string);
                 defects.push(format!("{error}: {}", cause.unwrap_or_default()));
-                let (frame, lines) = (self.source.frame(), TileLines::default());
+                let (frame, lines) = (self.catalog.frame(), TileLines::default());
                 TileGeometry::assemble(loaded.id, None, &lines, frame, self.quantum_m)
             });
             let facts = TileFacts { ground: tile.summary, gpu_bytes: tile_bytes(&tile) };
@@ -99,7 +102,7 @@ impl Tiles {
         ahead: Option<&Camera>,
         quality: Quality,
     ) -> Changes {
-        let plan = self.streamer.plan(self.source.as_ref(), camera, ahead, quality);
+        let plan = self.streamer.plan(self.catalog.as_ref(), camera, ahead, quality);
         let Plan { evict, upload, drawn, cancel, load, missing } = plan;
         for id in &evict {
             self.resident.remove(id);
@@ -116,23 +119,23 @@ impl Tiles {
         self.drawn = drawn;
         self.missing = missing;
         let is_under_way = !(evict.is_empty() && uploaded.is_empty() && load.is_empty());
-        // What is there waits for room that nothing gives up, and there is nothing else to wait for.
+        // Tiles wait for room that no other tile gives up, and nothing is being loaded.
         self.is_full = missing > 0 && !is_under_way && self.loading.is_empty();
         Changes { evict, upload: uploaded, is_under_way }
     }
 
-    /// Takes back tiles that were handed over: rays and heights need their ground from now on. Roads, most of a tile where
-    /// there are towns, lie on the graphics card alone.
+    /// Keeps the ground of tiles that were uploaded, for rays and heights. Their roads, which are most of a tile in a town,
+    /// are dropped: they are needed on the graphics card only.
     pub(crate) fn keep_ground(&mut self, uploaded: Vec<TileGeometry>) {
         for tile in uploaded {
-            let (frame, none) = (self.source.frame(), TileLines::default());
+            let (frame, none) = (self.catalog.frame(), TileLines::default());
             let bare = TileGeometry::assemble(tile.id, None, &none, frame, self.quantum_m);
             let TileGeometry { roads, volumes, .. } = bare;
             self.resident.insert(tile.id, TileGeometry { roads, volumes, ..tile });
         }
     }
 
-    /// The graphics card has forgotten everything: it is all asked for again.
+    /// Everything on the graphics card is lost: all tiles are requested again.
     pub(crate) fn begin_again(&mut self) {
         self.loader.forget();
         self.loading.clear();
@@ -143,12 +146,12 @@ impl Tiles {
         self.is_full = false;
     }
 
-    /// What is drawn.
+    /// Tiles that are drawn.
     pub(crate) fn drawn(&self) -> &[Drawn] {
         &self.drawn
     }
 
-    /// Tiles that the view wants and that are not there yet.
+    /// Tiles that the view needs and that are not on the graphics card yet.
     pub(crate) fn missing(&self) -> usize {
         self.missing
     }
@@ -158,9 +161,15 @@ impl Tiles {
         self.loading.len()
     }
 
-    /// Whether the view wants more tiles than the graphics card may hold: it is drawn more coarsely than was asked.
+    /// Whether the view needs more tiles than fit into the graphics memory allowed, so that it is drawn more coarsely than
+    /// was asked.
     pub(crate) fn is_full(&self) -> bool {
         self.is_full
+    }
+
+    /// Whether [`Tiles::is_full`] holds and this was not asked before while it held.
+    pub(crate) fn is_full_for_the_first_time(&mut self) -> bool {
+        self.is_full && !std::mem::replace(&mut self.was_full, true)
     }
 
     /// Bytes on the graphics card, and how many there may be.
@@ -168,20 +177,20 @@ impl Tiles {
         [self.streamer.resident_bytes(), self.budget.gpu_bytes]
     }
 
-    /// The ground that is drawn, and where it is not in view, what else of it is there.
+    /// The ground that is drawn; outside the view, the other ground that is on the graphics card.
     pub(crate) fn ground(&self, vertical_scale: f64, base_height_m: f64) -> ShownGround<'_> {
         ShownGround { tiles: self, vertical_scale, base_height_m }
     }
 }
 
-/// The ground as the camera's controls see it: world heights, that is true ones times `vertical_scale`.
+/// The ground as the camera's controls see it, in world heights: true heights times `vertical_scale`.
 pub(crate) struct ShownGround<'a> {
     tiles: &'a Tiles,
     vertical_scale: f64,
     base_height_m: f64,
 }
 
-impl Ground for ShownGround<'_> {
+impl KnownGround for ShownGround<'_> {
     fn hit(&self, eye_in_world: DVec3, ray_in_world: DVec3) -> Option<DVec3> {
         let drawn = self.tiles.drawn.iter().filter_map(|drawn| self.tiles.resident.get(&drawn.id));
         pick::ground_at(drawn, self.vertical_scale, eye_in_world, ray_in_world)
@@ -193,7 +202,7 @@ impl Ground for ShownGround<'_> {
         let mut next = self.tiles.resident.get(&TileId::ROOT);
         while let Some(tile) = next {
             found = tile.ground_height_m(at).or(found);
-            // On a border two children have the place, at the same height.
+            // On a border the place is in two children, at the same height.
             next = tile
                 .id
                 .children()

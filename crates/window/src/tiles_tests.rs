@@ -1,6 +1,5 @@
 use std::{
     num::NonZeroUsize,
-    sync::Arc,
     time::{Duration, Instant},
 };
 
@@ -13,6 +12,7 @@ use corniche_viewer::{
 };
 
 use super::*;
+use crate::platform::LoaderThreads;
 
 /// A package of two levels: ground at 100 m, 10 m higher in the finer level. One tile of it is damaged.
 struct Steps {
@@ -22,7 +22,7 @@ struct Steps {
 const CELL_M: f64 = 10.0;
 const DAMAGED: [u32; 2] = [1, 1];
 
-impl TileSource for Steps {
+impl TileCatalog for Steps {
     fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -30,7 +30,9 @@ impl TileSource for Steps {
     fn exists(&self, id: TileId) -> bool {
         id.z() <= 1
     }
+}
 
+impl TileSource for Steps {
     fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
         if id.z() == 1 && [id.x(), id.y()] == DAMAGED {
             return Err(LoadTileError { id, source: "half of it is missing".into() });
@@ -57,12 +59,12 @@ fn tiles() -> Tiles {
 
 fn tiles_within(gpu_bytes: u64) -> Tiles {
     let frame = Frame::new([0.0; 2], CELL_M, NodeIndex { i: 0, j: 512 }, 1);
-    let source: SharedSource =
-        Arc::new(Steps { frame: frame.unwrap_or_else(|error| panic!("{error}")) });
+    let source = Arc::new(Steps { frame: frame.unwrap_or_else(|error| panic!("{error}")) });
     let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(|| ());
-    let loader = Loader::new(&source, NonZeroUsize::MIN, 8, &wake);
+    let loader = LoaderThreads::new(&source, NonZeroUsize::MIN, 8, &wake);
     let budget = StreamBudget { tiles_in_flight: 8, upload_bytes_per_frame: 1 << 20, gpu_bytes };
-    Tiles::new(source, 1.0, loader.unwrap_or_else(|error| panic!("{error}")), budget)
+    let loader = Box::new(loader.unwrap_or_else(|error| panic!("{error}")));
+    Tiles::new(source, 1.0, loader, budget)
 }
 
 /// Straight down on the middle of the package.

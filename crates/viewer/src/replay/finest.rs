@@ -7,7 +7,7 @@ use crate::{
     camera::{Camera, WorldBox},
     gpu::{Gpu, TileBuffers, tile_bytes},
     lod::Drawn,
-    tiles::{PackageSource, TileSource},
+    tiles::MapPackage,
 };
 
 /// All tiles without tiles beneath them, loaded before the flight begins.
@@ -20,7 +20,7 @@ pub(crate) struct Finest {
 impl Finest {
     pub(crate) fn load(
         gpu: &Gpu,
-        source: &PackageSource,
+        source: &dyn MapPackage,
         budget_bytes: u64,
         is_stopped: &dyn Fn() -> bool,
     ) -> Result<Self, ReplayError> {
@@ -66,7 +66,7 @@ impl Finest {
     /// Draws those in view. Heights in the world are true heights times `vertical_scale`.
     pub(crate) fn in_view(
         &self,
-        source: &PackageSource,
+        source: &dyn MapPackage,
         camera: &Camera,
         vertical_scale: f64,
     ) -> Work {

@@ -31,7 +31,7 @@ use crate::{
     range::{self, OutOfRange},
     stream::StreamBudget,
     style::Style,
-    tiles::{LoadTileError, PackageSource, TileStore},
+    tiles::{LoadTileError, MapPackage, TileStore},
 };
 
 pub use self::survey::{Lifted, default_flight};
@@ -140,7 +140,7 @@ pub enum ReplayError {
 /// A flight under way.
 pub struct Replay<'a> {
     gpu: &'a Gpu,
-    source: &'a PackageSource,
+    source: &'a dyn MapPackage,
     options: &'a ReplayOptions,
     is_stopped: &'a dyn Fn() -> bool,
     timetable: Timetable<'a>,
@@ -216,7 +216,7 @@ impl<'a> Replay<'a> {
     /// When the options make no sense, a keyframe lies under the ground, a tile cannot be had, not all fits, or it was stopped.
     pub fn new(
         gpu: &'a Gpu,
-        source: &'a PackageSource,
+        source: &'a dyn MapPackage,
         flight: &'a Flight,
         options: &'a ReplayOptions,
         is_stopped: &'a dyn Fn() -> bool,

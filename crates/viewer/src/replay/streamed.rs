@@ -8,7 +8,7 @@ use crate::{
     gpu::{Gpu, TileBuffers, tile_bytes},
     lod::Quality,
     stream::{StreamBudget, Streamer, TileFacts},
-    tiles::{PackageSource, TileGeometry, TileSource},
+    tiles::{MapPackage, TileGeometry},
 };
 
 /// How long a frame may wait for its tiles.
@@ -23,7 +23,7 @@ pub(crate) enum Patience {
 /// Tiles that come and go as a [`Streamer`] plans; each arrives in the frame after it was asked for.
 pub(crate) struct Streamed<'a> {
     gpu: &'a Gpu,
-    source: &'a PackageSource,
+    source: &'a dyn MapPackage,
     budget: StreamBudget,
     streamer: Streamer,
     /// Decoded, but not on the graphics card.
@@ -32,7 +32,7 @@ pub(crate) struct Streamed<'a> {
 }
 
 impl<'a> Streamed<'a> {
-    pub(crate) fn new(gpu: &'a Gpu, source: &'a PackageSource, budget: StreamBudget) -> Self {
+    pub(crate) fn new(gpu: &'a Gpu, source: &'a dyn MapPackage, budget: StreamBudget) -> Self {
         Self {
             gpu,
             source,

@@ -5,7 +5,7 @@ use crate::{
     eye_height::{clearance_m, focus_m, rounded_up_m},
     flight::{Flight, Pose},
     lod::GroundSummary,
-    tiles::{PackageSource, TileStore},
+    tiles::{MapPackage, TileStore},
 };
 
 /// So many tiles are kept while heights are looked up.
@@ -17,7 +17,7 @@ const LOOK_UP_TILES: usize = 256;
 /// # Errors
 /// When a tile cannot be had, there is no ground, or it was stopped.
 pub fn default_flight(
-    source: &PackageSource,
+    source: &dyn MapPackage,
     is_stopped: &dyn Fn() -> bool,
 ) -> Result<Flight, ReplayError> {
     let mut ground = GroundLookUp::new(source, is_stopped);
@@ -60,7 +60,7 @@ impl Survey {
     /// When a keyframe is farther under the ground than the coarsest ground is from the true one, a tile cannot be had, or
     /// it was stopped.
     pub(crate) fn new(
-        source: &PackageSource,
+        source: &dyn MapPackage,
         timetable: Timetable<'_>,
         options: &ReplayOptions,
         coarsest: GroundSummary,
@@ -112,13 +112,13 @@ impl Survey {
 
 /// True heights of the ground from the finest tiles, of which it keeps some.
 struct GroundLookUp<'a> {
-    source: &'a PackageSource,
+    source: &'a dyn MapPackage,
     store: TileStore<'a>,
     is_stopped: &'a dyn Fn() -> bool,
 }
 
 impl<'a> GroundLookUp<'a> {
-    fn new(source: &'a PackageSource, is_stopped: &'a dyn Fn() -> bool) -> Self {
+    fn new(source: &'a dyn MapPackage, is_stopped: &'a dyn Fn() -> bool) -> Self {
         Self { source, store: TileStore::new(source), is_stopped }
     }
 

@@ -1,8 +1,8 @@
 //! Tiles as the renderer wants them, and where they come from.
 //!
 //! [`PackageTiles`] reads and decodes without waiting, from any source of bytes; [`PackageSource`] does so from a file for
-//! threads that wait. [`TileSource::load`] is a pure function of the tile id and `&self`, so that a worker thread may call
-//! it; [`TileStore`] holds what is loaded and answers what is known.
+//! threads that wait. [`TileCatalog`] is all that choosing tiles asks of them. [`TileSource::load`] is a pure function of the
+//! tile id and `&self`, so that a worker thread may call it; [`TileStore`] holds what is loaded and answers what is known.
 
 mod geometry;
 mod ground_mesh;
@@ -28,6 +28,6 @@ pub use self::{
         BadRoad, Bed, GroundLine, NearHeights, PlanLine, RoadEnd, RoadList, RoadSegment,
         RoadSegments, RoadVolume, RoadVolumes, Side, TileLines,
     },
-    source::{LoadTileError, TileSource},
+    source::{LoadTileError, MapPackage, TileCatalog, TileSource},
     store::TileStore,
 };

@@ -3,10 +3,10 @@ use std::path::Path;
 use corniche_geom::{Frame, TileId};
 use corniche_tileset::{FilePackage, FileSource, Manifest, OpenError};
 
-use super::{LoadTileError, PackageTiles, TileGeometry, TileSource};
+use super::{LoadTileError, MapPackage, PackageTiles, TileCatalog, TileGeometry, TileSource};
 use crate::options::RoadMethod;
 
-/// A package on disk as a source of tiles, for threads that wait.
+/// A package in a file. Threads wait for its tiles.
 #[derive(Debug)]
 pub struct PackageSource(PackageTiles<FileSource>);
 
@@ -29,15 +29,9 @@ impl PackageSource {
     pub fn for_method(self, method: RoadMethod) -> Self {
         Self(self.0.for_method(method))
     }
-
-    /// The package's table of contents.
-    #[must_use]
-    pub fn manifest(&self) -> &Manifest {
-        self.0.manifest()
-    }
 }
 
-impl TileSource for PackageSource {
+impl TileCatalog for PackageSource {
     fn frame(&self) -> &Frame {
         self.0.frame()
     }
@@ -45,8 +39,16 @@ impl TileSource for PackageSource {
     fn exists(&self, id: TileId) -> bool {
         self.0.exists(id)
     }
+}
 
+impl TileSource for PackageSource {
     fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
         pollster::block_on(self.0.load(id))
+    }
+}
+
+impl MapPackage for PackageSource {
+    fn manifest(&self) -> &Manifest {
+        self.0.manifest()
     }
 }

@@ -3,7 +3,7 @@ use std::collections::BTreeSet;
 use corniche_geom::{Frame, TileId};
 use corniche_tileset::{ByteSource, Manifest, OpenError, Package, Sections};
 
-use super::{LoadTileError, PlanScale, TileGeometry, TileLines};
+use super::{LoadTileError, PlanScale, TileCatalog, TileGeometry, TileLines};
 use crate::options::RoadMethod;
 
 /// A package as tiles, wherever its bytes come from: it never waits by itself. [`PackageSource`](super::PackageSource) is
@@ -50,18 +50,6 @@ impl<S: ByteSource> PackageTiles<S> {
         self.package.manifest()
     }
 
-    /// The grid.
-    #[must_use]
-    pub fn frame(&self) -> &Frame {
-        &self.manifest().frame
-    }
-
-    /// Whether the tile or anything beneath it exists.
-    #[must_use]
-    pub fn exists(&self, id: TileId) -> bool {
-        self.tiles.contains(&id)
-    }
-
     /// Reads and decodes a tile that exists.
     ///
     /// # Errors
@@ -85,5 +73,15 @@ impl<S: ByteSource> PackageTiles<S> {
                 Ok(TileGeometry::assemble(id, None, &TileLines::default(), self.frame(), quantum_m))
             }
         }
+    }
+}
+
+impl<S: ByteSource> TileCatalog for PackageTiles<S> {
+    fn frame(&self) -> &Frame {
+        &self.manifest().frame
+    }
+
+    fn exists(&self, id: TileId) -> bool {
+        self.tiles.contains(&id)
     }
 }

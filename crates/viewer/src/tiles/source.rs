@@ -1,4 +1,5 @@
 use corniche_geom::{Frame, TileId};
+use corniche_tileset::Manifest;
 
 use super::TileGeometry;
 
@@ -12,15 +13,26 @@ pub struct LoadTileError {
     pub source: Box<dyn std::error::Error + Send + Sync>,
 }
 
-/// Where tiles come from.
-pub trait TileSource {
+/// Which tiles there are. This is all that choosing tiles asks of a package; the answers are there at once.
+pub trait TileCatalog {
     /// The grid.
     fn frame(&self) -> &Frame;
     /// Whether the tile or anything beneath it exists.
     fn exists(&self, id: TileId) -> bool;
+}
+
+/// Tiles for threads that may wait for them. Where nothing may wait, as in a browser, [`PackageTiles`](super::PackageTiles)
+/// is a [`TileCatalog`] whose tiles are awaited.
+pub trait TileSource: TileCatalog {
     /// Reads and decodes a tile that exists.
     ///
     /// # Errors
     /// When it cannot be read or is damaged.
     fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError>;
+}
+
+/// A package as pictures, flights and windows ask for it: its tiles and its table of contents.
+pub trait MapPackage: TileSource {
+    /// The package's table of contents.
+    fn manifest(&self) -> &Manifest;
 }

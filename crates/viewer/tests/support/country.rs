@@ -4,7 +4,7 @@ use corniche_drape::{OwnedBorders, clip, clip_closed, drape, extrude};
 use corniche_geom::{Frame, HeightGrid, NodeIndex, Polyline, TILE_NODES, TileId};
 use corniche_tileset::{GeoRoad, SvRoad, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface, TinSpec, normals, triangulate};
-use corniche_viewer::tiles::{LoadTileError, PlanScale, TileGeometry, TileSource};
+use corniche_viewer::tiles::{LoadTileError, PlanScale, TileCatalog, TileGeometry, TileSource};
 
 use super::{class, scene::Widths};
 
@@ -129,7 +129,7 @@ impl Country {
     }
 }
 
-impl TileSource for Country {
+impl TileCatalog for Country {
     fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -137,7 +137,9 @@ impl TileSource for Country {
     fn exists(&self, id: TileId) -> bool {
         id.z() <= MAX_LEVEL
     }
+}
 
+impl TileSource for Country {
     fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
         let margin_m = width_margin_m(&self.frame, id.z());
         TileGeometry::from_payload(

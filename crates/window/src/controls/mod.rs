@@ -17,7 +17,7 @@
 //! click acts when the button goes down for the second time. One may tilt to 85°, there usually to 60°. The ground
 //! grabbed is on the terrain, in a drag as in a zoom; the middle button is our own.
 //!
-//! Nothing here knows a window, a tile or a clock: times are handed in, ground is asked of a [`Ground`]. All positions
+//! Nothing here knows a window, a tile or a clock: times are handed in, ground is asked of a [`KnownGround`]. All positions
 //! are in world space: the working CRS, heights times the vertical scale.
 
 mod flying;
@@ -28,5 +28,5 @@ mod view;
 pub use self::{
     input::{Button, Input, Key, KeyState, Modifiers},
     navigator::{Inertia, Limits, Mode, Navigator},
-    view::{Ground, View},
+    view::{KnownGround, View},
 };

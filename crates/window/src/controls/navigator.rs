@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use super::{
     flying::Flying,
     input::{Button, Input, Key, KeyState, Modifiers},
-    view::{Ground, View},
+    view::{KnownGround, View},
 };
 
 /// Heading per point of a drag, `MapLibre`'s; a point is a pixel of a screen that is not a fine one.
@@ -199,7 +199,7 @@ impl Navigator {
 
     /// All heights become `factor` times what they were: the middle of the picture keeps its place. `ground` is the
     /// ground before.
-    pub fn rescale_heights(&mut self, factor: f64, ground: &dyn Ground) {
+    pub fn rescale_heights(&mut self, factor: f64, ground: &dyn KnownGround) {
         let pivot = self.middle(ground);
         self.view.eye_in_world.z += pivot.z * (factor - 1.0);
         self.home.eye_in_world.z += ground.base_height() * (factor - 1.0);
@@ -221,7 +221,7 @@ impl Navigator {
     }
 
     /// Takes an input at a time, in seconds of any clock that does not run back.
-    pub fn handle(&mut self, input: &Input, now_s: f64, ground: &dyn Ground) {
+    pub fn handle(&mut self, input: &Input, now_s: f64, ground: &dyn KnownGround) {
         let was_moving = self.is_moving();
         match *input {
             Input::Press { button, at_px, modifiers } => {
@@ -285,7 +285,7 @@ impl Navigator {
     }
 
     /// Lets time pass.
-    pub fn advance(&mut self, now_s: f64, ground: &dyn Ground) {
+    pub fn advance(&mut self, now_s: f64, ground: &dyn KnownGround) {
         let dt_s = (now_s - self.now_s).clamp(0.0, MAX_STEP_S);
         self.now_s = now_s;
         self.advanced_s = now_s;
@@ -312,7 +312,12 @@ impl Navigator {
         self.settle(ground);
     }
 
-    fn begin(&self, button: Button, modifiers: Modifiers, ground: &dyn Ground) -> Option<Gesture> {
+    fn begin(
+        &self,
+        button: Button,
+        modifiers: Modifiers,
+        ground: &dyn KnownGround,
+    ) -> Option<Gesture> {
         if self.mode == Mode::Fly {
             return Some(Gesture::Look { button });
         }
@@ -327,7 +332,7 @@ impl Navigator {
         }
     }
 
-    fn drag(&mut self, at_px: DVec2, now_s: f64, ground: &dyn Ground) {
+    fn drag(&mut self, at_px: DVec2, now_s: f64, ground: &dyn KnownGround) {
         let moved_points = (at_px - self.cursor_px) / self.pixels_per_point;
         self.cursor_px = at_px;
         let Orientation { heading_deg, pitch_deg } = self.view.orientation;
@@ -356,7 +361,7 @@ impl Navigator {
     /// Brings what was grabbed under the cursor. Ground in the way lifts the eye, which takes the grabbed point from
     /// under the cursor, so the plan is solved again. Where the ground behind the eye rises as steeply as the cursor's
     /// ray, that has no end; then the map stays where it is, as it does when thrown beyond the horizon.
-    fn pan_to(&mut self, anchor: DVec3, ground: &dyn Ground) {
+    fn pan_to(&mut self, anchor: DVec3, ground: &dyn KnownGround) {
         let far_m = self.limits.far_m();
         let mut view = self.view;
         for _ in 0..PAN_SOLUTIONS {
@@ -375,7 +380,7 @@ impl Navigator {
     }
 
     /// Turns about a point, as far as the eye stays above the ground.
-    fn turn(&mut self, pivot: DVec3, heading_deg: f64, pitch_deg: f64, ground: &dyn Ground) {
+    fn turn(&mut self, pivot: DVec3, heading_deg: f64, pitch_deg: f64, ground: &dyn KnownGround) {
         let pitch_deg = pitch_deg.clamp(0.0, self.limits.max_pitch_deg);
         let with = |pitch_deg| {
             let heading_deg = half_turn(heading_deg);
@@ -410,14 +415,14 @@ impl Navigator {
         }
     }
 
-    fn zoom(&mut self, levels: f64, at_px: DVec2, ground: &dyn Ground) {
+    fn zoom(&mut self, levels: f64, at_px: DVec2, ground: &dyn KnownGround) {
         self.glide_m_per_s = DVec3::ZERO;
         self.returning = None;
         self.pending.pivot = self.ground_at(at_px, ground);
         self.pending.zoom_levels += levels;
     }
 
-    fn key(&mut self, key: Key, state: KeyState, modifiers: Modifiers, ground: &dyn Ground) {
+    fn key(&mut self, key: Key, state: KeyState, modifiers: Modifiers, ground: &dyn KnownGround) {
         if state == KeyState::Released {
             self.flying.release(key);
             return;
@@ -446,7 +451,7 @@ impl Navigator {
         }
     }
 
-    fn do_pending(&mut self, share: f64, ground: &dyn Ground) {
+    fn do_pending(&mut self, share: f64, ground: &dyn KnownGround) {
         let Pending { pan_px, heading_deg, pitch_deg, zoom_levels, pivot } = self.pending;
         let left = Pending {
             pan_px: pan_px * (1.0 - share),
@@ -482,7 +487,7 @@ impl Navigator {
     }
 
     /// Zooms in until the eye would be too low or too near, out until it is too far.
-    fn zoom_by(&mut self, pivot: DVec3, levels: f64, ground: &dyn Ground) {
+    fn zoom_by(&mut self, pivot: DVec3, levels: f64, ground: &dyn KnownGround) {
         let zoomed = self.view.zoomed_at(pivot, (-levels).exp2());
         let distance_m = zoomed.eye_in_world.distance(pivot);
         let is_too_low = levels > 0.0
@@ -521,7 +526,7 @@ impl Navigator {
     }
 
     /// Keeps the eye over the data and above the ground, and the focus with it.
-    fn settle(&mut self, ground: &dyn Ground) {
+    fn settle(&mut self, ground: &dyn KnownGround) {
         let Bounds { min_x, min_y, max_x, max_y } = self.limits.data;
         let stray_m = (max_x - min_x).max(max_y - min_y).max(100.0);
         let eye = &mut self.view.eye_in_world;
@@ -546,12 +551,12 @@ impl Navigator {
         DVec2::new(width / 2.0, height / 2.0)
     }
 
-    fn ground_at(&self, at_px: DVec2, ground: &dyn Ground) -> Option<DVec3> {
+    fn ground_at(&self, at_px: DVec2, ground: &dyn KnownGround) -> Option<DVec3> {
         self.view.ground_at(at_px, self.size_px, self.limits.far_m(), ground)
     }
 
     /// The ground in the middle of the picture; over the horizon, what is as far away as the focus.
-    fn middle(&self, ground: &dyn Ground) -> DVec3 {
+    fn middle(&self, ground: &dyn KnownGround) -> DVec3 {
         self.ground_at(self.middle_px(), ground).unwrap_or_else(|| {
             self.view.eye_in_world - self.view.world_from_view().z_axis * self.view.focus_m
         })

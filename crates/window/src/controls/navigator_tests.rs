@@ -15,7 +15,7 @@ impl Hills {
     }
 }
 
-impl Ground for Hills {
+impl KnownGround for Hills {
     /// Steps of a hundredth of the way, then halving.
     fn hit(&self, eye: DVec3, ray: DVec3) -> Option<DVec3> {
         let above = |depth: f64| {
@@ -208,7 +208,7 @@ fn the_eye_is_lifted_over_a_hill_and_the_grabbed_ground_stays() {
 /// Rises to the east for ever, one in three, through the ground beneath that navigator.
 struct Slope;
 
-impl Ground for Slope {
+impl KnownGround for Slope {
     fn hit(&self, eye: DVec3, ray: DVec3) -> Option<DVec3> {
         let depth = (self.height([eye.x, eye.y])? - eye.z) / (ray.z - ray.x / 3.0);
         (depth > 0.0).then(|| eye + ray * depth)
@@ -242,7 +242,7 @@ fn tilting_ends_at_the_ground_and_what_is_turned_about_stays() {
 /// No ground anywhere.
 struct Void;
 
-impl Ground for Void {
+impl KnownGround for Void {
     fn hit(&self, _: DVec3, _: DVec3) -> Option<DVec3> {
         None
     }

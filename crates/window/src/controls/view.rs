@@ -5,7 +5,7 @@ use corniche_viewer::{
 use glam::{DMat3, DVec2, DVec3};
 
 /// The ground as far as it is known.
-pub trait Ground {
+pub trait KnownGround {
     /// The first ground along a ray.
     fn hit(&self, eye_in_world: DVec3, ray_in_world: DVec3) -> Option<DVec3>;
     /// Height of the ground at a place in plan, world metres.
@@ -54,7 +54,7 @@ impl View {
         at_px: DVec2,
         size_px: [u32; 2],
         most_m: f64,
-        ground: &dyn Ground,
+        ground: &dyn KnownGround,
     ) -> Option<DVec3> {
         let ray = self.camera(size_px).ray_in_world(at_px);
         ground
@@ -101,7 +101,7 @@ impl View {
 
     /// How far the eye is beneath the least height above the ground; not above 0 where it is high enough.
     #[must_use]
-    pub fn lacks_m(&self, clearance_m: f64, ground: &dyn Ground) -> f64 {
+    pub fn lacks_m(&self, clearance_m: f64, ground: &dyn KnownGround) -> f64 {
         let eye = self.eye_in_world;
         ground
             .height([eye.x, eye.y])
@@ -110,7 +110,7 @@ impl View {
 
     /// The same view with the focus that its height above the ground suggests, as a flight takes it too.
     #[must_use]
-    pub fn refocused(&self, ground: &dyn Ground) -> Self {
+    pub fn refocused(&self, ground: &dyn KnownGround) -> Self {
         let eye = self.eye_in_world;
         let below_m = ground.height([eye.x, eye.y]).unwrap_or_else(|| ground.base_height());
         let focus_m = eye_height::focus_m(eye.z - below_m, self.orientation.pitch_deg);

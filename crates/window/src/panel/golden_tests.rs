@@ -41,7 +41,7 @@ fn painted(canvas: &mut Canvas, size_px: [u32; 2], settings: &mut Settings) -> R
             ..RawInput::default()
         };
         output = ctx.run_ui(input, |ui| {
-            show(ui, settings, &told.facts(), drew.pictures);
+            show(ui, settings, &told.content(), drew.pictures);
         });
         canvas.take_textures(std::mem::take(&mut output.textures_delta));
     }

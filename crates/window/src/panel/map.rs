@@ -2,19 +2,19 @@ use egui::{ComboBox, Ui};
 
 use super::slide::slide;
 use crate::{
-    facts::Facts,
+    panel_content::PanelContent,
     settings::{Refinement, Settings, range},
 };
 
 /// Style, heights, detail.
-pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, facts: &Facts<'_>) {
+pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, content: &PanelContent<'_>) {
     ui.horizontal(|ui| {
         ui.label("Style");
-        let chosen = facts.style_names.get(settings.style).map_or("", String::as_str);
+        let chosen = content.style_names.get(settings.style).map_or("", String::as_str);
         ComboBox::from_id_salt("style").width(180.0).truncate().selected_text(chosen).show_ui(
             ui,
             |ui| {
-                for (place, name) in facts.style_names.iter().enumerate() {
+                for (place, name) in content.style_names.iter().enumerate() {
                     ui.selectable_value(&mut settings.style, place, name);
                 }
             },

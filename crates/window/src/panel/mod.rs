@@ -5,12 +5,13 @@ mod performance;
 mod record;
 mod roads;
 mod slide;
+mod status_line;
 
-use egui::{Color32, Rect, TextureId, Ui, pos2};
+use egui::{Color32, Rect, Ui, pos2};
 
+use self::status_line::{PanelRoom, status_line};
 use crate::{
-    facts::{Command, Facts},
-    hud,
+    command::Command, map_pictures::Pictures, overlay, panel_content::PanelContent,
     settings::Settings,
 };
 
@@ -18,24 +19,6 @@ use crate::{
 const WIDTH: f32 = 300.0;
 /// A window without so much room beside the panel shows the map instead.
 const LEAST_MAP_WIDTH: f32 = 140.0;
-
-/// The pictures of the map, as large as the window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Pictures {
-    /// One.
-    One(TextureId),
-    /// Left and right of the divider.
-    Two([TextureId; 2]),
-}
-
-/// Whether the panel, if it is to be shown, can be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum PanelRoom {
-    /// It can.
-    Enough,
-    /// The window is too narrow.
-    TooLittle,
-}
 
 /// What came of a frame.
 #[derive(Default)]
@@ -68,7 +51,7 @@ pub(crate) fn width(window_width: f32) -> f32 {
 pub(crate) fn show(
     ui: &mut Ui,
     settings: &mut Settings,
-    facts: &Facts<'_>,
+    content: &PanelContent<'_>,
     pictures: Pictures,
 ) -> Answer {
     let mut answer = Answer::default();
@@ -83,18 +66,18 @@ pub(crate) fn show(
         .resizable(false)
         .show_separator_line(false)
         .frame(frame(ui).inner_margin(egui::Margin::symmetric(8, 3)))
-        .show(ui, |ui| hud::status_line(ui, facts, room));
+        .show(ui, |ui| status_line(ui, content, room));
     answer.occupied.push(status.response.rect);
     if settings.is_panel_open && room == PanelRoom::Enough {
         let panel = egui::Panel::right("panel")
             .resizable(false)
             .exact_size(WIDTH)
             .frame(frame(ui).inner_margin(egui::Margin::same(8)))
-            .show(ui, |ui| sections(ui, settings, facts, &mut answer.commands));
+            .show(ui, |ui| sections(ui, settings, content, &mut answer.commands));
         answer.occupied.push(panel.response.rect);
     }
     let free = ui.available_rect_before_wrap();
-    let overlay = hud::overlay(ui, free, settings, facts);
+    let overlay = overlay::overlay(ui, free, settings, content);
     answer.commands.extend(overlay.commands);
     answer.occupied.extend(overlay.occupied);
     answer
@@ -104,7 +87,12 @@ fn frame(ui: &Ui) -> egui::Frame {
     egui::Frame::new().fill(ui.visuals().panel_fill.gamma_multiply(0.96))
 }
 
-fn sections(ui: &mut Ui, settings: &mut Settings, facts: &Facts<'_>, commands: &mut Vec<Command>) {
+fn sections(
+    ui: &mut Ui,
+    settings: &mut Settings,
+    content: &PanelContent<'_>,
+    commands: &mut Vec<Command>,
+) {
     ui.horizontal(|ui| {
         ui.heading("Corniche");
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -113,11 +101,11 @@ fn sections(ui: &mut Ui, settings: &mut Settings, facts: &Facts<'_>, commands: &
     });
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         section(ui, "Roads", |ui| roads::show(ui, settings));
-        section(ui, "Classes", |ui| roads::classes(ui, settings, facts));
-        section(ui, "Map", |ui| map::show(ui, settings, facts));
-        section(ui, "Camera", |ui| record::camera(ui, facts, commands));
-        section(ui, "Record", |ui| record::show(ui, facts, commands));
-        section(ui, "Performance", |ui| performance::show(ui, facts));
+        section(ui, "Classes", |ui| roads::classes(ui, settings, content));
+        section(ui, "Map", |ui| map::show(ui, settings, content));
+        section(ui, "Camera", |ui| record::camera(ui, content, commands));
+        section(ui, "Record", |ui| record::show(ui, content, commands));
+        section(ui, "Performance", |ui| performance::show(ui, content));
     });
 }
 

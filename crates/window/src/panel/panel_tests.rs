@@ -5,14 +5,14 @@ use corniche_viewer::{
     flight::{Pose, WorkingCrs},
     gpu::PassTimes,
 };
-use egui::{Event, PointerButton, RawInput, Shape, vec2};
+use egui::{Event, PointerButton, RawInput, Shape, TextureId, vec2};
 
 use super::*;
 use crate::{
     controls::Mode,
-    facts::GroundPoint,
     frame_times::FrameTimes,
     notices::Notice,
+    panel_content::GroundPoint,
     settings::{Compare, usual},
 };
 
@@ -48,9 +48,9 @@ impl Told {
         }
     }
 
-    fn facts(&self) -> Facts<'_> {
+    fn content(&self) -> PanelContent<'_> {
         let orientation = Orientation { heading_deg: 123.0, pitch_deg: 55.0 };
-        Facts {
+        PanelContent {
             adapter: "llvmpipe (LLVM 15.0.6, 256 bits) (vulkan)",
             attribution: &self.attribution,
             crs: WorkingCrs { crs: "EPSG:32632", metres_per_unit: [1.0, 1.0] },
@@ -82,7 +82,7 @@ impl Told {
 fn lay_out(
     size: [f32; 2],
     settings: &mut Settings,
-    facts: &Facts<'_>,
+    content: &PanelContent<'_>,
     passes: &[&[Event]],
 ) -> (Vec<(String, Rect, Rect)>, Answer) {
     let ctx = egui::Context::default();
@@ -97,7 +97,7 @@ fn lay_out(
         };
         let mut commands = Vec::new();
         let mut output = ctx.run_ui(input, |ui| {
-            answer = show(ui, settings, facts, Pictures::One(TextureId::User(0)));
+            answer = show(ui, settings, content, Pictures::One(TextureId::User(0)));
             commands.append(&mut answer.commands);
         });
         answer.commands = commands;
@@ -140,7 +140,7 @@ fn states() -> Vec<(&'static str, Settings)> {
 fn no_text_is_cut_off_or_lies_on_another() {
     let told = Told::new();
     for (name, mut settings) in states() {
-        let (texts, _) = lay_out([1280.0, 1000.0], &mut settings, &told.facts(), &[&[], &[]]);
+        let (texts, _) = lay_out([1280.0, 1000.0], &mut settings, &told.content(), &[&[], &[]]);
         assert!(texts.len() > 10, "{name}: {texts:?}");
         for (place, (words, rect, clip)) in texts.iter().enumerate() {
             assert!(clip.expand(1.0).contains_rect(*rect), "{name}: {words:?} is cut off");
@@ -156,11 +156,11 @@ fn no_text_is_cut_off_or_lies_on_another() {
 fn the_panel_is_as_wide_as_it_says_with_everything_open() {
     let told = Told::new();
     let size = [1280.0, 1200.0];
-    let (texts, _) = lay_out(size, &mut usual(), &told.facts(), &[&[], &[]]);
+    let (texts, _) = lay_out(size, &mut usual(), &told.content(), &[&[], &[]]);
     let (_, header, _) = texts.iter().find(|(text, ..)| text == "Classes").unwrap();
     let [over, press, release] = click(header.center());
     let passes: [&[Event]; 6] = [&[], &over, &press, &release, &[], &[]];
-    let (texts, answer) = lay_out(size, &mut usual(), &told.facts(), &passes);
+    let (texts, answer) = lay_out(size, &mut usual(), &told.content(), &passes);
     let left = 1280.0 - WIDTH;
     assert!(texts.iter().any(|(text, ..)| text == "FRC 8"), "the classes are shown");
     assert!(
@@ -182,7 +182,7 @@ fn credits_are_in_every_window_however_small() {
     let told = Told::new();
     for (name, mut settings) in states() {
         for size in [[1280.0, 800.0], [640.0, 480.0], [400.0, 300.0]] {
-            let (texts, _) = lay_out(size, &mut settings, &told.facts(), &[&[], &[]]);
+            let (texts, _) = lay_out(size, &mut settings, &told.content(), &[&[], &[]]);
             let credits = texts.iter().find(|(words, ..)| words.contains("© OpenStreetMap"));
             let (_, rect, clip) = credits.unwrap_or_else(|| panic!("{name} {size:?}: {texts:?}"));
             let window = Rect::from_min_size(egui::Pos2::ZERO, size.into());
@@ -200,7 +200,7 @@ fn in_small_windows_nothing_on_the_map_lies_on_anything_else() {
     for (name, mut settings) in states() {
         for size in [[640.0, 480.0], [500.0, 400.0], [450.0, 300.0], [300.0, 200.0], [230.0, 160.0]]
         {
-            let (texts, answer) = lay_out(size, &mut settings, &told.facts(), &[&[], &[]]);
+            let (texts, answer) = lay_out(size, &mut settings, &told.content(), &[&[], &[]]);
             let seen: Vec<(&str, Rect)> = texts
                 .iter()
                 .map(|(words, rect, clip)| (&words[..], rect.intersect(*clip)))
@@ -228,7 +228,7 @@ fn in_small_windows_nothing_on_the_map_lies_on_anything_else() {
 fn a_window_too_narrow_for_the_panel_says_so() {
     let told = Told::new();
     let has = |size, words: &str| {
-        let (texts, _) = lay_out(size, &mut usual(), &told.facts(), &[&[], &[]]);
+        let (texts, _) = lay_out(size, &mut usual(), &told.content(), &[&[], &[]]);
         texts.iter().any(|(text, ..)| text == words)
     };
     let words = "a wider window shows the panel";
@@ -240,10 +240,10 @@ fn a_window_too_narrow_for_the_panel_says_so() {
 fn the_panel_pushes_the_divider_aside() {
     let told = Told::new();
     let mut settings = Settings { compare: Compare::Split, divider_share: 0.9, ..usual() };
-    lay_out([1000.0, 700.0], &mut settings, &told.facts(), &[&[]]);
+    lay_out([1000.0, 700.0], &mut settings, &told.content(), &[&[]]);
     assert!((settings.divider_share - (700.0 - 24.0) / 1000.0).abs() < 1e-3);
     settings = Settings { divider_share: 0.9, is_panel_open: false, ..settings };
-    lay_out([1000.0, 700.0], &mut settings, &told.facts(), &[&[]]);
+    lay_out([1000.0, 700.0], &mut settings, &told.content(), &[&[]]);
     assert!((settings.divider_share - 0.9).abs() < 1e-3);
 }
 
@@ -251,23 +251,23 @@ fn the_panel_pushes_the_divider_aside() {
 fn a_notice_of_several_lines_keeps_its_columns() {
     let mut told = Told::new();
     told.notices = vec![Notice { words: "1 | wide = x\n  |        ^".into(), until_s: None }];
-    let (texts, _) = lay_out([1000.0, 700.0], &mut usual(), &told.facts(), &[&[]]);
+    let (texts, _) = lay_out([1000.0, 700.0], &mut usual(), &told.content(), &[&[]]);
     assert!(texts.iter().any(|(words, ..)| words.starts_with("1 | wide")), "{texts:?}");
 }
 
 #[test]
 fn a_tilted_scale_says_where_it_holds() {
     let told = Told::new();
-    let has = |facts: &Facts<'_>, words: &str| {
-        let (texts, _) = lay_out([1000.0, 700.0], &mut usual(), facts, &[&[]]);
+    let has = |content: &PanelContent<'_>, words: &str| {
+        let (texts, _) = lay_out([1000.0, 700.0], &mut usual(), content, &[&[]]);
         texts.iter().any(|(text, ..)| text == words)
     };
-    let mut facts = told.facts();
-    assert!(has(&facts, "500 m in the middle"));
-    facts.pose.orientation.pitch_deg = 0.0;
-    assert!(has(&facts, "500 m"));
-    facts.metres_per_point = None;
-    assert!(!has(&facts, "500 m"));
+    let mut content = told.content();
+    assert!(has(&content, "500 m in the middle"));
+    content.pose.orientation.pitch_deg = 0.0;
+    assert!(has(&content, "500 m"));
+    content.metres_per_point = None;
+    assert!(!has(&content, "500 m"));
 }
 
 fn click(at: egui::Pos2) -> [Vec<Event>; 3] {
@@ -286,7 +286,7 @@ fn a_click_on_the_compass_turns_north_up() {
     let mut settings = Settings { is_panel_open: false, ..usual() };
     let [over, press, release] = click(pos2(1000.0 - 34.0, 34.0));
     let (_, answer) =
-        lay_out([1000.0, 700.0], &mut settings, &told.facts(), &[&over, &press, &release]);
+        lay_out([1000.0, 700.0], &mut settings, &told.content(), &[&over, &press, &release]);
     assert_eq!(answer.commands, [Command::NorthUp]);
 }
 
@@ -295,15 +295,15 @@ fn buttons_ask_for_what_they_say() {
     let told = Told::new();
     let size = [1280.0, 1000.0];
     for (words, command) in [
-        ("Map (P)", Command::Take(crate::facts::Shot::Map)),
+        ("Map (P)", Command::Take(crate::command::Shot::Map)),
         ("Stop and save", Command::StopRecording),
         ("Fly (F)", Command::ToggleFly),
     ] {
-        let (texts, _) = lay_out(size, &mut usual(), &told.facts(), &[&[], &[]]);
+        let (texts, _) = lay_out(size, &mut usual(), &told.content(), &[&[], &[]]);
         let (_, rect, _) = texts.iter().find(|(text, ..)| text == words).unwrap();
         let [over, press, release] = click(rect.center());
         let (_, answer) =
-            lay_out(size, &mut usual(), &told.facts(), &[&[], &over, &press, &release]);
+            lay_out(size, &mut usual(), &told.content(), &[&[], &over, &press, &release]);
         assert_eq!(answer.commands, [command], "{words}");
     }
 }
@@ -311,7 +311,7 @@ fn buttons_ask_for_what_they_say() {
 #[test]
 fn the_mouse_is_the_maps_beside_the_panel_and_only_there() {
     let told = Told::new();
-    let (_, answer) = lay_out([1280.0, 800.0], &mut usual(), &told.facts(), &[&[], &[]]);
+    let (_, answer) = lay_out([1280.0, 800.0], &mut usual(), &told.content(), &[&[], &[]]);
     let is_free = |x, y| !answer.occupied.iter().any(|rect| rect.contains(pos2(x, y)));
     assert!(is_free(500.0, 400.0));
     assert!(!is_free(1200.0, 400.0), "panel");
@@ -326,11 +326,11 @@ fn the_divider_follows_the_mouse_and_stays_in_the_window() {
     let at = pos2(500.0, 400.0);
     let [over, press, _] = click(at);
     let moved = [Event::PointerMoved(at + vec2(-250.0, 0.0))];
-    lay_out([1000.0, 700.0], &mut settings, &told.facts(), &[&[], &over, &press, &moved]);
+    lay_out([1000.0, 700.0], &mut settings, &told.content(), &[&[], &over, &press, &moved]);
     assert!((settings.divider_share - 0.25).abs() < 0.01, "{}", settings.divider_share);
     let out = [Event::PointerMoved(pos2(-50.0, 400.0))];
     let [over, press, _] = click(pos2(250.0, 400.0));
-    lay_out([1000.0, 700.0], &mut settings, &told.facts(), &[&[], &over, &press, &out]);
+    lay_out([1000.0, 700.0], &mut settings, &told.content(), &[&[], &over, &press, &out]);
     assert!((settings.divider_share - 0.05).abs() < 0.01, "{}", settings.divider_share);
 }
 
@@ -345,7 +345,7 @@ fn what_nobody_moves_stays_as_it_was_given() {
             ..usual()
         };
         let mut settings = given.clone();
-        lay_out([1000.0, 1400.0], &mut settings, &told.facts(), &[&[], &[]]);
+        lay_out([1000.0, 1400.0], &mut settings, &told.content(), &[&[], &[]]);
         assert_eq!(settings, given);
     }
 }

@@ -1,13 +1,13 @@
 use egui::{Color32, Grid, Pos2, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::{facts::Facts, frame_times::FrameTimes, words};
+use crate::{formatting, frame_times::FrameTimes, panel_content::PanelContent};
 
 /// The graph reaches at least this high.
 const GRAPH_MS: f64 = 33.3;
 
 /// What a frame costs.
-pub(crate) fn show(ui: &mut Ui, facts: &Facts<'_>) {
-    let times = facts.frame_times;
+pub(crate) fn show(ui: &mut Ui, content: &PanelContent<'_>) {
+    let times = content.frame_times;
     let ms = |value: Option<f64>| value.map_or("–".to_owned(), |ms| format!("{ms:.1}"));
     ui.label(format!(
         "frame {} ms, p50 {} ms, p95 {} ms",
@@ -16,40 +16,43 @@ pub(crate) fn show(ui: &mut Ui, facts: &Facts<'_>) {
         ms(times.quantile_ms(0.95))
     ));
     graph(ui, times);
-    if facts.passes.is_empty() {
+    if content.passes.is_empty() {
         ui.label("no pass timed yet");
     } else {
-        passes(ui, facts);
+        passes(ui, content);
     }
     Grid::new("counts").num_columns(2).spacing(vec2(16.0, 2.0)).show(ui, |ui| {
         let tiles = format!(
             "{} drawn, {} missing, {} loading",
-            facts.tiles_drawn, facts.tiles_missing, facts.tiles_loading
+            content.tiles_drawn, content.tiles_missing, content.tiles_loading
         );
-        let [used, allowed] = facts.gpu_bytes;
+        let [used, allowed] = content.gpu_bytes;
         for (name, value) in [
             ("tiles", tiles),
-            ("triangles", words::grouped(facts.triangles)),
-            ("segments", words::grouped(facts.segments)),
-            ("GPU memory", format!("{} of {}", words::mebibytes(used), words::mebibytes(allowed))),
+            ("triangles", formatting::grouped(content.triangles)),
+            ("segments", formatting::grouped(content.segments)),
+            (
+                "GPU memory",
+                format!("{} of {}", formatting::mebibytes(used), formatting::mebibytes(allowed)),
+            ),
         ] {
             ui.label(name);
             ui.label(value);
             ui.end_row();
         }
     });
-    let words = format!("drawn by {}", facts.adapter);
+    let words = format!("drawn by {}", content.adapter);
     ui.add(egui::Label::new(egui::RichText::new(words).small()).wrap());
 }
 
-fn passes(ui: &mut Ui, facts: &Facts<'_>) {
+fn passes(ui: &mut Ui, content: &PanelContent<'_>) {
     Grid::new("passes").num_columns(5).min_col_width(34.0).spacing(vec2(8.0, 2.0)).show(ui, |ui| {
         for heading in ["GPU ms", "terrain", "roads", "composite", "sum"] {
             ui.small(heading);
         }
         ui.end_row();
-        for (method, times) in facts.passes {
-            ui.label(words::method(*method));
+        for (method, times) in content.passes {
+            ui.label(formatting::method(*method));
             let parts = [times.terrain_ms, times.roads_ms, times.composite_ms];
             for ms in parts.into_iter().chain([parts.iter().sum()]) {
                 let digits = if ms < 100.0 { 2 } else { 0 };

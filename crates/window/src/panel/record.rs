@@ -1,14 +1,15 @@
 use egui::Ui;
 
 use crate::{
+    command::{Command, Shot},
     controls::Mode,
-    facts::{Command, Facts, Shot},
+    panel_content::PanelContent,
 };
 
 /// What moves the camera besides the mouse.
-pub(crate) fn camera(ui: &mut Ui, facts: &Facts<'_>, commands: &mut Vec<Command>) {
+pub(crate) fn camera(ui: &mut Ui, content: &PanelContent<'_>, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let fly = if facts.mode == Mode::Fly { "Back to map (F)" } else { "Fly (F)" };
+        let fly = if content.mode == Mode::Fly { "Back to map (F)" } else { "Fly (F)" };
         for (words, command) in [
             ("North up (N)", Command::NorthUp),
             ("Reset (R)", Command::Reset),
@@ -22,7 +23,7 @@ pub(crate) fn camera(ui: &mut Ui, facts: &Facts<'_>, commands: &mut Vec<Command>
 }
 
 /// Pictures, and the way of the camera.
-pub(crate) fn show(ui: &mut Ui, facts: &Facts<'_>, commands: &mut Vec<Command>) {
+pub(crate) fn show(ui: &mut Ui, content: &PanelContent<'_>, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         for (words, shot) in [("Map (P)", Shot::Map), ("Window (Shift P)", Shot::Window)] {
             if ui.button(words).on_hover_text("Saves a picture").clicked() {
@@ -30,7 +31,7 @@ pub(crate) fn show(ui: &mut Ui, facts: &Facts<'_>, commands: &mut Vec<Command>) 
             }
         }
     });
-    ui.horizontal(|ui| match facts.recording_s {
+    ui.horizontal(|ui| match content.recording_s {
         None => {
             let start = ui.button("Record the camera's way");
             if start.on_hover_text("For corniche fly --path (key C)").clicked() {

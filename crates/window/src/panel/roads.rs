@@ -4,7 +4,7 @@ use egui::{Color32, ComboBox, Grid, Ui, vec2};
 
 use super::slide::slide;
 use crate::{
-    facts::Facts,
+    panel_content::PanelContent,
     settings::{Compare, Settings, range},
 };
 
@@ -74,10 +74,10 @@ fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, all: &[(T
 }
 
 /// Which classes are shown, and how wide.
-pub(crate) fn classes(ui: &mut Ui, settings: &mut Settings, facts: &Facts<'_>) {
+pub(crate) fn classes(ui: &mut Ui, settings: &mut Settings, content: &PanelContent<'_>) {
     Grid::new("classes").num_columns(3).min_col_width(0.0).show(ui, |ui| {
         for (class, factor) in FunctionalRoadClass::all().zip(&mut settings.width_factors) {
-            let color = facts.road_colors.get(usize::from(class.number()));
+            let color = content.road_colors.get(usize::from(class.number()));
             let [red, green, blue] =
                 color.copied().unwrap_or_default().map(|part| (part * 255.0).round() as u8);
             let (swatch, _) = ui.allocate_exact_size(vec2(18.0, 10.0), egui::Sense::hover());

@@ -1,4 +1,5 @@
-//! Files: numbered, never in the place of another, written beside the drawing in the order in which they were asked for.
+//! Files, written by a thread of their own in the order in which they were asked for. They are numbered, and no existing
+//! file is replaced.
 
 use std::{
     fs::{self, OpenOptions},
@@ -9,21 +10,24 @@ use std::{
     thread::{self, JoinHandle},
 };
 
-use crate::shots::NotSaved;
+use crate::{
+    NotSaved,
+    save_files::{Encode, SaveFiles},
+};
 
-/// Numbers are tried up to here.
+/// The largest number that is tried.
 const MOST: u32 = 99_999;
 
 type Saved = Result<PathBuf, NotSaved>;
 type Work = Box<dyn FnOnce() -> Saved + Send>;
 
-/// A folder that files are added to.
-pub(crate) struct Files {
+/// A folder to which files are added.
+pub(crate) struct FileWriter {
     folder: PathBuf,
     wake: Arc<dyn Fn() + Send + Sync>,
     sender: mpsc::Sender<Saved>,
     saved: mpsc::Receiver<Saved>,
-    /// While there has been something to write since [`Files::finish`].
+    /// `None` while nothing has been written since [`SaveFiles::finish`].
     writer: Option<Writer>,
 }
 
@@ -32,49 +36,11 @@ struct Writer {
     thread: JoinHandle<()>,
 }
 
-impl Files {
+impl FileWriter {
     /// Files go into `folder`; `wake` is called from another thread whenever one is written.
     pub(crate) fn new(folder: PathBuf, wake: Arc<dyn Fn() + Send + Sync>) -> Self {
         let (sender, saved) = mpsc::channel();
         Self { folder, wake, sender, saved, writer: None }
-    }
-
-    /// What became of the files since this was asked last.
-    pub(crate) fn news(&mut self) -> Vec<Saved> {
-        self.saved.try_iter().collect()
-    }
-
-    /// Waits until all is written; what became of the files that [`Files::news`] did not tell of.
-    pub(crate) fn finish(&mut self) -> Vec<Saved> {
-        if let Some(Writer { work, thread }) = self.writer.take() {
-            drop(work);
-            // It cannot panic: what it is given to do may, and is caught.
-            let _ = thread.join();
-        }
-        self.news()
-    }
-
-    /// Adds the file that `encode` makes, beside the drawing.
-    pub(crate) fn save(
-        &mut self,
-        stem: &'static str,
-        extension: &'static str,
-        encode: impl FnOnce() -> io::Result<Vec<u8>> + Send + 'static,
-    ) {
-        let folder = self.folder.clone();
-        let work = move || {
-            // A defect of an encoder costs a file and is told.
-            let encoded = catch_unwind(AssertUnwindSafe(encode));
-            let bytes = encoded.unwrap_or_else(|_| Err(io::Error::other("it cannot be encoded")));
-            bytes
-                .and_then(|bytes| write(&folder, stem, extension, &bytes))
-                .map_err(|source| NotSaved::File { folder, source })
-        };
-        if let Err(source) = self.hand_over(Box::new(work)) {
-            let folder = self.folder.clone();
-            // This end of it is here.
-            let _ = self.sender.send(Err(NotSaved::File { folder, source }));
-        }
     }
 
     fn hand_over(&mut self, work: Work) -> io::Result<()> {
@@ -82,7 +48,7 @@ impl Files {
             Some(writer) => writer,
             None => self.start()?,
         };
-        // It listens until the other end is gone.
+        // This cannot fail: the thread receives until this sender is dropped.
         let _ = writer.work.send(work);
         self.writer = Some(writer);
         Ok(())
@@ -94,7 +60,7 @@ impl Files {
         let (work, waiting) = mpsc::channel::<Work>();
         let write_all = move || {
             for work in waiting {
-                // Nobody listens once the window is closed.
+                // This fails once the window is closed, and then nothing needs to be told.
                 let _ = sender.send(work());
                 wake();
             }
@@ -104,14 +70,46 @@ impl Files {
     }
 }
 
-impl Drop for Files {
-    /// A picture taken just before the window was closed is still written.
+impl SaveFiles for FileWriter {
+    fn save(&mut self, stem: &'static str, extension: &'static str, encode: Encode) {
+        let folder = self.folder.clone();
+        let work = move || {
+            // If an encoder panics, that costs one file and is reported.
+            let encoded = catch_unwind(AssertUnwindSafe(encode));
+            let bytes = encoded.unwrap_or_else(|_| Err(io::Error::other("it cannot be encoded")));
+            bytes
+                .and_then(|bytes| write(&folder, stem, extension, &bytes))
+                .map_err(|source| NotSaved::File { folder, source })
+        };
+        if let Err(source) = self.hand_over(Box::new(work)) {
+            let folder = self.folder.clone();
+            // This cannot fail: the receiver is a field of this struct.
+            let _ = self.sender.send(Err(NotSaved::File { folder, source }));
+        }
+    }
+
+    fn news(&mut self) -> Vec<Saved> {
+        self.saved.try_iter().collect()
+    }
+
+    fn finish(&mut self) -> Vec<Saved> {
+        if let Some(Writer { work, thread }) = self.writer.take() {
+            drop(work);
+            // The thread does not panic: panics of the work that it is given are caught.
+            let _ = thread.join();
+        }
+        self.news()
+    }
+}
+
+impl Drop for FileWriter {
+    /// A picture that was taken just before the window was closed is still written.
     fn drop(&mut self) {
         self.finish();
     }
 }
 
-/// Writes to the first free number.
+/// Writes a file under the first free number.
 fn write(folder: &Path, stem: &str, extension: &str, bytes: &[u8]) -> io::Result<PathBuf> {
     fs::create_dir_all(folder)?;
     for number in 1..=MOST {
@@ -121,7 +119,8 @@ fn write(folder: &Path, stem: &str, extension: &str, bytes: &[u8]) -> io::Result
                 return match file.write_all(bytes) {
                     Ok(()) => Ok(path),
                     Err(error) => {
-                        // Half a picture is of no use; that it cannot be removed adds nothing to the first error.
+                        // A part of a picture is of no use. If it cannot be removed, the first error is still the one to
+                        // report.
                         let _ = fs::remove_file(&path);
                         Err(error)
                     }

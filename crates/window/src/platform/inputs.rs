@@ -8,8 +8,8 @@ use winit::{
 
 use crate::{
     app::App,
+    command::{Command, Shot},
     controls::{Button, Input, Key, KeyState, Modifiers},
-    facts::{Command, Shot},
 };
 
 /// A touchpad's scrolling by so many pixels is a notch of a wheel.

@@ -1,11 +1,11 @@
-//! Tiles read and decoded beside the drawing.
+//! Threads that read and decode tiles while another thread draws.
 //!
 //! ```text
 //!  frame ── request ──► queue ──► workers: TileSource::load ──► results ──► next frame
 //! ```
 //!
-//! The thread that draws never waits: it leaves requests and takes what is there. How many tiles are under way is
-//! bounded by whoever asks ([`corniche_viewer::stream::StreamBudget`]); the results have room for as many.
+//! The thread that draws never waits: it adds requests and takes the tiles that are there. The caller bounds how many tiles
+//! are under way ([`corniche_viewer::stream::StreamBudget`]); the queue of results has room for as many.
 
 use std::{
     any::Any,
@@ -20,24 +20,15 @@ use std::{
 use corniche_geom::TileId;
 use corniche_viewer::tiles::{LoadTileError, TileGeometry, TileSource};
 
-/// More threads that decode would take turns with the one that draws.
+use crate::tile_loader::{Loaded, TileLoader};
+
+/// More threads would compete with the one that draws.
 const MOST_THREADS: usize = 4;
 
-/// Where tiles come from, usable from any thread.
-pub(crate) type SharedSource = Arc<dyn TileSource + Send + Sync>;
-
-/// A tile that was asked for.
-pub(crate) struct Loaded {
-    /// Which.
-    pub(crate) id: TileId,
-    /// It, or why not.
-    pub(crate) tile: Result<TileGeometry, LoadTileError>,
-}
-
 /// Threads that load tiles.
-pub(crate) struct Loader {
+pub(crate) struct LoaderThreads {
     shared: Arc<Shared>,
-    /// `None` once the workers are to end.
+    /// `None` once the workers must end.
     results: Option<mpsc::Receiver<Loaded>>,
     workers: Vec<JoinHandle<()>>,
 }
@@ -55,7 +46,7 @@ struct Queue {
 
 impl Shared {
     fn queue(&self) -> MutexGuard<'_, Queue> {
-        // A list of ids is whole whoever panicked while holding it.
+        // A panic while the lock was held cannot leave a list of ids half changed.
         self.queue.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -74,20 +65,20 @@ impl Shared {
     }
 }
 
-impl Loader {
-    /// How many workers this machine has use for: one core is left to the thread that draws.
-    pub(crate) fn usual_threads() -> NonZeroUsize {
+impl LoaderThreads {
+    /// How many workers are useful on this machine: one core is left to the thread that draws.
+    pub(crate) fn usual_number() -> NonZeroUsize {
         let cores = thread::available_parallelism().map_or(2, NonZeroUsize::get);
         NonZeroUsize::new((cores - 1).clamp(1, MOST_THREADS)).unwrap_or(NonZeroUsize::MIN)
     }
 
-    /// Starts `threads` workers, at most `room` tiles ahead of whoever takes them. `wake` is called from theirs
-    /// whenever a tile is there.
+    /// Starts `threads` workers, which load at most `room` tiles more than have been taken. `wake` is called from them
+    /// whenever a tile has arrived.
     ///
     /// # Errors
     /// When the system gives no thread.
-    pub(crate) fn new(
-        source: &SharedSource,
+    pub(crate) fn new<S: TileSource + Send + Sync + ?Sized + 'static>(
+        source: &Arc<S>,
         threads: NonZeroUsize,
         room: usize,
         wake: &Arc<dyn Fn() + Send + Sync>,
@@ -114,27 +105,27 @@ impl Loader {
         }
         Ok(loader)
     }
+}
 
-    /// Asks for tiles, in order, after those asked for before.
-    pub(crate) fn request(&self, ids: &[TileId]) {
+impl TileLoader for LoaderThreads {
+    fn request(&mut self, ids: &[TileId]) {
         self.shared.queue().wanted.extend(ids);
         self.shared.has_changed.notify_all();
     }
 
-    /// Forgets what was asked for and is not yet begun.
-    pub(crate) fn forget(&self) {
+    fn forget(&mut self) {
         self.shared.queue().wanted.clear();
     }
 
-    /// What has arrived; never waits.
-    pub(crate) fn arrivals(&self) -> impl Iterator<Item = Loaded> {
-        self.results.iter().flat_map(mpsc::Receiver::try_iter)
+    fn arrivals(&mut self) -> Vec<Loaded> {
+        self.results.iter().flat_map(mpsc::Receiver::try_iter).collect()
     }
 }
 
-/// A tile, or why not. A defect of the decoder costs one tile and not the worker: whoever asked would wait for ever.
-fn load(source: &dyn TileSource, id: TileId) -> Result<TileGeometry, LoadTileError> {
-    // A source is only read: nothing of it is left half changed.
+/// Loads a tile. If the decoder panics, that costs one tile and not the worker: otherwise the tile would be waited for
+/// for ever.
+fn load<S: TileSource + ?Sized>(source: &S, id: TileId) -> Result<TileGeometry, LoadTileError> {
+    // A source is only read, so a panic leaves nothing of it half changed.
     catch_unwind(AssertUnwindSafe(|| source.load(id))).unwrap_or_else(|panic| {
         let source = format!("the program fails on it: {}", words_of(panic.as_ref())).into();
         Err(LoadTileError { id, source })
@@ -146,14 +137,14 @@ fn words_of(panic: &(dyn Any + Send)) -> &str {
     text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without a word")
 }
 
-impl Drop for Loader {
+impl Drop for LoaderThreads {
     fn drop(&mut self) {
         self.shared.queue().is_closed = true;
         self.shared.has_changed.notify_all();
-        // A worker that waits for room finds out by its failing to send.
+        // The workers that wait for room in the queue of results end because they can send no more.
         self.results = None;
         for worker in self.workers.drain(..) {
-            // It panicked, then; there is nobody left to tell.
+            // It fails only if the worker panicked; there is nothing left to be told.
             let _ = worker.join();
         }
     }

@@ -4,7 +4,7 @@ use std::{
 };
 
 use corniche_geom::{Frame, NodeIndex};
-use corniche_viewer::tiles::TileLines;
+use corniche_viewer::tiles::{TileCatalog, TileLines};
 
 use super::*;
 
@@ -14,7 +14,7 @@ struct Bare {
     loaded: AtomicUsize,
 }
 
-impl TileSource for Bare {
+impl TileCatalog for Bare {
     fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -22,7 +22,9 @@ impl TileSource for Bare {
     fn exists(&self, _: TileId) -> bool {
         true
     }
+}
 
+impl TileSource for Bare {
     fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
         self.loaded.fetch_add(1, Ordering::SeqCst);
         assert!(id.z() != 2, "no such tile was thought of");
@@ -39,17 +41,21 @@ fn bare() -> Arc<Bare> {
     Arc::new(Bare { frame, loaded: AtomicUsize::new(0) })
 }
 
-fn loader(source: &Arc<Bare>, threads: usize, room: usize, woken: &Arc<AtomicUsize>) -> Loader {
-    let source: SharedSource = Arc::<Bare>::clone(source);
+fn loader(
+    source: &Arc<Bare>,
+    threads: usize,
+    room: usize,
+    woken: &Arc<AtomicUsize>,
+) -> LoaderThreads {
     let woken = Arc::clone(woken);
     let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(move || {
         woken.fetch_add(1, Ordering::SeqCst);
     });
     let threads = NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN);
-    Loader::new(&source, threads, room, &wake).unwrap_or_else(|error| panic!("{error}"))
+    LoaderThreads::new(source, threads, room, &wake).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn take(loader: &Loader, count: usize) -> Vec<Loaded> {
+fn take(loader: &mut LoaderThreads, count: usize) -> Vec<Loaded> {
     let begun = Instant::now();
     let mut taken = Vec::new();
     while taken.len() < count {
@@ -67,11 +73,11 @@ fn level_4(count: u32) -> Vec<TileId> {
 #[test]
 fn one_worker_loads_in_the_order_asked_and_wakes_for_each() {
     let (source, woken) = (bare(), Arc::new(AtomicUsize::new(0)));
-    let loader = loader(&source, 1, 8, &woken);
+    let mut loader = loader(&source, 1, 8, &woken);
     let ids = level_4(12);
     loader.request(&ids[..5]);
     loader.request(&ids[5..]);
-    let arrived: Vec<TileId> = take(&loader, 12).iter().map(|loaded| loaded.id).collect();
+    let arrived: Vec<TileId> = take(&mut loader, 12).iter().map(|loaded| loaded.id).collect();
     assert_eq!(arrived, ids);
     drop(loader);
     assert_eq!(woken.load(Ordering::SeqCst), 12);
@@ -80,10 +86,10 @@ fn one_worker_loads_in_the_order_asked_and_wakes_for_each() {
 #[test]
 fn a_damaged_tile_says_so_and_the_next_ones_arrive() {
     let (source, woken) = (bare(), Arc::new(AtomicUsize::new(0)));
-    let loader = loader(&source, 2, 8, &woken);
+    let mut loader = loader(&source, 2, 8, &woken);
     let damaged = TileId::new(3, 1, 1).unwrap();
     loader.request(&[&[damaged], &level_4(4)[..]].concat());
-    let arrived = take(&loader, 5);
+    let arrived = take(&mut loader, 5);
     let failed: Vec<TileId> =
         arrived.iter().filter(|loaded| loaded.tile.is_err()).map(|loaded| loaded.id).collect();
     assert_eq!(failed, [damaged]);
@@ -92,10 +98,10 @@ fn a_damaged_tile_says_so_and_the_next_ones_arrive() {
 #[test]
 fn a_tile_that_the_decoder_fails_on_says_so_and_the_worker_goes_on() {
     let (source, woken) = (bare(), Arc::new(AtomicUsize::new(0)));
-    let loader = loader(&source, 1, 8, &woken);
+    let mut loader = loader(&source, 1, 8, &woken);
     let bad = TileId::new(2, 1, 1).unwrap();
     loader.request(&[&[bad], &level_4(2)[..]].concat());
-    let arrived = take(&loader, 3);
+    let arrived = take(&mut loader, 3);
     let error = arrived[0].tile.as_ref().unwrap_err();
     assert_eq!(error.id, bad);
     assert!(error.source.to_string().contains("no such tile was thought of"), "{error:?}");
@@ -105,7 +111,7 @@ fn a_tile_that_the_decoder_fails_on_says_so_and_the_worker_goes_on() {
 #[test]
 fn it_ends_while_nobody_takes_what_has_arrived() {
     let (source, woken) = (bare(), Arc::new(AtomicUsize::new(0)));
-    let loader = loader(&source, 2, 1, &woken);
+    let mut loader = loader(&source, 2, 1, &woken);
     loader.request(&level_4(10));
     let begun = Instant::now();
     while source.loaded.load(Ordering::SeqCst) < 3 {
@@ -119,7 +125,7 @@ fn it_ends_while_nobody_takes_what_has_arrived() {
 #[test]
 fn what_is_forgotten_is_not_loaded() {
     let (source, woken) = (bare(), Arc::new(AtomicUsize::new(0)));
-    let loader = loader(&source, 1, 1, &woken);
+    let mut loader = loader(&source, 1, 1, &woken);
     // One in the results, one waiting for room, the others in the queue.
     loader.request(&level_4(10));
     let begun = Instant::now();
@@ -128,7 +134,7 @@ fn what_is_forgotten_is_not_loaded() {
         thread::sleep(Duration::from_millis(1));
     }
     loader.forget();
-    take(&loader, 2);
+    take(&mut loader, 2);
     thread::sleep(Duration::from_millis(20));
     assert_eq!(source.loaded.load(Ordering::SeqCst), 2);
 }

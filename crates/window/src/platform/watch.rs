@@ -20,6 +20,7 @@ use winit::{
 };
 
 use super::{
+    event_loop::{News, new_event_loop, new_window},
     inputs::EndKey,
     screen::{Acquired, Screen},
 };
@@ -52,7 +53,7 @@ pub fn watch(
     size_px: [u32; 2],
     pictures: Receiver<RgbaImage>,
 ) -> Result<Watched, WindowError> {
-    let event_loop = super::event_loop()?;
+    let event_loop = new_event_loop()?;
     let mut show = Show {
         name: name.to_owned(),
         size_px,
@@ -90,7 +91,7 @@ struct Open {
 
 impl Show {
     fn open(&self, event_loop: &ActiveEventLoop) -> Result<Open, WindowError> {
-        let window = super::new_window(event_loop, &self.name, self.size_px)?;
+        let window = new_window(event_loop, &self.name, self.size_px)?;
         let (screen, gpu) = Screen::new(event_loop, &window)?;
         let canvas = Canvas::new(gpu, screen.format());
         window.request_redraw();
@@ -104,7 +105,7 @@ impl Show {
     }
 }
 
-impl ApplicationHandler<super::News> for Show {
+impl ApplicationHandler<News> for Show {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
         if self.open.is_none() {
             match self.open(event_loop) {

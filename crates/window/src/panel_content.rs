@@ -1,4 +1,4 @@
-//! What the window tells a person in a frame, and what the person asks for: values between the map and the panel.
+//! What a frame shows beside the map: values that go from the app to the panel and the overlay.
 
 use corniche_viewer::{
     RoadMethod,
@@ -19,9 +19,9 @@ pub(crate) struct GroundPoint {
     pub(crate) at_m: [f64; 3],
 }
 
-/// Everything shown beside the map.
-pub(crate) struct Facts<'a> {
-    /// What draws.
+/// Everything that the panel and the overlay show, apart from the settings.
+pub(crate) struct PanelContent<'a> {
+    /// Name of the graphics adapter.
     pub(crate) adapter: &'a str,
     /// The package's credits.
     pub(crate) attribution: &'a [String],
@@ -29,62 +29,36 @@ pub(crate) struct Facts<'a> {
     pub(crate) crs: WorkingCrs<'a>,
     /// The ground under the cursor; `None` over sky, voids and the panel.
     pub(crate) cursor: Option<GroundPoint>,
-    /// The camera; height is true.
+    /// The camera; its height is a true height.
     pub(crate) pose: Pose,
     /// True metres in a point of the screen at its middle; `None` without ground there.
     pub(crate) metres_per_point: Option<f64>,
-    /// Map or fly mode.
+    /// Map mode or fly mode.
     pub(crate) mode: Mode,
-    /// Names of the styles, and the colours of the roads of the one shown.
+    /// Names of the styles.
     pub(crate) style_names: &'a [String],
+    /// Colours of the roads in the style that is shown, by class.
     pub(crate) road_colors: &'a [Rgb],
-    /// Tiles.
+    /// Tiles that are drawn.
     pub(crate) tiles_drawn: usize,
+    /// Tiles that the view needs and that are not on the graphics card.
     pub(crate) tiles_missing: usize,
+    /// Tiles that are being loaded.
     pub(crate) tiles_loading: usize,
-    /// Whether those that are missing find no room in the graphics memory allowed.
+    /// Whether the missing tiles do not fit into the graphics memory allowed.
     pub(crate) is_full: bool,
-    /// Triangles of the ground and segments of roads, drawn.
+    /// Triangles of the ground that are drawn.
     pub(crate) triangles: u64,
+    /// Segments of roads that are drawn.
     pub(crate) segments: u64,
     /// Bytes on the graphics card, and how many there may be.
     pub(crate) gpu_bytes: [u64; 2],
-    /// By the graphics card's clock, for each picture of the last frame that it has finished.
+    /// Times of the passes by the graphics card's clock, for each picture of the last frame that it has finished.
     pub(crate) passes: &'a [(RoadMethod, PassTimes)],
-    /// Frames.
+    /// How long the last frames took.
     pub(crate) frame_times: &'a FrameTimes,
-    /// For how long the camera's way has been recorded.
+    /// For how long a flight has been recorded; `None` while none is.
     pub(crate) recording_s: Option<f64>,
-    /// What happened, oldest first.
+    /// Messages, oldest first.
     pub(crate) notices: &'a [Notice],
-}
-
-/// Whether a picture shows the panel and the like.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Shot {
-    /// The map and its credits.
-    Map,
-    /// All that the window shows.
-    Window,
-}
-
-/// What the person wants besides other settings.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Command {
-    /// Turn north up.
-    NorthUp,
-    /// Back to the first view.
-    Reset,
-    /// From map to fly mode and back.
-    ToggleFly,
-    /// A picture.
-    Take(Shot),
-    /// Begin to record, or end it.
-    ToggleRecording,
-    /// Begin to record.
-    StartRecording,
-    /// End it and write the flight.
-    StopRecording,
-    /// Forget the notice at this place.
-    Dismiss(usize),
 }

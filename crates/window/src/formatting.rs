@@ -92,5 +92,5 @@ pub(crate) fn with_causes(error: &dyn Error) -> String {
 }
 
 #[cfg(test)]
-#[path = "words_tests.rs"]
+#[path = "formatting_tests.rs"]
 mod tests;

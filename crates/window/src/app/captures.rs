@@ -1,0 +1,185 @@
+//! Pictures and flights that a person saves.
+
+use std::{collections::VecDeque, path::PathBuf};
+
+use corniche_tileset::Manifest;
+use corniche_viewer::{
+    draw_attribution,
+    flight::{Pose, WorkingCrs},
+};
+use egui_wgpu::ScreenDescriptor;
+use image::RgbaImage;
+
+use crate::{
+    NotSaved, WindowError,
+    canvas::{Canvas, Snapshot},
+    command::Shot,
+    recorder::Recorder,
+    shots::Shots,
+};
+
+/// Pictures from being asked for to being saved, and the flight that is being recorded.
+pub(crate) struct Captures {
+    recorder: Option<Recorder>,
+    shots: Shots,
+    wanted: Vec<Shot>,
+    /// Pictures whose pixels are on their way back from the graphics card.
+    developing: VecDeque<(Shot, Snapshot)>,
+}
+
+impl Captures {
+    pub(crate) fn new(shots: Shots) -> Self {
+        Self { recorder: None, shots, wanted: Vec::new(), developing: VecDeque::new() }
+    }
+
+    /// A picture is to be saved.
+    pub(crate) fn want(&mut self, shot: Shot) {
+        self.wanted.push(shot);
+    }
+
+    /// Whether a picture is asked for and not yet begun.
+    pub(crate) fn is_wanted(&self) -> bool {
+        !self.wanted.is_empty()
+    }
+
+    /// Whether pixels are on their way back from the graphics card.
+    pub(crate) fn is_developing(&self) -> bool {
+        !self.developing.is_empty()
+    }
+
+    /// Begins to record a flight; one that is being recorded already is dropped.
+    pub(crate) fn start_recording(&mut self, now_s: f64, pose: Pose) {
+        self.recorder = Some(Recorder::new(now_s, pose));
+    }
+
+    /// Whether a flight is being recorded.
+    pub(crate) fn is_recording(&self) -> bool {
+        self.recorder.is_some()
+    }
+
+    /// For how long a flight has been recorded.
+    pub(crate) fn recording_s(&self, now_s: f64) -> Option<f64> {
+        self.recorder.as_ref().map(|recorder| recorder.duration_s(now_s))
+    }
+
+    /// The camera is here now.
+    pub(crate) fn note(&mut self, now_s: f64, pose: Pose) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.note(now_s, pose);
+        }
+    }
+
+    /// Ends the recording, if there is one, and saves it.
+    ///
+    /// # Errors
+    /// When nothing of it can be saved.
+    pub(crate) fn stop_recording(
+        &mut self,
+        now_s: f64,
+        crs: WorkingCrs<'_>,
+    ) -> Result<(), NotSaved> {
+        let Some(recorder) = self.recorder.take() else { return Ok(()) };
+        let text = recorder.finish(now_s)?.to_text(crs)?;
+        self.shots.save_flight(text);
+        Ok(())
+    }
+
+    /// Begins the pictures that are asked for, and saves those whose pixels have come back, in the order in which they
+    /// were asked for. Returns why pictures were not taken.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub(crate) fn take(
+        &mut self,
+        canvas: &mut Canvas,
+        primitives: &[egui::ClippedPrimitive],
+        screen: &ScreenDescriptor,
+        divider_share: f32,
+        manifest: &Manifest,
+    ) -> Result<Vec<NotSaved>, WindowError> {
+        let mut lost = Vec::new();
+        // What is asked for in this frame is drawn in full in the next one.
+        if canvas.is_full() {
+            for shot in std::mem::take(&mut self.wanted) {
+                let snapshot = match shot {
+                    Shot::Map => canvas.snap_map(divider_share),
+                    Shot::Window => Some(canvas.snap_window(primitives, screen)),
+                };
+                match snapshot {
+                    Some(snapshot) => self.developing.push_back((shot, snapshot)),
+                    None => lost.push(NotSaved::Untaken),
+                }
+            }
+        }
+        while let Some((_, snapshot)) = self.developing.front_mut() {
+            match snapshot.has_arrived(canvas.gpu()) {
+                Ok(false) => break,
+                Ok(true) => {}
+                // The caller makes everything anew, and then `lose_device` is called.
+                Err(error) if canvas.gpu().is_lost() => return Err(error.into()),
+                Err(error) => {
+                    // It is not known which of the pictures failed.
+                    self.developing.clear();
+                    lost.push(error.into());
+                    break;
+                }
+            }
+            let Some((shot, snapshot)) = self.developing.pop_front() else { break };
+            match snapshot.into_image(canvas.gpu()) {
+                Ok(picture) => self.save(shot, picture, manifest),
+                Err(error) => lost.push(error.into()),
+            }
+        }
+        Ok(lost)
+    }
+
+    fn save(&mut self, shot: Shot, mut picture: RgbaImage, manifest: &Manifest) {
+        // A picture of the window shows the credits already.
+        if shot == Shot::Map {
+            draw_attribution(&mut picture, &manifest.attribution);
+        }
+        self.shots.save_picture(picture);
+    }
+
+    /// The graphics device is lost, and with it the pictures that were being taken: `Some` if there were any.
+    pub(crate) fn lose_device(&mut self) -> Option<NotSaved> {
+        let had_some = !self.developing.is_empty();
+        self.developing.clear();
+        had_some.then_some(NotSaved::DeviceLost)
+    }
+
+    /// The files that were saved, or not, since this was called last; never waits.
+    pub(crate) fn news(&mut self) -> Vec<Result<PathBuf, NotSaved>> {
+        self.shots.news()
+    }
+
+    /// The window closes: saves the recording and waits for the pictures that are being taken and written. Returns what
+    /// became of them, for there is no panel any more to show it.
+    pub(crate) fn end(
+        &mut self,
+        canvas: &Canvas,
+        now_s: f64,
+        divider_share: f32,
+        manifest: &Manifest,
+    ) -> Vec<Result<PathBuf, NotSaved>> {
+        let recorded = self.stop_recording(now_s, WorkingCrs::of(manifest));
+        let mut saved: Vec<_> = recorded.err().into_iter().map(Err).collect();
+        for shot in std::mem::take(&mut self.wanted) {
+            // The map is there. The panel is not: it is laid out in frames only, and there will be none.
+            match canvas.snap_map(divider_share) {
+                Some(snapshot) if shot == Shot::Map && canvas.is_full() => {
+                    self.developing.push_back((shot, snapshot));
+                }
+                _ => saved.push(Err(NotSaved::Untaken)),
+            }
+        }
+        for (shot, snapshot) in std::mem::take(&mut self.developing) {
+            match snapshot.into_image(canvas.gpu()) {
+                Ok(picture) => self.save(shot, picture, manifest),
+                Err(error) => saved.push(Err(error.into())),
+            }
+        }
+        saved.extend(self.shots.finish());
+        saved
+    }
+}

@@ -1,0 +1,57 @@
+//! The view with which a window opens.
+
+use corniche_viewer::{
+    CameraRequest, ViewpointError,
+    camera::{Camera, Orientation},
+};
+
+use super::shown_package::ShownPackage;
+use crate::{controls::View, panel};
+
+/// The view that was asked for, in a window of this size.
+///
+/// # Errors
+/// When the place that was asked for has no ground, or its tiles cannot be had.
+pub(crate) fn first_view(
+    camera: CameraRequest,
+    package: &ShownPackage,
+    exaggeration: f64,
+    size_px: [u32; 2],
+    pixels_per_point: f32,
+) -> Result<View, ViewpointError> {
+    let panel_px = panel::width(size_px[0] as f32 / pixels_per_point) * pixels_per_point;
+    let part_px = match camera {
+        // The whole package must be visible, so it is framed in the part beside the panel.
+        CameraRequest::FrameAll => [size_px[0].saturating_sub(panel_px as u32).max(1), size_px[1]],
+        CameraRequest::LookAt { .. } => size_px,
+    };
+    let orientation = camera.orientation();
+    let camera = camera.camera(
+        package.manifest(),
+        package.source(),
+        package.height_range_m(),
+        package.vertical_scale(exaggeration),
+        part_px,
+    )?;
+    Ok(in_left_part(&camera, orientation, size_px[0]))
+}
+
+/// A view that shows in the left part of a window of this width what `camera` shows in a picture of its own.
+fn in_left_part(camera: &Camera, orientation: Orientation, window_width_px: u32) -> View {
+    let mut view = View::of(camera, orientation);
+    let part_width_px = camera.size_px()[0];
+    let hidden_px = f64::from(window_width_px.saturating_sub(part_width_px));
+    // The middle of the window lies this far to the right of the middle of the part. A pixel has the same size in both,
+    // for the size follows from the height of the picture.
+    let aside_px = hidden_px / 2.0;
+    // Near things move farther aside than those in the middle: a step back makes room for them.
+    let back_m = view.focus_m * hidden_px / f64::from(part_width_px) / 8.0;
+    let aside_m = aside_px * camera.pixel_at_unit_depth_m() * (view.focus_m + back_m);
+    let axes = view.world_from_view();
+    view.eye_in_world += axes.x_axis * aside_m + axes.z_axis * back_m;
+    view
+}
+
+#[cfg(test)]
+#[path = "first_view_tests.rs"]
+mod tests;

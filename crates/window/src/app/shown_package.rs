@@ -1,0 +1,84 @@
+use std::sync::Arc;
+
+use corniche_geom::TileId;
+use corniche_tileset::Manifest;
+use corniche_viewer::{
+    gpu::tile_bytes,
+    range,
+    tiles::{MapPackage, TileCatalog, TileSource},
+};
+
+use super::camera_limits::MAX_PITCH_DEG;
+use crate::{WindowError, WindowRequest};
+
+/// A package that can be shown.
+pub(crate) struct ShownPackage {
+    package: Arc<dyn MapPackage + Send + Sync>,
+    height_range_m: [f64; 2],
+}
+
+impl ShownPackage {
+    /// Checks the request and reads the package's root. This needs no window, and no window must open where it fails.
+    ///
+    /// # Errors
+    /// When the request makes no sense, or the package cannot be read, has no ground or does not fit the graphics memory
+    /// allowed.
+    pub(crate) fn of(request: &WindowRequest) -> Result<Self, WindowError> {
+        check(request)?;
+        let package = Arc::clone(&request.source);
+        let no_ground = || WindowError::NoGround { name: request.name.clone() };
+        if !package.exists(TileId::ROOT) {
+            return Err(no_ground());
+        }
+        let root = package.load(TileId::ROOT)?;
+        let height_range_m = root.summary.ok_or_else(no_ground)?.height_range_m;
+        let (wanted_bytes, budget_bytes) = (tile_bytes(&root), request.budget.gpu_bytes);
+        if wanted_bytes > budget_bytes {
+            return Err(WindowError::OverBudget { wanted_bytes, budget_bytes });
+        }
+        Ok(Self { package, height_range_m })
+    }
+
+    /// The package's table of contents.
+    pub(crate) fn manifest(&self) -> &Manifest {
+        self.package.manifest()
+    }
+
+    /// Its tiles, for a thread that waits for them.
+    pub(crate) fn source(&self) -> &dyn TileSource {
+        self.package.as_ref()
+    }
+
+    /// Which tiles there are.
+    pub(crate) fn catalog(&self) -> Arc<dyn TileCatalog> {
+        Arc::<dyn MapPackage + Send + Sync>::clone(&self.package)
+    }
+
+    /// The true heights between which all ground lies.
+    pub(crate) fn height_range_m(&self) -> [f64; 2] {
+        self.height_range_m
+    }
+
+    /// World height of one metre of true height.
+    pub(crate) fn vertical_scale(&self, exaggeration: f64) -> f64 {
+        exaggeration * self.manifest().point_scale
+    }
+}
+
+/// Refuses numbers that make no sense.
+fn check(request: &WindowRequest) -> Result<(), WindowError> {
+    if request.styles.is_empty() {
+        return Err(WindowError::NoStyle);
+    }
+    range::check_ground(request.screen_space_error_px, request.exaggeration)?;
+    if let Some(samples) = request.samples_per_side {
+        range::check_supersampling(samples)?;
+    }
+    let [width, height] = request.size_px;
+    let least = f64::from(width.min(height));
+    range::within("a window's side", least, 1.0..=f64::MAX, "at least 1 pixel")?;
+    range::check_camera(request.camera)?;
+    let pitch_deg = request.camera.orientation().pitch_deg;
+    range::within("a pitch", pitch_deg, 0.0..=MAX_PITCH_DEG, "0 (straight down) to 85")?;
+    Ok(())
+}

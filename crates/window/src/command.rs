@@ -1,0 +1,31 @@
+//! What a person asks for with a key or a button of the panel, besides other settings.
+
+/// What a saved picture shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Shot {
+    /// The map and its credits.
+    Map,
+    /// All that the window shows.
+    Window,
+}
+
+/// What a person asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Command {
+    /// Turn north up.
+    NorthUp,
+    /// Back to the first view.
+    Reset,
+    /// Change from map to fly mode, or back.
+    ToggleFly,
+    /// Save a picture.
+    Take(Shot),
+    /// Begin to record a flight, or end the recording.
+    ToggleRecording,
+    /// Begin to record a flight.
+    StartRecording,
+    /// End the recording and save the flight.
+    StopRecording,
+    /// Remove the notice at this place of the list.
+    Dismiss(usize),
+}

@@ -1,0 +1,71 @@
+use egui::{Align2, Color32, CornerRadius, FontId, Pos2, Rect, Sense, Stroke, Ui, Vec2, vec2};
+
+use super::{
+    answer::OverlayAnswer,
+    palette::{CHALK, MARGIN, SLATE},
+};
+use crate::{command::Command, formatting, panel_content::PanelContent};
+
+const RADIUS: f32 = 26.0;
+const RED: Color32 = Color32::from_rgb(206, 52, 44);
+
+/// Where the compass is in the map's free part.
+pub(crate) fn compass_place(rect: Rect) -> Rect {
+    let from_corner = MARGIN + RADIUS;
+    let center = rect.right_top() + vec2(-from_corner, from_corner);
+    Rect::from_center_size(center, Vec2::splat(2.0 * RADIUS))
+}
+
+/// Returns where its left edge is.
+pub(crate) fn compass(
+    ui: &mut Ui,
+    area: Rect,
+    content: &PanelContent<'_>,
+    answer: &mut OverlayAnswer,
+) -> f32 {
+    let (center, radius) = (area.center(), RADIUS);
+    let response = ui
+        .interact(area, ui.scope_id().with("compass"), Sense::click())
+        .on_hover_text("Heading and pitch. Click: north up (N)");
+    if response.clicked() {
+        answer.commands.push(Command::NorthUp);
+    }
+    answer.occupied.push(area);
+
+    let painter = ui.painter();
+    let fill = if response.hovered() { SLATE.gamma_multiply(1.2) } else { SLATE };
+    painter.circle(center, radius, fill, Stroke::new(1.0, CHALK));
+    // The disc lies on the ground: tilted, it is seen as an ellipse.
+    let orientation = content.pose.orientation;
+    let (sin, cos) = (orientation.heading_deg.to_radians() as f32).sin_cos();
+    let flat = (orientation.pitch_deg.to_radians().cos() as f32).max(0.15);
+    let on_disc = |east: f32, north: f32| {
+        let (right, ahead) = (east * cos - north * sin, east * sin + north * cos);
+        center + vec2(right, -ahead * flat) * (radius - 9.0)
+    };
+    let rim: Vec<Pos2> = (0..48)
+        .map(|k| {
+            let (s, c) = (k as f32 * std::f32::consts::TAU / 48.0).sin_cos();
+            on_disc(s, c)
+        })
+        .collect();
+    painter.add(egui::Shape::closed_line(rim, Stroke::new(1.0, CHALK.gamma_multiply(0.5))));
+    let needle = |tip: f32, color| {
+        let points = vec![on_disc(0.0, tip), on_disc(0.22, 0.0), on_disc(-0.22, 0.0)];
+        painter.add(egui::Shape::convex_polygon(points, color, Stroke::NONE));
+    };
+    needle(-1.0, CHALK.gamma_multiply(0.7));
+    needle(1.0, RED);
+    let letter = center + (on_disc(0.0, 1.0) - center) * 1.0 + vec2(-sin, -cos * flat) * 6.0;
+    painter.text(letter, Align2::CENTER_CENTER, "N", FontId::proportional(11.0), CHALK);
+
+    let words =
+        format!("{}  {:.0}°", formatting::heading(orientation.heading_deg), orientation.pitch_deg);
+    let galley = painter.layout_no_wrap(words, FontId::proportional(11.0), CHALK);
+    let size = galley.size() + vec2(10.0, 4.0);
+    let plate = Rect::from_center_size(center + vec2(0.0, radius + 4.0 + size.y / 2.0), size);
+    let plate = plate.translate(vec2((area.right() - plate.right()).min(0.0), 0.0));
+    painter.rect_filled(plate, CornerRadius::same(4), SLATE);
+    painter.galley(plate.min + vec2(5.0, 2.0), galley, CHALK);
+    area.left().min(plate.left()) - MARGIN
+}

@@ -1,0 +1,52 @@
+use egui::{Align2, CornerRadius, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
+
+use super::{
+    answer::OverlayAnswer,
+    palette::{CHALK, MARGIN, SLATE},
+};
+use crate::settings::{Settings, range};
+
+/// The divider of a split screen stays this far from the panel, points.
+const GRIP_ROOM: f32 = 24.0;
+
+/// Two pictures side by side, and the line between them, which can be dragged.
+pub(crate) fn divider(
+    ui: &mut Ui,
+    rect: Rect,
+    compass: Rect,
+    settings: &mut Settings,
+    answer: &mut OverlayAnswer,
+) {
+    let whole = ui.ctx().viewport_rect();
+    let share_at = |x: f32| (x - whole.left()) / whole.width().max(1.0);
+    // A panel that opens over it pushes it aside, for it could not be grabbed there.
+    let most = share_at(rect.right() - GRIP_ROOM).max(*range::DIVIDER_SHARE.start());
+    settings.divider_share = settings.divider_share.min(most);
+    let x = whole.left() + settings.divider_share * whole.width();
+    let grip = Rect::from_min_max(pos2(x - 5.0, rect.top()), pos2(x + 5.0, rect.bottom()));
+    let response = ui
+        .interact(grip, ui.scope_id().with("divider"), Sense::drag())
+        .on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
+    if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
+        settings.divider_share = share_at(pointer.x)
+            .clamp(*range::DIVIDER_SHARE.start(), most.min(*range::DIVIDER_SHARE.end()));
+    }
+    answer.occupied.push(grip);
+    let painter = ui.painter();
+    let line = |width, color| {
+        painter
+            .line_segment([pos2(x, rect.top()), pos2(x, rect.bottom())], Stroke::new(width, color));
+    };
+    line(4.0, SLATE);
+    line(1.5, CHALK);
+    // Beside the compass, or below what is written under it.
+    let top = if x + 44.0 > compass.left() { compass.bottom() + 28.0 } else { rect.top() + MARGIN };
+    for (words, align, dx) in [("GEO", Align2::RIGHT_TOP, -10.0), ("SV", Align2::LEFT_TOP, 10.0)] {
+        let at = pos2(x + dx, top);
+        let font = FontId::proportional(13.0);
+        let place =
+            align.anchor_size(at, painter.layout_no_wrap(words.into(), font.clone(), CHALK).size());
+        painter.rect_filled(place.expand2(vec2(5.0, 2.0)), CornerRadius::same(3), SLATE);
+        painter.text(at, align, words, font, CHALK);
+    }
+}

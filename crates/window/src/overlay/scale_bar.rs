@@ -1,0 +1,75 @@
+use egui::{CornerRadius, FontId, Rect, Stroke, Ui, pos2, vec2};
+
+use super::palette::{INK, LONGEST_BAR, MARGIN, PAPER};
+use crate::{formatting, panel_content::PanelContent};
+
+/// From this tilt on the scale at the middle of the picture is not that of its edges.
+const TILTED_DEG: f64 = 5.0;
+
+/// A length on the ground and how long it is on the screen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ScaleBar {
+    /// Metres: 1, 2 or 5 and zeros.
+    pub(crate) length_m: f64,
+    /// Points of the screen.
+    pub(crate) points: f32,
+}
+
+impl ScaleBar {
+    /// The longest one of no more than `most` points; `None` when a point is no length.
+    pub(crate) fn new(metres_per_point: f64, most: f32) -> Option<Self> {
+        let most_m = metres_per_point * f64::from(most);
+        // Not a number is not positive either.
+        if !(most_m > 0.0 && most_m.is_finite()) {
+            return None;
+        }
+        let power = 10_f64.powf(most_m.log10().floor());
+        let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * power <= most_m).unwrap_or(1.0);
+        let length_m = step * power;
+        Some(Self { length_m, points: (length_m / metres_per_point) as f32 })
+    }
+}
+
+/// In the lower left corner, or above the credits where there is no room beside them. Returns where what lies below
+/// everything else begins.
+pub(crate) fn scale_bar(
+    ui: &Ui,
+    rect: Rect,
+    credits: Option<&Rect>,
+    content: &PanelContent<'_>,
+) -> f32 {
+    let credits_top = credits.map_or(rect.bottom(), Rect::top);
+    let most = LONGEST_BAR.min(rect.width() - 4.0 * MARGIN);
+    let Some(bar) = content.metres_per_point.and_then(|scale| ScaleBar::new(scale, most)) else {
+        return credits_top;
+    };
+    let mut words = formatting::round_length(bar.length_m);
+    if content.pose.orientation.pitch_deg > TILTED_DEG {
+        words.push_str(" in the middle");
+    }
+    let painter = ui.painter();
+    let galley = painter.layout_no_wrap(words, FontId::proportional(11.0), INK);
+    let width = galley.size().x.max(bar.points) + 12.0;
+    let size = vec2(width, galley.size().y + 13.0);
+    let is_beside = credits.is_none_or(|place| rect.left() + size.x + MARGIN / 2.0 <= place.left());
+    let bottom = if is_beside { rect.bottom() } else { credits_top - 2.0 };
+    let plate = Rect::from_min_size(pos2(rect.left(), bottom - size.y), size);
+    if !rect.contains_rect(plate) {
+        return credits_top;
+    }
+    painter.rect_filled(plate, CornerRadius::ZERO, PAPER);
+    painter.galley(plate.min + vec2(6.0, 2.0), galley, INK);
+    let (left, base) = (plate.left() + 6.0, plate.bottom() - 4.0);
+    let line = vec![
+        pos2(left, base - 5.0),
+        pos2(left, base),
+        pos2(left + bar.points, base),
+        pos2(left + bar.points, base - 5.0),
+    ];
+    painter.add(egui::Shape::line(line, Stroke::new(1.5, INK)));
+    plate.top().min(credits_top)
+}
+
+#[cfg(test)]
+#[path = "scale_bar_tests.rs"]
+mod tests;

@@ -1,0 +1,151 @@
+//! The window from its request to its end: what the event loop calls.
+
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    path::PathBuf,
+    time::{Duration, Instant},
+};
+
+use winit::{
+    application::ApplicationHandler,
+    event::WindowEvent,
+    event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy},
+    window::WindowId,
+};
+
+use super::{
+    event_loop::{News, new_event_loop},
+    open_window::OpenWindow,
+};
+use crate::{Closed, End, NotSaved, WindowError, WindowRequest, app::ShownPackage};
+
+/// How often the program is asked whether it must end.
+const STOP_S: f64 = 0.2;
+
+/// Opens a window on a package and returns when it is closed. A flight that is still being recorded is saved, whatever
+/// ended the window.
+///
+/// Must be called from the program's first thread.
+#[must_use]
+pub fn run(request: WindowRequest) -> Closed {
+    let mut last_files = Vec::new();
+    let end = show(request, &mut last_files);
+    Closed { end, last_files }
+}
+
+fn show(
+    request: WindowRequest,
+    last_files: &mut Vec<Result<PathBuf, NotSaved>>,
+) -> Result<End, WindowError> {
+    let package = ShownPackage::of(&request)?;
+    let event_loop = new_event_loop()?;
+    let mut shell = Shell {
+        waiting: Some((request, package)),
+        news: event_loop.create_proxy(),
+        begun: Instant::now(),
+        open: None,
+        end: None,
+        last_files: Vec::new(),
+    };
+    let ran = event_loop.run_app(&mut shell);
+    shell.close();
+    last_files.append(&mut shell.last_files);
+    match (shell.end, ran) {
+        (Some(end), _) => end,
+        (None, Ok(())) => Ok(End::Closed),
+        (None, Err(source)) => Err(WindowError::System { source: source.into() }),
+    }
+}
+
+/// What the event loop calls.
+struct Shell {
+    /// What to open; `None` once the window is open.
+    waiting: Option<(WindowRequest, ShownPackage)>,
+    news: EventLoopProxy<News>,
+    begun: Instant,
+    open: Option<OpenWindow>,
+    /// How it ended; `None` until then.
+    end: Option<Result<End, WindowError>>,
+    last_files: Vec<Result<PathBuf, NotSaved>>,
+}
+
+impl Shell {
+    fn now_s(&self) -> f64 {
+        self.begun.elapsed().as_secs_f64()
+    }
+
+    /// Ends the event loop. If this is called several times, the first `end` counts.
+    fn end(&mut self, event_loop: &ActiveEventLoop, end: Result<End, WindowError>) {
+        self.end.get_or_insert(end);
+        event_loop.exit();
+    }
+
+    /// Saves what is to be saved and drops the window. Does nothing when called again.
+    fn close(&mut self) {
+        let now_s = self.now_s();
+        if let Some(open) = self.open.take() {
+            self.last_files.extend(open.end(now_s));
+        }
+    }
+}
+
+impl ApplicationHandler<News> for Shell {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        let Some((request, package)) = self.waiting.take() else { return };
+        match OpenWindow::new(event_loop, self.news.clone(), request, package) {
+            Ok(open) => self.open = Some(open),
+            Err(failure) => self.end(event_loop, Err(failure)),
+        }
+    }
+
+    fn user_event(&mut self, _: &ActiveEventLoop, _: News) {
+        if let Some(open) = &self.open {
+            open.request_redraw();
+        }
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let now_s = self.now_s();
+        // After the end nothing is drawn: the window may be gone.
+        let Some(open) = self.open.as_mut().filter(|_| self.end.is_none()) else { return };
+        let done = match event {
+            // `Destroyed` is sent when another program closes the window.
+            WindowEvent::CloseRequested | WindowEvent::Destroyed => {
+                return self.end(event_loop, Ok(End::Closed));
+            }
+            event if open.is_end_key(&event) => {
+                return self.end(event_loop, Ok(End::Closed));
+            }
+            // The window library panics where a window is gone before it has said so. A flight that is being recorded must
+            // not be lost by that, nor by a defect of this program.
+            WindowEvent::RedrawRequested => catch_unwind(AssertUnwindSafe(|| open.redraw(now_s)))
+                .unwrap_or_else(|_| {
+                    let source = "it cannot be drawn; see above".into();
+                    Err(WindowError::System { source })
+                }),
+            event => {
+                open.take(&event, now_s);
+                Ok(())
+            }
+        };
+        if let Err(failure) = done {
+            self.end(event_loop, Err(failure));
+        }
+    }
+
+    fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        let now_s = self.now_s();
+        let Some(open) = &mut self.open else { return };
+        if open.is_stopped() {
+            return self.end(event_loop, Ok(End::Stopped));
+        }
+        let due_s = open.wake(now_s).map_or(now_s + STOP_S, |due_s| due_s.min(now_s + STOP_S));
+        let rest = Duration::from_secs_f64((due_s - now_s).max(0.0));
+        event_loop.set_control_flow(ControlFlow::WaitUntil(Instant::now() + rest));
+    }
+
+    fn exiting(&mut self, _: &ActiveEventLoop) {
+        // The window must be dropped while the display is still there.
+        self.close();
+    }
+}

@@ -1,0 +1,57 @@
+use std::{io, path::PathBuf, sync::Arc};
+
+use corniche_styles::Style;
+use corniche_viewer::{CameraRequest, RoadOptions, stream::StreamBudget, tiles::MapPackage};
+
+use crate::controls;
+
+/// A style and what it is called.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedStyle {
+    /// The name that the panel lists.
+    pub name: String,
+    /// How the map looks.
+    pub style: Style,
+}
+
+/// Called about once a second: has the first style changed? `None` if not; else the new style, which is shown from then on,
+/// or in words why it cannot be used: these words are shown, and the old style stays.
+pub type Reload = Box<dyn FnMut() -> Option<Result<Style, String>>>;
+
+/// Opens the trace; called once, when the window is open. Each write must reach the file at once, for a script may read it
+/// meanwhile.
+pub type BeginTrace = Box<dyn FnOnce() -> io::Result<Box<dyn io::Write>>>;
+
+/// What to open and how.
+pub struct WindowRequest {
+    /// What the package is called.
+    pub name: String,
+    /// The package.
+    pub source: Arc<dyn MapPackage + Send + Sync>,
+    /// Width and height of the window's inside at first, pixels.
+    pub size_px: [u32; 2],
+    /// Where to look from at first.
+    pub camera: CameraRequest,
+    /// How roads are drawn at first.
+    pub roads: RoadOptions,
+    /// Styles to choose from, at least one; the first is shown at first.
+    pub styles: Vec<NamedStyle>,
+    /// Tells whether the first style has changed; `None` if it cannot change.
+    pub reload: Option<Reload>,
+    /// A tile is refined while its error looks larger than this, pixels.
+    pub screen_space_error_px: f64,
+    /// Factor on heights; 1 is true.
+    pub exaggeration: f64,
+    /// Samples per pixel along each side; without it 2, and 1 where the processor draws.
+    pub samples_per_side: Option<u32>,
+    /// What may be loaded and kept.
+    pub budget: StreamBudget,
+    /// Whether movements slow down gradually or end at once.
+    pub inertia: controls::Inertia,
+    /// Where pictures and flights are saved; no existing file is replaced.
+    pub folder: PathBuf,
+    /// A diagnostic: opens what a line for each frame is written to.
+    pub trace: Option<BeginTrace>,
+    /// Called several times a second: must the program end, for instance because of a signal?
+    pub is_stopped: Box<dyn Fn() -> bool>,
+}

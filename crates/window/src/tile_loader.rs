@@ -1,0 +1,21 @@
+use corniche_geom::TileId;
+use corniche_viewer::tiles::{LoadTileError, TileGeometry};
+
+/// The answer to a request for a tile.
+pub(crate) struct Loaded {
+    /// The tile that was asked for.
+    pub(crate) id: TileId,
+    /// The decoded tile, or why there is none.
+    pub(crate) tile: Result<TileGeometry, LoadTileError>,
+}
+
+/// Loads tiles while the window goes on drawing. Nothing here waits: tiles are requested in one frame and taken in a later
+/// one.
+pub(crate) trait TileLoader {
+    /// Asks for tiles, in order, after those asked for before.
+    fn request(&mut self, ids: &[TileId]);
+    /// Drops the requests on which no work has begun.
+    fn forget(&mut self);
+    /// The tiles that have arrived since this was called last.
+    fn arrivals(&mut self) -> Vec<Loaded>;
+}
