@@ -1,79 +1,65 @@
-use wgpu::{BindGroup, BindGroupEntry, BindingResource, BufferUsages, TextureView};
+use wgpu::{
+    BindGroup, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
+    BindingResource, BindingType, Device, ShaderStages, TextureSampleType, TextureView,
+};
 
-use super::{Gpu, layouts::Layouts, renderer::DrawTile, targets::Targets, uniforms};
-use crate::frame_view::FrameView;
+use super::Gpu;
 
-/// What the passes of one frame share.
-pub(crate) struct FrameBindings {
-    pub(crate) frame: BindGroup,
-    tiles: BindGroup,
-    tile_stride: u32,
-    pub(crate) ground: BindGroup,
-    pub(crate) blocks: BindGroup,
-    pub(crate) composite: BindGroup,
+/// Colours, labels and depths are read texel by texel. Depths are bound as ordinary numbers, because OpenGL's shading
+/// language cannot read them texel by texel in another way.
+pub(crate) const UNFILTERED: TextureSampleType = TextureSampleType::Float { filterable: false };
+
+/// The layout of a bind group.
+pub(crate) fn layout(
+    device: &Device,
+    label: &str,
+    entries: &[BindGroupLayoutEntry],
+) -> BindGroupLayout {
+    device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries })
 }
 
-impl FrameBindings {
-    pub(crate) fn new(
-        gpu: &Gpu,
-        layouts: &Layouts,
-        view: &FrameView<'_>,
-        tiles: &[DrawTile<'_>],
-        targets: &Targets,
-    ) -> Self {
-        let rows = uniforms::frame_rows(view, targets.samples_per_side());
-        let frame = gpu.buffer("frame", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
-
-        let stride = u64::from(gpu.device.limits().min_uniform_buffer_offset_alignment)
-            .max(uniforms::TILE_BYTES);
-        // At least one block, so that there is something to bind without tiles.
-        let mut blocks = vec![0_u8; stride as usize * tiles.len().max(1)];
-        let in_list = tiles.iter().zip(1..);
-        for ((tile, number), block) in in_list.zip(blocks.chunks_exact_mut(stride as usize)) {
-            let rows = uniforms::tile_rows(view, tile, number);
-            block[..uniforms::TILE_BYTES as usize].copy_from_slice(bytemuck::cast_slice(&rows));
-        }
-        let tiles = gpu.buffer("tiles", &blocks, BufferUsages::UNIFORM);
-        let tile_block = wgpu::BufferBinding {
-            buffer: &tiles,
-            offset: 0,
-            size: std::num::NonZeroU64::new(uniforms::TILE_BYTES),
-        };
-
-        let Targets { ground, depth, owners, labels, road_blocks, .. } = targets;
-        Self {
-            frame: group(gpu, &layouts.frame, &[frame.as_entire_binding()]),
-            tiles: group(gpu, &layouts.tile, &[BindingResource::Buffer(tile_block)]),
-            tile_stride: stride as u32,
-            ground: textures(gpu, &layouts.ground, &[&depth.view, &owners.view]),
-            blocks: textures(gpu, &layouts.blocks, &[&labels.view]),
-            composite: textures(
-                gpu,
-                &layouts.composite,
-                &[&ground.view, &depth.view, &labels.view, &road_blocks.view],
-            ),
-        }
-    }
-
-    /// Sets the block of the tile with this index in the list.
-    pub(crate) fn set_tile(&self, pass: &mut wgpu::RenderPass<'_>, index: usize) {
-        pass.set_bind_group(1, &self.tiles, &[index as u32 * self.tile_stride]);
+/// A uniform block for all stages. With `dynamic_bytes` it is one of many blocks of that size in one buffer, and its
+/// offset is given when it is bound.
+pub(crate) fn uniform(
+    binding: u32,
+    dynamic_bytes: Option<std::num::NonZeroU64>,
+) -> BindGroupLayoutEntry {
+    BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::VERTEX_FRAGMENT,
+        ty: BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: dynamic_bytes.is_some(),
+            min_binding_size: dynamic_bytes,
+        },
+        count: None,
     }
 }
 
-/// Binds textures, 0 first.
-pub(crate) fn textures(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    views: &[&TextureView],
-) -> BindGroup {
+/// A texture for the fragment stage.
+pub(crate) fn texture(binding: u32, sample_type: TextureSampleType) -> BindGroupLayoutEntry {
+    BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::FRAGMENT,
+        ty: BindingType::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
+    }
+}
+
+/// Binds textures: the first at binding 0, the next at 1, and so on.
+pub(crate) fn textures(gpu: &Gpu, layout: &BindGroupLayout, views: &[&TextureView]) -> BindGroup {
     let resources: Vec<_> = views.iter().map(|view| BindingResource::TextureView(view)).collect();
     group(gpu, layout, &resources)
 }
 
-fn group(
+/// Binds resources: the first at binding 0, the next at 1, and so on.
+pub(crate) fn group(
     gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
+    layout: &BindGroupLayout,
     resources: &[BindingResource<'_>],
 ) -> BindGroup {
     let entries: Vec<_> = resources

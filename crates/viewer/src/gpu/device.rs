@@ -3,37 +3,13 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use super::{PassTimer, ReadBackError};
+use wgpu::Features;
 
-/// Why there is no graphics device, or it cannot draw what is asked.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
-#[non_exhaustive]
-pub enum GpuError {
-    #[error("no graphics adapter found; install a Vulkan driver (software: mesa-vulkan-drivers)")]
-    NoAdapter { source: wgpu::RequestAdapterError },
-    #[error(
-        "no graphics adapter has {name:?} in its name, as WGPU_ADAPTER_NAME asks; unset it to take the fastest"
-    )]
-    NotNamed { name: String },
-    #[error("the graphics adapter {adapter:?} gives no device")]
-    NoDevice { adapter: String, source: wgpu::RequestDeviceError },
-    #[error(
-        "a picture of {} × {} pixels, {samples_per_side} × {samples_per_side} samples in each, is beyond what the \
-         adapter can draw ({limit_px} samples a side)",
-        size_px[0],
-        size_px[1]
-    )]
-    TooLarge { size_px: [u32; 2], samples_per_side: u32, limit_px: u32 },
-    #[error("a picture needs at least one pixel, not {} × {}", size_px[0], size_px[1])]
-    Empty { size_px: [u32; 2] },
-    #[error(
-        "{samples_per_side} samples on a pixel's side are out of range; it must be 1 to {most}"
-    )]
-    Samples { samples_per_side: u32, most: u32 },
-    #[error("pictures of {sizes_px:?} samples cannot be compared: they must be of one size")]
-    SizesDiffer { sizes_px: [[u32; 2]; 3] },
-}
+use super::{GpuError, ReadBackError, adapter::adapter};
+
+/// What a device must be able to do so that the passes of a frame can be timed.
+pub(crate) const TIMESTAMPS: Features =
+    Features::TIMESTAMP_QUERY.union(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
 
 /// A graphics device.
 pub struct Gpu {
@@ -44,21 +20,37 @@ pub struct Gpu {
     faults: Arc<Faults>,
 }
 
-/// What the device reports from elsewhere than where it was called.
+/// What the device reports by callbacks.
 #[derive(Default)]
 struct Faults {
     is_lost: AtomicBool,
     first: Mutex<Option<String>>,
 }
 
+impl Faults {
+    /// Notes the faults of `device` from now on.
+    fn of(device: &wgpu::Device) -> Arc<Self> {
+        let faults = Arc::new(Self::default());
+        let seen = Arc::clone(&faults);
+        device.set_device_lost_callback(move |_, _| seen.is_lost.store(true, Ordering::Release));
+        let seen = Arc::clone(&faults);
+        // Without a handler the process would end.
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            let mut first = seen.first.lock().unwrap_or_else(PoisonError::into_inner);
+            first.get_or_insert_with(|| error.to_string());
+        }));
+        faults
+    }
+}
+
 impl Gpu {
-    /// Takes the fastest adapter, a software one if there is no other; no window is needed.
+    /// A device of the fastest adapter, or of a software adapter if there is no other; no window is needed.
     ///
-    /// The environment may choose, as with other programs of this kind: `WGPU_BACKEND` (vulkan, gl, metal, dx12) and
-    /// `WGPU_ADAPTER_NAME` (a part of it).
+    /// As in other programs that use wgpu, environment variables may choose: `WGPU_BACKEND` (vulkan, gl, metal, dx12) and
+    /// `WGPU_ADAPTER_NAME` (a part of the adapter's name).
     ///
     /// # Errors
-    /// When there is no adapter, or none as the environment asks for, or it gives no device.
+    /// When there is no adapter, or none with the name that the environment asks for, or it gives no device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn new() -> Result<Self, GpuError> {
         match std::env::var("WGPU_BACKEND") {
@@ -69,10 +61,10 @@ impl Gpu {
         }
     }
 
-    /// The same with these backends alone.
+    /// As [`Gpu::new`], with these backends only.
     ///
     /// # Errors
-    /// When they have no adapter, or none as the environment asks for, or it gives no device.
+    /// When they have no adapter, or none with the name that the environment asks for, or it gives no device.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn with_backends(backends: wgpu::Backends) -> Result<Self, GpuError> {
         let descriptor = wgpu::InstanceDescriptor {
@@ -82,8 +74,8 @@ impl Gpu {
         pollster::block_on(Self::request(&wgpu::Instance::new(descriptor), None))
     }
 
-    /// The same for a window: an adapter that can show pictures on `surface`, which `instance` made. The
-    /// instance decides which backends there are; `WGPU_ADAPTER_NAME` may choose here too.
+    /// A device for a window: its adapter can show pictures on `surface`, which `instance` made. The instance decides
+    /// which backends are tried; `WGPU_ADAPTER_NAME` may choose the adapter here too.
     ///
     /// # Errors
     /// When no such adapter can show pictures there or it gives no device.
@@ -95,7 +87,7 @@ impl Gpu {
         pollster::block_on(Self::request(instance, Some(surface)))
     }
 
-    /// The same without waiting, with or without a window.
+    /// A device, with or without a window, for callers that must not wait.
     ///
     /// # Errors
     /// When there is no such adapter or it gives no device.
@@ -106,14 +98,14 @@ impl Gpu {
         let adapter = adapter(instance, surface).await?;
         let info = adapter.get_info();
         let adapter_name = format!("{} ({})", info.name, info.backend);
-        // Everything else keeps to WebGPU's defaults; how large a picture may be is not for shaders to depend on.
+        // All other limits are WebGPU's defaults. No shader depends on how large a picture may be.
         let required_limits = wgpu::Limits {
             max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
             ..wgpu::Limits::default()
         };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("corniche"),
-            required_features: adapter.features() & PassTimer::FEATURES,
+            required_features: adapter.features() & TIMESTAMPS,
             required_limits,
             ..Default::default()
         };
@@ -121,72 +113,64 @@ impl Gpu {
             .request_device(&descriptor)
             .await
             .map_err(|source| GpuError::NoDevice { adapter: adapter_name.clone(), source })?;
-        let faults = Arc::new(Faults::default());
-        let seen = Arc::clone(&faults);
-        device.set_device_lost_callback(move |_, _| seen.is_lost.store(true, Ordering::Release));
-        let seen = Arc::clone(&faults);
-        // Without a handler the process would end.
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            let mut first = seen.first.lock().unwrap_or_else(PoisonError::into_inner);
-            first.get_or_insert_with(|| error.to_string());
-        }));
+        let faults = Faults::of(&device);
         Ok(Self { adapter, adapter_name, device, queue, faults })
     }
 
-    /// What draws, for reports: "llvmpipe (…) (vulkan)".
+    /// Name and backend of the adapter, for reports: "llvmpipe (…) (vulkan)".
     #[must_use]
     pub fn adapter_name(&self) -> &str {
         &self.adapter_name
     }
 
-    /// Whether the processor draws, for want of a graphics card.
+    /// Whether the adapter is a program on the processor, not a graphics card.
     #[must_use]
     pub fn is_software(&self) -> bool {
         self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
     }
 
-    /// Whether the device is gone, by a reset of its driver for instance. All that was made with it is gone too: a
-    /// window makes everything anew.
+    /// Whether the device is lost, for instance because its driver was reset. All that was made with it is lost too: a
+    /// window makes everything again.
     #[must_use]
     pub fn is_lost(&self) -> bool {
         self.faults.is_lost.load(Ordering::Acquire)
     }
 
-    /// The first thing that went wrong since this was asked last: memory ran out, or a mistake in the renderer. What
-    /// was drawn since cannot be trusted. Reading pixels back tells of it too.
+    /// The first fault since this was asked last: memory ran out, or the renderer made a mistake. What was drawn since
+    /// then cannot be trusted. Reading pixels back reports the same fault.
     #[must_use]
     pub fn take_fault(&self) -> Option<String> {
         self.faults.first.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
-    /// Largest side of a picture, samples counted: the adapter's own limit.
+    /// Largest side of a picture in samples: the adapter's own limit.
     #[must_use]
     pub fn max_side_px(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
     }
 
-    /// What the device is made from; knows what surfaces can do.
+    /// The adapter that the device belongs to; it knows what surfaces can do.
     #[must_use]
     pub fn adapter(&self) -> &wgpu::Adapter {
         &self.adapter
     }
 
-    /// Makes buffers, textures and pipelines.
+    /// The device of `wgpu`: makes buffers, textures and pipelines.
     #[must_use]
     pub fn device(&self) -> &wgpu::Device {
         &self.device
     }
 
-    /// Takes work.
+    /// The queue of `wgpu`: takes commands.
     #[must_use]
     pub fn queue(&self) -> &wgpu::Queue {
         &self.queue
     }
 
-    /// Waits until everything handed over so far is drawn.
+    /// Waits until everything submitted so far is drawn.
     ///
     /// # Errors
-    /// When the device is lost or something went wrong since the last time.
+    /// When the device is lost, or it had a fault since this was asked last.
     pub fn finish(&self) -> Result<(), ReadBackError> {
         self.device
             .poll(wgpu::PollType::wait_indefinitely())
@@ -194,14 +178,14 @@ impl Gpu {
         self.check()
     }
 
-    /// Fails when something went wrong since the last time.
+    /// Fails when the device had a fault since this was asked last.
     pub(crate) fn check(&self) -> Result<(), ReadBackError> {
         self.take_fault().map_or(Ok(()), |what| Err(ReadBackError::Fault { what }))
     }
 
     /// A buffer with these contents, whose length is a multiple of 4.
     ///
-    /// `wgpu`'s own helper maps the buffer instead and panics when the device is lost.
+    /// `wgpu`'s own helper maps the buffer instead, and panics when the device is lost.
     pub(crate) fn buffer(
         &self,
         label: &str,
@@ -217,44 +201,4 @@ impl Gpu {
         self.queue.write_buffer(&buffer, 0, contents);
         buffer
     }
-}
-
-/// The adapter the environment names, else the fastest, else a software one.
-async fn adapter(
-    instance: &wgpu::Instance,
-    surface: Option<&wgpu::Surface<'_>>,
-) -> Result<wgpu::Adapter, GpuError> {
-    if let Ok(name) = std::env::var("WGPU_ADAPTER_NAME") {
-        return named_adapter(instance, surface, name).await;
-    }
-    let fastest = wgpu::RequestAdapterOptions {
-        power_preference: wgpu::PowerPreference::HighPerformance,
-        compatible_surface: surface,
-        ..Default::default()
-    };
-    let software = wgpu::RequestAdapterOptions {
-        force_fallback_adapter: true,
-        compatible_surface: surface,
-        ..Default::default()
-    };
-    if let Ok(adapter) = instance.request_adapter(&fastest).await {
-        return Ok(adapter);
-    }
-    let found = instance.request_adapter(&software).await;
-    found.map_err(|source| GpuError::NoAdapter { source })
-}
-
-async fn named_adapter(
-    instance: &wgpu::Instance,
-    surface: Option<&wgpu::Surface<'_>>,
-    name: String,
-) -> Result<wgpu::Adapter, GpuError> {
-    let wanted = name.to_lowercase();
-    instance
-        .enumerate_adapters(wgpu::Backends::all())
-        .await
-        .into_iter()
-        .filter(|adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface)))
-        .find(|adapter| adapter.get_info().name.to_lowercase().contains(&wanted))
-        .ok_or(GpuError::NotNamed { name })
 }

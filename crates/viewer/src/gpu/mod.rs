@@ -31,31 +31,35 @@
 //! each tile has all roads near enough. Marking tiles in the stencil buffer instead would allow 255 of them, and
 //! a pass cannot write the stencil of a texture whose depth it reads; comparing a number costs one texture read.
 
+mod adapter;
 mod bindings;
 mod device;
-mod layouts;
+mod drawables;
+mod error;
+mod formats;
 mod passes;
 mod picture;
+mod pipeline;
+mod plane;
 mod read_back;
 mod renderer;
-mod roads_pass;
-mod screen_passes;
+mod road_instances;
+mod shared_bindings;
 mod targets;
-mod terrain_pass;
 mod tile_buffers;
-mod tile_bytes;
 mod timings;
 mod uniforms;
 
 pub use self::{
-    device::{Gpu, GpuError},
+    device::Gpu,
+    drawables::difference::{DIFFERENCE_COLORS, DifferenceColors},
+    error::{GpuError, ReadBackError},
+    formats::label_class,
     picture::{MAX_SAMPLES_PER_SIDE, Picture},
-    read_back::{ReadBack, ReadBackError, read_texture},
-    renderer::{DrawTile, Renderer},
-    screen_passes::{DIFFERENCE_COLORS, DifferenceColors},
-    targets::{Owner, Targets, label_class},
-    tile_buffers::TileBuffers,
-    tile_bytes::tile_bytes,
+    read_back::{ReadBack, read_texture},
+    renderer::Renderer,
+    targets::{Owner, Targets},
+    tile_buffers::{DrawTile, TileBuffers, tile_bytes},
     timings::{PassTimer, PassTimes},
 };
 pub use crate::frame_view::{FrameView, Wireframe};

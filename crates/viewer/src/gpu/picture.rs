@@ -1,15 +1,15 @@
-use wgpu::{Extent3d, TextureFormat, TextureUsages, TextureView};
+use wgpu::TextureView;
 
-use super::{Gpu, GpuError, ReadBack, ReadBackError, read_texture};
+use super::{Gpu, GpuError, ReadBack, ReadBackError, formats::COLOR, plane::Plane};
 
-pub(crate) const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
-
-/// Samples on each side of a pixel, at most. Sums of so many colours stay exact, and sixteen are more than one sees.
+/// Most samples on each side of a pixel. Sums of so many colours are exact, and the eye sees no difference to more than
+/// sixteen samples a pixel.
 pub const MAX_SAMPLES_PER_SIDE: u32 = 4;
 
-/// What is shown: a texture that holds colours as sRGB encodes them, without being of an sRGB format.
+/// The picture that is shown: a texture of colours as sRGB encodes them. Its format is not an sRGB format, so that no
+/// colour is converted.
 ///
-/// With several samples a pixel there is a second, larger texture that is drawn first and averaged into it.
+/// With several samples a pixel there is a second, larger texture: samples are drawn there and averaged into the picture.
 pub struct Picture {
     size_px: [u32; 2],
     samples_per_side: u32,
@@ -17,17 +17,12 @@ pub struct Picture {
     pixels: Plane,
 }
 
-/// A texture and its only view.
-pub(crate) struct Plane {
-    texture: wgpu::Texture,
-    pub(crate) view: TextureView,
-}
-
 impl Picture {
     /// A picture with this width and height and as many samples on each side of a pixel.
     ///
     /// # Errors
-    /// When the size has a 0, is beyond the adapter's limit with its samples, or they are too many or none.
+    /// When the size has a 0, when its samples are more than the adapter can draw, or when there are no samples or too many
+    /// a pixel.
     pub fn new(gpu: &Gpu, size_px: [u32; 2], samples_per_side: u32) -> Result<Self, GpuError> {
         let sampled_px = sampled_px(gpu, size_px, samples_per_side)?;
         let samples = (samples_per_side > 1).then(|| Plane::new(gpu, "samples", COLOR, sampled_px));
@@ -47,7 +42,7 @@ impl Picture {
         self.samples_per_side
     }
 
-    /// To bind it, in a window for instance.
+    /// A view of it to bind, for instance in a window.
     #[must_use]
     pub fn view(&self) -> &TextureView {
         &self.pixels.view
@@ -61,7 +56,7 @@ impl Picture {
         self.pixels.read(gpu)
     }
 
-    /// The same as an image.
+    /// The bytes of [`Picture::read`] as an image.
     ///
     /// # Errors
     /// When the device is lost or could not draw.
@@ -74,15 +69,15 @@ impl Picture {
     /// Asks for the bytes of [`Picture::read`] without waiting for them.
     #[must_use]
     pub fn begin_read(&self, gpu: &Gpu) -> ReadBack {
-        ReadBack::begin(gpu, &self.pixels.texture)
+        ReadBack::begin(gpu, self.pixels.texture())
     }
 
-    /// What is drawn into: the samples, or the pixels where there is one sample each.
+    /// The texture that passes draw into: the samples, or the pixels themselves if each has one sample.
     pub(crate) fn drawn(&self) -> &TextureView {
         self.samples.as_ref().map_or(&self.pixels.view, |samples| &samples.view)
     }
 
-    /// The samples, where there are several a pixel.
+    /// The samples, if there are several a pixel.
     pub(crate) fn samples(&self) -> Option<&TextureView> {
         self.samples.as_ref().map(|samples| &samples.view)
     }
@@ -106,28 +101,4 @@ fn sampled_px(gpu: &Gpu, size_px: [u32; 2], samples_per_side: u32) -> Result<[u3
         return Err(GpuError::TooLarge { size_px, samples_per_side, limit_px });
     }
     Ok(size_px.map(|side| side * samples_per_side))
-}
-
-impl Plane {
-    pub(crate) fn new(gpu: &Gpu, label: &str, format: TextureFormat, size_px: [u32; 2]) -> Self {
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some(label),
-            size: Extent3d { width: size_px[0], height: size_px[1], depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: TextureUsages::RENDER_ATTACHMENT
-                | TextureUsages::TEXTURE_BINDING
-                | TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Self { texture, view }
-    }
-
-    /// Its texels, row by row from the top.
-    pub(crate) fn read(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
-        read_texture(gpu, &self.texture)
-    }
 }

@@ -2,28 +2,9 @@ use std::sync::mpsc::{self, Receiver, TryRecvError};
 
 use wgpu::{BufferAsyncError, BufferUsages, Origin3d, TexelCopyBufferInfo, TexelCopyBufferLayout};
 
-use super::Gpu;
+use super::{Gpu, ReadBackError};
 
-/// Why pixels did not come back.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
-#[non_exhaustive]
-pub enum ReadBackError {
-    #[error("the graphics device did not finish drawing")]
-    Poll { source: wgpu::PollError },
-    #[error("the drawn pixels cannot be mapped")]
-    Map { source: wgpu::BufferAsyncError },
-    #[error("the drawn pixels cannot be read")]
-    Range { source: wgpu::MapRangeError },
-    #[error("the graphics device could not do its work: {what}")]
-    Fault { what: String },
-    #[error("the drawn pixels did not come back")]
-    Missing,
-    #[error("no frame was timed since the last one")]
-    Untimed,
-}
-
-/// Texels of a texture, row by row from the top, without gaps. Waits until it is drawn.
+/// The texels of a texture, row by row from the top, without gaps. Waits until the texture is drawn.
 ///
 /// The texture can be copied from, and its format has one plane of whole texels.
 ///
@@ -33,8 +14,8 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, ReadB
     read_by_bands(gpu, texture, gpu.device.limits().max_buffer_size)
 }
 
-/// The same by bands of rows that take no more than `most_bytes` each, though always a row: the largest pictures are
-/// larger than a buffer may be. One after the other, so that there is one buffer at a time.
+/// As [`read_texture`], in bands of rows. A band has at most `most_bytes`, but at least one row: the largest pictures have
+/// more bytes than a buffer may have. Bands are read one after another, so that there is one buffer at a time.
 fn read_by_bands(
     gpu: &Gpu,
     texture: &wgpu::Texture,
@@ -53,14 +34,14 @@ fn read_by_bands(
     Ok(texels)
 }
 
-/// Texels of a texture on their way back, as they are when all is drawn that was handed over before.
+/// The texels of a texture as they are when all commands submitted before are done; they are on their way back.
 pub struct ReadBack {
     layout: Layout,
     bands: Vec<Band>,
 }
 
 impl ReadBack {
-    /// Asks for all of a texture; see [`read_texture`].
+    /// Asks for all texels of a texture; see [`read_texture`] for which textures.
     #[must_use]
     pub fn begin(gpu: &Gpu, texture: &wgpu::Texture) -> Self {
         Self::by_bands(gpu, texture, gpu.device.limits().max_buffer_size)
@@ -72,10 +53,10 @@ impl ReadBack {
         Self { layout, bands }
     }
 
-    /// Whether all of it is there; never waits.
+    /// Whether all texels have arrived; never waits.
     ///
     /// # Errors
-    /// When the device is lost, or something went wrong on it since it was asked last.
+    /// When the device is lost, or it had a fault since it was asked last.
     pub fn has_arrived(&mut self, gpu: &Gpu) -> Result<bool, ReadBackError> {
         gpu.device.poll(wgpu::PollType::Poll).map_err(|source| ReadBackError::Poll { source })?;
         gpu.check()?;
@@ -87,7 +68,7 @@ impl ReadBack {
         Ok(true)
     }
 
-    /// The texels; waits for what is not yet there.
+    /// The texels; waits for those that have not arrived.
     ///
     /// # Errors
     /// As [`ReadBack::has_arrived`].
@@ -125,19 +106,19 @@ impl Layout {
         Self { width, height, row_bytes, padded_bytes, band_rows }
     }
 
-    /// Without gaps.
+    /// Bytes of all texels, without the padding of rows.
     fn bytes(&self) -> usize {
         self.row_bytes as usize * self.height as usize
     }
 
-    /// The first row of each band and how many it has.
+    /// The first row of each band and its number of rows.
     fn bands(&self) -> impl Iterator<Item = [u32; 2]> + use<> {
         let (height, band_rows) = (self.height, self.band_rows);
         (0..height).step_by(band_rows as usize).map(move |top| [top, band_rows.min(height - top)])
     }
 }
 
-/// Some rows.
+/// Some rows of a texture in a buffer that can be mapped.
 struct Band {
     buffer: wgpu::Buffer,
     mapped: Receiver<Result<(), BufferAsyncError>>,
@@ -152,27 +133,10 @@ impl Band {
             usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("read back") };
-        let mut encoder = gpu.device.create_command_encoder(&descriptor);
-        encoder.copy_texture_to_buffer(
-            wgpu::TexelCopyTextureInfo {
-                origin: Origin3d { x: 0, y: top, z: 0 },
-                ..texture.as_image_copy()
-            },
-            TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(layout.padded_bytes),
-                    rows_per_image: Some(rows),
-                },
-            },
-            wgpu::Extent3d { width: layout.width, height: rows, depth_or_array_layers: 1 },
-        );
-        gpu.queue.submit([encoder.finish()]);
+        copy_rows(gpu, texture, layout, [top, rows], &buffer);
         let (sender, mapped) = mpsc::channel();
         buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-            // Nobody listens once the band is gone.
+            // Sending fails when the band was dropped; then nobody needs the answer.
             let _ = sender.send(result);
         });
         Self { buffer, mapped, is_mapped: false }
@@ -190,7 +154,7 @@ impl Band {
         Ok(self.is_mapped)
     }
 
-    /// Its rows, which have arrived.
+    /// Appends its rows, which have arrived.
     fn append_to(self, texels: &mut Vec<u8>, layout: &Layout) -> Result<(), ReadBackError> {
         let mapped = self
             .buffer
@@ -202,6 +166,34 @@ impl Band {
         }
         Ok(())
     }
+}
+
+/// Submits the copy of some rows of a texture, from `top` on, to a buffer.
+fn copy_rows(
+    gpu: &Gpu,
+    texture: &wgpu::Texture,
+    layout: &Layout,
+    [top, rows]: [u32; 2],
+    buffer: &wgpu::Buffer,
+) {
+    let descriptor = wgpu::CommandEncoderDescriptor { label: Some("read back") };
+    let mut encoder = gpu.device.create_command_encoder(&descriptor);
+    encoder.copy_texture_to_buffer(
+        wgpu::TexelCopyTextureInfo {
+            origin: Origin3d { x: 0, y: top, z: 0 },
+            ..texture.as_image_copy()
+        },
+        TexelCopyBufferInfo {
+            buffer,
+            layout: TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(layout.padded_bytes),
+                rows_per_image: Some(rows),
+            },
+        },
+        wgpu::Extent3d { width: layout.width, height: rows, depth_or_array_layers: 1 },
+    );
+    gpu.queue.submit([encoder.finish()]);
 }
 
 #[cfg(test)]

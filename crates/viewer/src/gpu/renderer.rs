@@ -1,32 +1,46 @@
-use wgpu::{CommandEncoder, LoadOp, Operations, StoreOp};
+use wgpu::CommandEncoder;
 
 use super::{
-    Gpu, bindings::FrameBindings, layouts::Layouts, passes::Pipelines, roads_pass::LevelConnectors,
-    targets::Targets, tile_buffers::TileBuffers, timings::PassTimer,
+    Gpu, GpuError,
+    drawables::{
+        average::Average, composite::Composite, difference::Difference, geo_roads::GeoRoads,
+        level_connectors::LevelConnectors, sv_roads::SvRoads, terrain::Terrain,
+    },
+    passes::begin,
+    picture::Picture,
+    shared_bindings::{SharedBindings, SharedLayouts},
+    targets::Targets,
+    tile_buffers::DrawTile,
+    timings::PassTimer,
 };
-use crate::frame_view::FrameView;
-
-/// A tile to draw in this frame.
-pub struct DrawTile<'a> {
-    /// The tile.
-    pub buffers: &'a TileBuffers,
-    /// How far its skirt hangs, true metres.
-    pub skirt_depth_m: f64,
-}
+use crate::{frame_view::FrameView, options::RoadMethod};
 
 /// Knows how to draw tiles; holds nothing of any frame.
 pub struct Renderer {
-    pub(crate) layouts: Layouts,
-    pub(crate) pipelines: Pipelines,
+    layouts: SharedLayouts,
+    terrain: Terrain,
+    geo_roads: GeoRoads,
+    sv_roads: SvRoads,
+    composite: Composite,
+    average: Average,
+    difference: Difference,
 }
 
 impl Renderer {
-    /// Builds the pipelines.
+    /// Makes all pipelines.
     #[must_use]
     pub fn new(gpu: &Gpu) -> Self {
-        let layouts = Layouts::new(&gpu.device);
-        let pipelines = Pipelines::new(&gpu.device, &layouts);
-        Self { layouts, pipelines }
+        let device = &gpu.device;
+        let layouts = SharedLayouts::new(device);
+        Self {
+            terrain: Terrain::new(device, &layouts),
+            geo_roads: GeoRoads::new(device, &layouts),
+            sv_roads: SvRoads::new(device, &layouts),
+            composite: Composite::new(device, &layouts),
+            average: Average::new(device),
+            difference: Difference::new(device),
+            layouts,
+        }
     }
 
     /// Draws terrain, roads and composite into `targets`.
@@ -34,7 +48,7 @@ impl Renderer {
         self.draw_timed(gpu, view, tiles, targets, None);
     }
 
-    /// The same, and `timer` notes how long each pass takes.
+    /// As [`Renderer::draw`]; `timer` notes how long each pass takes.
     pub fn draw_timed(
         &self,
         gpu: &Gpu,
@@ -43,7 +57,8 @@ impl Renderer {
         targets: &Targets,
         mut timer: Option<&mut PassTimer>,
     ) {
-        let bindings = FrameBindings::new(gpu, &self.layouts, view, tiles, targets);
+        let tile_uniforms = tiles.iter().map(DrawTile::uniforms);
+        let shared = SharedBindings::new(gpu, &self.layouts, view, tile_uniforms, targets);
         let connectors = LevelConnectors::new(gpu, view.roads, tiles);
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
@@ -53,46 +68,87 @@ impl Renderer {
             }
         };
         mark(&mut encoder, 0);
-        self.terrain_pass(gpu, &mut encoder, &bindings, tiles, view, targets);
+        self.terrain_pass(gpu, &mut encoder, &shared, tiles, view, targets);
         mark(&mut encoder, 1);
-        self.roads_pass(&mut encoder, &bindings, tiles, &connectors, view, targets);
+        self.roads_pass(&mut encoder, &shared, tiles, &connectors, view, targets);
         mark(&mut encoder, 2);
-        self.composite_pass(&mut encoder, &bindings, view.roads.method, targets);
-        self.average_pass(gpu, &mut encoder, targets.picture());
+        self.composite.draw(gpu, &mut encoder, &shared, view.roads.method, targets);
+        self.average.draw(gpu, &mut encoder, targets.picture());
         mark(&mut encoder, 3);
         gpu.queue.submit([encoder.finish()]);
     }
-}
 
-/// A pass that starts from nothing: colours 0, depth 0 (infinitely far).
-pub(crate) fn begin<'e>(
-    encoder: &'e mut CommandEncoder,
-    label: &str,
-    colors: &[&wgpu::TextureView],
-    depth: Option<&wgpu::TextureView>,
-) -> wgpu::RenderPass<'e> {
-    let attach = |view| {
-        Some(wgpu::RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: Operations {
-                load: LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                store: StoreOp::Store,
-            },
-        })
-    };
-    let attachments: Vec<_> = colors.iter().map(|view| attach(*view)).collect();
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some(label),
-        color_attachments: &attachments,
-        depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
-            view,
-            depth_ops: Some(Operations { load: LoadOp::Clear(0.0), store: StoreOp::Store }),
-            stencil_ops: None,
-        }),
-        timestamp_writes: None,
-        occlusion_query_set: None,
-        multiview_mask: None,
-    })
+    /// Shows in `into` where the roads of two drawings differ, over the first one's picture in pale grey. Both were
+    /// drawn with the same camera; all three have the same size and samples.
+    ///
+    /// # Errors
+    /// When the sizes differ.
+    pub fn draw_difference(
+        &self,
+        gpu: &Gpu,
+        first: &Targets,
+        second: &Targets,
+        into: &Picture,
+    ) -> Result<(), GpuError> {
+        let sizes_px = [first.picture(), second.picture(), into].map(Picture::sampled_px);
+        let is_same = sizes_px.iter().all(|size_px| *size_px == sizes_px[0])
+            && first.samples_per_side() == into.samples_per_side();
+        if !is_same {
+            return Err(GpuError::SizesDiffer { sizes_px });
+        }
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("difference") };
+        let mut encoder = gpu.device.create_command_encoder(&descriptor);
+        self.difference.draw(gpu, &mut encoder, first, second, into);
+        self.average.draw(gpu, &mut encoder, into);
+        gpu.queue.submit([encoder.finish()]);
+        Ok(())
+    }
+
+    /// Colour, depth and owner of the ground.
+    fn terrain_pass(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut CommandEncoder,
+        shared: &SharedBindings,
+        tiles: &[DrawTile<'_>],
+        view: &FrameView<'_>,
+        targets: &Targets,
+    ) {
+        let Targets { ground, depth, owners, .. } = targets;
+        let mut pass = begin(encoder, "terrain", &[&ground.view, &owners.view], Some(&depth.view));
+        let grounds: Vec<_> = tiles
+            .iter()
+            .enumerate()
+            .filter_map(|(index, tile)| Some((index, tile.buffers.ground.as_ref()?)))
+            .collect();
+        self.terrain.draw(gpu, &mut pass, shared, &grounds, view.wireframe);
+    }
+
+    /// Labels of roads.
+    fn roads_pass(
+        &self,
+        encoder: &mut CommandEncoder,
+        shared: &SharedBindings,
+        tiles: &[DrawTile<'_>],
+        connectors: &LevelConnectors,
+        view: &FrameView<'_>,
+        targets: &Targets,
+    ) {
+        // The pass clears the labels even when it draws no road.
+        let mut pass = begin(encoder, "roads", &[&targets.labels.view], None);
+        let roads = tiles
+            .iter()
+            .enumerate()
+            .filter_map(|(index, tile)| Some((index, tile.buffers.roads(view.roads.method)?)));
+        match view.roads.method {
+            RoadMethod::Geometry => {
+                self.geo_roads.draw(&mut pass, shared, roads, view.roads.classes);
+            }
+            RoadMethod::ShadowVolumes => {
+                self.sv_roads.draw(&mut pass, shared, roads, view.roads.classes);
+            }
+            RoadMethod::None => return,
+        }
+        connectors.draw(&mut pass, shared, &self.sv_roads);
+    }
 }

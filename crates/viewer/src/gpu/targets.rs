@@ -1,35 +1,28 @@
-use corniche_roads::FunctionalRoadClass;
-use wgpu::TextureFormat;
-
 use super::{
     Gpu, GpuError, ReadBackError,
-    picture::{COLOR, Picture, Plane},
+    formats::{BLOCK, COLOR, DEPTH, LABEL, OWNER},
+    picture::Picture,
+    plane::Plane,
 };
 
-pub(crate) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
-pub(crate) const LABEL: TextureFormat = TextureFormat::R8Unorm;
-pub(crate) const OWNER: TextureFormat = TextureFormat::R32Uint;
-/// Samples on each side of a block. Smaller ones lie closer around roads, larger ones are fewer to ask for: on software
-/// Vulkan 8, 16 and 32 cost the same within its noise.
-pub(crate) const BLOCK: u32 = 16;
-/// Set in the owner of a sample that shows a skirt.
+/// This bit of the owner of a sample is set if the sample shows a skirt.
 const SKIRT_BIT: u32 = 1 << 31;
 
-/// What the passes draw into: a picture and, sample for sample, what it is made of.
+/// The textures that the passes draw into: a picture and, sample by sample, what it is made of.
 pub struct Targets {
     pub(crate) ground: Plane,
     pub(crate) depth: Plane,
     pub(crate) owners: Plane,
     pub(crate) labels: Plane,
-    /// The largest label in or near each block of samples.
+    /// The largest label in or near each block of samples; see [`BLOCK`].
     pub(crate) road_blocks: Plane,
     picture: Picture,
 }
 
-/// Whose a sample of the terrain pass is; tiles by their place in the list that was drawn.
+/// Which tile a sample of the terrain pass shows. Tiles are numbered by their place in the list that was drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Owner {
-    /// No ground is seen.
+    /// None: the sample shows no ground.
     Nobody,
     /// A tile's ground.
     Ground(usize),
@@ -49,11 +42,11 @@ impl Owner {
 
 impl Targets {
     /// Targets for a picture of this size, with so many samples on each side of a pixel; 1 takes the pixel's centre
-    /// alone. Everything but the picture itself is as large as there are samples: 17 bytes each, and one for each block
-    /// of 16 × 16.
+    /// alone. Besides the picture they take 17 bytes for each sample, and one byte for each block of 16 × 16 samples.
     ///
     /// # Errors
-    /// When the size has a 0, is beyond the adapter's limit with its samples, or they are too many or none.
+    /// When the size has a 0, when its samples are more than the adapter can draw, or when there are no samples or too many
+    /// a pixel.
     pub fn new(gpu: &Gpu, size_px: [u32; 2], samples_per_side: u32) -> Result<Self, GpuError> {
         let picture = Picture::new(gpu, size_px, samples_per_side)?;
         let sampled_px = picture.sampled_px();
@@ -87,13 +80,13 @@ impl Targets {
         self.picture.samples_per_side()
     }
 
-    /// To bind the picture, in a window for instance.
+    /// A view of the picture to bind, for instance in a window.
     #[must_use]
     pub fn picture_view(&self) -> &wgpu::TextureView {
         self.picture.view()
     }
 
-    /// How many blocks its samples are cut into; those on the right and at the bottom may reach beyond them.
+    /// How many blocks its samples are divided into. Blocks on the right and at the bottom may reach beyond the samples.
     pub(crate) fn block_count(&self) -> u32 {
         self.picture.sampled_px().map(|side| side.div_ceil(BLOCK)).iter().product()
     }
@@ -106,8 +99,8 @@ impl Targets {
         self.picture.read(gpu)
     }
 
-    /// What each sample of the terrain pass is: four bytes a sample, the last 255 for ground, 128 for skirt, 0 for
-    /// nothing.
+    /// The colours of the terrain pass: four bytes a sample. The last is 255 for ground, 128 for a skirt, 0 where nothing
+    /// was drawn.
     ///
     /// # Errors
     /// When the device is lost or could not draw.
@@ -124,7 +117,7 @@ impl Targets {
         Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
     }
 
-    /// Whose each sample of the terrain pass is.
+    /// Which tile each sample of the terrain pass shows.
     ///
     /// # Errors
     /// When the device is lost or could not draw.
@@ -143,13 +136,4 @@ impl Targets {
     pub fn read_labels(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
         self.labels.read(gpu)
     }
-}
-
-/// The class a label stands for; `None` where there is no road.
-#[must_use]
-pub fn label_class(label: u8) -> Option<FunctionalRoadClass> {
-    (label > 1)
-        .then(|| (FunctionalRoadClass::COUNT as u8).checked_sub(label / 2))
-        .flatten()
-        .and_then(FunctionalRoadClass::new)
 }

@@ -3,17 +3,16 @@
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use wgpu::{
-    Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Features, QuerySet, QuerySetDescriptor,
-    QueryType,
+    Buffer, BufferDescriptor, BufferUsages, CommandEncoder, QuerySet, QuerySetDescriptor, QueryType,
 };
 
-use super::{Gpu, ReadBackError};
+use super::{Gpu, ReadBackError, device::TIMESTAMPS};
 
-/// One mark before each pass and one after the last.
+/// Timestamps of a frame: one before each of its three parts and one after the last.
 const MARKS: u32 = 4;
-/// Bytes of all marks; each is a u64.
+/// Bytes of all marks of a frame; each is a u64.
 const MARK_BYTES: u64 = 8 * MARKS as u64;
-/// So many frames may be under way with their times; a card is two or three behind the processor.
+/// The times of so many frames may be waited for at once. A graphics card is two or three frames behind the processor.
 const FRAMES: usize = 4;
 
 /// Milliseconds that the passes of a frame took on the graphics card.
@@ -23,7 +22,7 @@ pub struct PassTimes {
     pub terrain_ms: f64,
     /// Roads.
     pub roads_ms: f64,
-    /// Composite, what it asks about blocks before, and the averaging of samples.
+    /// Composite, with the pass before it that finds blocks with roads, and the averaging of samples.
     pub composite_ms: f64,
 }
 
@@ -33,32 +32,28 @@ pub struct PassTimes {
 ///  frame n ──► marks ──► resolved ──► readable[k] ──► mapped when the card is done with n ──► taken, free again
 /// ```
 ///
-/// A frame that finds no readable buffer free goes untimed.
+/// A frame is not timed if no readable buffer is free.
 pub struct PassTimer {
     marks: QuerySet,
     resolved: Buffer,
     readable: [Buffer; FRAMES],
-    /// Those no frame is using.
+    /// The readable buffers that no frame uses.
     free: Vec<usize>,
-    /// Where the frame that is being recorded goes.
+    /// The readable buffer of the frame that is being recorded.
     current: Option<usize>,
     sender: Sender<Mapped>,
     receiver: Receiver<Mapped>,
     period_ns: f64,
 }
 
-/// A readable buffer that was to be mapped, and how that went.
+/// Which readable buffer was to be mapped, and whether it was.
 type Mapped = (usize, Result<(), wgpu::BufferAsyncError>);
 
 impl PassTimer {
-    /// What the device must be able to do.
-    pub(crate) const FEATURES: Features =
-        Features::TIMESTAMP_QUERY.union(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
-
-    /// `None` when the adapter has no clock.
+    /// `None` when the adapter cannot write timestamps.
     #[must_use]
     pub fn new(gpu: &Gpu) -> Option<Self> {
-        if !gpu.device.features().contains(Self::FEATURES) {
+        if !gpu.device.features().contains(TIMESTAMPS) {
             return None;
         }
         let buffer = |label, usage| {
@@ -87,7 +82,7 @@ impl PassTimer {
         })
     }
 
-    /// The pass with this number, 0 first, begins; with [`MARKS`] − 1 the last has ended.
+    /// Notes that the part with this number begins, 0 first; with [`MARKS`] − 1, that the last part has ended.
     pub(crate) fn mark(&mut self, encoder: &mut CommandEncoder, number: u32) {
         if number == 0 {
             self.current = self.free.pop();
@@ -100,14 +95,14 @@ impl PassTimer {
             encoder.copy_buffer_to_buffer(&self.resolved, 0, readable, 0, MARK_BYTES);
             let sender = self.sender.clone();
             encoder.map_buffer_on_submit(readable, wgpu::MapMode::Read, .., move |result| {
-                // Nobody listens once the timer is gone.
+                // Sending fails when the timer was dropped; then nobody needs the times.
                 let _ = sender.send((slot, result));
             });
             self.current = None;
         }
     }
 
-    /// Waits for the frame drawn last and tells how long its passes took.
+    /// Waits for the frame drawn last and returns how long its passes took.
     ///
     /// # Errors
     /// When the device is lost.
@@ -116,7 +111,7 @@ impl PassTimer {
         self.newest()?.ok_or(ReadBackError::Untimed)
     }
 
-    /// How long the passes of the newest frame took that is done, if any was done since this was asked last. Never
+    /// How long the passes of the newest finished frame took; `None` if none has finished since this was asked last. Never
     /// waits.
     ///
     /// # Errors
@@ -126,7 +121,8 @@ impl PassTimer {
         self.newest()
     }
 
-    /// Takes all frames that are done; frames are done in order.
+    /// The times of the newest finished frame. Frames finish in order; the buffers of all that have finished are free
+    /// again.
     fn newest(&mut self) -> Result<Option<PassTimes>, ReadBackError> {
         let mut newest = None;
         while let Ok((slot, result)) = self.receiver.try_recv() {
@@ -143,7 +139,7 @@ impl PassTimer {
             readable.get_mapped_range(..).map_err(|source| ReadBackError::Range { source })?;
         let (words, _) = mapped.as_chunks::<8>();
         let marks: Vec<u64> = words.iter().map(|word| u64::from_le_bytes(*word)).collect();
-        // A clock that was set back in between must not make a pass take forever.
+        // If the clock was set back in between, the time counts as 0.
         let ms = |k: usize| marks[k + 1].saturating_sub(marks[k]) as f64 * self.period_ns / 1e6;
         Ok(PassTimes { terrain_ms: ms(0), roads_ms: ms(1), composite_ms: ms(2) })
     }

@@ -2,35 +2,31 @@
 
 use glam::{DVec3, DVec4};
 
-use super::renderer::DrawTile;
 use crate::{
     frame_view::FrameView,
     options::{CapTest, Caps, RoadMethod},
+    style::{Style, WidthScaling},
     tiles::NearHeights,
 };
 
 /// Bytes of a tile's block.
 pub(crate) const TILE_BYTES: u64 = 32;
 
-/// The frame's block. Its length follows from the style's arrays and matches `struct Frame`.
+/// The frame's block, as `struct Frame` of `shaders/common.wgsl` declares it.
 pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f32; 4]> {
     let style = view.style;
-    // To the passes a sample is a pixel.
+    // The passes know samples only: for them the picture has as many pixels as there are samples.
     let camera = view.camera.supersampled(samples_per_side);
     let axes = camera.world_from_view();
     let tan = camera.half_extent_at_unit_depth();
     let [width_px, height_px] = camera.size_px().map(f64::from);
     let samples = samples_per_side as f32;
-    // Without roads there is no edge to look for.
+    // Without roads there are no outlines.
     let outline_px = match view.roads.method {
         RoadMethod::None => 0,
         _ => view.roads.outline_px(style),
     };
-    let light = {
-        let (azimuth, altitude) =
-            (style.light_azimuth_deg.to_radians(), style.light_altitude_deg.to_radians());
-        DVec3::new(azimuth.sin() * altitude.cos(), azimuth.cos() * altitude.cos(), altitude.sin())
-    };
+    let light = direction_to_light(style);
     let scaling = view.roads.width_scaling(style);
     let [lowest_m, highest_m] = view.height_range_m;
 
@@ -65,40 +61,59 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
     ]);
     rows.push([lowest_m as f32, (1.0 / (highest_m - lowest_m).max(1.0)) as f32, 0.0, 0.0]);
     rows.extend(style.tint.iter().map(|(share, rgb)| color(*rgb, *share)));
-    rows.extend(style.roads.iter().map(|road| {
-        let center_share = road.center.map_or(-1.0, |center| center.width_share);
-        [
-            road.width_m / 2.0 * scaling.constant,
-            road.min_width_px / 2.0 * samples,
-            center_share,
-            0.0,
-        ]
-    }));
-    rows.extend(style.roads.iter().map(|road| color(road.color, 1.0)));
-    rows.extend(style.roads.iter().map(|road| color(road.outline, 1.0)));
-    rows.extend(
-        style
-            .roads
-            .iter()
-            .map(|road| color(road.center.map_or(road.color, |center| center.color), 1.0)),
-    );
+    rows.extend(road_rows(style, &scaling, samples));
     rows
 }
 
-/// A tile's block: the reference point relative to the eye and the skirt's depth; then its true height, the widest
-/// half width of volumes, the tile's number in the frame and how far near heights hold. Numbers below 2^24 are exact in
-/// f32.
-pub(crate) fn tile_rows(view: &FrameView<'_>, tile: &DrawTile<'_>, number: u32) -> [[f32; 4]; 2] {
-    let [x, y, height_m] = tile.buffers.reference_m;
+/// Unit vector towards the light in world space.
+fn direction_to_light(style: &Style) -> DVec3 {
+    let (azimuth, altitude) =
+        (style.light_azimuth_deg.to_radians(), style.light_altitude_deg.to_radians());
+    DVec3::new(azimuth.sin() * altitude.cos(), azimuth.cos() * altitude.cos(), altitude.sin())
+}
+
+/// Widths of all classes, then their colours: fills, outlines, centre lines.
+fn road_rows(style: &Style, scaling: &WidthScaling, samples: f32) -> Vec<[f32; 4]> {
+    let widths = style.roads.iter().map(|road| {
+        let center_share = road.center.map_or(-1.0, |center| center.width_share);
+        let half_width_m = road.width_m / 2.0 * scaling.constant;
+        [half_width_m, road.min_width_px / 2.0 * samples, center_share, 0.0]
+    });
+    let fills = style.roads.iter().map(|road| color(road.color, 1.0));
+    let outlines = style.roads.iter().map(|road| color(road.outline, 1.0));
+    let centers = style
+        .roads
+        .iter()
+        .map(|road| color(road.center.map_or(road.color, |center| center.color), 1.0));
+    widths.chain(fills).chain(outlines).chain(centers).collect()
+}
+
+/// What shaders are told of a tile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TileUniforms {
+    /// The tile's reference point: x and y in the working CRS, true height.
+    pub(crate) reference_m: [f64; 3],
+    /// The tile's sides, east and north.
+    pub(crate) size_m: [f64; 2],
+    /// Roads are not drawn beyond this half width, world metres.
+    pub(crate) width_margin_m: f64,
+    /// How far the tile's skirt hangs down, true metres.
+    pub(crate) skirt_depth_m: f64,
+}
+
+/// A tile's block, as `struct Tile` of `shaders/coverage.wgsl` and `shaders/terrain.wgsl` declares it. `number` is the tile's
+/// number in the frame, from 1; numbers below 2^24 are exact in f32.
+pub(crate) fn tile_rows(view: &FrameView<'_>, tile: &TileUniforms, number: u32) -> [[f32; 4]; 2] {
+    let [x, y, height_m] = tile.reference_m;
     let reference_in_world = DVec3::new(x, y, height_m * view.vertical_scale());
     let offset = reference_in_world - view.camera.eye_in_world();
     [
         row(offset.extend(tile.skirt_depth_m * view.vertical_scale())),
         row(DVec4::new(
             height_m,
-            tile.buffers.width_margin_m,
+            tile.width_margin_m,
             f64::from(number),
-            NearHeights::reach_m(tile.buffers.size_m),
+            NearHeights::reach_m(tile.size_m),
         )),
     ]
 }

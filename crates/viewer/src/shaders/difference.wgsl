@@ -4,7 +4,7 @@
 @group(0) @binding(1) var second_labels: texture_2d<f32>;
 @group(0) @binding(2) var picture: texture_2d<f32>;
 
-// As in gpu/screen_passes.rs.
+// The same numbers as DIFFERENCE_COLORS in gpu/drawables/difference.rs.
 const FIRST_ONLY = vec3(213.0, 94.0, 0.0) / 255.0;
 const SECOND_ONLY = vec3(0.0, 114.0, 178.0) / 255.0;
 const OTHER_LABEL = vec3(204.0, 121.0, 167.0) / 255.0;

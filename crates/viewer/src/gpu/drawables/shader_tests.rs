@@ -1,6 +1,16 @@
-use super::{AVERAGE, BLOCKS, COMPOSITE, DIFFERENCE, ROADS, Shader, TERRAIN, VOLUMES};
+use super::{
+    super::pipeline::Shader, average, composite, difference, geo_roads, sv_roads, terrain,
+};
 
-const SHADERS: [Shader; 7] = [TERRAIN, ROADS, VOLUMES, BLOCKS, COMPOSITE, AVERAGE, DIFFERENCE];
+const SHADERS: [Shader; 7] = [
+    terrain::SHADER,
+    geo_roads::SHADER,
+    sv_roads::SHADER,
+    composite::BLOCKS_SHADER,
+    composite::SHADER,
+    average::SHADER,
+    difference::SHADER,
+];
 
 /// Needs no GPU: every shader parses and is valid.
 #[test]
@@ -40,7 +50,7 @@ fn the_frame_block_is_as_long_as_declared() {
     };
     let rows = crate::gpu::uniforms::frame_rows(&view, 1).len();
     for (name, source) in SHADERS {
-        if [AVERAGE, DIFFERENCE].contains(&(name, source)) {
+        if [average::SHADER, difference::SHADER].contains(&(name, source)) {
             continue;
         }
         let module = wgsl::parse_str(source).unwrap();
@@ -55,7 +65,7 @@ fn the_frame_block_is_as_long_as_declared() {
 /// Needs no GPU: every face of a volume's box is drawn, its corners counter-clockwise seen from outside.
 #[test]
 fn the_strip_of_a_volume_goes_around_its_box() {
-    let source = VOLUMES.1;
+    let source = sv_roads::SHADER.1;
     let list = source.split("STRIP = array<u32, 14>(").nth(1).unwrap().split(')').next();
     let strip: Vec<u32> =
         list.unwrap().split(',').map(|k| k.trim().trim_end_matches('u').parse().unwrap()).collect();

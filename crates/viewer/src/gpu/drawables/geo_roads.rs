@@ -1,0 +1,100 @@
+//! Roads as geometry on the ground (GEO): a quad for each piece of a road in a triangle of the ground.
+
+use std::ops::Range;
+
+use wgpu::{Device, RenderPass, RenderPipeline, vertex_attr_array};
+
+use super::super::{
+    Gpu,
+    pipeline::{Shader, shader},
+    road_instances::{RoadBuffers, draw_roads, road_groups, road_recipe},
+    shared_bindings::{SharedBindings, SharedLayouts},
+};
+use crate::{
+    options::ClassSet,
+    tiles::{Bed, RoadSegment, RoadSegments},
+};
+
+pub(crate) const SHADER: Shader = shader!("roads": "common", "coverage", "roads");
+
+/// Bytes of an instance: two plan positions as two f32 each, two shares, two slopes, a height and a width factor as f32,
+/// class and flags as u32, eight bounds as f16.
+const INSTANCE_BYTES: u64 = 60;
+/// Corners of a quad, as `shaders/roads.wgsl` counts them.
+const CORNERS: Range<u32> = 0..4;
+
+/// Draws roads as geometry on the ground.
+pub(crate) struct GeoRoads {
+    pipeline: RenderPipeline,
+}
+
+impl GeoRoads {
+    pub(crate) fn new(device: &Device, layouts: &SharedLayouts) -> Self {
+        let attributes = vertex_attr_array![
+            0 => Float32x4, 1 => Float32x4, 2 => Float32x2, 3 => Uint32, 4 => Float16x4, 5 => Float16x4
+        ];
+        let groups = road_groups(layouts);
+        // Quads face anywhere, so that none is culled.
+        let recipe = road_recipe(SHADER, &groups, INSTANCE_BYTES, &attributes);
+        Self { pipeline: recipe.build(device) }
+    }
+
+    /// Draws the roads of some tiles, each given with its index in the list of tiles of the frame.
+    pub(crate) fn draw<'a>(
+        &self,
+        pass: &mut RenderPass<'_>,
+        shared: &SharedBindings,
+        tiles: impl Iterator<Item = (usize, &'a RoadBuffers)>,
+        classes: ClassSet,
+    ) {
+        pass.set_pipeline(&self.pipeline);
+        draw_roads(pass, shared, tiles, classes, &CORNERS);
+    }
+}
+
+/// Uploads the segments of a tile.
+pub(crate) fn upload(gpu: &Gpu, roads: &RoadSegments) -> RoadBuffers {
+    RoadBuffers::new(gpu, roads, &instance_bytes(roads.all()))
+}
+
+/// Bytes of the buffer that [`upload`] makes.
+pub(crate) fn bytes_of(roads: &RoadSegments) -> u64 {
+    roads.all().len() as u64 * INSTANCE_BYTES
+}
+
+fn instance_bytes(segments: &[RoadSegment]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(segments.len() * INSTANCE_BYTES as usize);
+    for segment in segments {
+        let Bed { slopes, rises, most_m, leaves_tile } = segment.bed;
+        for pair in [segment.start_in_tile, segment.end_in_tile, segment.shares, slopes] {
+            bytes.extend_from_slice(bytemuck::cast_slice(&pair));
+        }
+        bytes.extend_from_slice(&segment.height_in_tile.to_ne_bytes());
+        bytes.extend_from_slice(&segment.width_factor.to_ne_bytes());
+        let [at_start, at_end] = segment.has_caps;
+        let flags = [at_start, at_end].into_iter().chain(leaves_tile);
+        let flags = flags.zip(4..).fold(0, |flags, (flag, bit)| flags | u32::from(flag) << bit);
+        bytes.extend_from_slice(&(u32::from(segment.class.number()) | flags).to_ne_bytes());
+        for bound in [rises].iter().chain(&most_m).flatten() {
+            bytes.extend_from_slice(&f16_above(*bound).to_ne_bytes());
+        }
+    }
+    bytes
+}
+
+/// The bits of a 16-bit float that is not below a number from 0 up: the nearest such, or a little more.
+fn f16_above(value: f32) -> u16 {
+    // 2^-14, below which its digits get fewer, and the greatest there is.
+    const LEAST: f32 = 6.103_515_6e-5;
+    const MOST: f32 = 65_504.0;
+    if value <= 0.0 {
+        return 0;
+    }
+    // Both count exponent and digits in one number; the exponents differ by 112, the digits by 13 bits.
+    let bits = value.clamp(LEAST, MOST).to_bits();
+    (((bits + 0x1FFF) >> 13) - (112 << 10)) as u16
+}
+
+#[cfg(test)]
+#[path = "geo_roads_tests.rs"]
+mod tests;

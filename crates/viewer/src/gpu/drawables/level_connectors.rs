@@ -1,0 +1,84 @@
+//! Pieces of road over the steps between tiles of different levels. They are drawn as shadow volumes by both methods.
+
+use std::ops::Range;
+
+use wgpu::{Buffer, BufferUsages, RenderPass};
+
+use super::{
+    super::{Gpu, shared_bindings::SharedBindings, tile_buffers::DrawTile},
+    sv_roads::{self, SvRoads},
+};
+use crate::{
+    options::RoadOptions,
+    scene::{BorderTile, LevelConnector, level_connectors},
+    tiles::{NearHeights, RoadVolume},
+};
+
+/// The connectors of a frame, in order of the finer tile.
+pub(crate) struct LevelConnectors {
+    list: Vec<LevelConnector>,
+    instances: Option<Buffer>,
+}
+
+impl LevelConnectors {
+    /// Finds them and uploads their volumes, each relative to the reference point of its finer tile.
+    pub(crate) fn new(gpu: &Gpu, roads: RoadOptions, tiles: &[DrawTile<'_>]) -> Self {
+        let border_tiles: Vec<BorderTile<'_>> = tiles
+            .iter()
+            .map(|tile| BorderTile {
+                id: tile.buffers.id,
+                side_m: tile.buffers.size_m[0].min(tile.buffers.size_m[1]),
+                skirt_depth_m: tile.skirt_depth_m,
+                ends: tile.buffers.roads(roads.method).map_or(&[], |roads| &roads.ends),
+            })
+            .collect();
+        let mut list = level_connectors(&border_tiles);
+        list.retain(|connector| roads.classes.contains(connector.class));
+        let volumes = list.iter().map(|connector| {
+            let reference_m = tiles[connector.fine].buffers.reference_m;
+            (volume(connector, reference_m), connector.coarse as u32 + 1)
+        });
+        let bytes = sv_roads::instance_bytes(volumes);
+        let instances =
+            (!bytes.is_empty()).then(|| gpu.buffer("connectors", &bytes, BufferUsages::VERTEX));
+        Self { list, instances }
+    }
+
+    /// Draws them.
+    pub(crate) fn draw(
+        &self,
+        pass: &mut RenderPass<'_>,
+        shared: &SharedBindings,
+        volumes: &SvRoads,
+    ) {
+        if let Some(instances) = &self.instances {
+            volumes.draw_instances(pass, shared, instances, self.runs());
+        }
+    }
+
+    /// For each finer tile its index and the range of its instances.
+    fn runs(&self) -> impl Iterator<Item = (usize, Range<u32>)> {
+        let mut start = 0;
+        self.list.chunk_by(|a, b| a.fine == b.fine).map(move |run| {
+            let range = start..start + run.len() as u32;
+            start = range.end;
+            (run[0].fine, range)
+        })
+    }
+}
+
+/// The volume of a connector; the reference point is that of its finer tile.
+fn volume(connector: &LevelConnector, reference_m: [f64; 3]) -> RoadVolume {
+    let place = |at: [f64; 2]| [0, 1].map(|k| (at[k] - reference_m[k]) as f32);
+    let [start, end] = connector.ends_m.map(place);
+    let height_range_in_tile =
+        connector.height_range_m.map(|height_m| (height_m - reference_m[2]) as f32);
+    RoadVolume {
+        start_in_tile: start,
+        end_in_tile: end,
+        height_range_in_tile,
+        near: NearHeights { range_in_tile: height_range_in_tile, rise: 0.0 },
+        width_factor: connector.width_factor,
+        class: connector.class,
+    }
+}

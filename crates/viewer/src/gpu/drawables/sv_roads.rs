@@ -1,0 +1,101 @@
+//! Roads as shadow volumes (SV): a box for each segment of a road in plan, which cuts the road out of the ground.
+
+use std::ops::Range;
+
+use wgpu::{Buffer, Device, RenderPass, RenderPipeline, vertex_attr_array};
+
+use super::super::{
+    Gpu,
+    pipeline::{PipelineRecipe, Shader, shader},
+    road_instances::{RoadBuffers, draw_roads, road_groups, road_recipe},
+    shared_bindings::{SharedBindings, SharedLayouts},
+};
+use crate::{
+    options::ClassSet,
+    tiles::{RoadVolume, RoadVolumes},
+};
+
+pub(crate) const SHADER: Shader = shader!("volumes": "common", "coverage", "volumes");
+
+/// Bytes of an instance: two plan positions and two height ranges as two f32 each, rise and width factor as f32, class and
+/// other tile as u32.
+const INSTANCE_BYTES: u64 = 44;
+/// Corners of the strip of triangles around a box, as `shaders/volumes.wgsl` counts them.
+const CORNERS: Range<u32> = 0..14;
+
+/// Draws roads as shadow volumes.
+pub(crate) struct SvRoads {
+    pipeline: RenderPipeline,
+}
+
+impl SvRoads {
+    pub(crate) fn new(device: &Device, layouts: &SharedLayouts) -> Self {
+        let attributes = vertex_attr_array![
+            0 => Float32x2, 1 => Float32x2, 2 => Float32x2, 3 => Float32x2, 4 => Float32x2, 5 => Uint32
+        ];
+        let groups = road_groups(layouts);
+        let recipe = PipelineRecipe {
+            // Only the far faces are drawn: one fragment per pixel and box, also with the eye inside the box.
+            cull: Some(wgpu::Face::Front),
+            ..road_recipe(SHADER, &groups, INSTANCE_BYTES, &attributes)
+        };
+        Self { pipeline: recipe.build(device) }
+    }
+
+    /// Draws the roads of some tiles, each given with its index in the list of tiles of the frame.
+    pub(crate) fn draw<'a>(
+        &self,
+        pass: &mut RenderPass<'_>,
+        shared: &SharedBindings,
+        tiles: impl Iterator<Item = (usize, &'a RoadBuffers)>,
+        classes: ClassSet,
+    ) {
+        pass.set_pipeline(&self.pipeline);
+        draw_roads(pass, shared, tiles, classes, &CORNERS);
+    }
+
+    /// Draws volumes that are in one buffer for all tiles: which of them belong to the tile with this index.
+    pub(crate) fn draw_instances(
+        &self,
+        pass: &mut RenderPass<'_>,
+        shared: &SharedBindings,
+        instances: &Buffer,
+        by_tile: impl Iterator<Item = (usize, Range<u32>)>,
+    ) {
+        pass.set_pipeline(&self.pipeline);
+        shared.set_frame(pass);
+        shared.set_ground(pass);
+        pass.set_vertex_buffer(0, instances.slice(..));
+        for (index, range) in by_tile {
+            shared.set_tile(pass, index);
+            pass.draw(CORNERS, range);
+        }
+    }
+}
+
+/// Uploads the volumes of a tile.
+pub(crate) fn upload(gpu: &Gpu, roads: &RoadVolumes) -> RoadBuffers {
+    let volumes = roads.all().iter().map(|volume| (*volume, 0));
+    RoadBuffers::new(gpu, roads, &instance_bytes(volumes))
+}
+
+/// Bytes of the buffer that [`upload`] makes.
+pub(crate) fn bytes_of(roads: &RoadVolumes) -> u64 {
+    roads.all().len() as u64 * INSTANCE_BYTES
+}
+
+/// Instances of volumes. With each is the number of the other tile that it belongs to if it connects two levels, else 0.
+pub(crate) fn instance_bytes(volumes: impl Iterator<Item = (RoadVolume, u32)>) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(volumes.size_hint().0 * INSTANCE_BYTES as usize);
+    for (volume, other) in volumes {
+        bytes.extend_from_slice(bytemuck::cast_slice(&volume.start_in_tile));
+        bytes.extend_from_slice(bytemuck::cast_slice(&volume.end_in_tile));
+        bytes.extend_from_slice(bytemuck::cast_slice(&volume.height_range_in_tile));
+        bytes.extend_from_slice(bytemuck::cast_slice(&volume.near.range_in_tile));
+        bytes.extend_from_slice(&volume.near.rise.to_ne_bytes());
+        bytes.extend_from_slice(&volume.width_factor.to_ne_bytes());
+        let class = u32::from(volume.class.number());
+        bytes.extend_from_slice(&(class | other << 4).to_ne_bytes());
+    }
+    bytes
+}

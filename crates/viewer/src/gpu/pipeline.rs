@@ -1,0 +1,112 @@
+use wgpu::{
+    BindGroupLayout, BlendState, ColorWrites, DepthStencilState, Device, PrimitiveTopology,
+    RenderPipeline, VertexBufferLayout,
+};
+
+use super::formats::COLOR;
+
+/// A shader's name and its text, complete as it is compiled.
+pub(crate) type Shader = (&'static str, &'static str);
+
+/// A [`Shader`]: its name, then the files of `shaders/` that are joined into its text, in this order. WGSL has no `include`,
+/// so declarations that several shaders need are in files of their own. For files in `drawables/`.
+macro_rules! shader {
+    ($name:literal: $($file:literal),+) => {
+        ($name, concat!($(include_str!(concat!("../../shaders/", $file, ".wgsl"))),+))
+    };
+}
+pub(crate) use shader;
+
+/// The names that most shaders give their vertex and fragment stages.
+pub(crate) const ENTRIES: [&str; 2] = ["vertex", "fragment"];
+
+/// In what pipelines differ.
+#[derive(Clone)]
+pub(crate) struct PipelineRecipe<'a> {
+    pub(crate) shader: Shader,
+    /// Names of the vertex and the fragment shader.
+    pub(crate) entries: [&'a str; 2],
+    pub(crate) groups: &'a [Option<&'a BindGroupLayout>],
+    pub(crate) buffer: Option<VertexBufferLayout<'a>>,
+    pub(crate) topology: PrimitiveTopology,
+    pub(crate) cull: Option<wgpu::Face>,
+    pub(crate) depth: Option<DepthStencilState>,
+    pub(crate) targets: &'a [(wgpu::TextureFormat, ColorWrites)],
+    pub(crate) blend: Option<BlendState>,
+    pub(crate) constants: &'a [(&'a str, f64)],
+}
+
+impl<'a> PipelineRecipe<'a> {
+    /// A pipeline that draws one triangle over a whole picture.
+    pub(crate) fn full_screen(
+        shader: Shader,
+        groups: &'a [Option<&'a BindGroupLayout>],
+        constants: &'a [(&'a str, f64)],
+    ) -> Self {
+        Self {
+            shader,
+            entries: ENTRIES,
+            groups,
+            buffer: None,
+            topology: PrimitiveTopology::TriangleList,
+            cull: None,
+            depth: None,
+            targets: &[(COLOR, ColorWrites::ALL)],
+            blend: None,
+            constants,
+        }
+    }
+
+    /// Compiles the shader and makes the pipeline.
+    pub(crate) fn build(&self, device: &Device) -> RenderPipeline {
+        let (name, source) = self.shader;
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(name),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(name),
+            bind_group_layouts: self.groups,
+            immediate_size: 0,
+        });
+        let options =
+            wgpu::PipelineCompilationOptions { constants: self.constants, ..Default::default() };
+        let targets: Vec<_> = self
+            .targets
+            .iter()
+            .map(|(format, write_mask)| {
+                Some(wgpu::ColorTargetState {
+                    format: *format,
+                    blend: self.blend,
+                    write_mask: *write_mask,
+                })
+            })
+            .collect();
+        let buffers: Vec<_> = self.buffer.iter().cloned().map(Some).collect();
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(name),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(self.entries[0]),
+                compilation_options: options.clone(),
+                buffers: &buffers,
+            },
+            primitive: wgpu::PrimitiveState {
+                topology: self.topology,
+                cull_mode: self.cull,
+                ..Default::default()
+            },
+            depth_stencil: self.depth.clone(),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(self.entries[1]),
+                compilation_options: options,
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}

@@ -1,0 +1,115 @@
+//! Bind groups that several drawables share.
+//!
+//! | group | contents | changes |
+//! |---|---|---|
+//! | 0 | the frame's uniform block | with each frame |
+//! | 1 | a tile's uniform block | with each tile, by an offset |
+//! | 2 | depth and owner of each sample of the ground | with each frame |
+
+use std::num::NonZeroU64;
+
+use wgpu::{
+    BindGroup, BindGroupLayout, BindingResource, Buffer, BufferUsages, Device, RenderPass,
+    TextureSampleType,
+};
+
+use super::{
+    Gpu,
+    bindings::{UNFILTERED, group, layout, texture, textures, uniform},
+    targets::Targets,
+    uniforms::{self, TileUniforms},
+};
+use crate::frame_view::FrameView;
+
+/// The layouts of the shared bind groups, by their numbers.
+pub(crate) struct SharedLayouts {
+    pub(crate) frame: BindGroupLayout,
+    pub(crate) tile: BindGroupLayout,
+    pub(crate) ground: BindGroupLayout,
+}
+
+impl SharedLayouts {
+    pub(crate) fn new(device: &Device) -> Self {
+        let tile_bytes = NonZeroU64::new(uniforms::TILE_BYTES);
+        let ground = [texture(0, UNFILTERED), texture(1, TextureSampleType::Uint)];
+        Self {
+            frame: layout(device, "frame", &[uniform(0, None)]),
+            tile: layout(device, "tile", &[uniform(0, tile_bytes)]),
+            ground: layout(device, "ground", &ground),
+        }
+    }
+}
+
+/// The shared bind groups of one frame.
+pub(crate) struct SharedBindings {
+    frame: BindGroup,
+    tiles: BindGroup,
+    /// Bytes from one tile's block to the next.
+    tile_stride: u32,
+    ground: BindGroup,
+}
+
+impl SharedBindings {
+    /// Uploads the uniform blocks of a frame and of its `tiles`, in the order in which they are drawn.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        layouts: &SharedLayouts,
+        view: &FrameView<'_>,
+        tiles: impl ExactSizeIterator<Item = TileUniforms>,
+        targets: &Targets,
+    ) -> Self {
+        let rows = uniforms::frame_rows(view, targets.samples_per_side());
+        let frame = gpu.buffer("frame", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
+        let tile_stride = u64::from(gpu.device.limits().min_uniform_buffer_offset_alignment)
+            .max(uniforms::TILE_BYTES);
+        let tiles = tile_blocks(gpu, view, tiles, tile_stride as usize);
+        let tile_block = wgpu::BufferBinding {
+            buffer: &tiles,
+            offset: 0,
+            size: NonZeroU64::new(uniforms::TILE_BYTES),
+        };
+        let Targets { depth, owners, .. } = targets;
+        Self {
+            frame: group(gpu, &layouts.frame, &[frame.as_entire_binding()]),
+            tiles: group(gpu, &layouts.tile, &[BindingResource::Buffer(tile_block)]),
+            tile_stride: tile_stride as u32,
+            ground: textures(gpu, &layouts.ground, &[&depth.view, &owners.view]),
+        }
+    }
+
+    /// The bind group of the frame's uniform block.
+    pub(crate) fn frame(&self) -> &BindGroup {
+        &self.frame
+    }
+
+    /// Binds the frame.
+    pub(crate) fn set_frame(&self, pass: &mut RenderPass<'_>) {
+        pass.set_bind_group(0, &self.frame, &[]);
+    }
+
+    /// Binds the tile with this index in the list that is drawn.
+    pub(crate) fn set_tile(&self, pass: &mut RenderPass<'_>, index: usize) {
+        pass.set_bind_group(1, &self.tiles, &[index as u32 * self.tile_stride]);
+    }
+
+    /// Binds the ground as the terrain pass drew it.
+    pub(crate) fn set_ground(&self, pass: &mut RenderPass<'_>) {
+        pass.set_bind_group(2, &self.ground, &[]);
+    }
+}
+
+/// Uploads the uniform blocks of tiles, `stride` bytes apart.
+fn tile_blocks(
+    gpu: &Gpu,
+    view: &FrameView<'_>,
+    tiles: impl ExactSizeIterator<Item = TileUniforms>,
+    stride: usize,
+) -> Buffer {
+    // At least one block, so that there is something to bind without tiles.
+    let mut blocks = vec![0_u8; stride * tiles.len().max(1)];
+    for ((tile, number), block) in tiles.zip(1..).zip(blocks.chunks_exact_mut(stride)) {
+        let rows = uniforms::tile_rows(view, &tile, number);
+        block[..uniforms::TILE_BYTES as usize].copy_from_slice(bytemuck::cast_slice(&rows));
+    }
+    gpu.buffer("tiles", &blocks, BufferUsages::UNIFORM)
+}
