@@ -1,8 +1,9 @@
-use corniche_geom::Bounds;
+use corniche_geom::{Bounds, CoordinateTable};
 use corniche_testing::FlatProjection;
 use proptest::prelude::*;
 
 use super::*;
+use crate::camera::Orientation;
 
 const NAME: &str = "EPSG:2056";
 const CRS: WorkingCrs<'_> = WorkingCrs { crs: NAME, metres_per_unit: [1.0, 1.0] };

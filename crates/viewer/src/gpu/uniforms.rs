@@ -90,6 +90,7 @@ fn road_rows(style: &Style, scaling: &WidthScaling, samples: f32) -> Vec<[f32; 4
 
 /// What shaders are told of a tile.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::struct_field_names, reason = "all of them are metres, and say so")]
 pub(crate) struct TileUniforms {
     /// The tile's reference point: x and y in the working CRS, true height.
     pub(crate) reference_m: [f64; 3],

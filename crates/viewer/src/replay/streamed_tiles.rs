@@ -2,7 +2,10 @@ use std::{collections::BTreeMap, time::Instant};
 
 use corniche_geom::TileId;
 
-use super::{ReplayError, Work, ms_since};
+use super::{
+    ReplayError,
+    frame_tiles::{FrameTiles, ms_since},
+};
 use crate::{
     camera::Camera,
     gpu::{Gpu, TileBuffers, tile_bytes},
@@ -21,7 +24,7 @@ pub(crate) enum Patience {
 }
 
 /// Tiles that come and go as a [`Streamer`] plans; each arrives in the frame after it was asked for.
-pub(crate) struct Streamed<'a> {
+pub(crate) struct StreamedTiles<'a> {
     gpu: &'a Gpu,
     source: &'a dyn MapPackage,
     budget: StreamBudget,
@@ -31,7 +34,7 @@ pub(crate) struct Streamed<'a> {
     buffers: BTreeMap<TileId, TileBuffers>,
 }
 
-impl<'a> Streamed<'a> {
+impl<'a> StreamedTiles<'a> {
     pub(crate) fn new(gpu: &'a Gpu, source: &'a dyn MapPackage, budget: StreamBudget) -> Self {
         Self {
             gpu,
@@ -55,13 +58,13 @@ impl<'a> Streamed<'a> {
         quality: Quality,
         patience: Patience,
         is_stopped: &dyn Fn() -> bool,
-    ) -> Result<Work, ReplayError> {
-        let mut work = Work::default();
+    ) -> Result<FrameTiles, ReplayError> {
+        let mut frame = FrameTiles::default();
         loop {
             if is_stopped() {
                 return Err(ReplayError::Stopped);
             }
-            let is_settled = self.step(camera, ahead, quality, &mut work)?;
+            let is_settled = self.step(camera, ahead, quality, &mut frame)?;
             if is_settled && let Some(root) = self.decoded.get(&TileId::ROOT) {
                 return Err(ReplayError::OverBudget {
                     wanted_bytes: tile_bytes(root),
@@ -70,7 +73,7 @@ impl<'a> Streamed<'a> {
                 });
             }
             if is_settled || patience == Patience::None {
-                return Ok(work);
+                return Ok(frame);
             }
         }
     }
@@ -81,11 +84,11 @@ impl<'a> Streamed<'a> {
         camera: &Camera,
         ahead: Option<&Camera>,
         quality: Quality,
-        work: &mut Work,
+        frame: &mut FrameTiles,
     ) -> Result<bool, ReplayError> {
         let started = Instant::now();
         let plan = self.streamer.plan(self.source, camera, ahead, quality);
-        work.select_ms += ms_since(started);
+        frame.select_ms += ms_since(started);
 
         let started = Instant::now();
         for id in &plan.evict {
@@ -96,7 +99,7 @@ impl<'a> Streamed<'a> {
                 self.buffers.insert(*id, TileBuffers::new(self.gpu, &tile));
             }
         }
-        work.upload_ms += ms_since(started);
+        frame.upload_ms += ms_since(started);
 
         let started = Instant::now();
         for id in &plan.cancel {
@@ -108,13 +111,13 @@ impl<'a> Streamed<'a> {
             self.streamer.arrived(*id, facts);
             self.decoded.insert(*id, tile);
         }
-        work.decode_ms += ms_since(started);
+        frame.decode_ms += ms_since(started);
 
-        work.evicted += plan.evict.len();
-        work.uploaded += plan.upload.len();
-        work.loaded += plan.load.len();
-        work.missing = plan.missing;
-        work.drawn = plan.drawn;
+        frame.evicted += plan.evict.len();
+        frame.uploaded += plan.upload.len();
+        frame.loaded += plan.load.len();
+        frame.missing = plan.missing;
+        frame.drawn = plan.drawn;
         Ok(plan.load.is_empty() && plan.upload.is_empty())
     }
 }

@@ -2,7 +2,10 @@ use std::{collections::BTreeMap, time::Instant};
 
 use corniche_geom::TileId;
 
-use super::{ReplayError, Work, ms_since};
+use super::{
+    ReplayError,
+    frame_tiles::{FrameTiles, ms_since},
+};
 use crate::{
     camera::{Camera, WorldBox},
     gpu::{Gpu, TileBuffers, tile_bytes},
@@ -11,13 +14,13 @@ use crate::{
 };
 
 /// All tiles without tiles beneath them, loaded before the flight begins.
-pub(crate) struct Finest {
+pub(crate) struct FinestTiles {
     buffers: BTreeMap<TileId, TileBuffers>,
     /// Between which true heights their ground lies; those without ground are left out.
     height_ranges_m: BTreeMap<TileId, [f64; 2]>,
 }
 
-impl Finest {
+impl FinestTiles {
     pub(crate) fn load(
         gpu: &Gpu,
         source: &dyn MapPackage,
@@ -58,7 +61,7 @@ impl Finest {
     }
 
     /// Draws all of them.
-    pub(crate) fn all(&self) -> Work {
+    pub(crate) fn all(&self) -> FrameTiles {
         let started = Instant::now();
         self.choose(started, |_, _| true)
     }
@@ -69,7 +72,7 @@ impl Finest {
         source: &dyn MapPackage,
         camera: &Camera,
         vertical_scale: f64,
-    ) -> Work {
+    ) -> FrameTiles {
         let started = Instant::now();
         let frustum = camera.frustum();
         self.choose(started, |id, range_m| {
@@ -78,13 +81,13 @@ impl Finest {
         })
     }
 
-    fn choose(&self, started: Instant, is_drawn: impl Fn(TileId, [f64; 2]) -> bool) -> Work {
+    fn choose(&self, started: Instant, is_drawn: impl Fn(TileId, [f64; 2]) -> bool) -> FrameTiles {
         let drawn = self
             .height_ranges_m
             .iter()
             .filter(|(id, range_m)| is_drawn(**id, **range_m))
             .map(|(id, _)| Drawn { id: *id, skirt_depth_m: 0.0 })
             .collect();
-        Work { drawn, select_ms: ms_since(started), ..Work::default() }
+        FrameTiles { drawn, select_ms: ms_since(started), ..FrameTiles::default() }
     }
 }

@@ -1,6 +1,6 @@
 //! What is looked up before a flight begins: heights of the ground beneath it.
 
-use super::{ReplayError, ReplayOptions, Timetable};
+use super::{ReplayError, ReplayOptions, timetable::Timetable};
 use crate::{
     eye_height::{clearance_m, focus_m, rounded_up_m},
     flight::{Flight, Pose},
