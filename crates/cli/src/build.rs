@@ -8,14 +8,15 @@ use std::{
 
 use corniche_geom::Cell;
 use corniche_pipeline::{
-    BuildError, BuildSettings, Existing, Resources, RoadSettings, TerrainSettings,
+    BuildError, BuildSettings, Existing, OpenOptions, PlanOptions, Resources, RoadSettings,
+    TerrainSettings,
 };
-use corniche_presets::{Config, class_filter};
+use corniche_presets::{Config, RoadOptions, TerrainOptions, check_cell, class_filter};
 use corniche_roads::ClassFilter;
 use corniche_tileset::Manifest;
 
 use crate::{
-    args::{BuildArgs, check_cell, parse_bytes},
+    args::BuildArgs,
     defects::{DefectList, Watch},
     exit::ExitCode,
     failure::Failure,
@@ -32,8 +33,6 @@ const FILL_VOIDS: u32 = 32;
 const MEMORY_BYTES: u64 = 1 << 30;
 /// As many values for "no data" as a package's manifest may list.
 const MAX_NODATA: usize = 64;
-/// With less than this the stages cannot hold a tile each.
-const MIN_MEMORY_BYTES: u64 = 64 << 20;
 
 pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
     output::writable(&args.output)?;
@@ -90,83 +89,75 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
         Some(path) => presets::read_config(path)?,
         None => Config::default(),
     };
-    let nodata = nodata(args.terrain.nodata, config.terrain.nodata)?;
-    let height_range_m = args.terrain.height_range.or(config.terrain.height_range);
-    if let Some([low, high]) =
-        height_range_m.filter(|[low, high]| !(low < high && (high - low).is_finite()))
-    {
-        return Err(Failure::unusable(format!(
-            "height-range of {low}, {high} has no two ends in order; write it like [-500, 9000]"
-        )));
-    }
-    // Two ways to say one thing: what the command line says of it goes before all that the file says.
-    let (cell, cell_every) = match (args.terrain.cell, args.terrain.cell_every) {
-        (None, None) => {
-            let cell = config.terrain.cell.map(|sides| check_cell(sides.to_array())).transpose();
-            let cell = cell.map_err(|error| Failure::unusable(format!("cell: {error}")))?;
-            (cell, config.terrain.cell_every)
-        }
-        said => said,
-    };
-    let terrain = TerrainSettings {
-        crs: args.terrain.crs.or(config.terrain.crs),
-        dem_crs: args.terrain.dem_crs.or(config.terrain.dem_crs),
-        dem_vertical_crs: args.terrain.dem_vertical_crs.or(config.terrain.dem_vertical_crs),
-        vertical_crs: args.terrain.vertical_crs.or(config.terrain.vertical_crs),
-        vertical_shift_m: args
-            .terrain
-            .vertical_shift
-            .or(config.terrain.vertical_shift)
-            .unwrap_or(0.0),
-        nodata,
-        height_range_m,
-        allow_fine_cell: args.terrain.force,
-        cell: cell.map(Cell::from),
-        cell_every,
-        scale_latitude_deg: args.terrain.scale_latitude.or(config.terrain.scale_latitude),
-        max_error_m: positive("--max-error", args.terrain.max_error.or(config.terrain.max_error))?,
-        fill_voids: args.terrain.fill_voids.or(config.terrain.fill_voids).unwrap_or(FILL_VOIDS),
-    };
-    let simplify_cells = args.roads.simplify.or(config.roads.simplify).unwrap_or(SIMPLIFY_CELLS);
-    if !(0.0..=64.0).contains(&simplify_cells) {
-        return Err(Failure::unusable(format!(
-            "--simplify must be between 0 and 64 cells, not {simplify_cells}"
-        )));
-    }
-    let filter = if args.roads.all_classes || config.roads.all_classes {
-        ClassFilter::all()
-    } else {
-        match config.roads.class_max_cell {
-            Some(cells) => {
-                class_filter(&cells).map_err(|error| presets::refuse("settings", &error))?
-            }
-            None => ClassFilter::usual(),
-        }
-    };
-    let table = args.roads.frc_table.or(config.roads.frc_table);
-    let memory = args.resources.memory.or(config.resources.memory);
+    let terrain = args.terrain.or(config.terrain);
+    let roads = args.roads.or(config.roads);
+    let resources = args.resources.or(config.resources);
     Ok(BuildSettings {
         dem: args.dem,
         osm: args.osm,
         output: args.output,
         existing: if args.overwrite { Existing::Replace } else { Existing::Keep },
-        terrain,
         attribution: if args.attribution.is_empty() {
-            config.terrain.attribution
+            terrain.attribution.clone()
         } else {
             args.attribution
         },
-        roads: RoadSettings {
-            table: presets::frc_table(table.as_deref().unwrap_or("default"))?,
-            filter,
-            simplify_cells,
-        },
+        terrain: terrain_settings(terrain)?,
+        roads: road_settings(roads)?,
         resources: Resources {
-            threads: threads(args.resources.threads.or(config.resources.threads)),
-            memory_bytes: memory.as_deref().map_or(Ok(MEMORY_BYTES), parse_memory)?,
+            threads: threads(resources.threads),
+            memory_bytes: resources.memory.unwrap_or(MEMORY_BYTES),
         },
         generator: format!("corniche {}", env!("CARGO_PKG_VERSION")),
     })
+}
+
+fn terrain_settings(options: TerrainOptions) -> Result<TerrainSettings, Failure> {
+    check_nodata(&options.nodata)?;
+    if let Some([low, high]) =
+        options.height_range.filter(|[low, high]| !(low < high && (high - low).is_finite()))
+    {
+        return Err(Failure::unusable(format!(
+            "height-range of {low}, {high} has no two ends in order; write it like [-500, 9000]"
+        )));
+    }
+    let cell = options.cell.map(check_cell).transpose();
+    let cell = cell.map_err(|error| Failure::unusable(format!("cell: {error}")))?;
+    Ok(TerrainSettings {
+        open: OpenOptions {
+            dem_crs: options.dem_crs,
+            nodata: options.nodata,
+            dem_vertical_crs: options.dem_vertical_crs,
+            vertical_crs: options.vertical_crs,
+            vertical_shift_m: options.vertical_shift.unwrap_or(0.0),
+        },
+        plan: PlanOptions {
+            crs: options.crs,
+            cell: cell.map(Cell::from),
+            cell_every: options.cell_every,
+            scale_latitude_deg: options.scale_latitude,
+            fill_voids: options.fill_voids.unwrap_or(FILL_VOIDS),
+        },
+        height_range_m: options.height_range,
+        allow_fine_cell: options.force,
+        max_error_m: positive("--max-error", options.max_error)?,
+    })
+}
+
+fn road_settings(options: RoadOptions) -> Result<RoadSettings, Failure> {
+    let simplify_cells = options.simplify.unwrap_or(SIMPLIFY_CELLS);
+    if !(0.0..=64.0).contains(&simplify_cells) {
+        return Err(Failure::unusable(format!(
+            "--simplify must be between 0 and 64 cells, not {simplify_cells}"
+        )));
+    }
+    let filter = match options.class_max_cell {
+        _ if options.all_classes => ClassFilter::all(),
+        Some(cells) => class_filter(&cells).map_err(|error| presets::refuse("settings", &error))?,
+        None => ClassFilter::usual(),
+    };
+    let table = presets::frc_table(options.frc_table.as_deref().unwrap_or("default"))?;
+    Ok(RoadSettings { table, filter, simplify_cells })
 }
 
 fn positive(option: &str, value: Option<f64>) -> Result<Option<f64>, Failure> {
@@ -183,19 +174,8 @@ pub(crate) fn threads(asked: Option<NonZeroUsize>) -> usize {
     asked.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
 }
 
-/// What `--memory` says, if it is enough to work in.
-fn parse_memory(text: &str) -> Result<u64, Failure> {
-    match parse_bytes(text) {
-        Ok(size_bytes) if size_bytes >= MIN_MEMORY_BYTES => Ok(size_bytes),
-        _ => Err(Failure::unusable(format!(
-            "--memory {text:?} is not a size of at least 64M; write it like 512M, 4G or 1T"
-        ))),
-    }
-}
-
-/// Values that mean "no data": the command line's, else the settings file's.
-fn nodata(given: Vec<f64>, config: Vec<f64>) -> Result<Vec<f64>, Failure> {
-    let values = if given.is_empty() { config } else { given };
+/// Values that mean "no data" are numbers, and not too many.
+fn check_nodata(values: &[f64]) -> Result<(), Failure> {
     if let Some(value) = values.iter().find(|value| !value.is_finite()) {
         return Err(Failure::unusable(format!(
             "--nodata {value} is needless: what is no finite number is no height anyway; leave it out"
@@ -208,7 +188,7 @@ fn nodata(given: Vec<f64>, config: Vec<f64>) -> Result<Vec<f64>, Failure> {
             values.len()
         )));
     }
-    Ok(values)
+    Ok(())
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! `corniche fly`: a flight over a package, frame by frame: what each costs, as a list, pictures and a chart.
 
+mod chart;
 mod list;
+mod measured_run;
 mod outputs;
 mod pictures;
 mod summary;
@@ -18,9 +20,7 @@ use std::{
 
 use image::RgbaImage;
 
-use self::outputs::Outputs;
-#[cfg(test)]
-pub(crate) use self::summary::tests::frame;
+use self::{measured_run::MeasuredRun, outputs::Outputs};
 use crate::{
     args::{FlyArgs, Lod, Roads},
     exit::ExitCode,
@@ -29,9 +29,9 @@ use crate::{
 };
 use corniche_styles::Style;
 use corniche_viewer::{
-    Detail, FrameRecord, Lifted, Replay, ReplayError, ReplayOptions, default_flight,
+    Detail, Lifted, Replay, ReplayError, ReplayOptions, default_flight,
     flight::{Flight, WorkingCrs},
-    gpu::{Gpu, PassTimes},
+    gpu::Gpu,
     stream::StreamBudget,
     tiles::{MapPackage, PackageSource},
 };
@@ -41,47 +41,6 @@ use corniche_window::{Watched, watch};
 const MAX_PATH_BYTES: u64 = 32 << 20;
 /// Tiles being decoded at once.
 const TILES_IN_FLIGHT: usize = 8;
-
-/// One flight with one method and one choice of tiles.
-pub(crate) struct Run {
-    pub(crate) lod: Lod,
-    pub(crate) roads: Roads,
-    pub(crate) frames: Vec<FrameRecord>,
-}
-
-impl Run {
-    pub(crate) fn name(&self) -> String {
-        format!("{}, roads {}", self.lod.word(), self.roads.word())
-    }
-
-    /// What makes its figures or pictures less than they seem, if anything does.
-    fn doubt(&self) -> Option<String> {
-        if self.frames.iter().all(|frame| frame.triangles == 0) {
-            return Some(
-                "no frame shows any ground; is the flight one over this package?".to_owned(),
-            );
-        }
-        let coarse = self.frames.iter().filter(|frame| frame.tiles_missing > 0).count();
-        (coarse > 0).then(|| {
-            format!(
-                "{coarse} of {} frames are coarser than asked for, because their tiles had not arrived; more frames, or \
-                 --lod culled, show all",
-                self.frames.len()
-            )
-        })
-    }
-
-    /// The frames that figures are taken of: all but the first, which waits for its tiles, and in which the driver makes
-    /// what it makes once.
-    pub(crate) fn counted(&self) -> &[FrameRecord] {
-        self.frames.get(1..).unwrap_or_default()
-    }
-}
-
-/// What drawing a frame took the graphics card, by its own clock.
-pub(crate) fn gpu_ms(passes: &PassTimes) -> f64 {
-    passes.terrain_ms + passes.roads_ms + passes.composite_ms
-}
 
 pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let outputs = Outputs::create(args)?;
@@ -156,7 +115,7 @@ struct Plan<'a> {
 
 /// What came of them.
 struct Drawn {
-    runs: Vec<Run>,
+    runs: Vec<MeasuredRun>,
     adapter: String,
 }
 
@@ -232,7 +191,7 @@ impl Plan<'_> {
         watcher: Option<&Watcher<'_>>,
         lod: Lod,
         roads: Roads,
-    ) -> Result<Run, Failure> {
+    ) -> Result<MeasuredRun, Failure> {
         let options = options(self.args, self.flight, self.style, lod, roads)?;
         let source = PackageSource::open(&self.args.package)?.for_method(options.roads.method);
         let is_stopped = || {
@@ -248,7 +207,7 @@ impl Plan<'_> {
                 roads.word()
             );
         }
-        let mut run = Run { lod, roads, frames: Vec::new() };
+        let mut run = MeasuredRun { lod, roads, frames: Vec::new() };
         // It hides itself where nobody looks on.
         let bar = progress::bar(run.name(), Some(options.frames.into()));
         while let Some(record) = replay.next_frame()? {

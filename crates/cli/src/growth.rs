@@ -1,5 +1,7 @@
 //! `corniche growth`: what laying roads on the terrain costs.
 
+mod chart;
+
 use std::io::{self, Write as _};
 
 use corniche_tileset::{FilePackage, GrowthRow, Manifest};
@@ -7,7 +9,6 @@ use serde_json::json;
 
 use crate::{
     args::GrowthArgs,
-    chart,
     exit::ExitCode,
     failure::Failure,
     output::{Existing, Kind, Output},

@@ -14,7 +14,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions};
+use corniche_dem::{Dem, GridPlan};
 use corniche_tileset::Manifest;
 
 use crate::{
@@ -104,7 +104,8 @@ fn warn_of_other_grids(plan: &GridPlan, observer: &dyn Observer) {
 
 /// Tells of a latitude that was given and changes nothing.
 fn warn_of_unused_latitude(terrain: &TerrainSettings, plan: &GridPlan, observer: &dyn Observer) {
-    if let Some(latitude_deg) = terrain.scale_latitude_deg.filter(|_| !plan.has_standard_latitude())
+    if let Some(latitude_deg) =
+        terrain.plan.scale_latitude_deg.filter(|_| !plan.has_standard_latitude())
     {
         observer.warning(&format!(
             "--scale-latitude {latitude_deg} changes nothing: lengths in {} are taken as they are",
@@ -115,23 +116,8 @@ fn warn_of_unused_latitude(terrain: &TerrainSettings, plan: &GridPlan, observer:
 
 /// Looks into the elevation files and lays out the grid.
 fn open(files: &[PathBuf], terrain: &TerrainSettings) -> Result<(Dem, GridPlan), BuildError> {
-    let dem = Dem::open(
-        files,
-        &OpenOptions {
-            dem_crs: terrain.dem_crs.clone(),
-            nodata: terrain.nodata.clone(),
-            dem_vertical_crs: terrain.dem_vertical_crs.clone(),
-            vertical_crs: terrain.vertical_crs.clone(),
-            vertical_shift_m: terrain.vertical_shift_m,
-        },
-    )?;
-    let plan = dem.plan(&PlanOptions {
-        crs: terrain.crs.clone(),
-        cell: terrain.cell,
-        cell_every: terrain.cell_every,
-        scale_latitude_deg: terrain.scale_latitude_deg,
-        fill_voids: terrain.fill_voids,
-    })?;
+    let dem = Dem::open(files, &terrain.open)?;
+    let plan = dem.plan(&terrain.plan)?;
     if !terrain.allow_fine_cell {
         dem.refuse_oversampling(&plan)?;
     }

@@ -21,7 +21,7 @@ use corniche_tileset::InputRecord;
 use sha2::{Digest, Sha256};
 
 use self::stamp::Stamp;
-use crate::{BuildError, Observer, Stage, VerifyError, records::hex};
+use crate::{BuildError, Observer, Stage, VerifyError, hex::hex};
 
 /// A raster that was named.
 pub(crate) const DEM: &str = "dem";

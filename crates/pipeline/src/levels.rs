@@ -4,7 +4,7 @@ use corniche_geom::Frame;
 use corniche_roads::{ClassFilter, FunctionalRoadClass};
 use corniche_tileset::Manifest;
 
-use crate::RoadSettings;
+use crate::{RoadSettings, settings_record};
 
 /// Half widths up to this many cells of a level can be drawn from its SV lines: at a screen-space error of two
 /// pixels a cell of the level is some sixteen pixels wide, so that is a hundred pixels and more.
@@ -54,7 +54,7 @@ impl Levels {
             quantum_m: corniche_tin::height_quantum_m(settings.max_error_m),
             // The finest level shows every class that the table lets in.
             least_class: FunctionalRoadClass::new(manifest.levels.last()?.least_class?)?,
-            filter: recorded_filter(manifest)?,
+            filter: settings_record::filter(settings)?,
             simplify_cells: settings.simplify_cells,
             most_scale: most_scale(manifest.scale.largest),
         })
@@ -127,13 +127,7 @@ impl Levels {
     }
 }
 
-/// Which levels show which class, as a package records it; `None` where its record makes no filter.
 /// The larger of the largest scales along both axes.
 pub(crate) fn most_scale(largest: [f64; 2]) -> f64 {
     largest[0].max(largest[1])
-}
-
-pub(crate) fn recorded_filter(manifest: &Manifest) -> Option<ClassFilter> {
-    let cells = manifest.settings.class_max_cell_m.as_slice().try_into().ok()?;
-    ClassFilter::new(cells).ok()
 }

@@ -1,6 +1,6 @@
-use corniche_geom::Cell;
 use std::path::PathBuf;
 
+use corniche_dem::{OpenOptions, PlanOptions};
 use corniche_roads::{ClassFilter, FrcTable};
 
 /// What to build, from what, and how: checked, ready to run.
@@ -35,39 +35,23 @@ pub enum Existing {
     Replace,
 }
 
-/// How the ground is made. Determines bytes.
+/// How the ground is made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TerrainSettings {
-    /// Working CRS; `None` chooses one.
-    pub crs: Option<String>,
-    /// CRS of rasters that name none.
-    pub dem_crs: Option<String>,
-    /// Vertical CRS of rasters that name none.
-    pub dem_vertical_crs: Option<String>,
-    /// Vertical CRS that heights are wanted in; `None` leaves them as the files have them.
-    pub vertical_crs: Option<String>,
-    /// Added to every height last, metres.
-    pub vertical_shift_m: f64,
-    /// Values that mean "no data" beside what the files say.
-    pub nodata: Vec<f64>,
+    /// How the elevation files are understood.
+    pub open: OpenOptions,
+    /// The grid of nodes, and how voids in it are filled.
+    pub plan: PlanOptions,
     /// Lowest and highest height that samples may have, metres, as the files give them. `None` allows what the earth's
     /// surface has, and no repeated value far beyond all others.
     pub height_range_m: Option<[f64; 2]>,
-    /// Whether a cell may be far smaller than the spacing of samples.
+    /// Whether a cell may be far smaller than the spacing of samples. Determines no byte: it only lets a build begin.
     pub allow_fine_cell: bool,
-    /// Spacing of the finest level; `None` takes the DEM's.
-    pub cell: Option<Cell>,
-    /// Take every n-th sample of the DEM along both axes as node.
-    pub cell_every: Option<u32>,
-    /// Latitude at which lengths in the DEM's own CRS are true; `None` takes the data's middle, to half a degree.
-    pub scale_latitude_deg: Option<f64>,
     /// Largest vertical error of the finest level; `None` takes a quarter of the cell.
     pub max_error_m: Option<f64>,
-    /// How far, in cells, data may lie in each of eight directions for a void node to be filled.
-    pub fill_voids: u32,
 }
 
-/// How roads are made. Determines bytes.
+/// How roads are made. All of it determines bytes.
 #[derive(Debug, Clone)]
 pub struct RoadSettings {
     /// `highway` value → class.

@@ -1,83 +1,201 @@
+//! The options of a build: each is declared once, for the command line and for settings files.
+
 use std::{collections::BTreeMap, num::NonZeroUsize};
 
-use serde::{Deserialize, Deserializer};
+use clap::Args;
+use serde::{Deserialize, Deserializer, de::Error as _};
 
-use crate::{PresetError, error::bounded};
+use crate::{
+    PresetError,
+    error::bounded,
+    values::{parse_cell, parse_memory, parse_range},
+};
 
 /// A settings file: what the command line can say, by section. What it leaves out is decided elsewhere.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Config {
     /// `[terrain]`
-    pub terrain: TerrainConfig,
+    pub terrain: TerrainOptions,
     /// `[roads]`
-    pub roads: RoadConfig,
+    pub roads: RoadOptions,
     /// `[resources]`
-    pub resources: ResourceConfig,
+    pub resources: ResourceOptions,
 }
 
-/// How the ground is made: the options of the same names.
-#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+impl Config {
+    /// Reads a settings file's text. Unknown sections and names are refused.
+    ///
+    /// # Errors
+    /// When it is no TOML, or holds what is no setting.
+    pub fn parse(text: &str) -> Result<Self, PresetError> {
+        Ok(toml::from_str(bounded(text)?)?)
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Default, Args, Deserialize)]
 #[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
-#[expect(missing_docs, reason = "each field is the option of its name, documented there")]
-pub struct TerrainConfig {
+#[command(next_help_heading = "Terrain")]
+#[expect(missing_docs, reason = "clap would take it for the description of the command")]
+pub struct TerrainOptions {
+    /// Working CRS: dem (the first raster's own, so that nodes are its samples), utm, or any projected one
+    /// [default: dem where lengths are then true within 3 %, else utm]
+    #[arg(long, value_name = "dem|utm|EPSG:N|WKT")]
     pub crs: Option<String>,
+    /// CRS of rasters that name none
+    #[arg(long, value_name = "EPSG:N")]
     pub dem_crs: Option<String>,
-    pub vertical_crs: Option<String>,
+    /// Vertical CRS of rasters that name none
+    #[arg(long, value_name = "EPSG:N")]
     pub dem_vertical_crs: Option<String>,
+    /// Vertical CRS that heights are wanted in, through PROJ and its geoid grids [default: the files']
+    #[arg(long, value_name = "EPSG:N")]
+    pub vertical_crs: Option<String>,
+    /// Added to every height, in metres [default: 0]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub vertical_shift: Option<f64>,
-    /// One value or a list of them.
+    /// Value that means "no data" as the files store it, beside what they say themselves; may be given several times
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     #[serde(deserialize_with = "one_or_many")]
     pub nodata: Vec<f64>,
+    /// Heights that samples may have, in metres, before --vertical-shift; what lies in it is believed, however odd
+    /// [default: -12000,9000, and no repeated value 1000 m beyond all others]
+    #[arg(long, value_name = "LOW,HIGH", value_parser = parse_range, allow_hyphen_values = true)]
     pub height_range: Option<[f64; 2]>,
-    pub cell: Option<CellSides>,
-    pub cell_every: Option<u32>,
+    /// Latitude, in degrees, at which lengths are true in a CRS that is not true to scale, such as degrees; packages of
+    /// adjoining regions fit when it is the same [default: the middle of the DEM, to half a degree]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     pub scale_latitude: Option<f64>,
+    /// Spacing of the finest level, in metres: of a square, or of a rectangle, east and north; heights are interpolated
+    /// [default: the DEM's own]
+    #[arg(long, value_name = "METRES|EAST,NORTH", value_parser = parse_cell, allow_hyphen_values = true)]
+    #[serde(deserialize_with = "one_or_two")]
+    pub cell: Option<[f64; 2]>,
+    /// Take one in K of the DEM's samples along both axes as the finest level, as they are
+    #[arg(long, value_name = "K", conflicts_with = "cell")]
+    pub cell_every: Option<u32>,
+    /// Build with more than 16 nodes to a DEM sample, too
+    #[arg(long)]
+    #[serde(skip)]
+    pub force: bool,
+    /// Largest vertical error of the finest level, in metres [default: a quarter of the cell]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub max_error: Option<f64>,
+    /// Fill voids that have data within this many cells in each of eight directions [default: 32]
+    #[arg(long, value_name = "CELLS")]
     pub fill_voids: Option<u32>,
+    /// Credits, which the command line has beside the inputs.
+    #[arg(skip)]
     pub attribution: Vec<String>,
 }
 
-/// A cell: one number is a square's side, two are east and north; metres.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(untagged, expecting = "expected a number or two of them, [east, north]")]
-pub enum CellSides {
-    /// The side of a square.
-    Square(f64),
-    /// East and north.
-    Rectangle([f64; 2]),
+#[derive(Debug, Clone, PartialEq, Default, Args, Deserialize)]
+#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+#[command(next_help_heading = "Roads")]
+#[expect(missing_docs, reason = "clap would take it for the description of the command")]
+pub struct RoadOptions {
+    /// FRC table: a preset (default, valhalla, fraunhofer, itinero, here5) or a TOML file [default: default]
+    #[arg(long, value_name = "PRESET|FILE")]
+    pub frc_table: Option<String>,
+    /// Show every class on every level
+    #[arg(long)]
+    pub all_classes: bool,
+    /// Tolerance of the simplification of roads on coarser levels, in cells of the level; 0 keeps every point
+    /// [default: 0.25]
+    #[arg(long, value_name = "CELLS")]
+    pub simplify: Option<f64>,
+    /// Coarsest cell, metres, at which each class is shown; a class left out is shown on every level.
+    #[arg(skip)]
+    pub class_max_cell: Option<BTreeMap<String, f64>>,
 }
 
-impl CellSides {
-    /// East and north, metres.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Args, Deserialize)]
+#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+#[command(next_help_heading = "Resources")]
+#[expect(missing_docs, reason = "clap would take it for the description of the command")]
+pub struct ResourceOptions {
+    /// Worker threads [default: one per processor]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+    /// Memory for buffers and caches, such as 512M, 4G or 1T [default: 1G]
+    #[arg(long, value_name = "BYTES", value_parser = parse_memory)]
+    #[serde(deserialize_with = "memory")]
+    pub memory: Option<u64>,
+}
+
+/// What the first of two says, else what the second says.
+trait OrElse {
+    fn or_from(self, other: Self) -> Self;
+}
+
+impl<T> OrElse for Option<T> {
+    fn or_from(self, other: Self) -> Self {
+        self.or(other)
+    }
+}
+
+impl<T> OrElse for Vec<T> {
+    fn or_from(self, other: Self) -> Self {
+        if self.is_empty() { other } else { self }
+    }
+}
+
+impl OrElse for bool {
+    fn or_from(self, other: Self) -> Self {
+        self || other
+    }
+}
+
+impl TerrainOptions {
+    /// These options; those that are not given are taken from `other`.
     #[must_use]
-    pub fn to_array(self) -> [f64; 2] {
-        match self {
-            Self::Square(side_m) => [side_m; 2],
-            Self::Rectangle(sides_m) => sides_m,
+    pub fn or(self, other: Self) -> Self {
+        // Two ways to give one thing: if one of them is given here, neither is taken from `other`.
+        let (cell, cell_every) = match (self.cell, self.cell_every) {
+            (None, None) => (other.cell, other.cell_every),
+            given => given,
+        };
+        Self {
+            crs: self.crs.or_from(other.crs),
+            dem_crs: self.dem_crs.or_from(other.dem_crs),
+            dem_vertical_crs: self.dem_vertical_crs.or_from(other.dem_vertical_crs),
+            vertical_crs: self.vertical_crs.or_from(other.vertical_crs),
+            vertical_shift: self.vertical_shift.or_from(other.vertical_shift),
+            nodata: self.nodata.or_from(other.nodata),
+            height_range: self.height_range.or_from(other.height_range),
+            scale_latitude: self.scale_latitude.or_from(other.scale_latitude),
+            cell,
+            cell_every,
+            force: self.force.or_from(other.force),
+            max_error: self.max_error.or_from(other.max_error),
+            fill_voids: self.fill_voids.or_from(other.fill_voids),
+            attribution: self.attribution.or_from(other.attribution),
         }
     }
 }
 
-/// How roads are made: the options of the same names.
-#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
-#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
-#[expect(missing_docs, reason = "each field is the option of its name, documented there")]
-pub struct RoadConfig {
-    pub frc_table: Option<String>,
-    pub all_classes: bool,
-    pub simplify: Option<f64>,
-    /// Coarsest cell, metres, at which each class is shown; a class left out is shown on every level.
-    pub class_max_cell: Option<BTreeMap<String, f64>>,
+impl RoadOptions {
+    /// These options; those that are not given are taken from `other`.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            frc_table: self.frc_table.or_from(other.frc_table),
+            all_classes: self.all_classes.or_from(other.all_classes),
+            simplify: self.simplify.or_from(other.simplify),
+            class_max_cell: self.class_max_cell.or_from(other.class_max_cell),
+        }
+    }
 }
 
-/// What a run may use: the options of the same names.
-#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
-#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
-#[expect(missing_docs, reason = "each field is the option of its name, documented there")]
-pub struct ResourceConfig {
-    pub threads: Option<NonZeroUsize>,
-    pub memory: Option<String>,
+impl ResourceOptions {
+    /// These options; those that are not given are taken from `other`.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            threads: self.threads.or_from(other.threads),
+            memory: self.memory.or_from(other.memory),
+        }
+    }
 }
 
 /// A list of numbers, or one alone.
@@ -94,14 +212,24 @@ fn one_or_many<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D
     })
 }
 
-impl Config {
-    /// Reads a settings file's text. Unknown sections and names are refused.
-    ///
-    /// # Errors
-    /// When it is no TOML, or says what no setting is.
-    pub fn parse(text: &str) -> Result<Self, PresetError> {
-        Ok(toml::from_str(bounded(text)?)?)
+/// A cell, east and north: one number is the side of a square.
+fn one_or_two<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 2]>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "expected a number or two of them, [east, north]")]
+    enum Sides {
+        Square(f64),
+        Rectangle([f64; 2]),
     }
+    Ok(Some(match Sides::deserialize(deserializer)? {
+        Sides::Square(side_m) => [side_m; 2],
+        Sides::Rectangle(sides_m) => sides_m,
+    }))
+}
+
+/// Memory as text, like that of the command line.
+fn memory<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u64>, D::Error> {
+    let text = String::deserialize(deserializer)?;
+    parse_memory(&text).map(Some).map_err(D::Error::custom)
 }
 
 #[cfg(test)]

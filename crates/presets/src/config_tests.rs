@@ -31,7 +31,7 @@ fn one_value_for_no_data_is_said_as_shortly_as_before() {
 fn a_cell_is_a_square_or_a_rectangle() {
     let cell = |text: &str| {
         let config = Config::parse(&format!("[terrain]\ncell = {text}\n"));
-        config.map(|config| config.terrain.cell.map(CellSides::to_array))
+        config.map(|config| config.terrain.cell)
     };
     assert_eq!(cell("30").unwrap(), Some([30.0, 30.0]));
     assert_eq!(cell("2.5").unwrap(), Some([2.5, 2.5]));
@@ -53,4 +53,34 @@ fn a_text_that_is_no_settings_is_not_even_parsed() {
     assert!(matches!(Config::parse(&long), Err(PresetError::TooLong { .. })));
     let deep = format!("a = {}{}", "[".repeat(100_000), "]".repeat(100_000));
     assert!(matches!(Config::parse(&deep), Err(PresetError::Toml(_))));
+}
+
+#[test]
+fn what_the_first_leaves_out_is_taken_from_the_second() {
+    let read = |text: &str| Config::parse(text).unwrap();
+    let first = read("[terrain]\ncell-every = 3\nnodata = -1\n[resources]\nmemory = \"64M\"\n");
+    let second = read(
+        "[terrain]\ncell = 30\nnodata = [-2, -3]\nmax-error = 7\n[roads]\nall-classes = true\n\
+         [resources]\nthreads = 2\nmemory = \"1G\"\n",
+    );
+    let terrain = first.terrain.clone().or(second.terrain.clone());
+    assert_eq!((terrain.cell, terrain.cell_every), (None, Some(3)));
+    assert_eq!((terrain.nodata, terrain.max_error), (vec![-1.0], Some(7.0)));
+    assert!(first.roads.or(second.roads).all_classes);
+    let resources = first.resources.or(second.resources);
+    assert_eq!((resources.threads, resources.memory), (NonZeroUsize::new(2), Some(64 << 20)));
+    let terrain = TerrainOptions::default().or(second.terrain);
+    assert_eq!((terrain.cell, terrain.cell_every), (Some([30.0; 2]), None));
+}
+
+#[test]
+fn memory_is_written_as_on_the_command_line() {
+    let said = Config::parse("[resources]\nmemory = \"1M\"\n").unwrap_err().to_string();
+    assert!(said.contains("at least 64M"), "{said}");
+    assert!(Config::parse("[resources]\nmemory = 1\n").is_err());
+}
+
+#[test]
+fn what_only_the_command_line_has_is_refused_in_a_file() {
+    assert!(Config::parse("[terrain]\nforce = true\n").is_err());
 }

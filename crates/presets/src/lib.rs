@@ -1,4 +1,5 @@
-//! What people write down in TOML: settings files and FRC tables, checked; and the FRC tables that come with the program.
+//! What people give as text: options of a build (on the command line and in settings files) and FRC tables, checked; and the
+//! FRC tables that come with the program.
 //!
 //! This crate never opens a file, never decides what a setting that is left out means, and never draws.
 
@@ -6,8 +7,10 @@ mod class_cells;
 mod config;
 mod error;
 mod frc;
+mod values;
 
 pub use class_cells::class_filter;
-pub use config::{CellSides, Config, ResourceConfig, RoadConfig, TerrainConfig};
+pub use config::{Config, ResourceOptions, RoadOptions, TerrainOptions};
 pub use error::PresetError;
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};
+pub use values::{check_cell, parse_bytes};

@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use corniche_presets::parse_bytes;
 
 use super::{
     camera::CameraArgs,
     look::{LookArgs, Roads},
-    values::{parse_bytes, parse_size},
+    values::parse_size,
 };
 
 #[derive(Debug, Args)]

@@ -6,17 +6,15 @@ mod drawing;
 mod look;
 mod reading;
 mod values;
+mod view;
 
 use clap::{Parser, Subcommand};
 
 pub(crate) use build::{BuildArgs, ReportArgs};
-pub(crate) use camera::CameraArgs;
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
-pub(crate) use look::{LookArgs, Roads};
+pub(crate) use look::Roads;
 pub(crate) use reading::{Coordinates, GrowthArgs, InfoArgs, TileArgs, VerifyArgs};
-pub(crate) use values::{check_cell, parse_bytes, parse_size};
-
-use crate::view::ViewArgs;
+pub(crate) use view::{Motion, ViewArgs};
 
 /// Terrain tiles with roads laid exactly on them, from elevation rasters and OpenStreetMap extracts.
 #[derive(Debug, Parser)]

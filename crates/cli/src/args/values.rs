@@ -1,33 +1,5 @@
 //! Texts of single values.
 
-pub(crate) fn parse_bytes(text: &str) -> Result<u64, String> {
-    let (digits, unit) = match text.char_indices().last() {
-        Some((at, 'K' | 'k')) => (&text[..at], 1 << 10),
-        Some((at, 'M' | 'm')) => (&text[..at], 1 << 20),
-        Some((at, 'G' | 'g')) => (&text[..at], 1 << 30),
-        Some((at, 'T' | 't')) => (&text[..at], 1 << 40),
-        _ => (text, 1),
-    };
-    let number: Option<u64> = digits.parse().ok();
-    match number.and_then(|number| number.checked_mul(unit)) {
-        Some(size_bytes @ 1..) => Ok(size_bytes),
-        _ => Err("write it like 800K, 512M, 4G or 1T".to_owned()),
-    }
-}
-
-/// The lowest and the highest of something, in this order.
-pub(crate) fn parse_range(text: &str) -> Result<[f64; 2], String> {
-    let ends = text
-        .split_once(',')
-        .and_then(|(low, high)| Some([low.trim().parse().ok()?, high.trim().parse().ok()?]));
-    match ends {
-        Some([low, high]) if low < high && f64::is_finite(low) && high.is_finite() => {
-            Ok([low, high])
-        }
-        _ => Err("write the lowest and the highest like -500,9000".to_owned()),
-    }
-}
-
 /// More than most graphics cards can draw; each says itself what it can.
 pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text
@@ -50,29 +22,6 @@ pub(crate) fn parse_position(text: &str) -> Result<[f64; 2], String> {
         }
         Some(_) => Err("longitude must be within ±360 and latitude within ±90 degrees".to_owned()),
         None => Err("write longitude,latitude like 9.52,47.14".to_owned()),
-    }
-}
-
-/// A cell, east and north: one number is a square.
-pub(crate) fn parse_cell(text: &str) -> Result<[f64; 2], String> {
-    let side = |text: &str| text.trim().parse::<f64>().ok();
-    let sides_m = match text.split_once(',') {
-        Some((east, north)) => {
-            side(east).zip(side(north)).map(|(east_m, north_m)| [east_m, north_m])
-        }
-        None => side(text).map(|side_m| [side_m; 2]),
-    };
-    match sides_m {
-        Some(sides_m) => check_cell(sides_m),
-        None => Err("write metres like 30, or east,north like 20,30".to_owned()),
-    }
-}
-
-/// Sides that can be those of a cell, east and north.
-pub(crate) fn check_cell(sides_m: [f64; 2]) -> Result<[f64; 2], String> {
-    match sides_m.iter().find(|side_m| !(**side_m > 0.0 && side_m.is_finite())) {
-        Some(side_m) => Err(format!("a side must be a positive number of metres, not {side_m}")),
-        None => Ok(sides_m),
     }
 }
 

@@ -1,39 +1,6 @@
 use super::*;
 
 #[test]
-fn sizes_of_memory() {
-    assert_eq!(parse_bytes("800K"), Ok(800 << 10));
-    assert_eq!(parse_bytes("512M"), Ok(512 << 20));
-    assert_eq!(parse_bytes("4G"), Ok(4 << 30));
-    assert_eq!(parse_bytes("1T"), Ok(1 << 40));
-    assert_eq!(parse_bytes("17"), Ok(17));
-    for bad in ["", "0", "M", "-1M", "4P", "1.5G", "99999999999999G", "99999999T", "ä"] {
-        assert!(parse_bytes(bad).is_err(), "{bad}");
-    }
-}
-
-#[test]
-fn ranges_have_two_ends_in_order() {
-    assert_eq!(parse_range("-500,9000"), Ok([-500.0, 9000.0]));
-    assert_eq!(parse_range("0, 70000.5"), Ok([0.0, 70_000.5]));
-    for bad in ["", "5", "5,5", "9000,-500", "a,b", "0,inf", "nan,1", "1,2,3"] {
-        assert!(parse_range(bad).is_err(), "{bad}");
-    }
-}
-
-#[test]
-fn cells_are_squares_or_rectangles() {
-    assert_eq!(parse_cell("30"), Ok([30.0, 30.0]));
-    assert_eq!(parse_cell("20.5, 30"), Ok([20.5, 30.0]));
-    for bad in ["", "30 m", "20x30", "20,", "20,30,40"] {
-        assert!(parse_cell(bad).unwrap_err().contains("20,30"), "{bad}");
-    }
-    for bad in ["0", "-5", "nan", "inf", "20,0", "-20,30"] {
-        assert!(parse_cell(bad).unwrap_err().contains("positive number of metres"), "{bad}");
-    }
-}
-
-#[test]
 fn sizes_and_positions() {
     assert_eq!(parse_size("640x480"), Ok([640, 480]));
     assert!(

@@ -2,14 +2,14 @@
 
 use std::fmt::Write as _;
 
-use super::Run;
+use super::measured_run::MeasuredRun;
 
 const HEADINGS: &str = "lod,roads,frame,time_s,x_m,y_m,height_m,heading_deg,pitch_deg,tiles_drawn,tiles_loaded,\
 tiles_uploaded,tiles_evicted,tiles_missing,triangles,road_segments,gpu_bytes,select_ms,decode_ms,upload_ms,draw_ms,\
 terrain_ms,roads_ms,composite_ms\n";
 
 /// Times of passes stay empty where the adapter has no clock.
-pub(crate) fn to_csv(runs: &[Run]) -> String {
+pub(crate) fn to_csv(runs: &[MeasuredRun]) -> String {
     let mut text = HEADINGS.to_owned();
     for run in runs {
         for frame in &run.frames {

@@ -7,10 +7,9 @@ use corniche_viewer::{
     flight::{Flight, WorkingCrs},
 };
 
-use super::{Run, list, pictures::Pictures};
+use super::{chart, list, measured_run::MeasuredRun, pictures::Pictures};
 use crate::{
     args::FlyArgs,
-    chart,
     exit::ExitCode,
     failure::Failure,
     output::{Complete, Existing, Output},
@@ -55,7 +54,7 @@ impl Outputs {
         self,
         flight: &Flight,
         working: WorkingCrs<'_>,
-        runs: &[Run],
+        runs: &[MeasuredRun],
         adapter: &str,
     ) -> Result<(), Failure> {
         let Self { csv, svg, save_path, pictures } = self;

@@ -5,13 +5,13 @@ use std::fmt::Write as _;
 
 use corniche_viewer::FrameRecord;
 
-use super::{Run, gpu_ms};
+use super::measured_run::{MeasuredRun, gpu_ms};
 use crate::{
     args::Roads,
     table::{Table, bytes, count},
 };
 
-pub(crate) fn to_text(runs: &[Run]) -> String {
+pub(crate) fn to_text(runs: &[MeasuredRun]) -> String {
     let mut text = drawn(runs);
     text.push('\n');
     text.push_str(&times(runs));
@@ -23,7 +23,7 @@ pub(crate) fn to_text(runs: &[Run]) -> String {
 }
 
 /// What was drawn.
-fn drawn(runs: &[Run]) -> String {
+fn drawn(runs: &[MeasuredRun]) -> String {
     let mut table = Table::new([
         "average, first frame left out",
         "tiles",
@@ -51,7 +51,7 @@ fn drawn(runs: &[Run]) -> String {
 }
 
 /// How long it took: from the first command until all is drawn, and by the graphics card's clock.
-fn times(runs: &[Run]) -> String {
+fn times(runs: &[MeasuredRun]) -> String {
     let mut table = Table::new([
         "milliseconds, first frame left out",
         "draw",
@@ -89,7 +89,7 @@ fn times(runs: &[Run]) -> String {
 }
 
 /// Loss of frame rate by roads, where the same flight was taken without; else nothing.
-fn losses(runs: &[Run]) -> String {
+fn losses(runs: &[MeasuredRun]) -> String {
     let mut table = Table::new([
         "loss % of frame rate, first frame left out",
         "draw",
@@ -138,7 +138,11 @@ fn of_paper(roads: Roads) -> Option<[u32; 2]> {
 
 /// Loss of frame rate against the same flight without roads, average and most over the frames, as shares; `None` when a
 /// frame's time is not known, or no frame counts.
-fn loss(run: &Run, bare: &Run, time_ms: impl Fn(&FrameRecord) -> Option<f64>) -> Option<[f64; 2]> {
+fn loss(
+    run: &MeasuredRun,
+    bare: &MeasuredRun,
+    time_ms: impl Fn(&FrameRecord) -> Option<f64>,
+) -> Option<[f64; 2]> {
     let each: Option<Vec<f64>> = run
         .counted()
         .iter()
@@ -173,4 +177,4 @@ fn dash() -> String {
 
 #[cfg(test)]
 #[path = "summary_tests.rs"]
-pub(crate) mod tests;
+mod tests;

@@ -1,37 +1,11 @@
-use corniche_viewer::{camera::Orientation, flight::Pose, gpu::PassTimes};
+use corniche_viewer::gpu::PassTimes;
 
 use super::*;
-use crate::args::Lod;
+use crate::{args::Lod, fly::measured_run::tests::frame};
 
-/// A frame that takes so long to draw; 3.5 ms of it on the card.
-pub(crate) fn frame(draw_ms: f64) -> FrameRecord {
-    FrameRecord {
-        frame: 4,
-        time_s: 1.5,
-        pose: Pose {
-            eye_m: [1.0, 2.0, 3.0],
-            orientation: Orientation { heading_deg: 45.0, pitch_deg: 65.0 },
-        },
-        tiles_drawn: 7,
-        tiles_loaded: 0,
-        tiles_uploaded: 0,
-        tiles_evicted: 0,
-        tiles_missing: 0,
-        triangles: 1000,
-        road_segments: 10,
-        gpu_bytes: 5000,
-        select_ms: 0.0,
-        decode_ms: 0.0,
-        upload_ms: 0.0,
-        draw_ms,
-        passes: Some(PassTimes { terrain_ms: 1.0, roads_ms: 2.0, composite_ms: 0.5 }),
-    }
-}
-
-/// A flight of frames that take so long; the first one, which does not count, takes longest.
-fn run(lod: Lod, roads: Roads, times_ms: [f64; 2]) -> Run {
+fn run(lod: Lod, roads: Roads, times_ms: [f64; 2]) -> MeasuredRun {
     let frames = [1000.0].into_iter().chain(times_ms).map(frame).collect();
-    Run { lod, roads, frames }
+    MeasuredRun { lod, roads, frames }
 }
 
 /// The cells of the line that begins with `name` in the part of the text that begins with `part`.

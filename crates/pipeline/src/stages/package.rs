@@ -6,16 +6,17 @@ use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{Bounds, CoordinateTable, CoordinateTableError};
 use corniche_tileset::{
     Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest,
-    SampleCounts, ScaleRecord, SettingsRecord, VerticalRecord, Writer,
+    SampleCounts, ScaleRecord, VerticalRecord, Writer,
 };
 
 use super::{deviations::TileErrors, tiles::Tiles};
 use crate::{
     BuildError, BuildSettings, Observer, Stage, Storage,
     levels::Levels,
-    records::{TILING, settings_sha256, table_sha256},
+    manifest_texts,
     roads::{counts::road_counts, read::ReadRoads},
     sample_error::SampleSums,
+    settings_record,
     storage::Kind,
 };
 
@@ -66,7 +67,7 @@ pub(crate) fn coordinates(dem: &Dem, plan: &GridPlan) -> Result<CoordinateTable,
 pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
     let Outcome { settings, plan, levels, .. } = outcome;
     let frame = *levels.frame();
-    let record = settings_record(outcome);
+    let record = settings_record::of(&settings.terrain, &settings.roads, outcome.max_error_m);
     let mut attribution = settings.attribution.clone();
     if outcome.roads.is_some() {
         attribution.push(corniche_osm::ATTRIBUTION.to_owned());
@@ -74,7 +75,7 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
     Manifest {
         format_version: FORMAT_VERSION,
         generator: format!("{}, {}", settings.generator, plan.libraries),
-        tiling: TILING.to_owned(),
+        tiling: manifest_texts::TILING.to_owned(),
         crs: plan.crs.clone(),
         crs_wkt: plan.crs_wkt.clone(),
         metres_per_unit: plan.metres_per_unit,
@@ -91,42 +92,19 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
         nodes_are_samples: plan.nodes_are_samples(),
         vertical: VerticalRecord {
             quantum_m: levels.quantum_m(),
-            unit: "metre".to_owned(),
-            datum: plan.vertical_datum.clone().unwrap_or_else(|| "unknown".to_owned()),
+            unit: manifest_texts::HEIGHT_UNIT.to_owned(),
+            datum: manifest_texts::datum(plan).to_owned(),
             treatment: plan.vertical.clone(),
             range_m: outcome.range_m.map(f64::from),
         },
         coordinates: outcome.coordinates.clone(),
         levels: level_records(outcome),
-        settings_sha256: settings_sha256(&record),
+        settings_sha256: settings_record::sha256(&record),
         settings: record,
         inputs: outcome.inputs.clone(),
         attribution,
         counts: counts(outcome),
         growth: growth(outcome),
-    }
-}
-
-fn settings_record(outcome: &Outcome<'_>) -> SettingsRecord {
-    let terrain = &outcome.settings.terrain;
-    let roads = &outcome.settings.roads;
-    SettingsRecord {
-        max_error_m: outcome.max_error_m,
-        fill_voids: terrain.fill_voids,
-        nodata: terrain.nodata.clone(),
-        height_range_m: terrain.height_range_m,
-        dem_crs: terrain.dem_crs.clone(),
-        dem_vertical_crs: terrain.dem_vertical_crs.clone(),
-        vertical_crs: terrain.vertical_crs.clone(),
-        vertical_shift_m: terrain.vertical_shift_m,
-        crs: terrain.crs.clone(),
-        cell_m: terrain.cell,
-        cell_every: terrain.cell_every,
-        scale_latitude_deg: terrain.scale_latitude_deg,
-        frc_table: roads.table.name().to_owned(),
-        frc_table_sha256: table_sha256(&roads.table),
-        class_max_cell_m: roads.filter.class_max_cell_m().to_vec(),
-        simplify_cells: roads.simplify_cells,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, rc::Rc};
 
-use corniche_dem::{Dem, DemWindow, GridPlan, OpenOptions, PlanOptions, Reader};
+use corniche_dem::{Dem, DemWindow, GridPlan, Reader};
 use corniche_geom::{HeightGrid, NodeIndex, NodeWindow, TileId};
 use corniche_tileset::{
     Distribution, FilePackage, InputRecord, Manifest, Sections, VerticalRecord,
@@ -15,8 +15,9 @@ use super::{
 use crate::{
     Observer, Stage,
     inputs::{self, Inputs},
+    manifest_texts,
     sample_error::SampleSums,
-    workers,
+    settings_record, workers,
 };
 
 /// Slack for comparing two ways of computing the same height, metres.
@@ -159,17 +160,8 @@ fn open(
     let other = || VerifyError::OtherDem {
         expected: expected.iter().map(|input| input.name.clone()).collect(),
     };
-    let record = &manifest.settings;
-    let dem = Dem::open(
-        &settings.dem,
-        &OpenOptions {
-            dem_crs: record.dem_crs.clone(),
-            nodata: record.nodata.clone(),
-            dem_vertical_crs: record.dem_vertical_crs.clone(),
-            vertical_crs: record.vertical_crs.clone(),
-            vertical_shift_m: record.vertical_shift_m,
-        },
-    )?;
+    let terrain = settings_record::terrain(&manifest.settings);
+    let dem = Dem::open(&settings.dem, &terrain.open)?;
     let given = inputs.hash(observer)?;
     // By content, not by name: a file may have been moved or renamed since. The order of parts is that of their names.
     let mut sizes = Check::new(CheckId::DemInputs);
@@ -194,13 +186,7 @@ fn open(
         }
     }
     report.checks.push(sizes);
-    let plan = dem.plan(&PlanOptions {
-        crs: record.crs.clone(),
-        cell: record.cell_m,
-        cell_every: record.cell_every,
-        scale_latitude_deg: record.scale_latitude_deg,
-        fill_voids: record.fill_voids,
-    })?;
+    let plan = dem.plan(&terrain.plan)?;
     report.checks.push(check_plan(&plan, manifest));
     Ok((plan.frame == manifest.frame).then_some((dem, plan)))
 }
@@ -226,8 +212,7 @@ fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
     same("wgs84_bounds", &manifest.wgs84_bounds, &plan.wgs84_bounds);
     same("nodes_are_samples", &manifest.nodes_are_samples, &plan.nodes_are_samples());
     same("resampling", &manifest.resampling, &plan.resampling_text);
-    let datum = plan.vertical_datum.as_deref().unwrap_or("unknown");
-    same("vertical.datum", &vertical.datum.as_str(), &datum);
+    same("vertical.datum", &vertical.datum.as_str(), &manifest_texts::datum(plan));
     same("vertical.treatment", &vertical.treatment, &plan.vertical);
     check
 }

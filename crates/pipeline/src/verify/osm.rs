@@ -17,17 +17,16 @@ use super::{
     place,
 };
 use crate::{
-    BuildError, DiskStorage, Observer, RoadSettings, Stage,
+    BuildError, DiskStorage, Observer, Stage,
     inputs::{self, Inputs},
-    levels::{Levels, most_scale, recorded_filter},
-    records::table_sha256,
+    levels::{Levels, most_scale},
     roads::{
         counts::road_counts,
         lay::{self, ClassSums, Laid, LaidSums, RoadFate, TileToLayOn},
         lengths::TrueLengths,
         read::{ReadRoads, RoadInput, read},
     },
-    workers,
+    settings_record, workers,
 };
 
 /// Tiles whose lists of roads are in memory at once.
@@ -60,19 +59,14 @@ fn compare_all(
     let manifest = package.manifest();
     check_inputs(manifest, osm, inputs, findings, observer)?;
     // Without either, `levels.derived` or `manifest.crs` is broken, and there is nothing to lay roads by.
-    let (Some(filter), Some([first, last])) =
-        (recorded_filter(manifest), grid::data_tiles(manifest))
+    let (Some(settings), Some([first, last])) =
+        (settings_record::roads(&manifest.settings, osm.table.clone()), grid::data_tiles(manifest))
     else {
         return Ok(());
     };
     let Ok(crs) = place::recorded(manifest) else { return Ok(()) };
     let projection = crs.projection(manifest.wgs84_bounds)?;
     let frame = manifest.frame;
-    let settings = RoadSettings {
-        table: osm.table.clone(),
-        filter,
-        simplify_cells: manifest.settings.simplify_cells,
-    };
     let widest = most_scale(manifest.scale.largest);
     let levels = Levels::new(frame, manifest.settings.max_error_m, &settings, widest);
     let lengths = TrueLengths::new(frame, &manifest.coordinates, &projection);
@@ -133,7 +127,7 @@ fn check_inputs(
         format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
     });
     let settings = &manifest.settings;
-    if table_sha256(&osm.table) != settings.frc_table_sha256 {
+    if settings_record::table_sha256(&osm.table) != settings.frc_table_sha256 {
         let (given, expected) = (osm.table.name().to_owned(), settings.frc_table.clone());
         return Err(if given == expected {
             VerifyError::OtherTableOfThatName { name: expected }

@@ -3,17 +3,13 @@
 use corniche_tileset::Manifest;
 
 use super::checks::{CheckId, Findings};
-use crate::{
-    Loss, inputs,
-    levels::Levels,
-    records::{TILING, settings_sha256},
-};
+use crate::{Loss, inputs, levels::Levels, manifest_texts, settings_record};
 
 /// Kinds of inputs.
 const KINDS: [&str; 3] = [inputs::DEM, inputs::DEM_PART, inputs::OSM];
 
 pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
-    let hash = settings_sha256(&manifest.settings);
+    let hash = settings_record::sha256(&manifest.settings);
     findings.look(CheckId::SettingsHash, hash == manifest.settings_sha256, || {
         "the settings do not match their hash".to_owned()
     });
@@ -63,8 +59,10 @@ fn levels(manifest: &Manifest, findings: &mut Findings) {
 fn texts(manifest: &Manifest, findings: &mut Findings) {
     let mut look =
         |holds: bool, what: &dyn Fn() -> String| findings.look(CheckId::Texts, holds, what);
-    look(manifest.tiling == TILING, &|| format!("tiling is {:?}", manifest.tiling));
-    look(manifest.vertical.unit == "metre", &|| format!("unit is {:?}", manifest.vertical.unit));
+    look(manifest.tiling == manifest_texts::TILING, &|| format!("tiling is {:?}", manifest.tiling));
+    look(manifest.vertical.unit == manifest_texts::HEIGHT_UNIT, &|| {
+        format!("unit is {:?}", manifest.vertical.unit)
+    });
     for input in &manifest.inputs {
         look(KINDS.contains(&input.kind.as_str()), &|| {
             format!("{:?} is an input of kind {:?}", input.name, input.kind)

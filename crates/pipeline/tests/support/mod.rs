@@ -17,6 +17,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use corniche_dem::{OpenOptions, PlanOptions};
 use corniche_geom::{Frame, NodeIndex, TileId};
 use corniche_pipeline::{
     BuildError, BuildSettings, Existing, Resources, RoadSettings, Silent, TerrainSettings, build,
@@ -165,19 +166,17 @@ pub(crate) fn settings(
         output,
         existing: Existing::Keep,
         terrain: TerrainSettings {
-            crs: options.crs.map(str::to_owned),
-            dem_crs: None,
-            dem_vertical_crs: None,
-            vertical_crs: None,
-            vertical_shift_m: 0.0,
-            nodata: Vec::new(),
+            open: OpenOptions::default(),
+            plan: PlanOptions {
+                crs: options.crs.map(str::to_owned),
+                cell: options.cell_m.map(corniche_geom::Cell::from),
+                cell_every: None,
+                scale_latitude_deg: None,
+                fill_voids: options.fill_voids,
+            },
             height_range_m: options.height_range_m,
             allow_fine_cell: false,
-            cell: options.cell_m.map(corniche_geom::Cell::from),
-            cell_every: None,
-            scale_latitude_deg: None,
             max_error_m: Some(options.max_error_m),
-            fill_voids: options.fill_voids,
         },
         roads: RoadSettings { table: table(), filter: ClassFilter::usual(), simplify_cells: 0.25 },
         resources: Resources { threads: options.threads, memory_bytes: 256 << 20 },

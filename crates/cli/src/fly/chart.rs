@@ -1,8 +1,8 @@
 use corniche_viewer::FrameRecord;
 use plotters::prelude::{RGBColor, SeriesLabelPosition};
 
-use super::{Axes, Axis, Curve, Marks, Ticks, draw};
-use crate::fly::{Run, gpu_ms};
+use super::measured_run::{MeasuredRun, gpu_ms};
+use crate::chart::{Axes, Axis, Curve, Marks, Ticks, draw};
 
 /// The first seven are told apart also by those who see no red or green (Okabe & Ito 2008, *Color Universal Design*).
 const COLORS: [RGBColor; 9] = [
@@ -19,15 +19,16 @@ const COLORS: [RGBColor; 9] = [
 
 /// Milliseconds to draw each frame over the time in the flight, one curve a run: what Vaaraniemi, Treib & Westermann 2011
 /// show in Figures 13 and 14. By the graphics card's clock where there is one.
-pub(crate) fn frame_times(runs: &[Run], adapter: &str) -> anyhow::Result<String> {
+pub(crate) fn frame_times(runs: &[MeasuredRun], adapter: &str) -> anyhow::Result<String> {
     let times = |frame: &FrameRecord| frame.passes.as_ref().map(gpu_ms);
-    let mut frames = runs.iter().flat_map(Run::counted);
+    let mut frames = runs.iter().flat_map(MeasuredRun::counted);
     let has_clock = frames.all(|frame| frame.passes.is_some());
     let point = |frame: &FrameRecord| {
         let frame_ms = times(frame).filter(|_| has_clock).unwrap_or(frame.draw_ms);
         (frame.time_s, frame_ms)
     };
-    let points = |run: &Run| -> Vec<(f64, f64)> { run.counted().iter().map(point).collect() };
+    let points =
+        |run: &MeasuredRun| -> Vec<(f64, f64)> { run.counted().iter().map(point).collect() };
     let all: Vec<(f64, f64)> = runs.iter().flat_map(points).collect();
     let begin_s = all.iter().map(|(time_s, _)| *time_s).fold(f64::INFINITY, f64::min);
     let end_s = all.iter().map(|(time_s, _)| *time_s).fold(f64::NEG_INFINITY, f64::max);
@@ -48,7 +49,7 @@ pub(crate) fn frame_times(runs: &[Run], adapter: &str) -> anyhow::Result<String>
         },
         names: SeriesLabelPosition::UpperRight,
     };
-    let curve = |(run, color): (&Run, &RGBColor)| Curve {
+    let curve = |(run, color): (&MeasuredRun, &RGBColor)| Curve {
         name: run.name(),
         color: *color,
         points: points(run),
@@ -59,5 +60,5 @@ pub(crate) fn frame_times(runs: &[Run], adapter: &str) -> anyhow::Result<String>
 }
 
 #[cfg(test)]
-#[path = "flight_tests.rs"]
+#[path = "chart_tests.rs"]
 mod tests;

@@ -1,7 +1,7 @@
 use corniche_tileset::Manifest;
 use plotters::prelude::{RGBColor, SeriesLabelPosition};
 
-use super::{Axes, Axis, Curve, Marks, Ticks, draw};
+use crate::chart::{Axes, Axis, Curve, Marks, Ticks, draw};
 
 /// One colour a class, as on a road atlas: red for motorways down to grey for tracks.
 const CLASS_COLORS: [RGBColor; 9] = [

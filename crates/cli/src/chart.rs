@@ -1,8 +1,5 @@
 //! Drawings for reports, as SVG: curves over a common axis, with their names beside them.
 
-mod flight;
-mod growth;
-
 use std::ops::Range;
 
 use plotters::prelude::{
@@ -10,28 +7,26 @@ use plotters::prelude::{
     RGBColor, SVGBackend, SeriesLabelPosition, WHITE,
 };
 
-pub(crate) use self::{flight::frame_times, growth::growth};
-
 /// What stands around the curves.
-struct Axes {
-    size_px: (u32, u32),
-    caption: String,
-    x: Axis,
-    y: Axis,
-    names: SeriesLabelPosition,
+pub(crate) struct Axes {
+    pub(crate) size_px: (u32, u32),
+    pub(crate) caption: String,
+    pub(crate) x: Axis,
+    pub(crate) y: Axis,
+    pub(crate) names: SeriesLabelPosition,
 }
 
 /// One of the two directions.
-struct Axis {
+pub(crate) struct Axis {
     /// What is counted, with its unit.
-    description: &'static str,
-    range: Range<f64>,
-    ticks: Ticks,
+    pub(crate) description: &'static str,
+    pub(crate) range: Range<f64>,
+    pub(crate) ticks: Ticks,
 }
 
 /// Where an axis has numbers.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Ticks {
+pub(crate) enum Ticks {
     /// At round places.
     Round,
     /// At so many whole numbers.
@@ -39,22 +34,22 @@ enum Ticks {
 }
 
 /// A line from point to point.
-struct Curve {
-    name: String,
-    color: RGBColor,
-    points: Vec<(f64, f64)>,
-    marks: Marks,
+pub(crate) struct Curve {
+    pub(crate) name: String,
+    pub(crate) color: RGBColor,
+    pub(crate) points: Vec<(f64, f64)>,
+    pub(crate) marks: Marks,
 }
 
 /// Whether the points of a curve show.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Marks {
+pub(crate) enum Marks {
     None,
     Dots,
 }
 
 /// The curves as SVG. One without points is named nevertheless.
-fn draw(axes: &Axes, curves: &[Curve]) -> anyhow::Result<String> {
+pub(crate) fn draw(axes: &Axes, curves: &[Curve]) -> anyhow::Result<String> {
     let mut svg = String::new();
     {
         let area = SVGBackend::with_string(&mut svg, axes.size_px).into_drawing_area();

@@ -1,0 +1,61 @@
+//! The command that opens a window.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use corniche_presets::parse_bytes;
+
+use super::{
+    camera::CameraArgs,
+    look::{LookArgs, Roads},
+    values::parse_size,
+};
+
+/// Whether movements run out softly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Motion {
+    /// They run out softly
+    Soft,
+    /// They happen at once
+    Prompt,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ViewArgs {
+    /// The package
+    pub(crate) package: PathBuf,
+    /// How roads are drawn at first
+    #[arg(long, value_enum, default_value_t = Roads::Sv)]
+    pub(crate) roads: Roads,
+    #[command(flatten)]
+    pub(crate) look: LookArgs,
+    /// Width and height of the window at first, in pixels
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x800", value_parser = parse_size)]
+    pub(crate) size: [u32; 2],
+    #[command(flatten)]
+    pub(crate) camera: CameraArgs,
+    /// Terrain error that may be seen, in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 2.0)]
+    pub(crate) screen_space_error: f64,
+    /// Vertical exaggeration
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    pub(crate) exaggeration: f64,
+    /// Samples per pixel along each side, averaged [default: 2, and 1 without a graphics card]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4))]
+    pub(crate) supersampling: Option<u32>,
+    /// Memory for tiles on the graphics card, such as 512M or 4G
+    #[arg(long, value_name = "BYTES", default_value = "512M", value_parser = parse_bytes)]
+    pub(crate) gpu_memory: u64,
+    /// Handed to the graphics card in a frame at most, though always a whole tile
+    #[arg(long, value_name = "BYTES", default_value = "4M", value_parser = parse_bytes)]
+    pub(crate) upload_per_frame: u64,
+    /// How movements end
+    #[arg(long, value_enum, default_value_t = Motion::Soft)]
+    pub(crate) motion: Motion,
+    /// Where pictures (key P) and recorded flights (key C) are saved, numbered; no file is replaced
+    #[arg(long, value_name = "FOLDER", default_value = ".")]
+    pub(crate) folder: PathBuf,
+    /// Diagnostic: write a line per frame to a new file, with the cursor, the ground under it, the camera and the tiles
+    #[arg(long, value_name = "CSV")]
+    pub(crate) trace: Option<PathBuf>,
+}

@@ -1,0 +1,50 @@
+//! One flight, frame by frame.
+
+use corniche_viewer::{FrameRecord, gpu::PassTimes};
+
+use crate::args::{Lod, Roads};
+
+/// One flight with one method and one choice of tiles.
+pub(crate) struct MeasuredRun {
+    pub(crate) lod: Lod,
+    pub(crate) roads: Roads,
+    pub(crate) frames: Vec<FrameRecord>,
+}
+
+impl MeasuredRun {
+    pub(crate) fn name(&self) -> String {
+        format!("{}, roads {}", self.lod.word(), self.roads.word())
+    }
+
+    /// What makes its figures or pictures less than they seem, if anything does.
+    pub(crate) fn doubt(&self) -> Option<String> {
+        if self.frames.iter().all(|frame| frame.triangles == 0) {
+            return Some(
+                "no frame shows any ground; is the flight one over this package?".to_owned(),
+            );
+        }
+        let coarse = self.frames.iter().filter(|frame| frame.tiles_missing > 0).count();
+        (coarse > 0).then(|| {
+            format!(
+                "{coarse} of {} frames are coarser than asked for, because their tiles had not arrived; more frames, or \
+                 --lod culled, show all",
+                self.frames.len()
+            )
+        })
+    }
+
+    /// The frames that figures are taken of: all but the first, which waits for its tiles, and in which the driver makes
+    /// what it makes once.
+    pub(crate) fn counted(&self) -> &[FrameRecord] {
+        self.frames.get(1..).unwrap_or_default()
+    }
+}
+
+/// What drawing a frame took the graphics card, by its own clock.
+pub(crate) fn gpu_ms(passes: &PassTimes) -> f64 {
+    passes.terrain_ms + passes.roads_ms + passes.composite_ms
+}
+
+#[cfg(test)]
+#[path = "measured_run_tests.rs"]
+pub(crate) mod tests;

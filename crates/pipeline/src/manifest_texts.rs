@@ -1,0 +1,15 @@
+//! Texts that every manifest has: written by the build, compared by `verify`.
+
+use corniche_dem::GridPlan;
+
+/// How tiles are numbered.
+pub(crate) const TILING: &str = "local quadtree in the working CRS: z from the root, x from the west, y from the \
+                                 north; not the web's tile scheme";
+
+/// Unit of heights.
+pub(crate) const HEIGHT_UNIT: &str = "metre";
+
+/// What heights are measured from.
+pub(crate) fn datum(plan: &GridPlan) -> &str {
+    plan.vertical_datum.as_deref().unwrap_or("unknown")
+}

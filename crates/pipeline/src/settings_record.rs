@@ -1,0 +1,93 @@
+//! Which settings determine the bytes of a package: those of [`SettingsRecord`].
+//!
+//! The build records them with [`of`]; `verify` takes them back with [`terrain`] and [`roads`] to open the elevation files
+//! and the extract as the build did.
+
+use corniche_dem::{OpenOptions, PlanOptions};
+use corniche_roads::{ClassFilter, FrcTable};
+use corniche_tileset::SettingsRecord;
+use sha2::{Digest, Sha256};
+
+use crate::{RoadSettings, TerrainSettings, hex::hex};
+
+/// The record of a build. `max_error_m` is the tolerance of the finest level, given or derived from the cell.
+pub(crate) fn of(
+    terrain: &TerrainSettings,
+    roads: &RoadSettings,
+    max_error_m: f64,
+) -> SettingsRecord {
+    // Every field is named, so that a new one cannot be forgotten here.
+    let TerrainSettings { open, plan, height_range_m, allow_fine_cell: _, max_error_m: _ } =
+        terrain;
+    let OpenOptions { dem_crs, nodata, dem_vertical_crs, vertical_crs, vertical_shift_m } = open;
+    let PlanOptions { crs, cell, cell_every, scale_latitude_deg, fill_voids } = plan;
+    let RoadSettings { table, filter, simplify_cells } = roads;
+    SettingsRecord {
+        max_error_m,
+        fill_voids: *fill_voids,
+        nodata: nodata.clone(),
+        height_range_m: *height_range_m,
+        dem_crs: dem_crs.clone(),
+        dem_vertical_crs: dem_vertical_crs.clone(),
+        vertical_crs: vertical_crs.clone(),
+        vertical_shift_m: *vertical_shift_m,
+        crs: crs.clone(),
+        cell_m: *cell,
+        cell_every: *cell_every,
+        scale_latitude_deg: *scale_latitude_deg,
+        frc_table: table.name().to_owned(),
+        frc_table_sha256: table_sha256(table),
+        class_max_cell_m: filter.class_max_cell_m().to_vec(),
+        simplify_cells: *simplify_cells,
+    }
+}
+
+/// The settings for the ground that a package records.
+pub(crate) fn terrain(record: &SettingsRecord) -> TerrainSettings {
+    TerrainSettings {
+        open: OpenOptions {
+            dem_crs: record.dem_crs.clone(),
+            nodata: record.nodata.clone(),
+            dem_vertical_crs: record.dem_vertical_crs.clone(),
+            vertical_crs: record.vertical_crs.clone(),
+            vertical_shift_m: record.vertical_shift_m,
+        },
+        plan: PlanOptions {
+            crs: record.crs.clone(),
+            cell: record.cell_m,
+            cell_every: record.cell_every,
+            scale_latitude_deg: record.scale_latitude_deg,
+            fill_voids: record.fill_voids,
+        },
+        height_range_m: record.height_range_m,
+        // The build has begun already.
+        allow_fine_cell: true,
+        max_error_m: Some(record.max_error_m),
+    }
+}
+
+/// The settings for roads that a package records, with its table of classes; `None` where the record makes no filter.
+pub(crate) fn roads(record: &SettingsRecord, table: FrcTable) -> Option<RoadSettings> {
+    Some(RoadSettings { table, filter: filter(record)?, simplify_cells: record.simplify_cells })
+}
+
+/// Which levels show which class; `None` where the record makes no filter.
+pub(crate) fn filter(record: &SettingsRecord) -> Option<ClassFilter> {
+    ClassFilter::new(record.class_max_cell_m.as_slice().try_into().ok()?).ok()
+}
+
+/// SHA-256 of a record as JSON.
+pub(crate) fn sha256(record: &SettingsRecord) -> String {
+    // A record of numbers and texts can always be written as JSON; if not, its debugging form is as unique.
+    let json = serde_json::to_string(record).unwrap_or_else(|_| format!("{record:?}"));
+    hex(&Sha256::digest(json))
+}
+
+/// SHA-256 of an FRC table's text.
+pub(crate) fn table_sha256(table: &FrcTable) -> String {
+    hex(&Sha256::digest(table.canonical_text()))
+}
+
+#[cfg(test)]
+#[path = "settings_record_tests.rs"]
+mod tests;
