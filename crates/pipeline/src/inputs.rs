@@ -21,7 +21,7 @@ use corniche_tileset::InputRecord;
 use sha2::{Digest, Sha256};
 
 use self::stamp::Stamp;
-use crate::{BuildError, Observer, Stage, VerifyError, hex::hex};
+use crate::{BuildError, Observer, Stage, hex::hex};
 
 /// A raster that was named.
 pub(crate) const DEM: &str = "dem";
@@ -218,11 +218,5 @@ impl From<InputError> for BuildError {
             InputError::Changed { path } => Self::Changed { path },
             InputError::Interrupted => Self::Interrupted,
         }
-    }
-}
-
-impl From<InputError> for VerifyError {
-    fn from(error: InputError) -> Self {
-        BuildError::from(error).into()
     }
 }

@@ -1,5 +1,6 @@
 //! Roads of the extract, read and laid on tiles: for the build, and once more for `verify`.
 
+pub(crate) mod by_tile;
 pub(crate) mod counts;
 pub(crate) mod lay;
 pub(crate) mod lengths;

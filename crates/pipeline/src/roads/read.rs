@@ -13,10 +13,14 @@ use corniche_osm::ExtractSummary;
 use corniche_roads::{FunctionalRoadClass, Road};
 
 use super::{
+    by_tile::{RoadTileCursor, RoadTiles},
     lengths::{TrueLengths, pieces_um},
-    log::{RoadLog, RoadTileCursor, RoadTiles},
+    log::RoadLog,
 };
 use crate::{BuildError, Defect, Observer, RoadSettings, Stage, Storage, levels::Levels};
+
+/// Tiles whose lists of roads are in memory at once.
+pub(crate) const TILES_AT_ONCE: usize = 1024;
 
 /// All that later stages need to know of the roads.
 pub(crate) struct ReadRoads<'a> {

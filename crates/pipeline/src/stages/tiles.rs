@@ -22,16 +22,13 @@ use crate::{
         lay::{ClassSums, Laid, LaidSums, RoadFate, TileToLayOn, lost_road},
         lengths::TrueLengths,
         log::RoadLog,
-        read::ReadRoads,
+        read::{ReadRoads, TILES_AT_ONCE},
         shares::share,
     },
     storage::Kind,
     storage::Span,
     workers,
 };
-
-/// Tiles whose lists of roads are in memory at once.
-const BATCH: usize = 1024;
 
 /// What the tiles of a run came to.
 pub(crate) struct Tiles {
@@ -105,14 +102,11 @@ pub(crate) fn make(
     };
     let mut roads = roads;
     // In batches, so that the lists of roads in memory stay few.
-    for batch in ids.chunks(BATCH) {
-        let mut lists = Vec::with_capacity(batch.len());
-        for &id in batch {
-            lists.push(match &mut roads {
-                Some(roads) => roads.by_tile.roads_of(id)?,
-                None => Vec::new(),
-            });
-        }
+    for batch in ids.chunks(TILES_AT_ONCE) {
+        let lists = match &mut roads {
+            Some(roads) => roads.by_tile.lists_of(batch)?,
+            None => vec![Vec::new(); batch.len()],
+        };
         let log = roads.as_ref().map(|roads| &roads.log);
         workers::in_order(
             input.threads,

@@ -3,8 +3,8 @@
 use corniche_tileset::{FilePackage, ToolRecord};
 
 use super::{
-    VerifyError,
     checks::{CheckId, Findings},
+    error::VerifyError,
 };
 
 /// Characters of a text that a finding shows.

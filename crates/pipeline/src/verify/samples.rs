@@ -6,7 +6,12 @@ use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{Frame, TileId};
 use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, Sections};
 
-use super::{Check, CheckId, VerifyError, VerifySettings, dem::ROUNDING_M, ground::Ground};
+use super::{
+    checks::{Check, CheckId},
+    error::VerifyError,
+    settings::VerifySettings,
+    triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
+};
 use crate::{Observer, Stage, sample_error::SampleSums, workers};
 
 /// Tiles whose ground a worker keeps. Blocks of samples are compact, so these are enough not to load any twice in a row.
@@ -40,7 +45,7 @@ pub(crate) fn measure(
     workers::in_order(
         settings.threads,
         areas.len(),
-        || Ok((dem.reader(plan), BTreeMap::<TileId, Ground>::new())),
+        || Ok((dem.reader(plan), BTreeMap::<TileId, TriangleSoup>::new())),
         |(reader, grounds), index| {
             if observer.is_cancelled() {
                 return Err(VerifyError::Interrupted);
@@ -76,10 +81,10 @@ pub(crate) fn measure(
 }
 
 /// A tile's ground; one that is not there, or cannot be read, covers nothing.
-fn load(package: &FilePackage, id: TileId) -> Ground {
+fn load(package: &FilePackage, id: TileId) -> TriangleSoup {
     let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
     let tin = payload.and_then(|payload| payload.terrain).map(|terrain| terrain.tin);
-    Ground::new(&tin.unwrap_or_default(), package.manifest().vertical.quantum_m)
+    TriangleSoup::new(&tin.unwrap_or_default(), package.manifest().vertical.quantum_m)
 }
 
 /// The tile of a level that a position belongs to: on a border the one in the east or south, but for the root's own.
@@ -130,7 +135,7 @@ fn agree(said: SampleErrorRecord, found: SampleErrorRecord, quantum_m: f64) -> b
     let near = |a: f64, b: f64, slack: f64| (a - b).abs() <= slack + 1e-9 * a.max(b);
     said.on_tin == found.on_tin
         && said.off_tin == found.off_tin
-        && near(said.max_m, found.max_m, ROUNDING_M)
+        && near(said.max_m, found.max_m, HEIGHT_ROUNDING_M)
         && near(said.rms_m, found.rms_m, quantum_m / 100.0)
         && near(said.p99_m, found.p99_m, quantum_m + said.p99_m / 2048.0)
 }

@@ -9,7 +9,8 @@ use corniche_tileset::TilePayload;
 
 use super::{
     checks::{CheckId, Findings},
-    ground::{Ground, Place},
+    tile_place::TilePlace,
+    triangle_soup::TriangleSoup,
 };
 
 /// How far two lines that are one may lie apart, in lattice steps: each is rounded where it is cut.
@@ -39,8 +40,8 @@ struct Way {
 /// A tile with its ground, and where both lie.
 pub(crate) struct View<'a> {
     pub(crate) payload: &'a TilePayload,
-    pub(crate) ground: &'a Ground,
-    pub(crate) place: Place,
+    pub(crate) ground: &'a TriangleSoup,
+    pub(crate) place: TilePlace,
     /// How far around an SV segment its range reaches, in lattice steps.
     pub(crate) margin_steps: i64,
     pub(crate) quantum_m: f64,
@@ -111,7 +112,7 @@ fn ways(view: &View<'_>, positions: &[Option<Vec<[f64; 3]>>]) -> BTreeMap<(u8, i
 /// The segments of a line, in local steps.
 pub(crate) fn segments(
     points: &[LatticePoint],
-    place: Place,
+    place: TilePlace,
 ) -> impl Iterator<Item = Segment> + '_ {
     points.windows(2).map(move |pair| [place.local(pair[0]), place.local(pair[1])])
 }
@@ -136,7 +137,7 @@ pub(crate) fn is_on(point: [f64; 2], segments: &[Segment], steps: f64) -> bool {
 }
 
 /// What of a segment lies in the tile, but on none of the lines. What runs along a border may be the neighbour's.
-fn bare_pieces(place: Place, segment: Segment, lines: &[Segment]) -> Vec<Segment> {
+fn bare_pieces(place: TilePlace, segment: Segment, lines: &[Segment]) -> Vec<Segment> {
     let [p, q] = segment;
     let (du, dv) = (q[0] - p[0], q[1] - p[1]);
     let length = du.hypot(dv);
@@ -216,5 +217,5 @@ pub(crate) fn verify_ranges(view: &View<'_>, findings: &mut Findings) {
 }
 
 #[cfg(test)]
-#[path = "methods_tests.rs"]
+#[path = "geo_against_sv_tests.rs"]
 mod tests;

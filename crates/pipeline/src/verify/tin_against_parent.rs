@@ -4,16 +4,13 @@ use corniche_geom::{Frame, TILE_NODES, TileId};
 
 use super::{
     checks::{CheckId, Findings},
-    ground::Ground,
+    triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
 };
-
-/// Slack for comparing sums of heights, metres.
-const ROUNDING_M: f64 = 1e-6;
 
 /// A tile's ground and its stored error.
 pub(crate) struct Level<'a> {
     pub(crate) id: TileId,
-    pub(crate) ground: &'a Ground,
+    pub(crate) ground: &'a TriangleSoup,
     pub(crate) error_m: f64,
 }
 
@@ -33,7 +30,7 @@ pub(crate) fn verify(frame: &Frame, levels: &[Level<'_>], findings: &mut Finding
             None => has_data = heights_m.iter().map(|height_m| !height_m.is_nan()).collect(),
             // Where a level between the two has no ground they are no child and parent.
             Some((child, child_m)) if child.id.z() == id.z() + 1 => {
-                let allowed_m = level.error_m + child.error_m + ROUNDING_M;
+                let allowed_m = level.error_m + child.error_m + HEIGHT_ROUNDING_M;
                 let worst_m = heights_m
                     .iter()
                     .zip(child_m)

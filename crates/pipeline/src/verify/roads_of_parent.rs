@@ -7,15 +7,16 @@ use corniche_tileset::TilePayload;
 
 use super::{
     checks::{CheckId, Findings},
-    ground::{Ground, Place},
-    methods::{SAME_LINE_STEPS, Segment, is_on, segments, source_points},
+    geo_against_sv::{SAME_LINE_STEPS, Segment, is_on, segments, source_points},
+    tile_place::TilePlace,
+    triangle_soup::TriangleSoup,
 };
 use crate::levels::Levels;
 
 /// One of the two tiles.
 pub(crate) struct Side<'a> {
     pub(crate) payload: &'a TilePayload,
-    pub(crate) ground: &'a Ground,
+    pub(crate) ground: &'a TriangleSoup,
 }
 
 /// Looks at the roads of a tile and of its parent.
@@ -31,8 +32,8 @@ pub(crate) fn verify(
     let (id, above) = (child.payload.id, parent.payload.id);
     let frame = levels.frame();
     let bounds = frame.tile_lattice_bounds(id);
-    let place = Place::of(frame, above);
-    let own_place = Place::of(frame, id);
+    let place = TilePlace::of(frame, above);
+    let own_place = TilePlace::of(frame, id);
     // Points on a border are cuts, which the source does not have.
     let is_inside = |point: LatticePoint| {
         let LatticeBounds { min, max } = bounds;
@@ -77,7 +78,7 @@ pub(crate) fn verify(
     }
 }
 
-fn sv_lines(payload: &TilePayload, place: Place) -> BTreeMap<i64, Vec<Segment>> {
+fn sv_lines(payload: &TilePayload, place: TilePlace) -> BTreeMap<i64, Vec<Segment>> {
     let mut lines: BTreeMap<i64, Vec<Segment>> = BTreeMap::new();
     for road in &payload.roads_sv {
         lines.entry(road.way_id).or_default().extend(segments(&road.line.points, place));

@@ -1,12 +1,13 @@
 //! The DEM on each level: what TIN vertices stand on, and what their normals follow. And how many nodes have data.
 
-use corniche_dem::{Dem, GridPlan};
+use corniche_dem::{Dem, DemError, GridPlan};
 use corniche_geom::{HeightGrid, TileId};
 use corniche_tileset::{FilePackage, Sections, Terrain};
 
 use super::{
-    VerifyError, VerifyReport,
     checks::{CheckId, Findings},
+    error::VerifyError,
+    report::VerifyReport,
 };
 use crate::{
     BuildError, DiskStorage, Observer, Stage,
@@ -36,13 +37,9 @@ pub(crate) fn verify(
     let pyramid = pyramid::read(dem, plan, threads, &storage, observer)?;
     let manifest = package.manifest();
     let mut findings = Findings::default();
-    let allowed = audit::check(dem, manifest.settings.height_range_m, threads, observer);
-    if matches!(allowed, Err(BuildError::Interrupted)) {
-        return Err(VerifyError::Interrupted);
-    }
-    findings.look(CheckId::DemCounts, allowed.is_ok(), || match allowed {
-        Err(error) => format!("heights that the settings do not allow: {error}"),
-        Ok(()) => String::new(),
+    let refused = refusal(audit::check(dem, manifest.settings.height_range_m, threads, observer))?;
+    findings.look(CheckId::DemCounts, refused.is_none(), || {
+        format!("heights that the settings do not allow: {}", refused.unwrap_or_default())
     });
     let (said, found) = (manifest.counts.samples, pyramid.samples());
     findings
@@ -73,6 +70,17 @@ pub(crate) fn verify(
     observer.end(Stage::Verify);
     report.checks.extend(findings);
     Ok(())
+}
+
+/// Why the audit refuses heights, if it does. Other failures are no findings: the run ends with their cause.
+fn refusal(audited: Result<(), BuildError>) -> Result<Option<String>, VerifyError> {
+    match audited {
+        Ok(()) => Ok(None),
+        Err(BuildError::Dem(error @ (DemError::OutOfRange { .. } | DemError::Sentinel { .. }))) => {
+            Ok(Some(error.to_string()))
+        }
+        Err(error) => Err(error.into()),
+    }
 }
 
 fn look_at(
@@ -136,5 +144,5 @@ fn gradient(heights: &HeightGrid, [column, row]: [usize; 2], cell_m: [f64; 2]) -
 
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "these numbers are exact")]
-#[path = "gradient_tests.rs"]
+#[path = "vertices_against_dem_tests.rs"]
 mod tests;

@@ -3,12 +3,13 @@
 
 use std::ops::RangeInclusive;
 
-use corniche_geom::{Frame, LatticePoint, NodeIndex, TileId};
 use corniche_tin::Tin;
 
 /// Buckets along one side of a tile.
 const BUCKETS: usize = 64;
 const TILE_CELLS: f64 = 256.0;
+/// Slack for comparing two ways of computing the same height, metres.
+pub(crate) const HEIGHT_ROUNDING_M: f64 = 1e-6;
 /// How far outside a triangle, in cells, a point may lie and still count as in it: rounding of f64 at the scale
 /// of a tile, far below the millimetre.
 const SLACK_CELLS: f64 = 1e-7;
@@ -19,7 +20,7 @@ const MET_STEPS: f64 = 8.0;
 const INSIDE_STEPS: f64 = 2.0;
 
 /// A tile's triangles, ready to be asked for heights. Positions are (column, row) in the tile's own cells.
-pub(crate) struct Ground {
+pub(crate) struct TriangleSoup {
     /// Corners of each triangle: column, row, height in metres.
     triangles: Vec<Corners>,
     buckets: Vec<Vec<u32>>,
@@ -31,44 +32,7 @@ pub(crate) struct Ground {
 
 type Corners = [[f64; 3]; 3];
 
-/// Where a tile lies on the lattice.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
-    corner: LatticePoint,
-    /// Lattice steps to a cell of the tile, east and north.
-    pub(crate) steps: [f64; 2],
-}
-
-impl Place {
-    pub(crate) fn of(frame: &Frame, id: TileId) -> Self {
-        let (corner, stride) = (frame.tile_corner(id), frame.stride(id.z()));
-        let next = NodeIndex { i: corner.i + stride, j: corner.j + stride };
-        let (from, to) = (frame.lattice_of_node(corner), frame.lattice_of_node(next));
-        Self { corner: from, steps: [(to.u - from.u) as f64, (to.v - from.v) as f64] }
-    }
-
-    /// Steps east and north of the tile's corner: small numbers, of which f64 knows all fractions that matter.
-    pub(crate) fn local(&self, point: LatticePoint) -> [f64; 2] {
-        [(point.u - self.corner.u) as f64, (point.v - self.corner.v) as f64]
-    }
-
-    /// The same of a position in steps from the lattice's origin.
-    pub(crate) fn local_of(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        [u - self.corner.u as f64, v - self.corner.v as f64]
-    }
-
-    /// (column, row) of a local position.
-    pub(crate) fn cells(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        [u / self.steps[0], -v / self.steps[1]]
-    }
-
-    /// East and south end of the tile, in local steps: it reaches from 0 to the first, and from the second to 0.
-    pub(crate) fn reach(&self) -> [f64; 2] {
-        [TILE_CELLS * self.steps[0], -TILE_CELLS * self.steps[1]]
-    }
-}
-
-impl Ground {
+impl TriangleSoup {
     pub(crate) fn new(tin: &Tin, quantum_m: f64) -> Self {
         Self::placed(tin, quantum_m, [1.0; 2])
     }
@@ -325,5 +289,5 @@ fn height(corners: &Corners, at: [f64; 2]) -> f64 {
 
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "these numbers are exact")]
-#[path = "ground_tests.rs"]
+#[path = "triangle_soup_tests.rs"]
 mod tests;

@@ -9,9 +9,10 @@ use corniche_tileset::{Manifest, TilePayload};
 use corniche_tin::{Placement, Surface, Tin};
 
 use super::{
-    GapFigures,
     checks::{CheckId, Findings},
-    ground::{Ground, Place},
+    report::GapFigures,
+    tile_place::TilePlace,
+    triangle_soup::TriangleSoup,
 };
 
 /// What was found about the GEO roads of a tile.
@@ -55,7 +56,7 @@ pub(crate) fn verify_order(payload: &TilePayload, findings: &mut Findings) {
 pub(crate) fn verify_on_tin(
     payload: &TilePayload,
     tin: &Tin,
-    ground: &Ground,
+    ground: &TriangleSoup,
     manifest: &Manifest,
     findings: &mut Findings,
 ) -> OnTin {
@@ -66,7 +67,7 @@ pub(crate) fn verify_on_tin(
         OnTin { gaps: GapFigures { level: id.z(), ..GapFigures::default() }, ..OnTin::default() };
     // The surface turns stored lines into positions, as a reader does; the ground judges them by itself.
     let surface = Surface::new(tin, Placement::of_tile(frame, id, manifest.vertical.quantum_m));
-    let place = Place::of(frame, id);
+    let place = TilePlace::of(frame, id);
     let lon_lat = |[u, v, _]: [f64; 3]| {
         manifest.coordinates.wgs84_from_working(frame.position_of_fraction_m([u, v]))
     };

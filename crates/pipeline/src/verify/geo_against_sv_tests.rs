@@ -2,9 +2,9 @@ use corniche_geom::{Frame, NodeIndex, TileId};
 
 use super::*;
 
-fn place() -> Place {
+fn place() -> TilePlace {
     let frame = Frame::new([0.0; 2], 1.0, NodeIndex { i: 0, j: 0 }, 0).unwrap();
-    Place::of(&frame, TileId::ROOT)
+    TilePlace::of(&frame, TileId::ROOT)
 }
 
 #[test]

@@ -1,0 +1,87 @@
+//! The elevation files are those of the build, and give its grid.
+
+use corniche_dem::{Dem, GridPlan};
+use corniche_tileset::{InputRecord, Manifest};
+
+use super::{
+    checks::{Check, CheckId},
+    error::VerifyError,
+    report::VerifyReport,
+    settings::VerifySettings,
+};
+use crate::{
+    Observer,
+    inputs::{self, Inputs},
+    manifest_texts, settings_record,
+};
+
+/// Opens the DEM as the build did and makes sure that it is the same one. `None`, and a broken check, where it gives
+/// another grid than the package's: then nothing can be compared.
+pub(crate) fn open(
+    settings: &VerifySettings,
+    inputs: &Inputs,
+    manifest: &Manifest,
+    report: &mut VerifyReport,
+    observer: &dyn Observer,
+) -> Result<Option<(Dem, GridPlan)>, VerifyError> {
+    let is_dem = |input: &&InputRecord| input.kind == inputs::DEM || input.kind == inputs::DEM_PART;
+    let expected: Vec<&InputRecord> = manifest.inputs.iter().filter(is_dem).collect();
+    let other = || VerifyError::OtherDem {
+        expected: expected.iter().map(|input| input.name.clone()).collect(),
+    };
+    let terrain = settings_record::terrain(&manifest.settings);
+    let dem = Dem::open(&settings.dem, &terrain.open)?;
+    let given = inputs.hash(observer)?;
+    // By content, not by name: a file may have been moved or renamed since. The order of parts is that of their names.
+    let mut sizes = Check::new(CheckId::DemInputs);
+    for kind in [inputs::DEM, inputs::DEM_PART] {
+        let of_kind = |records: &mut dyn Iterator<Item = &InputRecord>| {
+            let mut found: Vec<InputRecord> =
+                records.filter(|record| record.kind == kind).cloned().collect();
+            if kind == inputs::DEM_PART {
+                found.sort_by(|a, b| a.sha256.cmp(&b.sha256));
+            }
+            found
+        };
+        let (said, found) = (of_kind(&mut expected.iter().copied()), of_kind(&mut given.iter()));
+        let hash = |record: &InputRecord| record.sha256.clone();
+        if !said.iter().map(hash).eq(found.iter().map(hash)) {
+            return Err(other());
+        }
+        for (said, found) in said.iter().zip(&found) {
+            sizes.look(said.bytes == found.bytes, || {
+                format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
+            });
+        }
+    }
+    report.checks.push(sizes);
+    let plan = dem.plan(&terrain.plan)?;
+    report.checks.push(check_plan(&plan, manifest));
+    Ok((plan.frame == manifest.frame).then_some((dem, plan)))
+}
+
+/// What the plan says that the build took over into the manifest.
+fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
+    let mut check = Check::new(CheckId::DemPlan);
+    let vertical = &manifest.vertical;
+    let mut same = |what: &str, said: &dyn std::fmt::Debug, found: &dyn std::fmt::Debug| {
+        let (said, found) = (format!("{said:?}"), format!("{found:?}"));
+        check.look(said == found, || {
+            format!("{what} is recorded as {said}, but comes out as {found}")
+        });
+    };
+    same("frame", &manifest.frame, &plan.frame);
+    same("crs", &manifest.crs, &plan.crs);
+    same("metres_per_unit", &manifest.metres_per_unit, &plan.metres_per_unit);
+    same("point_scale", &manifest.point_scale, &plan.point_scale);
+    let scale = (plan.scale.center, plan.scale.least, plan.scale.largest);
+    let said = (manifest.scale.center, manifest.scale.least, manifest.scale.largest);
+    same("scale", &said, &scale);
+    same("data_bounds", &manifest.data_bounds, &plan.data_bounds);
+    same("wgs84_bounds", &manifest.wgs84_bounds, &plan.wgs84_bounds);
+    same("nodes_are_samples", &manifest.nodes_are_samples, &plan.nodes_are_samples());
+    same("resampling", &manifest.resampling, &plan.resampling_text);
+    same("vertical.datum", &vertical.datum.as_str(), &manifest_texts::datum(plan));
+    same("vertical.treatment", &vertical.treatment, &plan.vertical);
+    check
+}

@@ -1,0 +1,77 @@
+//! Why a package could not be verified.
+
+use std::path::PathBuf;
+
+use corniche_tileset::OpenError;
+
+use crate::{BuildError, inputs::InputError};
+
+/// Why a package could not be verified.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum VerifyError {
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    #[error(transparent)]
+    Dem(#[from] corniche_dem::DemError),
+    #[error(
+        "these are not the elevation files that the package was made from; give {expected:?}, the same files in the \
+         same order"
+    )]
+    OtherDem { expected: Vec<String> },
+    #[error(
+        "{path:?} is a pipe or a device; inputs are read more than once, so save it to a file first"
+    )]
+    Stream { path: PathBuf },
+    #[error("the name of {path:?} is not UTF-8; rename the file")]
+    InputName { path: PathBuf },
+    #[error("{path:?} changed while it was read; run the same command again when it is left alone")]
+    Changed { path: PathBuf },
+    #[error(
+        "{path:?} is not the extract that the package was made from; give {expected:?}, the same file"
+    )]
+    OtherOsm { path: PathBuf, expected: Vec<String> },
+    #[error(
+        "the FRC table {given:?} is not the one that the package was made with; give {expected:?} with --frc-table"
+    )]
+    OtherTable { given: String, expected: String },
+    #[error("the package was made without an extract; leave --osm out")]
+    NoExtract,
+    #[error(
+        "the package was made with another FRC table that is called {name:?}, too, read from a file; give that file with \
+         --frc-table"
+    )]
+    OtherTableOfThatName { name: String },
+    #[error("the extract could not be laid on the package's tiles")]
+    Roads(#[source] BuildError),
+    #[error("cannot read {path:?}")]
+    Input { path: PathBuf, source: std::io::Error },
+    #[error(
+        "intermediate results could not be kept in the folder for temporary files (disk full?)"
+    )]
+    Work(#[source] std::io::Error),
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl From<BuildError> for VerifyError {
+    fn from(error: BuildError) -> Self {
+        match error {
+            BuildError::Input { path, source } => Self::Input { path, source },
+            BuildError::InputName { path } => Self::InputName { path },
+            BuildError::Stream { path } => Self::Stream { path },
+            BuildError::Changed { path } => Self::Changed { path },
+            BuildError::Interrupted => Self::Interrupted,
+            BuildError::Dem(error) => Self::Dem(error),
+            BuildError::Storage(source) => Self::Work(source),
+            other => Self::Roads(other),
+        }
+    }
+}
+
+impl From<InputError> for VerifyError {
+    fn from(error: InputError) -> Self {
+        BuildError::from(error).into()
+    }
+}

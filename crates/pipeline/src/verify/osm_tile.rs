@@ -1,0 +1,169 @@
+//! One tile's roads, clipped and laid again, beside those that the package has.
+
+use std::collections::BTreeMap;
+
+use corniche_drape::{Neighbours, OwnedBorders};
+use corniche_geom::TileId;
+use corniche_roads::Road;
+use corniche_tileset::{FilePackage, Sections, TilePayload};
+use corniche_tin::{Placement, Surface};
+
+use super::{
+    checks::{CheckId, Findings},
+    triangle_soup::TriangleSoup,
+};
+use crate::{
+    levels::Levels,
+    roads::{
+        lay::{self, ClassSums, Laid, RoadFate, TileToLayOn},
+        lengths::TrueLengths,
+    },
+};
+
+/// What roads are laid again by.
+pub(crate) struct Laying<'a> {
+    pub(crate) package: &'a FilePackage,
+    pub(crate) levels: &'a Levels,
+    pub(crate) lengths: &'a TrueLengths<'a>,
+    /// First and last of the finest tiles of the data.
+    pub(crate) data: [TileId; 2],
+}
+
+/// What a worker found in a tile.
+pub(crate) struct Found {
+    pub(crate) findings: Findings,
+    pub(crate) fates: Vec<(u32, RoadFate)>,
+    /// Of a tile with ground.
+    pub(crate) classes: BTreeMap<u8, ClassSums>,
+}
+
+pub(crate) fn look_at(
+    laying: &Laying<'_>,
+    grounds: &mut SoupCache,
+    id: TileId,
+    roads: &[(u32, Road)],
+) -> Found {
+    let mut found =
+        Found { findings: Findings::default(), fates: Vec::new(), classes: BTreeMap::new() };
+    let manifest = laying.package.manifest();
+    let frame = &manifest.frame;
+    let payload = laying.package.payload(id, Sections::ALL).ok().flatten();
+    let terrain = payload.as_ref().and_then(|payload| payload.terrain.as_ref());
+    let (Some(payload), Some(terrain)) = (&payload, terrain) else {
+        if id.z() == frame.max_level() {
+            let owned = grounds.owned_borders(laying, id, !roads.is_empty());
+            let bounds = frame.tile_lattice_bounds(id);
+            found.fates.extend(roads.iter().map(|(ordinal, road)| {
+                (*ordinal, lay::lost_road(road, &bounds, owned, laying.lengths))
+            }));
+        }
+        return found;
+    };
+    let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
+    let surface = Surface::new(&terrain.tin, placement);
+    let owned = grounds.owned_borders(laying, id, !roads.is_empty());
+    let on = TileToLayOn { id, surface: &surface, owned };
+    let mut laid = Laid::default();
+    for (ordinal, road) in roads {
+        laid.lay(road, *ordinal, &on, laying.levels, laying.lengths);
+    }
+    laid.sort();
+    compare(payload, &laid, &mut found.findings);
+    (found.fates, found.classes) = (laid.fates, laid.classes);
+    found
+}
+
+fn compare(payload: &TilePayload, laid: &Laid, findings: &mut Findings) {
+    let id = payload.id;
+    let geo = |geo: &[corniche_tileset::GeoRoad]| -> Vec<_> {
+        geo.iter().map(|road| ((road.class, road.way_id, road.part), road.line.clone())).collect()
+    };
+    let sv = |sv: &[corniche_tileset::SvRoad]| -> Vec<_> {
+        sv.iter()
+            .map(|road| ((road.class, road.way_id, road.part), road.line.points.clone()))
+            .collect()
+    };
+    let (said, wanted) = (geo(&payload.roads_geo), geo(&laid.geo));
+    each(CheckId::OsmGeo, id, &said, &wanted, findings);
+    let (said, wanted) = (sv(&payload.roads_sv), sv(&laid.sv));
+    each(CheckId::OsmSv, id, &said, &wanted, findings);
+    let said: Vec<_> =
+        payload.attributes.iter().map(|record| (record.way_id, &record.attributes)).collect();
+    let wanted: Vec<_> =
+        laid.attributes.values().map(|record| (record.way_id, &record.attributes)).collect();
+    each(CheckId::OsmAttributes, id, &said, &wanted, findings);
+}
+
+/// Looks at every thing of two lists, by what it is called.
+fn each<K: Ord + Copy + std::fmt::Debug, V: PartialEq>(
+    check: CheckId,
+    id: TileId,
+    said: &[(K, V)],
+    wanted: &[(K, V)],
+    findings: &mut Findings,
+) {
+    let said_by: BTreeMap<K, &V> = said.iter().map(|(key, value)| (*key, value)).collect();
+    for (key, value) in wanted {
+        let own = said_by.get(key);
+        findings.look(check, own == Some(&value), || match own {
+            Some(_) => format!("{key:?} in tile {id} is not what the extract has"),
+            None => format!("{key:?} of the extract is not in tile {id}"),
+        });
+    }
+    let wanted_by: BTreeMap<K, &V> = wanted.iter().map(|(key, value)| (*key, value)).collect();
+    for (key, _) in said.iter().filter(|(key, _)| !wanted_by.contains_key(key)) {
+        findings.look(check, false, || format!("{key:?} in tile {id} is not in the extract"));
+    }
+}
+
+/// The ground of tiles looked at lately, for their neighbours.
+#[derive(Default)]
+pub(crate) struct SoupCache {
+    kept: BTreeMap<TileId, Option<TriangleSoup>>,
+}
+
+/// Grounds kept at once: a tile, its neighbours, and some of the way along the curve.
+const GROUNDS: usize = 32;
+
+impl SoupCache {
+    fn load(&mut self, package: &FilePackage, id: TileId) {
+        if self.kept.len() >= GROUNDS && !self.kept.contains_key(&id) {
+            self.kept.clear();
+        }
+        self.kept.entry(id).or_insert_with(|| {
+            let terrain = package.payload(id, Sections::TERRAIN).ok().flatten()?.terrain?;
+            Some(TriangleSoup::new(&terrain.tin, package.manifest().vertical.quantum_m))
+        });
+    }
+
+    /// What a tile owns of its borders, by the cells on both sides that TINs cover: they cover exactly those with ground.
+    fn owned_borders(&mut self, laying: &Laying<'_>, id: TileId, has_roads: bool) -> OwnedBorders {
+        if !has_roads {
+            return OwnedBorders::ALL;
+        }
+        let [first, last] = laying.data;
+        let around =
+            [(0, 0), (1, 0), (0, 1), (-1, 0), (0, -1)].map(|(dx, dy)| id.neighbour(dx, dy));
+        for other in around.iter().flatten() {
+            self.load(laying.package, *other);
+        }
+        let ground_of = |other: Option<TileId>| self.kept.get(&other?)?.as_ref();
+        let is_asked = |other: Option<TileId>| {
+            other.is_some_and(|other| {
+                ground_of(Some(other)).is_some()
+                    || (other.z() == first.z()
+                        && (first.x()..=last.x()).contains(&other.x())
+                        && (first.y()..=last.y()).contains(&other.y()))
+            })
+        };
+        let neighbours = Neighbours { east: is_asked(around[1]), south: is_asked(around[2]) };
+        OwnedBorders::among(neighbours).where_ground(|column, row| {
+            let cells = corniche_geom::TILE_CELLS;
+            let (dx, dy) = (column.div_euclid(cells), row.div_euclid(cells));
+            let other = id.neighbour(dx as i32, dy as i32);
+            let at = [column.rem_euclid(cells), row.rem_euclid(cells)];
+            ground_of(other)
+                .is_some_and(|ground| ground.height_m(at.map(|index| index as f64 + 0.5)).is_some())
+        })
+    }
+}

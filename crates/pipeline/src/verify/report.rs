@@ -1,0 +1,58 @@
+//! What `verify` answers.
+
+use corniche_tileset::{Distribution, SampleErrorRecord};
+
+use super::checks::Check;
+
+/// How far GEO roads are from their TIN on one level.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GapFigures {
+    /// Level.
+    pub level: u8,
+    /// Edges looked at.
+    pub edges: u64,
+    /// Largest gap.
+    pub largest_m: f64,
+}
+
+/// Stored errors beside true ones.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ErrorFigures {
+    /// Level.
+    pub level: u8,
+    /// Tiles measured.
+    pub tiles: u64,
+    /// Nodes with data that were compared.
+    pub nodes: u64,
+    /// Largest true error.
+    pub largest_true_m: f64,
+    /// Stored error over the largest true one of the tile and its children, over the tiles where that can be measured.
+    pub tightness: Option<Distribution>,
+    /// Nodes with data that the TINs do not cover.
+    pub uncovered_nodes: u64,
+}
+
+/// What verification found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VerifyReport {
+    /// Tiles looked at.
+    pub tiles: u64,
+    /// The promises.
+    pub checks: Vec<Check>,
+    /// Gaps between GEO roads and TINs, per level.
+    pub gaps: Vec<GapFigures>,
+    /// Borders between tiles of one level that were compared.
+    pub borders: u64,
+    /// With the DEM: stored errors beside true ones, per level.
+    pub errors: Vec<ErrorFigures>,
+    /// With the DEM: the finest level at the DEM's own samples.
+    pub samples: Option<SampleErrorRecord>,
+}
+
+impl VerifyReport {
+    /// Whether every promise holds.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.checks.iter().all(Check::holds)
+    }
+}

@@ -1,0 +1,29 @@
+//! What `verify` is asked for.
+
+use std::path::PathBuf;
+
+use corniche_roads::FrcTable;
+
+/// What to verify.
+#[derive(Debug, Clone)]
+pub struct VerifySettings {
+    /// The package.
+    pub package: PathBuf,
+    /// The elevation files it was made from, to check errors against; empty leaves that out.
+    pub dem: Vec<PathBuf>,
+    /// The extract it was made from, to check roads against; `None` leaves that out.
+    pub osm: Option<VerifyOsm>,
+    /// Worker threads, at least 1.
+    pub threads: usize,
+}
+
+/// The extract that a package was made from, and how it was read.
+#[derive(Debug, Clone)]
+pub struct VerifyOsm {
+    /// The extract.
+    pub path: PathBuf,
+    /// The FRC table that the manifest names.
+    pub table: FrcTable,
+    /// Memory for sorting roads by tile, bytes.
+    pub memory_bytes: u64,
+}
