@@ -15,6 +15,7 @@ use std::{
 pub use corniche_testing::{real_data, root, sample};
 #[cfg(target_os = "linux")]
 pub use display::{Display, without_display};
+use serde_json::Value;
 
 /// The binary under test, built before the scenarios by cargo in the same target folder.
 ///
@@ -139,6 +140,50 @@ pub fn text(path: &Path) -> &str {
     match path.to_str() {
         Some(text) => text,
         None => panic!("{} is not UTF-8", path.display()),
+    }
+}
+
+/// What a command prints as JSON.
+///
+/// # Panics
+/// When the command fails or prints something else.
+#[must_use]
+pub fn json(arguments: &[&str]) -> Value {
+    let ran = corniche(arguments);
+    assert_eq!(ran.code, 0, "{arguments:?}: {}{}", ran.out, ran.err);
+    serde_json::from_str(&ran.out).unwrap_or_else(|error| panic!("{arguments:?}: {error}"))
+}
+
+/// The manifest of a package, as `corniche info` tells it.
+///
+/// # Panics
+/// When the package cannot be read.
+#[must_use]
+pub fn manifest(package: &Path) -> Value {
+    json(&["info", text(package), "--json"])["manifest"].take()
+}
+
+/// Writes an ESRI ASCII grid of `columns` × `rows` heights, row by row from the north. `place` has the lines of its header
+/// that say where it lies.
+///
+/// # Panics
+/// When the file cannot be written.
+pub fn write_ascii_grid(
+    path: &Path,
+    [columns, rows]: [usize; 2],
+    place: &str,
+    height_m: impl Fn(usize, usize) -> f64,
+) {
+    let mut grid = format!("ncols {columns}\nnrows {rows}\n{place}\n");
+    for row in 0..rows {
+        for column in 0..columns {
+            grid.push_str(&height_m(column, row).to_string());
+            grid.push(' ');
+        }
+        grid.push('\n');
+    }
+    if let Err(error) = fs::write(path, grid) {
+        panic!("{}: {error}", path.display());
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-use e2e::{Ran, build_pass, corniche, real_data, sample};
+use e2e::{Ran, build_pass, corniche, real_data, sample, text};
 
 /// Runs `corniche build` with `arguments` and expects `code`, nothing at the target and no litter beside it.
 fn refuses(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) -> Ran {
@@ -22,10 +22,6 @@ fn refuses(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) -> Ran 
         .collect();
     assert!(litter.is_empty(), "{arguments:?} left {litter:?}");
     ran
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().expect("paths of these tests are UTF-8")
 }
 
 #[test]

@@ -3,13 +3,11 @@
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{
-    fmt::Write as _,
     fs,
     path::{Path, PathBuf},
 };
 
-use e2e::{Ran, corniche, real_data, sample, text};
-use serde_json::Value;
+use e2e::{Ran, corniche, manifest, real_data, sample, text, write_ascii_grid};
 
 /// Samples on a side.
 const SIDE: usize = 200;
@@ -18,15 +16,8 @@ const UTM: [&str; 2] = ["--dem-crs", "EPSG:32632"];
 /// Writes an ESRI ASCII grid of 10 m in UTM 32 that declares no "no data".
 fn raster(folder: &Path, name: &str, height: impl Fn(usize, usize) -> f64) -> PathBuf {
     let path = folder.join(name);
-    let mut grid =
-        format!("ncols {SIDE}\nnrows {SIDE}\nxllcorner 500000\nyllcorner 5200000\ncellsize 10\n");
-    for row in 0..SIDE {
-        for column in 0..SIDE {
-            let _ = write!(grid, "{} ", height(column, row));
-        }
-        grid.push('\n');
-    }
-    fs::write(&path, grid).unwrap();
+    let place = "xllcorner 500000\nyllcorner 5200000\ncellsize 10";
+    write_ascii_grid(&path, [SIDE; 2], place, height);
     path
 }
 
@@ -51,12 +42,6 @@ fn build(dem: &Path, package: &Path, options: &[&str]) -> Ran {
     line.extend(UTM);
     line.extend(options);
     corniche(line)
-}
-
-fn manifest(package: &Path) -> Value {
-    let ran = corniche(["info", "--json", text(package)]);
-    let info: Value = serde_json::from_str(&ran.out).expect("info is JSON");
-    info["manifest"].clone()
 }
 
 #[test]

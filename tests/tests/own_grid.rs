@@ -1,23 +1,12 @@
 //! Nodes that are the DEM's own samples, from the command line: degrees, rectangles, thinning, several grids.
 
 use std::{
-    fmt::Write as _,
     fs,
     path::{Path, PathBuf},
 };
 
-use e2e::{corniche, real_data, sample};
+use e2e::{corniche, json, manifest, real_data, sample, text, write_ascii_grid};
 use serde_json::Value;
-
-fn text(path: &Path) -> &str {
-    path.to_str().expect("paths of these tests are UTF-8")
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let ran = corniche(arguments);
-    assert_eq!(ran.code, 0, "{arguments:?}: {}", ran.err);
-    serde_json::from_str(&ran.out).expect("what is meant for programs is JSON")
-}
 
 /// Height of a sample by its longitude and latitude: rough enough for a TIN, whole quarters of a metre.
 fn height_m([lon, lat]: [f64; 2]) -> f64 {
@@ -27,18 +16,14 @@ fn height_m([lon, lat]: [f64; 2]) -> f64 {
 
 /// An ASCII grid of `columns` × `rows` samples in degrees, the south-western one at `first`.
 fn write_degrees(path: &Path, [columns, rows]: [usize; 2], first: [f64; 2], step: f64) -> PathBuf {
-    let mut grid = format!(
-        "ncols {columns}\nnrows {rows}\nxllcenter {}\nyllcenter {}\ncellsize {step}\nNODATA_value -9999\n",
+    let place = format!(
+        "xllcenter {}\nyllcenter {}\ncellsize {step}\nNODATA_value -9999",
         first[0], first[1]
     );
-    for row in (0..rows).rev() {
-        for column in 0..columns {
-            let at = [first[0] + column as f64 * step, first[1] + row as f64 * step];
-            let _ = write!(grid, "{:.2} ", height_m(at));
-        }
-        grid.push('\n');
-    }
-    fs::write(path, grid).expect("the folder is this test's own");
+    write_ascii_grid(path, [columns, rows], &place, |column, row| {
+        let steps_north = rows - 1 - row;
+        height_m([first[0] + column as f64 * step, first[1] + steps_north as f64 * step])
+    });
     path.to_path_buf()
 }
 
@@ -50,10 +35,6 @@ fn build(package: &Path, dems: &[&Path], options: &[&str]) -> String {
     let ran = corniche(arguments);
     assert_eq!(ran.code, 0, "{}", ran.err);
     ran.err
-}
-
-fn manifest(package: &Path) -> Value {
-    json(&["info", text(package), "--json"])["manifest"].clone()
 }
 
 fn numbers(value: &Value) -> Vec<f64> {

@@ -1,19 +1,9 @@
 //! From inputs to a package and back: the whole way, on the bundled samples and, where they are, on real data.
 
-use std::{fs, path::Path, process::Command};
+use std::{fs, process::Command};
 
-use e2e::{build_pass, corniche, real_data, root, sample, skipped};
+use e2e::{build_pass, corniche, json, real_data, root, sample, skipped, text};
 use serde_json::Value;
-
-fn text(path: &Path) -> &str {
-    path.to_str().expect("paths of these tests are UTF-8")
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let ran = corniche(arguments);
-    assert_eq!(ran.code, 0, "{arguments:?}: {}", ran.err);
-    serde_json::from_str(&ran.out).expect("what is meant for programs is JSON")
-}
 
 /// P4: the bytes do not depend on threads, memory, time or the target's name.
 #[test]

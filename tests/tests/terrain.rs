@@ -1,32 +1,19 @@
 //! Terrain with known answers, from rasters that the tests write themselves (ASCII grids, which GDAL reads).
 
 use std::{
-    fmt::Write as _,
     fs,
     path::{Path, PathBuf},
 };
 
-use e2e::{corniche, sample};
-use serde_json::Value;
-
-fn text(path: &Path) -> &str {
-    path.to_str().expect("paths of these tests are UTF-8")
-}
+use e2e::{corniche, json, sample, text, write_ascii_grid};
 
 /// Writes an ASCII grid of 10 m cells whose south-western sample lies at a node that is a tile corner.
 fn write_grid(folder: &Path, side: usize, height_m: impl Fn(usize, usize) -> f64) -> PathBuf {
     let corner_m = 256.0 * 10.0 * 100.0 - 5.0;
-    let mut grid = format!(
-        "ncols {side}\nnrows {side}\nxllcorner {corner_m}\nyllcorner {corner_m}\ncellsize 10\nNODATA_value -9999\n"
-    );
-    for row in 0..side {
-        for column in 0..side {
-            let _ = write!(grid, "{} ", height_m(column, row));
-        }
-        grid.push('\n');
-    }
+    let place =
+        format!("xllcorner {corner_m}\nyllcorner {corner_m}\ncellsize 10\nNODATA_value -9999");
     let path = folder.join("grid.asc");
-    fs::write(&path, grid).expect("the folder is this test's own");
+    write_ascii_grid(&path, [side; 2], &place, height_m);
     path
 }
 
@@ -38,12 +25,6 @@ fn build(folder: &Path, dem: &Path, options: &[&str]) -> PathBuf {
     let ran = corniche(arguments);
     assert_eq!(ran.code, 0, "{}", ran.err);
     package
-}
-
-fn json(arguments: &[&str]) -> Value {
-    let ran = corniche(arguments);
-    assert_eq!(ran.code, 0, "{arguments:?}: {}{}", ran.out, ran.err);
-    serde_json::from_str(&ran.out).expect("what is meant for programs is JSON")
 }
 
 #[test]
