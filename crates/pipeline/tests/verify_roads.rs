@@ -6,11 +6,12 @@ mod support;
 
 use std::collections::BTreeMap;
 
+use corniche_drape::DrapedVertex;
 use corniche_geom::TileId;
 use corniche_pipeline::CheckId;
 use corniche_roads::FunctionalRoadClass;
-use corniche_tileset::{Distribution, TilePayload};
-use support::parts::{Against, Parts, SOUND, assert_broken, report_on};
+use corniche_tileset::{Distribution, EncodeError, TilePayload};
+use support::parts::{Against, Parts, SOUND, assert_broken, encode_in, report_on};
 
 /// A level above the finest that shows classes of the sample.
 const ABOVE: u8 = 1;
@@ -166,4 +167,90 @@ fn growth_that_the_extract_does_not_have() {
     row.source_bytes += 80;
     parts.assert_breaks(Against::Itself, &[]);
     parts.assert_breaks(Against::Osm, &[CheckId::OsmGrowth]);
+}
+
+/// Roads out of order never come into a package: the encoding refuses them.
+#[test]
+fn roads_out_of_order_cannot_be_encoded() {
+    let mut parts = Parts::sound();
+    let tile = parts.tiles.iter_mut().find(|tile| tile.roads_geo.len() > 1).unwrap();
+    tile.roads_geo.swap(0, 1);
+    let id = tile.id;
+    let refused = encode_in(&parts.manifest, &parts.tiles[parts.index_of(id).unwrap()]);
+    assert!(
+        matches!(&refused, Err(EncodeError::Unencodable { tile, what, .. })
+            if *tile == id && what.contains("not sorted")),
+        "{refused:?}"
+    );
+}
+
+#[test]
+fn a_road_dropped_from_a_finest_tile() {
+    let mut parts = Parts::sound();
+    let id = parts.tiles_above(0).max_by_key(|tile| tile.roads_geo.len()).unwrap().id;
+    let index = parts.index_of(id).unwrap();
+    parts.tiles[index].roads_geo.pop();
+    parts.assert_breaks(Against::Itself, &[CheckId::Methods, CheckId::Length, CheckId::Growth]);
+}
+
+/// The tile, road and vertex of the first vertex inside a line that is as wanted, `above` the finest level.
+fn find_vertex(
+    parts: &Parts,
+    above: u8,
+    wanted: impl Fn(&DrapedVertex) -> bool,
+) -> (TileId, usize, usize) {
+    parts
+        .tiles_above(above)
+        .find_map(|tile| {
+            tile.roads_geo.iter().enumerate().find_map(|(road, geo)| {
+                let inner = &geo.line.vertices[1..geo.line.vertices.len() - 1];
+                Some((tile.id, road, inner.iter().position(&wanted)? + 1))
+            })
+        })
+        .expect("a line with such a vertex")
+}
+
+#[test]
+fn a_line_that_skips_the_edge_it_crosses() {
+    let mut parts = Parts::sound();
+    let is_crossing = |vertex: &DrapedVertex| matches!(vertex, DrapedVertex::Crossing { .. });
+    let (id, road, vertex) = find_vertex(&parts, 0, is_crossing);
+    let index = parts.index_of(id).unwrap();
+    // The line goes straight on, so that its length in plan stays what it was.
+    parts.tiles[index].roads_geo[road].line.vertices.remove(vertex);
+    parts.assert_breaks(Against::Itself, &[CheckId::OnTin, CheckId::Growth]);
+}
+
+#[test]
+fn a_line_with_a_point_moved_far_away() {
+    let mut parts = Parts::sound();
+    let is_source = |vertex: &DrapedVertex| matches!(vertex, DrapedVertex::Source { .. });
+    // Above the finest level, where lengths are not counted.
+    let (id, road, vertex) = find_vertex(&parts, 1, is_source);
+    let surface = parts.surface(id);
+    let index = parts.index_of(id).unwrap();
+    let DrapedVertex::Source { point: from, triangle: near } =
+        parts.tiles[index].roads_geo[road].line.vertices[vertex]
+    else {
+        unreachable!("it was found so")
+    };
+    let corner = |triangle: usize| surface.points()[surface.triangles()[triangle][0] as usize];
+    let far = (0..surface.triangles().len())
+        .max_by(|&a, &b| {
+            let away_steps = |triangle| corner(triangle).distance_steps(from);
+            away_steps(a).total_cmp(&away_steps(b))
+        })
+        .unwrap();
+
+    // Naming the old triangle with the new point, or the new one with the old point, is no line at all.
+    for (point, triangle) in [(corner(far), near), (from, far as u32)] {
+        parts.tiles[index].roads_geo[road].line.vertices[vertex] =
+            DrapedVertex::Source { point, triangle };
+        let refused = encode_in(&parts.manifest, &parts.tiles[index]);
+        assert!(matches!(refused, Err(EncodeError::Unencodable { .. })), "{refused:?}");
+    }
+
+    parts.tiles[index].roads_geo[road].line.vertices[vertex] =
+        DrapedVertex::Source { point: corner(far), triangle: far as u32 };
+    parts.assert_breaks(Against::Itself, &[CheckId::OnTin, CheckId::Methods]);
 }

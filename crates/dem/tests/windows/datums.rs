@@ -7,10 +7,8 @@ use gdal::raster::RasterCreationOptions;
 use gdal::spatial_ref::SpatialRef;
 use gdal::{Dataset, DriverManager};
 
-use crate::fixture::{Raster, check_refused};
+use crate::fixture::{Raster, UTM, check_refused};
 use crate::vertical::{given, vertical};
-
-const UTM: [f64; 6] = [500_003.0, 10.0, 0.0, 5_200_507.0, 0.0, -10.0];
 
 /// A virtual file beside a file, in a coordinate system that GeoTIFF has no keys for.
 fn relabelled(path: &Path, wkt: &str) -> PathBuf {

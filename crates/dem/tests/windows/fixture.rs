@@ -8,6 +8,21 @@ pub(crate) use corniche_testing::Raster;
 use corniche_testing::raster_creation_options;
 use gdal::{Dataset, DriverManager};
 
+/// A plane in UTM 32N that rises 1 m in 10 m eastwards and 1 m in 5 m northwards.
+pub(crate) fn plane([x, y]: [f64; 2]) -> f64 {
+    500.0 + (x - 500_000.0) / 10.0 + (y - 5_200_000.0) / 5.0
+}
+
+/// One hundredth of a 10 m cell on that plane, and what f32 rounds away.
+pub(crate) const HUNDREDTH_M: f64 = 0.1 * 0.224 + 1e-4;
+/// Geotransform of the tests' rasters in UTM 32N: cells of 10 m.
+pub(crate) const UTM: [f64; 6] = [500_003.0, 10.0, 0.0, 5_200_507.0, 0.0, -10.0];
+
+/// A folder for the files of a test.
+pub(crate) fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().unwrap()
+}
+
 /// Another format of a raster, written by GDAL; `None`, with a line that says so, when this GDAL cannot.
 pub(crate) fn converted(
     path: &Path,

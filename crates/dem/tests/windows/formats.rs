@@ -6,14 +6,9 @@ use std::path::{Path, PathBuf};
 use corniche_dem::{Dem, DemError, OpenOptions};
 use gdal::{DriverManager, Metadata};
 
-use crate::fixture::{Raster, Space, check_heights, check_refused, converted};
+use crate::fixture::{Raster, Space, UTM, check_heights, check_refused, converted, plane};
 
-const UTM: [f64; 6] = [500_003.0, 10.0, 0.0, 5_200_507.0, 0.0, -10.0];
 const SAMPLES: usize = 60 * 50;
-
-fn plane([x, y]: [f64; 2]) -> f64 {
-    500.0 + (x - 500_000.0) / 10.0 + (y - 5_200_000.0) / 5.0
-}
 
 /// What 32-bit floats round away.
 const F32_M: f64 = 1e-4;

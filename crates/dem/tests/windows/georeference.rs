@@ -8,14 +8,8 @@ use gdal::Gcp;
 use gdal::spatial_ref::SpatialRef;
 
 use crate::fixture::{
-    Raster, Space, all, check, check_heights, check_refused, open, options, plan,
+    Raster, Space, UTM, all, check, check_heights, check_refused, open, options, plan, plane,
 };
-
-const UTM: [f64; 6] = [500_003.0, 10.0, 0.0, 5_200_507.0, 0.0, -10.0];
-
-fn plane([x, y]: [f64; 2]) -> f64 {
-    500.0 + (x - 500_000.0) / 10.0 + (y - 5_200_000.0) / 5.0
-}
 
 fn tied<'a>(bend_m: f64) -> Raster<'a> {
     Raster::new(0, [60, 50], [0.0; 6]).tagged(move |dataset| {

@@ -18,5 +18,6 @@ mod own_grid;
 mod real_data;
 mod refusals;
 mod samples;
+mod several_files;
 mod vertical;
 mod voids;

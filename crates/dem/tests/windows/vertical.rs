@@ -10,15 +10,11 @@ use gdal::raster::Buffer;
 use gdal::spatial_ref::SpatialRef;
 
 use crate::fixture::{
-    Raster, Space, all, check, check_heights, check_refused, open, options, plan, sample_blocks,
+    Raster, Space, UTM, all, check, check_heights, check_refused, open, options, plan, plane,
+    sample_blocks,
 };
 
-const UTM: [f64; 6] = [500_003.0, 10.0, 0.0, 5_200_507.0, 0.0, -10.0];
 const MILLIMETRE: f64 = 1e-3;
-
-fn plane([x, y]: [f64; 2]) -> f64 {
-    500.0 + (x - 500_000.0) / 10.0 + (y - 5_200_000.0) / 5.0
-}
 
 /// Height of the geoid over the ellipsoid, metres: linear, so that PROJ's bilinear interpolation is exact, up to the
 /// grid's 32-bit values.

@@ -9,11 +9,11 @@ use corniche_viewer::{
     style::{Style, WidthScaling},
     tiles::TileStore,
 };
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use crate::{
-    ground_rays::{self, Caster},
-    measures::{self, CenterLines, Line},
+    ground_rays,
+    measures::{self, CenterLines},
     reference::{Comparison, DepthOracle},
     support::{
         World,
@@ -25,9 +25,9 @@ use crate::{
     },
 };
 
-const METHODS: [RoadMethod; 2] = [RoadMethod::Geometry, RoadMethod::ShadowVolumes];
+pub(crate) const METHODS: [RoadMethod; 2] = [RoadMethod::Geometry, RoadMethod::ShadowVolumes];
 
-fn name_of(method: RoadMethod) -> &'static str {
+pub(crate) fn name_of(method: RoadMethod) -> &'static str {
     match method {
         RoadMethod::Geometry => "GEO",
         RoadMethod::ShadowVolumes => "SV",
@@ -204,91 +204,6 @@ fn volumes_agree_with_the_reference_where_levels_meet() {
     }
 }
 
-/// Between the ends of a way in two tiles of different levels: straight over the step.
-fn steps(scene: &Scene) -> Vec<Line> {
-    let ends: Vec<(u8, i64, DVec3, u8)> = scene
-        .tiles
-        .iter()
-        .flat_map(|tile| {
-            tile.centers.iter().flat_map(move |line| {
-                [line.points_m.first(), line.points_m.last()].into_iter().flatten().map(
-                    move |point| {
-                        let at = DVec3::from_array(*point);
-                        (tile.geometry.id.z(), line.way_id, at, line.class.number())
-                    },
-                )
-            })
-        })
-        .collect();
-    let mut steps = Vec::new();
-    for (k, a) in ends.iter().enumerate() {
-        for b in &ends[k + 1..] {
-            if a.0 != b.0 && a.1 == b.1 && a.2.truncate().distance(b.2.truncate()) < 0.01 {
-                steps.push((a.3, vec![a.2, b.2]));
-            }
-        }
-    }
-    steps
-}
-
-/// Coarse tiles in the west, fine ones in the east: two levels apart, the ground steps up or down where they meet.
-fn stepped(country: &Country) -> Scene {
-    let ids = [(2, 1, 1), (2, 1, 2), (4, 8, 7), (4, 8, 8)];
-    let tiles = ids
-        .map(|(z, x, y)| {
-            let id = TileId::new(z, x, y).unwrap();
-            let (payload, widths) = (country.payload(id), country.widths(id));
-            Tile::of_payload(&payload, &country.frame, QUANTUM_M, widths, 120.0)
-        })
-        .to_vec();
-    Scene { tiles, style: Style::road_atlas() }
-}
-
-#[test]
-fn connectors_close_the_step_between_levels_and_without_them_it_gapes() {
-    let Some(gpu) = gpu() else { return };
-    let country = Country::new();
-    let with = stepped(&country);
-    // Of another way in each tile, the roads have nothing to do with each other.
-    let mut without = with.clone();
-    for (tile, k) in without.tiles.iter_mut().zip(1..) {
-        *tile = tile.with_ways_renumbered(k * 1000);
-    }
-    let steps = steps(&with);
-    for (class, step) in &steps {
-        println!("a step of {:.1} m under a road of class {class}", step[0].distance(step[1]));
-    }
-    let mut sums = [[CenterLines::default(); 2]; 2];
-    for heading_deg in [75.0, 285.0] {
-        for (_, step) in steps.iter().filter(|(_, step)| step[0].distance(step[1]) > 1.0) {
-            let orientation = Orientation { heading_deg, pitch_deg: 50.0 };
-            let camera = Camera::look_at(step[0], 150.0, orientation, scenes::SIZE);
-            let caster = Caster::new(&with, &camera);
-            for (method, sums) in METHODS.into_iter().zip(&mut sums) {
-                for (scene, sum) in [&with, &without].into_iter().zip(sums) {
-                    let drawing = scene.draw(&gpu, &camera, RoadOptions::of(method));
-                    let found = measures::walk(&steps, &with, &caster, &camera, &drawing);
-                    sum.seen_px += found.seen_px;
-                    // A step is a silhouette all along.
-                    sum.missing_px += found.missing_px + found.missing_at_jumps_px;
-                }
-            }
-        }
-    }
-    for (method, [with, without]) in METHODS.into_iter().zip(sums) {
-        println!(
-            "{}: over steps between levels {:.1} of {:.1} px of centre-line missing, {:.1} px without connectors",
-            name_of(method),
-            with.missing_px,
-            with.seen_px,
-            without.missing_px
-        );
-        assert!(with.seen_px > 20.0, "{with:?} is no test");
-        assert!(without.missing_px > 0.3 * without.seen_px, "{without:?}");
-        assert!(with.missing_px < 0.02 * with.seen_px, "{with:?}");
-    }
-}
-
 /// Volumes with these options on hills with a junction; the share of pixels that are wrong.
 fn wrong_share(options: RoadOptions, style: Style) -> Option<f64> {
     let gpu = gpu()?;
@@ -351,59 +266,5 @@ fn the_papers_test_agrees_with_the_reference_near_the_eye() {
         };
         let Some(wrong) = wrong_share(options, style(40.0)) else { return };
         assert!(wrong < 0.005, "{wrong}");
-    }
-}
-
-#[test]
-fn straight_roads_on_flat_ground_have_their_width_to_a_tenth_of_a_pixel() {
-    check_widths(|_| 1.0);
-}
-
-/// By how a circle of true metres is stretched: two of its tangents along the road are so far apart.
-#[test]
-fn straight_roads_have_their_true_width_where_working_metres_are_longer_northwards() {
-    let scale = DVec2::new(0.8, 1.25);
-    let world = World { ratio: 1.25, scale: scale.to_array() };
-    within(world, || {
-        check_widths(|direction| {
-            let normal = direction.perp();
-            // The farthest point of the ellipse along the normal.
-            (scale * normal).length()
-        });
-    });
-}
-
-/// `stretch` tells for a direction how wide a road of one metre is.
-fn check_widths(stretch: impl Fn(DVec2) -> f64) {
-    let Some(gpu) = gpu() else { return };
-    let camera = scenes::camera(0.0, 1000.0, 0.0, 0.0);
-    let pixel_m = 1000.0 * camera.pixel_at_unit_depth_m();
-    for method in METHODS {
-        let mut worst_px = 0.0_f64;
-        for k in 0..100_u32 {
-            // Golden angles and a width from 4 to 24 pixels: no two alike, none along the pixels.
-            let angle = f64::from(k) * 2.399_963_229_728_653;
-            let true_px = 4.0 + 0.2 * f64::from(k);
-            let direction = DVec2::from_angle(angle);
-            let shift = DVec2::new((f64::from(k) * 0.618).fract(), (f64::from(k) * 0.377).fract());
-            let end = |sign: f64| (shift * pixel_m * 10.0 + direction * sign * 1500.0).to_array();
-            let road = (3, vec![end(-1.0), end(1.0)]);
-            let scene = one_tile(256, |_, _| 0.0, &[road], style((true_px * pixel_m) as f32));
-            let drawing = scene.draw(&gpu, &camera, RoadOptions::of(method));
-            // Pixels of the road in a square window turned with the road: area over length. In the
-            // picture, y points down.
-            let half_px = 140.0;
-            let middle = DVec2::new(f64::from(scenes::SIZE[0]), f64::from(scenes::SIZE[1])) / 2.0;
-            let along = DVec2::new(direction.x, -direction.y);
-            let area = drawing
-                .pixels_of(3)
-                .iter()
-                .filter(|at| (**at - middle).dot(along).abs() <= half_px)
-                .count();
-            let measured_px = area as f64 / (2.0 * half_px);
-            worst_px = worst_px.max((measured_px - stretch(direction) * true_px).abs());
-        }
-        println!("{}: width on flat ground off by {worst_px:.3} px at most", name_of(method));
-        assert!(worst_px <= 0.1, "{worst_px} px");
     }
 }

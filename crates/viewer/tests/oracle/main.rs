@@ -16,8 +16,10 @@ mod support;
 
 mod agreement;
 mod ground_rays;
+mod level_steps;
 mod measures;
 mod metamorphic;
 mod must_fail;
 mod package;
 mod reference;
+mod road_widths;
