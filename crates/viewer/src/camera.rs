@@ -18,7 +18,7 @@ use corniche_geom::Bounds;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 /// Vertical field of view of every camera made here.
-pub const FOV_Y_RAD: f64 = std::f64::consts::FRAC_PI_4;
+pub(crate) const FOV_Y_RAD: f64 = std::f64::consts::FRAC_PI_4;
 /// Free border left around a framed box, as a share of the distance that just holds it.
 const FRAME_MARGIN: f64 = 0.03;
 /// The near plane lies at this share of the distance to what is looked at.
@@ -89,7 +89,7 @@ pub struct Camera {
 
 /// The view volume as planes: `dot(normal, point) + offset >= 0` inside. No far plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frustum {
+pub(crate) struct Frustum {
     planes: [DVec4; 5],
 }
 
@@ -192,8 +192,7 @@ impl Camera {
     }
 
     /// Half width and half height of what is seen at depth 1.
-    #[must_use]
-    pub fn half_extent_at_unit_depth(&self) -> DVec2 {
+    pub(crate) fn half_extent_at_unit_depth(&self) -> DVec2 {
         half_extent_at_unit_depth(self.fov_y_rad, self.size_px)
     }
 
@@ -204,8 +203,7 @@ impl Camera {
     }
 
     /// Clip space from positions relative to the eye (world axes).
-    #[must_use]
-    pub fn clip_from_relative(&self) -> DMat4 {
+    pub(crate) fn clip_from_relative(&self) -> DMat4 {
         let tan = self.half_extent_at_unit_depth();
         // Rows: x / tan.x, y / tan.y, near, −z.
         let clip_from_view = DMat4::from_cols(
@@ -242,8 +240,7 @@ impl Camera {
     }
 
     /// What the picture can show.
-    #[must_use]
-    pub fn frustum(&self) -> Frustum {
+    pub(crate) fn frustum(&self) -> Frustum {
         let tan = self.half_extent_at_unit_depth();
         let plane = |normal_in_view: DVec3, offset: f64| {
             let normal = self.world_from_view * normal_in_view;
@@ -266,8 +263,7 @@ impl Frustum {
     ///
     /// Source: Assarsson & Möller 2000, *Optimized View Frustum Culling Algorithms for Bounding Boxes*: only the
     /// corner farthest along each plane's normal is tested.
-    #[must_use]
-    pub fn may_see(&self, subject: &WorldBox) -> bool {
+    pub(crate) fn may_see(&self, subject: &WorldBox) -> bool {
         self.planes.iter().all(|plane| {
             let normal = plane.truncate();
             let farthest = DVec3::select(normal.cmpge(DVec3::ZERO), subject.max, subject.min);

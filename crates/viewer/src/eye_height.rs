@@ -27,8 +27,7 @@ pub fn focus_m(above_ground_m: f64, pitch_deg: f64) -> f64 {
 }
 
 /// How much the eye is too low, as it is told: rounded up to a tenth of a metre, for "0.0 m too low" says nothing.
-#[must_use]
-pub fn rounded_up_m(lacking_m: f64) -> f64 {
+pub(crate) fn rounded_up_m(lacking_m: f64) -> f64 {
     (lacking_m * 10.0).ceil() / 10.0
 }
 

@@ -31,10 +31,22 @@ pub mod range;
 mod render;
 #[cfg(not(target_arch = "wasm32"))]
 mod replay;
-pub mod scene;
+mod scene;
 pub mod stream;
 pub mod tiles;
 mod viewpoint;
+
+/// What no program uses, but the tests of this and of other crates.
+pub mod for_tests {
+    pub use crate::{
+        gpu::inspection::Owner,
+        scene::{SettleError, draw_list, may_be_clamped, settle},
+        tiles::{
+            plan_scale::PlanScale,
+            roads::{BadRoad, GroundLine, PlanLine},
+        },
+    };
+}
 
 pub use attribution::draw_attribution;
 pub use corniche_styles as style;

@@ -8,7 +8,7 @@ use crate::{
         DrawTile, FrameView, Gpu, GpuError, ReadBackError, Renderer, Targets, TileBuffers,
         Wireframe,
     },
-    lod::Quality,
+    lod::{Drawn, Quality},
     options::RoadOptions,
     range::{self, OutOfRange},
     scene::{self, SettleError},
@@ -135,16 +135,7 @@ pub fn render(
         .coarsest_ground()?
         .ok_or_else(|| RenderError::NoGround { name: request.name.clone() })?
         .height_range_m;
-    let camera = request.camera.camera(
-        package.manifest(),
-        package,
-        height_range_m,
-        quality.vertical_scale,
-        request.size_px,
-    )?;
-    if request.camera != CameraRequest::FrameAll {
-        check_above_ground(&camera, &mut store, quality.vertical_scale, point_scale)?;
-    }
+    let camera = camera(request, package, &mut store, height_range_m)?;
     let drawn = scene::settle(&mut store, &camera, quality, is_stopped)?;
 
     let gpu = Gpu::new()?;
@@ -173,30 +164,54 @@ pub fn render(
     }
     draw_attribution(&mut picture, &package.manifest().attribution);
 
-    let mut levels: Vec<(u8, u64)> = Vec::new();
-    for tile in &drawn {
-        match levels.last_mut() {
-            Some((level, count)) if *level == tile.id.z() => *count += 1,
-            _ => levels.push((tile.id.z(), 1)),
-        }
-    }
-    let road_segments =
-        uploaded.iter().map(|(buffers, _)| buffers.road_segments(request.roads)).sum();
-    let clamped_tiles = scene::draw_list(&store, &drawn)
-        .filter(|(tile, _)| scene::may_be_clamped(tile, &view))
-        .count() as u64;
     let eye = camera.eye_in_world();
     let report = RenderReport {
         adapter: gpu.adapter_name().to_owned(),
         tiles: drawn.len() as u64,
         triangles: uploaded.iter().map(|(buffers, _)| buffers.triangles()).sum(),
-        road_segments,
-        clamped_tiles,
-        levels,
+        road_segments: uploaded.iter().map(|(tile, _)| tile.road_segments(request.roads)).sum(),
+        clamped_tiles: scene::draw_list(&store, &drawn)
+            .filter(|(tile, _)| scene::may_be_clamped(tile, &view))
+            .count() as u64,
+        levels: tiles_by_level(&drawn),
         tiles_loaded: store.len() as u64,
         eye_m: [eye.x, eye.y, eye.z / quality.vertical_scale],
     };
     Ok(Rendered { picture, report })
+}
+
+/// The camera as asked for, if it is not too near to the ground.
+fn camera(
+    request: &RenderRequest,
+    package: &dyn MapPackage,
+    store: &mut TileStore<'_>,
+    height_range_m: [f64; 2],
+) -> Result<Camera, RenderError> {
+    let point_scale = package.manifest().point_scale;
+    let vertical_scale = request.exaggeration * point_scale;
+    let camera = request.camera.camera(
+        package.manifest(),
+        package,
+        height_range_m,
+        vertical_scale,
+        request.size_px,
+    )?;
+    if request.camera != CameraRequest::FrameAll {
+        check_above_ground(&camera, store, vertical_scale, point_scale)?;
+    }
+    Ok(camera)
+}
+
+/// How many tiles are drawn on each level, coarse levels first.
+fn tiles_by_level(drawn: &[Drawn]) -> Vec<(u8, u64)> {
+    let mut levels: Vec<(u8, u64)> = Vec::new();
+    for tile in drawn {
+        match levels.last_mut() {
+            Some((level, count)) if *level == tile.id.z() => *count += 1,
+            _ => levels.push((tile.id.z(), 1)),
+        }
+    }
+    levels
 }
 
 fn check(request: &RenderRequest) -> Result<(), OutOfRange> {

@@ -9,12 +9,13 @@ use corniche_geom::TileId;
 use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
+    for_tests::PlanLine,
     gpu::{
         DIFFERENCE_COLORS, DrawTile, FrameView, Gpu, GpuError, PassTimer, Picture, Renderer,
         Targets, TileBuffers, Wireframe,
     },
     style::Style,
-    tiles::{PlanLine, TileGeometry, TileLines},
+    tiles::{TileGeometry, TileLines},
 };
 use glam::DVec2;
 use support::{class, frame, gpu, ground_line, lay, plain_style, terrain, triangles};

@@ -7,9 +7,9 @@ use corniche_geom::TileId;
 use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
+    for_tests,
     gpu::{DrawTile, FrameView, Renderer, Targets, TileBuffers, Wireframe},
     lod::Quality,
-    scene,
     style::Style,
     tiles::TileStore,
 };
@@ -37,12 +37,12 @@ fn picture(
     let gpu = gpu()?;
     let mut store = TileStore::new(country);
     let quality = Quality { screen_space_error_px: error_px, vertical_scale: 1.0 };
-    let drawn = scene::settle(&mut store, camera, quality, &|| false).unwrap();
+    let drawn = for_tests::settle(&mut store, camera, quality, &|| false).unwrap();
     let mut levels = [0; 5];
     for tile in &drawn {
         levels[usize::from(tile.id.z())] += 1;
     }
-    let buffers: Vec<_> = scene::draw_list(&store, &drawn)
+    let buffers: Vec<_> = for_tests::draw_list(&store, &drawn)
         .map(|(tile, depth)| (TileBuffers::new(&gpu, tile), depth))
         .collect();
     let tiles: Vec<_> = buffers

@@ -128,10 +128,7 @@ impl Tiles {
     /// are dropped: they are needed on the graphics card only.
     pub(crate) fn keep_ground(&mut self, uploaded: Vec<TileGeometry>) {
         for tile in uploaded {
-            let (frame, none) = (self.catalog.frame(), TileLines::default());
-            let bare = TileGeometry::assemble(tile.id, None, &none, frame, self.quantum_m);
-            let TileGeometry { roads, volumes, .. } = bare;
-            self.resident.insert(tile.id, TileGeometry { roads, volumes, ..tile });
+            self.resident.insert(tile.id, tile.without_roads());
         }
     }
 

@@ -37,6 +37,7 @@ mod device;
 mod drawables;
 mod error;
 mod formats;
+pub(crate) mod inspection;
 mod passes;
 mod picture;
 mod pipeline;
@@ -54,11 +55,10 @@ pub use self::{
     device::Gpu,
     drawables::difference::{DIFFERENCE_COLORS, DifferenceColors},
     error::{GpuError, ReadBackError},
-    formats::label_class,
     picture::{MAX_SAMPLES_PER_SIDE, Picture},
-    read_back::{ReadBack, read_texture},
+    read_back::ReadBack,
     renderer::Renderer,
-    targets::{Owner, Targets},
+    targets::Targets,
     tile_buffers::{DrawTile, TileBuffers, tile_bytes},
     timings::{PassTimer, PassTimes},
 };

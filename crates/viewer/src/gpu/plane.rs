@@ -1,6 +1,6 @@
 use wgpu::{Extent3d, TextureFormat, TextureUsages, TextureView};
 
-use super::{Gpu, ReadBackError, read_texture};
+use super::{Gpu, ReadBackError, read_back::read_texture};
 
 /// A texture and its only view.
 pub(crate) struct Plane {

@@ -10,7 +10,7 @@ use super::{Gpu, ReadBackError};
 ///
 /// # Errors
 /// When the device is lost or could not draw.
-pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, ReadBackError> {
+pub(crate) fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, ReadBackError> {
     read_by_bands(gpu, texture, gpu.device.limits().max_buffer_size)
 }
 

@@ -1,5 +1,5 @@
 use super::*;
-use crate::tiles::Side;
+use crate::tiles::roads::ends::Side;
 
 fn end(way_id: i64, side: Side, at_m: [f64; 2], height_m: f64) -> RoadEnd {
     let class = FunctionalRoadClass::new(3).expect("a class");

@@ -15,7 +15,7 @@ pub struct TileGeometry {
     /// Errors and heights; `None` without ground.
     pub summary: Option<GroundSummary>,
     /// The ground and its skirts.
-    pub ground: GroundMesh,
+    pub(crate) ground: GroundMesh,
     /// The roads on it as geometry (GEO); empty if that section was not read.
     pub roads: RoadSegments,
     /// The roads on it as volumes (SV); empty if that section was not read.
@@ -23,7 +23,7 @@ pub struct TileGeometry {
     /// Half widths beyond this are not drawn.
     pub width_margin_m: f64,
     /// Working metres across its roads for each true metre across them, where that is most.
-    pub most_width_factor: f64,
+    pub(crate) most_width_factor: f64,
     /// Its sides, east and north.
     pub size_m: [f64; 2],
 }
@@ -110,9 +110,15 @@ impl TileGeometry {
         Ok(Self::on_surface(id, terrain, surface.as_ref(), &lines, frame, quantum_m))
     }
 
+    /// The same tile without its roads: enough for rays and heights.
+    #[must_use]
+    pub fn without_roads(self) -> Self {
+        Self { roads: RoadSegments::default(), volumes: RoadVolumes::default(), ..self }
+    }
+
     /// The rectangle that it covers in the working CRS.
     #[must_use]
-    pub fn plan_bounds(&self) -> Bounds {
+    pub(crate) fn plan_bounds(&self) -> Bounds {
         let ([x, y, _], [east_m, north_m]) =
             (self.reference_m, self.size_m.map(|side_m| side_m / 2.0));
         Bounds { min_x: x - east_m, min_y: y - north_m, max_x: x + east_m, max_y: y + north_m }

@@ -5,11 +5,11 @@ use super::triangle_grid::TriangleGrid;
 
 /// A vertex of the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GroundVertex {
+pub(crate) struct GroundVertex {
     /// Metres from the tile's reference point; z is true height, before exaggeration.
-    pub position_in_tile: [f32; 3],
+    pub(crate) position_in_tile: [f32; 3],
     /// Unit normal (east, north, up) in steps of 1/127, and 127 at the lower edge of a skirt.
-    pub normal_skirt: [i8; 4],
+    pub(crate) normal_skirt: [i8; 4],
 }
 
 /// Triangles of a tile's ground, then those of its skirts.
@@ -19,13 +19,13 @@ pub struct GroundVertex {
 ///
 /// What is near a place is looked up in a grid made from the triangles: once made, a mesh must not be changed.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct GroundMesh {
+pub(crate) struct GroundMesh {
     /// Vertices of the TIN in its order, then the lower vertices of the skirts.
-    pub vertices: Vec<GroundVertex>,
+    pub(crate) vertices: Vec<GroundVertex>,
     /// Three per triangle; the ground first.
-    pub indices: Vec<u32>,
+    pub(crate) indices: Vec<u32>,
     /// How many of the indices are ground.
-    pub surface_indices: usize,
+    pub(crate) surface_indices: usize,
     triangle_grid: TriangleGrid,
 }
 

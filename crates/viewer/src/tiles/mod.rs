@@ -9,9 +9,9 @@ mod ground_mesh;
 #[cfg(not(target_arch = "wasm32"))]
 mod on_disk;
 mod package;
-mod plan_scale;
+pub(crate) mod plan_scale;
 mod relief;
-mod roads;
+pub(crate) mod roads;
 mod slopes;
 mod source;
 mod store;
@@ -21,13 +21,13 @@ mod triangle_grid;
 pub use self::on_disk::PackageSource;
 pub use self::{
     geometry::TileGeometry,
-    ground_mesh::{GroundMesh, GroundVertex},
     package::PackageTiles,
-    plan_scale::PlanScale,
-    roads::{
-        BadRoad, Bed, GroundLine, NearHeights, PlanLine, RoadEnd, RoadList, RoadSegment,
-        RoadSegments, RoadVolume, RoadVolumes, Side, TileLines,
-    },
+    roads::{RoadList, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, TileLines},
     source::{LoadTileError, MapPackage, TileCatalog, TileSource},
     store::TileStore,
+};
+pub(crate) use self::{
+    ground_mesh::{GroundMesh, GroundVertex},
+    plan_scale::PlanScale,
+    roads::{BadRoad, Bed, GroundLine, NearHeights, RoadEnd},
 };

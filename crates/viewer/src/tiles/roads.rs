@@ -1,16 +1,18 @@
 //! The roads of a tile: lines as the package has them, cut into the pieces that are uploaded.
 
-mod ends;
+pub(crate) mod ends;
 mod ground_beside;
 mod lines;
 mod list;
 mod segments;
 mod volumes;
 
-pub(crate) use self::segments::Piece;
-pub use self::{
-    ends::{RoadEnd, Side},
+pub(crate) use self::{
+    ends::RoadEnd,
     ground_beside::{Bed, NearHeights},
+    segments::Piece,
+};
+pub use self::{
     lines::{BadRoad, GroundLine, PlanLine, TileLines},
     list::RoadList,
     segments::{RoadSegment, RoadSegments},

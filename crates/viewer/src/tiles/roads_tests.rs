@@ -5,7 +5,7 @@ use corniche_roads::FunctionalRoadClass;
 
 use super::{
     super::PlanScale,
-    ends::{ground_ends, plan_ends},
+    ends::{Side, ground_ends, plan_ends},
     *,
 };
 

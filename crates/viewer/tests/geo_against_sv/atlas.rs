@@ -8,9 +8,9 @@ use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::Camera,
     eye_height::clearance_m,
-    gpu::{DrawTile, Gpu, Owner, Renderer, Targets, TileBuffers},
+    for_tests::{Owner, settle},
+    gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
     lod::Quality,
-    scene::settle,
     style::Style,
     tiles::{PackageSource, TileStore},
 };

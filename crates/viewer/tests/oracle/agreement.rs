@@ -4,8 +4,8 @@ use corniche_geom::TileId;
 use corniche_viewer::{
     CapTest, Caps, RoadMethod, RoadOptions, WidthGrowth,
     camera::{Camera, Orientation},
+    for_tests::{may_be_clamped, settle},
     lod::Quality,
-    scene::{may_be_clamped, settle},
     style::{Style, WidthScaling},
     tiles::TileStore,
 };

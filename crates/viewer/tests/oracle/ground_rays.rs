@@ -1,6 +1,6 @@
 //! O2: the label of each pixel from rays at the triangles that were drawn.
 
-use corniche_viewer::{RoadOptions, camera::Camera, gpu::Owner};
+use corniche_viewer::{RoadOptions, camera::Camera, for_tests::Owner};
 use glam::{DVec2, DVec3};
 
 use crate::{

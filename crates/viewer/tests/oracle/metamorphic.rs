@@ -128,8 +128,9 @@ fn skirts_carry_no_road() {
     let scene = Scene { tiles, style: style(40.0) };
     for method in [RoadMethod::Geometry, SV] {
         let drawing = scene.draw(&gpu, &camera(300.0, 900.0, 0.0, 60.0), RoadOptions::of(method));
-        let is_skirt =
-            |index: &usize| matches!(drawing.owners[*index], corniche_viewer::gpu::Owner::Skirt(_));
+        let is_skirt = |index: &usize| {
+            matches!(drawing.owners[*index], corniche_viewer::for_tests::Owner::Skirt(_))
+        };
         let skirts: Vec<usize> = (0..drawing.labels.len()).filter(is_skirt).collect();
         assert!(skirts.len() > 3000, "{} pixels of skirts are no test", skirts.len());
         assert!(drawing.labels.iter().filter(|label| **label != 0).count() > 1000);

@@ -4,9 +4,9 @@ use corniche_tileset::{FilePackage, Sections};
 use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::{Camera, Orientation, WorldBox},
+    for_tests::settle,
     gpu::Gpu,
     lod::Quality,
-    scene::settle,
     style::Style,
     tiles::{PackageSource, TileStore},
 };

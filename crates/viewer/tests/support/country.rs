@@ -4,7 +4,10 @@ use corniche_drape::{OwnedBorders, clip, clip_closed, drape, extrude};
 use corniche_geom::{Frame, HeightGrid, NodeIndex, Polyline, TILE_NODES, TileId};
 use corniche_tileset::{GeoRoad, SvRoad, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface, TinSpec, normals, triangulate};
-use corniche_viewer::tiles::{LoadTileError, PlanScale, TileCatalog, TileGeometry, TileSource};
+use corniche_viewer::{
+    for_tests::PlanScale,
+    tiles::{LoadTileError, TileCatalog, TileGeometry, TileSource},
+};
 
 use super::{class, scene::Widths};
 

@@ -18,9 +18,10 @@ use corniche_tin::{Tin, TinVertex};
 use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::Camera,
-    gpu::{DrawTile, FrameView, Gpu, Owner, Renderer, Targets, TileBuffers, Wireframe},
+    for_tests::{GroundLine, Owner},
+    gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers, Wireframe},
     style::{RoadStyle, Style, WidthScaling},
-    tiles::{GroundLine, TileGeometry, TileLines},
+    tiles::{TileGeometry, TileLines},
 };
 use glam::{DVec2, DVec3};
 

@@ -8,9 +8,10 @@ use corniche_tin::{Placement, Surface};
 use corniche_viewer::{
     RoadOptions,
     camera::Camera,
+    for_tests::{GroundLine, PlanLine, PlanScale},
     gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers, Wireframe},
     style::Style,
-    tiles::{GroundLine, PlanLine, PlanScale, TileGeometry, TileLines},
+    tiles::{TileGeometry, TileLines},
 };
 use glam::{DVec2, DVec3};
 

@@ -5,8 +5,7 @@ use super::{super::PlanScale, GroundLine, PlanLine};
 
 /// A side of a tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "compass directions")]
-pub enum Side {
+pub(crate) enum Side {
     West,
     East,
     North,
@@ -15,19 +14,19 @@ pub enum Side {
 
 /// Where a road meets the border of its tile.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RoadEnd {
+pub(crate) struct RoadEnd {
     /// OSM's id of the way.
-    pub way_id: i64,
+    pub(crate) way_id: i64,
     /// Functional road class.
-    pub class: FunctionalRoadClass,
+    pub(crate) class: FunctionalRoadClass,
     /// Which border.
-    pub side: Side,
+    pub(crate) side: Side,
     /// Where, in the working CRS.
-    pub at_m: [f64; 2],
+    pub(crate) at_m: [f64; 2],
     /// Lowest and highest true height that the ground may have there.
-    pub height_range_m: [f64; 2],
+    pub(crate) height_range_m: [f64; 2],
     /// Working metres across the road for each true metre across it.
-    pub width_factor: f32,
+    pub(crate) width_factor: f32,
 }
 
 impl Side {

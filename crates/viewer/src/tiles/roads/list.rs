@@ -36,14 +36,12 @@ impl<T> RoadList<T> {
     }
 
     /// Where the pieces of a class are.
-    #[must_use]
-    pub fn range_of(&self, class: FunctionalRoadClass) -> Range<u32> {
+    pub(crate) fn range_of(&self, class: FunctionalRoadClass) -> Range<u32> {
         self.ranges[usize::from(class.number())].clone()
     }
 
     /// Where they meet the tile's border.
-    #[must_use]
-    pub fn ends(&self) -> &[RoadEnd] {
+    pub(crate) fn ends(&self) -> &[RoadEnd] {
         &self.ends
     }
 }

@@ -20,7 +20,7 @@ pub struct RoadSegment {
     /// True height of the piece's start above the reference point.
     pub height_in_tile: f32,
     /// Whether the road does not go straight on before and behind the piece.
-    pub has_caps: [bool; 2],
+    pub(crate) has_caps: [bool; 2],
     /// Working metres across the segment for each true metre across it.
     pub width_factor: f32,
     /// The ground beside it.

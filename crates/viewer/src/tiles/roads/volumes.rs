@@ -15,9 +15,9 @@ pub struct RoadVolume {
     /// The other end.
     pub end_in_tile: [f32; 2],
     /// Lowest and highest ground within the width margin, true metres above the reference point, rounded outwards.
-    pub height_range_in_tile: [f32; 2],
+    pub(crate) height_range_in_tile: [f32; 2],
     /// Closer bounds for roads that are not wide.
-    pub near: NearHeights,
+    pub(crate) near: NearHeights,
     /// Working metres across it for each true metre across it.
     pub width_factor: f32,
     /// Functional road class.
@@ -32,8 +32,7 @@ impl RoadList<RoadVolume> {
     ///
     /// `near` tells, for the ends of a segment in the working CRS, the ground's true heights beneath it and how they
     /// rise per metre; `None` when no ground is within [`NearHeights::reach_m`].
-    #[must_use]
-    pub fn new(
+    pub(crate) fn new(
         lines: &[PlanLine],
         tile: Bounds,
         reference_m: [f64; 3],
