@@ -59,7 +59,9 @@ impl Renderer {
     ) {
         let tile_uniforms = tiles.iter().map(DrawTile::uniforms);
         let shared = SharedBindings::new(gpu, &self.layouts, view, tile_uniforms, targets);
-        let connectors = LevelConnectors::new(gpu, view.roads, tiles);
+        let borders: Vec<_> = tiles.iter().map(|tile| tile.border(view.roads.method)).collect();
+        let reference_of = |index: usize| tiles[index].buffers.reference_m;
+        let connectors = LevelConnectors::new(gpu, &borders, reference_of, view.roads.classes);
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
         let mut mark = |encoder: &mut CommandEncoder, number| {

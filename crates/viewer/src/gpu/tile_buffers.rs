@@ -8,14 +8,15 @@ use super::{
 };
 use crate::{
     options::{RoadMethod, RoadOptions},
+    scene::BorderTile,
     tiles::TileGeometry,
 };
 
 /// A tile on the graphics card.
 pub struct TileBuffers {
-    pub(crate) id: TileId,
+    id: TileId,
     pub(crate) reference_m: [f64; 3],
-    pub(crate) size_m: [f64; 2],
+    size_m: [f64; 2],
     /// `None` without ground.
     pub(crate) ground: Option<GroundBuffers>,
     segments: RoadBuffers,
@@ -89,6 +90,17 @@ impl TileBuffers {
 }
 
 impl DrawTile<'_> {
+    /// Where the roads that a method draws meet its border.
+    pub(crate) fn border(&self, method: RoadMethod) -> BorderTile<'_> {
+        let TileBuffers { id, size_m: [east_m, north_m], .. } = *self.buffers;
+        BorderTile {
+            id,
+            side_m: east_m.min(north_m),
+            skirt_depth_m: self.skirt_depth_m,
+            ends: self.buffers.roads(method).map_or(&[], |roads| &roads.ends),
+        }
+    }
+
     /// What shaders are told of it.
     pub(crate) fn uniforms(&self) -> TileUniforms {
         let TileBuffers { reference_m, size_m, width_margin_m, .. } = *self.buffers;

@@ -5,11 +5,11 @@ use std::ops::Range;
 use wgpu::{Buffer, BufferUsages, RenderPass};
 
 use super::{
-    super::{Gpu, shared_bindings::SharedBindings, tile_buffers::DrawTile},
+    super::{Gpu, shared_bindings::SharedBindings},
     sv_roads::{self, SvRoads},
 };
 use crate::{
-    options::RoadOptions,
+    options::ClassSet,
     scene::{BorderTile, LevelConnector, level_connectors},
     tiles::{NearHeights, RoadVolume},
 };
@@ -21,21 +21,18 @@ pub(crate) struct LevelConnectors {
 }
 
 impl LevelConnectors {
-    /// Finds them and uploads their volumes, each relative to the reference point of its finer tile.
-    pub(crate) fn new(gpu: &Gpu, roads: RoadOptions, tiles: &[DrawTile<'_>]) -> Self {
-        let border_tiles: Vec<BorderTile<'_>> = tiles
-            .iter()
-            .map(|tile| BorderTile {
-                id: tile.buffers.id,
-                side_m: tile.buffers.size_m[0].min(tile.buffers.size_m[1]),
-                skirt_depth_m: tile.skirt_depth_m,
-                ends: tile.buffers.roads(roads.method).map_or(&[], |roads| &roads.ends),
-            })
-            .collect();
-        let mut list = level_connectors(&border_tiles);
-        list.retain(|connector| roads.classes.contains(connector.class));
+    /// Finds the connectors between `tiles` and uploads their volumes, each relative to the reference point of its finer
+    /// tile. `reference_of` gives that point for an index of `tiles`.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        tiles: &[BorderTile<'_>],
+        reference_of: impl Fn(usize) -> [f64; 3],
+        classes: ClassSet,
+    ) -> Self {
+        let mut list = level_connectors(tiles);
+        list.retain(|connector| classes.contains(connector.class));
         let volumes = list.iter().map(|connector| {
-            let reference_m = tiles[connector.fine].buffers.reference_m;
+            let reference_m = reference_of(connector.fine);
             (volume(connector, reference_m), connector.coarse as u32 + 1)
         });
         let bytes = sv_roads::instance_bytes(volumes);
