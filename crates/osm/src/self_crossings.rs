@@ -1,6 +1,8 @@
 //! Where a line crosses itself.
 
-use corniche_geom::{LatticePoint, Side, side};
+use corniche_geom::LatticePoint;
+use geo::line_intersection::{LineIntersection, line_intersection};
+use geo::{Coord, Line};
 
 /// Pairs of segments that are compared at most: all of a way of 2000 nodes, the most that OSM allows (OSM wiki, *Way*). A way of
 /// a million nodes that runs to and fro would take a day.
@@ -21,8 +23,7 @@ pub(crate) fn self_crossings(points: &[LatticePoint]) -> u32 {
                 return crossings;
             }
             comparisons += 1;
-            let is_apart = c.v.max(d.v) < a.v.min(b.v) || a.v.max(b.v) < c.v.min(d.v);
-            if !is_apart && straddles([a, b], [c, d]) && straddles([c, d], [a, b]) {
+            if cross_inside([a, b], [c, d]) {
                 crossings += 1;
             }
         }
@@ -30,10 +31,19 @@ pub(crate) fn self_crossings(points: &[LatticePoint]) -> u32 {
     crossings
 }
 
-/// Whether the ends of `other` lie strictly on different sides of the line through `segment`.
-fn straddles(segment: [LatticePoint; 2], other: [LatticePoint; 2]) -> bool {
-    let [from, to] = other.map(|end| side(segment[0], segment[1], end));
-    from != Side::On && to != Side::On && from != to
+/// Whether two segments cross strictly inside both.
+///
+/// `geo` decides it by the signs of Shewchuk's orientations, which are exact for coordinates that an f64 holds exactly: lattice
+/// points stay below 2^50 ([`corniche_geom::MAX_LATTICE_STEPS`]), an f64 holds whole numbers to 2^53.
+fn cross_inside(one: [LatticePoint; 2], other: [LatticePoint; 2]) -> bool {
+    let [one, other] = [one, other].map(|[from, to]| {
+        let [from, to] = [from, to].map(|point| Coord::from(point.in_steps()));
+        Line::new(from, to)
+    });
+    matches!(
+        line_intersection(one, other),
+        Some(LineIntersection::SinglePoint { is_proper: true, .. })
+    )
 }
 
 #[cfg(test)]

@@ -1,3 +1,6 @@
+use corniche_geom::{MAX_LATTICE_STEPS, Side, side};
+use proptest::prelude::*;
+
 use super::*;
 
 #[track_caller]
@@ -17,4 +20,33 @@ fn counts_crossings_but_not_touches() {
     // A five-pointed star.
     check_crossings(&[(0, 100), (59, -81), (-95, 31), (95, 31), (-59, -81), (0, 100)], 5);
     check_crossings(&[(5, -5), (5, 5), (0, 0), (10, 0)], 1);
+}
+
+/// Whether the ends of `other` lie strictly on different sides of the line through `segment`: in whole numbers.
+fn straddles(segment: [LatticePoint; 2], other: [LatticePoint; 2]) -> bool {
+    let [from, to] = other.map(|end| side(segment[0], segment[1], end));
+    from != Side::On && to != Side::On && from != to
+}
+
+/// Points close together, so that many lie on one line, around a place anywhere on the lattice.
+fn points() -> impl Strategy<Value = [LatticePoint; 4]> {
+    let far = MAX_LATTICE_STEPS - 200;
+    let at = (-far..far, -far..far, prop::sample::select(vec![1_i64, 7, 1 << 30]));
+    let offsets = prop::array::uniform4((-6_i64..7, -6_i64..7));
+    (at, offsets).prop_map(move |((u, v, scale), offsets)| {
+        offsets.map(|(du, dv)| {
+            let stay = |at: i64| at.clamp(-far, far);
+            LatticePoint::new(stay(u + du * scale), stay(v + dv * scale))
+        })
+    })
+}
+
+proptest! {
+    /// Two segments cross when the exact integer test says so, anywhere on the lattice.
+    #[test]
+    fn crossings_are_those_of_whole_numbers([a, b, c, d] in points()) {
+        prop_assume!(a != b && c != d);
+        let expected = straddles([a, b], [c, d]) && straddles([c, d], [a, b]);
+        prop_assert_eq!(cross_inside([a, b], [c, d]), expected);
+    }
 }

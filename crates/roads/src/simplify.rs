@@ -14,7 +14,8 @@ use crate::Road;
 ///
 /// Source: Douglas & Peucker 1973, *Algorithms for the Reduction of the Number of Points Required to Represent a
 /// Digitized Line*. Changed: distance to the *segment*, not to its infinite line, since a stretch may run past its ends;
-/// and run per stretch between fixed points, which `geo`'s implementation cannot.
+/// a stretch that returns to its start keeps its farthest point; and of points equally far away the choice does not depend
+/// on the direction of the way. `geo`'s implementation promises neither of the last two; tests compare with it elsewhere.
 #[must_use]
 pub fn simplify(road: &Road, tolerance_steps: f64) -> Polyline {
     // Written so that NaN keeps everything, too.

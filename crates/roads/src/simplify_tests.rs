@@ -173,3 +173,33 @@ proptest! {
         }
     }
 }
+
+proptest! {
+    /// Stretch by stretch the points that `geo` keeps, where no two distances are equal and no stretch returns to its start.
+    #[test]
+    fn keeps_the_points_that_geo_keeps(
+        steps in vec((1_i64..1_000_000_000, -1_000_000_000_i64..1_000_000_000), 3..60),
+        inner_fixed in vec(0_u32..60, 0..4),
+        tolerance_steps in 1e6..1e9_f64,
+    ) {
+        use geo::{Coord, LineString, Simplify as _};
+
+        let points = steps.iter().scan((0, 0), |at, (du, dv)| {
+            *at = (at.0 + du, at.1 + dv);
+            Some(LatticePoint::new(at.0, at.1))
+        });
+        let road = road(points.collect(), &inner_fixed).unwrap();
+        let source = road.line.points();
+        let mut expected = vec![source[0].in_steps()];
+        for pair in road.fixed.windows(2) {
+            let stretch = &source[pair[0] as usize..=pair[1] as usize];
+            let stretch: LineString =
+                stretch.iter().map(|point| Coord::from(point.in_steps())).collect();
+            let kept = stretch.simplify(tolerance_steps);
+            expected.extend(kept.into_iter().skip(1).map(|at| [at.x, at.y]));
+        }
+        let kept = simplify(&road, tolerance_steps);
+        let kept: Vec<[f64; 2]> = kept.points().iter().map(|point| point.in_steps()).collect();
+        prop_assert_eq!(kept, expected);
+    }
+}
