@@ -1,7 +1,7 @@
-//! Heights that cannot be: found by looking at every sample once.
+//! Finds samples that cannot be heights, by looking at every sample once.
 //!
-//! A file that writes −9999 for "no data" and does not say so would have holes of −9999 m. Such a value gives itself
-//! away: it is repeated, and lies far beyond all true heights.
+//! A file that writes −9999 for "no data" and does not say so would have holes of −9999 m. Such a value can be
+//! recognised: it occurs many times, and it lies far beyond all true heights.
 //!
 //! ```text
 //!   how often │                                                ▄▄▄
@@ -20,17 +20,18 @@ use crate::{Dem, DemError};
 /// What the surface of the earth has: Challenger Deep lies some 10 935 m below the sea, Everest 8 849 m above it.
 pub const SURFACE_RANGE_M: [f64; 2] = [-12_000.0, 9_000.0];
 
-/// A repeated value so far beyond all others is no height.
+/// A repeated value that lies this far beyond all others is not a height.
 const FAR_M: f64 = 1000.0;
-/// Repeated: more than one sample in so many.
+/// A value is repeated if more than one sample in this many has it.
 const ONE_IN: u64 = 10_000;
-/// Values that are kept of each end. Beyond the outermost ones nothing is judged.
+/// How many of the lowest values, and of the highest, are kept. Only these are examined.
 const KEPT: usize = 16;
 /// Sea levels are within this of 0, whatever they are measured from.
 const SEA_LEVEL_M: f64 = 12.0;
 /// No dry land lies lower: files that hold one value alone, and a lower one, hold none. (The Dead Sea: −430 m.)
 const LOWEST_LAND_M: f64 = -500.0;
-/// Side of the blocks that are looked at; of files stored in rows, so many samples in whole rows.
+/// Side of the blocks that are read. From a file that is stored in rows, the same number of samples is read in whole
+/// rows.
 const BLOCK_SAMPLES: usize = 512;
 
 /// A rectangle of one file's samples.
@@ -41,7 +42,7 @@ pub struct AuditBlock {
     size: [usize; 2],
 }
 
-/// A height at one end, and how often it was met.
+/// One of the lowest or highest heights, and how many samples have it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Entry {
     height_m: f64,
@@ -52,8 +53,8 @@ struct Entry {
 
 /// The outermost different heights at one end, the outermost first, at most [`KEPT`]; their counts are exact.
 ///
-/// An entry leaves only for [`KEPT`] others farther out, which never leave for one farther in: it cannot come back. So
-/// neither the order of samples nor that of merges matters.
+/// An entry is removed only when [`KEPT`] others lie farther out, and those are never removed for one farther in: so
+/// an entry that was removed cannot come back. Neither the order of samples nor the order of merges matters.
 #[derive(Debug, Clone, PartialEq, Default)]
 struct End {
     entries: Vec<Entry>,
@@ -75,14 +76,14 @@ pub struct Audit {
 
 #[derive(Debug, Clone, PartialEq, Default)]
 struct FileAudit {
-    /// With a height.
+    /// Samples that have a height.
     samples: u64,
     lowest: End,
     highest: End,
     outside: u64,
 }
 
-/// Looks at blocks of samples. One per thread: it keeps files open.
+/// Examines blocks of samples. It keeps files open, so each thread has its own.
 pub struct Auditor<'a> {
     dem: &'a Dem,
     range_m: [f64; 2],
@@ -98,7 +99,7 @@ impl Dem {
         let mut blocks = Vec::new();
         for (file, source) in self.sources.iter().enumerate() {
             let size = [source.columns as usize, source.rows as usize];
-            // Whoever cuts rows into columns unpacks each row many times.
+            // With blocks narrower than a row, each row would be decompressed many times.
             let most = if source.is_striped {
                 [size[0], (BLOCK_SAMPLES * BLOCK_SAMPLES / size[0].max(1)).max(1)]
             } else {
@@ -115,7 +116,7 @@ impl Dem {
         blocks
     }
 
-    /// Looks at samples; `range_m` is what heights may be, in metres.
+    /// Makes an auditor; `range_m` is the lowest and the highest height that is allowed, in metres.
     #[must_use]
     pub fn auditor(&self, range_m: [f64; 2]) -> Auditor<'_> {
         Auditor {
@@ -129,8 +130,8 @@ impl Dem {
 }
 
 impl Auditor<'_> {
-    /// Looks at every sample of a block, in metres as the file gives them: after scale and unit, before a vertical CRS or
-    /// a shift that was asked for. Memory is bounded by the block.
+    /// Examines every sample of a block, in metres as the file gives them: after scale and unit, but before the
+    /// change to another vertical CRS and before the shift. Memory is bounded by the block.
     ///
     /// # Errors
     /// When the file cannot be read.
@@ -167,17 +168,17 @@ impl FileAudit {
         other.highest.entries.iter().for_each(|&entry| self.highest.add(entry, -1.0));
     }
 
-    /// The value that gives itself away as "no data", and how far inwards the next one lies.
+    /// The value that must mean "no data", and its distance from the next value.
     ///
-    /// At the high end it is farther from sea level than the next: else it is the next that is odd, a single −9999 in a
-    /// plateau say.
+    /// At the high end it must be farther from sea level than the next value. Otherwise the next value is the odd
+    /// one, for example a single −9999 in a plateau.
     fn sentinel(&self) -> Option<(Entry, f64)> {
         let low = self.lowest.sentinel(self.samples, |_| true);
         let high = self
             .highest
             .sentinel(self.samples, |[outer, inner]| outer.height_m.abs() > inner.height_m.abs());
         match (low, high) {
-            // Two values alone, each far from the other: the one nearer to the sea is the ground.
+            // Where there are only two values, far apart, the one nearer to sea level is the ground.
             (Some(low), Some(high)) if self.lowest.entries.len() == 2 => {
                 let is_low = low.0.height_m.abs() >= high.0.height_m.abs();
                 Some(if is_low { low } else { high })
@@ -186,7 +187,7 @@ impl FileAudit {
         }
     }
 
-    /// How often an outermost value was met.
+    /// How many samples have one of the lowest or highest values.
     fn count_of(&self, height_m: f64) -> u64 {
         let entries = self.lowest.entries.iter().chain(&self.highest.entries);
         entries
@@ -215,7 +216,7 @@ impl End {
             Some(at) if inwards(&self.entries[at]) == 0.0 => {
                 let found = &mut self.entries[at];
                 found.count += entry.count;
-                // Where files store one height differently; any will do, but always the same.
+                // Several stored values can mean the same height; the smallest is reported.
                 found.stored = found.stored.min(entry.stored);
             }
             Some(at) => self.entries.insert(at, entry),
@@ -224,7 +225,8 @@ impl End {
         self.entries.truncate(KEPT);
     }
 
-    /// The outermost value that is repeated and far from the next, of those pairs that `may_be` one.
+    /// The outermost value that is repeated and far from the next value. `may_be` can refuse a pair of neighbouring
+    /// values.
     fn sentinel(&self, samples: u64, may_be: impl Fn([Entry; 2]) -> bool) -> Option<(Entry, f64)> {
         let gap_m = |[outer, inner]: [Entry; 2]| (inner.height_m - outer.height_m).abs();
         self.entries
@@ -243,7 +245,7 @@ impl Audit {
         Self { range_m, files: vec![FileAudit::default(); files] }
     }
 
-    /// Of a DEM of which nothing has been looked at yet.
+    /// The audit of a DEM before any of its blocks was examined.
     #[must_use]
     pub fn none_of(dem: &Dem, range_m: [f64; 2]) -> Self {
         Self::new(dem.sources.len(), range_m)
@@ -258,10 +260,10 @@ impl Audit {
 
     /// Refuses values that are no heights: of each file, then of all files together.
     ///
-    /// - One that is repeated in more than 0.01 % of the samples and lies 1000 m or more beyond all others means "no data";
-    ///   where several such values are found, the outermost is named. `is_range_given` leaves this out: who says what is
-    ///   allowed has looked.
-    /// - One that all samples have is no height below −500 m.
+    /// - One that is repeated in more than 0.01 % of the samples and lies 1000 m or more beyond all others means "no
+    ///   data"; where several such values are found, the outermost is named. With `is_range_given` this test is left
+    ///   out: a user who gives the range knows the values.
+    /// - A value that all samples share is refused below −500 m.
     /// - None may lie outside the range.
     ///
     /// # Errors
@@ -293,7 +295,7 @@ impl Audit {
         })
     }
 
-    /// All files hold one and the same value, and it is none of dry land.
+    /// The error when all samples of all files have the same value, and it is lower than any dry land.
     fn nothing_error(&self, dem: &Dem) -> Option<DemError> {
         let mut all = FileAudit::default();
         self.files.iter().for_each(|file| all.merge(file));
@@ -314,9 +316,10 @@ impl Audit {
         let files = || dem.sources.iter().zip(&self.files);
         let mut all = FileAudit::default();
         self.files.iter().for_each(|file| all.merge(file));
-        // A file's own, with all files that have the same; else one that only stands out beside other files.
+        // First a value that stands out in a file of its own; else one that stands out only among the values of all
+        // files.
         let own = self.files.iter().find_map(FileAudit::sentinel);
-        // A file of nothing but sea beside files of high land is no file of nothing.
+        // A file that holds only sea, beside files of high land, does not hold "no data" alone.
         let across = || all.sentinel().filter(|(entry, _)| entry.height_m.abs() > SEA_LEVEL_M);
         let (entry, gap_m) = own.or_else(across)?;
         let count_in = |file: &FileAudit| match file.sentinel() {

@@ -1,4 +1,4 @@
-//! What GDAL and PROJ say when something fails, in words fit to be shown.
+//! What GDAL and PROJ say when something fails, as a text for users.
 
 use std::cell::RefCell;
 use std::sync::Once;
@@ -25,7 +25,7 @@ impl LibraryError {
         let own = match error {
             GdalError::CplError { msg, .. } | GdalError::NullPointer { msg, .. } => msg.clone(),
             GdalError::BadArgument(text) => text.clone(),
-            // Says no more than a number; PROJ may have said why.
+            // This error is only a number; PROJ may have given the reason.
             GdalError::OgrError { .. } => String::new(),
             other => other.to_string(),
         };

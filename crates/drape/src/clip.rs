@@ -55,14 +55,14 @@ pub fn clip_closed(line: &Polyline, bounds: &LatticeBounds) -> Vec<Polyline> {
     clip(line, bounds, OwnedBorders::ALL)
 }
 
-/// The parts as they come.
+/// The parts that are being made.
 #[derive(Default)]
 struct Parts {
     ended: Vec<ClippedPart>,
     current: Vec<LatticePoint>,
-    /// Of which segment of the line each segment of `current` is.
+    /// For each segment of `current`, the segment of the line that it is a piece of.
     segments: Vec<usize>,
-    /// The segment of the line that is looked at.
+    /// The segment of the line that is being clipped.
     segment: usize,
     /// Whether the last segment's end was kept, so that the next one goes on from it.
     goes_on: bool,
@@ -77,7 +77,7 @@ impl Parts {
         if self.current.is_empty() {
             self.current.push(start);
         }
-        // A piece that rounding makes a point is none.
+        // A piece that rounding makes a point is left out.
         if start != end {
             self.current.push(end);
             self.segments.push(self.segment);
@@ -234,8 +234,8 @@ impl Cut {
         let towards = i128::from((axis.of(q) - axis.of(p)).signum());
         let length = i128::from(axis.of(q) - axis.of(p)) * towards;
         let reach = i128::from(border - axis.of(p)) * towards;
-        // ⌊x + 1/2⌋ of the exact x: the same from either end. A border that the segment does not reach is
-        // never used, and its meaningless point must only not overflow.
+        // ⌊x + 1/2⌋ of the exact x: the same from either end. For a border that the segment does not reach, the
+        // result has no meaning and is not used; it only must not overflow.
         let round = |from: i64, to: i64| {
             let offset = (2 * i128::from(to - from) * reach + length).div_euclid(2 * length);
             from.wrapping_add(offset as i64)

@@ -17,7 +17,7 @@ impl Polygon {
         Self { corners, count: 3 }
     }
 
-    /// In order around it; none where nothing is left.
+    /// The corners in order around the polygon; none where nothing is left.
     pub(crate) fn corners(&self) -> &[[f64; 3]] {
         &self.corners[..self.count]
     }
@@ -46,7 +46,8 @@ impl Polygon {
             if (here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0) {
                 let part = here / (here - there);
                 let mut cut = [0, 1, 2].map(|axis| this[axis] + part * (next[axis] - this[axis]));
-                // Rounding must not lift a cut above its edge: the order of the search would show.
+                // Rounding must not lift a cut above its edge: the result would then depend on the order of the
+                // search.
                 cut[2] = cut[2].clamp(this[2].min(next[2]), this[2].max(next[2]));
                 kept.push(cut);
             }
@@ -54,8 +55,8 @@ impl Polygon {
         kept
     }
 
-    /// Rounding can make a polygon so thin that it is cut once too often; its corners then lie on one
-    /// another, and the last may be left out.
+    /// With rounding, a very thin polygon can be cut once more than is possible. Some corners then lie on each other,
+    /// and the last one can be left out.
     fn push(&mut self, corner: [f64; 3]) {
         if self.count < self.corners.len() {
             self.corners[self.count] = corner;

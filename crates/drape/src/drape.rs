@@ -28,9 +28,9 @@ pub struct Gap {
 /// Lays `line` on `surface`: a vertex at every source point, at every TIN edge crossed in its inside, and at
 /// every TIN vertex passed through. What lies over no ground is cut out and measured.
 ///
-/// The boundary of the ground is ground: a line along it is kept. A line that only touches ground at a point
-/// leaves nothing. A source point on an edge or a TIN vertex is a source point and nothing else, and names the
-/// triangle with the smallest index of those that hold it. Coordinates are below 2^60, so that products of their
+/// The boundary of the ground belongs to the ground: a line along it is kept. Where a line only touches ground at a
+/// point, nothing is kept. A source point on an edge or a TIN vertex is a source point and nothing else, and names
+/// the triangle with the smallest index of those that hold it. Coordinates are below 2^60, so that products of their
 /// differences fit 128 bits.
 ///
 /// Source: Vaaraniemi, Treib & Westermann 2011, *High-Quality Cartographic Roads on High-Resolution DEMs*,
@@ -60,7 +60,7 @@ struct Walk<'a> {
     part: Option<DrapedLine>,
     /// Vertices that a part is made for; it may get more.
     room: usize,
-    /// Half-edges found near a gap, kept for its allocation.
+    /// Half-edges found near a gap; a field so that its memory is reused.
     near: Vec<u32>,
 }
 
@@ -103,7 +103,7 @@ impl Walk<'_> {
                     self.close(Some(q));
                     let Some((back, entry)) = self.entry_after(&ray, last) else {
                         self.leave_out([last.to_f64(), 1.0]);
-                        // The end may still touch ground, and the next segment go on from there.
+                        // The end may still touch ground, and the next segment may continue from there.
                         let place = Place::of(q, self.surface);
                         self.arrive(q, place);
                         return place;

@@ -26,9 +26,9 @@ pub enum DrapedVertex {
 
 /// A centre-line laid on the TIN of one tile: every edge between neighbouring vertices lies in one triangle.
 ///
-/// Crossings store the edge, not a position: it is recomputed in f64 from the edge and from the segment
-/// between the nearest source points before and after. A line that enters from (or leaves into) ground that
-/// is not there begins (ends) with a crossing or a TIN vertex; `lead_in` (`lead_out`) is then the source point
+/// Crossings store the edge, not a position: it is recomputed in f64 from the edge and from the segment between the
+/// nearest source points before and after. A line that comes from a place without ground begins with a crossing or a
+/// TIN vertex, and one that goes to such a place ends with one; `lead_in` (`lead_out`) is then the source point
 /// outside that fixes the segment's direction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DrapedLine {

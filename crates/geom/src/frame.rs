@@ -269,7 +269,7 @@ impl Frame {
         ]
     }
 
-    /// Where a position lies, in lattice steps: the other way round.
+    /// Where a position lies, in lattice steps: the inverse of [`Frame::position_of_fraction_m`].
     #[must_use]
     pub fn fraction_of_position(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [east, north] = self.steps.map(|steps| steps as f64);
@@ -279,12 +279,12 @@ impl Frame {
         ]
     }
 
-    /// The lattice point nearest to a position; `None` when it is not finite or absurdly far away.
+    /// The lattice point nearest to a position; `None` when the position is not finite or beyond the lattice's limit.
     #[must_use]
     pub fn snap(&self, position: [f64; 2]) -> Option<LatticePoint> {
         let [u, v] = self.fraction_of_position(position).map(|steps| {
             let steps = steps.round();
-            // Not a number fails the comparison too.
+            // With NaN the comparison is false, too.
             (steps.abs() < MAX_LATTICE_STEPS as f64).then_some(steps as i64)
         });
         Some(LatticePoint::new(u?, v?))

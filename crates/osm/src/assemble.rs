@@ -1,4 +1,4 @@
-//! Ways and node places to roads.
+//! Makes roads from ways and the positions of their nodes.
 
 use corniche_geom::{LatticePoint, Polyline};
 use corniche_roads::Road;
@@ -65,7 +65,7 @@ struct Stop {
 }
 
 enum StopPlace {
-    /// It is the next of the placed points.
+    /// The node has a position: the next one of the placed points.
     Known,
     OutOfRange,
     Missing,

@@ -1,10 +1,10 @@
-//! What must hold of a block before the decoder sees it.
+//! Checks a block before the decoder reads it.
 //!
-//! The decoder adds up differences without a check, stops at the end of the shorter of two arrays that belong together,
-//! passes over fields of the wrong kind, and makes objects of a hundred bytes and more out of three. On a sound file none of
-//! this matters; on a damaged one it would lose roads in silence, move them, or fill the memory. So each block is walked
-//! through once, with nothing kept, and refused when something of it is not as the format has it
-//! (OSM wiki, *PBF Format*; `osmformat.proto`).
+//! The decoder adds up differences without a check, stops at the end of the shorter of two arrays that belong
+//! together, skips fields of the wrong kind, and makes objects of a hundred bytes and more from three bytes of input.
+//! This does not matter for a correct file; with a damaged one, roads would be lost without notice or moved, or the
+//! memory would be filled. So each block is read once before it is decoded, without keeping anything, and refused
+//! when a part of it does not follow the format (OSM wiki, *PBF Format*; `osmformat.proto`).
 
 use crate::wire::{self, Value, WireError, zigzag};
 
@@ -12,12 +12,12 @@ use crate::wire::{self, Value, WireError, zigzag};
 const OBJECT_BYTES: u64 = 512;
 /// A number of eight bytes in a list that grows by doubling.
 const NUMBER_BYTES: u64 = 16;
-/// A text of a list that grows by doubling, without its letters.
+/// A text in a list that grows by doubling, without its characters.
 const TEXT_BYTES: u64 = 64;
 /// What is kept of a field that is not in the format: an entry of a map, with a list.
 const UNKNOWN_BYTES: u64 = 256;
 
-/// More tags than any object has by far.
+/// Far more tags than any object has.
 const MAX_TAGS: u64 = 1 << 16;
 
 /// Checks a block (message `PrimitiveBlock`). Decoding it may take at most `most_bytes` of memory, by an estimate that is
@@ -46,7 +46,7 @@ struct Audit {
 }
 
 impl Audit {
-    /// What the objects refer to may come after them.
+    /// The texts to which the objects refer may come after the objects.
     fn frame(&mut self, block: &[u8]) -> Result<(), String> {
         let mut tables = 0;
         for field in wire::fields(block) {
@@ -78,7 +78,7 @@ impl Audit {
                 _ => self.spend(UNKNOWN_BYTES)?,
             }
         }
-        // Of a message in several parts the decoder keeps only the last.
+        // If a message comes in several parts, the decoder keeps only the last part.
         if tables > 1 { Err(format!("it has {tables} tables of strings")) } else { Ok(()) }
     }
 
@@ -209,7 +209,7 @@ impl Audit {
         }
     }
 
-    /// Relations and changesets are passed over, but the decoder reads them.
+    /// Relations and changesets are not used, but the decoder reads them.
     fn other(&mut self, object: &[u8]) -> Result<(), String> {
         for field in wire::fields(object) {
             let field = field?;
@@ -223,7 +223,7 @@ impl Audit {
         Ok(())
     }
 
-    /// A message of single values that are not looked at.
+    /// A message of single values that are not used.
     fn message(&mut self, message: &[u8]) -> Result<(), String> {
         self.spend(OBJECT_BYTES)?;
         for field in wire::fields(message) {
@@ -281,7 +281,7 @@ impl Audit {
         Ok(self.spend_on_numbers(value)?)
     }
 
-    /// No number is shorter than a byte.
+    /// Each number takes a byte at least.
     fn spend_on_numbers(&mut self, value: Value<'_>) -> Result<(), WireError> {
         let most = if let Value::Bytes(bytes) = value { bytes.len() as u64 } else { 1 };
         self.spend(most * NUMBER_BYTES)

@@ -1,6 +1,7 @@
 //! One blob: taken apart, unpacked within its limit, and handed to the decoder.
 //!
-//! The decoder could read blobs itself, but would take a packed block that is cut off, or too large, for its first part.
+//! The decoder could read blobs itself, but where a compressed block is cut off or too large, it would use the first
+//! part without an error.
 
 use std::io::Read;
 
@@ -107,10 +108,11 @@ pub(crate) fn unpack(blob: &[u8], limit_bytes: u64) -> Result<Vec<u8>, BlobRefus
 
 /// Unpacks a whole zlib stream of at most `most_bytes`; its checksum must be right and nothing may follow it.
 fn inflate(packed: &[u8], most_bytes: usize) -> Result<Vec<u8>, BlobRefusal> {
-    /// Deflate makes at most 1032 bytes of one (zlib, *Technical Details*), so this much never needs more room than it has.
+    /// Deflate unpacks one byte to at most 1032 (zlib, *Technical Details*), so a buffer of this size is always large
+    /// enough.
     const MOST_GROWTH: usize = 1032;
     let damaged = |reason: &str| Err(BlobRefusal::Damaged(reason.to_owned()));
-    // One byte more than is right, so that a stream that goes on is told from one that ends.
+    // One byte more than allowed, so that a stream that is too long can be noticed.
     let room = most_bytes.min(packed.len().saturating_mul(MOST_GROWTH)) + 1;
     let mut block = Vec::with_capacity(room);
     let mut stream = Decompress::new(true);

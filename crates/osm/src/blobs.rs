@@ -72,7 +72,7 @@ struct Part {
     blob_bytes: u64,
 }
 
-/// Handed to what decodes blobs.
+/// What the decoding of blobs needs from the caller.
 pub(crate) struct Decoding<'a> {
     pub(crate) pool: &'a rayon::ThreadPool,
     pub(crate) should_stop: &'a (dyn Fn() -> bool + Sync),
@@ -131,7 +131,7 @@ impl<R: Read + Seek> BlobFile<R> {
         if headers > 0 { Ok(()) } else { Err(self.damaged(0, "the file has no header")) }
     }
 
-    /// Reads what stands before a blob and leaves the source at the blob, which lies inside the file.
+    /// Reads the frame before a blob and leaves the source at the start of the blob, which lies inside the file.
     fn read_frame(&mut self, offset: u64) -> Result<(Part, String), ReadOsmError> {
         let mut size = [0; 4];
         self.check_end(offset, offset + 4)?;
@@ -173,7 +173,7 @@ impl<R: Read + Seek> BlobFile<R> {
                 timestamp_s: header.osmosis_replication_timestamp(),
             }
         } else {
-            // Several files in a row: what the header of one says is true of none but that one.
+            // Several files joined together: each header describes only its own part.
             Header::default()
         };
         Ok(())
@@ -209,7 +209,7 @@ impl<R: Read + Seek> BlobFile<R> {
     /// Decodes the data blobs with these numbers in parallel and hands on what `look` makes of each unpacked block and `scan`
     /// of the decoded one, in their order. `scan` is told how many bytes it may find, and gives up beyond.
     ///
-    /// A few blobs per thread are held at a time. What is wrong in the eyes of `take` ends it.
+    /// A few blobs per thread are held at a time. An error from `take` ends the reading.
     pub(crate) fn for_each<L: Send, T: Send>(
         &mut self,
         numbers: &[usize],
@@ -240,7 +240,7 @@ impl<R: Read + Seek> BlobFile<R> {
                 let (looked, scanned) = if let Some(found) = found {
                     found
                 } else {
-                    // Too large to be decoded beside others, or wrong: alone it shows.
+                    // Too large to be decoded beside others, or damaged: decoding it alone shows which.
                     stop(&self.path)?;
                     let offset = self.data[number].offset;
                     decode(blob, ALONE).map_err(|refusal| self.refused(offset, refusal))?
@@ -327,6 +327,6 @@ fn of_decoder(error: osmpbf::Error) -> BlobRefusal {
 
 fn is_on_earth(&[west, south, east, north]: &[f64; 4]) -> bool {
     let is_lon = |deg: f64| (-180.0..=180.0).contains(&deg);
-    // West of a box across the antimeridian is larger than east.
+    // For a box across the antimeridian, west is larger than east.
     is_lon(west) && is_lon(east) && -90.0 <= south && south <= north && north <= 90.0
 }

@@ -29,7 +29,7 @@ pub enum Defect {
         /// The way.
         way_id: i64,
     },
-    /// A tag of a road is taken for something else than it says; see [`corniche_roads::tags_taken_otherwise`].
+    /// A tag of a road is read as another value; see [`corniche_roads::tags_taken_otherwise`].
     TagTakenOtherwise {
         /// The way.
         way_id: i64,
@@ -71,7 +71,7 @@ pub enum Defect {
         /// How many roads it became.
         roads: u32,
     },
-    /// Cuts left single points, which are no line; they are left out.
+    /// Cuts left single points, which do not make a line; they are left out.
     StrayPoints {
         /// The way.
         way_id: i64,
@@ -87,14 +87,14 @@ pub enum Defect {
     DuplicatePoints {
         /// The way.
         way_id: i64,
-        /// How many points went.
+        /// How many points were removed.
         points: u32,
     },
     /// The line crosses itself between its points; it is kept as it is.
     SelfCrossing {
         /// The way.
         way_id: i64,
-        /// How many pairs of its segments cross; of a way of more than 2000 nodes perhaps not all are found.
+        /// How many pairs of its segments cross; for a way of more than 2000 nodes not all of them may be found.
         crossings: u32,
     },
     /// The file gives a node several different places; the first stays.

@@ -1,8 +1,8 @@
-//! Tells by its first bytes a file that is surely something else, and says what to do with it.
+//! Recognises files of other formats by their first bytes, and says what to do with them.
 
 use std::path::Path;
 
-/// How much of a file is looked at.
+/// How many bytes of a file are examined.
 pub(crate) const START_BYTES: u64 = 4096;
 
 const TO_PBF: &str = "convert it with: osmium cat IN -o OUT.osm.pbf";
@@ -84,7 +84,7 @@ fn utf16(start: &[u8]) -> Option<String> {
     (!text.contains('\0')).then_some(text)
 }
 
-/// Tells apart what begins with `<`, by its first element.
+/// Distinguishes files that begin with `<` by their first element.
 fn markup(text: &[u8]) -> (&'static str, &'static str) {
     let mut rest = text;
     // Past declarations, comments and document types.

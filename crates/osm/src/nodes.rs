@@ -21,7 +21,8 @@ pub(crate) struct NodeIds {
     is_shared: Vec<bool>,
 }
 
-/// Places by number. Apart from the ids, so that some threads can look up while one fills in.
+/// Places by number. They are separate from the ids, so that several threads can look up ids while one thread writes
+/// places.
 #[derive(Debug)]
 pub(crate) struct NodePlaces {
     locations: Vec<Location>,
@@ -34,7 +35,7 @@ impl NodeTable {
     pub(crate) fn new(ways: &Ways, pool: &rayon::ThreadPool) -> Self {
         let mut all = Vec::with_capacity(ways.node_ids.len());
         for way in &ways.roads {
-            // A node repeated in a row is one visit, not two.
+            // A node that is repeated directly counts as one visit, not two.
             let mut previous = None;
             all.extend(
                 ways.node_ids_of(way).iter().filter(|&&id| previous.replace(id) != Some(id)),
@@ -135,7 +136,7 @@ impl Search<'_> {
         let rest = &self.ids[self.at..];
         let (mut low, mut step) = (0, 1);
         if rest.first().is_none_or(|&first| id < first) {
-            // Behind us, or past the end: search everything.
+            // The id lies before the last one found, or after the end: search the whole list.
             let found = self.ids.binary_search(&id);
             self.at = found.unwrap_or_else(|before| before).min(self.ids.len().saturating_sub(1));
             return found.ok();

@@ -3,8 +3,9 @@ use std::path::Path;
 use corniche_geom::LatticePoint;
 use corniche_roads::FrcTable;
 
-/// Maps `[longitude, latitude]` (WGS84, degrees) to points of the package's lattice, one for one and each by itself: a
-/// position has the same place in every call. `None` where the projection has none. Called from several threads.
+/// Maps `[longitude, latitude]` (WGS84, degrees) to points of the package's lattice, one point for each position. A
+/// position gives the same point in every call, whatever positions are with it. `None` where the projection has none.
+/// Called from several threads.
 pub type Place<'a> = dyn Fn(&[[f64; 2]]) -> Vec<Option<LatticePoint>> + Sync + 'a;
 
 /// What to read and how.

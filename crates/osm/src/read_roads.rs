@@ -20,8 +20,9 @@ use crate::{
 
 /// Reads the roads of an extract and hands them to `sink`, in ascending order of way id.
 ///
-/// - A way is one [`Road`], except where nodes in its middle are missing, out of range or outside the projection: it is cut
-///   there, and each piece of two or more points is a road with the same way id, in the way's order. Gaps are never bridged.
+/// - A way is one [`Road`], except where nodes in its middle are missing, out of range or outside the projection: it
+///   is cut there, and each piece of two or more points is a road with the same way id, in the way's order. A gap is
+///   never closed by a straight line.
 /// - [`Road::fixed`] holds the ends and every node that two of the roads share or one visits twice.
 /// - What is wrong with the data goes to `on_defect`, in an order that depends on the file alone, as the roads do.
 /// - An extract without roads is no error: the summary says 0.
@@ -32,7 +33,7 @@ use crate::{
 /// `should_stop` is asked every few blobs.
 ///
 /// # Limits
-/// What a file may ask for, however it was made:
+/// These limits hold for every file, also for one that was made to do harm:
 ///
 /// | of | limit | beyond it |
 /// |---|---|---|
@@ -45,11 +46,11 @@ use crate::{
 /// | tags of a way | 65 536 | damaged |
 /// | comparisons in search of a way's self-crossings | 2 million, enough for the 2000 nodes that OSM allows | not all are found |
 ///
-/// Blocks of up to 16 MiB unpacked, 64 MiB decoded and 16 MiB found are decoded side by side; larger ones, which ordinary writers
-/// do not make, alone. So blobs take, together and beside what is kept, at most 192 MiB and four packed blobs per thread, and
-/// 1 GiB for one that is alone.
-/// Lookup and sorting of the nodes take at most four times the room of what is kept. Time is proportional to the unpacked size,
-/// which deflate keeps below 1032 times that of the file.
+/// Blocks of up to 16 MiB unpacked, 64 MiB decoded and 16 MiB found are decoded side by side; larger ones, which
+/// ordinary programs do not write, are decoded alone. So blobs take, together and beside what is kept, at most 192
+/// MiB and four packed blobs per thread, and 1 GiB for one that is alone. Lookup and sorting of the nodes take at
+/// most four times the room of what is kept. Time is proportional to the unpacked size, which deflate keeps below
+/// 1032 times that of the file.
 ///
 /// # Errors
 /// When the file cannot be read, is no `.osm.pbf`, is cut off or damaged, is a history file (its header says so, it marks an
@@ -63,7 +64,7 @@ pub fn read_roads(
 ) -> Result<ExtractSummary, ReadOsmError> {
     let path = request.path;
     let not_open = |source| ReadOsmError::Open { path: path.to_path_buf(), source };
-    // To open a pipe is to wait for who writes into it.
+    // Opening a pipe would block until something is written to it.
     let kind = fs::metadata(path).map_err(not_open)?.file_type();
     if !kind.is_file() {
         let found = if kind.is_dir() { "a folder" } else { "a pipe or a device" };
@@ -116,7 +117,7 @@ const HELD_BYTES: u64 = 64 << 20;
 /// … and on top of it for each of its bytes.
 const HELD_BYTES_PER_BYTE: u64 = 64;
 
-/// Pass 1. Says also which blobs hold nodes.
+/// Pass 1. Also returns which blobs contain nodes.
 fn read_ways<R: Read + Seek>(
     file: &mut BlobFile<R>,
     request: &ReadRequest<'_>,

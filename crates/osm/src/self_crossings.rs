@@ -4,16 +4,16 @@ use corniche_geom::LatticePoint;
 use geo::line_intersection::{LineIntersection, line_intersection};
 use geo::{Coord, Line};
 
-/// Pairs of segments that are compared at most: all of a way of 2000 nodes, the most that OSM allows (OSM wiki, *Way*). A way of
-/// a million nodes that runs to and fro would take a day.
+/// Most pairs of segments that are compared. This is enough for all pairs of a way of 2000 nodes, the most that OSM
+/// allows (OSM wiki, *Way*). Without a limit, a way of a million nodes that runs to and fro would take a day.
 const MAX_COMPARISONS: u32 = 2_000_000;
 
-/// How many pairs of segments cross strictly inside both. Shared points and overlaps are no crossings: loops and
-/// there-and-back ways are common and right. Counting ends after [`MAX_COMPARISONS`].
+/// How many pairs of segments cross strictly inside both. Shared points and overlaps are no crossings: closed ways
+/// and ways that return along the same line are common and correct. Counting ends after [`MAX_COMPARISONS`].
 pub(crate) fn self_crossings(points: &[LatticePoint]) -> u32 {
     let mut segments: Vec<[LatticePoint; 2]> =
         points.windows(2).map(|pair| [pair[0].min(pair[1]), pair[0].max(pair[1])]).collect();
-    // Swept from west to east, a segment meets only those that begin before it ends.
+    // In order from west to east, a segment can cross only those that begin before it ends.
     segments.sort_unstable();
     let mut crossings = 0;
     let mut comparisons = 0;

@@ -7,10 +7,10 @@ pub const ATTRIBUTION: &str = "© OpenStreetMap contributors, ODbL 1.0";
 
 /// What was in an extract and what became of it.
 ///
-/// Nothing goes unnamed: `highway_ways = road_ways + left_out.total()`.
+/// Each way is counted: `highway_ways = road_ways + left_out.total()`.
 ///
-/// A file that was cut off exactly between two of its blobs reads as a smaller one: the format has no mark for its end.
-/// Where that cost nodes it shows in `nodes_missing`; where it cost whole ways, nothing tells.
+/// A file that was cut off exactly between two blobs looks like a smaller file: the format has no mark for its end.
+/// If nodes are lost that way, `nodes_missing` shows it; if only whole ways are lost, nothing shows it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ExtractSummary {
     /// Parts of the file of types that are not known, passed over as the format asks. Also what is left of a known part
@@ -20,7 +20,7 @@ pub struct ExtractSummary {
     pub nodes_seen: u64,
     /// Different nodes that the roads name.
     pub nodes_needed: u64,
-    /// Those of them that the file holds no place for.
+    /// How many of them have no position in the file.
     pub nodes_missing: u64,
     /// Ways in the file.
     pub ways_seen: u64,
@@ -36,8 +36,7 @@ pub struct ExtractSummary {
     pub highways: BTreeMap<String, HighwayCount>,
     /// Per `highway` value that the table does not list: how many ways have it.
     pub unknown_highways: BTreeMap<String, u64>,
-    /// Tags of roads that are taken for something else than they say, such as "layer=1000" and "tunnel=culvert": on how many
-    /// ways.
+    /// Tags of roads that are read as another value, such as "layer=1000" and "tunnel=culvert": on how many ways.
     pub tags_taken_otherwise: BTreeMap<String, u64>,
     /// The box that the file's header gives: west, south, east, north, degrees. `None` without one on Earth, and, like
     /// what else the header says, where the file is several in a row.

@@ -1,13 +1,14 @@
-//! Tells what holds more than one point in time, a history or changes, from an extract, where the header does not.
+//! Distinguishes extracts from files that hold more than one point in time (histories, changes), where the header
+//! does not say so.
 //!
 //! An extract holds each object once, and none that is deleted. So a file is refused that
 //! - marks an object as deleted (`Info.visible`), or
 //! - holds an object in two versions (`Info.version`): either one after the other, as histories and merged extracts are
 //!   sorted, or, of ways, anywhere in the file if both are roads.
 //!
-//! Versions below 1 are none: programs write them for what they do not know. An object without a version, or twice in the
-//! same one, says nothing of history. The ids of all objects are not remembered, so that of an unsorted file the versions
-//! go unseen that are no roads.
+//! Versions below 1 do not count: programs write them for unknown versions. An object without a version, or twice
+//! with the same version, is no sign of a history. The ids of all objects are not kept, so in an unsorted file only
+//! the versions of roads are compared.
 //!
 //! This reads the block itself: the decoder forgets versions and marks of dense nodes that come without times and users.
 
@@ -24,7 +25,7 @@ pub(crate) struct Versions {
     pub(crate) history: Option<String>,
 }
 
-/// The objects of one kind, in the file's order; those without version are passed over.
+/// The objects of one kind, in the order of the file; those without a version are skipped.
 #[derive(Debug, Default, Clone, Copy)]
 struct Run {
     first: Option<Versioned>,

@@ -42,8 +42,8 @@ pub fn attributes(tags: &[(&str, &str)]) -> RoadAttributes {
     }
 }
 
-/// The tags that [`attributes`] takes for something else than they say, as `(key, value)`: a `layer` that is no whole number
-/// or too large, which is taken for 0 or the largest; a `tunnel` that the road does not lie in, which is taken for none.
+/// The tags that [`attributes`] reads as another value, as `(key, value)`: a `layer` that is no whole number or too
+/// large, which is taken for 0 or the largest; a `tunnel` that the road does not lie in, which is taken for none.
 pub fn tags_taken_otherwise<'t>(
     tags: &[(&'t str, &'t str)],
 ) -> impl Iterator<Item = (&'static str, &'t str)> + use<'t> {

@@ -7,8 +7,8 @@
 //!
 //! `FORMAT.md` beside this crate specifies every byte.
 //!
-//! This crate never computes geometry: what it guesses of triangles, heights and roads is coding, and a wrong guess
-//! costs bytes, never truth. Its reading side has no C dependency and builds for wasm32.
+//! This crate never computes geometry: its guesses of triangles, heights and roads serve compression only, and a
+//! wrong guess costs bytes but changes no value. Its reading side has no C dependency and builds for wasm32.
 
 pub mod limits;
 mod manifest;

@@ -1,4 +1,4 @@
-//! What is settled before greedy insertion starts: vertices on the tile's border and on boundaries of voids.
+//! Chooses vertices on the tile's border and on the boundaries of voids, before greedy insertion starts.
 
 use crate::tile_raster::TileRaster;
 
@@ -7,7 +7,8 @@ pub(crate) type Stretch = Vec<[usize; 2]>;
 
 /// All stretches of the tile's border and of the boundaries of its voids, each simplified on its own.
 ///
-/// A grid line is cut where what lies beside it changes. On the border that is seen through the halo:
+/// A grid line is cut where ground begins or ends on either side of it. On the border of the tile, the halo tells
+/// this for the outer side:
 ///
 /// ```text
 ///          outer:  ground   ground   void    void
@@ -15,9 +16,9 @@ pub(crate) type Stretch = Vec<[usize; 2]>;
 ///          inner:  ground   ground   ground  ground
 /// ```
 ///
-/// The neighbour sees the same two sides with their names exchanged, cuts at the same nodes, and simplifies
-/// the same heights in the same direction: both get the same vertices wherever both have ground. An end of
-/// a stretch is a vertex, so corners of boundaries are, and corners of the tile.
+/// The neighbour sees the same two sides with their names exchanged, cuts at the same nodes, and simplifies the same
+/// heights in the same direction: both get the same vertices wherever both have ground. Each end of a stretch becomes
+/// a vertex; these include the corners of boundaries and of the tile.
 pub(crate) fn stretches(tile: &TileRaster<'_>, max_error_m: f64, quantum_m: f64) -> Vec<Stretch> {
     let (columns, rows) = (tile.columns(), tile.rows());
     let mut found = Vec::new();
@@ -66,8 +67,8 @@ pub(crate) fn stretches(tile: &TileRaster<'_>, max_error_m: f64, quantum_m: f64)
     found
 }
 
-/// Greedy insertion in one dimension: the node farthest from the line between two kept ones is kept too,
-/// until none is farther than `max_error_m`; of equals the first. The ends are kept.
+/// Greedy insertion in one dimension: the node farthest from the line between two kept ones is kept too, until none
+/// is farther than `max_error_m`. Of several equally far nodes the first is taken. The ends are kept.
 ///
 /// Source: Garland & Heckbert 1995, *Fast Polygonal Approximation of Terrains and Height Fields*, applied to
 /// one dimension, where it is the algorithm of Ramer 1972 and Douglas & Peucker 1973 with vertical distances.
@@ -85,7 +86,7 @@ fn simplify(
     let mut spans = vec![[start, end]];
     while let Some([from, to]) = spans.pop() {
         let (from_m, to_m, length) = (stored_m(from), stored_m(to), (to - from) as f64);
-        // All times the length: exact, as in the triangles' residuals.
+        // Everything is multiplied by the length, so that the numbers are exact, as in the residuals of triangles.
         let mut worst = (max_error_m * length, None);
         for index in from + 1..to {
             let on_line = from_m * length + (to_m - from_m) * (index - from) as f64;

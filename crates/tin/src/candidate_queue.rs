@@ -32,7 +32,7 @@ impl Candidate {
         (self.0 >> 32) as u32
     }
 
-    /// The face's apex then: the candidate is stale when the face has been made anew since.
+    /// The face's apex when the candidate was made: if the face has another one now, the candidate is outdated.
     pub(crate) fn apex(self) -> u32 {
         self.0 as u32
     }
@@ -45,9 +45,10 @@ impl Candidate {
 
 /// Candidates, the greatest first.
 ///
-/// Most wait long and are stale before their turn. So only the uppermost band of errors is a heap; the bands
-/// below are unsorted, and whoever asks for the next band names what is still worth sorting. The order is that
-/// of one heap over all; the heap that is left is small enough for the processor's caches.
+/// Most candidates are outdated before they are taken. So only the uppermost band of errors is a heap, and the bands
+/// below are unsorted: when the next band is needed, the candidates that are still valid become the new heap. The
+/// order is the same as with one heap for all candidates, but the heap is small enough for the caches of the
+/// processor.
 pub(crate) struct CandidateQueue {
     heap: BinaryHeap<Candidate>,
     /// Candidates below the heap's band, by band.

@@ -15,7 +15,7 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// Takes the other's nodes in. The order of merging does not matter.
+    /// Adds the nodes of the other. The order of merging does not matter.
     pub fn merge(&mut self, other: Self) {
         self.max_abs_m = self.max_abs_m.max(other.max_abs_m);
         self.covered_nodes += other.covered_nodes;
@@ -44,8 +44,8 @@ pub struct TriangleBuckets {
     members: IndexLists,
 }
 
-/// Nodes on a side of a bucket. A window of a finest tile far beneath lies in one bucket, and some hundred
-/// triangles to look through are few beside its 66 000 nodes.
+/// Nodes on a side of a bucket. The window of a finest tile, many levels below, lies in one bucket; testing a hundred
+/// triangles is little work compared with its 66 000 nodes.
 const BUCKET_NODES: usize = 16;
 
 /// A triangle and the buckets its bounding box meets.
@@ -125,7 +125,7 @@ impl TriangleBuckets {
                 let (row, column) = (row as usize, column as usize);
                 for &member in self.members.of(row * self.size[0] + column) {
                     let triangle = &self.planes[member as usize];
-                    // A triangle is in all buckets it meets: take it in the first that is looked at.
+                    // A triangle is in all buckets that it meets: use it in the first of them only.
                     let taken_at =
                         [0, 1].map(|axis| usize::from(triangle.low[axis]).max(first[axis]));
                     if taken_at == [column, row] {
@@ -169,7 +169,7 @@ pub fn measure(
     let high = [(west + columns - 1).div_euclid(stride), (north + rows - 1).div_euclid(stride)];
     buckets.for_each_near(low, high, |triangle| {
         let corners = triangle.corners.map(|corner| corner.map(|node| i64::from(node) * stride));
-        // All times this: exact on finest tiles.
+        // Everything is multiplied by this number, so that it is exact on the finest tiles.
         let scale = triangle.double_area * stride as f64;
         let [at_m, east, south] = triangle.plane;
         let [from_column, from_row] = corners[0];
@@ -184,7 +184,8 @@ pub fn measure(
                 + south * (row - from_row) as f64
                 + east * (first - from_column) as f64;
             let nodes = heights_m[range.clone()].iter().zip(&mut distances_m[range]);
-            // Division keeps the order, so a finest tile's largest error is exact but for this one rounding.
+            // Division does not change the order, so the largest error of a finest tile is exact except for this one
+            // rounding.
             for (step, (&height_m, distance_m)) in nodes.enumerate() {
                 let scaled = f64::from(height_m) * scale - (in_row + east * step as f64);
                 *distance_m = distance_m.max(scaled.abs() / scale.abs());

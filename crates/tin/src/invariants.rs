@@ -5,9 +5,9 @@ use corniche_geom::HeightGrid;
 use crate::Tin;
 
 impl Tin {
-    /// Checks what is promised of every TIN: canonical order, distinct nodes, triangles counter-clockwise,
-    /// every directed edge at most once (so that two triangles at most meet in an edge, from both sides),
-    /// and no vertex without a triangle. For tests.
+    /// Checks what every TIN must be: canonical order, distinct nodes, triangles counter-clockwise, every directed
+    /// edge at most once (so that two triangles at most meet in an edge, from both sides), and no vertex without a
+    /// triangle. For tests.
     ///
     /// # Panics
     /// When a promise is broken, saying which.

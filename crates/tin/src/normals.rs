@@ -5,9 +5,9 @@ use crate::Tin;
 /// Unit normals of the ground at the vertices of `tin`, octahedron-coded; see [`decode_normal`].
 ///
 /// From the gradient of `heights`, the tile's raster with one more node on each side, as
-/// [`triangulate`](crate::triangulate) takes it: central differences, one-sided next to a gap, level where
-/// both neighbours are gaps. `cell` tells the distances of neighbouring nodes. The rule is local, so a node
-/// has the same normal in every tile that holds it.
+/// [`triangulate`](crate::triangulate) takes it: central differences, one-sided next to a gap, level where both
+/// neighbours are gaps. `cell` is the distance of neighbouring nodes. The rule is local, so a node has the same
+/// normal in every tile that holds it.
 ///
 /// # Panics
 /// When a vertex lies outside the grid: `tin` was not made from these heights.

@@ -51,8 +51,8 @@ where
 {
     let columns = tile.columns();
     let scan = Scan { heights_m: &tile.inner_heights_m(), columns, max_error_m, quantum_m };
-    // The corner a face was made with: the vertex inserted then, or at first any. A face made anew has another
-    // one, so this is at once the counter that tells stale candidates and the hint where to insert.
+    // The apex of each face: the vertex whose insertion made the face, or any corner at the start. A face that is
+    // made again has another apex, so this shows which candidates are outdated; it is also the hint where to insert.
     let mut apexes = vec![0_u32; mesh.num_all_faces()];
     let mut candidates = CandidateQueue::new();
     for face in mesh.inner_faces() {
@@ -92,7 +92,7 @@ where
 
 /// What a face is scanned against.
 struct Scan<'a> {
-    /// NaN where no vertex may be: comparing with it is never true.
+    /// NaN where no vertex is allowed: comparisons with NaN are false.
     heights_m: &'a [f32],
     columns: usize,
     max_error_m: f64,
@@ -112,8 +112,8 @@ impl Scan<'_> {
             return None;
         }
         let [a_m, b_m, c_m] = corners.map(|node| f64::from(node.height_q) * self.quantum_m);
-        // All times the double area: heights are few binary digits each and areas are integers, so every
-        // product and sum below is exact, and a node exactly at the tolerance stays out on every machine.
+        // Everything is multiplied by twice the area: heights have few binary digits and areas are integers, so every
+        // product and sum below is exact, and a node exactly at the tolerance is left out on every machine.
         let scale = double_area as f64;
         let (ab_m, ac_m) = (b_m - a_m, c_m - a_m);
         let per_column = ab_m * ac[1] as f64 - ac_m * ab[1] as f64;

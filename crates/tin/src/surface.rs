@@ -206,7 +206,7 @@ impl Surface {
     }
 
     /// Visits all triangles whose bounding boxes meet `bounds`, and perhaps others, perhaps more than once, in a
-    /// fixed order: several times faster than [`Surface::triangles_near`] where that does not matter.
+    /// fixed order: several times faster than [`Surface::triangles_near`], for callers that accept this.
     pub fn visit_triangles_near(&self, bounds: LatticeBounds, visit: impl FnMut(u32)) {
         self.triangle_buckets.visit(bounds, visit);
     }
@@ -250,8 +250,8 @@ impl Surface {
     /// Looks for the twin around that end of the edge which has fewer triangles: linear in all for a
     /// planar TIN, and far from quadratic even for one that is not.
     ///
-    /// An edge that more than two triangles share, or two on the same side, has no twins: such a TIN is
-    /// broken, and every use of it must still end.
+    /// An edge that more than two triangles share, or two on the same side, has no twins: such a TIN is damaged, but
+    /// every method must still end on it.
     fn find_twin(&self, half_edge: u32) -> u32 {
         let [a, b] = self.ends(half_edge);
         let (hub, rim) = if self.fan(a).len() <= self.fan(b).len() { (a, b) } else { (b, a) };

@@ -26,7 +26,8 @@ impl<'a> TileRaster<'a> {
             let north = &raw[row * width..(row + 1) * width];
             let south = &raw[(row + 1) * width..(row + 2) * width];
             ground.extend(north.windows(2).zip(south.windows(2)).map(|(n, s)| {
-                // A sum is NaN iff one of its terms is: heights are finite, and f64 has room for their sum.
+                // A sum is NaN exactly if one of its terms is: other heights are finite, and their sum is within the
+                // range of f64.
                 !(f64::from(n[0]) + f64::from(n[1]) + f64::from(s[0]) + f64::from(s[1])).is_nan()
             }));
         }

@@ -11,9 +11,9 @@ pub struct TinVertex {
 
 /// A triangulated irregular network over the nodes of one tile.
 ///
-/// Vertices are sorted by row, then column, and are distinct nodes. Triangles are counter-clockwise seen from
-/// above, each starts with its smallest vertex index, and they are sorted: equal ground has equal bytes.
-/// Topology (`triangles`) and position (`vertices`) are separate; a void is where no triangle is.
+/// Vertices are sorted by row, then column, and are distinct nodes. Triangles are counter-clockwise seen from above,
+/// each starts with its smallest vertex index, and they are sorted: so equal ground gives equal bytes. Topology
+/// (`triangles`) and position (`vertices`) are separate; a void has no triangles.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Tin {
     vertices: Vec<TinVertex>,

@@ -34,7 +34,7 @@ pub(crate) fn for_each_row(
     let upper = Edge::new(a, b);
     let lower = Edge::new(b, c);
     for row in first..=last {
-        // At the row of `b` either short edge will do, unless it is level and does not end there alone.
+        // In the row of `b` both short edges give the same column, unless one of them is level.
         let short = if row < b[1] || (row == b[1] && c[1] == b[1]) { &upper } else { &lower };
         let (west, east) = if b_is_east { (&long, short) } else { (short, &long) };
         each(row, west.ceil(row), east.floor(row));
@@ -50,7 +50,7 @@ struct Edge {
     in_floats: bool,
 }
 
-/// Below this, floats find columns exactly: see [`Edge::floor`].
+/// Below this number, floating point finds columns exactly: see [`Edge::floor`].
 const FLOATS_REACH: i64 = 1 << 24;
 
 impl Edge {

@@ -83,8 +83,8 @@ pub fn height_quantum_m(max_error_m: f64) -> f64 {
 /// and never added to.
 ///
 /// # Errors
-/// When `spec` makes no sense, the grid has no cell inside its halo or is too large, or a height does not
-/// fit 32-bit steps of the quantum.
+/// When tolerance and quantum do not fit each other, the grid has no cell inside its halo or is too large, or a
+/// height does not fit 32-bit steps of the quantum.
 pub fn triangulate(heights: &HeightGrid, spec: TinSpec) -> Result<Tin, TriangulateError> {
     let TinSpec { max_error_m, quantum_m } = spec;
     if !(quantum_m > 0.0 && quantum_m <= max_error_m && max_error_m.is_finite()) {
@@ -108,7 +108,7 @@ pub fn triangulate(heights: &HeightGrid, spec: TinSpec) -> Result<Tin, Triangula
     let fixed = stretches(&tile, max_error_m, quantum_m);
     let (nodes, edges) = fixed_graph(&tile, &fixed);
     if ground_cells == (tile.columns() - 1) * (tile.rows() - 1) {
-        // The hull is the border: nothing needs a constraint.
+        // The convex hull is the border of the tile: no constraint is needed.
         let mut mesh = DelaunayTriangulation::<Node>::bulk_load(nodes)?;
         refine(&mut mesh, &tile, max_error_m, quantum_m)?;
         to_tin(&mesh, &tile)

@@ -32,7 +32,7 @@ pub(crate) fn parts_of(reference: &SpatialRef) -> Result<Option<CrsParts>, DemEr
     let wkt = wkt2(&reference).map_err(as_wkt)?;
     let vertical = VerticalCrs::of_wkt(&wkt)?;
     if reference.is_compound() {
-        // The heights' own system must not take part: it would ask PROJ for geoid grids.
+        // The vertical system must not be part of it: PROJ would need geoid grids for it.
         let Some(text) = children(&wkt).into_iter().find(|part| is_horizontal(part)) else {
             return Ok(None);
         };
@@ -44,7 +44,7 @@ pub(crate) fn parts_of(reference: &SpatialRef) -> Result<Option<CrsParts>, DemEr
     Ok(Some((Crs::from_spatial_ref(&reference)?, vertical)))
 }
 
-/// Whether a part of a compound system says where, not how high.
+/// Whether a part of a compound system is the horizontal one.
 fn is_horizontal(wkt: &str) -> bool {
     if keyword(wkt) == "BOUNDCRS" {
         let bound = child(wkt, &["SOURCECRS"]).map(|source| children(&source));

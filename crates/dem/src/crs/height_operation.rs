@@ -12,7 +12,7 @@ use crate::crs::vertical::VerticalCrs;
 /// Carries heights of one file to the vertical CRS asked for, sample by sample.
 #[derive(Debug, Clone)]
 pub(crate) struct HeightOperation {
-    /// From the file's horizontal system to that of the ellipsoidal heights, when that is another one.
+    /// From the horizontal system of the file to the one of the ellipsoidal heights, where these differ.
     place: Option<Operation>,
     operation: Operation,
     /// Value in the source system for a metre upwards.
@@ -50,8 +50,8 @@ impl HeightOperation {
 
     /// Carries heights in metres, in place; voids (NaN) stay.
     ///
-    /// Each by the position of its own sample, counted in the whole file: what comes out does not depend on the
-    /// rectangle read.
+    /// Each height is carried at the position of its own sample, counted in the whole file: the result does not
+    /// depend on the rectangle that is read.
     pub(crate) fn apply(
         &self,
         path: &Path,

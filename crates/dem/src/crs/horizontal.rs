@@ -72,8 +72,8 @@ impl Crs {
         Ok(Some([parallel_m * radians, meridian_m * radians]))
     }
 
-    /// For each of the two coordinates 1, or −1 where it counts westwards or southwards. A polar system's axes all run
-    /// south or north and are taken as they are.
+    /// For each of the two coordinates 1, or −1 where it counts westwards or southwards. Both axes of a polar system
+    /// run south or north: their signs are 1.
     pub(crate) fn signs(&self) -> [f64; 2] {
         let bound = child(&self.wkt, &["SOURCECRS"]).and_then(|source| children(&source).pop());
         let axes: Vec<String> = children(bound.as_deref().unwrap_or(&self.wkt))
@@ -87,7 +87,7 @@ impl Crs {
         [sign(has("west")), sign(!is_polar && has("south"))]
     }
 
-    /// Whether both describe the same system, whatever they call it.
+    /// Whether both describe the same system, whatever its name.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         self.wkt == other.wkt
             || match (self.spatial_ref(), other.spatial_ref()) {

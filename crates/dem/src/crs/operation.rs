@@ -22,11 +22,11 @@ pub(crate) struct Operation {
     area_deg: Option<[f64; 4]>,
     /// Operations that ignore what PROJ lacks the data for ("ballpark") are not allowed.
     is_exact: bool,
-    /// Working metres are divided by these before.
+    /// Working metres are divided by these factors before the operation.
     divide: [f64; 2],
-    /// And these make them after.
+    /// Coordinates are multiplied by these factors after it, to make working metres.
     multiply: [f64; 2],
-    /// A full turn of the first coordinate of what comes out, and what it is to be near to.
+    /// A full turn of the resulting first coordinate, and the value to which the result is to be near.
     turn: Option<[f64; 2]>,
     key: String,
 }
@@ -35,7 +35,8 @@ thread_local! {
     static TRANSFORMS: RefCell<HashMap<String, Rc<CoordTransform>>> = RefCell::new(HashMap::new());
 }
 
-/// Operations kept per thread; more than a run needs, so that a program of many runs does not grow.
+/// How many operations a thread keeps: more than a run needs. The limit keeps the memory of a program with many runs
+/// bounded.
 const KEPT: usize = 64;
 
 impl Operation {
@@ -75,12 +76,13 @@ impl Operation {
         Self { divide: working.metres_per_unit, ..Self::new(&working.crs, to, area_deg) }
     }
 
-    /// The same, with what comes out moved by whole turns: `[turn, near]` of the first coordinate.
+    /// The same operation; its first coordinate is then moved by whole turns to be as near as possible to a value:
+    /// `[turn, near]`.
     pub(crate) fn around(self, turn: Option<[f64; 2]>) -> Self {
         Self { turn, ..self }
     }
 
-    /// The same where an approximation for want of a grid is no answer; for heights.
+    /// An operation for heights: PROJ may not replace a missing grid by an approximation.
     pub(crate) fn exact(from: &Crs, to: &Crs, area_deg: Bounds) -> Self {
         let found = Self::new(from, to, Some(area_deg));
         Self { is_exact: true, key: format!("{} exact", found.key), ..found }
@@ -117,7 +119,7 @@ impl Operation {
     pub(crate) fn apply(&self, points: &mut [[f64; 2]]) -> Result<(), DemError> {
         let mut xs: Vec<f64> = points.iter().map(|point| point[0] / self.divide[0]).collect();
         let mut ys: Vec<f64> = points.iter().map(|point| point[1] / self.divide[1]).collect();
-        // PROJ is not asked for what it would only wrap or round.
+        // Between equal systems PROJ is not called: it would only wrap or round the coordinates.
         if self.from.wkt != self.to.wkt {
             let transform = self.transform().map_err(|source| self.failed(source))?;
             // An error here means that some positions have no image; those come out as infinite.

@@ -21,7 +21,7 @@ impl DemProjection {
             working_from_wgs84: Operation::into_working(&wgs84, working, Some(area_deg)),
             wgs84_from_working: Operation::out_of_working(working, &wgs84, Some(area_deg)),
         };
-        // Whether PROJ can do it shows when it is made.
+        // PROJ reports at the first use whether it knows the operation.
         projection.working_from_wgs84.apply(&mut [area_deg.center()])?;
         projection.wgs84_from_working.apply(&mut [[0.0; 2]])?;
         Ok(projection)

@@ -1,4 +1,4 @@
-//! How true to scale working metres are.
+//! The scale of working metres: working metres per true metre.
 
 use std::ops::RangeInclusive;
 
@@ -7,7 +7,8 @@ use corniche_geom::wgs84::{ECCENTRICITY_2, SEMI_MAJOR_M};
 use crate::DemError;
 use crate::crs::operation::Operation;
 
-/// Half the length over which scale is measured: long against PROJ's rounding, short against its curvature.
+/// Half the length over which the scale is measured: long enough that PROJ's rounding does not matter, short enough
+/// that the curvature of coordinate lines does not matter.
 const HALF_SPAN_M: f64 = 500.0;
 
 /// Scales that a package can record. At a pole a degree of longitude has no length, and the scale is infinite.

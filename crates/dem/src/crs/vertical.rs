@@ -1,4 +1,4 @@
-//! What heights are measured from.
+//! Vertical coordinate systems: what heights are measured from.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,14 +14,14 @@ use crate::{DemError, LibraryError, library_error};
 pub(crate) struct VerticalCrs {
     /// Its name, with the ellipsoid's system for ellipsoidal heights.
     pub(crate) name: String,
-    /// What it is measured from; the same for metres and feet, heights and depths. `None` where it has no name:
-    /// "unknown" is nothing that two systems could have in common.
+    /// The datum; it is the same for metres and feet, and for heights and depths. `None` where it has no name: two
+    /// systems with the datum "unknown" need not have the same one.
     pub(crate) datum: Option<String>,
     /// WKT2 of the vertical node, or of the whole three-dimensional system.
     pub(crate) wkt: Arc<str>,
     /// Metres to a unit of height.
     pub(crate) unit_m: f64,
-    /// Its values grow downwards: depths.
+    /// Whether its values are depths, which grow downwards.
     pub(crate) is_down: bool,
     pub(crate) is_ellipsoidal: bool,
 }
@@ -80,13 +80,13 @@ impl VerticalCrs {
     fn ellipsoidal(wkt: &str) -> Result<Option<Self>, DemError> {
         let axes: Vec<String> =
             children(wkt).into_iter().filter(|part| keyword(part) == "AXIS").collect();
-        // The third axis of a geocentric system points to the pole.
+        // A geocentric system has three axes too, and the third one points to the pole.
         let Some(up) = axes.get(2).filter(|axis| {
             children(axis).first().is_some_and(|way| ["up", "down"].contains(&way.as_str()))
         }) else {
             return Ok(None);
         };
-        // Heights are above the ellipsoid, whichever projection the plan is in.
+        // Heights are measured from the ellipsoid, whatever the projection.
         let base = child(wkt, &["BASEGEOGCRS", "BASEGEODCRS"]);
         let geodetic = base.as_deref().unwrap_or(wkt);
         let above = |name: &str| format!("ellipsoidal height ({name})");
@@ -108,7 +108,7 @@ impl VerticalCrs {
         }))
     }
 
-    /// Whether heights are measured from the same, so that units and directions alone can differ.
+    /// Whether both measure from the same datum: then only unit and direction can differ.
     pub(crate) fn is_same_datum(&self, other: &Self) -> bool {
         self.wkt == other.wkt || self.datum.is_some() && self.datum == other.datum
     }
@@ -154,7 +154,7 @@ impl VerticalCrs {
         })
     }
 
-    /// What heights in metres upwards are to be called.
+    /// The name for heights of this system in metres upwards.
     pub(crate) fn label(&self) -> String {
         #[expect(clippy::float_cmp, reason = "a metre is exactly one")]
         let is_plain = self.unit_m == 1.0 && !self.is_down;
@@ -190,7 +190,7 @@ fn grids_of(wkt: &str) -> Option<String> {
     children(&wkt[start..]).first().and_then(|file| quoted(file)).map(str::to_owned)
 }
 
-/// Grids without their folders, which say nothing of what they hold.
+/// The names of grid files without their folders.
 pub(crate) fn file_names(grids: &str) -> String {
     let name = |path: &str| {
         Path::new(path)

@@ -13,6 +13,7 @@ pub(crate) struct Working {
     pub(crate) metres_per_unit: [f64; 2],
     /// First coordinate in the middle of the data: longitudes are the images nearest to it, beyond ±180° too.
     pub(crate) middle: f64,
-    /// Whether the factors make lengths true at the standard latitude; the plain unit has nothing to do with it.
+    /// Whether the factors make lengths true at the standard latitude. False where the factors are the unit of the
+    /// CRS alone.
     pub(crate) is_scaled: bool,
 }

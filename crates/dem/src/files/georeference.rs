@@ -69,7 +69,7 @@ fn affine_through(ties: &[[f64; 4]]) -> Option<GeoTransform> {
     fits.then_some(transform)
 }
 
-/// Degrees that are none: metres under a geographic CRS, or axes changed round.
+/// Refuses coordinates that cannot be degrees: metres in a file with a geographic CRS, or exchanged axes.
 pub(crate) fn refuse_off_globe(
     path: &Path,
     crs: &Crs,
@@ -80,7 +80,7 @@ pub(crate) fn refuse_off_globe(
     let (right, bottom) = (columns as f64 - 0.5, rows as f64 - 0.5);
     let corners = [[0.5, 0.5], [right, 0.5], [0.5, bottom], [right, bottom]];
     let step = crs_from_pixel.coefficients;
-    // A sample too many beyond a pole is found in real files.
+    // Some real files have one sample beyond a pole.
     let most = [1.5 * turn, turn / 4.0 + step[4].hypot(step[5])];
     let is_off = |at: &[f64; 2]| (0..2).any(|axis| at[axis].abs() > most[axis] * (1.0 + 1e-9));
     match corners.map(|corner| crs_from_pixel.crs_from_pixel(corner)).into_iter().find(is_off) {

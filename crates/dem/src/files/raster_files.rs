@@ -12,7 +12,7 @@ use crate::{DemError, library_error};
 
 /// How a virtual raster (VRT) begins, after white space and an XML declaration at most.
 const VRT: &[u8] = b"<VRTDataset";
-/// Within so many bytes of its beginning.
+/// The text must begin within this many bytes of the file.
 const VRT_BYTES: u64 = 512;
 
 /// The files that GDAL reads a raster from, each once: the file itself, those beside it (`.aux.xml`, `.ovr`, `.prj`), and
@@ -40,7 +40,7 @@ pub fn raster_files(path: &Path) -> Result<Vec<PathBuf>, DemError> {
 }
 
 fn is_vrt(path: &Path) -> bool {
-    // To open a pipe is to wait for who writes into it.
+    // Opening a pipe would block until something is written to it.
     if std::fs::metadata(path).is_ok_and(|found| !found.is_file()) {
         return false;
     }

@@ -146,7 +146,7 @@ impl Source {
     }
 }
 
-/// Takes away values.
+/// Replaces values by NaN.
 fn masked(values: &mut [f64], is_void: impl Iterator<Item = bool>) {
     for (value, _) in values.iter_mut().zip(is_void).filter(|(_, is_void)| *is_void) {
         *value = f64::NAN;
@@ -161,7 +161,7 @@ fn alpha_band(dataset: &Dataset) -> Option<usize> {
     })
 }
 
-/// Why a container without a band of its own is no DEM: it may hold several.
+/// The error for a file without a raster band: it may be a container of several rasters.
 fn no_band(path: &Path, dataset: &Dataset) -> DemError {
     let names: Vec<String> = dataset
         .metadata_domain("SUBDATASETS")
@@ -179,7 +179,8 @@ fn no_band(path: &Path, dataset: &Dataset) -> DemError {
     }
 }
 
-/// Colour bands are no heights. A palette alone is no reason to refuse: DEMs carry one for display.
+/// Refuses images: bands of colours are not heights. A palette is not a reason to refuse: DEMs can have one for
+/// display.
 fn refuse_imagery(path: &Path, dataset: &Dataset, band: &RasterBand<'_>) -> Result<(), DemError> {
     use ColorInterpretation as C;
     let interpretation = band.color_interpretation();

@@ -8,10 +8,10 @@ use gdal::raster::{GdalDataType, RasterBand};
 use crate::crs::vertical::VerticalCrs;
 use crate::{DemError, OpenOptions};
 
-/// Beyond this no value is a height: writers use ±3.4e38, 1e20 and the like for "nothing here", and nothing on earth
-/// is farther from the sea's level than its centre, 6 400 km.
+/// Values beyond this are not heights: programs write ±3.4e38, 1e20 and the like for "nothing here", and the centre
+/// of the earth is only 6 400 km from sea level.
 const NO_HEIGHT_M: f64 = 1e7;
-/// What SRTM's 16-bit files write for "nothing here", declared or not.
+/// The value for "nothing here" in the 16-bit files of SRTM, also where they do not declare it.
 const SRTM_VOID: f64 = -32768.0;
 /// Units of a band and of its vertical CRS are the same within this: "ft" is often written for survey feet.
 const SAME_UNIT: f64 = 1e-5;
@@ -71,7 +71,8 @@ impl StoredValues {
         })
     }
 
-    /// A stored value in words, as the sentinel that it may be: no more digits than the file has.
+    /// A stored value as text, with no more digits than the file has: the user may give it as the value for "no
+    /// data".
     pub(crate) fn stored_text(&self, value: f64) -> String {
         match value {
             value if self.is_signed_byte && value > 127.0 => (value - 256.0).to_string(),

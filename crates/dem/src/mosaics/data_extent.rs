@@ -1,4 +1,4 @@
-//! Where a DEM's files lie: their outlines, densely sampled.
+//! Where a DEM's files lie, from positions along their sides and inside them.
 
 use corniche_geom::Bounds;
 
@@ -51,7 +51,8 @@ pub(crate) fn bounds(
     for &point in points.iter().filter(|point| is_point(point)) {
         bounds.include(point);
     }
-    // How far a middle one of three lies off the chord of its neighbours is 4 times the bend in between.
+    // The distance of a position from the straight line between its two neighbours is 4 times the bend between two
+    // positions.
     let mut bend = 0.0_f64;
     for side in points[..4 * SIDE_POSITIONS].chunks_exact(SIDE_POSITIONS) {
         for [a, b, c] in side.windows(3).filter_map(|three| <[[f64; 2]; 3]>::try_from(three).ok()) {
@@ -70,8 +71,8 @@ pub(crate) fn bounds(
     Ok(bounds)
 }
 
-/// All files' outlines in WGS84 and the rectangle around them. Longitudes are continuous: past the antimeridian
-/// they go on beyond ±180. Refuses a file of which no position is on earth.
+/// Positions on the rim and inside of all files in WGS84, and the rectangle around them. Longitudes are continuous:
+/// past the antimeridian they go on beyond ±180. Refuses a file of which no position is on earth.
 pub(crate) fn wgs84(
     sources: &[Source],
     mosaics: &[Mosaic],
@@ -111,8 +112,9 @@ pub(crate) fn wgs84(
     Ok((all, bounds))
 }
 
-/// Longitudes of a projected file made continuous: along the rim each beside the one before, which is near it; inside each
-/// beside the middle of the rim. From one inner row to the next the way is most of the width and tells nothing.
+/// Makes the longitudes of a projected file continuous. Along the rim each longitude is moved next to the one before
+/// it, which is near. Inside, each is moved next to the middle of the rim: neighbours in the list can be as far apart
+/// as the file is wide.
 fn unwrap(points: &mut [[f64; 2]]) {
     let (rim, inside) = points.split_at_mut(4 * SIDE_POSITIONS);
     let mut previous: Option<f64> = None;
@@ -121,7 +123,7 @@ fn unwrap(points: &mut [[f64; 2]]) {
         previous = Some(point[0]);
     }
     let middle = if previous.is_some() { Some(around(rim).center()[0]) } else { None };
-    // Without a rim on earth any inner position is as good.
+    // If no position of the rim is on earth, the first inner position is used.
     let mut near = middle;
     for point in inside.iter_mut().filter(|point| point[0].is_finite()) {
         point[0] = near_longitude(point[0], *near.get_or_insert(point[0]));

@@ -11,7 +11,7 @@ use crate::mosaics::spacing::nice;
 
 /// Grids are the same when, over the whole extent, their samples are no farther apart than this.
 const SAME_GRID_PX: f64 = 1e-3;
-/// A full turn of longitude meets its start within this, in samples.
+/// After a full turn of longitude, samples may be this far from where they started, in samples.
 const SAME_PLACE_PX: f64 = 0.01;
 
 /// Files whose samples lie on one grid, addressed by global sample indices: sample (0, 0) is the first of the
@@ -61,8 +61,8 @@ pub(crate) fn group(sources: &[Source]) -> Vec<Mosaic> {
     mosaics
 }
 
-/// Columns of a geographic grid to a full turn; `None` when the turn is no whole number of them. A spacing that is written
-/// with few digits counts as what it is meant to be.
+/// How many columns of a geographic grid make a full turn; `None` when this is not a whole number. A spacing that is
+/// written with few digits is read as the number that is meant.
 fn period(source: &Source) -> Option<i64> {
     let transform = &source.crs_from_pixel;
     let reach = source.columns.max(source.rows) as f64;
@@ -71,7 +71,7 @@ fn period(source: &Source) -> Option<i64> {
     (transform.is_axis_parallel() && is_whole).then_some(columns.round() as i64)
 }
 
-/// Refuses grids of a single row or column: there is no ground between their samples.
+/// Refuses grids of a single row or column: ground lies between samples, and they enclose none.
 pub(crate) fn refuse_lines(sources: &[Source], mosaics: &[Mosaic]) -> Result<(), DemError> {
     match mosaics.iter().find(|mosaic| mosaic.extent.columns() < 2 || mosaic.extent.rows() < 2) {
         Some(Mosaic { extent, files, .. }) => Err(DemError::Line {
@@ -103,14 +103,15 @@ impl Mosaic {
         self.crs.turn.map(|turn| [turn, self.middle()[0]])
     }
 
-    /// Samples that positions can ask for: all around the earth, where columns come round.
+    /// The samples that a position can refer to. A grid all around the earth repeats, so its columns go on to both
+    /// sides.
     pub(crate) fn reachable(&self) -> SampleRect {
         let around = self.period.unwrap_or(0);
         let SampleRect { min, max } = self.extent;
         SampleRect { min: [min[0] - around, min[1]], max: [max[0] + around, max[1]] }
     }
 
-    /// The rectangles at which a file is met within `rect`, its own first, others a turn away.
+    /// The rectangles within `rect` at which a file lies: its own first, then those one turn away.
     pub(crate) fn images(&self, file: &Placed, rect: &SampleRect) -> Vec<SampleRect> {
         let moved = |columns: i64| SampleRect {
             min: [file.rect.min[0] + columns, file.rect.min[1]],
@@ -127,7 +128,7 @@ impl Mosaic {
     fn place(&self, source: &Source) -> Option<[i64; 2]> {
         let own = from_centres(&source.crs_from_pixel);
         let [columns, rows] = [source.columns, source.rows];
-        // The way around the earth that is the shorter one: files on both sides of the antimeridian are neighbours.
+        // The shorter way around the earth: files on both sides of the antimeridian are neighbours.
         let middle = own.crs_from_pixel([columns, rows].map(|samples| (samples - 1) as f64 / 2.0));
         let moved = self.turn().map_or(0.0, |[turn, near]| turn * turns(middle[0] - near, turn));
         let corner = |c: i64, r: i64| {

@@ -1,14 +1,15 @@
-//! Spacing and phase of a grid of samples, as whoever wrote the file meant them.
+//! Spacing and phase of a grid of samples, without the rounding of the program that wrote the file.
 
-/// What numbers of few digits may move samples by, over the whole extent, in cells.
+/// Numbers with few digits may move samples by this, over the whole extent, in cells.
 const NOISE_CELLS: f64 = 5e-4;
-/// Rounding of a grid's phase, steps to a unit: it hides the noise of corner coordinates and moves nothing.
+/// Rounding of a grid's phase, in steps per unit: small enough that it removes only the noise in corner coordinates.
 const PHASE_STEPS: f64 = 1e6;
-/// The same in degrees, steps to a cell: degrees are written with fewer digits. It moves nodes by half of this at most.
+/// The same in degrees, in steps per cell: degrees are written with fewer digits. Rounding moves nodes by half a step
+/// at most.
 const PHASE_STEPS_DEGREES: f64 = 1e4;
 
-/// A spacing without the noise of its division by whoever wrote the file: a whole number of samples to a unit (1/1200 of a
-/// degree), or few decimal digits; as it is where neither is meant.
+/// A spacing without the rounding of the program that wrote the file: a whole number of samples per unit (1/1200 of a
+/// degree), or a number of few decimal digits. If neither is near, the spacing stays as it is.
 pub(crate) fn nice(spacing: f64, reach: f64) -> f64 {
     let is_noise = |nice: f64| (nice - spacing).abs() * reach <= NOISE_CELLS * spacing;
     let digits = rounded(spacing, 9);
@@ -24,7 +25,7 @@ pub(crate) fn phase(at: f64, spacing: f64, is_degrees: bool) -> f64 {
     let (unit, steps) =
         if is_degrees { (spacing, PHASE_STEPS_DEGREES) } else { (1.0, PHASE_STEPS) };
     let phase = (at.rem_euclid(spacing) / unit * steps).round() / steps * unit;
-    // A hair below a multiple is the multiple.
+    // A phase just below the spacing is the next multiple, so 0.
     if spacing - phase < 0.5 * unit / steps { 0.0 } else { phase }
 }
 

@@ -11,7 +11,7 @@ use crate::crs::vertical::{VerticalCrs, file_names};
 use crate::files::source::Source;
 use crate::{DemError, LibraryError, OpenOptions, library_error};
 
-/// Farther than this nothing is shifted: the deepest trench and the highest mountain lie 20 km apart.
+/// The largest shift that is accepted: the deepest trench and the highest mountain differ by only 20 km.
 const MAX_SHIFT_M: f64 = 100_000.0;
 
 /// What the heights that a DEM hands out are measured from.
@@ -79,7 +79,8 @@ fn probes(source: &Source) -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// Why PROJ cannot carry heights. It does not say what it lacks; only a file that is not there is certain.
+/// Why PROJ cannot carry heights. PROJ does not say what is missing; only a grid that is named as a file can be
+/// looked for.
 fn no_operation(
     source: &Source,
     systems: [&VerticalCrs; 2],
@@ -101,7 +102,7 @@ fn no_operation(
     DemError::VerticalOperation { path, from, to, grids, source: reason }
 }
 
-/// Decides what becomes of the files' heights, and prepares the files for it.
+/// Decides which vertical CRS the heights get, and prepares the files for it.
 pub(crate) fn resolve(
     sources: &mut [Source],
     options: &OpenOptions,
@@ -135,7 +136,7 @@ fn carry(
     area_deg: Bounds,
     center_deg: [f64; 2],
 ) -> Result<HeightReference, DemError> {
-    // What was done, and the offset it gave in the first file it was done to.
+    // What was done, and the offset in the first file to which it was done.
     let mut texts: Vec<[String; 2]> = Vec::new();
     for source in sources.iter_mut() {
         let Some(own) = source.vertical.clone() else {
@@ -143,10 +144,10 @@ fn carry(
             return Err(DemError::NoVerticalCrs { path: source.path.clone(), to });
         };
         let text = if own.is_same_datum(target) {
-            // Unit and direction are seen to where values become metres.
+            // Unit and direction are handled where stored values become metres.
             [target.label(), "as in the files".to_owned()]
         } else {
-            // PROJ takes all that is unknown for one datum, and would change nothing.
+            // PROJ treats all unknown datums as one, and would leave the heights unchanged.
             if let Some(unnamed) =
                 [&own, target].into_iter().find(|vertical| vertical.datum.is_none())
             {
@@ -208,7 +209,7 @@ fn agree(sources: &[Source]) -> Result<HeightReference, DemError> {
     } else {
         "as in the files"
     };
-    // Metres and feet of one datum are one thing once they are metres.
+    // Heights in metres and in feet from one datum are the same once they are in metres.
     let names: Vec<&VerticalCrs> =
         sources.iter().filter_map(|source| source.vertical.as_ref()).collect();
     let datum = names.first().map(|own| {

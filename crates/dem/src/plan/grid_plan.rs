@@ -6,7 +6,7 @@ use crate::plan::alignment::Alignment;
 use crate::plan::kernel::Kernel;
 use crate::plan::node_positions::NodePositions;
 
-/// What the user may say about the grid.
+/// What the user can choose about the grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanOptions {
     /// Working CRS: "dem" (the first file's own), "utm" (both in any case), "EPSG:n" or WKT; `None` chooses one.

@@ -8,13 +8,13 @@ const ON_SAMPLE: f64 = 1e-6;
 const AVERAGE_FROM: f64 = 2.0;
 /// A node has a height when samples of at least this weight do.
 const LEAST_WEIGHT: f64 = 0.5;
-/// Samples less spread out than this, in samples squared, do not make a plane.
+/// Samples with a smaller variance than this, in samples squared, do not determine a plane.
 const LEAST_SPREAD: f64 = 1e-3;
 
 /// How heights at nodes come from samples.
 ///
-/// Along each axis on its own: below two samples to a cell, linear between the two nearest samples; from two on,
-/// the mean of that linear interpolant over the cell's width. Both give planes back exactly.
+/// Along each axis on its own: below two samples to a cell, linear between the two nearest samples; from two on, the
+/// mean of that linear interpolant over the cell's width. Both reproduce planes exactly.
 ///
 /// A linear node without all its samples of positive weight is void. An averaged node is void when less than
 /// half of the weight has data; with some missing, the plane that fits the rest best (weighted least squares),
@@ -114,7 +114,7 @@ impl Kernel {
 fn bilinear(samples: &Samples<'_>, at: [f64; 2]) -> f64 {
     let ([column, row], [t, s]) =
         ([at[0], at[1]].map(|x| split(x).0), [at[0], at[1]].map(|x| split(x).1));
-    // A sample without weight must not matter: it may be void or outside.
+    // A sample of weight 0 must not be used: it may be void or outside.
     let along = |row: i64| {
         let from = samples.height_m(column, row);
         if t == 0.0 { from } else { from * (1.0 - t) + samples.height_m(column + 1, row) * t }
@@ -145,7 +145,7 @@ impl AxisWeights {
             return;
         }
         let (from, to) = (at - width / 2.0, at + width / 2.0);
-        // A sample counts only when the average reaches its hat by more than rounding.
+        // A sample counts only when the interval of the average overlaps its hat function by more than rounding.
         self.first = (from + ON_SAMPLE).floor() as i64;
         let last = (to - ON_SAMPLE).ceil() as i64;
         for sample in self.first..=last {
@@ -155,7 +155,8 @@ impl AxisWeights {
     }
 }
 
-/// Integral from −1 to `x` of the hat that is 1 at 0 and falls to 0 at ±1: a sample's share in the interpolant.
+/// Integral from −1 to `x` of the hat function, which is 1 at 0 and falls to 0 at ±1: the share of a sample in the
+/// linear interpolant.
 fn hat_integral(x: f64) -> f64 {
     let x = x.clamp(-1.0, 1.0);
     if x <= 0.0 { (1.0 + x).powi(2) / 2.0 } else { 1.0 - (1.0 - x).powi(2) / 2.0 }
@@ -190,7 +191,7 @@ fn plane_fit(
         (xx / w - mean_x * mean_x, xy / w - mean_x * mean_y, yy / w - mean_y * mean_y);
     let (cxh, cyh) = (xh / w - mean_x * mean_h, yh / w - mean_y * mean_h);
     let determinant = cxx * cyy - cxy * cxy;
-    // Samples on one line do not say how the ground tilts; what is left of their spread across it is rounding.
+    // Samples on one line do not determine the slope of a plane; their spread across the line is only rounding.
     if cxx.min(cyy) < LEAST_SPREAD
         || determinant <= LEAST_SPREAD * cxx * cyy
         || determinant.is_nan()

@@ -23,7 +23,7 @@ pub(crate) struct Layout {
     pub(crate) working: Working,
     pub(crate) origin_m: [f64; 2],
     pub(crate) cell: Cell,
-    /// The samples taken are those whose index, counted as tiles are aligned, is a multiple of this.
+    /// Only samples whose index is a multiple of this are taken; indices are counted as tiles are aligned.
     every: i64,
 }
 
@@ -165,7 +165,8 @@ impl Layout {
                 [at[0] - (i + way[0] * sample[0]) as f64, at[1] - (j + way[1] * sample[1]) as f64];
             off.iter().all(|off| off.abs() <= ALIGNED_CELLS)
         });
-        // A single row or column says nothing of its own spacing; both must be the cell.
+        // For a single row or column the positions alone do not test the spacing, so both spacings must equal the
+        // cell.
         let is_cell = [0, 1]
             .iter()
             .all(|&axis| (steps[axis].abs() / between[axis] - 1.0).abs() <= ALIGNED_CELLS);
@@ -184,7 +185,7 @@ impl Layout {
             let ends = |axis: usize| {
                 let (a, b) =
                     (first[axis] + way[axis] * low[axis], first[axis] + way[axis] * high[axis]);
-                // Rounded inwards: between two nodes there may be samples and no node.
+                // Rounded inwards: the outermost samples can lie between two nodes.
                 (-(-a.min(b)).div_euclid(every), a.max(b).div_euclid(every))
             };
             let ((west, east), (south, north)) = (ends(0), ends(1));
@@ -194,7 +195,7 @@ impl Layout {
         for file in &mosaic.files {
             let found = data_extent::bounds(mosaic, &file.rect, operation)?;
             if found.is_empty() {
-                // Leaving it out would lose its heights in silence.
+                // Without this error the heights of the file would be lost without notice.
                 let path = dem.sources[file.index].path.clone();
                 let crs = self.working.crs.label.clone();
                 return Err(DemError::FileOutsideCrs { path, crs });

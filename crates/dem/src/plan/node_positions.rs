@@ -6,9 +6,9 @@ use crate::DemError;
 use crate::crs::operation::Operation;
 use crate::mosaics::mosaic::Mosaic;
 
-/// A position may be off by this much of a sample or a cell, whichever is less.
+/// Largest error of a position, as a share of a sample or of a cell, whichever is smaller.
 const TOLERANCE: f64 = 0.01;
-/// What the plan asks of a lattice before it takes it: most of its meshes shall then pass the tolerance.
+/// The stricter tolerance with which a lattice is chosen, so that most of its meshes then pass the tolerance above.
 const PLAN_TOLERANCE: f64 = 0.005;
 /// Lattice spacings tried, in nodes; at 1 every node is transformed.
 const STEPS: [i64; 6] = [32, 16, 8, 4, 2, 1];
@@ -25,8 +25,8 @@ const TRIAL_MESHES: i64 = 12;
 ///   o───·───o───·───o      the bilinear mean of its corners, nodes are interpolated, in others transformed.
 /// ```
 ///
-/// Meshes are those of the global grid, so a node's position depends on nothing but its index.
-/// All five halves are looked at: a conformal map's errors cancel in the middle of a mesh, but not on its sides.
+/// Meshes are those of the global grid, so a node's position depends on nothing but its index. All five halfway
+/// points are tested: with a conformal projection the errors cancel in the middle of a mesh, but not on its sides.
 #[derive(Debug, Clone)]
 pub(crate) struct NodePositions {
     pub(crate) crs_from_working: Operation,
@@ -211,7 +211,7 @@ impl Lattice {
             (east, self.at(c + 2, r + 1)),
             (mix(west, east, 0.5), self.at(c + 1, r + 1)),
         ];
-        // Not a number fails the comparison too.
+        // With NaN the comparison is false, too.
         expected.iter().all(|(mean, truth)| {
             (mean[0] - truth[0]).abs() <= tolerance && (mean[1] - truth[1]).abs() <= tolerance
         })

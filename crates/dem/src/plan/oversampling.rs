@@ -3,10 +3,10 @@
 use crate::plan::sample_steps::{samples_to_a_cell, steps_m};
 use crate::{Dem, DemError, GridPlan};
 
-/// More nodes than this between two samples, along either axis, tell of a slip: they are interpolated, cost as much as
-/// true ones, and add nothing.
+/// More nodes than this per sample, along either axis, are probably a mistake: they are interpolated, cost as much as
+/// nodes with data of their own, and add no information.
 const MOST_NODES_PER_SAMPLE: f64 = 16.0;
-/// Slack for a spacing that is no round number.
+/// Tolerance for the rounding of a spacing.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
 impl Dem {

@@ -26,11 +26,11 @@ const UTM_LATITUDES_DEG: [f64; 2] = [-80.0, 84.0];
 /// few enough that versions of PROJ agree.
 const FACTOR_DIGITS: usize = 9;
 
-/// The latitude at which lengths are true.
+/// The standard latitude: the latitude at which lengths are true.
 #[derive(Debug, Clone, Copy)]
 struct StandardLatitude {
     deg: f64,
-    /// Whether it was asked for, and does not follow the data.
+    /// Whether the user gave it; else it follows from the data.
     is_given: bool,
 }
 
@@ -111,13 +111,13 @@ impl Working {
     /// How long lengths come out.
     pub(crate) fn scale(&self, dem: &Dem) -> Result<PlanScale, DemError> {
         let outside = || DemError::OutsideCrs { crs: self.crs.label.clone() };
-        // The middle of the rectangle has the latitude at which lengths are true; the mean of positions may lie far from
-        // all data.
+        // The middle of the rectangle, because the standard latitude is taken there; the mean of all positions may
+        // lie far from any data.
         let center = match self.scale_at(dem, dem.wgs84_bounds.center())? {
             Some(center) => center,
             None => self.scale_at(dem, dem.center_deg)?.ok_or_else(outside)?,
         };
-        // Corners beyond the CRS (of a CRS that was asked for) say nothing.
+        // Corners outside the area of the CRS (which the user may have chosen) are left out.
         let mut scale =
             PlanScale { center: center.along, least: center.along, largest: center.along };
         for Scale { along, .. } in self.rim_scales(dem)?.into_iter().flatten() {
@@ -206,7 +206,7 @@ fn is_right_handed(working: &Working, dem: &Dem) -> Result<bool, DemError> {
 fn standard_latitude_deg(bounds: Bounds) -> f64 {
     let middle = (bounds.center()[1] * 1e6).round() / 1e6;
     let halves = middle.abs() * 2.0;
-    // Just below the tie goes down.
+    // Up to half: down; so a tie goes down.
     let rounded = if halves.fract() > 0.5 { halves.ceil() } else { halves.floor() };
     (rounded / 2.0).copysign(middle) + 0.0
 }

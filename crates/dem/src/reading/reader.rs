@@ -24,7 +24,7 @@ pub struct DemWindow {
     pub is_filled: Vec<bool>,
 }
 
-/// Reads windows of heights. One per thread: it keeps files open and buffers at hand.
+/// Reads windows of heights. Each thread has its own, because it keeps files open and reuses its buffers.
 pub struct Reader<'a> {
     pub(crate) dem: &'a Dem,
     pub(crate) plan: &'a GridPlan,
@@ -62,7 +62,7 @@ impl Reader<'_> {
         let mut is_filled = Vec::new();
         let mut filled = 0;
         let reach = self.plan.fill_voids as usize;
-        // The halo is read only where it can matter; nodes do not depend on it otherwise.
+        // The halo is read only where there are voids: other nodes do not depend on it.
         if reach > 0 && heights_m.iter().any(|height_m| height_m.is_nan()) {
             let wide = self.with_halo(window, &heights_m, reach)?;
             let columns = window.columns + 2 * reach;
@@ -111,7 +111,7 @@ impl Reader<'_> {
         Ok(heights_m)
     }
 
-    /// Heights of nodes as the layers have them, NaN in voids, row by row from the north.
+    /// Heights of nodes from the mosaics, voids not filled (NaN), row by row from the north.
     fn nodes(&mut self, window: NodeWindow) -> Result<Vec<f32>, DemError> {
         let (dem, plan) = (self.dem, self.plan);
         let mut heights_m = vec![f32::NAN; window.columns * window.rows];
@@ -134,7 +134,7 @@ impl Reader<'_> {
         Ok(heights_m)
     }
 
-    /// Samples that are nodes.
+    /// Heights of nodes that are samples.
     fn copy(
         &mut self,
         mosaic: &Mosaic,
@@ -173,7 +173,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Nodes between samples: those of `area`, whose positions are in `at`.
+    /// Heights of nodes that lie between samples: the nodes of `area`, whose positions among the samples are in `at`.
     fn interpolate(
         &mut self,
         mosaic: &Mosaic,
@@ -217,7 +217,7 @@ pub(crate) fn around(
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];
     for position in positions {
-        // Not a number leaves both as they are.
+        // NaN leaves both unchanged.
         for axis in 0..2 {
             low[axis] = low[axis].min(position[axis]);
             high[axis] = high[axis].max(position[axis]);

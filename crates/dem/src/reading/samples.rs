@@ -1,4 +1,4 @@
-//! The DEM's own samples, as far as a package can be built from them.
+//! The DEM's own samples: all of them, and those that nodes are made from.
 
 use crate::crs::operation::Operation;
 use crate::mosaics::mosaic::Mosaic;
@@ -73,7 +73,8 @@ impl Reader<'_> {
         Ok(block)
     }
 
-    /// Of those, the ones that nodes are made from: not hidden by a grid that was named earlier and has data there.
+    /// The samples of an area from which nodes are made: those that are not hidden by an earlier named grid with data
+    /// there.
     ///
     /// # Errors
     /// When a file cannot be read.

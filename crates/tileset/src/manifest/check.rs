@@ -1,7 +1,7 @@
-//! What a manifest must keep to, so that whoever reads it can calculate with it without asking again.
+//! The limits that every manifest must keep, so that code that reads it can calculate without further checks.
 //!
-//! Numbers of a package are foreign: a count of 2^64 − 1 would overflow the first sum, a coordinate of 1e308 the first
-//! product, and a not-a-number would pass every comparison the wrong way.
+//! The numbers in a package can be anything: a count of 2^64 − 1 would overflow the first sum, a coordinate of 1e308
+//! the first product, and comparisons with NaN would give wrong answers.
 
 use corniche_geom::{Bounds, Cell};
 
@@ -50,13 +50,13 @@ impl Manifest {
         ] {
             that(values.iter().all(|value| POINT_SCALES.contains(value)), name, values)?;
         }
-        // Degrees to metres is 1e5; the units of projections are much smaller.
+        // From degrees to metres the factor is about 1e5; the units of projections have much smaller ones.
         let are_factors = self.metres_per_unit.iter().all(|factor| FACTORS.contains(&factor.abs()));
         that(are_factors, "metres_per_unit", self.metres_per_unit)?;
         let quantum_m = self.vertical.quantum_m;
         that(is_height_quantum(quantum_m), "vertical.quantum_m", quantum_m)?;
         let [low_m, high_m] = self.vertical.range_m;
-        // Heights as they were read, nonsense included, but within an f32.
+        // Heights as they were read, also impossible ones, but within the range of an f32.
         let is_range =
             low_m <= high_m && low_m >= f64::from(f32::MIN) && high_m <= f64::from(f32::MAX);
         that(is_range, "vertical.range_m", self.vertical.range_m)?;
@@ -184,7 +184,7 @@ fn that(holds: bool, name: &str, value: impl std::fmt::Debug) -> Result<(), Stri
     if holds { Ok(()) } else { Err(format!("{name} is {value:?}, which cannot be")) }
 }
 
-/// A length: neither negative nor absurd.
+/// A length: not negative, and within the limit.
 fn measure(name: &str, value_m: f64) -> Result<(), String> {
     that((0.0..=MAX_MEASURE_M).contains(&value_m), name, value_m)
 }

@@ -19,14 +19,15 @@ pub struct Counts {
     pub defects: Vec<(String, u64)>,
     /// Ways by `highway` value that the FRC table does not know. Sorted by value.
     pub unknown_highways: Vec<(String, u64)>,
-    /// Tags of roads that are taken for something else than they say ("layer=1000", "tunnel=culvert"): on how many ways.
-    /// Sorted by tag.
+    /// Tags of roads that are read as another value ("layer=1000", "tunnel=culvert"): on how many ways. Sorted by
+    /// tag.
     pub tags_taken_otherwise: Vec<(String, u64)>,
-    /// Blobs of the extract of a type that readers pass over, as its format asks; 0 in the extracts of common tools.
+    /// Blobs of the extract that have an unknown type and are skipped, as the format requires; 0 for the extracts of
+    /// common tools.
     pub blobs_passed_over: u64,
     /// Ways with a `highway` tag in the extract.
     pub highways_in: u64,
-    /// Those of them that are no roads here, by reason. With the ways that became roads they add up.
+    /// How many of them did not become roads, by reason. Together with the ways that became roads they give all.
     pub highways_left_out: Vec<(String, u64)>,
     /// Roads per class, 0 first: count and true micrometres in.
     pub classes: Vec<(u64, u64)>,

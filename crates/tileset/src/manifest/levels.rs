@@ -1,7 +1,7 @@
 use corniche_geom::Cell;
 use serde::{Deserialize, Serialize};
 
-/// What a level is and how good it came out.
+/// What a level is, and how close it is to the data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LevelRecord {
     /// Level, 0 = root.
@@ -53,7 +53,7 @@ pub struct SampleErrorRecord {
     pub p99_m: f64,
 }
 
-/// How values lie: nearest-rank quantiles.
+/// The distribution of values, as nearest-rank quantiles.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Distribution {
     /// How many values.

@@ -33,7 +33,7 @@ impl Directory {
         let bytes = gunzip(stored, MAX_DIRECTORY_BYTES)?;
         let mut bytes = bytes.as_slice();
         let count = usize::try_from(varint(&mut bytes)?).ok()?;
-        // Every entry has four varints of at least a byte.
+        // Every entry has four varints of at least one byte each.
         if count > MAX_DIRECTORY_ENTRIES.min(bytes.len() / 4) {
             return None;
         }
@@ -48,8 +48,8 @@ impl Directory {
             entry.first = first;
         }
         for entry in &mut entries {
-            // A payload names its tile, so no two are alike and no run is longer; nor does a run of four thousand
-            // million tiles fit in memory.
+            // Each payload contains its tile's id, so no two are equal and a run is never longer than 1; and a run of
+            // four thousand million tiles would not fit in memory.
             entry.run = u32::try_from(varint(&mut bytes)?).ok().filter(|&run| run <= 1)?;
         }
         for entry in &mut entries {
@@ -65,8 +65,8 @@ impl Directory {
                 0 => after?,
                 offset => offset - 1,
             };
-            // In a clustered file what comes later lies later. So tiles do not share bytes, and a file has no more
-            // of them than it has bytes for.
+            // In a clustered file, later tiles lie at higher offsets. So tiles do not share bytes, and a file cannot
+            // list more tiles than it has bytes for.
             let end = &mut ends[entry.run as usize];
             if entry.offset < *end {
                 return None;

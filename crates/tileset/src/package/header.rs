@@ -71,7 +71,8 @@ impl Header {
                 return Err(OpenError::Truncated { needed: end, actual: file_length });
             }
         }
-        // No byte is two things: a root directory that points at a leaf would hide all other tiles.
+        // The parts must not overlap: a root directory whose bytes are also those of a leaf would hide all other
+        // tiles.
         spans.sort_by_key(|span| span.offset);
         let mut end = HEADER_BYTES as u64;
         for Span { offset, length } in spans.into_iter().filter(|span| span.length > 0) {

@@ -50,7 +50,8 @@ impl<S: ByteSource> Package<S> {
         let length = source.length().await?;
         let initial = source.read(0, length.min(INITIAL_BYTES as u64) as usize).await?;
         let header = Header::parse(&initial, length)?;
-        // Before the directory: what is another's PMTiles file is told so, whatever else is wrong with it.
+        // Before the directory, so that a PMTiles file of another program is reported as such, whatever else is wrong
+        // with it.
         let metadata = read_metadata(&source, &header).await?;
         let manifest = parse_manifest(&metadata)?;
         let root_in_initial = usize::try_from(header.root.offset)
@@ -94,7 +95,7 @@ impl<S: ByteSource> Package<S> {
         while let Some((directory, at)) = open.pop() {
             let Some(&entry) = directory.entries.get(at) else { continue };
             open.push((directory, at + 1));
-            // Every entry leads on to later tiles, so the listing ends whatever leaf a leaf points to.
+            // Every entry leads to later tiles only, so the listing ends, also if a leaf points to another leaf.
             if last.is_some_and(|last| entry.first <= pmtiles_order(last)) || ids.len() >= MAX_TILES
             {
                 return Err(DAMAGED);
@@ -110,7 +111,7 @@ impl<S: ByteSource> Package<S> {
             let id = tile_at(entry.first)
                 .filter(|id| id.z() <= self.manifest.frame.max_level())
                 .ok_or(DAMAGED)?;
-            // As within a directory: tiles share no bytes, so that a small file cannot list many.
+            // As within a directory, tiles share no bytes: so a small file cannot list many tiles.
             if entry.offset < data_end {
                 return Err(DAMAGED);
             }
@@ -174,7 +175,7 @@ impl<S: ByteSource> Package<S> {
     /// A leaf directory, read once and kept for a while.
     async fn leaf(&self, entry: Entry) -> Result<Arc<Directory>, OpenError> {
         const DAMAGED: OpenError = OpenError::Damaged { what: "a leaf directory" };
-        // Else listing and searching would disagree about what is in it.
+        // Otherwise listing and searching could give different answers about what is in it.
         let begins =
             |leaf: &Directory| leaf.entries.first().is_some_and(|first| first.first == entry.first);
         // A poisoned lock only means that another thread panicked between two whole directories.
@@ -224,7 +225,7 @@ fn parse_manifest(metadata: &[u8]) -> Result<Manifest, OpenError> {
     let failed = |error: serde_json::Error| OpenError::Manifest { reason: error.to_string() };
     // Read three times into ever more, never into a tree of values: that can take a hundred times its text.
     let outline: Metadata<Option<IgnoredAny>> = parse(metadata).map_err(|error| {
-        // Any object will do for an ordinary file; ours are told apart by their key.
+        // An ordinary file may have any object; a package has one with the key `corniche`.
         if error.is_data() { OpenError::OrdinaryPmtiles } else { failed(error) }
     })?;
     if outline.corniche.is_none() {
@@ -243,7 +244,7 @@ fn parse<'a, T: Deserialize<'a>>(metadata: &'a [u8]) -> Result<Metadata<T>, serd
     serde_json::from_slice(metadata)
 }
 
-/// What is looked at before the rest of the manifest, which may be another version's.
+/// What is read before the rest of the manifest, which may be of another version.
 #[derive(Deserialize)]
 struct Version {
     format_version: u64,

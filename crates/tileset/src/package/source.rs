@@ -102,7 +102,7 @@ mod file {
         /// When it cannot be opened.
         pub fn open(path: &Path) -> Result<Self, SourceError> {
             let failed = |error: io::Error| failure(path, 0, 0, &error);
-            // Before opening: that would wait for ever at the end of a pipe.
+            // This test comes before opening, which would block for ever on a pipe.
             let metadata = fs::metadata(path).map_err(failed)?;
             if metadata.is_dir() {
                 return Err(failed(io::ErrorKind::IsADirectory.into()));

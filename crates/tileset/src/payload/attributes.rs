@@ -55,7 +55,8 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
     if lengths != [count; 7] {
         return Err(Damage::Invalid { what: "lists of different lengths" });
     }
-    // A long text named by every way would be copied for each: a small section must not become a large tile.
+    // A long text that every way names is copied for each way: the limit keeps a small section from becoming a large
+    // tile.
     let mut room = MAX_TEXT_BYTES;
     let mut text = |index: u32| {
         let text = record
@@ -94,7 +95,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
     Ok(roads)
 }
 
-/// Takes one list of the record off the front of the bytes. How long it says it is, is looked at before it is read.
+/// Takes one list of the record off the front of the bytes. Its length is checked before the items are read.
 fn list<T: DeserializeOwned>(bytes: &mut &[u8], limit: usize) -> Result<Vec<T>, Damage> {
     let length = bytes.first_chunk().map(|&length| u64::from_le_bytes(length));
     let length = length.ok_or(Damage::TooShort)?;

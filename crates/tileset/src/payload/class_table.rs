@@ -36,7 +36,7 @@ pub(crate) fn decode<'a>(cursor: &mut Cursor<'a>) -> Result<Vec<ClassBlob<'a>>, 
         .collect()
 }
 
-/// What is told of a line before its points.
+/// What is stored of a line before its points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Head {
     pub(crate) way_id: i64,

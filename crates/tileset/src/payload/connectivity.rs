@@ -13,8 +13,8 @@
 //!            d
 //! ```
 //!
-//! The guesses are exact integer arithmetic. Rebuilding the Delaunay triangulation itself would not do: nodes of
-//! a grid are often on one circle, and boundaries are constrained edges.
+//! The guesses are exact integer arithmetic. To compute the Delaunay triangulation itself would not be enough: nodes
+//! of a grid often lie on one circle, and boundaries are constrained edges.
 //!
 //! Source for the walk: Touma & Gotsman 1998, *Triangle Mesh Compression*, and for guessing connectivity from
 //! positions: Lewiner, Lopes, Mello & Velho 2005, *`GEncode`: Geometry-driven compression for general meshes*.
@@ -43,8 +43,9 @@ pub(crate) struct Reached {
 
 /// Directed edges with the corner to their left.
 ///
-/// The first few of each origin are in a list: most vertices have six, and lists lie where the walk is (a hash table
-/// of all took half as long again). The others are in a tree, so that a vertex of a thousand triangles is no trap.
+/// The first few of each origin are in a list: most vertices have six, and the memory of a list is near where the
+/// walk is (one hash table for all edges took 50 % longer). The others are in a tree, so that a vertex with a
+/// thousand triangles is not slow.
 #[derive(Debug)]
 pub(crate) struct Edges<'w> {
     first: Vec<u32>,
@@ -154,7 +155,7 @@ pub(crate) fn walk(
                 })
             };
             let corner = guide.corner([a, b], &guess);
-            // Before the answer: a search that gave up has found nothing true.
+            // This check comes before the answer is used: a search that gave up has no valid result.
             work.check()?;
             let Some(c) = corner? else { continue };
             ([a, b, c], Some([a, b, d]))

@@ -14,7 +14,7 @@ pub(crate) struct Nodes<'w> {
     work: &'w Work,
 }
 
-/// Stands for the limit of a search, which no vertex has reached.
+/// Marks the limit of a search before any vertex is found.
 const NO_VERTEX: u32 = u32::MAX;
 
 /// A candidate and how it sees the gate: cot of the angle = dot / cross.
@@ -50,9 +50,9 @@ impl<'w> Nodes<'w> {
     /// The allowed vertex strictly to the left of a ► b that sees it under the largest angle; of several the
     /// one with the smallest index.
     ///
-    /// Rows are searched outwards from the gate until they leave the circle through the best vertex so far.
-    /// Floating point only bounds the search, by more than its error; decisions are exact. Once the work is too
-    /// much it gives up: the caller checks.
+    /// Rows are searched outwards from the gate until they leave the circle through the best vertex so far. Floating
+    /// point only bounds the search, by more than its error; decisions are exact. It gives up when the allowed work
+    /// is used up; the caller checks this.
     pub(crate) fn best_corner(&self, gate: [u32; 2], allowed: impl Fn(u32) -> bool) -> Option<u32> {
         // Nearly every corner sees its gate under more than 27° or 4°: try small circles before the half-plane.
         let within = |cot| self.best_corner_within(gate, cot, &allowed);

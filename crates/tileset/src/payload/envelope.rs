@@ -1,4 +1,4 @@
-//! Header, section table and sections of a payload: everything but what a section says.
+//! Header, section table and sections of a payload, without the contents of sections.
 
 use std::io::Read;
 
@@ -88,7 +88,7 @@ pub(crate) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, D
             return Err(Damage::Invalid { what: "two sections of one kind" });
         }
     }
-    // After the checksum: what is reported here is no flipped bit but a payload in the wrong place.
+    // This check comes after the checksum, so its error means a payload in the wrong place, not a flipped bit.
     if (z, x, y) != (id.z(), id.x(), id.y()) {
         return Err(Damage::OtherTile { found: format!("{z}/{x}/{y}") });
     }

@@ -20,7 +20,7 @@ use corniche_tin::{NO_TWIN, Surface};
 use crate::payload::damage::Damage;
 use crate::payload::work_limit::Work;
 
-/// Follows one line; asked for a guess, then told the truth, vertex by vertex.
+/// Follows one line vertex by vertex: first it is asked for a guess, then it is given the true vertex.
 pub(crate) struct Route<'a> {
     surface: &'a Surface,
     /// All points: lead-in, source points, lead-out.

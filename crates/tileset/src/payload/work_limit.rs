@@ -1,4 +1,4 @@
-//! Counted work: what a decoder may do for one tile, whatever its bytes say.
+//! A limit on the steps that a decoder may take for one tile, whatever its bytes are.
 
 use std::cell::Cell;
 
@@ -21,7 +21,7 @@ impl Work {
         self.done.set(self.done.get().saturating_add(steps as u64));
     }
 
-    /// Whether more was done than is allowed. A search then gives up; what it found means nothing.
+    /// Whether more steps were taken than are allowed. A search then gives up, and its result has no meaning.
     pub(crate) fn is_too_much(&self) -> bool {
         self.done.get() > self.limit
     }

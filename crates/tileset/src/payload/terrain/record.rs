@@ -34,7 +34,8 @@ pub(crate) struct Scale {
     pub(crate) nodes_beneath: u64,
 }
 
-/// What a tile says of itself: finite, so that nothing later has to ask, and no more than can be true.
+/// Checks what a tile states about itself: the numbers must be finite, so that later code need not check, and
+/// possible.
 pub(crate) fn check_measures(
     geometric_error_m: f64,
     height_range_m: [f64; 2],
