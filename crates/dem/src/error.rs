@@ -54,7 +54,7 @@ pub enum DemError {
     )]
     UnitsDisagree { path: PathBuf, unit: String, vertical: String, vertical_unit_m: f64 },
     #[error(
-        "the first band of {path:?} has scale {scale} and offset {offset}, which make no heights; correct them (gdal_edit.py -scale -offset)"
+        "the first band of {path:?} has scale {scale} and offset {offset}, with which no heights can be computed; correct them (gdal_edit.py -scale -offset)"
     )]
     Scale { path: PathBuf, scale: f64, offset: f64 },
     #[error(
@@ -66,7 +66,7 @@ pub enum DemError {
     )]
     GeoTransform { path: PathBuf, coefficients: [f64; 6] },
     #[error(
-        "{path:?} has a corner at {x}, {y}, which are no longitude and latitude in {crs}; name its true CRS with gdal_translate -a_srs"
+        "{path:?} has a corner at {x}, {y}, which is not a longitude and latitude in {crs}; name its true CRS with gdal_translate -a_srs"
     )]
     OffGlobe { path: PathBuf, x: f64, y: f64, crs: String },
     #[error("{path:?} names no usable coordinate system; give it with --dem-crs EPSG:n")]
@@ -98,7 +98,7 @@ pub enum DemError {
     )]
     NoVerticalCrs { path: PathBuf, to: String },
     #[error(
-        "heights of {path:?} cannot be carried from {from} to {to}: {unnamed} names no datum, so that nobody knows how the two are related; name the true vertical CRS (gdal_translate -a_srs, --dem-vertical-crs, --vertical-crs), or leave out --vertical-crs and give --vertical-shift"
+        "heights of {path:?} cannot be carried from {from} to {to}: {unnamed} names no datum, so it is not known how the two are related; name the true vertical CRS (gdal_translate -a_srs, --dem-vertical-crs, --vertical-crs), or leave out --vertical-crs and give --vertical-shift"
     )]
     NoVerticalDatum { path: PathBuf, from: String, to: String, unnamed: String },
     #[error(
@@ -180,7 +180,7 @@ pub enum DemError {
     )]
     ScaleLatitudeUtm { latitude_deg: f64 },
     #[error(
-        "the DEM's own coordinate system {crs} does not do as working CRS here: its y does not lie to the left of its x, or the DEM's middle lies outside it; leave out --crs dem"
+        "the DEM's own coordinate system {crs} cannot be the working CRS here: its y axis does not lie to the left of its x axis, or the DEM's middle lies outside it; leave out --crs dem"
     )]
     OwnCrs { crs: String },
     #[error(
@@ -189,7 +189,7 @@ pub enum DemError {
     NoUtm { south: f64, north: f64 },
     #[error(
         "a cell of {cell} puts {nodes:.0} nodes along a side of each DEM sample, more than {limit}: all but one of them \
-         would be interpolated; use a larger --cell, or give --force if it is meant"
+         would be interpolated; use a larger --cell, or give --force if you want this"
     )]
     Oversampling { cell: Cell, nodes: f64, limit: f64 },
     #[error(
@@ -209,7 +209,7 @@ pub enum DemError {
         high_m: f64,
     },
     #[error(
-        "{count} of {samples} samples of {path:?} are no heights between {low_m} and {high_m} m: one is {height_m} m, stored \
+        "{count} of {samples} samples of {path:?} are not heights between {low_m} and {high_m} m: one is {height_m} m, stored \
          as {stored}; if that means \"no data\" give it with --nodata {stored}, if it is a height say what is allowed with \
          --height-range LOW,HIGH (metres)"
     )]

@@ -9,7 +9,7 @@ use crate::mosaics::mosaic::Mosaic;
 use crate::plan::description::{describe, resampled_onto_first};
 use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, Resampling};
 use crate::plan::kernel::Kernel;
-use crate::plan::layout;
+use crate::plan::layout::{self, Layout};
 use crate::plan::node_positions::NodePositions;
 use crate::plan::sample_steps::{samples_to_a_cell, steps_m};
 use crate::plan::working_crs;
@@ -83,16 +83,17 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         refuse_line(every, [south_west, north_east])?;
     }
     let frame = Frame::covering(layout.origin_m, layout.cell, south_west, north_east)?;
-    let mut roles = Vec::new();
-    for (((mosaic, working_from_crs), nodes), steps) in
-        dem.mosaics.iter().zip(operations).zip(extents).zip(steps)
-    {
-        let method = match layout.alignment(mosaic) {
-            Some(alignment) => Method::Aligned(alignment),
-            None => resample(dem, mosaic, &frame, &layout.working, nodes, steps)?,
-        };
-        roles.push(MosaicRole { nodes, method, working_from_crs });
-    }
+    let roles: Vec<MosaicRole> = dem
+        .mosaics
+        .iter()
+        .zip(operations)
+        .zip(extents)
+        .zip(steps)
+        .map(|(((mosaic, working_from_crs), nodes), steps)| {
+            let method = method(dem, mosaic, &layout, &frame, nodes, steps)?;
+            Ok(MosaicRole { nodes, method, working_from_crs })
+        })
+        .collect::<Result<_, DemError>>()?;
     let working = layout.working;
     Ok(GridPlan {
         frame,
@@ -155,14 +156,18 @@ fn resampling(roles: &[MosaicRole]) -> Resampling {
     }
 }
 
-fn resample(
+/// How a mosaic's samples become the heights of nodes.
+fn method(
     dem: &Dem,
     mosaic: &Mosaic,
+    layout: &Layout,
     frame: &Frame,
-    working: &Working,
     nodes: [NodeIndex; 2],
     steps: Option<[[f64; 2]; 2]>,
 ) -> Result<Method, DemError> {
+    if let Some(alignment) = layout.alignment(mosaic) {
+        return Ok(Method::Aligned(alignment));
+    }
     let cell = frame.cell();
     let samples_per_node = steps
         .map(|steps| samples_to_a_cell(steps, cell))
@@ -172,7 +177,7 @@ fn resample(
     if most > MAX_SAMPLES_PER_NODE {
         return Err(DemError::Downsampling { cell, samples: most, limit: MAX_SAMPLES_PER_NODE });
     }
-    let back = Operation::out_of_working(working, &mosaic.crs, Some(dem.wgs84_bounds));
+    let back = Operation::out_of_working(&layout.working, &mosaic.crs, Some(dem.wgs84_bounds));
     let least = samples_per_node[0].min(samples_per_node[1]);
     let positions = NodePositions::new(mosaic, back, frame, nodes, least)?;
     Ok(Method::Resampled(Box::new(positions), Kernel::new(samples_per_node)))

@@ -20,7 +20,7 @@ pub enum OpenError {
     #[error(transparent)]
     Source(#[from] SourceError),
     /// It is something else.
-    #[error("this is not a PMTiles file, hence no Corniche package")]
+    #[error("this is not a PMTiles file, so it is not a Corniche package")]
     NotPmtiles,
     /// It is of another version of PMTiles.
     #[error("PMTiles version {found} is not supported; Corniche packages are version 3")]

@@ -26,7 +26,8 @@ struct Record {
     surfaces: Vec<u32>,
 }
 
-pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
+/// Takes the section's bytes apart into lists that fit each other.
+fn decode_record(bytes: &[u8]) -> Result<Record, Damage> {
     let mut rest = bytes;
     let record = Record {
         texts: list(&mut rest, 3 * MAX_WAYS)?,
@@ -55,6 +56,12 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
     if lengths != [count; 7] {
         return Err(Damage::Invalid { what: "lists of different lengths" });
     }
+    Ok(record)
+}
+
+pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
+    let record = decode_record(bytes)?;
+    let count = record.way_id_steps.len();
     // A long text that every way names is copied for each way: the limit keeps a small section from becoming a large
     // tile.
     let mut room = MAX_TEXT_BYTES;

@@ -1,7 +1,8 @@
 use corniche_geom::TILE_NODES;
+use corniche_tin::TinVertex;
 
 use crate::limits::{MAX_TRIANGLES, MAX_VERTICES, max_walk_steps};
-use crate::payload::connectivity::{Edges, GUESSES, Guide, NAMED, NONE, walk};
+use crate::payload::connectivity::{Edges, GUESSES, Guide, NAMED, NONE, Reached, walk};
 use crate::payload::corner_guess::Nodes;
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::{put_planes, put_varint, zigzag};
@@ -58,18 +59,7 @@ pub(crate) fn encode(terrain: &Terrain, scale: Scale) -> Result<Vec<u8>, &'stati
     put_nodes(&mut out, &at);
     out.extend(&recorder.symbols);
     out.extend(&recorder.named);
-    let mut heights = vec![0; vertices.len()];
-    let mut previous = 0;
-    let residuals: Vec<u64> = order
-        .iter()
-        .map(|reached| {
-            let guess = guess_height(reached, &heights, previous);
-            previous = vertices[reached.vertex as usize].height_q >> height_shift;
-            heights[reached.vertex as usize] = previous;
-            zigzag(i64::from(previous.wrapping_sub(guess)))
-        })
-        .collect();
-    put_planes(&mut out, &residuals);
+    put_planes(&mut out, &height_residuals(vertices, &order, height_shift));
     let guesses = guess_normals(vertices, &found, scale);
     for axis in 0..2 {
         let residual =
@@ -77,6 +67,19 @@ pub(crate) fn encode(terrain: &Terrain, scale: Scale) -> Result<Vec<u8>, &'stati
         out.extend(terrain.normals.iter().zip(&guesses).map(residual));
     }
     Ok(out)
+}
+
+/// Heights minus their guesses, in the order of the walk.
+fn height_residuals(vertices: &[TinVertex], order: &[Reached], height_shift: u8) -> Vec<u64> {
+    let mut heights = vec![0; vertices.len()];
+    let mut previous = 0;
+    let residual = |reached: &Reached| {
+        let guess = guess_height(reached, &heights, previous);
+        previous = vertices[reached.vertex as usize].height_q >> height_shift;
+        heights[reached.vertex as usize] = previous;
+        zigzag(i64::from(previous.wrapping_sub(guess)))
+    };
+    order.iter().map(residual).collect()
 }
 
 fn put_nodes(out: &mut Vec<u8>, at: &[[u16; 2]]) {
