@@ -1,4 +1,4 @@
-//! `corniche build`: from text to settings once, then the pipeline.
+//! `corniche build`: turns text into checked settings, then runs the pipeline.
 
 use std::{
     num::NonZeroUsize,
@@ -24,14 +24,14 @@ use crate::{
     progress::Progress,
 };
 
-/// Tolerance of the simplification of roads, in cells of the level, unless said otherwise. It matches the
-/// vertical tolerance, a quarter of the cell: what cannot be seen upright cannot be seen in plan.
+/// Default tolerance of the simplification of roads, in cells of the level. It equals the default vertical tolerance, a
+/// quarter of the cell, because an error that is too small to be seen in height is too small in plan as well.
 const SIMPLIFY_CELLS: f64 = 0.25;
-/// How far voids are filled, in cells, unless said otherwise.
+/// Default distance over which voids are filled, in cells.
 const FILL_VOIDS: u32 = 32;
-/// Memory for buffers and caches unless said otherwise.
+/// Default memory for buffers and caches.
 const MEMORY_BYTES: u64 = 1 << 30;
-/// As many values for "no data" as a package's manifest may list.
+/// The most values for "no data" that a package's manifest may list.
 const MAX_NODATA: usize = 64;
 
 pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
@@ -54,8 +54,8 @@ pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
     let watch = Watch { progress, defects };
     let settings = settings(*args)?;
     let built = corniche_pipeline::build(&settings, &watch);
-    // A list stands at its place only if it is complete. Of a run that failed it is where all roads were looked at, and
-    // there it tells why.
+    // A list is put in its place only if it is complete. That is so after a run that failed because no road was kept: all
+    // roads were looked at, and the list tells why they were lost.
     let is_complete = match &built {
         Ok(_) | Err(BuildError::NoRoads { .. } | BuildError::NoGround { .. }) => true,
         Err(_) => false,
@@ -72,7 +72,7 @@ pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
     Ok(ExitCode::Done)
 }
 
-/// Warnings are told to whoever asked for silence too.
+/// Warnings are printed with `--quiet`, too.
 fn tell_warnings(manifest: &Manifest, as_json: bool) {
     for warning in info::warnings(manifest) {
         if as_json {
@@ -83,7 +83,8 @@ fn tell_warnings(manifest: &Manifest, as_json: bool) {
     }
 }
 
-/// The only way from text to settings: command line before settings file before defaults.
+/// The only place where text becomes settings. The command line has precedence over the settings file, which has precedence
+/// over the defaults.
 fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
     let config = match &args.config {
         Some(path) => presets::read_config(path)?,

@@ -7,7 +7,7 @@ use plotters::prelude::{
     RGBColor, SVGBackend, SeriesLabelPosition, WHITE,
 };
 
-/// What stands around the curves.
+/// Caption, axes and legend around the curves.
 pub(crate) struct Axes {
     pub(crate) size_px: (u32, u32),
     pub(crate) caption: String,
@@ -48,7 +48,7 @@ pub(crate) enum Marks {
     Dots,
 }
 
-/// The curves as SVG. One without points is named nevertheless.
+/// The curves as SVG. A curve without points is in the legend as well.
 pub(crate) fn draw(axes: &Axes, curves: &[Curve]) -> anyhow::Result<String> {
     let mut svg = String::new();
     {

@@ -18,7 +18,7 @@ impl Failure {
         Self { code, error: error.into() }
     }
 
-    /// Wrong usage or unusable input, in words.
+    /// Wrong usage or unusable input, with a text for the user.
     pub(crate) fn unusable(message: impl fmt::Display) -> Self {
         Self::new(ExitCode::Unusable, anyhow::anyhow!("{message}"))
     }
@@ -28,7 +28,7 @@ impl Failure {
         Self::new(ExitCode::Interrupted, anyhow::anyhow!("interrupted"))
     }
 
-    /// Tells it on standard error, as every failure is told.
+    /// Prints it on standard error.
     pub(crate) fn tell(&self) {
         eprintln!("corniche: {self}");
     }
@@ -37,7 +37,7 @@ impl Failure {
         if self.is_closed_pipe() { ExitCode::Done } else { self.code }
     }
 
-    /// Whether whoever read our output has had enough (`corniche info … | head`): no failure of ours.
+    /// Whether the reader of our output has closed the pipe (`corniche info … | head`), which is no failure.
     pub(crate) fn is_closed_pipe(&self) -> bool {
         self.error
             .downcast_ref::<io::Error>()

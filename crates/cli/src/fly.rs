@@ -37,7 +37,7 @@ use corniche_viewer::{
 };
 use corniche_window::{Watched, watch};
 
-/// A text of keyframes is no longer than this: a hundred thousand of them take less.
+/// Longest file of keyframes that is read; a hundred thousand keyframes are shorter.
 const MAX_PATH_BYTES: u64 = 32 << 20;
 /// Tiles being decoded at once.
 const TILES_IN_FLIGHT: usize = 8;
@@ -119,7 +119,7 @@ struct Drawn {
     adapter: String,
 }
 
-/// Whoever looks on while frames are drawn.
+/// A window that shows frames while they are drawn.
 struct Watcher<'a> {
     window: SyncSender<RgbaImage>,
     is_gone: &'a AtomicBool,
@@ -127,23 +127,23 @@ struct Watcher<'a> {
 
 impl Watcher<'_> {
     fn show(&self, replay: &Replay<'_>) -> Result<(), Failure> {
-        // What a window that is gone does not take is not missed: the flight ends by `is_gone`.
+        // Sending fails only when the window is closed or lost; `is_gone` then ends the flight or lets it go on.
         let _ = self.window.send(replay.picture()?);
         Ok(())
     }
 }
 
 impl Plan<'_> {
-    /// Flies in a thread of its own while this one, the program's first, holds the window: most systems want it so. Without
-    /// a display there is no flight; a window that is lost on the way is missed, and no more.
+    /// Flies in a thread of its own, because on most systems a window must belong to the program's first thread, which is this
+    /// one. Without a display the flight fails; if the window is lost on the way, the flight goes on without it.
     fn fly_in_a_window(&self) -> Result<Drawn, Failure> {
-        // One picture ahead of the window: a flight is not faster than what is shown of it.
+        // The channel holds one picture, so the flight is at most one picture ahead of the window.
         let (window, pictures) = mpsc::sync_channel(1);
         let is_gone = AtomicBool::new(false);
         let watcher = Watcher { window, is_gone: &is_gone };
         let name = self.args.package.file_name().unwrap_or_default().to_string_lossy();
         thread::scope(|scope| {
-            // The watcher goes with the thread, and the window with the watcher.
+            // When the thread ends, the watcher is dropped, the channel closes, and with it the window.
             let worker = scope.spawn(move || self.fly(Some(&watcher)));
             let watched = watch(&name, self.args.drawing.size, pictures);
             let is_closed = match watched {
@@ -208,7 +208,7 @@ impl Plan<'_> {
             );
         }
         let mut run = MeasuredRun { lod, roads, frames: Vec::new() };
-        // It hides itself where nobody looks on.
+        // The bar hides itself if standard error is no terminal.
         let bar = progress::bar(run.name(), Some(options.frames.into()));
         while let Some(record) = replay.next_frame()? {
             let name = format!("{}-{}-{:05}.png", lod.word(), roads.word(), record.frame);
@@ -227,11 +227,11 @@ impl Plan<'_> {
     }
 }
 
-/// So many frames that they lie about `--step` apart, else `--frames`.
+/// The number of frames: `--frames`, or so many that they are about `--step` apart.
 fn frames(args: &FlyArgs, flight: &Flight) -> Result<u32, Failure> {
     match args.flight.step {
         None => Ok(args.flight.frames),
-        // A cast takes what is too many to the most, which the replay refuses.
+        // A number too large for u32 becomes the largest u32, which the replay refuses.
         Some(step_s) if step_s > 0.0 => {
             Ok(((flight.duration_s() / step_s).round() as u32).saturating_add(1))
         }
@@ -241,7 +241,7 @@ fn frames(args: &FlyArgs, flight: &Flight) -> Result<u32, Failure> {
     }
 }
 
-/// In the order given, without what was given before.
+/// The values in the order given, without repetitions.
 fn once_each<T: Copy + PartialEq>(given: &[T]) -> Vec<T> {
     given
         .iter()

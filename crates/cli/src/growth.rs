@@ -27,7 +27,7 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
             args.package.display()
         )));
     }
-    // The chart comes first: whoever reads the table may stop before its end.
+    // The chart is written first, because the reader of the table may close the pipe before its end.
     if let Some(path) = &args.svg {
         let output = Output::create(path, Existing::ReplaceLike(Kind::Svg), &[&args.package])?;
         let svg = chart::growth(manifest).map_err(|error| Failure::new(ExitCode::Failed, error))?;

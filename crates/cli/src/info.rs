@@ -152,7 +152,7 @@ fn factors([east, north]: [f64; 2]) -> String {
     format!("working metres are its coordinates times {east} (east) and {north} (north)")
 }
 
-/// How long lengths come out, along both axes.
+/// The scale along both axes, as text.
 fn scales(scale: &ScaleRecord) -> String {
     let along = |axis: usize, name: &str| {
         format!(
@@ -179,7 +179,7 @@ fn rounded(metres: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Foreign text for a terminal: its control characters must neither colour nor forge lines.
+/// Text from a file, made safe for a terminal: without control characters that could set colours or imitate other lines.
 fn plain(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }

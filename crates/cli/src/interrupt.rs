@@ -1,5 +1,5 @@
-//! Ctrl-C and the polite signals: the run stops at the next opportunity and cleans up. Where no opportunity comes, as in a
-//! read that never returns, or a second signal does, the program cleans up and ends all the same.
+//! Ctrl-C and other signals that ask a program to end. The run stops as soon as it asks, and cleans up. If it does not ask,
+//! because it waits in a read that never returns, or if a second signal comes, the program cleans up and ends at once.
 //!
 //! ```text
 //!   first signal ─► noted ─┬─ asked for within half a second: the run ends itself, in ten seconds at most
@@ -88,13 +88,13 @@ fn end() -> ! {
     std::process::exit(4);
 }
 
-/// A limit on the size of files (`ulimit -f`) is then a full disk: writing fails and is told, instead of a signal that ends
-/// the program without a word.
+/// Makes a limit on the size of files (`ulimit -f`) look like a full disk: writing fails with an error, instead of a signal
+/// that ends the program without a message.
 fn spare_from_file_limits() -> Result<(), Failure> {
     #[cfg(unix)]
     {
         use std::sync::Arc;
-        // Any handler will do: what matters is that the signal's own way, to kill, is not taken.
+        // The handler does nothing: it only replaces the default action, which is to end the program.
         let ignored = Arc::new(AtomicBool::new(false));
         signal_hook::flag::register(signal_hook::consts::SIGXFSZ, ignored)
             .map_err(|error| Failure::new(crate::exit::ExitCode::Failed, error))?;

@@ -18,7 +18,7 @@ use crate::{exit::ExitCode, failure::Failure, interrupt};
 pub(crate) enum Existing {
     Keep,
     Replace,
-    /// Replaces what is of the kind that is written, and keeps anything else: a slip of the hand must not cost a package
+    /// Replaces a file of the kind that is written, and keeps any other file, so that a typing error does not destroy a package
     /// or a raster.
     ReplaceLike(Kind),
 }
@@ -59,8 +59,8 @@ pub(crate) struct Output {
 }
 
 impl Output {
-    /// Begins a file that is none of `others`, which the command reads or writes itself. A place where no file can be
-    /// is the user's to mend, and told before any work is done.
+    /// Begins a file that is none of `others`, which the command reads or writes itself. An unusable place is reported here,
+    /// before any work is done.
     pub(crate) fn create(
         target: &Path,
         existing: Existing,

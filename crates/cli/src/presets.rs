@@ -11,7 +11,7 @@ use corniche_roads::FrcTable;
 
 use crate::failure::Failure;
 
-/// No settings file is as long; what is beyond is not read.
+/// Longest text that is read; settings files are far shorter.
 const MAX_FILE_BYTES: u64 = 2 << 20;
 
 /// A preset by its name, else a file by its path.

@@ -38,7 +38,7 @@ struct Running {
     bar: Option<ProgressBar>,
 }
 
-/// JSON lines come no closer than this.
+/// Least time between two JSON lines.
 const JSON_INTERVAL: Duration = Duration::from_millis(500);
 
 impl Progress {
@@ -56,7 +56,7 @@ impl Progress {
     }
 }
 
-/// A bar, or without a total a sign of life.
+/// A progress bar; a spinner if the total is unknown.
 pub(crate) fn bar(title: impl Into<Cow<'static, str>>, total: Option<u64>) -> ProgressBar {
     let bar = total.map_or_else(ProgressBar::new_spinner, ProgressBar::new);
     let template = if total.is_some() {
@@ -76,7 +76,7 @@ impl Running {
             "stage": format!("{:?}", self.stage).to_lowercase(), "state": state, "done": self.done,
             "total": self.total, "seconds": self.since.elapsed().as_secs_f64(),
         });
-        // Whoever watched may have gone; the work goes on.
+        // Standard error may be closed; the work goes on.
         let _ = writeln!(stderr(), "{line}");
     }
 }
@@ -132,7 +132,7 @@ impl Observer for Progress {
         interrupt::remove_at_end(folder);
     }
 
-    /// Warnings are told to whoever asked for silence too.
+    /// Warnings are printed with `--quiet`, too.
     fn warning(&self, text: &str) {
         let line = match self.manner {
             Manner::Json => json!({ "warning": text }).to_string(),

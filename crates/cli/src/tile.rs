@@ -1,4 +1,4 @@
-//! `corniche tile`: one decoded tile, through which outside tools check us.
+//! `corniche tile`: one decoded tile, for other tools to check packages with.
 
 use std::io::{self, BufWriter, Write as _};
 
@@ -51,7 +51,7 @@ fn to_text(payload: &TilePayload) -> String {
     table.to_text()
 }
 
-/// The schema is a promise to programs: keys are added, never changed.
+/// Programs rely on this schema: keys may be added, but not changed.
 fn to_json(
     package: &FilePackage,
     payload: &TilePayload,

@@ -35,7 +35,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
         written?;
         Ok(ExitCode::Done)
     } else {
-        // A broken promise is told by the exit code even where nobody reads on.
+        // The exit code reports a broken promise even if the output could not be written.
         Ok(ExitCode::Failed)
     }
 }

@@ -80,8 +80,8 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Checks where the trace is to be, as with any other file; it is begun when there is a window. Whoever reads along finds
-/// it there from the first line on, so it does not wait beside its place until it is complete.
+/// Checks the place of the trace as for any other file. The file is created when the window exists, and directly at its
+/// place, so that another program can read the trace while it is written.
 fn begin_trace(path: &Path, used: &[&Path]) -> Result<BeginTrace, Failure> {
     drop(Output::create(path, Existing::Replace, used)?);
     if path.symlink_metadata().is_ok() {

@@ -14,7 +14,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_dem::{Dem, GridPlan};
+use corniche_dem::{Dem, DemProjection, GridPlan};
 use corniche_tileset::Manifest;
 
 use crate::{
@@ -27,11 +27,11 @@ use crate::{
     stages::{deviations, mesh, package, samples, tiles},
 };
 
-/// Tolerances of the finest level that can be used. Beyond them, the root's or the height quantum is no number that a
-/// package can hold.
+/// Tolerances that the finest level can have. Outside this range a package cannot hold the root's tolerance or the height
+/// quantum.
 const MAX_ERRORS_M: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
-/// What a build came to.
+/// The result of a build.
 #[derive(Debug, Clone)]
 pub struct BuildSummary {
     /// The package's manifest.
@@ -71,7 +71,7 @@ pub fn build(
     let finished = work.path().join("package");
     let inputs = Inputs::find(&settings.dem, settings.osm.as_deref())?;
     let manifest = run(settings, &inputs, &finished, &storage, observer).map_err(|error| {
-        // What else is wrong may come of the change.
+        // A changed input may be the cause of any other error, so it is reported instead.
         let changed = match &error {
             BuildError::Interrupted => None,
             _ => inputs.check_unchanged().err(),
@@ -82,7 +82,7 @@ pub fn build(
     Ok(BuildSummary { manifest, package_bytes })
 }
 
-/// Fails when the package would replace what it is made from.
+/// Fails if the target is one of the inputs.
 fn refuse_inputs_as_target(settings: &BuildSettings) -> Result<(), BuildError> {
     let Ok(target) = fs::canonicalize(&settings.output) else { return Ok(()) };
     for input in settings.dem.iter().chain(&settings.osm) {
@@ -93,7 +93,7 @@ fn refuse_inputs_as_target(settings: &BuildSettings) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// Tells which files are resampled onto the grid of the first one.
+/// Warns of files that are resampled onto the grid of the first one.
 fn warn_of_other_grids(plan: &GridPlan, observer: &dyn Observer) {
     if let Some([files, first]) = &plan.resampled_onto_first {
         observer.warning(&format!(
@@ -102,7 +102,7 @@ fn warn_of_other_grids(plan: &GridPlan, observer: &dyn Observer) {
     }
 }
 
-/// Tells of a latitude that was given and changes nothing.
+/// Warns if `--scale-latitude` was given and has no effect.
 fn warn_of_unused_latitude(terrain: &TerrainSettings, plan: &GridPlan, observer: &dyn Observer) {
     if let Some(latitude_deg) =
         terrain.plan.scale_latitude_deg.filter(|_| !plan.has_standard_latitude())
@@ -114,7 +114,7 @@ fn warn_of_unused_latitude(terrain: &TerrainSettings, plan: &GridPlan, observer:
     }
 }
 
-/// Looks into the elevation files and lays out the grid.
+/// Opens the elevation files and plans the grid.
 fn open(files: &[PathBuf], terrain: &TerrainSettings) -> Result<(Dem, GridPlan), BuildError> {
     let dem = Dem::open(files, &terrain.open)?;
     let plan = dem.plan(&terrain.plan)?;
@@ -122,6 +122,45 @@ fn open(files: &[PathBuf], terrain: &TerrainSettings) -> Result<(Dem, GridPlan),
         dem.refuse_oversampling(&plan)?;
     }
     Ok((dem, plan))
+}
+
+fn not_started(error: &dyn std::fmt::Display) -> BuildError {
+    BuildError::Start { what: error.to_string() }
+}
+
+/// The grid that roads are read for.
+struct RoadGrid<'a> {
+    plan: &'a GridPlan,
+    projection: &'a DemProjection,
+    levels: &'a Levels,
+    lengths: &'a TrueLengths<'a>,
+}
+
+/// Reads the extract; fails if none of its roads lies on the elevation data.
+fn read_roads<'a>(
+    osm: &Path,
+    settings: &BuildSettings,
+    grid: &RoadGrid<'_>,
+    storage: &'a dyn Storage,
+    observer: &dyn Observer,
+) -> Result<read::ReadRoads<'a>, BuildError> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(settings.resources.threads)
+        .build()
+        .map_err(|error| not_started(&error))?;
+    let input = read::RoadInput {
+        osm,
+        settings: &settings.roads,
+        projection: grid.projection,
+        levels: grid.levels,
+        lengths: grid.lengths,
+        data_bounds: pyramid::data_tile_bounds(grid.plan),
+        pool: &pool,
+        memory_bytes: settings.resources.memory_bytes / 4,
+    };
+    let roads = read::read(&input, storage, observer)?;
+    read::check_overlap(&roads, &input, grid.plan)?;
+    Ok(roads)
 }
 
 /// All stages in order; the package is written to `finished`.
@@ -134,9 +173,8 @@ fn run(
 ) -> Result<Manifest, BuildError> {
     let threads = settings.resources.threads;
     let terrain = &settings.terrain;
-    let start = |error: &dyn std::fmt::Display| BuildError::Start { what: error.to_string() };
     corniche_dem::limit_block_cache(settings.resources.memory_bytes / 4)
-        .map_err(|error| start(&error))?;
+        .map_err(|error| not_started(&error))?;
     let (dem, plan) = open(&settings.dem, terrain)?;
     warn_of_other_grids(&plan, observer);
     warn_of_unused_latitude(terrain, &plan, observer);
@@ -146,34 +184,18 @@ fn run(
     }
     let widest = most_scale(plan.scale.largest);
     let levels = Levels::new(plan.frame, max_error_m, &settings.roads, widest);
-    // Files too far apart for one package are found out here, before the long work.
+    // This fails for files that are too far apart for one package, before the long work begins.
     let coordinates = package::coordinates(&dem, &plan)?;
     let projection = dem.projection(&plan)?;
     let lengths = TrueLengths::new(plan.frame, &coordinates, &projection);
     let records = inputs.hash(observer)?;
 
-    // Roads come before the long work on heights: an extract that is no use is told at once.
+    // Roads come before the long work on heights, so that an unusable extract is reported at once.
     let data_tiles = pyramid::data_tiles(&plan);
+    let grid =
+        RoadGrid { plan: &plan, projection: &projection, levels: &levels, lengths: &lengths };
     let mut roads = match &settings.osm {
-        Some(osm) => {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .map_err(|error| start(&error))?;
-            let input = read::RoadInput {
-                osm,
-                settings: &settings.roads,
-                projection: &projection,
-                levels: &levels,
-                lengths: &lengths,
-                data_bounds: pyramid::data_tile_bounds(&plan),
-                pool: &pool,
-                memory_bytes: settings.resources.memory_bytes / 4,
-            };
-            let roads = read::read(&input, storage, observer)?;
-            read::check_overlap(&roads, &input, &plan)?;
-            Some(roads)
-        }
+        Some(osm) => Some(read_roads(osm, settings, &grid, storage, observer)?),
         None => None,
     };
     audit::check(&dem, terrain.height_range_m, threads, observer)?;
@@ -228,13 +250,13 @@ fn run(
     if let (Some(osm), 0) = (&settings.osm, manifest.counts.roads_kept) {
         return Err(BuildError::NoGround { osm: osm.clone() });
     }
-    // All has been read: what is recorded of the inputs is what the package is made of.
+    // All inputs have been read. If none has changed, the recorded hashes are those of the bytes that were used.
     inputs.check_unchanged()?;
     package::write(finished, &settings.output, &manifest, &tiles, storage, observer)?;
     Ok(manifest)
 }
 
-/// Moves the finished package to its place, its bytes safely on disk first.
+/// Writes the finished package's bytes to the disk, then moves the file to its place.
 fn place(finished: &Path, target: &Path, existing: Existing) -> Result<u64, BuildError> {
     let failed = |source| BuildError::Rename { path: target.to_path_buf(), source };
     let file = fs::File::options().write(true).open(finished).map_err(failed)?;
@@ -248,7 +270,7 @@ fn place(finished: &Path, target: &Path, existing: Existing) -> Result<u64, Buil
             Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
                 return Err(BuildError::Exists { path: target.to_path_buf() });
             }
-            // Not every file system has links; there the check at the start must do.
+            // Not every file system has hard links. Without them only the check at the start protects an existing file.
             Err(_) => fs::rename(finished, target).map_err(failed)?,
         },
     }

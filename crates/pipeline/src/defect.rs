@@ -1,4 +1,4 @@
-/// Bad input that was survived and counted, from whichever crate met it, and what was lost by it.
+/// Bad input that was skipped and counted, or what was lost by it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Defect {
     /// In the extract.
@@ -26,6 +26,9 @@ pub enum Loss {
 }
 
 impl Loss {
+    /// All of them, in the order of the manifest.
+    pub(crate) const ALL: [Self; 2] = [Self::OutsideData, Self::NoGround];
+
     /// Why, in words: the name under which it is counted.
     #[must_use]
     pub const fn reason(self) -> &'static str {

@@ -83,7 +83,7 @@ pub enum BuildError {
 }
 
 impl BuildError {
-    /// Whether the fault lies in what was given rather than in carrying it out.
+    /// Whether the cause is an unusable input or setting, rather than a failure while the build ran.
     #[must_use]
     pub fn is_unusable_input(&self) -> bool {
         matches!(

@@ -1,8 +1,8 @@
 //! The files that a run reads: what they are called, their content's hash, and whether they stayed as they were.
 //!
 //! GDAL reads a raster's blocks in any order, and an extract is read twice, so content is not hashed while it is used. It is
-//! hashed once, in one pass before, and what proves that the bytes used are those hashed is the file system: size, times
-//! and inode are noted before anything of a file is read and compared after the last of it was.
+//! hashed once, in a pass before. The file system then proves that the bytes used are the bytes hashed: size, times and
+//! inode are noted before a file is first read and compared after it was last read.
 //!
 //! ```text
 //!   stamp ─► open ─► hash ─► roads, heights … ─► stamp again ─► package
@@ -29,6 +29,8 @@ pub(crate) const DEM: &str = "dem";
 pub(crate) const DEM_PART: &str = "dem-part";
 /// The extract.
 pub(crate) const OSM: &str = "osm";
+/// Every kind of input.
+pub(crate) const KINDS: [&str; 3] = [DEM, DEM_PART, OSM];
 
 /// All files of a run, as they were before anything of them was read.
 #[derive(Debug)]
@@ -72,7 +74,7 @@ impl Inputs {
     pub(crate) fn find(dem: &[PathBuf], osm: Option<&Path>) -> Result<Self, InputError> {
         let mut files: Vec<Input> = Vec::new();
         for path in dem {
-            // First the stamp, then what the file says of its parts.
+            // The stamp is taken before GDAL reads the file for the names of its parts.
             let input = Input::new(DEM, path)?;
             let parts = raster_files(path).map_err(InputError::Dem)?;
             let is_own = |part: &PathBuf| match &input.content {
@@ -118,7 +120,7 @@ impl Inputs {
 impl Input {
     fn new(kind: &'static str, path: &Path) -> Result<Self, InputError> {
         let failed = |source| InputError::Read { path: path.to_path_buf(), source };
-        // To open a pipe is to wait for who writes into it, and it cannot be read twice.
+        // Opening a pipe waits for the program that writes into it, and a pipe cannot be read twice.
         if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
             return Err(InputError::Stream { path: path.to_path_buf() });
         }
@@ -191,9 +193,9 @@ fn named(path: &Path) -> Option<(Content, String)> {
         return Some((Content::File(path.to_path_buf()), short(path)?));
     }
     let text = path.to_str()?;
-    // By text: `Path::starts_with` compares whole names, and they go on, as in /vsizip/ and /vsicurl/.
+    // As text, because `Path::starts_with` compares whole components, and these are /vsizip, /vsicurl and so on.
     if text.starts_with("/vsi") {
-        // What follows a question mark may be a key to the server.
+        // The part after a question mark may hold a secret key for the server.
         let shown = short(Path::new(text.split('?').next().unwrap_or(text)))?;
         return Some((Content::Virtual(path.to_path_buf()), shown));
     }

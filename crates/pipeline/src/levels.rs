@@ -1,4 +1,4 @@
-//! What differs from level to level, worked out once.
+//! Tolerances, margins and shown classes of each level.
 
 use corniche_geom::Frame;
 use corniche_roads::{ClassFilter, FunctionalRoadClass};
@@ -6,10 +6,10 @@ use corniche_tileset::Manifest;
 
 use crate::{RoadSettings, settings_record};
 
-/// Half widths up to this many cells of a level can be drawn from its SV lines: at a screen-space error of two
-/// pixels a cell of the level is some sixteen pixels wide, so that is a hundred pixels and more.
+/// Roads with a half width of up to this many cells of a level can be drawn from the level's SV lines. At a screen-space
+/// error of two pixels a cell of the level is about sixteen pixels wide, so this is more than a hundred pixels.
 const MARGIN_CELLS: f64 = 8.0;
-/// And never less than this, in true metres: half the width of any road, on the finest of levels.
+/// The least margin, in true metres: half the width of the widest road, which matters on fine levels.
 const MIN_MARGIN_M: f64 = 40.0;
 
 /// Tolerances and margins of all levels.
@@ -45,7 +45,7 @@ impl Levels {
         }
     }
 
-    /// As a package records them; `None` where its record makes none.
+    /// The levels that a package records; `None` if its record is not valid.
     pub(crate) fn recorded(manifest: &Manifest) -> Option<Self> {
         let settings = &manifest.settings;
         Some(Self {
@@ -94,7 +94,7 @@ impl Levels {
         }
     }
 
-    /// Simplification tolerance. The finest level keeps every point: what comes in is what lies there.
+    /// Simplification tolerance. On the finest level it is 0: every point of the source is kept.
     pub(crate) fn simplify_tolerance_m(&self, level: u8) -> f64 {
         if level == self.frame.max_level() {
             0.0

@@ -1,4 +1,4 @@
-//! Order, parallelism, memory, defects and progress: the stages of Corniche put to work.
+//! Builds and verifies packages: the order of the stages, their threads, memory, defects and progress.
 //!
 //! This crate never parses arguments and never prints. It is the only one that spawns threads.
 

@@ -46,7 +46,7 @@ impl Stage {
     }
 }
 
-/// The one window through which the binaries look into a run, and the one way to stop it.
+/// What a run reports to its caller, and how the caller stops it.
 pub trait Observer: Sync {
     /// A stage begins; `total` is how much it will count up to, where that is known.
     fn begin(&self, stage: Stage, total: Option<u64>);
@@ -57,14 +57,14 @@ pub trait Observer: Sync {
     /// The stage is over.
     fn end(&self, stage: Stage);
 
-    /// Something is wrong with the input, was survived and is counted. In an order that the inputs alone determine.
+    /// A defect of the input was skipped and counted. The order of reports depends on the inputs alone.
     fn defect(&self, _: &Defect) {}
 
-    /// The run keeps what it needs on its way in this folder, and removes it when it ends. Whoever ends the program
-    /// without waiting for that removes it.
+    /// The run keeps intermediate results in this folder and removes it when it ends. A caller that ends the program
+    /// without waiting for the run removes the folder itself.
     fn work_folder(&self, _: &Path) {}
 
-    /// Something about the inputs that their owner should know, in words.
+    /// A warning about the inputs, as text for the user.
     fn warning(&self, _: &str) {}
 
     /// Whether to stop at the next opportunity; the run then fails with `Interrupted`.
@@ -73,7 +73,7 @@ pub trait Observer: Sync {
     }
 }
 
-/// Looks away: nothing is reported, nothing is cancelled.
+/// An observer that ignores all reports and never cancels.
 #[derive(Debug, Clone, Copy)]
 pub struct Silent;
 

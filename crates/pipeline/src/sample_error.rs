@@ -2,9 +2,9 @@
 
 use corniche_tileset::SampleErrorRecord;
 
-/// Distances are summed in whole parts of the height quantum: so many to one.
+/// Distances are summed in whole parts of the height quantum; this is the number of parts in a quantum.
 const PARTS_TO_A_QUANTUM: f64 = 256.0;
-/// Distances are binned by whole quanta up to so many of them; beyond, bins are a 4096th of themselves wide.
+/// Up to this many quanta, bins are one quantum wide; farther out, the width of a bin is a 4096th of the distance.
 const FINE_BINS: u64 = 1 << 12;
 /// Longest distance summed, in parts: its square times 2^60 samples fits 128 bits.
 const MOST_PARTS: f64 = (1_u64 << 33) as f64;
@@ -29,7 +29,7 @@ impl SampleSums {
         Self { quantum_m, on_tin: 0, off_tin: 0, max_m: 0.0, squares: 0, bins: Vec::new() }
     }
 
-    /// Takes in a sample: its distance to the TIN, `None` where there is no triangle.
+    /// Adds a sample by its distance to the TIN; `None` where there is no triangle.
     #[inline]
     pub(crate) fn add(&mut self, distance_m: Option<f64>) {
         let Some(distance_m) = distance_m else {
@@ -61,7 +61,7 @@ impl SampleSums {
         }
     }
 
-    /// What the package stores of them.
+    /// The figures that the package stores.
     pub(crate) fn record(&self) -> SampleErrorRecord {
         let part_m = self.quantum_m / PARTS_TO_A_QUANTUM;
         let mean = self.squares as f64 / self.on_tin.max(1) as f64;
@@ -92,7 +92,7 @@ impl SampleSums {
 
 /// The bin of a distance of so many whole quanta.
 fn bin_of(quanta: u64) -> usize {
-    // How often it is halved to be less than two times `FINE_BINS`.
+    // How many times the distance is halved until it is less than 2 · `FINE_BINS`.
     let halved = (quanta / FINE_BINS).checked_ilog2().unwrap_or(0);
     if quanta < FINE_BINS {
         quanta as usize

@@ -46,9 +46,9 @@ impl Span {
     }
 }
 
-/// Appends bytes and gives them back: all that the stages need of a place to keep things.
+/// Where stages keep intermediate results: bytes are appended and read back.
 ///
-/// Nothing is ever changed or removed during a run, so readers never wait for writers.
+/// Nothing is changed or removed during a run, so readers never wait for writers.
 pub trait Storage: Send + Sync {
     /// Keeps `bytes`.
     ///

@@ -81,7 +81,7 @@ pub(crate) fn in_order<S, R: Send, E: Send>(
         }
     };
     thread::scope(|scope| {
-        // However the writer leaves, workers that wait must go home: the scope waits for them.
+        // The scope waits for all workers, so those that wait for room must end, however the writer ends.
         let _guard = StopOnDrop { stop: &|| lock().stop = true, changed: &changed };
         for _ in 0..threads {
             scope.spawn(worker);

@@ -11,7 +11,7 @@ use crate::{
     values::{parse_cell, parse_memory, parse_range},
 };
 
-/// A settings file: what the command line can say, by section. What it leaves out is decided elsewhere.
+/// A settings file: the options of the command line, by section. Defaults of options that are left out are decided elsewhere.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Config {

@@ -14,7 +14,7 @@ const PRESETS: [(&str, &str); 5] = [
     ("here5", include_str!("../../../config/frc/here5.toml")),
 ];
 
-/// An FRC table as it is written down.
+/// An FRC table as TOML.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FrcFile {

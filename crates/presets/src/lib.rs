@@ -1,5 +1,5 @@
-//! What people give as text: options of a build (on the command line and in settings files) and FRC tables, checked; and the
-//! FRC tables that come with the program.
+//! Options of a build (on the command line and in settings files) and FRC tables, read from text and checked; and the FRC
+//! tables that come with the program.
 //!
 //! This crate never opens a file, never decides what a setting that is left out means, and never draws.
 

@@ -11,7 +11,7 @@ use super::{
     values::parse_size,
 };
 
-/// Whether movements run out softly.
+/// How movements of the camera end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Motion {
     /// They run out softly

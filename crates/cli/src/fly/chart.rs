@@ -4,7 +4,7 @@ use plotters::prelude::{RGBColor, SeriesLabelPosition};
 use super::measured_run::{MeasuredRun, gpu_ms};
 use crate::chart::{Axes, Axis, Curve, Marks, Ticks, draw};
 
-/// The first seven are told apart also by those who see no red or green (Okabe & Ito 2008, *Color Universal Design*).
+/// People with red-green colour blindness can distinguish the first seven (Okabe & Ito 2008, *Color Universal Design*).
 const COLORS: [RGBColor; 9] = [
     RGBColor(0, 0, 0),
     RGBColor(0, 114, 178),

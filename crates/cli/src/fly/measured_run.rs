@@ -16,7 +16,7 @@ impl MeasuredRun {
         format!("{}, roads {}", self.lod.word(), self.roads.word())
     }
 
-    /// What makes its figures or pictures less than they seem, if anything does.
+    /// A warning if figures or pictures show less than was asked for.
     pub(crate) fn doubt(&self) -> Option<String> {
         if self.frames.iter().all(|frame| frame.triangles == 0) {
             return Some(
@@ -33,8 +33,8 @@ impl MeasuredRun {
         })
     }
 
-    /// The frames that figures are taken of: all but the first, which waits for its tiles, and in which the driver makes
-    /// what it makes once.
+    /// The frames that count for figures: all but the first, which waits for its tiles and in which the driver compiles its
+    /// programs.
     pub(crate) fn counted(&self) -> &[FrameRecord] {
         self.frames.get(1..).unwrap_or_default()
     }

@@ -25,7 +25,7 @@ pub(crate) struct Outputs {
 }
 
 impl Outputs {
-    /// Begins what is asked for; none of it is what the command reads, and no two are one.
+    /// Begins the files that are asked for. None of them may be an input of the command, and no two may be the same.
     pub(crate) fn create(args: &FlyArgs) -> Result<Self, Failure> {
         let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
         let mut used: Vec<&Path> = vec![&args.package];
@@ -48,8 +48,8 @@ impl Outputs {
     /// Writes everything, the flight in working metres; and then puts everything in its place, the list last: where
     /// it stands, all else stands too.
     ///
-    /// What can still go wrong is a place that has been taken or closed to us since the flight began; then what took its
-    /// place before stays, and the list is missing.
+    /// This can fail if one of the places was taken or became unwritable after the flight began. Files put in place before
+    /// that stay, and the list is missing.
     pub(crate) fn finish(
         self,
         flight: &Flight,

@@ -1,4 +1,4 @@
-//! Looks at every sample of the DEM, before anything is made of it.
+//! Looks at every sample of the DEM before any of them is used.
 
 use corniche_dem::{Audit, Dem, SURFACE_RANGE_M};
 

@@ -1,4 +1,4 @@
-//! What a file system says of a file, by which a change of its content is seen.
+//! Size, times and identity of a file, by which a change of its content is noticed.
 
 use std::{
     fs::{self, Metadata},
@@ -10,7 +10,7 @@ use std::{
 
 use corniche_dem::VirtualFile;
 
-/// Times of files are no finer than this on any common file system but FAT: two writes within it may carry one time.
+/// Common file systems other than FAT note times at least this finely. Two writes within this time may carry the same time.
 const CLOCK: Duration = Duration::from_millis(20);
 
 /// What is noted of a file before it is read.
@@ -22,7 +22,8 @@ pub(crate) enum Stamp {
     Remote(PathBuf, u64),
 }
 
-/// Content cannot change without one of these, be it written over, exchanged, or exchanged and given its old time.
+/// The content of a file cannot change without a change of one of these values: neither by writing, nor by exchanging the
+/// file, nor by exchanging it and setting its old time.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct FileState {
     size: u64,
@@ -80,7 +81,7 @@ impl FileState {
 /// The state of a file, once enough time has passed since its last change for the next one to carry another time.
 fn settled(path: &Path) -> io::Result<FileState> {
     let mut found = fs::metadata(path)?;
-    // A file that is being written all the time never settles; then its next change shows.
+    // A file that is written continuously never settles. Its next change is then noticed by its time.
     for _ in 0..3 {
         let age = found.modified().ok().and_then(|time| time.elapsed().ok());
         if age.is_none_or(|age| age >= CLOCK) {
@@ -95,7 +96,7 @@ fn settled(path: &Path) -> io::Result<FileState> {
 /// The file on disk in which a virtual one lies: `/vsizip//data/a.zip/inner.hgt`, `/vsisubfile/7_100,/data/a`,
 /// `/vsizip/{/data/a}/inner.hgt`.
 ///
-/// `None` of a file that is elsewhere: what its name has in common with a local one says nothing.
+/// `None` for a file on a server, even if a part of its name is the path of a local file.
 fn container(name: &str) -> Option<PathBuf> {
     const LOCAL: [&str; 7] =
         ["vsizip", "vsigzip", "vsitar", "vsi7z", "vsirar", "vsisubfile", "vsisparse"];

@@ -1,4 +1,4 @@
-//! Roads in numbers, as the manifest has them.
+//! Counts and lengths of roads for the manifest.
 
 use corniche_tileset::{Counts, SampleCounts};
 

@@ -33,7 +33,7 @@ pub(crate) struct RoadFate {
     pub(crate) void_um: u64,
 }
 
-/// What all roads came to that were laid.
+/// Sums over all roads that were laid.
 pub(crate) struct LaidSums {
     /// By level and class.
     pub(crate) classes: BTreeMap<(u8, u8), ClassSums>,
@@ -42,7 +42,7 @@ pub(crate) struct LaidSums {
 }
 
 impl LaidSums {
-    /// Before the first tile, for so many roads.
+    /// Empty sums for `count` roads.
     pub(crate) fn of_roads(count: usize) -> Self {
         Self { classes: BTreeMap::new(), fates: vec![RoadFate::default(); count] }
     }
@@ -61,7 +61,7 @@ impl LaidSums {
 pub(crate) struct TileToLayOn<'a> {
     pub(crate) id: TileId,
     pub(crate) surface: &'a Surface,
-    /// What of its borders is the tile's.
+    /// Which of its borders belong to the tile.
     pub(crate) owned: OwnedBorders,
 }
 
@@ -112,7 +112,7 @@ impl Laid {
         sums.simplified_vertices += points_of_tile(&simplified, id, levels);
         let parts = self.parts.entry(road.way_id).or_default();
         let mut laid = 0;
-        // There the line is the source line: nothing is simplified.
+        // On the finest level the line is the source line, not simplified.
         let is_finest = id.z() == frame.max_level();
         let segments_um = if is_finest { lengths.segments_um(&simplified) } else { Vec::new() };
         for part in corniche_drape::clip_parts(&simplified, &bounds, owned) {

@@ -5,7 +5,7 @@ use corniche_geom::{
     CoordinateTable, Frame, LatticeBounds, LatticePoint, Polyline, Projection, wgs84,
 };
 
-/// A metre.
+/// Micrometres in a metre.
 pub(crate) const UM: f64 = 1e6;
 
 /// Tells how long roads truly are: each segment has one length, by the ellipsoid's radii of curvature at its middle, and
@@ -35,7 +35,7 @@ impl<'a> TrueLengths<'a> {
             .zip(line.points().windows(2))
             .map(|(pair_deg, pair)| {
                 let true_m = wgs84::short_distance_m(pair_deg[0], pair_deg[1]);
-                // Far outside the CRS's use there is no way back to degrees; working metres must do.
+                // Far outside the area of the CRS a position may have no longitude and latitude; then the length in working metres is taken.
                 let plain_m = pair[0].distance_steps(pair[1]) * self.frame.lattice_step_m();
                 ((if true_m.is_finite() { true_m } else { plain_m }) * UM).round() as u64
             })

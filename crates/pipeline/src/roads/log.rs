@@ -90,16 +90,10 @@ fn from_bytes(bytes: &[u8]) -> Option<Road> {
         .collect();
     let [name, reference, surface] = texts;
     let attributes = RoadAttributes {
-        form: [Form::Ordinary, Form::DualCarriageway, Form::Link, Form::Roundabout]
-            .into_iter()
-            .find(|&known| known as u8 == form)?,
-        structure: [Structure::Ground, Structure::Bridge, Structure::Tunnel]
-            .into_iter()
-            .find(|&known| known as u8 == structure)?,
+        form: *Form::ALL.get(usize::from(form))?,
+        structure: *Structure::ALL.get(usize::from(structure))?,
         layer: layer.cast_signed(),
-        oneway: [Oneway::No, Oneway::Forward, Oneway::Backward]
-            .into_iter()
-            .find(|&known| known as u8 == oneway)?,
+        oneway: *Oneway::ALL.get(usize::from(oneway))?,
         name,
         reference,
         surface,

@@ -33,3 +33,16 @@ fn roads_come_back_as_they_were() {
     let bytes = to_bytes(&road(1));
     assert!((0..bytes.len()).all(|cut| from_bytes(&bytes[..cut]).is_none()));
 }
+
+#[test]
+fn every_attribute_comes_back() {
+    for &form in Form::ALL {
+        for &structure in Structure::ALL {
+            for &oneway in Oneway::ALL {
+                let mut road = road(1);
+                road.attributes = RoadAttributes { form, structure, oneway, ..road.attributes };
+                assert_eq!(from_bytes(&to_bytes(&road)), Some(road));
+            }
+        }
+    }
+}

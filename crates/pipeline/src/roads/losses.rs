@@ -1,4 +1,4 @@
-//! What became of every road at the finest level, and which were lost and why.
+//! Which roads were kept at the finest level, which were lost, and why.
 
 use corniche_tileset::RoadLoss;
 
@@ -17,7 +17,7 @@ struct Lengths {
     void_um: u64,
 }
 
-/// A cut moves a point by less than a lattice step, which is a millimetre; a length no greater than two is none.
+/// A cut moves a point by less than a lattice step, which is at most a millimetre, so lengths up to 2 mm count as 0.
 fn is_some(length_um: u64) -> bool {
     length_um > 2_000
 }
@@ -28,10 +28,13 @@ impl Lengths {
     }
 
     fn losses(&self) -> [(Loss, u64); 2] {
-        [(Loss::OutsideData, self.outside_um), (Loss::NoGround, self.void_um)]
+        Loss::ALL.map(|loss| match loss {
+            Loss::OutsideData => (loss, self.outside_um),
+            Loss::NoGround => (loss, self.void_um),
+        })
     }
 
-    /// What a road that is lost altogether is counted under: the greater part.
+    /// The reason under which a completely lost road is counted: that of the longer lost part.
     fn reason(&self) -> Loss {
         if self.void_um >= self.outside_um { Loss::NoGround } else { Loss::OutsideData }
     }
@@ -53,7 +56,7 @@ pub(crate) struct Sums {
 /// Roads kept and lost, in count and length.
 pub(crate) fn sums(roads: &ReadRoads<'_>, laid: &LaidSums) -> Sums {
     let mut sums = Sums { roads_kept: 0, roads_kept_um: 0, lost: Vec::new() };
-    let mut losses = [(Loss::OutsideData, 0, 0), (Loss::NoGround, 0, 0)];
+    let mut losses = Loss::ALL.map(|loss| (loss, 0, 0));
     for road in lengths(roads, laid) {
         sums.roads_kept_um += road.kept_um;
         sums.roads_kept += u64::from(road.is_kept());
@@ -73,7 +76,7 @@ pub(crate) fn sums(roads: &ReadRoads<'_>, laid: &LaidSums) -> Sums {
     sums
 }
 
-/// Tells of every road that was lost, or lost in part, in the order in which roads were read.
+/// Reports every road that was lost completely or in part, in the order in which roads were read.
 pub(crate) fn report(
     roads: &ReadRoads<'_>,
     laid: &LaidSums,
@@ -81,7 +84,7 @@ pub(crate) fn report(
 ) -> Result<(), BuildError> {
     for (ordinal, road) in (0..).zip(lengths(roads, laid)) {
         for (loss, lost_um) in road.losses() {
-            // A road of no length to speak of is lost as a whole, or not at all.
+            // A road shorter than 2 mm has no length to lose, but it can be lost as a whole.
             let is_counted = !road.is_kept() && road.reason() == loss;
             if is_counted || is_some(lost_um) {
                 observer.defect(&Defect::LostRoad {

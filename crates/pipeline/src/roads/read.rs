@@ -1,4 +1,4 @@
-//! From the extract to roads by tile and level, and what each of them is to weigh.
+//! Reads the extract: roads in storage, their true lengths, and the tiles that each of them meets.
 
 use std::{
     cell::RefCell,
@@ -22,7 +22,7 @@ use crate::{BuildError, Defect, Observer, RoadSettings, Stage, Storage, levels::
 /// Tiles whose lists of roads are in memory at once.
 pub(crate) const TILES_AT_ONCE: usize = 1024;
 
-/// All that later stages need to know of the roads.
+/// What later stages need of the roads.
 pub(crate) struct ReadRoads<'a> {
     pub(crate) log: RoadLog<'a>,
     pub(crate) by_tile: RoadTileCursor<'a>,
@@ -85,7 +85,7 @@ pub(crate) fn read<'a>(
         let mut positions = positions_deg.to_vec();
         match projection.working_from_wgs84(&mut positions) {
             Ok(()) => positions.into_iter().map(|position_m| frame.snap(position_m)).collect(),
-            // Not these points' fault: the run fails for it in the end.
+            // The points are not at fault: the run fails with this error after reading.
             Err(error) => {
                 *unprojected.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
                 vec![None; positions_deg.len()]

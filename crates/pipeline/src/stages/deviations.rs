@@ -13,7 +13,7 @@ use crate::{
 
 /// What a tile stores of its errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct TileError {
+pub(crate) struct TileDeviation {
     pub(crate) geometric_error_m: f64,
     /// Largest true error of the tile itself and of its children, each by its own TIN.
     pub(crate) true_error_m: f64,
@@ -22,15 +22,15 @@ pub(crate) struct TileError {
 }
 
 /// The errors of all tiles.
-pub(crate) struct TileErrors {
-    by_tile: BTreeMap<TileId, TileError>,
+pub(crate) struct TileDeviations {
+    by_tile: BTreeMap<TileId, TileDeviation>,
     /// Per level, nodes with data under tiles without ground.
     under_absent: BTreeMap<u8, u64>,
     /// Per level, root first: nodes that are no filled voids.
     at_nodes: Vec<SampleSums>,
 }
 
-impl TileErrors {
+impl TileDeviations {
     /// Nodes with data that no tile of the level covers because there is no tile above them.
     pub(crate) fn under_absent(&self, level: u8) -> u64 {
         self.under_absent.get(&level).copied().unwrap_or_default()
@@ -44,8 +44,8 @@ impl TileErrors {
 
     /// The error of a tile that has a mesh. A tile of which no node was seen has none: its ground covers nothing
     /// that could be off.
-    pub(crate) fn of(&self, id: TileId) -> TileError {
-        self.by_tile.get(&id).copied().unwrap_or(TileError {
+    pub(crate) fn of(&self, id: TileId) -> TileDeviation {
+        self.by_tile.get(&id).copied().unwrap_or(TileDeviation {
             geometric_error_m: 0.0,
             true_error_m: 0.0,
             height_range_m: [0.0, 0.0],
@@ -85,7 +85,7 @@ pub(crate) fn measure(
     threads: usize,
     storage: &dyn Storage,
     observer: &dyn Observer,
-) -> Result<TileErrors, BuildError> {
+) -> Result<TileDeviations, BuildError> {
     let max_level = levels.frame().max_level();
     // All finest tiles with any height, those without ground too: a coarser level may cover their nodes.
     let finest = pyramid.tiles(max_level);
@@ -136,7 +136,7 @@ pub(crate) fn measure(
         },
     )?;
     observer.end(Stage::Errors);
-    Ok(TileErrors { by_tile: stored(&seen, meshes), under_absent, at_nodes })
+    Ok(TileDeviations { by_tile: stored(&seen, meshes), under_absent, at_nodes })
 }
 
 /// The work on one subtree.
@@ -234,8 +234,8 @@ impl Subtree<'_> {
 ///
 /// A tile may lack ground where its children have some (an island too small for a cell of its level), so what is
 /// beneath counts for the nearest tile above that exists.
-fn stored(seen: &BTreeMap<TileId, Seen>, meshes: &Meshes) -> BTreeMap<TileId, TileError> {
-    let mut by_tile: BTreeMap<TileId, TileError> = BTreeMap::new();
+fn stored(seen: &BTreeMap<TileId, Seen>, meshes: &Meshes) -> BTreeMap<TileId, TileDeviation> {
+    let mut by_tile: BTreeMap<TileId, TileDeviation> = BTreeMap::new();
     let mut beneath_m: BTreeMap<TileId, f64> = BTreeMap::new();
     // Ids sort by level first, so backwards is children before parents.
     for &id in meshes.keys().rev() {
@@ -257,7 +257,7 @@ fn stored(seen: &BTreeMap<TileId, Seen>, meshes: &Meshes) -> BTreeMap<TileId, Ti
         let [low, high] = own.range_m.unwrap_or([0.0, 0.0]);
         by_tile.insert(
             id,
-            TileError {
+            TileDeviation {
                 geometric_error_m,
                 true_error_m,
                 height_range_m: [f64::from(low), f64::from(high)],

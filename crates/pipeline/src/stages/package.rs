@@ -9,7 +9,7 @@ use corniche_tileset::{
     SampleCounts, ScaleRecord, VerticalRecord, Writer,
 };
 
-use super::{deviations::TileErrors, tiles::Tiles};
+use super::{deviations::TileDeviations, tiles::Tiles};
 use crate::{
     BuildError, BuildSettings, Observer, Stage, Storage,
     levels::Levels,
@@ -36,7 +36,7 @@ pub(crate) struct Outcome<'a> {
     pub(crate) range_m: [f32; 2],
     pub(crate) roads: Option<&'a ReadRoads<'a>>,
     pub(crate) tiles: &'a Tiles,
-    pub(crate) errors: &'a TileErrors,
+    pub(crate) errors: &'a TileDeviations,
     /// Per level, root first.
     pub(crate) sample_errors: &'a [SampleSums],
 }

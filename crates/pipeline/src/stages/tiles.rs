@@ -11,7 +11,7 @@ use corniche_tileset::{
 use corniche_tin::{Placement, Surface};
 
 use super::{
-    deviations::TileErrors,
+    deviations::TileDeviations,
     mesh::{self, Meshes},
 };
 use crate::{
@@ -57,7 +57,7 @@ pub(crate) struct TileInput<'a> {
     pub(crate) levels: &'a Levels,
     pub(crate) lengths: &'a TrueLengths<'a>,
     pub(crate) meshes: &'a Meshes,
-    pub(crate) errors: &'a TileErrors,
+    pub(crate) errors: &'a TileDeviations,
     pub(crate) pyramid: &'a Pyramid<'a>,
     /// The finest tiles on which the data's rectangle lies.
     pub(crate) data_tiles: &'a [TileId],

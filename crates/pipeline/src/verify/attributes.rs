@@ -1,4 +1,4 @@
-//! What tiles say of ways: one class and one set of attributes, the same wherever the way is.
+//! Each way has one class and one set of attributes, the same in every tile.
 
 use std::{
     collections::{BTreeMap, BTreeSet},

@@ -18,7 +18,7 @@ pub(crate) fn verify(
     let compared = compare_all(package, settings, &inputs, report, observer);
     match &compared {
         Err(VerifyError::Interrupted) => compared,
-        // What else is wrong may come of a change.
+        // A changed input may be the cause of any other error, so it is reported instead.
         _ => inputs.check_unchanged().map_err(VerifyError::from).and(compared),
     }
 }

@@ -1,12 +1,9 @@
-//! What of the manifest follows from the rest of it: levels from the settings, and texts that are always the same.
+//! Parts of the manifest that follow from other parts: levels from the settings, and texts that are always the same.
 
 use corniche_tileset::Manifest;
 
 use super::checks::{CheckId, Findings};
 use crate::{Loss, inputs, levels::Levels, manifest_texts, settings_record};
-
-/// Kinds of inputs.
-const KINDS: [&str; 3] = [inputs::DEM, inputs::DEM_PART, inputs::OSM];
 
 pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     let hash = settings_record::sha256(&manifest.settings);
@@ -17,7 +14,7 @@ pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     texts(manifest, findings);
 }
 
-/// Tolerances are what the settings say: else every check that rests on them could be loosened.
+/// Tolerances follow from the settings. Otherwise a larger recorded tolerance would weaken every check that uses it.
 fn levels(manifest: &Manifest, findings: &mut Findings) {
     let Some(levels) = Levels::recorded(manifest) else {
         findings.look(CheckId::LevelRecords, false, || {
@@ -64,16 +61,16 @@ fn texts(manifest: &Manifest, findings: &mut Findings) {
         format!("unit is {:?}", manifest.vertical.unit)
     });
     for input in &manifest.inputs {
-        look(KINDS.contains(&input.kind.as_str()), &|| {
+        look(inputs::KINDS.contains(&input.kind.as_str()), &|| {
             format!("{:?} is an input of kind {:?}", input.name, input.kind)
         });
     }
-    let has_roads = manifest.inputs.iter().any(|input| input.kind == "osm");
+    let has_roads = manifest.inputs.iter().any(|input| input.kind == inputs::OSM);
     let credits = manifest.attribution.iter().any(|text| text == corniche_osm::ATTRIBUTION);
     look(credits || !has_roads, &|| {
         format!("no credit for the extract: {:?}", manifest.attribution)
     });
-    let reasons = [Loss::OutsideData.reason(), Loss::NoGround.reason()];
+    let reasons = Loss::ALL.map(Loss::reason);
     for loss in &manifest.counts.roads_lost {
         look(reasons.contains(&loss.reason.as_str()), &|| {
             format!("roads lost as {:?}", loss.reason)

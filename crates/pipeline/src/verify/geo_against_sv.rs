@@ -15,7 +15,7 @@ use super::{
 
 /// How far two lines that are one may lie apart, in lattice steps: each is rounded where it is cut.
 pub(crate) const SAME_LINE_STEPS: f64 = 2.0;
-/// Pieces shorter than this are no pieces.
+/// Shorter pieces are ignored.
 const LEAST_STEPS: f64 = 8.0;
 /// Ranges are widened by this part of the heights before they are rounded outwards (FORMAT.md, section 8) …
 const RANGE_PAD: f64 = 1e-6;

@@ -6,13 +6,13 @@ use corniche_tileset::Manifest;
 
 use super::checks::{CheckId, Findings};
 
-/// Positions of the coordinate table and from it are this exact.
+/// Accuracy of the coordinate table, at its samples and between them.
 const TABLE_M: f64 = 0.01;
-/// Metres to a degree of latitude, near enough for a tolerance.
+/// Metres in a degree of latitude, exact enough for a tolerance.
 const METRES_PER_DEGREE: f64 = 111_320.0;
 /// Positions along each side at which rectangles and scales are looked at.
 const ALONG: usize = 33;
-/// Data that reach so far around the Earth hold a pole.
+/// Data over more than this range of longitude are taken to contain a pole.
 const ALL_AROUND_DEG: f64 = 350.0;
 /// Rounding of a scale measured over a kilometre.
 const SCALE_ROUNDING: f64 = 1e-6;
@@ -67,7 +67,7 @@ const POLAR_DEG: f64 = 89.0;
 /// The largest scale that a package can record.
 const LARGEST_SCALE: f64 = 1000.0;
 
-/// The scales that are told lie among those over the data: `scales` at the positions of [`grid`].
+/// Checks that the recorded scales lie within those over the data; `scales` are at the positions of [`grid`].
 fn check_scales(manifest: &Manifest, scales: &[Option<[f64; 2]>], findings: &mut Findings) {
     let scale = &manifest.scale;
     for axis in 0..2 {
@@ -76,7 +76,7 @@ fn check_scales(manifest: &Manifest, scales: &[Option<[f64; 2]>], findings: &mut
         let least = of_axis().fold(f64::INFINITY, f64::min) - slack;
         let most = of_axis().fold(f64::NEG_INFINITY, f64::max) + slack;
         let said = [scale.least[axis], scale.center[axis], scale.largest[axis]];
-        // Towards a pole the scale of degrees has no end; there the record says as much as the format takes.
+        // The scale of degrees grows without limit towards a pole; there the record holds the largest scale that the format allows.
         let degrees = manifest.wgs84_bounds;
         let is_at_pole = degrees.max_y >= POLAR_DEG || degrees.min_y <= -POLAR_DEG;
         let most = if is_at_pole { most.max(LARGEST_SCALE) } else { most };
@@ -115,7 +115,7 @@ fn between(scales: &[Option<[f64; 2]>], axis: usize) -> f64 {
 fn rectangles(manifest: &Manifest, projection: &dyn Projection, findings: &mut Findings) {
     let (data, degrees) = (manifest.data_bounds, manifest.wgs84_bounds);
     if degrees.width() >= ALL_AROUND_DEG {
-        // Data around a pole: their outline tells nothing of the latitudes inside.
+        // The outline of data around a pole says nothing about the latitudes inside.
         return;
     }
     let [east_m, north_m] = manifest.frame.cell().to_array();

@@ -1,4 +1,4 @@
-//! What the file says for PMTiles tools, beside what manifest and tiles make of it.
+//! The header and metadata for PMTiles tools follow from manifest and tiles.
 
 use corniche_tileset::{FilePackage, ToolRecord};
 
@@ -7,7 +7,7 @@ use super::{
     error::VerifyError,
 };
 
-/// Characters of a text that a finding shows.
+/// Number of characters of a text that a finding shows.
 const SHOWN: usize = 200;
 
 pub(crate) fn verify(package: &FilePackage, findings: &mut Findings) -> Result<(), VerifyError> {

@@ -1,4 +1,4 @@
-//! P6: nothing is dropped in silence; the manifest's sums add up.
+//! P6: the manifest's sums add up, so nothing was dropped without being counted.
 
 use corniche_tileset::Manifest;
 

@@ -1,4 +1,4 @@
-//! Whether a package keeps its promises: every tile, no sampling.
+//! Checks whether a package keeps its promises, by looking at every tile.
 
 mod attributes;
 mod checks;

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, rc::Rc};
 
 use corniche_geom::TileId;
-use corniche_tileset::{FilePackage, Sections, TilePayload, decode, payload_sizes};
+use corniche_tileset::{FilePackage, Sections, Terrain, TilePayload, decode, payload_sizes};
 
 use super::{
     attributes::{self, WayFacts},
@@ -53,7 +53,7 @@ pub(crate) struct Parent {
     ground: TriangleSoup,
 }
 
-/// The tiles above the one looked at last, as far as they were asked for: the next one has most of them, too.
+/// The loaded ancestors of the tile checked last. The next tile shares most of them.
 pub(crate) type Ancestors = BTreeMap<TileId, Option<Rc<Parent>>>;
 
 impl Parent {
@@ -99,15 +99,7 @@ pub(crate) fn look_at(
     let on_tin =
         roads_on_tin::verify_on_tin(&payload, &terrain.tin, &ground, manifest, &mut findings);
     (found.gaps, found.length_m) = (on_tin.gaps, on_tin.length_m);
-    let [low_m, high_m] = terrain.height_range_m;
-    // A vertex is a node beneath, rounded to the quantum.
-    let range_m = low_m - quantum_m / 2.0..=high_m + quantum_m / 2.0;
-    for vertex in terrain.tin.vertices() {
-        let height_m = f64::from(vertex.height_q) * quantum_m;
-        findings.look(CheckId::Vertices, range_m.contains(&height_m), || {
-            format!("tile {id} has a vertex at {height_m} m, its range is {low_m} to {high_m} m")
-        });
-    }
+    check_vertices(id, terrain, quantum_m, &mut findings);
     if let Some(levels) = levels {
         let margin_steps = levels.margin_steps(id.z());
         let view = geo_against_sv::View {
@@ -127,15 +119,8 @@ pub(crate) fn look_at(
         }
     }
     if id.z() == manifest.frame.max_level() {
-        let parents: Vec<Rc<Parent>> = (0..id.z())
-            .rev()
-            .filter_map(|level| ancestor(package, id, id.ancestor(level), above))
-            .collect();
         let own = Level { id, ground: &ground, error_m: terrain.geometric_error_m };
-        let levels: Vec<Level<'_>> = std::iter::once(own)
-            .chain(parents.iter().filter_map(|parent| parent.level()))
-            .collect();
-        tin_against_parent::verify(&manifest.frame, &levels, &mut findings);
+        check_ancestors(package, own, above, &mut findings);
     }
     found.kept = Some(Kept {
         vertices: terrain.tin.vertices().len() as u64,
@@ -147,7 +132,37 @@ pub(crate) fn look_at(
     Found { findings, ..found }
 }
 
-/// A tile above `id`; `None` where it has no ground or cannot be read, which is told where it is looked at itself.
+/// Looks at the heights of a TIN's vertices.
+fn check_vertices(id: TileId, terrain: &Terrain, quantum_m: f64, findings: &mut Findings) {
+    let [low_m, high_m] = terrain.height_range_m;
+    // The height of a vertex is that of a node, rounded to the quantum.
+    let range_m = low_m - quantum_m / 2.0..=high_m + quantum_m / 2.0;
+    for vertex in terrain.tin.vertices() {
+        let height_m = f64::from(vertex.height_q) * quantum_m;
+        findings.look(CheckId::Vertices, range_m.contains(&height_m), || {
+            format!("tile {id} has a vertex at {height_m} m, its range is {low_m} to {high_m} m")
+        });
+    }
+}
+
+/// Compares the TIN of a finest tile, and those above it, each with that of its parent.
+fn check_ancestors(
+    package: &FilePackage,
+    own: Level<'_>,
+    above: &mut Ancestors,
+    findings: &mut Findings,
+) {
+    let id = own.id;
+    let parents: Vec<Rc<Parent>> = (0..id.z())
+        .rev()
+        .filter_map(|level| ancestor(package, id, id.ancestor(level), above))
+        .collect();
+    let levels: Vec<Level<'_>> =
+        std::iter::once(own).chain(parents.iter().filter_map(|parent| parent.level())).collect();
+    tin_against_parent::verify(&package.manifest().frame, &levels, findings);
+}
+
+/// A tile above `id`. `None` if it has no ground, or cannot be read; the latter is reported when that tile itself is checked.
 fn ancestor(
     package: &FilePackage,
     id: TileId,

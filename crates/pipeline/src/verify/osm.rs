@@ -1,5 +1,5 @@
-//! The extract once more: its roads clipped and laid on the package's own ground, tile by tile, beside what the
-//! package has. What lies on the ground is checked without the extract, by geometry of its own.
+//! Reads the extract again, clips its roads and lays them on the package's own ground, and compares the result with the
+//! package, tile by tile. Whether roads lie on the ground is checked elsewhere, without the extract and with other geometry.
 
 use std::collections::BTreeMap;
 
@@ -37,7 +37,7 @@ pub(crate) fn verify(
     let compared = compare_all(package, osm, threads, &inputs, findings, observer);
     match &compared {
         Err(VerifyError::Interrupted) => compared,
-        // What else is wrong may come of a change.
+        // A changed input may be the cause of any other error, so it is reported instead.
         _ => inputs.check_unchanged().map_err(VerifyError::from).and(compared),
     }
 }

@@ -20,7 +20,7 @@ use crate::{
     },
 };
 
-/// What roads are laid again by.
+/// What is needed to lay roads again.
 pub(crate) struct Laying<'a> {
     pub(crate) package: &'a FilePackage,
     pub(crate) levels: &'a Levels,

@@ -1,4 +1,4 @@
-//! What `verify` answers.
+//! What verification found.
 
 use corniche_tileset::{Distribution, SampleErrorRecord};
 

@@ -1,4 +1,4 @@
-//! What `verify` is asked for.
+//! What to verify, and with which inputs.
 
 use std::path::PathBuf;
 

@@ -18,7 +18,7 @@ impl TilePlace {
         Self { corner: from, steps: [(to.u - from.u) as f64, (to.v - from.v) as f64] }
     }
 
-    /// Steps east and north of the tile's corner: small numbers, of which f64 knows all fractions that matter.
+    /// Steps east and north of the tile's corner. These numbers are small, so f64 holds their fractions exactly enough.
     pub(crate) fn local(&self, point: LatticePoint) -> [f64; 2] {
         [(point.u - self.corner.u) as f64, (point.v - self.corner.v) as f64]
     }

@@ -25,7 +25,7 @@ pub(crate) fn verify(
 ) -> Result<(VerifyReport, Findings), VerifyError> {
     let manifest = package.manifest();
     let frame = manifest.frame;
-    // Without it `levels.derived` is broken, and tells so.
+    // `None` if the record is not valid; then the check `levels.derived` is broken.
     let levels = Levels::recorded(manifest);
     let ids = package.tile_ids()?;
     observer.begin(Stage::Verify, Some(ids.len() as u64));

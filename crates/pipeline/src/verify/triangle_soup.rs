@@ -1,5 +1,5 @@
-//! A second opinion on TINs, written apart from the code that made them: plain f64 geometry in cells of the
-//! tile, a grid of buckets, no adjacency.
+//! Geometry of TINs for checking, independent of the code that made them: f64 in cells of the tile, a grid of buckets, no
+//! adjacency.
 
 use std::ops::RangeInclusive;
 
