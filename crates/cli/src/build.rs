@@ -119,7 +119,7 @@ fn terrain_settings(options: TerrainOptions) -> Result<TerrainSettings, Failure>
         options.height_range.filter(|[low, high]| !(low < high && (high - low).is_finite()))
     {
         return Err(Failure::unusable(format!(
-            "height-range of {low}, {high} has no two ends in order; write it like [-500, 9000]"
+            "height-range must be the lowest and the highest height, in this order, not {low}, {high}; write it like [-500, 9000]"
         )));
     }
     let cell = options.cell.map(check_cell).transpose();
@@ -179,7 +179,7 @@ pub(crate) fn threads(asked: Option<NonZeroUsize>) -> usize {
 fn check_nodata(values: &[f64]) -> Result<(), Failure> {
     if let Some(value) = values.iter().find(|value| !value.is_finite()) {
         return Err(Failure::unusable(format!(
-            "--nodata {value} is needless: what is no finite number is no height anyway; leave it out"
+            "--nodata {value} is not needed: a value that is not a finite number is never taken for a height; leave it out"
         )));
     }
     if values.len() > MAX_NODATA {

@@ -15,13 +15,13 @@ use crate::{
     progress::Progress,
 };
 
-/// The columns. `count` is how many points, pieces or crossings are meant; `detail` says more where there is more.
+/// The columns. `count` is the number of points, pieces or crossings concerned; `detail` holds further facts, if there are any.
 const HEADER: &str = "reason,object,id,count,length_m,detail\n";
 
 /// A list that is being written.
 pub(crate) struct DefectList {
     target: PathBuf,
-    /// The first failure ends the writing and is told in the end: the build goes on.
+    /// The first failure ends the writing and is reported at the end; the build goes on.
     file: Mutex<io::Result<Output>>,
 }
 

@@ -235,9 +235,9 @@ fn frames(args: &FlyArgs, flight: &Flight) -> Result<u32, Failure> {
         Some(step_s) if step_s > 0.0 => {
             Ok(((flight.duration_s() / step_s).round() as u32).saturating_add(1))
         }
-        Some(step_s) => Err(Failure::unusable(format!(
-            "--step of {step_s} is no time from one frame to the next; give seconds above 0"
-        ))),
+        Some(step_s) => {
+            Err(Failure::unusable(format!("--step must be more than 0 seconds, not {step_s}")))
+        }
     }
 }
 

@@ -28,15 +28,15 @@ pub enum BuildError {
     )]
     InputName { path: PathBuf },
     #[error(
-        "{path:?} changed while it was read, so that nobody knows which of its content the package would hold; nothing was \
-         written, run the same command again when it is left alone"
+        "{path:?} changed while it was read, so the package could mix old and new content; nothing was written; run the \
+         same command again when no program writes to the file"
     )]
     Changed { path: PathBuf },
     #[error(transparent)]
     Dem(#[from] corniche_dem::DemError),
     #[error(transparent)]
     Osm(#[from] corniche_osm::ReadOsmError),
-    #[error("{dem:?} hold no height at all where nodes lie: every node is void")]
+    #[error("{dem:?} have no height at any node: every node is void")]
     NoHeights { dem: Vec<PathBuf> },
     #[error(
         "{dem:?} hold heights at {nodes} nodes, but no cell has one at each of its four corners, so there is no \

@@ -22,7 +22,7 @@ pub(crate) struct Levels {
     least_class: FunctionalRoadClass,
     filter: ClassFilter,
     simplify_cells: f64,
-    /// The most working metres to a true metre, along an axis, over the data.
+    /// The largest number of working metres to a true metre, along an axis, over the data.
     most_scale: f64,
 }
 

@@ -48,17 +48,17 @@ pub struct TerrainOptions {
     /// Vertical CRS of rasters that name none
     #[arg(long, value_name = "EPSG:N")]
     pub dem_vertical_crs: Option<String>,
-    /// Vertical CRS that heights are wanted in, through PROJ and its geoid grids [default: the files']
+    /// Vertical CRS to convert heights to, with PROJ and its geoid grids [default: that of the files]
     #[arg(long, value_name = "EPSG:N")]
     pub vertical_crs: Option<String>,
     /// Added to every height, in metres [default: 0]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub vertical_shift: Option<f64>,
-    /// Value that means "no data" as the files store it, beside what they say themselves; may be given several times
+    /// Value that means "no data", as stored in the files, besides the one they declare; may be given several times
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     #[serde(deserialize_with = "one_or_many")]
     pub nodata: Vec<f64>,
-    /// Heights that samples may have, in metres, before --vertical-shift; what lies in it is believed, however odd
+    /// Heights that samples may have, in metres, before --vertical-shift; every value in this range counts as a height
     /// [default: -12000,9000, and no repeated value 1000 m beyond all others]
     #[arg(long, value_name = "LOW,HIGH", value_parser = parse_range, allow_hyphen_values = true)]
     pub height_range: Option<[f64; 2]>,
@@ -71,10 +71,10 @@ pub struct TerrainOptions {
     #[arg(long, value_name = "METRES|EAST,NORTH", value_parser = parse_cell, allow_hyphen_values = true)]
     #[serde(deserialize_with = "one_or_two")]
     pub cell: Option<[f64; 2]>,
-    /// Take one in K of the DEM's samples along both axes as the finest level, as they are
+    /// Take every K-th sample of the DEM along both axes as a node of the finest level, without interpolation
     #[arg(long, value_name = "K", conflicts_with = "cell")]
     pub cell_every: Option<u32>,
-    /// Build with more than 16 nodes to a DEM sample, too
+    /// Allow more than 16 nodes per DEM sample
     #[arg(long)]
     #[serde(skip)]
     pub force: bool,

@@ -14,17 +14,17 @@ pub(crate) struct BuildArgs {
     /// The package to write (.pmtiles)
     #[arg(short, long, value_name = "PACKAGE")]
     pub(crate) output: PathBuf,
-    /// Replace the package if it exists, once the new one is complete; of a link, the file it leads to
+    /// Replace the package if it exists, once the new one is complete; if it is a link, replace the file it leads to
     #[arg(short = 'O', long)]
     pub(crate) overwrite: bool,
     /// Also list every defect of the extract and every road lost, one per line (CSV); an existing list is kept
     /// unless -O is given
     #[arg(long, value_name = "CSV", requires = "osm")]
     pub(crate) defects: Option<PathBuf>,
-    /// Credit to show wherever the package is shown, such as a DEM's; may be given several times
+    /// Credit to show wherever the package is shown, such as that of a DEM; may be given several times
     #[arg(long, value_name = "TEXT")]
     pub(crate) attribution: Vec<String>,
-    /// Settings file; what is said on the command line goes before it
+    /// Settings file; options on the command line have precedence over it
     #[arg(long, value_name = "TOML")]
     pub(crate) config: Option<PathBuf>,
     #[command(flatten)]
@@ -40,10 +40,10 @@ pub(crate) struct BuildArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Progress")]
 pub(crate) struct ReportArgs {
-    /// Say nothing but errors and warnings
+    /// Print only errors and warnings
     #[arg(short, long, conflicts_with = "json_progress")]
     pub(crate) quiet: bool,
-    /// Progress as one JSON object a line on standard error
+    /// Print progress on standard error, as one JSON object per line
     #[arg(long)]
     pub(crate) json_progress: bool,
 }

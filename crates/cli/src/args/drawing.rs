@@ -52,7 +52,7 @@ pub(crate) enum Lod {
 }
 
 impl Lod {
-    /// As it is said on the command line.
+    /// Its name on the command line.
     pub(crate) fn word(self) -> &'static str {
         match self {
             Self::Full => "full",
@@ -95,7 +95,7 @@ pub(crate) struct FlightArgs {
     /// Flight to take: keyframes in TOML, as --save-path writes them [default: a pass along the data]
     #[arg(long, value_name = "TOML")]
     pub(crate) path: Option<PathBuf>,
-    /// Write down the flight taken
+    /// Save the flight in this file, as keyframes in TOML
     #[arg(long, value_name = "TOML")]
     pub(crate) save_path: Option<PathBuf>,
     /// How many frames, evenly spread over the flight
@@ -130,7 +130,7 @@ pub(crate) struct DrawingArgs {
     /// Memory for tiles on the graphics card, such as 512M or 4G
     #[arg(long, value_name = "BYTES", default_value = "512M", value_parser = parse_bytes)]
     pub(crate) gpu_memory: u64,
-    /// Handed to the graphics card in a frame at most, though always a whole tile
+    /// Most bytes to upload to the graphics card in one frame; at least one whole tile is uploaded
     #[arg(long, value_name = "BYTES", default_value = "4M", value_parser = parse_bytes)]
     pub(crate) upload_per_frame: u64,
     /// Load for where the camera will be in so many seconds; 0 loads nothing in advance

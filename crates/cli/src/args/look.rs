@@ -21,7 +21,7 @@ pub(crate) enum Roads {
 }
 
 impl Roads {
-    /// As it is said on the command line.
+    /// Its name on the command line.
     pub(crate) fn word(self) -> &'static str {
         match self {
             Self::Geo => "geo",
@@ -90,7 +90,7 @@ pub(crate) enum Outline {
 pub(crate) enum CapTest {
     /// By the distance in plan: exact far from the eye too
     Distance,
-    /// By the paper's formula, for comparison: loses its digits far from the eye
+    /// By the paper's formula, for comparison: loses precision far from the eye
     Paper,
 }
 
@@ -106,7 +106,7 @@ pub(crate) struct LookArgs {
     /// How widths depend on the distance from the eye
     #[arg(long, value_enum, default_value_t = WidthGrowth::Distance)]
     width_growth: WidthGrowth,
-    /// The edge of roads: the style's, none, or the one of a kernel of so many pixels
+    /// Outline of roads: the style's, none, or one from a kernel of 3 or 5 pixels
     #[arg(long, value_enum, default_value_t = Outline::Style)]
     outline: Outline,
     /// How shadow volumes find their round ends [default: distance]
@@ -123,7 +123,7 @@ impl LookArgs {
         let roads: Vec<Roads> = given.iter().map(|roads| roads.with_caps(self.caps)).collect();
         if self.cap_test.is_some() && !roads.contains(&Roads::Sv) {
             return Err(Failure::unusable(
-                "--cap-test is about shadow volumes with round caps; give it together with --roads sv",
+                "--cap-test has an effect only on shadow volumes with round caps; give it together with --roads sv",
             ));
         }
         Ok(roads)

@@ -23,7 +23,7 @@ fn checks() -> String {
 pub(crate) struct InfoArgs {
     /// The package
     pub(crate) package: PathBuf,
-    /// For programs
+    /// Print JSON, for programs
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -32,10 +32,10 @@ pub(crate) struct InfoArgs {
 pub(crate) struct GrowthArgs {
     /// The package
     pub(crate) package: PathBuf,
-    /// For programs: JSON
+    /// Print JSON, for programs
     #[arg(long, conflicts_with = "csv")]
     pub(crate) json: bool,
-    /// For programs: CSV
+    /// Print CSV, for programs
     #[arg(long)]
     pub(crate) csv: bool,
     /// Also draw the growth per level and class; an existing SVG is replaced
@@ -60,14 +60,14 @@ pub(crate) struct VerifyArgs {
     /// Worker threads [default: one per processor]
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,
-    /// For programs
+    /// Print JSON, for programs
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) report: ReportArgs,
 }
 
-/// Of what coordinates are.
+/// What the coordinates in a dump are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub(crate) enum Coordinates {
     /// Working metres: the CRS's coordinates times the package's `metres_per_unit`
@@ -84,10 +84,10 @@ pub(crate) struct TileArgs {
     /// The tile: level, column from the west, row from the north
     #[arg(value_name = "Z/X/Y")]
     pub(crate) id: TileId,
-    /// For programs: everything, in working metres
+    /// Print everything as JSON, for programs; in working metres
     #[arg(long)]
     pub(crate) json: bool,
-    /// Of what x and y in the JSON are: working metres, or coordinates of the package's CRS
+    /// What x and y in the JSON are: working metres, or coordinates of the package's CRS
     #[arg(long, value_enum, default_value_t, requires = "json")]
     pub(crate) coordinates: Coordinates,
 }

@@ -14,9 +14,9 @@ use super::{
 /// How movements of the camera end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Motion {
-    /// They run out softly
+    /// They slow down smoothly
     Soft,
-    /// They happen at once
+    /// They end at once
     Prompt,
 }
 
@@ -46,7 +46,7 @@ pub(crate) struct ViewArgs {
     /// Memory for tiles on the graphics card, such as 512M or 4G
     #[arg(long, value_name = "BYTES", default_value = "512M", value_parser = parse_bytes)]
     pub(crate) gpu_memory: u64,
-    /// Handed to the graphics card in a frame at most, though always a whole tile
+    /// Most bytes to upload to the graphics card in one frame; at least one whole tile is uploaded
     #[arg(long, value_name = "BYTES", default_value = "4M", value_parser = parse_bytes)]
     pub(crate) upload_per_frame: u64,
     /// How movements end

@@ -28,13 +28,13 @@ impl Pictures {
             return Err(unusable(&"the command uses that file itself; choose another name"));
         }
         if target.metadata().is_ok_and(|found| !found.is_dir() && !found.is_file()) {
-            return Err(unusable(&"it is a device or a pipe; name a new folder"));
+            return Err(unusable(&"it is a device or a pipe; give the name of a new folder"));
         }
         if target.symlink_metadata().is_ok() {
             return Err(Failure::new(
                 ExitCode::Exists,
                 anyhow::anyhow!(
-                    "{} exists already; name a new folder for the pictures",
+                    "{} exists already; give the name of a new folder for the pictures",
                     target.display()
                 ),
             ));

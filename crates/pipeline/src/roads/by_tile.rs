@@ -54,7 +54,7 @@ impl<'a> RoadTiles<'a> {
         Ok(())
     }
 
-    /// No more pairs come: gives them back in order.
+    /// Ends the gathering: the pairs can now be read back in order.
     pub(crate) fn finish(mut self) -> Result<RoadTileCursor<'a>, BuildError> {
         self.flush()?;
         let mut cursor =
@@ -103,7 +103,7 @@ impl RoadTileCursor<'_> {
         Ok(roads)
     }
 
-    /// The same of several tiles, in package order.
+    /// The same for several tiles, in package order.
     pub(crate) fn lists_of(&mut self, ids: &[TileId]) -> Result<Vec<Vec<u32>>, BuildError> {
         ids.iter().map(|&id| self.roads_of(id)).collect()
     }

@@ -8,12 +8,12 @@ use corniche_geom::{
 /// Micrometres in a metre.
 pub(crate) const UM: f64 = 1e6;
 
-/// Tells how long roads truly are: each segment has one length, by the ellipsoid's radii of curvature at its middle, and
-/// pieces of it have their shares of that, cut at whole micrometres along the segment. Pieces that meet share the cut, so
-/// whatever a segment is cut into adds up to it.
+/// True lengths of roads. Each segment has one length, by the ellipsoid's radii of curvature at its middle. Pieces of a
+/// segment have their shares of its length, cut at whole micrometres along it. Pieces that meet share the cut, so the
+/// lengths of all pieces of a segment add up to its length exactly.
 pub(crate) struct TrueLengths<'a> {
     frame: Frame,
-    /// Inside its bounds positions come from here; PROJ is asked for others.
+    /// Longitudes and latitudes inside its bounds come from this table, others from PROJ.
     table: &'a CoordinateTable,
     projection: &'a (dyn Projection + Sync),
 }
@@ -27,7 +27,7 @@ impl<'a> TrueLengths<'a> {
         Self { frame, table, projection }
     }
 
-    /// Of each segment of a line, micrometres.
+    /// The true length of each segment of a line, micrometres.
     pub(crate) fn segments_um(&self, line: &Polyline) -> Vec<u64> {
         let positions_deg = self.positions_deg(line.points());
         positions_deg
@@ -74,8 +74,8 @@ pub(crate) fn share([p, q]: [LatticePoint; 2], at: LatticePoint) -> f64 {
     along(at) as f64 / along(q) as f64
 }
 
-/// Of each segment of a part, where it begins and ends along the line's segment that it is of, micrometres. `segments_um`
-/// are the true lengths of the line's segments.
+/// Where each segment of a part begins and ends along the segment of the line that it belongs to, micrometres.
+/// `segments_um` are the true lengths of the line's segments.
 pub(crate) fn pieces_um<'a>(
     line: &'a Polyline,
     part: &'a ClippedPart,

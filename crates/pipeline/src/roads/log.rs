@@ -5,7 +5,7 @@ use corniche_roads::{Form, FunctionalRoadClass, Oneway, Road, RoadAttributes, St
 
 use crate::{BuildError, Storage, storage::Kind, storage::Span};
 
-/// All roads of a run, by ordinal: the order in which they were read, which is that of their way ids.
+/// All roads of a run, by ordinal. Ordinals follow the order in which roads were read, which is that of their way ids.
 pub(crate) struct RoadLog<'a> {
     storage: &'a dyn Storage,
     spans: Vec<Span>,

@@ -170,7 +170,7 @@ impl Subtree<'_> {
         let is_own_sample = |column: usize, row: usize| {
             column < own_columns && row < own_rows && is_sample[row * side + column]
         };
-        // Tiles of a subtree come row by row; of the finest levels only the present one is needed again.
+        // Tiles of a subtree come row by row. Of the finest levels, only the current tile is needed again.
         self.buckets.retain(|&id, _| {
             finest.ancestor(id.z()) == id || id.z() + SUBTREE_LEVELS <= finest.z()
         });
@@ -237,7 +237,7 @@ impl Subtree<'_> {
 fn stored(seen: &BTreeMap<TileId, Seen>, meshes: &Meshes) -> BTreeMap<TileId, TileDeviation> {
     let mut by_tile: BTreeMap<TileId, TileDeviation> = BTreeMap::new();
     let mut beneath_m: BTreeMap<TileId, f64> = BTreeMap::new();
-    // Ids sort by level first, so backwards is children before parents.
+    // Ids sort by level first, so in reverse order children come before their parents.
     for &id in meshes.keys().rev() {
         let own = seen.get(&id).copied().unwrap_or_default();
         let geometric_error_m =

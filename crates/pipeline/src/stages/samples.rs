@@ -11,7 +11,7 @@ use crate::{
     BuildError, Observer, Stage, Storage, levels::Levels, sample_error::SampleSums, workers,
 };
 
-/// Memory of a surface to a triangle: corners, adjacency, fans, vertices, buckets.
+/// Memory of a surface for each triangle: corners, adjacency, fans, vertices, buckets.
 const TRIANGLE_BYTES: u64 = 120;
 
 /// What samples are measured against.

@@ -26,7 +26,9 @@ pub enum VerifyError {
     Stream { path: PathBuf },
     #[error("the name of {path:?} is not UTF-8; rename the file")]
     InputName { path: PathBuf },
-    #[error("{path:?} changed while it was read; run the same command again when it is left alone")]
+    #[error(
+        "{path:?} changed while it was read; run the same command again when no program writes to the file"
+    )]
     Changed { path: PathBuf },
     #[error(
         "{path:?} is not the extract that the package was made from; give {expected:?}, the same file"
