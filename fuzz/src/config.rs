@@ -29,7 +29,7 @@ pub fn config(data: &[u8]) {
     }
     match parse_style(text) {
         Ok(style) => {
-            // What the shaders divide by.
+            // The shaders divide by these values.
             assert!(style.width_scaling.threshold_m >= 1.0 && style.haze_reach > 0.0);
             assert!(style.tint.is_sorted_by(|(a, _), (b, _)| a < b), "{:?}", style.tint);
             for road in style.roads {

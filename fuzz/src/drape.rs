@@ -9,7 +9,7 @@ use corniche_tin::{Placement, Surface, TinSpec, triangulate};
 /// Of a length: what rounding in f64 may add to it or take away.
 const ROUNDING: f64 = 1e-9;
 
-/// Lines of these bytes are laid on ground of these bytes: on the TIN, in order, nothing twice and nothing lost.
+/// Lines made from these bytes are laid on ground made from these bytes: on the TIN, in order, without repeated or lost parts.
 ///
 /// What a line should become is told by plain means: positions in f64, and the ground under a segment as the union
 /// of its parts in each triangle. Most coordinates are those of nodes or halves between them.
@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-9;
 /// # Panics
 /// When a promise is broken.
 pub fn drape(data: &[u8]) {
-    // Bytes that are too few end as zeros; what makes no ground or no line is no case.
+    // Missing bytes count as zeros. Bytes that make no ground or no line are not a case.
     let _ = case(&mut Unstructured::new(data));
 }
 

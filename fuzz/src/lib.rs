@@ -1,4 +1,4 @@
-//! What no input may break: one function per reader of foreign bytes, which panics when a promise is broken.
+//! One function per reader of foreign bytes. It panics if an input breaks a promise of the reader.
 //!
 //! ```text
 //!  corpus/NAME, regressions/NAME ──► tests/replay.rs ──┐

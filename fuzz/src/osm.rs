@@ -8,8 +8,8 @@ use corniche_testing::pbf::{header, raw};
 
 /// An extract of these bytes is read or refused, and every way with a `highway` tag is a road or counted under one reason.
 ///
-/// Bytes that begin with two zeros, as every extract does, are a file; others are one block without its packing, so that
-/// what is changed in them is not stopped by a size or a checksum that no longer fits.
+/// Bytes that begin with two zeros, as every extract does, are a file. Other bytes are one uncompressed block, so that a
+/// change in them is not refused because of a size or a checksum that no longer fits.
 ///
 /// # Panics
 /// When a promise is broken.
@@ -26,7 +26,7 @@ fn file_of(block: &[u8]) -> Vec<u8> {
 }
 
 thread_local! {
-    /// A pool of this thread alone: nothing waits for another.
+    /// A pool that uses this thread alone, so that no thread waits for another.
     static POOL: LazyCell<rayon::ThreadPool> = const {
         LazyCell::new(|| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();

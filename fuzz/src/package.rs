@@ -8,7 +8,7 @@ use corniche_tileset::{MemorySource, OpenError, Package, Sections};
 
 /// Tiles read of each package: enough to reach every kind of damage.
 const TILES: usize = 32;
-/// Metadata of a small package as they are stored, for directories and tiles to be looked at.
+/// Metadata of the small package as they are stored; with them, directories and tiles of any bytes can be read.
 static METADATA: LazyLock<Vec<u8>> =
     LazyLock::new(|| gzip(metadata(&manifest()).to_string().as_bytes()));
 

@@ -12,12 +12,12 @@ fn replay(target: &str, run: fn(&[u8])) {
     let mut inputs = 0;
     for kind in ["corpus", "regressions"] {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(kind).join(target);
-        // No folder: nothing was found yet. Git keeps no empty ones.
+        // The folder may be missing, because git keeps no empty folders.
         let Ok(entries) = fs::read_dir(&folder) else { continue };
         for entry in entries {
             let path = entry.unwrap().path();
             let data = fs::read(&path).unwrap();
-            // The name of the input that breaks a promise stands before the panic's own words.
+            // So the name of a failing input stands before the message of the panic.
             eprintln!("{}", path.display());
             run(&data);
             inputs += 1;
@@ -27,26 +27,26 @@ fn replay(target: &str, run: fn(&[u8])) {
 }
 
 #[test]
-fn packages() {
+fn every_package_is_opened_or_refused() {
     replay("package", corniche_fuzz::package);
 }
 
 #[test]
-fn payloads() {
+fn every_payload_is_decoded_or_refused() {
     replay("payload", corniche_fuzz::payload);
 }
 
 #[test]
-fn extracts() {
+fn every_extract_is_read_or_refused() {
     replay("osm", corniche_fuzz::osm);
 }
 
 #[test]
-fn settings_and_tables() {
+fn every_settings_file_table_and_style_is_read_or_refused() {
     replay("config", corniche_fuzz::config);
 }
 
 #[test]
-fn drapes() {
+fn every_line_is_laid_in_order_on_its_ground() {
     replay("drape", corniche_fuzz::drape);
 }

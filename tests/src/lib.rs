@@ -35,7 +35,7 @@ pub fn binary() -> PathBuf {
     binary
 }
 
-/// What a run of the binary came to.
+/// The result of a run of the binary.
 #[derive(Debug)]
 pub struct Ran {
     /// Exit code, −1 when a signal ended it.
@@ -68,7 +68,7 @@ pub fn corniche<I: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = I
     }
 }
 
-/// Waits for the end of a program whose standard output nobody asked for.
+/// Waits for the end of a program whose standard output is not read.
 ///
 /// # Panics
 /// When it does not end within a minute.

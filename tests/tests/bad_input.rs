@@ -1,10 +1,10 @@
-//! Whatever is wrong with the input: a clear message, the right exit code, and nothing at the target.
+//! Wrong inputs of every kind: each gives a clear message and the right exit code, and nothing is written to the target.
 
 use std::{fs, path::Path};
 
 use e2e::{Ran, build_pass, corniche, real_data, sample, text};
 
-/// Runs `corniche build` with `arguments` and expects `code`, nothing at the target and no litter beside it.
+/// Runs `corniche build` with `arguments` and expects `code`, no file at the target and no temporary files beside it.
 fn refuses(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) -> Ran {
     let target = folder.join("out.pmtiles");
     let mut all = vec!["build", "-o", text(&target)];
@@ -51,7 +51,7 @@ fn refuses_an_extract_that_lies_elsewhere() {
     let osm = sample("liechtenstein/liechtenstein-2013-08-03.osm.pbf");
     let options = ["--dem", text(&dem), "--osm", text(&osm)];
     let ran = refuses(folder.path(), &options, 2, &["do not overlap"]);
-    // It tells where both are, so that one sees which of them is the wrong one.
+    // The message gives the place of both, so that the reader sees which one is wrong.
     let rectangle = |before: &str| -> Vec<f64> {
         let (_, from) = ran.err.split_once(before).expect("it says so");
         let (inside, _) = from.split_once(']').expect("four numbers in brackets");
@@ -88,7 +88,7 @@ fn refuses_a_cell_far_finer_than_the_samples_unless_forced() {
     let grid = "ncols 20\nnrows 20\nxllcorner 500000\nyllcorner 5200000\ncellsize 10\n";
     fs::write(&dem, format!("{grid}{}", "1 2 3 4 5 6 7 8 9 8 7 6 5 4 3 2 1 0 1 2\n".repeat(20)))
         .unwrap();
-    // The raster's spacing is 10 m: 16 nodes to a sample are allowed, 20 are not.
+    // The raster's spacing is 10 m: 16 nodes per sample are allowed, 20 are not.
     let raster = ["--dem", text(&dem), "--dem-crs", "EPSG:32632"];
     let fine = [&raster[..], &["--cell", "0.5"]].concat();
     refuses(folder.path(), &fine, 2, &["20 nodes", "--cell", "--force"]);
@@ -110,7 +110,7 @@ fn a_terabyte_is_a_size() {
     assert_eq!(ran.code, 0, "{}", ran.err);
 }
 
-/// The name says what a picture is, and pictures are PNG.
+/// The ending of the name must be that of a PNG, the only format of pictures.
 #[test]
 fn refuses_a_picture_that_its_name_makes_something_else() {
     let folder = tempfile::tempdir().unwrap();
@@ -135,7 +135,7 @@ fn keeps_what_exists_unless_told_to_replace_it() {
     let ran = corniche(arguments);
     assert_eq!(ran.code, 3, "{}", ran.err);
     assert_eq!(fs::read(&target).unwrap(), b"precious");
-    // A run that fails leaves it as it was, -O or not.
+    // A run that fails leaves the existing file as it was, with -O or without.
     let ran = corniche(["build", "--dem", "/nowhere.tif", "-O", "-o", text(&target)]);
     assert_eq!(ran.code, 2, "{}", ran.err);
     assert_eq!(fs::read(&target).unwrap(), b"precious");
@@ -166,7 +166,7 @@ fn refuses_packages_that_are_none() {
     }
 }
 
-/// Interrupted in the middle: exit code 4, nothing at the target, no work folder.
+/// An interrupted build: exit code 4, no file at the target, no work folder.
 #[cfg(unix)]
 #[test]
 fn cleans_up_when_interrupted() {
@@ -178,7 +178,7 @@ fn cleans_up_when_interrupted() {
     let folder = tempfile::tempdir().unwrap();
     let target = folder.path().join("out.pmtiles");
     let (dem, osm) = (sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf"));
-    // Fine tolerance and one thread: long enough to be caught at work.
+    // With a fine tolerance and one thread the build takes long enough to be interrupted.
     let mut child = Command::new(e2e::binary())
         .args(["build", "--dem", text(&dem), "--osm", text(&osm), "-o", text(&target)])
         .args(["--max-error", "0.05", "--threads", "1", "--json-progress"])
@@ -188,7 +188,7 @@ fn cleans_up_when_interrupted() {
     let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
     let meshing = lines.any(|line| line.unwrap().contains("\"mesh\""));
     assert!(meshing, "the build ended before it meshed");
-    // The shell's own kill: a bare machine has no program of that name.
+    // The `kill` built into the shell: a minimal machine has no program of that name.
     let signal = format!("kill -INT {}", child.id());
     let killed = Command::new("sh").args(["-c", &signal]).status().unwrap();
     assert!(killed.success());

@@ -1,4 +1,4 @@
-//! Inputs that change while they are read: a package never holds the hash of other bytes than it is made of.
+//! Inputs that change while they are read: the hashes in a package are always those of the bytes it was made from.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 #![cfg(unix)]
@@ -19,7 +19,7 @@ use serde_json::Value;
 fn build_while(dem: &Path, osm: &Path, package: &Path, change: impl FnOnce()) -> (i32, String) {
     let mut child = Command::new(e2e::binary())
         .args(["build", "--dem", text(dem), "--osm", text(osm), "-o", text(package)])
-        // A fine tolerance: long enough to be met at work.
+        // With a fine tolerance the build takes long enough.
         .args(["--max-error", "2", "--threads", "2", "--json-progress"])
         .stderr(Stdio::piped())
         .spawn()
@@ -52,7 +52,7 @@ fn vrt(source: &str) -> String {
     )
 }
 
-/// Puts a copy of a file in its place, in which the last byte is another, with the time of the old one.
+/// Replaces a file by a copy with another last byte and the old modification time.
 fn exchange(path: &Path) {
     let time = fs::metadata(path).unwrap().modified().unwrap();
     let other = path.with_extension("other");

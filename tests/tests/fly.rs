@@ -1,4 +1,5 @@
-//! Flights over a package through the whole binary: twice the same, complete or not at all.
+//! Flights over a package through the whole binary: a repeated flight gives the same output, and the output is complete or
+//! absent.
 
 use std::{fs, path::Path};
 
@@ -79,7 +80,7 @@ fn full_resolution_culling_and_level_of_detail_draw_ever_less() {
         ["full", "culled", "lod"].iter().all(|lod| drawing.contains(&format!("{lod}, roads geo")))
     );
 
-    // What exists is kept, and said before anything is drawn; a package is never replaced by a list.
+    // An existing file is kept, and the message comes before anything is drawn; a list never replaces a package.
     let before = fs::read(&csv).unwrap();
     let again = fly(&package, &csv, &["--frames", "2"]).unwrap();
     assert_eq!((again.code, fs::read(&csv).unwrap() == before), (3, true), "{}", again.err);
@@ -171,12 +172,12 @@ fn a_flight_that_dives_to_the_ground_is_flown_at_any_exaggeration() {
     let place_m = value("x_m");
     let sea = flown(&(keyframe(0.0, place_m, 0.0) + &keyframe(1.0, place_m, 0.0)), &[]);
     assert_eq!(sea.code, 2, "{}", sea.err);
-    // The message tells how high the ground is, to a decimal.
+    // The message gives the height of the ground with one decimal.
     let words: Vec<&str> = sea.err.split(' ').collect();
     let too_low = words.windows(2).position(|pair| pair == ["m", "too"]).expect(&sea.err);
     let ground_m: f64 = words[too_low - 1].parse().expect(&sea.err);
 
-    // Down to a quarter of the clearance, at rest there, and up again.
+    // Down to a quarter of the clearance, a stop there, and up again.
     let lowest_m = ground_m + 0.5;
     let dive = keyframe(0.0, place_m, ground_m + 800.0)
         + &keyframe(1.0, place_m, lowest_m)
@@ -200,7 +201,7 @@ fn a_flight_that_dives_to_the_ground_is_flown_at_any_exaggeration() {
         image::open(png.join(format!("lod-geo-{frame:05}.png"))).unwrap().to_rgb8()
     });
     assert!(high != low);
-    // From two metres up, haze and near plane are near: the ground at one's feet fills the lower half.
+    // At a height of two metres the haze and the near plane are near: the ground just below fills the lower half.
     let feet = low.get_pixel(80, 115);
     assert!(feet.0.iter().any(|channel| *channel > 0), "{feet:?}");
 
@@ -212,7 +213,7 @@ fn a_flight_that_dives_to_the_ground_is_flown_at_any_exaggeration() {
     assert_eq!(ran.code, 0, "{}", ran.err);
 }
 
-/// The list is larger than any file may become here, the flight that is written down beside it is not.
+/// The list is larger than the limit on file sizes here; the recorded flight beside it is smaller.
 #[cfg(unix)]
 #[test]
 fn a_list_that_does_not_fit_on_the_disk_leaves_nothing_beside_it() {
@@ -223,7 +224,7 @@ fn a_list_that_does_not_fit_on_the_disk_leaves_nothing_beside_it() {
     build_pass(&package, &["--quiet"]);
     let out = folder.path().join("out");
     fs::create_dir(&out).unwrap();
-    // Blocks of 512 or of 1024 bytes, as the shell likes; ignored, the signal becomes an error of the write.
+    // The shell counts blocks of 512 or of 1024 bytes. If the signal is ignored, the write returns an error.
     let limited = "trap '' XFSZ; ulimit -f 32; exec \"$@\"";
     let ran = Command::new("sh")
         .args(["-c", limited, "sh"])
@@ -279,7 +280,7 @@ fn a_flight_is_interrupted_while_it_is_being_checked_too() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "only the package is there");
 }
 
-/// Interrupted in the middle: exit code 4, no list, no pictures, no chart, nothing beside them.
+/// An interrupted flight: exit code 4, and no list, pictures, chart or other file is left.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_flight_leaves_nothing() {
@@ -301,7 +302,7 @@ fn an_interrupted_flight_leaves_nothing() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // The first picture lies in a folder that is not yet the one asked for.
+    // Pictures are first written to a temporary folder.
     let is_under_way = || {
         let folders = fs::read_dir(&out)
             .unwrap()
@@ -318,7 +319,7 @@ fn an_interrupted_flight_leaves_nothing() {
         assert!(begun.elapsed() < Duration::from_mins(2), "no picture");
         std::thread::sleep(Duration::from_millis(20));
     }
-    // The shell's own kill: a bare machine has no program of that name.
+    // The `kill` built into the shell: a minimal machine has no program of that name.
     let signal = format!("kill -INT {}", child.id());
     assert!(Command::new("sh").args(["-c", &signal]).status().unwrap().success());
     let ran = Ran::from(child.wait_with_output().unwrap());

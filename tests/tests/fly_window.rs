@@ -14,7 +14,7 @@ use e2e::{
     Display, Ran, binary, build_pass, draw, lacks_adapter, text, without_display, without_times,
 };
 
-/// A package, and a folder for what is made of it.
+/// A package, and a folder for the output.
 struct Place {
     folder: tempfile::TempDir,
     package: PathBuf,
@@ -49,7 +49,7 @@ impl Place {
     }
 }
 
-/// Waits until the flight's window is there; `None` when the flight ended before, for want of an adapter.
+/// Waits for the flight's window; `None` if the flight ended before because there is no adapter.
 fn window_of(display: &Display, flight: &mut Child) -> Option<String> {
     let begun = Instant::now();
     loop {
@@ -69,7 +69,7 @@ fn disturbed(place: &Place, display: &Display, frames: &str, disturb: &[&str]) -
     let mut flight =
         display.lend(&mut place.fly(&["--frames", frames])).spawn().expect("it starts");
     if let Some(id) = window_of(display, &mut flight) {
-        // Not in its first moments.
+        // Not directly after the start.
         thread::sleep(Duration::from_millis(500));
         for command in disturb {
             display.xdotool(&command.replace("ID", &id));
@@ -101,7 +101,7 @@ fn what_is_shown_is_listed_as_if_it_were_not() {
 fn closing_the_window_ends_the_flight_and_leaves_nothing() {
     let Some(display) = Display::start() else { return };
     let place = Place::new();
-    // There is no window manager whose button could be pressed: the key does the same.
+    // Without a window manager there is no button to close the window; the key does the same.
     let close = ["windowfocus ID", "sleep 1", "key ctrl+q"];
     let Some(ran) = disturbed(&place, &display, "5000", &close) else { return };
     assert_eq!(ran.code, 4, "{}", ran.err);
@@ -109,7 +109,7 @@ fn closing_the_window_ends_the_flight_and_leaves_nothing() {
     assert_eq!(place.leavings(), [""; 0]);
 }
 
-/// A window that is taken away, as by a crash of the display's driver, takes no results with it.
+/// If the window is destroyed from outside, for example by a crash of the display's driver, no results are lost.
 #[test]
 fn a_window_that_is_lost_is_no_loss() {
     let Some(display) = Display::start() else { return };
@@ -130,11 +130,12 @@ fn without_a_display_there_is_no_flight() {
     assert!(ran.err.contains("no display"), "{}", ran.err);
     assert!(begun.elapsed() < Duration::from_secs(30), "{:?}", begun.elapsed());
     assert_eq!(place.leavings(), [""; 0]);
-    // Somewhere else than where it was asked for either.
+    // Also not at any other place.
     assert_eq!(fs::read_dir(place.folder.path()).unwrap().count(), 2, "{}", text(&place.out));
 }
 
-/// Whether nothing moves, loads or lacks in a window with this trace, for a second. (While it records it draws on.)
+/// Whether for a second the camera did not move and no tile was missing or loading, by the trace of a window. (While a
+/// window records, it draws all the time.)
 fn is_at_rest(trace: &Path) -> bool {
     let last = || {
         let list = fs::read_to_string(trace).unwrap_or_default();
@@ -196,19 +197,19 @@ fn a_recorded_flight_ends_with_the_picture_that_the_window_showed() {
     let flight = begins("flight-001.toml");
     display.xdotool("key p");
     let shown = begins("corniche-001.png");
-    // What has begun is written to its end before the window is gone.
+    // Files that are being written are completed before the window closes.
     display.xdotool("key ctrl+q");
     assert_eq!(Ran::from(window.wait_with_output().unwrap()).code, 0);
     let shown = image::open(shown).unwrap().to_rgb8();
 
     let (csv, png) = (place.folder.path().join("fly.csv"), place.folder.path().join("frames"));
-    // So slowly that the last frame does not wait for tiles.
+    // So slowly that no tile is missing in the last frame.
     let options = ["--frames", "40", "--path", text(&flight), "--png", text(&png)];
     let ran = draw("fly", &place.package, &csv, &[&drawing[..], &options[..]].concat()).unwrap();
     assert_eq!(ran.code, 0, "{}", ran.err);
     let flown = image::open(png.join("lod-sv-00039.png")).unwrap().to_rgb8();
     assert_eq!(flown.dimensions(), shown.dimensions());
-    // The ground beneath the eye is known more coarsely to the window, and the haze differs by a hair.
+    // The window knows the ground beneath the eye from coarser tiles, so the haze differs very slightly.
     let differs = |(a, b): (&image::Rgb<u8>, &image::Rgb<u8>)| {
         a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 2)
     };

@@ -1,4 +1,5 @@
-//! Targets and inputs that are no files: never replaced, never waited for; and a signal ends whatever hangs.
+//! Targets and inputs that are pipes, devices, links or folders: they are never replaced and never waited for, and a signal
+//! ends a run that hangs.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 #![cfg(unix)]
@@ -17,7 +18,7 @@ use std::{
 
 use e2e::{Ran, build_pass, sample, skipped, text};
 
-/// What is neither a file nor a folder, each under a name of its own.
+/// One path for each kind of entry that is neither a file nor a folder.
 fn specials(folder: &Path) -> Vec<PathBuf> {
     let [pipe, socket, device] = ["pipe", "socket", "device"].map(|name| folder.join(name));
     assert!(made("mkfifo", &[text(&pipe)]), "mkfifo makes pipes");
@@ -54,7 +55,7 @@ fn start(arguments: &[&str]) -> Child {
         .unwrap()
 }
 
-/// Runs to the end, which must come soon.
+/// Runs the binary to its end, which must come soon.
 fn run(arguments: &[&str]) -> Ran {
     let mut child = start(arguments);
     let begun = Instant::now();
@@ -156,7 +157,7 @@ fn a_pipe_as_input_is_refused_with_the_way_out() {
     }
 }
 
-/// A server that takes the connection and never says a word: GDAL waits for ever, and nobody can ask the run to stop.
+/// A server accepts the connection and never answers: GDAL waits without end and does not ask whether to stop.
 #[test]
 fn the_first_signal_ends_a_read_that_never_returns() {
     let server = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
@@ -196,7 +197,7 @@ fn the_first_signal_ends_a_read_that_never_returns() {
     }
 }
 
-/// As `cp` has it: the file that a link leads to is replaced, and the link stays a link.
+/// As with `cp`, the file that a link points to is replaced, and the link stays a link.
 #[test]
 fn a_link_is_followed_and_stays_a_link() {
     let folder = tempfile::tempdir().unwrap();
@@ -225,7 +226,7 @@ fn a_link_is_followed_and_stays_a_link() {
     assert!(chart.symlink_metadata().unwrap().is_symlink());
     assert!(fs::read_to_string(&svg).unwrap().ends_with("</svg>\n"), "the file is replaced");
 
-    // A link that leads nowhere is a slip, and one to a folder or back to an input is refused like these.
+    // A link to nothing is refused as a mistake; a link to a folder or to an input is refused like its target.
     let [dead, to_folder, to_input] = ["dead", "to-folder", "to-input"].map(|name| here.join(name));
     symlink(elsewhere.join("missing"), &dead).unwrap();
     symlink(&elsewhere, &to_folder).unwrap();
@@ -241,7 +242,7 @@ fn a_link_is_followed_and_stays_a_link() {
     assert_eq!(fs::read(&copy).unwrap(), fs::read(&dem).unwrap());
 }
 
-/// It names a folder. The inputs do not exist, so what is said of the target was found before they were looked at.
+/// Such a name means a folder. The inputs do not exist, so the message about the target shows that the target is checked first.
 #[test]
 fn a_target_that_ends_in_a_slash_is_refused_before_the_work() {
     let folder = tempfile::tempdir().unwrap();
@@ -301,7 +302,7 @@ fn a_name_that_is_not_utf_8_is_told_as_such() {
     }
 }
 
-/// `ulimit -f` is a disk that is full: told as such, with nothing left behind, and no death by a signal.
+/// `ulimit -f` acts like a full disk: the message says so, no file is left, and no signal kills the program.
 #[test]
 fn a_limit_on_file_sizes_is_a_full_disk() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Heights that cannot be: refused before anything is made of them, with value, count, file and the way out.
+//! Impossible heights are refused before the build begins. The message gives value, count, file and the option that helps.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -146,7 +146,7 @@ fn heights_outside_the_earths_are_refused_unless_a_range_allows_them() {
         assert_eq!(manifest(&package)["settings"]["height_range_m"], serde_json::json!(ends));
         fs::remove_file(&package).unwrap();
     }
-    // What a range given by hand holds is believed; it may also be narrower than the earth's.
+    // All heights in a range given with --height-range are accepted; the range may also be narrower than the default.
     let dem = with(folder.path(), -9999.0, 500);
     assert_eq!(build(&dem, &package, &["--height-range", "-9999,9000"]).code, 0);
     let ran = build(&dem, &package, &["-O", "--height-range", "0,600"]);
@@ -156,7 +156,7 @@ fn heights_outside_the_earths_are_refused_unless_a_range_allows_them() {
     }
 }
 
-/// Metres, not what is stored: the same numbers are refused as metres and are mountains as feet.
+/// Heights are judged after conversion to metres: the same stored numbers are refused as metres and accepted as feet.
 #[test]
 fn heights_are_judged_in_metres_and_named_as_stored() {
     let folder = tempfile::tempdir().unwrap();
@@ -185,7 +185,7 @@ fn heights_are_judged_in_metres_and_named_as_stored() {
     assert!(ran.err.contains("--nodata -9999") && ran.err.contains("-3047.6"), "{}", ran.err);
 }
 
-/// Sea level is repeated, and the land begins beside it.
+/// Many samples are 0 m (the sea), and land heights follow directly above.
 #[test]
 fn much_repeated_sea_level_is_ground() {
     let folder = tempfile::tempdir().unwrap();
@@ -233,7 +233,7 @@ fn real_rasters_are_judged_rightly() {
         let ran =
             corniche(["build", "--dem", &dem, "--cell", "500", "-o", text(&package), "--quiet"]);
         assert_eq!(ran.code, 0, "{}", ran.err);
-        // What GDAL delivers is what is hashed.
+        // The hash is that of the bytes that GDAL delivers.
         let input = &manifest(&package)["inputs"][0];
         assert_eq!(
             (input["name"].as_str(), input["bytes"].as_u64()),

@@ -94,7 +94,7 @@ fn tiles_in_crs_coordinates_have_the_samples_as_vertices() {
     assert_eq!(refused.code, 2, "without --json it says nothing: {}", refused.out);
 }
 
-/// What the command line says of the grid a settings file can say too, and the command line goes first.
+/// Every option for the grid can also stand in a settings file; the command line takes precedence.
 #[test]
 fn cells_thinning_and_latitude_are_options_and_settings() {
     let folder = tempfile::tempdir().unwrap();
@@ -125,7 +125,7 @@ fn cells_thinning_and_latitude_are_options_and_settings() {
         assert_eq!(grid(&["--config", text(&file)]), said, "{lines}");
         assert_ne!(said, grid(&[]), "{lines}");
     }
-    // --cell-every on the command line puts the file's cell aside, and the other way round.
+    // --cell-every on the command line overrides the cell of the file, and --cell its cell_every.
     let cell = settings("cell.toml", "cell = [60, 90]");
     assert_eq!(grid(&["--config", text(&cell), "--cell-every", "2"]), grid(&["--cell-every", "2"]));
     let every = settings("every.toml", "cell-every = 2");
@@ -153,7 +153,7 @@ fn cells_thinning_and_latitude_are_options_and_settings() {
     refused(&["--config", text(&bad)], &["cell", "positive"]);
 }
 
-/// Two grids: the first named defines the nodes, and whoever builds is told, also with --quiet and in JSON.
+/// Two grids: the first named file defines the nodes. `build` warns, also with --quiet and in JSON.
 #[test]
 fn files_on_another_grid_than_the_first_are_told() {
     let folder = tempfile::tempdir().unwrap();
@@ -184,11 +184,11 @@ fn files_on_another_grid_than_the_first_are_told() {
         value["warning"].as_str().is_some_and(|text| text.contains("north.asc"))
     };
     assert_eq!((ran.code, ran.err.lines().filter(|line| is_warning(line)).count()), (0, 1));
-    // One grid, one silence.
+    // Files of one grid give no warning.
     assert_eq!(build(&package, &[&south], &[]), "");
 }
 
-/// The factors and the scale, for people.
+/// `info` prints the factors and the scale in words.
 #[test]
 fn info_tells_factors_scale_and_sides() {
     let folder = tempfile::tempdir().unwrap();
@@ -197,7 +197,7 @@ fn info_tells_factors_scale_and_sides() {
     build(&at("a.pmtiles"), &[&dem], &[]);
     let told = corniche(["info", text(&at("a.pmtiles"))]).out;
     let factors = numbers(&manifest(&at("a.pmtiles"))["metres_per_unit"]);
-    // Without the last digits: readers of JSON may round them.
+    // Without the last digits, because readers of JSON may round them.
     let [east, north] = [0, 1].map(|axis| format!("{:.6}", factors[axis]));
     let [east, north] = [
         format!("times {}", &east[..east.len() - 1]),
@@ -215,7 +215,7 @@ fn info_tells_factors_scale_and_sides() {
     ] {
         assert!(told.contains(words), "{words}: {told}");
     }
-    // The bundled sample is in UTM: nothing to multiply by.
+    // The bundled sample is in UTM: its factors are 1.
     let ran = corniche([
         "build",
         "--dem",

@@ -19,7 +19,7 @@ fn same_bytes_at_any_number_of_threads() {
     assert_eq!(one, package("eight.pmtiles", "8", "256M"));
 }
 
-/// All promises hold on the sample, with the DEM beside it; a flipped byte is found and named.
+/// All checks hold for the sample with --dem; a flipped byte is found and named.
 #[test]
 fn pass_keeps_its_promises_and_damage_is_named() {
     let folder = tempfile::tempdir().unwrap();
@@ -47,7 +47,7 @@ fn pass_keeps_its_promises_and_damage_is_named() {
     assert!(ran.out.contains("tile"), "{}", ran.out);
 }
 
-/// With the extract beside it too, and every check by its id.
+/// The same with --osm, and every check by its id.
 #[test]
 fn pass_is_what_its_extract_says_and_checks_have_ids() {
     let folder = tempfile::tempdir().unwrap();
@@ -66,7 +66,7 @@ fn pass_is_what_its_extract_says_and_checks_have_ids() {
     let help = corniche(["verify", "--help"]).out;
     assert!(checks.iter().all(|check| help.contains(check["id"].as_str().unwrap())), "{help}");
 
-    // Another extract, and another table, are told from a broken package.
+    // Another extract or another table is reported as such, not as a broken package.
     let other = folder.path().join("other.osm.pbf");
     let mut bytes = fs::read(&osm).unwrap();
     bytes.push(0);
@@ -81,7 +81,7 @@ fn pass_is_what_its_extract_says_and_checks_have_ids() {
     assert!(ran.err.contains("--frc-table"), "{}", ran.err);
 }
 
-/// A table from a file may have the name of a preset, and is then asked for.
+/// A table from a file may have the name of a preset; then `verify` asks for the file.
 #[test]
 fn verify_asks_for_a_table_that_is_called_like_a_preset() {
     let folder = tempfile::tempdir().unwrap();
@@ -126,7 +126,7 @@ fn the_list_of_defects_is_what_the_summary_counts() {
     assert!(lost_m > 100.0, "the sample has a road across a void");
     assert!((listed_m - lost_m).abs() < 1.0, "{listed_m} m listed, {lost_m} m lost");
 
-    // A second run keeps the list, and says so before it does any work.
+    // A second run keeps the existing list, and says so before it begins.
     let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
     let again = folder.path().join("again.pmtiles");
     let inputs = ["build", "--dem", text(&dem), "--osm", text(&osm)];
@@ -155,7 +155,7 @@ fn pass_accounts_for_every_road() {
     let in_um = whole(&counts["roads_in_um"]);
     assert_eq!(in_um, whole(&counts["roads_kept_um"]) + lost_um);
     assert!(number(&counts["roads_in"]) > 20.0);
-    // The generator's own record of what it laid: every drivable road comes in, and as long as it was made.
+    // The generator's own record: every drivable road is in the package with its true length.
     let truth = fs::read_to_string(sample("pass/truth.json")).unwrap();
     let truth: Value = serde_json::from_str(&truth).unwrap();
     let values: [&[&str]; 8] = [
@@ -198,11 +198,11 @@ fn pass_accounts_for_every_road() {
 
 /// The independent check of decoded tiles, in Python, agrees.
 #[test]
-fn independent_check_agrees() {
+fn the_independent_check_in_python_agrees() {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("pass.pmtiles");
     build_pass(&package, &["--quiet"]);
-    // scripts/test names the python that has what the check needs.
+    // scripts/test names a python that has the modules the check needs.
     let interpreter = std::env::var_os("CORNICHE_PYTHON").unwrap_or_else(|| "python3".into());
     let python = |arguments: &[&str]| Command::new(&interpreter).args(arguments).output();
     let has_modules =

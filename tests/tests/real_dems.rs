@@ -38,12 +38,12 @@ const SRTM3_BLOCK: &[&str] = &[
 /// 3601 × 3601 samples, read inside their archive; the northern half is void.
 const JUAN_DE_FUCA: &[&str] = &["/vsizip/juan-de-fuca-1s/N48W125.hgt.zip"];
 
-/// Where a file lies, as GDAL takes it; `None`, said aloud, where it is not at hand.
+/// The path of a file as GDAL takes it; `None`, with a printed line, if the file is missing.
 fn located(file: &str) -> Option<PathBuf> {
     let Some(archive) = file.strip_prefix("/vsizip/") else { return real_data(file) };
     let archive = real_data(archive)?;
     let inner = Path::new(archive.file_stem()?);
-    // One slash more where the archive's path begins with one itself: GDAL's own way of writing it.
+    // If the path of the archive begins with a slash, GDAL writes one more slash.
     Some(PathBuf::from(format!("/vsizip/{}/{}", archive.display(), inner.display())))
 }
 
@@ -77,7 +77,7 @@ fn check(dem: &Dem) {
     assert!(broken.is_empty() && report["holds"] == true && ran.code == 0, "{name}: {broken:#?}");
     print_levels(name, &report, [build_s, start.elapsed().as_secs_f64()]);
 
-    // That all holds says nothing if nothing was looked at.
+    // A check that holds means nothing if it had nothing to check.
     for id in ["P2.bound", "P2.tight", "P2.finest", "P2.samples"] {
         let looked_at = checks(&report)
             .iter()
@@ -143,7 +143,7 @@ fn errors_are_true_and_tight_elsewhere() {
     check(&dem(&["registry/N57E011.hgt"], &[]));
 }
 
-/// An image, taken for heights for its place: of 16 bits, 1 where it has none.
+/// An image of 16 bits, used as heights because of where it lies; its value for no data is 1.
 const DATELINE: &[&str] = &["--cell", "240", "--height-range", "0,65535"];
 
 /// With voids of all kinds, in other units, upside down, across the antimeridian.
@@ -175,7 +175,7 @@ fn errors_are_true_and_tight_at_full_resolution() {
     check(&dem(&["nasty/dem/rio-tiler-cog_dateline.tif"], &["--height-range", "0,65535"]));
 }
 
-/// A tolerance far below the data's own steps: nearly every node is a vertex.
+/// A tolerance far below the height steps of the data: nearly every node is a vertex.
 #[test]
 #[ignore = "a minute or two"]
 fn errors_are_true_and_tight_when_hardly_any_is_allowed() {

@@ -35,7 +35,7 @@ fn every_option_of_the_look_shows_in_the_picture() {
         assert!(same.is_none(), "{look:?} looks like {:?}", same.map(|k| looks[k]));
         pictures.push(picture);
     }
-    // What is said is what would be taken without saying it.
+    // Options with their default values give the same picture as no options.
     let explicit =
         ["--roads", "sv", "--style", "road-atlas", "--caps", "round", "--outline", "style"];
     let more = ["--width-growth", "distance", "--cap-test", "distance", "--supersampling", "2"];
@@ -88,7 +88,7 @@ fn a_style_of_ones_own_is_drawn_with_or_refused_by_what_is_wrong_in_it() {
     assert!(fs::read_to_string(&style).unwrap().contains("amber"));
 }
 
-/// The adapter's own limit counts, not the least that all adapters have.
+/// Pictures may be as large as this adapter allows, not only as large as every adapter allows.
 #[test]
 fn a_picture_may_be_as_large_as_the_adapter_can_draw_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -105,7 +105,7 @@ fn a_picture_may_be_as_large_as_the_adapter_can_draw_it() {
         assert!(wide.err.contains(words), "{words}: {}", wide.err);
     }
     assert!(!png.exists());
-    // An adapter with the least limit draws half of that.
+    // An adapter with the smallest limit that is allowed draws half of that.
     let most = if wide.err.contains("it fits with --supersampling 1") { 16384 } else { 8192 };
     let size = format!("{most}x24");
     let ran = draw("render", &package, &png, &["--size", &size, "--supersampling", "1"]).unwrap();

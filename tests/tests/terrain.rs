@@ -111,7 +111,7 @@ fn an_input_is_never_replaced_by_the_package() {
     assert_eq!(fs::read(&dem).unwrap(), before);
 }
 
-/// Another raster on the same grid is told from a broken package.
+/// `verify` reports another raster on the same grid as another input, not as a broken package.
 #[test]
 fn verify_refuses_other_heights_than_those_it_was_made_from() {
     let folder = tempfile::tempdir().unwrap();

@@ -28,7 +28,7 @@ impl Line {
         Some(numbers)
     }
 
-    /// Nothing moves, loads or lacks.
+    /// The camera does not move, and no tile is missing or loading.
     fn is_settled(&self) -> bool {
         self.vector(["missing", "loading", "moving"]) == Some([0.0; 3])
             && self.number("tiles").is_some_and(|tiles| tiles > 0.0)
@@ -37,14 +37,14 @@ impl Line {
 
 fn last_line(trace: &Path) -> Option<Line> {
     let text = fs::read_to_string(trace).ok()?;
-    // What is not yet written to its end has no end of line.
+    // A line that is not yet complete has no end of line.
     let mut lines = text.split_inclusive('\n').filter_map(|line| line.strip_suffix('\n'));
     let names: Vec<String> = lines.next()?.split(',').map(str::to_owned).collect();
     let cells = lines.next_back()?.split(',').map(str::to_owned);
     Some(Line(names.into_iter().zip(cells).collect()))
 }
 
-/// A display, a window on it, and what the window writes. All ends with it.
+/// A display, a window on it, and the files that the window writes. Dropping it ends all of them.
 struct Desk {
     display: Display,
     window: Child,
@@ -55,14 +55,14 @@ struct Desk {
 
 impl Drop for Desk {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // The program may already have ended.
         let _ = self.window.kill();
         let _ = self.window.wait();
     }
 }
 
 impl Desk {
-    /// `None`, and says why, where there is no Xvfb, no xdotool or nothing to draw with.
+    /// `None`, with a line that says why, without Xvfb, xdotool or a graphics adapter.
     fn open(options: &[&str]) -> Option<Self> {
         let display = Display::start()?;
         let folder = tempfile::tempdir().expect("a temporary folder");
@@ -119,14 +119,14 @@ impl Desk {
         self.display.xdotool(command)
     }
 
-    /// The window's number; it gets the keyboard, for there is no window manager to give it.
+    /// The window's number. This also gives it the keyboard focus, because no window manager does.
     fn focus(&self) -> String {
         let id = self.display.window();
         self.xdotool(&format!("windowfocus {id}"));
         id
     }
 
-    /// Stops the window's program, or lets it go on.
+    /// Suspends the window's program, or resumes it.
     fn signal(&self, name: &str) {
         let pid = self.window.id().to_string();
         let sent = Command::new("kill").args(["-s", name, &pid]).status();
@@ -142,17 +142,17 @@ impl Desk {
         self.wait(&format!("cursor at {x}, {y}"), is_there).expect("the window is open")
     }
 
-    /// The picture that a key saves.
+    /// The picture that is saved when a key is pressed.
     fn picture(&self, key: &str, number: u32) -> image::RgbaImage {
         self.xdotool(&format!("key {key}"));
         self.saved(number)
     }
 
-    /// The picture of this number, once it is there.
+    /// Waits for the picture with this number.
     fn saved(&self, number: u32) -> image::RgbaImage {
         let path = self.pictures.join(format!("corniche-{number:03}.png"));
         let begun = Instant::now();
-        // It is there before it is complete.
+        // The file exists before it is complete.
         loop {
             if let Ok(picture) = image::open(&path) {
                 return picture.to_rgba8();
@@ -163,7 +163,7 @@ impl Desk {
     }
 }
 
-/// Dark letters on a light plate in this part of a picture: x and y from, to.
+/// Whether a part of a picture (left, top, right, bottom) has dark letters on a light background.
 fn has_letters(picture: &image::RgbaImage, [left, top, right, bottom]: [u32; 4]) -> bool {
     let (mut light, mut dark) = (0, 0);
     for (x, y, pixel) in picture.enumerate_pixels() {
@@ -218,7 +218,7 @@ fn the_ground_grabbed_stays_under_the_cursor() {
     for line in [dragged, released] {
         let here = line.vector(ground).expect("there is still ground");
         let pixel_m = line.number("pixel_m").expect("and it has a size");
-        // On tilted ground a pixel is larger than this: it would be fewer pixels.
+        // On tilted ground a pixel covers more ground than this, so the true number of pixels is smaller.
         let off_m = (0..3).map(|axis| (here[axis] - grabbed[axis]).powi(2)).sum::<f64>().sqrt();
         assert!(off_m / pixel_m <= 0.5, "{} px off: {press:?} {line:?}", off_m / pixel_m);
         let eye = ["eye_x_m", "eye_y_m"];
@@ -246,7 +246,7 @@ fn pictures_show_the_map_and_its_credits_with_the_panel_and_without() {
     assert!(has_letters(&hidden, [300, 400, 640, 480]), "and not the credits");
 }
 
-/// Much of the right is as dark as the panel, which no map is.
+/// Whether much of the right side is as dark as the panel; no map is that dark.
 fn shows_panel(picture: &image::RgbaImage) -> bool {
     let dark = picture.enumerate_pixels().filter(|(x, _, pixel)| *x > 360 && pixel.0[0] < 60);
     dark.count() > 20_000
@@ -256,7 +256,7 @@ fn shows_panel(picture: &image::RgbaImage) -> bool {
 fn a_key_held_when_the_keyboard_comes_to_the_window_is_pressed_once() {
     let Some(desk) = Desk::open(&[]) else { return };
     let id = desk.display.window();
-    // A window that is slow to hear of the keyboard finds the key down already, and then hears that it goes down.
+    // A window that gets the focus late is told that the key is already down, and then also gets the event of its press.
     desk.signal("STOP");
     desk.xdotool(&format!("windowfocus {id}"));
     desk.xdotool("keydown p");
@@ -273,7 +273,7 @@ fn control_q_ends_the_window_that_it_was_pressed_in() {
     let Some(mut desk) = Desk::open(&[]) else { return };
     desk.xdotool("keydown ctrl");
     desk.xdotool("keydown q");
-    // The display begins to repeat it.
+    // The display begins to repeat the key.
     thread::sleep(Duration::from_secs(1));
     desk.focus();
     thread::sleep(Duration::from_secs(1));
@@ -281,7 +281,7 @@ fn control_q_ends_the_window_that_it_was_pressed_in() {
     desk.xdotool("keyup ctrl");
     desk.point_at(120, 200);
 
-    // Both before the next frame.
+    // Both keys are pressed before the next frame.
     desk.signal("STOP");
     desk.xdotool("key p");
     desk.xdotool("key ctrl+q");
@@ -308,7 +308,7 @@ fn a_style_that_changes_is_shown_and_a_broken_one_is_not() {
     };
     let dark = mean(&desk.picture("p", 1));
     fs::write(&style, preset("road-atlas.toml")).unwrap();
-    // The file is looked at now and then, and a frame may take its time.
+    // The program checks the file at intervals, and a frame may take long.
     let mut number = 1;
     let light = loop {
         thread::sleep(Duration::from_secs(1));

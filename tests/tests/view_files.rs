@@ -1,4 +1,4 @@
-//! What `corniche view` leaves on disk: never in the place of another file, and never lost.
+//! The files that `corniche view` writes: they replace no other file, and none is lost.
 #![cfg(target_os = "linux")]
 
 use std::{
@@ -19,7 +19,7 @@ fn package() -> (tempfile::TempDir, PathBuf) {
     (folder, package)
 }
 
-/// Asks for a window where none can open: what is refused is refused before.
+/// Runs `corniche view` without a display. A refusal must come before the attempt to open a window.
 fn refused(package: &Path, options: &[&str]) -> Ran {
     let mut command = Command::new(binary());
     without_display(command.arg("view").arg(package).args(options))
@@ -74,7 +74,7 @@ fn a_package_that_does_not_fit_the_memory_allowed_opens_no_window() {
     assert!(ran.err.contains("--gpu-memory"), "{}", ran.err);
 }
 
-/// A window that records its flight, and its number; `None` where there is nothing to draw with.
+/// A window that records its flight, and its number; `None` without a graphics adapter.
 fn recording(
     display: &Display,
     package: &Path,
@@ -86,7 +86,7 @@ fn recording(
     command.arg(pictures).arg("--trace").arg(trace);
     command.stdout(Stdio::null()).stderr(Stdio::piped());
     let mut window = display.lend(&mut command).spawn().expect("the binary starts");
-    // The first frames are there.
+    // The first frames are drawn.
     let begun = Instant::now();
     while fs::read_to_string(trace).map_or(0, |text| text.lines().count()) < 3 {
         if window.try_wait().expect("it is ours").is_some() {
@@ -99,7 +99,7 @@ fn recording(
     }
     let id = display.window();
     display.xdotool(&format!("windowfocus {id}"));
-    // It learns of the keyboard's being its own a little later.
+    // The window gets the keyboard focus a little later.
     thread::sleep(Duration::from_secs(1));
     display.xdotool("key c");
     thread::sleep(Duration::from_secs(2));
@@ -110,7 +110,7 @@ fn recording(
 fn a_recording_is_saved_however_the_window_ends() {
     let Some(display) = Display::start() else { return };
     let (folder, package) = package();
-    // A window that is taken away may fail before it learns of it.
+    // If the window is destroyed from outside, the program may fail before it gets the event.
     let ends: [(&str, &[i32]); 3] =
         [("key ctrl+q", &[0]), ("signal", &[4]), ("windowclose", &[0, 1])];
     for (number, (end, codes)) in (1..).zip(ends) {
@@ -146,7 +146,7 @@ fn a_recording_that_cannot_be_saved_is_told_and_fails() {
     let pictures = folder.path().join("pictures");
     let opened = recording(&display, &package, &pictures, &folder.path().join("trace.csv"));
     let Some((mut window, _)) = opened else { return };
-    // What was to be its folder becomes a file meanwhile.
+    // Meanwhile, a file takes the place of the folder for the recording.
     fs::write(&pictures, b"precious").unwrap();
     display.xdotool("key ctrl+q");
     let ran = ended(&mut window);

@@ -77,7 +77,7 @@ fn nodes_that_roads_share_are_fixed() {
     assert_eq!(road(&extract, 10).fixed, [0, 1, 2]);
     assert_eq!(road(&extract, 11).fixed, [0, 1, 2]);
     assert_eq!(road(&extract, 19).fixed, [0, 1, 2, 3]);
-    // In the other file nothing shares node 2 of way 30 but its duplicate, which is left out.
+    // In the other file only its duplicate, which is left out, shares node 2 of way 30.
     let crossing = read(&fixture("crossing.osm.pbf")).unwrap();
     assert_eq!(road(&crossing, 30).fixed, [0, 2, 3]);
 }
@@ -160,7 +160,7 @@ fn names_a_compression_that_it_does_not_know() {
 }
 
 #[test]
-fn refuses_history() {
+fn a_history_is_refused() {
     let error = read(&fixture("history.osh.pbf")).unwrap_err();
     assert!(matches!(error, ReadOsmError::History { .. }), "{error}");
 }

@@ -1,4 +1,4 @@
-//! Files that are no extracts, or extracts that are not for us: each is refused with what it is and what to do.
+//! Files that are no extracts, or extracts that cannot be used: the message says what the file is and what to do.
 
 #![allow(
     clippy::unwrap_used,

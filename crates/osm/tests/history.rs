@@ -9,7 +9,7 @@ use corniche_osm::{Defect, ReadOsmError};
 use corniche_testing::pbf::{Block, deltas, field, file, number, plain_header, raw};
 use proptest::prelude::*;
 
-/// What is known of an object: its version, and whether it is there.
+/// Metadata of an object: its version, and whether it is visible.
 fn info(version: Option<i64>, is_visible: Option<bool>) -> Vec<u8> {
     let version = version.map(|version| number(1, version));
     let is_visible = is_visible.map(|is_visible| number(6, i64::from(is_visible)));

@@ -40,7 +40,7 @@ fn an_extract_cut_off_anywhere_is_refused() {
         assert_eq!(ends.last(), Some(&whole.len()));
         for len in 1..whole.len() {
             match read_bytes(&whole[..len]) {
-                // Between two blobs nothing tells that there was more.
+                // A file cut between two blobs looks complete.
                 Ok(extract) => {
                     assert!(ends.contains(&len), "cut at {len} went unseen");
                     assert_eq!(extract.roads, []);
@@ -262,7 +262,7 @@ fn blocks_that_contradict_themselves_are_damage() {
     let once = field(5, &field(1, &[1, 1]));
     check(&dense(&[once.clone(), once]), "two lists of what is known of its nodes");
 
-    // What is no message, or not the right one.
+    // Bytes that are no message, or another message.
     check(&group(&[number(2, 5)]), "not of the kind it should be");
     check(&group(&[number(3, 5)]), "not of the kind it should be");
     check(&group(&[field(3, b"\x08")]), "a number has no end");

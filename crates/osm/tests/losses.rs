@@ -1,4 +1,4 @@
-//! What is wrong with single ways and nodes: the rest goes on, and nothing is lost without a defect that names it.
+//! Errors in single ways and nodes: all others are read, and every loss has a defect that names the object.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -37,7 +37,7 @@ fn tags_taken_for_another_value_are_counted_by_value() {
         &[("highway", "track"), ("tunnel", "culvert"), ("layer", "1000")],
         &[("highway", "track"), ("tunnel", "building_passage")],
         &[("highway", "track"), ("layer", "1;2")],
-        // No road, so its tags mean nothing.
+        // It is no road, so its tags do not matter.
         &[("highway", "proposed"), ("layer", "5000")],
     ];
     for (id, tags) in (1..).zip(tags) {
@@ -223,7 +223,7 @@ fn texts_longer_than_osm_allows_are_cut_and_damaged_ones_mended() {
     check("ß".repeat(256).as_bytes(), &"ß".repeat(255), &["long text"]);
     check("\u{1f6e3}".repeat(255).as_bytes(), &"\u{1f6e3}".repeat(255), &[]);
     check("\u{1f6e3}".repeat(999).as_bytes(), &"\u{1f6e3}".repeat(255), &["long text"]);
-    // The cut at 1020 bytes goes through a letter of two.
+    // The limit of 1020 bytes lies within a letter of two bytes.
     check(
         format!("x{}", "ß".repeat(999)).as_bytes(),
         &format!("x{}", "ß".repeat(254)),

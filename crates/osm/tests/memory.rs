@@ -20,7 +20,7 @@ fn memory_mib(name: &str) -> Option<u64> {
     line.split_whitespace().nth(1)?.parse::<u64>().ok().map(|kib| kib / 1024)
 }
 
-/// Forgets the peak so far; says what is in use now.
+/// Resets the peak; gives the memory in use now.
 fn reset_peak() -> Option<u64> {
     fs::write("/proc/self/clear_refs", "5").ok()?;
     memory_mib("VmRSS:")
@@ -64,7 +64,7 @@ fn no_extract_takes_more_memory_than_the_limits_allow() {
     let of = |blobs: Vec<u8>| [plain_header(), blobs].concat();
     let relations = many(&field(4, &[8, 0]), 1_000_000);
     check("a million relations", &of(relations.clone()), None, 512);
-    // One of them at a time, however many threads there are.
+    // Only one of them is unpacked at a time, with any number of threads.
     check("four times that", &of(relations.repeat(4)), None, 320);
     let nodes = many(&field(1, &[8, 0, 64, 0, 72, 0]), 2_000_000);
     check("two million nodes", &of(nodes), Some("takes more memory than a block may"), 80);

@@ -1,4 +1,4 @@
-//! Where the vertices of GEO lines lie, by the formulas of FORMAT.md, section 7, written apart from the code.
+//! Where the vertices of GEO lines lie, by the formulas of FORMAT.md, section 7, implemented here a second time.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap")]
 

@@ -27,7 +27,7 @@ fn a_raster_inside_another_file_is_read() {
     let built = build_files(Path::new(&inside), None, Options::plain(5.0)).unwrap();
     let plain = build_files(&dem, None, Options::plain(5.0)).unwrap();
     assert_eq!(built.tiles, plain.tiles);
-    // What GDAL delivers is what is hashed.
+    // The hash is that of the bytes that GDAL delivers.
     let [inside, whole] = [&built, &plain].map(|built| &built.manifest.inputs[0]);
     assert_eq!((inside.bytes, &inside.sha256), (bytes.len() as u64, &whole.sha256));
 }
@@ -52,7 +52,7 @@ fn a_height_that_steps_do_not_reach_is_refused_as_bad_input() {
     for (height_m, max_error_m) in [(6e6_f32, 0.05), (-6e6, 0.05), (600.0, 1e-5)] {
         let mut raster = hills();
         raster.heights_m[150 * 300 + 100] = height_m;
-        // Allowed by hand: else the samples are refused before.
+        // Allowed by an option; otherwise the samples would be refused before.
         let options = Options { height_range_m: Some([-1e7, 1e7]), ..Options::plain(max_error_m) };
         let refused = build_raster(&raster, options).err().unwrap();
         assert!(refused.is_unusable_input(), "{height_m}: {refused}");
@@ -61,7 +61,7 @@ fn a_height_that_steps_do_not_reach_is_refused_as_bad_input() {
     }
 }
 
-/// Wherever in the run an input is exchanged, its time put back: no package.
+/// If an input is replaced at any stage of the run and given its old modification time, no package is written.
 #[test]
 fn an_input_exchanged_at_any_stage_ends_the_build() {
     let folder = tempfile::tempdir().unwrap();
@@ -82,7 +82,7 @@ fn an_input_exchanged_at_any_stage_ends_the_build() {
         assert!(exchange.act.into_inner().unwrap().is_none(), "{stage:?} did not begin");
         assert!(!output.exists(), "{stage:?}");
     }
-    // As it is now it can be used.
+    // The changed file itself can be used.
     build(&settings(dem, None, output, Options::plain(5.0)), &Silent).unwrap();
 }
 
@@ -104,7 +104,7 @@ impl Observer for At<'_> {
     fn end(&self, _: Stage) {}
 }
 
-/// Puts other heights in a raster's place, as long and as old.
+/// Replaces a raster by one with other heights, the same length and the same modification time.
 fn exchange(path: &Path) {
     let time = fs::metadata(path).unwrap().modified().unwrap();
     let other = path.with_extension("other.tif");
@@ -153,7 +153,7 @@ fn a_tolerance_beyond_what_numbers_hold_is_refused_as_such() {
     assert!(built.grounds().all(|(_, ground)| ground.geometric_error_m == 0.0));
 }
 
-/// What is verified against must stay as it is meanwhile, too.
+/// The inputs given to `verify` must not change during the run either.
 #[test]
 fn a_raster_exchanged_while_it_is_verified_is_told() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Cells that are no squares: every promise on scenes with cells of 1 : 1.5, lying and standing.
+//! Cells that are no squares: every promise on scenes with cells of 1 : 1.5, wide and tall.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 

@@ -1,5 +1,5 @@
-//! P3 on made-up terrains: what two tiles share they share to the last bit, what lies beneath a tile is within what
-//! the tile says of itself, and none of it depends on how many threads made it.
+//! P3 on made-up terrains: two tiles have the same bits on their common border, the heights beneath a tile are within its
+//! stored range and error, and none of this depends on the number of threads.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -86,7 +86,7 @@ fn bytes_are_the_same_for_any_number_of_threads() {
     }
 }
 
-/// The checks above see what they are for: each kind of disagreement, made by hand, is found.
+/// The checks above find each kind of disagreement, made by hand.
 #[test]
 fn disagreement_is_seen() {
     let (_, relief) = TERRAINS[5];

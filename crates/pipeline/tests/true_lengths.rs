@@ -1,4 +1,4 @@
-//! Lengths of roads are true lengths, whatever the CRS, and parts add up to the last micrometre.
+//! Lengths of roads are true lengths in any CRS, and the lengths of parts add up exactly, in micrometres.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 

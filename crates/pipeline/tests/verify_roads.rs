@@ -45,7 +45,7 @@ fn change(parts: &mut Parts, change: impl Fn(&mut TilePayload)) {
 }
 
 #[test]
-fn nothing_broken_when_nothing_was_changed() {
+fn no_check_is_broken_when_nothing_was_changed() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("same.pmtiles");
     SOUND.parts.write(&path).unwrap();

@@ -1,5 +1,5 @@
 //! `verify` sees each kind of broken promise: a sound package is taken apart, one thing in it is made wrong, and
-//! it is put together again with checksums that fit. What breaks is then the one promise meant, and no other.
+//! it is put together again with matching checksums. Then exactly the expected checks are broken.
 
 mod support;
 
@@ -15,12 +15,12 @@ use support::{
 };
 
 #[test]
-fn nothing_broken_when_nothing_was_changed() {
+fn no_check_is_broken_when_nothing_was_changed() {
     let parts = Parts::sound();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("same.pmtiles");
     parts.write(&path).unwrap();
-    // Whatever the other tests find is then due to their one change.
+    // So whatever the other tests find is caused by their one change.
     assert!(
         fs::read(&path).unwrap() == SOUND.bytes,
         "taking apart and putting together changes bytes"
@@ -35,7 +35,7 @@ fn a_stored_error_below_the_true_one() {
     let mut parts = Parts::sound();
     let id = parts.worst_finest();
     parts.terrain_mut(id).geometric_error_m /= 2.0;
-    // The manifest's figures tell of it too.
+    // The manifest's figures no longer fit either.
     parts.assert_breaks(Against::Dem, &[CheckId::Bound, CheckId::LevelSums, CheckId::Recorded]);
 }
 
@@ -136,7 +136,7 @@ fn a_hole_in_the_ground() {
         &[CheckId::LevelSums, CheckId::Samples, CheckId::Stray, CheckId::Uncovered],
     );
 
-    // Owning up to the hole does not close it.
+    // Counting the nodes of the hole as uncovered does not make it allowed.
     parts.terrain_mut(id).uncovered_nodes += nodes_inside(&hole);
     parts.assert_breaks(
         Against::Dem,
@@ -204,7 +204,7 @@ fn a_finest_tile_off_by_more_than_the_bound() {
         ],
     );
 
-    // Owning up to the error does not make it a smaller one.
+    // Storing the true error does not make the error allowed.
     let mut above = Some(id);
     while let Some(ancestor) = above {
         let stored_m = &mut parts.terrain_mut(ancestor).geometric_error_m;
@@ -299,7 +299,7 @@ fn heights_of_the_package_that_are_not_the_root_tiles() {
     parts.assert_breaks(Against::Itself, &[CheckId::RootHeights]);
 }
 
-/// With another grid than the elevation files give, what was not looked at does not hold.
+/// If the grid is not the one that the elevation files give, checks that were not made do not count as holding.
 #[test]
 fn checks_that_could_not_be_made_do_not_hold() {
     let mut parts = Parts::sound();

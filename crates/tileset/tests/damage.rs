@@ -1,4 +1,4 @@
-//! A package cut anywhere, and with any single bit flipped: refused, or read as if nothing had happened.
+//! A package that is cut at any length or has any single bit flipped: it is refused, or its content is unchanged.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -11,7 +11,7 @@ use corniche_tileset::{Manifest, MemorySource, Package, Sections, TilePayload};
 
 type Content = (Manifest, Vec<TileId>, Vec<TilePayload>);
 
-/// All that a package says; as text, what is wrong with it.
+/// The whole content of a package, or the text of the error.
 fn read(bytes: Vec<u8>) -> Result<Content, String> {
     pollster::block_on(async {
         let package = Package::open(MemorySource::new(bytes)).await.map_err(|e| e.to_string())?;
@@ -34,7 +34,7 @@ fn every_cut_is_refused() {
     }
 }
 
-/// No flipped bit changes what is read: it is noticed, or lies where nothing is read from.
+/// No flipped bit changes what is read: it causes an error, or lies where nothing is read.
 #[test]
 fn no_flipped_bit_changes_the_content() {
     let whole = written();

@@ -1,4 +1,4 @@
-//! Packages come back as they were written, and what is no whole package is refused.
+//! Packages come back as they were written; other files and damaged packages are refused.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{fs, io::Cursor};
@@ -132,7 +132,7 @@ fn many_tiles_need_leaf_directories_and_are_all_found() {
     let mut ids: Vec<TileId> = every.filter(|id| (id.x() * 31 + id.y() * 17) % 3 != 0).collect();
     ids.sort_by_key(|&id| pmtiles_order(id));
     for id in &ids {
-        // Lengths differ, so that the directory does not compress to nothing.
+        // Lengths differ, so that the directory does not become very small when compressed.
         let length = 4 + (id.x() * 7919 + id.y() * 104_729) % 37;
         writer.add(*id, &id.to_string().repeat(length as usize).into_bytes()).unwrap();
     }
@@ -209,7 +209,7 @@ fn ordinary_pmtiles_and_other_files_are_refused() {
 #[test]
 fn every_cut_is_noticed_when_opening() {
     let bytes = three_tiles();
-    // The last bytes of the file are tiles, which only the header knows of.
+    // The last bytes of the file are tiles; only the header tells their length.
     for length in (0..bytes.len()).rev().step_by(7).chain(0..200) {
         let error = open(bytes[..length].to_vec()).map(|_| ()).expect_err("a cut file");
         let clear = matches!(error, OpenError::NotPmtiles | OpenError::Truncated { .. });

@@ -241,7 +241,7 @@ proptest! {
     /// No node of the ground lies farther from the TIN than the tolerance; the TIN covers the ground and
     /// nothing else; the same heights give the same TIN.
     #[test]
-    fn keeps_its_promises(heights in (4_usize..40, 4_usize..40).prop_flat_map(|(c, r)| terrain(c, r)), max_error_m in 0.1_f64..50.0) {
+    fn every_tin_keeps_its_promises(heights in (4_usize..40, 4_usize..40).prop_flat_map(|(c, r)| terrain(c, r)), max_error_m in 0.1_f64..50.0) {
         let spec = TinSpec { max_error_m, quantum_m: height_quantum_m(max_error_m) };
         prop_assert_eq!(check(&heights, spec), triangulate(&heights, spec).unwrap());
     }

@@ -1,4 +1,4 @@
-//! What flights are told about the graphics card: how much a tile takes there, how long the passes take.
+//! What flights report about the graphics card: the bytes of a tile and the times of the passes.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
 mod support;
@@ -19,7 +19,7 @@ use support::{
     gpu,
 };
 
-/// The budget is kept by what is told before a tile is there.
+/// The memory budget relies on the number of bytes that is computed before a tile is uploaded.
 #[test]
 fn a_tile_takes_as_many_bytes_as_told_before() {
     let Some(gpu) = gpu() else { return };
@@ -69,7 +69,7 @@ fn passes_take_some_time_and_no_more_than_the_frame() {
         assert!(passes.terrain_ms > 0.0 && passes.composite_ms > 0.0, "{passes:?}");
         passes
     };
-    // The timer serves frame after frame; the least of some is the least disturbed by whatever else runs.
+    // The timer can be used for many frames; the smallest of several times is the least disturbed by other programs.
     let least_ms = |method| (0..5).map(|_| frame(method).roads_ms).fold(f64::INFINITY, f64::min);
     let [bare_ms, volumes_ms] = [RoadMethod::None, RoadMethod::ShadowVolumes].map(least_ms);
     assert!(bare_ms < volumes_ms, "roads take time: {volumes_ms} ms, without {bare_ms} ms");

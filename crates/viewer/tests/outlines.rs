@@ -75,7 +75,7 @@ impl<'a> Edges<'a> {
         self.targets.read_picture(self.gpu).unwrap()
     }
 
-    /// Checks that edges are drawn in the pixels where the plain filter finds them and nowhere else; tells in how many.
+    /// Checks that edges are drawn in exactly the pixels where the plain filter finds them; returns their number.
     fn check(&self, tile: &TileGeometry, what: &str) -> usize {
         let bare = self.picture(tile, Outline::None);
         let labels = self.targets.read_labels(self.gpu).unwrap();

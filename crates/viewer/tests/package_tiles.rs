@@ -1,4 +1,4 @@
-//! Tiles from bytes that come later, as from a server: nothing waits for them.
+//! Tiles from bytes that arrive later, as from a server: no call waits for them.
 #![allow(clippy::unwrap_used, reason = "this is test code, helpers included")]
 
 mod support;
@@ -51,7 +51,7 @@ impl ByteSource for Server<'_> {
     }
 }
 
-/// Goes on with some work as far as it can without waiting.
+/// Polls a future once.
 fn poll<T>(work: Pin<&mut impl Future<Output = T>>) -> Poll<T> {
     work.poll(&mut Context::from_waker(Waker::noop()))
 }

@@ -1,4 +1,4 @@
-//! What is done with whole pictures: averaging samples, differences, wireframes, times.
+//! Operations on whole pictures: averaged samples, differences, wireframes, and the times of passes.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
 mod support;
@@ -212,7 +212,7 @@ fn times_of_frames_come_without_waiting() {
     let (camera, style) = (camera(), plain_style(40.0));
     let renderer = Renderer::new(&gpu);
     assert_eq!(timer.poll(&gpu).unwrap(), None, "nothing was drawn");
-    // More frames at once than the timer has room for: some go untimed, none does harm.
+    // More frames at once than the timer has room for: some are not timed, and none fails.
     for _ in 0..12 {
         renderer.draw_timed(&gpu, &view(&camera, &style), &tiles, &targets, Some(&mut timer));
     }

@@ -90,7 +90,7 @@ fn levels_meet_without_holes_and_within_the_error_asked_for() {
                 let off_m = (ground.z - height_m(ground.x, ground.y)).abs();
                 let pixel_m = camera.pixel_at_unit_depth_m() * depth_m;
                 worst_px = worst_px.max(off_m / pixel_m);
-                // Where the finest level is coarser than what was asked for, it is as good as it gets.
+                // Where even the finest level is coarser than asked for, the finest level is drawn.
                 worst_share = worst_share.max(off_m / finest_m.max(error_px * pixel_m));
             }
         }

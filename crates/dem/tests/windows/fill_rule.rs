@@ -1,4 +1,4 @@
-//! The rule by which voids are filled, against a plain second reading of it.
+//! The rule by which voids are filled, against a second, simple implementation.
 
 use std::fs;
 use std::path::PathBuf;

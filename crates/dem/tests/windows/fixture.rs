@@ -23,7 +23,7 @@ pub(crate) fn folder() -> tempfile::TempDir {
     tempfile::tempdir().unwrap()
 }
 
-/// Another format of a raster, written by GDAL; `None`, with a line that says so, when this GDAL cannot.
+/// The raster in another format, written by GDAL; `None`, with a printed line, if this GDAL cannot write the format.
 pub(crate) fn converted(
     path: &Path,
     driver: &str,
@@ -44,7 +44,7 @@ pub(crate) fn converted(
     Some(target)
 }
 
-/// What heights are a function of.
+/// The coordinates that heights are a function of.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Space {
     /// x, y of the working CRS.

@@ -64,7 +64,7 @@ fn rasters_without_place_or_with_an_unusable_one_are_refused() {
         let path = Raster::new(0, [6, 5], coefficients).write(folder.path(), name, |_| 1.0_f32);
         check_refused(&[path], &given, &[name, words, "gdal_translate"]);
     }
-    // Degrees that lie on no globe.
+    // Degrees outside the globe.
     let path = Raster::new(4326, [6, 5], [500_000.0, 10.0, 0.0, 5_200_000.0, 0.0, -10.0]).write(
         folder.path(),
         "metres-as-degrees.tif",
@@ -102,7 +102,7 @@ fn a_single_row_or_column_is_refused_and_a_square_of_four_is_not() {
     );
     let count = check_heights("2×2 degrees", &[four], &given, (Space::Degrees, 0.02), lonlat);
     assert!((1..=4).contains(&count), "{count}");
-    // Single columns side by side are ground together.
+    // Files of one column each, side by side, have ground together.
     let columns: Vec<PathBuf> = (0..5)
         .map(|k| {
             let frame = [UTM[0] + 10.0 * f64::from(k), 10.0, 0.0, UTM[3], 0.0, -10.0];
@@ -280,7 +280,7 @@ fn bounds_of_wide_files_are_their_own() {
     }
 }
 
-/// Halves of the globe side by side make a globe, not two turns of it.
+/// Two halves of the globe side by side are one globe; longitudes do not count a second turn.
 #[test]
 fn halves_of_the_globe_are_one_turn() {
     let folder = tempfile::tempdir().unwrap();

@@ -227,7 +227,7 @@ fn polar_systems_are_kept_where_lengths_are_true_within_three_percent() {
     }
 }
 
-/// A tall extent in degrees: lengths would be off by more than 3 %, so UTM it is, unless one asks for the DEM's grid.
+/// A tall extent in degrees: lengths would be off by more than 3 %, so UTM is used, unless `--crs dem` is given.
 #[test]
 fn beyond_three_percent_utm_is_taken_and_dem_overrides() {
     let folder = tempfile::tempdir().unwrap();
@@ -323,7 +323,7 @@ fn the_globe_can_be_had_in_its_own_degrees() {
     }
 }
 
-/// `--crs DEM` and `--crs Utm` are words, whatever their case; what is none of the words is told of both.
+/// `--crs DEM` and `--crs Utm` are accepted in any case; the message about another word names both.
 #[test]
 fn words_for_the_working_crs_have_any_case() {
     let folder = tempfile::tempdir().unwrap();

@@ -192,7 +192,7 @@ fn thinning_is_refused_where_nodes_are_no_samples() {
     let text = far.plan(&every(2)).unwrap_err().to_string();
     assert!(text.contains("give --crs dem") && text.contains("within 3 %"), "{text}");
     assert!(!text.contains("leave out"), "{text}");
-    // Turned against its own CRS, --crs dem is no way out.
+    // For a rotated grid, --crs dem does not help.
     let turned = [500_000.0, 8.0, 6.0, 5_200_000.0, 6.0, -8.0];
     let turned = Raster::new(32632, [40, 30], turned).write(folder.path(), "t.tif", |_| 1.0_f32);
     let text = open(&[turned]).plan(&every(2)).unwrap_err().to_string();

@@ -74,7 +74,7 @@ fn two_srtm_squares_become_one_grid_of_their_own_samples() {
 }
 
 #[test]
-fn tirol_is_aligned() {
+fn nodes_of_tirol_are_its_samples() {
     let Some((dem, plan)) = open(&["tirol-5m/avaMal.tif"], None) else { return };
     assert_eq!(
         (plan.crs.as_str(), plan.resampling, plan.frame.cell().north_m),

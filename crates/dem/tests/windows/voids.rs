@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use crate::fixture::{Raster, all, open, options};
 
-/// Holes of all sizes and lone voids, by a hash of the position.
+/// Holes of all sizes and single void samples, placed by a hash of the position.
 fn holed(column: usize, row: usize) -> bool {
     let blob = (column as f64 / 9.0).sin() * (row as f64 / 7.0).cos() > 0.75;
     let speck = (column * 7919 + row * 104_729).is_multiple_of(31);
@@ -98,7 +98,7 @@ proptest! {
 
     /// A node has the same bits whichever window it is read through: reprojected, averaged, with voids.
     #[test]
-    fn no_window_matters(
+    fn heights_do_not_depend_on_the_window(
         left in 0_i64..250, top in 0_i64..250, columns in 1_usize..90, rows in 1_usize..90, case in 0_usize..3,
     ) {
         let folder = tempfile::tempdir().unwrap();

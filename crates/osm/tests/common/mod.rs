@@ -24,7 +24,7 @@ pub(crate) fn default_table() -> FrcTable {
     parse_frc_table(include_str!("../../../../config/frc/default.toml")).unwrap()
 }
 
-/// A lattice of 1e-7 degrees, so that every coordinate of the data can be told from its point.
+/// A lattice of 1e-7 degrees, so that every point shows the coordinates of its node.
 pub(crate) fn to_lattice(positions_deg: &[[f64; 2]]) -> Vec<Option<LatticePoint>> {
     let round = |deg: f64| (deg * 1e7).round() as i64;
     positions_deg
@@ -33,7 +33,7 @@ pub(crate) fn to_lattice(positions_deg: &[[f64; 2]]) -> Vec<Option<LatticePoint>
         .collect()
 }
 
-/// All that came out of an extract.
+/// The whole result of reading an extract.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Extract {
     pub(crate) roads: Vec<Road>,
@@ -95,7 +95,7 @@ static POOL: LazyLock<ThreadPool> =
     LazyLock::new(|| rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap());
 static TABLE: LazyLock<FrcTable> = LazyLock::new(default_table);
 
-/// Reads with two threads, always the same.
+/// Reads with two threads, which all tests share.
 pub(crate) fn read(path: &Path) -> Result<Extract, ReadOsmError> {
     read_in(path, &POOL, &to_lattice)
 }

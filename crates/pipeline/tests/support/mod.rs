@@ -133,7 +133,7 @@ pub(crate) struct Options {
 }
 
 impl Options {
-    /// The raster's own cell, nothing filled.
+    /// The raster's own cell; no voids are filled.
     pub(crate) fn plain(max_error_m: f64) -> Self {
         Self {
             crs: None,

@@ -149,7 +149,7 @@ impl Parts {
     }
 
     /// Writes the package that these parts make. Sums of stored bytes follow the tiles, as checksums do: what takes
-    /// more or fewer bytes is told apart by what it says, not by its size.
+    /// more or fewer bytes is then found by its content, not by its size.
     pub(crate) fn write(&self, path: &Path) -> Result<(), String> {
         let encoded = self.encoded().map_err(|error| error.to_string())?;
         let mut manifest = self.manifest.clone();

@@ -1,4 +1,4 @@
-//! What sees that a field was changed.
+//! Which check finds that a field was changed.
 
 use std::path::Path;
 
@@ -6,14 +6,14 @@ use corniche_pipeline::{CheckId, Needs, VerifyError};
 
 use super::parts::{Against, verify_against};
 
-/// What becomes of a package with one field changed.
+/// What `verify` must say of a package with one field changed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Seen {
     /// The check with this id is broken.
     By(CheckId),
-    /// It cannot be made, or cannot be opened: readers and writers refuse the value.
+    /// The package cannot be written or opened: writers or readers refuse the value.
     Refused,
-    /// It is told that these are not the files that the package was made from.
+    /// The error says that these are not the files that the package was made from.
     OtherInput(Against),
     /// No check can see it, for this reason; so it stands in docs/promises.md.
     Unseen(&'static str),
@@ -33,7 +33,7 @@ pub(crate) fn row(name: &str, seen: Seen) -> String {
     format!("| {name} | {by} |")
 }
 
-/// Verifies what lies at `path`, and says what is wrong if it is not seen as expected.
+/// Verifies the package at `path`; gives the answer as an error if it is not the expected one.
 pub(crate) fn check(path: &Path, seen: Seen) -> Result<(), String> {
     let broken = |against| match verify_against(path, against) {
         Ok(report) => Ok(report

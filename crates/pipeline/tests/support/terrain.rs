@@ -5,7 +5,7 @@ use corniche_testing::Random;
 /// A terrain by name.
 pub(crate) type Terrain = (&'static str, fn(i64, i64) -> f32);
 
-/// From nothing to the roughest: what is hard differs.
+/// From flat to very rough; each is difficult in another way.
 pub(crate) const TERRAINS: [Terrain; 6] = [
     ("constant", |_, _| 812.3),
     ("ramp", |c, r| 3.0 * c as f32 - 0.5 * r as f32),

@@ -63,7 +63,7 @@ fn islands_of_every_size_on_corners_borders_and_inside() {
         check(&format!("islands of {side}"), &sea, 0);
         check(&format!("islands of {side}, filled within 8"), &sea, 8);
     }
-    // One node is no ground, but beside an island it does no harm.
+    // A single node has no ground; beside an island it is allowed.
     let rock = |c, r| !(in_square([c, r], ANCHORS[0], 9) || [c, r] == ANCHORS[1]);
     check("a rock beside an island", &rock, 0);
 }

@@ -108,7 +108,7 @@ fn kept_length_m(built: &Built, way_id: i64) -> f64 {
 }
 
 /// Every vertex, and the middle of every edge, of every GEO line lies on a cell of its level that has ground; gives
-/// how many were looked at.
+/// how many were checked.
 fn check_roads_on_ground(built: &Built, truth: &Raster) -> usize {
     let frame = built.frame();
     let mut looked_at = 0;

@@ -25,7 +25,7 @@ fn tile_entry(step: u64) -> Entry {
     Entry { step, run: 1, length: 20, offset: 1 }
 }
 
-/// A gzip leaf whose only entry points at the offset and length given, padded by nothing.
+/// A gzip leaf whose only entry points at the offset and length given, without padding.
 fn leaf_to(offset: u64, length: u64) -> Vec<u8> {
     gzip(&directory(&[Entry { step: 0, run: 0, length, offset: offset + 1 }]))
 }
@@ -126,7 +126,7 @@ pub(crate) fn all() -> Vec<Case> {
         with_leaves(itself, own_length),
         "a directory",
     ));
-    // gzip ends where it ends: bytes after it do no harm, so every leaf may be called 64 bytes long.
+    // Readers ignore bytes after the end of gzip data, so every leaf may be given as 64 bytes long.
     let chain: Vec<u8> = (0..6_u64)
         .flat_map(|depth| {
             let mut leaf = leaf_to(64 * (depth + 1), 64);

@@ -1,4 +1,4 @@
-//! Packages that mean harm: each refused for what it is, or read, within a stated memory. Prints a table; run with
+//! Packages made to do harm: each is refused for the right reason, or read, within a stated memory. Prints a table; run with
 //! `--nocapture`.
 //!
 //! One test alone, so that the memory it measures is that of one reader.
@@ -23,7 +23,7 @@ use peak_alloc::PeakAlloc;
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// What must come of a package.
+/// The expected result for a package.
 pub(crate) enum Outcome {
     /// An error whose text has this in it.
     Refused(&'static str),
@@ -31,7 +31,7 @@ pub(crate) enum Outcome {
     Read,
 }
 
-/// A package, what must come of it, and in how much memory beyond its own bytes.
+/// A package, the expected result, and the memory that reading it may take beyond its own bytes.
 pub(crate) struct Case {
     pub(crate) name: &'static str,
     pub(crate) bytes: Vec<u8>,
@@ -44,7 +44,7 @@ pub(crate) fn refused(name: &'static str, bytes: Vec<u8>, reason: &'static str) 
     Case { name, bytes, outcome: Outcome::Refused(reason), limit_mib: 4 }
 }
 
-/// Opens, lists, and reads all tiles; as text, what is wrong.
+/// Opens a package, lists its tiles and reads all of them; gives their number, or the text of the error.
 fn read(bytes: Vec<u8>) -> Result<usize, String> {
     pollster::block_on(async {
         let package = Package::open(MemorySource::new(bytes)).await.map_err(|e| e.to_string())?;

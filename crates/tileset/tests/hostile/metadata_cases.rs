@@ -1,4 +1,4 @@
-//! Metadata: too large, too deep, and numbers that nothing could be calculated with.
+//! Metadata that are too large or nested too deeply, or have unusable numbers.
 
 use serde_json::{Value, json};
 

@@ -75,7 +75,7 @@ fn attributes(texts: &[&[u8]], ways: usize, name: u32) -> Vec<u8> {
 
 /// A fan of 512 triangles around the tile's corner, and a line that is said to cross one edge of it after another.
 ///
-/// Going over an edge means finding it among all those around the corner.
+/// To cross an edge, the reader must find it among all edges around the corner.
 fn around_a_hub(crossings: usize) -> Vec<u8> {
     let rim =
         (0..=256_u16).map(|row| (row, 256)).chain((0..256_u16).rev().map(|column| (256, column)));

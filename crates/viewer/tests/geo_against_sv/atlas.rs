@@ -29,7 +29,7 @@ const SIZE: [u32; 2] = [640, 480];
 const BAND_PX: f64 = 0.05;
 const QUALITY: Quality = Quality { screen_space_error_px: 2.0, vertical_scale: 1.0 };
 
-/// A package and what was made of its tiles so far.
+/// A package and the GPU buffers of the tiles that were used so far.
 pub(crate) struct Atlas<'a> {
     gpu: &'a Gpu,
     renderer: Renderer,

@@ -10,7 +10,7 @@
 //! within 0.05 px are left out, as rounding to f32 decides them. The gate: no view differs in more than 0.3 % of SV's
 //! pixels of roads.
 //!
-//! Without packages a made-up country is looked at. `CORNICHE_TEST_PACKAGES` names packages (as in `PATH`),
+//! Without packages a made-up country is used. `CORNICHE_TEST_PACKAGES` names packages (as in `PATH`),
 //! `CORNICHE_GEO_VIEWS` the number of views for each (10 without it). With `CORNICHE_GEO_REPORT` views above the
 //! gate are listed and the test does not fail on them: `scripts/geo-against-sv` does so for six packages.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
@@ -45,7 +45,7 @@ const GATE: f64 = 0.003;
 
 const SEED: u64 = 9;
 
-/// What was found in the views of one package.
+/// The result of all views of one package.
 struct Found {
     name: String,
     /// By their share, least first.
@@ -158,7 +158,7 @@ fn roads_of_the_reference_are_as_wide_as_the_drawn_ones() {
     assert!(widest > 1e-3, "{widest}");
 }
 
-/// The comparison sees what it should: SV against SV without caps is far beyond the gate.
+/// The comparison finds differences: SV against SV without caps differs far more than the limit.
 #[test]
 fn roads_without_their_caps_are_beyond_the_gate() {
     let Some(gpu) = gpu() else { return };

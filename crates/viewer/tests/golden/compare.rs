@@ -79,7 +79,7 @@ pub(crate) fn check(name: &str, found: &RgbaImage) {
     if compared.as_ref().is_ok_and(Mismatch::is_match) {
         return;
     }
-    // Only tests beside a crate are told of that folder.
+    // Cargo sets this variable only for integration tests.
     let folder = option_env!("CARGO_TARGET_TMPDIR").map_or_else(std::env::temp_dir, PathBuf::from);
     found.save(folder.join(format!("{name}.png"))).unwrap();
     let what = match compared {

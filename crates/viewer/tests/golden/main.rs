@@ -112,7 +112,7 @@ fn the_difference_of_two_methods_looks_as_it_did() {
     check("difference", &image(&gpu, &difference));
 }
 
-/// The comparison sees what it should see.
+/// The comparison finds a difference where there is one.
 #[test]
 fn a_road_five_percent_wider_is_no_match() {
     if is_blessing() {

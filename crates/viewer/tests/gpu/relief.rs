@@ -48,7 +48,7 @@ fn a_road_over_a_ridge_ends_at_its_crest() {
     let drawing = draw(&gpu, &camera, &plain_style(40.0), std::slice::from_ref(&tile));
     let mut outside = 0;
     for at in drawing.pixels_of(0) {
-        // A pixel's breadth of slack at the silhouette, where the centre's ray may pass over the crest.
+        // At the silhouette one pixel is allowed, because the ray of the pixel's centre may pass over the crest.
         let on_road = [0.0, 0.5, 1.0].iter().any(|down_px| {
             let ray = camera.ray_in_world(at + DVec2::new(0.0, *down_px));
             cast(camera.eye_in_world(), ray, &mesh).is_some_and(|depth_m| {

@@ -105,7 +105,7 @@ fn on_flat_ground_every_pixel_outside_the_band_agrees_with_the_reference() {
     }
 }
 
-/// The check above sees what it should see.
+/// The comparison above finds roads that are wrong.
 #[test]
 fn the_reference_notices_wrong_roads() {
     let Some(gpu) = gpu() else { return };

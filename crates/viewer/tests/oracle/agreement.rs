@@ -90,7 +90,7 @@ fn check(named: &Named) {
                     wrong as f64 <= 1e-4 * compared as f64,
                     "{name}: {wrong} of {compared} by rays"
                 );
-                // Two pixels of slack for lines of a hundred pixels: threads narrower than a pixel's diagonal.
+                // Two pixels are allowed for lines of a hundred pixels, because a road may be narrower than a pixel's diagonal.
                 assert!(lines.missing_px <= 0.001 * lines.seen_px + 2.0, "{name}: {lines:?}");
             }
         }

@@ -49,7 +49,7 @@ impl<'a> Caster<'a> {
         }
         let bin =
             |at: f64, count: usize| (at / BIN_PX as f64).floor().clamp(-1.0, count as f64) as isize;
-        // A pixel of slack: rays go half a pixel beyond the outermost centres.
+        // One pixel more on each side: rays go half a pixel beyond the outermost centres.
         let columns = bin(low.x - 1.0, self.columns)..=bin(high.x + 1.0, self.columns);
         let rows = bin(low.y - 1.0, self.rows)..=bin(high.y + 1.0, self.rows);
         for row in rows.filter(|row| (0..self.rows as isize).contains(row)) {

@@ -65,7 +65,7 @@ fn connectors_close_the_step_between_levels_and_without_them_it_gapes() {
     let Some(gpu) = gpu() else { return };
     let country = Country::new();
     let with = stepped(&country);
-    // Of another way in each tile, the roads have nothing to do with each other.
+    // With another way id in each tile, the roads count as unconnected.
     let mut without = with.clone();
     for (tile, k) in without.tiles.iter_mut().zip(1..) {
         *tile = tile.with_ways_renumbered(k * 1000);

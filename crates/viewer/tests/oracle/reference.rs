@@ -57,7 +57,7 @@ impl Tri {
     }
 }
 
-/// What is compared, and how it came out.
+/// A comparison and its result.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Comparison {
     /// Pixels outside the band that should have or have a road.

@@ -31,7 +31,7 @@ fn straight_roads_have_their_true_width_where_working_metres_are_longer_northwar
     });
 }
 
-/// `stretch` tells for a direction how wide a road of one metre is.
+/// `stretch` gives, for a direction, the drawn width of a road of one metre.
 fn check_widths(stretch: impl Fn(DVec2) -> f64) {
     let Some(gpu) = gpu() else { return };
     let camera = scenes::camera(0.0, 1000.0, 0.0, 0.0);

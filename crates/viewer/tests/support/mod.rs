@@ -42,7 +42,7 @@ pub(crate) fn gpu() -> Option<Gpu> {
     }
 }
 
-/// What the scenes of a test lie in.
+/// The cells and the scale that all scenes of a test have.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct World {
     /// How long cells are northwards over eastwards.
@@ -67,7 +67,7 @@ pub(crate) fn world() -> World {
     WORLD.get()
 }
 
-/// Makes what is made of scenes meanwhile lie in another world.
+/// Calls `make`; all scenes made meanwhile lie in `world`.
 pub(crate) fn within<T>(world: World, make: impl FnOnce() -> T) -> T {
     let before = WORLD.replace(world);
     let made = make();
@@ -317,7 +317,7 @@ pub(crate) fn draw_exaggerated(
     Drawing::read(gpu, &targets)
 }
 
-/// With `CORNICHE_KEEP_PICTURES=folder`, writes each picture of the tests there to be looked at.
+/// With `CORNICHE_KEEP_PICTURES=folder`, writes each picture of the tests to that folder.
 fn keep(drawing: &Drawing) {
     let Some(folder) = std::env::var_os("CORNICHE_KEEP_PICTURES") else { return };
     let name = std::thread::current().name().unwrap_or("picture").to_owned();

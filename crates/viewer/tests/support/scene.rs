@@ -1,4 +1,4 @@
-//! What is drawn, in f64, as both the card and the references get it.
+//! Scenes in f64, the common input of the renderer and of the references.
 
 use std::collections::HashMap;
 
