@@ -9,7 +9,7 @@ fn columns_line_up() {
 }
 
 #[test]
-fn thousands_are_apart() {
+fn thousands_are_separated() {
     assert_eq!(count(7), "7");
     assert_eq!(count(1_234_567), "1\u{202f}234\u{202f}567");
 }

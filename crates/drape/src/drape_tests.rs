@@ -84,7 +84,7 @@ fn within_one_triangle_nothing_is_added() {
 }
 
 #[test]
-fn through_a_vertex() {
+fn a_line_through_a_vertex_names_it() {
     assert_drapes(&[(6, -2), (14, -18)], &["s6,-2 @4 (14 -18)"], 4.0 * 5_f64.sqrt());
     assert_drapes(&[(8, -1), (14, -28)], &["s8,-1 @4 (14 -28)"], 340_f64.sqrt());
 }

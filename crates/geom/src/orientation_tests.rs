@@ -18,7 +18,7 @@ proptest! {
 
     /// Swapping two corners turns the triangle over.
     #[test]
-    fn is_antisymmetric(a in point(-1000..1000), b in point(-1000..1000), c in point(-1000..1000)) {
+    fn exchanging_two_corners_changes_the_sign(a in point(-1000..1000), b in point(-1000..1000), c in point(-1000..1000)) {
         prop_assert_eq!(cross(a, b, c), -cross(b, a, c));
     }
 }

@@ -1,7 +1,7 @@
 use super::*;
 
 #[test]
-fn sizes_of_memory() {
+fn sizes_of_memory_are_read_or_refused() {
     assert_eq!(parse_bytes("800K"), Ok(800 << 10));
     assert_eq!(parse_bytes("512M"), Ok(512 << 20));
     assert_eq!(parse_bytes("4G"), Ok(4 << 30));

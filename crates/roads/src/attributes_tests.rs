@@ -94,7 +94,7 @@ fn tags_that_are_taken_for_something_else_are_named() {
 }
 
 #[test]
-fn keeps_the_names() {
+fn the_names_of_a_road_are_kept() {
     let road = attributes(&[
         ("name", "Hauptstraße"),
         ("ref", "16"),

@@ -58,7 +58,7 @@ fn measures_to_the_segment_where_a_line_overshoots() {
 }
 
 #[test]
-fn keeps_fixed_points() {
+fn fixed_points_are_kept() {
     check(&[(0, 0), (25, 0), (50, 0), (100, 0)], &[2], 9.0, &[(0, 0), (50, 0), (100, 0)]);
 }
 

@@ -1,7 +1,7 @@
 use super::*;
 
 #[test]
-fn sizes_and_positions() {
+fn sizes_and_positions_are_read_or_refused() {
     assert_eq!(parse_size("640x480"), Ok([640, 480]));
     assert!(
         parse_size("640").is_err()
