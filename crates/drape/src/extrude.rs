@@ -7,9 +7,9 @@ use crate::{SvLine, height_range::padded, segment_rectangle::SegmentRectangle};
 
 /// The plan line for shadow volumes, with the lowest and highest ground of this tile around each segment.
 ///
-/// *Around* is the rectangle along the segment that reaches `margin_steps` beyond it on every side, so it holds
-/// the segment's caps. The range is that of the TIN there, never too narrow. Segments without ground that
-/// near are dropped, which splits the line. Clip `line` to the tile and its margin first
+/// *Around* means the rectangle along the segment that reaches `margin_steps` beyond it on every side, so it contains
+/// the segment's caps. The range holds all heights of the TIN in this rectangle. Segments without ground in it are
+/// left out, which splits the line. Clip `line` to the tile and its margin first
 /// ([`clip_closed`](crate::clip_closed)).
 ///
 /// Source: Sutherland & Hodgman 1974, *Reentrant Polygon Clipping*, for the polygons; the height range per
@@ -46,7 +46,7 @@ pub fn extrude(line: &Polyline, surface: &Surface, margin_steps: i64) -> Vec<SvL
     lines
 }
 
-/// The triangles near some segments of a line, so sorted that few have to be looked at for each.
+/// The triangles near some segments of a line, sorted so that only a few are examined for each segment.
 ///
 /// ```text
 ///     height │    ╷   ╷                 A triangle whose lowest corner is above what has been found cannot
@@ -118,7 +118,7 @@ impl Near<'_> {
             look(triangle, [&mut lowest_m, &mut highest_m]);
         }
         if lowest_m > highest_m {
-            // All have been looked at.
+            // All triangles have been examined.
             return None;
         }
         for &(corner_m, triangle) in &self.highest_first {

@@ -25,7 +25,7 @@ impl Fraction {
         }
     }
 
-    /// Where p → q meets the line through `a` and `b`, which it is not parallel to.
+    /// Where p → q meets the line through `a` and `b`; the two must not be parallel.
     pub(crate) fn of_crossing([p, q]: [LatticePoint; 2], [a, b]: [LatticePoint; 2]) -> Self {
         let at_p = cross(a, b, p);
         Self::new(at_p, at_p - cross(a, b, q))
@@ -41,7 +41,7 @@ impl Fraction {
         }
     }
 
-    /// The nearest f64, or nearly.
+    /// The nearest f64, or one next to it.
     pub(crate) fn to_f64(self) -> f64 {
         self.numerator as f64 / self.denominator as f64
     }
@@ -62,8 +62,8 @@ impl PartialOrd for Fraction {
 }
 
 impl Ord for Fraction {
-    /// Compares whole parts, then the reciprocals of the rests, as Euclid's algorithm goes: the cross
-    /// products of two 2^115 fractions would not fit 128 bits.
+    /// Compares whole parts, then the reciprocals of the remainders, as in Euclid's algorithm: the cross products of
+    /// two fractions with numbers up to 2^115 would not fit 128 bits.
     fn cmp(&self, other: &Self) -> Ordering {
         let (mut a, mut b) = (*self, *other);
         loop {

@@ -12,7 +12,7 @@ const REACH_STEPS: u64 = MAX_LATTICE_STEPS.unsigned_abs();
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BadLine {
-    /// It is not a line.
+    /// The line has too few vertices.
     #[error("a draped line has {vertices} vertices and needs two")]
     TooShort {
         /// How many it has.
@@ -34,13 +34,15 @@ pub enum BadLine {
         /// The TIN vertex it names.
         vertex: u32,
     },
-    /// A point lies farther than 2^50 steps out, where f64 would no longer tell fractions of a step.
+    /// A point lies more than 2^50 steps from the origin, where f64 would not represent fractions of a step well
+    /// enough.
     #[error("point ({}, {}) of a draped line is out of range", point.u, point.v)]
     OutOfRange {
         /// The point.
         point: LatticePoint,
     },
-    /// A crossing or passed vertex has no source point (or lead) on one side, or a lead is one too many.
+    /// A crossing or passed vertex has no source point (or lead) on one side, or there is a lead where there must be
+    /// none.
     #[error(
         "vertex {at} of a draped line does not lie between two source points, or a lead is not needed"
     )]
@@ -100,8 +102,8 @@ pub enum BadLine {
 /// its exact position to within 2^-50 of the heights of the edge's ends. Source points and TIN vertices are exact.
 ///
 /// # Errors
-/// When the line is no line, names a triangle or a TIN vertex that does not exist, or says that it crosses what
-/// it does not. A line without an error here may still be wrong in ways that [`check`](crate::check()) finds.
+/// When the line has too few vertices, names a triangle or a TIN vertex that does not exist, or names an edge that it
+/// does not cross. A line without an error here may still be wrong in ways that [`check`](crate::check()) finds.
 pub fn positions(line: &DrapedLine, surface: &Surface) -> Result<Vec<[f64; 3]>, BadLine> {
     let mut positions = Vec::with_capacity(line.vertices.len());
     for_each_vertex(line, surface, |_, vertex, segment| {
@@ -122,8 +124,8 @@ pub fn positions(line: &DrapedLine, surface: &Surface) -> Result<Vec<[f64; 3]>, 
 
 /// The segment of the source line that each edge of `line` is a piece of, one fewer than vertices.
 ///
-/// For a line that [`positions`] accepts; where another has no source point on one side, the one on the other stands for
-/// it, and a line without any has no segments.
+/// For a line that [`positions`] accepts; in another line, a missing source point on one side is replaced by the one
+/// on the other side; a line without source points has no segments.
 #[must_use]
 pub fn source_segments(line: &DrapedLine) -> Vec<[LatticePoint; 2]> {
     let source = |vertex: &DrapedVertex| match vertex {
@@ -147,8 +149,8 @@ pub fn source_segments(line: &DrapedLine) -> Vec<[LatticePoint; 2]> {
     segments
 }
 
-/// Visits every vertex with its index and the segment it lies on (for a source point twice that point), once
-/// its indices, its range and, for a crossing, the sides of its edge's ends are known to be good.
+/// Visits every vertex with its index and the segment it lies on (for a source point twice that point), once its
+/// indices, its range and, for a crossing, the sides of its edge's ends have been checked.
 pub(crate) fn for_each_vertex(
     line: &DrapedLine,
     surface: &Surface,
@@ -223,7 +225,8 @@ fn side(
 fn crossing(surface: &Surface, [p, q]: [LatticePoint; 2], ends: [u32; 2]) -> [f64; 3] {
     let at = ends.map(|vertex| surface.points()[vertex as usize]);
     let from_line = at.map(|point| cross(p, q, point));
-    // Measured from the nearer end: its offset is small, and turning the segment round negates both numbers.
+    // Measured from the nearer end, so that the offset is small. If the segment runs the other way, both numbers
+    // change their sign only.
     let (near, far) = if from_line[0].abs() <= from_line[1].abs() { (0, 1) } else { (1, 0) };
     let part = from_line[near] as f64 / (from_line[near] - from_line[far]) as f64;
     let heights_m = ends.map(|vertex| surface.heights_m()[vertex as usize]);

@@ -4,7 +4,8 @@ use corniche_tin::Surface;
 use crate::height_range::padded;
 use crate::segment_rectangle::SegmentRectangle;
 
-/// What of the rectangle around a segment may lack ground and still count as covered: rounding of areas.
+/// The share of the rectangle around a segment that may seem to be without ground although all of it is covered:
+/// rounding of areas.
 const UNCOVERED: f64 = 1e-9;
 
 /// Bounds on the ground near a segment that grow with the distance from it.
@@ -55,7 +56,7 @@ pub fn near_ground(ends: [[f64; 2]; 2], surface: &Surface, reach: f64) -> Option
     if near_range_m[0] > near_range_m[1] {
         return None;
     }
-    // Only where all ways from the segment are over ground does its slope tell how far it rises.
+    // Slopes bound the heights only if there is ground everywhere between the segment and the place.
     let is_covered = covered >= (1.0 - UNCOVERED) * near.area();
     Some(if is_covered && beneath_range_m[0] <= beneath_range_m[1] {
         NearGround { range_m: padded(beneath_range_m), rise_m }
@@ -64,7 +65,7 @@ pub fn near_ground(ends: [[f64; 2]; 2], surface: &Surface, reach: f64) -> Option
     })
 }
 
-/// No height is in it.
+/// The range that holds no height.
 const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 fn widen([lowest_m, highest_m]: &mut [f64; 2], corners: &[[f64; 3]]) {
@@ -76,7 +77,7 @@ fn widen([lowest_m, highest_m]: &mut [f64; 2], corners: &[[f64; 3]]) {
 
 /// Whatever lies in the rectangle around a segment, and more.
 fn bounds([p, q]: [[f64; 2]; 2], reach: f64) -> LatticeBounds {
-    // A corner is √2 reaches from its end.
+    // A corner of the rectangle is √2 · reach away from the end of the segment.
     let around = 1.5 * reach + 1.0;
     let least = |axis: usize| (p[axis].min(q[axis]) - around).floor() as i64;
     let most = |axis: usize| (p[axis].max(q[axis]) + around).ceil() as i64;

@@ -3,9 +3,10 @@ use corniche_geom::{TILE_CELLS, TileId};
 /// Which stretches of its four borders a tile owns: what runs exactly along a border of two tiles must be kept
 /// by one of them, and only one, so that nothing is drawn twice and lengths add up.
 ///
-/// Ground is closed: its boundary belongs to it. So a stretch of border belongs to the tile that has ground
-/// beside it, and where that does not decide, to the tile in the east or south, as in `Frame::tile_column_row`.
-/// Both tiles see the cells on both sides (the other's through their halo) and decide alike, cell by cell:
+/// The boundary of the ground belongs to the ground. So a stretch of border belongs to the tile that has ground
+/// beside it, and where that does not decide, to the tile in the east or south, as in `Frame::tile_column_row`. Both
+/// tiles know the cells on both sides (those of the neighbour through their halo) and make the same decision, cell by
+/// cell:
 ///
 /// ```text
 ///       west tile │ east tile        the stretch belongs to
@@ -22,7 +23,7 @@ pub struct OwnedBorders {
     west: Cells,
 }
 
-/// Which neighbours are asked for what runs along the border shared with them, be it only to count it.
+/// Which neighbours exist: they keep what runs along the border shared with them, or at least count it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Neighbours {
     /// The one in the east.

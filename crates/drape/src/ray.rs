@@ -1,4 +1,4 @@
-//! One segment's way over the triangles, by exact tests.
+//! The way of one segment over the triangles, found by exact tests.
 
 use std::cmp::Ordering;
 
@@ -8,7 +8,7 @@ use corniche_tin::{NO_TWIN, Surface};
 /// Where on the ground a point lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Place {
-    /// On no ground.
+    /// Outside the ground.
     Off,
     /// In the inside of a triangle.
     Inside(u32),
@@ -70,9 +70,9 @@ pub(crate) enum Next {
     Arrives(Place),
     /// It leaves a triangle through the inside of this half-edge of it, which runs from a to b.
     Crosses { half_edge: u32, a: u32, b: u32 },
-    /// It reaches this TIN vertex and has more to go.
+    /// It reaches this TIN vertex before its end.
     Passes(u32),
-    /// From where it is no ground leads on.
+    /// No ground continues from where it is.
     Ends,
 }
 
@@ -141,7 +141,7 @@ impl Ray<'_> {
         Next::Ends
     }
 
-    /// On from p in the inside of an edge.
+    /// The next step from p, which lies in the inside of an edge.
     fn leave_edge(&self, half_edge: u32) -> Next {
         let [a, b] = self.surface.ends(half_edge);
         match turn(self.point(a), self.point(b), self.q) {

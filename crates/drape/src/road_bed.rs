@@ -4,7 +4,8 @@ use corniche_tin::Surface;
 use crate::height_range::padded;
 use crate::segment_rectangle::SegmentRectangle;
 
-/// What of the rectangle beside a piece may lack ground and still count as covered: rounding of areas.
+/// The share of the rectangle beside a piece that may seem to be without ground although all of it is covered:
+/// rounding of areas.
 const UNCOVERED: f64 = 1e-9;
 
 /// A straight piece of a road on the ground, in one triangle. Plan positions are in lattice steps.
@@ -48,7 +49,7 @@ pub struct RoadBed {
 pub fn road_bed(piece: &RoadPiece, surface: &Surface, reach: f64) -> RoadBed {
     let RoadPiece { start, direction, length, heights_m, has_caps } = *piece;
     let beyond = has_caps.map(|has_cap| if has_cap { reach } else { 0.0 });
-    // A piece may be shorter than rounding: grow it a little, for something to have an area.
+    // A piece may be shorter than rounding errors: it is made a little longer, so that the rectangle has an area.
     let slack = 1e-3_f64.min(reach);
     let beside = SegmentRectangle::beside(
         start,
@@ -84,7 +85,7 @@ pub fn road_bed(piece: &RoadPiece, surface: &Surface, reach: f64) -> RoadBed {
         for &[along, across, height_m] in part.corners() {
             let plane_m = heights_m[0] + along_rise_m * along + cross_rise_m * across;
             widen(&mut range_m, height_m - plane_m);
-            // From beneath the piece, the way to the ground beside it is straight across; around an end it may go anywhere.
+            // Ground beside the piece is reached straight across it; ground around an end can lie in any direction.
             if along < -slack || along > length + slack {
                 let most_m = bend_m[0].hypot(bend_m[1]);
                 widen(&mut rises_m, most_m);

@@ -2,7 +2,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::LatticePoint;
 
-/// An axis-parallel rectangle in a plane coordinate system, metres or degrees as the holder says.
+/// An axis-parallel rectangle in a plane coordinate system, in metres or in degrees.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Bounds {
     /// West edge.
@@ -24,7 +24,7 @@ impl Bounds {
         max_y: f64::NEG_INFINITY,
     };
 
-    /// Grows to hold `point`.
+    /// Makes the rectangle large enough to hold `point`.
     pub fn include(&mut self, point: [f64; 2]) {
         self.min_x = self.min_x.min(point[0]);
         self.min_y = self.min_y.min(point[1]);

@@ -58,10 +58,10 @@ pub enum CoordinateTableError {
     /// The projection failed.
     #[error("the package's corners have no longitude and latitude")]
     Project(#[from] ProjectError),
-    /// The table as read makes no sense.
+    /// The table that was read is not usable.
     #[error("the table of longitudes and latitudes is damaged")]
     Damaged,
-    /// No table of permitted size is exact enough: the extent touches a pole, say.
+    /// No table of permitted size is exact enough, for example because the extent touches a pole.
     #[error(
         "longitude and latitude cannot be tabulated to {tolerance_m} m: {reached_m} m is the best reached"
     )]
@@ -74,7 +74,8 @@ pub enum CoordinateTableError {
 }
 
 const MAX_SIZE: usize = 129;
-/// Over how many working metres the scale is measured: far more than the table's rounding, far less than its changes.
+/// The distance, in working metres, over which the scale is measured: long enough that the table's rounding does not
+/// matter, short enough that the scale hardly changes over it.
 const SCALE_SPAN_M: f64 = 1000.0;
 /// Metres to a degree of latitude, near enough to turn a tolerance into degrees.
 const METRES_PER_DEGREE: f64 = 111_320.0;
@@ -120,7 +121,7 @@ impl CoordinateTable {
             }
         }
         projection.wgs84_from_working(&mut samples_deg)?;
-        // Each beside its neighbour: a table may be wider than half the earth.
+        // Each longitude is moved next to its neighbour's: a table may be wider than half the earth.
         let center = size / 2;
         let unwrap = |samples_deg: &mut [[f64; 2]], at: usize, beside: usize| {
             samples_deg[at][0] = near_longitude(samples_deg[at][0], samples_deg[beside][0]);
@@ -196,8 +197,8 @@ impl CoordinateTable {
     }
 
     /// Working metres to a true metre at a position, along the working CRS's east and north: by how far longitude and
-    /// latitude change from half a kilometre on one side to half a kilometre on the other, and the radii of curvature of the
-    /// WGS84 ellipsoid there. `None` where that is no positive number.
+    /// latitude change from half a kilometre on one side to half a kilometre on the other, and the radii of curvature
+    /// of the WGS84 ellipsoid there. `None` where that is not a positive number.
     #[must_use]
     pub fn scale_at(&self, at: [f64; 2]) -> Option<[f64; 2]> {
         let [_, lat_deg] = self.wgs84_from_working(at);
@@ -217,8 +218,8 @@ impl CoordinateTable {
         scale.iter().all(|scale| scale.is_finite() && *scale > 0.0).then_some(scale)
     }
 
-    /// Position in the working CRS of `[lon_deg, lat_deg]`; `None` where the table knows no way back
-    /// (a position far outside).
+    /// Position in the working CRS of `[lon_deg, lat_deg]`; `None` where the table has no such position (far
+    /// outside).
     #[must_use]
     pub fn working_from_wgs84(&self, [lon, lat]: [f64; 2]) -> Option<[f64; 2]> {
         let mut at = self.bounds.center();

@@ -27,8 +27,8 @@ impl ClassFilter {
     /// Takes for each class the coarsest cell, in metres, at which it is shown; `None`: always.
     ///
     /// # Errors
-    /// When a cell is not a length, or a class outlasts a more important one (a road network that loses its
-    /// motorways before its tracks is a slip, and a level could not name its least class).
+    /// When a cell is not a length, or a class is shown on coarser levels than a more important one (this would be a
+    /// mistake, and such a level has no least class).
     pub fn new(
         class_max_cell_m: [Option<f64>; FunctionalRoadClass::COUNT],
     ) -> Result<Self, ClassFilterError> {
@@ -48,7 +48,8 @@ impl ClassFilter {
 
     /// The usual choice: class 0 always, then up to cells of 2000, 1000, 400, 200, 120, 60, 60 and 30 m.
     ///
-    /// A choice by eye, not a measurement: each step keeps a tile's network about as dense as the level below it.
+    /// These numbers were chosen by eye: with them, the roads in a tile are about as dense as on the next finer
+    /// level.
     #[must_use]
     pub const fn usual() -> Self {
         Self {

@@ -2,7 +2,7 @@ use std::{collections::BTreeMap, fmt::Write as _};
 
 use crate::FunctionalRoadClass;
 
-/// Which `highway` value is of which functional class: a checked value, ready to ask.
+/// Which `highway` value has which functional class. A table is checked when it is made.
 ///
 /// A table lists every value it knows, those that are *no* road included. A value it does not list is
 /// [`Classified::Unknown`], never guessed; the one rule beyond the list is that `X_link` has the class of `X`
@@ -40,7 +40,7 @@ pub enum FrcTableError {
     Value { name: String, value: String },
 }
 
-/// What a table says of a way's tags.
+/// What a table says about the tags of a way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Classified<'t> {
     /// A road of this class, and the class is on.
@@ -65,12 +65,12 @@ pub enum NotARoad {
 }
 
 impl FrcTable {
-    /// Takes the table `name`: `classes` gives `highway` values their class (0–8), `not_roads` lists the values
-    /// known to be none, and classes above `least_class` are off.
+    /// Takes the table `name`: `classes` gives `highway` values their class (0–8), `not_roads` lists the values that
+    /// are not roads, and classes above `least_class` are off.
     ///
     /// # Errors
-    /// When the name cannot stand in a package's metadata, a class is above 8, a value is listed twice or is
-    /// no tag value, or nothing has a class.
+    /// When the name cannot stand in a package's metadata, a class is above 8, a value is listed twice or cannot be a
+    /// value of a tag, or nothing has a class.
     pub fn new(
         name: impl Into<String>,
         classes: Vec<(String, u8)>,
@@ -132,8 +132,8 @@ impl FrcTable {
         self.values.iter().map(|(value, &class)| (value.as_str(), class))
     }
 
-    /// The whole table as text, one entry a line, sorted: the same for equal tables however they were written
-    /// down, and so the thing to hash.
+    /// The whole table as text, one entry a line, sorted: equal tables give the same text, whatever their files look
+    /// like, so this text is what is hashed.
     #[must_use]
     pub fn canonical_text(&self) -> String {
         let mut text = format!("name={}\nleast_class={}\n", self.name, self.least_class.number());
@@ -167,7 +167,7 @@ impl FrcTable {
     /// The entry for this value, by itself or by the link rule.
     fn entry(&self, highway: &str) -> Option<&Option<FunctionalRoadClass>> {
         let of_parent = || self.values.get(highway.strip_suffix("_link")?);
-        // A link to something that is no road is as unknown as any other word.
+        // A link to something that is not a road counts as unknown.
         self.values.get(highway).or_else(|| of_parent().filter(|class| class.is_some()))
     }
 }

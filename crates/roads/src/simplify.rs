@@ -5,10 +5,11 @@ use crate::Road;
 /// The road's line with fewer points: no point of the source lies farther than `tolerance_steps` (lattice steps) from
 /// the segment that replaces its stretch.
 ///
-/// Points listed in [`Road::fixed`] and both ends stay. A tolerance of 0 (or below, or NaN) keeps every point. The result
-/// does not depend on the direction of the way: a way and its reverse keep the same points (except where it runs back over
-/// itself point by point and so has no direction). Of a stretch that returns to its start (a ring between junctions) the farthest point always stays, so that the line never vanishes; a ring
-/// smaller than the tolerance becomes a there-and-back of one segment.
+/// Points listed in [`Road::fixed`] and both ends stay. A tolerance of 0 (or below, or NaN) keeps every point. The
+/// result does not depend on the direction of the way: a way and its reverse keep the same points (except where it
+/// runs back over itself point by point and so has no direction). Of a stretch that returns to its start (a ring
+/// between junctions) the farthest point always stays, so that the line never vanishes; a ring smaller than the
+/// tolerance becomes one segment forth and back.
 ///
 /// Lines may come to cross themselves or others where they did not, as with any simplification by distance alone.
 ///
@@ -18,7 +19,7 @@ use crate::Road;
 /// on the direction of the way. `geo`'s implementation promises neither of the last two; tests compare with it elsewhere.
 #[must_use]
 pub fn simplify(road: &Road, tolerance_steps: f64) -> Polyline {
-    // Written so that NaN keeps everything, too.
+    // With this comparison NaN keeps every point, too.
     let reduces = tolerance_steps > 0.0;
     let points = road.line.points();
     if !reduces || points.len() <= 2 {
@@ -60,7 +61,7 @@ fn thin_stretch(
         let Some((farthest, distance_steps)) = farthest(points, first, last, is_reversed) else {
             continue;
         };
-        // Equal ends span no segment: without this point the stretch would shrink to nothing.
+        // If both ends are equal there is no segment: without this point the stretch would vanish.
         if distance_steps > tolerance_steps || points[first] == points[last] {
             keep[farthest] = true;
             pending.push((first, farthest));
@@ -94,7 +95,7 @@ fn farthest(
 }
 
 /// Whether the canonical direction of this stretch is from its end to its start: that direction whose points come
-/// first in lexicographic order. A stretch that equals its reverse needs none.
+/// first in lexicographic order. A stretch that equals its reverse has no direction.
 fn is_reversed(stretch: &[LatticePoint]) -> bool {
     stretch.iter().rev().lt(stretch.iter())
 }
