@@ -82,6 +82,14 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
     for credit in &manifest.attribution {
         say(format!("attribution  {}", plain(credit)));
     }
+    say(format!("\n{}", levels(manifest).to_text()));
+    text.push_str(&sample_errors(manifest));
+    text.push_str(&roads(manifest));
+    text
+}
+
+/// One row for each level.
+fn levels(manifest: &Manifest) -> Table {
     let mut levels = Table::new([
         "level",
         "cell m",
@@ -116,10 +124,7 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
             count(level.uncovered_nodes),
         ]);
     }
-    say(format!("\n{}", levels.to_text()));
-    text.push_str(&sample_errors(manifest));
-    text.push_str(&roads(manifest));
-    text
+    levels
 }
 
 /// How far each level is from the DEM's own samples.

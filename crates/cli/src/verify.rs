@@ -5,7 +5,7 @@ use std::{
     io::{self, Write as _},
 };
 
-use corniche_pipeline::{VerifyError, VerifyOsm, VerifyReport, VerifySettings};
+use corniche_pipeline::{ErrorFigures, VerifyError, VerifyOsm, VerifyReport, VerifySettings};
 use corniche_presets::frc_preset;
 use corniche_tileset::FilePackage;
 use serde_json::json;
@@ -99,32 +99,7 @@ fn to_text(report: &VerifyReport) -> String {
         let _ = write!(text, "\n{}", table.to_text());
     }
     if !report.errors.is_empty() {
-        let mut table = Table::new([
-            "level",
-            "tiles",
-            "nodes",
-            "true error m",
-            "stored/true min",
-            "median",
-            "p95",
-            "max",
-            "uncovered nodes",
-        ]);
-        let ratio = |value: Option<f64>| or_dash(value, 4);
-        for figures in &report.errors {
-            table.row([
-                figures.level.to_string(),
-                count(figures.tiles),
-                count(figures.nodes),
-                format!("{:.3}", figures.largest_true_m),
-                ratio(figures.tightness.map(|tightness| tightness.min)),
-                ratio(figures.tightness.map(|tightness| tightness.median)),
-                ratio(figures.tightness.map(|tightness| tightness.p95)),
-                ratio(figures.tightness.map(|tightness| tightness.max)),
-                count(figures.uncovered_nodes),
-            ]);
-        }
-        let _ = write!(text, "\n{}", table.to_text());
+        let _ = write!(text, "\n{}", errors(&report.errors).to_text());
     }
     if let Some(samples) = report.samples {
         let _ = write!(
@@ -139,6 +114,36 @@ fn to_text(report: &VerifyReport) -> String {
         );
     }
     text
+}
+
+/// True errors and stored ones, one row for each level.
+fn errors(errors: &[ErrorFigures]) -> Table {
+    let mut table = Table::new([
+        "level",
+        "tiles",
+        "nodes",
+        "true error m",
+        "stored/true min",
+        "median",
+        "p95",
+        "max",
+        "uncovered nodes",
+    ]);
+    let ratio = |value: Option<f64>| or_dash(value, 4);
+    for figures in errors {
+        table.row([
+            figures.level.to_string(),
+            count(figures.tiles),
+            count(figures.nodes),
+            format!("{:.3}", figures.largest_true_m),
+            ratio(figures.tightness.map(|tightness| tightness.min)),
+            ratio(figures.tightness.map(|tightness| tightness.median)),
+            ratio(figures.tightness.map(|tightness| tightness.p95)),
+            ratio(figures.tightness.map(|tightness| tightness.max)),
+            count(figures.uncovered_nodes),
+        ]);
+    }
+    table
 }
 
 fn to_json(report: &VerifyReport) -> serde_json::Value {

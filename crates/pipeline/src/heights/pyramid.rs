@@ -79,20 +79,25 @@ pub(crate) fn read<'a>(
     )?;
     pyramid.range_m = range_m.unwrap_or_default();
     pyramid.blocks = kept.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let span = |low: i64, high: i64| (high - low + 1) as u64;
-    let nodes =
-        span(plan.south_west.i, plan.north_east.i) * span(plan.south_west.j, plan.north_east.j);
-    pyramid.samples = SampleCounts {
-        nodes,
-        with_data: with_height - filled,
-        filled,
-        void: nodes.saturating_sub(with_height),
-    };
+    pyramid.samples = counts(plan, with_height, filled);
     for level in (0..frame.max_level()).rev() {
         pyramid.subsample(level, threads, observer)?;
     }
     observer.end(Stage::Heights);
     Ok(pyramid)
+}
+
+/// What became of the nodes of the data's rectangle.
+fn counts(plan: &GridPlan, with_height: u64, filled: u64) -> SampleCounts {
+    let span = |low: i64, high: i64| (high - low + 1) as u64;
+    let nodes =
+        span(plan.south_west.i, plan.north_east.i) * span(plan.south_west.j, plan.north_east.j);
+    SampleCounts {
+        nodes,
+        with_data: with_height - filled,
+        filled,
+        void: nodes.saturating_sub(with_height),
+    }
 }
 
 /// A rectangle of blocks of the finest level that is read at once: first column, first row, columns, rows.

@@ -150,6 +150,28 @@ struct Subtree<'a> {
 }
 
 impl Subtree<'_> {
+    /// Counts the nodes of a window over which the tile `id` above it has no ground.
+    fn add_uncovered(
+        &mut self,
+        id: TileId,
+        window: &HeightGrid,
+        is_own_sample: &dyn Fn(usize, usize) -> bool,
+    ) {
+        let side = window.columns();
+        let inner = side - 1;
+        let uncovered_nodes = window.window(0, 0, inner, inner).count_heights() as u64;
+        let sums = &mut self.at_nodes[usize::from(id.z())];
+        for row in 0..window.rows() {
+            for column in 0..side {
+                if window.has_height(column, row) && is_own_sample(column, row) {
+                    sums.add(None);
+                }
+            }
+        }
+        let seen = Seen { uncovered_nodes, ..Seen::default() };
+        self.seen.entry(id).or_default().merge(seen);
+    }
+
     /// `filled` are the nodes of the window, by number, that are filled voids.
     fn look_at(
         &mut self,
@@ -189,18 +211,7 @@ impl Subtree<'_> {
                 }
             };
             let Some(buckets) = buckets else {
-                let inner = side - 1;
-                let uncovered_nodes = window.window(0, 0, inner, inner).count_heights() as u64;
-                let sums = &mut self.at_nodes[usize::from(level)];
-                for row in 0..window.rows() {
-                    for column in 0..side {
-                        if window.has_height(column, row) && is_own_sample(column, row) {
-                            sums.add(None);
-                        }
-                    }
-                }
-                let seen = Seen { uncovered_nodes, ..Seen::default() };
-                self.seen.entry(id).or_default().merge(seen);
+                self.add_uncovered(id, window, &is_own_sample);
                 continue;
             };
             let (corner, above) = (frame.tile_corner(finest), frame.tile_corner(id));
