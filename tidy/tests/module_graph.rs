@@ -40,6 +40,19 @@ fn all_below<'a>(name: &'a str, found: &mut Vec<&'a str>) {
     }
 }
 
+/// The crates of the workspace on which a manifest depends outside tests, on any platform.
+fn workspace_dependencies(manifest: &toml::Table) -> Vec<&str> {
+    let platforms = manifest.get("target").and_then(toml::Value::as_table);
+    let platforms = platforms.into_iter().flat_map(toml::Table::values);
+    let tables = platforms.filter_map(toml::Value::as_table).chain([manifest]);
+    tables
+        .flat_map(|table| ["dependencies", "build-dependencies"].map(|name| table.get(name)))
+        .filter_map(|dependencies| dependencies?.as_table())
+        .flat_map(toml::Table::keys)
+        .filter_map(|key| key.strip_prefix("corniche-"))
+        .collect()
+}
+
 /// No two modules of a crate use each other, neither files nor folders.
 #[test]
 fn modules_use_each_other_in_one_direction() {
@@ -72,15 +85,10 @@ fn crates_depend_on_what_is_drawn_below_them() {
             });
             all_below(name, &mut allowed);
         }
-        for table in ["dependencies", "build-dependencies"] {
-            let Some(dependencies) = manifest.get(table).and_then(toml::Value::as_table) else {
-                continue;
-            };
-            for used in dependencies.keys().filter_map(|key| key.strip_prefix("corniche-")) {
-                assert!(used != "testing", "{name} is a product and depends on `testing`");
-                assert!(used != "tidy", "{name} depends on `tidy`");
-                assert!(is_development || allowed.contains(&used), "{name} may not use {used}");
-            }
+        for used in workspace_dependencies(&manifest) {
+            assert!(used != "testing", "{name} is a product and depends on `testing`");
+            assert!(used != "tidy", "{name} depends on `tidy`");
+            assert!(is_development || allowed.contains(&used), "{name} may not use {used}");
         }
     }
 }
