@@ -5,6 +5,7 @@ mod support;
 
 use std::{
     cell::Cell,
+    collections::BTreeMap,
     fs,
     pin::{Pin, pin},
     task::{Context, Poll, Waker},
@@ -13,8 +14,14 @@ use std::{
 use corniche_geom::TileId;
 use corniche_tileset::{ByteSource, MemorySource, Package, SourceError};
 use corniche_viewer::{
-    RoadMethod,
-    tiles::{PackageSource, PackageTiles, TileCatalog as _, TileSource as _},
+    CameraRequest, RoadMethod,
+    camera::Camera,
+    gpu::tile_bytes,
+    lod::{Drawn, Quality},
+    stream::{StreamBudget, Streamer, TileFacts},
+    tiles::{
+        MapPackage as _, PackageSource, PackageTiles, TileCatalog, TileGeometry, TileSource as _,
+    },
 };
 use support::package::package;
 
@@ -118,4 +125,74 @@ fn what_does_not_come_costs_one_tile() {
         loaded.roads.all().is_empty() && loaded.volumes.all().is_empty(),
         "without roads, as asked"
     );
+}
+
+/// Streams tiles for one view until nothing is missing. `load` is called once for each frame with the tiles that are
+/// asked for, and returns the tiles that have arrived. Returns what is drawn, and what is on the graphics card.
+fn settled(
+    catalog: &dyn TileCatalog,
+    camera: &Camera,
+    mut load: impl FnMut(&[TileId]) -> Vec<TileGeometry>,
+) -> (Vec<Drawn>, BTreeMap<TileId, TileGeometry>) {
+    let budget =
+        StreamBudget { tiles_in_flight: 4, upload_bytes_per_frame: 1 << 30, gpu_bytes: 1 << 30 };
+    let quality = Quality { screen_space_error_px: 0.1, vertical_scale: 1.0 };
+    let mut streamer = Streamer::new(budget);
+    let (mut decoded, mut resident) = (BTreeMap::new(), BTreeMap::new());
+    for _ in 0..200 {
+        let plan = streamer.plan(catalog, camera, None, quality);
+        for id in &plan.upload {
+            resident.extend(decoded.remove(id).map(|tile| (*id, tile)));
+        }
+        for tile in load(&plan.load) {
+            let facts = TileFacts { ground: tile.summary, gpu_bytes: tile_bytes(&tile) };
+            streamer.arrived(tile.id, facts);
+            decoded.insert(tile.id, tile);
+        }
+        if plan.missing == 0 && !plan.drawn.is_empty() {
+            return (plan.drawn, resident);
+        }
+    }
+    panic!("something is still missing after 200 frames");
+}
+
+/// The streamer asks only which tiles there are, so it can be driven by tiles that nothing waits for.
+#[test]
+fn a_streamer_chooses_the_same_from_tiles_that_come_later() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = package(folder.path());
+    let on_disk = PackageSource::open(&path).unwrap();
+    let manifest = on_disk.manifest();
+    let heights_m = on_disk.load(TileId::ROOT).unwrap().summary.unwrap().height_range_m;
+    let camera =
+        CameraRequest::FrameAll.camera(manifest, &on_disk, heights_m, 1.0, [640, 480]).unwrap();
+    let expected =
+        settled(&on_disk, &camera, |ids| ids.iter().map(|id| on_disk.load(*id).unwrap()).collect());
+
+    let (line, asked) = (Cell::new(Line::Open), Cell::new(0));
+    let bytes = MemorySource::new(fs::read(&path).unwrap());
+    let server = Server { bytes, line: &line, asked: &asked };
+    let tiles = done(PackageTiles::new(done(Package::open(server)).unwrap())).unwrap();
+    let mut under_way = Vec::new();
+    let (mut frames, mut waits) = (0, 0);
+    let found = settled(&tiles, &camera, |ids| {
+        under_way.extend(ids.iter().map(|id| Box::pin(tiles.load(*id))));
+        // The server answers in every third frame only.
+        frames += 1;
+        line.set(if frames % 3 == 0 { Line::Open } else { Line::Waiting });
+        let mut arrived = Vec::new();
+        under_way.retain_mut(|load| match poll(load.as_mut()) {
+            Poll::Ready(tile) => {
+                arrived.push(tile.unwrap());
+                false
+            }
+            Poll::Pending => {
+                waits += 1;
+                true
+            }
+        });
+        arrived
+    });
+    assert!(waits > 0 && found.1.len() > 4, "{waits} waits for {} tiles", found.1.len());
+    assert!(found == expected, "{:?} instead of {:?}", found.0, expected.0);
 }
