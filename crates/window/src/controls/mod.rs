@@ -11,22 +11,28 @@
 //!  W A S D, Q E             fly mode: ahead, left, back, right, down, up; with Shift fast
 //! ```
 //!
-//! What is otherwise than in `MapLibre`: there is no box zoom (Shift and drag pans), and touch has no gestures. A notch of
-//! the wheel is a third of a level, whatever the system says of its size, where `MapLibre` takes about a sixth. + and −
-//! zoom by whole levels, and not to the next whole one: without a fixed tiling of the screen none is special. A double
-//! click acts when the button goes down for the second time. One may tilt to 85°, there usually to 60°. The ground
-//! grabbed is on the terrain, in a drag as in a zoom; the middle button is our own.
+//! Differences from `MapLibre`: there is no box zoom (Shift and drag pans), and there are no gestures for touch screens. A
+//! notch of the wheel is a third of a level, whatever size the system reports for it; `MapLibre` takes about a sixth. + and −
+//! zoom by whole levels from where the camera is, not to the next whole level: no level is special here. A double click acts
+//! when the button goes down for the second time. The largest tilt is 85°, in `MapLibre` usually 60°. What a drag or a zoom
+//! keeps under the cursor is a point of the terrain. `MapLibre` has nothing on the middle button.
 //!
-//! Nothing here knows a window, a tile or a clock: times are handed in, ground is asked of a [`KnownGround`]. All positions
+//! Nothing here knows a window, a tile or a clock: times are arguments, and heights come from a [`KnownGround`]. All positions
 //! are in world space: the working CRS, heights times the vertical scale.
 
+mod bounded_view;
 mod flying;
+mod gesture;
 mod input;
 mod navigator;
+mod options;
+mod pending;
+mod return_home;
 mod view;
 
 pub use self::{
     input::{Button, Input, Key, KeyState, Modifiers},
-    navigator::{Inertia, Limits, Mode, Navigator},
+    navigator::Navigator,
+    options::{Inertia, Limits, Mode},
     view::{KnownGround, View},
 };

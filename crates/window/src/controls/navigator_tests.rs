@@ -1,3 +1,4 @@
+use corniche_geom::Bounds;
 use proptest::prelude::*;
 
 use super::*;

@@ -4,13 +4,14 @@ use corniche_viewer::{
 };
 use glam::{DMat3, DVec2, DVec3};
 
-/// The ground as far as it is known.
+/// The ground, as far as it is loaded.
 pub trait KnownGround {
     /// The first ground along a ray.
     fn hit(&self, eye_in_world: DVec3, ray_in_world: DVec3) -> Option<DVec3>;
     /// Height of the ground at a place in plan, world metres.
     fn height(&self, at: [f64; 2]) -> Option<f64>;
-    /// A height in the midst of the ground, world metres: where there is none, a plane this high stands in.
+    /// A height in the middle of the range of heights, world metres. Where no ground is known, a plane at this height is
+    /// taken for it.
     fn base_height(&self) -> f64;
 }
 
@@ -21,18 +22,18 @@ pub struct View {
     pub eye_in_world: DVec3,
     /// Direction of view.
     pub orientation: Orientation,
-    /// How far away the ground is that one looks at, about; near plane and haze follow from it.
+    /// About how far away the ground is that is looked at; near plane and haze follow from it.
     pub focus_m: f64,
 }
 
 impl View {
-    /// What a camera with this direction sees.
+    /// The view of a camera, whose direction is `orientation`.
     #[must_use]
     pub fn of(camera: &Camera, orientation: Orientation) -> Self {
         Self { eye_in_world: camera.eye_in_world(), orientation, focus_m: camera.focus_m() }
     }
 
-    /// The camera for a picture of a size in pixels.
+    /// The camera for a picture of this size.
     #[must_use]
     pub fn camera(&self, size_px: [u32; 2]) -> Camera {
         let backward = self.world_from_view().z_axis;
@@ -43,11 +44,12 @@ impl View {
     /// Columns: right, up, backward.
     #[must_use]
     pub fn world_from_view(&self) -> DMat3 {
-        // The axes depend neither on the place nor on the size.
+        // The axes depend neither on the position nor on the size of the picture.
         Camera::look_at(DVec3::ZERO, 1.0, self.orientation, [1, 1]).world_from_view()
     }
 
-    /// The ground at a pixel; without any, the plane at its base height, no farther away than `most_m`.
+    /// The ground at a pixel. Where there is none, the plane at the ground's base height, if that is no farther away than
+    /// `most_m`.
     #[must_use]
     pub fn ground_at(
         &self,
@@ -62,7 +64,7 @@ impl View {
             .or_else(|| self.on_plane(ray, ground.base_height(), most_m))
     }
 
-    /// Where a ray from the eye meets the level plane of a height, no farther away than `most_m`.
+    /// Where a ray from the eye meets the horizontal plane at a height; `None` if that is farther away than `most_m`.
     #[must_use]
     pub fn on_plane(&self, ray: DVec3, height_m: f64, most_m: f64) -> Option<DVec3> {
         let depth = (height_m - self.eye_in_world.z) / ray.z;
@@ -70,7 +72,7 @@ impl View {
         is_ahead.then(|| self.eye_in_world + ray * depth)
     }
 
-    /// The same picture of `pivot` from another direction: the pivot stays on its pixel.
+    /// The view from another direction in which `pivot` stays on its pixel, at the same distance.
     #[must_use]
     pub fn turned_about(&self, pivot: DVec3, orientation: Orientation) -> Self {
         let pivot_in_view = self.world_from_view().transpose() * (pivot - self.eye_in_world);
@@ -78,7 +80,7 @@ impl View {
         Self { eye_in_world: pivot - turned.world_from_view() * pivot_in_view, ..turned }
     }
 
-    /// The eye `factor` times as far from `pivot`, which stays on its pixel.
+    /// The view with the eye `factor` times as far from `pivot`, which stays on its pixel.
     #[must_use]
     pub fn zoomed_at(&self, pivot: DVec3, factor: f64) -> Self {
         Self { eye_in_world: pivot + (self.eye_in_world - pivot) * factor, ..*self }
@@ -99,7 +101,7 @@ impl View {
             .map(|beneath| Self { eye_in_world: self.eye_in_world + (anchor - beneath), ..*self })
     }
 
-    /// How far the eye is beneath the least height above the ground; not above 0 where it is high enough.
+    /// How much higher the eye must be to be `clearance_m` above the ground; 0 or negative where it is high enough.
     #[must_use]
     pub fn lacks_m(&self, clearance_m: f64, ground: &dyn KnownGround) -> f64 {
         let eye = self.eye_in_world;
@@ -108,7 +110,7 @@ impl View {
             .map_or(f64::NEG_INFINITY, |height_m| height_m + clearance_m - eye.z)
     }
 
-    /// The same view with the focus that its height above the ground suggests, as a flight takes it too.
+    /// The same view with the focus that follows from its height above the ground, by the rule for flights.
     #[must_use]
     pub fn refocused(&self, ground: &dyn KnownGround) -> Self {
         let eye = self.eye_in_world;
@@ -116,4 +118,9 @@ impl View {
         let focus_m = eye_height::focus_m(eye.z - below_m, self.orientation.pitch_deg);
         Self { focus_m, ..*self }
     }
+}
+
+/// The same direction between −180° and 180°.
+pub(crate) fn half_turn(heading_deg: f64) -> f64 {
+    (heading_deg + 180.0).rem_euclid(360.0) - 180.0
 }
