@@ -40,15 +40,15 @@ fn parse(what: &str, text: &str) -> Result<Style, Failure> {
     parse_style(text).map_err(|error| refuse(what, &error))
 }
 
-/// The file of a style, looked at again and again while a window shows it.
+/// The file of a style, which is read again and again while a window shows it.
 ///
-/// It is read each time: a few kilobytes, and no time stamp is fine enough to tell of every change.
+/// It has only a few kilobytes, and no time stamp is fine enough to show every change.
 #[derive(Debug, Clone)]
 pub(crate) struct StyleFile {
     path: PathBuf,
-    /// What it said when it was last told of; `None` while that is not known.
+    /// What the file contained, or why it could not be read, when the caller was last told; `None` if that is not known.
     told: Option<Result<String, String>>,
-    /// What it said the last time, if that was no style: perhaps it was being written just then.
+    /// The same at the last look, if it was no style then: perhaps the file was being written.
     doubted: Option<Result<String, String>>,
 }
 
@@ -60,9 +60,9 @@ impl StyleFile {
         Some(Self { path, told, doubted: None })
     }
 
-    /// The style anew when the file says something else than was last told, or why it is none: told once, and only when two
-    /// looks in a row found the same, for a look may fall between an editor's emptying a file and filling it. A file that is
-    /// away for a moment, as while an editor replaces it, has not changed.
+    /// The new style if the file has changed since the caller was last told, or why it contains none. Such an error is
+    /// returned once, and only if two looks in a row found the same, because an editor may have emptied the file and not yet
+    /// filled it. A file that is missing counts as unchanged: an editor may be replacing it.
     pub(crate) fn reload_if_changed(&mut self) -> Option<Result<Style, Failure>> {
         let said = said(&self.path)?;
         let doubted = self.doubted.take();
@@ -82,7 +82,7 @@ impl StyleFile {
     }
 }
 
-/// The text of a file, or why there is none to read; `None` when there is no file.
+/// The text of a file, or why it cannot be read; `None` if there is no file.
 fn said(path: &Path) -> Option<Result<String, String>> {
     match read_text(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => None,

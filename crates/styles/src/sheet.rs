@@ -23,7 +23,7 @@ pub(crate) struct Rgb8(pub(crate) [u8; 3]);
 pub(crate) struct StyleSheet {
     /// Width of the edge of roads, 0 to 4 pixels.
     pub(crate) outline_px: u32,
-    /// Growth with distance.
+    /// How roads widen with distance.
     pub(crate) width_scaling: WidthScalingSheet,
     /// Light and shade.
     pub(crate) light: LightSheet,
@@ -35,7 +35,7 @@ pub(crate) struct StyleSheet {
     pub(crate) roads: [RoadSheet; FunctionalRoadClass::COUNT],
 }
 
-/// How far roads grow with distance.
+/// How roads widen with distance.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct WidthScalingSheet {
@@ -43,7 +43,7 @@ pub(crate) struct WidthScalingSheet {
     pub(crate) threshold_m: f64,
     /// 0 to 1.
     pub(crate) exponent: f64,
-    /// Factor on all widths when they grow by a constant, 0.1 to 100.
+    /// Factor on all widths where they are multiplied by a constant, 0.1 to 100.
     pub(crate) constant: f64,
 }
 
@@ -59,7 +59,7 @@ pub(crate) struct LightSheet {
     pub(crate) hillshade: f64,
 }
 
-/// What is seen where no near ground is.
+/// Colours where there is no near ground.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct BackgroundSheet {
@@ -69,7 +69,7 @@ pub(crate) struct BackgroundSheet {
     pub(crate) sky: Rgb8,
     /// Where there is no ground, below the horizon.
     pub(crate) void: Rgb8,
-    /// Ground so many times as far as what is looked at has lost two thirds of its colour; 0.1 to 1000.
+    /// Ground at this many times the distance of what is looked at has lost two thirds of its colour; 0.1 to 1000.
     pub(crate) haze_reach: f64,
 }
 
@@ -77,7 +77,7 @@ pub(crate) struct BackgroundSheet {
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TintSheet {
-    /// Where in the height range, 0 to 1.
+    /// Share of the range of heights, 0 to 1.
     pub(crate) share: f64,
     /// The colour there.
     pub(crate) color: Rgb8,
@@ -89,11 +89,11 @@ pub(crate) struct TintSheet {
 pub(crate) struct RoadSheet {
     /// Width on the ground, 0.1 to 500 m.
     pub(crate) width_m: f64,
-    /// Never drawn thinner than this, 0.1 to 50 pixels.
+    /// Roads are never drawn thinner than this, 0.1 to 50 pixels.
     pub(crate) min_width_px: f64,
-    /// Fill.
+    /// Colour of the surface.
     pub(crate) color: Rgb8,
-    /// Edge.
+    /// Colour of the edge.
     pub(crate) outline: Rgb8,
     /// A line along the middle.
     pub(crate) center: Option<CenterSheet>,
@@ -170,7 +170,7 @@ fn all_classes(
     if let Some(text) = roads.keys().find(|text| !names.contains(text)) {
         return Err(StyleError::Class { text: text.clone() });
     }
-    // Keys of one digit each: in the order of their names they are in the order of their numbers.
+    // The keys have one digit each, so that their alphabetical order is that of their numbers.
     let known: Vec<RoadSheet> = roads.values().copied().collect();
     known.try_into().map_err(|_| {
         let missing = names.into_iter().find(|name| !roads.contains_key(name)).unwrap_or_default();
@@ -204,7 +204,7 @@ impl StyleSheet {
 }
 
 fn within(entry: &str, value: f64, range: RangeInclusive<f64>) -> Result<(), StyleError> {
-    // What is not a number is in no range.
+    // NaN is in no range.
     if range.contains(&value) {
         return Ok(());
     }
@@ -223,7 +223,7 @@ impl TryFrom<String> for Rgb8 {
     fn try_from(text: String) -> Result<Self, String> {
         let digits = text
             .strip_prefix('#')
-            // `from_str_radix` would take a sign too.
+            // `from_str_radix` would accept a sign too.
             .filter(|digits| digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit()))
             .and_then(|digits| u32::from_str_radix(digits, 16).ok());
         let [_, red, green, blue] = digits

@@ -10,11 +10,11 @@ pub type Rgb = [f32; 3];
 pub struct RoadStyle {
     /// Width on the ground near the eye.
     pub width_m: f32,
-    /// Never drawn thinner than this.
+    /// Roads are never drawn thinner than this.
     pub min_width_px: f32,
-    /// Fill.
+    /// Colour of the surface.
     pub color: Rgb,
-    /// Edge.
+    /// Colour of the edge.
     pub outline: Rgb,
     /// A line along the middle, for roads of two colours; drawn as a second, narrower road of the same class
     /// (the paper, section 6.2).
@@ -30,11 +30,11 @@ pub struct CenterLine {
     pub color: Rgb,
 }
 
-/// How far roads grow with distance (the paper, section 6.2 and Fig. 10).
+/// How much roads widen with distance (the paper, section 6.2 and Fig. 10).
 ///
 /// Up to `threshold_m` a road has its true width. Beyond, the width is multiplied by
-/// `(distance / threshold_m) ^ exponent`: with exponent 0 it shrinks as everything does, with 1 it keeps its
-/// size in pixels. In between, far roads stay visible and still look far.
+/// `(distance / threshold_m) ^ exponent`. With exponent 0, roads become smaller with distance like everything else; with 1,
+/// they keep their width in pixels. In between, far roads remain visible and still look far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WidthScaling {
     /// Distance from the eye up to which widths are true.
@@ -54,7 +54,7 @@ impl WidthScaling {
     }
 }
 
-/// A stop of the height tint: share of the package's height range and colour.
+/// A stop of the height tint: a share of the package's range of heights, and the colour there.
 pub type TintStop = (f32, Rgb);
 
 /// How many stops a height tint has.
@@ -65,7 +65,7 @@ pub const TINT_STOPS: usize = 6;
 pub struct Style {
     /// By class, 0 first.
     pub roads: [RoadStyle; FunctionalRoadClass::COUNT],
-    /// Growth with distance.
+    /// How roads widen with distance.
     pub width_scaling: WidthScaling,
     /// Width of the edge of roads; the kernel has this radius.
     pub outline_px: u32,
@@ -83,12 +83,13 @@ pub struct Style {
     pub sky: Rgb,
     /// Colour where there is no ground, below the horizon.
     pub void: Rgb,
-    /// Ground this many times as far as what is looked at has lost two thirds of its colour.
+    /// Ground at this many times the distance of what is looked at has lost two thirds of its colour.
     pub haze_reach: f32,
 }
 
 impl Style {
-    /// A road atlas: warm roads with dark edges, pale ground.
+    /// The default style, like a road atlas: warm roads with dark edges, pale ground. It is equal to the preset
+    /// `road-atlas`.
     #[must_use]
     pub fn road_atlas() -> Self {
         let road = |width_m, min_width_px, color, outline| RoadStyle {

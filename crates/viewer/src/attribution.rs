@@ -1,9 +1,9 @@
 use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
 use image::RgbaImage;
 
-/// Least and greatest height of the letters' line, pixels.
+/// Smallest and largest height of a line of text, pixels.
 const LINE_PX: std::ops::RangeInclusive<u32> = 14..=28;
-/// Letters take this share of the picture's height, within [`LINE_PX`].
+/// How many lines of text would fill the picture's height; their height stays within [`LINE_PX`].
 const LINES_PER_PICTURE: u32 = 52;
 /// Colour and opacity of the box behind the letters.
 const BOX: ([f32; 3], f32) = ([255.0, 255.0, 255.0], 0.78);
@@ -11,12 +11,12 @@ const INK: [f32; 3] = [32.0, 36.0, 40.0];
 
 /// Writes credits into the lower right corner, on a light box. Without credits the picture stays as it is.
 ///
-/// Lines too long for the picture are broken between words.
+/// Lines that are too long for the picture are broken between words.
 pub fn draw_attribution(picture: &mut RgbaImage, credits: &[String]) {
     let (width, height) = picture.dimensions();
     let line_px = (height / LINES_PER_PICTURE).clamp(*LINE_PX.start(), *LINE_PX.end());
     let pad_px = line_px / 2;
-    // A font that does not parse would be a damaged build; without it there is nothing to draw with.
+    // The font is part of the program, so it can be parsed; otherwise nothing could be written.
     let Ok(font) = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT) else { return };
     let letters = Letters { font: &font, scale: PxScale::from(line_px as f32) };
     let room_px = width.saturating_sub(2 * pad_px) as f32;

@@ -20,18 +20,18 @@ pub struct GroundSummary {
     pub height_range_m: [f64; 2],
 }
 
-/// State of one node of the tile tree.
+/// What is known of a tile in the tile tree.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Node {
     /// Neither the tile nor anything beneath it exists.
     Absent,
-    /// Exists, but is not loaded.
+    /// The tile, or something beneath it, exists and is not loaded.
     Listed,
-    /// Loaded; `None` has no ground on its own level, though its children may have some.
+    /// The tile is loaded. `None` if it has no ground itself, though its children may have some.
     Loaded(Option<GroundSummary>),
 }
 
-/// The tiles of a package as far as they are known.
+/// The tiles of a package, as far as they are loaded.
 pub trait TileTree {
     /// State of a tile.
     fn node(&self, id: TileId) -> Node;
@@ -53,18 +53,18 @@ pub struct Quality {
 /// A tile to draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drawn {
-    /// Which.
+    /// The tile.
     pub id: TileId,
-    /// Its skirt must reach this far down (true metres, before exaggeration) to meet the neighbours drawn.
+    /// How far down its skirt must reach to meet the neighbours that are drawn; true metres, before exaggeration.
     pub skirt_depth_m: f64,
 }
 
 /// A tile to load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Request {
-    /// Which.
+    /// The tile.
     pub id: TileId,
-    /// Screen-space error that loading it would mend, in pixels; infinite for the root.
+    /// The screen-space error of what is drawn in its place, in pixels; infinite for the root.
     pub priority_px: f64,
 }
 
@@ -129,7 +129,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Draws `id` or what lies beneath it. `range_m` bounds the heights when the tile itself does not.
+    /// Draws `id` or the tiles beneath it. `range_m` bounds the heights if the tile itself does not.
     fn visit(&mut self, id: TileId, ground: Option<GroundSummary>, range_m: [f64; 2]) {
         let range_m = ground.map_or(range_m, |ground| ground.height_range_m);
         if !self.may_see(id, range_m) {
@@ -151,7 +151,7 @@ impl Walk<'_> {
             children.retain(|(_, node)| *node != Node::Absent);
         }
         let is_leaf = children.is_empty();
-        // A child not yet loaded lies between its parent's heights, which nest.
+        // A child that is not loaded yet lies between the heights of its parent: its range of heights is a part of theirs.
         children.retain(|(child, _)| self.may_see(*child, range_m));
         let missing: Vec<TileId> = children
             .iter()
@@ -186,7 +186,7 @@ impl Walk<'_> {
     }
 
     fn may_see(&self, id: TileId, range_m: [f64; 2]) -> bool {
-        // Without any known height only the plan can tell, and it cannot tell much: keep the tile.
+        // Without a range of heights it cannot be told whether the tile is in view: it counts as in view.
         range_m.iter().any(|height_m| height_m.is_infinite())
             || self.frustum.may_see(&self.world_box(id, range_m))
     }
@@ -202,7 +202,7 @@ fn skirt_depths_m(errors_m: &BTreeMap<TileId, f64>) -> BTreeMap<TileId, f64> {
         depths_m.entry(id).and_modify(|known| *known = f64::max(*known, depth_m));
     };
     for (&id, &error_m) in errors_m {
-        // Every pair of different levels is met once from its finer side.
+        // Each pair of neighbours of different levels is found once, from its finer side.
         for (dx, dy) in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
             let Some(beside) = id.neighbour(dx, dy) else { continue };
             let coarser =

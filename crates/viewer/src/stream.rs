@@ -7,16 +7,18 @@
 //!    └─────────────────────────────────────────┴───────────────────────┘
 //! ```
 //!
-//! [`Streamer`] decides and remembers; it holds no tile, opens no file and knows no graphics card, so that it is tested
-//! without any. Whoever drives it does what a [`Plan`] says, in its order, and reports what was decoded. Time is counted
-//! in frames: the same camera and the same arrivals give the same plans.
+//! [`Streamer`] decides and remembers. It holds no tile, opens no file and knows no graphics card, so that it can be tested
+//! without them; of a package it asks only which tiles there are. The caller does what a [`Plan`] says, in the order of its
+//! fields, and reports the tiles that were decoded. Time is counted in frames: the same camera and the same arrivals give
+//! the same plans.
 //!
-//! A tile is drawn only when it is resident, and its parent is drawn until all its children that exist are
-//! ([`lod::select`]). What is drawn is never evicted, nor are the tiles above it, which take its place, nor the siblings of
-//! any of these, drawn or waiting for one another: without them, a budget too small would be spent again each frame.
+//! A tile is drawn only when it is resident, and a parent is drawn until all its children that exist are resident
+//! ([`lod::select`]). Tiles that are drawn are never evicted. Nor are the tiles above them, which may have to take their
+//! place, nor the siblings of any of these: children are drawn only together, so if one were evicted it would be loaded
+//! again in the next frame, and with a budget that is too small this would never end.
 //!
-//! Source: Cozzi & Ring, *3D Engine Design for Virtual Globes* (2011), ch. 12: least recently used tiles go first, the
-//! requests of the present view come before those of the coming one.
+//! Source: Cozzi & Ring, *3D Engine Design for Virtual Globes* (2011), ch. 12: the least recently used tiles are evicted
+//! first, and the requests of the present view come before those of the coming one.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,14 +30,14 @@ use crate::{
     tiles::TileCatalog,
 };
 
-/// How much is done in a frame and kept.
+/// How much may be done in a frame, and how much may be kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StreamBudget {
-    /// So many tiles are being decoded at once.
+    /// At most this many tiles are decoded at once.
     pub tiles_in_flight: usize,
-    /// So much is handed to the graphics card in a frame, though always at least one tile.
+    /// At most this much is uploaded to the graphics card in a frame, but always at least one tile.
     pub upload_bytes_per_frame: u64,
-    /// So much lies on the graphics card.
+    /// At most this much is kept on the graphics card.
     pub gpu_bytes: u64,
 }
 
@@ -51,17 +53,17 @@ pub struct TileFacts {
 /// What to do in this frame, in this order.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Plan {
-    /// Remove from the graphics card.
+    /// Tiles to remove from the graphics card.
     pub evict: Vec<TileId>,
-    /// Hand over to the graphics card; all of them have arrived.
+    /// Tiles to upload to the graphics card; all of them have arrived.
     pub upload: Vec<TileId>,
-    /// Draw.
+    /// Tiles to draw.
     pub drawn: Vec<Drawn>,
-    /// Forget, decoded but no longer wanted.
+    /// Decoded tiles to drop, because they are no longer wanted.
     pub cancel: Vec<TileId>,
-    /// Begin to load, most urgent first.
+    /// Tiles to load, most urgent first.
     pub load: Vec<TileId>,
-    /// Tiles that this view wants next and that are not resident yet; what lies beneath them is not counted.
+    /// How many tiles this view needs next that are not resident yet; the tiles beneath them are not counted.
     pub missing: usize,
 }
 
@@ -103,19 +105,20 @@ impl Streamer {
         }
     }
 
-    /// What lies on the graphics card.
+    /// How many bytes of tiles are on the graphics card.
     #[must_use]
     pub fn resident_bytes(&self) -> u64 {
         self.resident_bytes
     }
 
-    /// How many tiles lie on the graphics card.
+    /// How many tiles are on the graphics card.
     #[must_use]
     pub fn resident_tiles(&self) -> usize {
         self.resident.len()
     }
 
-    /// Plans the next frame, seen from `camera`; `ahead` is where the camera will soon be, to load for in advance.
+    /// Plans the next frame, seen from `camera`. `ahead` is where the camera will be soon: tiles for it are loaded in
+    /// advance.
     pub fn plan(
         &mut self,
         catalog: &dyn TileCatalog,
@@ -129,7 +132,7 @@ impl Streamer {
         self.touch(&before);
         let coming = ahead.map(|ahead| self.select(catalog, ahead, quality)).unwrap_or_default();
 
-        // What the coming view shows may go for the present one, but not for more of the coming one.
+        // Tiles of the coming view may be evicted to make room for the present view, but not for more of the coming one.
         let mut left_bytes = self.budget.upload_bytes_per_frame;
         self.upload(&before.requests, &BTreeSet::new(), &mut left_bytes, &mut plan);
         let kept = self.in_use(&coming);
@@ -152,8 +155,8 @@ impl Streamer {
         lod::select(&ResidentTree { catalog, resident: &self.resident }, camera, quality)
     }
 
-    /// Tiles that a selection needs to stay as it is: those drawn, those above them, and of each of these all children,
-    /// in view or not, because one that lacks has its parent drawn instead.
+    /// The resident tiles without which a selection would change: the tiles drawn, the tiles above them, and all children
+    /// of these, in view or not, because a parent is drawn in place of its children when one of them is not resident.
     fn in_use(&self, selection: &Selection) -> BTreeSet<TileId> {
         let mut refined = BTreeSet::new();
         let drawn = selection.drawn.iter().map(|drawn| drawn.id);
@@ -200,7 +203,7 @@ impl Streamer {
         }
     }
 
-    /// Evicts the least recently used until `wanted_bytes` more fit; nothing if they cannot.
+    /// Evicts the least recently used tiles until `wanted_bytes` more fit; evicts nothing where that is impossible.
     fn make_room(&mut self, wanted_bytes: u64, kept: &BTreeSet<TileId>, plan: &mut Plan) -> bool {
         let excess_bytes =
             (self.resident_bytes + wanted_bytes).saturating_sub(self.budget.gpu_bytes);
@@ -213,7 +216,7 @@ impl Streamer {
             .filter(|(id, tile)| tile.last_used_frame < self.frame && !kept.contains(id))
             .map(|(id, tile)| (tile.last_used_frame, *id))
             .collect();
-        // Of tiles last used together, the finest goes first: the coarse ones stand in for more.
+        // Of tiles that were used last in the same frame, the finest is evicted first: a coarse one can replace more.
         idle.sort_by(|a, b| a.0.cmp(&b.0).then(b.1.cmp(&a.1)));
         let mut freed_bytes = 0;
         let enough = idle.iter().position(|(_, id)| {
@@ -236,7 +239,7 @@ impl Streamer {
         for id in &plan.cancel {
             self.waiting.remove(id);
         }
-        // What waits already for want of room must not be joined by ever more.
+        // Tiles that wait because there is no room for them must not become more and more.
         let room = self.budget.tiles_in_flight.saturating_sub(self.waiting.len());
         let coming = coming.iter().take(room);
         for Request { id, .. } in now.iter().chain(coming) {
@@ -251,7 +254,7 @@ impl Streamer {
     }
 }
 
-/// The package's tiles; those on the graphics card count as loaded.
+/// The package's tiles, of which those on the graphics card count as loaded.
 struct ResidentTree<'a> {
     catalog: &'a dyn TileCatalog,
     resident: &'a BTreeMap<TileId, Resident>,

@@ -1,81 +1,37 @@
-//! Everything of the window that lies on the graphics card, apart from the surface: tiles, pictures of the map, the
-//! panel's textures. Made anew as a whole when the device is lost.
+//! What the window has on the graphics card, apart from the surface: tiles, pictures of the map, textures of the panel. When
+//! the device is lost, a new canvas takes the place of the old one.
 
+mod scene;
 mod snapshot;
 
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
-use corniche_styles::Style;
 use corniche_viewer::{
     RoadMethod, RoadOptions,
-    camera::Camera,
     gpu::{
         DrawTile, FrameView, Gpu, GpuError, PassTimer, PassTimes, Picture, ReadBackError, Renderer,
-        Targets, TileBuffers, Wireframe,
+        Targets, TileBuffers,
     },
-    lod::Drawn,
     tiles::TileGeometry,
 };
 use egui::{ClippedPrimitive, TextureId, TexturesDelta};
 use egui_wgpu::ScreenDescriptor;
 
-pub(crate) use self::snapshot::Snapshot;
+pub(crate) use self::{
+    scene::{Counts, Drew, Scene},
+    snapshot::Snapshot,
+};
 use crate::{map_pictures::Pictures, settings::Compare};
 
-/// What the map shows. Two equal scenes look the same, as long as their tiles lie on the graphics card.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Scene {
-    /// Its size is the pictures'.
-    pub(crate) camera: Camera,
-    /// Width and height of the window; the camera's are less in a hurry.
-    pub(crate) window_px: [u32; 2],
-    /// Colours and widths.
-    pub(crate) style: Style,
-    /// How the roads of each picture are drawn: one, or GEO and SV.
-    pub(crate) roads: Vec<RoadOptions>,
-    /// What is made of them.
-    pub(crate) compare: Compare,
-    /// Factor on heights.
-    pub(crate) exaggeration: f64,
-    /// Length in the working CRS over true length.
-    pub(crate) point_scale: f64,
-    /// True heights that the tint spans.
-    pub(crate) height_range_m: [f64; 2],
-    /// Edges of triangles.
-    pub(crate) wireframe: Wireframe,
-    /// Tiles.
-    pub(crate) drawn: Vec<Drawn>,
-    /// Samples per pixel along each side.
-    pub(crate) samples_per_side: u32,
-}
-
-/// What came of drawing a scene.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Drew {
-    /// The pictures.
-    pub(crate) pictures: Pictures,
-    /// Whether anything was drawn; not, when the scene was the same as before.
-    pub(crate) is_new: bool,
-}
-
-/// Numbers of the scene drawn last, all pictures together.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) struct Counts {
-    /// Triangles of the ground, skirts not counted.
-    pub(crate) triangles: u64,
-    /// Segments of roads.
-    pub(crate) segments: u64,
-}
-
-/// The graphics card's side of the window.
+/// What the window has on the graphics card.
 pub(crate) struct Canvas {
     gpu: Gpu,
     ui: egui_wgpu::Renderer,
     format: wgpu::TextureFormat,
     renderer: Renderer,
     tiles: BTreeMap<TileId, TileBuffers>,
-    /// One for each method shown.
+    /// One for each method that is shown.
     maps: Vec<Map>,
     difference: Option<(TextureId, Picture)>,
     shown: Option<(Scene, Pictures)>,
@@ -164,7 +120,7 @@ impl Canvas {
             return Ok(());
         }
         let targets = Targets::new(&self.gpu, size_px, samples)?;
-        let filter = filter(scene);
+        let filter = scene.filter();
         let (device, view) = (self.gpu.device(), targets.picture().view());
         if let Some(map) = self.maps.get_mut(place) {
             self.ui.update_egui_texture_from_wgpu_texture(device, view, filter, map.texture);
@@ -200,7 +156,7 @@ impl Canvas {
             self.counts.triangles += tile.buffers.triangles();
             self.counts.segments += tile.buffers.road_segments(roads);
         }
-        // Times of the method before are not this one's.
+        // Times of another method do not count for this one.
         map.times = map.times.filter(|(method, _)| *method == roads.method);
         map.is_timing = map.timer.is_some();
         self.renderer.draw_timed(&self.gpu, &view, &tiles, &map.targets, map.timer.as_mut());
@@ -217,7 +173,7 @@ impl Canvas {
             other => {
                 let picture = Picture::new(&self.gpu, size_px, samples)?;
                 let (device, view) = (self.gpu.device(), picture.view());
-                let filter = filter(scene);
+                let filter = scene.filter();
                 let texture = match other {
                     Some((texture, _)) => {
                         self.ui
@@ -235,17 +191,17 @@ impl Canvas {
         drawn.map(|()| texture)
     }
 
-    /// Whether what is shown has all the window's pixels.
+    /// Whether the pictures shown have all the window's pixels.
     pub(crate) fn is_full(&self) -> bool {
         self.shown.as_ref().is_some_and(|(scene, _)| scene.camera.size_px() == scene.window_px)
     }
 
-    /// Whether the graphics card has not yet told how long the last frame took.
+    /// Whether it is not yet known how long the last frame took the graphics card.
     pub(crate) fn is_timing(&self) -> bool {
         self.maps.iter().any(|map| map.is_timing)
     }
 
-    /// Numbers of the scene drawn last.
+    /// Numbers of the scene that was drawn last.
     pub(crate) fn counts(&self) -> Counts {
         self.counts
     }
@@ -267,7 +223,7 @@ impl Canvas {
         Ok(self.maps.iter().filter_map(|map| map.times).collect())
     }
 
-    /// Asks for the map that is shown, without anything on it; `None` while none is.
+    /// Begins to read the map that is shown, without panel and overlay; `None` while no map is shown.
     pub(crate) fn snap_map(&self, divider_share: f32) -> Option<Snapshot> {
         let (scene, _) = self.shown.as_ref()?;
         let picture = match (scene.compare, &self.difference) {
@@ -281,8 +237,8 @@ impl Canvas {
         Some(Snapshot::of_map(&self.gpu, picture, right, column))
     }
 
-    /// Takes over what the panel changed of its textures, before what was laid out with them is painted. Returns those
-    /// to free when it is.
+    /// Uploads what the panel changed of its textures; to be called before what was laid out is painted. Returns the
+    /// textures to free after that.
     pub(crate) fn take_textures(&mut self, mut delta: TexturesDelta) -> Vec<TextureId> {
         for (id, changes) in &delta.set {
             for change in changes {
@@ -294,7 +250,7 @@ impl Canvas {
         unused
     }
 
-    /// Forgets textures that nothing laid out from now on will use.
+    /// Frees textures that nothing will use from now on.
     pub(crate) fn free_textures(&mut self, unused: &[TextureId]) {
         for id in unused {
             self.ui.free_texture(id);
@@ -332,7 +288,7 @@ impl Canvas {
         queue.submit(commands);
     }
 
-    /// Paints the whole window into a picture and asks for it.
+    /// Paints the whole window into a picture and begins to read it.
     pub(crate) fn snap_window(
         &mut self,
         primitives: &[ClippedPrimitive],
@@ -342,15 +298,6 @@ impl Canvas {
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         self.paint(primitives, screen, &view);
         Snapshot::of_window(&self.gpu, &texture)
-    }
-}
-
-/// Pixel for pixel, or in a hurry drawn larger than it is.
-fn filter(scene: &Scene) -> wgpu::FilterMode {
-    if scene.camera.size_px() == scene.window_px {
-        wgpu::FilterMode::Nearest
-    } else {
-        wgpu::FilterMode::Linear
     }
 }
 

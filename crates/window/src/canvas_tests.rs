@@ -1,6 +1,10 @@
 use std::time::{Duration, Instant};
 
-use corniche_viewer::camera::Orientation;
+use corniche_styles::Style;
+use corniche_viewer::{
+    camera::{Camera, Orientation},
+    gpu::Wireframe,
+};
 use egui::{Color32, Rect, pos2};
 use glam::DVec3;
 use image::RgbaImage;

@@ -1,12 +1,12 @@
-//! Two clicks that are one.
+//! Double clicks.
 
 use glam::DVec2;
 
-/// The second comes no later than this,
+/// The largest time between the two clicks of a double click.
 const WITHIN_S: f64 = 0.4;
-/// and no farther away.
+/// The largest distance between the two clicks of a double click.
 const WITHIN_POINTS: f64 = 6.0;
-/// A hand is not quite still while it clicks; what moves farther drags.
+/// A cursor that moves farther than this with the button held is a drag, not a click: a hand is not quite still.
 const STILL_POINTS: f64 = 3.0;
 
 /// Remembers the last click.
@@ -22,17 +22,17 @@ struct Last {
     is_released: bool,
 }
 
-/// What a press is.
+/// What a press of the button is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Click {
-    /// The first one.
+    /// The first click.
     Single,
-    /// The second of two; a third is a first again.
+    /// The second click of a double click. After it, the next click is a first one again.
     Double,
 }
 
 impl Clicks {
-    /// The button goes down, at a place in points and a time of any clock.
+    /// The button goes down, at a position in points and a time of any clock.
     pub(crate) fn press(&mut self, at: DVec2, now_s: f64) -> Click {
         let is_second = self.last.is_some_and(|last| {
             last.is_released
@@ -43,7 +43,7 @@ impl Clicks {
         if is_second { Click::Double } else { Click::Single }
     }
 
-    /// The cursor is here; with the button held that may be a drag, which is no click.
+    /// The cursor is here. If the button is held, this may be a drag, which is no click.
     pub(crate) fn move_to(&mut self, at: DVec2) {
         let is_drag = |last: &Last| !last.is_released && last.at.distance(at) > STILL_POINTS;
         self.last = self.last.filter(|last| !is_drag(last));
@@ -56,7 +56,7 @@ impl Clicks {
         }
     }
 
-    /// Whatever was begun is not ended.
+    /// Forgets a click that was begun: the window lost the mouse.
     pub(crate) fn let_go(&mut self) {
         self.last = None;
     }

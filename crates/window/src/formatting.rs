@@ -1,4 +1,4 @@
-//! Numbers and choices as people read them.
+//! Numbers, choices and errors as text for people.
 
 use std::error::Error;
 
@@ -26,7 +26,7 @@ pub(crate) fn round_length(m: f64) -> String {
     }
 }
 
-/// How roads are drawn.
+/// The name of a method.
 pub(crate) fn method(method: RoadMethod) -> &'static str {
     match method {
         RoadMethod::Geometry => "GEO",
@@ -41,7 +41,7 @@ pub(crate) fn grouped(number: u64) -> String {
     let mut text = String::new();
     for (place, digit) in digits.chars().enumerate() {
         if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            // A narrow no-break space is missing in some fonts; this one is not.
+            // A no-break space. Some fonts lack the narrow one.
             text.push('\u{a0}');
         }
         text.push(digit);
@@ -54,21 +54,21 @@ pub(crate) fn mebibytes(bytes: u64) -> String {
     format!("{:.0} MiB", bytes as f64 / f64::from(1 << 20))
 }
 
-/// "EPSG:32632  539512.3  5221456.8": coordinates of the CRS, to a decimetre.
+/// Coordinates of the CRS, to a decimetre: "EPSG:32632  539512.3  5221456.8".
 pub(crate) fn coordinates(working: WorkingCrs<'_>, at_m: [f64; 2]) -> String {
     let [x, y] = [0, 1].map(|axis: usize| {
         let unit_m = working.metres_per_unit[axis];
-        // Six more digits for degrees.
+        // The unit is a degree: six digits.
         let digits = if unit_m.abs() > 1000.0 { 6 } else { 1 };
         format!("{:.digits$}", at_m[axis] / unit_m)
     });
     format!("{}  {x}  {y}", working.crs)
 }
 
-/// "47.14012° N, 9.52201° E".
+/// A position on the earth: "47.14012° N, 9.52201° E".
 pub(crate) fn position([lon_deg, lat_deg]: [f64; 2]) -> String {
     let side = |value: f64, positive, negative| if value < 0.0 { negative } else { positive };
-    // Past the antimeridian longitudes of a package go on beyond 180.
+    // In a package that crosses the antimeridian, longitudes go on beyond 180.
     let lon_deg = (lon_deg + 180.0).rem_euclid(360.0) - 180.0;
     format!(
         "{:.5}° {}, {:.5}° {}",
@@ -79,9 +79,9 @@ pub(crate) fn position([lon_deg, lat_deg]: [f64; 2]) -> String {
     )
 }
 
-/// The heading as one reads it off a compass: 0 to 359 whole degrees.
+/// A heading as on a compass: 0 to 359 whole degrees.
 pub(crate) fn heading(heading_deg: f64) -> String {
-    // Adding nothing turns minus nothing into nothing.
+    // Adding 0.0 turns −0.0 into 0.0.
     format!("{:03.0}°", heading_deg.round().rem_euclid(360.0) + 0.0)
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-/// So many frames are remembered.
+/// How many frames are remembered.
 const REMEMBERED: usize = 240;
 
 /// Times of the last frames that followed one another without a pause.
@@ -12,7 +12,7 @@ pub(crate) struct FrameTimes {
 }
 
 impl FrameTimes {
-    /// A frame took so long.
+    /// Adds the time of a frame.
     pub(crate) fn push(&mut self, ms: f64) {
         if self.ms.len() == REMEMBERED {
             self.ms.pop_front();
@@ -20,12 +20,12 @@ impl FrameTimes {
         self.ms.push_back(ms);
     }
 
-    /// The last one.
+    /// The time of the last frame.
     pub(crate) fn last_ms(&self) -> Option<f64> {
         self.ms.back().copied()
     }
 
-    /// The least time that this share of the frames, above 0, did not exceed; `None` without frames.
+    /// The smallest time that this share (above 0) of the frames did not exceed; `None` without frames.
     pub(crate) fn quantile_ms(&self, share: f64) -> Option<f64> {
         let mut sorted: Vec<f64> = self.ms.iter().copied().collect();
         sorted.sort_by(f64::total_cmp);
@@ -33,7 +33,7 @@ impl FrameTimes {
         sorted.get(rank.saturating_sub(1)).copied()
     }
 
-    /// Oldest first.
+    /// All times, oldest first.
     pub(crate) fn iter(&self) -> impl ExactSizeIterator<Item = f64> {
         self.ms.iter().copied()
     }

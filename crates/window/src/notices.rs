@@ -1,16 +1,16 @@
-//! What happened, as the person reads it: warnings stay until they are dismissed, good news goes by itself.
+//! Messages for the person. Warnings stay until they are dismissed; other messages disappear after a few seconds.
 
-/// More of them than these are not kept.
+/// At most this many are kept.
 const MOST: usize = 6;
-/// Good news stays for so long.
+/// A message that is no warning disappears after this time.
 const NEWS_S: f64 = 8.0;
 
-/// What happened.
+/// A message.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Notice {
-    /// In words; where they have several lines, one line points at letters of another.
+    /// Its text. In a text of several lines, one line points at letters of another.
     pub(crate) words: String,
-    /// When it goes by itself; `None` where it stays until it is dismissed.
+    /// When it disappears; `None` if it stays until it is dismissed.
     pub(crate) until_s: Option<f64>,
 }
 
@@ -19,25 +19,25 @@ pub(crate) struct Notice {
 pub(crate) struct Notices(Vec<Notice>);
 
 impl Notices {
-    /// Says something that stays.
+    /// Adds a warning.
     pub(crate) fn warn(&mut self, words: String) {
         self.add(words, None);
     }
 
-    /// Says several things, if there are any, that stay.
+    /// Adds several warnings, or none.
     pub(crate) fn warn_all(&mut self, words: impl IntoIterator<Item = String>) {
         words.into_iter().for_each(|words| self.warn(words));
     }
 
-    /// Says something that goes by itself.
+    /// Adds a message that disappears after a few seconds.
     pub(crate) fn tell(&mut self, words: String, now_s: f64) {
         self.add(words, Some(now_s + NEWS_S));
     }
 
-    /// Where there are too many, the oldest good news goes before any warning.
+    /// Adds a message. Where there are too many, the oldest that is no warning is removed, or else the oldest warning.
     fn add(&mut self, mut words: String, until_s: Option<f64>) {
         words.truncate(words.trim_end().len());
-        // The same thing again is no news.
+        // The same message is shown once, as the newest.
         self.0.retain(|known| known.words != words);
         self.0.push(Notice { words, until_s });
         while self.0.len() > MOST {
@@ -46,29 +46,29 @@ impl Notices {
         }
     }
 
-    /// Forgets those that begin so: what they say is true no more.
+    /// Removes the messages that begin with `beginning`, because they are no longer true.
     pub(crate) fn retract(&mut self, beginning: &str) {
         self.0.retain(|notice| !notice.words.starts_with(beginning));
     }
 
-    /// Forgets the one at this place, if there is one.
+    /// Removes the message at this place, if there is one.
     pub(crate) fn dismiss(&mut self, place: usize) {
         if place < self.0.len() {
             self.0.remove(place);
         }
     }
 
-    /// Forgets those whose time is over.
+    /// Removes the messages whose time is over.
     pub(crate) fn expire(&mut self, now_s: f64) {
         self.0.retain(|notice| notice.until_s.is_none_or(|until_s| now_s < until_s));
     }
 
-    /// When the next one goes by itself.
+    /// When the next message disappears.
     pub(crate) fn next_end_s(&self) -> Option<f64> {
         self.0.iter().filter_map(|notice| notice.until_s).reduce(f64::min)
     }
 
-    /// Oldest first.
+    /// All messages, oldest first.
     pub(crate) fn all(&self) -> &[Notice] {
         &self.0
     }

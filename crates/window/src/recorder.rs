@@ -1,8 +1,8 @@
-//! Notes the way of the camera as keyframes of a flight.
+//! Records the path of the camera as keyframes of a flight.
 
 use corniche_viewer::flight::{Flight, FlightError, Keyframe, Pose};
 
-/// Keyframes of a moving camera lie so far apart.
+/// Time between two keyframes of a moving camera.
 const STEP_S: f64 = 0.1;
 
 /// A recording under way. Times are seconds of one clock.
@@ -14,22 +14,22 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    /// Begins.
+    /// Begins a recording.
     pub(crate) fn new(now_s: f64, pose: Pose) -> Self {
         let first = Keyframe { time_s: 0.0, pose };
         Self { begun_s: now_s, keyframes: vec![first], last: first }
     }
 
-    /// How long it has been going on.
+    /// For how long it has been going on.
     pub(crate) fn duration_s(&self, now_s: f64) -> f64 {
         now_s - self.begun_s
     }
 
-    /// The camera is here now. No frame in between means that it stood still.
+    /// The camera is here now. If there was no frame for some time, it stood still meanwhile.
     pub(crate) fn note(&mut self, now_s: f64, pose: Pose) {
         let now = Keyframe { time_s: self.duration_s(now_s), pose };
         if pose != self.last.pose {
-            // It stood where it was until this movement began, and then some frames went by.
+            // It stood still until this movement began, one step before now.
             let moved_s = now.time_s - STEP_S;
             if moved_s > self.last.time_s {
                 self.push(self.last);
@@ -42,7 +42,7 @@ impl Recorder {
         self.last = now;
     }
 
-    /// Ends; the flight begins at 0 s.
+    /// Ends the recording. The flight begins at 0 s.
     ///
     /// # Errors
     /// When no time has passed.

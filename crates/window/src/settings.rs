@@ -6,19 +6,19 @@ use corniche_viewer::{RoadMethod, RoadOptions};
 
 use crate::WindowRequest;
 
-/// Whether one method is shown or two are set against each other.
+/// Whether one method is shown, or two are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Compare {
-    /// One.
+    /// One method.
     Off,
     /// GEO to the left of a divider, SV to the right.
     Split,
-    /// Where the two disagree.
+    /// Where GEO and SV show different classes.
     Difference,
 }
 
 impl Compare {
-    /// What is drawn, with the options of the roads for each: one picture, or GEO and SV.
+    /// The options of the roads for each picture: one picture, or GEO and SV.
     pub(crate) fn pictures(self, roads: RoadOptions) -> Vec<RoadOptions> {
         match self {
             Self::Off => vec![roads],
@@ -32,24 +32,24 @@ impl Compare {
 /// Whether the choice of tiles follows the camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Refinement {
-    /// It does.
+    /// It follows the camera.
     Live,
-    /// What is drawn now stays, wherever the camera goes: to see from aside what was chosen.
+    /// The tiles that are drawn now stay, wherever the camera goes, so that the choice can be looked at from elsewhere.
     Frozen,
 }
 
-/// Everything the panel changes.
+/// Everything that the panel changes.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Settings {
     /// How roads are drawn.
     pub(crate) roads: RoadOptions,
-    /// One method or two.
+    /// Whether one method is shown, or two are compared.
     pub(crate) compare: Compare,
-    /// Where the divider stands, as a share of the window's width.
+    /// Position of the divider, as a share of the window's width.
     pub(crate) divider_share: f32,
     /// Factors on the style's widths, class 0 first.
     pub(crate) width_factors: [f32; FunctionalRoadClass::COUNT],
-    /// Which of the styles.
+    /// Place of the style in the list of styles.
     pub(crate) style: usize,
     /// Factor on heights; 1 is true.
     pub(crate) exaggeration: f64,
@@ -57,15 +57,15 @@ pub(crate) struct Settings {
     pub(crate) screen_space_error_px: f64,
     /// Samples per pixel along each side.
     pub(crate) samples_per_side: u32,
-    /// Edges of the triangles.
+    /// Whether the edges of triangles are drawn.
     pub(crate) is_wireframe: bool,
-    /// Whether tiles are chosen anew.
+    /// Whether the choice of tiles follows the camera.
     pub(crate) refinement: Refinement,
     /// Whether the panel is open.
     pub(crate) is_panel_open: bool,
 }
 
-/// Ranges of what can be set.
+/// Ranges of the settings.
 pub(crate) mod range {
     use std::ops::RangeInclusive;
 
@@ -96,7 +96,7 @@ impl Settings {
         }
     }
 
-    /// A style as it is to be drawn: widths times their factors.
+    /// A style with its widths multiplied by their factors.
     pub(crate) fn applied_to(&self, style: &Style) -> Style {
         let mut applied = style.clone();
         for (road, factor) in applied.roads.iter_mut().zip(self.width_factors) {

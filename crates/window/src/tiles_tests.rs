@@ -173,10 +173,12 @@ fn what_arrives_from_before_a_loss_does_not_count_twice() {
     assert!(tiles.waiting.is_empty(), "{:?}", tiles.waiting.keys());
 }
 
+type Loading = Pin<Box<dyn Future<Output = Result<TileGeometry, LoadTileError>>>>;
+
 /// Loads tiles in the thread that draws, without waiting for one: each is polled once a frame.
 struct Polled {
     tiles: Arc<PackageTiles<MemorySource>>,
-    under_way: Vec<(TileId, Pin<Box<dyn Future<Output = Result<TileGeometry, LoadTileError>>>>)>,
+    under_way: Vec<(TileId, Loading)>,
 }
 
 impl TileLoader for Polled {

@@ -1,15 +1,15 @@
-//! A diagnostic: a file with a line per frame, by which a script can wait until all is loaded and prove that the ground
-//! grabbed stays under the cursor.
+//! A diagnostic: a file with a line per frame. A script that reads it can wait until everything is loaded, and check that
+//! the grabbed ground stays under the cursor.
 
 use std::io;
 
 use corniche_viewer::flight::Pose;
 use glam::DVec2;
 
-/// What one frame was like.
+/// What the trace says of a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TraceLine {
-    /// Its number, 1 first.
+    /// Number of the frame, 1 first.
     pub(crate) frame: u64,
     /// The cursor, pixels of the window; `None` outside.
     pub(crate) cursor_px: Option<DVec2>,
@@ -21,11 +21,11 @@ pub(crate) struct TraceLine {
     pub(crate) pose: Pose,
     /// Tiles drawn.
     pub(crate) tiles: usize,
-    /// Tiles that the view wants and that are not there.
+    /// Tiles that the view needs and that are not on the graphics card.
     pub(crate) missing: usize,
     /// Tiles being loaded.
     pub(crate) loading: usize,
-    /// Whether the camera moves by itself.
+    /// Whether the camera moves without input.
     pub(crate) is_moving: bool,
     /// Width and height of the window, pixels.
     pub(crate) size_px: [u32; 2],
@@ -72,7 +72,7 @@ pub(crate) struct Trace {
 }
 
 impl Trace {
-    /// Begins with the names of the columns.
+    /// Begins the trace with the names of the columns.
     ///
     /// # Errors
     /// When it cannot be written.
@@ -81,7 +81,7 @@ impl Trace {
         Ok(Self { out })
     }
 
-    /// Writes a line; whoever reads along sees all of it or nothing.
+    /// Writes a line in one piece: a reader of the file sees all of it or nothing.
     ///
     /// # Errors
     /// When it cannot be written.

@@ -6,8 +6,8 @@ use corniche_tileset::{ByteSource, Manifest, OpenError, Package, Sections};
 use super::{LoadTileError, PlanScale, TileCatalog, TileGeometry, TileLines};
 use crate::options::RoadMethod;
 
-/// A package as tiles, wherever its bytes come from: it never waits by itself. [`PackageSource`](super::PackageSource) is
-/// one on disk, for threads that wait.
+/// The tiles of a package, from any source of bytes. Loading a tile is asynchronous and blocks no thread.
+/// [`PackageSource`](super::PackageSource) is a package in a file, for threads that may wait.
 #[derive(Debug)]
 pub struct PackageTiles<S> {
     package: Package<S>,
@@ -33,7 +33,7 @@ impl<S: ByteSource> PackageTiles<S> {
         Ok(Self { package, tiles, sections })
     }
 
-    /// Reads the ground and of the roads only what one method needs; without this, what both need.
+    /// Reads, beside the ground, only the roads that one method needs; without this, the roads that both need.
     #[must_use]
     pub fn for_method(self, method: RoadMethod) -> Self {
         let roads = match method {
@@ -60,7 +60,7 @@ impl<S: ByteSource> PackageTiles<S> {
         let payload = self.package.payload(id, self.sections).await;
         match payload.map_err(|error| failed(error.into()))? {
             Some(payload) => {
-                // The manifest has a record for every level of the frame: its reader checks.
+                // The manifest has a record for every level of the frame: the reader of manifests checks that.
                 let level = &self.manifest().levels[usize::from(id.z())];
                 let (frame, margin_m) = (self.frame(), level.width_margin_m);
                 let Manifest { coordinates, point_scale, .. } = self.manifest();
@@ -68,7 +68,7 @@ impl<S: ByteSource> PackageTiles<S> {
                 TileGeometry::from_payload(&payload, frame, quantum_m, margin_m, scale)
                     .map_err(|error| failed(error.into()))
             }
-            // Not stored itself, but something beneath it is.
+            // The tile itself is not stored, but a tile beneath it is.
             None => {
                 Ok(TileGeometry::assemble(id, None, &TileLines::default(), self.frame(), quantum_m))
             }

@@ -7,7 +7,7 @@ use wgpu::{TextureFormat, TextureUsages};
 /// A picture that is being taken.
 pub(crate) struct Snapshot {
     left: Part,
-    /// What is seen from some column on.
+    /// The picture that is seen from a column on, and that column.
     right: Option<(Part, u32)>,
 }
 
@@ -18,7 +18,7 @@ struct Part {
 }
 
 impl Snapshot {
-    /// Of one picture of the map, or of two: the second from `column` on.
+    /// Begins to read one picture of the map, or two: the second is seen from `column` on.
     pub(crate) fn of_map(gpu: &Gpu, left: &Picture, right: Option<&Picture>, column: u32) -> Self {
         let part = |picture: &Picture| Part {
             size_px: picture.size_px(),
@@ -28,7 +28,7 @@ impl Snapshot {
         Self { left: part(left), right: right.map(|right| (part(right), column)) }
     }
 
-    /// Of what is painted into such a [`texture`].
+    /// Begins to read what is painted into a [`texture`].
     pub(crate) fn of_window(gpu: &Gpu, texture: &wgpu::Texture) -> Self {
         let part = Part {
             size_px: [texture.width(), texture.height()],
@@ -79,16 +79,16 @@ impl Part {
             if self.has_blue_first {
                 std::mem::swap(a, b);
             }
-            // A window covers what is behind it, whatever its surface keeps there.
+            // A window is opaque, whatever opacity its surface has.
             *opacity = 255;
         }
         let [width, height] = self.size_px;
-        // Four bytes for each pixel, so there is always an image.
+        // There are four bytes for each pixel, so this always succeeds.
         Ok(RgbaImage::from_raw(width, height, bytes).unwrap_or_default())
     }
 }
 
-/// Something to paint the window into and read.
+/// A texture into which the window can be painted and from which it can be read.
 pub(crate) fn texture(
     gpu: &Gpu,
     format: TextureFormat,

@@ -6,19 +6,19 @@ use glam::DVec3;
 
 use super::{input::Key, view::View};
 
-/// Factor of the Shift key.
+/// The Shift key multiplies the speed by this.
 const FAST: f64 = 4.0;
 /// A notch of the wheel changes the speed by this factor.
 const SPEED_PER_NOTCH: f64 = 1.25;
 /// Range of the speed factor: from a walk to a jet, whatever the height.
 const SPEED_RANGE: [f64; 2] = [1.0 / 64.0, 64.0];
 
-/// What fly mode remembers.
+/// The state of fly mode.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Flying {
     held: BTreeSet<Key>,
     is_fast: bool,
-    /// Notches of the wheel so far.
+    /// Notches by which the wheel has been turned in all.
     notches: f64,
 }
 
@@ -49,14 +49,14 @@ impl Flying {
         !self.held.is_empty()
     }
 
-    /// Speed along an axis: the higher above the ground, the faster; a view's focus is a measure of it.
+    /// Speed along an axis. It grows with the height above the ground, of which the view's focus is a measure.
     pub(crate) fn speed_m_per_s(&self, view: &View) -> f64 {
         let wheel = SPEED_PER_NOTCH.powf(self.notches).clamp(SPEED_RANGE[0], SPEED_RANGE[1]);
         let fast = if self.is_fast { FAST } else { 1.0 };
         view.focus_m.max(10.0) * 0.5 * wheel * fast
     }
 
-    /// Where the eye is after some time of the keys held now.
+    /// Where the eye is after the keys that are held now were held for some time.
     pub(crate) fn moved(&self, view: &View, dt_s: f64) -> DVec3 {
         let axes = view.world_from_view();
         let direction: DVec3 = self

@@ -5,7 +5,7 @@ use glam::DVec2;
 pub enum Button {
     /// Left.
     Left,
-    /// The wheel, pressed.
+    /// Middle: the wheel, pressed.
     Middle,
     /// Right.
     Right,
@@ -31,21 +31,21 @@ pub enum Key {
     Up,
     /// Arrow down.
     Down,
-    /// Plus.
+    /// Plus: zoom in.
     ZoomIn,
-    /// Minus.
+    /// Minus: zoom out.
     ZoomOut,
-    /// W: ahead.
+    /// W: fly ahead.
     Ahead,
-    /// S: back.
+    /// S: fly back.
     Back,
-    /// A.
+    /// A: fly to the left.
     StrafeLeft,
-    /// D.
+    /// D: fly to the right.
     StrafeRight,
-    /// E.
+    /// E: rise.
     Rise,
-    /// Q.
+    /// Q: sink.
     Sink,
 }
 
@@ -58,62 +58,62 @@ pub enum KeyState {
     Released,
 }
 
-/// What a person does. Positions are pixels of the picture, 0, 0 its upper left corner.
+/// What a person does. Positions are pixels of the picture; (0, 0) is its upper left corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Input {
     /// A button goes down.
     Press {
-        /// Which.
+        /// The button.
         button: Button,
-        /// Where.
+        /// The position of the cursor.
         at_px: DVec2,
-        /// With what.
+        /// The modifier keys that are held.
         modifiers: Modifiers,
     },
     /// The cursor moves, with or without a button held.
     Move {
-        /// Where to.
+        /// The new position of the cursor.
         at_px: DVec2,
     },
     /// A button goes up.
     Release {
-        /// Which.
+        /// The button.
         button: Button,
     },
     /// The wheel turns.
     Wheel {
-        /// Notches, or parts of one; away from oneself is positive and zooms in.
+        /// Notches, or parts of one. Positive is away from the person, and zooms in.
         steps: f64,
-        /// Where.
+        /// The position of the cursor.
         at_px: DVec2,
     },
     /// Two clicks with the left button.
     DoubleClick {
-        /// Where.
+        /// The position of the cursor.
         at_px: DVec2,
-        /// With what.
+        /// The modifier keys that are held.
         modifiers: Modifiers,
     },
-    /// A key.
+    /// A key goes down or up.
     Key {
-        /// Which.
+        /// The key.
         key: Key,
         /// Down or up.
         state: KeyState,
-        /// With what.
+        /// The modifier keys that are held.
         modifiers: Modifiers,
     },
     /// Shift or Control went down or up.
     Modify {
-        /// Those held now.
+        /// The modifier keys that are held now.
         modifiers: Modifiers,
     },
-    /// Whatever is held down is let go: the window lost the keyboard or the mouse.
+    /// All keys and buttons count as released: the window lost the keyboard or the mouse.
     LetGo,
-    /// Turn north up, and keep the tilt.
+    /// Turn the heading to north; the tilt stays.
     NorthUp,
     /// Back to the view at the beginning.
     Reset,
-    /// From map to fly mode and back.
+    /// Change from map to fly mode, or back.
     ToggleFly,
 }

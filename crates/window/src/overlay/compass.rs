@@ -9,14 +9,14 @@ use crate::{command::Command, formatting, panel_content::PanelContent};
 const RADIUS: f32 = 26.0;
 const RED: Color32 = Color32::from_rgb(206, 52, 44);
 
-/// Where the compass is in the map's free part.
+/// The place of the compass in the free part of the map.
 pub(crate) fn compass_place(rect: Rect) -> Rect {
     let from_corner = MARGIN + RADIUS;
     let center = rect.right_top() + vec2(-from_corner, from_corner);
     Rect::from_center_size(center, Vec2::splat(2.0 * RADIUS))
 }
 
-/// Returns where its left edge is.
+/// Lays out the compass. Returns how far other things may reach to the right.
 pub(crate) fn compass(
     ui: &mut Ui,
     area: Rect,
@@ -35,7 +35,7 @@ pub(crate) fn compass(
     let painter = ui.painter();
     let fill = if response.hovered() { SLATE.gamma_multiply(1.2) } else { SLATE };
     painter.circle(center, radius, fill, Stroke::new(1.0, CHALK));
-    // The disc lies on the ground: tilted, it is seen as an ellipse.
+    // The disc of the compass lies on the ground: from a tilted camera it looks like an ellipse.
     let orientation = content.pose.orientation;
     let (sin, cos) = (orientation.heading_deg.to_radians() as f32).sin_cos();
     let flat = (orientation.pitch_deg.to_radians().cos() as f32).max(0.15);

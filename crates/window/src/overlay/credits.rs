@@ -5,14 +5,15 @@ use egui::{CornerRadius, FontId, Galley, Rect, Ui, vec2};
 use super::palette::{INK, LONGEST_BAR, MARGIN, PAPER};
 use crate::panel_content::PanelContent;
 
-/// The package's credits as they are set: beside the scale bar, or in all the width where that is little.
+/// The package's credits, broken into lines: in the room beside the scale bar, or in the whole width where that room is
+/// small.
 fn credits_galley(ui: &Ui, rect: Rect, content: &PanelContent<'_>) -> Arc<Galley> {
     let beside = rect.width() - LONGEST_BAR - 6.0 * MARGIN;
     let room = if beside < 0.5 * rect.width() { rect.width() - 12.0 } else { beside };
     ui.painter().layout(content.attribution.join("  ·  "), FontId::proportional(11.0), INK, room)
 }
 
-/// The lower right corner, where the credits are; `None` without any.
+/// The place of the credits in the lower right corner; `None` without any.
 pub(crate) fn credits_place(ui: &Ui, rect: Rect, content: &PanelContent<'_>) -> Option<Rect> {
     let size = credits_galley(ui, rect, content).size() + vec2(12.0, 6.0);
     (!content.attribution.is_empty()).then(|| Rect::from_min_max(rect.max - size, rect.max))

@@ -9,7 +9,7 @@ use crate::settings::{Settings, range};
 /// The divider of a split screen stays this far from the panel, points.
 const GRIP_ROOM: f32 = 24.0;
 
-/// Two pictures side by side, and the line between them, which can be dragged.
+/// Lays out the line between two pictures, which can be dragged, and their names.
 pub(crate) fn divider(
     ui: &mut Ui,
     rect: Rect,
@@ -19,7 +19,7 @@ pub(crate) fn divider(
 ) {
     let whole = ui.ctx().viewport_rect();
     let share_at = |x: f32| (x - whole.left()) / whole.width().max(1.0);
-    // A panel that opens over it pushes it aside, for it could not be grabbed there.
+    // A panel that opens over the line moves it aside, because it could not be grabbed under the panel.
     let most = share_at(rect.right() - GRIP_ROOM).max(*range::DIVIDER_SHARE.start());
     settings.divider_share = settings.divider_share.min(most);
     let x = whole.left() + settings.divider_share * whole.width();
@@ -39,7 +39,7 @@ pub(crate) fn divider(
     };
     line(4.0, SLATE);
     line(1.5, CHALK);
-    // Beside the compass, or below what is written under it.
+    // The names stand at the upper edge, or below the text under the compass where they would cover it.
     let top = if x + 44.0 > compass.left() { compass.bottom() + 28.0 } else { rect.top() + MARGIN };
     for (words, align, dx) in [("GEO", Align2::RIGHT_TOP, -10.0), ("SV", Align2::LEFT_TOP, 10.0)] {
         let at = pos2(x + dx, top);

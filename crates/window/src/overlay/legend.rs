@@ -3,7 +3,7 @@ use egui::{Color32, CornerRadius, FontId, Rect, Ui, Vec2, pos2, vec2};
 
 use super::palette::{CHALK, LABEL_HEIGHT, MARGIN, SLATE};
 
-/// What the colours of a difference mean. Returns where it ends below.
+/// Paints what the colours of a difference mean. Returns the lower edge of the legend.
 pub(crate) fn legend(ui: &Ui, room: Rect) -> f32 {
     let painter = ui.painter();
     let (mut left, mut top) = (room.left() + MARGIN, room.top() + MARGIN);

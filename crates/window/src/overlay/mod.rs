@@ -1,8 +1,8 @@
 //! What lies on the map itself: compass, scale bar, credits, notices, the divider of a split screen and the legend of a
 //! difference.
 //!
-//! Everything is painted at its place in the map's free part, without windows of its own, so that nothing moves, fades
-//! or covers anything else.
+//! Everything is painted at a fixed place in the part of the map that the panel leaves free. It does not use windows of the
+//! toolkit, so that nothing moves, fades or covers anything else.
 
 mod answer;
 mod compass;
@@ -33,7 +33,7 @@ use crate::{
 /// A map with a side of less than this shows only credits and scale bar, points.
 const SMALL: f32 = 110.0;
 
-/// Everything on the map; `rect` is the part of it that the panel leaves free.
+/// Lays out everything on the map; `rect` is the part of the map that the panel leaves free.
 pub(crate) fn overlay(
     ui: &mut Ui,
     rect: Rect,
@@ -41,7 +41,7 @@ pub(crate) fn overlay(
     content: &PanelContent<'_>,
 ) -> OverlayAnswer {
     let mut answer = OverlayAnswer::default();
-    // None of it lies on the panel or the line of positions, however small the window is.
+    // Nothing is painted over the panel or the status line, however small the window is.
     ui.set_clip_rect(rect);
     let mut room = rect;
     room.max.y = scale_bar(ui, rect, credits_place(ui, rect, content).as_ref(), content);
@@ -57,7 +57,7 @@ pub(crate) fn overlay(
         }
         notices(ui, room, content, &mut answer);
     }
-    // Last, and so on top of anything else.
+    // The credits are painted last, so that nothing covers them.
     credits(ui, rect, content);
     answer
 }

@@ -10,7 +10,7 @@ use crate::{command::Command, notices::Notice, panel_content::PanelContent};
 
 const AMBER: Color32 = Color32::from_rgb(214, 160, 60);
 
-/// As many as there is room for, the newest of them.
+/// Lays out the notices: the newest of them, as many as there is room for.
 pub(crate) fn notices(
     ui: &mut Ui,
     room: Rect,
@@ -22,7 +22,7 @@ pub(crate) fn notices(
     let mut left = room.height() - MARGIN;
     let mut shown: Vec<(usize, &Notice, Arc<Galley>)> = Vec::new();
     for (place, notice) in content.notices.iter().enumerate().rev() {
-        // What has several lines points at letters of the line before.
+        // In a text of several lines, marks point at letters of the line before: that needs letters of equal width.
         let is_drawing = notice.words.contains('\n');
         let font = if is_drawing { FontId::monospace(11.0) } else { FontId::proportional(12.5) };
         let galley = ui.painter().layout(notice.words.clone(), font, CHALK, width - 34.0);
@@ -36,7 +36,7 @@ pub(crate) fn notices(
         let painter = ui.painter();
         let size = vec2(galley.size().x + 34.0, galley.size().y + 10.0);
         let plate = Rect::from_min_size(pos2(room.left() + MARGIN, top), size);
-        // What stays until it is dismissed stands out.
+        // A warning, which stays until it is dismissed, has a coloured edge.
         let edge = notice.until_s.map_or(AMBER, |_| CHALK.gamma_multiply(0.4));
         painter.rect(
             plate,

@@ -3,23 +3,23 @@ use egui::{CornerRadius, FontId, Rect, Stroke, Ui, pos2, vec2};
 use super::palette::{INK, LONGEST_BAR, MARGIN, PAPER};
 use crate::{formatting, panel_content::PanelContent};
 
-/// From this tilt on the scale at the middle of the picture is not that of its edges.
+/// From this tilt on, the scale at the edges of the picture differs from that in the middle, and the bar says so.
 const TILTED_DEG: f64 = 5.0;
 
-/// A length on the ground and how long it is on the screen.
+/// A length on the ground, and its length on the screen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ScaleBar {
-    /// Metres: 1, 2 or 5 and zeros.
+    /// 1, 2 or 5 times a power of ten, metres.
     pub(crate) length_m: f64,
-    /// Points of the screen.
+    /// Its length on the screen, points.
     pub(crate) points: f32,
 }
 
 impl ScaleBar {
-    /// The longest one of no more than `most` points; `None` when a point is no length.
+    /// The longest bar of no more than `most` points; `None` where `metres_per_point` is no positive number.
     pub(crate) fn new(metres_per_point: f64, most: f32) -> Option<Self> {
         let most_m = metres_per_point * f64::from(most);
-        // Not a number is not positive either.
+        // This form also refuses NaN.
         if !(most_m > 0.0 && most_m.is_finite()) {
             return None;
         }
@@ -30,8 +30,8 @@ impl ScaleBar {
     }
 }
 
-/// In the lower left corner, or above the credits where there is no room beside them. Returns where what lies below
-/// everything else begins.
+/// Paints the scale bar in the lower left corner, or above the credits where there is no room beside them. Returns the upper
+/// edge of bar and credits.
 pub(crate) fn scale_bar(
     ui: &Ui,
     rect: Rect,

@@ -6,7 +6,7 @@ use crate::{
     settings::{Refinement, Settings, range},
 };
 
-/// Style, heights, detail.
+/// The section for style, heights and level of detail.
 pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, content: &PanelContent<'_>) {
     ui.horizontal(|ui| {
         ui.label("Style");

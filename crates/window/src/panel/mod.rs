@@ -17,19 +17,19 @@ use crate::{
 
 /// Width of the panel, points.
 const WIDTH: f32 = 300.0;
-/// A window without so much room beside the panel shows the map instead.
+/// A window with less room than this beside the panel shows the map without the panel.
 const LEAST_MAP_WIDTH: f32 = 140.0;
 
-/// What came of a frame.
+/// What a person did in the panel and on the overlay in a frame.
 #[derive(Default)]
 pub(crate) struct Answer {
-    /// What the person wants.
+    /// What the person asked for.
     pub(crate) commands: Vec<Command>,
-    /// Where the mouse is not the map's.
+    /// The parts of the window where the mouse does not act on the map.
     pub(crate) occupied: Vec<Rect>,
 }
 
-/// Prepares the toolkit: dark, and at rest as soon as it is painted.
+/// Sets up the toolkit: dark colours, and no animations, so that nothing is drawn again without a reason.
 pub(crate) fn set_up(ui: &egui::Context) {
     ui.set_theme(egui::Theme::Dark);
     ui.all_styles_mut(|style| {
@@ -42,12 +42,12 @@ pub(crate) fn set_up(ui: &egui::Context) {
     });
 }
 
-/// How wide the open panel is in a window of a width, in points: 0 where there is no room for it.
+/// Width of the open panel in a window of this width, both in points: 0 where there is no room for it.
 pub(crate) fn width(window_width: f32) -> f32 {
     if window_width >= WIDTH + LEAST_MAP_WIDTH { WIDTH } else { 0.0 }
 }
 
-/// Lays out the whole window: the map behind, the panel, the line of positions and what lies on the map.
+/// Lays out the whole window: the map, the panel, the status line and the overlay.
 pub(crate) fn show(
     ui: &mut Ui,
     settings: &mut Settings,
@@ -115,7 +115,7 @@ fn section(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
         .show_unindented(ui, add);
 }
 
-/// The map fills the window, also where the panel hides it: opening the panel moves nothing.
+/// Paints the map. It fills the whole window, also behind the panel, so that it does not move when the panel opens.
 fn paint(ui: &Ui, whole: Rect, divider_share: f32, pictures: Pictures) {
     let painter = ui.painter();
     let image = |texture, from: f32, to: f32| {

@@ -2,10 +2,10 @@ use egui::{Color32, Grid, Pos2, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::{formatting, frame_times::FrameTimes, panel_content::PanelContent};
 
-/// The graph reaches at least this high.
+/// The upper end of the graph, unless a frame took longer.
 const GRAPH_MS: f64 = 33.3;
 
-/// What a frame costs.
+/// The section that shows what a frame costs.
 pub(crate) fn show(ui: &mut Ui, content: &PanelContent<'_>) {
     let times = content.frame_times;
     let ms = |value: Option<f64>| value.map_or("–".to_owned(), |ms| format!("{ms:.1}"));

@@ -6,7 +6,7 @@ use crate::{
     panel_content::PanelContent,
 };
 
-/// What moves the camera besides the mouse.
+/// The section with buttons that move the camera.
 pub(crate) fn camera(ui: &mut Ui, content: &PanelContent<'_>, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let fly = if content.mode == Mode::Fly { "Back to map (F)" } else { "Fly (F)" };
@@ -22,7 +22,7 @@ pub(crate) fn camera(ui: &mut Ui, content: &PanelContent<'_>, commands: &mut Vec
     });
 }
 
-/// Pictures, and the way of the camera.
+/// The section that saves pictures and records flights.
 pub(crate) fn show(ui: &mut Ui, content: &PanelContent<'_>, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         for (words, shot) in [("Map (P)", Shot::Map), ("Window (Shift P)", Shot::Window)] {

@@ -8,7 +8,7 @@ use crate::{
     settings::{Compare, Settings, range},
 };
 
-/// The method, what two of them are compared by, and how roads look in either.
+/// The section for the method, the comparison of both methods, and the options of roads.
 pub(crate) fn show(ui: &mut Ui, settings: &mut Settings) {
     ui.horizontal(|ui| {
         ui.label("Compare");
@@ -73,7 +73,7 @@ fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, all: &[(T
     ui.end_row();
 }
 
-/// Which classes are shown, and how wide.
+/// The section for the classes that are shown, and their widths.
 pub(crate) fn classes(ui: &mut Ui, settings: &mut Settings, content: &PanelContent<'_>) {
     Grid::new("classes").num_columns(3).min_col_width(0.0).show(ui, |ui| {
         for (class, factor) in FunctionalRoadClass::all().zip(&mut settings.width_factors) {

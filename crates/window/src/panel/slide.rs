@@ -2,8 +2,8 @@ use std::ops::RangeInclusive;
 
 use egui::{Response, Slider, SliderClamping, Ui, emath::Numeric};
 
-/// A slider on a factor or a size, logarithmic. A value beyond its range or finer than it shows, as the command line may
-/// have it, stays as it is until it is moved.
+/// A logarithmic slider for a factor or a size. The command line may give a value that is out of the slider's range or has
+/// more digits than it shows; such a value stays as it is until the slider is moved.
 pub(crate) fn slide<T: Numeric>(
     ui: &mut Ui,
     value: &mut T,

@@ -14,14 +14,14 @@ pub(crate) enum PanelRoom {
     TooLittle,
 }
 
-/// The line of positions at the lower edge of the window.
+/// The line at the lower edge of the window: positions, and what is going on.
 pub(crate) fn status_line(ui: &mut Ui, content: &PanelContent<'_>, panel: PanelRoom) {
-    // Small windows have room for the map or for these; the panel has them too.
+    // A small window leaves out the times of the passes, to have more room for the map. The panel shows them too.
     let has_room = ui.available_width() >= PASSES_WIDTH;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 14.0;
         let small = |text: String| egui::RichText::new(text).size(12.0);
-        // A line ends between two items, not in the midst of one.
+        // Lines are broken only between two items.
         let mut tell = |text: egui::RichText| ui.add(egui::Label::new(text).extend());
         match &content.cursor {
             Some(point) => {

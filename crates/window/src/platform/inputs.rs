@@ -1,4 +1,4 @@
-//! What people do, from the window system's words into those of the map.
+//! Events of the window system, translated into inputs and commands of the app.
 
 use glam::DVec2;
 use winit::{
@@ -12,29 +12,30 @@ use crate::{
     controls::{Button, Input, Key, KeyState, Modifiers},
 };
 
-/// A touchpad's scrolling by so many pixels is a notch of a wheel.
+/// Scrolling by this much on a touchpad counts as a notch of a wheel.
 const POINTS_PER_NOTCH: f64 = 50.0;
 
-/// What is held down, and where.
+/// Modifier keys that are held, and the position of the cursor.
 #[derive(Debug, Default)]
 pub(crate) struct Inputs {
     modifiers: Modifiers,
     cursor_px: DVec2,
-    /// Where the cursor went last and when, not yet handed on: each place costs a search of the ground, and mice tell of
-    /// many in a frame.
+    /// The last position of the cursor and its time, not yet handed to the app. Mice report many positions in a frame, and
+    /// each that is handed on costs a search of the ground.
     moved: Option<(DVec2, f64)>,
 }
 
-/// Whether this event is the key that shows and hides the panel, which the panel's toolkit would take for itself.
+/// Whether this event is the key that shows and hides the panel. The panel's toolkit must not see it, for it uses this key
+/// itself.
 pub(crate) fn is_panel_key(event: &WindowEvent) -> bool {
     matches!(event, WindowEvent::KeyboardInput { event, .. }
         if event.logical_key == winit::keyboard::Key::Named(NamedKey::Tab))
 }
 
-/// Ctrl Q ends the program, also where no frame around the window has a button for it.
+/// Ctrl Q ends the program, also where the window has no frame with a button for it.
 ///
-/// Held down a little too long in another window it must not end this one too, when that gives it the keyboard: the window
-/// library tells of keys that are held down then as synthetic presses, and after that of their repetition as of new ones.
+/// If the keys are still held from another window when this window gets the keyboard, they must not end this program: the
+/// window library then reports them as synthetic presses, and after that their repetitions as if they were new presses.
 #[derive(Debug, Default)]
 pub(crate) struct EndKey {
     is_control_down: bool,
@@ -68,14 +69,15 @@ fn is_q(logical: &winit::keyboard::Key) -> bool {
 }
 
 impl Inputs {
-    /// Hands on where the cursor is, if it moved; for each frame, and before whatever else happens there.
+    /// Hands the last position of the cursor to the app, if it moved. To be called before each frame and before any other
+    /// event is handed on.
     pub(crate) fn hand_on_move(&mut self, app: &mut App) {
         if let Some((at_px, moved_s)) = self.moved.take() {
             app.input(&Input::Move { at_px }, moved_s);
         }
     }
 
-    /// Hands an event on, or keeps it for [`Inputs::hand_on_move`]; tells whether it changed anything.
+    /// Hands an event to the app, or keeps it for [`Inputs::hand_on_move`]. Returns whether a frame is needed.
     pub(crate) fn take(
         &mut self,
         event: &WindowEvent,
@@ -130,8 +132,8 @@ impl Inputs {
             }
             WindowEvent::KeyboardInput { event, is_synthetic, .. } => {
                 let is_down = event.state == ElementState::Pressed;
-                // What is typed into a field is not meant for the map; what is let go is let go everywhere. A key that
-                // goes down as the window gets the keyboard is told of twice, first as held down: once is enough.
+                // What is typed into a text field is not meant for the map, but a release counts everywhere. A key that is
+                // held when the window gets the keyboard is reported twice, first as synthetic: that report is ignored.
                 if is_down && (*is_synthetic || ui.text_edit_focused()) {
                     return false;
                 }
@@ -187,7 +189,8 @@ impl Inputs {
     }
 }
 
-/// Arrows and signs by what is printed on them, the keys of fly mode by where they are.
+/// The key that moves the camera. Arrows, + and − are told by what is printed on them, the keys of fly mode by their
+/// position on the keyboard.
 fn moving_key(logical: &winit::keyboard::Key, physical: PhysicalKey) -> Option<Key> {
     use winit::keyboard::Key as Logical;
     let named = match logical {

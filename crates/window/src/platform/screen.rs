@@ -1,4 +1,4 @@
-//! The surface of the window, and all the ways in which it fails.
+//! The surface of the window, and what is done when it fails.
 
 use std::sync::Arc;
 
@@ -17,22 +17,22 @@ pub(crate) struct Screen {
     instance: Instance,
     configuration: SurfaceConfiguration,
     size_px: [u32; 2],
-    /// Nothing is got of a surface that is not: that would end the program.
+    /// Whether the surface can be used: asking an unconfigured one for a texture would end the program.
     is_configured: bool,
 }
 
-/// What there is to paint into.
+/// What the surface gives to paint into.
 pub(crate) enum Acquired {
-    /// This.
+    /// A texture.
     Texture(SurfaceTexture),
-    /// Nothing just now; it is worth trying again at once.
+    /// Nothing now; it is worth trying again at once.
     Later,
-    /// Nothing while the window is hidden; an event will tell.
+    /// Nothing while the window is hidden; an event tells when that changes.
     Hidden,
 }
 
 impl Screen {
-    /// The surface of a window and a device that draws on it; OpenGL only if there is nothing better.
+    /// The surface of a window and a device that draws on it. OpenGL is used only if there is nothing better.
     pub(crate) fn new(
         event_loop: &ActiveEventLoop,
         window: &Arc<Window>,
@@ -59,13 +59,13 @@ impl Screen {
         Ok((screen, gpu))
     }
 
-    /// Colours as they are painted: encoded as sRGB, without the surface's doing.
+    /// Format of the texture. Colours are painted as sRGB already; the surface does not convert them.
     pub(crate) fn format(&self) -> TextureFormat {
         self.configuration.format
     }
 
-    /// Width and height of what is painted; 0 while the window is minimised on some systems. No side is larger than the
-    /// device's textures, which a window across many screens may be: the system fits the picture into it.
+    /// Width and height of what is painted; 0 on some systems while the window is minimised. No side is larger than the
+    /// device's largest texture. A window across several screens may be larger; the system then enlarges the picture.
     pub(crate) fn size_px(&self) -> [u32; 2] {
         self.size_px
     }
@@ -73,11 +73,11 @@ impl Screen {
     /// The window has another size.
     pub(crate) fn resize(&mut self, canvas: &Canvas, size_px: [u32; 2]) {
         self.size_px = drawable_px(canvas.gpu(), size_px);
-        // Of many sizes in a row only the last is painted.
+        // It is configured before the next frame, so that of many sizes in a row only the last one costs time.
         self.is_configured = false;
     }
 
-    /// Prepares the surface for its size, unless that is nothing or the device is lost.
+    /// Configures the surface for its size, unless a side is 0 or the device is lost.
     fn configure(&mut self, gpu: &Gpu) -> Result<(), WindowError> {
         self.is_configured = false;
         if self.size_px.contains(&0) {
@@ -88,7 +88,7 @@ impl Screen {
         let scopes = filters.map(|filter| gpu.device().push_error_scope(filter));
         self.surface.configure(gpu.device(), &self.configuration);
         let ended = scopes.into_iter().rev().map(|scope| pollster::block_on(scope.pop()));
-        // All of them are ended, whichever caught something.
+        // All scopes are ended, also if the first one caught an error.
         if let Some(source) = ended.collect::<Vec<_>>().into_iter().flatten().next() {
             return Err(WindowError::Surface { source: source.into() });
         }
@@ -96,7 +96,7 @@ impl Screen {
         Ok(())
     }
 
-    /// Gets something to paint into; once for each way of losing it, the surface is made anew.
+    /// Gets a texture to paint into. If the surface is outdated or lost, it is configured or made anew, a few times at most.
     pub(crate) fn acquire(
         &mut self,
         canvas: &Canvas,
@@ -108,7 +108,7 @@ impl Screen {
                 self.configure(gpu)?;
             }
             if !self.is_configured {
-                // The device is lost; everything is made anew before the next frame.
+                // A side is 0 or the device is lost; then everything is made anew before the next frame.
                 return Ok(Acquired::Later);
             }
             match self.surface.get_current_texture() {
@@ -135,7 +135,7 @@ impl Screen {
         Ok(Acquired::Later)
     }
 
-    /// A new surface and a new device, in the place of those lost.
+    /// Makes a new surface and a new device in place of the lost ones.
     pub(crate) fn rebuild(&mut self, window: &Arc<Window>) -> Result<Gpu, WindowError> {
         self.is_configured = false;
         self.surface = new_surface(&self.instance, window)?;
@@ -147,7 +147,7 @@ impl Screen {
     }
 }
 
-/// The largest part of a size that a device can paint.
+/// The size, with no side larger than the device can paint.
 fn drawable_px(gpu: &Gpu, size_px: [u32; 2]) -> [u32; 2] {
     size_px.map(|side| side.min(gpu.max_side_px()))
 }

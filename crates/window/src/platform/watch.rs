@@ -26,25 +26,26 @@ use super::{
 };
 use crate::{WindowError, canvas::Canvas};
 
-/// The next picture is looked for so often.
+/// Time between two questions whether there is a next picture.
 const PICTURE_TIME: Duration = Duration::from_millis(10);
 
-/// Whose turn it was when the window went.
+/// How the window came to its end.
 #[derive(Debug)]
 pub enum Watched {
-    /// There are no more pictures.
+    /// All pictures were shown.
     ToTheEnd,
-    /// The person closed the window before, by its frame or with Ctrl Q.
+    /// The person closed the window before that, by a button of its frame or with Ctrl Q.
     InPart,
-    /// The window was lost before: with its surface or its device, which need not be those that pictures are made with.
+    /// The window was lost before that, because its surface or its device failed. The pictures may be made with another
+    /// device.
     Lost(WindowError),
 }
 
 /// Shows pictures of the package `name` as they come, in a window that is `size_px` large at first, until there are no
 /// more or it is closed.
 ///
-/// Must be called from the program's first thread; whoever sends the pictures is another. Each is fitted into the window,
-/// pixel for pixel while that has the pictures' size.
+/// Must be called from the program's first thread; the pictures are sent from another one. Each picture is fitted into the
+/// window, pixel for pixel while the window has the size of the pictures.
 ///
 /// # Errors
 /// When no window opens: there is no display, or nothing to draw with.
@@ -76,11 +77,11 @@ struct Show {
     pictures: Receiver<RgbaImage>,
     open: Option<Open>,
     end_key: EndKey,
-    /// Once it is over.
+    /// How it ended; `None` until then.
     ended: Option<Result<Watched, WindowError>>,
 }
 
-/// Fields are dropped in order: what lies on the card before the surface, that before the window.
+/// Fields are dropped in this order: what lies on the graphics card, then the surface, then the window.
 struct Open {
     picture: Option<TextureHandle>,
     canvas: Canvas,
@@ -98,7 +99,7 @@ impl Show {
         Ok(Open { picture: None, canvas, screen, ui: egui::Context::default(), window })
     }
 
-    /// Only the first end counts.
+    /// Ends the event loop. If this is called several times, the first `ended` counts.
     fn end(&mut self, event_loop: &ActiveEventLoop, ended: Result<Watched, WindowError>) {
         self.ended.get_or_insert(ended);
         event_loop.exit();
@@ -150,7 +151,7 @@ impl ApplicationHandler<News> for Show {
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
-        // While the display is still there.
+        // The window must be dropped while the display is still there.
         self.open = None;
     }
 }
@@ -173,7 +174,7 @@ impl Open {
         if size_px.contains(&0) {
             return Ok(());
         }
-        // One point is one pixel: nothing here is to be read, and pictures keep their pixels.
+        // One point is one pixel: there is no text here, and pictures keep their pixels.
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(size_px[0] as f32, size_px[1] as f32));
         let input = egui::RawInput { screen_rect: Some(whole), ..Default::default() };
         let picture = self.picture.clone();
@@ -209,7 +210,7 @@ impl Open {
     }
 }
 
-/// The largest rectangle of a picture's shape in the middle of another.
+/// The largest rectangle with the shape of a picture, in the middle of `room`.
 fn fitted([width, height]: [usize; 2], room: Rect) -> Rect {
     let size = egui::vec2(width as f32, height as f32);
     let scale = (room.width() / size.x).min(room.height() / size.y);
