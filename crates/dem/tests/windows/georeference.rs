@@ -70,7 +70,7 @@ fn rasters_without_place_or_with_an_unusable_one_are_refused() {
         "metres-as-degrees.tif",
         |_| 1.0_f32,
     );
-    let words = ["metres-as-degrees.tif", "no longitude and latitude", "-a_srs"];
+    let words = ["metres-as-degrees.tif", "not a longitude and latitude", "-a_srs"];
     check_refused(&[path], &OpenOptions::default(), &words);
 }
 
