@@ -1,4 +1,4 @@
-//! Where the eye is and how it looks: f64, pure, no GPU.
+//! Position and direction of the camera: pure functions in f64, no GPU.
 //!
 //! ```text
 //!  world (working CRS)          view                     clip, after division by w
@@ -11,15 +11,15 @@
 //! ```
 //!
 //! The GPU never sees world positions: it gets positions *relative to the eye* in f32, taken as
-//! differences of f64 (Cozzi & Ring 2011, ch. 5). Depth is reversed with an infinite far plane, which spends a
-//! float's precision evenly over distance (Reed 2015, *Depth Precision Visualized*).
+//! differences of f64 (Cozzi & Ring 2011, ch. 5). Depth is reversed with an infinite far plane, which
+//! distributes the precision of a float evenly over distance (Reed 2015, *Depth Precision Visualized*).
 
 use corniche_geom::Bounds;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 /// Vertical field of view of every camera made here.
 pub(crate) const FOV_Y_RAD: f64 = std::f64::consts::FRAC_PI_4;
-/// Free border left around a framed box, as a share of the distance that just holds it.
+/// How much farther away than necessary the camera stands from a box that it frames, as a share of the distance.
 const FRAME_MARGIN: f64 = 0.03;
 /// The near plane lies at this share of the distance to what is looked at.
 const NEAR_SHARE: f64 = 1e-3;
@@ -113,7 +113,7 @@ impl Camera {
         }
     }
 
-    /// Looks at `subject` from just so far away that all of it is in the picture, in the middle of it.
+    /// Looks at `subject` from the least distance at which all of it is in the picture, with a small margin, centred.
     #[must_use]
     pub fn framing(subject: WorldBox, orientation: Orientation, size_px: [u32; 2]) -> Self {
         let world_from_view = world_from_view(orientation);
@@ -123,15 +123,15 @@ impl Camera {
             subject.corners().map(|corner| view_from_world * (corner - subject.center())).collect();
         // With the eye at (ox, oy, d) in view axes around the centre, a corner (x, y, z) is inside iff
         // |x − ox| ≤ tan.x · (d − z), that is d ≥ z + (x − ox) / tan.x and d ≥ z − (x − ox) / tan.x; likewise for
-        // y. The least distance for which some ox, oy will do is where both bounds are equal.
+        // y. The least distance for which there is such an ox and oy is where both bounds are equal.
         let reach = |sign: f64| {
             let bounds = corners.iter().map(|corner| sign * corner.truncate() / tan + corner.z);
             bounds.reduce(DVec2::max).unwrap_or_default()
         };
         let least_m = ((reach(1.0) + reach(-1.0)) / 2.0).max_element();
         let distance_m = least_m.max(1.0) * (1.0 + FRAME_MARGIN);
-        // In the middle is where the picture's free borders are equal. Moving the eye right moves everything
-        // left, so halving an interval finds it.
+        // The box is centred where the free borders on both sides are equal. Moving the eye right moves everything
+        // left, so bisection finds that place.
         let middle = |axis: usize| {
             let far = corners.iter().fold(0.0_f64, |far, corner| far.max(corner[axis].abs()));
             let (mut low, mut high) = (-far, far);
@@ -161,7 +161,7 @@ impl Camera {
         self.eye_in_world
     }
 
-    /// Distance to what the camera was pointed at.
+    /// Distance to the point that the camera looks at.
     #[must_use]
     pub fn focus_m(&self) -> f64 {
         self.focus_m
@@ -185,7 +185,7 @@ impl Camera {
         Self { size_px: self.size_px.map(|side| side * factor), ..*self }
     }
 
-    /// Axes of the view as columns: right, up, backward.
+    /// The axes of the view as columns: right, up, backward.
     #[must_use]
     pub fn world_from_view(&self) -> DMat3 {
         self.world_from_view
@@ -259,7 +259,7 @@ impl Camera {
 }
 
 impl Frustum {
-    /// Whether any of the box may be in view. Never false for a box that is; true for some that are not.
+    /// Whether some part of the box may be in view. Never false for a box that is in view; true for some that are not.
     ///
     /// Source: Assarsson & Möller 2000, *Optimized View Frustum Culling Algorithms for Bounding Boxes*: only the
     /// corner farthest along each plane's normal is tested.

@@ -1,16 +1,18 @@
 //! What follows from the eye's height above the ground beneath it: how low it may go, and how far away it looks.
 //!
-//! Windows, flights and pictures go by the same two rules, so that what one of them shows the others can show too. All
-//! heights are world heights: true ones times exaggeration and the point scale.
+//! Windows, flights and pictures use the same two rules, so that each can show what another has shown. All heights are
+//! world heights: true heights times exaggeration and the point scale.
 //!
-//! The near plane lies at a thousandth of the focus, and the focus is at most five times the height above the ground (a
-//! metre at least): so at the least height it is a centimetre away, and never reaches the ground.
+//! The near plane lies at a thousandth of the focus distance, and the focus distance is at most five times the height
+//! above the ground, but at least a metre. So at the least height the near plane is a centimetre away from the eye: it
+//! never reaches the ground.
 
-/// The eye stays at least so far above the ground: nearer it would see through the TIN's skirts.
+/// The eye stays at least this far above the ground; from nearer it would see through the skirts of tiles.
 const CLEARANCE_M: f64 = 2.0;
-/// A view that looks level is about so many times as far from the ground as it is high.
+/// The least cosine of the pitch that counts: the focus is at most 1 / 0.2 = 5 times the height away, also in a view that
+/// is almost level.
 const LEAST_COS: f64 = 0.2;
-/// The nearest focus.
+/// Least distance of the focus.
 const MIN_FOCUS_M: f64 = 1.0;
 
 /// Least height of the eye above the ground; `point_scale` is length in the working CRS over true length.
@@ -19,14 +21,14 @@ pub fn clearance_m(point_scale: f64) -> f64 {
     CLEARANCE_M * point_scale
 }
 
-/// How far away the ground is that one looks at from `above_ground_m`: the way to level ground in the middle of the
-/// picture. It changes as smoothly as that height and the pitch. Haze and near plane follow from it.
+/// Distance of the focus for an eye `above_ground_m` above the ground: how far away level ground is in the middle of the
+/// picture. It changes as smoothly as that height and the pitch. Haze and near plane depend on it.
 #[must_use]
 pub fn focus_m(above_ground_m: f64, pitch_deg: f64) -> f64 {
     (above_ground_m / pitch_deg.to_radians().cos().max(LEAST_COS)).max(MIN_FOCUS_M)
 }
 
-/// How much the eye is too low, as it is told: rounded up to a tenth of a metre, for "0.0 m too low" says nothing.
+/// How much the eye is too low, for a message: rounded up to a tenth of a metre, because "0.0 m too low" would say nothing.
 pub(crate) fn rounded_up_m(lacking_m: f64) -> f64 {
     (lacking_m * 10.0).ceil() / 10.0
 }

@@ -1,4 +1,4 @@
-//! A recorded way of the camera: keyframes in a text file, and where the camera is between them.
+//! A recorded path of the camera: keyframes in a text file, and where the camera is between them.
 //!
 //! ```toml
 //! crs = "EPSG:2056"   # of x_m and y_m; may be left out
@@ -17,8 +17,8 @@
 //! # …
 //! ```
 //!
-//! Between keyframes the camera moves smoothly and never farther in any coordinate than the two keyframes lie apart, so
-//! that a way over the ground at its keyframes cannot dive between them.
+//! Between two keyframes the camera moves smoothly, and each coordinate stays between its values at these keyframes. So the
+//! camera never goes lower than the lower of the two.
 
 mod error;
 mod keyframe;

@@ -3,7 +3,7 @@ use crate::{camera::Camera, options::RoadOptions, style::Style};
 /// What a picture shows and how, apart from the tiles.
 #[derive(Debug, Clone, Copy)]
 pub struct FrameView<'a> {
-    /// The eye; its size is the picture's.
+    /// The camera; its size is that of the picture.
     pub camera: &'a Camera,
     /// Colours and widths.
     pub style: &'a Style,
@@ -11,17 +11,17 @@ pub struct FrameView<'a> {
     pub roads: RoadOptions,
     /// Factor on heights.
     pub exaggeration: f64,
-    /// Length in the working CRS over true length: heights and widths are multiplied by it.
+    /// Length in the working CRS divided by true length; heights and widths are multiplied by it.
     pub point_scale: f64,
-    /// True heights that the tint spans.
+    /// The true heights at the two ends of the height tint.
     pub height_range_m: [f64; 2],
-    /// Whether the triangles of the ground show.
+    /// Whether the edges of the ground's triangles are drawn.
     pub wireframe: Wireframe,
 }
 
 /// Whether the edges of the ground's triangles are drawn, beneath the roads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "says it all")]
+#[expect(missing_docs, reason = "the names say what they are")]
 pub enum Wireframe {
     Hidden,
     Shown,

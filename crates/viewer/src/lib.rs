@@ -7,12 +7,13 @@
 //! ```
 //!
 //! [`render`] makes one picture of a package without a window. Its parts are usable alone: [`camera`], [`lod`]
-//! and [`style`] are values and pure functions; [`tiles`] decodes; [`gpu`] draws what it is handed.
-//! [`Replay`] flies along a [`flight`], frame by frame, with [`stream`] choosing what is loaded and kept.
+//! and [`style`] are values and pure functions; [`tiles`] decodes; [`gpu`] draws the tiles that it is
+//! given.
+//! [`Replay`] draws a [`flight`], frame by frame; [`stream`] chooses which tiles are loaded and kept.
 //!
-//! It also builds for WebAssembly, without what waits for files and devices: [`render`], [`Replay`],
-//! [`tiles::PackageSource`], [`gpu::Gpu::new`]. A browser takes [`tiles::PackageTiles`], [`gpu::Gpu::request`] and, for
-//! pixels, [`gpu::ReadBack`]: nobody can wait for pixels there.
+//! It also builds for WebAssembly, without the parts that wait for files or devices: [`render`], [`Replay`],
+//! [`tiles::PackageSource`] and [`gpu::Gpu::new`]. In a browser, where no thread may wait, [`tiles::PackageTiles`],
+//! [`gpu::Gpu::request`] and, for pixels, [`gpu::ReadBack`] take their place.
 //!
 //! This crate never depends on `pipeline`, `dem` or `osm`: it learns everything from the package. It never
 //! writes a file.
@@ -36,7 +37,7 @@ pub mod stream;
 pub mod tiles;
 mod viewpoint;
 
-/// What no program uses, but the tests of this and of other crates.
+/// Items that no program uses, only the tests of this crate and of others.
 pub mod for_tests {
     pub use crate::{
         gpu::inspection::Owner,

@@ -9,9 +9,9 @@ use crate::style::{Style, WidthScaling};
 pub enum RoadMethod {
     /// As geometry lying on the TIN of their level (GEO).
     Geometry,
-    /// As volumes cut with the ground (SV).
+    /// As volumes that are intersected with the ground (SV).
     ShadowVolumes,
-    /// Not at all.
+    /// No roads are drawn.
     None,
 }
 
@@ -20,17 +20,17 @@ pub enum RoadMethod {
 pub enum Caps {
     /// With a half disc around every point of the line.
     Round,
-    /// Cut off straight: every segment is a rectangle, and bends gape.
+    /// Without caps: every segment is a rectangle, and there are gaps at the outer side of bends.
     None,
 }
 
-/// How a fragment of a volume finds out whether the ground it sees is road.
+/// How the fragment shader of volumes decides whether the ground at its pixel is road.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CapTest {
-    /// By the distance in plan from that ground to the segment. Exact to some hundredths of a pixel anywhere.
+    /// By the distance in plan from that ground to the segment. Exact to some hundredths of a pixel at any distance.
     Distance,
     /// By the paper's formula: where the ray of view enters and leaves the volume, as the roots of a quadratic.
-    /// Loses its digits far from the eye; there for comparison. Volumes only.
+    /// It is imprecise far from the eye and is kept for comparison. Only for volumes.
     PaperQuadratic,
 }
 
@@ -50,7 +50,7 @@ pub enum WidthGrowth {
 pub enum Outline {
     /// As wide as the style says.
     OfStyle,
-    /// None.
+    /// No edge.
     None,
     /// One pixel: a kernel of 3 × 3.
     Kernel3,
@@ -72,13 +72,13 @@ impl ClassSet {
         self.0 >> class.number() & 1 == 1
     }
 
-    /// These and a class.
+    /// These classes and one more.
     #[must_use]
     pub fn with(self, class: FunctionalRoadClass) -> Self {
         Self(self.0 | 1 << class.number())
     }
 
-    /// These but for a class.
+    /// These classes except one.
     #[must_use]
     pub fn without(self, class: FunctionalRoadClass) -> Self {
         Self(self.0 & !(1 << class.number()))
@@ -94,16 +94,16 @@ pub struct RoadOptions {
     pub classes: ClassSet,
     /// Ends and bends.
     pub caps: Caps,
-    /// The test in the fragments of volumes.
+    /// The test in the fragment shader of volumes.
     pub cap_test: CapTest,
-    /// Widths over distance.
+    /// How widths depend on distance.
     pub width_growth: WidthGrowth,
-    /// The edge.
+    /// The edge around roads.
     pub outline: Outline,
 }
 
 impl RoadOptions {
-    /// The method as it is meant to be seen: all classes, round caps, decided by distance, all else by the style.
+    /// The usual options of a method: all classes, round caps, the test by distance, everything else as the style says.
     #[must_use]
     pub fn of(method: RoadMethod) -> Self {
         Self {
@@ -116,7 +116,7 @@ impl RoadOptions {
         }
     }
 
-    /// The growth of widths of a style that is drawn so.
+    /// How the widths of a style grow with distance, with these options.
     #[must_use]
     pub fn width_scaling(&self, style: &Style) -> WidthScaling {
         let scaling = style.width_scaling;

@@ -1,6 +1,6 @@
 //! Which ground lies under a pixel: rays against the triangles that are drawn, f64, no GPU.
 //!
-//! The depth buffer would tell the same some frames later; a drag must not wait for it.
+//! The depth buffer has the same answer, but only some frames later; a drag with the mouse must not wait for it.
 
 use glam::DVec3;
 
@@ -12,16 +12,16 @@ use corniche_geom::Bounds;
 pub struct GroundHit {
     /// The place, world metres.
     pub at_in_world: DVec3,
-    /// How many rays' lengths it is away: for a ray of depth 1, its view depth.
+    /// Its distance in lengths of the ray vector; if that vector has depth 1, this is the view depth.
     pub depth: f64,
 }
 
-/// A share by which triangles are larger than they are, so that no ray slips between two of them: their corners were
-/// rounded to f32, 2^-24 of a tile.
+/// Triangles are enlarged by this share, so that no ray passes between two neighbours: their corners were rounded to f32,
+/// that is to 2^-24 of a tile.
 const SLACK: f64 = 1e-6;
 
 /// The first ground that the ray from `eye_in_world` along `ray_in_world` meets, seen from above or below. Heights are
-/// `vertical_scale` times the true ones. Skirts are no ground.
+/// `vertical_scale` times the true ones. Skirts do not count as ground.
 ///
 /// Source of the intersection: Möller & Trumbore 1997, *Fast, Minimum Storage Ray/Triangle Intersection*.
 pub fn ground_at<'a>(
@@ -61,8 +61,8 @@ struct Ray {
 }
 
 impl Ray {
-    /// Depth of the first hit; infinite without one. Looks at the triangles beneath the ray, column by column of the
-    /// tile's grid of triangles, until one of them is nearer than all to come.
+    /// Depth of the first hit; infinite without one. Tests the triangles beneath the ray, column by column of the tile's
+    /// grid of triangles, and stops when a hit is nearer than all columns that follow.
     fn first_in_tile(&self, tile: &TileGeometry, vertical_scale: f64) -> f64 {
         let plan = |depth: f64| (self.eye + self.way * depth).truncate().to_array();
         let mut nearest = f64::INFINITY;
@@ -102,10 +102,10 @@ impl Ray {
     }
 }
 
-/// All ground of a tile; `None` without any.
+/// A box around all ground of a tile; `None` without ground.
 fn world_box(tile: &TileGeometry, vertical_scale: f64) -> Option<WorldBox> {
     let [low_m, high_m] = tile.summary?.height_range_m.map(|height_m| height_m * vertical_scale);
-    // Positions were rounded to f32, and triangles are larger than they are.
+    // Some slack, because positions were rounded to f32 and triangles are enlarged.
     let [east_m, north_m] = tile.size_m;
     let slack_m = 2.0 * SLACK * (east_m.max(north_m) + high_m - low_m);
     let Bounds { min_x, min_y, max_x, max_y } = tile.plan_bounds();

@@ -1,25 +1,25 @@
-//! Numbers that pictures, flights and windows alike are asked for with.
+//! Checks of numbers that users give for pictures, flights and windows alike.
 
 use std::ops::RangeInclusive;
 
 use crate::{camera::Orientation, gpu::MAX_SAMPLES_PER_SIDE, viewpoint::CameraRequest};
 
-/// A number that was asked for and cannot be had.
+/// A number given by the user is out of its range.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{name} of {value} is out of range; it must be {range}")]
 pub struct OutOfRange {
-    /// Of what, with its article.
+    /// What the number is, with its article.
     pub name: &'static str,
     /// The number.
     pub value: f64,
-    /// What fits, in words.
+    /// The range, in words.
     pub range: &'static str,
 }
 
-/// Checks one number; what is not a number fits nowhere. `range` says in words what fits.
+/// Checks one number; NaN is in no range. `range` says the range in words.
 ///
 /// # Errors
-/// When it is none of those that fit.
+/// When it is not within `fits`.
 pub fn within(
     name: &'static str,
     value: f64,
@@ -29,7 +29,7 @@ pub fn within(
     if fits.contains(&value) { Ok(()) } else { Err(OutOfRange { name, value, range }) }
 }
 
-/// Checks what says how fine the ground is drawn and how high.
+/// Checks the two numbers that say how finely the ground is drawn and how much its heights are exaggerated.
 ///
 /// # Errors
 /// When one of them is out of range.
@@ -42,7 +42,7 @@ pub fn check_ground(screen_space_error_px: f64, exaggeration: f64) -> Result<(),
 /// Checks the samples per pixel along each side.
 ///
 /// # Errors
-/// When they are none or too many.
+/// When they are 0 or too many.
 pub fn check_supersampling(samples_per_side: u32) -> Result<(), OutOfRange> {
     let fits = 1.0..=f64::from(MAX_SAMPLES_PER_SIDE);
     within("supersampling", f64::from(samples_per_side), fits, "1 to 4")

@@ -20,7 +20,7 @@ use crate::{
 /// What to render.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RenderRequest {
-    /// What messages call the package.
+    /// The name of the package in messages.
     pub name: String,
     /// Width and height of the picture.
     pub size_px: [u32; 2],
@@ -43,23 +43,23 @@ pub struct RenderRequest {
 pub struct Rendered {
     /// The picture, credits included.
     pub picture: RgbaImage,
-    /// Numbers.
+    /// The numbers.
     pub report: RenderReport,
 }
 
 /// What went into a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RenderReport {
-    /// What drew it.
+    /// Name of the graphics adapter.
     pub adapter: String,
     /// Tiles drawn.
     pub tiles: u64,
-    /// Triangles of their ground, skirts not counted.
+    /// Triangles of their ground, without those of skirts.
     pub triangles: u64,
     /// Road segments drawn.
     pub road_segments: u64,
-    /// Tiles in which roads may have been drawn narrower than asked, because half their width is more than the
-    /// level's width margin somewhere.
+    /// Tiles in which some road may have been drawn narrower than its style says, because half its width is more than
+    /// the level's width margin.
     pub clamped_tiles: u64,
     /// Tiles drawn per level, coarse levels first.
     pub levels: Vec<(u8, u64)>,
@@ -180,7 +180,10 @@ pub fn render(
     Ok(Rendered { picture, report })
 }
 
-/// The camera as asked for, if it is not too near to the ground.
+/// The camera that the request asks for.
+///
+/// # Errors
+/// When the eye would be too near to the ground, or a tile cannot be read.
 fn camera(
     request: &RenderRequest,
     package: &dyn MapPackage,

@@ -19,7 +19,7 @@ pub(crate) use self::level_connectors::{BorderTile, LevelConnector, level_connec
 /// Loads what `camera` needs, level by level, until nothing is missing, and says what to draw.
 ///
 /// # Errors
-/// When a tile cannot be had, or it was stopped.
+/// When a tile cannot be read, or `is_stopped` returned true.
 pub fn settle(
     store: &mut TileStore<'_>,
     camera: &Camera,
@@ -40,7 +40,7 @@ pub fn settle(
     }
 }
 
-/// Why the tiles of a view are not there.
+/// Why the tiles of a view cannot be loaded.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 pub enum SettleError {
@@ -58,7 +58,8 @@ pub fn draw_list<'a>(
     drawn.iter().filter_map(|drawn| Some((store.get(drawn.id)?, drawn.skirt_depth_m)))
 }
 
-/// Whether some road of a tile is to be drawn wider than its margin allows; never false when one is.
+/// Whether some road of a tile may be wider on the picture than its margin allows. Never false if one is; true for some
+/// tiles without such a road.
 #[must_use]
 pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
     let Some(summary) = tile.summary else { return false };

@@ -1,4 +1,4 @@
-//! Where to look from at first, as pictures and windows are asked.
+//! The camera that a picture or a new window is asked to begin with.
 
 use corniche_tileset::Manifest;
 use glam::DVec3;
@@ -19,14 +19,14 @@ pub enum CameraRequest {
         lon_deg: f64,
         /// Latitude of the place, WGS84.
         lat_deg: f64,
-        /// From the eye to the place.
+        /// Distance from the eye to the place, true metres.
         distance_m: f64,
         /// Direction of view.
         orientation: Orientation,
     },
 }
 
-/// A place that was to be looked at has no ground.
+/// The place to look at has no ground.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
     "longitude {lon_deg}, latitude {lat_deg} has no ground: it lies in a void, at the data's edge or outside the \
@@ -41,7 +41,7 @@ pub struct OffGround {
     pub covered_deg: [f64; 4],
 }
 
-/// Why there is no camera as asked for.
+/// Why the camera cannot be set up as asked.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 pub enum ViewpointError {
@@ -61,11 +61,11 @@ impl CameraRequest {
         }
     }
 
-    /// The camera for the package of this manifest and these tiles, whose ground lies between these true heights; in the
-    /// world they are `vertical_scale` times as high.
+    /// The camera for a package with this manifest and these tiles. Its ground lies between the true heights
+    /// `height_range_m`; world heights are `vertical_scale` times true ones.
     ///
     /// # Errors
-    /// When the place has no ground, or a tile there cannot be had.
+    /// When the place has no ground, or a tile there cannot be read.
     pub fn camera(
         self,
         manifest: &Manifest,

@@ -5,7 +5,7 @@ use super::keyframe::KEYFRAMES;
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum FlightError {
-    #[error("this is no flight: {message}")]
+    #[error("this is not a flight: {message}")]
     Syntax { message: String },
     #[error("a flight needs {} to {} keyframes, not {count}", KEYFRAMES.start(), KEYFRAMES.end())]
     Count { count: usize },
@@ -27,7 +27,7 @@ pub enum FlightError {
     )]
     OtherCrs { flight: String, package: String },
     #[error(
-        "its metres_per_unit of {factors:?} are no factors; give those of the package it was made on"
+        "its metres_per_unit of {factors:?} cannot be used as factors; give those of the package that the flight was recorded on"
     )]
     Factors { factors: [f64; 2] },
 }

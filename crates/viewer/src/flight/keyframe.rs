@@ -15,7 +15,7 @@ pub struct Pose {
 /// Where the camera is at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Keyframe {
-    /// Seconds from the flight's beginning, or from any other fixed moment.
+    /// Seconds since the beginning of the flight, or since any other fixed moment.
     pub time_s: f64,
     /// The camera.
     pub pose: Pose,

@@ -1,4 +1,4 @@
-//! The flight that is taken when none is given.
+//! The flight over a package that is drawn when the user gives none.
 
 use corniche_geom::Bounds;
 
@@ -7,15 +7,15 @@ use crate::camera::Orientation;
 
 /// Keyframes of the pass.
 const KEYFRAMES: usize = 33;
-/// Places between two keyframes where the ground is looked up.
+/// How many times the ground is looked up between two keyframes.
 const LOOKS: usize = 16;
-/// How far along the longer side the pass goes; beyond, nothing would be ahead.
+/// The share of the longer side that the camera flies along; near the end nothing would be ahead of it.
 const REACH: f64 = 0.8;
-/// It swings to either side by this share of the shorter side.
+/// The path swings to either side by this share of the shorter side.
 const SWING: f64 = 0.15;
 /// Height over the ground as a share of the shorter side.
 const CLEARANCE: f64 = 0.05;
-/// The least of it.
+/// The least height over the ground.
 const MIN_CLEARANCE_M: f64 = 30.0;
 /// Speed in true metres per second: the flight over Bavaria of Vaaraniemi, Treib & Westermann 2011, section 7.
 const SPEED_M_PER_S: f64 = 950.0;
@@ -26,11 +26,11 @@ const PITCH_DEG: f64 = 65.0;
 impl Flight {
     /// An oblique pass along the longer side of `plan`, swinging to both sides, always well above the ground.
     ///
-    /// `height_at` tells the true height of the ground; where it knows none, the pass keeps above the highest it met.
-    /// `None` when there is no ground at all beneath.
+    /// `height_at` gives the true height of the ground. Where it gives none, the path is above the highest ground of the
+    /// whole path. `None` if there is no ground beneath any of it.
     ///
     /// # Errors
-    /// What `height_at` says.
+    /// The errors of `height_at`.
     pub fn over<E>(
         plan: Bounds,
         height_at: &mut dyn FnMut([f64; 2]) -> Result<Option<f64>, E>,
@@ -58,13 +58,14 @@ impl Flight {
             let both = [k.checked_sub(1).and_then(known), known(k)];
             both.into_iter().flatten().fold(f64::NEG_INFINITY, f64::max)
         };
-        // A keyframe is above all ground of both its sides, and between two the height is between theirs.
+        // A keyframe is above all ground between it and both its neighbours. Between two keyframes the height is between
+        // theirs.
         let heights_m: [f64; KEYFRAMES] = std::array::from_fn(|k| beside(k) + clearance_m);
         Ok(self::in_plan(plan, &heights_m).ok())
     }
 }
 
-/// The pass at these heights; an error for bounds that are no rectangle.
+/// The path at these heights; an error if the bounds have no area.
 fn in_plan(plan: Bounds, heights_m: &[f64; KEYFRAMES]) -> Result<Flight, FlightError> {
     let (width_m, height_m) = (plan.width(), plan.height());
     let (long_m, short_m) = (width_m.max(height_m), width_m.min(height_m));

@@ -4,21 +4,21 @@ use crate::camera::Orientation;
 /// Times, positions, heights and headings with larger numbers are mistakes.
 const MOST: f64 = 1e9;
 
-/// A way of the camera. Times ascend and every number is finite and in its range.
+/// A path of the camera. Times ascend and every number is finite and in its range.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flight {
     times_s: Vec<f64>,
     /// x, y, height, heading (without jumps: 350° is followed by 370°) and pitch.
     values: Vec<[f64; 5]>,
-    /// Their derivatives by time.
+    /// The derivatives of `values` with respect to time.
     slopes: Vec<[f64; 5]>,
 }
 
 impl Flight {
-    /// A flight along keyframes. Headings turn the shorter way from one to the next.
+    /// A flight along keyframes. From one to the next the heading turns in the shorter direction.
     ///
     /// # Errors
-    /// When there are too few or too many, times do not ascend, or a number is out of range.
+    /// When there are too few or too many keyframes, times do not ascend, or a number is out of range.
     pub fn new(keyframes: &[Keyframe]) -> Result<Self, FlightError> {
         if !KEYFRAMES.contains(&keyframes.len()) {
             return Err(FlightError::Count { count: keyframes.len() });
@@ -45,7 +45,7 @@ impl Flight {
         Ok(Self { times_s, values, slopes })
     }
 
-    /// Its keyframes in order. Headings may be beyond a full turn.
+    /// Its keyframes in order. Headings may be below 0° or above 360°.
     pub fn keyframes(&self) -> impl Iterator<Item = Keyframe> {
         self.times_s.iter().zip(&self.values).map(|(time_s, value)| {
             let [x, y, height_m, heading_deg, pitch_deg] = *value;
@@ -78,7 +78,8 @@ impl Flight {
         let k = after.clamp(1, self.times_s.len() - 1) - 1;
         let step_s = self.times_s[k + 1] - self.times_s[k];
         let t = (time_s - self.times_s[k]) / step_s;
-        // Hermite's cubics: 1 at one end and flat at the other; slope 1 at one end.
+        // Hermite's cubic polynomials: two with the value 1 at one end, two with the slope 1 at one end; every other value
+        // and slope at the ends is 0.
         let [value_0, value_1] = [(1.0 + 2.0 * t) * (1.0 - t) * (1.0 - t), t * t * (3.0 - 2.0 * t)];
         let [slope_0, slope_1] = [t * (1.0 - t) * (1.0 - t), t * t * (t - 1.0)];
         let [x, y, height_m, heading_deg, pitch_deg] = [0, 1, 2, 3, 4].map(|axis| {
@@ -86,7 +87,7 @@ impl Flight {
             let between = value_0 * from
                 + value_1 * to
                 + step_s * (slope_0 * self.slopes[k][axis] + slope_1 * self.slopes[k + 1][axis]);
-            // Monotone in exact arithmetic; rounding may stray by an ulp.
+            // Between the two in exact arithmetic; rounding may add an ulp.
             between.clamp(from.min(to), from.max(to))
         });
         Pose { eye_m: [x, y, height_m], orientation: Orientation { heading_deg, pitch_deg } }
@@ -113,11 +114,11 @@ fn check(keyframe: &Keyframe, number: usize) -> Result<(), FlightError> {
     Ok(())
 }
 
-/// Derivatives at the keyframes such that between two of them nothing overshoots.
+/// Derivatives at the keyframes, such that no value between two keyframes is beyond the values at these two.
 ///
-/// In the middle the weighted harmonic mean of the slopes of both sides, 0 where they disagree in sign (Fritsch & Butland
-/// 1984, formula 5 as weighted for unequal steps by Fritsch, Butland & Carlson); at the ends the slope of the one side,
-/// which the same theorem allows.
+/// At inner keyframes it is the weighted harmonic mean of the slopes of both sides, or 0 where their signs differ (Fritsch &
+/// Butland 1984, formula 5, with the weights for unequal steps by Fritsch, Butland & Carlson). At the first and the last
+/// keyframe it is the slope of the only side, which the same theorem allows.
 fn slopes(times_s: &[f64], values: &[[f64; 5]]) -> Vec<[f64; 5]> {
     let last = times_s.len() - 1;
     let step_s = |k: usize| times_s[k + 1] - times_s[k];

@@ -8,14 +8,14 @@ use crate::camera::Orientation;
 /// What x and y of a package are: coordinates of a CRS times factors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorkingCrs<'a> {
-    /// Its name, as packages have it.
+    /// The name of the CRS, as it is in packages.
     pub crs: &'a str,
-    /// Working metres to a unit of its coordinates, east and north.
+    /// Working metres for one unit of its coordinates, east and north.
     pub metres_per_unit: [f64; 2],
 }
 
 impl<'a> WorkingCrs<'a> {
-    /// Of a package.
+    /// The working CRS of a package.
     #[must_use]
     pub fn of(manifest: &'a Manifest) -> Self {
         Self { crs: &manifest.crs, metres_per_unit: manifest.metres_per_unit }
@@ -23,13 +23,15 @@ impl<'a> WorkingCrs<'a> {
 }
 
 impl Flight {
-    /// Reads the text of a flight, as described at the top of this module. `working` and `coordinates` are the package's.
+    /// Reads the text of a flight, as described at the top of [`flight`](crate::flight). `working` and `coordinates` are the
+    /// package's.
     ///
-    /// Metres of the same CRS and other factors are another place: they are carried over by both factors.
+    /// If the text has other factors for the same CRS, its metres are converted: divided by its factors and multiplied by
+    /// the package's.
     ///
     /// # Errors
-    /// When it is no such text, or says something impossible; the message names the line or the keyframe. When it is meant
-    /// for a package in another CRS.
+    /// When the text is not a flight or has impossible values; the message names the line or the keyframe. When it is for a
+    /// package in another CRS.
     pub fn parse(
         text: &str,
         working: WorkingCrs<'_>,
@@ -60,7 +62,7 @@ impl Flight {
     /// The text of this flight, in the working metres of a package: [`Self::parse`] reads back the same flight.
     ///
     /// # Errors
-    /// Never for a flight made here; the writer of the text is another's.
+    /// Never for a flight that this crate made; the function that writes TOML returns a `Result`.
     pub fn to_text(&self, working: WorkingCrs<'_>) -> Result<String, FlightError> {
         let keyframe = self.keyframes().map(|Keyframe { time_s, pose }| {
             let [x, y, height_m] = pose.eye_m;
@@ -126,7 +128,7 @@ impl KeyframeRecord {
                     ("lon_deg", lon_deg, 360.0, "within ±360 degrees"),
                     ("lat_deg", lat_deg, 90.0, "within ±90 degrees"),
                 ] {
-                    // Written so that what is not a number fails.
+                    // Written so that NaN fails.
                     if !(-most..=most).contains(&value) {
                         return Err(FlightError::Range { number, name, value, range });
                     }

@@ -8,7 +8,7 @@ pub(crate) const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
 pub(crate) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 /// Road labels, as the documentation of `gpu` says.
 pub(crate) const LABEL: TextureFormat = TextureFormat::R8Unorm;
-/// Numbers of tiles, from 1; one bit more is set for skirts.
+/// Numbers of tiles, from 1; the highest bit is set for skirts.
 pub(crate) const OWNER: TextureFormat = TextureFormat::R32Uint;
 
 /// Samples on each side of a block. With smaller blocks fewer samples without a road are drawn again; with larger ones there

@@ -13,23 +13,26 @@
 //! pixel's class with a reference.
 //!
 //! The paper draws roads without blending, least important class first across all tiles. Here the target keeps the
-//! largest label (blending with *max*, exact for the whole steps of an 8-bit format), which is the same picture by
-//! definition, in any order: one draw per tile instead of one per tile, class and band.
+//! largest label (blending with *max*, which is exact for the whole steps of an 8-bit format). That is the same picture by
+//! definition, in any order, with one draw per tile instead of one per tile, class and band.
 //!
-//! Edges are smoothed by samples: everything is drawn at two to four times the picture's size and averaged at last.
-//! Coverage computed from the distance to the road's edge would cost a fraction of that, but it is a share, and
-//! shares of several roads in one pixel need blending in order of class, with what lies beneath; a label says which
-//! one class a sample is, so that an f64 reference can check each sample exactly, and outlines, crests, borders of
-//! tiles and the ground itself are smoothed by the same rule. With n samples on a side the passes over pixels cost
+//! Edges are smoothed by samples: everything is drawn at two to four times the picture's size and averaged at the end.
+//! Coverage computed from the distance to the road's edge would cost a fraction of that. But coverage is a share, and the
+//! shares of several roads in one pixel must be blended in order of class, with the ground beneath. A label says which
+//! single class a sample is. So an f64 reference can check each sample exactly, and outlines, crests, borders of tiles and
+//! the ground itself are smoothed by the same rule. With n samples on a side the passes over pixels cost
 //! n² times as much (a frame of 1600 × 1200 with 2 × 2 samples holds 131 MB of targets); geometry costs the same.
 //!
-//! The composite asks nine pixels or more for the edge of a road, and most of a picture has none. So a small pass
+//! The composite reads nine pixels or more to find the edge of a road, and most of a picture has no road. So a small pass
 //! finds, for each block of 16 × 16 samples, the largest label in it and within the outline's reach around it; the
 //! composite draws ground and sky everywhere and, over that, only the blocks with a label with their roads and edges.
 //!
 //! The owner of a pixel is the tile whose ground it shows. Volumes (SV) paint the ground of their own tile only;
-//! each tile has all roads near enough. Marking tiles in the stencil buffer instead would allow 255 of them, and
-//! a pass cannot write the stencil of a texture whose depth it reads; comparing a number costs one texture read.
+//! each tile has all roads that are near enough. If tiles were marked in the stencil buffer instead, there could be only
+//! 255 of them, and a pass cannot write the stencil of a texture whose depth it reads. Comparing a number costs one texture
+//! read.
+//!
+//! How a new kind of thing is drawn is described in `drawables/mod.rs`.
 
 mod adapter;
 mod bindings;

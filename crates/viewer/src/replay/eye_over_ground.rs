@@ -1,4 +1,4 @@
-//! What is looked up before a flight begins: heights of the ground beneath it.
+//! The heights of the ground beneath a flight, looked up before it begins, and what follows for the eye.
 
 use super::{ReplayError, ReplayOptions, timetable::Timetable};
 use crate::{
@@ -8,14 +8,14 @@ use crate::{
     tiles::{MapPackage, TileStore},
 };
 
-/// So many tiles are kept while heights are looked up.
+/// At most about this many tiles are kept while heights are looked up.
 const LOOK_UP_TILES: usize = 256;
 
-/// The pass over a package that is flown when no flight is given. `is_stopped` is asked again and again; when it says yes,
-/// the answer is [`ReplayError::Stopped`].
+/// The flight over a package that is drawn when the user gives none. `is_stopped` is called often; once it returns true,
+/// the result is [`ReplayError::Stopped`].
 ///
 /// # Errors
-/// When a tile cannot be had, there is no ground, or it was stopped.
+/// When a tile cannot be read, there is no ground, or it was stopped.
 pub fn default_flight(
     source: &dyn MapPackage,
     is_stopped: &dyn Fn() -> bool,
@@ -25,19 +25,19 @@ pub fn default_flight(
         .ok_or(ReplayError::NoGround)
 }
 
-/// Frames in which the flight led too near to the ground.
+/// The frames in which the flight comes too near to the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Lifted {
     /// How many.
     pub frames: u32,
-    /// By how much the eye was lifted at most, true metres, rounded up to a tenth.
+    /// The most by which the eye is lifted, true metres, rounded up to a tenth.
     pub most_m: f64,
 }
 
 /// How the eye stands above the ground in one frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stand {
-    /// It is lifted by so much, true metres.
+    /// How much it is lifted, true metres.
     pub(crate) lift_m: f64,
     /// How far away it looks, world metres.
     pub(crate) focus_m: f64,
@@ -45,9 +45,9 @@ pub(crate) struct Stand {
 
 /// How the eye stands in every frame of a flight.
 ///
-/// A window lifts the eye where ground is in its way, and looks as far as the ground beneath it is away; so does a flight,
-/// for the same path to give the same pictures. Between two keyframes a path may cut through a ridge, and a window that
-/// recorded it may have known coarser ground only; but nobody can have flown beneath even the coarsest.
+/// A window lifts the eye where the ground is in its way, and the focus depends on the height above the ground. A flight
+/// does the same, so that the same path gives the same pictures. Between two keyframes a path may cut through a ridge, and
+/// the window that recorded it may have had coarser ground only. But no window lets the eye go beneath the coarsest ground.
 pub(crate) struct Survey {
     stands: Vec<Stand>,
     lifted: Lifted,
@@ -57,8 +57,8 @@ impl Survey {
     /// Looks at the ground beneath each keyframe and each frame. `coarsest` is the root's ground.
     ///
     /// # Errors
-    /// When a keyframe is farther under the ground than the coarsest ground is from the true one, a tile cannot be had, or
-    /// it was stopped.
+    /// When a keyframe is farther beneath the ground than the largest error of the coarsest ground, a tile cannot be read,
+    /// or it was stopped.
     pub(crate) fn new(
         source: &dyn MapPackage,
         timetable: Timetable<'_>,
@@ -99,7 +99,7 @@ impl Survey {
         Ok(Self { stands, lifted })
     }
 
-    /// Of a frame of the flight.
+    /// How the eye stands in a frame of the flight.
     pub(crate) fn stand(&self, frame: u32) -> Stand {
         self.stands[frame as usize]
     }
@@ -110,7 +110,7 @@ impl Survey {
     }
 }
 
-/// True heights of the ground from the finest tiles, of which it keeps some.
+/// Looks up true heights of the ground in the finest tiles. It keeps some of the tiles.
 struct GroundLookUp<'a> {
     source: &'a dyn MapPackage,
     store: TileStore<'a>,

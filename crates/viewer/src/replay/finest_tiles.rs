@@ -13,10 +13,10 @@ use crate::{
     tiles::MapPackage,
 };
 
-/// All tiles without tiles beneath them, loaded before the flight begins.
+/// All tiles that have no finer tiles beneath them, loaded before the flight begins.
 pub(crate) struct FinestTiles {
     buffers: BTreeMap<TileId, TileBuffers>,
-    /// Between which true heights their ground lies; those without ground are left out.
+    /// The lowest and highest true height of their ground; tiles without ground are left out.
     height_ranges_m: BTreeMap<TileId, [f64; 2]>,
 }
 
@@ -60,13 +60,13 @@ impl FinestTiles {
         &self.buffers
     }
 
-    /// Draws all of them.
+    /// Chooses all of them.
     pub(crate) fn all(&self) -> FrameTiles {
         let started = Instant::now();
         self.choose(started, |_, _| true)
     }
 
-    /// Draws those in view. Heights in the world are true heights times `vertical_scale`.
+    /// Chooses those in view. World heights are true heights times `vertical_scale`.
     pub(crate) fn in_view(
         &self,
         source: &dyn MapPackage,

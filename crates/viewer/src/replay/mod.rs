@@ -44,7 +44,7 @@ pub use self::{
     record::FrameRecord,
 };
 
-/// A flight under way.
+/// A flight that is being drawn.
 pub struct Replay<'a> {
     gpu: &'a Gpu,
     source: &'a dyn MapPackage,
@@ -92,7 +92,8 @@ impl<'a> Replay<'a> {
     /// [`ReplayError::Stopped`].
     ///
     /// # Errors
-    /// When the options make no sense, a keyframe lies under the ground, a tile cannot be had, not all fits, or it was stopped.
+    /// When an option is out of range, a keyframe lies under the ground, a tile cannot be read, the tiles do not fit, or it
+    /// was stopped.
     pub fn new(
         gpu: &'a Gpu,
         source: &'a dyn MapPackage,
@@ -132,7 +133,7 @@ impl<'a> Replay<'a> {
     /// Draws the next frame; `None` after the last.
     ///
     /// # Errors
-    /// When a tile cannot be had, the device is lost, or it was stopped.
+    /// When a tile cannot be read, the device is lost, or it was stopped.
     pub fn next_frame(&mut self) -> Result<Option<FrameRecord>, ReplayError> {
         if self.next == self.options.frames {
             return Ok(None);
@@ -252,7 +253,7 @@ impl<'a> Replay<'a> {
                     screen_space_error_px: self.options.screen_space_error_px,
                     vertical_scale,
                 };
-                // A flight begins with a whole picture; after that, frames do not wait.
+                // The first frame waits until nothing is missing; the others do not wait.
                 let patience = if frame == 0 { Patience::UntilSettled } else { Patience::None };
                 streamed.advance(camera, ahead.as_ref(), quality, patience, self.is_stopped)
             }

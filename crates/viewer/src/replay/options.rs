@@ -5,7 +5,7 @@ use crate::{
     style::Style,
 };
 
-/// How much of the ground is drawn: the ablation of Agrawal et al. 2006, Table 1.
+/// How much of the ground is drawn: the cases that Agrawal et al. 2006 compare in Table 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Detail {
     /// All finest tiles, in view or not.
@@ -35,7 +35,7 @@ pub struct ReplayOptions {
     pub style: Style,
     /// What may be loaded and kept.
     pub budget: StreamBudget,
-    /// Tiles are loaded for where the camera will be in so many seconds; 0 loads none in advance.
+    /// Tiles are loaded in advance for where the camera will be in this many seconds; with 0 none are.
     pub ahead_s: f64,
     /// How many frames the flight has, evenly spread from its beginning to its end.
     pub frames: u32,

@@ -17,13 +17,13 @@ use crate::{
 /// How long a frame may wait for its tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Patience {
-    /// It is drawn with what there is; what it asks for comes with the next.
+    /// It is drawn with the tiles that are there; those that it requests are there for the next frame.
     None,
-    /// It is drawn when nothing is missing, or no more fits.
+    /// It is drawn once no tile is missing or no more tiles fit.
     UntilSettled,
 }
 
-/// Tiles that come and go as a [`Streamer`] plans; each arrives in the frame after it was asked for.
+/// Tiles that are loaded and evicted as a [`Streamer`] plans. Each arrives in the frame after it was requested.
 pub(crate) struct StreamedTiles<'a> {
     gpu: &'a Gpu,
     source: &'a dyn MapPackage,
@@ -50,7 +50,7 @@ impl<'a> StreamedTiles<'a> {
         &self.buffers
     }
 
-    /// Gets ready for a frame seen from `camera`, loading also for where it will be, `ahead`.
+    /// Prepares a frame seen from `camera`. Tiles for `ahead`, where the camera will be later, are loaded too.
     pub(crate) fn advance(
         &mut self,
         camera: &Camera,
@@ -78,7 +78,7 @@ impl<'a> StreamedTiles<'a> {
         }
     }
 
-    /// Does what is planned, in its order; tells whether that was to draw and nothing else.
+    /// Carries out one plan in its order. Returns whether it loads and uploads nothing, so that only drawing is left.
     fn step(
         &mut self,
         camera: &Camera,

@@ -9,14 +9,14 @@ use crate::tiles::RoadEnd;
 /// its cells, far more than simplification moves a line.
 const MAX_OFFSET_SHARE: f64 = 2.0 / 256.0;
 
-/// A tile that is drawn, as far as its roads' ends go.
+/// What connectors need to know of a tile that is drawn.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BorderTile<'a> {
-    /// Which.
+    /// Which tile.
     pub(crate) id: TileId,
     /// The shorter of its sides, metres.
     pub(crate) side_m: f64,
-    /// How far its skirt hangs, true metres.
+    /// How far its skirt hangs down, true metres.
     pub(crate) skirt_depth_m: f64,
     /// Where its roads meet its border.
     pub(crate) ends: &'a [RoadEnd],
@@ -25,10 +25,10 @@ pub(crate) struct BorderTile<'a> {
 /// A piece of road over the step between two tiles of different levels.
 ///
 /// ```text
-///     coarse │ fine            Both tiles end the road exactly on their common border, but on their own ground,
-///            │  ●━━━━━━━       and, where the coarse line is simplified, beside each other. Between the ends
-///            │ ╱  skirt        there is the step, closed by a skirt, which is no ground and carries no road.
-///   ━━━━━━━━━●                 The connector ╱ does: it belongs to both tiles and to their skirts.
+///     coarse │ fine            In both tiles the road ends exactly on their common border, but at the height of
+///            │  ●━━━━━━━       each tile's own ground and, if the coarse line is simplified, at another place.
+///            │ ╱  skirt        The step between the two ends is closed by a skirt. No road is drawn on skirts,
+///   ━━━━━━━━━●                 except by the connector ╱, which paints the ground and skirts of both tiles.
 /// ```
 ///
 /// Agrawal, Radhakrishna & Joshi 2006, *Geometry-based Mapping and Rendering of Vector Data over LOD Phototextured
@@ -42,9 +42,9 @@ pub(crate) struct LevelConnector {
     pub(crate) coarse: usize,
     /// Functional road class.
     pub(crate) class: FunctionalRoadClass,
-    /// Its ends in plan, working CRS: in the finer tile, in the coarser.
+    /// Its two ends in plan, working CRS: that in the finer tile, then that in the coarser one.
     pub(crate) ends_m: [[f64; 2]; 2],
-    /// Lowest and highest true height that it may have to cover.
+    /// The lowest and the highest true height at which there may be ground or a skirt to paint.
     pub(crate) height_range_m: [f64; 2],
     /// Working metres across the road for each true metre across it.
     pub(crate) width_factor: f32,
@@ -80,7 +80,7 @@ pub(crate) fn level_connectors(tiles: &[BorderTile<'_>]) -> Vec<LevelConnector> 
     found
 }
 
-/// Where the way goes on in the tile beyond: its nearest end on the side that faces back.
+/// Where the way continues in the tile beyond: its nearest end on the side that faces this tile.
 fn partner<'a>(end: &RoadEnd, beyond: &BorderTile<'a>) -> Option<&'a RoadEnd> {
     let distance_m =
         |other: &RoadEnd| (other.at_m[0] - end.at_m[0]).hypot(other.at_m[1] - end.at_m[1]);

@@ -1,4 +1,5 @@
-// The mean of the samples of a pixel, rounded to the nearest step. In whole steps, so that it is the same everywhere.
+// The mean of the samples of a pixel, rounded to the nearest step. It is computed in whole steps, so that it is the same
+// on every adapter.
 
 @group(0) @binding(0) var samples: texture_2d<f32>;
 

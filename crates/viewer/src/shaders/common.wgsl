@@ -1,4 +1,4 @@
-// What every pass knows of the frame. Mirrors gpu/uniforms.rs, field by field.
+// The frame's uniform block, which every pass binds. It has the same fields as gpu/uniforms.rs, in the same order.
 //
 // Positions are relative to the eye, along the world's axes (x east, y north, z up), in metres.
 // Depth is reversed with an infinite far plane: depth_buffer = near / view_depth, 0 where nothing was drawn.
@@ -16,7 +16,7 @@ struct Frame {
     forward: vec4<f32>,
     // xyz: towards the light; w: strength of the hillshade.
     light: vec4<f32>,
-    // rgb; w: distance over which haze grows to two thirds.
+    // rgb; w: distance at which haze hides two thirds of a colour.
     haze: vec4<f32>,
     // rgb; w: side of a pixel at depth 1, metres.
     sky: vec4<f32>,
@@ -25,8 +25,8 @@ struct Frame {
     // x: distance up to which road widths are true; y: exponent beyond; z: radius of the outline kernel in
     // pixels of this target; w: how many of these pixels make one pixel of the final picture.
     road_scale: vec4<f32>,
-    // x: 1 with caps, 0 without; y: 1 for the paper's test in the fragments of volumes; z: world metres to
-    // a true metre, on the whole.
+    // x: 1 with caps, 0 without; y: 1 for the paper's test in the fragment shader of volumes; z: world metres to a true
+    // metre, one value for the whole package.
     road_options: vec4<f32>,
     // x: lowest ground; y: 1 / height range.
     heights: vec4<f32>,
@@ -59,7 +59,7 @@ struct Road {
     width_factor: f32,
 }
 
-// Half width of a road in world metres before it is kept from getting thinner than a pixel.
+// Half width of a road in world metres, before the least width in pixels is applied.
 fn scaled_half_width_m(road: Road, distance_m: f32) -> f32 {
     let growth = pow(max(distance_m / frame.road_scale.x, 1.0), frame.road_scale.y);
     return frame.road_widths[road.class_number].x * road.width_factor * growth;

@@ -1,8 +1,8 @@
 // Ground, roads and sky into one picture: ground and sky everywhere, then, again with roads, the blocks that have some
-// in them or near them. Most of a picture has none, and is spared looking around every pixel.
+// in them or near them. Most of a picture has no roads; there the neighbours of pixels need not be read.
 //
 // Outlines as in Vaaraniemi, Treib & Westermann 2011, section 6.2: a maximum filter over the importance of the
-// roads around a pixel, minus the pixel's own. Whatever is left is the edge of the more important road.
+// roads around a pixel, minus the pixel's own. What remains is the edge of the more important road.
 
 @group(1) @binding(0) var ground_color: texture_2d<f32>;
 @group(1) @binding(1) var terrain_depth: texture_2d<f32>;
@@ -12,10 +12,10 @@
 // Pixels on each side of a block.
 override BLOCK: u32 = 16u;
 
-// Ground that many times farther away than its neighbour in the picture lies behind it.
+// Ground that is this many times farther away than its neighbour in the picture lies behind it.
 const FARTHER = 1.1;
 
-// From what the target stores.
+// The label that a value in the target stands for.
 fn label_of(stored: f32) -> u32 {
     return u32(round(stored * 255.0));
 }
@@ -50,19 +50,19 @@ fn background_at(ray: vec3<f32>) -> vec3<f32> {
     return mix(frame.background.rgb, above, smoothstep(-0.25, 0.0, elevation));
 }
 
-// Width of a road at a place in pixels of the final picture, before it is kept from getting too thin.
+// Width of a road at a place in pixels of the final picture, before the least width is applied.
 fn width_px(road_class: u32, distance_m: f32, depth: f32) -> f32 {
-    // Whose pixel it is, is not known here, so neither in which direction the road runs: as wide as on the whole.
+    // The tile and the direction of the road are not known here. So its width factor is that of the whole package.
     let road = Road(road_class, frame.road_options.z);
     return 2.0 * scaled_half_width_m(road, distance_m) / (frame.sky.w * depth * frame.road_scale.w);
 }
 
-// What a pixel sees of ground or sky.
+// The ground or the sky at a pixel.
 struct Sight {
     color: vec3<f32>,
     // Share of the ground's colour that is lost on the way.
     haze: f32,
-    // 0 in the sky, where all that follows means nothing.
+    // 0 in the sky, where the fields that follow have no meaning.
     depth_buffer: f32,
     depth: f32,
     distance_m: f32,
@@ -122,7 +122,7 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
     if label != 0u {
         let road_class = class_of(label);
         let fill = select(frame.road_fills[road_class].rgb, frame.road_centers[road_class].rgb, (label & 1u) == 1u);
-        // A road drawn wider than it is, to be seen at all, fades instead.
+        // A road that is drawn at its least width, wider than it is, is made paler instead.
         let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
         let presence = clamp(width_px(road_class, sight.distance_m, sight.depth) / least_px, 0.35, 1.0);
         color = mix(color, mix(fill, frame.haze.rgb, 0.5 * sight.haze), presence);
@@ -131,7 +131,7 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
     let most = label_of(largest_around(pixel, own, sight.depth_buffer / FARTHER));
     if most / 2u > label / 2u {
         let road_class = class_of(most);
-        // An edge around a thread of a road would be all one sees of it.
+        // Around a very thin road there is no edge, because it would hide the road.
         let presence = smoothstep(1.5, 5.0, width_px(road_class, sight.distance_m, sight.depth));
         color = mix(color, mix(frame.road_outlines[road_class].rgb, frame.haze.rgb, 0.5 * sight.haze), presence);
     }

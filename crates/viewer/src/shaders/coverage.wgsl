@@ -1,11 +1,11 @@
-// Whether the ground that a pixel sees is road: one rule for both methods, which differ in what they draw it with.
+// Whether the ground at a pixel is road: one rule for both methods, which differ in what they cover the pixels with.
 //
 // The terrain's depth is read and the ground seen at the pixel's centre is reconstructed. It is road if its
 // distance in plan to the segment is at most half the road's width. For a volume that stands upright this is the
 // same as the test of Vaaraniemi, Treib & Westermann 2011, High-Quality Cartographic Roads on High-Resolution DEMs,
 // section 5.1, whether the ground lies between where the ray of view enters and leaves; but their roots of a
-// quadratic lose their digits where the eye is far away and the road narrow (a tenth of all pixels near caps at
-// some 7 km), and this does not.
+// quadratic are imprecise where the eye is far away and the road narrow (wrong for a tenth of all pixels near caps at
+// some 7 km), and this test is not.
 //
 // A road seen at a grazing angle would break into dashes thinner than a pixel. So ground is also road whose
 // distance to the segment *looks* smaller than the least half width: from the pixel's centre to where the segment
@@ -16,7 +16,7 @@ struct Tile {
     // xyz: the tile's reference point minus the eye; w: depth of the skirt, world metres.
     offset: vec4<f32>,
     // x: true height of the reference point; y: widest half width that may be drawn, world metres; z: the tile's
-    // number in this frame, from 1; w: from how far away near heights hold, world metres.
+    // number in this frame, from 1; w: within how many world metres near heights hold.
     base: vec4<f32>,
 }
 
@@ -35,11 +35,11 @@ fn position_at(pixel: vec2<f32>, depth_buffer: f32) -> vec3<f32> {
 
 // How many times wider a level road must be in plan to look as wide as one seen from above.
 fn stretch_of(distance_m: f32, height_m: f32) -> f32 {
-    // Slopes that face away from the eye need some more.
+    // The factor 1.5 is for slopes that face away from the eye.
     return clamp(1.5 * distance_m / max(abs(height_m), 1e-3), 1.0, MAX_STRETCH);
 }
 
-// Share of the width that the centre line takes; below 0 without one, so that nothing looks as near as that.
+// Share of the width that the centre line takes; negative without one, so that no distance is below it.
 fn center_share(road_class: u32) -> f32 {
     return frame.road_widths[road_class].z;
 }
@@ -48,7 +48,7 @@ fn has_caps() -> bool {
     return frame.road_options.x > 0.5;
 }
 
-// In plan from the nearest point of a segment; `NEVER` away beside the ends of a road without caps.
+// Vector in plan from the nearest point of a segment. Beyond the ends of a road without caps its length is `NEVER`.
 fn from_segment(from_start: vec2<f32>, start_to_end: vec2<f32>) -> vec2<f32> {
     let length_squared = dot(start_to_end, start_to_end);
     let along = dot(from_start, start_to_end) / max(length_squared, 1e-12);
@@ -59,7 +59,7 @@ fn from_segment(from_start: vec2<f32>, start_to_end: vec2<f32>) -> vec2<f32> {
     return from_start - share * start_to_end;
 }
 
-// The pixel `step` away from one, and what it sees.
+// The pixel that is `step` away from another, and the ground that it shows.
 struct Neighbour {
     depth_buffer: f32,
     // In plan, relative to the eye.
@@ -82,8 +82,8 @@ fn neighbour(pixel: vec2<i32>, step: vec2<i32>, start: vec2<f32>, start_to_end: 
     return out;
 }
 
-// How far in plan what is seen moves with a step of one pixel, on the side where the segment is nearer. The
-// other side, if there is no ground or a silhouette on this one: on one triangle the depth buffer is linear.
+// How far the ground seen moves in plan with a step of one pixel, to the side where the segment is nearer. If that side has
+// no ground or a silhouette, the other side is taken: within one triangle the depth buffer is linear.
 fn plan_step(pixel: vec2<i32>, step: vec2<i32>, depth_buffer: f32, position: vec2<f32>, start: vec2<f32>,
     start_to_end: vec2<f32>) -> vec2<f32> {
     let ahead = neighbour(pixel, step, start, start_to_end);
@@ -102,7 +102,7 @@ fn plan_step(pixel: vec2<i32>, step: vec2<i32>, depth_buffer: f32, position: vec
     return position - behind.position;
 }
 
-// Pixels from the middle of this one to the image of a segment. `right` and `down` map pixels to plan; their
+// Distance in pixels from the middle of this pixel to the image of a segment. `right` and `down` map pixels to plan; their
 // inverse maps the segment to pixels. (Its nearest point in the picture is not its nearest in plan.)
 fn seen_px(right: vec2<f32>, down: vec2<f32>, from_start: vec2<f32>, start_to_end: vec2<f32>) -> f32 {
     let area = right.x * down.y - right.y * down.x;
@@ -113,7 +113,7 @@ fn seen_px(right: vec2<f32>, down: vec2<f32>, from_start: vec2<f32>, start_to_en
     return length(from_segment(px_from_m * from_start, px_from_m * start_to_end));
 }
 
-// What the ground at a pixel is to a segment: 0 nothing, else a label.
+// The label that a segment gives the ground at a pixel: 0 if that ground is not on the road.
 fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
     road: Road, widest_m: f32) -> u32 {
     let position = position_at(center, depth_buffer);
@@ -122,7 +122,7 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, start: vec2<
     if plan_m > widest_m {
         return NOTHING;
     }
-    // The centre line is a road of its own, narrower in all respects.
+    // The centre line is treated as a road of its own, of which every width is smaller.
     let share = center_share(road.class_number);
     let half_m = scaled_half_width_m(road, distance_m);
     if share > 0.0 && plan_m <= share * half_m {
@@ -144,7 +144,7 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, start: vec2<
     return select(NOTHING, fill_label(road.class_number), is_within || seen <= least_px);
 }
 
-// Bounds on the half width of a road none of which is farther away than `far_m` or nearer in height to the eye
+// An upper bound of the half width of a road, no part of which is farther away than `far_m`, or nearer to the eye's height
 // than `near_height_m`.
 fn bounding_radius_m(road: Road, far_m: f32, near_height_m: f32) -> f32 {
     let first = max(scaled_half_width_m(road, far_m), MAX_STRETCH * least_half_width_m(road, far_m));
@@ -162,7 +162,7 @@ fn center_label(road_class: u32) -> u32 {
     return fill_label(road_class) + 1u;
 }
 
-// As the target takes it; blending keeps the largest.
+// A label as the target stores it; blending keeps the largest.
 fn stored(label: u32) -> f32 {
     return f32(label) / 255.0;
 }

@@ -16,8 +16,8 @@
 //                                  go straight on, at a and b
 //
 // Which of the pixels behind the quad are road is decided by the ground seen there (coverage.wgsl), with the whole
-// segment of which this is a piece. That replaces the paper's depth test with its bias: what is not near the road on
-// the ground is not painted, be it in front of the road, behind a ridge or beside the piece.
+// segment of which this is a piece. That replaces the paper's depth test with its bias: ground that is not near the road
+// is not painted, whether it is in front of the road, behind a ridge or beside the piece.
 
 struct SegmentIn {
     @builtin(vertex_index) corner: u32,
@@ -27,13 +27,13 @@ struct SegmentIn {
     @location(1) shares_slopes: vec4<f32>,
     // Height of the piece's start; world metres across the road for each true metre.
     @location(2) height_width_factor: vec2<f32>,
-    // Lowest four bits: class. Then a bit each: cap at the start, at the end; whether ground of other tiles may be
-    // within each of the three reaches.
+    // Lowest four bits: class. Then one bit for a cap at the start, one for a cap at the end, and one for each of the three
+    // reaches, if ground of other tiles may be within it.
     @location(3) class_and_flags: u32,
-    // How far the ground leaves the plane, downwards and upwards. xy: for each metre away, within the first reach;
-    // zw: at most within the first reach.
+    // How far the ground is below and above the plane, at most. xy: for each metre away, within the first reach; zw: in all
+    // of the first reach.
     @location(4) rises_near: vec4<f32>,
-    // At most within the second and the third.
+    // The same in all of the second (xy) and of the third reach (zw).
     @location(5) farther: vec4<f32>,
 }
 
@@ -48,12 +48,12 @@ struct VertexOut {
 const AT_START = 0x10u;
 const AT_END = 0x20u;
 const LEAVES_TILE = 0x40u;
-// So many times as far away the quad looks the same, and the near plane does not cut it.
+// The quad is drawn this many times farther away and larger: it looks the same, and the near plane does not cut it.
 const AWAY = 1024.0;
-// A quad shows a bed of which no point is nearer than this share of the way to it.
+// A quad can stand for a bed only if no point of the bed is nearer than this share of the distance to its plane.
 const LEAST_NEAREST = 0.05;
 
-// How far the ground within a radius leaves the plane, downwards and upwards, world metres.
+// How far the ground within a radius is below and above the plane, at most, world metres.
 fn leaving_m(in: SegmentIn, radius_m: f32) -> vec2<f32> {
     let near_m = tile.base.w;
     var most = min(in.rises_near.xy * radius_m, in.rises_near.zw);
@@ -65,7 +65,7 @@ fn leaving_m(in: SegmentIn, radius_m: f32) -> vec2<f32> {
         most = in.farther.xy;
         leaves_tile = in.class_and_flags & (LEAVES_TILE << 1u);
     }
-    // A neighbour's ground lies higher or lower than this tile's by no more than skirts are deep.
+    // A neighbour's ground is higher or lower than this tile's by no more than the depth of the skirts.
     return most * frame.background.w + select(0.0, tile.offset.w, leaves_tile != 0u);
 }
 
@@ -92,7 +92,7 @@ struct Shown {
     nearest: f32,
 }
 
-// On a plane that turns about the bed's axis towards the eye: the bed is hidden by as little as can be.
+// On a plane that turns about the bed's axis towards the eye: there the quad that hides the bed is smallest.
 fn shown_about_axis(bed: RoadBed) -> Shown {
     var out: Shown;
     let along_m = length(bed.along);
@@ -120,7 +120,7 @@ fn shown_about_axis(bed: RoadBed) -> Shown {
     return out;
 }
 
-// On the plane through the bed's middle, for an eye that is in the bed's axis or near it.
+// On the plane through the bed's middle, for an eye that is on the bed's axis or near it.
 fn shown_from_its_end(bed: RoadBed) -> Shown {
     var out: Shown;
     let middle = bed.start + bed.along * (0.5 * (bed.x.x + bed.x.y));
@@ -166,11 +166,11 @@ fn vertex(in: SegmentIn) -> VertexOut {
     let b = a + along * length_m;
 
     let far_m = max(length(a), length(b));
-    // Rounding of positions must not cut off ground at the rim; the fragment decides anyway.
+    // Some more, so that rounding of positions does not cut off ground at the edge; the fragment shader decides anyway.
     let pad_m = 1e-6 * far_m + 0.01;
-    // As wide as roads may be, as for volumes: the neighbours know of no more.
+    // No wider than volumes may be: neighbouring tiles have no roads from farther away.
     let widest_m = min(bounding_radius_m(road, far_m, 0.0), tile.base.y) + pad_m;
-    // The fragment goes by the ground it sees, which may be nearer to the eye's height than the piece is, or farther away.
+    // The fragment shader uses the ground at its pixel, which may be nearer to the eye's height than the piece, or farther.
     let tilted_m = widest_m * length(slopes);
     let beside_m = leaving_m(in, widest_m) + tilted_m;
     let heights = vec2(min(a.z, b.z) - beside_m.x, max(a.z, b.z) + beside_m.y);
@@ -197,7 +197,7 @@ fn vertex(in: SegmentIn) -> VertexOut {
     let side = vec2(f32(in.corner & 1u), f32(in.corner >> 1u));
     let at = mix(shown.least, shown.most, side);
     var position = shown.u * at.x + shown.v * at.y + shown.normal * shown.plane_m;
-    // The eye is in the bed, or as good as: it may be anywhere in the picture.
+    // The eye is in the bed or very near to it: the bed may be anywhere in the picture.
     if shown.nearest < LEAST_NEAREST {
         let everywhere = 1.01 * (2.0 * side - 1.0);
         position = frame.forward.xyz + everywhere.x * frame.right.xyz + everywhere.y * frame.up.xyz;
@@ -216,7 +216,7 @@ fn vertex(in: SegmentIn) -> VertexOut {
 fn fragment(in: VertexOut) -> @location(0) f32 {
     let pixel = vec2<i32>(in.clip.xy);
     let owner = textureLoad(owners, pixel, 0).r;
-    // Not the sky and no skirt. Any tile's ground: what lies beside the border is painted from both sides.
+    // Neither the sky nor a skirt. The ground of any tile is painted: near a border both tiles paint both sides.
     if owner == 0u || (owner & SKIRT) != 0u {
         discard;
     }

@@ -1,9 +1,9 @@
 // Terrain: tile-relative vertices to colour, depth and owner.
 //
-// The owner says whose the pixel is: 0 nobody's, else the number of the tile in this frame, with the highest bit
-// set on skirts. Roads ask it: a skirt is no ground, and a volume paints its own tile only. Skirts are drawn by
-// a pipeline of their own, so that not even their upper rim counts as ground.
-// Alpha says it again for the picture: 1 ground, 0.5 skirt, 0 nothing.
+// The owner says which tile the pixel shows: 0 for none, else the number of the tile in this frame, with the highest bit
+// set on skirts. Roads read it: skirts do not count as ground, and a volume paints its own tile only. Skirts are drawn by
+// a pipeline of their own, so that not even their upper edge counts as ground.
+// Alpha says the same in the colour target: 1 ground, 0.5 skirt, 0 nothing.
 
 struct Tile {
     // xyz: the tile's reference point minus the eye; w: depth of the skirt, world metres.
@@ -16,9 +16,9 @@ struct Tile {
 
 // 0 draws ground, 1 skirts.
 override SKIRT: u32 = 0u;
-// The edges of the ground's triangles lie in the ground, but a line is drawn at pixel centres beside it, where
-// sloping ground is nearer. Pulled towards the eye by so many pixels' sides, it hides only where the ground falls
-// away more steeply than that.
+// Lines of the wireframe are pulled towards the eye by this many sides of a pixel. The edges of triangles lie in the
+// ground, but a line is drawn at pixel centres beside the edge, where sloping ground may be nearer. With this pull a line
+// is hidden only where the ground slopes more steeply than that.
 override PULL_PX: f32 = 0.0;
 
 struct VertexIn {
@@ -69,7 +69,7 @@ fn fragment(in: VertexOut) -> Pixel {
     // 1 on level ground, below on slopes turned away from the light, above on slopes turned towards it.
     let lit = max(dot(normalize(in.normal), frame.light.xyz), 0.0) / frame.light.z;
     let color = tint_at(in.height_m);
-    // Shadows in print are blue rather than black.
+    // As on printed maps, shadows are blue rather than black.
     let shaded = color * vec3(0.36, 0.40, 0.52);
     let dark = mix(color, shaded, frame.light.w * clamp(1.0 - lit, 0.0, 1.0));
     let bright = mix(dark, vec3(1.0), frame.light.w * clamp(lit - 1.0, 0.0, 1.0) * 0.9);

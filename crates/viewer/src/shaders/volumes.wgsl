@@ -4,26 +4,27 @@
 //
 //            ┌───────────────┐ ─ highest ground beneath
 //           ╱│              ╱│     Only faces that look away from the eye are drawn: each pixel that sees the
-//          ┌───────────────┐ │     box gets one fragment, also when the eye is inside. There is no depth test;
-//          │ │  a──────b   │ │     the fragment looks at the ground instead and decides whether it is road.
+//          ┌───────────────┐ │     box gets one fragment, also when the eye is inside. There is no depth test:
+//          │ │  a──────b   │ │     the fragment shader reads the ground's depth and decides whether it is road.
 //          │ └─────────────│─┘ ─ lowest
 //          │╱              │╱
 //          └───────────────┘
 //
-// What we changed: the box is as high as the ground as near to the segment as the road is wide there, not as the
-// tile; and the ground's distance to the segment decides (coverage.wgsl). `road_options.y` brings back the paper's own test.
+// What we changed: the box spans the heights of the ground within the road's width, not those of the whole tile; and the
+// distance of the ground to the segment decides (coverage.wgsl). With `road_options.y` the paper's own test is used.
 //
 // A volume paints the ground of its own tile alone. Every tile has all lines within the width margin around it, so
-// wide roads are not cut at borders, and where levels meet, no tile's roads smear over the other's ground. Skirts
-// are no ground; only connectors (scene/level_connectors.rs) go over them.
+// wide roads are not cut at borders, and where levels meet, no tile's roads are painted on the other's ground. Skirts
+// do not count as ground; only connectors (scene/level_connectors.rs) paint them.
 
 struct VolumeIn {
     @builtin(vertex_index) corner: u32,
     @location(0) start_in_tile: vec2<f32>,
     @location(1) end_in_tile: vec2<f32>,
     @location(2) height_range_in_tile: vec2<f32>,
-    // Ground beneath the segment, and how much lower or higher it may be per metre away from it, up to `tile.base.w`.
+    // Lowest and highest ground beneath the segment.
     @location(3) near_range_in_tile: vec2<f32>,
+    // x: how much lower or higher the ground may be for each metre away from the segment, up to `tile.base.w` away;
     // y: world metres across the road for each true metre.
     @location(4) near_rise_width_factor: vec2<f32>,
     // Lowest four bits: class. Above, for a connector, the number of the other tile it belongs to, else 0.
@@ -48,15 +49,15 @@ struct Reach {
     heights: vec2<f32>,
 }
 
-// Half the width of a road whose ground lies between these heights, with them.
+// Half the width of a road whose ground lies between these heights, and these heights.
 fn reach_over(heights: vec2<f32>, road: Road, plan_m: f32) -> Reach {
     let far_m = length(vec2(plan_m, max(abs(heights.x), abs(heights.y))));
     let near_height_m = select(0.0, min(abs(heights.x), abs(heights.y)), heights.x * heights.y > 0.0);
-    // The ground was searched within the margin.
+    // Heights are known within the margin only.
     return Reach(min(bounding_radius_m(road, far_m, near_height_m), tile.base.y), heights);
 }
 
-// Half the width of the box, and between which heights ground so near to the segment lies.
+// Half the width of the box, and the lowest and highest ground within that distance of the segment.
 fn reach_of(in: VolumeIn, road: Road, plan_m: f32) -> Reach {
     let vertical_scale = frame.background.w;
     let all = tile.offset.z + in.height_range_in_tile * vertical_scale;
@@ -84,8 +85,8 @@ fn vertex(in: VolumeIn) -> VertexOut {
     let plan_m = max(length(a), length(a + ab));
     let reach = reach_of(in, road, plan_m);
     let radius_m = reach.radius_m;
-    // Rounding of positions must not cut off ground at the rim; the fragment decides anyway. Beside a connector the
-    // ground was not searched, but rises or falls by more than the road is wide only on cliffs.
+    // Some more, so that rounding of positions does not cut off ground at the edge; the fragment shader decides anyway. For
+    // connectors the ground beside them is not known; it rises or falls by more than the road's width only on cliffs.
     let pad_m = 1e-6 * length(vec3(plan_m, reach.heights)) + 0.01;
     let pad_height_m = pad_m + select(0.0, 2.0 * radius_m * vertical_scale, is_connector);
     let heights = reach.heights + vec2(-pad_height_m, pad_height_m);
@@ -107,8 +108,8 @@ fn vertex(in: VolumeIn) -> VertexOut {
     return out;
 }
 
-// Where a ray from the eye along the unit vector `ray` is in the half width around an end, as the paper computes
-// it: distances at which it enters and leaves, entry behind exit if it does not.
+// The distances at which a ray from the eye along the unit vector `ray` enters and leaves the cap around an end, as the
+// paper computes them. If it misses the cap, the entry is behind the exit.
 fn through_cap(ray: vec3<f32>, cap: vec2<f32>, radius_m: f32) -> vec2<f32> {
     let c = -cap;
     let vv = dot(ray.xy, ray.xy);
@@ -120,7 +121,7 @@ fn through_cap(ray: vec3<f32>, cap: vec2<f32>, radius_m: f32) -> vec2<f32> {
     return (vec2(-2.0 * vc) + vec2(-1.0, 1.0) * sqrt(d)) / (2.0 * vv);
 }
 
-// Where `origin + distance · speed` lies between `low` and `high`.
+// The distances at which `origin + distance · speed` comes between `low` and `high` and leaves that range.
 fn through_slab(origin: f32, speed: f32, low: f32, high: f32) -> vec2<f32> {
     if abs(speed) < 1e-9 {
         return select(vec2(NEVER, -NEVER), vec2(-NEVER, NEVER), origin >= low && origin <= high);

@@ -5,7 +5,7 @@ use corniche_tin::{Placement, Surface};
 use super::{BadRoad, GroundMesh, PlanScale, RoadSegments, RoadVolumes, TileLines, relief::Relief};
 use crate::lod::GroundSummary;
 
-/// A tile, decoded to what is uploaded: positions in f32 relative to the tile's reference point.
+/// A decoded tile, ready to be uploaded: positions are f32 and relative to the tile's reference point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TileGeometry {
     /// Which tile.
@@ -20,9 +20,9 @@ pub struct TileGeometry {
     pub roads: RoadSegments,
     /// The roads on it as volumes (SV); empty if that section was not read.
     pub volumes: RoadVolumes,
-    /// Half widths beyond this are not drawn.
+    /// Roads are not drawn beyond this half width, working metres.
     pub width_margin_m: f64,
-    /// Working metres across its roads for each true metre across them, where that is most.
+    /// The largest width factor of its roads: working metres across a road for each true metre across it.
     pub(crate) most_width_factor: f64,
     /// Its sides, east and north.
     pub size_m: [f64; 2],
@@ -43,7 +43,7 @@ impl TileGeometry {
         Self::on_surface(id, terrain, surface.as_ref(), lines, frame, quantum_m)
     }
 
-    /// The same where the `surface` of the terrain is known, if there are roads on it.
+    /// As [`TileGeometry::assemble`], on the `surface` of the terrain, which is needed only if there are roads.
     fn on_surface(
         id: TileId,
         terrain: Option<&Terrain>,
@@ -91,7 +91,8 @@ impl TileGeometry {
         }
     }
 
-    /// Decodes a tile's payload: terrain and what it has of roads. `width_margin_m` is its level's, `scale` the tile's.
+    /// Decodes a tile's payload: its terrain and the sections of roads that were read. `width_margin_m` is that of the
+    /// tile's level, `scale` that of the tile.
     ///
     /// # Errors
     /// When a road does not fit the ground.
@@ -131,7 +132,7 @@ impl TileGeometry {
         self.ground.triangle_grid().at(at).iter().find_map(|triangle| {
             let [a, b, c] = self.ground.corners(*triangle);
             let weights = barycentric(at, [a[0], a[1]], [b[0], b[1]], [c[0], c[1]]);
-            // A millionth of slack: positions were rounded to f32 and the query must not fall between triangles.
+            // Positions were rounded to f32. With a slack of a millionth no position falls between two triangles.
             weights.iter().all(|weight| *weight >= -1e-6).then(|| {
                 self.reference_m[2] + weights[0] * a[2] + weights[1] * b[2] + weights[2] * c[2]
             })
@@ -139,7 +140,7 @@ impl TileGeometry {
     }
 }
 
-/// A tile's ground as roads ask for it.
+/// The ground of a tile on the lattice, as roads need it.
 fn surface(
     id: TileId,
     terrain: Option<&Terrain>,

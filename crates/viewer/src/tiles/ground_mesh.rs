@@ -8,14 +8,14 @@ use super::triangle_grid::TriangleGrid;
 pub(crate) struct GroundVertex {
     /// Metres from the tile's reference point; z is true height, before exaggeration.
     pub(crate) position_in_tile: [f32; 3],
-    /// Unit normal (east, north, up) in steps of 1/127, and 127 at the lower edge of a skirt.
+    /// Unit normal (east, north, up) in steps of 1/127; then 127 at the lower edge of a skirt, else 0.
     pub(crate) normal_skirt: [i8; 4],
 }
 
 /// Triangles of a tile's ground, then those of its skirts.
 ///
-/// A skirt hangs from every edge on the tile's border. Its lower vertices have the place and normal of the
-/// upper ones and a flag; the vertex shader lowers them, as deep as the neighbours drawn make necessary.
+/// A skirt hangs from every edge on the tile's border. Its lower vertices have the position and normal of the upper ones
+/// and a flag; the vertex shader lowers them as far as the drawn neighbours make necessary.
 ///
 /// What is near a place is looked up in a grid made from the triangles: once made, a mesh must not be changed.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -72,12 +72,12 @@ impl GroundMesh {
         Self { surface_indices: indices.len(), vertices, indices, triangle_grid }
     }
 
-    /// Which triangles of the ground are near a place.
+    /// The grid that says which triangles of the ground are near a place.
     pub(crate) fn triangle_grid(&self) -> &TriangleGrid {
         &self.triangle_grid
     }
 
-    /// The corners of a triangle of the ground, from the tile's reference point, true heights.
+    /// The corners of a triangle of the ground, relative to the tile's reference point; heights are true.
     pub(crate) fn corners(&self, triangle: u32) -> [[f64; 3]; 3] {
         let first = triangle as usize * 3;
         [0, 1, 2].map(|k| {
@@ -117,7 +117,8 @@ fn on_border(tin: &Tin, from: u32, to: u32) -> bool {
         || (a.column == b.column && (a.column == 0 || a.column == last))
 }
 
-/// Difference in f64, then rounded: the only way from a position in the working CRS to f32.
+/// A position relative to a reference point: the difference in f64, then rounded. All f32 positions are made here, so that
+/// none loses precision.
 pub(crate) fn relative(position_m: [f64; 3], reference_m: [f64; 3]) -> [f32; 3] {
     [0, 1, 2].map(|axis| (position_m[axis] - reference_m[axis]) as f32)
 }

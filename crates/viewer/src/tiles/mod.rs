@@ -1,4 +1,4 @@
-//! Tiles as the renderer wants them, and where they come from.
+//! Tiles as the renderer needs them, and where they come from.
 //!
 //! [`PackageTiles`] reads and decodes without waiting, from any source of bytes; [`PackageSource`] does so from a file for
 //! threads that wait. [`TileCatalog`] is all that choosing tiles asks of them. [`TileSource::load`] is a pure function of the

@@ -1,9 +1,9 @@
 use corniche_geom::{Bounds, CoordinateTable, width_factor};
 
-/// Working metres to a true metre over a tile, along the working CRS's east and north: what makes roads as wide as they
-/// are.
+/// How many working metres there are to a true metre in a tile, along the east and the north of the working CRS. With it
+/// roads get their true widths.
 ///
-/// Known at four corners and interpolated between them: it changes evenly, by 10⁻⁴ or so over a kilometre.
+/// It is known at the four corners and interpolated between them: it changes evenly, by about 10⁻⁴ over a kilometre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanScale {
     corners: Bounds,
@@ -12,14 +12,15 @@ pub struct PlanScale {
 }
 
 impl PlanScale {
-    /// The same everywhere: `[1.0, 1.0]` where working metres are true.
+    /// The same scale everywhere: `[1.0, 1.0]` if working metres are true metres.
     #[must_use]
     pub fn uniform(scale: [f64; 2]) -> Self {
         let corners = Bounds { min_x: 0.0, min_y: 0.0, max_x: 1.0, max_y: 1.0 };
         Self { corners, scales: [scale; 4] }
     }
 
-    /// Of a tile, as far as `table` reaches; `otherwise`, along both axes, where it knows none.
+    /// The scale of a tile. Beyond the bounds of `table` it is that at the nearest position within; `otherwise`, along both
+    /// axes, where the table has no scale.
     #[must_use]
     pub fn of_tile(table: &CoordinateTable, tile: Bounds, otherwise: f64) -> Self {
         let known = table.bounds();
@@ -37,7 +38,7 @@ impl PlanScale {
         Self { corners, scales }
     }
 
-    /// At a position in the working CRS.
+    /// The scale at a position in the working CRS.
     #[must_use]
     pub fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let share = |at: f64, low: f64, high: f64| {

@@ -8,15 +8,16 @@ use super::{
     slopes::{Plane, Slopes},
 };
 
-/// What the roads of a tile are told of its ground when they are placed.
+/// Answers what the roads of a tile need to know of its ground when they are placed.
 ///
-/// Found when a tile is decoded and not stored: it follows from what is stored, and takes a few microseconds a segment.
+/// This is computed when a tile is decoded. It is not stored, because it follows from what is stored and takes only a few
+/// microseconds a segment.
 pub(crate) struct Relief<'a> {
     frame: &'a Frame,
-    /// `None` without ground, or without roads to ask.
+    /// `None` without ground or without roads.
     surface: Option<&'a Surface>,
     tile: Bounds,
-    /// Metres within which a bed holds.
+    /// The distances within which the bounds of a bed hold; see [`Bed::reaches_m`].
     reaches_m: [f64; 3],
 }
 
@@ -33,7 +34,7 @@ impl<'a> Relief<'a> {
         Self { frame, surface, tile, reaches_m }
     }
 
-    /// True heights of the ground beneath a segment in plan and how many metres they rise per metre away from it;
+    /// The range of true heights of the ground beneath a segment in plan, and how many metres it grows per metre away from it;
     /// `None` when there is no ground within [`NearHeights::reach_m`].
     pub(crate) fn near(&self, ends_m: [[f64; 2]; 2]) -> Option<([f64; 2], f64)> {
         let ends = ends_m.map(|at| self.frame.fraction_of_position(at));
@@ -42,13 +43,13 @@ impl<'a> Relief<'a> {
         Some((found.range_m, found.rise_m / self.frame.lattice_step_m()))
     }
 
-    /// The ground as roads far wider than a cell ask for it; `None` when there is none of the one or of the others.
+    /// The ground for roads that are much wider than a cell; `None` without ground or without lines.
     pub(crate) fn wide(&self, lines: &[GroundLine]) -> Option<Slopes> {
         let surface = self.surface.filter(|_| !lines.is_empty())?;
         Some(Slopes::of_surface(surface, self.tile, self.frame))
     }
 
-    /// The ground beside a piece of a road; `wide` is the same ground. Level without any.
+    /// The ground beside a piece of a road; `wide` is the same ground for wide roads. Without ground the bed is level.
     pub(crate) fn bed(&self, piece: &Piece, wide: Option<&Slopes>) -> Bed {
         let (Some(surface), Some(wide)) = (self.surface, wide) else { return Bed::default() };
         let step_m = self.frame.lattice_step_m();
@@ -76,7 +77,7 @@ impl<'a> Relief<'a> {
             let corners_m = corners(piece, reach_m);
             if k > 0 {
                 let found = wide.leaving(&plane, corners_m);
-                // A narrower strip's ground is the wider one's too.
+                // The ground of a narrower strip is also ground of the wider one.
                 most_m[k] = [0, 1].map(|side| found[side].max(most_m[k - 1][side]));
             }
             let Bounds { min_x, min_y, max_x, max_y } = self.tile;
@@ -86,7 +87,7 @@ impl<'a> Relief<'a> {
         }
         for (most_m, leaves_tile) in most_m.iter_mut().zip(leaves_tile) {
             if leaves_tile {
-                // The neighbour's ground goes on from the border as rough as this one's, as far as this one knows.
+                // Nothing is known of the neighbour's ground. It is assumed to be as rough as this tile's, from the border on.
                 *most_m = [2.0 * most_m[0].max(most_m[1]); 2];
             }
         }
@@ -101,7 +102,7 @@ impl<'a> Relief<'a> {
     }
 }
 
-/// The corners of what is beside a piece of a road, caps included, counter-clockwise.
+/// The corners of the rectangle around a piece of a road and its caps, counter-clockwise.
 fn corners(piece: &Piece, reach_m: f64) -> [[f64; 2]; 4] {
     let ([x, y, _], [east, north]) = (piece.ends_m[0], piece.direction());
     let beyond_m = piece.has_caps.map(|has_cap| if has_cap { reach_m } else { 0.0 });

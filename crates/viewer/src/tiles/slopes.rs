@@ -25,10 +25,10 @@ impl Plane {
     }
 }
 
-/// The ground of a tile in squares of two cells: how each slopes, and how far its ground leaves that slope.
+/// The ground of a tile in squares of two cells: the mean slope of each, and how far its ground departs from that slope.
 ///
-/// Bounds on how far the ground around a wide road leaves a plane, for roads as wide as many triangles; they are no
-/// tighter than two cells allow.
+/// From this follow bounds on how far the ground around a road departs from a plane, for roads as wide as many triangles.
+/// The bounds are no tighter than squares of two cells allow.
 pub(crate) struct Slopes {
     tile: Bounds,
     side_m: [f64; 2],
@@ -38,9 +38,9 @@ pub(crate) struct Slopes {
 
 #[derive(Debug, Clone, Copy)]
 struct Square {
-    /// Through the middle of the square; its height is that of sea level.
+    /// The slope of a plane that has the height 0 in the middle of the square.
     gradient: [f64; 2],
-    /// Lowest and highest ground above that.
+    /// The lowest and the highest ground, measured from that plane.
     range_m: [f64; 2],
 }
 
@@ -66,7 +66,7 @@ impl Slopes {
                     .map(|rise_m| rise_m / frame.lattice_step_m()),
             })
             .collect();
-        // First how each square slopes, on the whole, then how far its ground leaves that.
+        // First the mean slope of each square, then how far its ground departs from it.
         let mut sums = vec![([0.0; 2], 0.0); SIDE * SIDE];
         for triangle in &triangles {
             slopes.visit(triangle, |square, [low, high]| {
@@ -94,8 +94,8 @@ impl Slopes {
         slopes
     }
 
-    /// How far the ground leaves a plane downwards and upwards, at most, within a rectangle that may be turned; its
-    /// corners go around it. 0 both without ground there.
+    /// The most by which the ground is below and above a plane within a rectangle that may be rotated; its corners are given
+    /// in order around it. Both are 0 without ground there.
     pub(crate) fn leaving(&self, plane: &Plane, corners_m: [[f64; 2]; 4]) -> [f64; 2] {
         let (low, high) = corners_m.iter().fold(
             ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]),
@@ -124,7 +124,8 @@ impl Slopes {
         leaving_m
     }
 
-    /// Visits each square that the box around a triangle meets, with what they share: its south-west and north-east.
+    /// Visits each square that the bounding box of a triangle meets, with the south-west and the north-east corner of their
+    /// intersection.
     fn visit(&self, triangle: &Triangle, mut visit: impl FnMut(usize, [[f64; 2]; 2])) {
         let [a, b, c] = triangle.corners_m;
         let low = [0, 1].map(|axis| a[axis].min(b[axis]).min(c[axis]));
@@ -148,7 +149,7 @@ impl Slopes {
         let origin = [self.tile.min_x, self.tile.min_y];
         [0, 1].map(|axis| {
             let index = |at_m: f64| {
-                // Below 0 becomes 0.
+                // The cast turns what is below 0 into 0.
                 (((at_m - origin[axis]) / self.side_m[axis]) as usize).min(SIDE - 1)
             };
             index(low[axis])..=index(high[axis])
@@ -163,8 +164,8 @@ impl Slopes {
 }
 
 impl Triangle {
-    /// Between which heights above a plane the triangle lies in a box: what both the triangle's plane in that box and
-    /// the whole triangle allow.
+    /// The lowest and the highest height above a plane that the triangle may have in a box. Bounds are the triangle's own
+    /// plane in that box, and the heights of its corners.
     fn above(&self, plane: &Plane, [low, high]: [[f64; 2]; 2]) -> [f64; 2] {
         let above_m = |[x, y, height_m]: [f64; 3]| height_m - plane.height_at_m([x, y]);
         let [a, b, c] = self.corners_m.map(above_m);
@@ -180,11 +181,12 @@ impl Triangle {
     }
 }
 
-/// Whether a square and a rectangle that may be turned meet: false only where a side of the rectangle divides them.
+/// Whether a square and a rectangle that may be rotated meet. It is false only if a side of the rectangle separates them, so
+/// it is true for some that do not meet.
 fn may_meet(middle: [f64; 2], half_m: [f64; 2], corners_m: [[f64; 2]; 4]) -> bool {
     (0..4).all(|k| {
         let ([x, y], [to_x, to_y]) = (corners_m[k], corners_m[(k + 1) % 4]);
-        // To the left of a side is inside.
+        // The inside is to the left of each side.
         let (left, forward) = (y - to_y, to_x - x);
         let inside = (middle[0] - x) * left + (middle[1] - y) * forward;
         inside + left.abs() * half_m[0] + forward.abs() * half_m[1] >= 0.0

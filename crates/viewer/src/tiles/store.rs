@@ -12,16 +12,16 @@ pub struct TileStore<'a> {
 }
 
 impl<'a> TileStore<'a> {
-    /// Nothing loaded yet.
+    /// An empty store of the tiles of `source`.
     #[must_use]
     pub fn new(source: &'a dyn TileSource) -> Self {
         Self { source, tiles: BTreeMap::new() }
     }
 
-    /// Loads what is asked for, in order.
+    /// Loads the requested tiles, in order, if they are not loaded yet.
     ///
     /// # Errors
-    /// At the first tile that cannot be had.
+    /// At the first tile that cannot be read.
     pub fn load(&mut self, requests: &[Request]) -> Result<(), LoadTileError> {
         for request in requests {
             if !self.tiles.contains_key(&request.id) {
@@ -55,11 +55,11 @@ impl<'a> TileStore<'a> {
         self.tiles.get(&id)
     }
 
-    /// The root's ground: between which true heights all ground lies, and how far off the coarsest is; `None` without
-    /// any. Loads the root.
+    /// The ground of the root tile, which it loads: the lowest and highest true height of all ground, and the error of the
+    /// coarsest ground. `None` without any ground.
     ///
     /// # Errors
-    /// When the root cannot be had.
+    /// When the root cannot be read.
     pub fn coarsest_ground(&mut self) -> Result<Option<GroundSummary>, LoadTileError> {
         if !self.exists(TileId::ROOT) {
             return Ok(None);
@@ -71,7 +71,7 @@ impl<'a> TileStore<'a> {
     /// True height of the ground at a position, from the finest tile there; loads the tiles down to it.
     ///
     /// # Errors
-    /// When a tile cannot be had.
+    /// When a tile cannot be read.
     pub fn ground_height_m(&mut self, at: [f64; 2]) -> Result<Option<f64>, LoadTileError> {
         let mut found = None;
         let mut next = self.source.exists(TileId::ROOT).then_some(TileId::ROOT);

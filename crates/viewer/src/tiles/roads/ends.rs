@@ -19,9 +19,9 @@ pub(crate) struct RoadEnd {
     pub(crate) way_id: i64,
     /// Functional road class.
     pub(crate) class: FunctionalRoadClass,
-    /// Which border.
+    /// The side of the tile.
     pub(crate) side: Side,
-    /// Where, in the working CRS.
+    /// The position, in the working CRS.
     pub(crate) at_m: [f64; 2],
     /// Lowest and highest true height that the ground may have there.
     pub(crate) height_range_m: [f64; 2],
@@ -32,7 +32,7 @@ pub(crate) struct RoadEnd {
 impl Side {
     /// The side of `tile` that a point lies on, if any.
     pub(crate) fn of([x, y]: [f64; 2], tile: Bounds) -> Option<Self> {
-        // Roads are cut on the border exactly; positions are sums of f64.
+        // Roads are clipped exactly on the border, but positions are rounded sums.
         let slack_m = 1e-9 * tile.width();
         let on = |a: f64, b: f64| (a - b).abs() <= slack_m;
         [
@@ -45,7 +45,7 @@ impl Side {
         .find_map(|(side, is_on)| is_on.then_some(side))
     }
 
-    /// The tile beyond: columns to the east, rows to the south.
+    /// How many columns to the east and rows to the south the tile beyond this side is.
     pub(crate) fn offset(self) -> (i32, i32) {
         match self {
             Self::West => (-1, 0),
@@ -111,7 +111,7 @@ pub(crate) fn plan_ends(lines: &[PlanLine], tile: Bounds, scale: &PlanScale) -> 
     ends
 }
 
-/// Where a segment passes from one side of a border of the tile to the other.
+/// Where a segment crosses a border of the tile.
 fn crossings([p, q]: [[f64; 2]; 2], tile: Bounds) -> impl Iterator<Item = (Side, [f64; 2])> {
     let sides = [
         (Side::West, 0, tile.min_x),

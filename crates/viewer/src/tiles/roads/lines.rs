@@ -15,13 +15,13 @@ pub struct GroundLine {
     pub class: FunctionalRoadClass,
     /// x, y in the working CRS and true height of each vertex.
     pub points_m: Vec<[f64; 3]>,
-    /// For each piece between two vertices the ends, in plan, of the segment of the source line that it is a piece of.
-    /// Between pieces of one segment the road goes straight on.
+    /// For each piece between two vertices, both ends in plan of the segment of the source line that it is a piece of.
+    /// Between two pieces of one segment the road is straight.
     pub sources_m: Vec<[[f64; 2]; 2]>,
 }
 
 impl GroundLine {
-    /// A line whose vertices are all points of the source line.
+    /// A line of which every vertex is a point of the source line.
     #[must_use]
     pub fn of_source(way_id: i64, class: FunctionalRoadClass, points_m: Vec<[f64; 3]>) -> Self {
         let plan = |[x, y, _]: [f64; 3]| [x, y];
@@ -39,7 +39,7 @@ pub struct PlanLine {
     pub class: FunctionalRoadClass,
     /// x, y in the working CRS.
     pub points_m: Vec<[f64; 2]>,
-    /// Per segment the lowest and highest ground of the tile within the width margin, true height.
+    /// For each segment, the lowest and highest true height of the tile's ground within the width margin.
     pub ground_range_m: Vec<[f64; 2]>,
 }
 
@@ -50,9 +50,9 @@ pub struct TileLines {
     pub ground: Vec<GroundLine>,
     /// In plan; empty if that section was not read.
     pub plan: Vec<PlanLine>,
-    /// How far the plan lines reach beyond the tile; half widths beyond it are not drawn.
+    /// How far the plan lines reach beyond the tile; roads are not drawn beyond this half width.
     pub width_margin_m: f64,
-    /// Working metres to a true metre; 1 by default.
+    /// How many working metres there are to a true metre; 1 by default.
     pub scale: PlanScale,
 }
 
@@ -62,14 +62,15 @@ pub struct TileLines {
 pub struct BadRoad {
     /// OSM's id of the way.
     pub way_id: i64,
-    /// Which piece of it.
+    /// Which part of the way.
     pub part: u32,
     /// What is wrong.
     pub source: BadLine,
 }
 
 impl TileLines {
-    /// Places the roads of a payload, as far as it has them, on its `surface`. `width_margin_m` is the level's.
+    /// The roads of a payload, as far as their sections were read, placed on its `surface`. `width_margin_m` is that of the
+    /// tile's level.
     pub(crate) fn of_payload(
         payload: &TilePayload,
         surface: Option<&Surface>,

@@ -35,12 +35,12 @@ impl<T> RoadList<T> {
         &self.pieces
     }
 
-    /// Where the pieces of a class are.
+    /// Which pieces belong to a class.
     pub(crate) fn range_of(&self, class: FunctionalRoadClass) -> Range<u32> {
         self.ranges[usize::from(class.number())].clone()
     }
 
-    /// Where they meet the tile's border.
+    /// Where the roads meet the tile's border.
     pub(crate) fn ends(&self) -> &[RoadEnd] {
         &self.ends
     }

@@ -19,7 +19,7 @@ pub struct RoadSegment {
     pub shares: [f32; 2],
     /// True height of the piece's start above the reference point.
     pub height_in_tile: f32,
-    /// Whether the road does not go straight on before and behind the piece.
+    /// Whether it has a cap at its start and at its end: where the road does not go straight on.
     pub(crate) has_caps: [bool; 2],
     /// Working metres across the segment for each true metre across it.
     pub width_factor: f32,
@@ -72,7 +72,7 @@ impl Piece {
         (to_x - x).hypot(to_y - y)
     }
 
-    /// How far along its source segment a position lies.
+    /// How far along its source segment a position lies: 0 at its start, 1 at its end.
     fn share(&self, [x, y, _]: [f64; 3]) -> f32 {
         let [p, q] = self.source_m;
         let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
@@ -82,7 +82,7 @@ impl Piece {
 }
 
 impl RoadList<RoadSegment> {
-    /// Cuts lines of the tile with these bounds into segments. `bed` tells of the ground beside a piece.
+    /// Cuts lines of the tile with these bounds into segments. `bed` gives the ground beside a piece.
     #[must_use]
     pub(crate) fn of_lines(
         lines: &[GroundLine],

@@ -30,8 +30,8 @@ pub type RoadVolumes = RoadList<RoadVolume>;
 impl RoadList<RoadVolume> {
     /// Cuts lines of the tile with these bounds into volumes.
     ///
-    /// `near` tells, for the ends of a segment in the working CRS, the ground's true heights beneath it and how they
-    /// rise per metre; `None` when no ground is within [`NearHeights::reach_m`].
+    /// `near` gives, for the ends of a segment in the working CRS, the range of true heights of the ground beneath it and
+    /// how many metres that range grows per metre away from it; `None` if no ground is within [`NearHeights::reach_m`].
     pub(crate) fn new(
         lines: &[PlanLine],
         tile: Bounds,
@@ -49,7 +49,7 @@ impl RoadList<RoadVolume> {
         };
         let volumes = lines.iter().flat_map(|line| {
             line.points_m.windows(2).zip(&line.ground_range_m).map(|(pair, range_m)| {
-                // Without ground near, a box as good as flat.
+                // Without ground near, the box is almost flat.
                 let (near_m, rise) = near([pair[0], pair[1]])
                     .unwrap_or(([f64::midpoint(range_m[0], range_m[1]); 2], 0.0));
                 RoadVolume {
