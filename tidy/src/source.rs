@@ -7,6 +7,7 @@ use std::{
 };
 
 use anyhow::{Context, Result};
+use proc_macro2::{TokenStream, TokenTree};
 use syn::{
     Attribute, Expr, Item, Token, UseTree, Visibility, parse::Parser, punctuated::Punctuated,
     visit::Visit,
@@ -139,7 +140,7 @@ impl Reader {
                 }
                 _ => {
                     let module = &mut self.modules[index];
-                    module.items.extend(name_of(item));
+                    module.items.extend(names_of(item));
                     Paths { found: &mut module.paths }.visit_item(item);
                 }
             }
@@ -224,20 +225,47 @@ fn import(
     Import { name, path, is_public }
 }
 
-fn name_of(item: &Item) -> Option<String> {
+/// What an item defines in its module.
+fn names_of(item: &Item) -> Vec<String> {
     let name = match item {
         Item::Const(item) => &item.ident,
         Item::Enum(item) => &item.ident,
         Item::Fn(item) => &item.sig.ident,
-        Item::Macro(item) => item.ident.as_ref()?,
+        Item::Macro(item) => return names_of_macro(item),
         Item::Static(item) => &item.ident,
         Item::Struct(item) => &item.ident,
         Item::Trait(item) => &item.ident,
         Item::Type(item) => &item.ident,
         Item::Union(item) => &item.ident,
-        _ => return None,
+        _ => return Vec::new(),
     };
-    Some(name.to_string())
+    vec![name.to_string()]
+}
+
+/// What a macro defines: its own name, and the names after `enum`, `struct` or `trait` in its text. A macro that writes
+/// types is taken to be called in the file that defines it.
+fn names_of_macro(item: &syn::ItemMacro) -> Vec<String> {
+    let mut names: Vec<String> = item.ident.iter().map(ToString::to_string).collect();
+    gather_definitions(item.mac.tokens.clone(), &mut names);
+    names
+}
+
+fn gather_definitions(tokens: TokenStream, into: &mut Vec<String>) {
+    let mut is_definition = false;
+    for token in tokens {
+        match token {
+            TokenTree::Ident(ident) => {
+                if is_definition {
+                    into.push(ident.to_string());
+                }
+                is_definition = ["enum", "struct", "trait"].iter().any(|keyword| ident == keyword);
+                continue;
+            }
+            TokenTree::Group(group) => gather_definitions(group.stream(), into),
+            _ => {}
+        }
+        is_definition = false;
+    }
 }
 
 pub(crate) fn attributes_of(item: &Item) -> &[Attribute] {

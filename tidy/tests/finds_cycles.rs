@@ -90,3 +90,17 @@ fn uses_in_one_direction_and_uses_by_tests_are_no_cycle() {
     ]);
     assert_eq!(cycles, []);
 }
+
+#[test]
+fn types_that_macros_write_are_seen() {
+    let cycles = cycles_of(&[
+        ("lib.rs", "mod a; mod b; mod c;"),
+        (
+            "a.rs",
+            "macro_rules! m { ($x:ident) => { pub(crate) enum A { $x } }; } m!(X); fn f(_: crate::b::B) {}",
+        ),
+        ("b.rs", "crate::c::m2! { pub(crate) struct B; } fn g(_: crate::a::A) {}"),
+        ("c.rs", "macro_rules! m2 { ($($t:tt)*) => { $($t)* }; } pub(crate) use m2;"),
+    ]);
+    assert_eq!(nodes_of(&cycles), [vec!["a.rs", "b.rs"], vec!["a", "b"]]);
+}
