@@ -92,11 +92,7 @@ impl Inputs {
         }
         match event {
             WindowEvent::ModifiersChanged(modifiers) => {
-                let state = modifiers.state();
-                self.modifiers = Modifiers {
-                    shift: state.contains(ModifiersState::SHIFT),
-                    control: state.contains(ModifiersState::CONTROL),
-                };
+                self.modifiers = held(modifiers.state());
                 app.input(&Input::Modify { modifiers: self.modifiers }, now_s);
                 false
             }
@@ -113,19 +109,7 @@ impl Inputs {
             WindowEvent::MouseInput { state, button, .. } => {
                 self.click(*state, *button, app, ui, now_s)
             }
-            WindowEvent::MouseWheel { delta, .. } => {
-                let steps = match delta {
-                    MouseScrollDelta::LineDelta(_, lines) => f64::from(*lines),
-                    MouseScrollDelta::PixelDelta(way) => {
-                        way.y / (POINTS_PER_NOTCH * f64::from(ui.pixels_per_point()))
-                    }
-                };
-                let is_maps = app.is_map(ui, self.cursor_px);
-                if is_maps {
-                    app.input(&Input::Wheel { steps, at_px: self.cursor_px }, now_s);
-                }
-                is_maps
-            }
+            WindowEvent::MouseWheel { delta, .. } => self.wheel(*delta, app, ui, now_s),
             WindowEvent::Focused(false) => {
                 app.input(&Input::LetGo, now_s);
                 true
@@ -141,6 +125,26 @@ impl Inputs {
             }
             _ => false,
         }
+    }
+
+    fn wheel(
+        &self,
+        delta: MouseScrollDelta,
+        app: &mut App,
+        ui: &egui::Context,
+        now_s: f64,
+    ) -> bool {
+        let steps = match delta {
+            MouseScrollDelta::LineDelta(_, lines) => f64::from(lines),
+            MouseScrollDelta::PixelDelta(way) => {
+                way.y / (POINTS_PER_NOTCH * f64::from(ui.pixels_per_point()))
+            }
+        };
+        let is_maps = app.is_map(ui, self.cursor_px);
+        if is_maps {
+            app.input(&Input::Wheel { steps, at_px: self.cursor_px }, now_s);
+        }
+        is_maps
     }
 
     fn click(
@@ -186,6 +190,13 @@ impl Inputs {
         let Some(command) = command(&event.logical_key, self.modifiers) else { return false };
         app.command(command, now_s);
         true
+    }
+}
+
+fn held(state: ModifiersState) -> Modifiers {
+    Modifiers {
+        shift: state.contains(ModifiersState::SHIFT),
+        control: state.contains(ModifiersState::CONTROL),
     }
 }
 
