@@ -41,7 +41,7 @@ pub struct ReadBack {
 }
 
 impl ReadBack {
-    /// Asks for all texels of a texture; see [`read_texture`] for which textures.
+    /// Asks for all texels of a texture. The texture can be copied from, and its format has one plane of whole texels.
     #[must_use]
     pub fn begin(gpu: &Gpu, texture: &wgpu::Texture) -> Self {
         Self::by_bands(gpu, texture, gpu.device.limits().max_buffer_size)
