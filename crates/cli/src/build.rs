@@ -11,7 +11,10 @@ use corniche_pipeline::{
     BuildError, BuildSettings, Existing, OpenOptions, PlanOptions, Resources, RoadSettings,
     TerrainSettings,
 };
-use corniche_presets::{Config, RoadOptions, TerrainOptions, check_cell, class_filter};
+use corniche_presets::{
+    Config, ResourceOptions, RoadOptions, TerrainOptions, check_cell, class_filter, is_range,
+    parse_memory,
+};
 use corniche_roads::ClassFilter;
 use corniche_tileset::Manifest;
 
@@ -105,19 +108,14 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
         },
         terrain: terrain_settings(terrain)?,
         roads: road_settings(roads)?,
-        resources: Resources {
-            threads: threads(resources.threads),
-            memory_bytes: resources.memory.unwrap_or(MEMORY_BYTES),
-        },
+        resources: resource_settings(&resources)?,
         generator: format!("corniche {}", env!("CARGO_PKG_VERSION")),
     })
 }
 
 fn terrain_settings(options: TerrainOptions) -> Result<TerrainSettings, Failure> {
     check_nodata(&options.nodata)?;
-    if let Some([low, high]) =
-        options.height_range.filter(|[low, high]| !(low < high && (high - low).is_finite()))
-    {
+    if let Some([low, high]) = options.height_range.filter(|ends| !is_range(*ends)) {
         return Err(Failure::unusable(format!(
             "height-range must be the lowest and the highest height, in this order, not {low}, {high}; write it like [-500, 9000]"
         )));
@@ -159,6 +157,16 @@ fn road_settings(options: RoadOptions) -> Result<RoadSettings, Failure> {
     };
     let table = presets::frc_table(options.frc_table.as_deref().unwrap_or("default"))?;
     Ok(RoadSettings { table, filter, simplify_cells })
+}
+
+fn resource_settings(options: &ResourceOptions) -> Result<Resources, Failure> {
+    let memory_bytes = match &options.memory {
+        Some(text) => {
+            parse_memory(text).map_err(|error| Failure::unusable(format!("--memory {error}")))?
+        }
+        None => MEMORY_BYTES,
+    };
+    Ok(Resources { threads: threads(options.threads), memory_bytes })
 }
 
 fn positive(option: &str, value: Option<f64>) -> Result<Option<f64>, Failure> {

@@ -32,6 +32,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     };
     let output = Output::create(&args.output, Existing::ReplaceLike(Kind::Png), &used)?;
     refuse_other_formats(&args.output)?;
+    request.check()?;
     let package = PackageSource::open(&args.package)?.for_method(request.roads.method);
     let rendered = render(&request, &package, &interrupt::is_noted)?;
     output.write_whole(&png(&rendered.picture)?)?;

@@ -26,13 +26,18 @@ pub struct RoadPiece {
 /// A plane through a piece of a road, and how far the ground beside the piece leaves it.
 ///
 /// ```text
-///     height │          ╱‾‾╲___   ground       The plane holds the piece and rises across it as the ground does on the
-///            │ ─ ─ ─ ─╱─ ─ ─ ─ ─ above         whole. At a distance d from the piece the ground is below it by no more
-///            │    ___╳─────────── plane        than `below_rise_m` · d, and by `below_m` nowhere within the reach;
-///            │ ──╱─ ╱ ─ ─ ─ ─ ─ ─ below        likewise above. Beside the piece is what lies across it, and around its
-///            └──────┴───────► across           end where the road has a cap.
+///     height │          ╱‾‾╲___   ground
+///            │ ─ ─ ─ ─╱─ ─ ─ ─ ─ above
+///            │    ___╳─────────── plane
+///            │ ──╱─ ╱ ─ ─ ─ ─ ─ ─ below
+///            └──────┴───────► across
 ///                 piece
 /// ```
+///
+/// The plane holds the piece, and across the piece it rises as the ground does on the whole. At a distance d from the piece
+/// the ground is below the plane by no more than `rises_m[0]` · d, and nowhere within the reach by more than `most_m[0]`;
+/// above the plane by no more than `rises_m[1]` · d and `most_m[1]`. "Beside the piece" is what lies across it, and what lies
+/// around its end where the road has a cap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoadBed {
     /// Metres that the plane rises for each lattice step to the left of the piece.

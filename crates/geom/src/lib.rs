@@ -13,6 +13,7 @@ mod coordinate_table;
 mod frame;
 mod geo_transform;
 mod height_grid;
+// A plain container that knows nothing of triangles, though `tin` is its only user.
 mod index_lists;
 mod lattice;
 mod node;

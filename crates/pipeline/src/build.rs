@@ -208,9 +208,9 @@ fn run(
             nodes => BuildError::NoCell { dem, nodes },
         });
     }
-    let errors = deviations::measure(&pyramid, &meshes, &levels, threads, storage, observer)?;
-    let sample_errors = if plan.nodes_are_samples() {
-        errors.at_nodes().to_vec()
+    let deviations = deviations::measure(&pyramid, &meshes, &levels, threads, storage, observer)?;
+    let sample_sums = if plan.nodes_are_samples() {
+        deviations.at_nodes().to_vec()
     } else {
         let bytes = settings.resources.memory_bytes / 4 / threads.max(1) as u64;
         let grounds = samples::GroundInput { meshes: &meshes, levels: &levels, storage, bytes };
@@ -221,7 +221,7 @@ fn run(
             levels: &levels,
             lengths: &lengths,
             meshes: &meshes,
-            errors: &errors,
+            deviations: &deviations,
             pyramid: &pyramid,
             data_tiles: &data_tiles,
             storage,
@@ -244,8 +244,8 @@ fn run(
         range_m: pyramid.range_m(),
         roads: roads.as_ref(),
         tiles: &tiles,
-        errors: &errors,
-        sample_errors: &sample_errors,
+        deviations: &deviations,
+        sample_sums: &sample_sums,
     });
     if let (Some(osm), 0) = (&settings.osm, manifest.counts.roads_kept) {
         return Err(BuildError::NoGround { osm: osm.clone() });

@@ -55,3 +55,7 @@ impl From<corniche_osm::Defect> for Defect {
         Self::Osm(defect)
     }
 }
+
+#[cfg(test)]
+#[path = "defect_tests.rs"]
+mod tests;

@@ -23,14 +23,34 @@ use sha2::{Digest, Sha256};
 use self::stamp::Stamp;
 use crate::{BuildError, Observer, Stage, hex::hex};
 
-/// A raster that was named.
-pub(crate) const DEM: &str = "dem";
-/// A file that one of them refers to, or that lies beside it and belongs to it.
-pub(crate) const DEM_PART: &str = "dem-part";
-/// The extract.
-pub(crate) const OSM: &str = "osm";
-/// Every kind of input.
-pub(crate) const KINDS: [&str; 3] = [DEM, DEM_PART, OSM];
+/// What an input is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum InputKind {
+    /// A raster that was named.
+    Dem,
+    /// A file that such a raster refers to, or that lies beside it and belongs to it.
+    DemPart,
+    /// The extract.
+    Osm,
+}
+
+impl InputKind {
+    pub(crate) const ALL: [Self; 3] = [Self::Dem, Self::DemPart, Self::Osm];
+
+    /// The word for it in the manifest.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Dem => "dem",
+            Self::DemPart => "dem-part",
+            Self::Osm => "osm",
+        }
+    }
+
+    /// Whether a record of the manifest is about an input of this kind.
+    pub(crate) fn is_of(self, record: &InputRecord) -> bool {
+        record.kind == self.name()
+    }
+}
 
 /// All files of a run, as they were before anything of them was read.
 #[derive(Debug)]
@@ -40,7 +60,7 @@ pub(crate) struct Inputs {
 
 #[derive(Debug)]
 struct Input {
-    kind: &'static str,
+    kind: InputKind,
     /// As it was given.
     path: PathBuf,
     name: String,
@@ -75,7 +95,7 @@ impl Inputs {
         let mut files: Vec<Input> = Vec::new();
         for path in dem {
             // The stamp is taken before GDAL reads the file for the names of its parts.
-            let input = Input::new(DEM, path)?;
+            let input = Input::new(InputKind::Dem, path)?;
             let parts = raster_files(path).map_err(InputError::Dem)?;
             let is_own = |part: &PathBuf| match &input.content {
                 Content::File(own) | Content::Virtual(own) => part == own || part == path,
@@ -84,11 +104,11 @@ impl Inputs {
             let parts: Vec<PathBuf> = parts.into_iter().filter(|part| !is_own(part)).collect();
             files.push(input);
             for part in parts {
-                files.push(Input::new(DEM_PART, &part)?);
+                files.push(Input::new(InputKind::DemPart, &part)?);
             }
         }
         if let Some(path) = osm {
-            files.push(Input::new(OSM, path)?);
+            files.push(Input::new(InputKind::Osm, path)?);
         }
         Ok(Self { files })
     }
@@ -101,7 +121,8 @@ impl Inputs {
             records.push(input.hash(observer)?);
             observer.advance(Stage::Hash, 1);
         }
-        for parts in records.chunk_by_mut(|a, b| a.kind == DEM_PART && b.kind == DEM_PART) {
+        let is_part = |record: &InputRecord| InputKind::DemPart.is_of(record);
+        for parts in records.chunk_by_mut(|a, b| is_part(a) && is_part(b)) {
             parts.sort_by(|a, b| (&a.name, &a.sha256).cmp(&(&b.name, &b.sha256)));
         }
         observer.end(Stage::Hash);
@@ -118,7 +139,7 @@ impl Inputs {
 }
 
 impl Input {
-    fn new(kind: &'static str, path: &Path) -> Result<Self, InputError> {
+    fn new(kind: InputKind, path: &Path) -> Result<Self, InputError> {
         let failed = |source| InputError::Read { path: path.to_path_buf(), source };
         // Opening a pipe waits for the program that writes into it, and a pipe cannot be read twice.
         if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
@@ -149,7 +170,7 @@ impl Input {
             }
         };
         Ok(InputRecord {
-            kind: self.kind.to_owned(),
+            kind: self.kind.name().to_owned(),
             name: self.name.clone(),
             bytes: bytes.ok_or(InputError::Interrupted)?,
             sha256: hex(&hasher.finalize()),
@@ -222,3 +243,7 @@ impl From<InputError> for BuildError {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "inputs_tests.rs"]
+mod tests;

@@ -12,7 +12,7 @@ mod levels;
 mod manifest_texts;
 mod observer;
 mod roads;
-mod sample_error;
+mod sample_deviation;
 mod settings;
 mod settings_record;
 mod stages;

@@ -14,7 +14,7 @@ pub enum Stage {
     /// Triangulate all tiles of all levels. Counted in tiles.
     Mesh,
     /// Measure every tile against the full resolution. Counted in finest tiles.
-    Errors,
+    Deviations,
     /// Measure every level at the DEM's own samples, where they are not the nodes. Counted in blocks.
     Samples,
     /// Read roads from the extract. Counted in roads; the total is unknown.
@@ -36,7 +36,7 @@ impl Stage {
             Self::Audit => "checking heights",
             Self::Heights => "reading heights",
             Self::Mesh => "triangulating",
-            Self::Errors => "measuring errors",
+            Self::Deviations => "measuring errors",
             Self::Samples => "measuring at samples",
             Self::Roads => "reading roads",
             Self::Tiles => "draping and encoding",

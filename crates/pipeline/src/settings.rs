@@ -45,13 +45,13 @@ pub struct TerrainSettings {
     /// Lowest and highest height that samples may have, metres, as the files give them. `None` allows what the earth's
     /// surface has, and no repeated value far beyond all others.
     pub height_range_m: Option<[f64; 2]>,
-    /// Whether a cell may be far smaller than the spacing of samples. Determines no byte: it only lets a build begin.
+    /// Whether a cell may be far smaller than the spacing of samples. It changes no byte of a package: it only lets a build begin.
     pub allow_fine_cell: bool,
     /// Largest vertical error of the finest level; `None` takes a quarter of the cell.
     pub max_error_m: Option<f64>,
 }
 
-/// How roads are made. All of it determines bytes.
+/// How roads are made.
 #[derive(Debug, Clone)]
 pub struct RoadSettings {
     /// `highway` value → class.
@@ -62,7 +62,7 @@ pub struct RoadSettings {
     pub simplify_cells: f64,
 }
 
-/// What a run may use. Determines no byte.
+/// What a run may use. It changes no byte of a package.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Resources {
     /// Worker threads, at least 1.

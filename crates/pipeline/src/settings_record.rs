@@ -1,4 +1,6 @@
-//! Which settings determine the bytes of a package: those of [`SettingsRecord`].
+//! The settings that determine, for given inputs, the tiles of a package and the heights in them: those of [`SettingsRecord`].
+//!
+//! The other settings change the manifest at most: the credits, the name of the program, and the names of the input files.
 //!
 //! The build records them with [`of`]; `verify` takes them back with [`terrain`] and [`roads`] to open the elevation files
 //! and the extract as the build did.

@@ -67,7 +67,7 @@ fn an_input_exchanged_at_any_stage_ends_the_build() {
     let folder = tempfile::tempdir().unwrap();
     let [dem, output] = ["dem.tif", "out.pmtiles"].map(|name| folder.path().join(name));
     for stage in
-        [Stage::Hash, Stage::Audit, Stage::Heights, Stage::Mesh, Stage::Errors, Stage::Tiles]
+        [Stage::Hash, Stage::Audit, Stage::Heights, Stage::Mesh, Stage::Deviations, Stage::Tiles]
     {
         hills().write(&dem);
         let exchange = At { stage, act: Mutex::new(Some(Box::new(|| exchange(&dem)))) };
@@ -162,7 +162,7 @@ fn a_raster_exchanged_while_it_is_verified_is_told() {
     build(&settings(dem.clone(), None, output.clone(), Options::plain(5.0)), &Silent).unwrap();
     let request = VerifySettings { package: output, dem: vec![dem.clone()], osm: None, threads: 2 };
     assert!(verify(&request, &Silent).unwrap().holds());
-    for stage in [Stage::Hash, Stage::Errors] {
+    for stage in [Stage::Hash, Stage::Deviations] {
         let change = At { stage, act: Mutex::new(Some(Box::new(|| exchange(&dem)))) };
         let refused = verify(&request, &change).err().unwrap();
         assert!(matches!(&refused, VerifyError::Changed { path } if *path == dem), "{refused}");

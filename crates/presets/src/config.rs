@@ -3,15 +3,16 @@
 use std::{collections::BTreeMap, num::NonZeroUsize};
 
 use clap::Args;
-use serde::{Deserialize, Deserializer, de::Error as _};
+use serde::{Deserialize, Deserializer};
 
 use crate::{
     PresetError,
     error::bounded,
-    values::{parse_cell, parse_memory, parse_range},
+    values::{parse_cell, parse_range},
 };
 
-/// A settings file: the options of the command line, by section. Defaults of options that are left out are decided elsewhere.
+/// A settings file: the options of the command line, by section. The defaults of options that are left out are decided
+/// elsewhere.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Config {
@@ -33,6 +34,7 @@ impl Config {
     }
 }
 
+// How the ground is made: the section `[terrain]`.
 #[derive(Debug, Clone, PartialEq, Default, Args, Deserialize)]
 #[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
 #[command(next_help_heading = "Terrain")]
@@ -89,6 +91,7 @@ pub struct TerrainOptions {
     pub attribution: Vec<String>,
 }
 
+// Which roads are shown on which level, and how exactly: the section `[roads]`.
 #[derive(Debug, Clone, PartialEq, Default, Args, Deserialize)]
 #[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
 #[command(next_help_heading = "Roads")]
@@ -109,7 +112,8 @@ pub struct RoadOptions {
     pub class_max_cell: Option<BTreeMap<String, f64>>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Default, Args, Deserialize)]
+// What a build may use of the machine: the section `[resources]`.
+#[derive(Debug, Clone, PartialEq, Default, Args, Deserialize)]
 #[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
 #[command(next_help_heading = "Resources")]
 #[expect(missing_docs, reason = "clap would take it for the description of the command")]
@@ -118,9 +122,8 @@ pub struct ResourceOptions {
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
     /// Memory for buffers and caches, such as 512M, 4G or 1T [default: 1G]
-    #[arg(long, value_name = "BYTES", value_parser = parse_memory)]
-    #[serde(deserialize_with = "memory")]
-    pub memory: Option<u64>,
+    #[arg(long, value_name = "BYTES")]
+    pub memory: Option<String>,
 }
 
 /// What the first of two says, else what the second says.
@@ -224,12 +227,6 @@ fn one_or_two<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64;
         Sides::Square(side_m) => [side_m; 2],
         Sides::Rectangle(sides_m) => sides_m,
     }))
-}
-
-/// Memory as text, like that of the command line.
-fn memory<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u64>, D::Error> {
-    let text = String::deserialize(deserializer)?;
-    parse_memory(&text).map(Some).map_err(D::Error::custom)
 }
 
 #[cfg(test)]

@@ -68,16 +68,60 @@ fn what_the_first_leaves_out_is_taken_from_the_second() {
     assert_eq!((terrain.nodata, terrain.max_error), (vec![-1.0], Some(7.0)));
     assert!(first.roads.or(second.roads).all_classes);
     let resources = first.resources.or(second.resources);
-    assert_eq!((resources.threads, resources.memory), (NonZeroUsize::new(2), Some(64 << 20)));
+    assert_eq!(resources.threads, NonZeroUsize::new(2));
+    assert_eq!(resources.memory.as_deref(), Some("64M"));
     let terrain = TerrainOptions::default().or(second.terrain);
     assert_eq!((terrain.cell, terrain.cell_every), (Some([30.0; 2]), None));
 }
 
+/// Options with a different value in each field for each `n`. Every field is named, so that a new one cannot be forgotten.
+fn all_options(n: u8) -> (TerrainOptions, RoadOptions, ResourceOptions) {
+    let (text, number) = (|name: &str| format!("{name} {n}"), f64::from(n));
+    let terrain = TerrainOptions {
+        crs: Some(text("crs")),
+        dem_crs: Some(text("dem-crs")),
+        dem_vertical_crs: Some(text("dem-vertical-crs")),
+        vertical_crs: Some(text("vertical-crs")),
+        vertical_shift: Some(number),
+        nodata: vec![number],
+        height_range: Some([0.0, number]),
+        scale_latitude: Some(number),
+        cell: Some([number; 2]),
+        cell_every: Some(n.into()),
+        // `true` on either side is `true`, so the sides cannot differ here.
+        force: true,
+        max_error: Some(number),
+        fill_voids: Some(n.into()),
+        attribution: vec![text("attribution")],
+    };
+    let roads = RoadOptions {
+        frc_table: Some(text("table")),
+        all_classes: true,
+        simplify: Some(number),
+        class_max_cell: Some(BTreeMap::from([(text("class"), number)])),
+    };
+    let resources =
+        ResourceOptions { threads: NonZeroUsize::new(n.into()), memory: Some(text("memory")) };
+    (terrain, roads, resources)
+}
+
+#[test]
+fn each_option_is_the_firsts_and_only_without_it_the_seconds() {
+    let (terrain, roads, resources) = all_options(1);
+    let (other_terrain, other_roads, other_resources) = all_options(2);
+    assert_eq!(terrain.clone().or(other_terrain), terrain);
+    assert_eq!(TerrainOptions::default().or(terrain.clone()), terrain);
+    assert_eq!(roads.clone().or(other_roads), roads);
+    assert_eq!(RoadOptions::default().or(roads.clone()), roads);
+    assert_eq!(resources.clone().or(other_resources), resources);
+    assert_eq!(ResourceOptions::default().or(resources.clone()), resources);
+}
+
 #[test]
 fn memory_is_written_as_on_the_command_line() {
-    let said = Config::parse("[resources]\nmemory = \"1M\"\n").unwrap_err().to_string();
-    assert!(said.contains("at least 64M"), "{said}");
-    assert!(Config::parse("[resources]\nmemory = 1\n").is_err());
+    let memory = |text: &str| Config::parse(&format!("[resources]\nmemory = {text}\n"));
+    assert_eq!(memory("\"512M\"").unwrap().resources.memory.as_deref(), Some("512M"));
+    assert!(memory("1").is_err());
 }
 
 #[test]

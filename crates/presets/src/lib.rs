@@ -13,4 +13,4 @@ pub use class_cells::class_filter;
 pub use config::{Config, ResourceOptions, RoadOptions, TerrainOptions};
 pub use error::PresetError;
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};
-pub use values::{check_cell, parse_bytes};
+pub use values::{check_cell, is_range, parse_bytes, parse_memory};

@@ -23,7 +23,10 @@ pub fn parse_bytes(text: &str) -> Result<u64, String> {
 const MIN_MEMORY_BYTES: u64 = 64 << 20;
 
 /// Memory that is enough to build in, bytes.
-pub(crate) fn parse_memory(text: &str) -> Result<u64, String> {
+///
+/// # Errors
+/// When the text is no size, or one that is too small.
+pub fn parse_memory(text: &str) -> Result<u64, String> {
     match parse_bytes(text) {
         Ok(size_bytes) if size_bytes >= MIN_MEMORY_BYTES => Ok(size_bytes),
         _ => Err(format!("{text:?} is not a size of at least 64M; write it like 512M, 4G or 1T")),
@@ -36,11 +39,15 @@ pub(crate) fn parse_range(text: &str) -> Result<[f64; 2], String> {
         .split_once(',')
         .and_then(|(low, high)| Some([low.trim().parse().ok()?, high.trim().parse().ok()?]));
     match ends {
-        Some([low, high]) if low < high && f64::is_finite(low) && high.is_finite() => {
-            Ok([low, high])
-        }
+        Some(ends) if is_range(ends) => Ok(ends),
         _ => Err("write the lowest and the highest like -500,9000".to_owned()),
     }
+}
+
+/// Whether the first of two ends lies below the second, and both are finite and not farther apart than a number can say.
+#[must_use]
+pub fn is_range([low, high]: [f64; 2]) -> bool {
+    low < high && (high - low).is_finite()
 }
 
 /// A cell, east and north: one number is a square.

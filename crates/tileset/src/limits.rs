@@ -45,9 +45,9 @@ pub const MAX_TEXT_BYTES: usize = MAX_SECTION_BYTES;
 /// Steps that the walk over the triangles may take: looking at a vertex, a row of vertices or an edge is one.
 ///
 /// The walk takes some tens of steps for each vertex and triangle of real tiles of every size; 1024 are allowed. The
-/// constant part is for sparse tiles, where a few thousand vertices on borders and outlines may all see each other:
+/// constant part is for sparse tiles, where a few thousand vertices on borders and boundaries may all see each other:
 /// a search then looks at most of them. Tests `real_tiles_stay_far_below_the_limits` (by a factor of 25) and
-/// `hard_outlines_stay_below_the_limits` (10) hold the distance. The largest tile may take 2.7 · 10^8 steps, a second or
+/// `hard_boundaries_stay_below_the_limits` (10) hold the distance. The largest tile may take 2.7 · 10^8 steps, a second or
 /// two.
 #[must_use]
 pub const fn max_walk_steps(vertices: usize, triangles: usize) -> u64 {

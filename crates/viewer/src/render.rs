@@ -38,6 +38,19 @@ pub struct RenderRequest {
     pub style: Style,
 }
 
+impl RenderRequest {
+    /// Checks the numbers of the request. This needs no package, so it can be done before one is opened; [`render`] does it,
+    /// too.
+    ///
+    /// # Errors
+    /// When a number is out of its range.
+    pub fn check(&self) -> Result<(), RenderError> {
+        range::check_ground(self.screen_space_error_px, self.exaggeration)?;
+        range::check_supersampling(self.supersampling)?;
+        Ok(range::check_camera(self.camera)?)
+    }
+}
+
 /// A picture and what went into it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rendered {
@@ -114,6 +127,9 @@ impl From<ViewpointError> for RenderError {
 
 /// Renders a picture of `package`, without a window.
 ///
+/// `package` must be opened for the road method of the request: it then reads the sections that this method needs. The
+/// caller may check the request before opening it, with [`RenderRequest::check`].
+///
 /// The picture is the same, byte for byte, each time on the same adapter and driver. `is_stopped` is asked before each
 /// tile of the view is read, and once more at the end.
 ///
@@ -124,7 +140,7 @@ pub fn render(
     package: &dyn MapPackage,
     is_stopped: &dyn Fn() -> bool,
 ) -> Result<Rendered, RenderError> {
-    check(request)?;
+    request.check()?;
     let mut store = TileStore::new(package);
     let point_scale = package.manifest().point_scale;
     let quality = Quality {
@@ -215,12 +231,6 @@ fn tiles_by_level(drawn: &[Drawn]) -> Vec<(u8, u64)> {
         }
     }
     levels
-}
-
-fn check(request: &RenderRequest) -> Result<(), OutOfRange> {
-    range::check_ground(request.screen_space_error_px, request.exaggeration)?;
-    range::check_supersampling(request.supersampling)?;
-    range::check_camera(request.camera)
 }
 
 fn check_above_ground(

@@ -17,7 +17,7 @@ use support::{
 
 fn request(package: &Path) -> RenderRequest {
     RenderRequest {
-        name: package.to_str().unwrap().to_owned(),
+        name: package.display().to_string(),
         size_px: [480, 320],
         roads: RoadOptions::of(RoadMethod::Geometry),
         camera: CameraRequest::FrameAll,
@@ -33,13 +33,13 @@ fn look_at(lon_deg: f64, lat_deg: f64) -> CameraRequest {
     CameraRequest::LookAt { lon_deg, lat_deg, distance_m: 12_000.0, orientation }
 }
 
-fn render(request: &RenderRequest) -> Result<Rendered, RenderError> {
-    corniche_viewer::render(request, &opened(request), &|| false)
+fn render(package: &Path, request: &RenderRequest) -> Result<Rendered, RenderError> {
+    corniche_viewer::render(request, &opened(package, request), &|| false)
 }
 
-/// The package of a request, whose name is its path.
-fn opened(request: &RenderRequest) -> PackageSource {
-    PackageSource::open(Path::new(&request.name)).unwrap().for_method(request.roads.method)
+/// The package, opened for the road method of the request.
+fn opened(package: &Path, request: &RenderRequest) -> PackageSource {
+    PackageSource::open(package).unwrap().for_method(request.roads.method)
 }
 
 /// Pixels that look like the motorway of the style.
@@ -60,7 +60,7 @@ fn a_package_becomes_a_picture_with_roads_and_credits() {
     }
     let folder = tempfile::tempdir().unwrap();
     let package = package(folder.path());
-    let all = render(&request(&package)).unwrap();
+    let all = render(&package, &request(&package)).unwrap();
     keep("all", &all);
     assert_eq!(all.picture.dimensions(), (480, 320));
     assert!(all.report.tiles >= 1 && all.report.triangles > 100 && all.report.road_segments > 10);
@@ -70,12 +70,14 @@ fn a_package_becomes_a_picture_with_roads_and_credits() {
     // The box of the credits is light and in the corner.
     assert!(all.picture.get_pixel(479, 319).0[..3].iter().all(|channel| *channel > 200));
 
-    let again = render(&request(&package)).unwrap();
+    let again = render(&package, &request(&package)).unwrap();
     assert!(all == again, "the same request gives the same picture");
 
-    let bare =
-        render(&RenderRequest { roads: RoadOptions::of(RoadMethod::None), ..request(&package) })
-            .unwrap();
+    let bare = render(
+        &package,
+        &RenderRequest { roads: RoadOptions::of(RoadMethod::None), ..request(&package) },
+    )
+    .unwrap();
     keep("bare", &bare);
     assert_eq!(bare.report.road_segments, 0);
     assert_eq!(red_pixels(&bare.picture), 0);
@@ -94,7 +96,8 @@ fn looking_at_a_place_has_it_in_the_middle() {
         ORIGIN_DEG[1] + 700.0 / METRES_PER_DEGREE[1],
     ];
     let near =
-        render(&RenderRequest { camera: look_at(lon_deg, lat_deg), ..request(&package) }).unwrap();
+        render(&package, &RenderRequest { camera: look_at(lon_deg, lat_deg), ..request(&package) })
+            .unwrap();
     keep("near", &near);
     let middle = image::imageops::crop_imm(&near.picture, 225, 145, 30, 30).to_image();
     assert!(red_pixels(&middle) > 40, "{} red pixels in the middle", red_pixels(&middle));
@@ -117,7 +120,7 @@ fn a_picture_can_be_stopped_at_any_tile() {
     let asked = Cell::new(0);
     let ask = |stop_at: u32| {
         asked.set(0);
-        corniche_viewer::render(&near, &opened(&near), &|| {
+        corniche_viewer::render(&near, &opened(&package, &near), &|| {
             asked.set(asked.get() + 1);
             asked.get() == stop_at
         })
@@ -138,13 +141,14 @@ fn requests_that_make_no_sense_say_what_is_wrong() {
     assert!(missing.unwrap_err().to_string().contains("nothing.pmtiles"));
     let package = package(folder.path());
     let off = RenderRequest { camera: look_at(20.0, 10.0), ..request(&package) };
-    assert!(matches!(render(&off), Err(RenderError::OffGround { .. })));
+    assert!(matches!(render(&package, &off), Err(RenderError::OffGround { .. })));
     let coarse = RenderRequest { screen_space_error_px: 0.0, ..request(&package) };
-    assert!(matches!(render(&coarse), Err(RenderError::Range { .. })));
+    assert!(matches!(render(&package, &coarse), Err(RenderError::Range { .. })));
+    assert!(matches!(coarse.check(), Err(RenderError::Range { .. })));
     if gpu().is_some() {
         let huge = RenderRequest { size_px: [100_000, 100], ..request(&package) };
-        assert!(matches!(render(&huge), Err(RenderError::Gpu(_))));
+        assert!(matches!(render(&package, &huge), Err(RenderError::Gpu(_))));
         let empty = RenderRequest { size_px: [0, 100], ..request(&package) };
-        assert!(render(&empty).is_err());
+        assert!(render(&package, &empty).is_err());
     }
 }

@@ -1,4 +1,4 @@
-//! True errors: the TINs of all levels against every node of the finest one.
+//! Deviations: how far the TINs of all levels are from the nodes of the finest level.
 
 use std::collections::BTreeMap;
 
@@ -8,20 +8,21 @@ use corniche_tin::{Deviation, TriangleBuckets, WindowPlacement};
 use super::mesh::{self, Meshes};
 use crate::{
     BuildError, Observer, Stage, Storage, heights::pyramid::Pyramid, levels::Levels,
-    sample_error::SampleSums, workers,
+    sample_deviation::SampleSums, workers,
 };
 
-/// What a tile stores of its errors.
+/// How far the TIN of one tile is from the nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TileDeviation {
+    /// What the tile stores: never below the deviations of the tiles below it.
     pub(crate) geometric_error_m: f64,
-    /// Largest true error of the tile itself and of its children, each by its own TIN.
-    pub(crate) true_error_m: f64,
+    /// The largest deviation of the tile itself and of its children, each by its own TIN.
+    pub(crate) deviation_m: f64,
     pub(crate) height_range_m: [f64; 2],
     pub(crate) uncovered_nodes: u64,
 }
 
-/// The errors of all tiles.
+/// The deviations of all tiles.
 pub(crate) struct TileDeviations {
     by_tile: BTreeMap<TileId, TileDeviation>,
     /// Per level, nodes with data under tiles without ground.
@@ -37,17 +38,16 @@ impl TileDeviations {
     }
 
     /// Per level, root first: how far the TINs are from the nodes that have their heights from the DEM. Where nodes are the
-    /// DEM's samples, that is the error at those.
+    /// DEM's samples, these are the distances to the samples.
     pub(crate) fn at_nodes(&self) -> &[SampleSums] {
         &self.at_nodes
     }
 
-    /// The error of a tile that has a mesh. A tile of which no node was seen has none: its ground covers nothing
-    /// that could be off.
+    /// The deviation of a tile that has a mesh. It is 0 for a tile of which no node was seen: its ground covers no node.
     pub(crate) fn of(&self, id: TileId) -> TileDeviation {
         self.by_tile.get(&id).copied().unwrap_or(TileDeviation {
             geometric_error_m: 0.0,
-            true_error_m: 0.0,
+            deviation_m: 0.0,
             height_range_m: [0.0, 0.0],
             uncovered_nodes: 0,
         })
@@ -94,7 +94,7 @@ pub(crate) fn measure(
         subtrees.entry(id.ancestor(max_level.saturating_sub(SUBTREE_LEVELS))).or_default().push(id);
     }
     let subtrees: Vec<Vec<TileId>> = subtrees.into_values().collect();
-    observer.begin(Stage::Errors, Some(finest.len() as u64));
+    observer.begin(Stage::Deviations, Some(finest.len() as u64));
     let mut seen: BTreeMap<TileId, Seen> = BTreeMap::new();
     let mut under_absent: BTreeMap<u8, u64> = BTreeMap::new();
     let none = vec![SampleSums::new(levels.quantum_m()); levels.numbers().count()];
@@ -131,11 +131,11 @@ pub(crate) fn measure(
                     *under_absent.entry(id.z()).or_default() += other.uncovered_nodes;
                 }
             }
-            observer.advance(Stage::Errors, subtrees[index].len() as u64);
+            observer.advance(Stage::Deviations, subtrees[index].len() as u64);
             Ok(())
         },
     )?;
-    observer.end(Stage::Errors);
+    observer.end(Stage::Deviations);
     Ok(TileDeviations { by_tile: stored(&seen, meshes), under_absent, at_nodes })
 }
 
@@ -261,7 +261,7 @@ fn stored(seen: &BTreeMap<TileId, Seen>, meshes: &Meshes) -> BTreeMap<TileId, Ti
             let largest_m = beneath_m.entry(above).or_default();
             *largest_m = largest_m.max(geometric_error_m);
         }
-        let true_error_m = id
+        let deviation_m = id
             .children()
             .filter_map(|child| seen.get(&child))
             .fold(own.deviation.max_abs_m, |largest, child| largest.max(child.deviation.max_abs_m));
@@ -270,7 +270,7 @@ fn stored(seen: &BTreeMap<TileId, Seen>, meshes: &Meshes) -> BTreeMap<TileId, Ti
             id,
             TileDeviation {
                 geometric_error_m,
-                true_error_m,
+                deviation_m,
                 height_range_m: [f64::from(low), f64::from(high)],
                 uncovered_nodes: own.uncovered_nodes,
             },

@@ -15,7 +15,7 @@ use crate::{
     levels::Levels,
     manifest_texts,
     roads::{counts::road_counts, read::ReadRoads},
-    sample_error::SampleSums,
+    sample_deviation::SampleSums,
     settings_record,
     storage::Kind,
 };
@@ -36,9 +36,9 @@ pub(crate) struct Outcome<'a> {
     pub(crate) range_m: [f32; 2],
     pub(crate) roads: Option<&'a ReadRoads<'a>>,
     pub(crate) tiles: &'a Tiles,
-    pub(crate) errors: &'a TileDeviations,
+    pub(crate) deviations: &'a TileDeviations,
     /// Per level, root first.
-    pub(crate) sample_errors: &'a [SampleSums],
+    pub(crate) sample_sums: &'a [SampleSums],
 }
 
 /// Longitudes and latitudes over the data's rectangle, for readers without PROJ.
@@ -114,14 +114,14 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
         .numbers()
         .map(|level| {
             let sums = outcome.tiles.levels.get(&level).cloned().unwrap_or_default();
-            let errors_m = Distribution::of(sums.errors_m);
+            let errors_m = Distribution::of(sums.geometric_errors_m);
             LevelRecord {
                 level,
                 cell_m: levels.frame().level_cell(level),
                 max_error_m: levels.max_error_m(level),
                 geometric_error_m: errors_m.map_or(0.0, |errors_m| errors_m.max),
                 errors_m,
-                sample_error: outcome.sample_errors[usize::from(level)].record(),
+                sample_error: outcome.sample_sums[usize::from(level)].record(),
                 tightness: Distribution::of(sums.tightness),
                 least_class: levels
                     .least_class(level)
@@ -132,7 +132,7 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
                 triangles: sums.triangles,
                 vertices: sums.vertices,
                 terrain_bytes: sums.terrain_bytes,
-                uncovered_nodes: sums.uncovered_nodes + outcome.errors.under_absent(level),
+                uncovered_nodes: sums.uncovered_nodes + outcome.deviations.under_absent(level),
             }
         })
         .collect()

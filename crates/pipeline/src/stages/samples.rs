@@ -1,4 +1,4 @@
-//! The error at the DEM's own samples where they are not the nodes: the TINs of all levels at every sample used.
+//! How far the TINs of all levels are from every used sample of the DEM, where the samples are not the nodes.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use corniche_tin::{Placement, Surface};
 
 use super::mesh::{self, Meshes};
 use crate::{
-    BuildError, Observer, Stage, Storage, levels::Levels, sample_error::SampleSums, workers,
+    BuildError, Observer, Stage, Storage, levels::Levels, sample_deviation::SampleSums, workers,
 };
 
 /// Memory of a surface for each triangle: corners, adjacency, fans, vertices, buckets.

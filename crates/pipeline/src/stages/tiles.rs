@@ -1,4 +1,4 @@
-//! One tile's payload from its mesh, its errors and its roads; and the sums over all tiles.
+//! One tile's payload from its mesh, its deviation and its roads; and the sums over all tiles.
 
 use std::collections::BTreeMap;
 
@@ -45,9 +45,9 @@ pub(crate) struct LevelSums {
     pub(crate) vertices: u64,
     pub(crate) triangles: u64,
     pub(crate) terrain_bytes: u64,
-    /// Stored errors of its tiles.
-    pub(crate) errors_m: Vec<f64>,
-    /// Stored over true errors of its tiles, where those can be measured.
+    /// Geometric errors of its tiles.
+    pub(crate) geometric_errors_m: Vec<f64>,
+    /// Geometric errors of its tiles over their deviations, where those can be measured.
     pub(crate) tightness: Vec<f64>,
     pub(crate) uncovered_nodes: u64,
 }
@@ -57,7 +57,7 @@ pub(crate) struct TileInput<'a> {
     pub(crate) levels: &'a Levels,
     pub(crate) lengths: &'a TrueLengths<'a>,
     pub(crate) meshes: &'a Meshes,
-    pub(crate) errors: &'a TileDeviations,
+    pub(crate) deviations: &'a TileDeviations,
     pub(crate) pyramid: &'a Pyramid<'a>,
     /// The finest tiles on which the data's rectangle lies.
     pub(crate) data_tiles: &'a [TileId],
@@ -133,18 +133,18 @@ impl Tiles {
     fn add(&mut self, id: TileId, made: &Made, input: &TileInput<'_>) {
         if let Some(kept) = &made.kept {
             self.payloads.push((id, kept.span));
-            let errors = input.errors.of(id);
+            let deviation = input.deviations.of(id);
             let level = self.levels.entry(id.z()).or_default();
             level.tiles += 1;
             level.vertices += kept.vertices;
             level.triangles += kept.triangles;
             level.terrain_bytes += kept.terrain_bytes;
-            level.errors_m.push(errors.geometric_error_m);
+            level.geometric_errors_m.push(deviation.geometric_error_m);
             let least_m = VerticalRecord::least_measured_error_m(input.levels.quantum_m());
-            if errors.true_error_m >= least_m {
-                level.tightness.push(errors.geometric_error_m / errors.true_error_m);
+            if deviation.deviation_m >= least_m {
+                level.tightness.push(deviation.geometric_error_m / deviation.deviation_m);
             }
-            level.uncovered_nodes += errors.uncovered_nodes;
+            level.uncovered_nodes += deviation.uncovered_nodes;
             for (&class, counted) in &kept.classes {
                 let sums = self.roads.classes.entry((id.z(), class)).or_default();
                 sums.source_vertices += counted.source_vertices;
@@ -181,14 +181,14 @@ fn make_tile(
     }
     let fates = std::mem::take(&mut laid.fates);
     let laid_classes = std::mem::take(&mut laid.classes);
-    let errors = input.errors.of(id);
+    let deviation = input.deviations.of(id);
     let counts = (meshed.tin.vertices().len() as u64, meshed.tin.triangles().len() as u64);
     let terrain = Terrain {
         tin: meshed.tin,
         normals: meshed.normals,
-        geometric_error_m: errors.geometric_error_m,
-        height_range_m: errors.height_range_m,
-        uncovered_nodes: errors.uncovered_nodes,
+        geometric_error_m: deviation.geometric_error_m,
+        height_range_m: deviation.height_range_m,
+        uncovered_nodes: deviation.uncovered_nodes,
     };
     let payload = laid.into_payload(id, terrain);
     let context = PayloadContext { frame: *frame, quantum_m: levels.quantum_m() };

@@ -1,12 +1,12 @@
-//! The elevation files beside the package: inputs, grid, errors, vertices and normals.
+//! The elevation files beside the package: inputs, grid, deviations, vertices and normals.
 
 use corniche_tileset::FilePackage;
 
 use super::{
     checks::Findings, dem_inputs, deviation_checks, deviations, error::VerifyError,
-    report::VerifyReport, samples, settings::VerifySettings, vertices_against_dem,
+    report::VerifyReport, request::VerifySettings, samples, vertices_against_dem,
 };
-use crate::{Observer, inputs::Inputs, sample_error::SampleSums};
+use crate::{Observer, inputs::Inputs, sample_deviation::SampleSums};
 
 pub(crate) fn verify(
     package: &FilePackage,

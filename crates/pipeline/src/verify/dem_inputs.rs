@@ -7,11 +7,11 @@ use super::{
     checks::{Check, CheckId},
     error::VerifyError,
     report::VerifyReport,
-    settings::VerifySettings,
+    request::VerifySettings,
 };
 use crate::{
     Observer,
-    inputs::{self, Inputs},
+    inputs::{InputKind, Inputs},
     manifest_texts, settings_record,
 };
 
@@ -24,7 +24,8 @@ pub(crate) fn open(
     report: &mut VerifyReport,
     observer: &dyn Observer,
 ) -> Result<Option<(Dem, GridPlan)>, VerifyError> {
-    let is_dem = |input: &&InputRecord| input.kind == inputs::DEM || input.kind == inputs::DEM_PART;
+    let is_dem =
+        |input: &&InputRecord| InputKind::Dem.is_of(input) || InputKind::DemPart.is_of(input);
     let expected: Vec<&InputRecord> = manifest.inputs.iter().filter(is_dem).collect();
     let other = || VerifyError::OtherDem {
         expected: expected.iter().map(|input| input.name.clone()).collect(),
@@ -34,11 +35,11 @@ pub(crate) fn open(
     let given = inputs.hash(observer)?;
     // By content, not by name: a file may have been moved or renamed since. The order of parts is that of their names.
     let mut sizes = Check::new(CheckId::DemInputs);
-    for kind in [inputs::DEM, inputs::DEM_PART] {
+    for kind in [InputKind::Dem, InputKind::DemPart] {
         let of_kind = |records: &mut dyn Iterator<Item = &InputRecord>| {
             let mut found: Vec<InputRecord> =
-                records.filter(|record| record.kind == kind).cloned().collect();
-            if kind == inputs::DEM_PART {
+                records.filter(|record| kind.is_of(record)).cloned().collect();
+            if kind == InputKind::DemPart {
                 found.sort_by(|a, b| a.sha256.cmp(&b.sha256));
             }
             found

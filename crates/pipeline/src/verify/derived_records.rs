@@ -3,7 +3,7 @@
 use corniche_tileset::Manifest;
 
 use super::checks::{CheckId, Findings};
-use crate::{Loss, inputs, levels::Levels, manifest_texts, settings_record};
+use crate::{Loss, inputs::InputKind, levels::Levels, manifest_texts, settings_record};
 
 pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     let hash = settings_record::sha256(&manifest.settings);
@@ -61,11 +61,11 @@ fn texts(manifest: &Manifest, findings: &mut Findings) {
         format!("unit is {:?}", manifest.vertical.unit)
     });
     for input in &manifest.inputs {
-        look(inputs::KINDS.contains(&input.kind.as_str()), &|| {
+        look(InputKind::ALL.iter().any(|kind| kind.is_of(input)), &|| {
             format!("{:?} is an input of kind {:?}", input.name, input.kind)
         });
     }
-    let has_roads = manifest.inputs.iter().any(|input| input.kind == inputs::OSM);
+    let has_roads = manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input));
     let credits = manifest.attribution.iter().any(|text| text == corniche_osm::ATTRIBUTION);
     look(credits || !has_roads, &|| {
         format!("no credit for the extract: {:?}", manifest.attribution)

@@ -7,7 +7,7 @@ use corniche_geom::{HeightGrid, NodeIndex, NodeWindow, TileId};
 use corniche_tileset::{FilePackage, Manifest, Sections};
 
 use super::{error::VerifyError, samples, triangle_soup::TriangleSoup};
-use crate::{Observer, Stage, heights::pyramid::data_tiles, sample_error::SampleSums, workers};
+use crate::{Observer, Stage, heights::pyramid::data_tiles, sample_deviation::SampleSums, workers};
 
 /// True error of a tile as far as it is known.
 #[derive(Debug, Clone, Copy, Default)]
@@ -54,7 +54,7 @@ pub(crate) fn measure(
     let max_level = manifest.frame.max_level();
     // All finest tiles of the data, those without ground too: a coarser level may cover their nodes.
     let finest = data_tiles(plan);
-    observer.begin(Stage::Errors, Some(finest.len() as u64));
+    observer.begin(Stage::Deviations, Some(finest.len() as u64));
     let mut truths: BTreeMap<TileId, TrueDeviation> = BTreeMap::new();
     let nodes_are_samples = plan.nodes_are_samples();
     let mut at_samples = samples::none(manifest);
@@ -106,11 +106,11 @@ pub(crate) fn measure(
             for (id, truth) in found {
                 truths.entry(id).or_default().merge(truth);
             }
-            observer.advance(Stage::Errors, 1);
+            observer.advance(Stage::Deviations, 1);
             Ok(())
         },
     )?;
-    observer.end(Stage::Errors);
+    observer.end(Stage::Deviations);
     Ok(Measured { by_tile: truths, at_samples })
 }
 

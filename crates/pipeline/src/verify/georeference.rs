@@ -111,21 +111,21 @@ fn between(scales: &[Option<[f64; 2]>], axis: usize) -> f64 {
 }
 
 /// The rectangle in degrees is around the data, and the data's rectangle is around the one in degrees: each holds the
-/// other's outline to a few cells, less what the one shape reaches beyond the other by being turned or bent.
+/// other's border to a few cells, less what the one shape reaches beyond the other by being turned or bent.
 fn rectangles(manifest: &Manifest, projection: &dyn Projection, findings: &mut Findings) {
     let (data, degrees) = (manifest.data_bounds, manifest.wgs84_bounds);
     if degrees.width() >= ALL_AROUND_DEG {
-        // The outline of data around a pole says nothing about the latitudes inside.
+        // The border of data around a pole says nothing about the latitudes inside.
         return;
     }
     let [east_m, north_m] = manifest.frame.cell().to_array();
     let rim_m = RIM_CELLS * east_m.max(north_m);
     let middle_deg = f64::midpoint(degrees.min_x, degrees.max_x);
 
-    let mut outline = outline(data);
-    let carried = projection.wgs84_from_working(&mut outline).is_ok();
+    let mut points = points_around(data);
+    let carried = projection.wgs84_from_working(&mut points).is_ok();
     let mut around = Bounds::EMPTY;
-    for [lon, lat] in outline.into_iter().filter(|at| at[0].is_finite()) {
+    for [lon, lat] in points.into_iter().filter(|at| at[0].is_finite()) {
         around.include([lon - 360.0 * ((lon - middle_deg) / 360.0).round(), lat]);
     }
     let rim_deg = [
@@ -138,10 +138,10 @@ fn rectangles(manifest: &Manifest, projection: &dyn Projection, findings: &mut F
         format!("degrees {degrees:?} reach beyond those of the data's rectangle, {around:?}")
     });
 
-    let mut outline = self::outline(degrees);
-    let carried = projection.working_from_wgs84(&mut outline).is_ok();
+    let mut points = points_around(degrees);
+    let carried = projection.working_from_wgs84(&mut points).is_ok();
     let mut around = Bounds::EMPTY;
-    for at in outline.into_iter().filter(|at| at[0].is_finite() && at[1].is_finite()) {
+    for at in points.into_iter().filter(|at| at[0].is_finite() && at[1].is_finite()) {
         around.include(at);
     }
     findings.look(CheckId::Bounds, carried && holds(around, data, [rim_m; 2]), || {
@@ -197,7 +197,8 @@ fn grid(bounds: Bounds) -> Vec<[f64; 2]> {
         .collect()
 }
 
-fn outline(bounds: Bounds) -> Vec<[f64; 2]> {
+/// Points along all four sides of a rectangle.
+fn points_around(bounds: Bounds) -> Vec<[f64; 2]> {
     let last = ALONG - 1;
     (0..ALONG)
         .flat_map(|k| [[k, 0], [k, last], [0, k], [last, k]])

@@ -17,11 +17,11 @@ mod one_tile;
 mod osm;
 mod osm_tile;
 mod report;
+mod request;
 mod roads_of_parent;
 mod roads_on_tin;
 mod samples;
 mod seams;
-mod settings;
 mod tile_place;
 mod tile_sums;
 mod tiles;
@@ -37,7 +37,7 @@ pub use self::{
     checks::{Check, CheckId, Needs},
     error::VerifyError,
     report::{ErrorFigures, GapFigures, VerifyReport},
-    settings::{VerifyOsm, VerifySettings},
+    request::{VerifyOsm, VerifySettings},
 };
 
 /// Verifies a package: without other inputs all that the package says of itself; with the elevation files or the

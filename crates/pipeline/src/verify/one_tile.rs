@@ -162,7 +162,8 @@ fn check_ancestors(
     tin_against_parent::verify(&package.manifest().frame, &levels, findings);
 }
 
-/// A tile above `id`. `None` if it has no ground, or cannot be read; the latter is reported when that tile itself is checked.
+/// A tile above `id`. `None` if it has no ground or cannot be read; the latter is reported when that tile itself is
+/// checked.
 fn ancestor(
     package: &FilePackage,
     id: TileId,

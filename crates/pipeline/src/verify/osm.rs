@@ -11,11 +11,11 @@ use super::{
     error::VerifyError,
     georeference, grid,
     osm_tile::{Found, Laying, SoupCache, look_at},
-    settings::VerifyOsm,
+    request::VerifyOsm,
 };
 use crate::{
     BuildError, DiskStorage, Observer, Stage,
-    inputs::{self, Inputs},
+    inputs::{InputKind, Inputs},
     levels::{Levels, most_scale},
     roads::{
         counts::road_counts,
@@ -105,11 +105,11 @@ fn check_inputs(
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    if manifest.inputs.iter().all(|input| input.kind != inputs::OSM) {
+    if !manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input)) {
         return Err(VerifyError::NoExtract);
     }
     let given = inputs.hash(observer)?;
-    let extracts = || manifest.inputs.iter().filter(|input| input.kind == inputs::OSM);
+    let extracts = || manifest.inputs.iter().filter(|input| InputKind::Osm.is_of(input));
     let pair = given
         .iter()
         .find_map(|found| Some((extracts().find(|input| input.sha256 == found.sha256)?, found)));

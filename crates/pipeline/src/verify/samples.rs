@@ -9,10 +9,10 @@ use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, Sections};
 use super::{
     checks::{Check, CheckId},
     error::VerifyError,
-    settings::VerifySettings,
+    request::VerifySettings,
     triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
 };
-use crate::{Observer, Stage, sample_error::SampleSums, workers};
+use crate::{Observer, Stage, sample_deviation::SampleSums, workers};
 
 /// Tiles whose ground a worker keeps. Blocks of samples are compact, so these are enough not to load any twice in a row.
 const GROUNDS: usize = 24;
@@ -53,7 +53,8 @@ pub(crate) fn measure(
             let block = reader.used_samples(&areas[index])?;
             let mut found = none(manifest);
             for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
-                // Where the lattice has it: beside the ground's outline half a millimetre decides.
+                // The point of the lattice is taken, as in the build: at the boundary of the ground half a millimetre decides
+                // whether a sample lies on it.
                 let frame = &manifest.frame;
                 let position_m = frame.snap(position_m).map(|point| frame.position_m(point));
                 for (level, sums) in found.iter_mut().enumerate() {

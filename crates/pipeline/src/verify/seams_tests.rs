@@ -21,7 +21,7 @@ fn sees_a_missing_vertex_and_a_moved_one() {
     assert!(differences(&reference, &reference).is_empty());
     assert_eq!(differences(&reference, &east(&[(0, 1), (256, 3)])), [100]);
     assert_eq!(differences(&reference, &east(&[(0, 1), (100, 6), (256, 3)])), [100]);
-    // TriangleSoup that goes on alone on one side needs no partner there, only where the other's ends.
+    // Where the ground continues on one side only, its vertices need no partner; where the other side's ground ends, they do.
     assert!(differences(&reference, &east(&[(0, 1), (100, 5)])).is_empty());
     assert_eq!(differences(&reference, &east(&[(0, 1), (90, 4)])), [90]);
 }

@@ -56,7 +56,7 @@ fn a_line_meets_ground_where_it_runs_inside_it() {
     let ground = TriangleSoup::placed(&roof, 0.5, [1000.0, 1000.0]);
     assert!(ground.meets([[-5.0, 20.0], [3.0, 20.0]]));
     assert!(!ground.meets([[-5.0, 20.0], [0.005, 20.0]]));
-    assert!(!ground.meets([[0.0, 3.0], [0.0, 200.0]]), "along the outline");
+    assert!(!ground.meets([[0.0, 3.0], [0.0, 200.0]]), "along the boundary");
 }
 
 #[test]

@@ -223,12 +223,13 @@ async fn read_metadata(source: &impl ByteSource, header: &Header) -> Result<Vec<
 
 fn parse_manifest(metadata: &[u8]) -> Result<Manifest, OpenError> {
     let failed = |error: serde_json::Error| OpenError::Manifest { reason: error.to_string() };
-    // Read three times into ever more, never into a tree of values: that can take a hundred times its text.
-    let outline: Metadata<Option<IgnoredAny>> = parse(metadata).map_err(|error| {
+    // The text is read three times, each time with more of its fields, and never into a tree of JSON values: such a tree
+    // can take a hundred times the memory of the text.
+    let object: Metadata<Option<IgnoredAny>> = parse(metadata).map_err(|error| {
         // An ordinary file may have any object; a package has one with the key `corniche`.
         if error.is_data() { OpenError::OrdinaryPmtiles } else { failed(error) }
     })?;
-    if outline.corniche.is_none() {
+    if object.corniche.is_none() {
         return Err(OpenError::OrdinaryPmtiles);
     }
     let version: Metadata<Version> = parse(metadata).map_err(failed)?;

@@ -1,4 +1,4 @@
-//! The error at the DEM's own samples: sums that can be merged in any order.
+//! How far TINs are from the DEM's own samples: sums that can be merged in any order.
 
 use corniche_tileset::SampleErrorRecord;
 
@@ -112,5 +112,5 @@ fn end_of(bin: usize) -> f64 {
 }
 
 #[cfg(test)]
-#[path = "sample_error_tests.rs"]
+#[path = "sample_deviation_tests.rs"]
 mod tests;
