@@ -105,15 +105,23 @@ fn to_text(report: &VerifyReport) -> String {
         let _ = write!(
             text,
             "\nAt the DEM's own {} samples the finest level is off by {:.3} m at most, {:.3} m RMS, {:.3} m at \
-             the 99th percentile; {} samples lie off the TIN\n",
+             the 99th percentile; {} off the TIN\n",
             count(samples.on_tin),
             samples.max_m,
             samples.rms_m,
             samples.p99_m,
-            count(samples.off_tin),
+            lying(samples.off_tin),
         );
     }
     text
+}
+
+/// So many samples, with their verb.
+fn lying(samples: u64) -> String {
+    match samples {
+        1 => "1 sample lies".to_owned(),
+        _ => format!("{} samples lie", count(samples)),
+    }
 }
 
 /// True errors and stored ones, one row for each level.

@@ -1,13 +1,14 @@
 //! From inputs to a package.
 //!
 //! ```text
-//! heights ─► mesh ─► errors ─┐
-//!                            ├─► tiles ─► package
-//! roads ─────────────────────┘
+//! heights ─► mesh ─► deviations ─┐
+//!                                ├─► tiles ─► package
+//! roads ─────────────────────────┘
 //! ```
 //!
-//! Each stage is a module of [`heights`](crate::heights), [`roads`](crate::roads) or [`stages`](crate::stages); what one hands to the next is kept in [`Storage`](crate::Storage), in a work folder
-//! beside the target that is gone when the run ends, however it ends.
+//! Each stage is a module of [`heights`](crate::heights), [`roads`](crate::roads) or [`stages`](crate::stages). What one stage
+//! hands to the next is kept in [`Storage`](crate::storage::Storage), in a work folder beside the target. The folder is
+//! removed when the run ends, however it ends.
 
 use std::{
     fs,

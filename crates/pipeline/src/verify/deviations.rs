@@ -9,11 +9,14 @@ use corniche_tileset::{FilePackage, Manifest, Sections};
 use super::{error::VerifyError, samples, triangle_soup::TriangleSoup};
 use crate::{Observer, Stage, heights::pyramid::data_tiles, sample_deviation::SampleSums, workers};
 
-/// True error of a tile as far as it is known.
+/// How far a tile's TIN is from the nodes looked at so far.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct TrueDeviation {
+    /// The largest distance.
     pub(crate) largest_m: f64,
+    /// Nodes that the TIN covers.
     pub(crate) nodes: u64,
+    /// Nodes with data that it does not cover.
     pub(crate) uncovered: u64,
     /// Lowest and highest node with data beneath.
     pub(crate) range_m: Option<[f32; 2]>,
@@ -36,9 +39,9 @@ impl TrueDeviation {
 
 /// What was measured.
 pub(crate) struct Measured {
-    /// Of every tile over the data, those without ground too.
+    /// For every tile over the data, also those without ground.
     pub(crate) by_tile: BTreeMap<TileId, TrueDeviation>,
-    /// Per level, root first: the error at samples where nodes are samples, else nothing.
+    /// Per level, root first: distances at samples where nodes are samples; otherwise empty sums.
     pub(crate) at_samples: Vec<SampleSums>,
 }
 
@@ -52,7 +55,7 @@ pub(crate) fn measure(
 ) -> Result<Measured, VerifyError> {
     let manifest = package.manifest();
     let max_level = manifest.frame.max_level();
-    // All finest tiles of the data, those without ground too: a coarser level may cover their nodes.
+    // All finest tiles of the data, also those without ground: a coarser level may cover their nodes.
     let finest = data_tiles(plan);
     observer.begin(Stage::Deviations, Some(finest.len() as u64));
     let mut truths: BTreeMap<TileId, TrueDeviation> = BTreeMap::new();
@@ -70,13 +73,13 @@ pub(crate) fn measure(
             let read = reader.window(manifest.frame.tile_window(id))?;
             let mut found_at_samples = samples::none(manifest);
             let window = &read.heights;
-            // Of the levels above only the latest are kept: tiles come in an order that stays close.
+            // Of each level above, only the tile used last is kept: the next finest tile usually lies under the same one.
             cache.retain(|cached, _| *cached == id.ancestor(cached.z()));
             let mut found = Vec::new();
             for level in 0..=max_level {
                 let ancestor = id.ancestor(level);
                 let ground = Rc::clone(cache.entry(ancestor).or_insert_with(|| {
-                    // A tile that is not there, or cannot be read, covers nothing: all its nodes are bare.
+                    // A tile that does not exist or cannot be read covers nothing: all its nodes count as uncovered.
                     let payload = package.payload(ancestor, Sections::TERRAIN).ok().flatten();
                     let tin =
                         payload.and_then(|payload| payload.terrain).map(|terrain| terrain.tin);
