@@ -90,8 +90,8 @@ fn options(
             Lod::Culled => Detail::Culled,
             Lod::Adaptive => Detail::Adaptive,
         },
-        screen_space_error_px: args.drawing.screen_space_error,
-        exaggeration: args.drawing.exaggeration,
+        screen_space_error_px: args.drawing.ground.screen_space_error,
+        exaggeration: args.drawing.ground.exaggeration,
         supersampling: args.drawing.supersampling,
         style: style.clone(),
         budget: StreamBudget {

@@ -200,20 +200,8 @@ fn to_csv(manifest: &Manifest) -> String {
                     simplified_bytes,geo_raw_bytes,geo_stored_bytes,sv_stored_bytes\n"
             .to_owned();
     for row in &manifest.growth {
-        let cells = [
-            u64::from(row.level),
-            u64::from(row.class),
-            row.source_vertices,
-            row.simplified_vertices,
-            row.geo_vertices,
-            row.sv_vertices,
-            row.source_bytes,
-            row.simplified_bytes,
-            row.geo_raw_bytes,
-            row.geo_stored_bytes,
-            row.sv_stored_bytes,
-        ];
-        text.push_str(&cells.map(|cell| cell.to_string()).join(","));
+        let counts = row.counts().map(|count| count.to_string()).join(",");
+        text.push_str(&[row.level.to_string(), row.class.to_string(), counts].join(","));
         text.push('\n');
     }
     text

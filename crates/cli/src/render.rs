@@ -25,8 +25,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         size_px: args.size,
         roads: args.look.road_options(roads),
         camera: args.camera.request(),
-        screen_space_error_px: args.screen_space_error,
-        exaggeration: args.exaggeration,
+        screen_space_error_px: args.ground.screen_space_error,
+        exaggeration: args.ground.exaggeration,
         supersampling: args.supersampling,
         style,
     };

@@ -46,8 +46,8 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         roads: args.look.road_options(roads),
         styles,
         reload: reload(chosen),
-        screen_space_error_px: args.screen_space_error,
-        exaggeration: args.exaggeration,
+        screen_space_error_px: args.ground.screen_space_error,
+        exaggeration: args.ground.exaggeration,
         samples_per_side: args.supersampling,
         budget: StreamBudget {
             tiles_in_flight: TILES_IN_FLIGHT,

@@ -164,6 +164,25 @@ fn read_roads<'a>(
     Ok(roads)
 }
 
+/// The tolerance of the finest level: given, or derived from the cell.
+fn max_error_m(terrain: &TerrainSettings, plan: &GridPlan) -> Result<f64, BuildError> {
+    let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell().shorter_m() / 4.0);
+    if MAX_ERRORS_M.contains(&max_error_m) {
+        Ok(max_error_m)
+    } else {
+        Err(BuildError::MaxError { max_error_m })
+    }
+}
+
+/// Why no tile has ground.
+fn no_mesh(dem: &[PathBuf], pyramid: &pyramid::Pyramid<'_>) -> BuildError {
+    let dem = dem.to_vec();
+    match pyramid.samples().with_data {
+        0 => BuildError::NoHeights { dem },
+        nodes => BuildError::NoCell { dem, nodes },
+    }
+}
+
 /// All stages in order; the package is written to `finished`.
 fn run(
     settings: &BuildSettings,
@@ -179,10 +198,7 @@ fn run(
     let (dem, plan) = open(&settings.dem, terrain)?;
     warn_of_other_grids(&plan, observer);
     warn_of_unused_latitude(terrain, &plan, observer);
-    let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell().shorter_m() / 4.0);
-    if !MAX_ERRORS_M.contains(&max_error_m) {
-        return Err(BuildError::MaxError { max_error_m });
-    }
+    let max_error_m = max_error_m(terrain, &plan)?;
     let widest = most_scale(plan.scale.largest);
     let levels = Levels::new(plan.frame, max_error_m, &settings.roads, widest);
     // This fails for files that are too far apart for one package, before the long work begins.
@@ -203,11 +219,7 @@ fn run(
     let pyramid = pyramid::read(&dem, &plan, threads, storage, observer)?;
     let meshes = mesh::mesh(&pyramid, &levels, threads, storage, observer)?;
     if meshes.is_empty() {
-        let dem = settings.dem.clone();
-        return Err(match pyramid.samples().with_data {
-            0 => BuildError::NoHeights { dem },
-            nodes => BuildError::NoCell { dem, nodes },
-        });
+        return Err(no_mesh(&settings.dem, &pyramid));
     }
     let deviations = deviations::measure(&pyramid, &meshes, &levels, threads, storage, observer)?;
     let sample_sums = if plan.nodes_are_samples() {

@@ -21,6 +21,10 @@ mod target;
 mod verify;
 mod workers;
 
+#[cfg(test)]
+use storage::MemoryStorage;
+use storage::{DiskStorage, Storage};
+
 pub use build::{BuildSummary, build};
 pub use corniche_dem::{OpenOptions, PlanOptions};
 pub use corniche_osm::Defect as OsmDefect;
@@ -28,7 +32,6 @@ pub use defect::{Defect, Loss};
 pub use error::BuildError;
 pub use observer::{Observer, Silent, Stage};
 pub use settings::{BuildSettings, Existing, Resources, RoadSettings, TerrainSettings};
-pub use storage::{DiskStorage, Kind, MemoryStorage, Span, Storage};
 pub use target::{TargetError, file_target};
 pub use verify::{
     Check, CheckId, ErrorFigures, GapFigures, Needs, VerifyError, VerifyOsm, VerifyReport,

@@ -9,7 +9,7 @@ use std::{
 
 /// What a span holds; each kind is kept apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub(crate) enum Kind {
     /// Blocks of heights, all levels.
     Heights,
     /// Triangulated tiles.
@@ -26,7 +26,7 @@ const KINDS: usize = 5;
 
 /// Where something was put.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Span {
+pub(crate) struct Span {
     offset: u64,
     length: u64,
 }
@@ -34,13 +34,13 @@ pub struct Span {
 impl Span {
     /// How many bytes it has.
     #[must_use]
-    pub fn length(self) -> u64 {
+    pub(crate) fn length(self) -> u64 {
         self.length
     }
 
     /// The part of this span that starts `from` bytes in and is `length` long, cut at its end.
     #[must_use]
-    pub fn part(self, from: u64, length: u64) -> Self {
+    pub(crate) fn part(self, from: u64, length: u64) -> Self {
         let from = from.min(self.length);
         Self { offset: self.offset + from, length: length.min(self.length - from) }
     }
@@ -49,7 +49,7 @@ impl Span {
 /// Where stages keep intermediate results: bytes are appended and read back.
 ///
 /// Nothing is changed or removed during a run, so readers never wait for writers.
-pub trait Storage: Send + Sync {
+pub(crate) trait Storage: Send + Sync {
     /// Keeps `bytes`.
     ///
     /// # Errors
@@ -65,7 +65,7 @@ pub trait Storage: Send + Sync {
 
 /// One file per kind in a folder.
 #[derive(Debug)]
-pub struct DiskStorage {
+pub(crate) struct DiskStorage {
     files: [(File, Mutex<u64>); KINDS],
 }
 
@@ -74,7 +74,7 @@ impl DiskStorage {
     ///
     /// # Errors
     /// When a file cannot be created.
-    pub fn create(folder: &Path) -> io::Result<Self> {
+    pub(crate) fn create(folder: &Path) -> io::Result<Self> {
         let open = |name: &str| -> io::Result<(File, Mutex<u64>)> {
             let file = File::options()
                 .read(true)
@@ -153,12 +153,14 @@ fn read_exact_at(file: &File, mut bytes: &mut [u8], mut offset: u64) -> io::Resu
     Ok(())
 }
 
-/// Keeps everything in memory: for tests.
+/// Keeps everything in memory.
+#[cfg(test)]
 #[derive(Debug, Default)]
-pub struct MemoryStorage {
+pub(crate) struct MemoryStorage {
     files: [Mutex<Vec<u8>>; KINDS],
 }
 
+#[cfg(test)]
 impl Storage for MemoryStorage {
     fn append(&self, kind: Kind, bytes: &[u8]) -> io::Result<Span> {
         let mut file = self.files[kind as usize].lock().unwrap_or_else(PoisonError::into_inner);

@@ -21,9 +21,9 @@ struct Queue<R, E> {
 /// Works on `count` items with `threads` threads and hands the results to `write` in the order of the items,
 /// on the calling thread.
 ///
-/// Each thread makes its own state with `start` (an open dataset, a cache). At most four results a thread wait
-/// for their turn, so memory is bounded however uneven the work. The first error stops everything; which error
-/// that is does not depend on timing, because results are looked at in order.
+/// Each thread makes its own state with `start` (an open dataset, a cache). At most four results per thread wait
+/// for their turn, so memory is bounded even if some items take much longer than others. The first error stops
+/// everything. Which error is the first does not depend on timing, because results are looked at in order.
 ///
 /// # Errors
 /// The first error, in the order of the items, of `start`, `work` or `write`.
@@ -36,15 +36,7 @@ pub(crate) fn in_order<S, R: Send, E: Send>(
 ) -> Result<(), E> {
     let threads = threads.clamp(1, count.max(1));
     if threads == 1 {
-        let mut state = None;
-        for index in 0..count {
-            let state = match &mut state {
-                Some(state) => state,
-                empty => empty.insert(start()?),
-            };
-            write(index, work(state, index)?)?;
-        }
-        return Ok(());
+        return on_this_thread(count, start, work, write);
     }
     let ahead = threads * 4;
     let queue: Mutex<Queue<R, E>> =
@@ -113,6 +105,25 @@ pub(crate) fn in_order<S, R: Send, E: Send>(
     })
 }
 
+/// Does the same as [`in_order`] without other threads.
+fn on_this_thread<S, R, E>(
+    count: usize,
+    start: impl Fn() -> Result<S, E>,
+    work: impl Fn(&mut S, usize) -> Result<R, E>,
+    mut write: impl FnMut(usize, R) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut state = None;
+    for index in 0..count {
+        let state = match &mut state {
+            Some(state) => state,
+            empty => empty.insert(start()?),
+        };
+        write(index, work(state, index)?)?;
+    }
+    Ok(())
+}
+
+/// Stops all workers when it is dropped.
 struct StopOnDrop<'a> {
     stop: &'a dyn Fn(),
     changed: &'a Condvar,

@@ -164,8 +164,13 @@ fn a_tile_comes_back_whole() {
     );
     let encoded = encode(&payload, &context()).unwrap();
     assert_eq!(read(&encoded.bytes, Sections::ALL), Ok(payload.clone()));
-    assert_eq!(encoded.geo_class_bytes.iter().filter(|&&bytes| bytes > 0).count(), 3);
-    let sections = [encoded.terrain, encoded.roads_geo, encoded.roads_sv, encoded.attributes];
+    assert_eq!(encoded.sizes.geo_class_bytes.iter().filter(|&&bytes| bytes > 0).count(), 3);
+    let sections = [
+        encoded.sizes.terrain,
+        encoded.sizes.roads_geo,
+        encoded.sizes.roads_sv,
+        encoded.sizes.attributes,
+    ];
     let stored: u64 = sections.iter().map(|size| size.stored).sum();
     assert_eq!(encoded.bytes.len() as u64, 16 + 4 * 20 + 4 + stored);
     assert_eq!(encode(&payload, &context()).unwrap(), encoded, "equal payloads make equal bytes");

@@ -100,17 +100,20 @@ fn real_ground_and_roads_come_out_small_and_whole() {
             "max error {max_error_m} m: {vertices} vertices, {triangles} triangles: terrain {} bytes ({} raw), \
              {:.2} bytes/vertex, {:.2} bytes/triangle; {crossings} crossings, {points} points: GEO {} bytes, \
              {:.2} bytes/point; encode {encode_ms:.1} ms, decode {decode_ms:.1} ms",
-            encoded.terrain.stored,
-            encoded.terrain.raw,
-            encoded.terrain.stored as f64 / vertices,
-            encoded.terrain.stored as f64 / triangles,
-            encoded.roads_geo.stored,
-            encoded.roads_geo.stored as f64 / points as f64,
+            encoded.sizes.terrain.stored,
+            encoded.sizes.terrain.raw,
+            encoded.sizes.terrain.stored as f64 / vertices,
+            encoded.sizes.terrain.stored as f64 / triangles,
+            encoded.sizes.roads_geo.stored,
+            encoded.sizes.roads_geo.stored as f64 / points as f64,
         );
-        assert!((encoded.terrain.stored as f64) < 3.0 * triangles, "terrain is no longer compact");
+        assert!(
+            (encoded.sizes.terrain.stored as f64) < 3.0 * triangles,
+            "terrain is no longer compact"
+        );
         // A lattice point alone is worth about five bytes; crossings must cost next to nothing beside.
         assert!(
-            (encoded.roads_geo.stored as f64) < 6.5 * points as f64,
+            (encoded.sizes.roads_geo.stored as f64) < 6.5 * points as f64,
             "roads are no longer compact"
         );
     }

@@ -3,6 +3,7 @@
 mod build;
 mod camera;
 mod drawing;
+mod ground;
 mod look;
 mod reading;
 mod values;

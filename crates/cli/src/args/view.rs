@@ -7,6 +7,7 @@ use corniche_presets::parse_bytes;
 
 use super::{
     camera::CameraArgs,
+    ground::GroundArgs,
     look::{LookArgs, Roads},
     values::parse_size,
 };
@@ -34,12 +35,8 @@ pub(crate) struct ViewArgs {
     pub(crate) size: [u32; 2],
     #[command(flatten)]
     pub(crate) camera: CameraArgs,
-    /// Terrain error that may be seen, in pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = 2.0)]
-    pub(crate) screen_space_error: f64,
-    /// Vertical exaggeration
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
-    pub(crate) exaggeration: f64,
+    #[command(flatten)]
+    pub(crate) ground: GroundArgs,
     /// Samples per pixel along each side, averaged [default: 2, and 1 without a graphics card]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4))]
     pub(crate) supersampling: Option<u32>,

@@ -60,24 +60,7 @@ pub(crate) fn read<'a>(
     observer: &dyn Observer,
 ) -> Result<ReadRoads<'a>, BuildError> {
     observer.begin(Stage::Roads, None);
-    let mut gathered = Gathered {
-        levels: input.levels,
-        lengths: input.lengths,
-        data_bounds: input.data_bounds,
-        roads: ReadRoads {
-            log: RoadLog::new(storage),
-            // Filled at the end; an empty list of pairs has an empty cursor.
-            by_tile: RoadTiles::new(storage, 0).finish()?,
-            lengths_um: Vec::new(),
-            outside_um: Vec::new(),
-            classes: vec![(0, 0); FunctionalRoadClass::COUNT],
-            defects: BTreeMap::new(),
-            extract: ExtractSummary::default(),
-            bounds: None,
-        },
-        pairs: RoadTiles::new(storage, input.memory_bytes),
-        failed: None,
-    };
+    let mut gathered = Gathered::new(input, storage)?;
     let frame = *input.levels.frame();
     let projection = input.projection;
     let unprojected = Mutex::new(None);
@@ -141,6 +124,30 @@ struct Gathered<'a, 'l> {
     pairs: RoadTiles<'a>,
     /// The reader's sink cannot fail; the first failure is kept and everything after it ignored.
     failed: Option<BuildError>,
+}
+
+impl<'a, 'l> Gathered<'a, 'l> {
+    /// Nothing yet.
+    fn new(input: &RoadInput<'l>, storage: &'a dyn Storage) -> Result<Self, BuildError> {
+        Ok(Self {
+            levels: input.levels,
+            lengths: input.lengths,
+            data_bounds: input.data_bounds,
+            roads: ReadRoads {
+                log: RoadLog::new(storage),
+                // Filled at the end; an empty list of pairs has an empty cursor.
+                by_tile: RoadTiles::new(storage, 0).finish()?,
+                lengths_um: Vec::new(),
+                outside_um: Vec::new(),
+                classes: vec![(0, 0); FunctionalRoadClass::COUNT],
+                defects: BTreeMap::new(),
+                extract: ExtractSummary::default(),
+                bounds: None,
+            },
+            pairs: RoadTiles::new(storage, input.memory_bytes),
+            failed: None,
+        })
+    }
 }
 
 impl Gathered<'_, '_> {

@@ -196,7 +196,8 @@ fn make_tile(
     let classes = class_sums(laid_classes, &payload, &encoded);
     let span = input.storage.append(Kind::Payloads, &encoded.bytes).map_err(BuildError::Storage)?;
     let (vertices, triangles) = counts;
-    let kept = Kept { span, vertices, triangles, terrain_bytes: encoded.terrain.stored, classes };
+    let kept =
+        Kept { span, vertices, triangles, terrain_bytes: encoded.sizes.terrain.stored, classes };
     Ok(Made { kept: Some(kept), fates })
 }
 
@@ -265,8 +266,8 @@ fn class_sums(
     for class in FunctionalRoadClass::all() {
         let index = usize::from(class.number());
         let shares = [
-            share(encoded.roads_geo.stored, &encoded.geo_class_bytes, index),
-            share(encoded.roads_sv.stored, &encoded.sv_class_bytes, index),
+            share(encoded.sizes.roads_geo.stored, &encoded.sizes.geo_class_bytes, index),
+            share(encoded.sizes.roads_sv.stored, &encoded.sizes.sv_class_bytes, index),
         ];
         if shares != [0, 0] {
             let sums = classes.entry(class.number()).or_default();

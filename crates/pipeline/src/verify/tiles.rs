@@ -1,4 +1,4 @@
-//! Every tile by itself, then all of them beside their neighbours, their parents and the manifest.
+//! Checks every tile by itself, then compares all tiles with their neighbours, their parents and the manifest.
 
 use std::collections::BTreeMap;
 
@@ -73,12 +73,7 @@ pub(crate) fn verify(
     let borders = check_seams(&kept, &mut findings);
     check_nesting(&kept, &mut findings);
     check_heights(manifest.vertical.range_m, &kept, &mut findings);
-    let expected_m = manifest.counts.roads_kept_um as f64 / 1e6;
-    findings.look(
-        CheckId::Length,
-        (finest_length_m - expected_m).abs() <= LENGTH_SHARE * expected_m.max(1.0),
-        || format!("{finest_length_m} m lie in the tiles, {expected_m} m are recorded"),
-    );
+    check_length(finest_length_m, manifest.counts.roads_kept_um, &mut findings);
     check_levels(package, &ids, &kept, &sums, &mut findings);
     check_growth(&manifest.growth, &sums, &mut findings);
     let report = VerifyReport {
@@ -92,7 +87,16 @@ pub(crate) fn verify(
     Ok((report, findings))
 }
 
-/// Compares all neighbours, and says how many borders there are.
+/// Compares the length of all GEO roads of the finest level with the recorded length.
+fn check_length(found_m: f64, recorded_um: u64, findings: &mut Findings) {
+    let expected_m = recorded_um as f64 / 1e6;
+    let holds = (found_m - expected_m).abs() <= LENGTH_SHARE * expected_m.max(1.0);
+    findings.look(CheckId::Length, holds, || {
+        format!("{found_m} m lie in the tiles, {expected_m} m are recorded")
+    });
+}
+
+/// Compares all neighbours, and gives the number of borders compared.
 fn check_seams(kept: &BTreeMap<TileId, Kept>, findings: &mut Findings) -> u64 {
     for (&id, tile) in kept {
         for (other, own_edge, other_edge) in seams::neighbours(id) {
@@ -109,7 +113,7 @@ fn check_seams(kept: &BTreeMap<TileId, Kept>, findings: &mut Findings) -> u64 {
     findings.of(CheckId::Seams).checked
 }
 
-/// The root tile lies over all heights of the package.
+/// Checks that the height range of the package is that of the root tile.
 fn check_heights(said_m: [f64; 2], kept: &BTreeMap<TileId, Kept>, findings: &mut Findings) {
     let Some(root) = kept.get(&TileId::ROOT) else { return };
     let root_m = root.height_range_m;

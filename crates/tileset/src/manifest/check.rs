@@ -77,7 +77,7 @@ impl Manifest {
             that(usize::from(row.level) < levels, "growth.level", row.level)?;
             that(usize::from(row.class) < CLASSES, "growth.class", row.class)?;
         }
-        check_sum("growth", self.growth.iter().flat_map(growth_counts))?;
+        check_sum("growth", self.growth.iter().flat_map(GrowthRow::counts))?;
         check_sum("inputs", self.inputs.iter().map(|input| input.bytes))
     }
 
@@ -140,20 +140,6 @@ fn level_counts(record: &LevelRecord) -> [u64; 7] {
     let LevelRecord { tiles, triangles, vertices, terrain_bytes, uncovered_nodes, .. } = *record;
     let SampleErrorRecord { on_tin, off_tin, .. } = record.sample_error;
     [tiles, triangles, vertices, terrain_bytes, uncovered_nodes, on_tin, off_tin]
-}
-
-fn growth_counts(row: &GrowthRow) -> [u64; 9] {
-    [
-        row.source_vertices,
-        row.simplified_vertices,
-        row.geo_vertices,
-        row.sv_vertices,
-        row.source_bytes,
-        row.simplified_bytes,
-        row.geo_raw_bytes,
-        row.geo_stored_bytes,
-        row.sv_stored_bytes,
-    ]
 }
 
 fn check_counts(counts: &Counts) -> Result<(), String> {

@@ -83,3 +83,21 @@ pub struct GrowthRow {
     /// Bytes of the SV lines as stored, shared out likewise.
     pub sv_stored_bytes: u64,
 }
+
+impl GrowthRow {
+    /// All its numbers of vertices and bytes, in the order of the fields.
+    #[must_use]
+    pub fn counts(&self) -> [u64; 9] {
+        [
+            self.source_vertices,
+            self.simplified_vertices,
+            self.geo_vertices,
+            self.sv_vertices,
+            self.source_bytes,
+            self.simplified_bytes,
+            self.geo_raw_bytes,
+            self.geo_stored_bytes,
+            self.sv_stored_bytes,
+        ]
+    }
+}

@@ -4,7 +4,7 @@ use corniche_tin::Surface;
 use crate::payload::context::Context;
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::section_kind::{Kind, Sections};
-use crate::payload::tile_payload::TilePayload;
+use crate::payload::tile_payload::{GeoRoad, Terrain, TilePayload};
 use crate::payload::{attributes, envelope, roads_geo, roads_sv, terrain};
 
 /// Reads the wanted sections of a payload; sections that are absent or not wanted are empty or `None`.
@@ -32,18 +32,13 @@ pub fn decode(
             damage,
         })?;
     }
+    let inside = |kind: Kind| move |damage| DecodeError { tile: id, part: kind.name(), damage };
     let read = |kind: Kind, section: Sections| {
         if !wanted.contains(section) {
             return Ok(None);
         }
-        envelope::section(&sections, kind).map_err(|damage| DecodeError {
-            tile: id,
-            part: kind.name(),
-            damage,
-        })
+        envelope::section(&sections, kind).map_err(inside(kind))
     };
-    let inside = |kind: Kind| move |damage| DecodeError { tile: id, part: kind.name(), damage };
-
     let roads_geo = read(Kind::RoadsGeo, Sections::ROADS_GEO)?;
     let needs_terrain = wanted.contains(Sections::TERRAIN) || roads_geo.is_some();
     let ground = if needs_terrain {
@@ -55,18 +50,10 @@ pub fn decode(
     } else {
         None
     };
-    let roads_geo = match (roads_geo, &ground) {
-        (Some(bytes), Some(ground)) => {
-            let surface = Surface::new(&ground.tin, context.placement);
-            roads_geo::decode(&bytes, context.corner, &surface).map_err(inside(Kind::RoadsGeo))?
-        }
-        (Some(_), None) => {
-            return Err(inside(Kind::RoadsGeo)(Damage::Invalid {
-                what: "roads without the ground they lie on",
-            }));
-        }
-        (None, _) => Vec::new(),
-    };
+    let roads_geo = roads_geo
+        .map(|bytes| decode_geo(&bytes, ground.as_ref(), &context))
+        .transpose()
+        .map_err(inside(Kind::RoadsGeo))?;
     let roads_sv = read(Kind::RoadsSv, Sections::ROADS_SV)?
         .map(|bytes| roads_sv::decode(&bytes, context.corner, quantum_m))
         .transpose()
@@ -78,8 +65,21 @@ pub fn decode(
     Ok(TilePayload {
         id,
         terrain: ground,
-        roads_geo,
+        roads_geo: roads_geo.unwrap_or_default(),
         roads_sv: roads_sv.unwrap_or_default(),
         attributes: records.unwrap_or_default(),
     })
+}
+
+/// Decodes the GEO roads, which need the ground that they lie on.
+fn decode_geo(
+    bytes: &[u8],
+    ground: Option<&Terrain>,
+    context: &Context,
+) -> Result<Vec<GeoRoad>, Damage> {
+    let Some(ground) = ground else {
+        return Err(Damage::Invalid { what: "roads without the ground they lie on" });
+    };
+    let surface = Surface::new(&ground.tin, context.placement);
+    roads_geo::decode(bytes, context.corner, &surface)
 }

@@ -6,6 +6,7 @@ use crate::payload::context::Context;
 use crate::payload::damage::EncodeError;
 use crate::payload::envelope::SectionSize;
 use crate::payload::section_kind::Kind;
+use crate::payload::sizes::PayloadSizes;
 use crate::payload::tile_payload::TilePayload;
 use crate::payload::{attributes, envelope, roads_geo, roads_sv, terrain};
 
@@ -18,23 +19,13 @@ pub struct PayloadContext {
     pub quantum_m: f64,
 }
 
-/// A payload as bytes, and what its parts take.
+/// A payload as bytes, and the sizes of its parts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EncodedTile {
     /// The payload.
     pub bytes: Vec<u8>,
-    /// The terrain section; 0 where absent, as all that follow.
-    pub terrain: SectionSize,
-    /// The GEO roads section.
-    pub roads_geo: SectionSize,
-    /// The SV roads section.
-    pub roads_sv: SectionSize,
-    /// The road attributes section.
-    pub attributes: SectionSize,
-    /// Bytes of each class in the GEO section before compression, to share out the stored ones.
-    pub geo_class_bytes: [u64; FunctionalRoadClass::COUNT],
-    /// The same for the SV section.
-    pub sv_class_bytes: [u64; FunctionalRoadClass::COUNT],
+    /// The sizes of its parts.
+    pub sizes: PayloadSizes,
 }
 
 /// Writes a payload. Empty sections are left out. Equal payloads make equal bytes.
@@ -81,21 +72,21 @@ pub fn encode(payload: &TilePayload, context: &PayloadContext) -> Result<Encoded
         sections.push((Kind::Attributes, bytes));
     }
 
-    let (bytes, sizes) = envelope::seal(tile, &sections)?;
+    let (bytes, sealed) = envelope::seal(tile, &sections)?;
     let size = |kind: Kind| {
         sections
             .iter()
-            .zip(&sizes)
+            .zip(&sealed)
             .find(|((of, _), _)| *of == kind)
             .map_or_else(SectionSize::default, |(_, size)| *size)
     };
-    Ok(EncodedTile {
-        bytes,
+    let sizes = PayloadSizes {
         terrain: size(Kind::Terrain),
         roads_geo: size(Kind::RoadsGeo),
         roads_sv: size(Kind::RoadsSv),
         attributes: size(Kind::Attributes),
         geo_class_bytes,
         sv_class_bytes,
-    })
+    };
+    Ok(EncodedTile { bytes, sizes })
 }

@@ -20,7 +20,7 @@ pub struct PayloadSizes {
     pub roads_sv: SectionSize,
     /// The road attributes section.
     pub attributes: SectionSize,
-    /// Bytes of each class in the GEO section before compression.
+    /// Bytes of each class in the GEO section before compression: they determine the class's share of the stored bytes.
     pub geo_class_bytes: [u64; FunctionalRoadClass::COUNT],
     /// The same for the SV section.
     pub sv_class_bytes: [u64; FunctionalRoadClass::COUNT],
