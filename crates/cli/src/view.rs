@@ -5,7 +5,7 @@ use std::{fs, io, path::Path, sync::Arc};
 use corniche_styles::style_preset_names;
 use corniche_viewer::{stream::StreamBudget, tiles::PackageSource};
 use corniche_window::{
-    BeginTrace, Closed, End, NamedStyle, Reload, WindowError, WindowRequest, controls::Inertia,
+    BeginTrace, Closed, End, Inertia, NamedStyle, Reload, WindowError, WindowRequest,
     run as open_window,
 };
 

@@ -1,4 +1,6 @@
-use crate::{camera::Camera, options::RoadOptions, style::Style};
+use corniche_styles::Style;
+
+use crate::{camera::Camera, options::RoadOptions};
 
 /// What a picture shows and how, apart from the tiles.
 #[derive(Debug, Clone, Copy)]

@@ -6,8 +6,8 @@
 //!                 └─ requests ─┘
 //! ```
 //!
-//! [`render`] makes one picture of a package without a window. Its parts are usable alone: [`camera`], [`lod`]
-//! and [`style`] are values and pure functions; [`tiles`] decodes; [`gpu`] draws the tiles that it is
+//! [`render`] makes one picture of a package without a window. Its parts are usable alone: [`camera`] and [`lod`]
+//! are values and pure functions; [`tiles`] decodes; [`gpu`] draws the tiles that it is
 //! given.
 //! [`Replay`] draws a [`flight`], frame by frame; [`stream`] chooses which tiles are loaded and kept.
 //!
@@ -37,7 +37,8 @@ pub mod stream;
 pub mod tiles;
 mod viewpoint;
 
-/// Items that no program uses, only the tests of this crate and of others.
+/// Items that only tests use.
+#[doc(hidden)]
 pub mod for_tests {
     pub use crate::{
         gpu::inspection::Owner,
@@ -50,7 +51,6 @@ pub mod for_tests {
 }
 
 pub use attribution::draw_attribution;
-pub use corniche_styles as style;
 pub use options::{CapTest, Caps, ClassSet, Outline, RoadMethod, RoadOptions, WidthGrowth};
 pub use range::OutOfRange;
 #[cfg(not(target_arch = "wasm32"))]

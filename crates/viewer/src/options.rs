@@ -2,7 +2,7 @@
 
 use corniche_roads::FunctionalRoadClass;
 
-use crate::style::{Style, WidthScaling};
+use corniche_styles::{Style, WidthScaling};
 
 /// How roads are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

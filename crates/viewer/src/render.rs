@@ -1,5 +1,7 @@
 use image::RgbaImage;
 
+use corniche_styles::Style;
+
 use crate::{
     attribution::draw_attribution,
     camera::Camera,
@@ -12,7 +14,6 @@ use crate::{
     options::RoadOptions,
     range::{self, OutOfRange},
     scene::{self, SettleError},
-    style::Style,
     tiles::{LoadTileError, MapPackage, TileStore},
     viewpoint::{CameraRequest, OffGround, ViewpointError},
 };

@@ -111,12 +111,6 @@ impl Streamer {
         self.resident_bytes
     }
 
-    /// How many tiles are on the graphics card.
-    #[must_use]
-    pub fn resident_tiles(&self) -> usize {
-        self.resident.len()
-    }
-
     /// Plans the next frame, seen from `camera`. `ahead` is where the camera will be soon: tiles for it are loaded in
     /// advance.
     pub fn plan(

@@ -6,11 +6,11 @@ mod support;
 use std::time::Instant;
 
 use corniche_geom::TileId;
+use corniche_styles::Style;
 use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
     gpu::{DrawTile, FrameView, PassTimer, Renderer, Targets, TileBuffers, Wireframe, tile_bytes},
-    style::Style,
     tiles::TileSource,
 };
 use glam::DVec3;

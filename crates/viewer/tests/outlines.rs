@@ -6,11 +6,11 @@
 mod support;
 
 use corniche_geom::TileId;
+use corniche_styles::{RoadStyle, Style};
 use corniche_viewer::{
     Outline, RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
     gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers, Wireframe},
-    style::{RoadStyle, Style},
     tiles::{TileGeometry, TileLines},
 };
 use glam::DVec2;

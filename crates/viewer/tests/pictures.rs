@@ -6,6 +6,7 @@ mod support;
 use std::time::{Duration, Instant};
 
 use corniche_geom::TileId;
+use corniche_styles::Style;
 use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
@@ -14,7 +15,6 @@ use corniche_viewer::{
         DIFFERENCE_COLORS, DrawTile, FrameView, Gpu, GpuError, PassTimer, Picture, Renderer,
         Targets, TileBuffers, Wireframe,
     },
-    style::Style,
     tiles::{TileGeometry, TileLines},
 };
 use glam::DVec2;

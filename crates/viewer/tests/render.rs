@@ -5,9 +5,10 @@ mod support;
 
 use std::{cell::Cell, path::Path};
 
+use corniche_styles::Style;
 use corniche_viewer::{
     CameraRequest, RenderError, RenderRequest, Rendered, RoadMethod, RoadOptions,
-    camera::Orientation, style::Style, tiles::PackageSource,
+    camera::Orientation, tiles::PackageSource,
 };
 use image::RgbaImage;
 use support::{

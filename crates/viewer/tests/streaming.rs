@@ -4,13 +4,13 @@
 mod support;
 
 use corniche_geom::TileId;
+use corniche_styles::Style;
 use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
     for_tests,
     gpu::{DrawTile, FrameView, Renderer, Targets, TileBuffers, Wireframe},
     lod::Quality,
-    style::Style,
     tiles::TileStore,
 };
 use glam::{DVec2, DVec3};

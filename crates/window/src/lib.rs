@@ -19,7 +19,7 @@ mod app;
 mod canvas;
 mod clicks;
 mod command;
-pub mod controls;
+mod controls;
 mod error;
 mod formatting;
 mod frame_times;
@@ -39,6 +39,7 @@ mod tile_loader;
 mod tiles;
 mod trace;
 
+pub use controls::Inertia;
 pub use error::{NotSaved, WindowError};
 pub use outcome::{Closed, End};
 pub use platform::{Watched, run, watch};

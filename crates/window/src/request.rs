@@ -3,7 +3,7 @@ use std::{io, path::PathBuf, sync::Arc};
 use corniche_styles::Style;
 use corniche_viewer::{CameraRequest, RoadOptions, stream::StreamBudget, tiles::MapPackage};
 
-use crate::controls;
+use crate::Inertia;
 
 /// A style and what it is called.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,7 +47,7 @@ pub struct WindowRequest {
     /// What may be loaded and kept.
     pub budget: StreamBudget,
     /// Whether movements slow down gradually or end at once.
-    pub inertia: controls::Inertia,
+    pub inertia: Inertia,
     /// Where pictures and flights are saved; no existing file is replaced.
     pub folder: PathBuf,
     /// A diagnostic: opens what a line for each frame is written to.

@@ -2,10 +2,11 @@
 
 use glam::{DVec3, DVec4};
 
+use corniche_styles::{Style, WidthScaling};
+
 use crate::{
     frame_view::FrameView,
     options::{CapTest, Caps, RoadMethod},
-    style::{Style, WidthScaling},
     tiles::NearHeights,
 };
 

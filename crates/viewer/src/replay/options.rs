@@ -1,8 +1,9 @@
+use corniche_styles::Style;
+
 use crate::{
     options::RoadOptions,
     range::{self, OutOfRange},
     stream::StreamBudget,
-    style::Style,
 };
 
 /// How much of the ground is drawn: the cases that Agrawal et al. 2006 compare in Table 1.

@@ -3,6 +3,7 @@
 use std::{collections::BTreeMap, path::Path};
 
 use corniche_geom::TileId;
+use corniche_styles::Style;
 use corniche_tileset::{FilePackage, Sections};
 use corniche_viewer::{
     RoadMethod, RoadOptions,
@@ -11,7 +12,6 @@ use corniche_viewer::{
     for_tests::{Owner, settle},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
     lod::Quality,
-    style::Style,
     tiles::{PackageSource, TileStore},
 };
 use glam::DVec3;

@@ -11,11 +11,11 @@ mod support;
 mod compare;
 
 use compare::{check, is_blessing, mismatch};
+use corniche_styles::Style;
 use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
     gpu::{FrameView, Gpu, Picture, Renderer, Targets, Wireframe},
-    style::Style,
 };
 use image::RgbaImage;
 use support::{

@@ -50,8 +50,8 @@ fn a_road_grows_beyond_the_threshold_and_never_gets_thinner_than_asked() {
     let tile = scene(256, |_, _| 0.0, &[(2, [-37.0, -2000.0], [41.0, 2000.0])]);
     let mut style = plain_style(10.0);
     style.width_scaling =
-        corniche_viewer::style::WidthScaling { threshold_m: 400.0, exponent: 0.5, constant: 1.0 };
-    let width_px = |style: &corniche_viewer::style::Style, distance_m| {
+        corniche_styles::WidthScaling { threshold_m: 400.0, exponent: 0.5, constant: 1.0 };
+    let width_px = |style: &corniche_styles::Style, distance_m| {
         let drawing =
             draw(&gpu, &camera(0.0, distance_m, 0.0, 0.0), style, std::slice::from_ref(&tile));
         // The middle row alone: its distance from the eye is the camera's.
@@ -183,7 +183,7 @@ fn the_center_line_of_a_road_goes_through_its_joints() {
     );
     let mut style = plain_style(50.0);
     style.roads[0].center =
-        Some(corniche_viewer::style::CenterLine { width_share: 0.3, color: [1.0, 1.0, 0.0] });
+        Some(corniche_styles::CenterLine { width_share: 0.3, color: [1.0, 1.0, 0.0] });
     let camera = camera(50.0, 900.0, 0.0, 0.0);
     let drawing = draw(&gpu, &camera, &style, &[tile]);
     for share in [0.2, 0.6, 1.0] {

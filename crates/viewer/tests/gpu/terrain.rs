@@ -38,7 +38,7 @@ fn the_same_frame_is_the_same_bytes() {
         &[(2, [-500.0, -300.0], [600.0, 400.0])],
     );
     let camera = camera(300.0, 2000.0, 10.0, 60.0);
-    let style = corniche_viewer::style::Style::road_atlas();
+    let style = corniche_styles::Style::road_atlas();
     let first = draw(&gpu, &camera, &style, std::slice::from_ref(&tile));
     let second = draw(&gpu, &camera, &style, std::slice::from_ref(&tile));
     assert!(

@@ -1,12 +1,12 @@
 //! Gates and figures: volumes agree with both references; how far geometry does is measured.
 
 use corniche_geom::TileId;
+use corniche_styles::{Style, WidthScaling};
 use corniche_viewer::{
     CapTest, Caps, RoadMethod, RoadOptions, WidthGrowth,
     camera::{Camera, Orientation},
     for_tests::{may_be_clamped, settle},
     lod::Quality,
-    style::{Style, WidthScaling},
     tiles::TileStore,
 };
 use glam::DVec3;

@@ -1,10 +1,10 @@
 //! Roads over the step between tiles of different levels.
 
 use corniche_geom::TileId;
+use corniche_styles::Style;
 use corniche_viewer::{
     RoadOptions,
     camera::{Camera, Orientation},
-    style::Style,
 };
 use glam::DVec3;
 

@@ -66,8 +66,7 @@ fn a_tile_split_into_four_looks_the_same() {
 #[test]
 fn the_same_frame_is_the_same_bytes_in_both_methods() {
     let Some(gpu) = gpu() else { return };
-    let scene =
-        one_tile(8, hills, &scenes::junction(), corniche_viewer::style::Style::road_atlas());
+    let scene = one_tile(8, hills, &scenes::junction(), corniche_styles::Style::road_atlas());
     let camera = camera(400.0, 2500.0, 25.0, 60.0);
     for method in [RoadMethod::Geometry, SV] {
         let options = RoadOptions::of(method);

@@ -1,5 +1,6 @@
 //! The same figures on packages: `CORNICHE_TEST_PACKAGES`, a list of files as in `PATH`, names them.
 
+use corniche_styles::Style;
 use corniche_tileset::{FilePackage, Sections};
 use corniche_viewer::{
     RoadMethod, RoadOptions,
@@ -7,7 +8,6 @@ use corniche_viewer::{
     for_tests::settle,
     gpu::Gpu,
     lod::Quality,
-    style::Style,
     tiles::{PackageSource, TileStore},
 };
 use glam::{DVec2, DVec3};

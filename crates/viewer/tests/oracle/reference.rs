@@ -1,6 +1,7 @@
 //! O1: the label of each pixel from the card's own depth and owner, in f64.
 
-use corniche_viewer::{Caps, RoadOptions, camera::Camera, for_tests::Owner, style::Style};
+use corniche_styles::Style;
+use corniche_viewer::{Caps, RoadOptions, camera::Camera, for_tests::Owner};
 use glam::{DMat2, DVec2, DVec3};
 
 use crate::support::{

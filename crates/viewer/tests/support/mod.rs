@@ -13,6 +13,7 @@ pub(crate) mod scenes;
 
 use corniche_geom::{Cell, Frame, NodeIndex, TILE_CELLS, TileId};
 use corniche_roads::FunctionalRoadClass;
+use corniche_styles::{RoadStyle, Style, WidthScaling};
 use corniche_tileset::Terrain;
 use corniche_tin::{Tin, TinVertex};
 use corniche_viewer::{
@@ -20,7 +21,6 @@ use corniche_viewer::{
     camera::Camera,
     for_tests::{GroundLine, Owner},
     gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers, Wireframe},
-    style::{RoadStyle, Style, WidthScaling},
     tiles::{TileGeometry, TileLines},
 };
 use glam::{DVec2, DVec3};

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use corniche_geom::{Bounds, Frame, TileId};
+use corniche_styles::Style;
 use corniche_tileset::{FilePackage, Sections, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 use corniche_viewer::{
@@ -10,7 +11,6 @@ use corniche_viewer::{
     camera::Camera,
     for_tests::{GroundLine, PlanLine, PlanScale},
     gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers, Wireframe},
-    style::Style,
     tiles::{TileGeometry, TileLines},
 };
 use glam::{DVec2, DVec3};

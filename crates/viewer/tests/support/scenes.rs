@@ -1,10 +1,8 @@
 //! Grounds of closed form with roads on them.
 
 use corniche_geom::TileId;
-use corniche_viewer::{
-    camera::{Camera, Orientation},
-    style::{CenterLine, Style, WidthScaling},
-};
+use corniche_styles::{CenterLine, Style, WidthScaling};
+use corniche_viewer::camera::{Camera, Orientation};
 use glam::DVec2;
 
 use super::{

@@ -2,7 +2,7 @@ use glam::DVec2;
 
 /// A button of the mouse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Button {
+pub(crate) enum Button {
     /// Left.
     Left,
     /// Middle: the wheel, pressed.
@@ -13,16 +13,16 @@ pub enum Button {
 
 /// Keys held down with a button or another key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Modifiers {
+pub(crate) struct Modifiers {
     /// Shift.
-    pub shift: bool,
+    pub(crate) shift: bool,
     /// Control.
-    pub control: bool,
+    pub(crate) control: bool,
 }
 
 /// A key that moves the camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Key {
+pub(crate) enum Key {
     /// Arrow to the left.
     Left,
     /// Arrow to the right.
@@ -51,7 +51,7 @@ pub enum Key {
 
 /// Whether a key goes down (or is repeated while down) or up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum KeyState {
+pub(crate) enum KeyState {
     /// Down.
     Pressed,
     /// Up.
@@ -60,7 +60,7 @@ pub enum KeyState {
 
 /// What a person does. Positions are pixels of the picture; (0, 0) is its upper left corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Input {
+pub(crate) enum Input {
     /// A button goes down.
     Press {
         /// The button.

@@ -30,9 +30,10 @@ mod pending;
 mod return_home;
 mod view;
 
-pub use self::{
+pub use self::options::Inertia;
+pub(crate) use self::{
     input::{Button, Input, Key, KeyState, Modifiers},
     navigator::Navigator,
-    options::{Inertia, Limits, Mode},
+    options::{Limits, Mode},
     view::{KnownGround, View},
 };

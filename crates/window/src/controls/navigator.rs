@@ -38,7 +38,7 @@ const MAX_STEP_S: f64 = 0.5;
 
 /// Moves the camera as a person wants.
 #[derive(Debug, Clone)]
-pub struct Navigator {
+pub(crate) struct Navigator {
     seen: BoundedView,
     pixels_per_point: f64,
     mode: Mode,
@@ -59,7 +59,7 @@ pub struct Navigator {
 impl Navigator {
     /// Begins with a view, to which [`Input::Reset`] returns. No side of the picture may be 0.
     #[must_use]
-    pub fn new(home: View, limits: Limits, size_px: [u32; 2], inertia: Inertia) -> Self {
+    pub(crate) fn new(home: View, limits: Limits, size_px: [u32; 2], inertia: Inertia) -> Self {
         Self {
             seen: BoundedView { view: home, home, limits, size_px },
             pixels_per_point: 1.0,
@@ -79,47 +79,35 @@ impl Navigator {
 
     /// What is seen now.
     #[must_use]
-    pub fn view(&self) -> View {
+    pub(crate) fn view(&self) -> View {
         self.seen.view
     }
 
     /// The camera for what is seen now.
     #[must_use]
-    pub fn camera(&self) -> Camera {
+    pub(crate) fn camera(&self) -> Camera {
         self.seen.camera()
     }
 
     /// Map mode or fly mode.
     #[must_use]
-    pub fn mode(&self) -> Mode {
+    pub(crate) fn mode(&self) -> Mode {
         self.mode
     }
 
     /// The picture has another size now; no side may be 0.
-    pub fn resize(&mut self, size_px: [u32; 2]) {
+    pub(crate) fn resize(&mut self, size_px: [u32; 2]) {
         self.seen.size_px = size_px;
     }
 
     /// The screen has this many pixels to a point: the smaller its pixels, the more of them a movement of the hand takes.
-    pub fn set_pixels_per_point(&mut self, pixels_per_point: f64) {
+    pub(crate) fn set_pixels_per_point(&mut self, pixels_per_point: f64) {
         self.pixels_per_point = pixels_per_point;
-    }
-
-    /// From now on movements slow down gradually, or end at once.
-    pub fn set_inertia(&mut self, inertia: Inertia) {
-        self.inertia = inertia;
-    }
-
-    /// Takes another view at once, and stops all movements.
-    pub fn jump_to(&mut self, view: View) {
-        self.stop();
-        self.gesture = None;
-        self.seen.view = view;
     }
 
     /// All heights become `factor` times what they were: the middle of the picture keeps its place. `ground` is the
     /// ground before that.
-    pub fn rescale_heights(&mut self, factor: f64, ground: &dyn KnownGround) {
+    pub(crate) fn rescale_heights(&mut self, factor: f64, ground: &dyn KnownGround) {
         self.seen.rescale_heights(factor, ground);
         if let Some(held) = self.gesture.as_mut().and_then(Gesture::held_mut) {
             held.z *= factor;
@@ -129,7 +117,7 @@ impl Navigator {
 
     /// Whether the camera goes on moving without any further input.
     #[must_use]
-    pub fn is_moving(&self) -> bool {
+    pub(crate) fn is_moving(&self) -> bool {
         self.returning.is_some()
             || self.flying.is_moving()
             || self.glide_m_per_s != DVec3::ZERO
@@ -137,7 +125,7 @@ impl Navigator {
     }
 
     /// Takes an input at a time, in seconds of any clock that does not run back.
-    pub fn handle(&mut self, input: &Input, now_s: f64, ground: &dyn KnownGround) {
+    pub(crate) fn handle(&mut self, input: &Input, now_s: f64, ground: &dyn KnownGround) {
         let was_moving = self.is_moving();
         match *input {
             Input::Press { button, at_px, modifiers } => {
@@ -191,7 +179,7 @@ impl Navigator {
     }
 
     /// Lets time pass.
-    pub fn advance(&mut self, now_s: f64, ground: &dyn KnownGround) {
+    pub(crate) fn advance(&mut self, now_s: f64, ground: &dyn KnownGround) {
         let dt_s = (now_s - self.now_s).clamp(0.0, MAX_STEP_S);
         self.now_s = now_s;
         self.advanced_s = now_s;

@@ -2,13 +2,13 @@ use corniche_geom::Bounds;
 
 /// How far the camera may go.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
+pub(crate) struct Limits {
     /// The data in plan; the eye goes no farther from them than their larger side.
-    pub data: Bounds,
+    pub(crate) data: Bounds,
     /// The eye stays so far above the ground, world metres.
-    pub clearance_m: f64,
+    pub(crate) clearance_m: f64,
     /// Farthest tilt from straight down in map mode.
-    pub max_pitch_deg: f64,
+    pub(crate) max_pitch_deg: f64,
 }
 
 impl Limits {
@@ -20,7 +20,7 @@ impl Limits {
 
 /// What a drag does to the camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mode {
+pub(crate) enum Mode {
     /// It moves the ground, as one moves a map on a table.
     Map,
     /// It turns the eye, as one looks around in flight.

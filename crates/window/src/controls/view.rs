@@ -5,7 +5,7 @@ use corniche_viewer::{
 use glam::{DMat3, DVec2, DVec3};
 
 /// The ground, as far as it is loaded.
-pub trait KnownGround {
+pub(crate) trait KnownGround {
     /// The first ground along a ray.
     fn hit(&self, eye_in_world: DVec3, ray_in_world: DVec3) -> Option<DVec3>;
     /// Height of the ground at a place in plan, world metres.
@@ -17,25 +17,25 @@ pub trait KnownGround {
 
 /// Where the eye is and how it looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct View {
+pub(crate) struct View {
     /// The eye, world metres.
-    pub eye_in_world: DVec3,
+    pub(crate) eye_in_world: DVec3,
     /// Direction of view.
-    pub orientation: Orientation,
+    pub(crate) orientation: Orientation,
     /// About how far away the ground is that is looked at; near plane and haze follow from it.
-    pub focus_m: f64,
+    pub(crate) focus_m: f64,
 }
 
 impl View {
     /// The view of a camera, whose direction is `orientation`.
     #[must_use]
-    pub fn of(camera: &Camera, orientation: Orientation) -> Self {
+    pub(crate) fn of(camera: &Camera, orientation: Orientation) -> Self {
         Self { eye_in_world: camera.eye_in_world(), orientation, focus_m: camera.focus_m() }
     }
 
     /// The camera for a picture of this size.
     #[must_use]
-    pub fn camera(&self, size_px: [u32; 2]) -> Camera {
+    pub(crate) fn camera(&self, size_px: [u32; 2]) -> Camera {
         let backward = self.world_from_view().z_axis;
         let target = self.eye_in_world - backward * self.focus_m;
         Camera::look_at(target, self.focus_m, self.orientation, size_px)
@@ -43,7 +43,7 @@ impl View {
 
     /// Columns: right, up, backward.
     #[must_use]
-    pub fn world_from_view(&self) -> DMat3 {
+    pub(crate) fn world_from_view(&self) -> DMat3 {
         // The axes depend neither on the position nor on the size of the picture.
         Camera::look_at(DVec3::ZERO, 1.0, self.orientation, [1, 1]).world_from_view()
     }
@@ -51,7 +51,7 @@ impl View {
     /// The ground at a pixel. Where there is none, the plane at the ground's base height, if that is no farther away than
     /// `most_m`.
     #[must_use]
-    pub fn ground_at(
+    pub(crate) fn ground_at(
         &self,
         at_px: DVec2,
         size_px: [u32; 2],
@@ -66,7 +66,7 @@ impl View {
 
     /// Where a ray from the eye meets the horizontal plane at a height; `None` if that is farther away than `most_m`.
     #[must_use]
-    pub fn on_plane(&self, ray: DVec3, height_m: f64, most_m: f64) -> Option<DVec3> {
+    pub(crate) fn on_plane(&self, ray: DVec3, height_m: f64, most_m: f64) -> Option<DVec3> {
         let depth = (height_m - self.eye_in_world.z) / ray.z;
         let is_ahead = depth.is_finite() && depth > 0.0 && depth * ray.length() <= most_m;
         is_ahead.then(|| self.eye_in_world + ray * depth)
@@ -74,7 +74,7 @@ impl View {
 
     /// The view from another direction in which `pivot` stays on its pixel, at the same distance.
     #[must_use]
-    pub fn turned_about(&self, pivot: DVec3, orientation: Orientation) -> Self {
+    pub(crate) fn turned_about(&self, pivot: DVec3, orientation: Orientation) -> Self {
         let pivot_in_view = self.world_from_view().transpose() * (pivot - self.eye_in_world);
         let turned = Self { orientation, ..*self };
         Self { eye_in_world: pivot - turned.world_from_view() * pivot_in_view, ..turned }
@@ -82,14 +82,14 @@ impl View {
 
     /// The view with the eye `factor` times as far from `pivot`, which stays on its pixel.
     #[must_use]
-    pub fn zoomed_at(&self, pivot: DVec3, factor: f64) -> Self {
+    pub(crate) fn zoomed_at(&self, pivot: DVec3, factor: f64) -> Self {
         Self { eye_in_world: pivot + (self.eye_in_world - pivot) * factor, ..*self }
     }
 
     /// The eye moved in plan so that `anchor` is seen at a pixel; `None` where that would take it more than `most_m` away
     /// from the anchor.
     #[must_use]
-    pub fn dragged(
+    pub(crate) fn dragged(
         &self,
         anchor: DVec3,
         at_px: DVec2,
@@ -103,7 +103,7 @@ impl View {
 
     /// How much higher the eye must be to be `clearance_m` above the ground; 0 or negative where it is high enough.
     #[must_use]
-    pub fn lacks_m(&self, clearance_m: f64, ground: &dyn KnownGround) -> f64 {
+    pub(crate) fn lacks_m(&self, clearance_m: f64, ground: &dyn KnownGround) -> f64 {
         let eye = self.eye_in_world;
         ground
             .height([eye.x, eye.y])
@@ -112,7 +112,7 @@ impl View {
 
     /// The same view with the focus that follows from its height above the ground, by the rule for flights.
     #[must_use]
-    pub fn refocused(&self, ground: &dyn KnownGround) -> Self {
+    pub(crate) fn refocused(&self, ground: &dyn KnownGround) -> Self {
         let eye = self.eye_in_world;
         let below_m = ground.height([eye.x, eye.y]).unwrap_or_else(|| ground.base_height());
         let focus_m = eye_height::focus_m(eye.z - below_m, self.orientation.pitch_deg);

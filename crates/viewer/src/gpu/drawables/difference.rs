@@ -10,7 +10,7 @@ use super::super::{
     pipeline::{PipelineRecipe, Shader, shader},
     targets::Targets,
 };
-use crate::style::Rgb;
+use corniche_styles::Rgb;
 
 pub(crate) const SHADER: Shader = shader!("difference": "screen", "difference");
 

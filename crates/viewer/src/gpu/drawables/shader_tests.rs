@@ -38,7 +38,7 @@ fn the_frame_block_is_as_long_as_declared() {
         crate::camera::Orientation { heading_deg: 0.0, pitch_deg: 0.0 },
         [8, 8],
     );
-    let style = crate::style::Style::road_atlas();
+    let style = corniche_styles::Style::road_atlas();
     let view = crate::gpu::FrameView {
         camera: &camera,
         style: &style,
