@@ -33,7 +33,7 @@ use corniche_viewer::{
     flight::{Flight, WorkingCrs},
     gpu::Gpu,
     stream::StreamBudget,
-    tiles::{MapPackage, PackageSource},
+    tiles::{BlockingPackage, MapPackage as _, PackageSource},
 };
 use corniche_window::{Watched, watch};
 
@@ -46,21 +46,21 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let outputs = Outputs::create(args)?;
     let style = styles::style(&args.look.style)?;
     let methods = args.look.roads(&args.drawing.roads)?;
-    let source = PackageSource::open(&args.package)?;
-    let flight = flight(args, &source)?;
+    let package = PackageSource::open(&args.package)?;
+    let flight = flight(args, &package)?;
     let plan = Plan { args, flight: &flight, style: &style, methods: &methods, outputs: &outputs };
     let Drawn { runs, adapter } =
         if args.window { plan.fly_in_a_window()? } else { plan.fly(None)? };
 
-    outputs.finish(&flight, WorkingCrs::of(source.manifest()), &runs, &adapter)?;
+    outputs.finish(&flight, WorkingCrs::of(package.manifest()), &runs, &adapter)?;
     io::stdout().lock().write_all(summary::to_text(&runs).as_bytes())?;
     Ok(ExitCode::Done)
 }
 
 /// The flight asked for, else a pass along the data.
-fn flight(args: &FlyArgs, source: &dyn MapPackage) -> Result<Flight, Failure> {
+fn flight(args: &FlyArgs, package: &dyn BlockingPackage) -> Result<Flight, Failure> {
     let Some(path) = &args.flight.path else {
-        return Ok(default_flight(source, &interrupt::is_noted)?);
+        return Ok(default_flight(package, &interrupt::is_noted)?);
     };
     let unusable =
         |error: &dyn std::fmt::Display| Failure::unusable(format!("{}: {error}", path.display()));
@@ -70,7 +70,7 @@ fn flight(args: &FlyArgs, source: &dyn MapPackage) -> Result<Flight, Failure> {
         return Err(unusable(&"too large for a flight"));
     }
     let text = fs::read_to_string(path).map_err(|error| unusable(&error))?;
-    let manifest = source.manifest();
+    let manifest = package.manifest();
     Flight::parse(&text, WorkingCrs::of(manifest), &manifest.coordinates)
         .map_err(|error| unusable(&error))
 }
@@ -193,12 +193,12 @@ impl Plan<'_> {
         roads: Roads,
     ) -> Result<MeasuredRun, Failure> {
         let options = options(self.args, self.flight, self.style, lod, roads)?;
-        let source = PackageSource::open(&self.args.package)?.for_method(options.roads.method);
+        let package = PackageSource::open(&self.args.package)?.for_method(options.roads.method);
         let is_stopped = || {
             let is_gone = watcher.is_some_and(|watcher| watcher.is_gone.load(Ordering::SeqCst));
             is_gone || interrupt::is_noted()
         };
-        let mut replay = Replay::new(gpu, &source, self.flight, &options, &is_stopped)?;
+        let mut replay = Replay::new(gpu, &package, self.flight, &options, &is_stopped)?;
         let Lifted { frames, most_m } = replay.lifted();
         if frames > 0 {
             eprintln!(

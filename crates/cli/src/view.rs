@@ -37,10 +37,9 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
             args.folder.display()
         )));
     }
-    let source = PackageSource::open(&args.package)?;
+    let package = PackageSource::open(&args.package)?;
     let request = WindowRequest {
         name: args.package.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-        source: Arc::new(source),
         size_px: args.size,
         camera: args.camera.request(),
         roads: args.look.road_options(roads),
@@ -62,7 +61,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         trace,
         is_stopped: Box::new(interrupt::is_noted),
     };
-    let Closed { end, last_files } = open_window(request);
+    let Closed { end, last_files } = open_window(request, Arc::new(package));
     let mut code = ExitCode::Done;
     for saved in last_files {
         match saved {

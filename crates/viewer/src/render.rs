@@ -14,8 +14,8 @@ use crate::{
     options::RoadOptions,
     range::{self, OutOfRange},
     scene::{self, SettleError},
-    tiles::{LoadTileError, MapPackage, TileStore},
-    viewpoint::{CameraRequest, OffGround, ViewpointError},
+    tiles::{BlockingPackage, LoadTileError, TileStore},
+    viewpoint::{CameraRequest, GroundHeights, OffGround},
 };
 
 /// What to render.
@@ -57,7 +57,7 @@ impl RenderRequest {
 pub struct Rendered {
     /// The picture, credits included.
     pub picture: RgbaImage,
-    /// The numbers.
+    /// What went into it.
     pub report: RenderReport,
 }
 
@@ -117,15 +117,6 @@ impl From<SettleError> for RenderError {
     }
 }
 
-impl From<ViewpointError> for RenderError {
-    fn from(error: ViewpointError) -> Self {
-        match error {
-            ViewpointError::OffGround(off_ground) => Self::OffGround(off_ground),
-            ViewpointError::Load(load) => Self::Load(load),
-        }
-    }
-}
-
 /// Renders a picture of `package`, without a window.
 ///
 /// `package` must be opened for the road method of the request: it then reads the sections that this method needs. The
@@ -138,7 +129,7 @@ impl From<ViewpointError> for RenderError {
 /// When the request makes no sense, a tile cannot be read, there is no graphics adapter, or it was stopped.
 pub fn render(
     request: &RenderRequest,
-    package: &dyn MapPackage,
+    package: &dyn BlockingPackage,
     is_stopped: &dyn Fn() -> bool,
 ) -> Result<Rendered, RenderError> {
     request.check()?;
@@ -203,19 +194,21 @@ pub fn render(
 /// When the eye would be too near to the ground, or a tile cannot be read.
 fn camera(
     request: &RenderRequest,
-    package: &dyn MapPackage,
+    package: &dyn BlockingPackage,
     store: &mut TileStore<'_>,
     height_range_m: [f64; 2],
 ) -> Result<Camera, RenderError> {
     let point_scale = package.manifest().point_scale;
     let vertical_scale = request.exaggeration * point_scale;
-    let camera = request.camera.camera(
-        package.manifest(),
-        package,
-        height_range_m,
-        vertical_scale,
-        request.size_px,
-    )?;
+    let place = request.camera.place(package.manifest())?;
+    // The tiles that lead there are not those of the view: another store counts and keeps them.
+    let at_place_m = match place {
+        Some(at) => TileStore::new(package).ground_height_m(at)?,
+        None => None,
+    };
+    let ground = GroundHeights { range_m: height_range_m, at_place_m };
+    let camera =
+        request.camera.camera(package.manifest(), ground, vertical_scale, request.size_px)?;
     if request.camera != CameraRequest::FrameAll {
         check_above_ground(&camera, store, vertical_scale, point_scale)?;
     }

@@ -3,10 +3,7 @@
 use corniche_tileset::Manifest;
 use glam::DVec3;
 
-use crate::{
-    camera::{Camera, Orientation, WorldBox},
-    tiles::{LoadTileError, TileSource, TileStore},
-};
+use crate::camera::{Camera, Orientation, WorldBox};
 
 /// Where to look from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,14 +38,13 @@ pub struct OffGround {
     pub covered_deg: [f64; 4],
 }
 
-/// Why the camera cannot be set up as asked.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
-pub enum ViewpointError {
-    #[error(transparent)]
-    OffGround(#[from] OffGround),
-    #[error(transparent)]
-    Load(#[from] LoadTileError),
+/// True heights of the ground that a camera is set up by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GroundHeights {
+    /// All ground lies between these heights.
+    pub range_m: [f64; 2],
+    /// Height of the ground at [`CameraRequest::place`]; `None` if there is no ground or no place.
+    pub at_place_m: Option<f64>,
 }
 
 impl CameraRequest {
@@ -61,35 +57,47 @@ impl CameraRequest {
         }
     }
 
-    /// The camera for a package with this manifest and these tiles. Its ground lies between the true heights
-    /// `height_range_m`; world heights are `vertical_scale` times true ones.
+    /// The place to look at, in the working CRS: [`CameraRequest::camera`] needs the height of the ground there. `None` for
+    /// the whole package.
     ///
     /// # Errors
-    /// When the place has no ground, or a tile there cannot be read.
+    /// When it lies too far away from the package to have a position in the working CRS.
+    pub fn place(self, manifest: &Manifest) -> Result<Option<[f64; 2]>, OffGround> {
+        let Self::LookAt { lon_deg, lat_deg, .. } = self else { return Ok(None) };
+        let at = manifest.coordinates.working_from_wgs84([lon_deg, lat_deg]);
+        at.map(Some).ok_or(off_ground(lon_deg, lat_deg, manifest))
+    }
+
+    /// The camera for a package with this manifest and these heights. World heights are `vertical_scale` times true ones.
+    ///
+    /// # Errors
+    /// When the place has no ground.
     pub fn camera(
         self,
         manifest: &Manifest,
-        source: &dyn TileSource,
-        height_range_m: [f64; 2],
+        ground: GroundHeights,
         vertical_scale: f64,
         size_px: [u32; 2],
-    ) -> Result<Camera, ViewpointError> {
+    ) -> Result<Camera, OffGround> {
         match self {
             Self::FrameAll => {
-                let range_m = height_range_m.map(|height_m| height_m * vertical_scale);
+                let range_m = ground.range_m.map(|height_m| height_m * vertical_scale);
                 let subject = WorldBox::new(manifest.data_bounds, range_m);
                 Ok(Camera::framing(subject, self.orientation(), size_px))
             }
             Self::LookAt { lon_deg, lat_deg, distance_m, orientation } => {
-                let covered_deg = manifest.wgs84_bounds.to_array();
-                let off_ground = OffGround { lon_deg, lat_deg, covered_deg };
-                let at = manifest.coordinates.working_from_wgs84([lon_deg, lat_deg]);
-                let at = at.ok_or(off_ground)?;
-                let height_m = TileStore::new(source).ground_height_m(at)?.ok_or(off_ground)?;
-                let target = DVec3::new(at[0], at[1], height_m * vertical_scale);
+                let (Some([x, y]), Some(height_m)) = (self.place(manifest)?, ground.at_place_m)
+                else {
+                    return Err(off_ground(lon_deg, lat_deg, manifest));
+                };
+                let target = DVec3::new(x, y, height_m * vertical_scale);
                 let distance_in_world_m = distance_m * manifest.point_scale;
                 Ok(Camera::look_at(target, distance_in_world_m, orientation, size_px))
             }
         }
     }
+}
+
+fn off_ground(lon_deg: f64, lat_deg: f64, manifest: &Manifest) -> OffGround {
+    OffGround { lon_deg, lat_deg, covered_deg: manifest.wgs84_bounds.to_array() }
 }

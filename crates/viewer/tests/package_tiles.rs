@@ -14,7 +14,7 @@ use std::{
 use corniche_geom::TileId;
 use corniche_tileset::{ByteSource, MemorySource, Package, SourceError};
 use corniche_viewer::{
-    CameraRequest, RoadMethod,
+    CameraRequest, GroundHeights, RoadMethod,
     camera::Camera,
     gpu::tile_bytes,
     lod::{Drawn, Quality},
@@ -164,8 +164,8 @@ fn a_streamer_chooses_the_same_from_tiles_that_come_later() {
     let on_disk = PackageSource::open(&path).unwrap();
     let manifest = on_disk.manifest();
     let heights_m = on_disk.load(TileId::ROOT).unwrap().summary.unwrap().height_range_m;
-    let camera =
-        CameraRequest::FrameAll.camera(manifest, &on_disk, heights_m, 1.0, [640, 480]).unwrap();
+    let ground = GroundHeights { range_m: heights_m, at_place_m: None };
+    let camera = CameraRequest::FrameAll.camera(manifest, ground, 1.0, [640, 480]).unwrap();
     let expected =
         settled(&on_disk, &camera, |ids| ids.iter().map(|id| on_disk.load(*id).unwrap()).collect());
 

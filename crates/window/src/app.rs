@@ -12,7 +12,11 @@ mod ground_probe;
 mod shown_package;
 mod style_list;
 
-pub(crate) use self::{frame::FrameInput, frame_pace::Redraw, shown_package::ShownPackage};
+pub(crate) use self::{
+    frame::FrameInput,
+    frame_pace::Redraw,
+    shown_package::{ShownPackage, check},
+};
 
 use std::path::PathBuf;
 
@@ -73,20 +77,29 @@ pub(crate) struct AppPlatform {
 }
 
 impl App {
-    /// Ready for the first frame.
+    /// Ready for the first frame. `place_height_m` is the true height of the ground at the place to look at first; the
+    /// platform has looked it up, because tiles must be waited for.
     ///
     /// # Errors
-    /// When the first view cannot be had, or the trace cannot be written.
+    /// When the place to look at has no ground, or the trace cannot be written.
     pub(crate) fn new(
         request: WindowRequest,
         package: ShownPackage,
+        place_height_m: Option<f64>,
         canvas: &Canvas,
         platform: AppPlatform,
         size_px: [u32; 2],
         pixels_per_point: f32,
     ) -> Result<Self, WindowError> {
         let exaggeration = request.exaggeration;
-        let home = first_view(request.camera, &package, exaggeration, size_px, pixels_per_point)?;
+        let home = first_view(
+            request.camera,
+            &package,
+            place_height_m,
+            exaggeration,
+            size_px,
+            pixels_per_point,
+        )?;
         let limits = limits(package.manifest());
         let graphics = GraphicsFacts::of(canvas);
         let settings = Settings::at_first(&request, graphics.is_software());

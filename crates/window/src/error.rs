@@ -1,7 +1,7 @@
 use std::{io, path::PathBuf};
 
 use corniche_viewer::{
-    OffGround, OutOfRange, ViewpointError,
+    OffGround, OutOfRange,
     flight::FlightError,
     gpu::{GpuError, ReadBackError},
     tiles::LoadTileError,
@@ -49,15 +49,6 @@ pub enum WindowError {
         "the graphics device was lost twice within a minute; the driver may be at fault, or WGPU_BACKEND may choose another one"
     )]
     DeviceLost,
-}
-
-impl From<ViewpointError> for WindowError {
-    fn from(error: ViewpointError) -> Self {
-        match error {
-            ViewpointError::OffGround(off_ground) => Self::OffGround(off_ground),
-            ViewpointError::Load(load) => Self::Load(load),
-        }
-    }
 }
 
 /// Why a picture or a flight was not saved.

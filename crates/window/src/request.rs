@@ -1,7 +1,7 @@
-use std::{io, path::PathBuf, sync::Arc};
+use std::{io, path::PathBuf};
 
 use corniche_styles::Style;
-use corniche_viewer::{CameraRequest, RoadOptions, stream::StreamBudget, tiles::MapPackage};
+use corniche_viewer::{CameraRequest, RoadOptions, stream::StreamBudget};
 
 use crate::Inertia;
 
@@ -22,12 +22,10 @@ pub type Reload = Box<dyn FnMut() -> Option<Result<Style, String>>>;
 /// meanwhile.
 pub type BeginTrace = Box<dyn FnOnce() -> io::Result<Box<dyn io::Write>>>;
 
-/// What to open and how.
+/// How to open a window, and what it shows at first.
 pub struct WindowRequest {
     /// What the package is called.
     pub name: String,
-    /// The package.
-    pub source: Arc<dyn MapPackage + Send + Sync>,
     /// Width and height of the window's inside at first, pixels.
     pub size_px: [u32; 2],
     /// Where to look from at first.

@@ -5,7 +5,7 @@ use crate::{
     eye_height::{clearance_m, focus_m, rounded_up_m},
     flight::{Flight, Pose},
     lod::GroundSummary,
-    tiles::{MapPackage, TileStore},
+    tiles::{BlockingPackage, TileStore},
 };
 
 /// At most about this many tiles are kept while heights are looked up.
@@ -17,11 +17,11 @@ const LOOK_UP_TILES: usize = 256;
 /// # Errors
 /// When a tile cannot be read, there is no ground, or it was stopped.
 pub fn default_flight(
-    source: &dyn MapPackage,
+    package: &dyn BlockingPackage,
     is_stopped: &dyn Fn() -> bool,
 ) -> Result<Flight, ReplayError> {
-    let mut ground = GroundLookUp::new(source, is_stopped);
-    Flight::over(source.manifest().data_bounds, &mut |at| ground.height_m(at))?
+    let mut ground = GroundLookUp::new(package, is_stopped);
+    Flight::over(package.manifest().data_bounds, &mut |at| ground.height_m(at))?
         .ok_or(ReplayError::NoGround)
 }
 
@@ -60,13 +60,13 @@ impl Survey {
     /// When a keyframe is farther beneath the ground than the largest error of the coarsest ground, a tile cannot be read,
     /// or it was stopped.
     pub(crate) fn new(
-        source: &dyn MapPackage,
+        package: &dyn BlockingPackage,
         timetable: Timetable<'_>,
         options: &ReplayOptions,
         coarsest: GroundSummary,
         is_stopped: &dyn Fn() -> bool,
     ) -> Result<Self, ReplayError> {
-        let mut ground = GroundLookUp::new(source, is_stopped);
+        let mut ground = GroundLookUp::new(package, is_stopped);
         for keyframe in timetable.flight.keyframes() {
             let [x, y, height_m] = keyframe.pose.eye_m;
             if let Some(ground_m) = ground.height_m([x, y])?
@@ -76,7 +76,7 @@ impl Survey {
                 return Err(ReplayError::UnderGround { time_s: keyframe.time_s, depth_m });
             }
         }
-        let point_scale = source.manifest().point_scale;
+        let point_scale = package.manifest().point_scale;
         let scale = options.exaggeration * point_scale;
         let [lowest_m, highest_m] = coarsest.height_range_m;
         let base_m = f64::midpoint(lowest_m, highest_m);
@@ -112,14 +112,14 @@ impl Survey {
 
 /// Looks up true heights of the ground in the finest tiles. It keeps some of the tiles.
 struct GroundLookUp<'a> {
-    source: &'a dyn MapPackage,
+    package: &'a dyn BlockingPackage,
     store: TileStore<'a>,
     is_stopped: &'a dyn Fn() -> bool,
 }
 
 impl<'a> GroundLookUp<'a> {
-    fn new(source: &'a dyn MapPackage, is_stopped: &'a dyn Fn() -> bool) -> Self {
-        Self { source, store: TileStore::new(source), is_stopped }
+    fn new(package: &'a dyn BlockingPackage, is_stopped: &'a dyn Fn() -> bool) -> Self {
+        Self { package, store: TileStore::new(package), is_stopped }
     }
 
     fn height_m(&mut self, at: [f64; 2]) -> Result<Option<f64>, ReplayError> {
@@ -127,7 +127,7 @@ impl<'a> GroundLookUp<'a> {
             return Err(ReplayError::Stopped);
         }
         if self.store.len() > LOOK_UP_TILES {
-            self.store = TileStore::new(self.source);
+            self.store = TileStore::new(self.package);
         }
         Ok(self.store.ground_height_m(at)?)
     }

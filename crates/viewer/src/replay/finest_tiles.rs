@@ -2,15 +2,12 @@ use std::{collections::BTreeMap, time::Instant};
 
 use corniche_geom::TileId;
 
-use super::{
-    ReplayError,
-    frame_tiles::{FrameTiles, ms_since},
-};
+use super::{ReplayError, elapsed::ms_since, frame_tiles::FrameTiles};
 use crate::{
     camera::{Camera, WorldBox},
     gpu::{Gpu, TileBuffers, tile_bytes},
     lod::Drawn,
-    tiles::MapPackage,
+    tiles::BlockingPackage,
 };
 
 /// All tiles that have no finer tiles beneath them, loaded before the flight begins.
@@ -23,7 +20,7 @@ pub(crate) struct FinestTiles {
 impl FinestTiles {
     pub(crate) fn load(
         gpu: &Gpu,
-        source: &dyn MapPackage,
+        package: &dyn BlockingPackage,
         budget_bytes: u64,
         is_stopped: &dyn Fn() -> bool,
     ) -> Result<Self, ReplayError> {
@@ -35,13 +32,13 @@ impl FinestTiles {
                 return Err(ReplayError::Stopped);
             }
             let beneath = next.len();
-            if id.z() < source.frame().max_level() {
-                next.extend(id.children().filter(|child| source.exists(*child)));
+            if id.z() < package.frame().max_level() {
+                next.extend(id.children().filter(|child| package.exists(*child)));
             }
             if next.len() > beneath {
                 continue;
             }
-            let tile = source.load(id)?;
+            let tile = package.load(id)?;
             gpu_bytes += tile_bytes(&tile);
             if gpu_bytes > budget_bytes {
                 return Err(ReplayError::OverBudget {
@@ -69,14 +66,14 @@ impl FinestTiles {
     /// Chooses those in view. World heights are true heights times `vertical_scale`.
     pub(crate) fn in_view(
         &self,
-        source: &dyn MapPackage,
+        package: &dyn BlockingPackage,
         camera: &Camera,
         vertical_scale: f64,
     ) -> FrameTiles {
         let started = Instant::now();
         let frustum = camera.frustum();
         self.choose(started, |id, range_m| {
-            let plan = source.frame().tile_bounds(id);
+            let plan = package.frame().tile_bounds(id);
             frustum.may_see(&WorldBox::new(plan, range_m.map(|height_m| height_m * vertical_scale)))
         })
     }

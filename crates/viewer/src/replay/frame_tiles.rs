@@ -1,5 +1,3 @@
-use std::time::Instant;
-
 use crate::lod::Drawn;
 
 /// The tiles of one frame, and what was done to have them.
@@ -18,9 +16,4 @@ pub(crate) struct FrameTiles {
     pub(crate) select_ms: f64,
     pub(crate) decode_ms: f64,
     pub(crate) upload_ms: f64,
-}
-
-/// Milliseconds since `started`.
-pub(crate) fn ms_since(started: Instant) -> f64 {
-    started.elapsed().as_secs_f64() * 1e3
 }

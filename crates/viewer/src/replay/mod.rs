@@ -3,6 +3,7 @@
 //! Time steps are fixed, tiles arrive in the frame after they were asked for, and the first frame waits until no tile is
 //! missing. So the same flight gives the same tiles, numbers and pictures each time; only the milliseconds differ.
 
+mod elapsed;
 mod error;
 mod eye_over_ground;
 mod finest_tiles;
@@ -19,9 +20,10 @@ use glam::DVec3;
 use image::RgbaImage;
 
 use self::{
+    elapsed::ms_since,
     eye_over_ground::Survey,
     finest_tiles::FinestTiles,
-    frame_tiles::{FrameTiles, ms_since},
+    frame_tiles::FrameTiles,
     options::check,
     streamed_tiles::{Patience, StreamedTiles},
     timetable::Timetable,
@@ -34,7 +36,7 @@ use crate::{
         DrawTile, FrameView, Gpu, PassTimer, PassTimes, Renderer, Targets, TileBuffers, Wireframe,
     },
     lod::Quality,
-    tiles::{MapPackage, TileStore},
+    tiles::{BlockingPackage, TileStore},
 };
 
 pub use self::{
@@ -47,7 +49,7 @@ pub use self::{
 /// A flight that is being drawn.
 pub struct Replay<'a> {
     gpu: &'a Gpu,
-    source: &'a dyn MapPackage,
+    package: &'a dyn BlockingPackage,
     options: &'a ReplayOptions,
     is_stopped: &'a dyn Fn() -> bool,
     timetable: Timetable<'a>,
@@ -96,27 +98,27 @@ impl<'a> Replay<'a> {
     /// was stopped.
     pub fn new(
         gpu: &'a Gpu,
-        source: &'a dyn MapPackage,
+        package: &'a dyn BlockingPackage,
         flight: &'a Flight,
         options: &'a ReplayOptions,
         is_stopped: &'a dyn Fn() -> bool,
     ) -> Result<Self, ReplayError> {
         check(options)?;
-        let coarsest = TileStore::new(source).coarsest_ground()?.ok_or(ReplayError::NoGround)?;
+        let coarsest = TileStore::new(package).coarsest_ground()?.ok_or(ReplayError::NoGround)?;
         let timetable = Timetable { flight, frames: options.frames };
-        let survey = Survey::new(source, timetable, options, coarsest, is_stopped)?;
+        let survey = Survey::new(package, timetable, options, coarsest, is_stopped)?;
         let tiles = match options.detail {
             Detail::Adaptive => {
-                TileSupply::Streamed(StreamedTiles::new(gpu, source, options.budget))
+                TileSupply::Streamed(StreamedTiles::new(gpu, package, options.budget))
             }
             Detail::Full | Detail::Culled => {
                 let budget_bytes = options.budget.gpu_bytes;
-                TileSupply::Finest(FinestTiles::load(gpu, source, budget_bytes, is_stopped)?)
+                TileSupply::Finest(FinestTiles::load(gpu, package, budget_bytes, is_stopped)?)
             }
         };
         Ok(Self {
             gpu,
-            source,
+            package,
             options,
             is_stopped,
             timetable,
@@ -147,34 +149,34 @@ impl<'a> Replay<'a> {
         let mut pose = self.timetable.flight.at(time_s);
         pose.eye_m[2] += stand.lift_m;
         let camera = self.camera(pose, stand.focus_m);
-        let had = self.have_tiles(frame, &camera)?;
-        let drawn = self.draw(&camera, &had)?;
+        let prepared = self.prepare_tiles(frame, &camera)?;
+        let drawn = self.draw(&camera, &prepared)?;
         self.next += 1;
         Ok(Some(FrameRecord {
             frame,
             time_s,
             pose,
             tiles_drawn: drawn.tiles,
-            tiles_loaded: had.loaded,
-            tiles_uploaded: had.uploaded,
-            tiles_evicted: had.evicted,
-            tiles_missing: had.missing,
+            tiles_loaded: prepared.loaded,
+            tiles_uploaded: prepared.uploaded,
+            tiles_evicted: prepared.evicted,
+            tiles_missing: prepared.missing,
             triangles: drawn.triangles,
             road_segments: drawn.road_segments,
             gpu_bytes: self.tiles.buffers().values().map(TileBuffers::gpu_bytes).sum(),
-            select_ms: had.select_ms,
-            decode_ms: had.decode_ms,
-            upload_ms: had.upload_ms,
+            select_ms: prepared.select_ms,
+            decode_ms: prepared.decode_ms,
+            upload_ms: prepared.upload_ms,
             draw_ms: drawn.draw_ms,
             passes: drawn.passes,
         }))
     }
 
     /// Draws the tiles of a frame, waits until it is drawn and counts what was drawn.
-    fn draw(&mut self, camera: &Camera, had: &FrameTiles) -> Result<DrawnFrame, ReplayError> {
+    fn draw(&mut self, camera: &Camera, prepared: &FrameTiles) -> Result<DrawnFrame, ReplayError> {
         let started = Instant::now();
         let buffers = self.tiles.buffers();
-        let tiles: Vec<DrawTile<'_>> = had
+        let tiles: Vec<DrawTile<'_>> = prepared
             .drawn
             .iter()
             .filter_map(|drawn| {
@@ -188,7 +190,7 @@ impl<'a> Replay<'a> {
             style: &self.options.style,
             roads,
             exaggeration: self.options.exaggeration,
-            point_scale: self.source.manifest().point_scale,
+            point_scale: self.package.manifest().point_scale,
             height_range_m: self.height_range_m,
             wireframe: Wireframe::Hidden,
         };
@@ -210,7 +212,7 @@ impl<'a> Replay<'a> {
     /// When the device is lost.
     pub fn picture(&self) -> Result<RgbaImage, ReplayError> {
         let mut picture = self.targets.picture().read_image(self.gpu)?;
-        draw_attribution(&mut picture, &self.source.manifest().attribution);
+        draw_attribution(&mut picture, &self.package.manifest().attribution);
         Ok(picture)
     }
 
@@ -227,7 +229,7 @@ impl<'a> Replay<'a> {
     }
 
     fn vertical_scale(&self) -> f64 {
-        self.options.exaggeration * self.source.manifest().point_scale
+        self.options.exaggeration * self.package.manifest().point_scale
     }
 
     fn camera(&self, Pose { eye_m: [x, y, height_m], orientation }: Pose, focus_m: f64) -> Camera {
@@ -239,7 +241,7 @@ impl<'a> Replay<'a> {
     }
 
     /// Puts the tiles that a frame shows onto the graphics card, as far as they are there and fit.
-    fn have_tiles(&mut self, frame: u32, camera: &Camera) -> Result<FrameTiles, ReplayError> {
+    fn prepare_tiles(&mut self, frame: u32, camera: &Camera) -> Result<FrameTiles, ReplayError> {
         let vertical_scale = self.vertical_scale();
         let ahead_s = self.options.ahead_s;
         let ahead = (ahead_s > 0.0).then(|| {
@@ -258,7 +260,7 @@ impl<'a> Replay<'a> {
                 streamed.advance(camera, ahead.as_ref(), quality, patience, self.is_stopped)
             }
             TileSupply::Finest(finest) if self.options.detail == Detail::Full => Ok(finest.all()),
-            TileSupply::Finest(finest) => Ok(finest.in_view(self.source, camera, vertical_scale)),
+            TileSupply::Finest(finest) => Ok(finest.in_view(self.package, camera, vertical_scale)),
         }
     }
 }

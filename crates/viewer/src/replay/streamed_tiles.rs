@@ -2,16 +2,13 @@ use std::{collections::BTreeMap, time::Instant};
 
 use corniche_geom::TileId;
 
-use super::{
-    ReplayError,
-    frame_tiles::{FrameTiles, ms_since},
-};
+use super::{ReplayError, elapsed::ms_since, frame_tiles::FrameTiles};
 use crate::{
     camera::Camera,
     gpu::{Gpu, TileBuffers, tile_bytes},
     lod::Quality,
     stream::{StreamBudget, Streamer, TileFacts},
-    tiles::{MapPackage, TileGeometry},
+    tiles::{BlockingPackage, TileGeometry},
 };
 
 /// How long a frame may wait for its tiles.
@@ -26,7 +23,7 @@ pub(crate) enum Patience {
 /// Tiles that are loaded and evicted as a [`Streamer`] plans. Each arrives in the frame after it was requested.
 pub(crate) struct StreamedTiles<'a> {
     gpu: &'a Gpu,
-    source: &'a dyn MapPackage,
+    package: &'a dyn BlockingPackage,
     budget: StreamBudget,
     streamer: Streamer,
     /// Decoded, but not on the graphics card.
@@ -35,10 +32,14 @@ pub(crate) struct StreamedTiles<'a> {
 }
 
 impl<'a> StreamedTiles<'a> {
-    pub(crate) fn new(gpu: &'a Gpu, source: &'a dyn MapPackage, budget: StreamBudget) -> Self {
+    pub(crate) fn new(
+        gpu: &'a Gpu,
+        package: &'a dyn BlockingPackage,
+        budget: StreamBudget,
+    ) -> Self {
         Self {
             gpu,
-            source,
+            package,
             budget,
             streamer: Streamer::new(budget),
             decoded: BTreeMap::new(),
@@ -87,7 +88,7 @@ impl<'a> StreamedTiles<'a> {
         frame: &mut FrameTiles,
     ) -> Result<bool, ReplayError> {
         let started = Instant::now();
-        let plan = self.streamer.plan(self.source, camera, ahead, quality);
+        let plan = self.streamer.plan(self.package, camera, ahead, quality);
         frame.select_ms += ms_since(started);
 
         let started = Instant::now();
@@ -106,7 +107,7 @@ impl<'a> StreamedTiles<'a> {
             self.decoded.remove(id);
         }
         for id in &plan.load {
-            let tile = self.source.load(*id)?;
+            let tile = self.package.load(*id)?;
             let facts = TileFacts { ground: tile.summary, gpu_bytes: tile_bytes(&tile) };
             self.streamer.arrived(*id, facts);
             self.decoded.insert(*id, tile);

@@ -1,8 +1,9 @@
 //! Tiles as the renderer needs them, and where they come from.
 //!
 //! [`PackageTiles`] reads and decodes without waiting, from any source of bytes; [`PackageSource`] does so from a file for
-//! threads that wait. [`TileCatalog`] is all that choosing tiles asks of them. [`TileSource::load`] is a pure function of the
-//! tile id and `&self`, so that a worker thread may call it; [`TileStore`] holds what is loaded and answers what is known.
+//! threads that wait. [`TileCatalog`] is all that choosing tiles asks of them; [`MapPackage`] adds the table of contents, and
+//! [`BlockingPackage`] tiles that can be waited for. [`TileSource::load`] is a pure function of the tile id and `&self`, so
+//! that a worker thread may call it; [`TileStore`] holds what is loaded and answers what is known.
 
 mod geometry;
 mod ground_mesh;
@@ -23,7 +24,7 @@ pub use self::{
     geometry::TileGeometry,
     package::PackageTiles,
     roads::{RoadList, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, TileLines},
-    source::{LoadTileError, MapPackage, TileCatalog, TileSource},
+    source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},
     store::TileStore,
 };
 pub(crate) use self::{

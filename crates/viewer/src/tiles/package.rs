@@ -3,7 +3,7 @@ use std::collections::BTreeSet;
 use corniche_geom::{Frame, TileId};
 use corniche_tileset::{ByteSource, Manifest, OpenError, Package, Sections};
 
-use super::{LoadTileError, PlanScale, TileCatalog, TileGeometry, TileLines};
+use super::{LoadTileError, MapPackage, PlanScale, TileCatalog, TileGeometry, TileLines};
 use crate::options::RoadMethod;
 
 /// The tiles of a package, from any source of bytes. Loading a tile is asynchronous and blocks no thread.
@@ -44,12 +44,6 @@ impl<S: ByteSource> PackageTiles<S> {
         Self { sections: Sections::TERRAIN | roads, ..self }
     }
 
-    /// The package's table of contents.
-    #[must_use]
-    pub fn manifest(&self) -> &Manifest {
-        self.package.manifest()
-    }
-
     /// Reads and decodes a tile that exists.
     ///
     /// # Errors
@@ -83,5 +77,11 @@ impl<S: ByteSource> TileCatalog for PackageTiles<S> {
 
     fn exists(&self, id: TileId) -> bool {
         self.tiles.contains(&id)
+    }
+}
+
+impl<S: ByteSource> MapPackage for PackageTiles<S> {
+    fn manifest(&self) -> &Manifest {
+        self.package.manifest()
     }
 }

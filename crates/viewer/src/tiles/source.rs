@@ -31,8 +31,13 @@ pub trait TileSource: TileCatalog {
     fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError>;
 }
 
-/// A package as pictures, flights and windows ask for it: its tiles and its table of contents.
-pub trait MapPackage: TileSource {
+/// A package before any of its tiles is loaded: which tiles there are, and its table of contents.
+pub trait MapPackage: TileCatalog {
     /// The package's table of contents.
     fn manifest(&self) -> &Manifest;
 }
+
+/// A package whose tiles can be waited for, as pictures, flights and the threads of a window need it.
+pub trait BlockingPackage: MapPackage + TileSource {}
+
+impl<P: MapPackage + TileSource + ?Sized> BlockingPackage for P {}

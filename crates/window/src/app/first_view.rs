@@ -1,24 +1,26 @@
 //! The view with which a window opens.
 
 use corniche_viewer::{
-    CameraRequest, ViewpointError,
+    CameraRequest, GroundHeights, OffGround,
     camera::{Camera, Orientation},
 };
 
 use super::shown_package::ShownPackage;
 use crate::{controls::View, panel};
 
-/// The view that was asked for, in a window of this size.
+/// The view that was asked for, in a window of this size. `place_height_m` is the true height of the ground at the place
+/// that was asked for.
 ///
 /// # Errors
-/// When the place that was asked for has no ground, or its tiles cannot be had.
+/// When the place that was asked for has no ground.
 pub(crate) fn first_view(
     camera: CameraRequest,
     package: &ShownPackage,
+    place_height_m: Option<f64>,
     exaggeration: f64,
     size_px: [u32; 2],
     pixels_per_point: f32,
-) -> Result<View, ViewpointError> {
+) -> Result<View, OffGround> {
     let panel_px = panel::width(size_px[0] as f32 / pixels_per_point) * pixels_per_point;
     let part_px = match camera {
         // The whole package must be visible, so it is framed in the part beside the panel.
@@ -28,8 +30,7 @@ pub(crate) fn first_view(
     let orientation = camera.orientation();
     let camera = camera.camera(
         package.manifest(),
-        package.source(),
-        package.height_range_m(),
+        GroundHeights { range_m: package.height_range_m(), at_place_m: place_height_m },
         package.vertical_scale(exaggeration),
         part_px,
     )?;

@@ -5,38 +5,47 @@ use corniche_tileset::Manifest;
 use corniche_viewer::{
     gpu::tile_bytes,
     range,
-    tiles::{MapPackage, TileCatalog, TileSource},
+    tiles::{MapPackage, TileCatalog, TileGeometry},
 };
 
 use super::camera_limits::MAX_PITCH_DEG;
 use crate::{WindowError, WindowRequest};
 
-/// A package that can be shown.
+/// Checks what can be checked before any tile is loaded.
+///
+/// # Errors
+/// When the request makes no sense or the package has no tile.
+pub(crate) fn check(request: &WindowRequest, catalog: &dyn TileCatalog) -> Result<(), WindowError> {
+    check_numbers(request)?;
+    if !catalog.exists(TileId::ROOT) {
+        return Err(WindowError::NoGround { name: request.name.clone() });
+    }
+    Ok(())
+}
+
+/// A package that can be shown. It knows which tiles there are; a [`TileLoader`](crate::tile_loader::TileLoader) loads them.
 pub(crate) struct ShownPackage {
-    package: Arc<dyn MapPackage + Send + Sync>,
+    package: Arc<dyn MapPackage>,
     height_range_m: [f64; 2],
 }
 
 impl ShownPackage {
-    /// Checks the request and reads the package's root. This needs no window, and no window must open where it fails.
+    /// The package for which [`check`] found nothing wrong, with its root tile, which the platform has loaded.
     ///
     /// # Errors
-    /// When the request makes no sense, or the package cannot be read, has no ground or does not fit the graphics memory
-    /// allowed.
-    pub(crate) fn of(request: &WindowRequest) -> Result<Self, WindowError> {
-        check(request)?;
-        let package = Arc::clone(&request.source);
-        let no_ground = || WindowError::NoGround { name: request.name.clone() };
-        if !package.exists(TileId::ROOT) {
-            return Err(no_ground());
-        }
-        let root = package.load(TileId::ROOT)?;
-        let height_range_m = root.summary.ok_or_else(no_ground)?.height_range_m;
-        let (wanted_bytes, budget_bytes) = (tile_bytes(&root), request.budget.gpu_bytes);
+    /// When the root has no ground or does not fit the graphics memory allowed.
+    pub(crate) fn of(
+        request: &WindowRequest,
+        package: Arc<dyn MapPackage>,
+        root: &TileGeometry,
+    ) -> Result<Self, WindowError> {
+        let ground = root.summary;
+        let ground = ground.ok_or_else(|| WindowError::NoGround { name: request.name.clone() })?;
+        let (wanted_bytes, budget_bytes) = (tile_bytes(root), request.budget.gpu_bytes);
         if wanted_bytes > budget_bytes {
             return Err(WindowError::OverBudget { wanted_bytes, budget_bytes });
         }
-        Ok(Self { package, height_range_m })
+        Ok(Self { package, height_range_m: ground.height_range_m })
     }
 
     /// The package's table of contents.
@@ -44,14 +53,9 @@ impl ShownPackage {
         self.package.manifest()
     }
 
-    /// Its tiles, for a thread that waits for them.
-    pub(crate) fn source(&self) -> &dyn TileSource {
-        self.package.as_ref()
-    }
-
     /// Which tiles there are.
     pub(crate) fn catalog(&self) -> Arc<dyn TileCatalog> {
-        Arc::<dyn MapPackage + Send + Sync>::clone(&self.package)
+        Arc::<dyn MapPackage>::clone(&self.package)
     }
 
     /// The true heights between which all ground lies.
@@ -66,7 +70,7 @@ impl ShownPackage {
 }
 
 /// Refuses numbers that make no sense.
-fn check(request: &WindowRequest) -> Result<(), WindowError> {
+fn check_numbers(request: &WindowRequest) -> Result<(), WindowError> {
     if request.styles.is_empty() {
         return Err(WindowError::NoStyle);
     }

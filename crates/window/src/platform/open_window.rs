@@ -11,13 +11,14 @@ use winit::{
 use super::{
     event_loop::{News, new_window},
     files::FileWriter,
+    first_tiles::OpenedPackage,
     inputs::{self, EndKey, Inputs},
     loader::LoaderThreads,
     screen::{Acquired, Screen},
 };
 use crate::{
     NotSaved, WindowError, WindowRequest,
-    app::{App, AppPlatform, FrameInput, Redraw, ShownPackage},
+    app::{App, AppPlatform, FrameInput, Redraw},
     canvas::Canvas,
 };
 
@@ -48,7 +49,7 @@ impl OpenWindow {
         event_loop: &ActiveEventLoop,
         news: EventLoopProxy<News>,
         mut request: WindowRequest,
-        package: ShownPackage,
+        package: OpenedPackage,
     ) -> Result<Self, WindowError> {
         let is_stopped = std::mem::replace(&mut request.is_stopped, Box::new(|| false));
         let window = new_window(event_loop, &request.name, request.size_px)?;
@@ -64,10 +65,19 @@ impl OpenWindow {
         let files = Box::new(FileWriter::new(request.folder.clone(), Arc::clone(&wake)));
         let threads = LoaderThreads::usual_number();
         let room = request.budget.tiles_in_flight;
-        let loader = LoaderThreads::new(&request.source, threads, room, &wake)
+        let loader = LoaderThreads::new(&package.tiles, threads, room, &wake)
             .map_err(|source| WindowError::Thread { source })?;
         let platform = AppPlatform { loader: Box::new(loader), files };
-        let app = App::new(request, package, &canvas, platform, size_px, pixels_per_point)?;
+        let place_height_m = package.place_height_m(request.camera)?;
+        let app = App::new(
+            request,
+            package.shown,
+            place_height_m,
+            &canvas,
+            platform,
+            size_px,
+            pixels_per_point,
+        )?;
         let ui_state = new_ui_state(&ui, &window, &canvas);
         window.request_redraw();
         Ok(Self {

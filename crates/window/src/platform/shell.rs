@@ -3,9 +3,11 @@
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
     path::PathBuf,
+    sync::Arc,
     time::{Duration, Instant},
 };
 
+use corniche_viewer::tiles::BlockingPackage;
 use winit::{
     application::ApplicationHandler,
     event::WindowEvent,
@@ -15,29 +17,31 @@ use winit::{
 
 use super::{
     event_loop::{News, new_event_loop},
+    first_tiles::OpenedPackage,
     open_window::OpenWindow,
 };
-use crate::{Closed, End, NotSaved, WindowError, WindowRequest, app::ShownPackage};
+use crate::{Closed, End, NotSaved, WindowError, WindowRequest};
 
 /// How often the program is asked whether it must end.
 const STOP_S: f64 = 0.2;
 
-/// Opens a window on a package and returns when it is closed. A flight that is still being recorded is saved, whatever
+/// Opens a window on `package` and returns when it is closed. A flight that is still being recorded is saved, whatever
 /// ended the window.
 ///
 /// Must be called from the program's first thread.
 #[must_use]
-pub fn run(request: WindowRequest) -> Closed {
+pub fn run(request: WindowRequest, package: Arc<dyn BlockingPackage + Send + Sync>) -> Closed {
     let mut last_files = Vec::new();
-    let end = show(request, &mut last_files);
+    let end = show(request, package, &mut last_files);
     Closed { end, last_files }
 }
 
 fn show(
     request: WindowRequest,
+    package: Arc<dyn BlockingPackage + Send + Sync>,
     last_files: &mut Vec<Result<PathBuf, NotSaved>>,
 ) -> Result<End, WindowError> {
-    let package = ShownPackage::of(&request)?;
+    let package = OpenedPackage::new(&request, package)?;
     let event_loop = new_event_loop()?;
     let mut shell = Shell {
         waiting: Some((request, package)),
@@ -60,7 +64,7 @@ fn show(
 /// What the event loop calls.
 struct Shell {
     /// What to open; `None` once the window is open.
-    waiting: Option<(WindowRequest, ShownPackage)>,
+    waiting: Option<(WindowRequest, OpenedPackage)>,
     news: EventLoopProxy<News>,
     begun: Instant,
     open: Option<OpenWindow>,
