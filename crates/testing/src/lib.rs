@@ -19,6 +19,8 @@ mod data;
 pub mod package;
 pub mod payload;
 pub mod pbf;
+#[cfg(feature = "pictures")]
+pub mod pictures;
 pub mod pmtiles;
 mod projection;
 mod random;

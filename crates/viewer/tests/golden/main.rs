@@ -8,10 +8,8 @@
 #[path = "../support/mod.rs"]
 mod support;
 
-mod compare;
-
-use compare::{check, is_blessing, mismatch};
 use corniche_styles::Style;
+use corniche_testing::pictures::{Golden, is_blessing};
 use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::{Camera, Orientation},
@@ -26,6 +24,10 @@ use support::{
 
 const SIZE: [u32; 2] = [240, 180];
 const METHODS: [RoadMethod; 2] = [RoadMethod::Geometry, RoadMethod::ShadowVolumes];
+
+fn golden() -> Golden {
+    Golden::of_crate(env!("CARGO_MANIFEST_DIR"), option_env!("CARGO_TARGET_TMPDIR"))
+}
 
 /// The software adapter, or `None` and a line on the terminal.
 fn software() -> Option<Gpu> {
@@ -74,7 +76,7 @@ fn image(gpu: &Gpu, picture: &Picture) -> RgbaImage {
 fn a_junction_looks_as_it_did() {
     let Some(gpu) = software() else { return };
     for (method, name) in METHODS.into_iter().zip(["junction-geo", "junction-sv"]) {
-        check(name, &image(&gpu, near(&gpu, &near_style(), method).picture()));
+        golden().check(name, &image(&gpu, near(&gpu, &near_style(), method).picture()));
     }
 }
 
@@ -85,7 +87,7 @@ fn far_ground_and_thin_roads_fade_into_the_haze_as_they_did() {
     let view = view(&camera, &style, RoadMethod::ShadowVolumes);
     let scene = one_tile(16, hills, &junction(), style.clone());
     let targets = scene.draw_view(&gpu, &view, 2);
-    check("haze-sv-2-samples", &image(&gpu, targets.picture()));
+    golden().check("haze-sv-2-samples", &image(&gpu, targets.picture()));
 }
 
 #[test]
@@ -95,7 +97,7 @@ fn a_wireframe_looks_as_it_did() {
     let scene = one_tile(64, hills, &junction(), style.clone());
     let view = view(&camera, &style, RoadMethod::Geometry);
     let view = FrameView { wireframe: Wireframe::Shown, ..view };
-    check("wireframe", &image(&gpu, scene.draw_view(&gpu, &view, 1).picture()));
+    golden().check("wireframe", &image(&gpu, scene.draw_view(&gpu, &view, 1).picture()));
 }
 
 #[test]
@@ -109,7 +111,7 @@ fn the_difference_of_two_methods_looks_as_it_did() {
     let second = near(&gpu, &wider, RoadMethod::ShadowVolumes);
     let difference = Picture::new(&gpu, SIZE, 1).unwrap();
     Renderer::new(&gpu).draw_difference(&gpu, &first, &second, &difference).unwrap();
-    check("difference", &image(&gpu, &difference));
+    golden().check("difference", &image(&gpu, &difference));
 }
 
 /// The comparison finds a difference where there is one.
@@ -122,7 +124,7 @@ fn a_road_five_percent_wider_is_no_match() {
     let mut style = near_style();
     style.roads[4].width_m *= 1.05;
     let picture = image(&gpu, near(&gpu, &style, RoadMethod::ShadowVolumes).picture());
-    let found = mismatch("junction-sv", &picture).unwrap();
+    let found = golden().mismatch("junction-sv", &picture).unwrap();
     println!("must fail, one road 5 % wider: {found}");
     assert!(!found.is_match());
 }
@@ -136,12 +138,12 @@ fn a_colour_three_percent_off_is_no_match() {
     let mut style = near_style();
     style.roads[4].color[2] += 0.03;
     let picture = image(&gpu, near(&gpu, &style, RoadMethod::ShadowVolumes).picture());
-    let found = mismatch("junction-sv", &picture).unwrap();
+    let found = golden().mismatch("junction-sv", &picture).unwrap();
     println!("must fail, one colour 3 % off: {found}");
     assert!(!found.is_match());
 }
 
 #[test]
 fn a_picture_of_another_size_is_no_match() {
-    assert!(mismatch("junction-sv", &RgbaImage::new(SIZE[0], SIZE[1] - 1)).is_err());
+    assert!(golden().mismatch("junction-sv", &RgbaImage::new(SIZE[0], SIZE[1] - 1)).is_err());
 }

@@ -4,6 +4,7 @@
 //! They hold for software Vulkan (llvmpipe) alone. `CORNICHE_BLESS=1 cargo test -p corniche-window golden` accepts the
 //! pictures painted now. Look at them.
 
+use corniche_testing::pictures::{Golden, is_blessing};
 use corniche_viewer::gpu::Gpu;
 use egui_wgpu::ScreenDescriptor;
 use image::RgbaImage;
@@ -14,9 +15,9 @@ use crate::canvas::{
     tests::{canvas, scene_of_size},
 };
 
-/// The same rule as for pictures of the map; a crate for it alone would be one too many.
-#[path = "../../../viewer/tests/golden/compare.rs"]
-mod compare;
+fn golden() -> Golden {
+    Golden::of_crate(env!("CARGO_MANIFEST_DIR"), option_env!("CARGO_TARGET_TMPDIR"))
+}
 
 fn is_pinned(gpu: &Gpu) -> bool {
     let is_pinned = ["llvmpipe", "vulkan"].iter().all(|part| gpu.adapter_name().contains(part));
@@ -61,14 +62,14 @@ fn the_window_looks_as_it_did() {
     for (name, size_px, mut settings) in
         [("window", [820, 640], usual()), ("window-small-split", [400, 300], split)]
     {
-        compare::check(name, &painted(&mut canvas, size_px, &mut settings));
+        golden().check(name, &painted(&mut canvas, size_px, &mut settings));
     }
 }
 
 /// The comparison sees what it should see.
 #[test]
 fn a_window_without_its_panel_is_no_match() {
-    if compare::is_blessing() {
+    if is_blessing() {
         return;
     }
     let Some(mut canvas) = canvas() else { return };
@@ -77,7 +78,7 @@ fn a_window_without_its_panel_is_no_match() {
     }
     let mut hidden = Settings { is_panel_open: false, ..usual() };
     let found =
-        compare::mismatch("window", &painted(&mut canvas, [820, 640], &mut hidden)).unwrap();
+        golden().mismatch("window", &painted(&mut canvas, [820, 640], &mut hidden)).unwrap();
     println!("must fail, the panel hidden: {found}");
     assert!(!found.is_match());
 }
