@@ -1,13 +1,14 @@
 //! The state of the window, without the window system: what it shows and what inputs do to it. What a frame does is in
 //! `app/frame.rs`.
 
+mod adapter;
 mod camera_control;
 mod camera_limits;
 mod captures;
+mod first_settings;
 mod first_view;
 mod frame;
 mod frame_pace;
-mod graphics_facts;
 mod ground_probe;
 mod shown_package;
 mod style_list;
@@ -25,9 +26,9 @@ use egui::{Rect, pos2};
 use glam::DVec2;
 
 use self::{
-    camera_control::CameraControl, camera_limits::limits, captures::Captures,
-    first_view::first_view, frame_pace::FramePace, graphics_facts::GraphicsFacts,
-    ground_probe::GroundProbe, style_list::StyleList,
+    adapter::AdapterState, camera_control::CameraControl, camera_limits::limits,
+    captures::Captures, first_settings::first_settings, first_view::first_view,
+    frame_pace::FramePace, ground_probe::GroundProbe, style_list::StyleList,
 };
 use crate::{
     NotSaved, WindowError, WindowRequest,
@@ -54,7 +55,7 @@ pub(crate) struct App {
     camera: CameraControl,
     settings: Settings,
     styles: StyleList,
-    graphics: GraphicsFacts,
+    graphics: AdapterState,
     pace: FramePace,
     captures: Captures,
     notices: Notices,
@@ -65,7 +66,6 @@ pub(crate) struct App {
     cursor_px: Option<DVec2>,
     /// Where the mouse is the panel's, points.
     occupied: Vec<Rect>,
-    pixels_per_point: f32,
 }
 
 /// What the platform does for the app while it draws.
@@ -101,8 +101,8 @@ impl App {
             pixels_per_point,
         )?;
         let limits = limits(package.manifest());
-        let graphics = GraphicsFacts::of(canvas);
-        let settings = Settings::at_first(&request, graphics.is_software());
+        let graphics = AdapterState::of(canvas);
+        let settings = first_settings(&request, graphics.is_software());
         let trace = request
             .trace
             .map(|begin| begin().and_then(Trace::begin))
@@ -132,13 +132,12 @@ impl App {
             frame: 0,
             cursor_px: None,
             occupied: Vec::new(),
-            pixels_per_point,
         })
     }
 
     /// Whether the mouse at this pixel of the window is the map's, not the panel's.
     pub(crate) fn is_map(&self, ui: &egui::Context, at_px: DVec2) -> bool {
-        let at = at_px / f64::from(self.pixels_per_point);
+        let at = at_px / self.camera.pixels_per_point();
         let at = pos2(at.x as f32, at.y as f32);
         // Lists that hang from the panel lie in layers of their own.
         let is_in_front =
@@ -195,7 +194,7 @@ impl App {
         self.tiles.begin_again();
         // A frozen choice of tiles would stay empty.
         self.settings.refinement = Refinement::Live;
-        self.graphics = GraphicsFacts::of(canvas);
+        self.graphics = AdapterState::of(canvas);
         let lost = self.captures.lose_device();
         self.tell_lost(lost);
         self.notices.warn("the graphics device was lost; everything was loaded again".to_owned());
@@ -251,3 +250,7 @@ fn ground<'a>(tiles: &'a Tiles, settings: &Settings, package: &ShownPackage) -> 
     let vertical_scale = package.vertical_scale(settings.exaggeration);
     tiles.ground(vertical_scale, f64::midpoint(lowest_m, highest_m))
 }
+
+#[cfg(test)]
+#[path = "app_tests.rs"]
+mod tests;

@@ -28,7 +28,6 @@ mod notices;
 mod outcome;
 mod overlay;
 mod panel;
-mod panel_content;
 mod platform;
 mod recorder;
 mod request;
@@ -38,6 +37,7 @@ mod shots;
 mod tile_loader;
 mod tiles;
 mod trace;
+mod window_content;
 
 pub use controls::Inertia;
 pub use error::{NotSaved, WindowError};

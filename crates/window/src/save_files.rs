@@ -14,3 +14,7 @@ pub(crate) trait SaveFiles {
     /// Waits until all files are written; the result is that of the files that [`SaveFiles::news`] did not yet tell of.
     fn finish(&mut self) -> Vec<Result<PathBuf, NotSaved>>;
 }
+
+#[cfg(test)]
+#[path = "save_files_tests.rs"]
+pub(crate) mod tests;

@@ -4,8 +4,6 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
 use corniche_viewer::{RoadMethod, RoadOptions};
 
-use crate::WindowRequest;
-
 /// Whether one method is shown, or two are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Compare {
@@ -78,24 +76,6 @@ pub(crate) mod range {
 }
 
 impl Settings {
-    /// The settings with which a window opens. `is_software` says that the processor draws.
-    pub(crate) fn at_first(request: &WindowRequest, is_software: bool) -> Self {
-        let usual_samples = if is_software { 1 } else { 2 };
-        Self {
-            roads: request.roads,
-            compare: Compare::Off,
-            divider_share: 0.5,
-            width_factors: [1.0; FunctionalRoadClass::COUNT],
-            style: 0,
-            exaggeration: request.exaggeration,
-            screen_space_error_px: request.screen_space_error_px,
-            samples_per_side: request.samples_per_side.unwrap_or(usual_samples),
-            is_wireframe: false,
-            refinement: Refinement::Live,
-            is_panel_open: true,
-        }
-    }
-
     /// A style with its widths multiplied by their factors.
     pub(crate) fn applied_to(&self, style: &Style) -> Style {
         let mut applied = style.clone();

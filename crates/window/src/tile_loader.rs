@@ -19,3 +19,7 @@ pub(crate) trait TileLoader {
     /// The tiles that have arrived since this was called last.
     fn arrivals(&mut self) -> Vec<Loaded>;
 }
+
+#[cfg(test)]
+#[path = "tile_loader_tests.rs"]
+pub(crate) mod tests;

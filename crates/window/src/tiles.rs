@@ -33,7 +33,7 @@ pub(crate) struct Tiles {
     missing: usize,
     loading: BTreeSet<TileId>,
     is_full: bool,
-    /// Whether [`Tiles::is_full_for_the_first_time`] has told that it is full.
+    /// Whether [`Tiles::take_first_time_full`] has returned true.
     was_full: bool,
 }
 
@@ -164,8 +164,8 @@ impl Tiles {
         self.is_full
     }
 
-    /// Whether [`Tiles::is_full`] holds and this was not asked before while it held.
-    pub(crate) fn is_full_for_the_first_time(&mut self) -> bool {
+    /// Whether [`Tiles::is_full`] holds for the first time since the window opened: true once.
+    pub(crate) fn take_first_time_full(&mut self) -> bool {
         self.is_full && !std::mem::replace(&mut self.was_full, true)
     }
 

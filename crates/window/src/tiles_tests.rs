@@ -1,21 +1,23 @@
 use std::{
     num::NonZeroUsize,
-    pin::Pin,
-    task::{Context, Poll, Waker},
     time::{Duration, Instant},
 };
 
 use corniche_geom::{Frame, NodeIndex};
-use corniche_tileset::{MemorySource, Package, Terrain};
+use corniche_testing::package::QUANTUM_M;
+use corniche_tileset::Terrain;
 use corniche_tin::{Tin, TinVertex};
 use corniche_viewer::{
     camera::Orientation,
-    tiles::{LoadTileError, MapPackage as _, PackageSource, PackageTiles, TileSource},
+    tiles::{LoadTileError, PackageSource, TileSource},
 };
 use glam::DVec2;
 
 use super::*;
-use crate::{platform::LoaderThreads, tile_loader::Loaded};
+use crate::{
+    platform::LoaderThreads,
+    tile_loader::tests::{PolledLoader, late_package},
+};
 
 /// A package of two levels: ground at 100 m, 10 m higher in the finer level. One tile of it is damaged.
 struct Steps {
@@ -173,77 +175,40 @@ fn what_arrives_from_before_a_loss_does_not_count_twice() {
     assert!(tiles.waiting.is_empty(), "{:?}", tiles.waiting.keys());
 }
 
-type Loading = Pin<Box<dyn Future<Output = Result<TileGeometry, LoadTileError>>>>;
-
-/// Loads tiles in the thread that draws, without waiting for one: each is polled once a frame.
-struct Polled {
-    tiles: Arc<PackageTiles<MemorySource>>,
-    under_way: Vec<(TileId, Loading)>,
-}
-
-impl TileLoader for Polled {
-    fn request(&mut self, ids: &[TileId]) {
-        for id in ids.iter().copied() {
-            let tiles = Arc::clone(&self.tiles);
-            self.under_way.push((id, Box::pin(async move { tiles.load(id).await })));
-        }
-    }
-
-    fn forget(&mut self) {
-        self.under_way.clear();
-    }
-
-    fn arrivals(&mut self) -> Vec<Loaded> {
-        let mut arrived = Vec::new();
-        let mut context = Context::from_waker(Waker::noop());
-        self.under_way.retain_mut(|(id, load)| match load.as_mut().poll(&mut context) {
-            Poll::Ready(tile) => {
-                arrived.push(Loaded { id: *id, tile });
-                false
-            }
-            Poll::Pending => true,
-        });
-        arrived
-    }
-}
-
-#[test]
-fn a_package_that_nothing_waits_for_shows_the_same_as_one_on_disk() {
-    let bytes = corniche_testing::package::written();
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("small.pmtiles");
-    std::fs::write(&path, &bytes).unwrap();
-    let on_disk = Arc::new(PackageSource::open(&path).unwrap());
-    let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(|| ());
-    let threads = LoaderThreads::new(&on_disk, NonZeroUsize::MIN, 8, &wake).unwrap();
-
-    let package = pollster::block_on(Package::open(MemorySource::new(bytes))).unwrap();
-    let awaited = Arc::new(pollster::block_on(PackageTiles::new(package)).unwrap());
-    let polled = Polled { tiles: Arc::clone(&awaited), under_way: Vec::new() };
-
-    let bounds = on_disk.frame().tile_bounds(TileId::ROOT);
+/// What is drawn of the small package once nothing is missing, and how many bytes it takes.
+fn shown(catalog: Arc<dyn TileCatalog>, loader: Box<dyn TileLoader>) -> (Vec<Drawn>, u64) {
+    let bounds = catalog.frame().tile_bounds(TileId::ROOT);
     let middle = DVec3::from((DVec2::from(bounds.center()), 0.0));
     let down = Orientation { heading_deg: 0.0, pitch_deg: 0.0 };
     let camera = Camera::look_at(middle, 2.0 * bounds.width(), down, [400, 400]);
     let quality = Quality { screen_space_error_px: 0.01, vertical_scale: 1.0 };
     let budget =
         StreamBudget { tiles_in_flight: 8, upload_bytes_per_frame: 1 << 20, gpu_bytes: 1 << 24 };
-    let quantum_m = on_disk.manifest().vertical.quantum_m;
-    let shown = |catalog: Arc<dyn TileCatalog>, loader: Box<dyn TileLoader>| {
-        let mut tiles = Tiles::new(catalog, quantum_m, loader, budget);
-        let begun = Instant::now();
-        loop {
-            let defects = tiles.take_arrivals();
-            assert!(defects.is_empty(), "{defects:?}");
-            let changes = tiles.choose(&camera, None, quality);
-            tiles.keep_ground(changes.upload);
-            if !changes.is_under_way && tiles.missing() == 0 && tiles.loading() == 0 {
-                return (tiles.drawn().to_vec(), tiles.bytes_of_budget()[0]);
-            }
-            assert!(begun.elapsed() < Duration::from_secs(30), "{} missing", tiles.missing());
+    let mut tiles = Tiles::new(catalog, QUANTUM_M, loader, budget);
+    let begun = Instant::now();
+    loop {
+        let defects = tiles.take_arrivals();
+        assert!(defects.is_empty(), "{defects:?}");
+        let changes = tiles.choose(&camera, None, quality);
+        tiles.keep_ground(changes.upload);
+        if !changes.is_under_way && tiles.missing() == 0 && tiles.loading() == 0 {
+            return (tiles.drawn().to_vec(), tiles.bytes_of_budget()[0]);
         }
-    };
-    let expected = shown(on_disk.clone(), Box::new(threads));
-    assert_eq!(shown(awaited, Box::new(polled)), expected);
-    assert!(expected.0.len() > 1, "{expected:?}");
+        assert!(begun.elapsed() < Duration::from_secs(30), "{} missing", tiles.missing());
+    }
+}
+
+#[test]
+fn tiles_that_nothing_waits_for_are_shown_as_those_on_disk() {
+    let late = late_package();
+    let found = shown(late.clone(), Box::new(PolledLoader::new(&late)));
+    assert!(found.0.len() > 1, "{found:?}");
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("small.pmtiles");
+    std::fs::write(&path, corniche_testing::package::written()).unwrap();
+    let on_disk = Arc::new(PackageSource::open(&path).unwrap());
+    let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(|| ());
+    let threads = LoaderThreads::new(&on_disk, NonZeroUsize::MIN, 8, &wake).unwrap();
+    assert_eq!(found, shown(on_disk, Box::new(threads)));
 }

@@ -20,7 +20,7 @@ pub(crate) struct GroundPoint {
 }
 
 /// Everything that the panel and the overlay show, apart from the settings.
-pub(crate) struct PanelContent<'a> {
+pub(crate) struct WindowContent<'a> {
     /// Name of the graphics adapter.
     pub(crate) adapter: &'a str,
     /// The package's credits.

@@ -3,13 +3,13 @@ use corniche_viewer::{RoadMethod, gpu::PassTimes};
 use crate::{WindowError, canvas::Canvas};
 
 /// What draws, and how long its passes take.
-pub(crate) struct GraphicsFacts {
+pub(crate) struct AdapterState {
     adapter: String,
     is_software: bool,
     passes: Vec<(RoadMethod, PassTimes)>,
 }
 
-impl GraphicsFacts {
+impl AdapterState {
     pub(crate) fn of(canvas: &Canvas) -> Self {
         Self {
             adapter: canvas.gpu().adapter_name().to_owned(),

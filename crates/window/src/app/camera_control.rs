@@ -76,6 +76,11 @@ impl CameraControl {
         self.navigator.handle(input, now_s, ground);
     }
 
+    /// Pixels to a point of the screen, as in the last frame.
+    pub(crate) fn pixels_per_point(&self) -> f64 {
+        self.pixels_per_point
+    }
+
     fn in_points(&self, at_px: DVec2) -> DVec2 {
         at_px / self.pixels_per_point
     }
@@ -151,3 +156,7 @@ impl CameraControl {
         Pose { eye_m: [eye.x, eye.y, eye.z / vertical_scale], orientation }
     }
 }
+
+#[cfg(test)]
+#[path = "camera_control_tests.rs"]
+mod tests;

@@ -85,7 +85,7 @@ impl Captures {
     }
 
     /// Begins the pictures that are asked for, and saves those whose pixels have come back, in the order in which they
-    /// were asked for. Returns why pictures were not taken.
+    /// were asked for. Adds to `lost` why pictures were not taken, also when it fails.
     ///
     /// # Errors
     /// When the device is lost.
@@ -96,8 +96,8 @@ impl Captures {
         screen: &ScreenDescriptor,
         divider_share: f32,
         manifest: &Manifest,
-    ) -> Result<Vec<NotSaved>, WindowError> {
-        let mut lost = Vec::new();
+        lost: &mut Vec<NotSaved>,
+    ) -> Result<(), WindowError> {
         // What is asked for in this frame is drawn in full in the next one.
         if canvas.is_full() {
             for shot in std::mem::take(&mut self.wanted) {
@@ -115,7 +115,7 @@ impl Captures {
             match snapshot.has_arrived(canvas.gpu()) {
                 Ok(false) => break,
                 Ok(true) => {}
-                // The caller makes everything anew, and then `lose_device` is called.
+                // The caller makes everything on the device again, and then `lose_device` is called.
                 Err(error) if canvas.gpu().is_lost() => return Err(error.into()),
                 Err(error) => {
                     // It is not known which of the pictures failed.
@@ -130,7 +130,7 @@ impl Captures {
                 Err(error) => lost.push(error.into()),
             }
         }
-        Ok(lost)
+        Ok(())
     }
 
     fn save(&mut self, shot: Shot, mut picture: RgbaImage, manifest: &Manifest) {
@@ -183,3 +183,7 @@ impl Captures {
         saved
     }
 }
+
+#[cfg(test)]
+#[path = "captures_tests.rs"]
+mod tests;

@@ -18,10 +18,10 @@ use crate::{
     canvas::{Canvas, Drew, Scene},
     formatting,
     panel::{self, Answer},
-    panel_content::PanelContent,
     settings::{Refinement, Settings},
     tiles::Changes,
     trace::TraceLine,
+    window_content::WindowContent,
 };
 
 /// A processor that draws draws coarsely until the camera has been at rest for this time.
@@ -65,7 +65,6 @@ impl App {
     ) -> Result<Frame, WindowError> {
         let FrameInput { now_s, size_px, pixels_per_point, ui: raw } = input;
         self.frame += 1;
-        self.pixels_per_point = pixels_per_point;
         self.take_news(now_s);
         let ground = ground(&self.tiles, &self.settings, &self.package);
         let camera = self.camera.advance(now_s, size_px, pixels_per_point, &ground);
@@ -143,7 +142,7 @@ impl App {
         };
         canvas.change(&changes.evict, &changes.upload);
         self.tiles.keep_ground(changes.upload);
-        if self.tiles.is_full_for_the_first_time() {
+        if self.tiles.take_first_time_full() {
             self.notices.warn(
                 "the graphics memory allowed is full: this view is drawn more coarsely than asked; allow more with \
                  --gpu-memory"
@@ -252,12 +251,12 @@ impl App {
         ui: &egui::Context,
         road_colors: &'a [Rgb],
         now_s: f64,
-    ) -> PanelContent<'a> {
+    ) -> WindowContent<'a> {
         let manifest = self.package.manifest();
         let is_over_map = self.cursor_px.is_some_and(|at_px| self.is_map(ui, at_px));
         let counts = canvas.counts();
-        let points = f64::from(self.pixels_per_point) / manifest.point_scale;
-        PanelContent {
+        let points = self.camera.pixels_per_point() / manifest.point_scale;
+        WindowContent {
             adapter: self.graphics.adapter(),
             attribution: &manifest.attribution,
             crs: WorkingCrs::of(manifest),
@@ -297,9 +296,10 @@ impl App {
         screen: &ScreenDescriptor,
     ) -> Result<(), WindowError> {
         let (share, manifest) = (self.settings.divider_share, self.package.manifest());
-        let lost = self.captures.take(canvas, primitives, screen, share, manifest)?;
+        let mut lost = Vec::new();
+        let taken = self.captures.take(canvas, primitives, screen, share, manifest, &mut lost);
         self.tell_lost(lost);
-        Ok(())
+        taken
     }
 
     fn write_trace(&mut self, pose: Pose, size_px: [u32; 2]) -> Result<(), WindowError> {

@@ -51,3 +51,7 @@ impl FramePace {
         &self.times
     }
 }
+
+#[cfg(test)]
+#[path = "frame_pace_tests.rs"]
+mod tests;

@@ -4,7 +4,7 @@ use corniche_geom::CoordinateTable;
 use corniche_viewer::camera::Camera;
 use glam::DVec2;
 
-use crate::{controls::KnownGround, panel_content::GroundPoint};
+use crate::{controls::KnownGround, window_content::GroundPoint};
 
 /// What rays into the scene found. It is kept while neither the scene nor the cursor changes.
 #[derive(Default)]

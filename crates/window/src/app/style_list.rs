@@ -50,3 +50,7 @@ impl StyleList {
         }))
     }
 }
+
+#[cfg(test)]
+#[path = "style_list_tests.rs"]
+mod tests;

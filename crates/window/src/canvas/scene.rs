@@ -14,7 +14,7 @@ pub(crate) struct Scene {
     pub(crate) style: Style,
     /// How the roads of each picture are drawn: one picture, or GEO and SV.
     pub(crate) roads: Vec<RoadOptions>,
-    /// What is made of two pictures.
+    /// Whether one method is shown, or two are compared.
     pub(crate) compare: Compare,
     /// Factor on heights.
     pub(crate) exaggeration: f64,
@@ -24,7 +24,7 @@ pub(crate) struct Scene {
     pub(crate) height_range_m: [f64; 2],
     /// Whether the edges of triangles are drawn.
     pub(crate) wireframe: Wireframe,
-    /// The tiles.
+    /// The tiles to draw.
     pub(crate) drawn: Vec<Drawn>,
     /// Samples per pixel along each side.
     pub(crate) samples_per_side: u32,

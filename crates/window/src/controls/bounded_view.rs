@@ -17,9 +17,9 @@ const LIFT_MARGIN_M: f64 = 1e-3;
 /// Whether a view could be moved as asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Moved {
-    /// It was.
+    /// The view was moved.
     Yes,
-    /// It was not: the eye would have gone beyond its limits.
+    /// The view stays: the eye would have gone beyond its limits.
     Blocked,
 }
 

@@ -56,7 +56,7 @@ impl Navigator {
     }
 
     /// Takes another view at once, and stops all movements.
-    fn jump_to(&mut self, view: View) {
+    pub(crate) fn jump_to(&mut self, view: View) {
         self.stop();
         self.gesture = None;
         self.seen.view = view;

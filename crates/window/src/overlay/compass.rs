@@ -4,7 +4,7 @@ use super::{
     answer::OverlayAnswer,
     palette::{CHALK, MARGIN, SLATE},
 };
-use crate::{command::Command, formatting, panel_content::PanelContent};
+use crate::{command::Command, formatting, window_content::WindowContent};
 
 const RADIUS: f32 = 26.0;
 const RED: Color32 = Color32::from_rgb(206, 52, 44);
@@ -20,7 +20,7 @@ pub(crate) fn compass_place(rect: Rect) -> Rect {
 pub(crate) fn compass(
     ui: &mut Ui,
     area: Rect,
-    content: &PanelContent<'_>,
+    content: &WindowContent<'_>,
     answer: &mut OverlayAnswer,
 ) -> f32 {
     let (center, radius) = (area.center(), RADIUS);

@@ -26,8 +26,8 @@ use self::{
     scale_bar::scale_bar,
 };
 use crate::{
-    panel_content::PanelContent,
     settings::{Compare, Settings},
+    window_content::WindowContent,
 };
 
 /// A map with a side of less than this shows only credits and scale bar, points.
@@ -38,7 +38,7 @@ pub(crate) fn overlay(
     ui: &mut Ui,
     rect: Rect,
     settings: &mut Settings,
-    content: &PanelContent<'_>,
+    content: &WindowContent<'_>,
 ) -> OverlayAnswer {
     let mut answer = OverlayAnswer::default();
     // Nothing is painted over the panel or the status line, however small the window is.

@@ -6,7 +6,7 @@ use super::{
     answer::OverlayAnswer,
     palette::{CHALK, MARGIN, SLATE},
 };
-use crate::{command::Command, notices::Notice, panel_content::PanelContent};
+use crate::{command::Command, notices::Notice, window_content::WindowContent};
 
 const AMBER: Color32 = Color32::from_rgb(214, 160, 60);
 
@@ -14,7 +14,7 @@ const AMBER: Color32 = Color32::from_rgb(214, 160, 60);
 pub(crate) fn notices(
     ui: &mut Ui,
     room: Rect,
-    content: &PanelContent<'_>,
+    content: &WindowContent<'_>,
     answer: &mut OverlayAnswer,
 ) {
     let mut top = room.top() + MARGIN;

@@ -1,7 +1,7 @@
 use egui::{CornerRadius, FontId, Rect, Stroke, Ui, pos2, vec2};
 
 use super::palette::{INK, LONGEST_BAR, MARGIN, PAPER};
-use crate::{formatting, panel_content::PanelContent};
+use crate::{formatting, window_content::WindowContent};
 
 /// From this tilt on, the scale at the edges of the picture differs from that in the middle, and the bar says so.
 const TILTED_DEG: f64 = 5.0;
@@ -36,7 +36,7 @@ pub(crate) fn scale_bar(
     ui: &Ui,
     rect: Rect,
     credits: Option<&Rect>,
-    content: &PanelContent<'_>,
+    content: &WindowContent<'_>,
 ) -> f32 {
     let credits_top = credits.map_or(rect.bottom(), Rect::top);
     let most = LONGEST_BAR.min(rect.width() - 4.0 * MARGIN);

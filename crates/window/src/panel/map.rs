@@ -2,12 +2,12 @@ use egui::{ComboBox, Ui};
 
 use super::slide::slide;
 use crate::{
-    panel_content::PanelContent,
     settings::{Refinement, Settings, range},
+    window_content::WindowContent,
 };
 
 /// The section for style, heights and level of detail.
-pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, content: &PanelContent<'_>) {
+pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, content: &WindowContent<'_>) {
     ui.horizontal(|ui| {
         ui.label("Style");
         let chosen = content.style_names.get(settings.style).map_or("", String::as_str);

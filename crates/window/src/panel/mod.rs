@@ -11,8 +11,8 @@ use egui::{Color32, Rect, Ui, pos2};
 
 use self::status_line::{PanelRoom, status_line};
 use crate::{
-    command::Command, map_pictures::Pictures, overlay, panel_content::PanelContent,
-    settings::Settings,
+    command::Command, map_pictures::Pictures, overlay, settings::Settings,
+    window_content::WindowContent,
 };
 
 /// Width of the panel, points.
@@ -51,7 +51,7 @@ pub(crate) fn width(window_width: f32) -> f32 {
 pub(crate) fn show(
     ui: &mut Ui,
     settings: &mut Settings,
-    content: &PanelContent<'_>,
+    content: &WindowContent<'_>,
     pictures: Pictures,
 ) -> Answer {
     let mut answer = Answer::default();
@@ -90,7 +90,7 @@ fn frame(ui: &Ui) -> egui::Frame {
 fn sections(
     ui: &mut Ui,
     settings: &mut Settings,
-    content: &PanelContent<'_>,
+    content: &WindowContent<'_>,
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal(|ui| {

@@ -12,8 +12,8 @@ use crate::{
     controls::Mode,
     frame_times::FrameTimes,
     notices::Notice,
-    panel_content::GroundPoint,
     settings::{Compare, usual},
+    window_content::GroundPoint,
 };
 
 #[path = "golden_tests.rs"]
@@ -48,9 +48,9 @@ impl Told {
         }
     }
 
-    fn content(&self) -> PanelContent<'_> {
+    fn content(&self) -> WindowContent<'_> {
         let orientation = Orientation { heading_deg: 123.0, pitch_deg: 55.0 };
-        PanelContent {
+        WindowContent {
             adapter: "llvmpipe (LLVM 15.0.6, 256 bits) (vulkan)",
             attribution: &self.attribution,
             crs: WorkingCrs { crs: "EPSG:32632", metres_per_unit: [1.0, 1.0] },
@@ -82,7 +82,7 @@ impl Told {
 fn lay_out(
     size: [f32; 2],
     settings: &mut Settings,
-    content: &PanelContent<'_>,
+    content: &WindowContent<'_>,
     passes: &[&[Event]],
 ) -> (Vec<(String, Rect, Rect)>, Answer) {
     let ctx = egui::Context::default();
@@ -114,7 +114,7 @@ fn gather(shape: &Shape, clip: Rect, texts: &mut Vec<(String, Rect, Rect)>) {
     match shape {
         Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather(shape, clip, texts)),
         Shape::Text(text) if !text.galley.text().trim().is_empty() => {
-            // The letters themselves: a line that begins in the midst of another has its room from the left edge on.
+            // The letters themselves: a line that begins inside another one has its room from the left edge on.
             let place = text.galley.mesh_bounds.translate(text.pos.to_vec2());
             texts.push((text.galley.text().to_owned(), place, clip));
         }
@@ -258,7 +258,7 @@ fn a_notice_of_several_lines_keeps_its_columns() {
 #[test]
 fn a_tilted_scale_says_where_it_holds() {
     let told = Told::new();
-    let has = |content: &PanelContent<'_>, words: &str| {
+    let has = |content: &WindowContent<'_>, words: &str| {
         let (texts, _) = lay_out([1000.0, 700.0], &mut usual(), content, &[&[]]);
         texts.iter().any(|(text, ..)| text == words)
     };

@@ -1,12 +1,12 @@
 use egui::{Color32, Grid, Pos2, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::{formatting, frame_times::FrameTimes, panel_content::PanelContent};
+use crate::{formatting, frame_times::FrameTimes, window_content::WindowContent};
 
 /// The upper end of the graph, unless a frame took longer.
 const GRAPH_MS: f64 = 33.3;
 
 /// The section that shows what a frame costs.
-pub(crate) fn show(ui: &mut Ui, content: &PanelContent<'_>) {
+pub(crate) fn show(ui: &mut Ui, content: &WindowContent<'_>) {
     let times = content.frame_times;
     let ms = |value: Option<f64>| value.map_or("–".to_owned(), |ms| format!("{ms:.1}"));
     ui.label(format!(
@@ -45,7 +45,7 @@ pub(crate) fn show(ui: &mut Ui, content: &PanelContent<'_>) {
     ui.add(egui::Label::new(egui::RichText::new(words).small()).wrap());
 }
 
-fn passes(ui: &mut Ui, content: &PanelContent<'_>) {
+fn passes(ui: &mut Ui, content: &WindowContent<'_>) {
     Grid::new("passes").num_columns(5).min_col_width(34.0).spacing(vec2(8.0, 2.0)).show(ui, |ui| {
         for heading in ["GPU ms", "terrain", "roads", "composite", "sum"] {
             ui.small(heading);

@@ -3,11 +3,11 @@ use egui::Ui;
 use crate::{
     command::{Command, Shot},
     controls::Mode,
-    panel_content::PanelContent,
+    window_content::WindowContent,
 };
 
 /// The section with buttons that move the camera.
-pub(crate) fn camera(ui: &mut Ui, content: &PanelContent<'_>, commands: &mut Vec<Command>) {
+pub(crate) fn camera(ui: &mut Ui, content: &WindowContent<'_>, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let fly = if content.mode == Mode::Fly { "Back to map (F)" } else { "Fly (F)" };
         for (words, command) in [
@@ -23,7 +23,7 @@ pub(crate) fn camera(ui: &mut Ui, content: &PanelContent<'_>, commands: &mut Vec
 }
 
 /// The section that saves pictures and records flights.
-pub(crate) fn show(ui: &mut Ui, content: &PanelContent<'_>, commands: &mut Vec<Command>) {
+pub(crate) fn show(ui: &mut Ui, content: &WindowContent<'_>, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         for (words, shot) in [("Map (P)", Shot::Map), ("Window (Shift P)", Shot::Window)] {
             if ui.button(words).on_hover_text("Saves a picture").clicked() {

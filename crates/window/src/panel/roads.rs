@@ -4,8 +4,8 @@ use egui::{Color32, ComboBox, Grid, Ui, vec2};
 
 use super::slide::slide;
 use crate::{
-    panel_content::PanelContent,
     settings::{Compare, Settings, range},
+    window_content::WindowContent,
 };
 
 /// The section for the method, the comparison of both methods, and the options of roads.
@@ -74,7 +74,7 @@ fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, all: &[(T
 }
 
 /// The section for the classes that are shown, and their widths.
-pub(crate) fn classes(ui: &mut Ui, settings: &mut Settings, content: &PanelContent<'_>) {
+pub(crate) fn classes(ui: &mut Ui, settings: &mut Settings, content: &WindowContent<'_>) {
     Grid::new("classes").num_columns(3).min_col_width(0.0).show(ui, |ui| {
         for (class, factor) in FunctionalRoadClass::all().zip(&mut settings.width_factors) {
             let color = content.road_colors.get(usize::from(class.number()));

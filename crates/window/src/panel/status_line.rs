@@ -1,6 +1,6 @@
 use egui::{Color32, Ui};
 
-use crate::{controls::Mode, formatting, panel_content::PanelContent};
+use crate::{controls::Mode, formatting, window_content::WindowContent};
 
 /// A narrower window leaves the milliseconds out of the status line, points.
 const PASSES_WIDTH: f32 = 600.0;
@@ -15,7 +15,7 @@ pub(crate) enum PanelRoom {
 }
 
 /// The line at the lower edge of the window: positions, and what is going on.
-pub(crate) fn status_line(ui: &mut Ui, content: &PanelContent<'_>, panel: PanelRoom) {
+pub(crate) fn status_line(ui: &mut Ui, content: &WindowContent<'_>, panel: PanelRoom) {
     // A small window leaves out the times of the passes, to have more room for the map. The panel shows them too.
     let has_room = ui.available_width() >= PASSES_WIDTH;
     ui.horizontal_wrapped(|ui| {

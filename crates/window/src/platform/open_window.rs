@@ -37,7 +37,7 @@ pub(crate) struct OpenWindow {
     window: Arc<Window>,
     is_stopped: Box<dyn Fn() -> bool>,
     is_hidden: bool,
-    /// When everything on the graphics card was made anew last.
+    /// When everything on the graphics card was made again last.
     rebuilt_s: Option<f64>,
     /// When a frame is due without any event.
     due_s: Option<f64>,
@@ -147,7 +147,7 @@ impl OpenWindow {
         }
     }
 
-    /// Draws a frame, and first makes everything on the graphics card anew if the device was lost.
+    /// Draws a frame, and first makes everything on the graphics card again if the device was lost.
     pub(crate) fn redraw(&mut self, now_s: f64) -> Result<(), WindowError> {
         if self.is_hidden || self.screen.size_px().contains(&0) {
             return Ok(());
@@ -200,7 +200,7 @@ impl OpenWindow {
         Ok(())
     }
 
-    /// Makes everything on the graphics card anew, unless that was done shortly before.
+    /// Makes everything on the graphics card again, unless that was done shortly before.
     fn rebuild(&mut self, now_s: f64) -> Result<(), WindowError> {
         if is_soon_after(self.rebuilt_s, now_s) {
             return Err(WindowError::DeviceLost);

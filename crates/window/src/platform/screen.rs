@@ -96,7 +96,7 @@ impl Screen {
         Ok(())
     }
 
-    /// Gets a texture to paint into. If the surface is outdated or lost, it is configured or made anew, a few times at most.
+    /// Gets a texture to paint into. If the surface is outdated or lost, it is configured or made again, a few times at most.
     pub(crate) fn acquire(
         &mut self,
         canvas: &Canvas,
@@ -108,7 +108,7 @@ impl Screen {
                 self.configure(gpu)?;
             }
             if !self.is_configured {
-                // A side is 0 or the device is lost; then everything is made anew before the next frame.
+                // A side is 0 or the device is lost; then everything is made again before the next frame.
                 return Ok(Acquired::Later);
             }
             match self.surface.get_current_texture() {

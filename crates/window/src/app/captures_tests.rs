@@ -1,0 +1,32 @@
+use super::*;
+use crate::{
+    canvas::{
+        Scene,
+        tests::{canvas, scene_of_size},
+    },
+    save_files::tests::NoFiles,
+    settings::Compare,
+};
+
+#[test]
+fn a_lost_device_does_not_hide_why_other_pictures_were_not_taken() {
+    let Some(mut canvas) = canvas() else { return };
+    let scene = scene_of_size(Compare::Off, [64, 48]);
+    canvas.draw(&scene).unwrap();
+    let mut captures = Captures::new(Shots::new(Box::new(NoFiles)));
+    canvas.gpu().device().destroy();
+    // Its pixels cannot come.
+    let snapshot = canvas.snap_map(0.5).unwrap();
+    // Without a picture of the map there is nothing to take.
+    canvas.draw(&Scene { roads: Vec::new(), ..scene }).unwrap();
+    captures.want(Shot::Map);
+    captures.developing.push_back((Shot::Map, snapshot));
+
+    let screen = ScreenDescriptor { size_in_pixels: [64, 48], pixels_per_point: 1.0 };
+    let manifest = corniche_testing::package::manifest();
+    let mut lost = Vec::new();
+    let taken = captures.take(&mut canvas, &[], &screen, 0.5, &manifest, &mut lost);
+    assert!(taken.is_err());
+    assert!(matches!(lost[..], [NotSaved::Untaken]), "{lost:?}");
+    assert!(matches!(captures.lose_device(), Some(NotSaved::DeviceLost)));
+}

@@ -1,0 +1,104 @@
+use std::{
+    num::NonZeroUsize,
+    sync::Arc,
+    time::{Duration, Instant},
+};
+
+use corniche_geom::TileId;
+use corniche_styles::Style;
+use corniche_viewer::{
+    CameraRequest, RoadMethod, RoadOptions,
+    lod::Drawn,
+    stream::StreamBudget,
+    tiles::{MapPackage, PackageSource, TileGeometry, TileSource as _},
+};
+
+use super::*;
+use crate::{
+    Inertia, NamedStyle,
+    canvas::tests::canvas,
+    platform::LoaderThreads,
+    save_files::tests::NoFiles,
+    tile_loader::tests::{PolledLoader, late_package, polled},
+};
+
+const SIZE_PX: [u32; 2] = [640, 480];
+
+fn request() -> WindowRequest {
+    WindowRequest {
+        name: "small".to_owned(),
+        size_px: SIZE_PX,
+        camera: CameraRequest::FrameAll,
+        roads: RoadOptions::of(RoadMethod::ShadowVolumes),
+        styles: vec![NamedStyle { name: "atlas".to_owned(), style: Style::road_atlas() }],
+        reload: None,
+        screen_space_error_px: 0.01,
+        exaggeration: 1.0,
+        samples_per_side: Some(1),
+        budget: StreamBudget {
+            tiles_in_flight: 8,
+            upload_bytes_per_frame: 1 << 20,
+            gpu_bytes: 1 << 24,
+        },
+        inertia: Inertia::Off,
+        folder: PathBuf::new(),
+        trace: None,
+        is_stopped: Box::new(|| false),
+    }
+}
+
+/// Frames until nothing more is due; returns what is drawn then.
+fn drawn_at_rest(
+    canvas: &mut Canvas,
+    package: Arc<dyn MapPackage>,
+    root: &TileGeometry,
+    loader: Box<dyn TileLoader>,
+) -> Vec<Drawn> {
+    let request = request();
+    check(&request, package.as_ref()).unwrap();
+    let shown = ShownPackage::of(&request, package, root).unwrap();
+    let platform = AppPlatform { loader, files: Box::new(NoFiles) };
+    let mut app = App::new(request, shown, None, canvas, platform, SIZE_PX, 1.0).unwrap();
+    let ui = egui::Context::default();
+    crate::panel::set_up(&ui);
+    let size = SIZE_PX.map(|side| side as f32);
+    let begun = Instant::now();
+    loop {
+        let input = FrameInput {
+            now_s: begun.elapsed().as_secs_f64(),
+            size_px: SIZE_PX,
+            pixels_per_point: 1.0,
+            ui: egui::RawInput {
+                screen_rect: Some(Rect::from_min_size(egui::Pos2::ZERO, size.into())),
+                ..egui::RawInput::default()
+            },
+        };
+        let frame = app.frame(canvas, &ui, input).unwrap();
+        canvas.free_textures(&frame.unused_textures);
+        let (missing, loading) = (app.tiles.missing(), app.tiles.loading());
+        if frame.redraw != Redraw::Now && missing == 0 && loading == 0 {
+            return app.tiles.drawn().to_vec();
+        }
+        assert!(begun.elapsed() < Duration::from_mins(1), "{missing} missing");
+    }
+}
+
+#[test]
+fn a_window_on_tiles_that_nothing_waits_for_draws_what_one_on_a_file_draws() {
+    let Some(mut first) = canvas() else { return };
+    let late = late_package();
+    let root = polled(late.load(TileId::ROOT)).unwrap();
+    let loader = Box::new(PolledLoader::new(&late));
+    let found = drawn_at_rest(&mut first, late, &root, loader);
+    assert!(found.len() > 1, "{found:?}");
+
+    let Some(mut second) = canvas() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("small.pmtiles");
+    std::fs::write(&path, corniche_testing::package::written()).unwrap();
+    let on_disk = Arc::new(PackageSource::open(&path).unwrap());
+    let root = on_disk.load(TileId::ROOT).unwrap();
+    let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(|| ());
+    let threads = LoaderThreads::new(&on_disk, NonZeroUsize::MIN, 8, &wake).unwrap();
+    assert_eq!(found, drawn_at_rest(&mut second, on_disk, &root, Box::new(threads)));
+}
