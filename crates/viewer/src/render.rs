@@ -201,7 +201,7 @@ fn camera(
     let point_scale = package.manifest().point_scale;
     let vertical_scale = request.exaggeration * point_scale;
     let place = request.camera.place(package.manifest())?;
-    // The tiles that lead there are not those of the view: another store counts and keeps them.
+    // In a store of its own: the report counts only the tiles that were read for the view.
     let at_place_m = match place {
         Some(at) => TileStore::new(package).ground_height_m(at)?,
         None => None,

@@ -21,6 +21,9 @@ fn a_lost_device_does_not_hide_why_other_pictures_were_not_taken() {
     canvas.draw(&Scene { roads: Vec::new(), ..scene }).unwrap();
     captures.want(Shot::Map);
     captures.developing.push_back((Shot::Map, snapshot));
+    // The device tells of its loss once it has been waited for.
+    let _ = canvas.gpu().finish();
+    assert!(canvas.gpu().is_lost());
 
     let screen = ScreenDescriptor { size_in_pixels: [64, 48], pixels_per_point: 1.0 };
     let manifest = corniche_testing::package::manifest();
