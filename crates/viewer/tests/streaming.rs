@@ -5,10 +5,10 @@ mod support;
 
 use corniche_geom::TileId;
 use corniche_viewer::{
-    RoadMethod, RoadOptions,
+    FrameView, RoadMethod, RoadOptions, Wireframe,
     camera::{Camera, Orientation},
     for_tests,
-    gpu::{DrawTile, FrameView, Renderer, Targets, TileBuffers, Wireframe},
+    gpu::{DrawTile, Renderer, Targets, TileBuffers},
     lod::Quality,
     style::Style,
     tiles::TileStore,

@@ -12,9 +12,9 @@ mod compare;
 
 use compare::{check, is_blessing, mismatch};
 use corniche_viewer::{
-    RoadMethod, RoadOptions,
+    FrameView, RoadMethod, RoadOptions, Wireframe,
     camera::{Camera, Orientation},
-    gpu::{FrameView, Gpu, Picture, Renderer, Targets, Wireframe},
+    gpu::{Gpu, Picture, Renderer, Targets},
     style::Style,
 };
 use image::RgbaImage;

@@ -16,10 +16,10 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::Terrain;
 use corniche_tin::{Tin, TinVertex};
 use corniche_viewer::{
-    RoadMethod, RoadOptions,
+    FrameView, RoadMethod, RoadOptions, Wireframe,
     camera::Camera,
     for_tests::{GroundLine, Owner},
-    gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers, Wireframe},
+    gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
     style::{RoadStyle, Style, WidthScaling},
     tiles::{TileGeometry, TileLines},
 };
