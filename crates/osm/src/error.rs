@@ -45,9 +45,7 @@ pub enum ReadOsmError {
          memory; if it is right, write it without packing: osmium cat IN.osm.pbf -o OUT.osm.pbf -f pbf,pbf_compression=none"
     )]
     TooMuch { path: PathBuf, len_bytes: u64 },
-    #[error(
-        "positions were handed out to be placed on the lattice, {expected} of them, and {got} came back"
-    )]
+    #[error("{expected} positions were given to be placed on the lattice, but {got} came back")]
     Place { expected: usize, got: usize },
     #[error("reading OSM extract {path:?} was stopped")]
     Stopped { path: PathBuf },
