@@ -154,7 +154,7 @@ pub enum DemError {
     )]
     Cell { cell: Cell },
     #[error(
-        "the samples of {path:?} make a cell of {cell} in {crs}, and a side has 0.001 to 1000000 m; give --crs dem, which keeps the file's own grid, or --cell"
+        "the samples of {path:?} make a cell of {cell} in {crs}, but a side must have 0.001 to 1000000 m; give --crs dem, which keeps the file's own grid, or --cell"
     )]
     CellOfFile { path: PathBuf, cell: Cell, crs: String },
     #[error(

@@ -53,13 +53,13 @@ impl Bounds {
         [f64::midpoint(self.min_x, self.max_x), f64::midpoint(self.min_y, self.max_y)]
     }
 
-    /// West to east.
+    /// Length from west to east.
     #[must_use]
     pub fn width(&self) -> f64 {
         self.max_x - self.min_x
     }
 
-    /// South to north.
+    /// Length from south to north.
     #[must_use]
     pub fn height(&self) -> f64 {
         self.max_y - self.min_y

@@ -30,7 +30,7 @@ impl Cell {
         Self { east_m: (self.east_m / step_m).round().max(1.0) * step_m, ..self }
     }
 
-    /// The shorter side: where one length stands for the cell, it is this one.
+    /// The shorter side. It is used wherever one length represents the cell.
     #[must_use]
     pub fn shorter_m(self) -> f64 {
         self.east_m.min(self.north_m)
@@ -68,7 +68,7 @@ impl Cell {
 }
 
 impl From<f64> for Cell {
-    /// A square.
+    /// A square cell.
     fn from(side_m: f64) -> Self {
         Self { east_m: side_m, north_m: side_m }
     }

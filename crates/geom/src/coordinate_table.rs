@@ -6,7 +6,7 @@ use crate::{Bounds, ProjectError, Projection, wgs84};
 ///
 /// A regular grid of `size × size` samples over `bounds`, interpolated by Lagrange's cubic through the
 /// nearest four samples on each axis: its error falls with the fourth power of the spacing, so that some
-/// dozen samples a side suffice for a country. Backwards by Newton's method on that interpolation.
+/// dozen samples a side suffice for a country. The inverse is computed by Newton's method on that interpolation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "TableRecord", into = "TableRecord")]
 pub struct CoordinateTable {

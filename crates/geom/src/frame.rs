@@ -4,10 +4,10 @@ use crate::node::{NodeIndex, NodeWindow};
 use crate::tile_size::{MAX_LEVEL, TILE_CELLS, TILE_NODES};
 use crate::{Bounds, Cell, LatticeBounds, LatticePoint, TileId};
 
-/// Node indices stay below this, so that they and their differences fit what is stored of them.
+/// Node indices stay below this, so that they and their differences fit the types in which they are stored.
 const MAX_INDEX: i64 = 1 << 32;
-/// Lattice coordinates stay below this, some 500 million km: an f64 then still tells an eighth of a step, which the
-/// positions of crossings need, and products of two differences fit 128 bits many times over.
+/// Lattice coordinates stay below this, some 500 million km: an f64 is then still exact to an eighth of a step, which the
+/// positions of crossings need, and products of two differences are far below the limit of 128 bits.
 pub const MAX_LATTICE_STEPS: i64 = 1 << 50;
 
 /// Why numbers do not make a [`Frame`].
@@ -269,7 +269,7 @@ impl Frame {
         ]
     }
 
-    /// Where a position lies, in lattice steps: the inverse of [`Frame::position_of_fraction_m`].
+    /// A position in lattice steps: the inverse of [`Frame::position_of_fraction_m`].
     #[must_use]
     pub fn fraction_of_position(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [east, north] = self.steps.map(|steps| steps as f64);

@@ -16,7 +16,7 @@ impl HeightGrid {
     pub fn new(columns: usize, rows: usize, mut heights_m: Vec<f32>) -> Self {
         assert_eq!(heights_m.len(), columns * rows, "a grid of {columns} × {rows}");
         for height_m in &mut heights_m {
-            // One NaN for all gaps, and one zero: equal grids have equal bits.
+            // All gaps are the same NaN, and all zeros are the same zero, so that equal grids have equal bits.
             *height_m = if height_m.is_finite() { *height_m + 0.0 } else { f32::NAN };
         }
         Self { columns, rows, heights_m }
@@ -84,7 +84,7 @@ impl HeightGrid {
             && self.has_height(column + 1, row + 1)
     }
 
-    /// All heights row by row from the north, NaN in gaps: for bulk work and for storage.
+    /// All heights row by row from the north, NaN in gaps; for loops over all nodes and for storage.
     #[must_use]
     pub fn raw(&self) -> &[f32] {
         &self.heights_m
@@ -96,7 +96,7 @@ impl HeightGrid {
         self.heights_m.iter().filter(|height_m| !height_m.is_nan()).count()
     }
 
-    /// Lowest and highest height, `None` when all is gap.
+    /// Lowest and highest height; `None` when no node has a height.
     #[must_use]
     pub fn range_m(&self) -> Option<[f32; 2]> {
         let mut heights = self.heights_m.iter().copied().filter(|height_m| !height_m.is_nan());

@@ -63,7 +63,7 @@ impl IndexLists {
 }
 
 impl Default for IndexLists {
-    /// No place, no list.
+    /// Lists for no places.
     fn default() -> Self {
         Self { starts: vec![0], indices: Vec::new() }
     }

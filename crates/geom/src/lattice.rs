@@ -18,7 +18,7 @@ impl LatticePoint {
         Self { u, v }
     }
 
-    /// Steps east and north of node (0, 0), for what is not whole; exact below 2^53.
+    /// Steps east and north of node (0, 0), as numbers that need not be whole; exact below 2^53.
     #[must_use]
     pub fn in_steps(self) -> [f64; 2] {
         [self.u as f64, self.v as f64]

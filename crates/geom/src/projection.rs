@@ -8,7 +8,7 @@ pub struct ProjectError {
 
 /// Longitude and latitude (WGS84, degrees, that order) ⇄ the working CRS (x east, y north, metres).
 ///
-/// The one door through which degrees enter. Positions outside the projection's range come out as NaN.
+/// Degrees enter the geometry only here. Positions outside the projection's range come out as NaN.
 pub trait Projection {
     /// Replaces each `[lon_deg, lat_deg]` by `[x_m, y_m]`.
     ///

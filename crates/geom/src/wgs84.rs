@@ -6,8 +6,8 @@ pub const SEMI_MAJOR_M: f64 = 6_378_137.0;
 pub const ECCENTRICITY_2: f64 = FLATTENING * (2.0 - FLATTENING);
 const FLATTENING: f64 = 1.0 / 298.257_223_563;
 
-/// Radius of the parallel and radius of curvature of the meridian at a latitude, metres: what a radian of longitude and
-/// one of latitude are long there.
+/// Radius of the parallel and radius of curvature of the meridian at a latitude, metres: the lengths there of a radian of
+/// longitude and of a radian of latitude.
 #[must_use]
 pub fn radii_m(latitude_deg: f64) -> [f64; 2] {
     radii_of_m(SEMI_MAJOR_M, ECCENTRICITY_2, latitude_deg)

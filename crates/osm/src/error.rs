@@ -36,18 +36,17 @@ pub enum ReadOsmError {
     )]
     History { path: PathBuf, reason: String },
     #[error(
-        "OSM extract {path:?} asks its readers for {feature:?}, which is not supported; \
+        "OSM extract {path:?} requires the feature {feature:?}, which is not supported; \
          rewrite it with a program that knows it: osmium cat IN.osm.pbf -o OUT.osm.pbf"
     )]
     Feature { path: PathBuf, feature: String },
     #[error(
-        "OSM extract {path:?} unpacks to more roads than a file of {len_bytes} bytes can mean: it may be made to fill the \
-         memory; if it is right, write it without packing: osmium cat IN.osm.pbf -o OUT.osm.pbf -f pbf,pbf_compression=none"
+        "OSM extract {path:?} unpacks to more roads than a file of {len_bytes} bytes can plausibly hold: it may be made to \
+         fill the memory; if the file is correct, rewrite it without compression: \
+         osmium cat IN.osm.pbf -o OUT.osm.pbf -f pbf,pbf_compression=none"
     )]
     TooMuch { path: PathBuf, len_bytes: u64 },
-    #[error(
-        "positions were handed out to be placed on the lattice, {expected} of them, and {got} came back"
-    )]
+    #[error("{expected} positions were given to be placed on the lattice, but {got} came back")]
     Place { expected: usize, got: usize },
     #[error("reading OSM extract {path:?} was stopped")]
     Stopped { path: PathBuf },

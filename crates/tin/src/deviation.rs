@@ -152,6 +152,31 @@ pub fn measure(
     placement: WindowPlacement,
     mut each: impl FnMut(usize, usize, Option<f64>),
 ) -> Deviation {
+    let distances_m = distances_m(buckets, window, placement);
+    let mut deviation = Deviation::default();
+    for (index, (&distance_m, height_m)) in distances_m.iter().zip(window.raw()).enumerate() {
+        if height_m.is_nan() {
+            continue;
+        }
+        let distance_m = (!distance_m.is_nan()).then_some(distance_m);
+        match distance_m {
+            Some(distance_m) => {
+                deviation.covered_nodes += 1;
+                deviation.max_abs_m = deviation.max_abs_m.max(distance_m);
+            }
+            None => deviation.uncovered_nodes += 1,
+        }
+        each(index % window.columns(), index / window.columns(), distance_m);
+    }
+    deviation
+}
+
+/// The distance of each node of a window from the TIN; NaN where no triangle lies there.
+fn distances_m(
+    buckets: &TriangleBuckets,
+    window: &HeightGrid,
+    placement: WindowPlacement,
+) -> Vec<f64> {
     let WindowPlacement { column: west, row: north, stride } = placement;
     let (columns, rows) = (window.columns() as i64, window.rows() as i64);
     let reach = buckets.size.map(|count| (count * BUCKET_NODES) as i64);
@@ -160,10 +185,10 @@ pub fn measure(
         "a tile of {reach:?} nodes at a stride of {stride}"
     );
     if columns == 0 || rows == 0 {
-        return Deviation::default();
+        return Vec::new();
     }
     let heights_m = window.raw();
-    // NaN where no triangle was met. Where several meet, the largest distance: their planes differ by rounding.
+    // Where several triangles meet, the largest distance is taken: their planes differ by rounding.
     let mut distances_m = vec![f64::NAN; heights_m.len()];
     let low = [west.div_euclid(stride), north.div_euclid(stride)];
     let high = [(west + columns - 1).div_euclid(stride), (north + rows - 1).div_euclid(stride)];
@@ -184,7 +209,7 @@ pub fn measure(
                 + south * (row - from_row) as f64
                 + east * (first - from_column) as f64;
             let nodes = heights_m[range.clone()].iter().zip(&mut distances_m[range]);
-            // Division does not change the order, so the largest error of a finest tile is exact except for this one
+            // Division does not change the order, so the largest distance of a finest tile is exact except for this one
             // rounding.
             for (step, (&height_m, distance_m)) in nodes.enumerate() {
                 let scaled = f64::from(height_m) * scale - (in_row + east * step as f64);
@@ -192,22 +217,7 @@ pub fn measure(
             }
         });
     });
-    let mut deviation = Deviation::default();
-    for (index, (&distance_m, height_m)) in distances_m.iter().zip(heights_m).enumerate() {
-        if height_m.is_nan() {
-            continue;
-        }
-        let distance_m = (!distance_m.is_nan()).then_some(distance_m);
-        match distance_m {
-            Some(distance_m) => {
-                deviation.covered_nodes += 1;
-                deviation.max_abs_m = deviation.max_abs_m.max(distance_m);
-            }
-            None => deviation.uncovered_nodes += 1,
-        }
-        each(index % window.columns(), index / window.columns(), distance_m);
-    }
-    deviation
+    distances_m
 }
 
 #[cfg(test)]

@@ -106,7 +106,7 @@ proptest! {
         prop_assert!(camera.frustum().may_see(&subject));
     }
 
-    /// What lies behind the eye is culled.
+    /// A box behind the eye is culled.
     #[test]
     fn boxes_behind_the_eye_are_culled(pitch_deg in 0.0..85.0_f64, behind_m in 10.0..1e5_f64) {
         let camera = camera(0.0, pitch_deg);

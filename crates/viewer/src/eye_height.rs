@@ -7,10 +7,10 @@
 //! above the ground, but at least a metre. So at the least height the near plane is a centimetre away from the eye: it
 //! never reaches the ground.
 
-/// The eye stays at least this far above the ground; from nearer it would see through the skirts of tiles.
+/// The eye stays at least this far above the ground. If it were nearer, it would see through the skirts of tiles.
 const CLEARANCE_M: f64 = 2.0;
-/// The least cosine of the pitch that counts: the focus is at most 1 / 0.2 = 5 times the height away, also in a view that
-/// is almost level.
+/// A smaller cosine of the pitch is replaced by this one. So the focus is at most 1 / 0.2 = 5 times as far away as the eye is
+/// high, even if the view is almost level.
 const LEAST_COS: f64 = 0.2;
 /// Least distance of the focus.
 const MIN_FOCUS_M: f64 = 1.0;
@@ -28,7 +28,8 @@ pub fn focus_m(above_ground_m: f64, pitch_deg: f64) -> f64 {
     (above_ground_m / pitch_deg.to_radians().cos().max(LEAST_COS)).max(MIN_FOCUS_M)
 }
 
-/// How much the eye is too low, for a message: rounded up to a tenth of a metre, because "0.0 m too low" would say nothing.
+/// How much the eye is too low, for a message. It is rounded up to a tenth of a metre, so that a message never reads
+/// "0.0 m too low".
 #[cfg(not(target_arch = "wasm32"))]
 pub(crate) fn rounded_up_m(lacking_m: f64) -> f64 {
     (lacking_m * 10.0).ceil() / 10.0

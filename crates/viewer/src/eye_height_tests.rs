@@ -24,7 +24,7 @@ fn the_near_plane_does_not_reach_the_ground() {
             let orientation = Orientation { heading_deg: 0.0, pitch_deg };
             let focus_m = focus_m(above_m, pitch_deg);
             let camera = Camera::look_at(DVec3::ZERO, focus_m, orientation, [100, 100]);
-            // The near plane's corners are less than twice its depth away.
+            // The corners of the near plane are less than twice as far away as the plane.
             assert!(2.0 * camera.near_m() < above_m / 10.0, "{pitch_deg} {above_m}");
         }
     }

@@ -10,8 +10,7 @@ const CRS: WorkingCrs<'_> = WorkingCrs { crs: NAME, metres_per_unit: [1.0, 1.0] 
 const PLAN: Bounds = Bounds { min_x: 5000.0, min_y: 20_000.0, max_x: 15_000.0, max_y: 45_000.0 };
 
 fn table() -> CoordinateTable {
-    // A tolerance that a table of straight lines meets at any size.
-    // Degrees are thousandths of the metres.
+    // One degree is 1000 m along both axes. Coordinates are linear, so a table of any size keeps this tolerance.
     let flat = FlatProjection::new([1e3; 2]);
     CoordinateTable::sample(&flat, PLAN, 1.0).expect("straight lines are in reach of a table")
 }
@@ -55,7 +54,7 @@ fn metres_of_another_crs_are_refused_and_degrees_are_not() {
     assert!(Flight::parse(&anywhere, CRS, &table()).is_ok());
 }
 
-/// A way in degrees times other factors is the same way over the ground.
+/// Two packages whose metres differ by a factor have the same flight in degrees, which leads over the same ground.
 #[test]
 fn metres_of_other_factors_are_carried_to_those_of_the_package() {
     let degrees = |metres_per_unit| WorkingCrs { crs: "EPSG:4326", metres_per_unit };
@@ -73,7 +72,7 @@ fn metres_of_other_factors_are_carried_to_those_of_the_package() {
         assert!((x - lon * 75_000.0).abs() < 1e-6 && (y - lat * 111_000.0).abs() < 1e-6);
         assert_eq!(height_m, 900.0);
     }
-    // Without them x_m and y_m are the package's.
+    // Without degrees, x_m and y_m are in the metres of the package that is shown.
     let bare: String = text
         .lines()
         .filter(|line| !line.starts_with("metres"))
@@ -141,7 +140,8 @@ fn an_even_way_is_flown_evenly() {
     }
 }
 
-/// Steps of 1 and 2 s with 1 and 2 m/s: (5 + 4) / (5 / 1 + 4 / 2) by the formula of Fritsch & Butland.
+/// The step before the keyframe takes 1 s at 1 m/s, the step after it 2 s at 2 m/s. The formula of Fritsch & Butland gives
+/// (5 + 4) / (5 / 1 + 4 / 2).
 #[test]
 fn the_speed_at_a_keyframe_is_the_weighted_harmonic_mean_of_both_sides() {
     let keyframes = [[0.0, 0.0], [1.0, 1.0], [3.0, 5.0]]
@@ -151,7 +151,7 @@ fn the_speed_at_a_keyframe_is_the_weighted_harmonic_mean_of_both_sides() {
     assert!(((after - before) / 2e-6 - 9.0 / 7.0).abs() < 1e-5);
 }
 
-/// Two waves of ground, steep enough that an eye at the wrong height would be in it.
+/// Ground that is the sum of two waves, so steep that an eye at the wrong height would be under it.
 fn ground_m([x, y]: [f64; 2]) -> f64 {
     1500.0 + 900.0 * (x / 1700.0).sin() + 500.0 * (y / 2300.0).cos()
 }
@@ -169,7 +169,8 @@ fn the_pass_taken_when_none_is_given_goes_over_the_data_and_clears_the_ground() 
             assert!(
                 (plan.min_x..=plan.max_x).contains(&x) && (plan.min_y..=plan.max_y).contains(&y)
             );
-            // Five hundredths of the shorter side, less what ground may rise between two looks of 40 m.
+            // The flight is 5 % of the shorter side above the ground. The ground is sampled every 40 m and may be higher
+            // between samples.
             assert!(height_m - ground_m([x, y]) > 480.0, "{k}");
             heights = [heights[0].min(height_m), heights[1].max(height_m)];
         }
@@ -180,7 +181,7 @@ fn the_pass_taken_when_none_is_given_goes_over_the_data_and_clears_the_ground() 
 
 #[test]
 fn a_pass_over_unknown_ground_keeps_above_all_it_knows_or_is_none() {
-    // Only the south is known.
+    // Heights are known only in the south.
     let mut south = |[x, y]: [f64; 2]| Ok::<_, ()>((y < 25_000.0).then(|| ground_m([x, y])));
     let flight = Flight::over(PLAN, &mut south).unwrap().unwrap();
     let end_m = flight.at(1e9).eye_m[2];
@@ -215,7 +216,8 @@ proptest! {
             }
         }
         for three in keyframes.windows(3) {
-            // Where two pieces meet, the speeds before and after agree, but for what acceleration does within h.
+            // Where two pieces meet, the speeds before and after are equal, except for the change by acceleration
+            // within h.
             let least_s = (three[1].time_s - three[0].time_s).min(three[2].time_s - three[1].time_s);
             let h = 1e-4 * least_s;
             let [before, at, after] = [-h, 0.0, h].map(|dt| flight.at(three[1].time_s + dt).eye_m);

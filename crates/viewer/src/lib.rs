@@ -51,6 +51,7 @@ pub mod for_tests {
 }
 
 pub use attribution::draw_attribution;
+pub use frame_view::{FrameView, Wireframe};
 pub use options::{CapTest, Caps, ClassSet, Outline, RoadMethod, RoadOptions, WidthGrowth};
 pub use range::OutOfRange;
 #[cfg(not(target_arch = "wasm32"))]

@@ -95,7 +95,7 @@ fn any_camera() -> impl Strategy<Value = Camera> {
     )
 }
 
-/// The root and whatever descends through loaded parents only, as a loader would leave it.
+/// The root and any tiles whose parents are all loaded, as a loader would leave them.
 fn any_loaded() -> impl Strategy<Value = BTreeSet<TileId>> {
     prop::collection::vec(any::<u8>(), 1365).prop_map(|dice| {
         let mut loaded = BTreeSet::from([TileId::ROOT]);
@@ -144,7 +144,7 @@ proptest! {
         }
     }
 
-    /// Every drawn tile is fine enough or has nothing loaded to replace it; every refined one was too coarse.
+    /// Every drawn tile is fine enough, or the tiles that would replace it are not loaded. Every refined tile was too coarse.
     #[test]
     fn errors_decide(camera in any_camera()) {
         let tree = Square { loaded: None };
@@ -164,7 +164,7 @@ proptest! {
         }
     }
 
-    /// Loading what is asked for ends, and ends with the selection of a fully loaded tree.
+    /// If every requested tile is loaded, requests end, and the selection is that of a fully loaded tree.
     #[test]
     fn loading_what_is_asked_for_converges(camera in any_camera()) {
         let mut loaded = BTreeSet::new();
@@ -192,7 +192,7 @@ proptest! {
                     inner.max_x.min(outer.max_x) - inner.min_x.max(outer.min_x),
                     inner.max_y.min(outer.max_y) - inner.min_y.max(outer.min_y),
                 ];
-                // They share a piece of border, not just a corner.
+                // They share a part of their borders, not only a corner.
                 if shared[0] >= 0.0 && shared[1] >= 0.0 && shared[0] + shared[1] > 0.0 {
                     let error = |id: TileId| 10.0 * f64::from(1_u32 << (MAX_LEVEL - id.z()));
                     let gap_m = error(a.id) + error(b.id);

@@ -1,6 +1,6 @@
 use super::*;
 
-/// Growth of widths at 4 km with a threshold of 1 km, an exponent of a half and a constant of 3.
+/// How much widths grow at a distance of 4 km, with a threshold of 1 km, an exponent of 0.5 and a constant of 3.
 #[test]
 fn widths_grow_as_the_option_says() {
     let style = Style {

@@ -7,7 +7,7 @@ use crate::{
     tiles::{GroundMesh, GroundVertex, RoadSegments, RoadVolumes, TileGeometry},
 };
 
-/// A tile of 100 m around (`x`, `y`): a grid of 11 × 11 nodes at `height_m` of their place.
+/// A tile of 100 m around (`x`, `y`): a grid of 11 × 11 nodes, whose heights `height_m` gives.
 fn tile(x: f64, y: f64, height_m: impl Fn(f64, f64) -> f64) -> TileGeometry {
     let (mut vertices, mut indices) = (Vec::new(), Vec::new());
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -42,7 +42,7 @@ fn tile(x: f64, y: f64, height_m: impl Fn(f64, f64) -> f64) -> TileGeometry {
 
 #[test]
 fn a_plane_is_met_where_its_equation_says() {
-    // z = 480 + 0.3 x, at twice its height: 2 z = 960 + 0.6 x.
+    // The ground is z = 480 + 0.3 x. It is drawn with its heights doubled: z = 960 + 0.6 x.
     let tiles = [tile(1000.0, 2000.0, |x, _| 480.0 + 0.3 * (x - 1000.0))];
     let check = |eye: DVec3, ray: DVec3, expected_depth: Option<f64>| {
         let hit = ground_at(tiles.iter(), 2.0, eye, ray);
@@ -54,12 +54,12 @@ fn a_plane_is_met_where_its_equation_says() {
     };
     check(DVec3::new(1010.0, 2003.0, 1200.0), DVec3::NEG_Z, Some(1200.0 - 966.0));
     check(DVec3::new(1010.0, 2003.0, 1200.0), DVec3::new(0.0, 0.0, -10.0), Some(23.4));
-    // From below.
+    // The eye looks up from below the ground.
     check(DVec3::new(1010.0, 2003.0, 900.0), DVec3::Z, Some(66.0));
-    // Away from it, and beside it.
+    // The eye looks away from the ground, and then down beside it.
     check(DVec3::new(1010.0, 2003.0, 1200.0), DVec3::Z, None);
     check(DVec3::new(1060.0, 2003.0, 1200.0), DVec3::NEG_Z, None);
-    // Obliquely: 1000 − t = 960 + 0.6 (t − 40) at x = 960 + t.
+    // The eye looks down obliquely: 1000 − t = 960 + 0.6 (t − 40) at x = 960 + t.
     check(DVec3::new(960.0, 2003.0, 1000.0), DVec3::new(1.0, 0.0, -1.0), Some(40.0));
 }
 
@@ -69,24 +69,24 @@ fn the_nearer_of_two_tiles_is_met_whatever_their_order() {
     let far = tile(100.0, 0.0, |_, _| 500.0);
     let eye = DVec3::new(-10.0, 0.0, 530.0);
     let ray = DVec3::new(10.0, 0.0, -8.0);
-    // After two steps of the ray on the near one; it would reach the far one's height after six.
+    // The ray meets the near tile after two steps. It would reach the height of the far tile after six.
     for tiles in [[&near, &far], [&far, &near]] {
         let hit = ground_at(tiles.into_iter(), 1.0, eye, ray).unwrap();
         assert!((hit.depth - 2.0).abs() < 1e-6);
     }
-    // Over the near one's edge the far one is met: 30 m down at 0.25 m each metre.
+    // A flatter ray passes over the edge of the near tile and meets the far one: 30 m down at 0.25 m for each metre.
     let hit = ground_at([&near, &far].into_iter(), 1.0, eye, DVec3::new(10.0, 0.0, -2.5)).unwrap();
     assert!((hit.at_in_world.x - 110.0).abs() < 1e-6 && (hit.at_in_world.z - 500.0).abs() < 1e-6);
 }
 
 proptest! {
-    /// No ray down on a tile slips between its triangles, along edges and through corners least of all.
+    /// A ray down on a tile always meets a triangle, even exactly on an edge or a corner of triangles.
     #[test]
     fn no_ray_slips_through(x in -50.0..50.0_f64, y in -50.0..50.0_f64, on_grid in 0..3_u8, slant in -0.5..0.5_f64) {
         let tiles = [tile(0.0, 0.0, |x, y| 500.0 + (x / 7.0).sin() * 9.0 + (y / 5.0).cos() * 6.0)];
         let snap = |value: f64, wanted: bool| if wanted { (value / 10.0).round() * 10.0 } else { value };
         let target = DVec3::new(snap(x, on_grid > 0) * 0.999_999, snap(y, on_grid > 1) * 0.999_999, 500.0);
-        // Through the target at the height of 500 m, from 100 m above it; on its way it stays over the tile.
+        // The ray begins 100 m above the target, which is 500 m high, and stays over the tile on its way.
         let ray = DVec3::new(slant * -target.x.signum(), slant * -target.y.signum(), -1.0) * 0.2;
         let eye = target - ray * 500.0;
         prop_assume!((target + ray * 80.0).truncate().abs().max_element() < 50.0);
@@ -94,7 +94,7 @@ proptest! {
         prop_assert!(ground_at(tiles.iter(), 1.0, eye, ray).is_some());
     }
 
-    /// Whatever the ray and however rough the ground, the hit is the nearest among all triangles.
+    /// For any ray and any ground, the hit is the nearest among all triangles.
     #[test]
     fn the_grid_of_triangles_finds_what_a_look_at_all_triangles_finds(
         eye in prop::array::uniform3(-90.0..90.0_f64),
@@ -106,7 +106,7 @@ proptest! {
         let flat = |value: f64, of: u8| if level == of { 0.0 } else { value };
         let target = DVec3::new(target[0], target[1], target[2] / 4.0);
         let eye = DVec3::from(eye);
-        // Along the columns, or level, or neither.
+        // Some rays run along the columns, some are level, some are neither.
         let way = DVec3::new(flat(target.x - eye.x, 1), target.y - eye.y, flat(target.z - eye.z, 2));
         let reference = DVec3::new(0.0, 0.0, 500.0 * vertical_scale);
         let found = ground_at(std::iter::once(&tile), vertical_scale, eye + reference, way);
@@ -115,7 +115,7 @@ proptest! {
             ray.hit(tile.ground.corners(triangle).map(|[x, y, z]| DVec3::new(x, y, z * vertical_scale)))
         });
         let expected = all.reduce(f64::min);
-        // The eye's height is rounded differently: it went through the world.
+        // The two depths are rounded differently, because one was computed in world space.
         let is_same = match (found, expected) {
             (Some(found), Some(expected)) => (found.depth - expected).abs() < 1e-9,
             (None, None) => true,

@@ -6,10 +6,8 @@ use crate::{
     attribution::draw_attribution,
     camera::Camera,
     eye_height::{clearance_m, rounded_up_m},
-    gpu::{
-        DrawTile, FrameView, Gpu, GpuError, ReadBackError, Renderer, Targets, TileBuffers,
-        Wireframe,
-    },
+    frame_view::{FrameView, Wireframe},
+    gpu::{DrawTile, Gpu, GpuError, ReadBackError, Renderer, Targets, TileBuffers},
     lod::{Drawn, Quality},
     options::RoadOptions,
     range::{self, OutOfRange},

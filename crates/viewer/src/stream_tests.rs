@@ -8,7 +8,7 @@ use crate::camera::{Orientation, WorldBox};
 const MAX_LEVEL: u8 = 5;
 const HEIGHT_RANGE_M: [f64; 2] = [0.0, 900.0];
 const QUALITY: Quality = Quality { screen_space_error_px: 2.0, vertical_scale: 1.0 };
-/// More than anything here takes.
+/// More than any of these tests needs.
 const PLENTY: StreamBudget =
     StreamBudget { tiles_in_flight: 64, upload_bytes_per_frame: 1 << 40, gpu_bytes: 1 << 40 };
 
@@ -29,7 +29,7 @@ fn facts(id: TileId) -> TileFacts {
     let error_m = 10.0 * f64::from(1_u32 << (MAX_LEVEL - id.z()));
     TileFacts {
         ground: Some(GroundSummary { geometric_error_m: error_m, height_range_m: HEIGHT_RANGE_M }),
-        // Anything that differs from tile to tile.
+        // Any number that differs from tile to tile.
         gpu_bytes: 500
             + u64::from(id.z()) * 37
             + u64::from(id.x()) * 13 % 100
@@ -47,7 +47,7 @@ impl TileCatalog for World {
     }
 }
 
-/// Everything loaded.
+/// A catalog whose tiles are all loaded.
 struct Complete<'a>(&'a World);
 
 impl TileTree for Complete<'_> {
@@ -69,12 +69,12 @@ fn camera(x: f64, y: f64, distance_m: f64, heading_deg: f64, pitch_deg: f64) -> 
     Camera::look_at(target, distance_m, Orientation { heading_deg, pitch_deg }, [800, 600])
 }
 
-/// Does what the streamer says, keeps its own books, and checks every promise in every frame.
+/// Loads and drops tiles as the streamer says, records them independently, and checks every promise in every frame.
 struct Driver {
     world: World,
     streamer: Streamer,
     budget: StreamBudget,
-    /// Frames from a request to the arrival.
+    /// Frames from a request to the arrival of the tile.
     delay: usize,
     under_way: Vec<(usize, TileId)>,
     arrived: BTreeSet<TileId>,
@@ -152,7 +152,7 @@ impl Driver {
         }
     }
 
-    /// Stands still until nothing changes any more; how many frames that took.
+    /// Keeps the camera where it is until nothing changes any more. Returns how many frames that took.
     fn settle(&mut self, camera: &Camera) -> usize {
         for frames in 0..500 {
             let waiting = self.arrived.len();
@@ -166,7 +166,7 @@ impl Driver {
     }
 }
 
-/// Three views without a tile below level 1 in common, all close to the ground.
+/// Three views close to the ground, which share no tile finer than level 1.
 fn stations() -> [Camera; 3] {
     [[9e3, 9e3], [55e3, 9e3], [9e3, 55e3]].map(|[x, y]| camera(x, y, 2500.0, 0.0, 30.0))
 }
@@ -223,7 +223,8 @@ fn what_was_used_least_recently_goes_first() {
         }
         driver.streamer.resident_bytes()
     };
-    // Room for two of the three, and for tiles of the first one that are also beside those of the others.
+    // There is room for the tiles of two of the three views, and for tiles of the first one that are also beside those of
+    // the others.
     let gpu_bytes = taken_bytes(&[a, b]).max(taken_bytes(&[b, c])) + 3000;
     assert!(gpu_bytes < taken_bytes(&[a, b, c]));
     let mut driver = Driver::new(StreamBudget { gpu_bytes, ..PLENTY }, 0);

@@ -8,9 +8,9 @@ use std::time::Instant;
 use corniche_geom::TileId;
 use corniche_styles::Style;
 use corniche_viewer::{
-    RoadMethod, RoadOptions,
+    FrameView, RoadMethod, RoadOptions, Wireframe,
     camera::{Camera, Orientation},
-    gpu::{DrawTile, FrameView, PassTimer, Renderer, Targets, TileBuffers, Wireframe, tile_bytes},
+    gpu::{DrawTile, PassTimer, Renderer, Targets, TileBuffers, tile_bytes},
     tiles::TileSource,
 };
 use glam::DVec3;

@@ -8,9 +8,9 @@ mod support;
 use corniche_geom::TileId;
 use corniche_styles::{RoadStyle, Style};
 use corniche_viewer::{
-    Outline, RoadMethod, RoadOptions,
+    FrameView, Outline, RoadMethod, RoadOptions, Wireframe,
     camera::{Camera, Orientation},
-    gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers, Wireframe},
+    gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
     tiles::{TileGeometry, TileLines},
 };
 use glam::DVec2;

@@ -8,12 +8,12 @@ use std::time::{Duration, Instant};
 use corniche_geom::TileId;
 use corniche_styles::Style;
 use corniche_viewer::{
-    RoadMethod, RoadOptions,
+    FrameView, RoadMethod, RoadOptions, Wireframe,
     camera::{Camera, Orientation},
     for_tests::PlanLine,
     gpu::{
-        DIFFERENCE_COLORS, DrawTile, FrameView, Gpu, GpuError, PassTimer, Picture, Renderer,
-        Targets, TileBuffers, Wireframe,
+        DIFFERENCE_COLORS, DrawTile, Gpu, GpuError, PassTimer, Picture, Renderer, Targets,
+        TileBuffers,
     },
     tiles::{TileGeometry, TileLines},
 };

@@ -6,10 +6,10 @@ mod support;
 use corniche_geom::TileId;
 use corniche_styles::Style;
 use corniche_viewer::{
-    RoadMethod, RoadOptions,
+    FrameView, RoadMethod, RoadOptions, Wireframe,
     camera::{Camera, Orientation},
     for_tests,
-    gpu::{DrawTile, FrameView, Renderer, Targets, TileBuffers, Wireframe},
+    gpu::{DrawTile, Renderer, Targets, TileBuffers},
     lod::Quality,
     tiles::TileStore,
 };

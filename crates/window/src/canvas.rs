@@ -8,10 +8,10 @@ use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
 use corniche_viewer::{
-    RoadMethod, RoadOptions,
+    FrameView, RoadMethod, RoadOptions,
     gpu::{
-        DrawTile, FrameView, Gpu, GpuError, PassTimer, PassTimes, Picture, ReadBackError, Renderer,
-        Targets, TileBuffers,
+        DrawTile, Gpu, GpuError, PassTimer, PassTimes, Picture, ReadBackError, Renderer, Targets,
+        TileBuffers,
     },
     tiles::TileGeometry,
 };

@@ -2,8 +2,8 @@ use std::time::{Duration, Instant};
 
 use corniche_styles::Style;
 use corniche_viewer::{
+    Wireframe,
     camera::{Camera, Orientation},
-    gpu::Wireframe,
 };
 use egui::{Color32, Rect, pos2};
 use glam::DVec3;

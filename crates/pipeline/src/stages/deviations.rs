@@ -25,9 +25,9 @@ pub(crate) struct TileDeviation {
 /// The deviations of all tiles.
 pub(crate) struct TileDeviations {
     by_tile: BTreeMap<TileId, TileDeviation>,
-    /// Per level, nodes with data under tiles without ground.
+    /// For each level, the number of nodes with data under tiles without ground.
     under_absent: BTreeMap<u8, u64>,
-    /// Per level, root first: nodes that are no filled voids.
+    /// Per level, root first: distances to the nodes that are not filled voids.
     at_nodes: Vec<SampleSums>,
 }
 
@@ -54,7 +54,7 @@ impl TileDeviations {
     }
 }
 
-/// Levels of finest tiles beneath one item of work: up to 64 of them share the meshes of the levels above.
+/// How many levels one item of work spans: up to 64 finest tiles share the meshes of the levels above them.
 const SUBTREE_LEVELS: u8 = 3;
 
 /// What was seen of a tile from one subtree, or from all.
@@ -241,7 +241,8 @@ impl Subtree<'_> {
     }
 }
 
-/// Stored = max(own, all beneath), from the finest level up.
+/// Computes the geometric errors, from the finest level up: the maximum of the tile's own deviation and those of all tiles
+/// beneath it.
 ///
 /// A tile may lack ground where its children have some (an island too small for a cell of its level), so what is
 /// beneath counts for the nearest tile above that exists.

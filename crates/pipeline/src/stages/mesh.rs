@@ -1,4 +1,4 @@
-//! Every tile's TIN, meshed by itself and kept in storage.
+//! Makes every tile's TIN, each by itself, and keeps it in storage.
 
 use std::collections::BTreeMap;
 

@@ -20,10 +20,10 @@ use crate::{
     storage::Kind,
 };
 
-/// Positions interpolated from the manifest are this exact.
+/// How far positions that are interpolated from the manifest may be off.
 const COORDINATE_TOLERANCE_M: f64 = 0.01;
 
-/// Everything that the manifest tells of.
+/// Everything that goes into the manifest.
 pub(crate) struct Outcome<'a> {
     pub(crate) settings: &'a BuildSettings,
     pub(crate) max_error_m: f64,
@@ -32,7 +32,7 @@ pub(crate) struct Outcome<'a> {
     pub(crate) coordinates: &'a CoordinateTable,
     pub(crate) inputs: Vec<InputRecord>,
     pub(crate) samples: SampleCounts,
-    /// Lowest and highest node.
+    /// Heights of the lowest and the highest node.
     pub(crate) range_m: [f32; 2],
     pub(crate) roads: Option<&'a ReadRoads<'a>>,
     pub(crate) tiles: &'a Tiles,
@@ -43,8 +43,8 @@ pub(crate) struct Outcome<'a> {
 
 /// Longitudes and latitudes over the data's rectangle, for readers without PROJ.
 ///
-/// With room around it, but not as far as the root's far corners: they can be a world away. The room ends at the poles;
-/// where a projection ends within the room, there is none.
+/// The table has a margin around the rectangle, but does not reach to the root's far corners, which can be very far away.
+/// The margin ends at the poles; if a projection ends within the margin, there is no margin.
 pub(crate) fn coordinates(dem: &Dem, plan: &GridPlan) -> Result<CoordinateTable, BuildError> {
     let projection = dem.projection(plan)?;
     let data = plan.data_bounds;
@@ -138,7 +138,7 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
         .collect()
 }
 
-/// What came in, what was kept, what was lost and why: per road, then summed.
+/// Counts of roads: read, kept, and lost by reason.
 fn counts(outcome: &Outcome<'_>) -> Counts {
     let samples = outcome.samples;
     match outcome.roads {

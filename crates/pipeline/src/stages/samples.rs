@@ -11,7 +11,7 @@ use crate::{
     BuildError, Observer, Stage, Storage, levels::Levels, sample_deviation::SampleSums, workers,
 };
 
-/// Memory of a surface for each triangle: corners, adjacency, fans, vertices, buckets.
+/// Bytes of memory that a surface takes per triangle: corners, adjacency, fans, vertices, buckets.
 const TRIANGLE_BYTES: u64 = 120;
 
 /// What samples are measured against.
@@ -19,8 +19,8 @@ pub(crate) struct GroundInput<'a> {
     pub(crate) meshes: &'a Meshes,
     pub(crate) levels: &'a Levels,
     pub(crate) storage: &'a dyn Storage,
-    /// Memory in which a worker keeps tiles that it has asked. Blocks of samples are compact and come row by row, so few
-    /// tiles of each level are needed again soon; the one asked last is kept in any case.
+    /// Memory in which a worker keeps the tiles that it has used. Blocks of samples are compact and come row by row, so few
+    /// tiles of each level are needed again soon. The tile used last is always kept.
     pub(crate) bytes: u64,
 }
 
@@ -72,8 +72,8 @@ fn memory_of(surface: &Surface) -> u64 {
     surface.triangles().len() as u64 * TRIANGLE_BYTES
 }
 
-/// The tile of a level to which a position belongs: on a border the one in the east or south; the root's own east and south
-/// border belong to its last tiles. `None` outside the root.
+/// The tile of a level to which a position belongs: on a border, the tile in the east or south; on the root's own east or
+/// south border, the last tile. `None` outside the root.
 fn tile_at(frame: &Frame, level: u8, point: LatticePoint) -> Option<TileId> {
     let last = (1_i64 << level) - 1;
     let [x, y] = frame.tile_column_row(level, point);
@@ -81,18 +81,18 @@ fn tile_at(frame: &Frame, level: u8, point: LatticePoint) -> Option<TileId> {
     inside.then(|| TileId::new(level, x.min(last) as u32, y.min(last) as u32).ok()).flatten()
 }
 
-/// The ground of the tiles looked at last.
+/// The ground of the tiles used last.
 struct Grounds<'a> {
     input: &'a GroundInput<'a>,
-    /// With the time at which each was last asked.
+    /// Each with the time of its last use.
     surfaces: BTreeMap<TileId, (u64, Surface)>,
-    /// Memory of all of them, about.
+    /// The memory that all of them take, estimated.
     bytes: u64,
     clock: u64,
 }
 
 impl Grounds<'_> {
-    /// Takes a sample into the sums of all levels. It lies where the lattice has it, as roads do.
+    /// Adds a sample to the sums of all levels. Its position is rounded to the lattice, as positions of roads are.
     fn look(
         &mut self,
         point: Option<LatticePoint>,

@@ -1,4 +1,4 @@
-//! One tile's payload from its mesh, its deviation and its roads; and the sums over all tiles.
+//! Makes each tile's payload from its mesh, its deviation and its roads, and the sums over all tiles.
 
 use std::collections::BTreeMap;
 
@@ -30,7 +30,7 @@ use crate::{
     workers,
 };
 
-/// What the tiles of a run came to.
+/// All tiles of a run, and their sums.
 pub(crate) struct Tiles {
     /// Payloads in package order.
     pub(crate) payloads: Vec<(TileId, Span)>,
@@ -72,7 +72,7 @@ struct Made {
     fates: Vec<(u32, RoadFate)>,
 }
 
-/// A payload in storage and what it came to.
+/// A payload in storage, and its counts.
 struct Kept {
     span: Span,
     vertices: u64,
@@ -203,7 +203,7 @@ fn make_tile(
 
 /// What the tile owns of its borders, by the ground on both sides of them.
 ///
-/// A neighbour that no one asks (beside the data, or without ground above the finest level) owns nothing.
+/// A neighbour for which no roads are laid (beside the data, or without ground above the finest level) owns nothing.
 fn owned_borders(
     input: &TileInput<'_>,
     id: TileId,
@@ -224,7 +224,8 @@ fn owned_borders(
     }))
 }
 
-/// Whether a tile is one of the data's: they are a rectangle, row by row, so the first and the last are its corners.
+/// Whether a tile is one of the data's tiles. These are a rectangle, listed row by row, so the first and the last are its
+/// corners.
 fn is_among(data_tiles: &[TileId], id: TileId) -> bool {
     let (Some(first), Some(last)) = (data_tiles.first(), data_tiles.last()) else { return false };
     id.z() == first.z()
@@ -232,7 +233,7 @@ fn is_among(data_tiles: &[TileId], id: TileId) -> bool {
         && (first.y()..=last.y()).contains(&id.y())
 }
 
-/// What a finest tile without ground costs the roads on it.
+/// The parts of roads that are lost because a finest tile has no ground.
 fn lost_roads(
     input: &TileInput<'_>,
     id: TileId,

@@ -19,7 +19,7 @@ pub(crate) struct WayFacts {
     attributes: u64,
 }
 
-/// Looks at a tile by itself, and gives what it says of each way.
+/// Checks a tile by itself, and gives what it says about each way.
 pub(crate) fn of_tile(
     payload: &TilePayload,
     least_class: Option<u8>,
@@ -54,7 +54,7 @@ pub(crate) fn of_tile(
         .collect()
 }
 
-/// Every field counts: one that is added has to be named here before this compiles.
+/// A hash of all fields. Every field is named, so that a new one does not compile until it is added here.
 fn hash(attributes: &RoadAttributes) -> u64 {
     let RoadAttributes { form, structure, layer, oneway, name, reference, surface } = attributes;
     let mut hasher = DefaultHasher::new();
@@ -62,14 +62,14 @@ fn hash(attributes: &RoadAttributes) -> u64 {
     hasher.finish()
 }
 
-/// What was said of each way first.
+/// What the first tile with a way says about this way.
 #[derive(Default)]
 pub(crate) struct Ways {
     by_id: BTreeMap<i64, (TileId, WayFacts)>,
 }
 
 impl Ways {
-    /// Compares what a tile says with what tiles before it said.
+    /// Compares what a tile says about its ways with what earlier tiles say.
     pub(crate) fn add(&mut self, id: TileId, facts: Vec<(i64, WayFacts)>, findings: &mut Findings) {
         for (way_id, found) in facts {
             let &mut (first, said) = self.by_id.entry(way_id).or_insert((id, found));

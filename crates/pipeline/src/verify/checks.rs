@@ -1,6 +1,6 @@
-//! Every check that there is: a short stable id, what holds, and what has to be given for it.
+//! All checks: for each its short id, the promise that it checks, and the inputs that it needs.
 
-/// What has to be given beside the package for a check to be made.
+/// The input that a check needs beside the package.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Needs {
     /// The package alone.
@@ -12,7 +12,7 @@ pub enum Needs {
 }
 
 impl Needs {
-    /// As the list of checks writes it.
+    /// The input's name in the list of checks.
     #[must_use]
     pub fn text(self) -> &'static str {
         match self {
@@ -25,7 +25,7 @@ impl Needs {
 
 macro_rules! checks {
     ($($variant:ident $id:literal $needs:ident $promise:literal)*) => {
-        /// A check, by what it looks at. The order is that of reports.
+        /// A check. Reports list checks in this order.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum CheckId {
             $(#[doc = $promise] $variant,)*
@@ -41,13 +41,13 @@ macro_rules! checks {
                 match self { $(Self::$variant => $id),* }
             }
 
-            /// What holds where it is not broken.
+            /// What the check makes sure of.
             #[must_use]
             pub fn promise(self) -> &'static str {
                 match self { $(Self::$variant => $promise),* }
             }
 
-            /// What it needs.
+            /// The input that it needs.
             #[must_use]
             pub fn needs(self) -> Needs {
                 match self { $(Self::$variant => Needs::$needs),* }
@@ -109,7 +109,7 @@ checks! {
 /// One check, how often it was made, and where it failed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Check {
-    /// Which.
+    /// Which check.
     pub id: CheckId,
     /// How many things were looked at.
     pub checked: u64,
@@ -133,8 +133,8 @@ impl Check {
         self.broken == 0
     }
 
-    /// Whether nothing breaks it; `None` where it needs the elevation files or the extract and was not made. That is so
-    /// where another check is broken on which it rests, or where the package has nothing of the kind.
+    /// Whether nothing breaks it. `None` if it needs the elevation files or the extract and was not made: another check on
+    /// which it depends is broken, or the package has nothing of this kind.
     #[must_use]
     pub fn verdict(&self) -> Option<bool> {
         let made = self.id.needs() == Needs::Package || self.checked > 0;
@@ -159,19 +159,19 @@ impl Check {
     }
 }
 
-/// Checks as they are made, each once.
+/// The checks made so far, each of them once in the list.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Findings {
     checks: Vec<Check>,
 }
 
 impl Findings {
-    /// Looks once more.
+    /// Counts one more thing that was looked at.
     pub(crate) fn look(&mut self, id: CheckId, holds: bool, example: impl FnOnce() -> String) {
         self.of(id).look(holds, example);
     }
 
-    /// The check with this id, begun if it was not.
+    /// The check with this id; it is added if the list does not have it.
     pub(crate) fn of(&mut self, id: CheckId) -> &mut Check {
         let at = match self.checks.binary_search_by_key(&id, |check| check.id) {
             Ok(at) => at,
@@ -190,7 +190,7 @@ impl Findings {
         }
     }
 
-    /// All checks that can be made with what is given, in the order of their list.
+    /// All checks that can be made with the given inputs, in the order of [`CheckId::ALL`].
     pub(crate) fn into_checks(mut self, given: &[Needs]) -> Vec<Check> {
         for &id in CheckId::ALL.iter().filter(|id| given.contains(&id.needs())) {
             self.of(id);

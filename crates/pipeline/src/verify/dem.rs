@@ -1,4 +1,4 @@
-//! The elevation files beside the package: inputs, grid, deviations, vertices and normals.
+//! Compares the package with the elevation files: inputs, grid, deviations, vertices and normals.
 
 use corniche_tileset::FilePackage;
 

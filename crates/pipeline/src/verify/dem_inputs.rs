@@ -1,4 +1,4 @@
-//! The elevation files are those of the build, and give its grid.
+//! Checks that the elevation files are those of the build, and that they give its grid.
 
 use corniche_dem::{Dem, GridPlan};
 use corniche_tileset::{InputRecord, Manifest};
@@ -15,8 +15,8 @@ use crate::{
     manifest_texts, settings_record,
 };
 
-/// Opens the DEM as the build did and makes sure that it is the same one. `None`, and a broken check, where it gives
-/// another grid than the package's: then nothing can be compared.
+/// Opens the DEM as the build did and makes sure that it is the same one. If its grid is not that of the package, a check
+/// is broken and the result is `None`, because nothing can be compared.
 pub(crate) fn open(
     settings: &VerifySettings,
     inputs: &Inputs,
@@ -33,7 +33,8 @@ pub(crate) fn open(
     let terrain = settings_record::terrain(&manifest.settings);
     let dem = Dem::open(&settings.dem, &terrain.open)?;
     let given = inputs.hash(observer)?;
-    // By content, not by name: a file may have been moved or renamed since. The order of parts is that of their names.
+    // Files are compared by content, not by name: a file may have been moved or renamed. Parts are sorted by their hash,
+    // because their recorded order is that of their names.
     let mut sizes = Check::new(CheckId::DemInputs);
     for kind in [InputKind::Dem, InputKind::DemPart] {
         let of_kind = |records: &mut dyn Iterator<Item = &InputRecord>| {
@@ -61,7 +62,7 @@ pub(crate) fn open(
     Ok((plan.frame == manifest.frame).then_some((dem, plan)))
 }
 
-/// What the plan says that the build took over into the manifest.
+/// Compares the plan with what the build recorded of it in the manifest.
 fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
     let mut check = Check::new(CheckId::DemPlan);
     let vertical = &manifest.vertical;

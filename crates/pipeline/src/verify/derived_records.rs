@@ -42,7 +42,7 @@ fn levels(manifest: &Manifest, findings: &mut Findings) {
         let bits = |(cell, lengths): ([f64; 2], [f64; 3])| {
             (cell.map(f64::to_bits), lengths.map(f64::to_bits))
         };
-        // The build computes them so: equal to the last bit.
+        // The build computes them in the same way, so they are equal to the last bit.
         findings.look(CheckId::LevelRecords, bits(said) == bits(wanted), || {
             format!("level {level} has cell, tolerances and margin {said:?}, not {wanted:?}")
         });

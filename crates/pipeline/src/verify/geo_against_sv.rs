@@ -1,5 +1,5 @@
-//! The two ways in which a tile holds its roads, beside each other: the GEO lines lie on the SV lines, and wherever
-//! there is ground beneath an SV line, there is a GEO line on it. And the heights of the ground around SV lines.
+//! Compares a tile's GEO lines with its SV lines: the GEO lines lie on the SV lines, and wherever there is ground beneath an
+//! SV line, there is a GEO line on it. Also checks the height ranges of SV segments.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,7 +13,7 @@ use super::{
     triangle_soup::TriangleSoup,
 };
 
-/// How far two lines that are one may lie apart, in lattice steps: each is rounded where it is cut.
+/// How far apart two lines that coincide may lie, in lattice steps: each is rounded where it is cut.
 pub(crate) const SAME_LINE_STEPS: f64 = 2.0;
 /// Shorter pieces are ignored.
 const LEAST_STEPS: f64 = 8.0;
@@ -37,7 +37,7 @@ struct Way {
     sv: Vec<Segment>,
 }
 
-/// A tile with its ground, and where both lie.
+/// A tile with its ground, and the place of both on the lattice.
 pub(crate) struct View<'a> {
     pub(crate) payload: &'a TilePayload,
     pub(crate) ground: &'a TriangleSoup,
@@ -126,7 +126,7 @@ pub(crate) fn source_points(line: &DrapedLine) -> impl Iterator<Item = LatticePo
     line.lead_in.into_iter().chain(own).chain(line.lead_out)
 }
 
-/// Whether a point lies on one of the segments, to so many steps.
+/// Whether a point lies within so many steps of one of the segments.
 pub(crate) fn is_on(point: [f64; 2], segments: &[Segment], steps: f64) -> bool {
     segments.iter().any(|&[a, b]| {
         let (du, dv) = (b[0] - a[0], b[1] - a[1]);
@@ -136,13 +136,14 @@ pub(crate) fn is_on(point: [f64; 2], segments: &[Segment], steps: f64) -> bool {
     })
 }
 
-/// What of a segment lies in the tile, but on none of the lines. What runs along a border may be the neighbour's.
+/// The pieces of a segment that lie in the tile but on none of the lines. A segment along a border has none, because its
+/// line may belong to the neighbour.
 fn bare_pieces(place: TilePlace, segment: Segment, lines: &[Segment]) -> Vec<Segment> {
     let [p, q] = segment;
     let (du, dv) = (q[0] - p[0], q[1] - p[1]);
     let length = du.hypot(dv);
     let [east, south] = place.reach();
-    // Whole numbers.
+    // Both are whole numbers.
     let is_at = |at: f64, border: f64| (at - border).abs() < 0.5;
     let is_on_border = |axis: usize, border: f64| is_at(p[axis], border) && is_at(q[axis], border);
     if [(0, 0.0), (0, east), (1, 0.0), (1, south)].iter().any(|&(axis, at)| is_on_border(axis, at))
@@ -186,10 +187,10 @@ fn bare_pieces(place: TilePlace, segment: Segment, lines: &[Segment]) -> Vec<Seg
     pieces
 }
 
-/// Looks at the height range of every SV segment.
+/// Checks the height range of every SV segment.
 pub(crate) fn verify_ranges(view: &View<'_>, findings: &mut Findings) {
     let id = view.payload.id;
-    // One step more than the margin says: ground on the very rim counts.
+    // One step more than the margin, because ground exactly at the margin counts.
     let margin = view.margin_steps as f64 + 1.0;
     for road in &view.payload.roads_sv {
         let lines = segments(&road.line.points, view.place).zip(&road.line.ground_range_m);

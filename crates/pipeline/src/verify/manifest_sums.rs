@@ -4,8 +4,8 @@ use corniche_tileset::Manifest;
 
 use super::checks::{CheckId, Findings};
 
-/// Lengths measured again along the edges of TINs: every crossing moves a point by less than a millimetre. They agree to
-/// this share.
+/// Lengths that are measured again over the edges of TINs agree to this share: every crossing moves a point by less than
+/// a millimetre.
 pub(crate) const LENGTH_SHARE: f64 = 1e-5;
 
 pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {

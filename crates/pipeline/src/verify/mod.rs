@@ -40,12 +40,12 @@ pub use self::{
     request::{VerifyOsm, VerifySettings},
 };
 
-/// Verifies a package: without other inputs all that the package says of itself; with the elevation files or the
-/// extract also what it says of them. [`CheckId`] lists what is looked at.
+/// Verifies a package. Without other inputs it checks what the package says about itself; with the elevation files or the
+/// extract it also checks what the package says about them. [`CheckId`] lists the checks.
 ///
 /// # Errors
-/// When the package, the DEM or the extract cannot be read at all, or is another; a broken promise is a finding, not
-/// an error.
+/// When the package, the DEM or the extract cannot be read at all, or is not the one of the build. A broken promise is a
+/// finding, not an error.
 pub fn verify(
     settings: &VerifySettings,
     observer: &dyn Observer,

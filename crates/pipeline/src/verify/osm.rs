@@ -52,7 +52,7 @@ fn compare_all(
 ) -> Result<(), VerifyError> {
     let manifest = package.manifest();
     check_inputs(manifest, osm, inputs, findings, observer)?;
-    // Without either, `levels.derived` or `manifest.crs` is broken, and there is nothing to lay roads by.
+    // If one of them is missing, the check `levels.derived` or `manifest.crs` is broken, and roads cannot be laid.
     let (Some(settings), Some([first, last])) =
         (settings_record::roads(&manifest.settings, osm.table.clone()), grid::data_tiles(manifest))
     else {
@@ -97,7 +97,7 @@ fn compare_all(
     Ok(())
 }
 
-/// The extract is the one that was read, and so is the table of classes.
+/// Checks that the extract and the table of classes are those of the build.
 fn check_inputs(
     manifest: &Manifest,
     osm: &VerifyOsm,
@@ -135,7 +135,7 @@ fn check_inputs(
     Ok(())
 }
 
-/// Lays all roads again, and compares each tile; the sums are those of what was laid.
+/// Lays all roads again and compares each tile with the package. The sums are those of the roads laid again.
 fn lay(
     laying: &Laying<'_>,
     roads: &mut ReadRoads<'_>,
@@ -189,7 +189,7 @@ fn lay(
     Ok(sums)
 }
 
-/// Counts and lengths.
+/// Compares the counts and lengths of roads.
 fn check_counts(
     manifest: &Manifest,
     roads: &ReadRoads<'_>,
@@ -218,7 +218,7 @@ fn check_counts(
     same("classes", &said.classes, &wanted.classes);
 }
 
-/// Source and simplified points of each level and class.
+/// Compares the numbers of source points and simplified points of each level and class.
 fn check_growth(manifest: &Manifest, laid: &LaidSums, findings: &mut Findings) {
     let wanted: BTreeMap<(u8, u8), [u64; 2]> = laid
         .classes

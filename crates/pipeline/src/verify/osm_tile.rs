@@ -1,4 +1,4 @@
-//! One tile's roads, clipped and laid again, beside those that the package has.
+//! Clips and lays one tile's roads again, and compares them with those of the package.
 
 use std::collections::BTreeMap;
 
@@ -33,7 +33,7 @@ pub(crate) struct Laying<'a> {
 pub(crate) struct Found {
     pub(crate) findings: Findings,
     pub(crate) fates: Vec<(u32, RoadFate)>,
-    /// Of a tile with ground.
+    /// Sums by class, for a tile with ground.
     pub(crate) classes: BTreeMap<u8, ClassSums>,
 }
 
@@ -94,7 +94,7 @@ fn compare(payload: &TilePayload, laid: &Laid, findings: &mut Findings) {
     each(CheckId::OsmAttributes, id, &said, &wanted, findings);
 }
 
-/// Looks at every thing of two lists, by what it is called.
+/// Compares two lists, item by item, by their keys.
 fn each<K: Ord + Copy + std::fmt::Debug, V: PartialEq>(
     check: CheckId,
     id: TileId,
@@ -116,13 +116,13 @@ fn each<K: Ord + Copy + std::fmt::Debug, V: PartialEq>(
     }
 }
 
-/// The ground of tiles looked at lately, for their neighbours.
+/// The ground of the tiles used last; their neighbours need it.
 #[derive(Default)]
 pub(crate) struct SoupCache {
     kept: BTreeMap<TileId, Option<TriangleSoup>>,
 }
 
-/// Grounds kept at once: a tile, its neighbours, and some of the way along the curve.
+/// How many grounds are kept: enough for a tile, its neighbours, and some tiles before it in the package's order.
 const GROUNDS: usize = 32;
 
 impl SoupCache {
@@ -136,7 +136,7 @@ impl SoupCache {
         });
     }
 
-    /// What a tile owns of its borders, by the cells on both sides that TINs cover: they cover exactly those with ground.
+    /// What a tile owns of its borders, by the cells on both sides that TINs cover: these are exactly the cells with ground.
     fn owned_borders(&mut self, laying: &Laying<'_>, id: TileId, has_roads: bool) -> OwnedBorders {
         if !has_roads {
             return OwnedBorders::ALL;

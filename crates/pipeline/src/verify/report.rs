@@ -15,7 +15,7 @@ pub struct GapFigures {
     pub largest_m: f64,
 }
 
-/// Stored errors beside true ones.
+/// Geometric errors and deviations of one level.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorFigures {
     /// Level.
@@ -24,9 +24,10 @@ pub struct ErrorFigures {
     pub tiles: u64,
     /// Nodes with data that were compared.
     pub nodes: u64,
-    /// Largest true error.
+    /// Largest deviation: distance of a TIN from a node.
     pub largest_true_m: f64,
-    /// Stored error over the largest true one of the tile and its children, over the tiles where that can be measured.
+    /// Geometric error divided by the largest deviation of the tile and its children, for the tiles where that can be
+    /// measured.
     pub tightness: Option<Distribution>,
     /// Nodes with data that the TINs do not cover.
     pub uncovered_nodes: u64,
@@ -37,15 +38,15 @@ pub struct ErrorFigures {
 pub struct VerifyReport {
     /// Tiles looked at.
     pub tiles: u64,
-    /// The promises.
+    /// The checks that were made.
     pub checks: Vec<Check>,
     /// Gaps between GEO roads and TINs, per level.
     pub gaps: Vec<GapFigures>,
     /// Borders between tiles of one level that were compared.
     pub borders: u64,
-    /// With the DEM: stored errors beside true ones, per level.
+    /// With the DEM: geometric errors and deviations, per level.
     pub errors: Vec<ErrorFigures>,
-    /// With the DEM: the finest level at the DEM's own samples.
+    /// With the DEM: how far the finest level is from the DEM's own samples.
     pub samples: Option<SampleErrorRecord>,
 }
 

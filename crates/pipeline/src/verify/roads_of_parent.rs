@@ -1,4 +1,4 @@
-//! A road is on every level that shows its class: each tile beside its parent.
+//! Checks that a road is on every level that shows its class, by comparing each tile with its parent.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ pub(crate) struct Side<'a> {
     pub(crate) ground: &'a TriangleSoup,
 }
 
-/// Looks at the roads of a tile and of its parent.
+/// Compares the roads of a tile with those of its parent.
 ///
 /// Simplification moves no point of the source farther than the level's tolerance from the line, so wherever both
 /// tiles have ground, points of the one lie beside the line of the other, on the level of that line's tolerance.
@@ -34,7 +34,7 @@ pub(crate) fn verify(
     let bounds = frame.tile_lattice_bounds(id);
     let place = TilePlace::of(frame, above);
     let own_place = TilePlace::of(frame, id);
-    // Points on a border are cuts, which the source does not have.
+    // Points on a border were made by cutting; the source does not have them.
     let is_inside = |point: LatticePoint| {
         let LatticeBounds { min, max } = bounds;
         (min.u + 1..max.u).contains(&point.u) && (min.v + 1..max.v).contains(&point.v)

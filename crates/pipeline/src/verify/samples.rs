@@ -1,4 +1,4 @@
-//! P2 at the DEM's own samples: the figures that the package states, found again.
+//! P2 at the DEM's own samples: computes again the figures that the package states.
 
 use std::collections::BTreeMap;
 
@@ -14,16 +14,16 @@ use super::{
 };
 use crate::{Observer, Stage, sample_deviation::SampleSums, workers};
 
-/// Tiles whose ground a worker keeps. Blocks of samples are compact, so these are enough not to load any twice in a row.
+/// How many tiles' ground a worker keeps. Blocks of samples are compact, so a tile is not loaded twice in a row.
 const GROUNDS: usize = 24;
 
-/// Sums for every level, root first, with nothing in them.
+/// Empty sums for every level, root first.
 pub(crate) fn none(manifest: &Manifest) -> Vec<SampleSums> {
     let levels = usize::from(manifest.frame.max_level()) + 1;
     vec![SampleSums::new(manifest.vertical.quantum_m); levels]
 }
 
-/// Takes others in, level by level.
+/// Adds other sums, level by level.
 pub(crate) fn merge(sums: &mut [SampleSums], others: &[SampleSums]) {
     for (sums, others) in sums.iter_mut().zip(others) {
         sums.merge(others);
@@ -81,21 +81,22 @@ pub(crate) fn measure(
     Ok(sums)
 }
 
-/// A tile's ground; one that is not there, or cannot be read, covers nothing.
+/// A tile's ground. A tile that does not exist or cannot be read covers nothing.
 fn load(package: &FilePackage, id: TileId) -> TriangleSoup {
     let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
     let tin = payload.and_then(|payload| payload.terrain).map(|terrain| terrain.tin);
     TriangleSoup::new(&tin.unwrap_or_default(), package.manifest().vertical.quantum_m)
 }
 
-/// The tile of a level that a position belongs to: on a border the one in the east or south, but for the root's own.
+/// The tile of a level to which a position belongs: on a border, the tile in the east or south; on the root's own east or
+/// south border, the last tile.
 fn tile_at(frame: &Frame, level: u8, [x, y]: [f64; 2]) -> Option<TileId> {
     let root = frame.tile_bounds(TileId::ROOT);
     let tiles = f64::from(1_u32 << level);
     let column = (x - root.min_x) / root.width() * tiles;
     let row = (root.max_y - y) / root.height() * tiles;
     let index = |at: f64| {
-        // Borders are exact in nodes, and a sum of rounded numbers here.
+        // In nodes, borders are exact. Here a position is a sum of rounded numbers.
         let at = if (at - at.round()).abs() < 1e-10 * tiles { at.round() } else { at };
         (0.0..=tiles).contains(&at).then(|| at.min(tiles - 1.0) as u32)
     };
@@ -109,7 +110,7 @@ fn cells(frame: &Frame, id: TileId, [x, y]: [f64; 2]) -> [f64; 2] {
     [(x - frame.x_m(corner.i)) / cell.east_m, (frame.y_m(corner.j) - y) / cell.north_m]
 }
 
-/// Puts the figures found beside those stated.
+/// Compares the figures found with those that the package states.
 pub(crate) fn judge(manifest: &Manifest, sums: &[SampleSums]) -> [Check; 2] {
     let mut stated = Check::new(CheckId::Samples);
     let mut bound = Check::new(CheckId::SampleBound);

@@ -14,8 +14,8 @@ pub(crate) enum Edge {
     East,
 }
 
-/// What lies on one border of a tile: vertices by position along it (from west or north), and the stretches
-/// between them that triangles stand on.
+/// What lies on one border of a tile: vertices by their position along it (from west or north), and the edges of
+/// triangles between them.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Border {
     vertices: BTreeMap<u16, i32>,
@@ -54,7 +54,7 @@ fn border(tin: &Tin, edge: Edge) -> Border {
     border
 }
 
-/// Compares the two sides of a border where both have ground: the positions at which they differ.
+/// Compares the two sides of a border where both have ground, and gives the positions at which they differ.
 pub(crate) fn differences(one: &Border, other: &Border) -> Vec<u16> {
     let mut positions = Vec::new();
     let covered = |border: &Border, position: u16| {
@@ -62,8 +62,8 @@ pub(crate) fn differences(one: &Border, other: &Border) -> Vec<u16> {
     };
     for (own, opposite) in [(one, other), (other, one)] {
         for (&position, height_q) in &own.vertices {
-            // A vertex matters where both sides have ground around it; at the end of one side's ground the
-            // other must have it too, or a crack could open from there.
+            // A vertex is compared where both sides have ground around it. Where the ground of one side ends, the other
+            // side must have a vertex, too; otherwise a crack could begin there.
             if covered(opposite, position) && opposite.vertices.get(&position) != Some(height_q) {
                 positions.push(position);
             }
@@ -74,7 +74,7 @@ pub(crate) fn differences(one: &Border, other: &Border) -> Vec<u16> {
     positions
 }
 
-/// The tiles east and south of `id` and which border of each meets which.
+/// The tiles east and south of `id`; for each, the border of `id` and the border of the neighbour that meet.
 pub(crate) fn neighbours(id: TileId) -> impl Iterator<Item = (TileId, Edge, Edge)> {
     [(1, 0, Edge::East, Edge::West), (0, 1, Edge::South, Edge::North)]
         .into_iter()

@@ -23,12 +23,12 @@ impl TilePlace {
         [(point.u - self.corner.u) as f64, (point.v - self.corner.v) as f64]
     }
 
-    /// The same of a position in steps from the lattice's origin.
+    /// The same for a position that is given in steps from the lattice's origin.
     pub(crate) fn local_of(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         [u - self.corner.u as f64, v - self.corner.v as f64]
     }
 
-    /// (column, row) of a local position.
+    /// Column and row, in cells of the tile, of a local position.
     pub(crate) fn cells(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         [u / self.steps[0], -v / self.steps[1]]
     }

@@ -1,4 +1,4 @@
-//! Levels beside each other: a child's TIN and its parent's, at every finest node that both cover.
+//! Compares a child's TIN with its parent's TIN at every finest node that both cover.
 
 use corniche_geom::{Frame, TILE_NODES, TileId};
 
@@ -7,7 +7,7 @@ use super::{
     triangle_soup::{HEIGHT_ROUNDING_M, TriangleSoup},
 };
 
-/// A tile's ground and its stored error.
+/// A tile's ground and its geometric error.
 pub(crate) struct Level<'a> {
     pub(crate) id: TileId,
     pub(crate) ground: &'a TriangleSoup,
@@ -28,7 +28,7 @@ pub(crate) fn verify(frame: &Frame, levels: &[Level<'_>], findings: &mut Finding
         let heights_m = level.ground.raster(first, 1.0 / stride, TILE_NODES);
         match &below {
             None => has_data = heights_m.iter().map(|height_m| !height_m.is_nan()).collect(),
-            // Where a level between the two has no ground they are no child and parent.
+            // If a level between the two has no ground, they are not child and parent.
             Some((child, child_m)) if child.id.z() == id.z() + 1 => {
                 let allowed_m = level.error_m + child.error_m + HEIGHT_ROUNDING_M;
                 let worst_m = heights_m

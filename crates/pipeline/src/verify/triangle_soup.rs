@@ -1,5 +1,4 @@
-//! Geometry of TINs for checking, independent of the code that made them: f64 in cells of the tile, a grid of buckets, no
-//! adjacency.
+//! Geometry of TINs for checks. It shares no code with the build: f64 in cells of the tile, a grid of buckets, no adjacency.
 
 use std::ops::RangeInclusive;
 
@@ -8,7 +7,7 @@ use corniche_tin::Tin;
 /// Buckets along one side of a tile.
 const BUCKETS: usize = 64;
 const TILE_CELLS: f64 = 256.0;
-/// Slack for comparing two ways of computing the same height, metres.
+/// Tolerance for comparing heights that were computed in two ways, metres.
 pub(crate) const HEIGHT_ROUNDING_M: f64 = 1e-6;
 /// How far outside a triangle, in cells, a point may lie and still count as in it: rounding of f64 at the scale
 /// of a tile, far below the millimetre.
@@ -19,7 +18,7 @@ const MET_STEPS: f64 = 8.0;
 /// How far inside a triangle a line must run to meet it, for the same reason.
 const INSIDE_STEPS: f64 = 2.0;
 
-/// A tile's triangles, ready to be asked for heights. Positions are (column, row) in the tile's own cells.
+/// A tile's triangles, prepared for the lookup of heights. Positions are (column, row) in the tile's own cells.
 pub(crate) struct TriangleSoup {
     /// Corners of each triangle: column, row, height in metres.
     triangles: Vec<Corners>,
@@ -37,7 +36,7 @@ impl TriangleSoup {
         Self::placed(tin, quantum_m, [1.0; 2])
     }
 
-    /// The same for questions about lengths, with the lattice steps of a cell.
+    /// The same, with the lattice steps of a cell, which queries about lengths need.
     pub(crate) fn placed(tin: &Tin, quantum_m: f64, steps: [f64; 2]) -> Self {
         let triangles: Vec<Corners> = tin
             .triangles()
@@ -108,7 +107,7 @@ impl TriangleSoup {
                 self.buckets[at[1] * BUCKETS + at[0]]
                     .iter()
                     .map(|&triangle| triangle as usize)
-                    // Only in the first bucket that both have in common.
+                    // A triangle is given only in the first bucket that it shares with the box.
                     .filter(move |&triangle| {
                         let own = self.first[triangle].map(usize::from);
                         [own[0].max(first[0]), own[1].max(first[1])] == at
@@ -136,7 +135,7 @@ impl TriangleSoup {
         let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
         for corners in self.near([low, high]) {
             let heights = corners.map(|corner| corner[2]);
-            // A triangle between the two cannot widen the range.
+            // A triangle whose heights are all within the range cannot widen it.
             if heights.iter().all(|height| (lowest..=highest).contains(height)) {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! The DEM on each level: what TIN vertices stand on, and what their normals follow. And how many nodes have data.
+//! Compares TIN vertices and their normals with the DEM on each level, and counts the nodes with data.
 
 use corniche_dem::{Dem, DemError, GridPlan};
 use corniche_geom::{HeightGrid, TileId};
@@ -20,7 +20,7 @@ use crate::{
 
 /// Steps from the centre of the octahedron's square to its edge (Meyer et al. 2010, section 3).
 const STEPS: f64 = 127.0;
-/// A code is the nearest whole number, to the rounding of two ways of computing the same.
+/// A code is the nearest whole number; this much more is allowed, because it was computed in two ways.
 const NEAREST: f64 = 0.5 + 1e-6;
 
 /// Compares vertices and normals with the rasters of their levels, which are kept in a temporary folder.
@@ -97,7 +97,7 @@ fn look_at(
     let heights = pyramid.tile(id, 1)?;
     let cell_m = manifest.frame.level_cell(id.z()).to_array();
     for (vertex, normal) in tin.vertices().iter().zip(&normals) {
-        // One node of the neighbours lies around the tile's own.
+        // The raster has the tile's own nodes and one row or column of nodes of its neighbours on each side.
         let at = [usize::from(vertex.column) + 1, usize::from(vertex.row) + 1];
         let wanted = heights
             .height(at[0], at[1])
@@ -109,7 +109,7 @@ fn look_at(
             )
         });
         let [east, north] = gradient(&heights, at, cell_m);
-        // Up, at a right angle to the slope, on the octahedron |x| + |y| + |z| = 1.
+        // The upward normal of the slope, on the octahedron |x| + |y| + |z| = 1.
         let size = east.abs() + north.abs() + 1.0;
         let exact = [-east, -north].map(|slope| STEPS * slope / size);
         let holds = (0..2).all(|axis| (f64::from(normal[axis]) - exact[axis]).abs() <= NEAREST);
@@ -123,7 +123,7 @@ fn look_at(
     Ok(findings)
 }
 
-/// Metres up for a metre east and for a metre north, from the nearest nodes with data on either side.
+/// The rise in metres per metre east and per metre north, from the nearest nodes with data on either side.
 fn gradient(heights: &HeightGrid, [column, row]: [usize; 2], cell_m: [f64; 2]) -> [f64; 2] {
     let slope = |low: [usize; 2], high: [usize; 2], cell_m: f64| {
         let at = |[column, row]: [usize; 2]| heights.height(column, row).map(f64::from);

@@ -26,7 +26,7 @@ struct Record {
     surfaces: Vec<u32>,
 }
 
-/// Takes the section's bytes apart into lists that fit each other.
+/// Decodes the section's bytes into lists, and checks that their lengths and indices fit each other.
 fn decode_record(bytes: &[u8]) -> Result<Record, Damage> {
     let mut rest = bytes;
     let record = Record {
@@ -62,8 +62,7 @@ fn decode_record(bytes: &[u8]) -> Result<Record, Damage> {
 pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
     let record = decode_record(bytes)?;
     let count = record.way_id_steps.len();
-    // A long text that every way names is copied for each way: the limit keeps a small section from becoming a large
-    // tile.
+    // A long text that every way uses is copied for each way. With the limit, a small section cannot become a large tile.
     let mut room = MAX_TEXT_BYTES;
     let mut text = |index: u32| {
         let text = record

@@ -1,4 +1,5 @@
-//! Lines by class: the table in front of both road sections, and what stands before the points of each class.
+//! Lines by class: the table at the start of both road sections, and the heads of the lines before the points of each
+//! class.
 
 use corniche_roads::FunctionalRoadClass;
 
@@ -62,7 +63,7 @@ impl Heads {
         lines: usize,
         room: &mut usize,
     ) -> Result<Self, Damage> {
-        // Each line takes at least three bytes, so the table's count cannot make this large for nothing.
+        // Each line takes at least three bytes, so a wrong count in the table cannot make this larger than the section allows.
         if lines > cursor.left() / 3 {
             return Err(Damage::TooShort);
         }
@@ -102,7 +103,7 @@ mod write {
     use super::{FunctionalRoadClass, Head, MAX_LINES, MAX_POINTS};
     use crate::payload::number_codes::{put_varint, zigzag};
 
-    /// Writes the table, and each class's lines by `put`; tells how many bytes each class takes.
+    /// Writes the table, and the lines of each class with `put`; also gives the number of bytes that each class takes.
     pub(crate) fn encode<R>(
         roads: &[R],
         key: impl Fn(&R) -> (FunctionalRoadClass, i64, u32),

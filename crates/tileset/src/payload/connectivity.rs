@@ -1,4 +1,4 @@
-//! Which vertices make triangles, coded as surprises.
+//! Which vertices make triangles. Both sides guess; only wrong guesses cost bits.
 //!
 //! The triangles of a TIN are nearly a Delaunay triangulation of its vertices, so a reader that knows the
 //! vertices can guess them. Writer and reader walk over the triangles in the same order, from edge to edge:
@@ -59,7 +59,7 @@ pub(crate) struct Edges<'w> {
 }
 
 const END: u32 = u32::MAX;
-/// A list has no more edges; looking into the tree counts as so many steps too.
+/// A list has no more edges than this; a lookup in the tree also counts as this many steps.
 const LIST_EDGES: u8 = 16;
 
 impl<'w> Edges<'w> {
@@ -118,7 +118,7 @@ impl<'w> Edges<'w> {
     }
 }
 
-/// Who decides what the walk finds: the triangles, when writing, or the symbols, when reading.
+/// What decides which triangles the walk finds: the triangles themselves when writing, the symbols when reading.
 pub(crate) trait Guide {
     /// A triangle to start from, not found yet.
     fn start(&mut self, found: &Edges<'_>) -> Result<[u32; 3], Damage>;
@@ -182,7 +182,7 @@ pub(crate) fn walk(
         };
         gates.extend(sides);
     }
-    // Vertices of no triangle, if any.
+    // Vertices that belong to no triangle come last.
     let rest = (0..nodes.len() as u32).filter(|&vertex| !seen[vertex as usize]);
     order.extend(rest.map(|vertex| Reached { vertex, gate: [vertex; 3] }));
     Ok((triangles, order))

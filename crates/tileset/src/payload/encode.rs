@@ -10,7 +10,7 @@ use crate::payload::sizes::PayloadSizes;
 use crate::payload::tile_payload::TilePayload;
 use crate::payload::{attributes, envelope, roads_geo, roads_sv, terrain};
 
-/// What positions and heights are relative to; the package's manifest records it.
+/// The grid and the height step that give positions and heights their meaning; the package's manifest records them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PayloadContext {
     /// The package's grid.
@@ -31,8 +31,8 @@ pub struct EncodedTile {
 /// Writes a payload. Empty sections are left out. Equal payloads make equal bytes.
 ///
 /// # Errors
-/// When the payload holds what the encoding cannot express: unsorted roads, lines off the TIN, points far from
-/// the tile, more than a reader accepts.
+/// When the payload holds something that cannot be encoded: unsorted roads, lines off the TIN, points far from the tile,
+/// or more than a reader accepts.
 pub fn encode(payload: &TilePayload, context: &PayloadContext) -> Result<EncodedTile, EncodeError> {
     let tile = payload.id;
     let quantum_m = context.quantum_m;

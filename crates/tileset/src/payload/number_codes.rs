@@ -1,4 +1,4 @@
-//! The small codes that all sections are made of: varints, zigzag, byte planes.
+//! The codes for numbers that all sections use: varints, zigzag, byte planes.
 
 use crate::payload::damage::Damage;
 
@@ -39,7 +39,7 @@ pub(crate) fn put_planes(out: &mut Vec<u8>, values: &[u64]) {
     }
 }
 
-/// Numbers in byte planes, put together one by one: a count that no bytes stand for takes no memory either.
+/// Numbers in byte planes, decoded one by one, so that a large count without bytes takes no memory.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Planes<'a> {
     bytes: &'a [u8],
@@ -128,7 +128,7 @@ impl<'a> Cursor<'a> {
         self.bytes.len()
     }
 
-    /// Asserts that everything was taken.
+    /// Fails if bytes are left.
     pub(crate) fn finish(&self) -> Result<(), Damage> {
         if self.is_empty() {
             Ok(())

@@ -18,7 +18,7 @@ pub(crate) fn decode_points(
     const STILL: Damage = Damage::Invalid { what: "a segment without length" };
     let count = heads.points;
     let (east, north) = (cursor.planes(count)?, cursor.planes(count)?);
-    // At least one byte of every point but a line's first: so many points have bytes to stand for them.
+    // Every point except a line's first takes at least one byte, so the number of points is bounded by the bytes.
     if count > heads.heads.len() && east.is_absent() && north.is_absent() {
         return Err(STILL);
     }

@@ -93,7 +93,7 @@ fn decode_line(
     if left > 0 || route.next_source().is_some() || vertices.len() < 2 {
         return Err(Damage::Invalid { what: "a line that ends before its points do" });
     }
-    // Lines are many and short: what a vector holds in reserve would double what they take.
+    // Lines are many and short, so the spare capacity of their vectors would double the memory.
     vertices.shrink_to_fit();
     Ok(vertices)
 }
@@ -166,7 +166,7 @@ mod write {
         if roads.iter().map(|road| road.line.vertices.len()).sum::<usize>() > MAX_LINE_VERTICES {
             return Err("more than four million vertices of lines");
         }
-        // The same limit as a reader's, which goes the same way.
+        // The same limit as a reader's, because a reader takes the same steps.
         let work = Work::new(MAX_ROUTE_STEPS);
         let mut all_points = 0;
         class_table::encode(

@@ -1,6 +1,6 @@
 //! Where a line goes next over a TIN, guessed from its source points.
 //!
-//! The vertices of a draped line follow from its source points and the TIN, nearly always: go straight from one
+//! The vertices of a draped line nearly always follow from its source points and the TIN: go straight from one
 //! point to the next and list the edges crossed. Writer and reader guess every vertex by the same exact
 //! integer tests, and the section lists only the vertices where the guess is wrong (and where a line ends
 //! early): a crossing costs no bits.
@@ -35,7 +35,7 @@ pub(crate) struct Route<'a> {
 
 #[derive(Clone, Copy)]
 enum Place {
-    /// Nothing yet.
+    /// Before the first vertex.
     Start,
     /// At a source point, in this triangle or on its border.
     Triangle(u32),
@@ -80,7 +80,7 @@ impl<'a> Route<'a> {
 
     fn best_guess(&self) -> Option<DrapedVertex> {
         if let Place::Start = self.place {
-            // A line with a lead-in starts on the boundary; finding where would be a search.
+            // A line with a lead-in starts on the boundary. Where it starts is not guessed, because that would need a search.
             let point = if self.next == 0 { self.next_source()? } else { return None };
             return locate(self.surface, point, self.work)
                 .map(|triangle| DrapedVertex::Source { point, triangle });

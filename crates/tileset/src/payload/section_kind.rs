@@ -16,7 +16,7 @@ macro_rules! kinds {
             /// All kinds.
             pub(crate) const ALL: &'static [Self] = &[$(Self::$kind),+];
 
-            /// What errors call it.
+            /// Its name in errors.
             pub(crate) fn name(self) -> &'static str {
                 match self {
                     $(Self::$kind => $name,)+
@@ -46,7 +46,7 @@ impl Sections {
     pub const ROADS_GEO: Self = Self::of(Kind::RoadsGeo);
     /// Plan lines for shadow volumes.
     pub const ROADS_SV: Self = Self::of(Kind::RoadsSv);
-    /// What is known of each way.
+    /// The attributes of each way.
     pub const ATTRIBUTES: Self = Self::of(Kind::Attributes);
     /// Everything, checksums of sections of unknown kinds included.
     pub const ALL: Self = Self::all();

@@ -6,7 +6,7 @@ use corniche_tin::Tin;
 /// All that a tile holds, decoded. A section that is absent from the bytes is empty or `None` here.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TilePayload {
-    /// Which tile.
+    /// The tile.
     pub id: TileId,
     /// Its ground; `None` for a tile without any.
     pub terrain: Option<Terrain>,
@@ -28,7 +28,7 @@ pub struct Terrain {
     pub normals: Vec<[i8; 2]>,
     /// Error of drawing this tile instead of the full-resolution DEM; never below its children's.
     pub geometric_error_m: f64,
-    /// Lowest and highest full-resolution node beneath.
+    /// Heights of the lowest and the highest full-resolution node beneath the tile.
     pub height_range_m: [f64; 2],
     /// Full-resolution nodes with data beneath that the TIN does not cover (next to voids and data edges).
     pub uncovered_nodes: u64,

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use crate::payload::damage::Damage;
 
-/// Steps done and allowed. Steps are counted, not timed: a tile is refused everywhere or nowhere.
+/// Steps done and allowed. Steps are counted and not timed, so that every machine refuses the same tiles.
 #[derive(Debug)]
 pub(crate) struct Work {
     limit: u64,

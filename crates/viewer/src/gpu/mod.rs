@@ -8,29 +8,42 @@
 //!                                                    road blocks ─────┘
 //! ```
 //!
-//! A label is 0 without a road, else `2 · (9 − class)`, plus 1 on a centre line: larger is more important.
-//! Labels instead of colours let the composite pass find edges between classes, and let tests compare every
-//! pixel's class with a reference.
+//! # Labels
 //!
-//! The paper draws roads without blending, least important class first across all tiles. Here the target keeps the
-//! largest label (blending with *max*, which is exact for the whole steps of an 8-bit format). That is the same picture by
-//! definition, in any order, with one draw per tile instead of one per tile, class and band.
+//! The label of a sample says which class of road it shows: 0 without a road, else `2 · (9 − class)`, plus 1 on a centre
+//! line. More important roads have larger labels. There are labels instead of colours for two reasons. The composite pass
+//! can find the edges between classes, and tests can compare the class of every sample with a reference.
+//!
+//! The paper draws roads without blending, one class after another over all tiles, the least important class first. Here
+//! the target keeps the largest label, by blending with *max*. A label is a whole number of steps of the 8-bit format, so
+//! blending does not round it. The result is the same picture, whatever the order of drawing. It needs one draw per tile
+//! instead of one per tile and class.
+//!
+//! # Samples
 //!
 //! Edges are smoothed by samples: everything is drawn at two to four times the picture's size and averaged at the end.
-//! Coverage computed from the distance to the road's edge would cost a fraction of that. But coverage is a share, and the
-//! shares of several roads in one pixel must be blended in order of class, with the ground beneath. A label says which
-//! single class a sample is. So an f64 reference can check each sample exactly, and outlines, crests, borders of tiles and
-//! the ground itself are smoothed by the same rule. With n samples on a side the passes over pixels cost
-//! n² times as much (a frame of 1600 × 1200 with 2 × 2 samples holds 131 MB of targets); geometry costs the same.
+//! Another way would be coverage, computed from the distance to the road's edge. It would cost much less. But with coverage
+//! each road has only a share of a pixel. Where several roads meet in a pixel, their shares would have to be blended with
+//! each other and with the ground, in order of class. With samples each sample shows exactly one class. So a reference
+//! computed in f64 can check each sample exactly. Outlines, crests, borders of tiles and the ground itself are smoothed by
+//! the same rule.
 //!
-//! The composite reads nine pixels or more to find the edge of a road, and most of a picture has no road. So a small pass
-//! finds, for each block of 16 × 16 samples, the largest label in it and within the outline's reach around it; the
-//! composite draws ground and sky everywhere and, over that, only the blocks with a label with their roads and edges.
+//! With n samples on a side the passes over pixels cost n² times as much, and geometry costs the same. The targets of a
+//! frame of 1600 × 1200 pixels with 2 × 2 samples take 131 MB.
 //!
-//! The owner of a pixel is the tile whose ground it shows. Volumes (SV) paint the ground of their own tile only;
-//! each tile has all roads that are near enough. If tiles were marked in the stencil buffer instead, there could be only
-//! 255 of them, and a pass cannot write the stencil of a texture whose depth it reads. Comparing a number costs one texture
-//! read.
+//! # Blocks
+//!
+//! The composite reads at least nine samples of the labels to find the edge of a road. Most of a picture has no road. So a
+//! small pass first divides the picture into blocks of 16 × 16 samples. For each block it finds the largest label in the
+//! block and around it, as far as an outline may reach. The composite then draws ground and sky everywhere. Over them it
+//! draws the blocks that have a label, with roads and edges.
+//!
+//! # Owners
+//!
+//! The owner of a sample is the tile whose ground it shows. Shadow volumes (SV) paint the ground of their own tile only.
+//! This is enough, because each tile has all roads that are near enough to reach its ground. The stencil buffer could mark
+//! tiles too. But it can tell only 255 tiles apart, and a pass cannot write the stencil of a texture whose depth it reads.
+//! Comparing the number of the owner costs one texture read.
 //!
 //! How a new kind of thing is drawn is described in `drawables/mod.rs`.
 
@@ -40,15 +53,16 @@ mod device;
 mod drawables;
 mod error;
 mod formats;
+mod ground_buffers;
 pub(crate) mod inspection;
 mod passes;
 mod picture;
 mod pipeline;
-mod plane;
 mod read_back;
 mod renderer;
 mod road_instances;
 mod shared_bindings;
+mod target_texture;
 mod targets;
 mod tile_buffers;
 mod timings;
@@ -65,4 +79,3 @@ pub use self::{
     tile_buffers::{DrawTile, TileBuffers, tile_bytes},
     timings::{PassTimer, PassTimes},
 };
-pub use crate::frame_view::{FrameView, Wireframe};

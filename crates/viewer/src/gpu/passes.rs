@@ -1,21 +1,24 @@
 use wgpu::{CommandEncoder, LoadOp, Operations, RenderPipeline, StoreOp, TextureView};
 
-/// Begins a pass into cleared targets: colours 0, depth 0, which is infinitely far.
+/// Begins a pass. With `LoadOp::Clear(())` its targets are cleared first: colours 0, depth 0, which is infinitely far. With
+/// `LoadOp::Load` the pass draws over what earlier passes drew.
 pub(crate) fn begin<'e>(
     encoder: &'e mut CommandEncoder,
     label: &str,
     colors: &[&TextureView],
     depth: Option<&TextureView>,
+    load: LoadOp<()>,
 ) -> wgpu::RenderPass<'e> {
+    let is_cleared = matches!(load, LoadOp::Clear(()));
+    let load_color =
+        if is_cleared { LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { LoadOp::Load };
+    let load_depth = if is_cleared { LoadOp::Clear(0.0) } else { LoadOp::Load };
     let attach = |view| {
         Some(wgpu::RenderPassColorAttachment {
             view,
             depth_slice: None,
             resolve_target: None,
-            ops: Operations {
-                load: LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                store: StoreOp::Store,
-            },
+            ops: Operations { load: load_color, store: StoreOp::Store },
         })
     };
     let attachments: Vec<_> = colors.iter().map(|view| attach(*view)).collect();
@@ -24,7 +27,7 @@ pub(crate) fn begin<'e>(
         color_attachments: &attachments,
         depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
             view,
-            depth_ops: Some(Operations { load: LoadOp::Clear(0.0), store: StoreOp::Store }),
+            depth_ops: Some(Operations { load: load_depth, store: StoreOp::Store }),
             stencil_ops: None,
         }),
         timestamp_writes: None,
@@ -33,7 +36,7 @@ pub(crate) fn begin<'e>(
     })
 }
 
-/// A pass that draws one triangle over all of `into`.
+/// Begins and ends a pass that draws one triangle over all of `into`.
 pub(crate) fn full_screen(
     encoder: &mut CommandEncoder,
     label: &str,
@@ -41,7 +44,7 @@ pub(crate) fn full_screen(
     pipeline: &RenderPipeline,
     groups: &[&wgpu::BindGroup],
 ) {
-    let mut pass = begin(encoder, label, &[into], None);
+    let mut pass = begin(encoder, label, &[into], None, LoadOp::Clear(()));
     pass.set_pipeline(pipeline);
     for (index, group) in (0..).zip(groups) {
         pass.set_bind_group(index, *group, &[]);

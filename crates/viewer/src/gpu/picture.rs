@@ -1,6 +1,8 @@
 use wgpu::TextureView;
 
-use super::{Gpu, GpuError, ReadBack, ReadBackError, formats::COLOR, plane::Plane};
+use super::{
+    Gpu, GpuError, ReadBack, ReadBackError, formats::COLOR, target_texture::TargetTexture,
+};
 
 /// Most samples on each side of a pixel. Sums of so many colours are exact, and the eye sees no difference to more than
 /// sixteen samples a pixel.
@@ -13,8 +15,8 @@ pub const MAX_SAMPLES_PER_SIDE: u32 = 4;
 pub struct Picture {
     size_px: [u32; 2],
     samples_per_side: u32,
-    samples: Option<Plane>,
-    pixels: Plane,
+    samples: Option<TargetTexture>,
+    pixels: TargetTexture,
 }
 
 impl Picture {
@@ -25,8 +27,9 @@ impl Picture {
     /// a pixel.
     pub fn new(gpu: &Gpu, size_px: [u32; 2], samples_per_side: u32) -> Result<Self, GpuError> {
         let sampled_px = sampled_px(gpu, size_px, samples_per_side)?;
-        let samples = (samples_per_side > 1).then(|| Plane::new(gpu, "samples", COLOR, sampled_px));
-        let pixels = Plane::new(gpu, "picture", COLOR, size_px);
+        let samples =
+            (samples_per_side > 1).then(|| TargetTexture::new(gpu, "samples", COLOR, sampled_px));
+        let pixels = TargetTexture::new(gpu, "picture", COLOR, size_px);
         Ok(Self { size_px, samples_per_side, samples, pixels })
     }
 

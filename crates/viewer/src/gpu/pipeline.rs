@@ -1,9 +1,9 @@
 use wgpu::{
-    BindGroupLayout, BlendState, ColorWrites, DepthStencilState, Device, PrimitiveTopology,
-    RenderPipeline, VertexBufferLayout,
+    BindGroupLayout, BlendState, ColorWrites, CompareFunction, DepthStencilState, Device,
+    PrimitiveTopology, RenderPipeline, VertexBufferLayout,
 };
 
-use super::formats::COLOR;
+use super::formats::{COLOR, DEPTH};
 
 /// A shader's name and its text, complete as it is compiled.
 pub(crate) type Shader = (&'static str, &'static str);
@@ -19,6 +19,17 @@ pub(crate) use shader;
 
 /// The names that most shaders give their vertex and fragment stages.
 pub(crate) const ENTRIES: [&str; 2] = ["vertex", "fragment"];
+
+/// A test against the depth buffer of the ground, which the pipeline may also write. Depth is reversed: nearer is greater.
+pub(crate) fn depth_test(compare: CompareFunction, is_written: bool) -> DepthStencilState {
+    DepthStencilState {
+        format: DEPTH,
+        depth_write_enabled: Some(is_written),
+        depth_compare: Some(compare),
+        stencil: wgpu::StencilState::default(),
+        bias: wgpu::DepthBiasState::default(),
+    }
+}
 
 /// In what pipelines differ.
 #[derive(Clone)]

@@ -3,7 +3,8 @@ use std::time::{Duration, Instant};
 use super::*;
 use crate::gpu::GpuError;
 
-/// 37 × 11 texels of ascending bytes, by bands of all rows, some, the last one shorter, and one each.
+/// A texture of 37 × 11 texels with ascending bytes is read in bands of all rows, in bands of several rows (the last band is
+/// shorter), and row by row.
 #[test]
 fn bands_add_up_to_the_picture() {
     let gpu = match Gpu::new() {
@@ -46,9 +47,9 @@ fn bands_add_up_to_the_picture() {
     let [mut asked, waited] = [(); 2].map(|()| ReadBack::begin(&gpu, &texture));
     gpu.device.destroy();
     let begun = Instant::now();
-    // What was under way may still come, or not; but nobody asks for ever.
+    // The bytes that were asked for may still arrive, or the request may fail. It must not stay open.
     while matches!(asked.has_arrived(&gpu), Ok(false)) {
-        assert!(begun.elapsed() < Duration::from_mins(1), "it never comes, and never fails");
+        assert!(begun.elapsed() < Duration::from_mins(1), "the request neither succeeds nor fails");
     }
     if let Ok(arrived) = waited.into_texels(&gpu) {
         assert!(arrived == texels);

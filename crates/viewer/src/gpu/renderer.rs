@@ -1,13 +1,14 @@
-use wgpu::CommandEncoder;
+use wgpu::{CommandEncoder, LoadOp};
 
 use super::{
     Gpu, GpuError,
     drawables::{
-        average::Average, composite::Composite, difference::Difference, geo_roads::GeoRoads,
-        level_connectors::LevelConnectors, sv_roads::SvRoads, terrain::Terrain,
+        average::Average, composite::Composite, difference::Difference, geo_roads,
+        level_connectors::LevelConnectors, sv_roads, terrain::Terrain,
     },
     passes::begin,
     picture::Picture,
+    road_instances::RoadPipeline,
     shared_bindings::{SharedBindings, SharedLayouts},
     targets::Targets,
     tile_buffers::DrawTile,
@@ -19,8 +20,8 @@ use crate::{frame_view::FrameView, options::RoadMethod};
 pub struct Renderer {
     layouts: SharedLayouts,
     terrain: Terrain,
-    geo_roads: GeoRoads,
-    sv_roads: SvRoads,
+    geo_roads: RoadPipeline,
+    sv_roads: RoadPipeline,
     composite: Composite,
     average: Average,
     difference: Difference,
@@ -34,8 +35,8 @@ impl Renderer {
         let layouts = SharedLayouts::new(device);
         Self {
             terrain: Terrain::new(device, &layouts),
-            geo_roads: GeoRoads::new(device, &layouts),
-            sv_roads: SvRoads::new(device, &layouts),
+            geo_roads: geo_roads::pipeline(device, &layouts),
+            sv_roads: sv_roads::pipeline(device, &layouts),
             composite: Composite::new(device, &layouts),
             average: Average::new(device),
             difference: Difference::new(device),
@@ -74,7 +75,7 @@ impl Renderer {
         mark(&mut encoder, 1);
         self.roads_pass(&mut encoder, &shared, tiles, &connectors, view, targets);
         mark(&mut encoder, 2);
-        self.composite.draw(gpu, &mut encoder, &shared, view.roads.method, targets);
+        self.composite_pass(gpu, &mut encoder, &shared, view, targets);
         self.average.draw(gpu, &mut encoder, targets.picture());
         mark(&mut encoder, 3);
         gpu.queue.submit([encoder.finish()]);
@@ -117,13 +118,14 @@ impl Renderer {
         targets: &Targets,
     ) {
         let Targets { ground, depth, owners, .. } = targets;
-        let mut pass = begin(encoder, "terrain", &[&ground.view, &owners.view], Some(&depth.view));
+        let colors = [&ground.view, &owners.view];
+        let mut pass = begin(encoder, "terrain", &colors, Some(&depth.view), LoadOp::Clear(()));
         let grounds: Vec<_> = tiles
             .iter()
             .enumerate()
             .filter_map(|(index, tile)| Some((index, tile.buffers.ground.as_ref()?)))
             .collect();
-        self.terrain.draw(gpu, &mut pass, shared, &grounds, view.wireframe);
+        self.terrain.draw(gpu, &mut pass, shared, &grounds, view);
     }
 
     /// Labels of roads.
@@ -137,7 +139,7 @@ impl Renderer {
         targets: &Targets,
     ) {
         // The pass clears the labels even when it draws no road.
-        let mut pass = begin(encoder, "roads", &[&targets.labels.view], None);
+        let mut pass = begin(encoder, "roads", &[&targets.labels.view], None, LoadOp::Clear(()));
         let roads = tiles
             .iter()
             .enumerate()
@@ -152,5 +154,21 @@ impl Renderer {
             RoadMethod::None => return,
         }
         connectors.draw(&mut pass, shared, &self.sv_roads);
+    }
+
+    /// The samples of the picture. What is drawn over the map, such as labels, is drawn after the composite: in this pass, or
+    /// in one with `LoadOp::Load` if it needs a depth test.
+    fn composite_pass(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut CommandEncoder,
+        shared: &SharedBindings,
+        view: &FrameView<'_>,
+        targets: &Targets,
+    ) {
+        self.composite.find_blocks(gpu, encoder, shared, view.roads.method, targets);
+        let into = [targets.picture().drawn()];
+        let mut pass = begin(encoder, "composite", &into, None, LoadOp::Clear(()));
+        self.composite.draw(gpu, &mut pass, shared, view, targets);
     }
 }

@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use corniche_roads::FunctionalRoadClass;
 use wgpu::{
-    BindGroupLayout, BlendComponent, BlendFactor, BlendOperation, BlendState, Buffer, BufferUsages,
-    ColorWrites, PrimitiveTopology, RenderPass, VertexAttribute, VertexBufferLayout,
+    BlendComponent, BlendFactor, BlendOperation, BlendState, Buffer, BufferUsages, ColorWrites,
+    Device, PrimitiveTopology, RenderPass, RenderPipeline, VertexAttribute, VertexBufferLayout,
     VertexStepMode,
 };
 
@@ -28,33 +28,80 @@ const LARGEST: BlendComponent = BlendComponent {
     operation: BlendOperation::Max,
 };
 
-/// The shared bind groups, all three of which roads need.
-pub(crate) fn road_groups(layouts: &SharedLayouts) -> [Option<&BindGroupLayout>; 3] {
-    [Some(&layouts.frame), Some(&layouts.tile), Some(&layouts.ground)]
+/// In what the pipelines of the two methods differ.
+pub(crate) struct RoadRecipe<'a> {
+    pub(crate) shader: Shader,
+    pub(crate) instance_bytes: u64,
+    pub(crate) attributes: &'a [VertexAttribute],
+    pub(crate) cull: Option<wgpu::Face>,
+    /// Corners of the strip of triangles that is drawn for each instance.
+    pub(crate) corners: Range<u32>,
 }
 
-/// A pipeline that draws a strip of triangles for each instance into the labels.
-pub(crate) fn road_recipe<'a>(
-    shader: Shader,
-    groups: &'a [Option<&'a BindGroupLayout>],
-    instance_bytes: u64,
-    attributes: &'a [VertexAttribute],
-) -> PipelineRecipe<'a> {
-    PipelineRecipe {
-        shader,
-        entries: ENTRIES,
-        groups,
-        buffer: Some(VertexBufferLayout {
-            array_stride: instance_bytes,
-            step_mode: VertexStepMode::Instance,
-            attributes,
-        }),
-        topology: PrimitiveTopology::TriangleStrip,
-        cull: None,
-        depth: None,
-        targets: &[(LABEL, ColorWrites::ALL)],
-        blend: Some(BlendState { color: LARGEST, alpha: LARGEST }),
-        constants: &[],
+/// Draws roads by one method into the labels.
+pub(crate) struct RoadPipeline {
+    pipeline: RenderPipeline,
+    corners: Range<u32>,
+}
+
+impl RoadPipeline {
+    pub(crate) fn new(device: &Device, layouts: &SharedLayouts, recipe: &RoadRecipe<'_>) -> Self {
+        let groups = [Some(&layouts.frame), Some(&layouts.tile), Some(&layouts.ground)];
+        let pipeline = PipelineRecipe {
+            shader: recipe.shader,
+            entries: ENTRIES,
+            groups: &groups,
+            buffer: Some(VertexBufferLayout {
+                array_stride: recipe.instance_bytes,
+                step_mode: VertexStepMode::Instance,
+                attributes: recipe.attributes,
+            }),
+            topology: PrimitiveTopology::TriangleStrip,
+            cull: recipe.cull,
+            depth: None,
+            targets: &[(LABEL, ColorWrites::ALL)],
+            blend: Some(BlendState { color: LARGEST, alpha: LARGEST }),
+            constants: &[],
+        };
+        Self { pipeline: pipeline.build(device), corners: recipe.corners.clone() }
+    }
+
+    /// Draws the roads of some tiles, each given with its index in the list of tiles of the frame. One draw per tile is
+    /// enough, because the target keeps the largest label: neither the order of classes nor that of tiles matters.
+    pub(crate) fn draw<'a>(
+        &self,
+        pass: &mut RenderPass<'_>,
+        shared: &SharedBindings,
+        tiles: impl Iterator<Item = (usize, &'a RoadBuffers)>,
+        classes: ClassSet,
+    ) {
+        self.begin(pass, shared);
+        for (index, roads) in tiles {
+            shared.set_tile(pass, index);
+            roads.draw(pass, classes, &self.corners);
+        }
+    }
+
+    /// Draws instances that are in one buffer for all tiles: which of them belong to the tile with this index.
+    pub(crate) fn draw_instances(
+        &self,
+        pass: &mut RenderPass<'_>,
+        shared: &SharedBindings,
+        instances: &Buffer,
+        by_tile: impl Iterator<Item = (usize, Range<u32>)>,
+    ) {
+        self.begin(pass, shared);
+        pass.set_vertex_buffer(0, instances.slice(..));
+        for (index, range) in by_tile {
+            shared.set_tile(pass, index);
+            pass.draw(self.corners.clone(), range);
+        }
+    }
+
+    fn begin(&self, pass: &mut RenderPass<'_>, shared: &SharedBindings) {
+        pass.set_pipeline(&self.pipeline);
+        shared.set_frame(pass);
+        shared.set_ground(pass);
     }
 }
 
@@ -102,30 +149,12 @@ impl RoadBuffers {
     }
 
     /// Draws the roads of these classes; an instance has these corners.
-    pub(crate) fn draw(&self, pass: &mut RenderPass<'_>, classes: ClassSet, corners: &Range<u32>) {
+    fn draw(&self, pass: &mut RenderPass<'_>, classes: ClassSet, corners: &Range<u32>) {
         let Some(instances) = &self.instances else { return };
         pass.set_vertex_buffer(0, instances.slice(..));
         for range in self.runs(classes) {
             pass.draw(corners.clone(), range);
         }
-    }
-}
-
-/// Draws the roads of some tiles, each given with its index in the list of tiles of the frame. The pipeline is set. One
-/// draw per tile is enough, because the target keeps the largest label: neither the order of classes nor that of tiles
-/// matters.
-pub(crate) fn draw_roads<'a>(
-    pass: &mut RenderPass<'_>,
-    shared: &SharedBindings,
-    tiles: impl Iterator<Item = (usize, &'a RoadBuffers)>,
-    classes: ClassSet,
-    corners: &Range<u32>,
-) {
-    shared.set_frame(pass);
-    shared.set_ground(pass);
-    for (index, roads) in tiles {
-        shared.set_tile(pass, index);
-        roads.draw(pass, classes, corners);
     }
 }
 

@@ -2,7 +2,8 @@ use corniche_geom::TileId;
 
 use super::{
     Gpu,
-    drawables::{geo_roads, sv_roads, terrain::GroundBuffers},
+    drawables::{geo_roads, sv_roads},
+    ground_buffers::GroundBuffers,
     road_instances::RoadBuffers,
     uniforms::TileUniforms,
 };

@@ -1,8 +1,9 @@
-//! Uniform blocks as the shaders declare them: rows of four f32, in the order of `shaders/common.wgsl`.
+//! The uniform blocks that drawables share: rows of four f32, in the order of the shaders' structures.
+//!
+//! The frame's block is shared because all drawables need the camera, and because GEO roads, SV roads and the composite must
+//! compute the same road widths. What one drawable alone needs, such as the colours of the ground, is in the drawable's file.
 
 use glam::{DVec3, DVec4};
-
-use corniche_styles::{Style, WidthScaling};
 
 use crate::{
     frame_view::FrameView,
@@ -27,9 +28,7 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
         RoadMethod::None => 0,
         _ => view.roads.outline_px(style),
     };
-    let light = direction_to_light(style);
     let scaling = view.roads.width_scaling(style);
-    let [lowest_m, highest_m] = view.height_range_m;
 
     let mut rows: Vec<[f32; 4]> = camera
         .clip_from_relative()
@@ -41,13 +40,10 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
             (axes.x_axis * tan.x).extend(width_px),
             (axes.y_axis * tan.y).extend(height_px),
             (-axes.z_axis).extend(camera.near_m()),
-            light.extend(f64::from(style.hillshade)),
         ]
         .map(row),
     );
-    rows.push(color(style.haze, (f64::from(style.haze_reach) * camera.focus_m()) as f32));
-    rows.push(color(style.sky, camera.pixel_at_unit_depth_m() as f32));
-    rows.push(color(style.void, view.vertical_scale() as f32));
+    rows.push([camera.pixel_at_unit_depth_m() as f32, view.vertical_scale() as f32, 0.0, 0.0]);
     rows.push([
         scaling.threshold_m * view.point_scale as f32,
         scaling.exponent,
@@ -60,33 +56,12 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
         view.point_scale as f32,
         0.0,
     ]);
-    rows.push([lowest_m as f32, (1.0 / (highest_m - lowest_m).max(1.0)) as f32, 0.0, 0.0]);
-    rows.extend(style.tint.iter().map(|(share, rgb)| color(*rgb, *share)));
-    rows.extend(road_rows(style, &scaling, samples));
-    rows
-}
-
-/// Unit vector towards the light in world space.
-fn direction_to_light(style: &Style) -> DVec3 {
-    let (azimuth, altitude) =
-        (style.light_azimuth_deg.to_radians(), style.light_altitude_deg.to_radians());
-    DVec3::new(azimuth.sin() * altitude.cos(), azimuth.cos() * altitude.cos(), altitude.sin())
-}
-
-/// Widths of all classes, then their colours: fills, outlines, centre lines.
-fn road_rows(style: &Style, scaling: &WidthScaling, samples: f32) -> Vec<[f32; 4]> {
-    let widths = style.roads.iter().map(|road| {
+    rows.extend(style.roads.iter().map(|road| {
         let center_share = road.center.map_or(-1.0, |center| center.width_share);
         let half_width_m = road.width_m / 2.0 * scaling.constant;
         [half_width_m, road.min_width_px / 2.0 * samples, center_share, 0.0]
-    });
-    let fills = style.roads.iter().map(|road| color(road.color, 1.0));
-    let outlines = style.roads.iter().map(|road| color(road.outline, 1.0));
-    let centers = style
-        .roads
-        .iter()
-        .map(|road| color(road.center.map_or(road.color, |center| center.color), 1.0));
-    widths.chain(fills).chain(outlines).chain(centers).collect()
+    }));
+    rows
 }
 
 /// What shaders are told of a tile.
@@ -120,10 +95,12 @@ pub(crate) fn tile_rows(view: &FrameView<'_>, tile: &TileUniforms, number: u32) 
     ]
 }
 
-fn row(values: DVec4) -> [f32; 4] {
+/// A row of a block, in f32.
+pub(crate) fn row(values: DVec4) -> [f32; 4] {
     values.as_vec4().to_array()
 }
 
-fn color([red, green, blue]: [f32; 3], last: f32) -> [f32; 4] {
+/// A row of a colour and one more number.
+pub(crate) fn color([red, green, blue]: [f32; 3], last: f32) -> [f32; 4] {
     [red, green, blue, last]
 }

@@ -32,9 +32,8 @@ use crate::{
     attribution::draw_attribution,
     camera::Camera,
     flight::{Flight, Pose},
-    gpu::{
-        DrawTile, FrameView, Gpu, PassTimer, PassTimes, Renderer, Targets, TileBuffers, Wireframe,
-    },
+    frame_view::{FrameView, Wireframe},
+    gpu::{DrawTile, Gpu, PassTimer, PassTimes, Renderer, Targets, TileBuffers},
     lod::Quality,
     tiles::{BlockingPackage, TileStore},
 };

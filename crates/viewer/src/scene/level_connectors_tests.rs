@@ -6,7 +6,7 @@ fn end(way_id: i64, side: Side, at_m: [f64; 2], height_m: f64) -> RoadEnd {
     RoadEnd { way_id, class, side, at_m, height_range_m: [height_m; 2], width_factor: 1.0 }
 }
 
-/// A coarse tile of 200 m, 1/0/0, and the finer 2/2/0 of 100 m to its east.
+/// Compares the connectors between a coarse tile of 200 m (1/0/0) and the finer tile of 100 m to its east (2/2/0).
 fn check(coarse: &[RoadEnd], fine: &[RoadEnd], expected: &[[[f64; 2]; 2]]) {
     let id = |z, x, y| TileId::new(z, x, y).expect("a tile");
     let tiles = [

@@ -1,5 +1,5 @@
-// Where the picture has roads, block by block: the most important label in a block or so near to it that the outlines
-// of its pixels may show it. The composite draws roads in these blocks alone.
+// Finds the blocks of the picture that have roads. The result for a block is the largest label in it and around it, as far
+// as an outline may reach. The composite draws roads only in blocks with a label.
 
 @group(1) @binding(0) var road_labels: texture_2d<f32>;
 

@@ -4,7 +4,6 @@
 // Depth is reversed with an infinite far plane: depth_buffer = near / view_depth, 0 where nothing was drawn.
 
 const CLASSES = 9u;
-const TINT_STOPS = 6u;
 
 struct Frame {
     clip_from_relative: mat4x4<f32>,
@@ -14,30 +13,17 @@ struct Frame {
     up: vec4<f32>,
     // xyz: the direction of view; w: depth of the near plane.
     forward: vec4<f32>,
-    // xyz: towards the light; w: strength of the hillshade.
-    light: vec4<f32>,
-    // rgb; w: distance at which haze hides two thirds of a colour.
-    haze: vec4<f32>,
-    // rgb; w: side of a pixel at depth 1, metres.
-    sky: vec4<f32>,
-    // rgb; w: world height of one metre.
-    background: vec4<f32>,
+    // x: side of a pixel at depth 1, metres; y: world height of one metre of true height.
+    scale: vec4<f32>,
     // x: distance up to which road widths are true; y: exponent beyond; z: radius of the outline kernel in
     // pixels of this target; w: how many of these pixels make one pixel of the final picture.
     road_scale: vec4<f32>,
     // x: 1 with caps, 0 without; y: 1 for the paper's test in the fragment shader of volumes; z: world metres to a true
     // metre, one value for the whole package.
     road_options: vec4<f32>,
-    // x: lowest ground; y: 1 / height range.
-    heights: vec4<f32>,
-    // rgb; w: share of the height range.
-    tint: array<vec4<f32>, TINT_STOPS>,
     // x: half width in true metres near the eye; y: least half width in pixels of this target; z: share of the width that
     // the centre line takes, -1 without one.
     road_widths: array<vec4<f32>, CLASSES>,
-    road_fills: array<vec4<f32>, CLASSES>,
-    road_outlines: array<vec4<f32>, CLASSES>,
-    road_centers: array<vec4<f32>, CLASSES>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -67,5 +53,5 @@ fn scaled_half_width_m(road: Road, distance_m: f32) -> f32 {
 
 // Least half width in world metres at a depth.
 fn least_half_width_m(road: Road, view_depth: f32) -> f32 {
-    return frame.road_widths[road.class_number].y * frame.sky.w * view_depth;
+    return frame.road_widths[road.class_number].y * frame.scale.x * view_depth;
 }

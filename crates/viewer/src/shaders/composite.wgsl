@@ -1,13 +1,28 @@
-// Ground, roads and sky into one picture: ground and sky everywhere, then, again with roads, the blocks that have some
-// in them or near them. Most of a picture has no roads; there the neighbours of pixels need not be read.
+// Draws ground, sky and roads into one picture. Ground and sky are drawn everywhere first. Then blocks that have roads in
+// them or near them are drawn again, with their roads. Most of a picture has no roads; there the labels of neighbouring
+// pixels need not be read.
 //
-// Outlines as in Vaaraniemi, Treib & Westermann 2011, section 6.2: a maximum filter over the importance of the
-// roads around a pixel, minus the pixel's own. What remains is the edge of the more important road.
+// Outlines are found as in Vaaraniemi, Treib & Westermann 2011, section 6.2, by a maximum filter over the importance of the
+// roads around a pixel. Where the maximum is more important than the pixel's own road, the pixel is on the outline of the
+// more important road.
 
 @group(1) @binding(0) var ground_color: texture_2d<f32>;
 @group(1) @binding(1) var terrain_depth: texture_2d<f32>;
 @group(1) @binding(2) var road_labels: texture_2d<f32>;
 @group(1) @binding(3) var road_blocks: texture_2d<f32>;
+
+// The same fields as in gpu/drawables/composite.rs, in the same order.
+struct PictureColors {
+    // rgb; w: distance at which haze hides two thirds of a colour.
+    haze: vec4<f32>,
+    sky: vec4<f32>,
+    background: vec4<f32>,
+    road_fills: array<vec4<f32>, CLASSES>,
+    road_outlines: array<vec4<f32>, CLASSES>,
+    road_centers: array<vec4<f32>, CLASSES>,
+}
+
+@group(1) @binding(4) var<uniform> colors: PictureColors;
 
 // Pixels on each side of a block.
 override BLOCK: u32 = 16u;
@@ -46,15 +61,15 @@ fn largest_around(pixel: vec2<i32>, own: f32, least_depth: f32) -> f32 {
 
 fn background_at(ray: vec3<f32>) -> vec3<f32> {
     let elevation = ray.z / length(ray);
-    let above = mix(frame.haze.rgb, frame.sky.rgb, smoothstep(0.0, 0.35, elevation));
-    return mix(frame.background.rgb, above, smoothstep(-0.25, 0.0, elevation));
+    let above = mix(colors.haze.rgb, colors.sky.rgb, smoothstep(0.0, 0.35, elevation));
+    return mix(colors.background.rgb, above, smoothstep(-0.25, 0.0, elevation));
 }
 
 // Width of a road at a place in pixels of the final picture, before the least width is applied.
 fn width_px(road_class: u32, distance_m: f32, depth: f32) -> f32 {
     // The tile and the direction of the road are not known here. So its width factor is that of the whole package.
     let road = Road(road_class, frame.road_options.z);
-    return 2.0 * scaled_half_width_m(road, distance_m) / (frame.sky.w * depth * frame.road_scale.w);
+    return 2.0 * scaled_half_width_m(road, distance_m) / (frame.scale.x * depth * frame.road_scale.w);
 }
 
 // The ground or the sky at a pixel.
@@ -79,9 +94,9 @@ fn sight_at(position: vec2<f32>) -> Sight {
     }
     sight.depth = view_depth_of(sight.depth_buffer);
     sight.distance_m = sight.depth * length(ray);
-    let reach = sight.distance_m / frame.haze.w;
+    let reach = sight.distance_m / colors.haze.w;
     sight.haze = 1.0 - exp(-reach * reach);
-    sight.color = mix(textureLoad(ground_color, pixel, 0).rgb, frame.haze.rgb, sight.haze);
+    sight.color = mix(textureLoad(ground_color, pixel, 0).rgb, colors.haze.rgb, sight.haze);
     return sight;
 }
 
@@ -121,11 +136,11 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
     let label = label_of(own);
     if label != 0u {
         let road_class = class_of(label);
-        let fill = select(frame.road_fills[road_class].rgb, frame.road_centers[road_class].rgb, (label & 1u) == 1u);
-        // A road that is drawn at its least width, wider than it is, is made paler instead.
+        let fill = select(colors.road_fills[road_class].rgb, colors.road_centers[road_class].rgb, (label & 1u) == 1u);
+        // A road that is drawn wider than it is, because of its least width, is made paler.
         let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
         let presence = clamp(width_px(road_class, sight.distance_m, sight.depth) / least_px, 0.35, 1.0);
-        color = mix(color, mix(fill, frame.haze.rgb, 0.5 * sight.haze), presence);
+        color = mix(color, mix(fill, colors.haze.rgb, 0.5 * sight.haze), presence);
     }
 
     let most = label_of(largest_around(pixel, own, sight.depth_buffer / FARTHER));
@@ -133,7 +148,7 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
         let road_class = class_of(most);
         // Around a very thin road there is no edge, because it would hide the road.
         let presence = smoothstep(1.5, 5.0, width_px(road_class, sight.distance_m, sight.depth));
-        color = mix(color, mix(frame.road_outlines[road_class].rgb, frame.haze.rgb, 0.5 * sight.haze), presence);
+        color = mix(color, mix(colors.road_outlines[road_class].rgb, colors.haze.rgb, 0.5 * sight.haze), presence);
     }
     return vec4(color, 1.0);
 }

@@ -1,16 +1,18 @@
-// Whether the ground at a pixel is road: one rule for both methods, which differ in what they cover the pixels with.
+// Decides whether the ground at a pixel is road. The rule is the same for both methods; quads (GEO) and boxes (SV) only
+// select the pixels for which it is applied.
 //
-// The terrain's depth is read and the ground seen at the pixel's centre is reconstructed. It is road if its
-// distance in plan to the segment is at most half the road's width. For a volume that stands upright this is the
-// same as the test of Vaaraniemi, Treib & Westermann 2011, High-Quality Cartographic Roads on High-Resolution DEMs,
-// section 5.1, whether the ground lies between where the ray of view enters and leaves; but their roots of a
-// quadratic are imprecise where the eye is far away and the road narrow (wrong for a tenth of all pixels near caps at
-// some 7 km), and this test is not.
+// The terrain's depth is read, and from it the position of the ground at the pixel's centre is computed. The ground is road
+// if its distance in plan to the segment is at most half the road's width. For an upright volume this is the same as the
+// test of Vaaraniemi, Treib & Westermann 2011, High-Quality Cartographic Roads on High-Resolution DEMs, section 5.1: whether
+// the ground lies between the points where the ray from the eye enters and leaves the volume. But they compute these points
+// as roots of a quadratic, which is imprecise for a narrow road far from the eye: at about 7 km a tenth of all pixels near
+// caps are wrong. The distance in plan is precise there.
 //
-// A road seen at a grazing angle would break into dashes thinner than a pixel. So ground is also road whose
-// distance to the segment *looks* smaller than the least half width: from the pixel's centre to where the segment
-// is seen, found by interpolating between this pixel's ground and its neighbours' towards the segment. In plan that
-// ground may be no more than `stretch` least half widths away, so that a crest does not paint the valley.
+// At a grazing angle a road would be thinner than a pixel and break into dashes. So there is a second rule: ground is also
+// road if on the picture the pixel's centre is nearer to the segment than the least half width in pixels. Where the segment
+// lies on the picture is computed from the ground at this pixel and at its neighbours towards the segment. In plan this
+// ground may be at most `stretch` times the least half width away. Otherwise a road on a crest would be painted on the
+// valley behind it.
 
 struct Tile {
     // xyz: the tile's reference point minus the eye; w: depth of the skirt, world metres.
@@ -23,6 +25,20 @@ struct Tile {
 @group(1) @binding(0) var<uniform> tile: Tile;
 @group(2) @binding(0) var terrain_depth: texture_2d<f32>;
 @group(2) @binding(1) var owners: texture_2d<u32>;
+
+// What the vertex stage of a road gives its fragment stage, by either method.
+struct RoadFragment {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) @interpolate(flat) start: vec2<f32>,
+    @location(1) @interpolate(flat) start_to_end: vec2<f32>,
+    // Lowest four bits: class. Above, for a connector, the number of the other tile it belongs to, else 0.
+    @location(2) @interpolate(flat) class_and_other: u32,
+    @location(3) @interpolate(flat) width_factor: f32,
+}
+
+fn road_of(in: RoadFragment) -> Road {
+    return Road(in.class_and_other & 15u, in.width_factor);
+}
 
 const MAX_STRETCH = 8.0;
 const SKIRT = 0x80000000u;
@@ -82,8 +98,9 @@ fn neighbour(pixel: vec2<i32>, step: vec2<i32>, start: vec2<f32>, start_to_end: 
     return out;
 }
 
-// How far the ground seen moves in plan with a step of one pixel, to the side where the segment is nearer. If that side has
-// no ground or a silhouette, the other side is taken: within one triangle the depth buffer is linear.
+// How far the position of the ground changes in plan from this pixel to the next one, on the side where the segment is
+// nearer. If that side has no ground or a silhouette, the other side is used: within one triangle the depth buffer is linear,
+// so both sides have the same change.
 fn plan_step(pixel: vec2<i32>, step: vec2<i32>, depth_buffer: f32, position: vec2<f32>, start: vec2<f32>,
     start_to_end: vec2<f32>) -> vec2<f32> {
     let ahead = neighbour(pixel, step, start, start_to_end);

@@ -1,4 +1,4 @@
-// Where the roads of two drawings differ, over the first one's picture in pale grey.
+// Shows where the roads of two drawings differ, over the picture of the first drawing in pale grey.
 
 @group(0) @binding(0) var first_labels: texture_2d<f32>;
 @group(0) @binding(1) var second_labels: texture_2d<f32>;

@@ -1,10 +1,11 @@
 // Roads as geometry (GEO): one quad per piece of a road in one triangle of the ground.
 //
 // Source: Vaaraniemi, Treib & Westermann 2011, High-Quality Cartographic Roads on High-Resolution DEMs, section 4.
-// The paper's quad lies level under a segment and the caps around its ends. Ground that bends within the road's width
-// is then beside the quad as the eye sees it, most of all at a grazing angle, and the road is too narrow there or breaks
-// into dashes (its Fig. 15). Here a quad stands for a *bed*: what lies beside the piece, as far as the road is wide,
-// between the lowest and the highest ground there, measured from the plane that the piece lies in.
+// The paper's quad is level and lies under a segment and the caps at its ends. If the ground is not flat across the road's
+// width, then on the picture a part of that ground lies outside the quad, most of all where the eye sees it at a grazing
+// angle. There the road is drawn too narrow or breaks into dashes (Fig. 15 of the paper). Here a quad stands for a *bed*: a
+// box around the piece. The box is as wide as the road, and it reaches from the lowest to the highest ground beside the
+// piece, measured from the plane in which the piece lies.
 //
 //       from the side               from above                            as the eye sees it
 //                                    ┌───┬─────┬───────────┐                ┌──────────────┐
@@ -15,9 +16,9 @@
 //                                  caps where the road does not
 //                                  go straight on, at a and b
 //
-// Which of the pixels behind the quad are road is decided by the ground seen there (coverage.wgsl), with the whole
-// segment of which this is a piece. That replaces the paper's depth test with its bias: ground that is not near the road
-// is not painted, whether it is in front of the road, behind a ridge or beside the piece.
+// The quad only selects pixels. Whether a pixel is road is decided by the distance of its ground from the whole segment of
+// which this is a piece (coverage.wgsl). This replaces the paper's depth test with its bias: ground that is not near the
+// road is not painted, whether it is in front of the road, behind a ridge or beside the piece.
 
 struct SegmentIn {
     @builtin(vertex_index) corner: u32,
@@ -30,19 +31,11 @@ struct SegmentIn {
     // Lowest four bits: class. Then one bit for a cap at the start, one for a cap at the end, and one for each of the three
     // reaches, if ground of other tiles may be within it.
     @location(3) class_and_flags: u32,
-    // How far the ground is below and above the plane, at most. xy: for each metre away, within the first reach; zw: in all
-    // of the first reach.
+    // At most how far the ground lies below and above the plane. xy: for each metre of distance, within the first reach;
+    // zw: anywhere within the first reach.
     @location(4) rises_near: vec4<f32>,
-    // The same in all of the second (xy) and of the third reach (zw).
+    // At most how far, anywhere within the second reach (xy) and within the third (zw).
     @location(5) farther: vec4<f32>,
-}
-
-struct VertexOut {
-    @builtin(position) clip: vec4<f32>,
-    @location(0) @interpolate(flat) start: vec2<f32>,
-    @location(1) @interpolate(flat) start_to_end: vec2<f32>,
-    @location(2) @interpolate(flat) road_class: u32,
-    @location(3) @interpolate(flat) width_factor: f32,
 }
 
 const AT_START = 0x10u;
@@ -66,7 +59,7 @@ fn leaving_m(in: SegmentIn, radius_m: f32) -> vec2<f32> {
         leaves_tile = in.class_and_flags & (LEAVES_TILE << 1u);
     }
     // A neighbour's ground is higher or lower than this tile's by no more than the depth of the skirts.
-    return most * frame.background.w + select(0.0, tile.offset.w, leaves_tile != 0u);
+    return most * frame.scale.y + select(0.0, tile.offset.w, leaves_tile != 0u);
 }
 
 // A bed: its points are start + along · x + across · y + up · z, with x, y and z within these ranges.
@@ -79,8 +72,8 @@ struct RoadBed {
     z: vec2<f32>,
 }
 
-// A plane across the way from the eye, a multiple of `plane_m` along `normal` away from it, and where on it, along `u` and
-// `v`, a bed is seen.
+// A plane in front of the eye, at the distance `plane_m` along `normal`, and the rectangle on it, along `u` and `v`, in which
+// a bed is seen.
 struct Shown {
     u: vec3<f32>,
     v: vec3<f32>,
@@ -88,11 +81,11 @@ struct Shown {
     plane_m: f32,
     least: vec2<f32>,
     most: vec2<f32>,
-    // The same as of the plane for the point of the bed that is nearest along the normal, over that of the plane.
+    // Distance along the normal of the bed's nearest point, divided by the distance of the plane.
     nearest: f32,
 }
 
-// On a plane that turns about the bed's axis towards the eye: there the quad that hides the bed is smallest.
+// Uses the plane through the bed's axis that faces the eye. On this plane the quad that hides the bed is smallest.
 fn shown_about_axis(bed: RoadBed) -> Shown {
     var out: Shown;
     let along_m = length(bed.along);
@@ -120,7 +113,7 @@ fn shown_about_axis(bed: RoadBed) -> Shown {
     return out;
 }
 
-// On the plane through the bed's middle, for an eye that is on the bed's axis or near it.
+// Uses the plane through the middle of the bed, for an eye that is on the bed's axis or near it.
 fn shown_from_its_end(bed: RoadBed) -> Shown {
     var out: Shown;
     let middle = bed.start + bed.along * (0.5 * (bed.x.x + bed.x.y));
@@ -151,8 +144,8 @@ fn least_of(values: vec4<f32>) -> f32 {
 }
 
 @vertex
-fn vertex(in: SegmentIn) -> VertexOut {
-    let vertical_scale = frame.background.w;
+fn vertex(in: SegmentIn) -> RoadFragment {
+    let vertical_scale = frame.scale.y;
     let road = Road(in.class_and_flags & 15u, in.height_width_factor.y);
     let start = tile.offset.xy + in.segment_in_tile.xy;
     let start_to_end = in.segment_in_tile.zw - in.segment_in_tile.xy;
@@ -166,9 +159,10 @@ fn vertex(in: SegmentIn) -> VertexOut {
     let b = a + along * length_m;
 
     let far_m = max(length(a), length(b));
-    // Some more, so that rounding of positions does not cut off ground at the edge; the fragment shader decides anyway.
+    // The quad is made a little larger, so that rounding of positions does not cut off ground at the edge. The fragment
+    // shader decides for each pixel.
     let pad_m = 1e-6 * far_m + 0.01;
-    // No wider than volumes may be: neighbouring tiles have no roads from farther away.
+    // No wider than the tile's margin, as for volumes: neighbouring tiles have no roads from farther away.
     let widest_m = min(bounding_radius_m(road, far_m, 0.0), tile.base.y) + pad_m;
     // The fragment shader uses the ground at its pixel, which may be nearer to the eye's height than the piece, or farther.
     let tilted_m = widest_m * length(slopes);
@@ -197,31 +191,32 @@ fn vertex(in: SegmentIn) -> VertexOut {
     let side = vec2(f32(in.corner & 1u), f32(in.corner >> 1u));
     let at = mix(shown.least, shown.most, side);
     var position = shown.u * at.x + shown.v * at.y + shown.normal * shown.plane_m;
-    // The eye is in the bed or very near to it: the bed may be anywhere in the picture.
+    // The eye is in the bed or very near to it, so the bed may be anywhere in the picture. The quad covers all of it.
     if shown.nearest < LEAST_NEAREST {
         let everywhere = 1.01 * (2.0 * side - 1.0);
         position = frame.forward.xyz + everywhere.x * frame.right.xyz + everywhere.y * frame.up.xyz;
     }
 
-    var out: VertexOut;
+    var out: RoadFragment;
     out.clip = frame.clip_from_relative * vec4(position * AWAY, 1.0);
     out.start = start;
     out.start_to_end = start_to_end;
-    out.road_class = road.class_number;
+    out.class_and_other = road.class_number;
     out.width_factor = road.width_factor;
     return out;
 }
 
 @fragment
-fn fragment(in: VertexOut) -> @location(0) f32 {
+fn fragment(in: RoadFragment) -> @location(0) f32 {
     let pixel = vec2<i32>(in.clip.xy);
     let owner = textureLoad(owners, pixel, 0).r;
-    // Neither the sky nor a skirt. The ground of any tile is painted: near a border both tiles paint both sides.
+    // Sky and skirts are not painted. The ground of any tile is painted: near a border each of the two tiles paints on both
+    // sides.
     if owner == 0u || (owner & SKIRT) != 0u {
         discard;
     }
     let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
-    let road = Road(in.road_class, in.width_factor);
+    let road = road_of(in);
     let label = label_at(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, road, tile.base.y);
     if label == NOTHING {
         discard;

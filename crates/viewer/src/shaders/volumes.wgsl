@@ -14,8 +14,8 @@
 // distance of the ground to the segment decides (coverage.wgsl). With `road_options.y` the paper's own test is used.
 //
 // A volume paints the ground of its own tile alone. Every tile has all lines within the width margin around it, so
-// wide roads are not cut at borders, and where levels meet, no tile's roads are painted on the other's ground. Skirts
-// do not count as ground; only connectors (scene/level_connectors.rs) paint them.
+// wide roads are not cut at borders. Where tiles of two levels meet, the roads of one tile are not painted on the ground of
+// the other. Skirts do not count as ground; only connectors (scene/level_connectors.rs) paint them.
 
 struct VolumeIn {
     @builtin(vertex_index) corner: u32,
@@ -29,14 +29,6 @@ struct VolumeIn {
     @location(4) near_rise_width_factor: vec2<f32>,
     // Lowest four bits: class. Above, for a connector, the number of the other tile it belongs to, else 0.
     @location(5) class_and_other: u32,
-}
-
-struct VertexOut {
-    @builtin(position) clip: vec4<f32>,
-    @location(0) @interpolate(flat) start: vec2<f32>,
-    @location(1) @interpolate(flat) start_to_end: vec2<f32>,
-    @location(2) @interpolate(flat) class_and_other: u32,
-    @location(3) @interpolate(flat) width_factor: f32,
 }
 
 // The corners of a box as one strip of twelve triangles, all counter-clockwise seen from outside:
@@ -59,7 +51,7 @@ fn reach_over(heights: vec2<f32>, road: Road, plan_m: f32) -> Reach {
 
 // Half the width of the box, and the lowest and highest ground within that distance of the segment.
 fn reach_of(in: VolumeIn, road: Road, plan_m: f32) -> Reach {
-    let vertical_scale = frame.background.w;
+    let vertical_scale = frame.scale.y;
     let all = tile.offset.z + in.height_range_in_tile * vertical_scale;
     let rise = vec2(-1.0, 1.0) * in.near_rise_width_factor.x;
     let near = tile.offset.z + (in.near_range_in_tile + rise * tile.base.w) * vertical_scale;
@@ -73,8 +65,8 @@ fn reach_of(in: VolumeIn, road: Road, plan_m: f32) -> Reach {
 }
 
 @vertex
-fn vertex(in: VolumeIn) -> VertexOut {
-    let vertical_scale = frame.background.w;
+fn vertex(in: VolumeIn) -> RoadFragment {
+    let vertical_scale = frame.scale.y;
     let road = Road(in.class_and_other & 15u, in.near_rise_width_factor.y);
     let is_connector = in.class_and_other > 15u;
     let a = tile.offset.xy + in.start_in_tile;
@@ -85,8 +77,9 @@ fn vertex(in: VolumeIn) -> VertexOut {
     let plan_m = max(length(a), length(a + ab));
     let reach = reach_of(in, road, plan_m);
     let radius_m = reach.radius_m;
-    // Some more, so that rounding of positions does not cut off ground at the edge; the fragment shader decides anyway. For
-    // connectors the ground beside them is not known; it rises or falls by more than the road's width only on cliffs.
+    // The box is made a little larger, so that rounding of positions does not cut off ground at the edge. The fragment
+    // shader decides for each pixel. The ground beside connectors is not known. It rises or falls by more than the road's
+    // width only on cliffs.
     let pad_m = 1e-6 * length(vec3(plan_m, reach.heights)) + 0.01;
     let pad_height_m = pad_m + select(0.0, 2.0 * radius_m * vertical_scale, is_connector);
     let heights = reach.heights + vec2(-pad_height_m, pad_height_m);
@@ -99,7 +92,7 @@ fn vertex(in: VolumeIn) -> VertexOut {
     let plan = a + ab * at_end + (along + across) * (radius_m + pad_m);
     let height = select(heights.x, heights.y, (corner & 4u) != 0u);
 
-    var out: VertexOut;
+    var out: RoadFragment;
     out.clip = frame.clip_from_relative * vec4(plan, height, 1.0);
     out.start = a;
     out.start_to_end = ab;
@@ -167,7 +160,7 @@ fn label_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, st
 }
 
 @fragment
-fn fragment(in: VertexOut) -> @location(0) f32 {
+fn fragment(in: RoadFragment) -> @location(0) f32 {
     let pixel = vec2<i32>(in.clip.xy);
     let owner = textureLoad(owners, pixel, 0).r;
     let own = u32(tile.base.z);
@@ -177,7 +170,7 @@ fn fragment(in: VertexOut) -> @location(0) f32 {
     if !is_mine && !is_connected {
         discard;
     }
-    let road = Road(in.class_and_other & 15u, in.width_factor);
+    let road = road_of(in);
     let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
     var label: u32;
     if frame.road_options.y > 0.5 {

@@ -3,7 +3,7 @@ use corniche_tin::TinVertex;
 
 use super::*;
 
-/// Two triangles over a whole tile of 10 m cells, 256 steps high in the east.
+/// Two triangles that cover a whole tile with cells of 10 m. The eastern vertices are 256 steps high.
 fn square() -> GroundMesh {
     let vertex = |row, column, height_q| TinVertex { row, column, height_q };
     let corners =

@@ -1,9 +1,10 @@
 use corniche_geom::{Bounds, CoordinateTable, width_factor};
 
-/// How many working metres there are to a true metre in a tile, along the east and the north of the working CRS. With it
-/// roads get their true widths.
+/// How many working metres there are to a true metre in a tile, towards the east and towards the
+/// north. Roads get their true widths by it.
 ///
-/// It is known at the four corners and interpolated between them: it changes evenly, by about 10⁻⁴ over a kilometre.
+/// The scale is computed at the four corners and interpolated between them. This is enough, because it changes evenly, by
+/// about 10⁻⁴ over a kilometre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanScale {
     corners: Bounds,
@@ -19,8 +20,8 @@ impl PlanScale {
         Self { corners, scales: [scale; 4] }
     }
 
-    /// The scale of a tile. Beyond the bounds of `table` it is that at the nearest position within; `otherwise`, along both
-    /// axes, where the table has no scale.
+    /// The scale of a tile. Outside the bounds of `table` it is the scale at the nearest position inside. Where the table has
+    /// no scale, it is `otherwise` along both axes.
     #[must_use]
     pub fn of_tile(table: &CoordinateTable, tile: Bounds, otherwise: f64) -> Self {
         let known = table.bounds();

@@ -48,7 +48,7 @@ fn pieces_of_a_segment_have_caps_at_its_ends_only() {
             Bed::default()
         });
     let found: Vec<_> = roads.all().iter().map(|piece| (piece.shares, piece.has_caps)).collect();
-    // The last ends halfway, at the tile's border or beside a void.
+    // The last line ends halfway along its segment, at the tile's border or beside a void.
     let expected =
         [([0.0, 0.25], [true, false]), ([0.25, 1.0], [false, true]), ([0.0, 0.5], [true, true])];
     assert_eq!(found, expected);

@@ -6,7 +6,8 @@ use super::*;
 
 const STEP: u16 = 8;
 
-/// A tile with a vertex every eight nodes; heights by column and row of these, in steps of half a metre.
+/// A tile with a vertex at every eighth node. `height_q` gives heights by column and row of the vertices, in steps of half a
+/// metre.
 fn ground(height_q: impl Fn(u16, u16) -> i32) -> (Frame, Surface) {
     let frame = Frame::new(
         [0.5, 0.25],
@@ -31,7 +32,8 @@ fn ground(height_q: impl Fn(u16, u16) -> i32) -> (Frame, Surface) {
     (frame, Surface::new(&Tin::new(vertices, &triangles).unwrap(), placement))
 }
 
-/// A rectangle around a place, turned and as long and wide as said, counter-clockwise.
+/// The corners of a rectangle around a place, counter-clockwise. It is turned by an angle; `half_m` are half its length and
+/// half its width.
 fn turned([x, y]: [f64; 2], angle_rad: f64, half_m: [f64; 2]) -> [[f64; 2]; 4] {
     let (sin, cos) = angle_rad.sin_cos();
     [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[along, across]| {
@@ -41,7 +43,7 @@ fn turned([x, y]: [f64; 2], angle_rad: f64, half_m: [f64; 2]) -> [[f64; 2]; 4] {
 }
 
 proptest! {
-    /// No ground in a rectangle is farther from a plane than the slopes say.
+    /// No ground in a rectangle is farther from a plane than the bounds from the slopes.
     #[test]
     fn no_ground_leaves_a_plane_by_more(
         seed in 0_i32..1000, steep in 1_i32..60, angle_rad in 0.0..6.3_f64,
@@ -62,7 +64,7 @@ proptest! {
             let at = frame.snap([at_m[0] + a * cos - b * sin, at_m[1] + a * sin + b * cos]).unwrap();
             let Some(triangle) = surface.locate(at) else { continue };
             let leaves_m = surface.height_at_point_m(triangle, at) - plane.height_at_m(frame.position_m(at));
-            // Snapping moves a place by up to a millimetre.
+            // A place may be moved by up to a millimetre when it is placed on the lattice.
             prop_assert!(leaves_m <= above_m + 0.1 && -leaves_m <= below_m + 0.1, "{leaves_m} {below_m} {above_m}");
         }
     }
@@ -72,11 +74,12 @@ proptest! {
 fn a_plane_does_not_leave_itself() {
     let (frame, surface) = ground(|column, row| 64 * i32::from(column) - 32 * i32::from(row));
     let slopes = Slopes::of_surface(&surface, frame.tile_bounds(TileId::ROOT), &frame);
-    // East sides of cells are fitted to the lattice, by less than a millimetre. 32 m each 80 m eastwards, 16 m each 120 m northwards; at the south-west it is 32 rows of 16 m below sea level.
+    // The plane rises by 32 m for each 80 m eastwards and by 16 m for each 120 m northwards. In the south-west it is 32 rows
+    // of 16 m below sea level. Positions of cells are rounded to the lattice, by less than a millimetre.
     let plane = Plane { at_m: [0.5, 0.25], height_m: -512.0, gradient: [0.4, 16.0 / 120.0] };
     let leaving_m = slopes.leaving(&plane, turned([1280.0, 1280.0], 0.3, [400.0, 100.0]));
     assert!(leaving_m.iter().all(|m| *m < 0.1), "{leaving_m:?}");
-    // One that is as high in the south-west and level is left by 0.4 m a metre eastwards at most.
+    // A level plane of the same height in the south-west: eastwards the ground leaves it by at most 0.4 m for each metre.
     let level = Plane { gradient: [0.0; 2], ..plane };
     let [below_m, above_m] = slopes.leaving(&level, turned([100.5, 0.25], 0.0, [100.0, 10.0]));
     assert!(

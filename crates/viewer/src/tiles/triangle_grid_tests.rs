@@ -5,11 +5,11 @@ use super::*;
 
 type Triangle = [[f64; 2]; 3];
 
-/// A fan around a point: slivers and large triangles alike.
+/// A fan of triangles around a point. Some are slivers, others are large.
 fn fan(center: [f32; 2], rim: usize) -> Vec<Triangle> {
     let vertex = |x: f32, y: f32| [f64::from(x), f64::from(y)];
     let center = vertex(center[0], center[1]);
-    // Around a square of 200 m.
+    // The rim is a square of 200 m.
     let around: Vec<[f64; 2]> = (0..rim)
         .map(|k| {
             let along = k as f32 / rim as f32 * 4.0;
@@ -30,8 +30,8 @@ fn holds([a, b, c]: Triangle, at: [f64; 2]) -> bool {
 }
 
 proptest! {
-    /// Every triangle that holds a place is in the place's cell, in the order of the surface, on borders of cells and of
-    /// the surface too.
+    /// The cell of a place lists every triangle that contains the place, in the order of the surface. This also holds on
+    /// borders of cells and of the surface.
     #[test]
     fn every_triangle_that_holds_a_place_is_found_there(
         center in prop::array::uniform2(-99.0..99.0_f32),
@@ -57,7 +57,7 @@ proptest! {
         for triangle in &expected {
             prop_assert!(near.contains(triangle), "{triangle} at {at:?}");
         }
-        // On a level line they are found wherever it passes.
+        // They are also found along a line through the place.
         for (from, to) in [([-150.0, at[1]], [150.0, at[1]]), ([at[0], 150.0], [at[0], -150.0])] {
             let met: Vec<u32> = grid.along(from, to).flat_map(|(_, near)| near).collect();
             for triangle in &expected {
@@ -70,7 +70,7 @@ proptest! {
 #[test]
 fn a_cell_holds_a_part_of_many_triangles_and_a_grid_of_none_is_empty() {
     let grid = TriangleGrid::new(fan([0.0, 0.0], 4000).into_iter());
-    // Slivers all of them, that is the worst: those between the middle and one side of the rim.
+    // The worst case: all triangles are slivers. A cell then has at most those between the middle and one side of the rim.
     assert!(grid.at([90.0, 5.0]).len() < 1200, "{}", grid.at([90.0, 5.0]).len());
     let shares: Vec<f64> =
         grid.along([150.0, 3.0], [-150.0, 4.0]).map(|(share, _)| share).collect();

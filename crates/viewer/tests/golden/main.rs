@@ -11,9 +11,9 @@ mod support;
 use corniche_styles::Style;
 use corniche_testing::pictures::{Golden, is_blessing};
 use corniche_viewer::{
-    RoadMethod, RoadOptions,
+    FrameView, RoadMethod, RoadOptions, Wireframe,
     camera::{Camera, Orientation},
-    gpu::{FrameView, Gpu, Picture, Renderer, Targets, Wireframe},
+    gpu::{Gpu, Picture, Renderer, Targets},
 };
 use image::RgbaImage;
 use support::{

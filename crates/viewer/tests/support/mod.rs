@@ -17,10 +17,10 @@ use corniche_styles::{RoadStyle, Style, WidthScaling};
 use corniche_tileset::Terrain;
 use corniche_tin::{Tin, TinVertex};
 use corniche_viewer::{
-    RoadMethod, RoadOptions,
+    FrameView, RoadMethod, RoadOptions, Wireframe,
     camera::Camera,
     for_tests::{GroundLine, Owner},
-    gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers, Wireframe},
+    gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
     tiles::{TileGeometry, TileLines},
 };
 use glam::{DVec2, DVec3};

@@ -7,10 +7,10 @@ use corniche_styles::Style;
 use corniche_tileset::{FilePackage, Sections, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 use corniche_viewer::{
-    RoadOptions,
+    FrameView, RoadOptions, Wireframe,
     camera::Camera,
     for_tests::{GroundLine, PlanLine, PlanScale},
-    gpu::{DrawTile, FrameView, Gpu, Renderer, Targets, TileBuffers, Wireframe},
+    gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
     tiles::{TileGeometry, TileLines},
 };
 use glam::{DVec2, DVec3};

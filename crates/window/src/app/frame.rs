@@ -5,9 +5,10 @@
 
 use corniche_styles::Rgb;
 use corniche_viewer::{
+    Wireframe,
     camera::Camera,
     flight::{Pose, WorkingCrs},
-    gpu::{GpuError, Wireframe},
+    gpu::GpuError,
     lod::Quality,
 };
 use egui_wgpu::ScreenDescriptor;

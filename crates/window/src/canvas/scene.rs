@@ -1,5 +1,5 @@
 use corniche_styles::Style;
-use corniche_viewer::{RoadOptions, camera::Camera, gpu::Wireframe, lod::Drawn};
+use corniche_viewer::{RoadOptions, Wireframe, camera::Camera, lod::Drawn};
 
 use crate::{map_pictures::Pictures, settings::Compare};
 

@@ -31,7 +31,7 @@ pub(crate) fn encode(terrain: &Terrain, scale: Scale) -> Result<Vec<u8>, &'stati
         return Err("more triangles than a tile has cells for");
     }
     let at: Vec<[u16; 2]> = vertices.iter().map(|v| [v.column, v.row]).collect();
-    // The same limit as a reader's: the writer looks at no less than the reader will.
+    // The same limit as a reader's: the writer takes at least as many steps as a reader.
     let work = Work::new(max_walk_steps(vertices.len(), triangles.len()));
     let nodes = Nodes::new(at.iter().copied(), &work);
     let lookups = Work::new(u64::MAX);

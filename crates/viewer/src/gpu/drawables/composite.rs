@@ -1,20 +1,21 @@
 //! Ground, sky and roads into the samples of a picture.
 
 use wgpu::{
-    BindGroupLayout, BindGroupLayoutEntry, ColorWrites, CommandEncoder, Device, RenderPipeline,
-    ShaderStages,
+    BindGroupLayout, BindGroupLayoutEntry, BindingResource, BufferUsages, ColorWrites,
+    CommandEncoder, Device, RenderPass, RenderPipeline, ShaderStages,
 };
 
 use super::super::{
     Gpu,
-    bindings::{UNFILTERED, layout, texture, textures},
-    formats::{BLOCK, LABEL},
-    passes::{begin, full_screen},
+    bindings::{UNFILTERED, group, layout, texture, textures, uniform},
+    formats::LABEL,
+    passes::full_screen,
     pipeline::{PipelineRecipe, Shader, shader},
     shared_bindings::{SharedBindings, SharedLayouts},
-    targets::Targets,
+    targets::{BLOCK_SIDE, Targets},
+    uniforms::color,
 };
-use crate::options::RoadMethod;
+use crate::{frame_view::FrameView, options::RoadMethod};
 
 pub(crate) const BLOCKS_SHADER: Shader = shader!("road blocks": "common", "screen", "blocks");
 pub(crate) const SHADER: Shader = shader!("composite": "common", "screen", "composite");
@@ -39,7 +40,7 @@ pub(crate) struct Composite {
 
 impl Composite {
     pub(crate) fn new(device: &Device, layouts: &SharedLayouts) -> Self {
-        let block = [("BLOCK", f64::from(BLOCK))];
+        let block = [("BLOCK", f64::from(BLOCK_SIDE))];
         let blocks_layout = layout(device, "road blocks", &[texture(0, UNFILTERED)]);
         let blocks_groups = [Some(&layouts.frame), Some(&blocks_layout)];
         let blocks = PipelineRecipe {
@@ -50,7 +51,8 @@ impl Composite {
         let road_blocks =
             BindGroupLayoutEntry { visibility: ShaderStages::VERTEX, ..texture(3, UNFILTERED) };
         let [ground, depth, labels] = [0, 1, 2].map(|binding| texture(binding, UNFILTERED));
-        let layout = layout(device, "composite", &[ground, depth, labels, road_blocks]);
+        let layout =
+            layout(device, "composite", &[ground, depth, labels, road_blocks, uniform(4, None)]);
         let groups = [Some(&layouts.frame), Some(&layout)];
         let composite = |entries| {
             let recipe = PipelineRecipe::full_screen(SHADER, &groups, &block);
@@ -61,8 +63,8 @@ impl Composite {
         Self { blocks_layout, blocks, layout, ground, roads }
     }
 
-    /// Draws the samples of the picture of `targets`, into which ground and roads are drawn.
-    pub(crate) fn draw(
+    /// Finds the blocks with roads. It begins and ends a pass of its own, because nothing else draws into their texture.
+    pub(crate) fn find_blocks(
         &self,
         gpu: &Gpu,
         encoder: &mut CommandEncoder,
@@ -70,23 +72,55 @@ impl Composite {
         method: RoadMethod,
         targets: &Targets,
     ) {
-        let Targets { ground, depth, labels, road_blocks, .. } = targets;
-        let has_roads = method != RoadMethod::None;
-        if has_roads {
-            let bound = textures(gpu, &self.blocks_layout, &[&labels.view]);
+        if method != RoadMethod::None {
+            let bound = textures(gpu, &self.blocks_layout, &[&targets.labels.view]);
             let groups = [shared.frame(), &bound];
-            full_screen(encoder, "road blocks", &road_blocks.view, &self.blocks, &groups);
+            full_screen(encoder, "road blocks", &targets.road_blocks.view, &self.blocks, &groups);
         }
-        let views = [&ground.view, &depth.view, &labels.view, &road_blocks.view];
-        let bound = textures(gpu, &self.layout, &views);
-        let mut pass = begin(encoder, "composite", &[targets.picture().drawn()], None);
-        shared.set_frame(&mut pass);
-        pass.set_bind_group(1, &bound, &[]);
+    }
+
+    /// Draws the samples of the picture of `targets`, after ground and roads were drawn and the blocks found. The pass draws
+    /// into that picture.
+    pub(crate) fn draw(
+        &self,
+        gpu: &Gpu,
+        pass: &mut RenderPass<'_>,
+        shared: &SharedBindings,
+        view: &FrameView<'_>,
+        targets: &Targets,
+    ) {
+        let rows = rows(view);
+        let colors =
+            gpu.buffer("picture colors", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
+        let Targets { ground, depth, labels, road_blocks, .. } = targets;
+        let [ground, depth, labels, road_blocks] = [ground, depth, labels, road_blocks]
+            .map(|texture| BindingResource::TextureView(&texture.view));
+        let resources = [ground, depth, labels, road_blocks, colors.as_entire_binding()];
+        shared.set_frame(pass);
+        pass.set_bind_group(1, &group(gpu, &self.layout, &resources), &[]);
         pass.set_pipeline(&self.ground);
         pass.draw(0..3, 0..1);
-        if has_roads {
+        if view.roads.method != RoadMethod::None {
             pass.set_pipeline(&self.roads);
             pass.draw(0..BLOCK_CORNERS * targets.block_count(), 0..1);
         }
     }
+}
+
+/// The block `struct PictureColors` of `shaders/composite.wgsl`.
+pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
+    let style = view.style;
+    let mut rows = vec![
+        color(style.haze, (f64::from(style.haze_reach) * view.camera.focus_m()) as f32),
+        color(style.sky, 0.0),
+        color(style.void, 0.0),
+    ];
+    let roads = &style.roads;
+    rows.extend(roads.iter().map(|road| color(road.color, 1.0)));
+    rows.extend(roads.iter().map(|road| color(road.outline, 1.0)));
+    rows.extend(roads.iter().map(|road| {
+        let center = road.center.map_or(road.color, |center| center.color);
+        color(center, 1.0)
+    }));
+    rows
 }

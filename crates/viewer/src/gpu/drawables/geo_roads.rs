@@ -2,18 +2,15 @@
 
 use std::ops::Range;
 
-use wgpu::{Device, RenderPass, RenderPipeline, vertex_attr_array};
+use wgpu::{Device, vertex_attr_array};
 
 use super::super::{
     Gpu,
     pipeline::{Shader, shader},
-    road_instances::{RoadBuffers, draw_roads, road_groups, road_recipe},
-    shared_bindings::{SharedBindings, SharedLayouts},
+    road_instances::{RoadBuffers, RoadPipeline, RoadRecipe},
+    shared_bindings::SharedLayouts,
 };
-use crate::{
-    options::ClassSet,
-    tiles::{Bed, RoadSegment, RoadSegments},
-};
+use crate::tiles::{Bed, RoadSegment, RoadSegments};
 
 pub(crate) const SHADER: Shader = shader!("roads": "common", "coverage", "roads");
 
@@ -24,32 +21,18 @@ const INSTANCE_BYTES: u64 = 60;
 const CORNERS: Range<u32> = 0..4;
 
 /// Draws roads as geometry on the ground.
-pub(crate) struct GeoRoads {
-    pipeline: RenderPipeline,
-}
-
-impl GeoRoads {
-    pub(crate) fn new(device: &Device, layouts: &SharedLayouts) -> Self {
-        let attributes = vertex_attr_array![
+pub(crate) fn pipeline(device: &Device, layouts: &SharedLayouts) -> RoadPipeline {
+    let recipe = RoadRecipe {
+        shader: SHADER,
+        instance_bytes: INSTANCE_BYTES,
+        attributes: &vertex_attr_array![
             0 => Float32x4, 1 => Float32x4, 2 => Float32x2, 3 => Uint32, 4 => Float16x4, 5 => Float16x4
-        ];
-        let groups = road_groups(layouts);
-        // Quads face anywhere, so that none is culled.
-        let recipe = road_recipe(SHADER, &groups, INSTANCE_BYTES, &attributes);
-        Self { pipeline: recipe.build(device) }
-    }
-
-    /// Draws the roads of some tiles, each given with its index in the list of tiles of the frame.
-    pub(crate) fn draw<'a>(
-        &self,
-        pass: &mut RenderPass<'_>,
-        shared: &SharedBindings,
-        tiles: impl Iterator<Item = (usize, &'a RoadBuffers)>,
-        classes: ClassSet,
-    ) {
-        pass.set_pipeline(&self.pipeline);
-        draw_roads(pass, shared, tiles, classes, &CORNERS);
-    }
+        ],
+        // A quad may face any direction, so none is culled.
+        cull: None,
+        corners: CORNERS,
+    };
+    RoadPipeline::new(device, layouts, &recipe)
 }
 
 /// Uploads the segments of a tile.
@@ -82,15 +65,17 @@ fn instance_bytes(segments: &[RoadSegment]) -> Vec<u8> {
     bytes
 }
 
-/// The bits of a 16-bit float that is not below a number from 0 up: the nearest such, or a little more.
+/// The bits of the smallest 16-bit float that is not below `value`. Below 2^-14 it may be larger than the smallest, and above
+/// 65504 it is 65504.
 fn f16_above(value: f32) -> u16 {
-    // 2^-14, below which its digits get fewer, and the greatest there is.
+    // 2^-14, the smallest 16-bit float with all its digits, and 65504, the largest that is finite.
     const LEAST: f32 = 6.103_515_6e-5;
     const MOST: f32 = 65_504.0;
     if value <= 0.0 {
         return 0;
     }
-    // Both count exponent and digits in one number; the exponents differ by 112, the digits by 13 bits.
+    // In both formats the digits follow the exponent. A 32-bit float has 13 more bits of digits, and its exponent is stored
+    // as a number that is larger by 112.
     let bits = value.clamp(LEAST, MOST).to_bits();
     (((bits + 0x1FFF) >> 13) - (112 << 10)) as u16
 }

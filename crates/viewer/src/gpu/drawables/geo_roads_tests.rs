@@ -2,7 +2,7 @@ use super::*;
 
 #[test]
 fn bounds_in_16_bits_are_never_too_low_and_hardly_too_high() {
-    // As IEEE 754 has it: 10 digits after the first.
+    // The value of a 16-bit float by IEEE 754: 10 binary digits after the first.
     let value_of = |bits: u16| {
         let digits = 1.0 + f64::from(bits & 0x3FF) / 1024.0;
         digits * 2.0_f64.powi(i32::from(bits >> 10) - 15)

@@ -5,8 +5,8 @@ use std::ops::Range;
 use wgpu::{Buffer, BufferUsages, RenderPass};
 
 use super::{
-    super::{Gpu, shared_bindings::SharedBindings},
-    sv_roads::{self, SvRoads},
+    super::{Gpu, road_instances::RoadPipeline, shared_bindings::SharedBindings},
+    sv_roads,
 };
 use crate::{
     options::ClassSet,
@@ -41,12 +41,12 @@ impl LevelConnectors {
         Self { list, instances }
     }
 
-    /// Draws them.
+    /// Draws the connectors with the pipeline of shadow volumes.
     pub(crate) fn draw(
         &self,
         pass: &mut RenderPass<'_>,
         shared: &SharedBindings,
-        volumes: &SvRoads,
+        volumes: &RoadPipeline,
     ) {
         if let Some(instances) = &self.instances {
             volumes.draw_instances(pass, shared, instances, self.runs());

@@ -1,37 +1,76 @@
-use super::{
-    super::pipeline::Shader, average, composite, difference, geo_roads, sv_roads, terrain,
-};
+use std::{collections::BTreeSet, fs, path::PathBuf};
 
-const SHADERS: [Shader; 7] = [
-    terrain::SHADER,
-    geo_roads::SHADER,
-    sv_roads::SHADER,
-    composite::BLOCKS_SHADER,
-    composite::SHADER,
-    average::SHADER,
-    difference::SHADER,
-];
+use wgpu::naga::{Module, TypeInner, front::wgsl, valid};
 
-/// Needs no GPU: every shader parses and is valid.
+use super::{composite, sv_roads, terrain};
+
+/// A `shader!` that was found in the source code of a drawable.
+struct FoundShader {
+    name: String,
+    /// Names of the files that it joins.
+    files: Vec<String>,
+}
+
+/// Every `shader!` in the files of `drawables/`. None has to be listed by hand.
+fn found_shaders() -> Vec<FoundShader> {
+    let mut found = Vec::new();
+    for file in fs::read_dir(source_folder("gpu/drawables")).unwrap() {
+        let path = file.unwrap().path();
+        if path.to_str().unwrap().ends_with("_tests.rs") {
+            continue;
+        }
+        let source = fs::read_to_string(path).unwrap();
+        for call in source.split("shader!(").skip(1) {
+            let arguments = call.split(')').next().unwrap();
+            let mut texts = arguments.split('"').skip(1).step_by(2).map(str::to_owned);
+            found.push(FoundShader { name: texts.next().unwrap(), files: texts.collect() });
+        }
+    }
+    found
+}
+
+fn source_folder(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("src").join(name)
+}
+
+impl FoundShader {
+    fn text(&self) -> String {
+        let folder = source_folder("shaders");
+        let files = self.files.iter().map(|file| folder.join(file).with_extension("wgsl"));
+        files.map(|path| fs::read_to_string(path).unwrap()).collect()
+    }
+
+    fn module(&self) -> Module {
+        let text = self.text();
+        wgsl::parse_str(&text)
+            .unwrap_or_else(|error| panic!("{}: {}", self.name, error.emit_to_string(&text)))
+    }
+}
+
 #[test]
-fn every_shader_is_valid() {
-    use wgpu::naga::{front::wgsl, valid};
-    for (name, source) in SHADERS {
-        let module = wgsl::parse_str(source).unwrap_or_else(|error| {
-            panic!("{name}: {}", error.emit_to_string(source));
-        });
+fn every_shader_is_valid_without_a_gpu() {
+    for shader in found_shaders() {
         let mut validator =
             valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::default());
-        validator.validate(&module).unwrap_or_else(|error| {
-            panic!("{name}: {}", error.emit_to_string(source));
+        validator.validate(&shader.module()).unwrap_or_else(|error| {
+            panic!("{}: {}", shader.name, error.emit_to_string(&shader.text()));
         });
     }
 }
 
-/// Needs no GPU: the uniform block has as many rows as the shaders declare.
 #[test]
-fn the_frame_block_is_as_long_as_declared() {
-    use wgpu::naga::{TypeInner, front::wgsl};
+fn every_file_of_shaders_is_used() {
+    let used: BTreeSet<String> =
+        found_shaders().into_iter().flat_map(|shader| shader.files).collect();
+    let present: BTreeSet<String> = fs::read_dir(source_folder("shaders"))
+        .unwrap()
+        .map(|file| file.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned())
+        .collect();
+    assert_eq!(used, present);
+}
+
+#[test]
+fn uniform_blocks_are_as_long_as_shaders_declare_them() {
     let camera = crate::camera::Camera::look_at(
         glam::DVec3::ZERO,
         10.0,
@@ -39,30 +78,33 @@ fn the_frame_block_is_as_long_as_declared() {
         [8, 8],
     );
     let style = corniche_styles::Style::road_atlas();
-    let view = crate::gpu::FrameView {
+    let view = crate::FrameView {
         camera: &camera,
         style: &style,
         roads: crate::RoadOptions::of(crate::RoadMethod::None),
         exaggeration: 1.0,
         point_scale: 1.0,
         height_range_m: [0.0, 1.0],
-        wireframe: crate::gpu::Wireframe::Hidden,
+        wireframe: crate::Wireframe::Hidden,
     };
-    let rows = crate::gpu::uniforms::frame_rows(&view, 1).len();
-    for (name, source) in SHADERS {
-        if [average::SHADER, difference::SHADER].contains(&(name, source)) {
-            continue;
+    let blocks = [
+        ("Frame", crate::gpu::uniforms::frame_rows(&view, 1), "common"),
+        ("GroundColors", terrain::rows(&view), "terrain"),
+        ("PictureColors", composite::rows(&view), "composite"),
+    ];
+    for (block, rows, file) in blocks {
+        for shader in found_shaders().iter().filter(|shader| shader.files.iter().any(|f| f == file))
+        {
+            let span = shader.module().types.iter().find_map(|(_, ty)| match &ty.inner {
+                TypeInner::Struct { span, .. } if ty.name.as_deref() == Some(block) => Some(*span),
+                _ => None,
+            });
+            assert_eq!(span, Some(rows.len() as u32 * 16), "{block} in {}", shader.name);
         }
-        let module = wgsl::parse_str(source).unwrap();
-        let span = module.types.iter().find_map(|(_, ty)| match &ty.inner {
-            TypeInner::Struct { span, .. } if ty.name.as_deref() == Some("Frame") => Some(*span),
-            _ => None,
-        });
-        assert_eq!(span, Some(rows as u32 * 16), "{name}");
     }
 }
 
-/// Needs no GPU: every face of a volume's box is drawn, its corners counter-clockwise seen from outside.
+/// Every face of a volume's box is drawn, and its corners are counter-clockwise seen from outside.
 #[test]
 fn the_strip_of_a_volume_goes_around_its_box() {
     let source = sv_roads::SHADER.1;

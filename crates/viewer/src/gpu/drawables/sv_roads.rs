@@ -2,18 +2,15 @@
 
 use std::ops::Range;
 
-use wgpu::{Buffer, Device, RenderPass, RenderPipeline, vertex_attr_array};
+use wgpu::{Device, vertex_attr_array};
 
 use super::super::{
     Gpu,
-    pipeline::{PipelineRecipe, Shader, shader},
-    road_instances::{RoadBuffers, draw_roads, road_groups, road_recipe},
-    shared_bindings::{SharedBindings, SharedLayouts},
+    pipeline::{Shader, shader},
+    road_instances::{RoadBuffers, RoadPipeline, RoadRecipe},
+    shared_bindings::SharedLayouts,
 };
-use crate::{
-    options::ClassSet,
-    tiles::{RoadVolume, RoadVolumes},
-};
+use crate::tiles::{RoadVolume, RoadVolumes};
 
 pub(crate) const SHADER: Shader = shader!("volumes": "common", "coverage", "volumes");
 
@@ -24,53 +21,18 @@ const INSTANCE_BYTES: u64 = 44;
 const CORNERS: Range<u32> = 0..14;
 
 /// Draws roads as shadow volumes.
-pub(crate) struct SvRoads {
-    pipeline: RenderPipeline,
-}
-
-impl SvRoads {
-    pub(crate) fn new(device: &Device, layouts: &SharedLayouts) -> Self {
-        let attributes = vertex_attr_array![
+pub(crate) fn pipeline(device: &Device, layouts: &SharedLayouts) -> RoadPipeline {
+    let recipe = RoadRecipe {
+        shader: SHADER,
+        instance_bytes: INSTANCE_BYTES,
+        attributes: &vertex_attr_array![
             0 => Float32x2, 1 => Float32x2, 2 => Float32x2, 3 => Float32x2, 4 => Float32x2, 5 => Uint32
-        ];
-        let groups = road_groups(layouts);
-        let recipe = PipelineRecipe {
-            // Only the far faces are drawn: one fragment per pixel and box, also with the eye inside the box.
-            cull: Some(wgpu::Face::Front),
-            ..road_recipe(SHADER, &groups, INSTANCE_BYTES, &attributes)
-        };
-        Self { pipeline: recipe.build(device) }
-    }
-
-    /// Draws the roads of some tiles, each given with its index in the list of tiles of the frame.
-    pub(crate) fn draw<'a>(
-        &self,
-        pass: &mut RenderPass<'_>,
-        shared: &SharedBindings,
-        tiles: impl Iterator<Item = (usize, &'a RoadBuffers)>,
-        classes: ClassSet,
-    ) {
-        pass.set_pipeline(&self.pipeline);
-        draw_roads(pass, shared, tiles, classes, &CORNERS);
-    }
-
-    /// Draws volumes that are in one buffer for all tiles: which of them belong to the tile with this index.
-    pub(crate) fn draw_instances(
-        &self,
-        pass: &mut RenderPass<'_>,
-        shared: &SharedBindings,
-        instances: &Buffer,
-        by_tile: impl Iterator<Item = (usize, Range<u32>)>,
-    ) {
-        pass.set_pipeline(&self.pipeline);
-        shared.set_frame(pass);
-        shared.set_ground(pass);
-        pass.set_vertex_buffer(0, instances.slice(..));
-        for (index, range) in by_tile {
-            shared.set_tile(pass, index);
-            pass.draw(CORNERS, range);
-        }
-    }
+        ],
+        // Only the far faces are drawn: one fragment per pixel and box, also with the eye inside the box.
+        cull: Some(wgpu::Face::Front),
+        corners: CORNERS,
+    };
+    RoadPipeline::new(device, layouts, &recipe)
 }
 
 /// Uploads the volumes of a tile.

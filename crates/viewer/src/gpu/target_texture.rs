@@ -3,12 +3,12 @@ use wgpu::{Extent3d, TextureFormat, TextureUsages, TextureView};
 use super::{Gpu, ReadBackError, read_back::read_texture};
 
 /// A texture and its only view.
-pub(crate) struct Plane {
+pub(crate) struct TargetTexture {
     texture: wgpu::Texture,
     pub(crate) view: TextureView,
 }
 
-impl Plane {
+impl TargetTexture {
     /// A texture that can be drawn into, bound and read back.
     pub(crate) fn new(gpu: &Gpu, label: &str, format: TextureFormat, size_px: [u32; 2]) -> Self {
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {

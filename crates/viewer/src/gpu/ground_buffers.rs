@@ -1,0 +1,118 @@
+//! The ground of a tile on the graphics card, which any drawable may draw with a pipeline of its own.
+
+use std::{ops::Range, sync::OnceLock};
+
+use wgpu::{
+    Buffer, BufferUsages, IndexFormat, RenderPass, VertexAttribute, VertexBufferLayout,
+    VertexStepMode, vertex_attr_array,
+};
+
+use super::Gpu;
+use crate::tiles::{GroundMesh, GroundVertex};
+
+/// Bytes of a vertex: position as three f32, normal and skirt flag as four i8.
+const VERTEX_BYTES: u64 = 16;
+const ATTRIBUTES: [VertexAttribute; 2] = vertex_attr_array![0 => Float32x3, 1 => Snorm8x4];
+
+/// The vertices of [`GroundBuffers`], as a pipeline needs them.
+pub(crate) const GROUND_VERTICES: VertexBufferLayout<'static> = VertexBufferLayout {
+    array_stride: VERTEX_BYTES,
+    step_mode: VertexStepMode::Vertex,
+    attributes: &ATTRIBUTES,
+};
+
+/// The ground of a tile on the graphics card.
+pub(crate) struct GroundBuffers {
+    vertices: Buffer,
+    indices: Buffer,
+    /// The indices of the ground, then those of the skirts.
+    surface: Range<u32>,
+    skirts: Range<u32>,
+    /// Three indices for each triangle of the ground, from which the edges are made.
+    triangles: Vec<u32>,
+    edges: OnceLock<Buffer>,
+}
+
+impl GroundBuffers {
+    /// Uploads the ground of a tile; `None` if there is none.
+    pub(crate) fn new(gpu: &Gpu, mesh: &GroundMesh) -> Option<Self> {
+        let buffer = |contents: &[u8], usage| gpu.buffer("tile", contents, usage);
+        let all = mesh.indices.len() as u32;
+        let surface = mesh.surface_indices as u32;
+        (all > 0).then(|| Self {
+            vertices: buffer(&vertex_bytes(&mesh.vertices), BufferUsages::VERTEX),
+            indices: buffer(bytemuck::cast_slice(&mesh.indices), BufferUsages::INDEX),
+            surface: 0..surface,
+            skirts: surface..all,
+            triangles: mesh.indices[..mesh.surface_indices].to_vec(),
+            edges: OnceLock::new(),
+        })
+    }
+
+    /// Bytes of the buffers that [`GroundBuffers::new`] makes of a mesh.
+    pub(crate) fn bytes_of(mesh: &GroundMesh) -> u64 {
+        mesh.vertices.len() as u64 * VERTEX_BYTES
+            + mesh.indices.len() as u64 * size_of::<u32>() as u64
+    }
+
+    /// Bytes of its buffers; the edges count once they have been drawn.
+    pub(crate) fn gpu_bytes(&self) -> u64 {
+        let buffers = [&self.vertices, &self.indices].into_iter().chain(self.edges.get());
+        buffers.map(Buffer::size).sum()
+    }
+
+    /// Two indices for each edge of the ground. The buffer is made when the edges are first drawn, because few pictures
+    /// show them.
+    fn edges(&self, gpu: &Gpu) -> &Buffer {
+        self.edges.get_or_init(|| {
+            gpu.buffer("edges", bytemuck::cast_slice(&edges(&self.triangles)), BufferUsages::INDEX)
+        })
+    }
+
+    /// Draws the triangles of the ground. Pipeline and bind groups are set.
+    pub(crate) fn draw_surface(&self, pass: &mut RenderPass<'_>) {
+        self.draw(pass, &self.indices, self.surface.clone());
+    }
+
+    /// Draws the triangles of the skirts. Pipeline and bind groups are set.
+    pub(crate) fn draw_skirts(&self, pass: &mut RenderPass<'_>) {
+        self.draw(pass, &self.indices, self.skirts.clone());
+    }
+
+    /// Draws the edges of the ground's triangles as lines. Pipeline and bind groups are set.
+    pub(crate) fn draw_edges(&self, gpu: &Gpu, pass: &mut RenderPass<'_>) {
+        let edges = self.edges(gpu);
+        self.draw(pass, edges, 0..(edges.size() / 4) as u32);
+    }
+
+    fn draw(&self, pass: &mut RenderPass<'_>, indices: &Buffer, part: Range<u32>) {
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_index_buffer(indices.slice(..), IndexFormat::Uint32);
+        pass.draw_indexed(part, 0, 0..1);
+    }
+}
+
+/// Each edge of some triangles, once.
+fn edges(triangles: &[u32]) -> Vec<[u32; 2]> {
+    let mut edges: Vec<[u32; 2]> = triangles
+        .chunks_exact(3)
+        .flat_map(|corners| [0, 1, 2].map(|k| [corners[k], corners[(k + 1) % 3]]))
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}
+
+fn vertex_bytes(vertices: &[GroundVertex]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(vertices.len() * VERTEX_BYTES as usize);
+    for vertex in vertices {
+        bytes.extend_from_slice(bytemuck::cast_slice(&vertex.position_in_tile));
+        bytes.extend_from_slice(bytemuck::cast_slice(&vertex.normal_skirt));
+    }
+    bytes
+}
+
+#[cfg(test)]
+#[path = "ground_buffers_tests.rs"]
+mod tests;
