@@ -1,4 +1,4 @@
-# Sourced by scripts/demo, scripts/test and .ci/run: finds out what is missing and installs it.
+# Sourced by scripts/demo, scripts/test and .ci/run: finds missing packages and installs them.
 # shellcheck shell=bash
 
 say() { printf '%s\n' "$*" >&2; }
@@ -30,7 +30,7 @@ missing_for_check() {
     python_with shapely >/dev/null || echo python3-shapely
 }
 
-# For the tests of the window: a display without a screen, a hand for its mouse, and what a window loads as it opens.
+# For the tests of the window: a virtual display, a program that moves the mouse there, and the libraries that a window loads.
 missing_for_window() {
     [ "$(uname -s)" != Linux ] && return 0
     command -v Xvfb >/dev/null || echo xvfb
@@ -46,7 +46,7 @@ missing_for_download() {
     command -v curl >/dev/null || { echo curl; echo ca-certificates; }
 }
 
-# Whether a shared library is installed; elsewhere than on Linux nobody asks.
+# Whether a shared library is installed. Only Linux has `ldconfig` to tell; elsewhere the answer is yes.
 has_library() {
     local libraries
     [ "$(uname -s)" != Linux ] && return 0
@@ -65,8 +65,8 @@ has_vulkan_driver() {
     return 1
 }
 
-# Prints the first Python interpreter that can import all the named modules. Debian's own comes first:
-# its packages belong to that one, whatever else is called python3.
+# Prints the first Python interpreter that can import all the named modules. Debian's own is tried first:
+# Debian's packages are installed for it, also where another program is called python3.
 python_with() {
     local candidate modules
     modules=$(IFS=,; echo "$*")
@@ -79,7 +79,7 @@ python_with() {
     return 1
 }
 
-# Installs what the functions named print. Does nothing, not even `apt-get update`, when all is there.
+# Installs the packages that the named functions print. If none is missing, it does nothing, not even `apt-get update`.
 install_missing() {
     local packages=() probe line as_root=()
     command -v cargo >/dev/null || fail 2 "cargo is missing; install Rust (https://rustup.rs)"
