@@ -16,7 +16,7 @@ const STEPS_PER_DEGREE: f64 = 1e7;
 /// Source: PMTiles version 3 specification, sections 3 and 5.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ToolRecord {
-    /// Tiles.
+    /// Number of tile ids that have a payload.
     pub addressed_tiles: u64,
     /// Directory entries that are tiles.
     pub tile_entries: u64,
