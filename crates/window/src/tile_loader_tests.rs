@@ -38,14 +38,15 @@ fn poll<T>(work: Pin<&mut (impl Future<Output = T> + ?Sized)>) -> Poll<T> {
     work.poll(&mut Context::from_waker(Waker::noop()))
 }
 
-/// Polls until it is done.
+/// Polls until it is done; it must be after so many times.
 pub(crate) fn polled<T>(work: impl Future<Output = T>) -> T {
     let mut work = pin!(work);
-    loop {
+    for _ in 0..100_000 {
         if let Poll::Ready(done) = poll(work.as_mut()) {
             return done;
         }
     }
+    panic!("the work never gets ready")
 }
 
 /// The small package of `corniche-testing`, whose tiles come late.
