@@ -8,7 +8,10 @@ use std::{
 use anyhow::{Context, Result};
 use syn::{ImplItem, Item, TraitItem, Visibility, spanned::Spanned, visit::Visit};
 
-use crate::source::{attributes_of, is_test};
+use crate::{
+    files::files_below,
+    source::{attributes_of, is_test},
+};
 
 /// What a crate amounts to. A line is counted once: as comment, as test or as product; empty lines are not counted.
 #[derive(Debug, Default, Clone, PartialEq, Eq)]
@@ -45,9 +48,7 @@ pub struct Function {
 pub fn figures(folder: &Path) -> Result<CrateFigures> {
     let mut figures = CrateFigures::default();
     for part in ["src", "tests", "benches", "examples", "fuzz_targets"] {
-        let mut files = Vec::new();
-        list(&folder.join(part), &mut files)?;
-        for file in files {
+        for file in files_below(&folder.join(part), "rs")? {
             let text = fs::read_to_string(&file)
                 .with_context(|| format!("cannot read {}", file.display()))?;
             let parsed = syn::parse_file(&text)
@@ -76,24 +77,6 @@ fn is_test_file(file: &Path) -> bool {
         stem == "tests" || stem.ends_with("_tests")
     };
     file.iter().any(is_tests)
-}
-
-fn list(folder: &Path, into: &mut Vec<PathBuf>) -> Result<()> {
-    if !folder.is_dir() {
-        return Ok(());
-    }
-    let entries =
-        fs::read_dir(folder).with_context(|| format!("cannot list {}", folder.display()))?;
-    let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<PathBuf>>>()?;
-    paths.sort();
-    for path in paths {
-        if path.is_dir() {
-            list(&path, into)?;
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            into.push(path);
-        }
-    }
-    Ok(())
 }
 
 impl CrateFigures {

@@ -15,11 +15,13 @@
 //! This package never changes a file and no product crate depends on it.
 
 mod figures;
+mod files;
 mod graph;
 mod source;
 mod uses;
 
 pub use figures::{CrateFigures, Function, figures};
+pub use files::{files_below, root};
 pub use graph::{Cycle, Graph};
 pub use source::{Crate, Module, crates_of, read_crate};
 pub use uses::{Use, uses};

@@ -1,35 +1,14 @@
 //! Where tests lie, what is visible and how long files are: the rules, held against the workspace itself.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{fs, path::PathBuf};
+
+use corniche_tidy::{files_below, root};
 
 /// Lines beyond which a file is split.
 const MAX_FILE_LINES: usize = 600;
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("lies in the workspace").to_owned()
-}
-
-/// Every file of Rust below `folder`, build output left out.
-fn rust_files(folder: &Path, into: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).expect("the folder can be listed") {
-        let path = entry.expect("the folder can be listed").path();
-        let name = path.file_name().expect("has a name").to_string_lossy().into_owned();
-        if path.is_dir() && name != "target" && !name.starts_with('.') {
-            rust_files(&path, into);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            into.push(path);
-        }
-    }
-}
-
 fn all_rust_files() -> Vec<PathBuf> {
-    let mut files = Vec::new();
-    for part in ["crates", "tests", "fuzz", "tidy"] {
-        rust_files(&root().join(part), &mut files);
-    }
+    let files = files_below(&root(), "rs").expect("the repository can be listed");
     assert!(files.len() > 100, "the workspace has more files than {}", files.len());
     files
 }

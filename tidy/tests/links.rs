@@ -1,27 +1,8 @@
 //! Every link of a page to another place of this repository leads somewhere.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::fs;
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("lies in the workspace").to_owned()
-}
-
-/// The pages of the repository, build output left out.
-fn pages(folder: &Path, into: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).expect("the folder can be listed") {
-        let path = entry.expect("the folder can be listed").path();
-        let name = path.file_name().expect("has a name").to_string_lossy().into_owned();
-        let is_skipped = name.starts_with('.') || name == "target" || name == "demo-out";
-        if path.is_dir() && !is_skipped {
-            pages(&path, into);
-        } else if path.extension().is_some_and(|extension| extension == "md") {
-            into.push(path);
-        }
-    }
-}
+use corniche_tidy::{files_below, root};
 
 /// The targets of `[text](target)` in a page, code left out.
 fn targets(text: &str) -> Vec<String> {
@@ -55,12 +36,10 @@ fn anchors(text: &str) -> Vec<String> {
 
 #[test]
 fn links_between_pages_and_files_lead_somewhere() {
-    let mut all = Vec::new();
-    pages(&root(), &mut all);
     let mut checked = 0;
     let mut broken = Vec::new();
-    for page in &all {
-        let text = fs::read_to_string(page).unwrap();
+    for page in files_below(&root(), "md").unwrap() {
+        let text = fs::read_to_string(&page).unwrap();
         for target in targets(&text) {
             if target.contains("://") || target.starts_with("mailto:") {
                 continue;

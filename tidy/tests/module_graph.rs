@@ -1,11 +1,8 @@
 //! Modules and crates use each other in one direction: the rule, held against the workspace itself.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::fs;
 
-use corniche_tidy::{Graph, crates_of, read_crate, uses};
+use corniche_tidy::{Graph, crates_of, read_crate, root, uses};
 
 /// Which crates of the workspace each crate may use, beyond what those use (`ARCHITECTURE.md`, "The crates").
 const MAY_USE: [(&str, &[&str]); 13] = [
@@ -23,10 +20,6 @@ const MAY_USE: [(&str, &[&str]); 13] = [
     ("tin", &["geom"]),
     ("geom", &[]),
 ];
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("lies in the workspace").to_owned()
-}
 
 fn all_below<'a>(name: &'a str, found: &mut Vec<&'a str>) {
     if found.contains(&name) {
