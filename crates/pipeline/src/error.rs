@@ -1,6 +1,6 @@
 use std::{io, path::PathBuf};
 
-use crate::TargetError;
+use crate::{TargetError, workers::Interrupted};
 
 /// Why a package could not be built.
 #[derive(Debug, thiserror::Error)]
@@ -80,6 +80,12 @@ pub enum BuildError {
     Coordinates(#[from] corniche_geom::CoordinateTableError),
     #[error("interrupted; nothing was written, run the same command again")]
     Interrupted,
+}
+
+impl From<Interrupted> for BuildError {
+    fn from(_: Interrupted) -> Self {
+        Self::Interrupted
+    }
 }
 
 impl BuildError {

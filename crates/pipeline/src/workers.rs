@@ -6,6 +6,30 @@ use std::{
     thread,
 };
 
+use crate::Observer;
+
+/// A run was cancelled by its [`Observer`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Interrupted;
+
+/// Does the same as [`in_order`], and asks `observer` before each item whether the run is cancelled.
+///
+/// # Errors
+/// Those of [`in_order`], or [`Interrupted`].
+pub(crate) fn in_order_unless_cancelled<S, R: Send, E: Send + From<Interrupted>>(
+    observer: &dyn Observer,
+    threads: usize,
+    count: usize,
+    start: impl Fn() -> Result<S, E> + Sync,
+    work: impl Fn(&mut S, usize) -> Result<R, E> + Sync,
+    write: impl FnMut(usize, R) -> Result<(), E>,
+) -> Result<(), E> {
+    let work = |state: &mut S, index| {
+        if observer.is_cancelled() { Err(Interrupted.into()) } else { work(state, index) }
+    };
+    in_order(threads, count, start, work, write)
+}
+
 /// State that workers and the one writer share.
 struct Queue<R, E> {
     /// Next item to be taken by a worker.
@@ -27,7 +51,7 @@ struct Queue<R, E> {
 ///
 /// # Errors
 /// The first error, in the order of the items, of `start`, `work` or `write`.
-pub(crate) fn in_order<S, R: Send, E: Send>(
+fn in_order<S, R: Send, E: Send>(
     threads: usize,
     count: usize,
     start: impl Fn() -> Result<S, E> + Sync,

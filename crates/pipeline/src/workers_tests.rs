@@ -1,4 +1,21 @@
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use super::*;
+use crate::Stage;
+
+/// Cancels the run once it was asked so many times.
+struct CancelAfter(AtomicUsize);
+
+impl Observer for CancelAfter {
+    fn begin(&self, _: Stage, _: Option<u64>) {}
+    fn advance(&self, _: Stage, _: u64) {}
+    fn end(&self, _: Stage) {}
+    fn is_cancelled(&self) -> bool {
+        let left =
+            self.0.fetch_update(Ordering::SeqCst, Ordering::SeqCst, |left| left.checked_sub(1));
+        left.is_err()
+    }
+}
 
 fn run(threads: usize, fail_at: Option<usize>) -> (Vec<usize>, Result<(), usize>) {
     let mut seen = Vec::new();
@@ -71,4 +88,26 @@ fn a_panic_of_a_worker_is_passed_on() {
         },
         |_, ()| Ok(()),
     );
+}
+
+#[test]
+fn a_run_that_is_cancelled_writes_the_first_results_and_no_other() {
+    for threads in [1, 2, 8] {
+        let observer = CancelAfter(AtomicUsize::new(20));
+        let mut written = Vec::new();
+        let result = in_order_unless_cancelled(
+            &observer,
+            threads,
+            100,
+            || Ok::<_, Interrupted>(()),
+            |(), index| Ok(index),
+            |_, index| {
+                written.push(index);
+                Ok(())
+            },
+        );
+        assert_eq!(result, Err(Interrupted));
+        assert!(written.len() <= 20, "{} items were written", written.len());
+        assert_eq!(written, (0..written.len()).collect::<Vec<_>>());
+    }
 }

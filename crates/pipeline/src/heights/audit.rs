@@ -15,16 +15,12 @@ pub(crate) fn check(
     let blocks = dem.audit_blocks();
     let mut audit = Audit::none_of(dem, allowed_m);
     observer.begin(Stage::Audit, Some(blocks.len() as u64));
-    workers::in_order(
+    workers::in_order_unless_cancelled(
+        observer,
         threads,
         blocks.len(),
         || Ok(dem.auditor(allowed_m)),
-        |auditor, index| {
-            if observer.is_cancelled() {
-                return Err(BuildError::Interrupted);
-            }
-            auditor.look(&blocks[index]).map_err(BuildError::from)
-        },
+        |auditor, index| auditor.look(&blocks[index]).map_err(BuildError::from),
         |_, part| {
             audit.merge(&part);
             observer.advance(Stage::Audit, 1);

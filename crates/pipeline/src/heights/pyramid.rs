@@ -50,14 +50,12 @@ pub(crate) fn read<'a>(
     let mut filled = 0;
     let mut range_m: Option<[f32; 2]> = None;
     let kept = Mutex::new(BTreeMap::new());
-    workers::in_order(
+    workers::in_order_unless_cancelled(
+        observer,
         threads,
         areas.len(),
-        || Ok(dem.reader(plan)),
+        || Ok::<_, BuildError>(dem.reader(plan)),
         |reader, index| {
-            if observer.is_cancelled() {
-                return Err(BuildError::Interrupted);
-            }
             let window = reader.window(block_window(&frame, areas[index]))?;
             let mut spans = Vec::new();
             for (id, block, filled) in split(areas[index], &window, frame.max_level()) {
@@ -307,14 +305,12 @@ impl Pyramid<'_> {
         ids.sort_unstable();
         ids.dedup();
         let mut made = Vec::new();
-        workers::in_order(
+        workers::in_order_unless_cancelled(
+            observer,
             threads,
             ids.len(),
             || Ok(()),
             |(), index| {
-                if observer.is_cancelled() {
-                    return Err(BuildError::Interrupted);
-                }
                 let (level, x, y) = ids[index];
                 let half = BLOCK / 2;
                 let mut heights_m = vec![f32::NAN; BLOCK * BLOCK];

@@ -99,7 +99,8 @@ pub(crate) fn measure(
     let mut under_absent: BTreeMap<u8, u64> = BTreeMap::new();
     let none = vec![SampleSums::new(levels.quantum_m()); levels.numbers().count()];
     let mut at_nodes = none.clone();
-    workers::in_order(
+    workers::in_order_unless_cancelled(
+        observer,
         threads,
         subtrees.len(),
         || Ok(()),

@@ -31,14 +31,12 @@ pub(crate) fn mesh(
     let tiles: Vec<TileId> = levels.numbers().flat_map(|level| pyramid.tiles(level)).collect();
     observer.begin(Stage::Mesh, Some(tiles.len() as u64));
     let mut meshes = Meshes::new();
-    workers::in_order(
+    workers::in_order_unless_cancelled(
+        observer,
         threads,
         tiles.len(),
         || Ok(()),
         |(), index| {
-            if observer.is_cancelled() {
-                return Err(BuildError::Interrupted);
-            }
             let id = tiles[index];
             let meshed = mesh_tile(&pyramid.tile(id, 1)?, id, levels)?;
             if meshed.tin.is_empty() {

@@ -37,17 +37,15 @@ pub(crate) fn measure(
     let none = vec![SampleSums::new(levels.quantum_m()); levels.numbers().count()];
     let mut sums = none.clone();
     observer.begin(Stage::Samples, Some(areas.len() as u64));
-    workers::in_order(
+    workers::in_order_unless_cancelled(
+        observer,
         threads,
         areas.len(),
         || {
             let grounds = Grounds { input, surfaces: BTreeMap::new(), bytes: 0, clock: 0 };
-            Ok((dem.reader(plan), grounds))
+            Ok::<_, BuildError>((dem.reader(plan), grounds))
         },
         |(reader, grounds), index| {
-            if observer.is_cancelled() {
-                return Err(BuildError::Interrupted);
-            }
             let block = reader.used_samples(&areas[index])?;
             let mut found = none.clone();
             for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {

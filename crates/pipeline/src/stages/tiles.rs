@@ -108,16 +108,12 @@ pub(crate) fn make(
             None => vec![Vec::new(); batch.len()],
         };
         let log = roads.as_ref().map(|roads| &roads.log);
-        workers::in_order(
+        workers::in_order_unless_cancelled(
+            observer,
             input.threads,
             batch.len(),
             || Ok(()),
-            |(), index| {
-                if observer.is_cancelled() {
-                    return Err(BuildError::Interrupted);
-                }
-                make_tile(input, batch[index], log, &lists[index])
-            },
+            |(), index| make_tile(input, batch[index], log, &lists[index]),
             |index, made| {
                 tiles.add(batch[index], &made, input);
                 observer.advance(Stage::Tiles, 1);

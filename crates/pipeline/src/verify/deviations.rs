@@ -61,14 +61,12 @@ pub(crate) fn measure(
     let mut truths: BTreeMap<TileId, TrueDeviation> = BTreeMap::new();
     let nodes_are_samples = plan.nodes_are_samples();
     let mut at_samples = samples::none(manifest);
-    workers::in_order(
+    workers::in_order_unless_cancelled(
+        observer,
         threads,
         finest.len(),
-        || Ok((dem.reader(plan), BTreeMap::<TileId, Rc<TriangleSoup>>::new())),
+        || Ok::<_, VerifyError>((dem.reader(plan), BTreeMap::<TileId, Rc<TriangleSoup>>::new())),
         |(reader, cache), index| {
-            if observer.is_cancelled() {
-                return Err(VerifyError::Interrupted);
-            }
             let id = finest[index];
             let read = reader.window(manifest.frame.tile_window(id))?;
             let mut found_at_samples = samples::none(manifest);

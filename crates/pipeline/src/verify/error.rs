@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use corniche_tileset::OpenError;
 
-use crate::{BuildError, inputs::InputError};
+use crate::{BuildError, inputs::InputError, workers::Interrupted};
 
 /// Why a package could not be verified.
 #[derive(Debug, thiserror::Error)]
@@ -55,6 +55,12 @@ pub enum VerifyError {
     Work(#[source] std::io::Error),
     #[error("interrupted")]
     Interrupted,
+}
+
+impl From<Interrupted> for VerifyError {
+    fn from(_: Interrupted) -> Self {
+        Self::Interrupted
+    }
 }
 
 impl From<BuildError> for VerifyError {

@@ -157,14 +157,12 @@ fn lay(
     for batch in ids.chunks(TILES_AT_ONCE) {
         let lists = roads.by_tile.lists_of(batch)?;
         let log = &roads.log;
-        workers::in_order(
+        workers::in_order_unless_cancelled(
+            observer,
             threads,
             batch.len(),
-            || Ok(SoupCache::default()),
+            || Ok::<_, VerifyError>(SoupCache::default()),
             |grounds, index| {
-                if observer.is_cancelled() {
-                    return Err(VerifyError::Interrupted);
-                }
                 let (id, ordinals) = (batch[index], &lists[index]);
                 let mut with_roads = Vec::with_capacity(ordinals.len());
                 for &ordinal in ordinals {

@@ -42,14 +42,12 @@ pub(crate) fn measure(
     let areas = dem.sample_areas();
     let mut sums = none(manifest);
     observer.begin(Stage::Samples, Some(areas.len() as u64));
-    workers::in_order(
+    workers::in_order_unless_cancelled(
+        observer,
         settings.threads,
         areas.len(),
-        || Ok((dem.reader(plan), BTreeMap::<TileId, TriangleSoup>::new())),
+        || Ok::<_, VerifyError>((dem.reader(plan), BTreeMap::<TileId, TriangleSoup>::new())),
         |(reader, grounds), index| {
-            if observer.is_cancelled() {
-                return Err(VerifyError::Interrupted);
-            }
             let block = reader.used_samples(&areas[index])?;
             let mut found = none(manifest);
             for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {

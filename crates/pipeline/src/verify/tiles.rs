@@ -35,17 +35,12 @@ pub(crate) fn verify(
     let mut finest_length_m = 0.0;
     let mut ways = Ways::default();
     let mut sums: BTreeMap<u8, TileSums> = BTreeMap::new();
-    workers::in_order(
+    workers::in_order_unless_cancelled(
+        observer,
         threads,
         ids.len(),
-        || Ok(Ancestors::new()),
-        |above, index| {
-            if observer.is_cancelled() {
-                Err(VerifyError::Interrupted)
-            } else {
-                Ok(look_at(package, ids[index], levels.as_ref(), above))
-            }
-        },
+        || Ok::<_, VerifyError>(Ancestors::new()),
+        |above, index| Ok(look_at(package, ids[index], levels.as_ref(), above)),
         |index, found: Found| {
             let id = ids[index];
             findings.look(CheckId::Whole, found.damage.is_none(), || {

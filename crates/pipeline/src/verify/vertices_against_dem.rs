@@ -51,16 +51,12 @@ pub(crate) fn verify(
     });
     let ids = package.tile_ids()?;
     observer.begin(Stage::Verify, Some(ids.len() as u64));
-    workers::in_order(
+    workers::in_order_unless_cancelled(
+        observer,
         threads,
         ids.len(),
         || Ok(()),
-        |(), index| {
-            if observer.is_cancelled() {
-                return Err(VerifyError::Interrupted);
-            }
-            look_at(package, &pyramid, ids[index])
-        },
+        |(), index| look_at(package, &pyramid, ids[index]),
         |_, found: Findings| {
             findings.merge(found);
             observer.advance(Stage::Verify, 1);
