@@ -64,6 +64,8 @@ pub enum BuildError {
     MaxError { max_error_m: f64 },
     #[error("intermediate results could not be kept beside the package (disk full?)")]
     Storage(#[source] io::Error),
+    #[error(transparent)]
+    Store(#[from] corniche_store::StoreError),
     #[error("intermediate results beside the package were damaged while the build ran: {what}")]
     Damaged { what: String },
     #[error("tile {id} could not be triangulated")]

@@ -1,0 +1,83 @@
+//! What a build keeps in its store: the one list of kinds.
+//!
+//! | kind | key | what it holds | made by | read by |
+//! |---|---|---|---|---|
+//! | `InputHash` | input, by its place in the plan | size and SHA-256 of its content | hashes | merge |
+//! | `RoadPieces` | tile | the pieces of roads that meet the tile, simplified for its level | roads | tiles, merge |
+//! | `RoadLengths` | block of ordinals | way id, true length and length outside the data of each road | roads | merge |
+//! | `RoadTotals` | 0 | counts, classes, defects, what the extract held | roads | merge |
+//! | `Audit` | block of samples | what was seen of heights that cannot be | heights | tiles, merge |
+//! | `Heights` | finest tile | heights of its nodes with one node of halo; which of them are filled voids | heights | tiles |
+//! | `Area` | tile, two levels above the finest | which of its tiles have heights; counts and range | heights | top, tiles, merge |
+//! | `Raster` | coarse tile | heights of its nodes without the east and south border | heights, top | top, tiles |
+//! | `Tin` | coarse tile | its TIN with normals; empty where it has no ground | top, tiles | tiles, merge |
+//! | `Record` | tile | counts and sums, deviations of itself and its share in those of its ancestors | tiles, merge | merge |
+//! | `Payload` | tile | its encoded bytes | tiles, merge | merge |
+//!
+//! A tile is finished when its `Record` is there: it is put last. So is an area when its `Area` is there, and the roads when
+//! `RoadTotals` is.
+
+use corniche_geom::TileId;
+use corniche_store::{Artifacts, Key};
+use corniche_tileset::pmtiles_order;
+use serde::{Serialize, de::DeserializeOwned};
+
+use crate::BuildError;
+
+/// What an artifact holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub(crate) enum Kind {
+    InputHash,
+    RoadPieces,
+    RoadLengths,
+    RoadTotals,
+    Audit,
+    Heights,
+    Area,
+    Raster,
+    Tin,
+    Record,
+    Payload,
+}
+
+impl Kind {
+    /// The key of what belongs to a tile.
+    pub(crate) fn of_tile(self, id: TileId) -> Key {
+        self.item(pmtiles_order(id))
+    }
+
+    /// The key of what has a number.
+    pub(crate) fn item(self, item: u64) -> Key {
+        Key { kind: self as u8, item }
+    }
+}
+
+/// Keeps a value under a key.
+pub(crate) fn put<T: Serialize>(
+    store: &dyn Artifacts,
+    key: Key,
+    value: &T,
+) -> Result<(), BuildError> {
+    let bytes = bincode::serde::encode_to_vec(value, bincode::config::standard())
+        .map_err(|error| damaged(key, &error))?;
+    Ok(store.put(key, &bytes)?)
+}
+
+/// The value under a key; `None` if there is nothing.
+pub(crate) fn get<T: DeserializeOwned>(
+    store: &dyn Artifacts,
+    key: Key,
+) -> Result<Option<T>, BuildError> {
+    let Some(bytes) = store.get(key)? else { return Ok(None) };
+    match bincode::serde::decode_from_slice(&bytes, bincode::config::standard()) {
+        Ok((value, used)) if used == bytes.len() => Ok(Some(value)),
+        Ok(_) => Err(damaged(key, &"it is longer than what it holds")),
+        Err(error) => Err(damaged(key, &error)),
+    }
+}
+
+/// The error for an artifact whose bytes are as they were kept, but make no sense.
+pub(crate) fn damaged(key: Key, what: &dyn std::fmt::Display) -> BuildError {
+    BuildError::Damaged { what: format!("artifact {} of kind {}: {what}", key.item, key.kind) }
+}
