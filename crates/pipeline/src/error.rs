@@ -62,8 +62,10 @@ pub enum BuildError {
     Start { what: String },
     #[error("--max-error must be from 1e-9 to 1e9 metres, not {max_error_m}")]
     MaxError { max_error_m: f64 },
-    #[error("intermediate results could not be kept beside the package (disk full?)")]
-    Storage(#[source] io::Error),
+    #[error("{what} is missing in the store; run the step {step} first")]
+    Missing { what: String, step: &'static str },
+    #[error("roads could not be sorted on the disk")]
+    Sort(#[source] io::Error),
     #[error(transparent)]
     Store(#[from] corniche_store::StoreError),
     #[error("intermediate results beside the package were damaged while the build ran: {what}")]

@@ -113,20 +113,55 @@ impl Inputs {
         Ok(Self { files })
     }
 
+    /// How many files there are.
+    pub(crate) fn len(&self) -> usize {
+        self.files.len()
+    }
+
+    /// The name of a file, without folders.
+    pub(crate) fn name(&self, index: usize) -> &str {
+        &self.files[index].name
+    }
+
     /// Hashes the content of every file. The parts of a raster come after it, sorted.
     pub(crate) fn hash(&self, observer: &dyn Observer) -> Result<Vec<InputRecord>, InputError> {
-        observer.begin(Stage::Hash, Some(self.files.len() as u64));
         let mut records: Vec<InputRecord> = Vec::new();
-        for input in &self.files {
-            records.push(input.hash(observer)?);
+        self.hash_each(
+            |_| false,
+            observer,
+            |_, record| {
+                records.push(record);
+                Ok::<_, InputError>(())
+            },
+        )?;
+        Self::in_order(&mut records);
+        Ok(records)
+    }
+
+    /// Hashes the files that are not done yet and hands on what each of them is.
+    pub(crate) fn hash_each<E: From<InputError>>(
+        &self,
+        is_done: impl Fn(usize) -> bool,
+        observer: &dyn Observer,
+        mut take: impl FnMut(usize, InputRecord) -> Result<(), E>,
+    ) -> Result<(), E> {
+        observer.begin(Stage::Hash, Some(self.files.len() as u64));
+        for (index, input) in self.files.iter().enumerate() {
+            if !is_done(index) {
+                take(index, input.hash(observer)?)?;
+            }
             observer.advance(Stage::Hash, 1);
         }
+        observer.end(Stage::Hash);
+        Ok(())
+    }
+
+    /// Sorts the parts of each raster, which GDAL lists in any order.
+    pub(crate) fn in_order(records: &mut [InputRecord]) {
         let is_part = |record: &InputRecord| InputKind::DemPart.is_of(record);
         for parts in records.chunk_by_mut(|a, b| is_part(a) && is_part(b)) {
             parts.sort_by(|a, b| (&a.name, &a.sha256).cmp(&(&b.name, &b.sha256)));
         }
-        observer.end(Stage::Hash);
-        Ok(records)
     }
 
     /// Fails if a file is no longer what it was when it was found.

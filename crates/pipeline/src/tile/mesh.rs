@@ -1,60 +1,25 @@
-//! Makes every tile's TIN, each by itself, and keeps it in storage.
-
-use std::collections::BTreeMap;
+//! Heights of a tile to its TIN, and the TINs of coarse tiles as artifacts.
 
 use corniche_geom::{HeightGrid, TileId};
+use corniche_store::Artifacts;
 use corniche_tin::{Tin, TinSpec, TinVertex};
 
 use crate::{
-    BuildError, Observer, Stage, Storage, heights::pyramid::Pyramid, levels::Levels, storage::Kind,
-    storage::Span, workers,
+    BuildError,
+    artifacts::{Kind, damaged},
+    levels::Levels,
 };
 
 /// A tile's ground as meshed, before it is measured.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Meshed {
     pub(crate) tin: Tin,
     pub(crate) normals: Vec<[i8; 2]>,
 }
 
-/// Where each tile's mesh is kept. Tiles without ground are absent.
-pub(crate) type Meshes = BTreeMap<TileId, Span>;
-
-/// Triangulates all tiles of all levels.
-pub(crate) fn mesh(
-    pyramid: &Pyramid<'_>,
-    levels: &Levels,
-    threads: usize,
-    storage: &dyn Storage,
-    observer: &dyn Observer,
-) -> Result<Meshes, BuildError> {
-    let tiles: Vec<TileId> = levels.numbers().flat_map(|level| pyramid.tiles(level)).collect();
-    observer.begin(Stage::Mesh, Some(tiles.len() as u64));
-    let mut meshes = Meshes::new();
-    workers::in_order_unless_cancelled(
-        observer,
-        threads,
-        tiles.len(),
-        || Ok(()),
-        |(), index| {
-            let id = tiles[index];
-            let meshed = mesh_tile(&pyramid.tile(id, 1)?, id, levels)?;
-            if meshed.tin.is_empty() {
-                return Ok(None);
-            }
-            storage.append(Kind::Tins, &to_bytes(&meshed)).map(Some).map_err(BuildError::Storage)
-        },
-        |index, span| {
-            meshes.extend(span.map(|span| (tiles[index], span)));
-            observer.advance(Stage::Mesh, 1);
-            Ok(())
-        },
-    )?;
-    observer.end(Stage::Mesh);
-    Ok(meshes)
-}
-
-fn mesh_tile(
+/// Triangulates the heights of a tile (259 × 259 nodes, one of them halo on every side). The TIN is empty where no cell has
+/// ground.
+pub(crate) fn mesh_tile(
     heights_with_halo: &HeightGrid,
     id: TileId,
     levels: &Levels,
@@ -66,14 +31,21 @@ fn mesh_tile(
     Ok(Meshed { tin, normals })
 }
 
-/// Reads a mesh back.
-pub(crate) fn load(storage: &dyn Storage, id: TileId, span: Span) -> Result<Meshed, BuildError> {
-    let bytes = storage.read(Kind::Tins, span).map_err(BuildError::Storage)?;
-    from_bytes(&bytes).ok_or_else(|| BuildError::Damaged { what: format!("the mesh of tile {id}") })
+impl Meshed {
+    pub(crate) fn put(&self, store: &dyn Artifacts, id: TileId) -> Result<(), BuildError> {
+        Ok(store.put(Kind::Tin.of_tile(id), &to_bytes(self))?)
+    }
+
+    /// The TIN of a coarse tile; `None` where there is none, or an empty one: the tile has no ground.
+    pub(crate) fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<Self>, BuildError> {
+        let key = Kind::Tin.of_tile(id);
+        let Some(bytes) = store.get(key)? else { return Ok(None) };
+        let meshed = from_bytes(&bytes).ok_or_else(|| damaged(key, &"it is no TIN"))?;
+        Ok(Some(meshed).filter(|meshed| !meshed.tin.is_empty()))
+    }
 }
 
-/// Counts, then vertices (row, column, height), normals, triangles; all little-endian. Only this process
-/// reads it back, so it is neither compressed nor versioned.
+/// Counts, then vertices (row, column, height), normals, triangles; all little-endian.
 fn to_bytes(Meshed { tin, normals }: &Meshed) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(8 + tin.vertices().len() * 10 + tin.triangles().len() * 12);
     bytes.extend((tin.vertices().len() as u32).to_le_bytes());

@@ -1,23 +1,19 @@
-//! The manifest and the package file.
-
-use std::path::Path;
+//! The manifest: the package's table of contents, from the context and the sums over all tiles.
 
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{Bounds, CoordinateTable, CoordinateTableError};
 use corniche_tileset::{
     Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest,
-    SampleCounts, ScaleRecord, VerticalRecord, Writer,
+    ScaleRecord, VerticalRecord,
 };
 
-use super::{deviations::TileDeviations, tiles::Tiles};
+use super::{heights::HeightSums, sums::TileSums};
 use crate::{
-    BuildError, BuildSettings, Observer, Stage, Storage,
-    levels::Levels,
+    BuildError,
+    context::Context,
     manifest_texts,
-    roads::{counts::road_counts, read::ReadRoads},
-    sample_deviation::SampleSums,
+    roads::{counts::road_counts, losses, totals::RoadTotals},
     settings_record,
-    storage::Kind,
 };
 
 /// How far positions that are interpolated from the manifest may be off.
@@ -25,20 +21,11 @@ const COORDINATE_TOLERANCE_M: f64 = 0.01;
 
 /// Everything that goes into the manifest.
 pub(crate) struct Outcome<'a> {
-    pub(crate) settings: &'a BuildSettings,
-    pub(crate) max_error_m: f64,
-    pub(crate) plan: &'a GridPlan,
-    pub(crate) levels: &'a Levels,
-    pub(crate) coordinates: &'a CoordinateTable,
+    pub(crate) context: &'a Context<'a>,
     pub(crate) inputs: Vec<InputRecord>,
-    pub(crate) samples: SampleCounts,
-    /// Heights of the lowest and the highest node.
-    pub(crate) range_m: [f32; 2],
-    pub(crate) roads: Option<&'a ReadRoads<'a>>,
-    pub(crate) tiles: &'a Tiles,
-    pub(crate) deviations: &'a TileDeviations,
-    /// Per level, root first.
-    pub(crate) sample_sums: &'a [SampleSums],
+    pub(crate) heights: HeightSums,
+    pub(crate) roads: Option<(&'a RoadTotals, &'a losses::Sums)>,
+    pub(crate) tiles: &'a TileSums,
 }
 
 /// Longitudes and latitudes over the data's rectangle, for readers without PROJ.
@@ -64,10 +51,10 @@ pub(crate) fn coordinates(dem: &Dem, plan: &GridPlan) -> Result<CoordinateTable,
 }
 
 /// Puts the manifest together.
-pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
-    let Outcome { settings, plan, levels, .. } = outcome;
+pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
+    let Context { settings, grid: plan, levels, .. } = *outcome.context;
     let frame = *levels.frame();
-    let record = settings_record::of(&settings.terrain, &settings.roads, outcome.max_error_m);
+    let record = settings_record::of(&settings.terrain, &settings.roads, outcome.context.max_error_m);
     let mut attribution = settings.attribution.clone();
     if outcome.roads.is_some() {
         attribution.push(corniche_osm::ATTRIBUTION.to_owned());
@@ -95,9 +82,9 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
             unit: manifest_texts::HEIGHT_UNIT.to_owned(),
             datum: manifest_texts::datum(plan).to_owned(),
             treatment: plan.vertical.clone(),
-            range_m: outcome.range_m.map(f64::from),
+            range_m: outcome.heights.range_m.map(f64::from),
         },
-        coordinates: outcome.coordinates.clone(),
+        coordinates: outcome.context.coordinates.clone(),
         levels: level_records(outcome),
         settings_sha256: settings_record::sha256(&record),
         settings: record,
@@ -109,7 +96,7 @@ pub(crate) fn manifest(outcome: &Outcome<'_>) -> Manifest {
 }
 
 fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
-    let levels = outcome.levels;
+    let levels = outcome.context.levels;
     levels
         .numbers()
         .map(|level| {
@@ -121,7 +108,7 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
                 max_error_m: levels.max_error_m(level),
                 geometric_error_m: errors_m.map_or(0.0, |errors_m| errors_m.max),
                 errors_m,
-                sample_error: outcome.sample_sums[usize::from(level)].record(),
+                sample_error: outcome.tiles.samples[usize::from(level)].record(),
                 tightness: Distribution::of(sums.tightness),
                 least_class: levels
                     .least_class(level)
@@ -132,7 +119,7 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
                 triangles: sums.triangles,
                 vertices: sums.vertices,
                 terrain_bytes: sums.terrain_bytes,
-                uncovered_nodes: sums.uncovered_nodes + outcome.deviations.under_absent(level),
+                uncovered_nodes: sums.uncovered_nodes,
             }
         })
         .collect()
@@ -140,9 +127,9 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
 
 /// Counts of roads: read, kept, and lost by reason.
 fn counts(outcome: &Outcome<'_>) -> Counts {
-    let samples = outcome.samples;
+    let samples = outcome.heights.samples;
     match outcome.roads {
-        Some(roads) => road_counts(samples, roads, &outcome.tiles.roads),
+        Some((totals, losses)) => road_counts(samples, totals, losses),
         None => Counts { samples, ..Counts::default() },
     }
 }
@@ -150,7 +137,6 @@ fn counts(outcome: &Outcome<'_>) -> Counts {
 fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {
     outcome
         .tiles
-        .roads
         .classes
         .iter()
         .filter(|(_, sums)| sums.source_vertices > 0)
@@ -170,27 +156,3 @@ fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {
         .collect()
 }
 
-/// Writes the package to `path`.
-pub(crate) fn write(
-    path: &Path,
-    target: &Path,
-    manifest: &Manifest,
-    tiles: &Tiles,
-    storage: &dyn Storage,
-    observer: &dyn Observer,
-) -> Result<(), BuildError> {
-    let failed = |source| BuildError::Write { path: target.to_path_buf(), source };
-    observer.begin(Stage::Package, Some(tiles.payloads.len() as u64));
-    let mut writer = Writer::create(path, manifest).map_err(failed)?;
-    for &(id, span) in &tiles.payloads {
-        if observer.is_cancelled() {
-            return Err(BuildError::Interrupted);
-        }
-        let bytes = storage.read(Kind::Payloads, span).map_err(BuildError::Storage)?;
-        writer.add(id, &bytes).map_err(failed)?;
-        observer.advance(Stage::Package, 1);
-    }
-    writer.finish().map_err(failed)?;
-    observer.end(Stage::Package);
-    Ok(())
-}
