@@ -1,4 +1,4 @@
-//! Intermediate results of a run: pyramid levels, TINs, roads and payloads, kept outside memory.
+//! Intermediate results of a run: pyramid levels, TINs and payloads, kept outside memory.
 
 use std::{
     fs::File,
@@ -14,15 +14,11 @@ pub(crate) enum Kind {
     Heights,
     /// Triangulated tiles.
     Tins,
-    /// Roads as read.
-    Roads,
-    /// Which roads meet which tile.
-    RoadTiles,
     /// Encoded payloads.
     Payloads,
 }
 
-const KINDS: usize = 5;
+const KINDS: usize = 3;
 
 /// Where something was put.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,13 +80,7 @@ impl DiskStorage {
                 .open(folder.join(name))?;
             Ok((file, Mutex::new(0)))
         };
-        let files = [
-            open("heights")?,
-            open("tins")?,
-            open("roads")?,
-            open("road-tiles")?,
-            open("payloads")?,
-        ];
+        let files = [open("heights")?, open("tins")?, open("payloads")?];
         Ok(Self { files })
     }
 }

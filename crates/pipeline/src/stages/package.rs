@@ -14,7 +14,7 @@ use crate::{
     BuildError, BuildSettings, Observer, Stage, Storage,
     levels::Levels,
     manifest_texts,
-    roads::{counts::road_counts, read::ReadRoads},
+    roads::{counts::road_counts, losses::Sums, totals::RoadTotals},
     sample_deviation::SampleSums,
     settings_record,
     storage::Kind,
@@ -34,7 +34,7 @@ pub(crate) struct Outcome<'a> {
     pub(crate) samples: SampleCounts,
     /// Heights of the lowest and the highest node.
     pub(crate) range_m: [f32; 2],
-    pub(crate) roads: Option<&'a ReadRoads<'a>>,
+    pub(crate) roads: Option<&'a (RoadTotals, Sums)>,
     pub(crate) tiles: &'a Tiles,
     pub(crate) deviations: &'a TileDeviations,
     /// Per level, root first.
@@ -142,7 +142,7 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
 fn counts(outcome: &Outcome<'_>) -> Counts {
     let samples = outcome.samples;
     match outcome.roads {
-        Some(roads) => road_counts(samples, roads, &outcome.tiles.roads),
+        Some((totals, losses)) => road_counts(samples, totals, losses),
         None => Counts { samples, ..Counts::default() },
     }
 }
@@ -150,7 +150,6 @@ fn counts(outcome: &Outcome<'_>) -> Counts {
 fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {
     outcome
         .tiles
-        .roads
         .classes
         .iter()
         .filter(|(_, sums)| sums.source_vertices > 0)

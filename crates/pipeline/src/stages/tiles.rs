@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use corniche_drape::{Neighbours, OwnedBorders};
 use corniche_geom::TileId;
 use corniche_roads::FunctionalRoadClass;
+use corniche_store::Artifacts;
 use corniche_tileset::{
     EncodedTile, PayloadContext, Terrain, TilePayload, VerticalRecord, pmtiles_order,
 };
@@ -19,10 +20,9 @@ use crate::{
     heights::pyramid::Pyramid,
     levels::Levels,
     roads::{
-        lay::{ClassSums, Laid, LaidSums, RoadFate, TileToLayOn, lost_road},
-        lengths::TrueLengths,
-        log::RoadLog,
-        read::{ReadRoads, TILES_AT_ONCE},
+        lay::{ClassSums, Laid, RoadFate, TileToLayOn, lost_pieces},
+        losses::LossFold,
+        pieces::TilePieces,
         shares::share,
     },
     storage::Kind,
@@ -35,7 +35,8 @@ pub(crate) struct Tiles {
     /// Payloads in package order.
     pub(crate) payloads: Vec<(TileId, Span)>,
     pub(crate) levels: BTreeMap<u8, LevelSums>,
-    pub(crate) roads: LaidSums,
+    /// Sums of roads by level and class.
+    pub(crate) classes: BTreeMap<(u8, u8), ClassSums>,
 }
 
 /// Sums over the tiles of a level.
@@ -55,12 +56,13 @@ pub(crate) struct LevelSums {
 /// What every tile needs.
 pub(crate) struct TileInput<'a> {
     pub(crate) levels: &'a Levels,
-    pub(crate) lengths: &'a TrueLengths<'a>,
     pub(crate) meshes: &'a Meshes,
     pub(crate) deviations: &'a TileDeviations,
     pub(crate) pyramid: &'a Pyramid<'a>,
     /// The finest tiles on which the data's rectangle lies.
     pub(crate) data_tiles: &'a [TileId],
+    /// Holds the pieces of roads.
+    pub(crate) pieces: &'a dyn Artifacts,
     pub(crate) storage: &'a dyn Storage,
     pub(crate) threads: usize,
 }
@@ -81,46 +83,36 @@ struct Kept {
     classes: BTreeMap<u8, ClassSums>,
 }
 
-/// Makes and keeps all payloads.
+/// Makes and keeps all payloads. What becomes of roads goes to `fates`; without it there are no roads.
 pub(crate) fn make(
     input: &TileInput<'_>,
-    roads: Option<&mut ReadRoads<'_>>,
+    mut fates: Option<&mut LossFold<'_>>,
     observer: &dyn Observer,
 ) -> Result<Tiles, BuildError> {
     let mut ids: Vec<TileId> = input.meshes.keys().copied().collect();
-    if roads.is_some() {
+    if fates.is_some() {
         // Roads on tiles of the data without any ground are lost there, and counted there.
         ids.extend(input.data_tiles.iter().filter(|id| !input.meshes.contains_key(id)));
     }
     ids.sort_unstable_by_key(|&id| pmtiles_order(id));
     observer.begin(Stage::Tiles, Some(ids.len() as u64));
-    let road_count = roads.as_ref().map_or(0, |roads| roads.log.len());
-    let mut tiles = Tiles {
-        payloads: Vec::new(),
-        levels: BTreeMap::new(),
-        roads: LaidSums::of_roads(road_count),
-    };
-    let mut roads = roads;
-    // In batches, so that the lists of roads in memory stay few.
-    for batch in ids.chunks(TILES_AT_ONCE) {
-        let lists = match &mut roads {
-            Some(roads) => roads.by_tile.lists_of(batch)?,
-            None => vec![Vec::new(); batch.len()],
-        };
-        let log = roads.as_ref().map(|roads| &roads.log);
-        workers::in_order_unless_cancelled(
-            observer,
-            input.threads,
-            batch.len(),
-            || Ok(()),
-            |(), index| make_tile(input, batch[index], log, &lists[index]),
-            |index, made| {
-                tiles.add(batch[index], &made, input);
-                observer.advance(Stage::Tiles, 1);
-                Ok(())
-            },
-        )?;
-    }
+    let mut tiles =
+        Tiles { payloads: Vec::new(), levels: BTreeMap::new(), classes: BTreeMap::new() };
+    workers::in_order_unless_cancelled(
+        observer,
+        input.threads,
+        ids.len(),
+        || Ok(()),
+        |(), index| make_tile(input, ids[index]),
+        |index, made| {
+            tiles.add(ids[index], &made, input);
+            if let Some(fates) = &mut fates {
+                fates.add(&made.fates)?;
+            }
+            observer.advance(Stage::Tiles, 1);
+            Ok(())
+        },
+    )?;
     observer.end(Stage::Tiles);
     Ok(tiles)
 }
@@ -142,39 +134,25 @@ impl Tiles {
             }
             level.uncovered_nodes += deviation.uncovered_nodes;
             for (&class, counted) in &kept.classes {
-                let sums = self.roads.classes.entry((id.z(), class)).or_default();
-                sums.source_vertices += counted.source_vertices;
-                sums.simplified_vertices += counted.simplified_vertices;
-                sums.geo_vertices += counted.geo_vertices;
-                sums.sv_vertices += counted.sv_vertices;
-                sums.geo_stored_bytes += counted.geo_stored_bytes;
-                sums.sv_stored_bytes += counted.sv_stored_bytes;
+                self.classes.entry((id.z(), class)).or_default().merge(counted);
             }
         }
-        self.roads.add_fates(&made.fates);
     }
 }
 
-fn make_tile(
-    input: &TileInput<'_>,
-    id: TileId,
-    log: Option<&RoadLog<'_>>,
-    ordinals: &[u32],
-) -> Result<Made, BuildError> {
+fn make_tile(input: &TileInput<'_>, id: TileId) -> Result<Made, BuildError> {
     let levels = input.levels;
     let frame = levels.frame();
+    let pieces = TilePieces::load(input.pieces, id)?;
+    let owned = owned_borders(input, id, &pieces)?;
     let Some(span) = input.meshes.get(&id) else {
-        return lost_roads(input, id, log, ordinals);
+        let bounds = frame.tile_lattice_bounds(id);
+        return Ok(Made { kept: None, fates: lost_pieces(&pieces, &bounds, owned) });
     };
     let meshed = mesh::load(input.storage, id, *span)?;
     let surface = Surface::new(&meshed.tin, Placement::of_tile(frame, id, levels.quantum_m()));
-    let mut laid = Laid::default();
-    let on = TileToLayOn { id, surface: &surface, owned: owned_borders(input, id, ordinals)? };
-    for &ordinal in ordinals {
-        if let Some(log) = log {
-            laid.lay(&log.load(ordinal)?, ordinal, &on, levels, input.lengths);
-        }
-    }
+    let on = TileToLayOn { id, surface: &surface, owned };
+    let mut laid = Laid::of_tile(&pieces, &on, levels);
     let fates = std::mem::take(&mut laid.fates);
     let laid_classes = std::mem::take(&mut laid.classes);
     let deviation = input.deviations.of(id);
@@ -203,9 +181,9 @@ fn make_tile(
 fn owned_borders(
     input: &TileInput<'_>,
     id: TileId,
-    ordinals: &[u32],
+    pieces: &TilePieces,
 ) -> Result<OwnedBorders, BuildError> {
-    if ordinals.is_empty() {
+    if pieces.roads.is_empty() {
         return Ok(OwnedBorders::ALL);
     }
     let is_asked = |east, south| {
@@ -227,23 +205,6 @@ fn is_among(data_tiles: &[TileId], id: TileId) -> bool {
     id.z() == first.z()
         && (first.x()..=last.x()).contains(&id.x())
         && (first.y()..=last.y()).contains(&id.y())
-}
-
-/// The parts of roads that are lost because a finest tile has no ground.
-fn lost_roads(
-    input: &TileInput<'_>,
-    id: TileId,
-    log: Option<&RoadLog<'_>>,
-    ordinals: &[u32],
-) -> Result<Made, BuildError> {
-    let bounds = input.levels.frame().tile_lattice_bounds(id);
-    let owned = owned_borders(input, id, ordinals)?;
-    let mut fates = Vec::new();
-    for &ordinal in ordinals {
-        let Some(log) = log else { continue };
-        fates.push((ordinal, lost_road(&log.load(ordinal)?, &bounds, owned, input.lengths)));
-    }
-    Ok(Made { kept: None, fates })
 }
 
 /// Adds vertices by class, and each section's stored bytes shared out by the classes' encoded lengths.
