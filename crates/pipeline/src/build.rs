@@ -16,6 +16,7 @@ use std::{
 };
 
 use corniche_dem::{Dem, DemProjection, GridPlan};
+use corniche_store::{Artifacts, MemoryScratch, MemoryStore, Scratch};
 use corniche_tileset::Manifest;
 
 use crate::{
@@ -24,7 +25,7 @@ use crate::{
     heights::{audit, pyramid},
     inputs::Inputs,
     levels::{Levels, most_scale},
-    roads::{lengths::TrueLengths, losses, read},
+    roads::{lengths::TrueLengths, losses::LossFold, overlap, partition, totals::RoadTotals},
     stages::{deviations, mesh, package, samples, tiles},
 };
 
@@ -138,18 +139,19 @@ struct RoadGrid<'a> {
 }
 
 /// Reads the extract; fails if none of its roads lies on the elevation data.
-fn read_roads<'a>(
+fn read_roads(
     osm: &Path,
     settings: &BuildSettings,
     grid: &RoadGrid<'_>,
-    storage: &'a dyn Storage,
+    store: &dyn Artifacts,
+    scratch: &dyn Scratch,
     observer: &dyn Observer,
-) -> Result<read::ReadRoads<'a>, BuildError> {
+) -> Result<RoadTotals, BuildError> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(settings.resources.threads)
         .build()
         .map_err(|error| not_started(&error))?;
-    let input = read::RoadInput {
+    let input = partition::RoadInput {
         osm,
         settings: &settings.roads,
         projection: grid.projection,
@@ -159,8 +161,8 @@ fn read_roads<'a>(
         pool: &pool,
         memory_bytes: settings.resources.memory_bytes / 4,
     };
-    let roads = read::read(&input, storage, observer)?;
-    read::check_overlap(&roads, &input, grid.plan)?;
+    let roads = partition::partition(&input, store, scratch, observer)?;
+    overlap::check_overlap(&roads, osm, grid.levels.frame(), grid.projection, grid.plan)?;
     Ok(roads)
 }
 
@@ -211,8 +213,9 @@ fn run(
     let data_tiles = pyramid::data_tiles(&plan);
     let grid =
         RoadGrid { plan: &plan, projection: &projection, levels: &levels, lengths: &lengths };
-    let mut roads = match &settings.osm {
-        Some(osm) => Some(read_roads(osm, settings, &grid, storage, observer)?),
+    let (pieces, scratch) = (MemoryStore::default(), MemoryScratch::default());
+    let roads = match &settings.osm {
+        Some(osm) => Some(read_roads(osm, settings, &grid, &pieces, &scratch, observer)?),
         None => None,
     };
     audit::check(&dem, terrain.height_range_m, threads, observer)?;
@@ -229,23 +232,29 @@ fn run(
         let grounds = samples::GroundInput { meshes: &meshes, levels: &levels, storage, bytes };
         samples::measure(&dem, &plan, &grounds, threads, observer)?
     };
+    let mut fates =
+        roads.as_ref().map(|_| LossFold::new(&scratch, settings.resources.memory_bytes / 4));
     let tiles = tiles::make(
         &tiles::TileInput {
             levels: &levels,
-            lengths: &lengths,
             meshes: &meshes,
             deviations: &deviations,
             pyramid: &pyramid,
             data_tiles: &data_tiles,
+            pieces: &pieces,
             storage,
             threads,
         },
-        roads.as_mut(),
+        fates.as_mut(),
         observer,
     )?;
-    if let Some(roads) = &roads {
-        losses::report(roads, &tiles.roads, observer)?;
-    }
+    let roads = match roads.zip(fates) {
+        Some((totals, fates)) => {
+            let losses = fates.finish(&totals, &pieces, observer)?;
+            Some((totals, losses))
+        }
+        None => None,
+    };
     let manifest = package::manifest(&package::Outcome {
         settings,
         max_error_m,
