@@ -15,22 +15,18 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_dem::{Dem, DemProjection, GridPlan};
+use corniche_dem::{DemProjection, GridPlan};
 use corniche_tileset::Manifest;
 
 use crate::{
-    BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage, TerrainSettings,
-    file_target,
+    BuildError, BuildSettings, DiskStorage, Existing, Observer, PlanSettings, Storage,
+    TerrainSettings, file_target,
     heights::{audit, pyramid},
-    inputs::Inputs,
-    levels::{Levels, most_scale},
+    levels::Levels,
+    plan::Opened,
     roads::{lengths::TrueLengths, losses, read},
     stages::{deviations, mesh, package, samples, tiles},
 };
-
-/// Tolerances that the finest level can have. Outside this range a package cannot hold the root's tolerance or the height
-/// quantum.
-const MAX_ERRORS_M: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
 /// The result of a build.
 #[derive(Debug, Clone)]
@@ -70,12 +66,14 @@ pub fn build(
     observer.work_folder(work.path());
     let storage = DiskStorage::create(work.path()).map_err(unusable)?;
     let finished = work.path().join("package");
-    let inputs = Inputs::find(&settings.dem, settings.osm.as_deref())?;
-    let manifest = run(settings, &inputs, &finished, &storage, observer).map_err(|error| {
+    corniche_dem::limit_block_cache(settings.resources.memory_bytes / 4)
+        .map_err(|error| not_started(&error))?;
+    let opened = Opened::new(&PlanSettings::from(settings))?;
+    let manifest = run(settings, &opened, &finished, &storage, observer).map_err(|error| {
         // A changed input may be the cause of any other error, so it is reported instead.
         let changed = match &error {
             BuildError::Interrupted => None,
-            _ => inputs.check_unchanged().err(),
+            _ => opened.inputs.check_unchanged().err(),
         };
         changed.map_or(error, BuildError::from)
     })?;
@@ -113,16 +111,6 @@ fn warn_of_unused_latitude(terrain: &TerrainSettings, plan: &GridPlan, observer:
             plan.crs
         ));
     }
-}
-
-/// Opens the elevation files and plans the grid.
-fn open(files: &[PathBuf], terrain: &TerrainSettings) -> Result<(Dem, GridPlan), BuildError> {
-    let dem = Dem::open(files, &terrain.open)?;
-    let plan = dem.plan(&terrain.plan)?;
-    if !terrain.allow_fine_cell {
-        dem.refuse_oversampling(&plan)?;
-    }
-    Ok((dem, plan))
 }
 
 fn not_started(error: &dyn std::fmt::Display) -> BuildError {
@@ -164,16 +152,6 @@ fn read_roads<'a>(
     Ok(roads)
 }
 
-/// The tolerance of the finest level: given, or derived from the cell.
-fn max_error_m(terrain: &TerrainSettings, plan: &GridPlan) -> Result<f64, BuildError> {
-    let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell().shorter_m() / 4.0);
-    if MAX_ERRORS_M.contains(&max_error_m) {
-        Ok(max_error_m)
-    } else {
-        Err(BuildError::MaxError { max_error_m })
-    }
-}
-
 /// Why no tile has ground.
 fn no_mesh(dem: &[PathBuf], pyramid: &pyramid::Pyramid<'_>) -> BuildError {
     let dem = dem.to_vec();
@@ -186,52 +164,43 @@ fn no_mesh(dem: &[PathBuf], pyramid: &pyramid::Pyramid<'_>) -> BuildError {
 /// All stages in order; the package is written to `finished`.
 fn run(
     settings: &BuildSettings,
-    inputs: &Inputs,
+    Opened { inputs, dem, grid: plan, levels, max_error_m, coordinates }: &Opened,
     finished: &Path,
     storage: &dyn Storage,
     observer: &dyn Observer,
 ) -> Result<Manifest, BuildError> {
     let threads = settings.resources.threads;
     let terrain = &settings.terrain;
-    corniche_dem::limit_block_cache(settings.resources.memory_bytes / 4)
-        .map_err(|error| not_started(&error))?;
-    let (dem, plan) = open(&settings.dem, terrain)?;
-    warn_of_other_grids(&plan, observer);
-    warn_of_unused_latitude(terrain, &plan, observer);
-    let max_error_m = max_error_m(terrain, &plan)?;
-    let widest = most_scale(plan.scale.largest);
-    let levels = Levels::new(plan.frame, max_error_m, &settings.roads, widest);
-    // This fails for files that are too far apart for one package, before the long work begins.
-    let coordinates = package::coordinates(&dem, &plan)?;
-    let projection = dem.projection(&plan)?;
-    let lengths = TrueLengths::new(plan.frame, &coordinates, &projection);
+    warn_of_other_grids(plan, observer);
+    warn_of_unused_latitude(terrain, plan, observer);
+    let projection = dem.projection(plan)?;
+    let lengths = TrueLengths::new(plan.frame, coordinates, &projection);
     let records = inputs.hash(observer)?;
 
     // Roads come before the long work on heights, so that an unusable extract is reported at once.
-    let data_tiles = pyramid::data_tiles(&plan);
-    let grid =
-        RoadGrid { plan: &plan, projection: &projection, levels: &levels, lengths: &lengths };
+    let data_tiles = pyramid::data_tiles(plan);
+    let grid = RoadGrid { plan, projection: &projection, levels, lengths: &lengths };
     let mut roads = match &settings.osm {
         Some(osm) => Some(read_roads(osm, settings, &grid, storage, observer)?),
         None => None,
     };
-    audit::check(&dem, terrain.height_range_m, threads, observer)?;
-    let pyramid = pyramid::read(&dem, &plan, threads, storage, observer)?;
-    let meshes = mesh::mesh(&pyramid, &levels, threads, storage, observer)?;
+    audit::check(dem, terrain.height_range_m, threads, observer)?;
+    let pyramid = pyramid::read(dem, plan, threads, storage, observer)?;
+    let meshes = mesh::mesh(&pyramid, levels, threads, storage, observer)?;
     if meshes.is_empty() {
         return Err(no_mesh(&settings.dem, &pyramid));
     }
-    let deviations = deviations::measure(&pyramid, &meshes, &levels, threads, storage, observer)?;
+    let deviations = deviations::measure(&pyramid, &meshes, levels, threads, storage, observer)?;
     let sample_sums = if plan.nodes_are_samples() {
         deviations.at_nodes().to_vec()
     } else {
         let bytes = settings.resources.memory_bytes / 4 / threads.max(1) as u64;
-        let grounds = samples::GroundInput { meshes: &meshes, levels: &levels, storage, bytes };
-        samples::measure(&dem, &plan, &grounds, threads, observer)?
+        let grounds = samples::GroundInput { meshes: &meshes, levels, storage, bytes };
+        samples::measure(dem, plan, &grounds, threads, observer)?
     };
     let tiles = tiles::make(
         &tiles::TileInput {
-            levels: &levels,
+            levels,
             lengths: &lengths,
             meshes: &meshes,
             deviations: &deviations,
@@ -248,10 +217,10 @@ fn run(
     }
     let manifest = package::manifest(&package::Outcome {
         settings,
-        max_error_m,
-        plan: &plan,
-        levels: &levels,
-        coordinates: &coordinates,
+        max_error_m: *max_error_m,
+        plan,
+        levels,
+        coordinates,
         inputs: records,
         samples: pyramid.samples(),
         range_m: pyramid.range_m(),

@@ -13,6 +13,7 @@ mod inputs;
 mod levels;
 mod manifest_texts;
 mod observer;
+mod plan;
 mod roads;
 mod sample_deviation;
 mod settings;
@@ -32,8 +33,12 @@ pub use corniche_dem::{OpenOptions, PlanOptions};
 pub use corniche_osm::Defect as OsmDefect;
 pub use defect::{Defect, Loss};
 pub use error::BuildError;
+pub use inputs::PlannedInput;
 pub use observer::{Observer, Silent, Stage};
-pub use settings::{BuildSettings, Existing, Resources, RoadSettings, TerrainSettings};
+pub use plan::{BuildPlan, FrcTableRecord, PlanError, PlannedGrid, PlannedLevel};
+pub use settings::{
+    BuildSettings, Existing, PlanSettings, Resources, RoadSettings, TerrainSettings,
+};
 pub use target::{TargetError, file_target};
 pub use verify::{
     Check, CheckId, ErrorFigures, GapFigures, Needs, VerifyError, VerifyOsm, VerifyReport,
