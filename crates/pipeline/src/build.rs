@@ -1,37 +1,26 @@
-//! From inputs to a package.
+//! From inputs to a package: the steps in order, and the file's way to its place.
 //!
 //! ```text
-//! heights ─► mesh ─► deviations ─┐
-//!                                ├─► tiles ─► package
-//! roads ─────────────────────────┘
+//!  hashes   roads ────────┐
+//!  heights ─► tiles ──────┴─► merge ─► package
 //! ```
 //!
-//! Each stage is a module of [`heights`](crate::heights), [`roads`](crate::roads) or [`stages`](crate::stages). What one stage
-//! hands to the next is kept in [`Storage`](crate::storage::Storage), in a work folder beside the target. The folder is
-//! removed when the run ends, however it ends.
+//! Each step is a module of [`steps`](crate::steps). What one step hands to the next are artifacts in a store beside the target.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{fs, path::Path};
 
-use corniche_dem::{Dem, DemProjection, GridPlan};
-use corniche_store::{Artifacts, MemoryScratch, MemoryStore, Scratch};
+use corniche_dem::GridPlan;
+use corniche_geom::TileId;
+use corniche_store::{MemoryScratch, MemoryStore, Scratch};
 use corniche_tileset::Manifest;
 
 use crate::{
-    BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage, TerrainSettings,
+    BuildError, BuildSettings, Existing, Observer, PlanSettings, TerrainSettings,
+    context::{Context, MemoryShares},
     file_target,
-    heights::{audit, pyramid},
-    inputs::Inputs,
-    levels::{Levels, most_scale},
-    roads::{lengths::TrueLengths, losses::LossFold, overlap, partition, totals::RoadTotals},
-    stages::{deviations, mesh, package, samples, tiles},
+    plan::Opened,
+    steps::{hashes, merge, roads, tiles},
 };
-
-/// Tolerances that the finest level can have. Outside this range a package cannot hold the root's tolerance or the height
-/// quantum.
-const MAX_ERRORS_M: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
 /// The result of a build.
 #[derive(Debug, Clone)]
@@ -69,14 +58,21 @@ pub fn build(
         .tempdir_in(folder)
         .map_err(unusable)?;
     observer.work_folder(work.path());
-    let storage = DiskStorage::create(work.path()).map_err(unusable)?;
+    let store = MemoryStore::default();
+    let scratch = MemoryScratch::default();
     let finished = work.path().join("package");
-    let inputs = Inputs::find(&settings.dem, settings.osm.as_deref())?;
-    let manifest = run(settings, &inputs, &finished, &storage, observer).map_err(|error| {
+    let shares = MemoryShares::of(settings.resources.memory_bytes);
+    corniche_dem::limit_block_cache(shares.raster_cache)
+        .map_err(|error| BuildError::Start { what: error.to_string() })?;
+    let plan_settings = PlanSettings::from(settings);
+    let opened = Opened::new(&plan_settings)?;
+    let context = Context::new(&plan_settings, settings.resources, &opened, &store, observer);
+    let wanted = merge::Target { finished: &finished, named: &settings.output };
+    let manifest = run(&context, &scratch, &wanted).map_err(|error| {
         // A changed input may be the cause of any other error, so it is reported instead.
         let changed = match &error {
             BuildError::Interrupted => None,
-            _ => inputs.check_unchanged().err(),
+            _ => opened.inputs.check_unchanged().err(),
         };
         changed.map_or(error, BuildError::from)
     })?;
@@ -116,166 +112,26 @@ fn warn_of_unused_latitude(terrain: &TerrainSettings, plan: &GridPlan, observer:
     }
 }
 
-/// Opens the elevation files and plans the grid.
-fn open(files: &[PathBuf], terrain: &TerrainSettings) -> Result<(Dem, GridPlan), BuildError> {
-    let dem = Dem::open(files, &terrain.open)?;
-    let plan = dem.plan(&terrain.plan)?;
-    if !terrain.allow_fine_cell {
-        dem.refuse_oversampling(&plan)?;
-    }
-    Ok((dem, plan))
-}
-
-fn not_started(error: &dyn std::fmt::Display) -> BuildError {
-    BuildError::Start { what: error.to_string() }
-}
-
-/// The grid that roads are read for.
-struct RoadGrid<'a> {
-    plan: &'a GridPlan,
-    projection: &'a DemProjection,
-    levels: &'a Levels,
-    lengths: &'a TrueLengths<'a>,
-}
-
-/// Reads the extract; fails if none of its roads lies on the elevation data.
-fn read_roads(
-    osm: &Path,
-    settings: &BuildSettings,
-    grid: &RoadGrid<'_>,
-    store: &dyn Artifacts,
-    scratch: &dyn Scratch,
-    observer: &dyn Observer,
-) -> Result<RoadTotals, BuildError> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(settings.resources.threads)
-        .build()
-        .map_err(|error| not_started(&error))?;
-    let input = partition::RoadInput {
-        osm,
-        settings: &settings.roads,
-        projection: grid.projection,
-        levels: grid.levels,
-        lengths: grid.lengths,
-        data_bounds: pyramid::data_tile_bounds(grid.plan),
-        pool: &pool,
-        memory_bytes: settings.resources.memory_bytes / 4,
-    };
-    let roads = partition::partition(&input, store, scratch, observer)?;
-    overlap::check_overlap(&roads, osm, grid.levels.frame(), grid.projection, grid.plan)?;
-    Ok(roads)
-}
-
-/// The tolerance of the finest level: given, or derived from the cell.
-fn max_error_m(terrain: &TerrainSettings, plan: &GridPlan) -> Result<f64, BuildError> {
-    let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell().shorter_m() / 4.0);
-    if MAX_ERRORS_M.contains(&max_error_m) {
-        Ok(max_error_m)
-    } else {
-        Err(BuildError::MaxError { max_error_m })
-    }
-}
-
-/// Why no tile has ground.
-fn no_mesh(dem: &[PathBuf], pyramid: &pyramid::Pyramid<'_>) -> BuildError {
-    let dem = dem.to_vec();
-    match pyramid.samples().with_data {
-        0 => BuildError::NoHeights { dem },
-        nodes => BuildError::NoCell { dem, nodes },
-    }
-}
-
-/// All stages in order; the package is written to `finished`.
+/// All steps in order; the package is written to `finished`.
 fn run(
-    settings: &BuildSettings,
-    inputs: &Inputs,
-    finished: &Path,
-    storage: &dyn Storage,
-    observer: &dyn Observer,
+    context: &Context<'_>,
+    scratch: &dyn Scratch,
+    target: &merge::Target<'_>,
 ) -> Result<Manifest, BuildError> {
-    let threads = settings.resources.threads;
-    let terrain = &settings.terrain;
-    corniche_dem::limit_block_cache(settings.resources.memory_bytes / 4)
-        .map_err(|error| not_started(&error))?;
-    let (dem, plan) = open(&settings.dem, terrain)?;
-    warn_of_other_grids(&plan, observer);
-    warn_of_unused_latitude(terrain, &plan, observer);
-    let max_error_m = max_error_m(terrain, &plan)?;
-    let widest = most_scale(plan.scale.largest);
-    let levels = Levels::new(plan.frame, max_error_m, &settings.roads, widest);
-    // This fails for files that are too far apart for one package, before the long work begins.
-    let coordinates = package::coordinates(&dem, &plan)?;
-    let projection = dem.projection(&plan)?;
-    let lengths = TrueLengths::new(plan.frame, &coordinates, &projection);
-    let records = inputs.hash(observer)?;
-
+    let pyramid = context.pyramid();
+    warn_of_other_grids(context.grid, context.observer);
+    warn_of_unused_latitude(&context.settings.terrain, context.grid, context.observer);
+    hashes::make(context)?;
     // Roads come before the long work on heights, so that an unusable extract is reported at once.
-    let data_tiles = pyramid::data_tiles(&plan);
-    let grid =
-        RoadGrid { plan: &plan, projection: &projection, levels: &levels, lengths: &lengths };
-    let (pieces, scratch) = (MemoryStore::default(), MemoryScratch::default());
-    let roads = match &settings.osm {
-        Some(osm) => Some(read_roads(osm, settings, &grid, &pieces, &scratch, observer)?),
-        None => None,
-    };
-    audit::check(&dem, terrain.height_range_m, threads, observer)?;
-    let pyramid = pyramid::read(&dem, &plan, threads, storage, observer)?;
-    let meshes = mesh::mesh(&pyramid, &levels, threads, storage, observer)?;
-    if meshes.is_empty() {
-        return Err(no_mesh(&settings.dem, &pyramid));
+    roads::make(context, scratch)?;
+    pyramid.make(TileId::ROOT)?;
+    // Before any tile is made, because no tile has ground where no node has a height.
+    pyramid.check()?;
+    if pyramid.sums()?.samples.with_data == 0 {
+        return Err(BuildError::NoHeights { dem: context.settings.dem.clone() });
     }
-    let deviations = deviations::measure(&pyramid, &meshes, &levels, threads, storage, observer)?;
-    let sample_sums = if plan.nodes_are_samples() {
-        deviations.at_nodes().to_vec()
-    } else {
-        let bytes = settings.resources.memory_bytes / 4 / threads.max(1) as u64;
-        let grounds = samples::GroundInput { meshes: &meshes, levels: &levels, storage, bytes };
-        samples::measure(&dem, &plan, &grounds, threads, observer)?
-    };
-    let mut fates =
-        roads.as_ref().map(|_| LossFold::new(&scratch, settings.resources.memory_bytes / 4));
-    let tiles = tiles::make(
-        &tiles::TileInput {
-            levels: &levels,
-            meshes: &meshes,
-            deviations: &deviations,
-            pyramid: &pyramid,
-            data_tiles: &data_tiles,
-            pieces: &pieces,
-            storage,
-            threads,
-        },
-        fates.as_mut(),
-        observer,
-    )?;
-    let roads = match roads.zip(fates) {
-        Some((totals, fates)) => {
-            let losses = fates.finish(&totals, &pieces, observer)?;
-            Some((totals, losses))
-        }
-        None => None,
-    };
-    let manifest = package::manifest(&package::Outcome {
-        settings,
-        max_error_m,
-        plan: &plan,
-        levels: &levels,
-        coordinates: &coordinates,
-        inputs: records,
-        samples: pyramid.samples(),
-        range_m: pyramid.range_m(),
-        roads: roads.as_ref(),
-        tiles: &tiles,
-        deviations: &deviations,
-        sample_sums: &sample_sums,
-    });
-    if let (Some(osm), 0) = (&settings.osm, manifest.counts.roads_kept) {
-        return Err(BuildError::NoGround { osm: osm.clone() });
-    }
-    // All inputs have been read. If none has changed, the recorded hashes are those of the bytes that were used.
-    inputs.check_unchanged()?;
-    package::write(finished, &settings.output, &manifest, &tiles, storage, observer)?;
-    Ok(manifest)
+    tiles::make(context, TileId::ROOT)?;
+    merge::make(context, scratch, target)
 }
 
 /// Writes the finished package's bytes to the disk, then moves the file to its place.

@@ -4,11 +4,19 @@ use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{CoordinateTable, Frame};
 use corniche_store::Artifacts;
 
-use crate::{BuildSettings, Observer, heights::data_tiles::DataTiles, levels::Levels};
+use crate::{
+    Observer, PlanSettings, Resources,
+    heights::{data_tiles::DataTiles, pyramid::Pyramid},
+    inputs::Inputs,
+    levels::Levels,
+    plan::Opened,
+};
 
 /// What the steps of a build share. It is made from the settings alone, so every process that works on one build has the same.
 pub(crate) struct Context<'a> {
-    pub(crate) settings: &'a BuildSettings,
+    pub(crate) settings: &'a PlanSettings,
+    pub(crate) resources: Resources,
+    pub(crate) inputs: &'a Inputs,
     pub(crate) dem: &'a Dem,
     pub(crate) grid: &'a GridPlan,
     pub(crate) levels: &'a Levels,
@@ -19,7 +27,31 @@ pub(crate) struct Context<'a> {
     pub(crate) observer: &'a dyn Observer,
 }
 
-impl Context<'_> {
+impl<'a> Context<'a> {
+    /// What was opened, with a store for the results.
+    pub(crate) fn new(
+        settings: &'a PlanSettings,
+        resources: Resources,
+        opened: &'a Opened,
+        store: &'a dyn Artifacts,
+        observer: &'a dyn Observer,
+    ) -> Self {
+        let Opened { inputs, dem, grid, levels, max_error_m, coordinates } = opened;
+        let max_error_m = *max_error_m;
+        Self {
+            settings,
+            resources,
+            inputs,
+            dem,
+            grid,
+            levels,
+            coordinates,
+            max_error_m,
+            store,
+            observer,
+        }
+    }
+
     pub(crate) fn frame(&self) -> &Frame {
         self.levels.frame()
     }
@@ -28,13 +60,24 @@ impl Context<'_> {
         DataTiles::of(self.grid)
     }
 
+    pub(crate) fn pyramid(&self) -> Pyramid<'_> {
+        Pyramid {
+            dem: self.dem,
+            grid: self.grid,
+            range_m: self.settings.terrain.height_range_m,
+            threads: self.threads(),
+            store: self.store,
+            observer: self.observer,
+        }
+    }
+
     pub(crate) fn threads(&self) -> usize {
-        self.settings.resources.threads
+        self.resources.threads
     }
 
     /// How the memory that a run may use is shared out.
     pub(crate) fn memory(&self) -> MemoryShares {
-        MemoryShares::of(self.settings.resources.memory_bytes)
+        MemoryShares::of(self.resources.memory_bytes)
     }
 }
 

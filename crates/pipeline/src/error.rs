@@ -64,8 +64,8 @@ pub enum BuildError {
     MaxError { max_error_m: f64 },
     #[error("{what} is missing in the store; run the step {step} first")]
     Missing { what: String, step: &'static str },
-    #[error("roads could not be sorted on the disk")]
-    Sort(#[source] io::Error),
+    #[error("roads could not be sorted on the disk (disk full?)")]
+    Storage(#[source] io::Error),
     #[error(transparent)]
     Store(#[from] corniche_store::StoreError),
     #[error("intermediate results beside the package were damaged while the build ran: {what}")]

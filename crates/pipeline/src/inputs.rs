@@ -8,6 +8,7 @@
 //!   stamp ─► open ─► hash ─► roads, heights … ─► stamp again ─► package
 //! ```
 
+mod planned_input;
 mod stamp;
 
 use std::{
@@ -20,6 +21,7 @@ use corniche_dem::{DemError, VirtualFile, raster_files};
 use corniche_tileset::InputRecord;
 use sha2::{Digest, Sha256};
 
+pub use self::planned_input::PlannedInput;
 use self::stamp::Stamp;
 use crate::{BuildError, Observer, Stage, hex::hex};
 
@@ -123,6 +125,11 @@ impl Inputs {
         &self.files[index].name
     }
 
+    /// What a plan says of every file, in their order.
+    pub(crate) fn planned(&self) -> Result<Vec<PlannedInput>, InputError> {
+        self.files.iter().map(Input::planned).collect()
+    }
+
     /// Hashes the content of every file. The parts of a raster come after it, sorted.
     pub(crate) fn hash(&self, observer: &dyn Observer) -> Result<Vec<InputRecord>, InputError> {
         let mut records: Vec<InputRecord> = Vec::new();
@@ -188,6 +195,26 @@ impl Input {
         };
         let stamp = stamp.map_err(failed)?;
         Ok(Self { kind, path: path.to_path_buf(), name, content, stamp })
+    }
+
+    fn planned(&self) -> Result<PlannedInput, InputError> {
+        let failed = |source| InputError::Read { path: self.path.clone(), source };
+        let text = self.path.to_str();
+        let text = text.ok_or_else(|| InputError::Name { path: self.path.clone() })?;
+        let (bytes, modified_ns, etag) = match &self.stamp {
+            Stamp::File(_, state) => (state.size(), state.modified_ns(), None),
+            Stamp::Remote(path, bytes) => (*bytes, None, VirtualFile::etag(path)),
+        };
+        // The size of a folder is that of the list of its files, and no matter.
+        let bytes = if matches!(self.content, Content::Folder) { 0 } else { bytes };
+        Ok(PlannedInput {
+            kind: self.kind.name().to_owned(),
+            name: self.name.clone(),
+            path: stamp::absolute(text).map_err(failed)?,
+            bytes,
+            modified_ns,
+            etag,
+        })
     }
 
     fn hash(&self, observer: &dyn Observer) -> Result<InputRecord, InputError> {

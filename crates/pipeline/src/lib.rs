@@ -2,9 +2,9 @@
 //!
 //! This crate never parses arguments and never prints. It is the only one that spawns threads.
 
-#[expect(dead_code, reason = "the steps follow")]
 mod artifacts;
 mod build;
+mod context;
 mod defect;
 mod error;
 mod heights;
@@ -13,27 +13,28 @@ mod inputs;
 mod levels;
 mod manifest_texts;
 mod observer;
+mod plan;
 mod roads;
 mod sample_deviation;
 mod settings;
 mod settings_record;
-mod stages;
-mod storage;
+mod steps;
 mod target;
+mod tile;
 mod verify;
 mod workers;
-
-#[cfg(test)]
-use storage::MemoryStorage;
-use storage::{DiskStorage, Storage};
 
 pub use build::{BuildSummary, build};
 pub use corniche_dem::{OpenOptions, PlanOptions};
 pub use corniche_osm::Defect as OsmDefect;
 pub use defect::{Defect, Loss};
 pub use error::BuildError;
+pub use inputs::PlannedInput;
 pub use observer::{Observer, Silent, Stage};
-pub use settings::{BuildSettings, Existing, Resources, RoadSettings, TerrainSettings};
+pub use plan::{BuildPlan, FrcTableRecord, PlanError, PlannedGrid, PlannedLevel};
+pub use settings::{
+    BuildSettings, Existing, PlanSettings, Resources, RoadSettings, TerrainSettings,
+};
 pub use target::{TargetError, file_target};
 pub use verify::{
     Check, CheckId, ErrorFigures, GapFigures, Needs, VerifyError, VerifyOsm, VerifyReport,

@@ -21,6 +21,8 @@ pub enum Stage {
     Roads,
     /// Clip, drape and encode. Counted in tiles.
     Tiles,
+    /// Drape and encode the tiles above the finest level. Counted in tiles.
+    CoarseTiles,
     /// Write the package. Counted in tiles.
     Package,
     /// Check a package. Counted in tiles.
@@ -39,6 +41,7 @@ impl Stage {
             Self::Deviations => "measuring errors",
             Self::Samples => "measuring at samples",
             Self::Roads => "reading roads",
+            Self::CoarseTiles => "coarse tiles",
             Self::Tiles => "draping and encoding",
             Self::Package => "writing package",
             Self::Verify => "verifying",

@@ -26,6 +26,36 @@ pub struct BuildSettings {
     pub generator: String,
 }
 
+/// The part of the settings that decides what is made: the same for every worker that takes part in a build.
+#[derive(Debug, Clone)]
+pub struct PlanSettings {
+    /// Elevation rasters; where they overlap, the first has precedence.
+    pub dem: Vec<PathBuf>,
+    /// OpenStreetMap extract; `None` plans terrain alone.
+    pub osm: Option<PathBuf>,
+    /// How the ground is made.
+    pub terrain: TerrainSettings,
+    /// How roads are made.
+    pub roads: RoadSettings,
+    /// Credits beside those that the inputs call for, such as a DEM's.
+    pub attribution: Vec<String>,
+    /// Program and version.
+    pub generator: String,
+}
+
+impl From<&BuildSettings> for PlanSettings {
+    fn from(settings: &BuildSettings) -> Self {
+        Self {
+            dem: settings.dem.clone(),
+            osm: settings.osm.clone(),
+            terrain: settings.terrain.clone(),
+            roads: settings.roads.clone(),
+            attribution: settings.attribution.clone(),
+            generator: settings.generator.clone(),
+        }
+    }
+}
+
 /// What to do with a package that exists at the target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existing {

@@ -37,9 +37,8 @@ impl DataTiles {
     /// The tile to which a point belongs; beside the data, the tile nearest to it.
     pub(crate) fn owner(&self, frame: &Frame, point: LatticePoint) -> TileId {
         let [x, y] = frame.tile_column_row(self.level, point);
-        let within = |at: i64, [first, last]: [u32; 2]| {
-            at.clamp(i64::from(first), i64::from(last)) as u32
-        };
+        let within =
+            |at: i64, [first, last]: [u32; 2]| at.clamp(i64::from(first), i64::from(last)) as u32;
         let (x, y) = (within(x, self.columns), within(y, self.rows));
         // Columns and rows of the rectangle are always those of tiles.
         TileId::new(self.level, x, y).unwrap_or(TileId::ROOT)
@@ -61,10 +60,8 @@ impl DataTiles {
             first.max(at << down)..=last.min(u32::try_from(end).unwrap_or(u32::MAX))
         };
         let (columns, rows) = (cut(self.columns, scope.x()), cut(self.rows, scope.y()));
-        rows.flat_map(|y| {
-            columns.clone().filter_map(move |x| TileId::new(self.level, x, y).ok())
-        })
-        .collect()
+        rows.flat_map(|y| columns.clone().filter_map(move |x| TileId::new(self.level, x, y).ok()))
+            .collect()
     }
 
     /// The same in package order.

@@ -3,4 +3,5 @@
 pub(crate) mod area;
 pub(crate) mod data_tiles;
 pub(crate) mod finest;
+pub(crate) mod pyramid;
 pub(crate) mod rasters;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use corniche_geom::TileId;
 
 use crate::{
-    BuildError, Observer as _, Stage,
+    BuildError, Stage,
     artifacts::Kind,
     context::Context,
     heights::rasters,
@@ -34,7 +34,8 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
         || Ok(()),
         |(), index| {
             let id = ids[index];
-            let missing = || BuildError::Missing { what: format!("the TIN of tile {id}"), step: "top" };
+            let missing =
+                || BuildError::Missing { what: format!("the TIN of tile {id}"), step: "top" };
             let meshed = Meshed::get(store, id)?.ok_or_else(missing)?;
             let deviation = deviations.get(&id).copied().unwrap_or_default();
             // Heights are wanted only where there are roads: they decide which borders are the tile's own.
@@ -61,10 +62,8 @@ fn deviations(
     // Per finest tile with ground: its own deviation.
     let mut finest_m: BTreeMap<TileId, f64> = BTreeMap::new();
     for id in context.data().in_order_within(scope) {
-        let record = TileRecord::get(store, id)?.ok_or_else(|| BuildError::Missing {
-            what: format!("tile {id}"),
-            step: "tiles",
-        })?;
+        let record = TileRecord::get(store, id)?
+            .ok_or_else(|| BuildError::Missing { what: format!("tile {id}"), step: "tiles" })?;
         if let Some(ground) = record.ground {
             finest_m.insert(id, ground.deviation.geometric_error_m);
         }
@@ -90,7 +89,7 @@ fn stored(
         coarse.get(id).map(|seen| seen.max_abs_m).or_else(|| finest_m.get(id).copied())
     };
     let mut beneath_m: BTreeMap<TileId, f64> = BTreeMap::new();
-    let mut pass_up = |id: TileId, error_m: f64, beneath_m: &mut BTreeMap<TileId, f64>| {
+    let pass_up = |id: TileId, error_m: f64, beneath_m: &mut BTreeMap<TileId, f64>| {
         let mut above = (0..id.z()).rev().map(|level| id.ancestor(level));
         if let Some(above) = above.find(|above| coarse.contains_key(above)) {
             let largest_m = beneath_m.entry(above).or_default();

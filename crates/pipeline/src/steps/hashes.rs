@@ -10,19 +10,17 @@ use crate::{
 };
 
 /// Hashes the inputs that are not hashed yet.
-pub(crate) fn make(context: &Context<'_>, inputs: &Inputs) -> Result<(), BuildError> {
+pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
     let store = context.store;
     let is_done = |index: usize| store.has(Kind::InputHash.item(index as u64));
-    inputs.hash_each(is_done, context.observer, |index, record| {
+    context.inputs.hash_each(is_done, context.observer, |index, record| {
         artifacts::put(store, Kind::InputHash.item(index as u64), &record)
     })
 }
 
 /// The records of all inputs, as the manifest has them.
-pub(crate) fn records(
-    context: &Context<'_>,
-    inputs: &Inputs,
-) -> Result<Vec<InputRecord>, BuildError> {
+pub(crate) fn records(context: &Context<'_>) -> Result<Vec<InputRecord>, BuildError> {
+    let inputs = context.inputs;
     let mut records = Vec::new();
     for index in 0..inputs.len() {
         let record: Option<InputRecord> =

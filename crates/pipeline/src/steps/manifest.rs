@@ -1,23 +1,18 @@
 //! The manifest: the package's table of contents, from the context and the sums over all tiles.
 
-use corniche_dem::{Dem, GridPlan};
-use corniche_geom::{Bounds, CoordinateTable, CoordinateTableError};
 use corniche_tileset::{
     Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest,
     ScaleRecord, VerticalRecord,
 };
 
-use super::{heights::HeightSums, sums::TileSums};
+use super::sums::TileSums;
 use crate::{
-    BuildError,
     context::Context,
+    heights::pyramid::HeightSums,
     manifest_texts,
     roads::{counts::road_counts, losses, totals::RoadTotals},
     settings_record,
 };
-
-/// How far positions that are interpolated from the manifest may be off.
-const COORDINATE_TOLERANCE_M: f64 = 0.01;
 
 /// Everything that goes into the manifest.
 pub(crate) struct Outcome<'a> {
@@ -28,33 +23,12 @@ pub(crate) struct Outcome<'a> {
     pub(crate) tiles: &'a TileSums,
 }
 
-/// Longitudes and latitudes over the data's rectangle, for readers without PROJ.
-///
-/// The table has a margin around the rectangle, but does not reach to the root's far corners, which can be very far away.
-/// The margin ends at the poles; if a projection ends within the margin, there is no margin.
-pub(crate) fn coordinates(dem: &Dem, plan: &GridPlan) -> Result<CoordinateTable, BuildError> {
-    let projection = dem.projection(plan)?;
-    let data = plan.data_bounds;
-    let room_m = 0.1 * data.width().max(data.height()).max(plan.frame.cell().shorter_m());
-    let pole_m = plan.poles_y_m().unwrap_or(f64::INFINITY);
-    let around = Bounds {
-        min_x: data.min_x - room_m,
-        min_y: (data.min_y - room_m).max(-pole_m).min(data.min_y),
-        max_x: data.max_x + room_m,
-        max_y: (data.max_y + room_m).min(pole_m).max(data.max_y),
-    };
-    let sample = |bounds| CoordinateTable::sample(&projection, bounds, COORDINATE_TOLERANCE_M);
-    match sample(around) {
-        Err(CoordinateTableError::TooCurved { .. }) => Ok(sample(data)?),
-        found => Ok(found?),
-    }
-}
-
 /// Puts the manifest together.
 pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
     let Context { settings, grid: plan, levels, .. } = *outcome.context;
     let frame = *levels.frame();
-    let record = settings_record::of(&settings.terrain, &settings.roads, outcome.context.max_error_m);
+    let record =
+        settings_record::of(&settings.terrain, &settings.roads, outcome.context.max_error_m);
     let mut attribution = settings.attribution.clone();
     if outcome.roads.is_some() {
         attribution.push(corniche_osm::ATTRIBUTION.to_owned());
@@ -155,4 +129,3 @@ fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {
         })
         .collect()
 }
-

@@ -2,23 +2,19 @@
 
 use std::path::Path;
 
-use corniche_geom::TileId;
 use corniche_store::Scratch;
-use corniche_tileset::{InputRecord, Manifest, Writer, tile_of_order};
+use corniche_tileset::{Manifest, Writer, tile_of_order};
 
 use super::{
-    coarse_tiles, heights,
+    hashes,
     manifest::{self, Outcome},
     sums::TileSums,
 };
 use crate::{
-    BuildError, Observer as _, Stage,
-    artifacts::Kind,
+    BuildError, Stage,
+    artifacts::{self, Kind},
     context::Context,
-    roads::{
-        losses::LossFold,
-        totals::RoadTotals,
-    },
+    roads::{losses::LossFold, totals::RoadTotals},
     tile::record::TileRecord,
 };
 
@@ -30,30 +26,27 @@ pub(crate) struct Target<'a> {
     pub(crate) named: &'a Path,
 }
 
-/// Makes the tiles above the subtrees, adds up all records and writes the package. `check_inputs` is called when nothing of the
-/// inputs is read any more.
+/// Adds up all records and writes the package.
 pub(crate) fn make(
     context: &Context<'_>,
-    inputs: Vec<InputRecord>,
     scratch: &dyn Scratch,
     target: &Target<'_>,
-    check_inputs: &dyn Fn() -> Result<(), BuildError>,
 ) -> Result<Manifest, BuildError> {
-    let heights = heights::sums(context)?;
-    coarse_tiles::make(context, TileId::ROOT)?;
+    let heights = context.pyramid().sums()?;
     let roads = match &context.settings.osm {
-        Some(_) => Some(RoadTotals::load(context.store)?.ok_or_else(|| BuildError::Missing {
-            what: "the roads of the extract".to_owned(),
-            step: "roads",
-        })?),
+        Some(_) => {
+            let totals: Option<RoadTotals> =
+                artifacts::get(context.store, Kind::RoadTotals.item(0))?;
+            let what = "the extract's list of roads".to_owned();
+            Some(totals.ok_or(BuildError::Missing { what, step: "roads" })?)
+        }
         None => None,
     };
     let mut tiles = TileSums::new(context);
     let mut fold = LossFold::new(scratch, context.memory().sorting);
     for item in context.store.items(Kind::Record as u8) {
-        let id = tile_of_order(item).ok_or_else(|| {
-            crate::artifacts::damaged(Kind::Record.item(item), &"there is no such tile")
-        })?;
+        let id = tile_of_order(item)
+            .ok_or_else(|| artifacts::damaged(Kind::Record.item(item), &"there is no such tile"))?;
         if let Some(record) = TileRecord::get(context.store, id)? {
             tiles.add(id.z(), &record);
             fold.add(&record.fates)?;
@@ -72,7 +65,7 @@ pub(crate) fn make(
     };
     let manifest = manifest::of(&Outcome {
         context,
-        inputs,
+        inputs: hashes::records(context)?,
         heights,
         roads: roads.as_ref().zip(losses.as_ref()),
         tiles: &tiles,
@@ -81,7 +74,7 @@ pub(crate) fn make(
         return Err(BuildError::NoGround { osm: osm.clone() });
     }
     // All inputs have been read. If none has changed, the recorded hashes are those of the bytes that were used.
-    check_inputs()?;
+    context.inputs.check_unchanged()?;
     write(context, target, &manifest)?;
     Ok(manifest)
 }
@@ -101,10 +94,10 @@ fn write(
             return Err(BuildError::Interrupted);
         }
         let key = Kind::Payload.item(item);
-        let id = tile_of_order(item)
-            .ok_or_else(|| crate::artifacts::damaged(key, &"there is no such tile"))?;
+        let id =
+            tile_of_order(item).ok_or_else(|| artifacts::damaged(key, &"there is no such tile"))?;
         let bytes = context.store.get(key)?;
-        let bytes = bytes.ok_or_else(|| crate::artifacts::damaged(key, &"it is gone"))?;
+        let bytes = bytes.ok_or_else(|| artifacts::damaged(key, &"it is gone"))?;
         writer.add(id, &bytes).map_err(failed)?;
         context.observer.advance(Stage::Package, 1);
     }

@@ -6,7 +6,7 @@ use corniche_geom::TileId;
 
 use super::{coarse_tiles, tins};
 use crate::{
-    BuildError, Observer as _, Stage,
+    BuildError, Stage,
     artifacts::Kind,
     context::Context,
     heights::finest::FinestHeights,

@@ -3,7 +3,7 @@
 use corniche_geom::TileId;
 
 use crate::{
-    BuildError, Observer as _, Stage,
+    BuildError, Stage,
     artifacts::Kind,
     context::Context,
     heights::rasters,

@@ -1,0 +1,156 @@
+//! The heights of all levels: the DEM, area by area, to the heights of finest tiles and to the rasters of the levels above.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use corniche_dem::{Audit, AuditBlock, Dem, GridPlan, SURFACE_RANGE_M};
+use corniche_geom::{HeightGrid, TileId};
+use corniche_store::Artifacts;
+use corniche_tileset::SampleCounts;
+
+use super::{
+    area::{AreaReader, AreaRecord, area_level, audit_blocks_of},
+    data_tiles::DataTiles,
+    rasters,
+};
+use crate::{BuildError, Observer, Stage, artifacts::Kind, workers};
+
+/// Heights of all levels, read from a DEM and kept in a store.
+pub(crate) struct Pyramid<'a> {
+    pub(crate) dem: &'a Dem,
+    pub(crate) grid: &'a GridPlan,
+    /// Lowest and highest height that samples may have, metres, if the user said so.
+    pub(crate) range_m: Option<[f64; 2]>,
+    pub(crate) threads: usize,
+    pub(crate) store: &'a dyn Artifacts,
+    pub(crate) observer: &'a dyn Observer,
+}
+
+impl Pyramid<'_> {
+    /// Reads the areas of a subtree that are not there yet, and makes the rasters from there up to the subtree's own.
+    pub(crate) fn make(&self, scope: TileId) -> Result<(), BuildError> {
+        self.read_areas(scope)?;
+        self.make_rasters(scope)
+    }
+
+    fn read_areas(&self, scope: TileId) -> Result<(), BuildError> {
+        let &Self { dem, grid, store, observer, .. } = self;
+        let level = area_level(&grid.frame, scope);
+        let all = DataTiles::of(grid).above(level).within(scope);
+        let is_missing = |area: &&TileId| !store.has(Kind::Area.of_tile(**area));
+        let missing: Vec<TileId> = all.iter().filter(is_missing).copied().collect();
+        observer.begin(Stage::Heights, Some(all.len() as u64));
+        observer.advance(Stage::Heights, (all.len() - missing.len()) as u64);
+        let mut blocks: BTreeMap<TileId, Vec<AuditBlock>> = BTreeMap::new();
+        let wanted: BTreeSet<TileId> = missing.iter().copied().collect();
+        for (area, block) in audit_blocks_of(dem, grid, level)? {
+            if wanted.contains(&area) {
+                blocks.entry(area).or_default().push(block);
+            }
+        }
+        workers::in_order_unless_cancelled(
+            observer,
+            self.threads,
+            missing.len(),
+            || Ok::<_, BuildError>(AreaReader::new(dem, grid, self.allowed_m(), store)),
+            |reader, index| {
+                let area = missing[index];
+                reader.make(area, blocks.get(&area).map_or(&[], Vec::as_slice))
+            },
+            |_, ()| {
+                observer.advance(Stage::Heights, 1);
+                Ok(())
+            },
+        )?;
+        observer.end(Stage::Heights);
+        Ok(())
+    }
+
+    /// Makes the rasters that are missing beneath and at `scope`, from those that are there up.
+    pub(crate) fn make_rasters(&self, scope: TileId) -> Result<(), BuildError> {
+        let store = self.store;
+        for level in (scope.z()..self.grid.frame.max_level()).rev() {
+            let ids = missing_rasters(store, &DataTiles::of(self.grid).above(level), scope);
+            workers::in_order_unless_cancelled(
+                self.observer,
+                self.threads,
+                ids.len(),
+                || Ok(()),
+                |(), index| rasters::put_from_children(store, ids[index]),
+                |_, ()| Ok::<_, BuildError>(()),
+            )?;
+        }
+        Ok(())
+    }
+
+    /// The heights of a tile with one node of halo on every side (259 × 259); `None` where the tile has no height.
+    pub(crate) fn tile(&self, id: TileId) -> Result<Option<HeightGrid>, BuildError> {
+        rasters::of_any_level(self.store, id, self.grid.frame.max_level())
+    }
+}
+
+/// Tiles without a raster that have a child with one.
+fn missing_rasters(store: &dyn Artifacts, level: &DataTiles, scope: TileId) -> Vec<TileId> {
+    let mut tiles = level.within(scope);
+    tiles.retain(|&id| {
+        !store.has(Kind::Raster.of_tile(id))
+            && id.children().any(|child| store.has(Kind::Raster.of_tile(child)))
+    });
+    tiles
+}
+
+/// What the heights of all areas add up to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct HeightSums {
+    pub(crate) samples: SampleCounts,
+    /// Lowest and highest node; zeros where there is none.
+    pub(crate) range_m: [f32; 2],
+}
+
+impl Pyramid<'_> {
+    /// Fails if the DEM has samples that cannot be heights; see [`Audit::check`].
+    pub(crate) fn check(&self) -> Result<(), BuildError> {
+        let mut audit = Audit::none_of(self.dem, self.allowed_m());
+        self.all_areas()?.audit.iter().for_each(|part| audit.merge(part));
+        Ok(audit.check(self.dem, self.range_m.is_some())?)
+    }
+
+    /// Counts over the whole DEM.
+    pub(crate) fn sums(&self) -> Result<HeightSums, BuildError> {
+        let all = self.all_areas()?;
+        let plan = self.grid;
+        let span = |low: i64, high: i64| (high - low + 1) as u64;
+        let nodes =
+            span(plan.south_west.i, plan.north_east.i) * span(plan.south_west.j, plan.north_east.j);
+        let samples = SampleCounts {
+            nodes,
+            with_data: all.with_height - all.filled,
+            filled: all.filled,
+            void: nodes.saturating_sub(all.with_height),
+        };
+        Ok(HeightSums { samples, range_m: all.range_m.unwrap_or_default() })
+    }
+
+    /// The records of all areas together; fails if one is missing.
+    ///
+    /// The areas of a build that was split may lie on several levels. Each finest tile counts for the lowest that is there.
+    fn all_areas(&self) -> Result<AreaRecord, BuildError> {
+        let store = self.store;
+        let mut all = AreaRecord::default();
+        let mut found = BTreeSet::new();
+        for finest in DataTiles::of(self.grid).within(TileId::ROOT) {
+            let mut areas = (0..=finest.z()).rev().map(|level| finest.ancestor(level));
+            let area = areas.find(|&area| store.has(Kind::Area.of_tile(area)));
+            let what = || format!("the heights of tile {finest}");
+            let area = area.ok_or_else(|| BuildError::Missing { what: what(), step: "heights" })?;
+            if found.insert(area) {
+                all.merge(AreaRecord::get(store, area)?.unwrap_or_default());
+            }
+        }
+        Ok(all)
+    }
+
+    /// Lowest and highest height that samples may have, metres.
+    fn allowed_m(&self) -> [f64; 2] {
+        self.range_m.unwrap_or(SURFACE_RANGE_M)
+    }
+}
