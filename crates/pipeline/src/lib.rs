@@ -23,8 +23,6 @@ mod target;
 mod verify;
 mod workers;
 
-#[cfg(test)]
-use storage::MemoryStorage;
 use storage::{DiskStorage, Storage};
 
 pub use build::{BuildSummary, build};
