@@ -129,3 +129,7 @@ pub(crate) fn lengths_of_block(
         None => Err(artifacts::damaged(key, &"it is missing")),
     }
 }
+
+#[cfg(test)]
+#[path = "totals_tests.rs"]
+mod tests;
