@@ -104,8 +104,8 @@ impl Observer for Watch {
         }
     }
 
-    fn work_folder(&self, folder: &Path) {
-        self.progress.work_folder(folder);
+    fn temporary(&self, folder: &Path) {
+        self.progress.temporary(folder);
     }
 
     fn warning(&self, text: &str) {

@@ -128,7 +128,7 @@ impl Observer for Progress {
         }
     }
 
-    fn work_folder(&self, folder: &Path) {
+    fn temporary(&self, folder: &Path) {
         interrupt::remove_at_end(folder);
     }
 

@@ -40,6 +40,20 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
+    /// All of them.
+    pub(crate) const ALL: [Self; 10] = [
+        Self::InputHash,
+        Self::RoadPieces,
+        Self::RoadLengths,
+        Self::RoadTotals,
+        Self::Heights,
+        Self::Area,
+        Self::Raster,
+        Self::Tin,
+        Self::Record,
+        Self::Payload,
+    ];
+
     /// The key of what belongs to a tile.
     pub(crate) fn of_tile(self, id: TileId) -> Key {
         self.item(pmtiles_order(id))

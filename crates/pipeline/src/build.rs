@@ -7,15 +7,19 @@
 //!
 //! Each step is a module of [`steps`](crate::steps). What one step hands to the next are artifacts in a store beside the target.
 
-use std::{fs, path::Path};
+mod unfinished;
+mod work_store;
+
+use std::{fs, path::Path, sync::Arc};
 
 use corniche_dem::GridPlan;
 use corniche_geom::TileId;
-use corniche_store::{MemoryScratch, MemoryStore, Scratch};
+use corniche_store::{Disk, Scratch, SystemDisk};
 use corniche_tileset::Manifest;
 
+use self::unfinished::Unfinished;
 use crate::{
-    BuildError, BuildSettings, Existing, Observer, PlanSettings, TerrainSettings,
+    BuildError, BuildPlan, BuildSettings, Existing, Observer, PlanSettings, TerrainSettings,
     context::{Context, MemoryShares},
     file_target,
     plan::Opened,
@@ -33,9 +37,22 @@ pub struct BuildSummary {
 
 /// Builds a package. At the target there is either what was there before or the complete package.
 ///
+/// Intermediate results are kept in a store beside the package, or in `settings.tmp`. When the build is interrupted or the disk
+/// fails, they stay, and a build with [`Leftovers::Resume`] goes on from them.
+///
 /// # Errors
 /// See [`BuildError`].
 pub fn build(
+    settings: &BuildSettings,
+    observer: &dyn Observer,
+) -> Result<BuildSummary, BuildError> {
+    build_on(Arc::new(SystemDisk), settings, observer)
+}
+
+/// As [`build`], with the store on any disk: tests let it fail.
+#[doc(hidden)]
+pub fn build_on(
+    disk: Arc<dyn Disk>,
     settings: &BuildSettings,
     observer: &dyn Observer,
 ) -> Result<BuildSummary, BuildError> {
@@ -44,40 +61,41 @@ pub fn build(
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let unusable = |source| BuildError::Target { folder: folder.to_path_buf(), source };
     if settings.existing == Existing::Keep && fs::symlink_metadata(target).is_ok() {
         return Err(BuildError::Exists { path: target.clone() });
     }
     refuse_inputs_as_target(settings)?;
-    let name =
-        target.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    // Beside the target: the same file system, so that the rename at the end is one step.
-    let work = tempfile::Builder::new()
-        .prefix(&format!(".{name}."))
-        .suffix(".work")
-        .tempdir_in(folder)
-        .map_err(unusable)?;
-    observer.work_folder(work.path());
-    let store = MemoryStore::default();
-    let scratch = MemoryScratch::default();
-    let finished = work.path().join("package");
     let shares = MemoryShares::of(settings.resources.memory_bytes);
     corniche_dem::limit_block_cache(shares.raster_cache)
         .map_err(|error| BuildError::Start { what: error.to_string() })?;
     let plan_settings = PlanSettings::from(settings);
     let opened = Opened::new(&plan_settings)?;
+    let plan = BuildPlan::of(&plan_settings, &opened)?;
+    let store_folder = work_store::folder_of(target, settings.tmp.as_deref());
+    let finished = Unfinished::create(target, folder)?;
+    observer.temporary(finished.path());
+    let store = work_store::open(&disk, &store_folder, &plan, settings.leftovers, observer)?;
     let context = Context::new(&plan_settings, settings.resources, &opened, &store, observer);
-    let wanted = merge::Target { finished: &finished, named: &settings.output };
-    let manifest = run(&context, &scratch, &wanted).map_err(|error| {
-        // A changed input may be the cause of any other error, so it is reported instead.
-        let changed = match &error {
-            BuildError::Interrupted => None,
-            _ => opened.inputs.check_unchanged().err(),
-        };
-        changed.map_or(error, BuildError::from)
-    })?;
-    let package_bytes = place(&finished, target, settings.existing)?;
-    Ok(BuildSummary { manifest, package_bytes })
+    let wanted = merge::Target { finished: finished.path(), named: &settings.output };
+    let built = (store.scratch().map_err(BuildError::from))
+        .and_then(|scratch| run(&context, &scratch, &wanted))
+        .and_then(|manifest| Ok((manifest, finished.place(target, settings.existing)?)));
+    match built {
+        Ok((manifest, package_bytes)) => {
+            work_store::remove(store, observer);
+            Ok(BuildSummary { manifest, package_bytes })
+        }
+        Err(error) => {
+            // A changed input may be the cause of any other error, so it is reported instead.
+            let changed = match &error {
+                BuildError::Interrupted => None,
+                _ => opened.inputs.check_unchanged().err(),
+            };
+            let error = changed.map_or(error, BuildError::from);
+            work_store::after_failure(store, &store_folder, &error, observer);
+            Err(error)
+        }
+    }
 }
 
 /// Fails if the target is one of the inputs.
@@ -132,25 +150,4 @@ fn run(
     }
     tiles::make(context, TileId::ROOT)?;
     merge::make(context, scratch, target)
-}
-
-/// Writes the finished package's bytes to the disk, then moves the file to its place.
-fn place(finished: &Path, target: &Path, existing: Existing) -> Result<u64, BuildError> {
-    let failed = |source| BuildError::Rename { path: target.to_path_buf(), source };
-    let file = fs::File::options().write(true).open(finished).map_err(failed)?;
-    file.sync_all().map_err(failed)?;
-    let bytes = file.metadata().map_err(failed)?.len();
-    match existing {
-        Existing::Replace => fs::rename(finished, target).map_err(failed)?,
-        // A link fails where a rename would replace what someone put there while the build ran.
-        Existing::Keep => match fs::hard_link(finished, target) {
-            Ok(()) => {}
-            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
-                return Err(BuildError::Exists { path: target.to_path_buf() });
-            }
-            // Not every file system has hard links. Without them only the check at the start protects an existing file.
-            Err(_) => fs::rename(finished, target).map_err(failed)?,
-        },
-    }
-    Ok(bytes)
 }

@@ -63,9 +63,9 @@ pub trait Observer: Sync {
     /// A defect of the input was skipped and counted. The order of reports depends on the inputs alone.
     fn defect(&self, _: &Defect) {}
 
-    /// The run keeps intermediate results in this folder and removes it when it ends. A caller that ends the program
-    /// without waiting for the run removes the folder itself.
-    fn work_folder(&self, _: &Path) {}
+    /// The run uses this file or folder and removes it when it ends. A caller that ends the program without waiting for the run
+    /// removes it itself.
+    fn temporary(&self, _: &Path) {}
 
     /// A warning about the inputs, as text for the user.
     fn warning(&self, _: &str) {}

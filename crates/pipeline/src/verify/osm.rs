@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
-use corniche_store::{Artifacts, MemoryScratch, MemoryStore};
+use corniche_store::Artifacts;
 use corniche_tileset::{FilePackage, Manifest, pmtiles_order};
 
 use super::{
@@ -13,6 +13,7 @@ use super::{
     georeference, grid,
     osm_tile::{Found, Laying, SoupCache, look_at},
     request::VerifyOsm,
+    temporary_store::TemporaryStore,
 };
 use crate::{
     BuildError, Observer, Silent, Stage,
@@ -68,7 +69,8 @@ fn compare_all(
     let widest = most_scale(manifest.scale.largest);
     let levels = Levels::new(frame, manifest.settings.max_error_m, &settings, widest);
     let lengths = TrueLengths::new(frame, &manifest.coordinates, &projection);
-    let (store, scratch) = temporary();
+    let work = TemporaryStore::new(observer)?;
+    let (store, scratch) = (&work.store, work.scratch()?);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
@@ -83,19 +85,14 @@ fn compare_all(
         pool: &pool,
         memory_bytes: osm.memory_bytes,
     };
-    let roads = partition(&input, &store, &scratch, observer)?;
+    let roads = partition(&input, store, &scratch, observer)?;
     let mut fates = LossFold::new(&scratch, osm.memory_bytes);
     let laying = Laying { package, levels: &levels, data: [first, last] };
-    let classes = lay(&laying, &store, &mut fates, threads, findings, observer)?;
-    let losses = fates.finish(&roads, &store, &Silent)?;
+    let classes = lay(&laying, store, &mut fates, threads, findings, observer)?;
+    let losses = fates.finish(&roads, store, &Silent)?;
     check_counts(manifest, &roads, &losses, findings);
     check_growth(manifest, &classes, findings);
     Ok(())
-}
-
-/// Where pieces of roads are kept and sorted while the package is compared.
-fn temporary() -> (MemoryStore, MemoryScratch) {
-    (MemoryStore::default(), MemoryScratch::default())
 }
 
 /// Checks that the extract and the table of classes are those of the build.

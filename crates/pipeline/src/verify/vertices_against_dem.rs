@@ -8,7 +8,7 @@ use super::{
     checks::{CheckId, Findings},
     error::VerifyError,
     report::VerifyReport,
-    temporary_store::temporary_store,
+    temporary_store::TemporaryStore,
 };
 use crate::{BuildError, Observer, Stage, heights::pyramid::Pyramid, workers};
 
@@ -27,13 +27,13 @@ pub(crate) fn verify(
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
     let manifest = package.manifest();
-    let work = temporary_store()?;
+    let work = TemporaryStore::new(observer)?;
     let pyramid = Pyramid {
         dem,
         grid: plan,
         range_m: manifest.settings.height_range_m,
         threads,
-        store: &work,
+        store: &work.store,
         observer,
     };
     pyramid.make(TileId::ROOT)?;
