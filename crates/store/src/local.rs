@@ -428,7 +428,8 @@ fn remove_all(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreEr
     Ok(left)
 }
 
-/// Removes all files of a store but the lock, the header last; returns what is left.
+/// Removes all files of a store but the lock; returns what is left. The header goes before the plan: at any moment the folder is a store that
+/// can be read, or none.
 fn remove_own_files(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
     let found = layout::look(files, folder)?.unwrap_or_default();
     let mut left: Vec<PathBuf> = found.foreign.iter().map(|name| folder.join(name)).collect();
@@ -446,7 +447,10 @@ fn remove_own_files(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, S
             files.remove(&folder.join(name))?;
         }
     }
+    if found.has(layout::STORE) {
+        files.remove(&folder.join(layout::STORE))?;
+        files.sync_folder(folder)?;
+    }
     files.remove(&folder.join(layout::PLAN))?;
-    files.remove(&folder.join(layout::STORE))?;
     Ok(left)
 }
