@@ -14,7 +14,7 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-use corniche_geom::{Frame, LatticeBounds, LatticePoint, ProjectError, Projection};
+use corniche_geom::{Frame, LatticeBounds, LatticePoint, ProjectError, Projection, TileId};
 use corniche_osm::ExtractSummary;
 use corniche_roads::{FunctionalRoadClass, Road};
 use corniche_store::{Artifacts, Scratch, SortRecord, Sorter};
@@ -23,7 +23,7 @@ use rayon::prelude::*;
 
 use super::{
     lengths::TrueLengths,
-    pieces::TilePiecesWriter,
+    pieces::{RoadPiece, TilePiecesWriter},
     split::{SplitRoad, Splitting},
     totals::{ExtractCounts, LengthsWriter, RoadTotals},
 };
@@ -184,15 +184,20 @@ impl<'a> Gathered<'a> {
             return;
         }
         let splitting = &self.splitting;
-        let encoded = |road: &Road| {
-            let mut split = splitting.split(road);
-            let pieces = std::mem::take(&mut split.pieces);
-            let bytes =
-                |(id, piece): (_, super::pieces::RoadPiece)| (pmtiles_order(id), piece.to_bytes());
-            (split, pieces.into_iter().map(bytes).collect())
+        let first = self.totals.roads as u32;
+        let split = |(index, road): (usize, &Road)| {
+            let mut road = splitting.split(road);
+            let pieces = std::mem::take(&mut road.pieces).into_iter();
+            let ordinal = first + index as u32;
+            let record = |(id, piece): (TileId, RoadPiece)| PieceRecord {
+                tile: pmtiles_order(id),
+                ordinal,
+                bytes: piece.to_bytes(),
+            };
+            (road, pieces.map(record).collect())
         };
-        let roads: Vec<(SplitRoad, Vec<(u64, Vec<u8>)>)> =
-            self.pool.install(|| batch.par_iter().map(encoded).collect());
+        let roads: Vec<(SplitRoad, Vec<PieceRecord>)> =
+            self.pool.install(|| batch.par_iter().enumerate().map(split).collect());
         for (road, pieces) in roads {
             if let Err(error) = self.take(&road, pieces) {
                 self.failed = Some(error);
@@ -202,8 +207,7 @@ impl<'a> Gathered<'a> {
     }
 
     /// Takes the road with the next ordinal.
-    fn take(&mut self, road: &SplitRoad, pieces: Vec<(u64, Vec<u8>)>) -> Result<(), BuildError> {
-        let ordinal = self.totals.roads as u32;
+    fn take(&mut self, road: &SplitRoad, pieces: Vec<PieceRecord>) -> Result<(), BuildError> {
         self.totals.roads += 1;
         let length_um = road.length.length_um;
         self.totals.length_um += length_um;
@@ -215,9 +219,8 @@ impl<'a> Gathered<'a> {
             self.totals.bounds = Some([all.min, all.max]);
         }
         self.lengths.push(road.length)?;
-        for (tile, bytes) in pieces {
-            let record = PieceRecord { tile, ordinal, bytes };
-            self.pieces.push(record).map_err(BuildError::Storage)?;
+        for piece in pieces {
+            self.pieces.push(piece).map_err(BuildError::Storage)?;
         }
         Ok(())
     }

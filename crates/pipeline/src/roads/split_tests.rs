@@ -167,17 +167,19 @@ fn worlds() -> impl Strategy<Value = World> {
 }
 
 /// A coordinate, as a place within the root and as a border and a distance from it.
-fn places() -> impl Strategy<Value = (u8, f64, i64, i64)> {
+type Place = (u8, f64, i64, i64);
+
+fn places() -> impl Strategy<Value = Place> {
     (0..12_u8, -0.4..1.4_f64, 0..=4_i64, -1..=1_i64)
 }
 
 /// Roads with points anywhere, on borders of tiles and of margins, a step beside them, and far away; some are rings.
-fn roads() -> impl Strategy<Value = Vec<Vec<((u8, f64, i64, i64), (u8, f64, i64, i64))>>> {
+fn roads() -> impl Strategy<Value = Vec<Vec<(Place, Place)>>> {
     vec(vec((places(), places()), 2..14), 1..4)
 }
 
 impl World {
-    fn coordinate(&self, (kind, share, border, step): (u8, f64, i64, i64), ends: [i64; 2]) -> i64 {
+    fn coordinate(&self, (kind, share, border, step): Place, ends: [i64; 2]) -> i64 {
         let [min, max] = ends;
         let level = self.levels.frame().max_level().min(kind % 3);
         let margin = self.levels.margin_steps(level);
@@ -199,9 +201,9 @@ impl World {
         }
     }
 
-    fn road(&self, ordinal: u32, points: &[((u8, f64, i64, i64), (u8, f64, i64, i64))]) -> Road {
+    fn road(&self, ordinal: u32, points: &[(Place, Place)]) -> Road {
         let root = self.levels.frame().tile_lattice_bounds(TileId::ROOT);
-        let at = |&(u, v): &((u8, f64, i64, i64), (u8, f64, i64, i64))| {
+        let at = |&(u, v): &(Place, Place)| {
             let u = self.coordinate(u, [root.min.u, root.max.u]);
             LatticePoint::new(u, self.coordinate(v, [root.min.v, root.max.v]))
         };
@@ -278,40 +280,59 @@ proptest! {
     }
 }
 
-/// Segments far from a tile are not kept for it.
+/// A level of 32 by 32 tiles.
+struct Large {
+    levels: Levels,
+    table: CoordinateTable,
+    projection: FlatProjection,
+}
+
+impl Large {
+    fn new() -> Self {
+        let frame = Frame::new([0.0; 2], 10.0, NodeIndex { i: 0, j: 0 }, 5).unwrap();
+        let settings = RoadSettings {
+            table: FrcTable::new("t", vec![("primary".into(), 0)], Vec::new(), 8).unwrap(),
+            filter: ClassFilter::new([None; FunctionalRoadClass::COUNT]).unwrap(),
+            simplify_cells: 0.5,
+        };
+        let projection = FlatProjection::new([1e5; 2]);
+        let bounds = frame.tile_bounds(TileId::ROOT);
+        let table = CoordinateTable::sample(&projection, bounds, 0.01).unwrap();
+        Self { levels: Levels::new(frame, 2.5, &settings, 1.0), table, projection }
+    }
+
+    fn lengths(&self) -> TrueLengths<'_> {
+        TrueLengths::new(*self.levels.frame(), &self.table, &self.projection)
+    }
+
+    /// A road through these points, split for the data's rectangle.
+    fn split(&self, points: Vec<LatticePoint>, data_bounds: LatticeBounds) -> SplitRoad {
+        let last = points.len() as u32 - 1;
+        let road = Road {
+            way_id: 1,
+            class: FunctionalRoadClass::new(0).unwrap(),
+            attributes: RoadAttributes::default(),
+            line: Polyline::new(points).unwrap(),
+            fixed: vec![0, last],
+        };
+        let lengths = self.lengths();
+        Splitting { levels: &self.levels, lengths: &lengths, data_bounds }.split(&road)
+    }
+}
+
 #[test]
 fn a_tile_has_only_the_segments_near_it() {
-    let frame = Frame::new([0.0; 2], 10.0, NodeIndex { i: 0, j: 0 }, 5).unwrap();
-    let settings = RoadSettings {
-        table: FrcTable::new("t", vec![("primary".into(), 0)], Vec::new(), 8).unwrap(),
-        filter: ClassFilter::new([None; FunctionalRoadClass::COUNT]).unwrap(),
-        simplify_cells: 0.5,
-    };
-    let levels = Levels::new(frame, 2.5, &settings, 1.0);
+    let large = Large::new();
+    let frame = large.levels.frame();
     let root = frame.tile_lattice_bounds(TileId::ROOT);
-    let table = CoordinateTable::sample(
-        &FlatProjection::new([1e5; 2]),
-        frame.tile_bounds(TileId::ROOT),
-        0.01,
-    )
-    .unwrap();
-    let projection = FlatProjection::new([1e5; 2]);
-    let lengths = TrueLengths::new(frame, &table, &projection);
     // A zigzag from the north-west corner to the south-east one, 32 tiles away, with ten segments a tile.
-    let points = (0..=320).map(|k| {
-        let along = (root.max.u - root.min.u) / 320 * k;
-        LatticePoint::new(root.min.u + along, root.max.v - along + (k % 2) * 1000)
-    });
-    let line = Polyline::new(points.collect()).unwrap();
-    let road = Road {
-        way_id: 1,
-        class: FunctionalRoadClass::new(0).unwrap(),
-        attributes: RoadAttributes::default(),
-        line,
-        fixed: vec![0, 320],
-    };
-    let splitting = Splitting { levels: &levels, lengths: &lengths, data_bounds: root };
-    let split = splitting.split(&road);
+    let points: Vec<LatticePoint> = (0..=320)
+        .map(|k| {
+            let along = (root.max.u - root.min.u) / 320 * k;
+            LatticePoint::new(root.min.u + along, root.max.v - along + (k % 2) * 1000)
+        })
+        .collect();
+    let split = large.split(points.clone(), root);
     let finest: Vec<_> = split.pieces.iter().filter(|(id, _)| id.z() == 5).collect();
     assert!(finest.len() >= 32);
     for (id, piece) in finest {
@@ -320,10 +341,32 @@ fn a_tile_has_only_the_segments_near_it() {
     }
     // Beside the data there is nothing.
     let corner = TileId::new(5, 0, 0).unwrap();
-    let data_bounds = frame.tile_lattice_bounds(corner);
-    let split = Splitting { levels: &levels, lengths: &lengths, data_bounds }.split(&road);
+    let split = large.split(points, frame.tile_lattice_bounds(corner));
     let ids: Vec<TileId> = split.pieces.iter().map(|(id, _)| *id).collect();
     assert_eq!(ids, (0..=5).map(|z| corner.ancestor(z)).collect::<Vec<_>>());
     assert!(split.length.outside_um * 33 > split.length.length_um * 31);
     assert!(split.length.outside_um < split.length.length_um);
+}
+
+/// A road that leaves a tile far behind and comes back has two runs there.
+#[test]
+fn what_lies_far_away_between_two_visits_is_left_out() {
+    let large = Large::new();
+    let root = large.levels.frame().tile_lattice_bounds(TileId::ROOT);
+    let tile = (root.max.u - root.min.u) / 32;
+    let at = |column: i64, row: i64| {
+        LatticePoint::new(root.min.u + column * tile / 2, root.max.v - row * tile / 2)
+    };
+    let line = [at(1, 1), at(9, 1), at(19, 1), at(19, 9), at(9, 9), at(1, 2)];
+    let split = large.split(line.to_vec(), root);
+    let of_corner =
+        split.pieces.iter().find(|(id, _)| *id == TileId::new(5, 0, 0).unwrap()).unwrap();
+    let runs: Vec<&[LatticePoint]> = of_corner.1.runs.iter().map(|run| run.line.points()).collect();
+    assert_eq!(runs, [&line[..2], &line[4..]]);
+    let [first, .., last] = large.lengths().segments_um(&Polyline::new(line.to_vec()).unwrap())[..]
+    else {
+        panic!("a line of five segments")
+    };
+    let lengths: Vec<u64> = of_corner.1.runs.iter().map(|run| run.segments_um[0]).collect();
+    assert_eq!(lengths, [first, last]);
 }
