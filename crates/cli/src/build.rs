@@ -72,6 +72,7 @@ pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
         eprintln!("\n{}", info::to_text(&summary.manifest, summary.package_bytes));
         eprintln!("wrote {}", settings.output.display());
     }
+    watch.progress.tell_costs();
     Ok(ExitCode::Done)
 }
 

@@ -115,11 +115,10 @@ impl Inputs {
 
     /// Hashes the content of every file. The parts of a raster come after it, sorted.
     pub(crate) fn hash(&self, observer: &dyn Observer) -> Result<Vec<InputRecord>, InputError> {
-        observer.begin(Stage::Hash, Some(self.files.len() as u64));
+        observer.begin(Stage::Hash, self.files.iter().map(Input::content_bytes).sum());
         let mut records: Vec<InputRecord> = Vec::new();
         for input in &self.files {
             records.push(input.hash(observer)?);
-            observer.advance(Stage::Hash, 1);
         }
         let is_part = |record: &InputRecord| InputKind::DemPart.is_of(record);
         for parts in records.chunk_by_mut(|a, b| is_part(a) && is_part(b)) {
@@ -153,6 +152,17 @@ impl Input {
         };
         let stamp = stamp.map_err(failed)?;
         Ok(Self { kind, path: path.to_path_buf(), name, content, stamp })
+    }
+
+    /// Size of what is hashed, as far as it is known before it is read.
+    fn content_bytes(&self) -> Option<u64> {
+        match (&self.content, &self.stamp) {
+            (Content::Folder, _) => Some(0),
+            (Content::File(_), Stamp::File(_, state)) => Some(state.size()),
+            (_, Stamp::Remote(_, size)) => Some(*size),
+            // Inside an archive: only the archive's own size is known.
+            (Content::Virtual(_), Stamp::File(..)) => None,
+        }
     }
 
     fn hash(&self, observer: &dyn Observer) -> Result<InputRecord, InputError> {
@@ -195,6 +205,7 @@ fn digest(
             Ok(read) => {
                 hasher.update(&buffer[..read]);
                 bytes += read as u64;
+                observer.advance(Stage::Hash, read as u64);
             }
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
             Err(error) => return Err(error),

@@ -32,7 +32,7 @@ pub use corniche_dem::{OpenOptions, PlanOptions};
 pub use corniche_osm::Defect as OsmDefect;
 pub use defect::{Defect, Loss};
 pub use error::BuildError;
-pub use observer::{Observer, Silent, Stage};
+pub use observer::{Observer, Silent, Stage, Unit};
 pub use settings::{BuildSettings, Existing, Resources, RoadSettings, TerrainSettings};
 pub use target::{TargetError, file_target};
 pub use verify::{

@@ -60,6 +60,11 @@ impl Stamp {
 }
 
 impl FileState {
+    /// In bytes.
+    pub(crate) fn size(&self) -> u64 {
+        self.size
+    }
+
     fn of(found: &Metadata) -> Self {
         Self {
             size: found.len(),
