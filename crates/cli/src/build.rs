@@ -72,6 +72,7 @@ pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
         eprintln!("\n{}", info::to_text(&summary.manifest, summary.package_bytes));
         eprintln!("wrote {}", settings.output.display());
     }
+    watch.progress.tell_costs();
     Ok(ExitCode::Done)
 }
 
@@ -101,6 +102,9 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
         osm: args.osm,
         output: args.output,
         existing: if args.overwrite { Existing::Replace } else { Existing::Keep },
+        tmp: None,
+        leftovers: if args.overwrite { corniche_pipeline::Leftovers::Discard } else { corniche_pipeline::Leftovers::Refuse },
+        force: false,
         attribution: if args.attribution.is_empty() {
             terrain.attribution.clone()
         } else {

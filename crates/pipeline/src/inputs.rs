@@ -152,12 +152,13 @@ impl Inputs {
         observer: &dyn Observer,
         mut take: impl FnMut(usize, InputRecord) -> Result<(), E>,
     ) -> Result<(), E> {
-        observer.begin(Stage::Hash, Some(self.files.len() as u64));
+        observer.begin(Stage::Hash, self.files.iter().map(Input::content_bytes).sum());
         for (index, input) in self.files.iter().enumerate() {
-            if !is_done(index) {
+            if is_done(index) {
+                observer.already(Stage::Hash, input.content_bytes().unwrap_or_default());
+            } else {
                 take(index, input.hash(observer)?)?;
             }
-            observer.advance(Stage::Hash, 1);
         }
         observer.end(Stage::Hash);
         Ok(())
@@ -217,6 +218,17 @@ impl Input {
         })
     }
 
+    /// Size of what is hashed, as far as it is known before it is read.
+    fn content_bytes(&self) -> Option<u64> {
+        match (&self.content, &self.stamp) {
+            (Content::Folder, _) => Some(0),
+            (Content::File(_), Stamp::File(_, state)) => Some(state.size()),
+            (_, Stamp::Remote(_, size)) => Some(*size),
+            // Inside an archive: only the archive's own size is known.
+            (Content::Virtual(_), Stamp::File(..)) => None,
+        }
+    }
+
     fn hash(&self, observer: &dyn Observer) -> Result<InputRecord, InputError> {
         let failed = |source: io::Error| InputError::Read { path: self.path.clone(), source };
         let mut hasher = Sha256::new();
@@ -257,6 +269,7 @@ fn digest(
             Ok(read) => {
                 hasher.update(&buffer[..read]);
                 bytes += read as u64;
+                observer.advance(Stage::Hash, read as u64);
             }
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
             Err(error) => return Err(error),

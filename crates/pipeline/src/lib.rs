@@ -24,16 +24,16 @@ mod tile;
 mod verify;
 mod workers;
 
-pub use build::{BuildSummary, build};
+pub use build::{BuildSummary, build, build_on};
 pub use corniche_dem::{OpenOptions, PlanOptions};
 pub use corniche_osm::Defect as OsmDefect;
 pub use defect::{Defect, Loss};
 pub use error::BuildError;
 pub use inputs::PlannedInput;
-pub use observer::{Observer, Silent, Stage};
+pub use observer::{Observer, Silent, Stage, Unit};
 pub use plan::{BuildPlan, FrcTableRecord, PlanError, PlannedGrid, PlannedLevel};
 pub use settings::{
-    BuildSettings, Existing, PlanSettings, Resources, RoadSettings, TerrainSettings,
+    BuildSettings, Existing, Leftovers, PlanSettings, Resources, RoadSettings, TerrainSettings,
 };
 pub use target::{TargetError, file_target};
 pub use verify::{

@@ -39,7 +39,7 @@ impl Pyramid<'_> {
         let is_missing = |area: &&TileId| !store.has(Kind::Area.of_tile(**area));
         let missing: Vec<TileId> = all.iter().filter(is_missing).copied().collect();
         observer.begin(Stage::Heights, Some(all.len() as u64));
-        observer.advance(Stage::Heights, (all.len() - missing.len()) as u64);
+        observer.already(Stage::Heights, (all.len() - missing.len()) as u64);
         let mut blocks: BTreeMap<TileId, Vec<AuditBlock>> = BTreeMap::new();
         let wanted: BTreeSet<TileId> = missing.iter().copied().collect();
         for (area, block) in audit_blocks_of(dem, grid, level)? {

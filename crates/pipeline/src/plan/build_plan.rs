@@ -227,14 +227,20 @@ impl BuildPlan {
         Ok(serde_json::from_str(text)?)
     }
 
-    /// SHA-256 of the plan's JSON without spaces, lower-case hexadecimal. Fields come in the order of their declaration.
+    /// SHA-256 of the plan's JSON without spaces. Fields come in the order of their declaration.
     ///
     /// Sizes and times of the inputs count: they bind a store to the files as they are. They never reach a package.
     #[must_use]
-    pub fn hash(&self) -> String {
+    pub fn digest(&self) -> [u8; 32] {
         // A record of numbers and texts can always be written as JSON; if not, its debugging form is as unique.
         let json = serde_json::to_string(self).unwrap_or_else(|_| format!("{self:?}"));
-        hex(&Sha256::digest(json))
+        Sha256::digest(json).into()
+    }
+
+    /// The digest, lower-case hexadecimal.
+    #[must_use]
+    pub fn hash(&self) -> String {
+        hex(&self.digest())
     }
 }
 

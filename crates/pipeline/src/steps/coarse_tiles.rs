@@ -26,7 +26,7 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
     ids.retain(|&id| !store.has(Kind::Record.of_tile(id)));
     ids.sort_unstable_by_key(|&id| corniche_tileset::pmtiles_order(id));
     context.observer.begin(Stage::CoarseTiles, Some(all));
-    context.observer.advance(Stage::CoarseTiles, all - ids.len() as u64);
+    context.observer.already(Stage::CoarseTiles, all - ids.len() as u64);
     workers::in_order_unless_cancelled(
         context.observer,
         context.threads(),

@@ -33,7 +33,7 @@ fn make_finest(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
     let all = ids.len() as u64;
     ids.retain(|&id| !store.has(Kind::Record.of_tile(id)));
     observer.begin(Stage::Tiles, Some(all));
-    observer.advance(Stage::Tiles, all - ids.len() as u64);
+    observer.already(Stage::Tiles, all - ids.len() as u64);
     let grounds = Grounds::new(context);
     workers::in_order_unless_cancelled(
         observer,

@@ -29,8 +29,8 @@ pub(crate) fn make(
             }
         }
     }
-    context.observer.begin(Stage::Mesh, Some(ids.len() as u64 + done));
-    context.observer.advance(Stage::Mesh, done);
+    context.observer.begin(Stage::CoarseTins, Some(ids.len() as u64 + done));
+    context.observer.already(Stage::CoarseTins, done);
     workers::in_order_unless_cancelled(
         context.observer,
         context.threads(),
@@ -45,10 +45,10 @@ pub(crate) fn make(
             meshed.put(store, id)
         },
         |_, ()| {
-            context.observer.advance(Stage::Mesh, 1);
+            context.observer.advance(Stage::CoarseTins, 1);
             Ok::<_, BuildError>(())
         },
     )?;
-    context.observer.end(Stage::Mesh);
+    context.observer.end(Stage::CoarseTins);
     Ok(())
 }
