@@ -117,7 +117,7 @@ impl LocalStore {
         let files = Files::new(disk);
         refuse_store(&files, folder)?;
         files.create_folder(folder)?;
-        let lock = lock::lock_store(&files, &folder.join(layout::LOCK), Hold::Alone)?;
+        let lock = lock::lock_store(&files, folder, Hold::Alone)?;
         // Another may have made one before the lock was ours.
         refuse_store(&files, folder)?;
         remove_own_files(&files, folder)?;
@@ -137,7 +137,7 @@ impl LocalStore {
     ) -> Result<Self, StoreError> {
         let files = Files::new(disk);
         binding::check_hash(&files, folder, plan)?;
-        let lock = lock::lock_store(&files, &folder.join(layout::LOCK), Hold::Alone)?;
+        let lock = lock::lock_store(&files, folder, Hold::Alone)?;
         binding::check_hash(&files, folder, plan)?;
         Self::assemble(files, &[folder], Some((folder, BUILD, lock)), plan, interval)
     }
@@ -166,7 +166,7 @@ impl LocalStore {
         layout::check_part_name(own.name)?;
         binding::state(&files, own.folder)?;
         files.create_folder(own.folder)?;
-        let lock = lock::lock_store(&files, &own.folder.join(layout::LOCK), Hold::Shared)?;
+        let lock = lock::lock_store(&files, own.folder, Hold::Shared)?;
         if !matches!(binding::state(&files, own.folder)?.0, FolderState::Store) {
             binding::bind(&files, own.folder, own.plan)?;
         }
@@ -187,65 +187,37 @@ impl LocalStore {
         plan: &PlanHash,
         interval: Duration,
     ) -> Result<Self, StoreError> {
-        let mut store = Self { files, index: RwLock::default(), sealed: Vec::new(), own: None };
-        let mut sealed_bytes = 0;
+        let (mut index, mut sealed, mut sealed_bytes) = (Index::default(), Vec::new(), 0);
         for folder in folders {
-            for path in sealed_parts(&store.files, folder)? {
-                let (file, entries) = sealed_part::open(&store.files, &path, plan)?;
+            for path in sealed_parts(&files, folder)? {
+                let number = part_number(&path, sealed.len())?;
+                let visit = &mut |path: &Path, entry| add(&mut index, &sealed, number, path, entry);
+                let file = sealed_part::open(&files, &path, plan, visit)?;
                 if own.as_ref().is_some_and(|(own, ..)| own == folder) {
                     sealed_bytes += file.length()?;
                 }
-                store.add_sealed(file, &entries)?;
+                sealed.push(file);
             }
         }
+        let mut store = Self { files, index: RwLock::default(), sealed, own: None };
         if let Some((folder, name, lock)) = own {
             open_part::remove_data_without_journal(&store.files, folder)?;
             remove_scratch(&store.files, folder)?;
-            let opened = OpenPart::open(&store.files, folder, name, plan, interval)?;
-            store.add_entries(OPEN_PART, opened.part.data().path(), &opened.entries)?;
+            let visit =
+                &mut |path: &Path, entry| add(&mut index, &store.sealed, OPEN_PART, path, entry);
+            let (part, dropped) =
+                OpenPart::open(&store.files, folder, name, plan, interval, visit)?;
             store.own = Some(Own {
                 folder: folder.to_owned(),
-                part: opened.part,
-                dropped: opened.dropped,
+                part,
+                dropped,
                 sealed_bytes,
                 scratch_bytes: Arc::default(),
                 lock,
             });
         }
+        store.index = RwLock::new(index);
         Ok(store)
-    }
-
-    fn add_sealed(&mut self, file: OpenFile, entries: &[Entry]) -> Result<(), StoreError> {
-        let number = u16::try_from(self.sealed.len()).ok().filter(|&number| number < OPEN_PART);
-        let Some(number) = number else {
-            return Err(StoreError::TooLarge {
-                path: file.path().to_owned(),
-                what: "one more sealed part",
-                length: self.sealed.len() as u64,
-                limit: u64::from(OPEN_PART),
-            });
-        };
-        self.add_entries(number, file.path(), entries)?;
-        self.sealed.push(file);
-        Ok(())
-    }
-
-    /// Adds what a part holds. What another part holds too must be the same there.
-    fn add_entries(&mut self, part: u16, path: &Path, entries: &[Entry]) -> Result<(), StoreError> {
-        let index = self.index.get_mut().unwrap_or_else(PoisonError::into_inner);
-        for &Entry { key, offset, length, crc } in entries {
-            if index.insert(key, Place { part, offset, length, crc }) {
-                continue;
-            }
-            let Some(place) = index.get(key) else { continue };
-            if (place.length, place.crc) != (length, crc) && place.part != part {
-                let first = self.sealed.get(usize::from(place.part));
-                let first = first.map_or_else(|| path.to_owned(), |file| file.path().to_owned());
-                let (kind, item) = (key.kind, key.item);
-                return Err(StoreError::Differs { kind, item, first, second: path.to_owned() });
-            }
-        }
-        Ok(())
     }
 
     /// Makes durable all that was put before.
@@ -263,12 +235,7 @@ impl LocalStore {
     /// [`StoreError::ReadOnly`]; where the disk fails. The part then stays open and can be gone on with.
     pub fn seal(mut self) -> Result<Option<PathBuf>, StoreError> {
         let own = self.own.take().ok_or_else(|| self.read_only())?;
-        own.part.flush()?;
-        let entries: Vec<Entry> = (self.index().iter())
-            .filter(|(_, place)| place.part == OPEN_PART)
-            .map(|(key, Place { offset, length, crc, .. })| Entry { key, offset, length, crc })
-            .collect();
-        own.part.seal(&own.folder, &entries)
+        own.part.seal(&own.folder, &self.index())
     }
 
     /// Scratch space in the store's folder.
@@ -304,7 +271,7 @@ impl LocalStore {
         if matches!(binding::state(&files, folder)?.0, FolderState::Absent) {
             return Ok(Vec::new());
         }
-        let _lock = lock::lock_store(&files, &folder.join(layout::LOCK), Hold::Alone)?;
+        let _lock = lock::lock_store(&files, folder, Hold::Alone)?;
         remove_all(&files, folder)
     }
 
@@ -375,6 +342,45 @@ impl Artifacts for LocalStore {
 
     fn items(&self, kind: u8) -> Vec<u64> {
         self.index().items(kind)
+    }
+}
+
+/// Adds an entry of a part. What another part holds too must be the same there.
+fn add(
+    index: &mut Index,
+    sealed: &[OpenFile],
+    part: u16,
+    path: &Path,
+    entry: Entry,
+) -> Result<(), StoreError> {
+    let Entry { key, offset, length, crc } = entry;
+    if index.insert(key, Place { part, offset, length, crc }) {
+        return Ok(());
+    }
+    match index.get(key) {
+        Some(place) if place.part != part && (place.length, place.crc) != (length, crc) => {
+            let first = sealed.get(usize::from(place.part)).map_or(path, OpenFile::path);
+            Err(StoreError::Differs {
+                kind: key.kind,
+                item: key.item,
+                first: first.to_owned(),
+                second: path.to_owned(),
+            })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The number of the next sealed part.
+fn part_number(path: &Path, count: usize) -> Result<u16, StoreError> {
+    match u16::try_from(count) {
+        Ok(number) if number < OPEN_PART => Ok(number),
+        _ => Err(StoreError::TooLarge {
+            path: path.to_owned(),
+            what: "one more sealed part",
+            length: count as u64,
+            limit: u64::from(OPEN_PART),
+        }),
     }
 }
 

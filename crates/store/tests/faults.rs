@@ -186,6 +186,39 @@ fn a_crash_loses_what_was_not_made_durable_and_nothing_else() {
     assert!(lost_some > 100, "only {lost_some} crashes cost anything: the test does not see much");
 }
 
+/// What was cut off never comes back behind what is written in its place: a mark would stand for something lost.
+#[test]
+fn a_mark_that_was_cut_off_does_not_come_back_at_the_next_crash() {
+    let damaged_disk = || {
+        let disk = empty_disk();
+        let store = create(&disk, NEVER).unwrap();
+        for key in [key(1, 0), key(1, 1), mark(0)] {
+            store.put(key, &artifact(key)).unwrap();
+        }
+        drop(store);
+        let is_data = |path: &std::path::PathBuf| path.extension().is_some_and(|e| e == "data");
+        let path = disk.paths().into_iter().find(is_data).unwrap();
+        let mut data = disk.content(&path).unwrap();
+        data[48 + artifact(key(1, 0)).len()] ^= 1;
+        disk.set_content(&path, &data);
+        disk
+    };
+    for seed in 0..300 {
+        let disk = damaged_disk();
+        let mut random = Random::new(seed);
+        let store = open(&disk, NEVER).unwrap();
+        assert_eq!(store.repaired(), 2);
+        store.put(key(1, 7), &artifact(key(1, 7))).unwrap();
+        disk.fail_after(random.below(9) as u64, Failure::Death);
+        let _ = store.flush();
+        disk.fail_after(0, Failure::Death);
+        drop(store);
+        let store = open(&disk.after_crash(&mut random), NEVER).unwrap();
+        check_all_right(&store);
+        assert!(store.has(key(1, 0)) && !store.has(mark(0)), "seed {seed}");
+    }
+}
+
 /// As above, with parts that are sealed: a part is there as a whole or not at all.
 #[test]
 fn a_crash_while_a_part_is_sealed_leaves_a_whole_part_or_none() {

@@ -116,6 +116,25 @@ fn what_was_put_after_a_damaged_artifact_is_dropped_with_it() {
     check_holds(&store, &all_of(keys[..4].iter().copied()));
 }
 
+/// An entry that is whole, but stands where another was written, is not taken: neither it nor what follows.
+#[test]
+fn an_entry_in_the_wrong_place_is_torn() {
+    let disk = empty_disk();
+    let store = create(&disk, NEVER).unwrap();
+    let keys: Vec<_> = (0..6).map(|item| key(1, item)).collect();
+    for &key in &keys {
+        store.put(key, &artifact(key)).unwrap();
+    }
+    drop(store);
+    let path = part_file(&disk, "journal");
+    let mut journal = disk.content(&path).unwrap();
+    journal.copy_within(48 + 4 * 32..48 + 5 * 32, 48 + 2 * 32);
+    disk.set_content(&path, &journal);
+    let store = open(&disk, NEVER).unwrap();
+    assert_eq!(store.repaired(), 4);
+    check_holds(&store, &all_of(keys[..2].iter().copied()));
+}
+
 /// A bit that falls over while the store is open is found when the artifact is read.
 #[test]
 fn reading_a_damaged_artifact_is_an_error() {

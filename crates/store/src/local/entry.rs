@@ -9,8 +9,10 @@
 //!
 //! The number is in the check so that an entry that is whole, but not where it was written, is not taken for one.
 
+use std::path::Path;
+
 use crate::{
-    Key,
+    Key, StoreError,
     local::{
         header::{HEADER_BYTES, u32_at, u64_at},
         index::OFFSET_LIMIT,
@@ -29,6 +31,9 @@ pub(crate) struct Entry {
     /// CRC-32 of the artifact.
     pub(crate) crc: u32,
 }
+
+/// What is found in a part is handed out one by one, with the file it is in, so that it need not be in memory twice.
+pub(crate) type Visit<'a> = dyn FnMut(&Path, Entry) -> Result<(), StoreError> + 'a;
 
 impl Entry {
     pub(crate) fn encode(&self, number: u64) -> [u8; ENTRY_BYTES] {

@@ -11,22 +11,23 @@ use std::{
 use crate::{
     Hold, OpenMode, StoreError,
     files::{Files, OpenFile, is_kind},
+    local::layout,
 };
 
-/// Makes sure of a store. `Hold::Alone` for a build, `Hold::Shared` for those that each make a part of their own.
+/// Takes the lock of the store in `folder`. `Hold::Alone` for a build, `Hold::Shared` for those that each make a part of their own.
 ///
 /// # Errors
 /// [`StoreError::Locked`] if another process has it.
 pub(crate) fn lock_store(
     files: &Arc<Files>,
-    path: &Path,
+    folder: &Path,
     hold: Hold,
 ) -> Result<OpenFile, StoreError> {
     loop {
-        let file = files.open(path, OpenMode::ChangeOrNew)?;
+        let file = files.open(&folder.join(layout::LOCK), OpenMode::ChangeOrNew)?;
         if !file.try_lock(hold)? {
             let owner = read_owner(&file);
-            return Err(StoreError::Locked { path: path.to_owned(), owner });
+            return Err(StoreError::Locked { path: folder.to_owned(), owner });
         }
         // The last owner may have removed the file after we opened it: then it guards nothing any more.
         if file.is_in_place()? {

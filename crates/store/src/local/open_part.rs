@@ -17,7 +17,7 @@ use crate::{
     Key, OpenMode, StoreError,
     files::{Files, OpenFile, is_kind},
     local::{
-        entry::{ENTRY_BYTES, Entry},
+        entry::{ENTRY_BYTES, Entry, Visit},
         header::{self, FileKind, HEADER_BYTES, PlanHash},
         index::{Index, OFFSET_LIMIT, Place},
         layout, lock, sealed_part,
@@ -47,24 +47,17 @@ pub(crate) struct OpenPart {
     failed: AtomicBool,
 }
 
-/// A part found in the folder, or a new one.
-pub(crate) struct Opened {
-    pub(crate) part: OpenPart,
-    /// Where its artifacts are.
-    pub(crate) entries: Vec<Entry>,
-    /// How many entries were cut off: torn, or of an artifact that is damaged, or after such a one.
-    pub(crate) dropped: u64,
-}
-
 impl OpenPart {
-    /// Goes on with a part that a dead process left, or makes a new one.
+    /// Goes on with a part that a dead process left, or makes a new one. Also returns how many entries were cut off: torn, of an artifact that is
+    /// damaged, or after such a one.
     pub(crate) fn open(
         files: &Arc<Files>,
         folder: &Path,
         name: &str,
         plan: &PlanHash,
         interval: Duration,
-    ) -> Result<Opened, StoreError> {
+        visit: &mut Visit<'_>,
+    ) -> Result<(Self, u64), StoreError> {
         let found = layout::look(files, folder)?.unwrap_or_default();
         let mut left = Vec::new();
         for journal in found.of(layout::Role::Journal) {
@@ -82,14 +75,14 @@ impl OpenPart {
         }
         match longest {
             Some((length, journal)) if length > HEADER_BYTES => {
-                Self::resume(files, journal, name, plan, interval)
+                if let Some(resumed) = Self::resume(files, journal, name, plan, interval, visit)? {
+                    return Ok(resumed);
+                }
             }
-            Some((_, journal)) => {
-                remove(files, &journal)?;
-                Self::create(files, folder, name, plan, interval)
-            }
-            None => Self::create(files, folder, name, plan, interval),
+            Some((_, journal)) => remove(files, &journal)?,
+            None => {}
         }
+        Ok((Self::create(files, folder, name, plan, interval)?, 0))
     }
 
     fn create(
@@ -98,7 +91,7 @@ impl OpenPart {
         name: &str,
         plan: &PlanHash,
         interval: Duration,
-    ) -> Result<Opened, StoreError> {
+    ) -> Result<Self, StoreError> {
         let journal = lock::create_owned(files, |suffix| layout::journal(folder, name, suffix))?;
         journal.write_all_at(&header::encode(FileKind::Journal, plan), 0)?;
         journal.sync()?;
@@ -106,24 +99,22 @@ impl OpenPart {
         data.write_all_at(&header::encode(FileKind::Data, plan), 0)?;
         data.sync()?;
         files.sync_folder(folder)?;
-        let part = Self::new(name, data, journal, interval, HEADER_BYTES, 0);
-        Ok(Opened { part, entries: Vec::new(), dropped: 0 })
+        Ok(Self::new(name, data, journal, interval, HEADER_BYTES, 0))
     }
 
-    /// Goes on with a part whose journal has entries and is owned by now.
+    /// Goes on with a part whose journal has entries and is owned by now; `None` if it was sealed, and only the journal was left.
     fn resume(
         files: &Arc<Files>,
         journal: OpenFile,
         name: &str,
         plan: &PlanHash,
         interval: Duration,
-    ) -> Result<Opened, StoreError> {
+        visit: &mut Visit<'_>,
+    ) -> Result<Option<(Self, u64)>, StoreError> {
         let data = match files.open(&layout::data_of_journal(journal.path()), OpenMode::Change) {
-            // It was sealed, but the journal was not removed any more.
             Err(error) if is_kind(&error, io::ErrorKind::NotFound) => {
                 remove(files, &journal)?;
-                let folder = journal.path().parent().unwrap_or(Path::new("")).to_owned();
-                return Self::create(files, &folder, name, plan, interval);
+                return Ok(None);
             }
             data => data?,
         };
@@ -132,16 +123,14 @@ impl OpenPart {
             file.read_exact_at(&mut bytes, 0)?;
             header::check(kind, &bytes, file.path(), plan)?;
         }
-        let (entries, dropped) = replay(&journal, &data)?;
-        let journaled = entries.len() as u64;
-        let end = entries.iter().filter_map(Entry::end).max().unwrap_or(HEADER_BYTES);
+        let Replayed { entries: journaled, end, dropped } = replay(&journal, &data, visit)?;
         // Durable before anything is added: else an old entry could come back behind a new one.
         journal.set_length(journal_bytes(journaled))?;
         journal.sync()?;
         data.set_length(end)?;
         data.sync()?;
         let part = Self::new(name, data, journal, interval, end, journaled);
-        Ok(Opened { part, entries, dropped })
+        Ok(Some((part, dropped)))
     }
 
     fn new(
@@ -266,15 +255,16 @@ impl OpenPart {
         }
     }
 
-    /// Ends the part; `entries` are what it holds, by key. Returns where it is now; `None` if it holds nothing, and is removed.
-    pub(crate) fn seal(
-        self,
-        folder: &Path,
-        entries: &[Entry],
-    ) -> Result<Option<PathBuf>, StoreError> {
+    /// Ends the part, of which `index` says what it holds. Returns where it is now; `None` if it holds nothing, and is removed.
+    pub(crate) fn seal(self, folder: &Path, index: &Index) -> Result<Option<PathBuf>, StoreError> {
         self.flush()?;
         let files = self.data.files();
-        let path = if entries.is_empty() {
+        let mut entries = index
+            .iter()
+            .filter(|(_, place)| place.part == OPEN_PART)
+            .map(|(key, Place { offset, length, crc, .. })| Entry { key, offset, length, crc })
+            .peekable();
+        let path = if entries.peek().is_none() {
             files.remove(self.data.path())?;
             None
         } else {
@@ -315,35 +305,48 @@ pub(crate) fn remove_data_without_journal(
     Ok(())
 }
 
-/// Reads a journal up to the first entry that is torn or whose artifact is not what was put; returns the entries before it, and how many
-/// were there from it on.
+/// What was found in a journal.
+struct Replayed {
+    /// How many entries are right.
+    entries: u64,
+    /// Where their last artifact ends.
+    end: u64,
+    /// How many more there were.
+    dropped: u64,
+}
+
+/// Reads a journal up to the first entry that is torn or whose artifact is not what was put; hands out the entries before it.
 ///
 /// Nothing after it is kept, even if it is whole: it may have been made from what is lost, or be the mark that says that all before it is
 /// there.
-fn replay(journal: &OpenFile, data: &OpenFile) -> Result<(Vec<Entry>, u64), StoreError> {
+fn replay(
+    journal: &OpenFile,
+    data: &OpenFile,
+    visit: &mut Visit<'_>,
+) -> Result<Replayed, StoreError> {
     const ENTRIES_AT_ONCE: u64 = 2048;
     let data_end = data.length()?;
     let journal_end = journal.length()?;
-    let number = journal_end.saturating_sub(HEADER_BYTES).div_ceil(ENTRY_BYTES as u64);
-    let mut entries: Vec<Entry> = Vec::new();
+    let count = journal_end.saturating_sub(HEADER_BYTES).div_ceil(ENTRY_BYTES as u64);
+    let (mut entries, mut end) = (0, HEADER_BYTES);
     let (mut bytes, mut artifact) = (Vec::new(), Vec::new());
-    'journal: while (entries.len() as u64) < number {
-        let first = entries.len() as u64;
-        let from = journal_bytes(first);
+    'journal: while entries < count {
+        let from = journal_bytes(entries);
         bytes.resize((journal_end - from).min(ENTRIES_AT_ONCE * ENTRY_BYTES as u64) as usize, 0);
         journal.read_exact_at(&mut bytes, from)?;
-        for (entry, number) in bytes.chunks(ENTRY_BYTES).zip(first..) {
-            let Some(entry) = Entry::decode(number, entry, data_end) else { break 'journal };
+        for entry in bytes.chunks(ENTRY_BYTES) {
+            let Some(entry) = Entry::decode(entries, entry, data_end) else { break 'journal };
             artifact.resize(entry.length as usize, 0);
             data.read_exact_at(&mut artifact, entry.offset)?;
             if crc32fast::hash(&artifact) != entry.crc {
                 break 'journal;
             }
-            entries.push(entry);
+            visit(data.path(), entry)?;
+            entries += 1;
+            end = end.max(entry.offset + u64::from(entry.length));
         }
     }
-    let dropped = number - entries.len() as u64;
-    Ok((entries, dropped))
+    Ok(Replayed { entries, end, dropped: count - entries })
 }
 
 /// The length of a journal of so many entries.

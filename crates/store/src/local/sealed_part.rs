@@ -22,10 +22,10 @@ use std::{
 use sha2::{Digest as _, Sha256};
 
 use crate::{
-    OpenMode, StoreError,
+    Key, OpenMode, StoreError,
     files::{Files, OpenFile},
     local::{
-        entry::{ENTRY_BYTES, Entry},
+        entry::{ENTRY_BYTES, Entry, Visit},
         header::{self, FileKind, HEADER_BYTES, PlanHash, u32_at, u64_at},
         layout,
     },
@@ -42,23 +42,25 @@ pub(crate) fn seal(
     data: &OpenFile,
     folder: &Path,
     part: &str,
-    entries: &[Entry],
+    entries: impl Iterator<Item = Entry>,
     end: u64,
 ) -> Result<PathBuf, StoreError> {
     let mut digest = Digest::default();
-    let mut offset = end;
-    for (block, entries) in entries.chunks(ENTRIES_AT_ONCE).enumerate() {
-        let first = (block * ENTRIES_AT_ONCE) as u64;
-        let bytes: Vec<u8> =
-            entries.iter().zip(first..).flat_map(|(entry, number)| entry.encode(number)).collect();
-        for entry in entries {
-            digest.add(entry);
+    let (mut count, mut offset) = (0, end);
+    let mut bytes = Vec::with_capacity(ENTRIES_AT_ONCE * ENTRY_BYTES);
+    for entry in entries {
+        digest.add(&entry);
+        bytes.extend(entry.encode(count));
+        count += 1;
+        if bytes.len() == ENTRIES_AT_ONCE * ENTRY_BYTES {
+            data.write_all_at(&bytes, offset)?;
+            offset += bytes.len() as u64;
+            bytes.clear();
         }
-        data.write_all_at(&bytes, offset)?;
-        offset += bytes.len() as u64;
     }
-    data.write_all_at(&footer(end, entries.len() as u64), offset)?;
-    data.set_length(offset + FOOTER_BYTES as u64)?;
+    bytes.extend(footer(end, count));
+    data.write_all_at(&bytes, offset)?;
+    data.set_length(offset + bytes.len() as u64)?;
     data.sync()?;
 
     let files = data.files();
@@ -79,12 +81,13 @@ pub(crate) fn seal(
     Ok(path)
 }
 
-/// Opens a sealed part; returns its file and what it holds, by key. The artifacts are not read: each is checked when it is.
+/// Opens a sealed part and hands out what it holds, by key. The artifacts are not read: each is checked when it is.
 pub(crate) fn open(
     files: &Arc<Files>,
     path: &Path,
     plan: &PlanHash,
-) -> Result<(OpenFile, Vec<Entry>), StoreError> {
+    visit: &mut Visit<'_>,
+) -> Result<OpenFile, StoreError> {
     let file = files.open(path, OpenMode::Read)?;
     let damaged = |what: &str| StoreError::Damaged {
         path: path.to_owned(),
@@ -106,27 +109,29 @@ pub(crate) fn open(
         return Err(damaged("its list of artifacts has another length than it says"));
     }
 
-    let mut entries: Vec<Entry> = Vec::with_capacity(count as usize);
     let mut digest = Digest::default();
+    let mut last: Option<Key> = None;
     let mut bytes = Vec::new();
-    while (entries.len() as u64) < count {
-        let first = entries.len() as u64;
-        let offset = from + first * ENTRY_BYTES as u64;
+    let mut number = 0;
+    while number < count {
+        let offset = from + number * ENTRY_BYTES as u64;
         bytes.resize((ended - offset).min((ENTRIES_AT_ONCE * ENTRY_BYTES) as u64) as usize, 0);
         file.read_exact_at(&mut bytes, offset)?;
-        for (entry, number) in bytes.chunks(ENTRY_BYTES).zip(first..) {
+        for entry in bytes.chunks(ENTRY_BYTES) {
             let entry = Entry::decode(number, entry, from)
-                .filter(|entry| entries.last().is_none_or(|last| last.key < entry.key))
+                .filter(|entry| last.is_none_or(|last| last < entry.key))
                 .ok_or_else(|| damaged("its list of artifacts is wrong"))?;
             digest.add(&entry);
-            entries.push(entry);
+            visit(path, entry)?;
+            last = Some(entry.key);
+            number += 1;
         }
     }
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     if layout::digest_of_sealed(&name) != Some(&digest.finish()) {
         return Err(damaged("it holds something else than its name says"));
     }
-    Ok((file, entries))
+    Ok(file)
 }
 
 fn footer(from: u64, count: u64) -> [u8; FOOTER_BYTES] {
