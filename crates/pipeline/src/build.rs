@@ -23,7 +23,7 @@ use crate::{
     TerrainSettings, file_target,
     heights::{audit, pyramid},
     levels::Levels,
-    plan::Opened,
+    plan::{Opened, check_room},
     roads::{lengths::TrueLengths, losses, read},
     stages::{deviations, mesh, package, samples, tiles},
 };
@@ -69,6 +69,10 @@ pub fn build(
     corniche_dem::limit_block_cache(settings.resources.memory_bytes / 4)
         .map_err(|error| not_started(&error))?;
     let opened = Opened::new(&PlanSettings::from(settings))?;
+    if !settings.force {
+        let store = settings.tmp.as_deref().unwrap_or(folder);
+        check_room(&opened, settings.resources, [store, folder], observer)?;
+    }
     let manifest = run(settings, &opened, &finished, &storage, observer).map_err(|error| {
         // A changed input may be the cause of any other error, so it is reported instead.
         let changed = match &error {

@@ -14,6 +14,12 @@ pub struct BuildSettings {
     pub output: PathBuf,
     /// What to do when the package exists.
     pub existing: Existing,
+    /// The folder for intermediate results; `None`: that of the package.
+    pub tmp: Option<PathBuf>,
+    /// What to do with intermediate results of an earlier build of the same package.
+    pub leftovers: Leftovers,
+    /// Whether to begin although memory or disk space are not expected to suffice.
+    pub force: bool,
     /// How the ground is made.
     pub terrain: TerrainSettings,
     /// How roads are made.
@@ -65,6 +71,17 @@ pub enum Existing {
     Replace,
 }
 
+/// What to do with intermediate results that an earlier build of the same package left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Leftovers {
+    /// Name them and refuse to build.
+    Refuse,
+    /// Go on from them.
+    Resume,
+    /// Remove them and begin from nothing.
+    Discard,
+}
+
 /// How the ground is made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TerrainSettings {
@@ -97,6 +114,6 @@ pub struct RoadSettings {
 pub struct Resources {
     /// Worker threads, at least 1.
     pub threads: usize,
-    /// Memory for buffers and caches, bytes.
+    /// The most memory that the process may use, bytes.
     pub memory_bytes: u64,
 }
