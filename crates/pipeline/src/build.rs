@@ -22,7 +22,7 @@ use crate::{
     BuildError, BuildPlan, BuildSettings, Existing, Observer, PlanSettings, TerrainSettings,
     context::{Context, MemoryShares},
     file_target,
-    plan::Opened,
+    plan::{Opened, check_room},
     steps::{hashes, merge, roads, tiles},
 };
 
@@ -72,6 +72,10 @@ pub fn build_on(
     let opened = Opened::new(&plan_settings)?;
     let plan = BuildPlan::of(&plan_settings, &opened)?;
     let store_folder = work_store::folder_of(target, settings.tmp.as_deref());
+    if !settings.force {
+        let store = settings.tmp.as_deref().unwrap_or(folder);
+        check_room(&opened, settings.resources, [store, folder], observer)?;
+    }
     let finished = Unfinished::create(target, folder)?;
     observer.temporary(finished.path());
     let store = work_store::open(&disk, &store_folder, &plan, settings.leftovers, observer)?;

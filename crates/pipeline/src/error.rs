@@ -58,6 +58,13 @@ pub enum BuildError {
     NoGround { osm: PathBuf },
     #[error("the roads could not be projected into the working CRS")]
     Project(#[source] corniche_geom::ProjectError),
+    #[error("{why}")]
+    NoMemory { why: String },
+    #[error(
+        "the build needs about {need} of disk space in {folder:?} ({what}), and {free} are free; make room, give --tmp a \
+         folder on another disk for intermediate results, or begin anyway with --force"
+    )]
+    NoRoom { folder: PathBuf, need: String, what: String, free: String },
     #[error("the run could not be set up: {what}")]
     Start { what: String },
     #[error("--max-error must be from 1e-9 to 1e9 metres, not {max_error_m}")]
@@ -125,6 +132,8 @@ impl BuildError {
                 | Self::NoGround { .. }
                 | Self::Coordinates(_)
                 | Self::MaxError { .. }
+                | Self::NoMemory { .. }
+                | Self::NoRoom { .. }
                 | Self::Triangulate { source: corniche_tin::TriangulateError::Height { .. }, .. }
         )
     }

@@ -11,6 +11,7 @@ mod heights;
 mod hex;
 mod inputs;
 mod levels;
+mod machine;
 mod manifest_texts;
 mod observer;
 mod plan;
@@ -30,8 +31,12 @@ pub use corniche_osm::Defect as OsmDefect;
 pub use defect::{Defect, Loss};
 pub use error::BuildError;
 pub use inputs::PlannedInput;
+pub use machine::{MIN_MEMORY_BYTES, default_memory_bytes, machine_memory_bytes};
 pub use observer::{Observer, Silent, Stage, Unit};
-pub use plan::{BuildPlan, FrcTableRecord, PlanError, PlannedGrid, PlannedLevel};
+pub use plan::{
+    BuildPlan, Estimate, FrcTableRecord, MemoryEstimate, PlanError, PlannedGrid, PlannedLevel,
+    Rates, plan,
+};
 pub use settings::{
     BuildSettings, Existing, Leftovers, PlanSettings, Resources, RoadSettings, TerrainSettings,
 };

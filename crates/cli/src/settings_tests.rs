@@ -13,7 +13,7 @@ fn a_memory_that_the_command_line_overrides_does_not_matter() {
     let error = resource_settings(&of_file).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "--memory \"1M\" is not a size of at least 64M; write it like 512M, 4G or 1T"
+        "--memory \"1M\" is not a size of at least 256M; write it like 512M, 4G or 1T"
     );
     let given = ResourceOptions { memory: Some("512M".to_owned()), ..ResourceOptions::default() };
     let merged = given.or(of_file);
