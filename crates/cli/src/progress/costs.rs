@@ -31,9 +31,12 @@ impl Cost {
     }
 }
 
-/// CPU time as a multiple of wall time.
+/// Shorter stages have no figure for the cores: their CPU time is known in steps of 10 ms only, at its begin and its end.
+const SHORTEST_WITH_CORES: Duration = Duration::from_millis(200);
+
+/// CPU time as a multiple of wall time; within 0.1.
 fn cores_busy(wall: Duration, used: &Usage) -> Option<f64> {
-    let cpu = used.cpu.filter(|_| !wall.is_zero())?;
+    let cpu = used.cpu.filter(|_| wall >= SHORTEST_WITH_CORES)?;
     Some(cpu.as_secs_f64() / wall.as_secs_f64())
 }
 

@@ -48,6 +48,16 @@ fn what_the_system_does_not_tell_has_no_column() {
     }
 }
 
+/// CPU time comes in steps of 10 ms, so a stage of some milliseconds could seem to keep any number of cores busy.
+#[test]
+fn a_short_stage_has_no_figure_for_the_cores() {
+    for (wall_ms, cores) in
+        [(0, None), (10, None), (199, None), (200, Some(0.5)), (400, Some(0.25))]
+    {
+        assert_eq!(cores_busy(Duration::from_millis(wall_ms), &used(0.1, 1, 1)), cores);
+    }
+}
+
 /// `verify` hashes twice, and a stage may come once for each subtree.
 #[test]
 fn a_stage_that_comes_twice_has_one_row() {

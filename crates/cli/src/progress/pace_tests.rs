@@ -70,29 +70,42 @@ fn a_burst_of_single_steps_counts_as_one() {
     }
 }
 
-/// 1000 steps: 500 at 2 per second, which takes 250 s, then 500 at 1 per second. Before the change nobody can know of it.
-/// Once all of the last half of the time is slow, at 500 s (and one spacing), the estimate is exact.
+/// 1000 steps, 2 per second until `slow_from` steps are done, then 1 per second.
+fn slowing(slow_from: u64) -> Vec<(f64, u64)> {
+    let time_s = |k: u64| k.min(slow_from) as f64 / 2.0 + k.saturating_sub(slow_from) as f64;
+    (1..=1000).map(|k| (time_s(k), k)).collect()
+}
+
+/// Half of the steps are fast, which takes 250 s. Before the change nobody can know of it. After it, at `t`, the rate is
+/// taken from `t / 4` on: `2 (250 - t / 4)` fast steps and `t - 250` slow ones in `3 t / 4`.
 #[test]
-fn a_stage_that_slows_by_half_is_estimated_exactly_once_half_the_time_is_slow() {
-    let clock: Vec<_> = (1..=1000_u64)
-        .map(|k| (if k <= 500 { k as f64 / 2.0 } else { 250.0 + (k - 500) as f64 }, k))
-        .collect();
-    let found = estimates(&clock);
-    let before: Vec<_> = found
-        .iter()
-        .filter(|(now_s, ..)| *now_s < 250.0)
-        .map(|&(now_s, estimate_s, _)| (now_s, estimate_s, 500.0 - now_s))
-        .collect();
-    check_exact(&before);
-    let slow_alone_s = 500.0 / (1.0 - 2.0 * SPACING);
-    let after: Vec<_> = found.iter().filter(|found| found.0 > slow_alone_s).copied().collect();
-    check_exact(&after);
-    // In between it comes nearer, and never promises less than the old rate did.
-    for &(now_s, estimate_s, truth_s) in &found {
-        if (251.0..slow_alone_s).contains(&now_s) {
-            assert!((0.499 * truth_s..=truth_s + 1e-6).contains(&estimate_s), "{now_s}");
+fn a_stage_that_slows_by_half_is_estimated_ever_better() {
+    for (now_s, estimate_s, truth_s) in estimates(&slowing(500)) {
+        if now_s < 250.0 {
+            assert!((estimate_s - (500.0 - now_s)).abs() < 1e-6, "{now_s}: {estimate_s}");
+            continue;
+        }
+        // Just after a step.
+        if now_s.fract() == 0.0 {
+            let rate = (250.0 + now_s / 2.0) / (0.75 * now_s);
+            let expected_s = truth_s / rate;
+            // The window begins up to one spacing early.
+            let off_s = (estimate_s - expected_s).abs();
+            assert!(off_s < 0.015 * expected_s, "{now_s}: {estimate_s}, not {expected_s}");
+        }
+        // From 82 % of the steps on.
+        if now_s.fract() == 0.0 && now_s > 250.0 * 2.32 {
+            assert!((0.8 * truth_s..=truth_s + 1e-6).contains(&estimate_s), "{now_s}");
         }
     }
+}
+
+/// Once a quarter of the elapsed time holds all that went faster, at 200 s (and one spacing), the estimate is exact.
+#[test]
+fn a_fast_start_is_forgotten() {
+    let found = estimates(&slowing(100));
+    let after: Vec<_> = found.into_iter().filter(|(now_s, ..)| *now_s > 210.0).collect();
+    check_exact(&after);
 }
 
 /// 10 steps in 10 s, then nothing: counted down to the next step, then the 90 others take ever longer.
@@ -104,12 +117,12 @@ fn a_stage_that_stands_still_needs_ever_more_time() {
     }
     let left_s = |now_s: u64| pace.left(Duration::from_secs(now_s), 90).unwrap().as_secs_f64();
     assert!((left_s(10) - 90.0).abs() < 1e-9 && (left_s(11) - 89.0).abs() < 1e-9);
-    // The rate is taken from 5 s on: 5 steps, and the one that may come now.
+    // The rate is taken from 2 s on: 8 steps, and the one that may come now.
     for now_s in [12, 20, 100, 10_000] {
-        let expected_s = 89.0 * (now_s - 5) as f64 / 6.0;
+        let expected_s = 89.0 * (now_s - 2) as f64 / 9.0;
         assert!((left_s(now_s) - expected_s).abs() < 1e-9, "{now_s}: {}", left_s(now_s));
         let rate = pace.per_second(Duration::from_secs(now_s)).unwrap();
-        assert!((rate - 6.0 / (now_s - 5) as f64).abs() < 1e-12, "{now_s}: {rate}");
+        assert!((rate - 9.0 / (now_s - 2) as f64).abs() < 1e-12, "{now_s}: {rate}");
     }
 }
 

@@ -68,7 +68,8 @@ impl Reading {
         json!({
             "stage": self.stage.id(), "state": state, "unit": plural(self.stage.unit()),
             "done": self.done, "already": self.already, "total": self.total,
-            "seconds": self.elapsed.as_secs_f64(), "per_second": self.per_second,
+            "seconds": self.elapsed.as_secs_f64(),
+            "cpu_seconds": self.used.cpu.map(|cpu| cpu.as_secs_f64()), "per_second": self.per_second,
             "seconds_left": self.left.map(|left| left.as_secs_f64()),
             "read_bytes": self.used.read_bytes, "written_bytes": self.used.written_bytes,
         })

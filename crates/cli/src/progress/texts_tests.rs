@@ -94,7 +94,9 @@ fn slow_rates_are_told_per_minute_or_hour() {
 #[test]
 fn programs_get_null_for_what_is_not_known() {
     let line = reading(3, None).to_json("running");
-    for name in ["total", "per_second", "seconds_left", "read_bytes", "written_bytes"] {
+    for name in
+        ["total", "cpu_seconds", "per_second", "seconds_left", "read_bytes", "written_bytes"]
+    {
         assert!(line[name].is_null(), "{line}");
     }
     assert_eq!((&line["stage"], &line["unit"]), (&json!("tiles"), &json!("tiles")));
