@@ -77,7 +77,9 @@ pub enum BuildError {
         "{store:?} is of another build: {differences}; give the inputs and settings of that build, or -O to start again"
     )]
     OtherBuild { store: PathBuf, differences: String },
-    #[error("{folder:?} holds {kept:?}, which is not Corniche's; move it away or choose another --tmp")]
+    #[error(
+        "{folder:?} holds {kept:?}, which is not Corniche's; move it away or choose another --tmp"
+    )]
     NotOurs { folder: PathBuf, kept: PathBuf },
     #[error("{path:?} is being built by another process; wait until it has ended")]
     AtWork { path: PathBuf },

@@ -9,20 +9,18 @@ fn every_stage_is_listed_once_in_order() {
         let expected = match stage {
             Stage::Hash => 0,
             Stage::Roads => 1,
-            Stage::Audit => 2,
-            Stage::Heights => 3,
-            Stage::CoarseTins => 4,
-            Stage::Mesh => 5,
-            Stage::Deviations => 6,
-            Stage::Samples => 7,
-            Stage::Tiles => 8,
-            Stage::CoarseTiles => 9,
-            Stage::Package => 10,
-            Stage::Verify => 11,
+            Stage::Heights => 2,
+            Stage::CoarseTins => 3,
+            Stage::Deviations => 4,
+            Stage::Samples => 5,
+            Stage::Tiles => 6,
+            Stage::CoarseTiles => 7,
+            Stage::Package => 8,
+            Stage::Verify => 9,
         };
         assert_eq!(place, expected, "{stage:?}");
     }
-    assert_eq!(Stage::ALL.len(), 12);
+    assert_eq!(Stage::ALL.len(), 10);
 }
 
 #[test]
