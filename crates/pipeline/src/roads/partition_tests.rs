@@ -91,7 +91,7 @@ fn neither_threads_nor_memory_matter_and_nothing_is_read_twice() {
     let world = World::new();
     let store = MemoryStore::default();
     let totals = world.partition(&osm, &store, 1, 1 << 30).unwrap();
-    for (threads, memory_bytes) in [(4, 1 << 30), (2, 0)] {
+    for (threads, memory_bytes) in [(4, 1 << 30), (2, 1 << 16), (1, 3000)] {
         let other = MemoryStore::default();
         assert_eq!(world.partition(&osm, &other, threads, memory_bytes).unwrap(), totals);
         assert!(everything(&other) == everything(&store), "{threads} threads");
