@@ -11,6 +11,7 @@
 //! Source: the test files `test6.c` and `ioerr*.test` of `SQLite` (D. Richard Hipp and others); its page *How `SQLite` Is Tested*.
 
 mod crash;
+mod failure;
 mod state;
 
 use std::{
@@ -21,23 +22,10 @@ use std::{
 
 use corniche_store::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
 
+pub use failure::Failure;
+
 use crate::Random;
 use state::{NameChange, Node, Owner, State};
-
-/// What happens at a call.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Failure {
-    /// From this call on, calls that need room fail; others do not. [`MemoryDisk::make_room`] ends it.
-    Full,
-    /// This call fails as if the device could not do it (`EIO`).
-    Device,
-    /// This call is interrupted (`EINTR`) and does nothing. Who calls must make it again.
-    Interrupted,
-    /// If this call reads or writes, it does half of it and says so.
-    Short,
-    /// This call and all that follow fail, as if the process were dead: nothing reaches the disk any more.
-    Death,
-}
 
 /// A disk in memory. Clones are the same disk.
 #[derive(Debug, Clone)]
