@@ -17,7 +17,7 @@ mod state;
 use std::{
     io,
     path::{Path, PathBuf},
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
 };
 
 use corniche_store::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
@@ -31,6 +31,8 @@ use state::{NameChange, Node, Owner, State};
 #[derive(Debug, Clone)]
 pub struct MemoryDisk {
     state: Arc<Mutex<State>>,
+    /// Something about held syncs has changed.
+    syncs: Arc<Condvar>,
 }
 
 impl MemoryDisk {
@@ -41,7 +43,7 @@ impl MemoryDisk {
     }
 
     fn of(state: State) -> Self {
-        Self { state: Arc::new(Mutex::new(state)) }
+        Self { state: Arc::new(Mutex::new(state)), syncs: Arc::default() }
     }
 
     /// What the store takes.
@@ -71,6 +73,25 @@ impl MemoryDisk {
     /// Ends [`Failure::Full`].
     pub fn make_room(&self) {
         self.state().is_full = false;
+    }
+
+    /// From here on syncs of files wait until [`Self::release_syncs`], as on a slow device.
+    pub fn hold_syncs(&self) {
+        self.state().holds_syncs = true;
+    }
+
+    /// Lets held syncs go on.
+    pub fn release_syncs(&self) {
+        self.state().holds_syncs = false;
+        self.syncs.notify_all();
+    }
+
+    /// Waits until a thread is held in a sync.
+    pub fn wait_for_held_sync(&self) {
+        let mut state = self.state();
+        while state.held_syncs == 0 {
+            state = self.syncs.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
     }
 
     /// The disk as another process finds it when all that used it were killed, but the machine went on: nothing is lost, no lock is held.
@@ -257,6 +278,12 @@ impl DiskFile for MemoryFile {
 
     fn sync(&self) -> io::Result<()> {
         let (mut state, _) = self.disk.call(Need::Nothing)?;
+        state.held_syncs += 1;
+        while state.holds_syncs {
+            self.disk.syncs.notify_all();
+            state = self.disk.syncs.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+        state.held_syncs -= 1;
         state.files[self.number].sync();
         Ok(())
     }

@@ -32,6 +32,10 @@ pub(crate) struct State {
     /// The number of the call that fails, and how.
     pub(crate) planned: Option<(u64, Failure)>,
     pub(crate) is_full: bool,
+    /// Syncs of files wait.
+    pub(crate) holds_syncs: bool,
+    /// How many do.
+    pub(crate) held_syncs: u32,
     pub(crate) is_dead: bool,
     pub(crate) owners: Owner,
 }
