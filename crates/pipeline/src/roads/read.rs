@@ -3,6 +3,7 @@
 use std::{
     cell::RefCell,
     collections::BTreeMap,
+    io::{self, ErrorKind::UnexpectedEof},
     sync::{Mutex, PoisonError},
 };
 
@@ -11,13 +12,18 @@ use corniche_drape::OwnedBorders;
 use corniche_geom::{Bounds, LatticeBounds, LatticePoint, ProjectError, Projection, TileId};
 use corniche_osm::ExtractSummary;
 use corniche_roads::{FunctionalRoadClass, Road};
+use corniche_store::{Scratch, Span};
 
 use super::{
     by_tile::{RoadTileCursor, RoadTiles},
     lengths::{TrueLengths, pieces_um},
     log::RoadLog,
 };
-use crate::{BuildError, Defect, Observer, RoadSettings, Stage, Storage, levels::Levels};
+use crate::{
+    BuildError, Defect, Observer, RoadSettings, Stage, Storage,
+    levels::Levels,
+    storage::{self, Kind},
+};
 
 /// Tiles whose lists of roads are in memory at once.
 pub(crate) const TILES_AT_ONCE: usize = 1024;
@@ -82,6 +88,9 @@ pub(crate) fn read<'a>(
             table: &input.settings.table,
             place: &place,
             pool: input.pool,
+            memory_bytes: input.memory_bytes,
+            scratch: &ScratchIn { storage, spans: Mutex::default() },
+            on_progress: None,
         },
         &mut |road| {
             gathered.add(&road);
@@ -113,6 +122,34 @@ pub(crate) fn read<'a>(
         return Err(BuildError::NoRoads { osm: input.osm.to_path_buf() });
     }
     Ok(roads)
+}
+
+/// Scratch space in a run's storage: the spans appended there, one after another.
+struct ScratchIn<'a> {
+    storage: &'a dyn Storage,
+    spans: Mutex<Vec<(Span, storage::Span)>>,
+}
+
+impl Scratch for ScratchIn<'_> {
+    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+        let kept = self.storage.append(Kind::RoadTiles, bytes)?;
+        let mut spans = self.spans.lock().unwrap_or_else(PoisonError::into_inner);
+        let offset = spans.last().map_or(0, |(last, _)| last.offset + last.length);
+        let span = Span { offset, length: bytes.len() as u64 };
+        spans.push((span, kept));
+        Ok(span)
+    }
+
+    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+        let spans = self.spans.lock().unwrap_or_else(PoisonError::into_inner);
+        let after = spans.partition_point(|(own, _)| own.offset <= span.offset);
+        let (own, kept) = after.checked_sub(1).map(|at| spans[at]).ok_or(UnexpectedEof)?;
+        drop(spans);
+        if span.offset + span.length > own.offset + own.length {
+            return Err(UnexpectedEof.into());
+        }
+        self.storage.read(Kind::RoadTiles, kept.part(span.offset - own.offset, span.length))
+    }
 }
 
 /// Roads as they come in.
