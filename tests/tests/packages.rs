@@ -14,9 +14,9 @@ fn same_bytes_at_any_number_of_threads() {
         build_pass(&target, &["--quiet", "--threads", threads, "--memory", memory]);
         fs::read(target).unwrap()
     };
-    let one = package("one.pmtiles", "1", "64M");
+    let one = package("one.pmtiles", "1", "256M");
     assert_eq!(one, package("two.pmtiles", "2", "1G"));
-    assert_eq!(one, package("eight.pmtiles", "8", "256M"));
+    assert_eq!(one, package("eight.pmtiles", "8", "512M"));
 }
 
 /// All checks hold for the sample with --dem; a flipped byte is found and named.

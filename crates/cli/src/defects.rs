@@ -90,8 +90,16 @@ impl Observer for Watch {
         self.progress.begin(stage, total);
     }
 
+    fn already(&self, stage: Stage, steps: u64) {
+        self.progress.already(stage, steps);
+    }
+
     fn advance(&self, stage: Stage, steps: u64) {
         self.progress.advance(stage, steps);
+    }
+
+    fn reached(&self, stage: Stage, done: u64, total: u64) {
+        self.progress.reached(stage, done, total);
     }
 
     fn end(&self, stage: Stage) {
@@ -104,8 +112,8 @@ impl Observer for Watch {
         }
     }
 
-    fn work_folder(&self, folder: &Path) {
-        self.progress.work_folder(folder);
+    fn temporary(&self, folder: &Path) {
+        self.progress.temporary(folder);
     }
 
     fn warning(&self, text: &str) {

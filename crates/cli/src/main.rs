@@ -15,9 +15,11 @@ mod growth;
 mod info;
 mod interrupt;
 mod output;
+mod plan;
 mod presets;
 mod progress;
 mod render;
+mod settings;
 mod styles;
 mod table;
 mod tile;
@@ -57,6 +59,7 @@ fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
     interrupt::watch()?;
     match arguments.command {
         Command::Build(args) => build::run(args),
+        Command::Plan(args) => plan::run(*args),
         Command::Info(args) => info::run(&args),
         Command::Growth(args) => growth::run(&args),
         Command::Verify(args) => verify::run(&args),

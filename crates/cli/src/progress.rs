@@ -1,10 +1,20 @@
-//! Progress: bars on a terminal, plain lines elsewhere, JSON lines on request, or nothing.
+//! Progress: bars on a terminal, plain lines elsewhere, JSON lines on request, or nothing; and what the stages took, at
+//! the end.
+//!
+//! A thread of its own looks twice a second whether something is to be told, so a stage that counts nothing for minutes is
+//! told of, too. Each step looks as well.
+
+mod costs;
+mod pace;
+mod texts;
+mod usage;
 
 use std::{
     borrow::Cow,
     io::{IsTerminal as _, Write as _, stderr},
     path::Path,
-    sync::{Mutex, PoisonError},
+    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
+    thread::{self, JoinHandle},
     time::{Duration, Instant},
 };
 
@@ -12,6 +22,12 @@ use corniche_pipeline::{Observer, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
+use self::{
+    costs::{Cost, Costs},
+    pace::Pace,
+    texts::Reading,
+    usage::Usage,
+};
 use crate::{args::ReportArgs, interrupt};
 
 /// How progress is told.
@@ -23,23 +39,57 @@ enum Manner {
     Json,
 }
 
+impl Manner {
+    /// Whether a running stage is to be told, the last time being `since_told` ago and steps having been made since or not.
+    fn is_due(self, since_told: Duration, has_moved: bool) -> bool {
+        match self {
+            Self::Quiet => false,
+            Self::Bars => since_told >= TICK / 2,
+            Self::Lines => since_told >= LINE_INTERVAL,
+            Self::Json => since_told >= if has_moved { TICK } else { IDLE_INTERVAL },
+        }
+    }
+}
+
 /// Tells of a run on standard error; output meant for programs stays alone on standard output.
 pub(crate) struct Progress {
+    shared: Arc<Shared>,
+    ticker: Option<JoinHandle<()>>,
+}
+
+struct Shared {
     manner: Manner,
-    running: Mutex<Option<Running>>,
+    state: Mutex<State>,
+    over: Condvar,
+}
+
+struct State {
+    begun: Instant,
+    used_before: Usage,
+    running: Option<Running>,
+    costs: Costs,
+    is_over: bool,
 }
 
 struct Running {
     stage: Stage,
     total: Option<u64>,
     done: u64,
-    since: Instant,
+    already: u64,
+    pace: Pace,
+    begun: Instant,
+    used_before: Usage,
     told: Instant,
+    told_done: u64,
     bar: Option<ProgressBar>,
 }
 
-/// Least time between two JSON lines.
-const JSON_INTERVAL: Duration = Duration::from_millis(500);
+/// How often it is looked whether something is to be told.
+const TICK: Duration = Duration::from_millis(500);
+/// Least time between two plain lines; with a tick it is below ten seconds.
+const LINE_INTERVAL: Duration = Duration::from_secs(9);
+/// Time between two JSON lines if nothing was done in between; else there is one at each tick.
+const IDLE_INTERVAL: Duration = Duration::from_secs(5);
 
 impl Progress {
     pub(crate) fn new(args: &ReportArgs) -> Self {
@@ -52,99 +102,230 @@ impl Progress {
         } else {
             Manner::Lines
         };
-        Self { manner, running: Mutex::new(None) }
+        Self::in_manner(manner)
     }
+
+    fn in_manner(manner: Manner) -> Self {
+        let state = State {
+            begun: Instant::now(),
+            used_before: Usage::now(),
+            running: None,
+            costs: Costs::default(),
+            is_over: false,
+        };
+        let shared = Arc::new(Shared { manner, state: Mutex::new(state), over: Condvar::new() });
+        let ticking = Arc::clone(&shared);
+        // Where the system has no thread to spare, the steps alone look whether something is to be told.
+        let ticker = (manner != Manner::Quiet)
+            .then(|| thread::Builder::new().name("progress".into()).spawn(move || ticking.tick()))
+            .and_then(Result::ok);
+        Self { shared, ticker }
+    }
+
+    /// Tells what the stages took, as a table or as one JSON object; nothing with `--quiet`.
+    pub(crate) fn tell_costs(&self) {
+        let state = self.shared.state();
+        let wall = state.begun.elapsed();
+        let used = Usage::now().since(&state.used_before);
+        match self.shared.manner {
+            Manner::Quiet => {}
+            Manner::Json => write_line(&state.costs.to_json(wall, &used).to_string()),
+            Manner::Bars | Manner::Lines => {
+                write_line(&format!("\n{}", state.costs.to_text(wall, &used).trim_end()));
+            }
+        }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.shared.state().is_over = true;
+        self.shared.over.notify_all();
+        if let Some(ticker) = self.ticker.take() {
+            let _ = ticker.join();
+        }
+    }
+}
+
+/// Standard error may be closed; the work goes on.
+fn write_line(line: &str) {
+    let _ = writeln!(stderr(), "{line}");
 }
 
 /// A progress bar; a spinner if the total is unknown.
 pub(crate) fn bar(title: impl Into<Cow<'static, str>>, total: Option<u64>) -> ProgressBar {
+    styled_bar(title, total, "{pos}/{len} {eta}")
+}
+
+fn styled_bar(
+    title: impl Into<Cow<'static, str>>,
+    total: Option<u64>,
+    figures: &str,
+) -> ProgressBar {
     let bar = total.map_or_else(ProgressBar::new_spinner, ProgressBar::new);
-    let template = if total.is_some() {
-        "{msg:22} {bar:30} {pos}/{len} {eta}"
-    } else {
-        "{msg:22} {spinner} {pos}"
-    };
-    if let Ok(style) = ProgressStyle::with_template(template) {
+    let drawing = if total.is_some() { "{bar:20}" } else { "{spinner}" };
+    if let Ok(style) = ProgressStyle::with_template(&format!("{{prefix:22}} {drawing} {figures}")) {
         bar.set_style(style);
     }
-    bar.with_message(title)
+    bar.with_prefix(title)
+}
+
+impl Shared {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Tells what is due until all is over.
+    fn tick(&self) {
+        let mut state = self.state();
+        while !state.is_over {
+            state = self.over.wait_timeout(state, TICK).unwrap_or_else(PoisonError::into_inner).0;
+            if let Some(running) = &mut state.running {
+                running.tell_if_due(self.manner);
+            }
+        }
+    }
+
+    /// Does something to a stage that is running.
+    fn with(&self, stage: Stage, act: impl FnOnce(&mut Running)) {
+        let mut state = self.state();
+        if let Some(running) = state.running.as_mut().filter(|running| running.stage == stage) {
+            act(running);
+            running.tell_if_due(self.manner);
+        }
+    }
+}
+
+impl State {
+    fn end_running(&mut self, manner: Manner) {
+        let Some(running) = self.running.take() else { return };
+        let reading = running.read();
+        if let Some(bar) = &running.bar {
+            bar.finish_and_clear();
+        }
+        match manner {
+            Manner::Quiet => {}
+            Manner::Json => write_line(&reading.to_json("end").to_string()),
+            Manner::Bars | Manner::Lines => {
+                write_line(&format!("{:22} {}", reading.stage.title(), reading.ended()));
+            }
+        }
+        self.costs.add(Cost {
+            stage: reading.stage,
+            done: reading.done,
+            already: reading.already,
+            wall: reading.elapsed,
+            used: reading.used,
+        });
+    }
 }
 
 impl Running {
-    fn tell_json(&self, state: &str) {
-        let line = json!({
-            "stage": format!("{:?}", self.stage).to_lowercase(), "state": state, "done": self.done,
-            "total": self.total, "seconds": self.since.elapsed().as_secs_f64(),
-        });
-        // Standard error may be closed; the work goes on.
-        let _ = writeln!(stderr(), "{line}");
+    fn new(stage: Stage, total: Option<u64>, manner: Manner) -> Self {
+        let now = Instant::now();
+        Self {
+            stage,
+            total,
+            done: 0,
+            already: 0,
+            pace: Pace::new(),
+            begun: now,
+            used_before: Usage::now(),
+            told: now,
+            told_done: 0,
+            bar: (manner == Manner::Bars).then(|| styled_bar(stage.title(), total, "{wide_msg}")),
+        }
+    }
+
+    /// The stage has done `done` in all.
+    fn reach(&mut self, done: u64) {
+        self.done = done;
+        self.pace.record(self.begun.elapsed(), done - self.already);
+    }
+
+    fn read(&self) -> Reading {
+        let elapsed = self.begun.elapsed();
+        let remaining = self.total.map(|total| total.saturating_sub(self.done));
+        Reading {
+            stage: self.stage,
+            done: self.done,
+            already: self.already,
+            total: self.total,
+            elapsed,
+            per_second: self.pace.per_second(elapsed),
+            left: remaining.and_then(|remaining| self.pace.left(elapsed, remaining)),
+            used: Usage::now().since(&self.used_before),
+        }
+    }
+
+    fn tell_if_due(&mut self, manner: Manner) {
+        if !manner.is_due(self.told.elapsed(), self.done > self.told_done) {
+            return;
+        }
+        (self.told, self.told_done) = (Instant::now(), self.done);
+        let reading = self.read();
+        match (manner, &self.bar) {
+            (Manner::Json, _) => write_line(&reading.to_json("running").to_string()),
+            (_, Some(bar)) => {
+                if let Some(total) = self.total {
+                    bar.set_length(total);
+                }
+                bar.set_position(self.done);
+                bar.set_message(reading.running());
+            }
+            (_, None) => write_line(&format!("{:22} {}", self.stage.title(), reading.running())),
+        }
     }
 }
 
 impl Observer for Progress {
     fn begin(&self, stage: Stage, total: Option<u64>) {
-        let bar = (self.manner == Manner::Bars).then(|| bar(stage.title(), total));
-        let now = Instant::now();
-        let running = Running { stage, total, done: 0, since: now, told: now, bar };
-        if self.manner == Manner::Json {
-            running.tell_json("begin");
+        let manner = self.shared.manner;
+        let mut state = self.shared.state();
+        state.end_running(manner);
+        let running = Running::new(stage, total, manner);
+        if manner == Manner::Json {
+            write_line(&running.read().to_json("begin").to_string());
         }
-        *self.running.lock().unwrap_or_else(PoisonError::into_inner) = Some(running);
+        state.running = Some(running);
     }
 
-    fn advance(&self, _: Stage, steps: u64) {
-        let mut running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
-        let Some(running) = &mut *running else { return };
-        running.done += steps;
-        if let Some(bar) = &running.bar {
-            bar.set_position(running.done);
-        }
-        if self.manner == Manner::Json && running.told.elapsed() >= JSON_INTERVAL {
-            running.told = Instant::now();
-            running.tell_json("running");
-        }
+    fn already(&self, stage: Stage, steps: u64) {
+        self.shared.with(stage, |running| {
+            running.already += steps;
+            running.done += steps;
+        });
     }
 
-    fn end(&self, stage: Stage) {
-        let Some(running) = self.running.lock().unwrap_or_else(PoisonError::into_inner).take()
-        else {
-            return;
-        };
-        if let Some(bar) = &running.bar {
-            bar.finish_and_clear();
-        }
-        match self.manner {
-            Manner::Quiet => {}
-            Manner::Json => running.tell_json("end"),
-            Manner::Bars | Manner::Lines => {
-                let seconds = running.since.elapsed().as_secs_f64();
-                let _ = writeln!(
-                    stderr(),
-                    "{:22} {:>8} in {seconds:.2} s",
-                    stage.title(),
-                    running.done
-                );
-            }
-        }
+    fn advance(&self, stage: Stage, steps: u64) {
+        self.shared.with(stage, |running| running.reach(running.done + steps));
     }
 
-    fn work_folder(&self, folder: &Path) {
+    fn reached(&self, stage: Stage, done: u64, total: u64) {
+        self.shared.with(stage, |running| {
+            running.total = Some(total);
+            running.reach(done.max(running.done));
+        });
+    }
+
+    fn end(&self, _: Stage) {
+        self.shared.state().end_running(self.shared.manner);
+    }
+
+    fn temporary(&self, folder: &Path) {
         interrupt::remove_at_end(folder);
     }
 
     /// Warnings are printed with `--quiet`, too.
     fn warning(&self, text: &str) {
-        let line = match self.manner {
+        let line = match self.shared.manner {
             Manner::Json => json!({ "warning": text }).to_string(),
             Manner::Quiet | Manner::Bars | Manner::Lines => format!("corniche: warning: {text}"),
         };
-        let running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
-        let tell = || {
-            let _ = writeln!(stderr(), "{line}");
-        };
-        match running.as_ref().and_then(|running| running.bar.as_ref()) {
-            Some(bar) => bar.suspend(tell),
-            None => tell(),
+        let state = self.shared.state();
+        match state.running.as_ref().and_then(|running| running.bar.as_ref()) {
+            Some(bar) => bar.suspend(|| write_line(&line)),
+            None => write_line(&line),
         }
     }
 
@@ -152,3 +333,7 @@ impl Observer for Progress {
         interrupt::is_noted()
     }
 }
+
+#[cfg(test)]
+#[path = "progress_tests.rs"]
+mod tests;

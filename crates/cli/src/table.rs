@@ -16,6 +16,16 @@ impl Table {
         self.rows.push(cells.into());
     }
 
+    /// Leaves out the columns that have nothing in them but their heading.
+    pub(crate) fn without_empty_columns(mut self) -> Self {
+        for column in (0..self.rows[0].len()).rev() {
+            if self.rows[1..].iter().all(|row| row[column].is_empty()) {
+                self.rows.iter_mut().for_each(|row| drop(row.remove(column)));
+            }
+        }
+        self
+    }
+
     pub(crate) fn to_text(&self) -> String {
         let columns = self.rows[0].len();
         let widths: Vec<usize> = (0..columns)

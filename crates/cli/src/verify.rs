@@ -12,12 +12,12 @@ use serde_json::json;
 
 use crate::{
     args::VerifyArgs,
-    build::threads,
     exit::ExitCode,
     failure::Failure,
     info::or_dash,
     presets,
     progress::Progress,
+    settings::threads,
     table::{Table, count},
 };
 

@@ -12,10 +12,11 @@
 //! ```
 
 use gdal::Dataset;
+use serde::{Deserialize, Serialize};
 
 use crate::file_names::first_names;
 use crate::mosaics::open_files::OpenFiles;
-use crate::{Dem, DemError};
+use crate::{Dem, DemError, GridPlan};
 
 /// What the surface of the earth has: Challenger Deep lies some 10 935 m below the sea, Everest 8 849 m above it.
 pub const SURFACE_RANGE_M: [f64; 2] = [-12_000.0, 9_000.0];
@@ -43,7 +44,7 @@ pub struct AuditBlock {
 }
 
 /// One of the lowest or highest heights, and how many samples have it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Entry {
     height_m: f64,
     /// As the file stores it.
@@ -55,13 +56,13 @@ struct Entry {
 ///
 /// An entry is removed only when [`KEPT`] others lie farther out, and those are never removed for one farther in: so
 /// an entry that was removed cannot come back. Neither the order of samples nor the order of merges matters.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 struct End {
     entries: Vec<Entry>,
 }
 
-/// What the samples of one block were found to be.
-#[derive(Debug, Clone, PartialEq)]
+/// What some samples of one file were found to be.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AuditPart {
     file: usize,
     found: FileAudit,
@@ -74,7 +75,7 @@ pub struct Audit {
     files: Vec<FileAudit>,
 }
 
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 struct FileAudit {
     /// Samples that have a height.
     samples: u64,
@@ -116,6 +117,30 @@ impl Dem {
         blocks
     }
 
+    /// Where the middle of a block lies, working metres; not finite where the working CRS does not reach.
+    ///
+    /// # Errors
+    /// When PROJ fails.
+    pub fn audit_block_middle_m(
+        &self,
+        block: &AuditBlock,
+        plan: &GridPlan,
+    ) -> Result<[f64; 2], DemError> {
+        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
+            let Some(file) = mosaic.files.iter().find(|file| file.index == block.file) else {
+                continue;
+            };
+            let middle = [0, 1].map(|axis| {
+                let samples = block.start[axis] + block.size[axis] / 2;
+                (file.rect.min[axis] + samples as i64) as f64
+            });
+            let mut at = [mosaic.crs_from_sample.crs_from_pixel(middle)];
+            role.working_from_crs.apply(&mut at)?;
+            return Ok(at[0]);
+        }
+        Ok([f64::NAN; 2])
+    }
+
     /// Makes an auditor; `range_m` is the lowest and the highest height that is allowed, in metres.
     #[must_use]
     pub fn auditor(&self, range_m: [f64; 2]) -> Auditor<'_> {
@@ -146,6 +171,17 @@ impl Auditor<'_> {
             found.add(stored, height_m, self.range_m);
         }
         Ok(AuditPart { file: block.file, found })
+    }
+}
+
+impl AuditPart {
+    /// Adds what was found in samples of the same file. Returns what belongs to another file.
+    pub fn merge(&mut self, other: Self) -> Option<Self> {
+        if self.file != other.file {
+            return Some(other);
+        }
+        self.found.merge(&other.found);
+        None
     }
 }
 

@@ -7,5 +7,6 @@ pub(crate) mod georeference;
 pub(crate) mod open;
 pub(crate) mod stored_values;
 
+pub(crate) mod file_blocks;
 pub(crate) mod raster_files;
 pub(crate) mod vsi;

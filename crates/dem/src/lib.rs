@@ -30,6 +30,7 @@ pub use crs::projection::DemProjection;
 pub use crs::recorded::RecordedCrs;
 pub use dem::{Dem, limit_block_cache};
 pub use error::DemError;
+pub use files::file_blocks::FileBlocks;
 pub use files::open_options::OpenOptions;
 pub use files::raster_files::raster_files;
 pub use files::vsi::VirtualFile;

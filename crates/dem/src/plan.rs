@@ -11,5 +11,7 @@ pub(crate) mod alignment;
 pub(crate) mod kernel;
 pub(crate) mod node_positions;
 
+pub(crate) mod file_nodes;
+
 pub(crate) mod description;
 pub(crate) mod oversampling;

@@ -6,9 +6,8 @@
 //! | `RoadPieces` | tile | the pieces of roads that meet the tile, simplified for its level | roads | tiles, merge |
 //! | `RoadLengths` | block of ordinals | way id, true length and length outside the data of each road | roads | merge |
 //! | `RoadTotals` | 0 | counts, classes, defects, what the extract held | roads | merge |
-//! | `Audit` | block of samples | what was seen of heights that cannot be | heights | tiles, merge |
 //! | `Heights` | finest tile | heights of its nodes with one node of halo; which of them are filled voids | heights | tiles |
-//! | `Area` | tile, two levels above the finest | which of its tiles have heights; counts and range | heights | top, tiles, merge |
+//! | `Area` | tile, two levels above the finest | counts and range of its heights; what was seen of heights that cannot be | heights | tiles, merge |
 //! | `Raster` | coarse tile | heights of its nodes without the east and south border | heights, top | top, tiles |
 //! | `Tin` | coarse tile | its TIN with normals; empty where it has no ground | top, tiles | tiles, merge |
 //! | `Record` | tile | counts and sums, deviations of itself and its share in those of its ancestors | tiles, merge | merge |
@@ -32,7 +31,6 @@ pub(crate) enum Kind {
     RoadPieces,
     RoadLengths,
     RoadTotals,
-    Audit,
     Heights,
     Area,
     Raster,
@@ -42,6 +40,20 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
+    /// All of them.
+    pub(crate) const ALL: [Self; 10] = [
+        Self::InputHash,
+        Self::RoadPieces,
+        Self::RoadLengths,
+        Self::RoadTotals,
+        Self::Heights,
+        Self::Area,
+        Self::Raster,
+        Self::Tin,
+        Self::Record,
+        Self::Payload,
+    ];
+
     /// The key of what belongs to a tile.
     pub(crate) fn of_tile(self, id: TileId) -> Key {
         self.item(pmtiles_order(id))

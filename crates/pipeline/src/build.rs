@@ -1,36 +1,30 @@
-//! From inputs to a package.
+//! From inputs to a package: the steps in order, and the file's way to its place.
 //!
 //! ```text
-//! heights ─► mesh ─► deviations ─┐
-//!                                ├─► tiles ─► package
-//! roads ─────────────────────────┘
+//!  hashes   roads ────────┐
+//!  heights ─► tiles ──────┴─► merge ─► package
 //! ```
 //!
-//! Each stage is a module of [`heights`](crate::heights), [`roads`](crate::roads) or [`stages`](crate::stages). What one stage
-//! hands to the next is kept in [`Storage`](crate::storage::Storage), in a work folder beside the target. The folder is
-//! removed when the run ends, however it ends.
+//! Each step is a module of [`steps`](crate::steps). What one step hands to the next are artifacts in a store beside the target.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+mod unfinished;
+mod work_store;
 
-use corniche_dem::{Dem, DemProjection, GridPlan};
+use std::{fs, path::Path, sync::Arc};
+
+use corniche_dem::GridPlan;
+use corniche_geom::TileId;
+use corniche_store::{Disk, Scratch, SystemDisk};
 use corniche_tileset::Manifest;
 
+use self::unfinished::Unfinished;
 use crate::{
-    BuildError, BuildSettings, DiskStorage, Existing, Observer, Storage, TerrainSettings,
+    BuildError, BuildPlan, BuildSettings, Existing, Observer, PlanSettings, TerrainSettings,
+    context::{Context, MemoryShares},
     file_target,
-    heights::{audit, pyramid},
-    inputs::Inputs,
-    levels::{Levels, most_scale},
-    roads::{lengths::TrueLengths, losses, read},
-    stages::{deviations, mesh, package, samples, tiles},
+    plan::{Opened, check_room},
+    steps::{hashes, merge, roads, tiles},
 };
-
-/// Tolerances that the finest level can have. Outside this range a package cannot hold the root's tolerance or the height
-/// quantum.
-const MAX_ERRORS_M: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
 /// The result of a build.
 #[derive(Debug, Clone)]
@@ -43,9 +37,22 @@ pub struct BuildSummary {
 
 /// Builds a package. At the target there is either what was there before or the complete package.
 ///
+/// Intermediate results are kept in a store beside the package, or in `settings.tmp`. When the build is interrupted or the disk
+/// fails, they stay, and a build with [`Leftovers::Resume`] goes on from them.
+///
 /// # Errors
 /// See [`BuildError`].
 pub fn build(
+    settings: &BuildSettings,
+    observer: &dyn Observer,
+) -> Result<BuildSummary, BuildError> {
+    build_on(Arc::new(SystemDisk), settings, observer)
+}
+
+/// As [`build`], with the store on any disk: tests let it fail.
+#[doc(hidden)]
+pub fn build_on(
+    disk: Arc<dyn Disk>,
     settings: &BuildSettings,
     observer: &dyn Observer,
 ) -> Result<BuildSummary, BuildError> {
@@ -54,33 +61,45 @@ pub fn build(
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let unusable = |source| BuildError::Target { folder: folder.to_path_buf(), source };
     if settings.existing == Existing::Keep && fs::symlink_metadata(target).is_ok() {
         return Err(BuildError::Exists { path: target.clone() });
     }
     refuse_inputs_as_target(settings)?;
-    let name =
-        target.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    // Beside the target: the same file system, so that the rename at the end is one step.
-    let work = tempfile::Builder::new()
-        .prefix(&format!(".{name}."))
-        .suffix(".work")
-        .tempdir_in(folder)
-        .map_err(unusable)?;
-    observer.work_folder(work.path());
-    let storage = DiskStorage::create(work.path()).map_err(unusable)?;
-    let finished = work.path().join("package");
-    let inputs = Inputs::find(&settings.dem, settings.osm.as_deref())?;
-    let manifest = run(settings, &inputs, &finished, &storage, observer).map_err(|error| {
-        // A changed input may be the cause of any other error, so it is reported instead.
-        let changed = match &error {
-            BuildError::Interrupted => None,
-            _ => inputs.check_unchanged().err(),
-        };
-        changed.map_or(error, BuildError::from)
-    })?;
-    let package_bytes = place(&finished, target, settings.existing)?;
-    Ok(BuildSummary { manifest, package_bytes })
+    let shares = MemoryShares::of(settings.resources.memory_bytes);
+    corniche_dem::limit_block_cache(shares.raster_cache)
+        .map_err(|error| BuildError::Start { what: error.to_string() })?;
+    let plan_settings = PlanSettings::from(settings);
+    let opened = Opened::new(&plan_settings)?;
+    let plan = BuildPlan::of(&plan_settings, &opened)?;
+    let store_folder = work_store::folder_of(target, settings.tmp.as_deref());
+    if !settings.force {
+        let store = settings.tmp.as_deref().unwrap_or(folder);
+        check_room(&opened, settings.resources, [store, folder], observer)?;
+    }
+    let finished = Unfinished::create(target, folder)?;
+    observer.temporary(finished.path());
+    let store = work_store::open(&disk, &store_folder, &plan, settings.leftovers, observer)?;
+    let context = Context::new(&plan_settings, settings.resources, &opened, &store, observer);
+    let wanted = merge::Target { finished: finished.path(), named: &settings.output };
+    let built = (store.scratch().map_err(BuildError::from))
+        .and_then(|scratch| run(&context, &scratch, &wanted))
+        .and_then(|manifest| Ok((manifest, finished.place(target, settings.existing)?)));
+    match built {
+        Ok((manifest, package_bytes)) => {
+            work_store::remove(store, observer);
+            Ok(BuildSummary { manifest, package_bytes })
+        }
+        Err(error) => {
+            // A changed input may be the cause of any other error, so it is reported instead.
+            let changed = match &error {
+                BuildError::Interrupted => None,
+                _ => opened.inputs.check_unchanged().err(),
+            };
+            let error = changed.map_or(error, BuildError::from);
+            work_store::after_failure(store, &store_folder, &error, observer);
+            Err(error)
+        }
+    }
 }
 
 /// Fails if the target is one of the inputs.
@@ -115,177 +134,24 @@ fn warn_of_unused_latitude(terrain: &TerrainSettings, plan: &GridPlan, observer:
     }
 }
 
-/// Opens the elevation files and plans the grid.
-fn open(files: &[PathBuf], terrain: &TerrainSettings) -> Result<(Dem, GridPlan), BuildError> {
-    let dem = Dem::open(files, &terrain.open)?;
-    let plan = dem.plan(&terrain.plan)?;
-    if !terrain.allow_fine_cell {
-        dem.refuse_oversampling(&plan)?;
-    }
-    Ok((dem, plan))
-}
-
-fn not_started(error: &dyn std::fmt::Display) -> BuildError {
-    BuildError::Start { what: error.to_string() }
-}
-
-/// The grid that roads are read for.
-struct RoadGrid<'a> {
-    plan: &'a GridPlan,
-    projection: &'a DemProjection,
-    levels: &'a Levels,
-    lengths: &'a TrueLengths<'a>,
-}
-
-/// Reads the extract; fails if none of its roads lies on the elevation data.
-fn read_roads<'a>(
-    osm: &Path,
-    settings: &BuildSettings,
-    grid: &RoadGrid<'_>,
-    storage: &'a dyn Storage,
-    observer: &dyn Observer,
-) -> Result<read::ReadRoads<'a>, BuildError> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(settings.resources.threads)
-        .build()
-        .map_err(|error| not_started(&error))?;
-    let input = read::RoadInput {
-        osm,
-        settings: &settings.roads,
-        projection: grid.projection,
-        levels: grid.levels,
-        lengths: grid.lengths,
-        data_bounds: pyramid::data_tile_bounds(grid.plan),
-        pool: &pool,
-        memory_bytes: settings.resources.memory_bytes / 4,
-    };
-    let roads = read::read(&input, storage, observer)?;
-    read::check_overlap(&roads, &input, grid.plan)?;
-    Ok(roads)
-}
-
-/// The tolerance of the finest level: given, or derived from the cell.
-fn max_error_m(terrain: &TerrainSettings, plan: &GridPlan) -> Result<f64, BuildError> {
-    let max_error_m = terrain.max_error_m.unwrap_or(plan.frame.cell().shorter_m() / 4.0);
-    if MAX_ERRORS_M.contains(&max_error_m) {
-        Ok(max_error_m)
-    } else {
-        Err(BuildError::MaxError { max_error_m })
-    }
-}
-
-/// Why no tile has ground.
-fn no_mesh(dem: &[PathBuf], pyramid: &pyramid::Pyramid<'_>) -> BuildError {
-    let dem = dem.to_vec();
-    match pyramid.samples().with_data {
-        0 => BuildError::NoHeights { dem },
-        nodes => BuildError::NoCell { dem, nodes },
-    }
-}
-
-/// All stages in order; the package is written to `finished`.
+/// All steps in order; the package is written to `finished`.
 fn run(
-    settings: &BuildSettings,
-    inputs: &Inputs,
-    finished: &Path,
-    storage: &dyn Storage,
-    observer: &dyn Observer,
+    context: &Context<'_>,
+    scratch: &dyn Scratch,
+    target: &merge::Target<'_>,
 ) -> Result<Manifest, BuildError> {
-    let threads = settings.resources.threads;
-    let terrain = &settings.terrain;
-    corniche_dem::limit_block_cache(settings.resources.memory_bytes / 4)
-        .map_err(|error| not_started(&error))?;
-    let (dem, plan) = open(&settings.dem, terrain)?;
-    warn_of_other_grids(&plan, observer);
-    warn_of_unused_latitude(terrain, &plan, observer);
-    let max_error_m = max_error_m(terrain, &plan)?;
-    let widest = most_scale(plan.scale.largest);
-    let levels = Levels::new(plan.frame, max_error_m, &settings.roads, widest);
-    // This fails for files that are too far apart for one package, before the long work begins.
-    let coordinates = package::coordinates(&dem, &plan)?;
-    let projection = dem.projection(&plan)?;
-    let lengths = TrueLengths::new(plan.frame, &coordinates, &projection);
-    let records = inputs.hash(observer)?;
-
+    let pyramid = context.pyramid();
+    warn_of_other_grids(context.grid, context.observer);
+    warn_of_unused_latitude(&context.settings.terrain, context.grid, context.observer);
+    hashes::make(context)?;
     // Roads come before the long work on heights, so that an unusable extract is reported at once.
-    let data_tiles = pyramid::data_tiles(&plan);
-    let grid =
-        RoadGrid { plan: &plan, projection: &projection, levels: &levels, lengths: &lengths };
-    let mut roads = match &settings.osm {
-        Some(osm) => Some(read_roads(osm, settings, &grid, storage, observer)?),
-        None => None,
-    };
-    audit::check(&dem, terrain.height_range_m, threads, observer)?;
-    let pyramid = pyramid::read(&dem, &plan, threads, storage, observer)?;
-    let meshes = mesh::mesh(&pyramid, &levels, threads, storage, observer)?;
-    if meshes.is_empty() {
-        return Err(no_mesh(&settings.dem, &pyramid));
+    roads::make(context, scratch)?;
+    pyramid.make(TileId::ROOT)?;
+    // Before any tile is made, because no tile has ground where no node has a height.
+    pyramid.check()?;
+    if pyramid.sums()?.samples.with_data == 0 {
+        return Err(BuildError::NoHeights { dem: context.settings.dem.clone() });
     }
-    let deviations = deviations::measure(&pyramid, &meshes, &levels, threads, storage, observer)?;
-    let sample_sums = if plan.nodes_are_samples() {
-        deviations.at_nodes().to_vec()
-    } else {
-        let bytes = settings.resources.memory_bytes / 4 / threads.max(1) as u64;
-        let grounds = samples::GroundInput { meshes: &meshes, levels: &levels, storage, bytes };
-        samples::measure(&dem, &plan, &grounds, threads, observer)?
-    };
-    let tiles = tiles::make(
-        &tiles::TileInput {
-            levels: &levels,
-            lengths: &lengths,
-            meshes: &meshes,
-            deviations: &deviations,
-            pyramid: &pyramid,
-            data_tiles: &data_tiles,
-            storage,
-            threads,
-        },
-        roads.as_mut(),
-        observer,
-    )?;
-    if let Some(roads) = &roads {
-        losses::report(roads, &tiles.roads, observer)?;
-    }
-    let manifest = package::manifest(&package::Outcome {
-        settings,
-        max_error_m,
-        plan: &plan,
-        levels: &levels,
-        coordinates: &coordinates,
-        inputs: records,
-        samples: pyramid.samples(),
-        range_m: pyramid.range_m(),
-        roads: roads.as_ref(),
-        tiles: &tiles,
-        deviations: &deviations,
-        sample_sums: &sample_sums,
-    });
-    if let (Some(osm), 0) = (&settings.osm, manifest.counts.roads_kept) {
-        return Err(BuildError::NoGround { osm: osm.clone() });
-    }
-    // All inputs have been read. If none has changed, the recorded hashes are those of the bytes that were used.
-    inputs.check_unchanged()?;
-    package::write(finished, &settings.output, &manifest, &tiles, storage, observer)?;
-    Ok(manifest)
-}
-
-/// Writes the finished package's bytes to the disk, then moves the file to its place.
-fn place(finished: &Path, target: &Path, existing: Existing) -> Result<u64, BuildError> {
-    let failed = |source| BuildError::Rename { path: target.to_path_buf(), source };
-    let file = fs::File::options().write(true).open(finished).map_err(failed)?;
-    file.sync_all().map_err(failed)?;
-    let bytes = file.metadata().map_err(failed)?.len();
-    match existing {
-        Existing::Replace => fs::rename(finished, target).map_err(failed)?,
-        // A link fails where a rename would replace what someone put there while the build ran.
-        Existing::Keep => match fs::hard_link(finished, target) {
-            Ok(()) => {}
-            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
-                return Err(BuildError::Exists { path: target.to_path_buf() });
-            }
-            // Not every file system has hard links. Without them only the check at the start protects an existing file.
-            Err(_) => fs::rename(finished, target).map_err(failed)?,
-        },
-    }
-    Ok(bytes)
+    tiles::make(context, TileId::ROOT)?;
+    merge::make(context, scratch, target)
 }

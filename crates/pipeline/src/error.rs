@@ -58,11 +58,34 @@ pub enum BuildError {
     NoGround { osm: PathBuf },
     #[error("the roads could not be projected into the working CRS")]
     Project(#[source] corniche_geom::ProjectError),
+    #[error("{why}")]
+    NoMemory { why: String },
+    #[error(
+        "the build needs about {need} of disk space in {folder:?} ({what}), and {free} are free; make room, give --tmp a \
+         folder on another disk for intermediate results, or begin anyway with --force"
+    )]
+    NoRoom { folder: PathBuf, need: String, what: String, free: String },
     #[error("the run could not be set up: {what}")]
     Start { what: String },
     #[error("--max-error must be from 1e-9 to 1e9 metres, not {max_error_m}")]
     MaxError { max_error_m: f64 },
-    #[error("intermediate results could not be kept beside the package (disk full?)")]
+    #[error(
+        "an earlier build of this package ended early and left {store:?}; give --resume to go on from there, or -O to start again"
+    )]
+    Leftovers { store: PathBuf },
+    #[error(
+        "{store:?} is of another build: {differences}; give the inputs and settings of that build, or -O to start again"
+    )]
+    OtherBuild { store: PathBuf, differences: String },
+    #[error(
+        "{folder:?} holds {kept:?}, which is not Corniche's; move it away or choose another --tmp"
+    )]
+    NotOurs { folder: PathBuf, kept: PathBuf },
+    #[error("{path:?} is being built by another process; wait until it has ended")]
+    AtWork { path: PathBuf },
+    #[error("{what} is missing in the store; run the step {step} first")]
+    Missing { what: String, step: &'static str },
+    #[error("roads could not be sorted on the disk (disk full?)")]
     Storage(#[source] io::Error),
     #[error(transparent)]
     Store(#[from] corniche_store::StoreError),
@@ -80,7 +103,7 @@ pub enum BuildError {
         "the data do not fit one package, their longitudes and latitudes cannot be tabulated: give files of one region without a pole inside; a DEM in degrees fits as a whole with --crs dem"
     )]
     Coordinates(#[from] corniche_geom::CoordinateTableError),
-    #[error("interrupted; nothing was written, run the same command again")]
+    #[error("interrupted; no package was written")]
     Interrupted,
 }
 
@@ -111,6 +134,8 @@ impl BuildError {
                 | Self::NoGround { .. }
                 | Self::Coordinates(_)
                 | Self::MaxError { .. }
+                | Self::NoMemory { .. }
+                | Self::NoRoom { .. }
                 | Self::Triangulate { source: corniche_tin::TriangulateError::Height { .. }, .. }
         )
     }

@@ -8,6 +8,7 @@
 //!   stamp ─► open ─► hash ─► roads, heights … ─► stamp again ─► package
 //! ```
 
+mod planned_input;
 mod stamp;
 
 use std::{
@@ -20,6 +21,7 @@ use corniche_dem::{DemError, VirtualFile, raster_files};
 use corniche_tileset::InputRecord;
 use sha2::{Digest, Sha256};
 
+pub use self::planned_input::PlannedInput;
 use self::stamp::Stamp;
 use crate::{BuildError, Observer, Stage, hex::hex};
 
@@ -113,20 +115,61 @@ impl Inputs {
         Ok(Self { files })
     }
 
+    /// How many files there are.
+    pub(crate) fn len(&self) -> usize {
+        self.files.len()
+    }
+
+    /// The name of a file, without folders.
+    pub(crate) fn name(&self, index: usize) -> &str {
+        &self.files[index].name
+    }
+
+    /// What a plan says of every file, in their order.
+    pub(crate) fn planned(&self) -> Result<Vec<PlannedInput>, InputError> {
+        self.files.iter().map(Input::planned).collect()
+    }
+
     /// Hashes the content of every file. The parts of a raster come after it, sorted.
     pub(crate) fn hash(&self, observer: &dyn Observer) -> Result<Vec<InputRecord>, InputError> {
-        observer.begin(Stage::Hash, Some(self.files.len() as u64));
         let mut records: Vec<InputRecord> = Vec::new();
-        for input in &self.files {
-            records.push(input.hash(observer)?);
-            observer.advance(Stage::Hash, 1);
+        self.hash_each(
+            |_| false,
+            observer,
+            |_, record| {
+                records.push(record);
+                Ok::<_, InputError>(())
+            },
+        )?;
+        Self::in_order(&mut records);
+        Ok(records)
+    }
+
+    /// Hashes the files that are not done yet and hands on what each of them is.
+    pub(crate) fn hash_each<E: From<InputError>>(
+        &self,
+        is_done: impl Fn(usize) -> bool,
+        observer: &dyn Observer,
+        mut take: impl FnMut(usize, InputRecord) -> Result<(), E>,
+    ) -> Result<(), E> {
+        observer.begin(Stage::Hash, self.files.iter().map(Input::content_bytes).sum());
+        for (index, input) in self.files.iter().enumerate() {
+            if is_done(index) {
+                observer.already(Stage::Hash, input.content_bytes().unwrap_or_default());
+            } else {
+                take(index, input.hash(observer)?)?;
+            }
         }
+        observer.end(Stage::Hash);
+        Ok(())
+    }
+
+    /// Sorts the parts of each raster, which GDAL lists in any order.
+    pub(crate) fn in_order(records: &mut [InputRecord]) {
         let is_part = |record: &InputRecord| InputKind::DemPart.is_of(record);
         for parts in records.chunk_by_mut(|a, b| is_part(a) && is_part(b)) {
             parts.sort_by(|a, b| (&a.name, &a.sha256).cmp(&(&b.name, &b.sha256)));
         }
-        observer.end(Stage::Hash);
-        Ok(records)
     }
 
     /// Fails if a file is no longer what it was when it was found.
@@ -153,6 +196,37 @@ impl Input {
         };
         let stamp = stamp.map_err(failed)?;
         Ok(Self { kind, path: path.to_path_buf(), name, content, stamp })
+    }
+
+    fn planned(&self) -> Result<PlannedInput, InputError> {
+        let failed = |source| InputError::Read { path: self.path.clone(), source };
+        let text = self.path.to_str();
+        let text = text.ok_or_else(|| InputError::Name { path: self.path.clone() })?;
+        let (bytes, modified_ns, etag) = match &self.stamp {
+            Stamp::File(_, state) => (state.size(), state.modified_ns(), None),
+            Stamp::Remote(path, bytes) => (*bytes, None, VirtualFile::etag(path)),
+        };
+        // The size of a folder is that of the list of its files, and no matter.
+        let bytes = if matches!(self.content, Content::Folder) { 0 } else { bytes };
+        Ok(PlannedInput {
+            kind: self.kind.name().to_owned(),
+            name: self.name.clone(),
+            path: stamp::absolute(text).map_err(failed)?,
+            bytes,
+            modified_ns,
+            etag,
+        })
+    }
+
+    /// Size of what is hashed, as far as it is known before it is read.
+    fn content_bytes(&self) -> Option<u64> {
+        match (&self.content, &self.stamp) {
+            (Content::Folder, _) => Some(0),
+            (Content::File(_), Stamp::File(_, state)) => Some(state.size()),
+            (_, Stamp::Remote(_, size)) => Some(*size),
+            // Inside an archive: only the archive's own size is known.
+            (Content::Virtual(_), Stamp::File(..)) => None,
+        }
     }
 
     fn hash(&self, observer: &dyn Observer) -> Result<InputRecord, InputError> {
@@ -195,6 +269,7 @@ fn digest(
             Ok(read) => {
                 hasher.update(&buffer[..read]);
                 bytes += read as u64;
+                observer.advance(Stage::Hash, read as u64);
             }
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
             Err(error) => return Err(error),

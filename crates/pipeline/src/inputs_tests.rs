@@ -1,3 +1,5 @@
+use std::sync::Mutex;
+
 use super::*;
 
 /// The match has no `_`, so a new kind does not compile here until it has a place in the list.
@@ -12,4 +14,37 @@ fn every_kind_of_input_is_listed_once() {
         assert_eq!(place, expected, "{kind:?}");
     }
     assert_eq!(InputKind::ALL.len(), 3);
+}
+
+/// Keeps what `begin` was told, and the steps.
+#[derive(Default)]
+struct Counted(Mutex<(Option<u64>, u64)>);
+
+impl Observer for Counted {
+    fn begin(&self, stage: Stage, total: Option<u64>) {
+        assert_eq!(stage, Stage::Hash);
+        *self.0.lock().unwrap() = (total, 0);
+    }
+
+    fn advance(&self, _: Stage, steps: u64) {
+        self.0.lock().unwrap().1 += steps;
+    }
+
+    fn end(&self, _: Stage) {}
+}
+
+/// Hashing counts bytes, and knows their number before it begins; of a part of an archive it does not.
+#[test]
+fn hashing_counts_the_bytes_of_the_files() {
+    const BYTES: u64 = (3 << 20) + 5;
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, vec![7; BYTES as usize]).unwrap();
+    let inside = PathBuf::from(format!("/vsisubfile/3_100,{}", file.display()));
+    for (path, total, bytes) in [(&file, Some(BYTES), BYTES), (&inside, None, 100)] {
+        let counted = Counted::default();
+        let records = Inputs::find(&[], Some(path)).unwrap().hash(&counted).unwrap();
+        assert_eq!(records[0].bytes, bytes);
+        assert_eq!(*counted.0.lock().unwrap(), (total, bytes), "{}", path.display());
+    }
 }

@@ -2,38 +2,44 @@
 //!
 //! This crate never parses arguments and never prints. It is the only one that spawns threads.
 
-#[expect(dead_code, reason = "the steps follow")]
 mod artifacts;
 mod build;
+mod context;
 mod defect;
 mod error;
 mod heights;
 mod hex;
 mod inputs;
 mod levels;
+mod machine;
 mod manifest_texts;
 mod observer;
+mod plan;
 mod roads;
 mod sample_deviation;
 mod settings;
 mod settings_record;
-mod stages;
-mod storage;
+mod steps;
 mod target;
+mod tile;
 mod verify;
 mod workers;
 
-#[cfg(test)]
-use storage::MemoryStorage;
-use storage::{DiskStorage, Storage};
-
-pub use build::{BuildSummary, build};
+pub use build::{BuildSummary, build, build_on};
 pub use corniche_dem::{OpenOptions, PlanOptions};
 pub use corniche_osm::Defect as OsmDefect;
 pub use defect::{Defect, Loss};
 pub use error::BuildError;
-pub use observer::{Observer, Silent, Stage};
-pub use settings::{BuildSettings, Existing, Resources, RoadSettings, TerrainSettings};
+pub use inputs::PlannedInput;
+pub use machine::{MIN_MEMORY_BYTES, default_memory_bytes, machine_memory_bytes};
+pub use observer::{Observer, Silent, Stage, Unit};
+pub use plan::{
+    BuildPlan, Estimate, FrcTableRecord, MemoryEstimate, PlanError, PlannedGrid, PlannedLevel,
+    Rates, plan,
+};
+pub use settings::{
+    BuildSettings, Existing, Leftovers, PlanSettings, Resources, RoadSettings, TerrainSettings,
+};
 pub use target::{TargetError, file_target};
 pub use verify::{
     Check, CheckId, ErrorFigures, GapFigures, Needs, VerifyError, VerifyOsm, VerifyReport,

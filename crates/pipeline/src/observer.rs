@@ -2,57 +2,126 @@ use std::path::Path;
 
 use crate::Defect;
 
+/// What a stage counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Unit {
+    /// Bytes of input files.
+    Bytes,
+    /// Blocks of the DEM's samples.
+    Blocks,
+    /// Areas of the grid: the finest tiles of one window of the DEM.
+    Areas,
+    /// Roads of the extract.
+    Roads,
+    /// Tiles of the package.
+    Tiles,
+}
+
 /// A stage of a run, in the order in which they come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Stage {
     /// Hash the input files.
     Hash,
-    /// Look at every sample of the DEM for values that are no heights. Counted in blocks.
-    Audit,
-    /// Read the DEM, reproject it, fill its voids, make the level rasters. Counted in blocks.
-    Heights,
-    /// Triangulate all tiles of all levels. Counted in tiles.
-    Mesh,
-    /// Measure every tile against the full resolution. Counted in finest tiles.
-    Deviations,
-    /// Measure every level at the DEM's own samples, where they are not the nodes. Counted in blocks.
-    Samples,
-    /// Read roads from the extract. Counted in roads; the total is unknown.
+    /// Read roads from the extract.
     Roads,
-    /// Clip, drape and encode. Counted in tiles.
+    /// Read the DEM, reproject it, fill its voids, make the level rasters.
+    Heights,
+    /// Triangulate the tiles of all levels but the finest.
+    CoarseTins,
+    /// Measure every finest tile, and the coarser ones above it, against the full resolution.
+    Deviations,
+    /// Measure every level at the DEM's own samples, where they are not the nodes.
+    Samples,
+    /// Make the tiles: clip, drape and encode.
     Tiles,
-    /// Write the package. Counted in tiles.
+    /// Make the tiles of all levels but the finest.
+    CoarseTiles,
+    /// Write the package.
     Package,
-    /// Check a package. Counted in tiles.
+    /// Check a package.
     Verify,
 }
 
 impl Stage {
-    /// What the stage does, for people.
+    /// All stages, in their order.
+    pub const ALL: [Self; 10] = [
+        Self::Hash,
+        Self::Roads,
+        Self::Heights,
+        Self::CoarseTins,
+        Self::Deviations,
+        Self::Samples,
+        Self::Tiles,
+        Self::CoarseTiles,
+        Self::Package,
+        Self::Verify,
+    ];
+
+    /// What the stage does, for people; at most 22 characters, one column of a table.
     #[must_use]
     pub fn title(self) -> &'static str {
         match self {
             Self::Hash => "hashing inputs",
-            Self::Audit => "checking heights",
+            Self::Roads => "reading roads",
             Self::Heights => "reading heights",
-            Self::Mesh => "triangulating",
+            Self::CoarseTins => "meshing coarse levels",
             Self::Deviations => "measuring errors",
             Self::Samples => "measuring at samples",
-            Self::Roads => "reading roads",
-            Self::Tiles => "draping and encoding",
+            Self::Tiles => "making tiles",
+            Self::CoarseTiles => "making coarse tiles",
             Self::Package => "writing package",
             Self::Verify => "verifying",
+        }
+    }
+
+    /// The stage's name for programs: small letters and hyphens. It does not change.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Hash => "hash",
+            Self::Roads => "roads",
+            Self::Heights => "heights",
+            Self::CoarseTins => "coarse-tins",
+            Self::Deviations => "deviations",
+            Self::Samples => "samples",
+            Self::Tiles => "tiles",
+            Self::CoarseTiles => "coarse-tiles",
+            Self::Package => "package",
+            Self::Verify => "verify",
+        }
+    }
+
+    /// What the stage counts.
+    #[must_use]
+    pub fn unit(self) -> Unit {
+        match self {
+            Self::Hash => Unit::Bytes,
+            Self::Roads => Unit::Roads,
+            Self::Samples => Unit::Blocks,
+            Self::Heights => Unit::Areas,
+            Self::CoarseTins
+            | Self::Deviations
+            | Self::Tiles
+            | Self::CoarseTiles
+            | Self::Package
+            | Self::Verify => Unit::Tiles,
         }
     }
 }
 
 /// What a run reports to its caller, and how the caller stops it.
 pub trait Observer: Sync {
-    /// A stage begins; `total` is how much it will count up to, where that is known.
+    /// A stage begins; `total` is how many of its [`Unit`]s it will count up to, where that is known. Stages do not overlap.
     fn begin(&self, stage: Stage, total: Option<u64>);
+
+    /// An earlier run did `steps` of the total. They count as done, but say nothing about how fast this run is.
+    fn already(&self, _: Stage, _steps: u64) {}
 
     /// The stage has done `steps` more.
     fn advance(&self, stage: Stage, steps: u64);
+
+    /// The stage has done `done` in all, of a `total` that is known only now or that changed.
+    fn reached(&self, _: Stage, _done: u64, _total: u64) {}
 
     /// The stage is over.
     fn end(&self, stage: Stage);
@@ -60,9 +129,9 @@ pub trait Observer: Sync {
     /// A defect of the input was skipped and counted. The order of reports depends on the inputs alone.
     fn defect(&self, _: &Defect) {}
 
-    /// The run keeps intermediate results in this folder and removes it when it ends. A caller that ends the program
-    /// without waiting for the run removes the folder itself.
-    fn work_folder(&self, _: &Path) {}
+    /// The run uses this file or folder and removes it when it ends. A caller that ends the program without waiting for the run
+    /// removes it itself.
+    fn temporary(&self, _: &Path) {}
 
     /// A warning about the inputs, as text for the user.
     fn warning(&self, _: &str) {}
@@ -82,3 +151,7 @@ impl Observer for Silent {
     fn advance(&self, _: Stage, _: u64) {}
     fn end(&self, _: Stage) {}
 }
+
+#[cfg(test)]
+#[path = "observer_tests.rs"]
+mod tests;

@@ -1,6 +1,7 @@
 //! How far TINs are from the DEM's own samples: sums that can be merged in any order.
 
 use corniche_tileset::SampleErrorRecord;
+use serde::{Deserialize, Serialize};
 
 /// Distances are summed in whole parts of the height quantum; this is the number of parts in a quantum.
 const PARTS_TO_A_QUANTUM: f64 = 256.0;
@@ -12,7 +13,7 @@ const MOST_PARTS: f64 = (1_u64 << 33) as f64;
 /// How far a level's TINs are from samples of the DEM.
 ///
 /// Integers and a maximum: what comes out does not depend on the order in which samples come or sums are merged.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SampleSums {
     quantum_m: f64,
     on_tin: u64,
@@ -21,6 +22,7 @@ pub(crate) struct SampleSums {
     /// Squares of distances in parts of a quantum.
     squares: u128,
     /// How many distances lie in each bin, from 0 on.
+    #[serde(with = "sparse")]
     bins: Vec<u64>,
 }
 
@@ -87,6 +89,29 @@ impl SampleSums {
             }
         }
         self.max_m
+    }
+}
+
+/// Most bins of a tile are empty: written are pairs of bin and count.
+mod sparse {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(bins: &[u64], serializer: S) -> Result<S::Ok, S::Error> {
+        let filled = bins.iter().enumerate().filter(|&(_, &count)| count > 0);
+        filled.map(|(bin, &count)| (bin as u32, count)).collect::<Vec<_>>().serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Vec<u64>, D::Error> {
+        let mut bins = Vec::new();
+        for (bin, count) in Vec::<(u32, u64)>::deserialize(deserializer)? {
+            if bins.len() <= bin as usize {
+                bins.resize(bin as usize + 1, 0);
+            }
+            bins[bin as usize] = count;
+        }
+        Ok(bins)
     }
 }
 

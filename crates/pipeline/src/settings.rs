@@ -14,6 +14,12 @@ pub struct BuildSettings {
     pub output: PathBuf,
     /// What to do when the package exists.
     pub existing: Existing,
+    /// The folder for intermediate results; `None`: that of the package.
+    pub tmp: Option<PathBuf>,
+    /// What to do with intermediate results of an earlier build of the same package.
+    pub leftovers: Leftovers,
+    /// Whether to begin although memory or disk space are not expected to suffice.
+    pub force: bool,
     /// How the ground is made.
     pub terrain: TerrainSettings,
     /// How roads are made.
@@ -26,6 +32,36 @@ pub struct BuildSettings {
     pub generator: String,
 }
 
+/// The part of the settings that decides what is made: the same for every worker that takes part in a build.
+#[derive(Debug, Clone)]
+pub struct PlanSettings {
+    /// Elevation rasters; where they overlap, the first has precedence.
+    pub dem: Vec<PathBuf>,
+    /// OpenStreetMap extract; `None` plans terrain alone.
+    pub osm: Option<PathBuf>,
+    /// How the ground is made.
+    pub terrain: TerrainSettings,
+    /// How roads are made.
+    pub roads: RoadSettings,
+    /// Credits beside those that the inputs call for, such as a DEM's.
+    pub attribution: Vec<String>,
+    /// Program and version.
+    pub generator: String,
+}
+
+impl From<&BuildSettings> for PlanSettings {
+    fn from(settings: &BuildSettings) -> Self {
+        Self {
+            dem: settings.dem.clone(),
+            osm: settings.osm.clone(),
+            terrain: settings.terrain.clone(),
+            roads: settings.roads.clone(),
+            attribution: settings.attribution.clone(),
+            generator: settings.generator.clone(),
+        }
+    }
+}
+
 /// What to do with a package that exists at the target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existing {
@@ -33,6 +69,17 @@ pub enum Existing {
     Keep,
     /// Replace it when the new one is complete.
     Replace,
+}
+
+/// What to do with intermediate results that an earlier build of the same package left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Leftovers {
+    /// Name them and refuse to build.
+    Refuse,
+    /// Go on from them.
+    Resume,
+    /// Remove them and begin from nothing.
+    Discard,
 }
 
 /// How the ground is made.
@@ -67,6 +114,6 @@ pub struct RoadSettings {
 pub struct Resources {
     /// Worker threads, at least 1.
     pub threads: usize,
-    /// Memory for buffers and caches, bytes.
+    /// The most memory that the process may use, bytes.
     pub memory_bytes: u64,
 }

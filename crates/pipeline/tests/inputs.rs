@@ -66,8 +66,7 @@ fn a_height_that_steps_do_not_reach_is_refused_as_bad_input() {
 fn an_input_exchanged_at_any_stage_ends_the_build() {
     let folder = tempfile::tempdir().unwrap();
     let [dem, output] = ["dem.tif", "out.pmtiles"].map(|name| folder.path().join(name));
-    for stage in
-        [Stage::Hash, Stage::Audit, Stage::Heights, Stage::Mesh, Stage::Deviations, Stage::Tiles]
+    for stage in [Stage::Hash, Stage::Heights, Stage::CoarseTins, Stage::Tiles, Stage::CoarseTiles]
     {
         hills().write(&dem);
         let exchange = At { stage, act: Mutex::new(Some(Box::new(|| exchange(&dem)))) };

@@ -1,6 +1,6 @@
 //! The options of a build: each is declared once, for the command line and for settings files.
 
-use std::{collections::BTreeMap, num::NonZeroUsize};
+use std::{collections::BTreeMap, num::NonZeroUsize, path::PathBuf};
 
 use clap::Args;
 use serde::{Deserialize, Deserializer};
@@ -76,10 +76,6 @@ pub struct TerrainOptions {
     /// Take every K-th sample of the DEM along both axes as a node of the finest level, without interpolation
     #[arg(long, value_name = "K", conflicts_with = "cell")]
     pub cell_every: Option<u32>,
-    /// Allow more than 16 nodes per DEM sample
-    #[arg(long)]
-    #[serde(skip)]
-    pub force: bool,
     /// Largest vertical error of the finest level, in metres [default: a quarter of the cell]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub max_error: Option<f64>,
@@ -121,9 +117,12 @@ pub struct ResourceOptions {
     /// Worker threads [default: one per processor]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
-    /// Memory for buffers and caches, such as 512M, 4G or 1T [default: 1G]
+    /// The most memory to use, such as 512M, 4G or 1T, at least 256M [default: half of the machine's, at most 4G]
     #[arg(long, value_name = "BYTES")]
     pub memory: Option<String>,
+    /// Folder for intermediate results, which take far more space than the package [default: that of the package]
+    #[arg(long, value_name = "FOLDER")]
+    pub tmp: Option<PathBuf>,
 }
 
 /// What the first of two says, else what the second says.
@@ -169,7 +168,6 @@ impl TerrainOptions {
             scale_latitude: self.scale_latitude.or_from(other.scale_latitude),
             cell,
             cell_every,
-            force: self.force.or_from(other.force),
             max_error: self.max_error.or_from(other.max_error),
             fill_voids: self.fill_voids.or_from(other.fill_voids),
             attribution: self.attribution.or_from(other.attribution),
@@ -197,6 +195,7 @@ impl ResourceOptions {
         Self {
             threads: self.threads.or_from(other.threads),
             memory: self.memory.or_from(other.memory),
+            tmp: self.tmp.or_from(other.tmp),
         }
     }
 }

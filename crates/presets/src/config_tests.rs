@@ -88,8 +88,6 @@ fn all_options(n: u8) -> (TerrainOptions, RoadOptions, ResourceOptions) {
         scale_latitude: Some(number),
         cell: Some([number; 2]),
         cell_every: Some(n.into()),
-        // `true` on either side is `true`, so the sides cannot differ here.
-        force: true,
         max_error: Some(number),
         fill_voids: Some(n.into()),
         attribution: vec![text("attribution")],
@@ -100,8 +98,11 @@ fn all_options(n: u8) -> (TerrainOptions, RoadOptions, ResourceOptions) {
         simplify: Some(number),
         class_max_cell: Some(BTreeMap::from([(text("class"), number)])),
     };
-    let resources =
-        ResourceOptions { threads: NonZeroUsize::new(n.into()), memory: Some(text("memory")) };
+    let resources = ResourceOptions {
+        threads: NonZeroUsize::new(n.into()),
+        memory: Some(text("memory")),
+        tmp: Some(text("tmp").into()),
+    };
     (terrain, roads, resources)
 }
 

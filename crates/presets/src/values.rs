@@ -19,8 +19,8 @@ pub fn parse_bytes(text: &str) -> Result<u64, String> {
     }
 }
 
-/// With less than this the stages of a build cannot hold a tile each.
-const MIN_MEMORY_BYTES: u64 = 64 << 20;
+/// With less than this a build cannot hold a tile for each of a few threads.
+const MIN_MEMORY_BYTES: u64 = 256 << 20;
 
 /// Memory that is enough to build in, bytes.
 ///
@@ -29,7 +29,7 @@ const MIN_MEMORY_BYTES: u64 = 64 << 20;
 pub fn parse_memory(text: &str) -> Result<u64, String> {
     match parse_bytes(text) {
         Ok(size_bytes) if size_bytes >= MIN_MEMORY_BYTES => Ok(size_bytes),
-        _ => Err(format!("{text:?} is not a size of at least 64M; write it like 512M, 4G or 1T")),
+        _ => Err(format!("{text:?} is not a size of at least 256M; write it like 512M, 4G or 1T")),
     }
 }
 

@@ -35,9 +35,9 @@ fn cells_are_squares_or_rectangles() {
 
 #[test]
 fn memory_has_a_least_size() {
-    assert_eq!(parse_memory("64M"), Ok(64 << 20));
+    assert_eq!(parse_memory("256M"), Ok(256 << 20));
     assert_eq!(parse_memory("1073741824"), Ok(1 << 30));
-    for bad in ["", "G", "-1G", "1M", "99999999999G", "ä"] {
-        assert!(parse_memory(bad).unwrap_err().contains("at least 64M"), "{bad}");
+    for bad in ["", "G", "-1G", "255M", "99999999999G", "ä"] {
+        assert!(parse_memory(bad).unwrap_err().contains("at least 256M"), "{bad}");
     }
 }

@@ -5,8 +5,67 @@ use std::{io, path::PathBuf};
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
 pub enum StoreError {
-    #[error("{path:?} could not be read or written (disk full?)")]
-    Io { path: PathBuf, source: io::Error },
+    #[error("cannot {doing} {path:?}{}", advice(.source))]
+    Io { path: PathBuf, doing: &'static str, source: io::Error },
     #[error("{path:?} is damaged: {what}")]
     Damaged { path: PathBuf, what: String },
+    #[error(
+        "{path:?} was written by another version of Corniche (store format {found}, this one knows {known}); \
+         use that version, or remove it and start again"
+    )]
+    OtherVersion { path: PathBuf, found: u32, known: u32 },
+    #[error("{path:?} is not a store of Corniche and not empty ({what}); choose another folder")]
+    NotAStore { path: PathBuf, what: String },
+    #[error("{path:?} holds no store; nothing was begun here, or it is done")]
+    NoStore { path: PathBuf },
+    #[error("{path:?} already holds a store; go on from it with --resume, or remove it")]
+    Exists { path: PathBuf },
+    #[error("{path:?} belongs to another plan: an input or a setting differs")]
+    OtherPlan { path: PathBuf },
+    #[error("{path:?} is in use by {owner}; wait until it has ended")]
+    Locked { path: PathBuf, owner: String },
+    #[error("{path:?} was removed or replaced while it was in use; start again")]
+    Gone { path: PathBuf },
+    #[error(
+        "{path:?}: a write failed earlier, so nothing more can be kept; run again with --resume"
+    )]
+    Failed { path: PathBuf },
+    #[error("{path:?} is open for reading only")]
+    ReadOnly { path: PathBuf },
+    #[error(
+        "artifact {item} of kind {kind} is not the same in {first:?} and {second:?}, although both belong to one plan; \
+         remove the wrong one"
+    )]
+    Differs { kind: u8, item: u64, first: PathBuf, second: PathBuf },
+    #[error("{path:?} cannot keep {what}: {length} where at most {limit} are possible")]
+    TooLarge { path: PathBuf, what: &'static str, length: u64, limit: u64 },
+    #[error("{name:?} cannot be the name of a part: use letters, digits, '-' and '_'")]
+    PartName { name: String },
+}
+
+/// What to do about a cause that has a remedy.
+fn advice(source: &io::Error) -> &'static str {
+    match source.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            ": the disk is full; free space or choose another folder with --tmp, then run again with --resume"
+        }
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            ": no permission; choose another folder with --tmp"
+        }
+        io::ErrorKind::Unsupported => {
+            ": this file system cannot do it; choose another folder with --tmp"
+        }
+        _ => "",
+    }
+}
+
+impl From<StoreError> for io::Error {
+    /// For [`Scratch`](crate::Scratch), whose errors travel through readers and writers. The kind stays.
+    fn from(error: StoreError) -> Self {
+        let kind = match &error {
+            StoreError::Io { source, .. } => source.kind(),
+            _ => io::ErrorKind::Other,
+        };
+        Self::new(kind, error)
+    }
 }

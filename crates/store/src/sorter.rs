@@ -1,13 +1,22 @@
-use std::io;
+//! Sorting more records than fit in memory.
+//!
+//! Source: Knuth 1998, *The Art of Computer Programming*, volume 3, section 5.4 (external sorting): sorted runs, merged; in passes where
+//! there are too many runs for one.
 
-use crate::Scratch;
+use std::{
+    cmp::Reverse,
+    collections::{BinaryHeap, VecDeque},
+    io, mem,
+};
+
+use crate::{Scratch, Span};
 
 /// A record that can be sorted outside memory. Records that compare equal come back in any order, so they must be the same.
 pub trait SortRecord: Ord + Sized + Send {
     /// Appends the record's bytes.
     fn encode(&self, bytes: &mut Vec<u8>);
 
-    /// Takes a record from the front of `bytes`; `None` where they hold none.
+    /// Takes a record from the front of `bytes`; `None` where they hold none. `bytes` are never cut within a record.
     fn decode(bytes: &mut &[u8]) -> Option<Self>;
 
     /// The memory that it takes, bytes, beside its own size: that of its lists and texts.
@@ -16,17 +25,27 @@ pub trait SortRecord: Ord + Sized + Send {
     }
 }
 
+/// At most this many runs are merged at once: more pages than that make each so short that reading is mostly seeking.
+const RUNS_AT_ONCE: usize = 64;
+/// Pages are no longer than this: more saves no seeks.
+const LONGEST_PAGE: usize = 1 << 20;
+/// Pages are no shorter than this, unless the memory is too small for two of them.
+const SHORTEST_PAGE: usize = 4096;
+
 /// Sorts records. What does not fit in memory goes to scratch space in sorted runs, which are merged at the end.
 pub struct Sorter<'a, T> {
     scratch: &'a dyn Scratch,
-    memory_bytes: u64,
+    memory_bytes: usize,
     records: Vec<T>,
+    extra_bytes: usize,
+    runs: VecDeque<Run>,
 }
 
 impl<'a, T: SortRecord> Sorter<'a, T> {
-    /// Keeps at most about `memory_bytes` in memory.
+    /// Keeps at most about `memory_bytes` in memory; a single record may be larger.
     pub fn new(scratch: &'a dyn Scratch, memory_bytes: u64) -> Self {
-        Self { scratch, memory_bytes, records: Vec::new() }
+        let memory_bytes = usize::try_from(memory_bytes).unwrap_or(usize::MAX);
+        Self { scratch, memory_bytes, records: Vec::new(), extra_bytes: 0, runs: VecDeque::new() }
     }
 
     /// Adds a record.
@@ -34,8 +53,39 @@ impl<'a, T: SortRecord> Sorter<'a, T> {
     /// # Errors
     /// When the scratch space fails.
     pub fn push(&mut self, record: T) -> io::Result<()> {
-        let _ = (self.scratch, self.memory_bytes);
+        let extra_bytes = record.extra_bytes();
+        let limit = self.memory_bytes - page_bytes(self.memory_bytes, 8);
+        let taken = (self.records.len() + 1).saturating_mul(size_of::<T>().max(1));
+        if taken.saturating_add(self.extra_bytes).saturating_add(extra_bytes) > limit
+            && !self.records.is_empty()
+        {
+            self.spill()?;
+        }
+        self.grow(limit);
+        self.extra_bytes += extra_bytes;
         self.records.push(record);
+        Ok(())
+    }
+
+    /// Makes room for a record. Doubling as `Vec` does it would take up to twice the limit.
+    fn grow(&mut self, limit: usize) {
+        let length = self.records.len();
+        if length == self.records.capacity() {
+            let most = (limit / size_of::<T>().max(1)).saturating_sub(length);
+            self.records.reserve_exact(length.max(64).min(most).max(1));
+        }
+    }
+
+    /// Writes what is in memory as a run.
+    fn spill(&mut self) -> io::Result<()> {
+        self.records.sort_unstable();
+        let mut writer = RunWriter::new(self.scratch, page_bytes(self.memory_bytes, 8));
+        // A new list for the next run: the pages of this one that were used would stay, beside what the records hold next time.
+        for record in mem::take(&mut self.records) {
+            writer.push(&record)?;
+        }
+        self.extra_bytes = 0;
+        self.runs.push_back(writer.finish()?);
         Ok(())
     }
 
@@ -44,22 +94,230 @@ impl<'a, T: SortRecord> Sorter<'a, T> {
     /// # Errors
     /// When the scratch space fails.
     pub fn finish(mut self) -> io::Result<Sorted<'a, T>> {
-        self.records.sort_unstable();
-        Ok(Sorted { scratch: self.scratch, records: self.records.into_iter() })
+        if self.runs.is_empty() {
+            self.records.sort_unstable();
+            return Ok(Sorted(Source::Memory(self.records.into_iter())));
+        }
+        if !self.records.is_empty() {
+            self.spill()?;
+        }
+        let most = (self.memory_bytes / SHORTEST_PAGE).saturating_sub(1).clamp(2, RUNS_AT_ONCE);
+        while self.runs.len() > most {
+            // The oldest runs are the shortest; as many as needed, so that the last merge is a full one.
+            let count = (self.runs.len() - most + 1).min(most);
+            let runs = self.runs.drain(..count).collect();
+            let page = page_bytes(self.memory_bytes, count + 1);
+            let mut writer = RunWriter::new(self.scratch, page);
+            for record in Merge::<T>::new(self.scratch, runs, page)? {
+                writer.push(&record?)?;
+            }
+            self.runs.push_back(writer.finish()?);
+        }
+        let page = page_bytes(self.memory_bytes, self.runs.len());
+        Ok(Sorted(Source::Merge(Merge::new(self.scratch, self.runs.into(), page)?)))
     }
 }
 
+/// The length of a page where `pages` of them share the memory.
+fn page_bytes(memory_bytes: usize, pages: usize) -> usize {
+    (memory_bytes / pages.max(1)).clamp(SHORTEST_PAGE.min(memory_bytes / 2), LONGEST_PAGE)
+}
+
 /// Records in ascending order.
-pub struct Sorted<'a, T> {
-    #[expect(dead_code, reason = "runs follow")]
-    scratch: &'a dyn Scratch,
-    records: std::vec::IntoIter<T>,
+pub struct Sorted<'a, T>(Source<'a, T>);
+
+enum Source<'a, T> {
+    Memory(std::vec::IntoIter<T>),
+    Merge(Merge<'a, T>),
 }
 
 impl<T: SortRecord> Iterator for Sorted<'_, T> {
     type Item = io::Result<T>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        self.records.next().map(Ok)
+        match &mut self.0 {
+            Source::Memory(records) => records.next().map(Ok),
+            Source::Merge(merge) => merge.next(),
+        }
     }
 }
+
+/// A sorted run: where its pages are. Each record has its length before it; a record may go on in the next page.
+#[derive(Debug, Default)]
+struct Run {
+    pages: Vec<Span>,
+}
+
+/// Writes a run.
+struct RunWriter<'a> {
+    scratch: &'a dyn Scratch,
+    page_bytes: usize,
+    page: Vec<u8>,
+    record: Vec<u8>,
+    run: Run,
+}
+
+impl<'a> RunWriter<'a> {
+    fn new(scratch: &'a dyn Scratch, page_bytes: usize) -> Self {
+        let page = Vec::with_capacity(page_bytes);
+        Self { scratch, page_bytes, page, record: Vec::new(), run: Run::default() }
+    }
+
+    fn push<T: SortRecord>(&mut self, record: &T) -> io::Result<()> {
+        self.record.clear();
+        record.encode(&mut self.record);
+        if self.page.len() + self.record.len() + LONGEST_LENGTH > self.page_bytes {
+            self.write_page()?;
+        }
+        write_length(&mut self.page, self.record.len());
+        self.page.extend(&self.record);
+        Ok(())
+    }
+
+    fn write_page(&mut self) -> io::Result<()> {
+        if !self.page.is_empty() {
+            self.run.pages.push(self.scratch.append(&self.page)?);
+            self.page.clear();
+        }
+        Ok(())
+    }
+
+    fn finish(mut self) -> io::Result<Run> {
+        self.write_page()?;
+        Ok(self.run)
+    }
+}
+
+/// Reads a run with a buffer of one page, which may be shorter than the pages it was written in.
+struct RunReader<'a> {
+    scratch: &'a dyn Scratch,
+    page_bytes: u64,
+    pages: std::vec::IntoIter<Span>,
+    /// What is not read yet of the page that is being read.
+    rest: Span,
+    buffer: Vec<u8>,
+    used: usize,
+}
+
+impl<'a> RunReader<'a> {
+    fn new(scratch: &'a dyn Scratch, run: Run, page_bytes: usize) -> Self {
+        Self {
+            scratch,
+            page_bytes: page_bytes.max(1) as u64,
+            pages: run.pages.into_iter(),
+            rest: Span { offset: 0, length: 0 },
+            buffer: Vec::new(),
+            used: 0,
+        }
+    }
+
+    fn next<T: SortRecord>(&mut self) -> io::Result<Option<T>> {
+        loop {
+            let mut unread = &self.buffer[self.used..];
+            let start = unread.len();
+            if let Some(length) = read_length(&mut unread)
+                && let Some(mut record) = unread.get(..length)
+            {
+                let decoded = T::decode(&mut record).filter(|_| record.is_empty());
+                self.used += start - unread.len() + length;
+                return decoded.map(Some).ok_or_else(|| broken("a record is not what was written"));
+            }
+            if !self.read_more()? {
+                return if start == 0 { Ok(None) } else { Err(broken("a run ends in a record")) };
+            }
+        }
+    }
+
+    /// Reads the next bytes behind what is still unread; `false` at the end of the run.
+    fn read_more(&mut self) -> io::Result<bool> {
+        if self.rest.length == 0 {
+            match self.pages.next() {
+                Some(page) => self.rest = page,
+                None => return Ok(false),
+            }
+        }
+        let piece = self.rest.part(0, self.page_bytes);
+        self.rest = self.rest.part(piece.length, u64::MAX);
+        let bytes = self.scratch.read(piece)?;
+        if self.used == self.buffer.len() {
+            self.buffer = bytes;
+        } else {
+            self.buffer.drain(..self.used);
+            self.buffer.extend(bytes);
+        }
+        self.used = 0;
+        Ok(true)
+    }
+}
+
+/// Merges runs.
+struct Merge<'a, T> {
+    readers: Vec<RunReader<'a>>,
+    /// The next record of each run, and which run it is of.
+    heads: BinaryHeap<Reverse<(T, usize)>>,
+}
+
+impl<'a, T: SortRecord> Merge<'a, T> {
+    fn new(scratch: &'a dyn Scratch, runs: Vec<Run>, page_bytes: usize) -> io::Result<Self> {
+        let mut readers: Vec<_> =
+            runs.into_iter().map(|run| RunReader::new(scratch, run, page_bytes)).collect();
+        let mut heads = BinaryHeap::with_capacity(readers.len());
+        for (number, reader) in readers.iter_mut().enumerate() {
+            if let Some(record) = reader.next()? {
+                heads.push(Reverse((record, number)));
+            }
+        }
+        Ok(Self { readers, heads })
+    }
+}
+
+impl<T: SortRecord> Iterator for Merge<'_, T> {
+    type Item = io::Result<T>;
+
+    /// After an error nothing follows.
+    fn next(&mut self) -> Option<Self::Item> {
+        let Reverse((record, number)) = self.heads.pop()?;
+        match self.readers[number].next() {
+            Ok(Some(following)) => self.heads.push(Reverse((following, number))),
+            Ok(None) => {}
+            Err(error) => {
+                self.heads.clear();
+                return Some(Err(error));
+            }
+        }
+        Some(Ok(record))
+    }
+}
+
+/// The most bytes that a length takes.
+const LONGEST_LENGTH: usize = 10;
+
+/// Seven bits a byte, lowest first; the highest bit says that more follow.
+fn write_length(bytes: &mut Vec<u8>, mut length: usize) {
+    while length >= 0x80 {
+        bytes.push(length as u8 | 0x80);
+        length >>= 7;
+    }
+    bytes.push(length as u8);
+}
+
+/// Takes a length from the front; `None` where it is not whole.
+fn read_length(bytes: &mut &[u8]) -> Option<usize> {
+    let mut length = 0_usize;
+    for (place, &byte) in bytes.iter().take(LONGEST_LENGTH).enumerate() {
+        length |= usize::from(byte & 0x7F).checked_shl(7 * place as u32)?;
+        if byte < 0x80 {
+            *bytes = &bytes[place + 1..];
+            return Some(length);
+        }
+    }
+    None
+}
+
+fn broken(what: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, format!("scratch space is damaged: {what}"))
+}
+
+#[cfg(test)]
+#[path = "sorter_tests.rs"]
+mod tests;

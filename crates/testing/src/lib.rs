@@ -15,6 +15,8 @@
 )]
 
 mod data;
+#[cfg(feature = "disks")]
+pub mod disks;
 #[cfg(feature = "packages")]
 pub mod package;
 pub mod payload;

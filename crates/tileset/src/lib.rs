@@ -21,7 +21,7 @@ pub use manifest::{
 };
 pub use package::{
     ByteSource, FORMAT_VERSION, MemorySource, OpenError, Package, ReadError, SourceError,
-    ToolRecord, pmtiles_order,
+    ToolRecord, pmtiles_order, tile_of_order,
 };
 #[cfg(not(target_arch = "wasm32"))]
 pub use package::{FilePackage, FileSource};

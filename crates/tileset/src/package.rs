@@ -21,7 +21,7 @@ pub use reader::Package;
 #[cfg(not(target_arch = "wasm32"))]
 pub use source::FileSource;
 pub use source::{ByteSource, MemorySource, SourceError};
-pub use tile_order::pmtiles_order;
+pub use tile_order::{pmtiles_order, tile_of_order};
 pub use tool_record::ToolRecord;
 #[cfg(feature = "write")]
 pub use writer::{WriteError, Writer};

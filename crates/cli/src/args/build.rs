@@ -3,38 +3,66 @@ use std::path::PathBuf;
 use clap::Args;
 use corniche_presets::{ResourceOptions, RoadOptions, TerrainOptions};
 
+// What to make and with what: the same for `build` and `plan`.
 #[derive(Debug, Args)]
-pub(crate) struct BuildArgs {
+pub(crate) struct WorkArgs {
     /// Elevation rasters, any format GDAL reads; where they overlap, the first has precedence
     #[arg(long, value_name = "FILE", num_args = 1.., required = true)]
     pub(crate) dem: Vec<PathBuf>,
     /// OpenStreetMap extract (.osm.pbf); without it the package is terrain alone
     #[arg(long, value_name = "FILE")]
     pub(crate) osm: Option<PathBuf>,
-    /// The package to write (.pmtiles)
-    #[arg(short, long, value_name = "PACKAGE")]
-    pub(crate) output: PathBuf,
-    /// Replace the package if it exists, once the new one is complete; if it is a link, replace the file it leads to
-    #[arg(short = 'O', long)]
-    pub(crate) overwrite: bool,
-    /// Also list every defect of the extract and every road lost, one per line (CSV); an existing list is kept
-    /// unless -O is given
-    #[arg(long, value_name = "CSV", requires = "osm")]
-    pub(crate) defects: Option<PathBuf>,
     /// Credit to show wherever the package is shown, such as that of a DEM; may be given several times
     #[arg(long, value_name = "TEXT")]
     pub(crate) attribution: Vec<String>,
     /// Settings file; options on the command line have precedence over it
     #[arg(long, value_name = "TOML")]
     pub(crate) config: Option<PathBuf>,
+    /// Begin although memory or disk space are not expected to suffice, or there are more than 16 nodes per DEM sample
+    #[arg(long)]
+    pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) terrain: TerrainOptions,
     #[command(flatten)]
     pub(crate) roads: RoadOptions,
     #[command(flatten)]
     pub(crate) resources: ResourceOptions,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct BuildArgs {
+    /// The package to write (.pmtiles)
+    #[arg(short, long, value_name = "PACKAGE")]
+    pub(crate) output: PathBuf,
+    /// Replace the package if it exists, once the new one is complete; if it is a link, replace the file it leads to
+    #[arg(short = 'O', long)]
+    pub(crate) overwrite: bool,
+    /// Go on with a build of the same package that was stopped, from its intermediate results
+    #[arg(long)]
+    pub(crate) resume: bool,
+    /// Also list every defect of the extract and every road lost, one per line (CSV); an existing list is kept
+    /// unless -O is given
+    #[arg(long, value_name = "CSV", requires = "osm")]
+    pub(crate) defects: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) work: WorkArgs,
     #[command(flatten)]
     pub(crate) report: ReportArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PlanArgs {
+    /// Also write the plan (JSON)
+    #[arg(short, long, value_name = "PLAN.json")]
+    pub(crate) output: Option<PathBuf>,
+    /// Replace the plan if it exists
+    #[arg(short = 'O', long, requires = "output")]
+    pub(crate) overwrite: bool,
+    /// Print the estimates as JSON, for programs
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) work: WorkArgs,
 }
 
 #[derive(Debug, Args)]

@@ -11,7 +11,7 @@ mod view;
 
 use clap::{Parser, Subcommand};
 
-pub(crate) use build::{BuildArgs, ReportArgs};
+pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use look::Roads;
 pub(crate) use reading::{Coordinates, GrowthArgs, InfoArgs, TileArgs, VerifyArgs};
@@ -29,6 +29,8 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Build a tile package from elevation rasters and an OpenStreetMap extract
     Build(Box<BuildArgs>),
+    /// Tell what a build will make and what it will take, and write its plan
+    Plan(Box<PlanArgs>),
     /// Tell what a package holds and what became of its inputs
     Info(InfoArgs),
     /// Tell what laying roads on the terrain costs, per level and class

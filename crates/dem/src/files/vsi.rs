@@ -64,6 +64,27 @@ impl VirtualFile {
         };
         if moved == 0 { Ok(size) } else { Err(io::Error::other("GDAL cannot find its end")) }
     }
+
+    /// The `ETag` that a server gives for the file, which changes with its content; `None` if the server gives none, or the
+    /// file is on no server.
+    #[must_use]
+    pub fn etag(path: &Path) -> Option<String> {
+        let name = c_name(path).ok()?;
+        // SAFETY: all arguments are C strings that outlive the call, or null where there are no options. What comes back is null
+        // or a list that is ours; the value in it is copied before the list is destroyed.
+        unsafe {
+            let headers = gdal_sys::VSIGetFileMetadata(
+                name.as_ptr(),
+                c"HEADERS".as_ptr(),
+                std::ptr::null_mut(),
+            );
+            let value = gdal_sys::CSLFetchNameValue(headers.cast(), c"ETag".as_ptr());
+            let etag =
+                (!value.is_null()).then(|| CStr::from_ptr(value).to_string_lossy().into_owned());
+            gdal_sys::CSLDestroy(headers);
+            etag
+        }
+    }
 }
 
 impl Read for VirtualFile {

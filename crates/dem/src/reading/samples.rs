@@ -1,11 +1,15 @@
 //! The DEM's own samples: all of them, and those that nodes are made from.
 
+use corniche_geom::{NodeIndex, NodeWindow};
+
 use crate::crs::operation::Operation;
 use crate::mosaics::mosaic::Mosaic;
 use crate::mosaics::sample_rect::SampleRect;
+use crate::plan::grid_plan::Method;
 use crate::plan::kernel::{Kernel, Samples};
 use crate::reading::reader::{MOST_SAMPLES, Reader, around};
-use crate::{Dem, DemError};
+use crate::reading::window_parts::intersection;
+use crate::{Dem, DemError, GridPlan};
 
 /// Side of the blocks in which samples are handed out.
 const BLOCK_SAMPLES: i64 = 256;
@@ -31,22 +35,70 @@ impl Dem {
     /// All blocks of samples, in a fixed order: 256 × 256 samples at most, those of no file left out.
     #[must_use]
     pub fn sample_areas(&self) -> Vec<SampleArea> {
+        let mosaics = self.mosaics.iter().enumerate();
+        mosaics.flat_map(|(index, mosaic)| blocks_of(mosaic, index, &mosaic.extent)).collect()
+    }
+}
+
+/// Nodes around a window within which the samples of the window lie for certain.
+const AROUND_NODES: usize = 2;
+
+impl Dem {
+    /// Blocks that hold every sample between the nodes of a window, and others around it: 256 × 256 samples at most. No sample
+    /// is in two of them.
+    ///
+    /// # Errors
+    /// When PROJ fails.
+    pub fn sample_areas_of(
+        &self,
+        plan: &GridPlan,
+        window: NodeWindow,
+    ) -> Result<Vec<SampleArea>, DemError> {
+        let wide = window.with_halo(AROUND_NODES);
         let mut areas = Vec::new();
-        for (index, mosaic) in self.mosaics.iter().enumerate() {
-            let SampleRect { min, max } = mosaic.extent;
-            for row in (min[1]..max[1]).step_by(BLOCK_SAMPLES as usize) {
-                for column in (min[0]..max[0]).step_by(BLOCK_SAMPLES as usize) {
-                    let end = [column + BLOCK_SAMPLES, row + BLOCK_SAMPLES];
-                    let rect =
-                        mosaic.extent.intersection(&SampleRect { min: [column, row], max: end });
-                    if mosaic.files.iter().any(|file| !file.rect.intersection(&rect).is_empty()) {
-                        areas.push(SampleArea { mosaic: index, rect });
-                    }
+        for (index, (mosaic, role)) in self.mosaics.iter().zip(&plan.roles).enumerate() {
+            let grow = |[low, high]: [NodeIndex; 2]| {
+                let by = AROUND_NODES as i64;
+                [
+                    NodeIndex { i: low.i - by, j: low.j - by },
+                    NodeIndex { i: high.i + by, j: high.j + by },
+                ]
+            };
+            let Some(part) = intersection(&wide, grow(role.nodes)) else { continue };
+            let rect = match &role.method {
+                Method::Aligned(alignment) => {
+                    let a = alignment.sample(part.node(0, 0));
+                    let b = alignment.sample(part.node(part.columns - 1, part.rows - 1));
+                    let low = [0, 1].map(|axis| a[axis].min(b[axis]));
+                    let high = [0, 1].map(|axis| a[axis].max(b[axis]) + 1);
+                    Some(SampleRect { min: low, max: high }.intersection(&mosaic.extent))
                 }
+                Method::Resampled(positions, kernel) => {
+                    let at = positions.of(&plan.frame, &part)?;
+                    around(at.into_iter(), kernel, &mosaic.extent)
+                }
+            };
+            let Some(rect) = rect else { continue };
+            areas.extend(blocks_of(mosaic, index, &rect));
+        }
+        Ok(areas)
+    }
+}
+
+/// The blocks of a rectangle of samples, those of no file left out.
+fn blocks_of(mosaic: &Mosaic, index: usize, rect: &SampleRect) -> Vec<SampleArea> {
+    let mut areas = Vec::new();
+    let SampleRect { min, max } = *rect;
+    for row in (min[1]..max[1]).step_by(BLOCK_SAMPLES as usize) {
+        for column in (min[0]..max[0]).step_by(BLOCK_SAMPLES as usize) {
+            let end = [column + BLOCK_SAMPLES, row + BLOCK_SAMPLES];
+            let rect = rect.intersection(&SampleRect { min: [column, row], max: end });
+            if mosaic.files.iter().any(|file| !file.rect.intersection(&rect).is_empty()) {
+                areas.push(SampleArea { mosaic: index, rect });
             }
         }
-        areas
     }
+    areas
 }
 
 impl Reader<'_> {

@@ -60,6 +60,22 @@ impl Stamp {
 }
 
 impl FileState {
+    /// Bytes.
+    pub(crate) fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// When it was written last, nanoseconds after the start of 1970 (negative: before); `None` where the file system does not
+    /// tell.
+    pub(crate) fn modified_ns(&self) -> Option<i64> {
+        let time = self.modified?;
+        let nanoseconds = match time.duration_since(SystemTime::UNIX_EPOCH) {
+            Ok(after) => i64::try_from(after.as_nanos()).ok()?,
+            Err(before) => -i64::try_from(before.duration().as_nanos()).ok()?,
+        };
+        Some(nanoseconds)
+    }
+
     fn of(found: &Metadata) -> Self {
         Self {
             size: found.len(),
@@ -91,6 +107,28 @@ fn settled(path: &Path) -> io::Result<FileState> {
         found = fs::metadata(path)?;
     }
     Ok(FileState::of(&found))
+}
+
+/// A name as GDAL takes it, with the path of the file on disk in it made absolute: of a virtual file's archive, of a container
+/// (`GPKG:dem.gpkg:heights`), or the whole name. Names of files on a server stay as they are.
+pub(crate) fn absolute(name: &str) -> io::Result<String> {
+    let file = if name.starts_with("/vsi") {
+        match container(name) {
+            Some(file) => file,
+            None => return Ok(name.to_owned()),
+        }
+    } else if Path::new(name).exists() {
+        PathBuf::from(name)
+    } else {
+        let part = name.split(':').map(|part| part.trim_matches('"'));
+        part.map(Path::new).find(|part| part.is_file()).unwrap_or(Path::new(name)).to_path_buf()
+    };
+    if file.is_absolute() {
+        return Ok(name.to_owned());
+    }
+    let whole = std::path::absolute(&file)?;
+    // Both are made of `name`, which is text.
+    Ok(name.replacen(&*file.to_string_lossy(), &whole.to_string_lossy(), 1))
 }
 
 /// The file on disk in which a virtual one lies: `/vsizip//data/a.zip/inner.hgt`, `/vsisubfile/7_100,/data/a`,

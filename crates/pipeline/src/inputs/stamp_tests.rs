@@ -51,3 +51,24 @@ fn whatever_is_done_to_a_file_shows() {
         assert!(!stamp.still_holds(), "{what}: gone");
     }
 }
+
+#[test]
+fn the_path_in_a_name_becomes_absolute_and_nothing_else_changes() {
+    // The tests run in the folder of the crate.
+    let own = fs::canonicalize("Cargo.toml").unwrap();
+    let own = own.to_str().unwrap();
+    for (name, expected) in [
+        ("Cargo.toml", own.to_owned()),
+        (own, own.to_owned()),
+        ("/vsizip/Cargo.toml/inner.hgt", format!("/vsizip/{own}/inner.hgt")),
+        ("/vsizip/{Cargo.toml}/inner.hgt", format!("/vsizip/{{{own}}}/inner.hgt")),
+        ("GPKG:Cargo.toml:heights", format!("GPKG:{own}:heights")),
+        ("NETCDF:\"Cargo.toml\":Band1", format!("NETCDF:\"{own}\":Band1")),
+        (
+            "/vsicurl/https://example.org/Cargo.toml",
+            "/vsicurl/https://example.org/Cargo.toml".to_owned(),
+        ),
+    ] {
+        assert_eq!(absolute(name).unwrap(), expected, "{name}");
+    }
+}

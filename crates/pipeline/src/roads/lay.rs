@@ -4,15 +4,18 @@ use std::collections::BTreeMap;
 
 use corniche_drape::OwnedBorders;
 use corniche_geom::{LatticeBounds, TileId};
-use corniche_roads::Road;
 use corniche_tileset::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};
 use corniche_tin::Surface;
+use serde::{Deserialize, Serialize};
 
-use super::lengths::{TrueLengths, gaps_um, pieces_um};
+use super::{
+    lengths::{gaps_um, pieces_um},
+    pieces::{RoadPiece, Run, TilePieces},
+};
 use crate::levels::Levels;
 
 /// Sums over the roads of a class on a level.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct ClassSums {
     /// Points of the source lines that lie in tiles with ground.
     pub(crate) source_vertices: u64,
@@ -24,8 +27,29 @@ pub(crate) struct ClassSums {
     pub(crate) sv_stored_bytes: u64,
 }
 
-/// What became of a road at the finest level.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+impl ClassSums {
+    /// Adds the sums over other roads: in any order and grouping the result is the same.
+    pub(crate) fn merge(&mut self, other: &Self) {
+        // Without `..` a new field cannot be forgotten.
+        let Self {
+            source_vertices,
+            simplified_vertices,
+            geo_vertices,
+            sv_vertices,
+            geo_stored_bytes,
+            sv_stored_bytes,
+        } = other;
+        self.source_vertices += source_vertices;
+        self.simplified_vertices += simplified_vertices;
+        self.geo_vertices += geo_vertices;
+        self.sv_vertices += sv_vertices;
+        self.geo_stored_bytes += geo_stored_bytes;
+        self.sv_stored_bytes += sv_stored_bytes;
+    }
+}
+
+/// What became of a road, or of a part of it, at the finest level.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct RoadFate {
     /// True length that lies on a TIN, micrometres.
     pub(crate) kept_um: u64,
@@ -33,27 +57,12 @@ pub(crate) struct RoadFate {
     pub(crate) void_um: u64,
 }
 
-/// Sums over all roads that were laid.
-pub(crate) struct LaidSums {
-    /// By level and class.
-    pub(crate) classes: BTreeMap<(u8, u8), ClassSums>,
-    /// Per road, by ordinal.
-    pub(crate) fates: Vec<RoadFate>,
-}
-
-impl LaidSums {
-    /// Empty sums for `count` roads.
-    pub(crate) fn of_roads(count: usize) -> Self {
-        Self { classes: BTreeMap::new(), fates: vec![RoadFate::default(); count] }
-    }
-
-    /// Adds what became of roads in one tile.
-    pub(crate) fn add_fates(&mut self, fates: &[(u32, RoadFate)]) {
-        for &(ordinal, fate) in fates {
-            let road = &mut self.fates[ordinal as usize];
-            road.kept_um += fate.kept_um;
-            road.void_um += fate.void_um;
-        }
+impl RoadFate {
+    /// Adds what became of other parts: in any order and grouping the result is the same.
+    pub(crate) fn merge(&mut self, other: &Self) {
+        let Self { kept_um, void_um } = other;
+        self.kept_um += kept_um;
+        self.void_um += void_um;
     }
 }
 
@@ -65,20 +74,27 @@ pub(crate) struct TileToLayOn<'a> {
     pub(crate) owned: OwnedBorders,
 }
 
-/// What becomes of a road on a finest tile without ground.
-pub(crate) fn lost_road(
-    road: &Road,
+/// What becomes of a tile's roads if it is a finest tile without ground.
+pub(crate) fn lost_pieces(
+    pieces: &TilePieces,
     bounds: &LatticeBounds,
     owned: OwnedBorders,
-    lengths: &TrueLengths<'_>,
-) -> RoadFate {
-    let segments_um = lengths.segments_um(&road.line);
-    let void_um = corniche_drape::clip_parts(&road.line, bounds, owned)
-        .iter()
-        .flat_map(|part| pieces_um(&road.line, part, &segments_um))
-        .map(|[from, to]| to - from)
-        .sum();
-    RoadFate { kept_um: 0, void_um }
+) -> Vec<(u32, RoadFate)> {
+    let lost = |run: &Run| -> u64 {
+        corniche_drape::clip_parts(&run.line, bounds, owned)
+            .iter()
+            .flat_map(|part| pieces_um(&run.line, part, &run.segments_um))
+            .map(|[from, to]| to - from)
+            .sum()
+    };
+    let mut fates = Vec::new();
+    for (ordinal, piece) in &pieces.roads {
+        let fate = RoadFate { kept_um: 0, void_um: piece.runs.iter().map(lost).sum() };
+        if fate != RoadFate::default() {
+            fates.push((*ordinal, fate));
+        }
+    }
+    fates
 }
 
 /// The roads of one tile as they are laid.
@@ -94,60 +110,23 @@ pub(crate) struct Laid {
 }
 
 impl Laid {
-    pub(crate) fn lay(
-        &mut self,
-        road: &Road,
-        ordinal: u32,
-        on: &TileToLayOn<'_>,
-        levels: &Levels,
-        lengths: &TrueLengths<'_>,
-    ) {
-        let &TileToLayOn { id, surface, owned } = on;
-        let frame = levels.frame();
-        let bounds = frame.tile_lattice_bounds(id);
-        let simplified = corniche_roads::simplify(road, levels.simplify_tolerance_steps(id.z()));
-        let mut fate = RoadFate::default();
+    /// Lays all roads of a tile.
+    pub(crate) fn of_tile(pieces: &TilePieces, on: &TileToLayOn<'_>, levels: &Levels) -> Self {
+        let mut laid = Self::default();
+        for (ordinal, piece) in &pieces.roads {
+            laid.lay(*ordinal, piece, on, levels);
+        }
+        laid
+    }
+
+    fn lay(&mut self, ordinal: u32, road: &RoadPiece, on: &TileToLayOn<'_>, levels: &Levels) {
         let sums = self.classes.entry(road.class.number()).or_default();
-        sums.source_vertices += points_of_tile(&road.line, id, levels);
-        sums.simplified_vertices += points_of_tile(&simplified, id, levels);
-        let parts = self.parts.entry(road.way_id).or_default();
-        let mut laid = 0;
-        // On the finest level the line is the source line, not simplified.
-        let is_finest = id.z() == frame.max_level();
-        let segments_um = if is_finest { lengths.segments_um(&simplified) } else { Vec::new() };
-        for part in corniche_drape::clip_parts(&simplified, &bounds, owned) {
-            let draped = corniche_drape::drape(&part.line, surface);
-            if is_finest {
-                let pieces: Vec<[u64; 2]> = pieces_um(&simplified, &part, &segments_um).collect();
-                let void_um = gaps_um(&pieces, &draped.gaps);
-                fate.void_um += void_um;
-                fate.kept_um += pieces.iter().map(|[from, to]| to - from).sum::<u64>() - void_um;
-            }
-            for line in draped.lines {
-                self.geo.push(GeoRoad {
-                    way_id: road.way_id,
-                    part: parts[0],
-                    class: road.class,
-                    line,
-                });
-                parts[0] += 1;
-                laid += 1;
-            }
-        }
-        let margin = levels.margin_steps(id.z());
-        for part in corniche_drape::clip_closed(&simplified, &bounds.expanded(margin)) {
-            for line in corniche_drape::extrude(&part, surface, margin) {
-                self.sv.push(SvRoad {
-                    way_id: road.way_id,
-                    part: parts[1],
-                    class: road.class,
-                    line,
-                });
-                parts[1] += 1;
-                laid += 1;
-            }
-        }
-        if laid > 0 {
+        sums.source_vertices += road.source_points;
+        sums.simplified_vertices += road.simplified_points;
+        let before = self.geo.len() + self.sv.len();
+        let fate = self.lay_geo(road, on, levels);
+        self.lay_sv(road, on, levels);
+        if self.geo.len() + self.sv.len() > before {
             self.attributes.entry(road.way_id).or_insert_with(|| RoadRecord {
                 way_id: road.way_id,
                 attributes: road.attributes.clone(),
@@ -155,6 +134,47 @@ impl Laid {
         }
         if fate != RoadFate::default() {
             self.fates.push((ordinal, fate));
+        }
+    }
+
+    fn lay_geo(&mut self, road: &RoadPiece, on: &TileToLayOn<'_>, levels: &Levels) -> RoadFate {
+        let &TileToLayOn { id, surface, owned } = on;
+        let bounds = levels.frame().tile_lattice_bounds(id);
+        let is_finest = id.z() == levels.frame().max_level();
+        let [next_part, _] = self.parts.entry(road.way_id).or_default();
+        let mut fate = RoadFate::default();
+        for run in &road.runs {
+            for part in corniche_drape::clip_parts(&run.line, &bounds, owned) {
+                let draped = corniche_drape::drape(&part.line, surface);
+                if is_finest {
+                    let pieces: Vec<[u64; 2]> =
+                        pieces_um(&run.line, &part, &run.segments_um).collect();
+                    let void_um = gaps_um(&pieces, &draped.gaps);
+                    let all_um: u64 = pieces.iter().map(|[from, to]| to - from).sum();
+                    fate.merge(&RoadFate { kept_um: all_um - void_um, void_um });
+                }
+                for line in draped.lines {
+                    let (way_id, class, part) = (road.way_id, road.class, *next_part);
+                    self.geo.push(GeoRoad { way_id, part, class, line });
+                    *next_part += 1;
+                }
+            }
+        }
+        fate
+    }
+
+    fn lay_sv(&mut self, road: &RoadPiece, on: &TileToLayOn<'_>, levels: &Levels) {
+        let margin = levels.margin_steps(on.id.z());
+        let bounds = levels.frame().tile_lattice_bounds(on.id).expanded(margin);
+        let [_, next_part] = self.parts.entry(road.way_id).or_default();
+        for run in &road.runs {
+            for part in corniche_drape::clip_closed(&run.line, &bounds) {
+                for line in corniche_drape::extrude(&part, on.surface, margin) {
+                    let (way_id, class, part) = (road.way_id, road.class, *next_part);
+                    self.sv.push(SvRoad { way_id, part, class, line });
+                    *next_part += 1;
+                }
+            }
         }
     }
 
@@ -174,17 +194,4 @@ impl Laid {
             attributes: self.attributes.into_values().collect(),
         }
     }
-}
-
-/// How many of a line's points belong to a tile: each point belongs to one tile of a level.
-fn points_of_tile(line: &corniche_geom::Polyline, id: TileId, levels: &Levels) -> u64 {
-    let last = (1_i64 << id.z()) - 1;
-    let own = [i64::from(id.x()), i64::from(id.y())];
-    let outer = levels.frame().tile_lattice_bounds(TileId::ROOT);
-    let is_own = |&&point: &&corniche_geom::LatticePoint| {
-        // The root's own east and south border belong to its last tiles.
-        let at = levels.frame().tile_column_row(id.z(), point);
-        outer.contains(point) && at.map(|index| index.min(last)) == own
-    };
-    line.points().iter().filter(is_own).count() as u64
 }

@@ -1,11 +1,12 @@
 //! Which roads were kept at the finest level, which were lost, and why.
 
+use corniche_store::{Artifacts, Scratch, SortRecord, Sorted, Sorter};
 use corniche_tileset::RoadLoss;
 
 use super::{
-    lay::{LaidSums, RoadFate},
+    lay::RoadFate,
     lengths::UM,
-    read::ReadRoads,
+    totals::{BLOCK_ROADS, RoadTotals, lengths_of_block},
 };
 use crate::{BuildError, Defect, Loss, Observer};
 
@@ -40,61 +41,163 @@ impl Lengths {
     }
 }
 
-fn lengths(roads: &ReadRoads<'_>, laid: &LaidSums) -> impl Iterator<Item = Lengths> {
-    roads.outside_um.iter().zip(&laid.fates).map(|(&outside_um, &RoadFate { kept_um, void_um })| {
-        Lengths { kept_um, outside_um, void_um }
-    })
-}
-
 /// Sums over all roads.
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Sums {
     pub(crate) roads_kept: u64,
     pub(crate) roads_kept_um: u64,
     pub(crate) lost: Vec<RoadLoss>,
 }
 
-/// Roads kept and lost, in count and length.
-pub(crate) fn sums(roads: &ReadRoads<'_>, laid: &LaidSums) -> Sums {
-    let mut sums = Sums { roads_kept: 0, roads_kept_um: 0, lost: Vec::new() };
-    let mut losses = Loss::ALL.map(|loss| (loss, 0, 0));
-    for road in lengths(roads, laid) {
-        sums.roads_kept_um += road.kept_um;
-        sums.roads_kept += u64::from(road.is_kept());
-        for ((loss, count, length_um), (_, lost_um)) in losses.iter_mut().zip(road.losses()) {
+/// Adds up what became of each road in all tiles. It takes no more memory than it is given, however many roads there are.
+pub(crate) struct LossFold<'a> {
+    fates: Sorter<'a, FateRecord>,
+}
+
+impl<'a> LossFold<'a> {
+    /// Nothing yet; keeps at most about `memory_bytes` in memory.
+    pub(crate) fn new(scratch: &'a dyn Scratch, memory_bytes: u64) -> Self {
+        Self { fates: Sorter::new(scratch, memory_bytes) }
+    }
+
+    /// Adds what became of roads in one tile. The order of tiles does not matter.
+    pub(crate) fn add(&mut self, fates: &[(u32, RoadFate)]) -> Result<(), BuildError> {
+        for &(ordinal, fate) in fates {
+            self.fates.push(FateRecord { ordinal, fate }).map_err(BuildError::Storage)?;
+        }
+        Ok(())
+    }
+
+    /// Joins it with the lengths of all roads. Reports every road that was lost completely or in part, in the order in which
+    /// roads were read.
+    pub(crate) fn finish(
+        self,
+        totals: &RoadTotals,
+        store: &dyn Artifacts,
+        observer: &dyn Observer,
+    ) -> Result<Sums, BuildError> {
+        let mut fates =
+            Fates { sorted: self.fates.finish().map_err(BuildError::Storage)?, next: None };
+        fates.advance()?;
+        let mut folded = Folded::default();
+        for block in 0..totals.roads.div_ceil(BLOCK_ROADS) {
+            let first = block * BLOCK_ROADS;
+            let roads = BLOCK_ROADS.min(totals.roads - first);
+            for (ordinal, length) in (first..).zip(lengths_of_block(store, block, roads)?) {
+                let RoadFate { kept_um, void_um } = fates.of(ordinal)?;
+                let road = Lengths { kept_um, outside_um: length.outside_um, void_um };
+                folded.add(&road);
+                road.report(length.way_id, observer);
+            }
+        }
+        if let Some(FateRecord { ordinal, .. }) = fates.next {
+            let what = format!("a tile has road {ordinal} of {}", totals.roads);
+            return Err(BuildError::Damaged { what });
+        }
+        Ok(folded.into_sums())
+    }
+}
+
+/// What became of a road in one tile.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct FateRecord {
+    ordinal: u32,
+    fate: RoadFate,
+}
+
+impl SortRecord for FateRecord {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.ordinal.to_le_bytes());
+        bytes.extend(self.fate.kept_um.to_le_bytes());
+        bytes.extend(self.fate.void_um.to_le_bytes());
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        let (ordinal, rest) = bytes.split_first_chunk()?;
+        let (kept_um, rest) = rest.split_first_chunk()?;
+        let (void_um, rest) = rest.split_first_chunk()?;
+        *bytes = rest;
+        let fate = RoadFate {
+            kept_um: u64::from_le_bytes(*kept_um),
+            void_um: u64::from_le_bytes(*void_um),
+        };
+        Some(Self { ordinal: u32::from_le_bytes(*ordinal), fate })
+    }
+}
+
+/// Fates by ascending ordinal.
+struct Fates<'a> {
+    sorted: Sorted<'a, FateRecord>,
+    next: Option<FateRecord>,
+}
+
+impl Fates<'_> {
+    fn advance(&mut self) -> Result<(), BuildError> {
+        self.next = self.sorted.next().transpose().map_err(BuildError::Storage)?;
+        Ok(())
+    }
+
+    /// The whole fate of a road. Roads are asked for in ascending order, none left out.
+    fn of(&mut self, ordinal: u64) -> Result<RoadFate, BuildError> {
+        let mut whole = RoadFate::default();
+        while let Some(record) = self.next.filter(|record| u64::from(record.ordinal) == ordinal) {
+            whole.merge(&record.fate);
+            self.advance()?;
+        }
+        Ok(whole)
+    }
+}
+
+/// Sums as roads are added.
+#[derive(Default)]
+struct Folded {
+    roads_kept: u64,
+    roads_kept_um: u64,
+    /// Count and micrometres, in the order of [`Loss::ALL`].
+    lost: [(u64, u64); Loss::ALL.len()],
+}
+
+impl Folded {
+    fn add(&mut self, road: &Lengths) {
+        self.roads_kept_um += road.kept_um;
+        self.roads_kept += u64::from(road.is_kept());
+        for ((count, length_um), (loss, lost_um)) in self.lost.iter_mut().zip(road.losses()) {
             *length_um += lost_um;
-            *count += u64::from(!road.is_kept() && road.reason() == *loss);
+            *count += u64::from(!road.is_kept() && road.reason() == loss);
         }
     }
-    sums.lost = losses
-        .into_iter()
-        .map(|(loss, roads, length_um)| RoadLoss {
+
+    fn into_sums(self) -> Sums {
+        let loss = |(loss, (roads, length_um)): (Loss, (u64, u64))| RoadLoss {
             reason: loss.reason().to_owned(),
             roads,
             length_um,
-        })
-        .collect();
-    sums
+        };
+        Sums {
+            roads_kept: self.roads_kept,
+            roads_kept_um: self.roads_kept_um,
+            lost: Loss::ALL.into_iter().zip(self.lost).map(loss).collect(),
+        }
+    }
 }
 
-/// Reports every road that was lost completely or in part, in the order in which roads were read.
-pub(crate) fn report(
-    roads: &ReadRoads<'_>,
-    laid: &LaidSums,
-    observer: &dyn Observer,
-) -> Result<(), BuildError> {
-    for (ordinal, road) in (0..).zip(lengths(roads, laid)) {
-        for (loss, lost_um) in road.losses() {
+impl Lengths {
+    fn report(&self, way_id: i64, observer: &dyn Observer) {
+        for (loss, lost_um) in self.losses() {
             // A road shorter than 2 mm has no length to lose, but it can be lost as a whole.
-            let is_counted = !road.is_kept() && road.reason() == loss;
+            let is_counted = !self.is_kept() && self.reason() == loss;
             if is_counted || is_some(lost_um) {
                 observer.defect(&Defect::LostRoad {
-                    way_id: roads.log.load(ordinal)?.way_id,
+                    way_id,
                     loss,
                     length_m: lost_um as f64 / UM,
-                    is_whole: !road.is_kept(),
+                    is_whole: !self.is_kept(),
                 });
             }
         }
     }
-    Ok(())
 }
+
+#[cfg(test)]
+#[path = "losses_tests.rs"]
+mod tests;

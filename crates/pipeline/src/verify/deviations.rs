@@ -7,7 +7,9 @@ use corniche_geom::{HeightGrid, NodeIndex, NodeWindow, TileId};
 use corniche_tileset::{FilePackage, Manifest, Sections};
 
 use super::{error::VerifyError, samples, triangle_soup::TriangleSoup};
-use crate::{Observer, Stage, heights::pyramid::data_tiles, sample_deviation::SampleSums, workers};
+use crate::{
+    Observer, Stage, heights::data_tiles::DataTiles, sample_deviation::SampleSums, workers,
+};
 
 /// How far a tile's TIN is from the nodes looked at so far.
 #[derive(Debug, Clone, Copy, Default)]
@@ -56,7 +58,7 @@ pub(crate) fn measure(
     let manifest = package.manifest();
     let max_level = manifest.frame.max_level();
     // All finest tiles of the data, also those without ground: a coarser level may cover their nodes.
-    let finest = data_tiles(plan);
+    let finest = DataTiles::of(plan).within(corniche_geom::TileId::ROOT);
     observer.begin(Stage::Deviations, Some(finest.len() as u64));
     let mut truths: BTreeMap<TileId, TrueDeviation> = BTreeMap::new();
     let nodes_are_samples = plan.nodes_are_samples();

@@ -22,6 +22,7 @@ mod roads_of_parent;
 mod roads_on_tin;
 mod samples;
 mod seams;
+mod temporary_store;
 mod tile_place;
 mod tile_sums;
 mod tiles;

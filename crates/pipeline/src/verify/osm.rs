@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
+use corniche_store::Artifacts;
 use corniche_tileset::{FilePackage, Manifest, pmtiles_order};
 
 use super::{
@@ -12,16 +13,20 @@ use super::{
     georeference, grid,
     osm_tile::{Found, Laying, SoupCache, look_at},
     request::VerifyOsm,
+    temporary_store::TemporaryStore,
 };
 use crate::{
-    BuildError, DiskStorage, Observer, Stage,
+    BuildError, Observer, Silent, Stage,
     inputs::{InputKind, Inputs},
     levels::{Levels, most_scale},
     roads::{
         counts::road_counts,
-        lay::LaidSums,
+        lay::ClassSums,
         lengths::TrueLengths,
-        read::{ReadRoads, RoadInput, TILES_AT_ONCE, read},
+        losses::{LossFold, Sums},
+        partition::{RoadInput, partition},
+        pieces::TilePieces,
+        totals::RoadTotals,
     },
     settings_record, workers,
 };
@@ -64,36 +69,29 @@ fn compare_all(
     let widest = most_scale(manifest.scale.largest);
     let levels = Levels::new(frame, manifest.settings.max_error_m, &settings, widest);
     let lengths = TrueLengths::new(frame, &manifest.coordinates, &projection);
-    let work = tempfile::tempdir().map_err(VerifyError::Work)?;
-    observer.work_folder(work.path());
-    let storage = DiskStorage::create(work.path()).map_err(VerifyError::Work)?;
+    let work = TemporaryStore::new(observer)?;
+    let (store, scratch) = (&work.store, work.scratch()?);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .map_err(|error| BuildError::Start { what: error.to_string() })?;
-    let mut roads = read(
-        &RoadInput {
-            osm: &osm.path,
-            settings: &settings,
-            projection: &projection,
-            levels: &levels,
-            lengths: &lengths,
-            data_bounds: frame.tile_lattice_bounds(first).union(&frame.tile_lattice_bounds(last)),
-            pool: &pool,
-            memory_bytes: osm.memory_bytes,
-        },
-        &storage,
-        observer,
-    )?;
-    let laid = lay(
-        &Laying { package, levels: &levels, lengths: &lengths, data: [first, last] },
-        &mut roads,
-        threads,
-        findings,
-        observer,
-    )?;
-    check_counts(manifest, &roads, &laid, findings);
-    check_growth(manifest, &laid, findings);
+    let input = RoadInput {
+        osm: &osm.path,
+        settings: &settings,
+        projection: &projection,
+        levels: &levels,
+        lengths: &lengths,
+        data_bounds: frame.tile_lattice_bounds(first).union(&frame.tile_lattice_bounds(last)),
+        pool: &pool,
+        memory_bytes: osm.memory_bytes,
+    };
+    let roads = partition(&input, store, &scratch, observer)?;
+    let mut fates = LossFold::new(&scratch, osm.memory_bytes);
+    let laying = Laying { package, levels: &levels, data: [first, last] };
+    let classes = lay(&laying, store, &mut fates, threads, findings, observer)?;
+    let losses = fates.finish(&roads, store, &Silent)?;
+    check_counts(manifest, &roads, &losses, findings);
+    check_growth(manifest, &classes, findings);
     Ok(())
 }
 
@@ -135,14 +133,16 @@ fn check_inputs(
     Ok(())
 }
 
-/// Lays all roads again and compares each tile with the package. The sums are those of the roads laid again.
+/// Lays all roads again and compares each tile with the package. What becomes of the roads goes to `fates`; the sums by level
+/// and class are those of the roads laid again.
 fn lay(
     laying: &Laying<'_>,
-    roads: &mut ReadRoads<'_>,
+    store: &dyn Artifacts,
+    fates: &mut LossFold<'_>,
     threads: usize,
     findings: &mut Findings,
     observer: &dyn Observer,
-) -> Result<LaidSums, VerifyError> {
+) -> Result<BTreeMap<(u8, u8), ClassSums>, VerifyError> {
     let [first, last] = laying.data;
     let mut ids = laying.package.tile_ids()?;
     for y in first.y()..=last.y() {
@@ -153,49 +153,34 @@ fn lay(
     ids.sort_unstable_by_key(|&id| pmtiles_order(id));
     ids.dedup();
     observer.begin(Stage::Tiles, Some(ids.len() as u64));
-    let mut sums = LaidSums::of_roads(roads.log.len());
-    for batch in ids.chunks(TILES_AT_ONCE) {
-        let lists = roads.by_tile.lists_of(batch)?;
-        let log = &roads.log;
-        workers::in_order_unless_cancelled(
-            observer,
-            threads,
-            batch.len(),
-            || Ok::<_, VerifyError>(SoupCache::default()),
-            |grounds, index| {
-                let (id, ordinals) = (batch[index], &lists[index]);
-                let mut with_roads = Vec::with_capacity(ordinals.len());
-                for &ordinal in ordinals {
-                    with_roads.push((ordinal, log.load(ordinal)?));
-                }
-                Ok(look_at(laying, grounds, id, &with_roads))
-            },
-            |index, found: Found| {
-                findings.merge(found.findings);
-                sums.add_fates(&found.fates);
-                for (class, found) in found.classes {
-                    let all = sums.classes.entry((batch[index].z(), class)).or_default();
-                    all.source_vertices += found.source_vertices;
-                    all.simplified_vertices += found.simplified_vertices;
-                }
-                observer.advance(Stage::Tiles, 1);
-                Ok(())
-            },
-        )?;
-    }
+    let mut classes: BTreeMap<(u8, u8), ClassSums> = BTreeMap::new();
+    workers::in_order_unless_cancelled(
+        observer,
+        threads,
+        ids.len(),
+        || Ok::<_, VerifyError>(SoupCache::default()),
+        |grounds, index| {
+            let id = ids[index];
+            Ok(look_at(laying, grounds, id, &TilePieces::load(store, id)?))
+        },
+        |index, found: Found| {
+            findings.merge(found.findings);
+            fates.add(&found.fates)?;
+            for (class, found) in found.classes {
+                classes.entry((ids[index].z(), class)).or_default().merge(&found);
+            }
+            observer.advance(Stage::Tiles, 1);
+            Ok(())
+        },
+    )?;
     observer.end(Stage::Tiles);
-    Ok(sums)
+    Ok(classes)
 }
 
 /// Compares the counts and lengths of roads.
-fn check_counts(
-    manifest: &Manifest,
-    roads: &ReadRoads<'_>,
-    laid: &LaidSums,
-    findings: &mut Findings,
-) {
+fn check_counts(manifest: &Manifest, roads: &RoadTotals, losses: &Sums, findings: &mut Findings) {
     let said = &manifest.counts;
-    let wanted = road_counts(said.samples, roads, laid);
+    let wanted = road_counts(said.samples, roads, losses);
     let mut same = |what: &str, said: &dyn std::fmt::Debug, found: &dyn std::fmt::Debug| {
         let (said, found) = (format!("{said:?}"), format!("{found:?}"));
         findings.look(CheckId::OsmCounts, said == found, || {
@@ -217,9 +202,12 @@ fn check_counts(
 }
 
 /// Compares the numbers of source points and simplified points of each level and class.
-fn check_growth(manifest: &Manifest, laid: &LaidSums, findings: &mut Findings) {
-    let wanted: BTreeMap<(u8, u8), [u64; 2]> = laid
-        .classes
+fn check_growth(
+    manifest: &Manifest,
+    classes: &BTreeMap<(u8, u8), ClassSums>,
+    findings: &mut Findings,
+) {
+    let wanted: BTreeMap<(u8, u8), [u64; 2]> = classes
         .iter()
         .filter(|(_, sums)| sums.source_vertices > 0)
         .map(|(&key, sums)| (key, [sums.source_vertices, sums.simplified_vertices]))

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use corniche_drape::{Neighbours, OwnedBorders};
 use corniche_geom::TileId;
-use corniche_roads::Road;
 use corniche_tileset::{FilePackage, Sections, TilePayload};
 use corniche_tin::{Placement, Surface};
 
@@ -16,7 +15,7 @@ use crate::{
     levels::Levels,
     roads::{
         lay::{self, ClassSums, Laid, RoadFate, TileToLayOn},
-        lengths::TrueLengths,
+        pieces::TilePieces,
     },
 };
 
@@ -24,7 +23,6 @@ use crate::{
 pub(crate) struct Laying<'a> {
     pub(crate) package: &'a FilePackage,
     pub(crate) levels: &'a Levels,
-    pub(crate) lengths: &'a TrueLengths<'a>,
     /// First and last of the finest tiles of the data.
     pub(crate) data: [TileId; 2],
 }
@@ -41,7 +39,7 @@ pub(crate) fn look_at(
     laying: &Laying<'_>,
     grounds: &mut SoupCache,
     id: TileId,
-    roads: &[(u32, Road)],
+    pieces: &TilePieces,
 ) -> Found {
     let mut found =
         Found { findings: Findings::default(), fates: Vec::new(), classes: BTreeMap::new() };
@@ -51,22 +49,16 @@ pub(crate) fn look_at(
     let terrain = payload.as_ref().and_then(|payload| payload.terrain.as_ref());
     let (Some(payload), Some(terrain)) = (&payload, terrain) else {
         if id.z() == frame.max_level() {
-            let owned = grounds.owned_borders(laying, id, !roads.is_empty());
-            let bounds = frame.tile_lattice_bounds(id);
-            found.fates.extend(roads.iter().map(|(ordinal, road)| {
-                (*ordinal, lay::lost_road(road, &bounds, owned, laying.lengths))
-            }));
+            let owned = grounds.owned_borders(laying, id, !pieces.roads.is_empty());
+            found.fates = lay::lost_pieces(pieces, &frame.tile_lattice_bounds(id), owned);
         }
         return found;
     };
     let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
     let surface = Surface::new(&terrain.tin, placement);
-    let owned = grounds.owned_borders(laying, id, !roads.is_empty());
+    let owned = grounds.owned_borders(laying, id, !pieces.roads.is_empty());
     let on = TileToLayOn { id, surface: &surface, owned };
-    let mut laid = Laid::default();
-    for (ordinal, road) in roads {
-        laid.lay(road, *ordinal, &on, laying.levels, laying.lengths);
-    }
+    let mut laid = Laid::of_tile(pieces, &on, laying.levels);
     laid.sort();
     compare(payload, &laid, &mut found.findings);
     (found.fates, found.classes) = (laid.fates, laid.classes);

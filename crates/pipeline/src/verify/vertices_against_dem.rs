@@ -8,15 +8,9 @@ use super::{
     checks::{CheckId, Findings},
     error::VerifyError,
     report::VerifyReport,
+    temporary_store::TemporaryStore,
 };
-use crate::{
-    BuildError, DiskStorage, Observer, Stage,
-    heights::{
-        audit,
-        pyramid::{self, Pyramid},
-    },
-    workers,
-};
+use crate::{BuildError, Observer, Stage, heights::pyramid::Pyramid, workers};
 
 /// Steps from the centre of the octahedron's square to its edge (Meyer et al. 2010, section 3).
 const STEPS: f64 = 127.0;
@@ -32,19 +26,27 @@ pub(crate) fn verify(
     report: &mut VerifyReport,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let work = tempfile::tempdir().map_err(VerifyError::Work)?;
-    let storage = DiskStorage::create(work.path()).map_err(VerifyError::Work)?;
-    let pyramid = pyramid::read(dem, plan, threads, &storage, observer)?;
     let manifest = package.manifest();
+    let work = TemporaryStore::new(observer)?;
+    let pyramid = Pyramid {
+        dem,
+        grid: plan,
+        range_m: manifest.settings.height_range_m,
+        threads,
+        store: &work.store,
+        observer,
+    };
+    pyramid.make(TileId::ROOT)?;
     let mut findings = Findings::default();
-    let refused = refusal(audit::check(dem, manifest.settings.height_range_m, threads, observer))?;
+    let refused = refusal(pyramid.check())?;
     findings.look(CheckId::DemCounts, refused.is_none(), || {
         format!("heights that the settings do not allow: {}", refused.unwrap_or_default())
     });
-    let (said, found) = (manifest.counts.samples, pyramid.samples());
+    let sums = pyramid.sums()?;
+    let (said, found) = (manifest.counts.samples, sums.samples);
     findings
         .look(CheckId::DemCounts, said == found, || format!("recorded {said:?}, found {found:?}"));
-    let (said_m, found_m) = (manifest.vertical.range_m, pyramid.range_m().map(f64::from));
+    let (said_m, found_m) = (manifest.vertical.range_m, sums.range_m.map(f64::from));
     let same_range = said_m.map(f64::to_bits) == found_m.map(f64::to_bits);
     findings.look(CheckId::DemCounts, same_range, || {
         format!("heights from {said_m:?} are recorded, {found_m:?} were found")
@@ -90,7 +92,12 @@ fn look_at(
     let Some(Terrain { tin, normals, .. }) = payload.and_then(|payload| payload.terrain) else {
         return Ok(findings);
     };
-    let heights = pyramid.tile(id, 1)?;
+    let Some(heights) = pyramid.tile(id)? else {
+        findings.look(CheckId::Nodes, false, || {
+            format!("tile {id} has ground, the DEM no height there")
+        });
+        return Ok(findings);
+    };
     let cell_m = manifest.frame.level_cell(id.z()).to_array();
     for (vertex, normal) in tin.vertices().iter().zip(&normals) {
         // The raster has the tile's own nodes and one row or column of nodes of its neighbours on each side.

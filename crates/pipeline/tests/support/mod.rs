@@ -20,7 +20,8 @@ use std::{
 use corniche_dem::{OpenOptions, PlanOptions};
 use corniche_geom::{Frame, NodeIndex, TileId};
 use corniche_pipeline::{
-    BuildError, BuildSettings, Existing, Resources, RoadSettings, Silent, TerrainSettings, build,
+    BuildError, BuildSettings, Existing, Leftovers, Resources, RoadSettings, Silent,
+    TerrainSettings, build,
 };
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_tileset::{FilePackage, Manifest, Sections, Terrain, TilePayload};
@@ -165,6 +166,9 @@ pub(crate) fn settings(
         osm,
         output,
         existing: Existing::Keep,
+        tmp: None,
+        leftovers: Leftovers::Discard,
+        force: false,
         terrain: TerrainSettings {
             open: OpenOptions::default(),
             plan: PlanOptions {

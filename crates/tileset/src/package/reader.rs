@@ -11,7 +11,7 @@ use crate::package::error::{OpenError, ReadError};
 use crate::package::header::{HEADER_BYTES, Header, INITIAL_BYTES, Span};
 use crate::package::metadata::{FORMAT_VERSION, Metadata};
 use crate::package::source::{ByteSource, SourceError};
-use crate::package::tile_order::{pmtiles_order, tile_at};
+use crate::package::tile_order::{pmtiles_order, tile_of_order};
 use crate::package::tool_record::ToolRecord;
 use crate::{
     Manifest, Sections, TilePayload, decode,
@@ -108,7 +108,7 @@ impl<S: ByteSource> Package<S> {
                 open.push((leaf, 0));
                 continue;
             }
-            let id = tile_at(entry.first)
+            let id = tile_of_order(entry.first)
                 .filter(|id| id.z() <= self.manifest.frame.max_level())
                 .ok_or(DAMAGED)?;
             // As within a directory, tiles share no bytes: so a small file cannot list many tiles.

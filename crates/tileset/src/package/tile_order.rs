@@ -11,7 +11,8 @@ pub fn pmtiles_order(id: TileId) -> u64 {
 }
 
 /// The tile at a place; `None` for places beyond the deepest level.
-pub(crate) fn tile_at(order: u64) -> Option<TileId> {
+#[must_use]
+pub fn tile_of_order(order: u64) -> Option<TileId> {
     let coord = pmtiles::TileCoord::from(pmtiles::TileId::new(order).ok()?);
     TileId::new(coord.z(), coord.x(), coord.y()).ok()
 }

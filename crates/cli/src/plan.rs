@@ -1,0 +1,142 @@
+//! `corniche plan`: what a build will make and what it will take.
+
+use std::{
+    fmt::Write as _,
+    io::{self, Write as _},
+    path::{Path, PathBuf},
+};
+
+use corniche_pipeline::{BuildPlan, Estimate, MIN_MEMORY_BYTES, Observer, Resources, Stage};
+use serde_json::json;
+
+use crate::{
+    args::PlanArgs,
+    exit::ExitCode,
+    failure::Failure,
+    interrupt,
+    output::{Existing, Output},
+    settings,
+    table::{Table, bytes, count},
+};
+
+pub(crate) fn run(args: PlanArgs) -> Result<ExitCode, Failure> {
+    // An unusable place is reported before the files are looked at.
+    let written = match &args.output {
+        Some(path) => {
+            let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
+            let mut inputs: Vec<&Path> = args.work.dem.iter().map(PathBuf::as_path).collect();
+            inputs.extend(args.work.osm.as_deref());
+            inputs.extend(args.work.config.as_deref());
+            Some(Output::create(path, existing, &inputs)?)
+        }
+        None => None,
+    };
+    let work = settings::of(args.work)?;
+    let (plan, estimate) = corniche_pipeline::plan(&work.plan, work.resources, &Signals)?;
+    if let Some(file) = written {
+        let text = plan.to_json().map_err(|error| Failure::new(ExitCode::Failed, error))?;
+        file.write_whole(text.as_bytes())?;
+    }
+    let mut out = io::stdout().lock();
+    if args.json {
+        let value = json!({ "plan_sha256": plan.hash(), "estimate": estimate });
+        writeln!(out, "{value}")?;
+    } else {
+        out.write_all(to_text(&plan, &estimate, work.resources).as_bytes())?;
+    }
+    Ok(ExitCode::Done)
+}
+
+/// Stops when a signal comes; has nothing to show.
+struct Signals;
+
+impl Observer for Signals {
+    fn begin(&self, _: Stage, _: Option<u64>) {}
+    fn advance(&self, _: Stage, _: u64) {}
+    fn end(&self, _: Stage) {}
+    fn is_cancelled(&self) -> bool {
+        interrupt::is_noted()
+    }
+}
+
+/// Plan and estimates for people.
+fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources) -> String {
+    let mut text = String::new();
+    let mut say = |name: &str, value: &str| {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{name:<12} {value}");
+    };
+    let grid = &plan.grid;
+    let [east_m, north_m] = grid.frame.cell().to_array();
+    say("plan", &plan.hash());
+    say("CRS", &grid.crs);
+    say("grid", &format!("cell {east_m} × {north_m} m, {}", grid.resampling));
+    say("heights", &grid.vertical_treatment);
+    say("max error", &format!("{} m on the finest level", plan.settings.max_error_m));
+    for input in &plan.inputs {
+        say(&input.kind, &format!("{}, {}", input.path, bytes(input.bytes)));
+    }
+    say("nodes", &count(estimate.nodes));
+    say("tiles", &count(estimate.tiles.iter().sum()));
+    let memory = &estimate.memory;
+    let least_bytes = memory.least_bytes.max(MIN_MEMORY_BYTES);
+    say(
+        "memory",
+        &format!(
+            "at least {}, of {} allowed: {} for the program, {} for its list of tiles, {} threads × {}",
+            bytes(least_bytes),
+            bytes(resources.memory_bytes),
+            bytes(memory.base_bytes),
+            bytes(memory.tiles_bytes),
+            memory.threads,
+            bytes(memory.thread_bytes + memory.block_bytes),
+        ),
+    );
+    say(
+        "",
+        &format!(
+            "the largest block of a file is {}, a row of blocks {}",
+            bytes(memory.block_bytes),
+            bytes(memory.block_row_bytes),
+        ),
+    );
+    if least_bytes > resources.memory_bytes {
+        say("", "this is not enough: a build would stop with exit code 2");
+    }
+    say(
+        "disk",
+        &format!(
+            "about {} for intermediate results, about {} for the package",
+            bytes(estimate.store_bytes),
+            bytes(estimate.package_bytes),
+        ),
+    );
+    say("time", &format!("about {} on {} threads", duration(estimate.seconds), memory.threads));
+    say("", &estimate.rates.text());
+    text.push('\n');
+    let mut table = Table::new(["level", "cell m", "max error m", "least class", "tiles"]);
+    for (level, tiles) in plan.levels.iter().zip(&estimate.tiles) {
+        let [east_m, north_m] = level.cell_m.to_array();
+        table.row([
+            level.level.to_string(),
+            format!("{east_m:.2} × {north_m:.2}"),
+            format!("{:.3}", level.max_error_m),
+            level.least_class.map_or_else(|| "none".to_owned(), |class| class.to_string()),
+            count(*tiles),
+        ]);
+    }
+    text + &table.to_text()
+}
+
+/// A time for people.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        ..120.0 => format!("{seconds:.0} s"),
+        120.0..7200.0 => format!("{:.0} min", seconds / 60.0),
+        _ => format!("{:.1} h", seconds / 3600.0),
+    }
+}
+
+#[cfg(test)]
+#[path = "plan_tests.rs"]
+mod tests;

@@ -1,0 +1,132 @@
+//! What the stages of a run cost: the table at its end.
+
+use std::time::Duration;
+
+use corniche_pipeline::Stage;
+use serde_json::{Value, json};
+
+use super::{
+    texts::{amount, rate},
+    usage::Usage,
+};
+use crate::table::{Table, bytes};
+
+/// What one stage took.
+#[derive(Debug, Clone)]
+pub(crate) struct Cost {
+    pub(crate) stage: Stage,
+    /// In all, by an earlier run too.
+    pub(crate) done: u64,
+    /// By an earlier run.
+    pub(crate) already: u64,
+    pub(crate) wall: Duration,
+    pub(crate) used: Usage,
+}
+
+impl Cost {
+    /// What this run did per second; `None` if it did nothing.
+    fn per_second(&self) -> Option<f64> {
+        let done = self.done - self.already;
+        (done > 0 && !self.wall.is_zero()).then(|| done as f64 / self.wall.as_secs_f64())
+    }
+}
+
+/// Shorter stages have no figure for the cores: their CPU time is known in steps of 10 ms only, at its begin and its end.
+const SHORTEST_WITH_CORES: Duration = Duration::from_millis(200);
+
+/// CPU time as a multiple of wall time; within 0.1.
+fn cores_busy(wall: Duration, used: &Usage) -> Option<f64> {
+    let cpu = used.cpu.filter(|_| wall >= SHORTEST_WITH_CORES)?;
+    Some(cpu.as_secs_f64() / wall.as_secs_f64())
+}
+
+/// All stages that ended, in the order in which they first began.
+#[derive(Debug, Default)]
+pub(crate) struct Costs(Vec<Cost>);
+
+impl Costs {
+    /// A stage that came before gets what it took now on top.
+    pub(crate) fn add(&mut self, cost: Cost) {
+        match self.0.iter_mut().find(|before| before.stage == cost.stage) {
+            Some(before) => {
+                before.done += cost.done;
+                before.already += cost.already;
+                before.wall += cost.wall;
+                before.used = before.used.and(&cost.used);
+            }
+            None => self.0.push(cost),
+        }
+    }
+
+    /// A row for each stage and one for the whole run, which took `wall` and used `used`. Columns of which nothing is known
+    /// are left out.
+    pub(crate) fn to_text(&self, wall: Duration, used: &Usage) -> String {
+        let mut table = Table::new([
+            "stage",
+            "done",
+            "wall",
+            "CPU",
+            "cores busy",
+            "rate",
+            "peak memory",
+            "read",
+            "written",
+        ]);
+        let row = |title: &str, done: String, wall: Duration, rate: String, used: &Usage| {
+            let seconds = |time: Duration| format!("{:.2} s", time.as_secs_f64());
+            let or_empty = |text: Option<String>| text.unwrap_or_default();
+            [
+                title.to_owned(),
+                done,
+                seconds(wall),
+                or_empty(used.cpu.map(seconds)),
+                or_empty(cores_busy(wall, used).map(|cores| format!("{cores:.2}"))),
+                rate,
+                or_empty(used.peak_memory_bytes.map(bytes)),
+                or_empty(used.read_bytes.map(bytes)),
+                or_empty(used.written_bytes.map(bytes)),
+            ]
+        };
+        for cost in &self.0 {
+            let unit = cost.stage.unit();
+            let rate = cost.per_second().map(|per_second| rate(per_second, unit));
+            let done = amount(cost.done, unit);
+            table.row(row(
+                cost.stage.title(),
+                done,
+                cost.wall,
+                rate.unwrap_or_default(),
+                &cost.used,
+            ));
+        }
+        table.row(row("all", String::new(), wall, String::new(), used));
+        table.without_empty_columns().to_text()
+    }
+
+    /// The same for programs. What is not known is null.
+    pub(crate) fn to_json(&self, wall: Duration, used: &Usage) -> Value {
+        let figures = |wall: Duration, used: &Usage| {
+            json!({
+                "seconds": wall.as_secs_f64(),
+                "cpu_seconds": used.cpu.map(|cpu| cpu.as_secs_f64()),
+                "cores_busy": cores_busy(wall, used),
+                "peak_memory_bytes": used.peak_memory_bytes,
+                "read_bytes": used.read_bytes,
+                "written_bytes": used.written_bytes,
+            })
+        };
+        let rows = self.0.iter().map(|cost| {
+            let mut row = figures(cost.wall, &cost.used);
+            row["stage"] = json!(cost.stage.id());
+            row["done"] = json!(cost.done);
+            row["already"] = json!(cost.already);
+            row["per_second"] = json!(cost.per_second());
+            row
+        });
+        json!({ "summary": rows.collect::<Vec<_>>(), "all": figures(wall, used) })
+    }
+}
+
+#[cfg(test)]
+#[path = "costs_tests.rs"]
+mod tests;

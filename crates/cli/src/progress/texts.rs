@@ -1,0 +1,131 @@
+//! How progress is put into words and numbers.
+
+use std::time::Duration;
+
+use corniche_pipeline::{Stage, Unit};
+use serde_json::{Value, json};
+
+use super::usage::Usage;
+use crate::table::{bytes, count};
+
+/// What is known of a stage at one moment.
+#[derive(Debug, Clone)]
+pub(crate) struct Reading {
+    pub(crate) stage: Stage,
+    /// In all, by an earlier run too.
+    pub(crate) done: u64,
+    /// By an earlier run.
+    pub(crate) already: u64,
+    pub(crate) total: Option<u64>,
+    /// Since the stage began.
+    pub(crate) elapsed: Duration,
+    pub(crate) per_second: Option<f64>,
+    pub(crate) left: Option<Duration>,
+    /// Since the stage began.
+    pub(crate) used: Usage,
+}
+
+impl Reading {
+    /// While the stage runs, without its title: what is done of what, time left, rate, bytes.
+    pub(crate) fn running(&self) -> String {
+        let unit = self.stage.unit();
+        let mut parts = vec![match self.total {
+            None => amount(self.done, unit),
+            Some(0) => "nothing to do".to_owned(),
+            Some(total) => {
+                let percent = u128::from(self.done) * 100 / u128::from(total);
+                format!("{} of {} ({percent} %)", number(self.done, unit), amount(total, unit))
+            }
+        }];
+        if let Some(left) = self.left.filter(|_| self.total != Some(0)) {
+            parts.push(format!("{} left", time(left)));
+        }
+        parts.extend(self.per_second.map(|per_second| rate(per_second, unit)));
+        parts.extend(self.used.read_bytes.map(|read| format!("{} read", bytes(read))));
+        parts.extend(self.used.written_bytes.map(|written| format!("{} written", bytes(written))));
+        parts.join(", ")
+    }
+
+    /// When the stage has ended, without its title.
+    pub(crate) fn ended(&self) -> String {
+        let seconds = self.elapsed.as_secs_f64();
+        match (self.done, self.already) {
+            (0, _) if self.total == Some(0) => "nothing to do".to_owned(),
+            (done, 0) => format!("{} in {seconds:.2} s", amount(done, self.stage.unit())),
+            (done, already) if done == already => {
+                format!("{}, all by an earlier run", amount(done, self.stage.unit()))
+            }
+            (done, already) => {
+                let unit = self.stage.unit();
+                let (done, already) = (amount(done, unit), number(already, unit));
+                format!("{done}, {already} of them by an earlier run, in {seconds:.2} s")
+            }
+        }
+    }
+
+    /// For programs. What is not known is null.
+    pub(crate) fn to_json(&self, state: &str) -> Value {
+        json!({
+            "stage": self.stage.id(), "state": state, "unit": plural(self.stage.unit()),
+            "done": self.done, "already": self.already, "total": self.total,
+            "seconds": self.elapsed.as_secs_f64(),
+            "cpu_seconds": self.used.cpu.map(|cpu| cpu.as_secs_f64()), "per_second": self.per_second,
+            "seconds_left": self.left.map(|left| left.as_secs_f64()),
+            "read_bytes": self.used.read_bytes, "written_bytes": self.used.written_bytes,
+        })
+    }
+}
+
+fn plural(unit: Unit) -> &'static str {
+    match unit {
+        Unit::Bytes => "bytes",
+        Unit::Blocks => "blocks",
+        Unit::Areas => "areas",
+        Unit::Roads => "roads",
+        Unit::Tiles => "tiles",
+    }
+}
+
+/// A number without its unit, except for bytes.
+fn number(number: u64, unit: Unit) -> String {
+    if unit == Unit::Bytes { bytes(number) } else { count(number) }
+}
+
+/// A number with its unit.
+pub(crate) fn amount(number: u64, unit: Unit) -> String {
+    match (unit, number) {
+        (Unit::Bytes, _) => bytes(number),
+        (_, 1) => format!("1 {}", plural(unit).trim_end_matches('s')),
+        _ => format!("{} {}", count(number), plural(unit)),
+    }
+}
+
+/// Slow rates per minute or hour, so that no rate is a small fraction.
+pub(crate) fn rate(per_second: f64, unit: Unit) -> String {
+    if unit == Unit::Bytes {
+        return format!("{}/s", bytes(per_second.round() as u64));
+    }
+    let (number, per) = match per_second {
+        1.0.. => (per_second, "s"),
+        0.016_666.. => (per_second * 60.0, "min"),
+        _ => (per_second * 3600.0, "h"),
+    };
+    let number = if number < 100.0 { format!("{number:.1}") } else { count(number.round() as u64) };
+    format!("{number} {}/{per}", plural(unit))
+}
+
+/// A time to two units at most.
+pub(crate) fn time(time: Duration) -> String {
+    const DAY_S: u64 = 86_400;
+    let s = (time.as_secs_f64().round()) as u64;
+    match s {
+        0..60 => format!("{s} s"),
+        60..3600 => format!("{} min {:02} s", s / 60, s % 60),
+        3600..DAY_S => format!("{} h {:02} min", s / 3600, s % 3600 / 60),
+        _ => format!("{} d {:02} h", s / DAY_S, s % DAY_S / 3600),
+    }
+}
+
+#[cfg(test)]
+#[path = "texts_tests.rs"]
+mod tests;

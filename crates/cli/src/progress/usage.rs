@@ -1,0 +1,83 @@
+//! What this process has used so far, as the kernel counts it. Linux only: elsewhere nothing is known, and nothing is
+//! guessed.
+
+use std::{fs, time::Duration};
+
+/// What the process has used since it began.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Usage {
+    /// Time of all threads on all cores, the kernel's work for them included.
+    pub(crate) cpu: Option<Duration>,
+    /// The most resident memory so far.
+    pub(crate) peak_memory_bytes: Option<u64>,
+    /// Bytes that the process asked to read and to write, whether a disk was needed for them or not. Files that are
+    /// mapped into memory and network connections are not in it.
+    pub(crate) read_bytes: Option<u64>,
+    pub(crate) written_bytes: Option<u64>,
+}
+
+/// Clock ticks per second in `/proc/PID/stat`: `USER_HZ`, which is 100 on every machine that Rust's Linux targets name.
+const TICKS_PER_SECOND: u64 = 100;
+
+impl Usage {
+    /// As it is now. What the kernel does not tell is `None`.
+    pub(crate) fn now() -> Self {
+        let file = |name| {
+            if cfg!(target_os = "linux") { fs::read_to_string(name).ok() } else { None }
+        };
+        let io = file("/proc/self/io");
+        let io = io.as_deref().unwrap_or_default();
+        Self {
+            cpu: file("/proc/self/stat").as_deref().and_then(cpu),
+            peak_memory_bytes: file("/proc/self/status")
+                .as_deref()
+                .and_then(|status| number_after(status, "VmHWM:"))
+                .map(|kilobytes| kilobytes * 1024),
+            read_bytes: number_after(io, "rchar:"),
+            written_bytes: number_after(io, "wchar:"),
+        }
+    }
+
+    /// What was used since `earlier`. Peak memory stays what it is: it is never counted anew.
+    pub(crate) fn since(&self, earlier: &Self) -> Self {
+        let difference = |now: Option<u64>, then: Option<u64>| Some(now?.saturating_sub(then?));
+        Self {
+            cpu: self.cpu.zip(earlier.cpu).map(|(now, then)| now.saturating_sub(then)),
+            peak_memory_bytes: self.peak_memory_bytes,
+            read_bytes: difference(self.read_bytes, earlier.read_bytes),
+            written_bytes: difference(self.written_bytes, earlier.written_bytes),
+        }
+    }
+
+    /// What was used in this time and in `later` together.
+    pub(crate) fn and(&self, later: &Self) -> Self {
+        let sum = |a: Option<u64>, b: Option<u64>| Some(a? + b?);
+        Self {
+            cpu: self.cpu.zip(later.cpu).map(|(a, b)| a + b),
+            peak_memory_bytes: self.peak_memory_bytes.max(later.peak_memory_bytes),
+            read_bytes: sum(self.read_bytes, later.read_bytes),
+            written_bytes: sum(self.written_bytes, later.written_bytes),
+        }
+    }
+}
+
+/// Time of user and system, fields 14 and 15 of `/proc/PID/stat`. Field 2 is the program's name in brackets, which may
+/// hold blanks and brackets.
+///
+/// Source: `man 5 proc_pid_stat`.
+fn cpu(stat: &str) -> Option<Duration> {
+    let (_, after_name) = stat.rsplit_once(')')?;
+    let mut fields = after_name.split_ascii_whitespace().skip(11);
+    let mut ticks = || fields.next()?.parse::<u64>().ok();
+    Some(Duration::from_millis((ticks()? + ticks()?) * (1000 / TICKS_PER_SECOND)))
+}
+
+/// The number after `name` at the begin of a line.
+fn number_after(text: &str, name: &str) -> Option<u64> {
+    let rest = text.lines().find_map(|line| line.strip_prefix(name))?;
+    rest.split_ascii_whitespace().next()?.parse().ok()
+}
+
+#[cfg(test)]
+#[path = "usage_tests.rs"]
+mod tests;

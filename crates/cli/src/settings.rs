@@ -1,0 +1,149 @@
+//! Turns arguments and settings files into checked settings.
+
+use std::{num::NonZeroUsize, path::PathBuf, thread};
+
+use corniche_geom::Cell;
+use corniche_pipeline::{
+    OpenOptions, PlanOptions, PlanSettings, Resources, RoadSettings, TerrainSettings,
+};
+use corniche_presets::{
+    Config, ResourceOptions, RoadOptions, TerrainOptions, check_cell, class_filter, is_range,
+    parse_memory,
+};
+use corniche_roads::ClassFilter;
+
+use crate::{args::WorkArgs, failure::Failure, presets};
+
+/// Default tolerance of the simplification of roads, in cells of the level. It equals the default vertical tolerance, a
+/// quarter of the cell, because an error that is too small to be seen in height is too small in plan as well.
+const SIMPLIFY_CELLS: f64 = 0.25;
+/// Default distance over which voids are filled, in cells.
+const FILL_VOIDS: u32 = 32;
+/// The most values for "no data" that a package's manifest may list.
+const MAX_NODATA: usize = 64;
+
+/// What to make, and with what.
+pub(crate) struct Work {
+    pub(crate) plan: PlanSettings,
+    pub(crate) resources: Resources,
+    /// Where intermediate results go.
+    pub(crate) tmp: Option<PathBuf>,
+    pub(crate) force: bool,
+}
+
+/// The only place where text becomes settings. The command line has precedence over the settings file, which has precedence
+/// over the defaults.
+pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
+    let config = match &args.config {
+        Some(path) => presets::read_config(path)?,
+        None => Config::default(),
+    };
+    let terrain = args.terrain.or(config.terrain);
+    let roads = args.roads.or(config.roads);
+    let resources = args.resources.or(config.resources);
+    let plan = PlanSettings {
+        dem: args.dem,
+        osm: args.osm,
+        attribution: if args.attribution.is_empty() {
+            terrain.attribution.clone()
+        } else {
+            args.attribution
+        },
+        terrain: terrain_settings(terrain, args.force)?,
+        roads: road_settings(roads)?,
+        generator: format!("corniche {}", env!("CARGO_PKG_VERSION")),
+    };
+    let force = args.force;
+    Ok(Work { plan, resources: resource_settings(&resources)?, tmp: resources.tmp, force })
+}
+
+fn terrain_settings(options: TerrainOptions, force: bool) -> Result<TerrainSettings, Failure> {
+    check_nodata(&options.nodata)?;
+    if let Some([low, high]) = options.height_range.filter(|ends| !is_range(*ends)) {
+        return Err(Failure::unusable(format!(
+            "height-range must be the lowest and the highest height, in this order, not {low}, {high}; write it like [-500, 9000]"
+        )));
+    }
+    let cell = options.cell.map(check_cell).transpose();
+    let cell = cell.map_err(|error| Failure::unusable(format!("cell: {error}")))?;
+    Ok(TerrainSettings {
+        open: OpenOptions {
+            dem_crs: options.dem_crs,
+            nodata: options.nodata,
+            dem_vertical_crs: options.dem_vertical_crs,
+            vertical_crs: options.vertical_crs,
+            vertical_shift_m: options.vertical_shift.unwrap_or(0.0),
+        },
+        plan: PlanOptions {
+            crs: options.crs,
+            cell: cell.map(Cell::from),
+            cell_every: options.cell_every,
+            scale_latitude_deg: options.scale_latitude,
+            fill_voids: options.fill_voids.unwrap_or(FILL_VOIDS),
+        },
+        height_range_m: options.height_range,
+        allow_fine_cell: force,
+        max_error_m: positive("--max-error", options.max_error)?,
+    })
+}
+
+fn road_settings(options: RoadOptions) -> Result<RoadSettings, Failure> {
+    let simplify_cells = options.simplify.unwrap_or(SIMPLIFY_CELLS);
+    if !(0.0..=64.0).contains(&simplify_cells) {
+        return Err(Failure::unusable(format!(
+            "--simplify must be between 0 and 64 cells, not {simplify_cells}"
+        )));
+    }
+    let filter = match options.class_max_cell {
+        _ if options.all_classes => ClassFilter::all(),
+        Some(cells) => class_filter(&cells).map_err(|error| presets::refuse("settings", &error))?,
+        None => ClassFilter::usual(),
+    };
+    let table = presets::frc_table(options.frc_table.as_deref().unwrap_or("default"))?;
+    Ok(RoadSettings { table, filter, simplify_cells })
+}
+
+fn resource_settings(options: &ResourceOptions) -> Result<Resources, Failure> {
+    let memory_bytes = match &options.memory {
+        Some(text) => {
+            parse_memory(text).map_err(|error| Failure::unusable(format!("--memory {error}")))?
+        }
+        None => corniche_pipeline::default_memory_bytes(),
+    };
+    Ok(Resources { threads: threads(options.threads), memory_bytes })
+}
+
+fn positive(option: &str, value: Option<f64>) -> Result<Option<f64>, Failure> {
+    match value {
+        Some(metres) if !(metres > 0.0 && metres.is_finite()) => Err(Failure::unusable(format!(
+            "{option} must be a positive number of metres, not {metres}"
+        ))),
+        value => Ok(value),
+    }
+}
+
+/// As many threads as asked for, else one per processor.
+pub(crate) fn threads(asked: Option<NonZeroUsize>) -> usize {
+    asked.or_else(|| thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
+}
+
+/// Values that mean "no data" are numbers, and not too many.
+fn check_nodata(values: &[f64]) -> Result<(), Failure> {
+    if let Some(value) = values.iter().find(|value| !value.is_finite()) {
+        return Err(Failure::unusable(format!(
+            "--nodata {value} is not needed: a value that is not a finite number is never taken for a height; leave it out"
+        )));
+    }
+    if values.len() > MAX_NODATA {
+        return Err(Failure::unusable(format!(
+            "--nodata is given {} times, more than {MAX_NODATA}; convert the files so that they say themselves what \
+             means \"no data\" (gdal_translate -a_nodata)",
+            values.len()
+        )));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+#[path = "settings_tests.rs"]
+mod tests;

@@ -1,0 +1,52 @@
+//! Where each file's nodes lie.
+
+use corniche_geom::NodeIndex;
+
+use crate::mosaics::data_extent;
+use crate::plan::alignment::Alignment;
+use crate::plan::grid_plan::Method;
+use crate::{Dem, DemError, GridPlan};
+
+impl Dem {
+    /// For each file the south-western and the north-eastern node between which it can have data. Files that have no node
+    /// between their samples are left out.
+    ///
+    /// # Errors
+    /// When a file's place cannot be transformed.
+    pub fn file_nodes(&self, plan: &GridPlan) -> Result<Vec<[NodeIndex; 2]>, DemError> {
+        let mut found = Vec::new();
+        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
+            for file in &mosaic.files {
+                let [south_west, north_east] = match &role.method {
+                    Method::Aligned(Alignment { first, way, every }) => {
+                        let ends = |axis: usize| {
+                            let at = |index: i64| first[axis] + way[axis] * index;
+                            let (a, b) = (at(file.rect.min[axis]), at(file.rect.max[axis] - 1));
+                            // Rounded inwards: the outermost samples can lie between two nodes.
+                            (-(-a.min(b)).div_euclid(*every), a.max(b).div_euclid(*every))
+                        };
+                        let ((west, east), (south, north)) = (ends(0), ends(1));
+                        [NodeIndex { i: west, j: south }, NodeIndex { i: east, j: north }]
+                    }
+                    Method::Resampled(..) => {
+                        let bounds =
+                            data_extent::bounds(mosaic, &file.rect, &role.working_from_crs)?;
+                        let (origin_m, cell_m) =
+                            (plan.frame.origin_m(), plan.frame.cell().to_array());
+                        let cells =
+                            |metres: f64, axis: usize| (metres - origin_m[axis]) / cell_m[axis];
+                        let corner = |x: f64, y: f64| NodeIndex { i: x as i64, j: y as i64 };
+                        [
+                            corner(cells(bounds.min_x, 0).ceil(), cells(bounds.min_y, 1).ceil()),
+                            corner(cells(bounds.max_x, 0).floor(), cells(bounds.max_y, 1).floor()),
+                        ]
+                    }
+                };
+                if south_west.i <= north_east.i && south_west.j <= north_east.j {
+                    found.push([south_west, north_east]);
+                }
+            }
+        }
+        Ok(found)
+    }
+}

@@ -1,0 +1,103 @@
+//! What every step of a build needs: the elevation files as opened, the grid, the levels, and the store.
+
+use corniche_dem::{Dem, GridPlan};
+use corniche_geom::{CoordinateTable, Frame};
+use corniche_store::Artifacts;
+
+use crate::{
+    Observer, PlanSettings, Resources,
+    heights::{data_tiles::DataTiles, pyramid::Pyramid},
+    inputs::Inputs,
+    levels::Levels,
+    plan::Opened,
+};
+
+/// What the steps of a build share. It is made from the settings alone, so every process that works on one build has the same.
+pub(crate) struct Context<'a> {
+    pub(crate) settings: &'a PlanSettings,
+    pub(crate) resources: Resources,
+    pub(crate) inputs: &'a Inputs,
+    pub(crate) dem: &'a Dem,
+    pub(crate) grid: &'a GridPlan,
+    pub(crate) levels: &'a Levels,
+    pub(crate) coordinates: &'a CoordinateTable,
+    /// Tolerance of the finest level, given or derived from the cell.
+    pub(crate) max_error_m: f64,
+    pub(crate) store: &'a dyn Artifacts,
+    pub(crate) observer: &'a dyn Observer,
+}
+
+impl<'a> Context<'a> {
+    /// What was opened, with a store for the results.
+    pub(crate) fn new(
+        settings: &'a PlanSettings,
+        resources: Resources,
+        opened: &'a Opened,
+        store: &'a dyn Artifacts,
+        observer: &'a dyn Observer,
+    ) -> Self {
+        let Opened { inputs, dem, grid, levels, max_error_m, coordinates } = opened;
+        let max_error_m = *max_error_m;
+        Self {
+            settings,
+            resources,
+            inputs,
+            dem,
+            grid,
+            levels,
+            coordinates,
+            max_error_m,
+            store,
+            observer,
+        }
+    }
+
+    pub(crate) fn frame(&self) -> &Frame {
+        self.levels.frame()
+    }
+
+    pub(crate) fn data(&self) -> DataTiles {
+        DataTiles::of(self.grid)
+    }
+
+    pub(crate) fn pyramid(&self) -> Pyramid<'_> {
+        Pyramid {
+            dem: self.dem,
+            grid: self.grid,
+            range_m: self.settings.terrain.height_range_m,
+            threads: self.threads(),
+            store: self.store,
+            observer: self.observer,
+        }
+    }
+
+    pub(crate) fn threads(&self) -> usize {
+        self.resources.threads
+    }
+
+    /// How the memory that a run may use is shared out.
+    pub(crate) fn memory(&self) -> MemoryShares {
+        MemoryShares::of(self.resources.memory_bytes)
+    }
+}
+
+/// Shares of `--memory`, bytes. What is left serves the program itself and what threads work on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct MemoryShares {
+    /// GDAL's cache of raster blocks, for all threads.
+    pub(crate) raster_cache: u64,
+    /// Grounds of coarse tiles, for all threads.
+    pub(crate) grounds: u64,
+    /// Sorting of roads.
+    pub(crate) sorting: u64,
+}
+
+impl MemoryShares {
+    pub(crate) fn of(memory_bytes: u64) -> Self {
+        Self {
+            raster_cache: memory_bytes / 8,
+            grounds: memory_bytes / 8,
+            sorting: memory_bytes / 4,
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! The finest tiles on which the DEM's rectangle lies.
+
+use corniche_dem::GridPlan;
+use corniche_geom::{Frame, LatticeBounds, LatticePoint, TILE_CELLS, TileId};
+use corniche_tileset::pmtiles_order;
+
+/// A rectangle of finest tiles; both ends belong to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct DataTiles {
+    level: u8,
+    /// First and last column.
+    columns: [u32; 2],
+    /// First and last row.
+    rows: [u32; 2],
+}
+
+impl DataTiles {
+    /// Those of a plan. Nodes on a border belong to the tile in the east or south; on the root's own east or south border, to
+    /// its last tiles.
+    pub(crate) fn of(plan: &GridPlan) -> Self {
+        let corner = plan.frame.root_corner();
+        let last = (1_i64 << plan.frame.max_level()) - 1;
+        let index = |cells: i64| cells.div_euclid(TILE_CELLS).clamp(0, last) as u32;
+        Self {
+            level: plan.frame.max_level(),
+            columns: [plan.south_west.i, plan.north_east.i].map(|i| index(i - corner.i)),
+            rows: [plan.north_east.j, plan.south_west.j].map(|j| index(corner.j - j)),
+        }
+    }
+
+    pub(crate) fn contains(&self, id: TileId) -> bool {
+        id.z() == self.level
+            && (self.columns[0]..=self.columns[1]).contains(&id.x())
+            && (self.rows[0]..=self.rows[1]).contains(&id.y())
+    }
+
+    /// The tile to which a point belongs; beside the data, the tile nearest to it.
+    pub(crate) fn owner(&self, frame: &Frame, point: LatticePoint) -> TileId {
+        let [x, y] = frame.tile_column_row(self.level, point);
+        let within =
+            |at: i64, [first, last]: [u32; 2]| at.clamp(i64::from(first), i64::from(last)) as u32;
+        let (x, y) = (within(x, self.columns), within(y, self.rows));
+        // Columns and rows of the rectangle are always those of tiles.
+        TileId::new(self.level, x, y).unwrap_or(TileId::ROOT)
+    }
+
+    /// The same on a level above.
+    pub(crate) fn above(&self, level: u8) -> Self {
+        let up = self.level.saturating_sub(level);
+        let raise = |ends: [u32; 2]| ends.map(|at| at >> up);
+        Self { level: self.level - up, columns: raise(self.columns), rows: raise(self.rows) }
+    }
+
+    /// The tiles that lie beneath `scope` or are it, row by row from the north.
+    pub(crate) fn within(&self, scope: TileId) -> Vec<TileId> {
+        let Some(down) = self.level.checked_sub(scope.z()) else { return Vec::new() };
+        let cut = |[first, last]: [u32; 2], at: u32| {
+            // The last tile of the scope: in 64 bits, because a level has up to 2^32 columns.
+            let end = ((u64::from(at) + 1) << down) - 1;
+            first.max(at << down)..=last.min(u32::try_from(end).unwrap_or(u32::MAX))
+        };
+        let (columns, rows) = (cut(self.columns, scope.x()), cut(self.rows, scope.y()));
+        rows.flat_map(|y| columns.clone().filter_map(move |x| TileId::new(self.level, x, y).ok()))
+            .collect()
+    }
+
+    /// The same in package order.
+    pub(crate) fn in_order_within(&self, scope: TileId) -> Vec<TileId> {
+        let mut tiles = self.within(scope);
+        tiles.sort_unstable_by_key(|&id| pmtiles_order(id));
+        tiles
+    }
+
+    /// The rectangle of all of them.
+    pub(crate) fn bounds(&self, frame: &Frame) -> LatticeBounds {
+        let corner = |x: u32, y: u32| {
+            frame.tile_lattice_bounds(TileId::new(self.level, x, y).unwrap_or(TileId::ROOT))
+        };
+        corner(self.columns[0], self.rows[0]).union(&corner(self.columns[1], self.rows[1]))
+    }
+}

@@ -1,0 +1,89 @@
+//! The heights of a finest tile, as one artifact.
+
+use corniche_dem::DemWindow;
+use corniche_geom::{HeightGrid, TILE_CELLS, TileId};
+use corniche_store::Artifacts;
+
+use crate::{
+    BuildError,
+    artifacts::{Kind, damaged},
+};
+
+/// Nodes along a side of a tile.
+pub(crate) const TILE_NODES: usize = TILE_CELLS as usize + 1;
+/// The same with one node of halo at both ends.
+pub(crate) const HALO_NODES: usize = TILE_NODES + 2;
+
+/// Heights of a finest tile.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct FinestHeights {
+    /// 259 × 259 nodes: the tile's own, borders included, and one more on every side.
+    pub(crate) with_halo: HeightGrid,
+    /// Which of the tile's own nodes (257 × 257, row by row from the north) are filled voids; ascending.
+    pub(crate) filled: Vec<usize>,
+}
+
+impl FinestHeights {
+    /// Cuts a tile out of a window in which its own north-west node is in column `left` and row `top`, both at least 1. `None`
+    /// where the tile itself has no height.
+    pub(crate) fn cut(window: &DemWindow, left: usize, top: usize) -> Option<Self> {
+        let own = |column: usize, row: usize| (left + column, top + row);
+        let has_height = (0..TILE_NODES).any(|row| {
+            (0..TILE_NODES).any(|column| {
+                let (column, row) = own(column, row);
+                window.heights.has_height(column, row)
+            })
+        });
+        if !has_height {
+            return None;
+        }
+        let is_filled = |&node: &usize| {
+            let (column, row) = own(node % TILE_NODES, node / TILE_NODES);
+            window.is_filled[row * window.heights.columns() + column]
+        };
+        let filled = if window.is_filled.is_empty() {
+            Vec::new()
+        } else {
+            (0..TILE_NODES * TILE_NODES).filter(is_filled).collect()
+        };
+        let with_halo = window.heights.window(left - 1, top - 1, HALO_NODES, HALO_NODES);
+        Some(Self { with_halo, filled })
+    }
+
+    /// The tile's own nodes, borders included.
+    pub(crate) fn own(&self) -> HeightGrid {
+        self.with_halo.window(1, 1, TILE_NODES, TILE_NODES)
+    }
+
+    pub(crate) fn put(&self, store: &dyn Artifacts, id: TileId) -> Result<(), BuildError> {
+        let mut bytes = height_bytes(&self.with_halo);
+        bytes.extend(self.filled.iter().flat_map(|&node| (node as u32).to_le_bytes()));
+        Ok(store.put(Kind::Heights.of_tile(id), &bytes)?)
+    }
+
+    /// `None` where the tile has no height.
+    pub(crate) fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<Self>, BuildError> {
+        let key = Kind::Heights.of_tile(id);
+        let Some(bytes) = store.get(key)? else { return Ok(None) };
+        let (heights, filled) = bytes
+            .split_at_checked(HALO_NODES * HALO_NODES * 4)
+            .ok_or_else(|| damaged(key, &"it is too short"))?;
+        let filled = filled
+            .chunks_exact(4)
+            .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize)
+            .collect();
+        Ok(Some(Self { with_halo: grid_of(heights, HALO_NODES), filled }))
+    }
+}
+
+/// A grid's heights, little-endian, row by row.
+pub(super) fn height_bytes(grid: &HeightGrid) -> Vec<u8> {
+    grid.raw().iter().flat_map(|height_m| height_m.to_le_bytes()).collect()
+}
+
+/// The square grid of so many nodes a side that [`height_bytes`] wrote.
+pub(super) fn grid_of(bytes: &[u8], side: usize) -> HeightGrid {
+    let heights_m =
+        bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+    HeightGrid::new(side, side, heights_m)
+}

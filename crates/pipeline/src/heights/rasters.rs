@@ -1,0 +1,100 @@
+//! Rasters of the levels above the finest: every second node of the level below.
+//!
+//! The raster of a tile holds its own 257 × 257 nodes, borders included, so that a tile without halo needs no neighbour.
+
+use corniche_geom::{HeightGrid, TILE_CELLS, TileId};
+use corniche_store::Artifacts;
+
+use super::finest::{FinestHeights, HALO_NODES, TILE_NODES, grid_of, height_bytes};
+use crate::{
+    BuildError,
+    artifacts::{Kind, damaged},
+};
+
+/// Keeps a tile's raster, if it has any height.
+pub(crate) fn put(
+    store: &dyn Artifacts,
+    id: TileId,
+    raster: &HeightGrid,
+) -> Result<(), BuildError> {
+    if raster.count_heights() == 0 {
+        return Ok(());
+    }
+    Ok(store.put(Kind::Raster.of_tile(id), &height_bytes(raster))?)
+}
+
+/// A tile's raster; `None` where it has no height.
+pub(crate) fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<HeightGrid>, BuildError> {
+    let key = Kind::Raster.of_tile(id);
+    let Some(bytes) = store.get(key)? else { return Ok(None) };
+    if bytes.len() == TILE_NODES * TILE_NODES * 4 {
+        Ok(Some(grid_of(&bytes, TILE_NODES)))
+    } else {
+        Err(damaged(key, &"it has another size"))
+    }
+}
+
+/// Makes a tile's raster from those of its children.
+pub(crate) fn put_from_children(store: &dyn Artifacts, id: TileId) -> Result<(), BuildError> {
+    let half = TILE_CELLS as usize / 2;
+    let mut heights_m = vec![f32::NAN; TILE_NODES * TILE_NODES];
+    for child in id.children() {
+        let Some(raster) = get(store, child)? else { continue };
+        let (left, top) = ((child.x() % 2) as usize * half, (child.y() % 2) as usize * half);
+        for row in 0..=half {
+            for column in 0..=half {
+                // Nodes on the border between two children are in both. One of them may have no raster.
+                if let Some(height_m) = raster.height(2 * column, 2 * row) {
+                    heights_m[(top + row) * TILE_NODES + left + column] = height_m;
+                }
+            }
+        }
+    }
+    put(store, id, &HeightGrid::new(TILE_NODES, TILE_NODES, heights_m))
+}
+
+/// The heights of a tile above the finest level, with one node of halo on every side: 259 × 259 nodes. `None` where the
+/// tile itself has no height.
+pub(crate) fn with_halo(
+    store: &dyn Artifacts,
+    id: TileId,
+) -> Result<Option<HeightGrid>, BuildError> {
+    let Some(own) = get(store, id)? else { return Ok(None) };
+    let mut heights_m = vec![f32::NAN; HALO_NODES * HALO_NODES];
+    let mut fill = |raster: &HeightGrid, dx: i32, dy: i32| {
+        // The part of the window that a neighbour fills, and where it begins in the neighbour. Borders are the same in both.
+        let span = |d: i32| match d {
+            -1 => (0..1, TILE_NODES - 2),
+            0 => (1..HALO_NODES - 1, 0),
+            _ => (HALO_NODES - 1..HALO_NODES, 1),
+        };
+        let ((columns, left), (rows, top)) = (span(dx), span(dy));
+        for (r, row) in rows.enumerate() {
+            for (c, column) in columns.clone().enumerate() {
+                heights_m[row * HALO_NODES + column] =
+                    raster.raw()[(top + r) * TILE_NODES + left + c];
+            }
+        }
+    };
+    fill(&own, 0, 0);
+    for (dx, dy) in [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)] {
+        let Some(neighbour) = id.neighbour(dx, dy) else { continue };
+        if let Some(raster) = get(store, neighbour)? {
+            fill(&raster, dx, dy);
+        }
+    }
+    Ok(Some(HeightGrid::new(HALO_NODES, HALO_NODES, heights_m)))
+}
+
+/// The heights of any tile with one node of halo; `None` where the tile has no height.
+pub(crate) fn of_any_level(
+    store: &dyn Artifacts,
+    id: TileId,
+    finest_level: u8,
+) -> Result<Option<HeightGrid>, BuildError> {
+    if id.z() == finest_level {
+        Ok(FinestHeights::get(store, id)?.map(|heights| heights.with_halo))
+    } else {
+        with_halo(store, id)
+    }
+}

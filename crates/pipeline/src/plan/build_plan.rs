@@ -1,0 +1,284 @@
+//! Everything that decides what a build makes, as one value that can be written down.
+
+use std::path::PathBuf;
+
+use corniche_geom::{Bounds, Cell, Frame, NodeIndex};
+use corniche_roads::{FrcTable, FrcTableError};
+use corniche_tileset::SettingsRecord;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::Opened;
+use crate::{
+    BuildError, PlanSettings, PlannedInput, hex::hex, levels::Levels, manifest_texts,
+    settings_record,
+};
+
+/// Version of a plan's JSON; other versions are refused.
+const PLAN_VERSION: u32 = 1;
+
+/// Everything that a worker needs to know to make its part of a package, and nothing about how it works: neither threads nor
+/// memory nor where results are kept.
+///
+/// Two plans with the same [hash](Self::hash) make the same artifacts, so a store is bound to it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BuildPlan {
+    /// Version of this record.
+    pub plan_version: u32,
+    /// Program and version.
+    pub generator: String,
+    /// Releases of GDAL and PROJ, on which the last bits of heights depend.
+    pub libraries: String,
+    /// The files, in the order in which they have precedence.
+    pub inputs: Vec<PlannedInput>,
+    /// Settings as a package records them; `max_error_m` is given or derived from the cell.
+    pub settings: SettingsRecord,
+    /// The FRC table, whole.
+    pub frc_table: FrcTableRecord,
+    /// Credits that were given, without those that the inputs call for.
+    pub attribution: Vec<String>,
+    /// What follows for the grid.
+    pub grid: PlannedGrid,
+    /// What follows for each level, root first.
+    pub levels: Vec<PlannedLevel>,
+}
+
+/// An FRC table as it is written down.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FrcTableRecord {
+    /// Its name.
+    pub name: String,
+    /// Least important class that is on.
+    pub least_class: u8,
+    /// Each `highway` value, sorted, with its class; `None`: not a road.
+    pub values: Vec<(String, Option<u8>)>,
+}
+
+/// The grid of nodes, the working CRS and the treatment of heights.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlannedGrid {
+    /// Nodes, tiles and levels.
+    pub frame: Frame,
+    /// South-westernmost node at which data can lie.
+    pub south_west: NodeIndex,
+    /// North-easternmost node at which data can lie.
+    pub north_east: NodeIndex,
+    /// Working CRS: "EPSG:…" where it has a code, else its name.
+    pub crs: String,
+    /// Working CRS as WKT2.
+    pub crs_wkt: String,
+    /// Working metres to a unit of the CRS's coordinates, east and north.
+    pub metres_per_unit: [f64; 2],
+    /// Working metres to a true metre, at the centre.
+    pub point_scale: f64,
+    /// Rectangle of the nodes at which data can lie, working metres.
+    pub data_bounds: Bounds,
+    /// Rectangle around the files, WGS84 degrees.
+    pub wgs84_bounds: Bounds,
+    /// Whether nodes are the DEM's samples.
+    pub nodes_are_samples: bool,
+    /// How nodes relate to samples, in words.
+    pub resampling: String,
+    /// What heights are measured from.
+    pub vertical_datum: String,
+    /// What is done to the files' heights, in words.
+    pub vertical_treatment: String,
+    /// One step of heights, metres.
+    pub quantum_m: f64,
+}
+
+/// What the tiles of a level are made with.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlannedLevel {
+    /// The level.
+    pub level: u8,
+    /// Its cell, metres.
+    pub cell_m: Cell,
+    /// Tolerance of its TINs against its own raster, metres.
+    pub max_error_m: f64,
+    /// Least important class that it shows; `None`: no road.
+    pub least_class: Option<u8>,
+    /// Tolerance of the simplification of its roads, metres; 0 keeps every point.
+    pub simplify_tolerance_m: f64,
+    /// How far outside a tile its SV lines reach, metres.
+    pub width_margin_m: f64,
+}
+
+/// Why a text is no plan, or a plan cannot be used here.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum PlanError {
+    #[error("this is no plan of a build: make one with corniche plan -o FILE")]
+    Json(#[from] serde_json::Error),
+    #[error(
+        "the plan is of version {found}, and this program reads version {PLAN_VERSION}; make the plan again with this program"
+    )]
+    Version { found: u32 },
+    #[error("the plan's FRC table makes no sense; make the plan again")]
+    FrcTable(#[from] FrcTableError),
+    #[error(
+        "the plan says on which levels classes of roads are shown, and this makes no sense; make the plan again"
+    )]
+    Filter,
+    #[error(
+        "the plan does not fit this machine or its files any more: {}; make the plan again, or use the files and the program that it was made with",
+        differences.join("; ")
+    )]
+    Differs { differences: Vec<String> },
+}
+
+impl BuildPlan {
+    /// Looks into the files and plans the grid; no height is read.
+    ///
+    /// # Errors
+    /// When a file cannot be used, the files make no grid, or a setting does not fit them.
+    pub fn make(settings: &PlanSettings) -> Result<Self, BuildError> {
+        Self::of(settings, &Opened::new(settings)?)
+    }
+
+    /// The plan for what was opened.
+    pub(crate) fn of(settings: &PlanSettings, opened: &Opened) -> Result<Self, BuildError> {
+        let grid = &opened.grid;
+        let PlanSettings { terrain, roads, attribution, generator, .. } = settings;
+        Ok(Self {
+            plan_version: PLAN_VERSION,
+            generator: generator.clone(),
+            libraries: grid.libraries.clone(),
+            inputs: opened.inputs.planned()?,
+            settings: settings_record::of(terrain, roads, opened.max_error_m),
+            frc_table: FrcTableRecord::of(&roads.table),
+            attribution: attribution.clone(),
+            grid: PlannedGrid {
+                frame: grid.frame,
+                south_west: grid.south_west,
+                north_east: grid.north_east,
+                crs: grid.crs.clone(),
+                crs_wkt: grid.crs_wkt.clone(),
+                metres_per_unit: grid.metres_per_unit,
+                point_scale: grid.point_scale,
+                data_bounds: grid.data_bounds,
+                wgs84_bounds: grid.wgs84_bounds,
+                nodes_are_samples: grid.nodes_are_samples(),
+                resampling: grid.resampling_text.clone(),
+                vertical_datum: manifest_texts::datum(grid).to_owned(),
+                vertical_treatment: grid.vertical.clone(),
+                quantum_m: opened.levels.quantum_m(),
+            },
+            levels: planned_levels(&opened.levels),
+        })
+    }
+
+    /// The settings to plan it again with, with the paths of the plan.
+    ///
+    /// # Errors
+    /// When the plan was changed by hand so that it makes no sense.
+    pub fn settings(&self) -> Result<PlanSettings, PlanError> {
+        let paths = |kind: &'static str| {
+            let of_kind = self.inputs.iter().filter(move |input| input.kind == kind);
+            of_kind.map(|input| PathBuf::from(&input.path))
+        };
+        let table = self.frc_table.table()?;
+        Ok(PlanSettings {
+            dem: paths("dem").collect(),
+            osm: paths("osm").next(),
+            terrain: settings_record::terrain(&self.settings),
+            roads: settings_record::roads(&self.settings, table).ok_or(PlanError::Filter)?,
+            attribution: self.attribution.clone(),
+            generator: self.generator.clone(),
+        })
+    }
+
+    /// Fails if `again`, made from this plan's own settings on this machine by this program, is another plan.
+    ///
+    /// # Errors
+    /// [`PlanError::Differs`], naming what differs.
+    pub fn check_same(&self, again: &Self) -> Result<(), PlanError> {
+        let differences = again.differences(self);
+        if differences.is_empty() { Ok(()) } else { Err(PlanError::Differs { differences }) }
+    }
+
+    /// As text, indented; the same for the same plan.
+    ///
+    /// # Errors
+    /// When a number is not finite.
+    pub fn to_json(&self) -> Result<String, PlanError> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+
+    /// Reads a text of [`BuildPlan::to_json`].
+    ///
+    /// # Errors
+    /// When the text is no plan, or one of another version.
+    pub fn from_json(text: &str) -> Result<Self, PlanError> {
+        /// What all versions have.
+        #[derive(Deserialize)]
+        struct Version {
+            plan_version: u32,
+        }
+        let Version { plan_version: found } = serde_json::from_str(text)?;
+        if found != PLAN_VERSION {
+            return Err(PlanError::Version { found });
+        }
+        Ok(serde_json::from_str(text)?)
+    }
+
+    /// SHA-256 of the plan's JSON without spaces. Fields come in the order of their declaration.
+    ///
+    /// Sizes and times of the inputs count: they bind a store to the files as they are. They never reach a package.
+    #[must_use]
+    pub fn digest(&self) -> [u8; 32] {
+        // A record of numbers and texts can always be written as JSON; if not, its debugging form is as unique.
+        let json = serde_json::to_string(self).unwrap_or_else(|_| format!("{self:?}"));
+        Sha256::digest(json).into()
+    }
+
+    /// The digest, lower-case hexadecimal.
+    #[must_use]
+    pub fn hash(&self) -> String {
+        hex(&self.digest())
+    }
+}
+
+impl FrcTableRecord {
+    fn of(table: &FrcTable) -> Self {
+        Self {
+            name: table.name().to_owned(),
+            least_class: table.least_class().number(),
+            values: table
+                .values()
+                .map(|(value, class)| {
+                    (value.to_owned(), class.map(corniche_roads::FunctionalRoadClass::number))
+                })
+                .collect(),
+        }
+    }
+
+    fn table(&self) -> Result<FrcTable, FrcTableError> {
+        let mut classes = Vec::new();
+        let mut not_roads = Vec::new();
+        for (value, class) in &self.values {
+            match class {
+                Some(class) => classes.push((value.clone(), *class)),
+                None => not_roads.push(value.clone()),
+            }
+        }
+        FrcTable::new(self.name.clone(), classes, not_roads, self.least_class)
+    }
+}
+
+fn planned_levels(levels: &Levels) -> Vec<PlannedLevel> {
+    let planned = |level| PlannedLevel {
+        level,
+        cell_m: levels.frame().level_cell(level),
+        max_error_m: levels.max_error_m(level),
+        least_class: levels.least_class(level).map(corniche_roads::FunctionalRoadClass::number),
+        simplify_tolerance_m: levels.simplify_tolerance_m(level),
+        width_margin_m: levels.margin_m(level),
+    };
+    levels.numbers().map(planned).collect()
+}

@@ -1,0 +1,244 @@
+//! In what two plans differ, in the words of the command line.
+
+use corniche_tileset::SettingsRecord;
+
+use super::{BuildPlan, FrcTableRecord, PlannedGrid, PlannedLevel};
+
+/// A setting's name, and its value in words.
+type Fact = (String, String);
+
+impl BuildPlan {
+    /// In what this plan differs from `store`, the plan that a store was made with: what the user can change first (program,
+    /// files, settings), and only if that is the same, what was derived from it. Empty where the plans are the same.
+    #[must_use]
+    pub fn differences(&self, store: &Self) -> Vec<String> {
+        // Every field is named, so that a new one cannot be forgotten here.
+        let Self {
+            plan_version,
+            generator,
+            libraries,
+            inputs: _,
+            settings,
+            frc_table,
+            attribution,
+            grid: _,
+            levels: _,
+        } = self;
+        let mut said = Vec::new();
+        if plan_version != &store.plan_version {
+            let other = store.plan_version;
+            said.push(format!(
+                "plans are of version {plan_version}, the store's plan is of version {other}"
+            ));
+        }
+        for (ours, theirs) in [(generator, &store.generator), (libraries, &store.libraries)] {
+            if ours != theirs {
+                said.push(format!("this is {ours}, the store was made by {theirs}"));
+            }
+        }
+        said.extend(self.input_differences(store));
+        said.extend(different_facts(&setting_facts(settings), &setting_facts(&store.settings)));
+        said.extend(frc_table.difference(&store.frc_table));
+        if attribution != &store.attribution {
+            let (ours, theirs) = (list(attribution), list(&store.attribution));
+            said.push(different("--attribution", &ours, &theirs));
+        }
+        if said.is_empty() {
+            said = different_facts(&grid_facts(&self.grid), &grid_facts(&store.grid));
+            said.extend(different_facts(&level_facts(&self.levels), &level_facts(&store.levels)));
+        }
+        if said.is_empty() && self.hash() != store.hash() {
+            said.push("the store's plan contradicts itself: it was changed by hand".to_owned());
+        }
+        said
+    }
+
+    fn input_differences(&self, store: &Self) -> Vec<String> {
+        let key = |input: &crate::PlannedInput| (input.kind.clone(), input.path.clone());
+        let paths = |plan: &Self| plan.inputs.iter().map(key).collect::<Vec<_>>();
+        if paths(self) != paths(store) {
+            let files = |plan: &Self| {
+                list(plan.inputs.iter().map(|input| format!("{} ({})", input.path, input.kind)))
+            };
+            return vec![different("the list of input files", &files(self), &files(store))];
+        }
+        self.inputs
+            .iter()
+            .zip(&store.inputs)
+            .filter_map(|(now, then)| {
+                let change = now.change_since(then)?;
+                Some(format!("{} was changed since the store was made: {change}", now.path))
+            })
+            .collect()
+    }
+}
+
+impl FrcTableRecord {
+    fn difference(&self, store: &Self) -> Option<String> {
+        if self == store {
+            return None;
+        }
+        let Self { name, least_class, values } = self;
+        // Tables of different names differ in the name of the setting already.
+        let mut said = Vec::new();
+        if least_class != &store.least_class {
+            said.push(format!("least class {least_class} instead of {}", store.least_class));
+        }
+        let text = |table: &Self, value: &str| {
+            let found = table.values.iter().find(|(other, _)| other == value);
+            match found {
+                Some((_, Some(class))) => format!("class {class}"),
+                Some((_, None)) => "no road".to_owned(),
+                None => "not listed".to_owned(),
+            }
+        };
+        let mut highways: Vec<&str> =
+            values.iter().chain(&store.values).map(|(value, _)| value.as_str()).collect();
+        highways.sort_unstable();
+        highways.dedup();
+        for value in highways {
+            let (ours, theirs) = (text(self, value), text(store, value));
+            if ours != theirs {
+                said.push(format!("highway={value} is {ours} instead of {theirs}"));
+            }
+        }
+        // The names of two tables with the same entries are told among the settings.
+        (!said.is_empty()).then(|| {
+            format!("--frc-table {name} is not the table of the store: {}", said.join(", "))
+        })
+    }
+}
+
+/// The sentence about one value.
+fn different(name: &str, ours: &str, theirs: &str) -> String {
+    format!("{name} is {ours}, the store was made with {theirs}")
+}
+
+fn different_facts(ours: &[Fact], theirs: &[Fact]) -> Vec<String> {
+    let mut said: Vec<String> = ours
+        .iter()
+        .zip(theirs)
+        .filter(|(ours, theirs)| ours != theirs)
+        .map(|((name, ours), (_, theirs))| different(name, ours, theirs))
+        .collect();
+    if ours.len() != theirs.len() {
+        said.push(format!("{} values are compared with {}", ours.len(), theirs.len()));
+    }
+    said
+}
+
+fn list<T: AsRef<str>>(texts: impl IntoIterator<Item = T>) -> String {
+    let texts: Vec<String> = texts.into_iter().map(|text| text.as_ref().to_owned()).collect();
+    if texts.is_empty() { "none".to_owned() } else { texts.join(", ") }
+}
+
+fn given<T: ToString>(value: Option<&T>) -> String {
+    value.map_or_else(|| "not given".to_owned(), ToString::to_string)
+}
+
+fn pair([a, b]: [f64; 2]) -> String {
+    format!("{a},{b}")
+}
+
+fn fact(name: &str, value: &impl ToString) -> Fact {
+    (name.to_owned(), value.to_string())
+}
+
+fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
+    // Every field is named, so that a new one cannot be forgotten here.
+    let SettingsRecord {
+        max_error_m,
+        fill_voids,
+        nodata,
+        height_range_m,
+        dem_crs,
+        dem_vertical_crs,
+        vertical_crs,
+        vertical_shift_m,
+        crs,
+        cell_m,
+        cell_every,
+        scale_latitude_deg,
+        frc_table,
+        // The table's entries are compared one by one.
+        frc_table_sha256: _,
+        class_max_cell_m,
+        simplify_cells,
+    } = record;
+    let classes = class_max_cell_m.iter().enumerate().map(|(class, cell_m)| match cell_m {
+        Some(cell_m) => format!("{class}: {cell_m}"),
+        None => format!("{class}: all"),
+    });
+    vec![
+        fact("--max-error", max_error_m),
+        fact("--fill-voids", fill_voids),
+        fact("--nodata", &list(nodata.iter().map(ToString::to_string))),
+        fact("--height-range", &given(height_range_m.map(pair).as_ref())),
+        fact("--dem-crs", &given(dem_crs.as_ref())),
+        fact("--dem-vertical-crs", &given(dem_vertical_crs.as_ref())),
+        fact("--vertical-crs", &given(vertical_crs.as_ref())),
+        fact("--vertical-shift", vertical_shift_m),
+        fact("--crs", &given(crs.as_ref())),
+        fact("--cell", &given(cell_m.map(|cell| pair(cell.to_array())).as_ref())),
+        fact("--cell-every", &given(cell_every.as_ref())),
+        fact("--scale-latitude", &given(scale_latitude_deg.as_ref())),
+        fact("--frc-table", frc_table),
+        fact("class-max-cell (--all-classes)", &list(classes)),
+        fact("--simplify", simplify_cells),
+    ]
+}
+
+fn grid_facts(grid: &PlannedGrid) -> Vec<Fact> {
+    let PlannedGrid {
+        frame,
+        south_west,
+        north_east,
+        crs,
+        crs_wkt,
+        metres_per_unit,
+        point_scale,
+        data_bounds,
+        wgs84_bounds,
+        nodes_are_samples,
+        resampling,
+        vertical_datum,
+        vertical_treatment,
+        quantum_m,
+    } = grid;
+    vec![
+        fact("the working CRS", crs),
+        fact("the working CRS's WKT", crs_wkt),
+        fact("the number of metres per unit of the CRS", &pair(*metres_per_unit)),
+        fact("the scale at the centre", point_scale),
+        fact("the grid", &format!("{frame:?}")),
+        fact("the south-western node", &format!("{}, {}", south_west.i, south_west.j)),
+        fact("the north-eastern node", &format!("{}, {}", north_east.i, north_east.j)),
+        fact("the data's rectangle", &format!("{data_bounds:?}")),
+        fact("the data's rectangle in degrees", &format!("{wgs84_bounds:?}")),
+        fact("\"nodes are samples\"", nodes_are_samples),
+        fact("how nodes relate to samples", resampling),
+        fact("the vertical datum", vertical_datum),
+        fact("the treatment of heights", vertical_treatment),
+        fact("the step of heights in metres", quantum_m),
+    ]
+}
+
+fn level_facts(levels: &[PlannedLevel]) -> Vec<Fact> {
+    let words = |planned: &PlannedLevel| {
+        let PlannedLevel {
+            level,
+            cell_m,
+            max_error_m,
+            least_class,
+            simplify_tolerance_m,
+            width_margin_m,
+        } = planned;
+        let values = format!(
+            "cell {}, max error {max_error_m}, least class {}, simplification {simplify_tolerance_m}, margin {width_margin_m}",
+            pair(cell_m.to_array()),
+            given(least_class.as_ref()),
+        );
+        fact(&format!("level {level}"), &values)
+    };
+    levels.iter().map(words).collect()
+}

@@ -1,0 +1,240 @@
+//! What a build will take, before it begins.
+
+use std::time::Instant;
+
+use corniche_dem::FileBlocks;
+use corniche_tin::TinSpec;
+use serde::Serialize;
+
+use super::{Opened, covered_tiles::CoveredTiles, rates};
+use crate::{BuildError, Observer, Resources, inputs::InputKind};
+
+/// From so many finest tiles on some are triangulated to see how the ground is. Less work is estimated well enough without.
+const LEAST_TILES_TO_SAMPLE: u64 = 256;
+/// So many are.
+const SAMPLED_TILES: u64 = 12;
+/// Files with larger blocks are not sampled, because each sample would take as long as reading a large part of a file.
+const MOST_SAMPLED_BLOCK_BYTES: u64 = 64 << 20;
+
+/// What a build will take. All but the counts are estimates.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Estimate {
+    /// Nodes of the finest level in the files' rectangles; where files overlap they count twice.
+    pub nodes: u64,
+    /// Tiles per level, root first, if no tile is void.
+    pub tiles: Vec<u64>,
+    /// Memory.
+    pub memory: MemoryEstimate,
+    /// Disk space for intermediate results, bytes.
+    pub store_bytes: u64,
+    /// Size of the package.
+    pub package_bytes: u64,
+    /// Time on one core.
+    pub core_seconds: f64,
+    /// Time on as many threads as the build has.
+    pub seconds: f64,
+    /// Where the numbers of triangles, bytes and seconds come from.
+    pub rates: Rates,
+}
+
+/// Memory that a build needs, bytes.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct MemoryEstimate {
+    /// Whatever is being built.
+    pub base_bytes: u64,
+    /// For what is remembered of every tile.
+    pub tiles_bytes: u64,
+    /// Number of threads.
+    pub threads: u64,
+    /// For the work of each thread.
+    pub thread_bytes: u64,
+    /// For the largest block of a file, which GDAL decodes whole for each thread.
+    pub block_bytes: u64,
+    /// The file with that block.
+    pub block_file: String,
+    /// All blocks from the west to the east side of a file, the most of any file. With less memory for GDAL the build takes longer:
+    /// blocks are read more than once.
+    pub block_row_bytes: u64,
+    /// The sum that no build can do with less of.
+    pub least_bytes: u64,
+}
+
+/// Where an estimate's rates come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Rates {
+    /// From builds of other data on another machine, as `docs/measured.md` says.
+    Recorded,
+    /// From so many tiles of these data, triangulated on this machine.
+    Sampled {
+        /// How many.
+        tiles: u64,
+    },
+}
+
+impl Rates {
+    /// For people.
+    #[must_use]
+    pub fn text(self) -> String {
+        match self {
+            Self::Recorded => {
+                "from recorded rates of other data on another machine (docs/measured.md)".to_owned()
+            }
+            Self::Sampled { tiles } => {
+                format!("from {tiles} tiles of these data, triangulated on this machine")
+            }
+        }
+    }
+}
+
+/// The ground of a tile, on average.
+struct Ground {
+    triangles: f64,
+    core_seconds: f64,
+    rates: Rates,
+}
+
+impl Estimate {
+    /// What a build of `opened` will take. Where the data are many, some of their tiles are read.
+    pub(crate) fn of(
+        opened: &Opened,
+        resources: Resources,
+        observer: &dyn Observer,
+    ) -> Result<Self, BuildError> {
+        let rectangles = opened.dem.file_nodes(&opened.grid)?;
+        let finest = CoveredTiles::finest(&opened.grid.frame, &rectangles);
+        let mut tiles = vec![finest.count()];
+        let mut level = finest.parents();
+        while let Some(found) = level {
+            tiles.insert(0, found.count());
+            level = found.parents();
+        }
+        let sides = rectangles.iter().map(|[south_west, north_east]| {
+            let side = |low: i64, high: i64| (high - low + 1) as u64;
+            side(south_west.i, north_east.i).saturating_mul(side(south_west.j, north_east.j))
+        });
+        let nodes = sides.fold(0, u64::saturating_add);
+        let memory = MemoryEstimate::new(
+            &opened.dem.file_blocks()?,
+            tiles.iter().sum(),
+            resources.threads as u64,
+        );
+        let is_sampled = finest.count() >= LEAST_TILES_TO_SAMPLE
+            && memory.block_bytes <= MOST_SAMPLED_BLOCK_BYTES
+            && memory.least_bytes <= resources.memory_bytes;
+        let ground = if is_sampled {
+            Ground::sampled(opened, &finest, observer)?
+        } else {
+            Ground::recorded()
+        };
+        let extract = opened
+            .inputs
+            .planned()?
+            .into_iter()
+            .filter(|input| input.kind == InputKind::Osm.name());
+        let extract_bytes = extract.map(|input| input.bytes).sum();
+        Ok(Self::put_together(nodes, tiles, memory, extract_bytes, &ground))
+    }
+
+    fn put_together(
+        nodes: u64,
+        tiles: Vec<u64>,
+        memory: MemoryEstimate,
+        extract_bytes: u64,
+        ground: &Ground,
+    ) -> Self {
+        let all: u64 = tiles.iter().sum();
+        let finest = tiles.last().copied().unwrap_or(0);
+        let coarse = all - finest;
+        let extract = extract_bytes as f64;
+        let tins = ground.triangles * rates::PAYLOAD_BYTES_PER_TRIANGLE * all as f64;
+        let package = tins + rates::ROADS_PER_EXTRACT_BYTE * extract;
+        let fixed = finest * rates::HEIGHTS_BYTES
+            + coarse * rates::RASTER_BYTES
+            + all * (rates::RECORD_BYTES + rates::TILE_ARTIFACTS * rates::ARTIFACT_BYTES);
+        let coarse_tins = ground.triangles * rates::TIN_BYTES_PER_TRIANGLE * coarse as f64;
+        // What is sorted is gone before heights come.
+        let pieces = rates::PIECES_PER_EXTRACT_BYTE * extract;
+        let while_sorted = pieces + rates::SORTED_PER_EXTRACT_BYTE * extract;
+        let store = (fixed as f64 + coarse_tins + package + pieces).max(while_sorted);
+        let core_seconds =
+            ground.core_seconds * all as f64 + rates::SECONDS_PER_EXTRACT_BYTE * extract;
+        let cores = memory.threads.max(1) as f64 * rates::CORES_BUSY;
+        Self {
+            nodes,
+            tiles,
+            memory,
+            store_bytes: store.ceil() as u64,
+            package_bytes: package.ceil() as u64,
+            core_seconds,
+            seconds: core_seconds / cores,
+            rates: ground.rates,
+        }
+    }
+}
+
+impl MemoryEstimate {
+    pub(super) fn new(files: &[FileBlocks], tiles: u64, threads: u64) -> Self {
+        let largest = files.iter().max_by_key(|file| file.block_bytes());
+        let block_bytes = largest.map_or(0, FileBlocks::block_bytes);
+        let block_row_bytes = files.iter().map(FileBlocks::row_bytes).max().unwrap_or(0);
+        let tiles_bytes = tiles.saturating_mul(rates::TILE_BYTES);
+        let threads = threads.max(1);
+        let of_threads = threads.saturating_mul(rates::THREAD_BYTES.saturating_add(block_bytes));
+        Self {
+            base_bytes: rates::BASE_BYTES,
+            tiles_bytes,
+            threads,
+            thread_bytes: rates::THREAD_BYTES,
+            block_bytes,
+            block_file: largest.map_or_else(String::new, |file| file.path.display().to_string()),
+            block_row_bytes,
+            least_bytes: rates::BASE_BYTES.saturating_add(tiles_bytes).saturating_add(of_threads),
+        }
+    }
+}
+
+impl Ground {
+    fn recorded() -> Self {
+        Self {
+            triangles: rates::TRIANGLES_PER_TILE,
+            core_seconds: rates::SECONDS_PER_TILE,
+            rates: Rates::Recorded,
+        }
+    }
+
+    /// The average of some tiles, void ones included.
+    fn sampled(
+        opened: &Opened,
+        finest: &CoveredTiles,
+        observer: &dyn Observer,
+    ) -> Result<Self, BuildError> {
+        let Opened { grid, levels, max_error_m, dem, .. } = opened;
+        let mut reader = dem.reader(grid);
+        let spec = TinSpec { max_error_m: *max_error_m, quantum_m: levels.quantum_m() };
+        let tiles = finest.spread(SAMPLED_TILES);
+        let mut triangles = 0;
+        let mut seconds = 0.0;
+        for &id in &tiles {
+            if observer.is_cancelled() {
+                return Err(BuildError::Interrupted);
+            }
+            let window = reader.window(grid.frame.tile_window(id).with_halo(1))?;
+            let begun = Instant::now();
+            let tin = corniche_tin::triangulate(&window.heights, spec)
+                .map_err(|source| BuildError::Triangulate { id, source })?;
+            seconds += begun.elapsed().as_secs_f64();
+            triangles += tin.triangles().len();
+        }
+        let count = tiles.len().max(1) as f64;
+        Ok(Self {
+            triangles: triangles as f64 / count,
+            core_seconds: seconds / count * rates::STEPS_PER_MESH,
+            rates: Rates::Sampled { tiles: tiles.len() as u64 },
+        })
+    }
+}
+
+#[cfg(test)]
+#[path = "estimate_tests.rs"]
+pub(super) mod tests;

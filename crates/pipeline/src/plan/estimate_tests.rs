@@ -1,0 +1,60 @@
+use std::path::PathBuf;
+
+use super::*;
+
+/// A file of one band with so many columns and rows, in blocks.
+pub(in crate::plan) fn file(size: [u64; 2], block: [u64; 2], file_bytes: u64) -> FileBlocks {
+    FileBlocks { path: PathBuf::from("dem.tif"), size, block, sample_bytes: 4, file_bytes }
+}
+
+pub(in crate::plan) fn estimate(tiles: Vec<u64>, files: &[FileBlocks], threads: u64) -> Estimate {
+    let memory = MemoryEstimate::new(files, tiles.iter().sum(), threads);
+    Estimate::put_together(1 << 20, tiles, memory, 0, &Ground::recorded())
+}
+
+#[test]
+fn a_file_of_one_strip_needs_its_whole_image_for_each_thread() {
+    const IMAGE: u64 = 20_000 * 10_000 * 4;
+    let strip = file([20_000, 10_000], [20_000, 10_000], 1 << 20);
+    let memory = |threads| MemoryEstimate::new(std::slice::from_ref(&strip), 100, threads);
+    assert_eq!(memory(1).block_bytes, IMAGE + (1 << 20));
+    assert_eq!(memory(1).block_row_bytes, IMAGE);
+    let more = memory(3).least_bytes - memory(1).least_bytes;
+    assert_eq!(more, 2 * (IMAGE + (1 << 20) + rates::THREAD_BYTES));
+    assert_eq!(memory(1).block_file, "dem.tif");
+}
+
+#[test]
+fn a_file_in_tiles_needs_little_and_a_row_of_blocks_is_as_wide_as_the_file() {
+    let tiled = file([100_001, 100_000], [512, 512], 0);
+    let memory = MemoryEstimate::new(&[tiled], 0, 4);
+    assert_eq!(memory.block_bytes, 1 << 20);
+    assert_eq!(memory.block_row_bytes, 196 << 20);
+    // The least memory that may be asked for is enough for four threads and usual files.
+    assert!(memory.least_bytes <= crate::MIN_MEMORY_BYTES, "{memory:?}");
+}
+
+#[test]
+fn four_times_the_tiles_take_four_times_the_disk() {
+    let small = estimate(vec![0, 1000, 4000], &[], 1);
+    let large = estimate(vec![0, 4000, 16_000], &[], 1);
+    assert!(small.store_bytes > 4000 * rates::HEIGHTS_BYTES);
+    for (small, large) in [
+        (small.store_bytes, large.store_bytes),
+        (small.package_bytes, large.package_bytes),
+        (small.seconds.round() as u64, large.seconds.round() as u64),
+    ] {
+        assert!((4 * small).abs_diff(large) <= 8, "{small} {large}");
+    }
+}
+
+#[test]
+fn the_extract_takes_disk_too() {
+    let memory = || MemoryEstimate::new(&[], 1, 2);
+    let put = |extract_bytes| {
+        Estimate::put_together(1, vec![1], memory(), extract_bytes, &Ground::recorded())
+    };
+    let extract = 1_u64 << 30;
+    assert!(put(extract).store_bytes > put(0).store_bytes + extract);
+    assert!(put(extract).package_bytes > put(0).package_bytes + extract / 4);
+}

@@ -1,0 +1,50 @@
+//! What a build is going to make, and what it will need for it, before the work begins.
+//!
+//! ```text
+//!   settings ─► Opened ─┬─► BuildPlan: what every worker must know, with a hash
+//!                       └─► Estimate ─► Room: can it succeed here?
+//! ```
+
+mod build_plan;
+mod coordinates;
+mod covered_tiles;
+mod differences;
+mod estimate;
+mod opened;
+mod rates;
+mod room;
+
+use std::path::Path;
+
+pub use build_plan::{BuildPlan, FrcTableRecord, PlanError, PlannedGrid, PlannedLevel};
+pub use estimate::{Estimate, MemoryEstimate, Rates};
+pub(crate) use opened::Opened;
+
+use crate::{BuildError, Observer, PlanSettings, Resources};
+
+/// Plans a build and estimates what it will take. Of many data some tiles are read for it.
+///
+/// # Errors
+/// When a file cannot be used, the files make no grid, or a setting does not fit them.
+pub fn plan(
+    settings: &PlanSettings,
+    resources: Resources,
+    observer: &dyn Observer,
+) -> Result<(BuildPlan, Estimate), BuildError> {
+    corniche_dem::limit_block_cache(resources.memory_bytes / 8)
+        .map_err(|error| BuildError::Start { what: error.to_string() })?;
+    let opened = Opened::new(settings)?;
+    let estimate = Estimate::of(&opened, resources, observer)?;
+    Ok((BuildPlan::of(settings, &opened)?, estimate))
+}
+
+/// Fails if memory or disk space cannot suffice. Intermediate results go to `store`, the package to `target`: both folders.
+pub(crate) fn check_room(
+    opened: &Opened,
+    resources: Resources,
+    [store, target]: [&Path; 2],
+    observer: &dyn Observer,
+) -> Result<(), BuildError> {
+    let estimate = Estimate::of(opened, resources, observer)?;
+    room::Room::of(resources.memory_bytes, store, target)?.check(&estimate)
+}

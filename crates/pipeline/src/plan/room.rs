@@ -1,0 +1,134 @@
+//! Whether a build can succeed with the memory and the disk space that there are.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use super::Estimate;
+use crate::{
+    BuildError,
+    machine::{FileSystem, MIN_MEMORY_BYTES, machine_memory_bytes},
+};
+
+/// What a build may use.
+pub(super) struct Room {
+    /// `--memory`.
+    pub(super) memory_bytes: u64,
+    /// The machine's; `None` where it is not known.
+    pub(super) machine_bytes: Option<u64>,
+    /// Where intermediate results go.
+    pub(super) store: (PathBuf, FileSystem),
+    /// Where the package goes.
+    pub(super) target: (PathBuf, FileSystem),
+}
+
+impl Room {
+    /// Of this machine.
+    pub(super) fn of(memory_bytes: u64, store: &Path, target: &Path) -> Result<Self, BuildError> {
+        let place = |folder: &Path| -> Result<_, BuildError> {
+            let failed = |source| BuildError::Target { folder: folder.to_path_buf(), source };
+            let there = nearest_folder(folder).map_err(failed)?;
+            Ok((folder.to_path_buf(), FileSystem::of(&there).map_err(failed)?))
+        };
+        Ok(Self {
+            memory_bytes,
+            machine_bytes: machine_memory_bytes(),
+            store: place(store)?,
+            target: place(target)?,
+        })
+    }
+
+    /// Fails where the need is greater than what there is.
+    pub(super) fn check(&self, estimate: &Estimate) -> Result<(), BuildError> {
+        self.check_memory(estimate)?;
+        self.check_disk(estimate)
+    }
+
+    fn check_memory(&self, estimate: &Estimate) -> Result<(), BuildError> {
+        let need = estimate.memory.least_bytes.max(MIN_MEMORY_BYTES);
+        let (have, whose) = match self.machine_bytes {
+            Some(machine) if machine < self.memory_bytes => (machine, "this machine has"),
+            _ => (self.memory_bytes, "--memory allows"),
+        };
+        if need <= have {
+            return Ok(());
+        }
+        Err(BuildError::NoMemory { why: memory_text(estimate, need, have, whose) })
+    }
+
+    fn check_disk(&self, estimate: &Estimate) -> Result<(), BuildError> {
+        let (store, package) = (estimate.store_bytes, estimate.package_bytes);
+        let refuse = |folder: &Path, need: u64, what: String, free: u64| BuildError::NoRoom {
+            folder: folder.to_path_buf(),
+            need: size(need),
+            what,
+            free: size(free),
+        };
+        let for_store = format!("{} for intermediate results", size(store));
+        let for_package = format!("{} for the package", size(package));
+        let [(store_folder, of_store), (target_folder, of_target)] = [&self.store, &self.target];
+        if of_store.device == of_target.device {
+            let need = store.saturating_add(package);
+            let free = of_store.free_bytes.min(of_target.free_bytes);
+            let what = format!("{for_store} and {for_package}");
+            return if need > free { Err(refuse(store_folder, need, what, free)) } else { Ok(()) };
+        }
+        if store > of_store.free_bytes {
+            return Err(refuse(store_folder, store, for_store, of_store.free_bytes));
+        }
+        if package > of_target.free_bytes {
+            return Err(refuse(target_folder, package, for_package, of_target.free_bytes));
+        }
+        Ok(())
+    }
+}
+
+/// The need of memory, what it is made of, and what to do.
+fn memory_text(estimate: &Estimate, need: u64, have: u64, whose: &str) -> String {
+    let memory = &estimate.memory;
+    let (fixed, threads) = (memory.base_bytes + memory.tiles_bytes, memory.threads);
+    let mut why = format!(
+        "the build needs at least {} of memory, and {whose} {}: {} for the program and its lists, {threads} × {} for threads",
+        size(need),
+        size(have),
+        size(fixed),
+        size(memory.thread_bytes),
+    );
+    // Blocks are worth a word when they are more than a thread's other work.
+    if memory.block_bytes > memory.thread_bytes {
+        why += &format!(
+            ", {threads} × {} for a block of {:?}, which can only be decoded as a whole",
+            size(memory.block_bytes),
+            memory.block_file,
+        );
+    }
+    why += &format!("; give --memory {}", size(need));
+    if threads > 1 {
+        why += ", or fewer --threads";
+    }
+    if memory.block_bytes > memory.thread_bytes {
+        why += ", or store the file in tiles (gdal_translate -co TILED=YES -co COMPRESS=DEFLATE)";
+    }
+    why + ", or begin anyway with --force"
+}
+
+/// The folder itself, or the nearest one above it that exists.
+fn nearest_folder(folder: &Path) -> io::Result<PathBuf> {
+    let whole = std::path::absolute(folder)?;
+    let existing = whole.ancestors().find(|ancestor| fs::metadata(ancestor).is_ok());
+    Ok(existing.unwrap_or(&whole).to_path_buf())
+}
+
+/// A number of bytes as `--memory` takes it, rounded up.
+fn size(bytes: u64) -> String {
+    const G: u64 = 1 << 30;
+    match bytes {
+        _ if bytes >= 100 * G => format!("{}G", bytes.div_ceil(G)),
+        _ => format!("{}M", bytes.div_ceil(1 << 20)),
+    }
+}
+
+#[cfg(test)]
+#[path = "room_tests.rs"]
+mod tests;

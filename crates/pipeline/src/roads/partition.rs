@@ -1,0 +1,294 @@
+//! Reads the extract once and keeps, for each tile of each level, the pieces of roads that it needs.
+//!
+//! ```text
+//! extract ─► roads ─► pieces by level and tile ─► sorted by tile and ordinal ─► one artifact for each tile
+//!                └──► true lengths ─► one artifact for each block of roads
+//! ```
+//!
+//! Nothing that grows with the number of roads stays in memory.
+
+use std::{
+    cell::RefCell,
+    collections::BTreeMap,
+    path::Path,
+    sync::{Mutex, PoisonError},
+};
+
+use corniche_geom::{Frame, LatticeBounds, LatticePoint, ProjectError, Projection, TileId};
+use corniche_osm::ExtractSummary;
+use corniche_roads::{FunctionalRoadClass, Road};
+use corniche_store::{Artifacts, Scratch, SortRecord, Sorter};
+use corniche_tileset::pmtiles_order;
+use rayon::prelude::*;
+
+use super::{
+    lengths::TrueLengths,
+    pieces::{RoadPiece, TilePiecesWriter},
+    split::{SplitRoad, Splitting},
+    totals::{ExtractCounts, LengthsWriter, RoadTotals},
+};
+use crate::{
+    BuildError, Defect, Observer, RoadSettings, Stage,
+    artifacts::{self, Kind},
+    levels::Levels,
+};
+
+/// Roads and points of roads that are split at once.
+const BATCH_ROADS: usize = 1024;
+const BATCH_POINTS: usize = 1 << 16;
+
+/// What the partition needs.
+pub(crate) struct RoadInput<'a> {
+    pub(crate) osm: &'a Path,
+    pub(crate) settings: &'a RoadSettings,
+    pub(crate) projection: &'a (dyn Projection + Sync),
+    pub(crate) levels: &'a Levels,
+    pub(crate) lengths: &'a TrueLengths<'a>,
+    /// The finest tiles on which the data's rectangle lies, all together.
+    pub(crate) data_bounds: LatticeBounds,
+    pub(crate) pool: &'a rayon::ThreadPool,
+    /// Of the sorting.
+    pub(crate) memory_bytes: u64,
+}
+
+/// Keeps the pieces of all tiles, the lengths of all roads, and last their totals. If the totals are in the store, all is, and
+/// nothing is read.
+pub(crate) fn partition(
+    input: &RoadInput<'_>,
+    store: &dyn Artifacts,
+    scratch: &dyn Scratch,
+    observer: &dyn Observer,
+) -> Result<RoadTotals, BuildError> {
+    if let Some(totals) = artifacts::get(store, Kind::RoadTotals.item(0))? {
+        return Ok(totals);
+    }
+    observer.begin(Stage::Roads, None);
+    let mut gathered = Gathered::new(input, store, scratch);
+    let (extract, defects) = read(input, scratch, &mut gathered, observer)?;
+    gathered.split_batch();
+    if let Some(error) = gathered.failed {
+        return Err(error);
+    }
+    if gathered.totals.roads == 0 {
+        return Err(BuildError::NoRoads { osm: input.osm.to_path_buf() });
+    }
+    gathered.lengths.finish()?;
+    put_pieces(gathered.pieces, store, observer)?;
+    let totals = RoadTotals { defects, extract: ExtractCounts::from(&extract), ..gathered.totals };
+    artifacts::put(store, Kind::RoadTotals.item(0), &totals)?;
+    observer.end(Stage::Roads);
+    Ok(totals)
+}
+
+/// Hands all roads of the extract to `gathered`; returns what the extract held, and its defects by name.
+fn read(
+    input: &RoadInput<'_>,
+    scratch: &dyn Scratch,
+    gathered: &mut Gathered<'_>,
+    observer: &dyn Observer,
+) -> Result<(ExtractSummary, BTreeMap<String, u64>), BuildError> {
+    let unprojected = Mutex::new(None);
+    let place = |positions_deg: &[[f64; 2]]| {
+        place(positions_deg, input.levels.frame(), input.projection).unwrap_or_else(|error| {
+            // The points are not at fault: the run fails with this error after reading.
+            *unprojected.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+            vec![None; positions_deg.len()]
+        })
+    };
+    let defects = RefCell::new(BTreeMap::new());
+    let summary = corniche_osm::read_roads(
+        &corniche_osm::ReadRequest {
+            path: input.osm,
+            table: &input.settings.table,
+            place: &place,
+            pool: input.pool,
+            memory_bytes: input.memory_bytes,
+            scratch,
+            on_progress: None,
+        },
+        &mut |road| {
+            gathered.add(road);
+            observer.advance(Stage::Roads, 1);
+        },
+        &mut |defect| {
+            let defect = Defect::from(defect);
+            *defects.borrow_mut().entry(defect.name()).or_default() += 1;
+            observer.defect(&defect);
+        },
+        &|| observer.is_cancelled(),
+    );
+    if observer.is_cancelled() {
+        return Err(BuildError::Interrupted);
+    }
+    let summary = summary?;
+    if let Some(error) = unprojected.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        return Err(BuildError::Project(error));
+    }
+    Ok((summary, defects.into_inner()))
+}
+
+fn place(
+    positions_deg: &[[f64; 2]],
+    frame: &Frame,
+    projection: &dyn Projection,
+) -> Result<Vec<Option<LatticePoint>>, ProjectError> {
+    let mut positions = positions_deg.to_vec();
+    projection.working_from_wgs84(&mut positions)?;
+    Ok(positions.into_iter().map(|position_m| frame.snap(position_m)).collect())
+}
+
+/// Roads as they come in.
+struct Gathered<'a> {
+    splitting: Splitting<'a>,
+    pool: &'a rayon::ThreadPool,
+    batch: Vec<Road>,
+    batch_points: usize,
+    totals: RoadTotals,
+    lengths: LengthsWriter<'a>,
+    pieces: Sorter<'a, PieceRecord>,
+    /// The reader's sink cannot fail; the first failure is kept and everything after it ignored.
+    failed: Option<BuildError>,
+}
+
+impl<'a> Gathered<'a> {
+    /// Nothing yet.
+    fn new(input: &RoadInput<'a>, store: &'a dyn Artifacts, scratch: &'a dyn Scratch) -> Self {
+        Self {
+            splitting: Splitting {
+                levels: input.levels,
+                lengths: input.lengths,
+                data_bounds: input.data_bounds,
+            },
+            pool: input.pool,
+            batch: Vec::new(),
+            batch_points: 0,
+            totals: RoadTotals {
+                classes: vec![(0, 0); FunctionalRoadClass::COUNT],
+                ..RoadTotals::default()
+            },
+            lengths: LengthsWriter::new(store),
+            // The reader keeps a third of its memory while it hands out roads.
+            pieces: Sorter::new(scratch, input.memory_bytes / 3 * 2),
+            failed: None,
+        }
+    }
+
+    fn add(&mut self, road: Road) {
+        self.batch_points += road.line.points().len();
+        self.batch.push(road);
+        if self.batch.len() >= BATCH_ROADS || self.batch_points >= BATCH_POINTS {
+            self.split_batch();
+        }
+    }
+
+    /// Splits the roads of the batch side by side, and takes them in their order.
+    fn split_batch(&mut self) {
+        let batch = std::mem::take(&mut self.batch);
+        self.batch_points = 0;
+        if self.failed.is_some() {
+            return;
+        }
+        let splitting = &self.splitting;
+        let first = self.totals.roads as u32;
+        let split = |(index, road): (usize, &Road)| {
+            let mut road = splitting.split(road);
+            let pieces = std::mem::take(&mut road.pieces).into_iter();
+            let ordinal = first + index as u32;
+            let record = |(id, piece): (TileId, RoadPiece)| PieceRecord {
+                tile: pmtiles_order(id),
+                ordinal,
+                bytes: piece.to_bytes(),
+            };
+            (road, pieces.map(record).collect())
+        };
+        let roads: Vec<(SplitRoad, Vec<PieceRecord>)> =
+            self.pool.install(|| batch.par_iter().enumerate().map(split).collect());
+        for (road, pieces) in roads {
+            if let Err(error) = self.take(&road, pieces) {
+                self.failed = Some(error);
+                return;
+            }
+        }
+    }
+
+    /// Takes the road with the next ordinal.
+    fn take(&mut self, road: &SplitRoad, pieces: Vec<PieceRecord>) -> Result<(), BuildError> {
+        self.totals.roads += 1;
+        let length_um = road.length.length_um;
+        self.totals.length_um += length_um;
+        let class = &mut self.totals.classes[usize::from(road.class.number())];
+        *class = (class.0 + 1, class.1 + length_um);
+        if let Some(own) = road.bounds {
+            let all =
+                self.totals.bounds.map_or(own, |[min, max]| own.union(&LatticeBounds { min, max }));
+            self.totals.bounds = Some([all.min, all.max]);
+        }
+        self.lengths.push(road.length)?;
+        for piece in pieces {
+            self.pieces.push(piece).map_err(BuildError::Storage)?;
+        }
+        Ok(())
+    }
+}
+
+/// The piece of a road on its way to its tile. No two have the same tile and ordinal.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct PieceRecord {
+    /// The tile's place in the order of the package.
+    tile: u64,
+    ordinal: u32,
+    bytes: Vec<u8>,
+}
+
+impl SortRecord for PieceRecord {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.tile.to_le_bytes());
+        bytes.extend(self.ordinal.to_le_bytes());
+        bytes.extend((self.bytes.len() as u32).to_le_bytes());
+        bytes.extend(&self.bytes);
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        let (tile, rest) = bytes.split_first_chunk()?;
+        let (ordinal, rest) = rest.split_first_chunk()?;
+        let (length, rest) = rest.split_first_chunk()?;
+        let (piece, rest) = rest.split_at_checked(u32::from_le_bytes(*length) as usize)?;
+        *bytes = rest;
+        Some(Self {
+            tile: u64::from_le_bytes(*tile),
+            ordinal: u32::from_le_bytes(*ordinal),
+            bytes: piece.to_vec(),
+        })
+    }
+
+    fn extra_bytes(&self) -> usize {
+        self.bytes.capacity()
+    }
+}
+
+/// Puts one artifact for each tile, in the order of the package.
+fn put_pieces(
+    pieces: Sorter<'_, PieceRecord>,
+    store: &dyn Artifacts,
+    observer: &dyn Observer,
+) -> Result<(), BuildError> {
+    let put = |tile: u64, pieces: TilePiecesWriter| {
+        if observer.is_cancelled() {
+            return Err(BuildError::Interrupted);
+        }
+        Ok(store.put(Kind::RoadPieces.item(tile), &pieces.into_bytes())?)
+    };
+    let mut current: Option<(u64, TilePiecesWriter)> = None;
+    for record in pieces.finish().map_err(BuildError::Storage)? {
+        let PieceRecord { tile, ordinal, bytes } = record.map_err(BuildError::Storage)?;
+        if let Some((before, done)) = current.take_if(|(current, _)| *current != tile) {
+            put(before, done)?;
+        }
+        current.get_or_insert_with(|| (tile, TilePiecesWriter::default())).1.push(ordinal, &bytes);
+    }
+    current.map_or(Ok(()), |(tile, pieces)| put(tile, pieces))
+}
+
+#[cfg(test)]
+#[path = "partition_tests.rs"]
+mod tests;

@@ -1,0 +1,181 @@
+//! What a tile needs of its roads: pieces of their lines as its level shows them.
+
+use corniche_geom::{LatticePoint, Polyline, TileId};
+use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
+use corniche_store::Artifacts;
+
+use super::varints::{Take, put_signed, put_text, put_unsigned};
+use crate::{
+    BuildError,
+    artifacts::{Kind, damaged},
+};
+
+/// What a tile needs of one road.
+///
+/// ```text
+///       ┌───────────────────┐ tile and margin      The line leaves and comes back: two runs. A run has whole
+///   ●───┼──●────●           │                      segments, so clipping gives the same parts, at the same points,
+///       │        ╲          │                      as clipping the whole line.
+///       └─────────●─────────┘
+///    run 1         ●        ●     run 2
+///                   ╲      ╱
+///                    ●────●       (not kept)
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RoadPiece {
+    pub(crate) way_id: i64,
+    pub(crate) class: FunctionalRoadClass,
+    pub(crate) attributes: RoadAttributes,
+    /// How many points of the source line belong to the tile.
+    pub(crate) source_points: u64,
+    /// The same of the level's simplified line.
+    pub(crate) simplified_points: u64,
+    /// In the order of the line.
+    pub(crate) runs: Vec<Run>,
+}
+
+/// Segments of the level's line that follow each other and may meet the tile or its margin.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Run {
+    pub(crate) line: Polyline,
+    /// On the finest level, the true length of each segment in micrometres; empty on other levels.
+    pub(crate) segments_um: Vec<u64>,
+}
+
+/// The pieces of all roads of a tile with the roads' ordinals, ascending.
+///
+/// Bytes: for each road, how many ordinals lie between it and the road before, and then its piece.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct TilePieces {
+    pub(crate) roads: Vec<(u32, RoadPiece)>,
+}
+
+impl TilePieces {
+    /// Those of a tile; none if nothing is in the store.
+    pub(crate) fn load(store: &dyn Artifacts, id: TileId) -> Result<Self, BuildError> {
+        let key = Kind::RoadPieces.of_tile(id);
+        let Some(bytes) = store.get(key)? else { return Ok(Self::default()) };
+        Self::from_bytes(&bytes).ok_or_else(|| damaged(key, &"these are no pieces of roads"))
+    }
+
+    /// Reads what [`TilePiecesWriter`] made; `None` for other bytes.
+    pub(crate) fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        let mut rest = Take::new(bytes);
+        let mut roads = Vec::new();
+        let mut next = 0_u32;
+        while !rest.is_empty() {
+            let ordinal = next.checked_add(u32::try_from(rest.unsigned()?).ok()?)?;
+            roads.push((ordinal, RoadPiece::take(&mut rest)?));
+            next = ordinal.checked_add(1)?;
+        }
+        Some(Self { roads })
+    }
+}
+
+/// Puts the pieces of a tile one after the other.
+#[derive(Default)]
+pub(crate) struct TilePiecesWriter {
+    bytes: Vec<u8>,
+    /// The least ordinal that can follow.
+    next: u32,
+}
+
+impl TilePiecesWriter {
+    /// Adds a road by its encoded piece. Ordinals ascend.
+    pub(crate) fn push(&mut self, ordinal: u32, piece: &[u8]) {
+        debug_assert!(ordinal >= self.next, "ordinals ascend");
+        put_unsigned(&mut self.bytes, u64::from(ordinal - self.next));
+        self.bytes.extend(piece);
+        self.next = ordinal + 1;
+    }
+
+    pub(crate) fn into_bytes(self) -> Vec<u8> {
+        self.bytes
+    }
+}
+
+impl RoadPiece {
+    /// Its bytes: numbers of variable length, points as differences from the point before.
+    pub(crate) fn to_bytes(&self) -> Vec<u8> {
+        let Self { way_id, class, attributes, source_points, simplified_points, runs } = self;
+        let points: usize = runs.iter().map(|run| run.line.points().len()).sum();
+        let mut bytes = Vec::with_capacity(64 + points * 12);
+        put_signed(&mut bytes, *way_id);
+        bytes.extend([
+            class.number(),
+            attributes.form as u8,
+            attributes.structure as u8,
+            attributes.layer.cast_unsigned(),
+            attributes.oneway as u8,
+        ]);
+        for text in [&attributes.name, &attributes.reference, &attributes.surface] {
+            put_text(&mut bytes, text);
+        }
+        put_unsigned(&mut bytes, *source_points);
+        put_unsigned(&mut bytes, *simplified_points);
+        put_unsigned(&mut bytes, runs.len() as u64);
+        let mut before = LatticePoint::new(0, 0);
+        for run in runs {
+            let points = run.line.points();
+            put_unsigned(&mut bytes, points.len() as u64);
+            for &point in points {
+                put_signed(&mut bytes, point.u.wrapping_sub(before.u));
+                put_signed(&mut bytes, point.v.wrapping_sub(before.v));
+                before = point;
+            }
+            put_unsigned(&mut bytes, run.segments_um.len() as u64);
+            for &segment_um in &run.segments_um {
+                put_unsigned(&mut bytes, segment_um);
+            }
+        }
+        bytes
+    }
+
+    fn take(rest: &mut Take<'_>) -> Option<Self> {
+        let way_id = rest.signed()?;
+        let &[class, form, structure, layer, oneway] = rest.bytes(5)? else { return None };
+        let attributes = RoadAttributes {
+            form: *Form::ALL.get(usize::from(form))?,
+            structure: *Structure::ALL.get(usize::from(structure))?,
+            layer: layer.cast_signed(),
+            oneway: *Oneway::ALL.get(usize::from(oneway))?,
+            name: rest.text()?,
+            reference: rest.text()?,
+            surface: rest.text()?,
+        };
+        let [source_points, simplified_points] = [rest.unsigned()?, rest.unsigned()?];
+        let count = rest.count()?;
+        let mut before = LatticePoint::new(0, 0);
+        let mut runs = Vec::with_capacity(count);
+        for _ in 0..count {
+            runs.push(Run::take(rest, &mut before)?);
+        }
+        let class = FunctionalRoadClass::new(class)?;
+        Some(Self { way_id, class, attributes, source_points, simplified_points, runs })
+    }
+}
+
+impl Run {
+    fn take(rest: &mut Take<'_>, before: &mut LatticePoint) -> Option<Self> {
+        let count = rest.count()?;
+        let mut points = Vec::with_capacity(count);
+        for _ in 0..count {
+            let [u, v] = [rest.signed()?, rest.signed()?];
+            *before = LatticePoint::new(before.u.wrapping_add(u), before.v.wrapping_add(v));
+            points.push(*before);
+        }
+        let lengths = rest.count()?;
+        let mut segments_um = Vec::with_capacity(lengths);
+        for _ in 0..lengths {
+            segments_um.push(rest.unsigned()?);
+        }
+        let line = Polyline::new(points).ok()?;
+        // Equal neighbours would have been merged: a run has none.
+        let is_whole = line.points().len() == count && (lengths == 0 || lengths == count - 1);
+        is_whole.then_some(Self { line, segments_um })
+    }
+}
+
+#[cfg(test)]
+#[path = "pieces_tests.rs"]
+mod tests;

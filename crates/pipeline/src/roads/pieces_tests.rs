@@ -1,0 +1,73 @@
+use proptest::{collection::vec, prelude::*};
+
+use super::*;
+
+fn runs() -> impl Strategy<Value = Vec<Run>> {
+    let point = (any::<i64>(), any::<i64>()).prop_map(|(u, v)| LatticePoint::new(u >> 3, v >> 3));
+    let run = (vec(point, 2..9), any::<bool>(), any::<u64>()).prop_filter_map(
+        "a line has two different points",
+        |(points, has_lengths, length_um)| {
+            let line = Polyline::new(points).ok()?;
+            let count = if has_lengths { line.points().len() - 1 } else { 0 };
+            Some(Run { line, segments_um: vec![length_um; count] })
+        },
+    );
+    vec(run, 0..4)
+}
+
+fn pieces() -> impl Strategy<Value = RoadPiece> {
+    let attributes = (0..4_usize, 0..3_usize, any::<i8>(), 0..3_usize, ".{0,9}").prop_map(
+        |(form, structure, layer, oneway, name)| RoadAttributes {
+            form: Form::ALL[form],
+            structure: Structure::ALL[structure],
+            layer,
+            oneway: Oneway::ALL[oneway],
+            reference: name.chars().rev().collect(),
+            surface: "asphalt".into(),
+            name,
+        },
+    );
+    (any::<i64>(), 0..9_u8, attributes, any::<[u64; 2]>(), runs()).prop_map(
+        |(way_id, class, attributes, [source_points, simplified_points], runs)| {
+            let class = FunctionalRoadClass::new(class).unwrap();
+            RoadPiece { way_id, class, attributes, source_points, simplified_points, runs }
+        },
+    )
+}
+
+fn written(pieces: &TilePieces) -> Vec<u8> {
+    let mut writer = TilePiecesWriter::default();
+    for (ordinal, piece) in &pieces.roads {
+        writer.push(*ordinal, &piece.to_bytes());
+    }
+    writer.into_bytes()
+}
+
+proptest! {
+    /// Pieces come back as they were.
+    #[test]
+    fn pieces_come_back(pieces in vec(pieces(), 0..5), ordinals in proptest::collection::btree_set(0..u32::MAX, 5)) {
+        let tile = TilePieces { roads: ordinals.into_iter().zip(pieces).collect() };
+        prop_assert_eq!(TilePieces::from_bytes(&written(&tile)), Some(tile));
+    }
+
+    /// Damaged bytes are nothing or other pieces, never a panic; a cut road is nothing.
+    #[test]
+    fn damage_is_no_panic(piece in pieces(), at in any::<prop::sample::Index>(), bit in 0..8_u8) {
+        let tile = TilePieces { roads: vec![(7, piece)] };
+        let mut bytes = written(&tile);
+        let at = at.index(bytes.len());
+        if at > 0 {
+            prop_assert_eq!(TilePieces::from_bytes(&bytes[..at]), None);
+        }
+        bytes[at] ^= 1_u8 << bit;
+        let damaged = TilePieces::from_bytes(&bytes);
+        prop_assert!(damaged.is_none_or(|pieces| pieces != tile));
+    }
+
+    /// Foreign bytes are no panic.
+    #[test]
+    fn foreign_bytes_are_no_panic(bytes in vec(any::<u8>(), 0..200)) {
+        let _ = TilePieces::from_bytes(&bytes);
+    }
+}

@@ -1,0 +1,135 @@
+//! What is known of all roads together, and of each road alone: its true lengths.
+
+use std::collections::BTreeMap;
+
+use corniche_geom::LatticePoint;
+use corniche_osm::ExtractSummary;
+use corniche_store::Artifacts;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    BuildError,
+    artifacts::{self, Kind},
+};
+
+/// Roads of a block of [`Kind::RoadLengths`].
+pub(crate) const BLOCK_ROADS: u64 = 1 << 16;
+
+/// True lengths of a road.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct RoadLength {
+    pub(crate) way_id: i64,
+    /// Of the whole road, micrometres.
+    pub(crate) length_um: u64,
+    /// How much of it lies outside the tiles of the data's rectangle, measured by itself.
+    pub(crate) outside_um: u64,
+}
+
+/// What is known of all roads. It is kept last: when it is in the store, so are all pieces and lengths.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct RoadTotals {
+    /// How many roads there are: ordinals run from 0 to one less.
+    pub(crate) roads: u64,
+    /// The sum of their true lengths, micrometres.
+    pub(crate) length_um: u64,
+    /// Per class: roads and true micrometres.
+    pub(crate) classes: Vec<(u64, u64)>,
+    /// Counted defects by name.
+    pub(crate) defects: BTreeMap<String, u64>,
+    /// What the extract held and what of it is no road.
+    pub(crate) extract: ExtractCounts,
+    /// South-west and north-east corner of where roads lie.
+    pub(crate) bounds: Option<[LatticePoint; 2]>,
+}
+
+/// The counts of an extract that a manifest records.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct ExtractCounts {
+    pub(crate) unknown_highways: Vec<(String, u64)>,
+    pub(crate) tags_taken_otherwise: Vec<(String, u64)>,
+    pub(crate) blobs_passed_over: u64,
+    pub(crate) highways_in: u64,
+    /// Ways with a `highway` tag that are no roads here, by reason.
+    pub(crate) highways_left_out: Vec<(String, u64)>,
+}
+
+impl From<&ExtractSummary> for ExtractCounts {
+    fn from(extract: &ExtractSummary) -> Self {
+        let list = |counts: &BTreeMap<String, u64>| -> Vec<(String, u64)> {
+            counts.iter().map(|(name, &count)| (name.clone(), count)).collect()
+        };
+        Self {
+            unknown_highways: list(&extract.unknown_highways),
+            tags_taken_otherwise: list(&extract.tags_taken_otherwise),
+            blobs_passed_over: extract.blobs_passed_over,
+            highways_in: extract.highway_ways,
+            highways_left_out: left_out(extract),
+        }
+    }
+}
+
+fn left_out(extract: &ExtractSummary) -> Vec<(String, u64)> {
+    let left_out = &extract.left_out;
+    [
+        ("listed as no road", left_out.listed),
+        ("class is off", left_out.class_off),
+        ("value in no class", left_out.unknown),
+        ("an area", left_out.area),
+        ("id occurs twice", left_out.duplicate),
+        ("no line is left", left_out.without_line),
+    ]
+    .into_iter()
+    .filter(|&(_, ways)| ways > 0)
+    .map(|(reason, ways)| (reason.to_owned(), ways))
+    .collect()
+}
+
+/// Keeps the lengths of roads, block by block, as they come in the order of their ordinals.
+pub(crate) struct LengthsWriter<'a> {
+    store: &'a dyn Artifacts,
+    blocks: u64,
+    block: Vec<RoadLength>,
+}
+
+impl<'a> LengthsWriter<'a> {
+    pub(crate) fn new(store: &'a dyn Artifacts) -> Self {
+        Self { store, blocks: 0, block: Vec::new() }
+    }
+
+    /// Adds the road with the next ordinal.
+    pub(crate) fn push(&mut self, length: RoadLength) -> Result<(), BuildError> {
+        self.block.push(length);
+        if self.block.len() as u64 == BLOCK_ROADS { self.flush() } else { Ok(()) }
+    }
+
+    /// Ends the last block.
+    pub(crate) fn finish(mut self) -> Result<(), BuildError> {
+        if self.block.is_empty() { Ok(()) } else { self.flush() }
+    }
+
+    fn flush(&mut self) -> Result<(), BuildError> {
+        artifacts::put(self.store, Kind::RoadLengths.item(self.blocks), &self.block)?;
+        self.blocks += 1;
+        self.block.clear();
+        Ok(())
+    }
+}
+
+/// The lengths of a block, which has `roads` roads.
+pub(crate) fn lengths_of_block(
+    store: &dyn Artifacts,
+    block: u64,
+    roads: u64,
+) -> Result<Vec<RoadLength>, BuildError> {
+    let key = Kind::RoadLengths.item(block);
+    let lengths: Option<Vec<RoadLength>> = artifacts::get(store, key)?;
+    match lengths {
+        Some(lengths) if lengths.len() as u64 == roads => Ok(lengths),
+        Some(_) => Err(artifacts::damaged(key, &"it does not have the lengths of its roads")),
+        None => Err(artifacts::damaged(key, &"it is missing")),
+    }
+}
+
+#[cfg(test)]
+#[path = "totals_tests.rs"]
+mod tests;

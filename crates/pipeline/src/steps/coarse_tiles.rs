@@ -1,0 +1,112 @@
+//! The tiles above the finest level: their deviations come from the records of all finest tiles beneath them.
+
+use std::collections::BTreeMap;
+
+use corniche_geom::TileId;
+
+use crate::{
+    BuildError, Stage,
+    artifacts::Kind,
+    context::Context,
+    heights::rasters,
+    tile::{
+        encode,
+        mesh::Meshed,
+        record::{Seen, TileDeviation, TileRecord},
+    },
+    workers,
+};
+
+/// Makes the coarse tiles beneath and at `scope` that are not there yet. All finest tiles beneath must be there.
+pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
+    let store = context.store;
+    let deviations = deviations(context, scope)?;
+    let mut ids: Vec<TileId> = deviations.keys().copied().collect();
+    let all = ids.len() as u64;
+    ids.retain(|&id| !store.has(Kind::Record.of_tile(id)));
+    ids.sort_unstable_by_key(|&id| corniche_tileset::pmtiles_order(id));
+    context.observer.begin(Stage::CoarseTiles, Some(all));
+    context.observer.already(Stage::CoarseTiles, all - ids.len() as u64);
+    workers::in_order_unless_cancelled(
+        context.observer,
+        context.threads(),
+        ids.len(),
+        || Ok(()),
+        |(), index| {
+            let id = ids[index];
+            let missing =
+                || BuildError::Missing { what: format!("the TIN of tile {id}"), step: "top" };
+            let meshed = Meshed::get(store, id)?.ok_or_else(missing)?;
+            let deviation = deviations.get(&id).copied().unwrap_or_default();
+            // Heights are wanted only where there are roads: they decide which borders are the tile's own.
+            let has_roads = store.has(Kind::RoadPieces.of_tile(id));
+            let heights = if has_roads { rasters::with_halo(store, id)? } else { None };
+            encode::with_ground(context, id, meshed, deviation, heights.as_ref())?.put(store, id)
+        },
+        |_, ()| {
+            context.observer.advance(Stage::CoarseTiles, 1);
+            Ok::<_, BuildError>(())
+        },
+    )?;
+    context.observer.end(Stage::CoarseTiles);
+    Ok(())
+}
+
+/// The deviations of the coarse tiles with ground beneath and at `scope`, from the records of finest tiles.
+fn deviations(
+    context: &Context<'_>,
+    scope: TileId,
+) -> Result<BTreeMap<TileId, TileDeviation>, BuildError> {
+    let store = context.store;
+    let mut coarse: BTreeMap<TileId, Seen> = BTreeMap::new();
+    // Per finest tile with ground: its own deviation.
+    let mut finest_m: BTreeMap<TileId, f64> = BTreeMap::new();
+    for id in context.data().in_order_within(scope) {
+        let record = TileRecord::get(store, id)?
+            .ok_or_else(|| BuildError::Missing { what: format!("tile {id}"), step: "tiles" })?;
+        if let Some(ground) = record.ground {
+            finest_m.insert(id, ground.deviation.geometric_error_m);
+        }
+        for (level, share) in (0..id.z()).zip(&record.levels) {
+            if level >= scope.z() && share.has_ground {
+                coarse.entry(id.ancestor(level)).or_default().merge(share.seen);
+            }
+        }
+    }
+    Ok(stored(&coarse, &finest_m))
+}
+
+/// Computes the geometric errors, from the finest level up: the maximum of the tile's own deviation and those of all tiles
+/// beneath it.
+///
+/// A tile may lack ground where its children have some (an island too small for a cell of its level), so what is
+/// beneath counts for the nearest tile above that exists.
+fn stored(
+    coarse: &BTreeMap<TileId, Seen>,
+    finest_m: &BTreeMap<TileId, f64>,
+) -> BTreeMap<TileId, TileDeviation> {
+    let own_m = |id: &TileId| {
+        coarse.get(id).map(|seen| seen.max_abs_m).or_else(|| finest_m.get(id).copied())
+    };
+    let mut beneath_m: BTreeMap<TileId, f64> = BTreeMap::new();
+    let pass_up = |id: TileId, error_m: f64, beneath_m: &mut BTreeMap<TileId, f64>| {
+        let mut above = (0..id.z()).rev().map(|level| id.ancestor(level));
+        if let Some(above) = above.find(|above| coarse.contains_key(above)) {
+            let largest_m = beneath_m.entry(above).or_default();
+            *largest_m = largest_m.max(error_m);
+        }
+    };
+    for (&id, &error_m) in finest_m {
+        pass_up(id, error_m, &mut beneath_m);
+    }
+    let mut by_tile = BTreeMap::new();
+    // Ids sort by level first, so in reverse order children come before their parents.
+    for (&id, &seen) in coarse.iter().rev() {
+        let children_m = id.children().filter_map(|child| own_m(&child)).fold(0.0, f64::max);
+        let beneath = beneath_m.get(&id).copied().unwrap_or_default();
+        let deviation = TileDeviation::of(seen, beneath, children_m);
+        pass_up(id, deviation.geometric_error_m, &mut beneath_m);
+        by_tile.insert(id, deviation);
+    }
+    by_tile
+}

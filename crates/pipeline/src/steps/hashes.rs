@@ -1,0 +1,35 @@
+//! Step *hashes*: the content of each input, hashed once.
+
+use corniche_tileset::InputRecord;
+
+use crate::{
+    BuildError,
+    artifacts::{self, Kind},
+    context::Context,
+    inputs::Inputs,
+};
+
+/// Hashes the inputs that are not hashed yet.
+pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
+    let store = context.store;
+    let is_done = |index: usize| store.has(Kind::InputHash.item(index as u64));
+    context.inputs.hash_each(is_done, context.observer, |index, record| {
+        artifacts::put(store, Kind::InputHash.item(index as u64), &record)
+    })
+}
+
+/// The records of all inputs, as the manifest has them.
+pub(crate) fn records(context: &Context<'_>) -> Result<Vec<InputRecord>, BuildError> {
+    let inputs = context.inputs;
+    let mut records = Vec::new();
+    for index in 0..inputs.len() {
+        let record: Option<InputRecord> =
+            artifacts::get(context.store, Kind::InputHash.item(index as u64))?;
+        records.push(record.ok_or_else(|| BuildError::Missing {
+            what: format!("the hash of {}", inputs.name(index)),
+            step: "hashes",
+        })?);
+    }
+    Inputs::in_order(&mut records);
+    Ok(records)
+}

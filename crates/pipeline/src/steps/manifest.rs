@@ -1,0 +1,131 @@
+//! The manifest: the package's table of contents, from the context and the sums over all tiles.
+
+use corniche_tileset::{
+    Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest,
+    ScaleRecord, VerticalRecord,
+};
+
+use super::sums::TileSums;
+use crate::{
+    context::Context,
+    heights::pyramid::HeightSums,
+    manifest_texts,
+    roads::{counts::road_counts, losses, totals::RoadTotals},
+    settings_record,
+};
+
+/// Everything that goes into the manifest.
+pub(crate) struct Outcome<'a> {
+    pub(crate) context: &'a Context<'a>,
+    pub(crate) inputs: Vec<InputRecord>,
+    pub(crate) heights: HeightSums,
+    pub(crate) roads: Option<(&'a RoadTotals, &'a losses::Sums)>,
+    pub(crate) tiles: &'a TileSums,
+}
+
+/// Puts the manifest together.
+pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
+    let Context { settings, grid: plan, levels, .. } = *outcome.context;
+    let frame = *levels.frame();
+    let record =
+        settings_record::of(&settings.terrain, &settings.roads, outcome.context.max_error_m);
+    let mut attribution = settings.attribution.clone();
+    if outcome.roads.is_some() {
+        attribution.push(corniche_osm::ATTRIBUTION.to_owned());
+    }
+    Manifest {
+        format_version: FORMAT_VERSION,
+        generator: format!("{}, {}", settings.generator, plan.libraries),
+        tiling: manifest_texts::TILING.to_owned(),
+        crs: plan.crs.clone(),
+        crs_wkt: plan.crs_wkt.clone(),
+        metres_per_unit: plan.metres_per_unit,
+        point_scale: plan.point_scale,
+        scale: ScaleRecord {
+            center: plan.scale.center,
+            least: plan.scale.least,
+            largest: plan.scale.largest,
+        },
+        frame,
+        data_bounds: plan.data_bounds,
+        wgs84_bounds: plan.wgs84_bounds,
+        resampling: plan.resampling_text.clone(),
+        nodes_are_samples: plan.nodes_are_samples(),
+        vertical: VerticalRecord {
+            quantum_m: levels.quantum_m(),
+            unit: manifest_texts::HEIGHT_UNIT.to_owned(),
+            datum: manifest_texts::datum(plan).to_owned(),
+            treatment: plan.vertical.clone(),
+            range_m: outcome.heights.range_m.map(f64::from),
+        },
+        coordinates: outcome.context.coordinates.clone(),
+        levels: level_records(outcome),
+        settings_sha256: settings_record::sha256(&record),
+        settings: record,
+        inputs: outcome.inputs.clone(),
+        attribution,
+        counts: counts(outcome),
+        growth: growth(outcome),
+    }
+}
+
+fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
+    let levels = outcome.context.levels;
+    levels
+        .numbers()
+        .map(|level| {
+            let sums = outcome.tiles.levels.get(&level).cloned().unwrap_or_default();
+            let errors_m = Distribution::of(sums.geometric_errors_m);
+            LevelRecord {
+                level,
+                cell_m: levels.frame().level_cell(level),
+                max_error_m: levels.max_error_m(level),
+                geometric_error_m: errors_m.map_or(0.0, |errors_m| errors_m.max),
+                errors_m,
+                sample_error: outcome.tiles.samples[usize::from(level)].record(),
+                tightness: Distribution::of(sums.tightness),
+                least_class: levels
+                    .least_class(level)
+                    .map(corniche_roads::FunctionalRoadClass::number),
+                simplify_tolerance_m: levels.simplify_tolerance_m(level),
+                width_margin_m: levels.margin_m(level),
+                tiles: sums.tiles,
+                triangles: sums.triangles,
+                vertices: sums.vertices,
+                terrain_bytes: sums.terrain_bytes,
+                uncovered_nodes: sums.uncovered_nodes,
+            }
+        })
+        .collect()
+}
+
+/// Counts of roads: read, kept, and lost by reason.
+fn counts(outcome: &Outcome<'_>) -> Counts {
+    let samples = outcome.heights.samples;
+    match outcome.roads {
+        Some((totals, losses)) => road_counts(samples, totals, losses),
+        None => Counts { samples, ..Counts::default() },
+    }
+}
+
+fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {
+    outcome
+        .tiles
+        .classes
+        .iter()
+        .filter(|(_, sums)| sums.source_vertices > 0)
+        .map(|(&(level, class), sums)| GrowthRow {
+            level,
+            class,
+            source_vertices: sums.source_vertices,
+            simplified_vertices: sums.simplified_vertices,
+            geo_vertices: sums.geo_vertices,
+            sv_vertices: sums.sv_vertices,
+            source_bytes: sums.source_vertices * 16,
+            simplified_bytes: sums.simplified_vertices * 16,
+            geo_raw_bytes: sums.geo_vertices * 24,
+            geo_stored_bytes: sums.geo_stored_bytes,
+            sv_stored_bytes: sums.sv_stored_bytes,
+        })
+        .collect()
+}

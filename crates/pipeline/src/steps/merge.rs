@@ -1,0 +1,107 @@
+//! Step *merge*: the coarse tiles above all subtrees, the sums over all records, the manifest, the package.
+
+use std::path::Path;
+
+use corniche_store::Scratch;
+use corniche_tileset::{Manifest, Writer, tile_of_order};
+
+use super::{
+    hashes,
+    manifest::{self, Outcome},
+    sums::TileSums,
+};
+use crate::{
+    BuildError, Stage,
+    artifacts::{self, Kind},
+    context::Context,
+    roads::{losses::LossFold, totals::RoadTotals},
+    tile::record::TileRecord,
+};
+
+/// Where the package goes.
+pub(crate) struct Target<'a> {
+    /// The file to write.
+    pub(crate) finished: &'a Path,
+    /// Its final name, for messages.
+    pub(crate) named: &'a Path,
+}
+
+/// Adds up all records and writes the package.
+pub(crate) fn make(
+    context: &Context<'_>,
+    scratch: &dyn Scratch,
+    target: &Target<'_>,
+) -> Result<Manifest, BuildError> {
+    let heights = context.pyramid().sums()?;
+    let roads = match &context.settings.osm {
+        Some(_) => {
+            let totals: Option<RoadTotals> =
+                artifacts::get(context.store, Kind::RoadTotals.item(0))?;
+            let what = "the extract's list of roads".to_owned();
+            Some(totals.ok_or(BuildError::Missing { what, step: "roads" })?)
+        }
+        None => None,
+    };
+    let mut tiles = TileSums::new(context);
+    let mut fold = LossFold::new(scratch, context.memory().sorting);
+    for item in context.store.items(Kind::Record as u8) {
+        let id = tile_of_order(item)
+            .ok_or_else(|| artifacts::damaged(Kind::Record.item(item), &"there is no such tile"))?;
+        if let Some(record) = TileRecord::get(context.store, id)? {
+            tiles.add(id.z(), &record);
+            fold.add(&record.fates)?;
+        }
+        if context.observer.is_cancelled() {
+            return Err(BuildError::Interrupted);
+        }
+    }
+    if tiles.levels.values().all(|level| level.tiles == 0) {
+        let dem = context.settings.dem.clone();
+        return Err(BuildError::NoCell { dem, nodes: heights.samples.with_data });
+    }
+    let losses = match &roads {
+        Some(totals) => Some(fold.finish(totals, context.store, context.observer)?),
+        None => None,
+    };
+    let manifest = manifest::of(&Outcome {
+        context,
+        inputs: hashes::records(context)?,
+        heights,
+        roads: roads.as_ref().zip(losses.as_ref()),
+        tiles: &tiles,
+    });
+    if let (Some(osm), 0) = (&context.settings.osm, manifest.counts.roads_kept) {
+        return Err(BuildError::NoGround { osm: osm.clone() });
+    }
+    // All inputs have been read. If none has changed, the recorded hashes are those of the bytes that were used.
+    context.inputs.check_unchanged()?;
+    write(context, target, &manifest)?;
+    Ok(manifest)
+}
+
+/// Writes the package.
+fn write(
+    context: &Context<'_>,
+    target: &Target<'_>,
+    manifest: &Manifest,
+) -> Result<(), BuildError> {
+    let failed = |source| BuildError::Write { path: target.named.to_path_buf(), source };
+    let payloads = context.store.items(Kind::Payload as u8);
+    context.observer.begin(Stage::Package, Some(payloads.len() as u64));
+    let mut writer = Writer::create(target.finished, manifest).map_err(failed)?;
+    for item in payloads {
+        if context.observer.is_cancelled() {
+            return Err(BuildError::Interrupted);
+        }
+        let key = Kind::Payload.item(item);
+        let id =
+            tile_of_order(item).ok_or_else(|| artifacts::damaged(key, &"there is no such tile"))?;
+        let bytes = context.store.get(key)?;
+        let bytes = bytes.ok_or_else(|| artifacts::damaged(key, &"it is gone"))?;
+        writer.add(id, &bytes).map_err(failed)?;
+        context.observer.advance(Stage::Package, 1);
+    }
+    writer.finish().map_err(failed)?;
+    context.observer.end(Stage::Package);
+    Ok(())
+}

@@ -1,0 +1,15 @@
+//! The steps of a build. Each makes what is not yet in the store, and may be done again, by any process, for any subtree.
+//!
+//! ```text
+//!  hashes   roads ────────────────┐
+//!  heights ─► top ─► tiles ───────┴─► merge
+//! ```
+
+pub(crate) mod coarse_tiles;
+pub(crate) mod hashes;
+pub(crate) mod manifest;
+pub(crate) mod merge;
+pub(crate) mod roads;
+pub(crate) mod sums;
+pub(crate) mod tiles;
+pub(crate) mod tins;

@@ -1,0 +1,78 @@
+//! Sums over all tiles: folds of their records.
+
+use std::collections::BTreeMap;
+
+use corniche_tileset::VerticalRecord;
+
+use crate::{
+    context::Context,
+    roads::lay::ClassSums,
+    sample_deviation::SampleSums,
+    tile::record::{LevelShare, TileRecord},
+};
+
+/// Sums over all tiles.
+///
+/// Whole numbers, maxima, and lists that are sorted before they are used: the order in which records come does not matter.
+pub(crate) struct TileSums {
+    pub(crate) levels: BTreeMap<u8, LevelSums>,
+    /// By level and class.
+    pub(crate) classes: BTreeMap<(u8, u8), ClassSums>,
+    /// Per level, root first: distances to samples.
+    pub(crate) samples: Vec<SampleSums>,
+    least_measured_m: f64,
+}
+
+/// Sums over the tiles of a level.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct LevelSums {
+    pub(crate) tiles: u64,
+    pub(crate) vertices: u64,
+    pub(crate) triangles: u64,
+    pub(crate) terrain_bytes: u64,
+    /// Geometric errors of its tiles.
+    pub(crate) geometric_errors_m: Vec<f64>,
+    /// Geometric errors of its tiles over their deviations, where those can be measured.
+    pub(crate) tightness: Vec<f64>,
+    /// Nodes with data that its tiles do not cover, or that have no tile above them.
+    pub(crate) uncovered_nodes: u64,
+}
+
+impl TileSums {
+    /// Nothing yet.
+    pub(crate) fn new(context: &Context<'_>) -> Self {
+        let quantum_m = context.levels.quantum_m();
+        Self {
+            levels: BTreeMap::new(),
+            classes: BTreeMap::new(),
+            samples: vec![SampleSums::new(quantum_m); context.levels.numbers().count()],
+            least_measured_m: VerticalRecord::least_measured_error_m(quantum_m),
+        }
+    }
+
+    /// Adds the tile of a level.
+    pub(crate) fn add(&mut self, level: u8, record: &TileRecord) {
+        for ((above, share), samples) in (0..).zip(&record.levels).zip(&mut self.samples) {
+            let LevelShare { has_ground, seen, sums } = share;
+            samples.merge(sums);
+            if !has_ground {
+                self.levels.entry(above).or_default().uncovered_nodes += seen.uncovered_nodes;
+            }
+        }
+        let Some(ground) = record.ground else { return };
+        let sums = self.levels.entry(level).or_default();
+        let deviation = ground.deviation;
+        sums.tiles += 1;
+        sums.vertices += ground.vertices;
+        sums.triangles += ground.triangles;
+        sums.terrain_bytes += ground.terrain_bytes;
+        sums.geometric_errors_m.push(deviation.geometric_error_m);
+        if deviation.deviation_m >= self.least_measured_m {
+            sums.tightness.push(deviation.geometric_error_m / deviation.deviation_m);
+        }
+        sums.uncovered_nodes += deviation.uncovered_nodes;
+        for (&class, counted) in &record.classes {
+            self.classes.entry((level, class)).or_default().merge(counted);
+        }
+    }
+}

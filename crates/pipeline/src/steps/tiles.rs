@@ -1,0 +1,75 @@
+//! Step *tiles*: each finest tile in one task, from its heights to its payload and record; then the coarse tiles above, within
+//! the subtree.
+
+use corniche_dem::Reader;
+use corniche_geom::TileId;
+
+use super::{coarse_tiles, tins};
+use crate::{
+    BuildError, Stage,
+    artifacts::Kind,
+    context::Context,
+    heights::finest::FinestHeights,
+    tile::{
+        encode,
+        grounds::Grounds,
+        measure::Column,
+        mesh::mesh_tile,
+        record::{Seen, TileDeviation, TileRecord},
+    },
+    workers,
+};
+
+/// Makes all tiles beneath and at `scope` that are not there yet.
+pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
+    tins::make(context, scope, scope.z()..context.frame().max_level())?;
+    make_finest(context, scope)?;
+    coarse_tiles::make(context, scope)
+}
+
+fn make_finest(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
+    let Context { store, observer, .. } = *context;
+    let mut ids = context.data().in_order_within(scope);
+    let all = ids.len() as u64;
+    ids.retain(|&id| !store.has(Kind::Record.of_tile(id)));
+    observer.begin(Stage::Tiles, Some(all));
+    observer.already(Stage::Tiles, all - ids.len() as u64);
+    let grounds = Grounds::new(context);
+    workers::in_order_unless_cancelled(
+        observer,
+        context.threads(),
+        ids.len(),
+        || Ok(context.dem.reader(context.grid)),
+        |reader, index| make_tile(context, &grounds, reader, ids[index]),
+        |_, ()| {
+            observer.advance(Stage::Tiles, 1);
+            Ok::<_, BuildError>(())
+        },
+    )?;
+    observer.end(Stage::Tiles);
+    Ok(())
+}
+
+fn make_tile(
+    context: &Context<'_>,
+    grounds: &Grounds<'_>,
+    reader: &mut Reader<'_>,
+    id: TileId,
+) -> Result<(), BuildError> {
+    let heights = FinestHeights::get(context.store, id)?;
+    let with_halo = heights.as_ref().map(|heights| &heights.with_halo);
+    let meshed = with_halo.map(|heights| mesh_tile(heights, id, context.levels)).transpose()?;
+    let meshed = meshed.filter(|meshed| !meshed.tin.is_empty());
+    let column = Column::new(context, grounds, id, meshed.as_ref().map(|meshed| &meshed.tin))?;
+    let levels = column.measure(context, reader, heights.as_ref())?;
+    drop(column);
+    let own = levels.last().map_or(Seen::default(), |share| share.seen);
+    let record = match meshed {
+        Some(meshed) => {
+            let deviation = TileDeviation::of(own, 0.0, 0.0);
+            encode::with_ground(context, id, meshed, deviation, with_halo)?
+        }
+        None => encode::without_ground(context, id, with_halo)?,
+    };
+    TileRecord { levels, ..record }.put(context.store, id)
+}

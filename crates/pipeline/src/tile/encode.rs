@@ -1,0 +1,144 @@
+//! A tile's ground and roads to its payload.
+
+use std::collections::BTreeMap;
+
+use corniche_drape::{Neighbours, OwnedBorders};
+use corniche_geom::{HeightGrid, TileId};
+use corniche_roads::FunctionalRoadClass;
+use corniche_tileset::{EncodedTile, PayloadContext, Terrain, TilePayload};
+use corniche_tin::{Placement, Surface};
+
+use super::{
+    mesh::Meshed,
+    record::{GroundRecord, TileDeviation, TileRecord},
+};
+use crate::{
+    BuildError,
+    artifacts::Kind,
+    context::Context,
+    heights::{finest::TILE_NODES, rasters},
+    roads::{
+        lay::{ClassSums, Laid, TileToLayOn, lost_pieces},
+        pieces::TilePieces,
+        shares::share,
+    },
+};
+
+/// Lays a tile's roads on its ground, encodes both and keeps the payload. The record lacks only what finest tiles say of levels.
+///
+/// `heights` has one node of halo; it decides which borders are the tile's own.
+pub(crate) fn with_ground(
+    context: &Context<'_>,
+    id: TileId,
+    meshed: Meshed,
+    deviation: TileDeviation,
+    heights: Option<&HeightGrid>,
+) -> Result<TileRecord, BuildError> {
+    let levels = context.levels;
+    let frame = context.frame();
+    let pieces = TilePieces::load(context.store, id)?;
+    let mut laid = if let (false, Some(heights)) = (pieces.roads.is_empty(), heights) {
+        let placement = Placement::of_tile(frame, id, levels.quantum_m());
+        let surface = Surface::new(&meshed.tin, placement);
+        let owned = owned_borders(context, id, heights)?;
+        Laid::of_tile(&pieces, &TileToLayOn { id, surface: &surface, owned }, levels)
+    } else {
+        Laid::default()
+    };
+    let fates = std::mem::take(&mut laid.fates);
+    let laid_classes = std::mem::take(&mut laid.classes);
+    let (vertices, triangles) =
+        (meshed.tin.vertices().len() as u64, meshed.tin.triangles().len() as u64);
+    let terrain = Terrain {
+        tin: meshed.tin,
+        normals: meshed.normals,
+        geometric_error_m: deviation.geometric_error_m,
+        height_range_m: deviation.height_range_m,
+        uncovered_nodes: deviation.uncovered_nodes,
+    };
+    let payload = laid.into_payload(id, terrain);
+    let encoding = PayloadContext { frame: *frame, quantum_m: levels.quantum_m() };
+    let encoded = corniche_tileset::encode(&payload, &encoding)?;
+    let classes = class_sums(laid_classes, &payload, &encoded);
+    context.store.put(Kind::Payload.of_tile(id), &encoded.bytes)?;
+    let terrain_bytes = encoded.sizes.terrain.stored;
+    Ok(TileRecord {
+        ground: Some(GroundRecord { vertices, triangles, terrain_bytes, deviation }),
+        classes,
+        fates,
+        levels: Vec::new(),
+    })
+}
+
+/// The record of a finest tile without ground: its roads are lost there. `heights` is `None` where no node has one.
+pub(crate) fn without_ground(
+    context: &Context<'_>,
+    id: TileId,
+    heights: Option<&HeightGrid>,
+) -> Result<TileRecord, BuildError> {
+    let pieces = TilePieces::load(context.store, id)?;
+    let mut record = TileRecord::default();
+    if pieces.roads.is_empty() {
+        return Ok(record);
+    }
+    let bounds = context.frame().tile_lattice_bounds(id);
+    let nothing = HeightGrid::from_fn(TILE_NODES + 2, TILE_NODES + 2, |_, _| f32::NAN);
+    let owned = owned_borders(context, id, heights.unwrap_or(&nothing))?;
+    record.fates = lost_pieces(&pieces, &bounds, owned);
+    Ok(record)
+}
+
+/// What the tile owns of its borders, by the ground on both sides of them.
+///
+/// A neighbour for which no roads are laid (beside the data, or without ground above the finest level) owns nothing.
+fn owned_borders(
+    context: &Context<'_>,
+    id: TileId,
+    with_halo: &HeightGrid,
+) -> Result<OwnedBorders, BuildError> {
+    let is_asked = |east, south| match id.neighbour(east, south) {
+        Some(other) if id.z() == context.frame().max_level() => Ok(context.data().contains(other)),
+        Some(other) => has_ground(context, other),
+        None => Ok(false),
+    };
+    let neighbours = Neighbours { east: is_asked(1, 0)?, south: is_asked(0, 1)? };
+    Ok(OwnedBorders::among(neighbours).where_ground(|column, row| {
+        with_halo.cell_has_ground((column + 1) as usize, (row + 1) as usize)
+    }))
+}
+
+/// Whether a coarse tile has ground: a cell with a height at each corner. Its raster says so, too, where its TIN is made elsewhere.
+fn has_ground(context: &Context<'_>, id: TileId) -> Result<bool, BuildError> {
+    let Some(raster) = rasters::get(context.store, id)? else { return Ok(false) };
+    Ok((0..TILE_NODES - 1)
+        .any(|row| (0..TILE_NODES - 1).any(|column| raster.cell_has_ground(column, row))))
+}
+
+/// Adds vertices by class, and each section's stored bytes shared out by the classes' encoded lengths.
+fn class_sums(
+    mut classes: BTreeMap<u8, ClassSums>,
+    payload: &TilePayload,
+    encoded: &EncodedTile,
+) -> BTreeMap<u8, ClassSums> {
+    for road in &payload.roads_geo {
+        classes.entry(road.class.number()).or_default().geo_vertices +=
+            road.line.vertices.len() as u64;
+    }
+    for road in &payload.roads_sv {
+        classes.entry(road.class.number()).or_default().sv_vertices +=
+            road.line.points.len() as u64;
+    }
+    for class in FunctionalRoadClass::all() {
+        let index = usize::from(class.number());
+        let shares = [
+            share(encoded.sizes.roads_geo.stored, &encoded.sizes.geo_class_bytes, index),
+            share(encoded.sizes.roads_sv.stored, &encoded.sizes.sv_class_bytes, index),
+        ];
+        if shares != [0, 0] {
+            let sums = classes.entry(class.number()).or_default();
+            sums.geo_stored_bytes += shares[0];
+            sums.sv_stored_bytes += shares[1];
+        }
+    }
+    classes
+}

@@ -1,0 +1,157 @@
+//! How far the TINs of a finest tile and of all its ancestors are from the heights of the finest tile.
+
+use std::sync::Arc;
+
+use corniche_dem::Reader;
+use corniche_geom::{HeightGrid, TileId};
+use corniche_tin::{Tin, WindowPlacement};
+
+use super::{
+    grounds::{Ground, Grounds},
+    record::{LevelShare, Seen},
+};
+use crate::{
+    BuildError, context::Context, heights::finest::FinestHeights, sample_deviation::SampleSums,
+};
+
+/// The grounds above and on a finest tile, root first; `None` where a level has none there.
+pub(crate) struct Column {
+    finest: TileId,
+    grounds: Vec<Option<Arc<Ground>>>,
+}
+
+impl Column {
+    pub(crate) fn new(
+        context: &Context<'_>,
+        grounds: &Grounds<'_>,
+        finest: TileId,
+        tin: Option<&Tin>,
+    ) -> Result<Self, BuildError> {
+        let above = (0..finest.z()).map(|level| grounds.of(finest.ancestor(level)));
+        let mut all = above.collect::<Result<Vec<_>, _>>()?;
+        all.push(tin.map(|tin| Arc::new(Ground::new(context, finest, tin))));
+        Ok(Self { finest, grounds: all })
+    }
+
+    /// Measures every level at every node, and at every sample where samples are not nodes. `heights` is `None` where no node
+    /// has one.
+    pub(crate) fn measure(
+        &self,
+        context: &Context<'_>,
+        reader: &mut Reader<'_>,
+        heights: Option<&FinestHeights>,
+    ) -> Result<Vec<LevelShare>, BuildError> {
+        let none = SampleSums::new(context.levels.quantum_m());
+        let mut shares: Vec<LevelShare> = self
+            .grounds
+            .iter()
+            .map(|ground| LevelShare {
+                has_ground: ground.is_some(),
+                seen: Seen::default(),
+                sums: none.clone(),
+            })
+            .collect();
+        let nodes_are_samples = context.grid.nodes_are_samples();
+        if let Some(heights) = heights {
+            self.at_nodes(context, heights, nodes_are_samples, &mut shares);
+        }
+        if !nodes_are_samples {
+            self.at_samples(context, reader, &mut shares)?;
+        }
+        Ok(shares)
+    }
+
+    fn at_nodes(
+        &self,
+        context: &Context<'_>,
+        heights: &FinestHeights,
+        nodes_are_samples: bool,
+        shares: &mut [LevelShare],
+    ) {
+        let frame = context.frame();
+        let finest = self.finest;
+        let window = heights.own();
+        let range_m = window.range_m();
+        let is_own_sample = own_samples(finest, &window, &heights.filled);
+        let last = window.columns() - 1;
+        for ((level, ground), share) in (0..).zip(&self.grounds).zip(shares) {
+            let sums = &mut share.sums;
+            let mut uncovered_nodes = 0;
+            let mut look = |column: usize, row: usize, distance_m: Option<f64>| {
+                // Nodes on the east and south border belong to the next tile, which counts them.
+                uncovered_nodes += u64::from(distance_m.is_none() && column < last && row < last);
+                if nodes_are_samples && is_own_sample[row * window.columns() + column] {
+                    sums.add(distance_m);
+                }
+            };
+            share.seen = if let Some(ground) = ground {
+                let (corner, above) =
+                    (frame.tile_corner(finest), frame.tile_corner(finest.ancestor(level)));
+                let placement = WindowPlacement {
+                    column: corner.i - above.i,
+                    row: above.j - corner.j,
+                    stride: frame.stride(level),
+                };
+                let found = corniche_tin::measure(&ground.buckets, &window, placement, look);
+                Seen::of(found, range_m, uncovered_nodes)
+            } else {
+                for row in 0..window.rows() {
+                    for column in 0..window.columns() {
+                        if window.has_height(column, row) {
+                            look(column, row, None);
+                        }
+                    }
+                }
+                Seen { uncovered_nodes, ..Seen::default() }
+            };
+        }
+    }
+
+    /// Adds the distances to the DEM's own samples. Each sample belongs to one finest tile, by its place rounded to the lattice,
+    /// as places of roads are.
+    fn at_samples(
+        &self,
+        context: &Context<'_>,
+        reader: &mut Reader<'_>,
+        shares: &mut [LevelShare],
+    ) -> Result<(), BuildError> {
+        let (frame, data) = (context.frame(), context.data());
+        let root = frame.tile_lattice_bounds(TileId::ROOT);
+        for area in context.dem.sample_areas_of(context.grid, frame.tile_window(self.finest))? {
+            let block = reader.used_samples(&area)?;
+            for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
+                let Some(point) = frame.snap(position_m) else { continue };
+                if data.owner(frame, point) != self.finest {
+                    continue;
+                }
+                for (ground, share) in self.grounds.iter().zip(&mut *shares) {
+                    let surface = ground.as_ref().and_then(|ground| ground.surface.as_ref());
+                    let distance_m = surface.filter(|_| root.contains(point)).and_then(|surface| {
+                        let triangle = surface.locate(point)?;
+                        let ground_m = surface.height_at_point_m(triangle, point);
+                        Some((ground_m - f64::from(height_m)).abs())
+                    });
+                    share.sums.add(distance_m);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Which nodes of a tile count as samples: not filled voids, and not those on the east and south border, which belong to the
+/// next tile if there can be one.
+fn own_samples(finest: TileId, window: &HeightGrid, filled: &[usize]) -> Vec<bool> {
+    let last_tile = (1_u32 << finest.z()) - 1;
+    let columns = window.columns() - usize::from(finest.x() < last_tile);
+    let rows = window.rows() - usize::from(finest.y() < last_tile);
+    let mut is_own = vec![false; window.columns() * window.rows()];
+    for row in 0..rows {
+        let from = row * window.columns();
+        is_own[from..from + columns].fill(true);
+    }
+    for &node in filled {
+        is_own[node] = false;
+    }
+    is_own
+}

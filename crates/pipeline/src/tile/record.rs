@@ -1,0 +1,112 @@
+//! What is kept beside a tile: all that the manifest needs of it. The package is not read for its own table of contents.
+
+use std::collections::BTreeMap;
+
+use corniche_geom::TileId;
+use corniche_store::Artifacts;
+use corniche_tin::Deviation;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    BuildError,
+    artifacts::{self, Kind},
+    heights::area::union,
+    roads::lay::{ClassSums, RoadFate},
+    sample_deviation::SampleSums,
+};
+
+/// The record of a tile. Sums over tiles are sums of records, in whole numbers, maxima and minima: they do not depend on
+/// the order of tiles or on how these are grouped.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct TileRecord {
+    /// `None` where the tile has no ground, and so no payload.
+    pub(crate) ground: Option<GroundRecord>,
+    /// By number of the class.
+    pub(crate) classes: BTreeMap<u8, ClassSums>,
+    /// Finest tiles only: what became of roads here, by ordinal.
+    pub(crate) fates: Vec<(u32, RoadFate)>,
+    /// Finest tiles only, root first: how far its nodes and samples are from the TINs of its ancestors, and of the tile itself.
+    pub(crate) levels: Vec<LevelShare>,
+}
+
+/// Counts of a tile's ground, and how far it is from the heights.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct GroundRecord {
+    pub(crate) vertices: u64,
+    pub(crate) triangles: u64,
+    pub(crate) terrain_bytes: u64,
+    pub(crate) deviation: TileDeviation,
+}
+
+/// How far the TIN of one tile is from the nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct TileDeviation {
+    /// What the tile stores: never below the deviations of the tiles below it.
+    pub(crate) geometric_error_m: f64,
+    /// The largest deviation of the tile itself and of its children, each by its own TIN.
+    pub(crate) deviation_m: f64,
+    pub(crate) height_range_m: [f64; 2],
+    pub(crate) uncovered_nodes: u64,
+}
+
+/// The share of one finest tile in what is known of a tile above it, or of itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct LevelShare {
+    /// Whether the tile of that level has ground.
+    pub(crate) has_ground: bool,
+    pub(crate) seen: Seen,
+    /// Distances to the nodes that are not filled voids, or, where samples are not nodes, to the DEM's samples.
+    pub(crate) sums: SampleSums,
+}
+
+/// What was seen of a tile's TIN from one finest tile, or from several.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Seen {
+    /// Largest vertical distance from the TIN to a node, metres.
+    pub(crate) max_abs_m: f64,
+    /// Lowest and highest node.
+    pub(crate) range_m: Option<[f32; 2]>,
+    /// Nodes with a height where there is no triangle.
+    pub(crate) uncovered_nodes: u64,
+}
+
+impl Seen {
+    /// Adds what was seen of the same tile from elsewhere, in any order.
+    pub(crate) fn merge(&mut self, other: Self) {
+        self.max_abs_m = self.max_abs_m.max(other.max_abs_m);
+        self.uncovered_nodes += other.uncovered_nodes;
+        self.range_m = union(self.range_m, other.range_m);
+    }
+
+    /// From a measurement of nodes; `uncovered_nodes` without those that belong to the next tile.
+    pub(crate) fn of(
+        deviation: Deviation,
+        range_m: Option<[f32; 2]>,
+        uncovered_nodes: u64,
+    ) -> Self {
+        Self { max_abs_m: deviation.max_abs_m, range_m, uncovered_nodes }
+    }
+}
+
+impl TileDeviation {
+    /// From what was seen of a tile, the largest geometric error beneath it, and the largest own deviation of its children.
+    pub(crate) fn of(seen: Seen, beneath_m: f64, children_m: f64) -> Self {
+        let [low, high] = seen.range_m.unwrap_or([0.0, 0.0]);
+        Self {
+            geometric_error_m: beneath_m.max(seen.max_abs_m),
+            deviation_m: children_m.max(seen.max_abs_m),
+            height_range_m: [f64::from(low), f64::from(high)],
+            uncovered_nodes: seen.uncovered_nodes,
+        }
+    }
+}
+
+impl TileRecord {
+    pub(crate) fn put(&self, store: &dyn Artifacts, id: TileId) -> Result<(), BuildError> {
+        artifacts::put(store, Kind::Record.of_tile(id), self)
+    }
+
+    pub(crate) fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<Self>, BuildError> {
+        artifacts::get(store, Kind::Record.of_tile(id))
+    }
+}

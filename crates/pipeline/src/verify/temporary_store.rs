@@ -1,0 +1,35 @@
+//! Where `verify` keeps what does not fit in memory.
+
+use std::{sync::Arc, time::Duration};
+
+use corniche_store::{LocalScratch, LocalStore, StoreError, StoredPlan, SystemDisk};
+use tempfile::TempDir;
+
+use super::error::VerifyError;
+use crate::Observer;
+
+/// A store in a temporary folder, which is removed with it.
+pub(super) struct TemporaryStore {
+    pub(super) store: LocalStore,
+    _folder: TempDir,
+}
+
+impl TemporaryStore {
+    pub(super) fn new(observer: &dyn Observer) -> Result<Self, VerifyError> {
+        let folder = tempfile::tempdir().map_err(VerifyError::Work)?;
+        observer.temporary(folder.path());
+        // Nothing is gone on from here, so it is bound to nothing, and nothing has to be durable.
+        let plan = StoredPlan { hash: [0; 32], bytes: Vec::new() };
+        let store = LocalStore::create(Arc::new(SystemDisk), folder.path(), &plan, Duration::MAX)
+            .map_err(failed)?;
+        Ok(Self { store, _folder: folder })
+    }
+
+    pub(super) fn scratch(&self) -> Result<LocalScratch, VerifyError> {
+        self.store.scratch().map_err(failed)
+    }
+}
+
+fn failed(error: StoreError) -> VerifyError {
+    VerifyError::Work(error.into())
+}

@@ -1,0 +1,205 @@
+//! Files as the rest of the crate uses them: interrupted calls are made again, short writes and reads are completed, bytes are counted,
+//! and an error says which file it is about.
+
+use std::{
+    fmt, io,
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+};
+
+use crate::{Disk, DiskFile, Hold, Listed, OpenMode, StoreError};
+
+/// Bytes that went through the store so far.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Traffic {
+    /// Read from the disk, or from the system's cache of it.
+    pub read_bytes: u64,
+    /// Written.
+    pub written_bytes: u64,
+}
+
+/// A disk and what went through it.
+pub(crate) struct Files {
+    disk: Arc<dyn Disk>,
+    read_bytes: AtomicU64,
+    written_bytes: AtomicU64,
+}
+
+impl fmt::Debug for Files {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Files").field("traffic", &self.traffic()).finish_non_exhaustive()
+    }
+}
+
+impl Files {
+    pub(crate) fn new(disk: Arc<dyn Disk>) -> Arc<Self> {
+        Arc::new(Self { disk, read_bytes: AtomicU64::new(0), written_bytes: AtomicU64::new(0) })
+    }
+
+    pub(crate) fn traffic(&self) -> Traffic {
+        Traffic {
+            read_bytes: self.read_bytes.load(Ordering::Relaxed),
+            written_bytes: self.written_bytes.load(Ordering::Relaxed),
+        }
+    }
+
+    /// Opens a file. Of kind `NotFound` and `AlreadyExists` the caller may make sense; see [`is_kind`].
+    pub(crate) fn open(
+        self: &Arc<Self>,
+        path: &Path,
+        mode: OpenMode,
+    ) -> Result<OpenFile, StoreError> {
+        let doing = if mode == OpenMode::New { "create" } else { "open" };
+        let file = named(path, doing, || self.disk.open(path, mode))?;
+        Ok(OpenFile { file, path: path.to_owned(), files: Arc::clone(self) })
+    }
+
+    /// Makes a folder unless it is there.
+    pub(crate) fn create_folder(&self, path: &Path) -> Result<(), StoreError> {
+        match named(path, "create the folder", || self.disk.create_folder(path)) {
+            Err(error) if is_kind(&error, io::ErrorKind::AlreadyExists) => Ok(()),
+            result => result,
+        }
+    }
+
+    /// What a folder holds, by name; `None` if the folder is not there.
+    pub(crate) fn list(&self, folder: &Path) -> Result<Option<Vec<Listed>>, StoreError> {
+        match named(folder, "list", || self.disk.list(folder)) {
+            Ok(mut listed) => {
+                listed.sort();
+                Ok(Some(listed))
+            }
+            Err(error) if is_kind(&error, io::ErrorKind::NotFound) => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    pub(crate) fn rename(&self, from: &Path, to: &Path) -> Result<(), StoreError> {
+        named(from, "rename", || self.disk.rename(from, to))
+    }
+
+    /// Removes a file, if it is there.
+    pub(crate) fn remove(&self, path: &Path) -> Result<(), StoreError> {
+        absent_is_fine(named(path, "remove", || self.disk.remove(path)))
+    }
+
+    /// Removes an empty folder, if it is there.
+    pub(crate) fn remove_folder(&self, path: &Path) -> Result<(), StoreError> {
+        absent_is_fine(named(path, "remove the folder", || self.disk.remove_folder(path)))
+    }
+
+    pub(crate) fn sync_folder(&self, folder: &Path) -> Result<(), StoreError> {
+        named(folder, "make durable", || self.disk.sync_folder(folder))
+    }
+
+    pub(crate) fn exists(&self, path: &Path) -> Result<bool, StoreError> {
+        Ok(named(path, "look for", || self.disk.identity(path))?.is_some())
+    }
+}
+
+/// An open file and its name.
+#[derive(Debug)]
+pub(crate) struct OpenFile {
+    file: Box<dyn DiskFile>,
+    path: PathBuf,
+    files: Arc<Files>,
+}
+
+impl OpenFile {
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    pub(crate) fn files(&self) -> &Arc<Files> {
+        &self.files
+    }
+
+    pub(crate) fn write_all_at(&self, mut bytes: &[u8], mut offset: u64) -> Result<(), StoreError> {
+        while !bytes.is_empty() {
+            let written = named(&self.path, "write", || match self.file.write_at(bytes, offset) {
+                Ok(0) => Err(io::ErrorKind::WriteZero.into()),
+                written => written,
+            })?;
+            self.files.written_bytes.fetch_add(written as u64, Ordering::Relaxed);
+            bytes = &bytes[written..];
+            offset += written as u64;
+        }
+        Ok(())
+    }
+
+    pub(crate) fn read_exact_at(
+        &self,
+        mut bytes: &mut [u8],
+        mut offset: u64,
+    ) -> Result<(), StoreError> {
+        while !bytes.is_empty() {
+            let read = named(&self.path, "read", || match self.file.read_at(bytes, offset) {
+                Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
+                read => read,
+            })?;
+            self.files.read_bytes.fetch_add(read as u64, Ordering::Relaxed);
+            bytes = &mut bytes[read..];
+            offset += read as u64;
+        }
+        Ok(())
+    }
+
+    pub(crate) fn length(&self) -> Result<u64, StoreError> {
+        named(&self.path, "get the length of", || self.file.length())
+    }
+
+    pub(crate) fn set_length(&self, length: u64) -> Result<(), StoreError> {
+        named(&self.path, "set the length of", || self.file.set_length(length))
+    }
+
+    pub(crate) fn sync(&self) -> Result<(), StoreError> {
+        named(&self.path, "make durable", || self.file.sync())
+    }
+
+    /// Takes its lock; `false` if another holds it.
+    pub(crate) fn try_lock(&self, hold: Hold) -> Result<bool, StoreError> {
+        named(&self.path, "lock", || self.file.try_lock(hold))
+    }
+
+    /// Whether its name still leads to it.
+    pub(crate) fn is_in_place(&self) -> Result<bool, StoreError> {
+        let own = named(&self.path, "look at", || self.file.identity())?;
+        let named_so = named(&self.path, "look for", || self.files.disk.identity(&self.path))?;
+        Ok(named_so == Some(own))
+    }
+}
+
+/// Whether an error is about a file and of this kind.
+pub(crate) fn is_kind(error: &StoreError, kind: io::ErrorKind) -> bool {
+    matches!(error, StoreError::Io { source, .. } if source.kind() == kind)
+}
+
+fn absent_is_fine(result: Result<(), StoreError>) -> Result<(), StoreError> {
+    match result {
+        Err(error) if is_kind(&error, io::ErrorKind::NotFound) => Ok(()),
+        result => result,
+    }
+}
+
+/// Makes a call again as long as it is interrupted; an error gets the name of the file.
+fn named<T>(
+    path: &Path,
+    doing: &'static str,
+    mut call: impl FnMut() -> io::Result<T>,
+) -> Result<T, StoreError> {
+    loop {
+        match call() {
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            result => {
+                return result.map_err(|source| StoreError::Io {
+                    path: path.to_owned(),
+                    doing,
+                    source,
+                });
+            }
+        }
+    }
+}

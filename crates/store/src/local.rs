@@ -1,0 +1,462 @@
+//! A store in a folder.
+//!
+//! ```text
+//! FOLDER/store                       header: format, plan's hash                    binding.rs, header.rs
+//!        plan.json                   the plan, as the caller wrote it
+//!        lock                        held by who works here                         lock.rs
+//!        NAME.PID-RANDOM.data        an open part: artifacts, one after the other   open_part.rs
+//!        NAME.PID-RANDOM.journal     what of them is durable                        entry.rs
+//!        parts/NAME.DIGEST.part      a sealed part: artifacts, then their list      sealed_part.rs
+//!        PID-RANDOM.scratch          scratch space                                  scratch.rs
+//! ```
+//!
+//! What is durable when: the data of an artifact before the journal's entry of it; all of a part before its name; the plan before the header. So
+//! after a crash at any moment, whatever is there is right, and only the last seconds are missing.
+
+mod binding;
+mod entry;
+mod header;
+mod index;
+mod layout;
+mod lock;
+mod open_part;
+mod scratch;
+mod sealed_part;
+
+use std::{
+    path::{Path, PathBuf},
+    sync::{
+        Arc, PoisonError, RwLock, RwLockReadGuard,
+        atomic::{AtomicU64, Ordering},
+    },
+    time::Duration,
+};
+
+pub use binding::StoredPlan;
+pub use header::PlanHash;
+pub use scratch::LocalScratch;
+
+use crate::{
+    Artifacts, Disk, Hold, Key, StoreError,
+    files::{Files, OpenFile, Traffic},
+};
+use binding::FolderState;
+use entry::Entry;
+use index::{Index, Place};
+use layout::Role;
+use open_part::{OPEN_PART, OpenPart};
+
+/// How often artifacts are made durable, unless one asks for something else: this much work is lost at most.
+pub const SYNC_INTERVAL: Duration = Duration::from_secs(2);
+
+/// The name of the part that a whole build makes.
+const BUILD: &str = "build";
+
+/// Artifacts in files of a folder: one part that is being written, and sealed ones.
+#[derive(Debug)]
+pub struct LocalStore {
+    files: Arc<Files>,
+    index: RwLock<Index>,
+    /// By their numbers in the index.
+    sealed: Vec<OpenFile>,
+    own: Option<Own>,
+}
+
+/// The part that is written, and where.
+#[derive(Debug)]
+struct Own {
+    folder: PathBuf,
+    part: OpenPart,
+    dropped: u64,
+    sealed_bytes: u64,
+    scratch_bytes: Arc<AtomicU64>,
+    /// Dropped last: until then nobody else may touch the folder.
+    lock: OpenFile,
+}
+
+/// A part to be written by [`LocalStore::open_parts`].
+#[derive(Debug, Clone, Copy)]
+pub struct OwnPart<'a> {
+    /// The store's folder; made where it is not there, within one that is.
+    pub folder: &'a Path,
+    /// What the part is: step and subtree, for instance. Letters, digits, `-` and `_`.
+    pub name: &'a str,
+    /// What the store is bound to.
+    pub plan: &'a StoredPlan,
+    /// How often artifacts are made durable.
+    pub interval: Duration,
+}
+
+impl LocalStore {
+    /// The plan that the store in `folder` is bound to; `None` if the folder is not there, empty, or only what is left of making or removing a store.
+    /// Changes nothing.
+    ///
+    /// # Errors
+    /// [`StoreError::NotAStore`] if it holds something else; [`StoreError::OtherVersion`]; [`StoreError::Damaged`].
+    pub fn stored_plan(
+        disk: Arc<dyn Disk>,
+        folder: &Path,
+    ) -> Result<Option<StoredPlan>, StoreError> {
+        let files = Files::new(disk);
+        match binding::state(&files, folder)?.0 {
+            FolderState::Store => binding::read_plan(&files, folder).map(Some),
+            FolderState::Absent | FolderState::Free => Ok(None),
+        }
+    }
+
+    /// Makes a store for a build of its own, in a folder that is empty or not there. The folder around it must be there.
+    ///
+    /// # Errors
+    /// [`StoreError::Exists`], [`StoreError::NotAStore`] or [`StoreError::Locked`], and where the disk fails.
+    pub fn create(
+        disk: Arc<dyn Disk>,
+        folder: &Path,
+        plan: &StoredPlan,
+        interval: Duration,
+    ) -> Result<Self, StoreError> {
+        let files = Files::new(disk);
+        refuse_store(&files, folder)?;
+        files.create_folder(folder)?;
+        let lock = lock::lock_store(&files, folder, Hold::Alone)?;
+        // Another may have made one before the lock was ours.
+        refuse_store(&files, folder)?;
+        remove_own_files(&files, folder)?;
+        binding::bind(&files, folder, plan)?;
+        Self::assemble(files, &[], Some((folder, BUILD, lock)), &plan.hash, interval)
+    }
+
+    /// Goes on with the store of a build. What a crash left half is cut off ([`Self::repaired`]).
+    ///
+    /// # Errors
+    /// [`StoreError::NoStore`], [`StoreError::OtherPlan`], [`StoreError::Locked`] and others, and where the disk fails.
+    pub fn open(
+        disk: Arc<dyn Disk>,
+        folder: &Path,
+        plan: &PlanHash,
+        interval: Duration,
+    ) -> Result<Self, StoreError> {
+        let files = Files::new(disk);
+        binding::check_hash(&files, folder, plan)?;
+        let lock = lock::lock_store(&files, folder, Hold::Alone)?;
+        binding::check_hash(&files, folder, plan)?;
+        Self::assemble(files, &[folder], Some((folder, BUILD, lock)), plan, interval)
+    }
+
+    /// Opens the sealed parts of several stores as one, and a part of its own to write if asked. Without one the store can only be read.
+    /// Several processes may do so at once in one folder. What is in the own part's folder is read too.
+    ///
+    /// # Errors
+    /// [`StoreError::NoStore`], [`StoreError::OtherPlan`], [`StoreError::OtherVersion`] or [`StoreError::Damaged`] with the name of the part;
+    /// [`StoreError::Differs`] where two parts contradict each other; [`StoreError::Locked`] where a build has the folder of the own part;
+    /// and where the disk fails.
+    pub fn open_parts(
+        disk: Arc<dyn Disk>,
+        folders: &[&Path],
+        plan: &PlanHash,
+        own: Option<OwnPart<'_>>,
+    ) -> Result<Self, StoreError> {
+        let files = Files::new(disk);
+        let mut read = folders.to_vec();
+        let Some(own) = own else {
+            for folder in folders {
+                binding::check_hash(&files, folder, plan)?;
+            }
+            return Self::assemble(files, &read, None, plan, SYNC_INTERVAL);
+        };
+        layout::check_part_name(own.name)?;
+        binding::state(&files, own.folder)?;
+        files.create_folder(own.folder)?;
+        let lock = lock::lock_store(&files, own.folder, Hold::Shared)?;
+        if !matches!(binding::state(&files, own.folder)?.0, FolderState::Store) {
+            binding::bind(&files, own.folder, own.plan)?;
+        }
+        if !read.contains(&own.folder) {
+            read.push(own.folder);
+        }
+        for folder in &read {
+            binding::check_hash(&files, folder, plan)?;
+        }
+        Self::assemble(files, &read, Some((own.folder, own.name, lock)), plan, own.interval)
+    }
+
+    /// Reads what the folders hold and opens the own part.
+    fn assemble(
+        files: Arc<Files>,
+        folders: &[&Path],
+        own: Option<(&Path, &str, OpenFile)>,
+        plan: &PlanHash,
+        interval: Duration,
+    ) -> Result<Self, StoreError> {
+        let (mut index, mut sealed, mut sealed_bytes) = (Index::default(), Vec::new(), 0);
+        for folder in folders {
+            for path in sealed_parts(&files, folder)? {
+                let number = part_number(&path, sealed.len())?;
+                let visit = &mut |path: &Path, entry| add(&mut index, &sealed, number, path, entry);
+                let file = sealed_part::open(&files, &path, plan, visit)?;
+                if own.as_ref().is_some_and(|(own, ..)| own == folder) {
+                    sealed_bytes += file.length()?;
+                }
+                sealed.push(file);
+            }
+        }
+        let mut store = Self { files, index: RwLock::default(), sealed, own: None };
+        if let Some((folder, name, lock)) = own {
+            open_part::remove_data_without_journal(&store.files, folder)?;
+            remove_scratch(&store.files, folder)?;
+            let visit =
+                &mut |path: &Path, entry| add(&mut index, &store.sealed, OPEN_PART, path, entry);
+            let (part, dropped) =
+                OpenPart::open(&store.files, folder, name, plan, interval, visit)?;
+            store.own = Some(Own {
+                folder: folder.to_owned(),
+                part,
+                dropped,
+                sealed_bytes,
+                scratch_bytes: Arc::default(),
+                lock,
+            });
+        }
+        store.index = RwLock::new(index);
+        Ok(store)
+    }
+
+    /// Makes durable all that was put before.
+    ///
+    /// # Errors
+    /// Where the disk fails; [`StoreError::Gone`] if the store was removed.
+    pub fn flush(&self) -> Result<(), StoreError> {
+        self.own.as_ref().map_or(Ok(()), |own| own.part.flush())
+    }
+
+    /// Ends the own part: makes it durable under a name that says what it holds, and returns that; `None` if nothing was put. If the
+    /// same part is there already, this copy is dropped.
+    ///
+    /// # Errors
+    /// [`StoreError::ReadOnly`]; where the disk fails. The part then stays open and can be gone on with.
+    pub fn seal(mut self) -> Result<Option<PathBuf>, StoreError> {
+        let own = self.own.take().ok_or_else(|| self.read_only())?;
+        own.part.seal(&own.folder, &self.index())
+    }
+
+    /// Scratch space in the store's folder.
+    ///
+    /// # Errors
+    /// [`StoreError::ReadOnly`] without a part of its own; where the disk fails.
+    pub fn scratch(&self) -> Result<LocalScratch, StoreError> {
+        let own = self.own.as_ref().ok_or_else(|| self.read_only())?;
+        let file = lock::create_owned(&self.files, |suffix| layout::scratch(&own.folder, suffix))?;
+        Ok(LocalScratch::new(file, Arc::clone(&own.scratch_bytes)))
+    }
+
+    /// Removes the store. Only what a store makes is removed: where the folder holds something else, it stays, and what stays is returned.
+    ///
+    /// # Errors
+    /// [`StoreError::ReadOnly`] without a part of its own; [`StoreError::Locked`] if others make parts here; where the disk fails.
+    pub fn remove(mut self) -> Result<Vec<PathBuf>, StoreError> {
+        let own = self.own.take().ok_or_else(|| self.read_only())?;
+        if !own.lock.try_lock(Hold::Alone)? {
+            let owner = "another process that makes a part".to_owned();
+            return Err(StoreError::Locked { path: own.folder.clone(), owner });
+        }
+        own.part.give_up();
+        remove_all(&self.files, &own.folder)
+    }
+
+    /// Removes the store in a folder, as [`Self::remove`] does, without opening it: it may be damaged, or of another plan or version.
+    ///
+    /// # Errors
+    /// [`StoreError::NotAStore`], [`StoreError::Locked`], and where the disk fails.
+    pub fn discard(disk: Arc<dyn Disk>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
+        let files = Files::new(disk);
+        if matches!(binding::state(&files, folder)?.0, FolderState::Absent) {
+            return Ok(Vec::new());
+        }
+        let _lock = lock::lock_store(&files, folder, Hold::Alone)?;
+        remove_all(&files, folder)
+    }
+
+    /// How many artifacts were cut off when the own part was opened: torn, damaged, or put after such a one.
+    #[must_use]
+    pub fn repaired(&self) -> u64 {
+        self.own.as_ref().map_or(0, |own| own.dropped)
+    }
+
+    /// Bytes read and written so far, scratch space included.
+    #[must_use]
+    pub fn traffic(&self) -> Traffic {
+        self.files.traffic()
+    }
+
+    /// Bytes of all files in the folder of the own part that this process knows of, scratch space included; 0 without one.
+    #[must_use]
+    pub fn disk_bytes(&self) -> u64 {
+        self.own.as_ref().map_or(0, |own| {
+            own.part.disk_bytes() + own.sealed_bytes + own.scratch_bytes.load(Ordering::Relaxed)
+        })
+    }
+
+    fn index(&self) -> RwLockReadGuard<'_, Index> {
+        self.index.read().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn read_only(&self) -> StoreError {
+        let path = self.sealed.first().map(|file| file.path().to_owned()).unwrap_or_default();
+        StoreError::ReadOnly { path }
+    }
+}
+
+impl Artifacts for LocalStore {
+    fn put(&self, key: Key, bytes: &[u8]) -> Result<(), StoreError> {
+        if self.has(key) {
+            return Ok(());
+        }
+        let own = self.own.as_ref().ok_or_else(|| self.read_only())?;
+        own.part.put(&self.index, key, bytes)
+    }
+
+    fn get(&self, key: Key) -> Result<Option<Vec<u8>>, StoreError> {
+        let Some(place) = self.index().get(key) else { return Ok(None) };
+        let file = match (&self.own, self.sealed.get(usize::from(place.part))) {
+            (_, Some(file)) => file,
+            (Some(own), None) => own.part.data(),
+            (None, None) => return Ok(None),
+        };
+        let mut bytes = vec![0; place.length as usize];
+        file.read_exact_at(&mut bytes, place.offset)?;
+        if crc32fast::hash(&bytes) != place.crc {
+            return Err(StoreError::Damaged {
+                path: file.path().to_owned(),
+                what: format!(
+                    "artifact {} of kind {} has another checksum than when it was put; \
+                     run again with --resume, or remove the file and make the part again",
+                    key.item, key.kind
+                ),
+            });
+        }
+        Ok(Some(bytes))
+    }
+
+    fn has(&self, key: Key) -> bool {
+        self.index().get(key).is_some()
+    }
+
+    fn items(&self, kind: u8) -> Vec<u64> {
+        self.index().items(kind)
+    }
+}
+
+/// Adds an entry of a part. What another part holds too must be the same there.
+fn add(
+    index: &mut Index,
+    sealed: &[OpenFile],
+    part: u16,
+    path: &Path,
+    entry: Entry,
+) -> Result<(), StoreError> {
+    let Entry { key, offset, length, crc } = entry;
+    if index.insert(key, Place { part, offset, length, crc }) {
+        return Ok(());
+    }
+    match index.get(key) {
+        Some(place) if place.part != part && (place.length, place.crc) != (length, crc) => {
+            let first = sealed.get(usize::from(place.part)).map_or(path, OpenFile::path);
+            Err(StoreError::Differs {
+                kind: key.kind,
+                item: key.item,
+                first: first.to_owned(),
+                second: path.to_owned(),
+            })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The number of the next sealed part.
+fn part_number(path: &Path, count: usize) -> Result<u16, StoreError> {
+    match u16::try_from(count) {
+        Ok(number) if number < OPEN_PART => Ok(number),
+        _ => Err(StoreError::TooLarge {
+            path: path.to_owned(),
+            what: "one more sealed part",
+            length: count as u64,
+            limit: u64::from(OPEN_PART),
+        }),
+    }
+}
+
+/// Refuses a folder that is a store already, or holds something else.
+fn refuse_store(files: &Files, folder: &Path) -> Result<(), StoreError> {
+    match binding::state(files, folder)?.0 {
+        FolderState::Store => Err(StoreError::Exists { path: folder.to_owned() }),
+        FolderState::Absent | FolderState::Free => Ok(()),
+    }
+}
+
+/// The sealed parts of a folder, by name.
+fn sealed_parts(files: &Files, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
+    let parts = folder.join(layout::PARTS);
+    let listed = files.list(&parts)?.unwrap_or_default();
+    let names =
+        listed.iter().filter(|entry| !entry.is_folder).filter_map(|entry| entry.name.to_str());
+    Ok(names.filter(|name| layout::is_sealed(name)).map(|name| parts.join(name)).collect())
+}
+
+/// Removes the scratch space of dead processes.
+fn remove_scratch(files: &Arc<Files>, folder: &Path) -> Result<(), StoreError> {
+    let found = layout::look(files, folder)?.unwrap_or_default();
+    for name in found.of(Role::Scratch) {
+        let path = folder.join(name);
+        if lock::adopt(files, &path)?.is_some() {
+            files.remove(&path)?;
+        }
+    }
+    Ok(())
+}
+
+/// Removes a store whose lock is held; returns what is left because no store makes it.
+fn remove_all(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
+    let mut left = remove_own_files(files, folder)?;
+    files.remove(&folder.join(layout::LOCK))?;
+    if left.is_empty() {
+        // Something may have come in between: then the folder is not empty, and stays.
+        if let Err(error) = files.remove_folder(folder) {
+            left = layout::look(files, folder)?
+                .unwrap_or_default()
+                .foreign
+                .into_iter()
+                .map(|name| folder.join(name))
+                .collect();
+            if left.is_empty() {
+                return Err(error);
+            }
+        }
+    }
+    Ok(left)
+}
+
+/// Removes all files of a store but the lock; returns what is left. The header goes before the plan: at any moment the folder is a store that
+/// can be read, or none.
+fn remove_own_files(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
+    let found = layout::look(files, folder)?.unwrap_or_default();
+    let mut left: Vec<PathBuf> = found.foreign.iter().map(|name| folder.join(name)).collect();
+    for path in sealed_parts(files, folder)? {
+        files.remove(&path)?;
+    }
+    let parts = folder.join(layout::PARTS);
+    let rest = files.list(&parts)?.unwrap_or_default();
+    left.extend(rest.into_iter().map(|entry| parts.join(entry.name)));
+    if !left.iter().any(|path| path.starts_with(&parts)) {
+        files.remove_folder(&parts)?;
+    }
+    for (name, role) in &found.own {
+        if !matches!(role, Role::Fixed | Role::Parts) {
+            files.remove(&folder.join(name))?;
+        }
+    }
+    if found.has(layout::STORE) {
+        files.remove(&folder.join(layout::STORE))?;
+        files.sync_folder(folder)?;
+    }
+    files.remove(&folder.join(layout::PLAN))?;
+    Ok(left)
+}

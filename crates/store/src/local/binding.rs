@@ -1,0 +1,138 @@
+//! What makes a folder a store: the header that binds it to a plan, and the plan itself.
+//!
+//! The file `store` is the common header, then the plan's length (8 bytes), its CRC-32 (4) and the CRC-32 of these 12 bytes (4). It gets its name last,
+//! when all else is durable: a folder without it is no store yet, whatever else of a store it has.
+
+use std::{path::Path, sync::Arc};
+
+use crate::{
+    OpenMode, StoreError,
+    files::{Files, is_kind},
+    local::{
+        header::{self, FileKind, HEADER_BYTES, PlanHash, u32_at, u64_at},
+        layout::{self, Found},
+        lock,
+    },
+};
+
+/// What a store is bound to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StoredPlan {
+    /// Says whether two plans are the same.
+    pub hash: PlanHash,
+    /// The plan as the caller writes it; the store only keeps it.
+    pub bytes: Vec<u8>,
+}
+
+/// What a folder is.
+pub(crate) enum FolderState {
+    /// Not there.
+    Absent,
+    /// Empty, or what is left of making or removing a store.
+    Free,
+    /// A store.
+    Store,
+}
+
+/// Looks at a folder.
+///
+/// # Errors
+/// [`StoreError::NotAStore`] where it holds something that is not the store's.
+pub(crate) fn state(files: &Files, folder: &Path) -> Result<(FolderState, Found), StoreError> {
+    let Some(found) = layout::look(files, folder)? else {
+        return Ok((FolderState::Absent, Found::default()));
+    };
+    if found.has(layout::STORE) {
+        return Ok((FolderState::Store, found));
+    }
+    match found.foreign.first() {
+        Some(name) => Err(StoreError::NotAStore {
+            path: folder.to_owned(),
+            what: format!("it holds {name:?}"),
+        }),
+        None => Ok((FolderState::Free, found)),
+    }
+}
+
+/// Makes a folder a store. If two processes do it at once with the same plan, nothing is wrong.
+pub(crate) fn bind(files: &Arc<Files>, folder: &Path, plan: &StoredPlan) -> Result<(), StoreError> {
+    let mut record = header::encode(FileKind::Store, &plan.hash).to_vec();
+    record.extend((plan.bytes.len() as u64).to_le_bytes());
+    record.extend(crc32fast::hash(&plan.bytes).to_le_bytes());
+    let check = crc32fast::hash(&record[HEADER_BYTES as usize..]);
+    record.extend(check.to_le_bytes());
+
+    for (name, bytes) in [(layout::PLAN, &plan.bytes), (layout::STORE, &record)] {
+        let new = layout::new(folder, name, &lock::suffix());
+        let file = files.open(&new, OpenMode::New)?;
+        file.write_all_at(bytes, 0)?;
+        file.sync()?;
+        drop(file);
+        files.rename(&new, &folder.join(name))?;
+        files.sync_folder(folder)?;
+    }
+    sync_parent(files, folder)
+}
+
+/// Makes durable that the folder is there.
+fn sync_parent(files: &Files, folder: &Path) -> Result<(), StoreError> {
+    match folder.parent() {
+        Some(parent) if parent.as_os_str().is_empty() => files.sync_folder(Path::new(".")),
+        Some(parent) => files.sync_folder(parent),
+        None => Ok(()),
+    }
+}
+
+/// The hash in a store's header.
+pub(crate) fn read_hash(files: &Arc<Files>, folder: &Path) -> Result<PlanHash, StoreError> {
+    read_header(files, folder).map(|(hash, ..)| hash)
+}
+
+/// As `read_hash`, and it must be `plan`.
+pub(crate) fn check_hash(
+    files: &Arc<Files>,
+    folder: &Path,
+    plan: &PlanHash,
+) -> Result<(), StoreError> {
+    if read_hash(files, folder)? == *plan {
+        Ok(())
+    } else {
+        Err(StoreError::OtherPlan { path: folder.to_owned() })
+    }
+}
+
+/// The plan that a store is bound to.
+pub(crate) fn read_plan(files: &Arc<Files>, folder: &Path) -> Result<StoredPlan, StoreError> {
+    let (hash, length, crc) = read_header(files, folder)?;
+    let path = folder.join(layout::PLAN);
+    let bytes = read_whole(files, &path)?;
+    if bytes.len() as u64 != length || crc32fast::hash(&bytes) != crc {
+        let what = "it is not the plan that the store was made with".to_owned();
+        return Err(StoreError::Damaged { path, what });
+    }
+    Ok(StoredPlan { hash, bytes })
+}
+
+/// The plan's hash, length and CRC-32.
+fn read_header(files: &Arc<Files>, folder: &Path) -> Result<(PlanHash, u64, u32), StoreError> {
+    let path = folder.join(layout::STORE);
+    let bytes = match read_whole(files, &path) {
+        Err(error) if is_kind(&error, std::io::ErrorKind::NotFound) => {
+            return Err(StoreError::NoStore { path: folder.to_owned() });
+        }
+        bytes => bytes?,
+    };
+    let hash = header::decode(FileKind::Store, &bytes, &path)?;
+    let rest = &bytes[HEADER_BYTES as usize..];
+    if rest.len() != 16 || u32_at(rest, 12) != crc32fast::hash(&rest[..12]) {
+        return Err(StoreError::Damaged { path, what: "its checksum is wrong".to_owned() });
+    }
+    Ok((hash, u64_at(rest, 0), u32_at(rest, 8)))
+}
+
+fn read_whole(files: &Arc<Files>, path: &Path) -> Result<Vec<u8>, StoreError> {
+    let file = files.open(path, OpenMode::Read)?;
+    let mut bytes = vec![0; file.length()? as usize];
+    file.read_exact_at(&mut bytes, 0)?;
+    Ok(bytes)
+}

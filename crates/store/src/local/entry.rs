@@ -1,0 +1,79 @@
+//! What is written about an artifact: in a journal by order of putting, at the end of a sealed part by key.
+//!
+//! ```text
+//!  0        8        16       20     24     25      28    32
+//!  ┌────────┬────────┬────────┬──────┬──────┬───────┬─────┐     integers are little-endian
+//!  │ item   │ offset │ length │ CRC  │ kind │ zeros │check│     CRC: CRC-32 of the artifact
+//!  └────────┴────────┴────────┴──────┴──────┴───────┴─────┘     check: CRC-32 of the entry's number (8 bytes) and the 28 before
+//! ```
+//!
+//! The number is in the check so that an entry that is whole, but not where it was written, is not taken for one.
+
+use std::path::Path;
+
+use crate::{
+    Key, StoreError,
+    local::{
+        header::{HEADER_BYTES, u32_at, u64_at},
+        index::OFFSET_LIMIT,
+    },
+};
+
+/// Bytes of an entry.
+pub(crate) const ENTRY_BYTES: usize = 32;
+
+/// Where an artifact is in its file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Entry {
+    pub(crate) key: Key,
+    pub(crate) offset: u64,
+    pub(crate) length: u32,
+    /// CRC-32 of the artifact.
+    pub(crate) crc: u32,
+}
+
+/// What is found in a part is handed out one by one, with the file it is in, so that it need not be in memory twice.
+pub(crate) type Visit<'a> = dyn FnMut(&Path, Entry) -> Result<(), StoreError> + 'a;
+
+impl Entry {
+    pub(crate) fn encode(&self, number: u64) -> [u8; ENTRY_BYTES] {
+        let mut bytes = [0; ENTRY_BYTES];
+        bytes[..8].copy_from_slice(&self.key.item.to_le_bytes());
+        bytes[8..16].copy_from_slice(&self.offset.to_le_bytes());
+        bytes[16..20].copy_from_slice(&self.length.to_le_bytes());
+        bytes[20..24].copy_from_slice(&self.crc.to_le_bytes());
+        bytes[24] = self.key.kind;
+        let check = check(number, &bytes[..28]);
+        bytes[28..].copy_from_slice(&check.to_le_bytes());
+        bytes
+    }
+
+    /// The entry of this number, if that is what the bytes are, and if it lies within a file whose artifacts end at `end`.
+    pub(crate) fn decode(number: u64, bytes: &[u8], end: u64) -> Option<Self> {
+        if bytes.len() != ENTRY_BYTES || u32_at(bytes, 28) != check(number, &bytes[..28]) {
+            return None;
+        }
+        let entry = Self {
+            key: Key { kind: bytes[24], item: u64_at(bytes, 0) },
+            offset: u64_at(bytes, 8),
+            length: u32_at(bytes, 16),
+            crc: u32_at(bytes, 20),
+        };
+        let fits = entry.offset >= HEADER_BYTES
+            && entry.offset < OFFSET_LIMIT
+            && entry.end().is_some_and(|own_end| own_end <= end);
+        fits.then_some(entry)
+    }
+
+    /// Where the artifact ends.
+    pub(crate) fn end(&self) -> Option<u64> {
+        self.offset.checked_add(u64::from(self.length))
+    }
+}
+
+fn check(number: u64, bytes: &[u8]) -> u32 {
+    let mut crc = crc32fast::Hasher::new();
+    crc.update(&number.to_le_bytes());
+    crc.update(bytes);
+    crc.finalize()
+}

@@ -1,0 +1,63 @@
+use std::collections::BTreeMap;
+
+use proptest::prelude::*;
+
+use super::*;
+
+fn place(number: u64) -> Place {
+    let part = if number.is_multiple_of(3) { u16::MAX } else { number as u16 };
+    Place { part, offset: number * 977 % OFFSET_LIMIT, length: number as u32, crc: !number as u32 }
+}
+
+proptest! {
+    /// The index says what a map would say, in whatever order keys come.
+    #[test]
+    fn index_equals_a_map(keys in proptest::collection::vec((0_u8..3, 0_u64..2000), 0..3000)) {
+        let (mut index, mut map) = (Index::default(), BTreeMap::new());
+        for (number, (kind, item)) in keys.into_iter().enumerate() {
+            let key = Key { kind, item };
+            let place = place(number as u64);
+            let is_new = !map.contains_key(&key);
+            map.entry(key).or_insert(place);
+            prop_assert_eq!(index.insert(key, place), is_new);
+        }
+        prop_assert!(index.iter().eq(map.iter().map(|(key, place)| (*key, *place))));
+        for kind in 0..4 {
+            let items: Vec<u64> =
+                map.keys().filter(|key| key.kind == kind).map(|key| key.item).collect();
+            prop_assert_eq!(index.items(kind), items);
+            for item in (0..2000).step_by(7) {
+                let key = Key { kind, item };
+                prop_assert_eq!(index.get(key), map.get(&key).copied());
+            }
+        }
+    }
+}
+
+/// The largest values that an entry has room for come back.
+#[test]
+fn keeps_the_largest_values() {
+    let place = Place { part: u16::MAX, offset: OFFSET_LIMIT - 1, length: u32::MAX, crc: u32::MAX };
+    let key = Key { kind: u8::MAX, item: u64::MAX };
+    let mut index = Index::default();
+    assert!(index.insert(key, place));
+    assert_eq!(index.get(key), Some(place));
+}
+
+/// An artifact takes at most 32 bytes, whether keys come in order or not.
+#[test]
+fn takes_at_most_32_bytes_an_artifact() {
+    for factor in [1, 7919] {
+        let mut index = Index::default();
+        let count = 100_003;
+        for number in 0..count {
+            let item = number * factor % count;
+            assert!(index.insert(Key { kind: 4, item }, place(number)));
+        }
+        let kind = &index.kinds[4];
+        // A map entry takes its key and value, and nodes are two thirds full on average.
+        let map_bytes = kind.recent.len() * (size_of::<Entry>() + 8) * 3 / 2;
+        let bytes = kind.sorted.capacity() * size_of::<Entry>() + map_bytes;
+        assert!(bytes <= 32 * count as usize, "{} bytes each", bytes / count as usize);
+    }
+}

@@ -1,0 +1,58 @@
+use std::{
+    io,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+};
+
+use crate::{Scratch, Span, files::OpenFile};
+
+/// Scratch space in a file of a store, which is removed when this is dropped. What a killed process leaves is removed when its store is opened
+/// the next time.
+#[derive(Debug)]
+pub struct LocalScratch {
+    file: OpenFile,
+    end: AtomicU64,
+    /// What all scratch files of the store take.
+    total_bytes: Arc<AtomicU64>,
+}
+
+impl LocalScratch {
+    /// In a file that is empty and owned.
+    pub(crate) fn new(file: OpenFile, total_bytes: Arc<AtomicU64>) -> Self {
+        Self { file, end: AtomicU64::new(0), total_bytes }
+    }
+}
+
+impl Scratch for LocalScratch {
+    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+        let length = bytes.len() as u64;
+        // Reserve first, so that writers do not wait for each other's disk.
+        let offset = self.end.fetch_add(length, Ordering::Relaxed);
+        self.total_bytes.fetch_add(length, Ordering::Relaxed);
+        self.file.write_all_at(bytes, offset)?;
+        Ok(Span { offset, length })
+    }
+
+    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+        if span
+            .offset
+            .checked_add(span.length)
+            .is_none_or(|end| end > self.end.load(Ordering::Relaxed))
+        {
+            return Err(io::ErrorKind::UnexpectedEof.into());
+        }
+        let mut bytes = vec![0; span.length as usize];
+        self.file.read_exact_at(&mut bytes, span.offset)?;
+        Ok(bytes)
+    }
+}
+
+impl Drop for LocalScratch {
+    fn drop(&mut self) {
+        self.total_bytes.fetch_sub(*self.end.get_mut(), Ordering::Relaxed);
+        // If it cannot be removed now, it is removed when the store is opened the next time.
+        let _ = self.file.files().remove(self.file.path());
+    }
+}

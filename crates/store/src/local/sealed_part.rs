@@ -1,0 +1,170 @@
+//! A part that is done: nothing is added to it any more, and its name says what it holds.
+//!
+//! ```text
+//!  ┌────────┬───────────┬─ ─ ─┬───────────┬─────────────────────────┬────────┐
+//!  │ header │ artifact  │     │ artifact  │ entries, sorted by key  │ footer │
+//!  └────────┴───────────┴─ ─ ─┴───────────┴─────────────────────────┴────────┘
+//!  footer:  0         8       16    20    24      32     integers are little-endian
+//!           ┌─────────┬───────┬─────┬─────┬───────┐
+//!           │ entries │ count │ CRC │zeros│ magic │     entries: where they begin; CRC: of the 16 bytes before it
+//!           └─────────┴───────┴─────┴─────┴───────┘
+//! ```
+//!
+//! Its file is `parts/NAME.DIGEST.part`. The digest is the first 16 bytes of the SHA-256 over kind, item, length and CRC-32 of each artifact, by
+//! key: the order in which threads finished does not matter, and the same part made twice gets the same name.
+
+use std::{
+    fmt::Write as _,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use sha2::{Digest as _, Sha256};
+
+use crate::{
+    Key, OpenMode, StoreError,
+    files::{Files, OpenFile},
+    local::{
+        entry::{ENTRY_BYTES, Entry, Visit},
+        header::{self, FileKind, HEADER_BYTES, PlanHash, u32_at, u64_at},
+        layout,
+    },
+};
+
+const FOOTER_BYTES: usize = 32;
+const FOOTER_MAGIC: &[u8; 8] = b"CORNSEAL";
+/// How many entries are read or written at once.
+const ENTRIES_AT_ONCE: usize = 2048;
+
+/// Ends a data file whose artifacts end at `end`, makes it durable and gives it its name in the folder of parts. `entries` are sorted by key.
+/// If the same part is there already, the file is removed.
+pub(crate) fn seal(
+    data: &OpenFile,
+    folder: &Path,
+    part: &str,
+    entries: impl Iterator<Item = Entry>,
+    end: u64,
+) -> Result<PathBuf, StoreError> {
+    let mut digest = Digest::default();
+    let (mut count, mut offset) = (0, end);
+    let mut bytes = Vec::with_capacity(ENTRIES_AT_ONCE * ENTRY_BYTES);
+    for entry in entries {
+        digest.add(&entry);
+        bytes.extend(entry.encode(count));
+        count += 1;
+        if bytes.len() == ENTRIES_AT_ONCE * ENTRY_BYTES {
+            data.write_all_at(&bytes, offset)?;
+            offset += bytes.len() as u64;
+            bytes.clear();
+        }
+    }
+    bytes.extend(footer(end, count));
+    data.write_all_at(&bytes, offset)?;
+    data.set_length(offset + bytes.len() as u64)?;
+    data.sync()?;
+
+    let files = data.files();
+    let parts = folder.join(layout::PARTS);
+    files.create_folder(&parts)?;
+    files.sync_folder(folder)?;
+    let path = layout::sealed(folder, part, &digest.finish());
+    if !data.is_in_place()? {
+        return Err(StoreError::Gone { path: data.path().to_owned() });
+    }
+    if files.exists(&path)? {
+        files.remove(data.path())?;
+    } else {
+        files.rename(data.path(), &path)?;
+    }
+    files.sync_folder(&parts)?;
+    files.sync_folder(folder)?;
+    Ok(path)
+}
+
+/// Opens a sealed part and hands out what it holds, by key. The artifacts are not read: each is checked when it is.
+pub(crate) fn open(
+    files: &Arc<Files>,
+    path: &Path,
+    plan: &PlanHash,
+    visit: &mut Visit<'_>,
+) -> Result<OpenFile, StoreError> {
+    let file = files.open(path, OpenMode::Read)?;
+    let damaged = |what: &str| StoreError::Damaged {
+        path: path.to_owned(),
+        what: format!("{what}; remove the file and make the part again"),
+    };
+    let length = file.length()?;
+    let mut bytes = vec![0; length.min(HEADER_BYTES) as usize];
+    file.read_exact_at(&mut bytes, 0)?;
+    header::check(FileKind::Data, &bytes, path, plan)?;
+
+    let ended = length.checked_sub(FOOTER_BYTES as u64).filter(|&ended| ended >= HEADER_BYTES);
+    let ended = ended.ok_or_else(|| damaged("it is too short"))?;
+    let mut footer = [0; FOOTER_BYTES];
+    file.read_exact_at(&mut footer, ended)?;
+    let (from, count) =
+        decode_footer(&footer).ok_or_else(|| damaged("it does not end as a sealed part ends"))?;
+    let entry_bytes = count.checked_mul(ENTRY_BYTES as u64);
+    if entry_bytes.and_then(|bytes| from.checked_add(bytes)) != Some(ended) {
+        return Err(damaged("its list of artifacts has another length than it says"));
+    }
+
+    let mut digest = Digest::default();
+    let mut last: Option<Key> = None;
+    let mut bytes = Vec::new();
+    let mut number = 0;
+    while number < count {
+        let offset = from + number * ENTRY_BYTES as u64;
+        bytes.resize((ended - offset).min((ENTRIES_AT_ONCE * ENTRY_BYTES) as u64) as usize, 0);
+        file.read_exact_at(&mut bytes, offset)?;
+        for entry in bytes.chunks(ENTRY_BYTES) {
+            let entry = Entry::decode(number, entry, from)
+                .filter(|entry| last.is_none_or(|last| last < entry.key))
+                .ok_or_else(|| damaged("its list of artifacts is wrong"))?;
+            digest.add(&entry);
+            visit(path, entry)?;
+            last = Some(entry.key);
+            number += 1;
+        }
+    }
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    if layout::digest_of_sealed(&name) != Some(&digest.finish()) {
+        return Err(damaged("it holds something else than its name says"));
+    }
+    Ok(file)
+}
+
+fn footer(from: u64, count: u64) -> [u8; FOOTER_BYTES] {
+    let mut bytes = [0; FOOTER_BYTES];
+    bytes[..8].copy_from_slice(&from.to_le_bytes());
+    bytes[8..16].copy_from_slice(&count.to_le_bytes());
+    let crc = crc32fast::hash(&bytes[..16]);
+    bytes[16..20].copy_from_slice(&crc.to_le_bytes());
+    bytes[24..].copy_from_slice(FOOTER_MAGIC);
+    bytes
+}
+
+fn decode_footer(bytes: &[u8; FOOTER_BYTES]) -> Option<(u64, u64)> {
+    let whole = &bytes[24..] == FOOTER_MAGIC && u32_at(bytes, 16) == crc32fast::hash(&bytes[..16]);
+    whole.then(|| (u64_at(bytes, 0), u64_at(bytes, 8)))
+}
+
+/// What a part holds, as a short text.
+#[derive(Default)]
+struct Digest(Sha256);
+
+impl Digest {
+    fn add(&mut self, entry: &Entry) {
+        self.0.update([entry.key.kind]);
+        self.0.update(entry.key.item.to_le_bytes());
+        self.0.update(entry.length.to_le_bytes());
+        self.0.update(entry.crc.to_le_bytes());
+    }
+
+    fn finish(self) -> String {
+        self.0.finalize().iter().take(16).fold(String::new(), |mut text, byte| {
+            let _ = write!(text, "{byte:02x}");
+            text
+        })
+    }
+}

@@ -1,0 +1,209 @@
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::MemoryScratch;
+
+/// A record of changing length.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct Line {
+    tile: u64,
+    points: Vec<u16>,
+}
+
+impl SortRecord for Line {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.tile.to_le_bytes());
+        bytes.extend(self.points.iter().flat_map(|point| point.to_le_bytes()));
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        let (tile, rest) = bytes.split_first_chunk()?;
+        let points = rest.chunks_exact(2).map(|point| u16::from_le_bytes([point[0], point[1]]));
+        *bytes = &[];
+        Some(Self { tile: u64::from_le_bytes(*tile), points: points.collect() })
+    }
+
+    fn extra_bytes(&self) -> usize {
+        self.points.capacity() * 2
+    }
+}
+
+/// Counts what goes through it.
+#[derive(Debug, Default)]
+struct Counting {
+    scratch: MemoryScratch,
+    appends: AtomicU64,
+    longest: AtomicU64,
+    read_bytes: AtomicU64,
+}
+
+impl Scratch for Counting {
+    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+        self.appends.fetch_add(1, Ordering::Relaxed);
+        self.longest.fetch_max(bytes.len() as u64, Ordering::Relaxed);
+        self.scratch.append(bytes)
+    }
+
+    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+        self.read_bytes.fetch_add(span.length, Ordering::Relaxed);
+        self.scratch.read(span)
+    }
+}
+
+fn sorted<T: SortRecord>(
+    records: impl IntoIterator<Item = T>,
+    scratch: &dyn Scratch,
+    memory_bytes: u64,
+) -> io::Result<Vec<T>> {
+    let mut sorter = Sorter::new(scratch, memory_bytes);
+    for record in records {
+        sorter.push(record)?;
+    }
+    sorter.finish()?.collect()
+}
+
+fn lines() -> impl Strategy<Value = Vec<Line>> {
+    let line = (0_u64..50, proptest::collection::vec(0_u16..5, 0..40))
+        .prop_map(|(tile, points)| Line { tile, points });
+    proptest::collection::vec(line, 0..600)
+}
+
+proptest! {
+    /// The records come back as `Vec::sort` orders them, however little memory there is.
+    #[test]
+    fn sorts_like_vec_sort(lines in lines(), memory_bytes in 0_u64..20_000) {
+        let mut expected = lines.clone();
+        expected.sort();
+        prop_assert_eq!(sorted(lines, &MemoryScratch::default(), memory_bytes).unwrap(), expected);
+    }
+
+    /// A length comes back, and is not taken from bytes that end in it.
+    #[test]
+    fn a_length_comes_back(length in any::<usize>()) {
+        let mut bytes = Vec::new();
+        write_length(&mut bytes, length);
+        prop_assert!(bytes.len() <= LONGEST_LENGTH);
+        for cut in 0..bytes.len() {
+            prop_assert_eq!(read_length(&mut &bytes[..cut]), None);
+        }
+        let mut rest = &bytes[..];
+        prop_assert_eq!(read_length(&mut rest), Some(length));
+        prop_assert!(rest.is_empty());
+    }
+}
+
+fn some_lines(count: u64) -> Vec<Line> {
+    let line = |n: u64| Line { tile: n * 7919 % count, points: vec![n as u16; (n % 9) as usize] };
+    (0..count).map(line).collect()
+}
+
+#[test]
+fn what_fits_in_memory_never_touches_the_scratch_space() {
+    let scratch = Counting::default();
+    let lines = sorted(some_lines(1000), &scratch, 1 << 20).unwrap();
+    assert_eq!(lines.len(), 1000);
+    assert_eq!(scratch.appends.into_inner(), 0);
+}
+
+/// 2000 records of 32 to 48 bytes in 8 KiB: more runs than are merged at once.
+#[test]
+fn many_runs_are_merged_in_passes() {
+    let scratch = Counting::default();
+    let mut expected = some_lines(20_000);
+    let lines = sorted(expected.clone(), &scratch, 8192).unwrap();
+    expected.sort();
+    assert_eq!(lines, expected);
+    assert!(scratch.longest.into_inner() <= 8192);
+    // Two runs at once of some 120: about 7 passes over 12 to 28 bytes a record, and not one a run.
+    let read_bytes = scratch.read_bytes.into_inner();
+    assert!((20_000 * 12 * 4..20_000 * 28 * 12).contains(&read_bytes), "{read_bytes}");
+}
+
+#[test]
+fn a_record_larger_than_the_memory_is_sorted_too() {
+    let mut lines = some_lines(20);
+    lines[3].points = vec![7; 50_000];
+    let mut expected = lines.clone();
+    expected.sort();
+    assert_eq!(sorted(lines, &MemoryScratch::default(), 1000).unwrap(), expected);
+}
+
+/// Never more than its share is in memory, the growth of the list included.
+#[test]
+fn the_list_stays_within_its_share() {
+    let scratch = MemoryScratch::default();
+    let memory_bytes = 1_000_000;
+    let mut sorter = Sorter::new(&scratch, memory_bytes);
+    for line in some_lines(50_000) {
+        sorter.push(line).unwrap();
+        let used_bytes = sorter.records.len() * size_of::<Line>() + sorter.extra_bytes;
+        assert!(used_bytes as u64 <= memory_bytes);
+        let list_bytes = sorter.records.capacity() * size_of::<Line>();
+        assert!(list_bytes as u64 <= memory_bytes);
+    }
+    assert!(sorter.runs.len() > 1);
+}
+
+/// Scratch space of which one call fails.
+struct Failing {
+    scratch: MemoryScratch,
+    calls: AtomicU64,
+    bad_call: u64,
+}
+
+impl Failing {
+    fn call(&self) -> io::Result<()> {
+        if self.calls.fetch_add(1, Ordering::Relaxed) == self.bad_call {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        Ok(())
+    }
+}
+
+impl Scratch for Failing {
+    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+        self.call()?;
+        self.scratch.append(bytes)
+    }
+
+    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+        self.call()?;
+        self.scratch.read(span)
+    }
+}
+
+/// Whichever call fails, the error arrives and no record is missing in silence.
+#[test]
+fn any_failing_call_is_an_error() {
+    for bad_call in 0.. {
+        let (scratch, calls) = (MemoryScratch::default(), AtomicU64::new(0));
+        let scratch = Failing { scratch, calls, bad_call };
+        match sorted(some_lines(300), &scratch, 2000) {
+            Err(error) => assert_eq!(error.kind(), io::ErrorKind::StorageFull),
+            Ok(lines) => {
+                assert_eq!(lines.len(), 300);
+                assert!(bad_call > 20, "only {bad_call} calls");
+                break;
+            }
+        }
+    }
+}
+
+/// Scratch space that gives back other bytes is noticed.
+#[test]
+fn damaged_scratch_space_is_an_error() {
+    struct Cutting(MemoryScratch);
+    impl Scratch for Cutting {
+        fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+            self.0.append(&bytes[..bytes.len() - 1])
+        }
+
+        fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+            self.0.read(span)
+        }
+    }
+    let error = sorted(some_lines(300), &Cutting(MemoryScratch::default()), 2000).unwrap_err();
+    assert_eq!(error.kind(), io::ErrorKind::InvalidData);
+}

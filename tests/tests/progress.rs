@@ -1,0 +1,110 @@
+//! What a build tells while it runs, and the table at its end.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+use e2e::{Ran, corniche, sample, text};
+use serde_json::Value;
+
+/// Builds the sample `pass` and gives what was said.
+fn build(options: &[&str]) -> Ran {
+    let folder = tempfile::tempdir().unwrap();
+    let package = folder.path().join("out.pmtiles");
+    let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
+    let line = ["build", "--dem", text(&dem), "--osm", text(&osm), "-o", text(&package)];
+    let ran = corniche(line.iter().chain(options));
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    ran
+}
+
+/// Every line is JSON; what is done grows and never passes the total; each stage begins, runs and ends.
+#[test]
+fn json_lines_tell_what_is_done_of_what() {
+    // With a fine tolerance and one thread stages take long enough to be told of while they run.
+    let ran = build(&["--json-progress", "--max-error", "0.5", "--threads", "1"]);
+    let mut lines: Vec<Value> =
+        ran.err.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let summary = lines.pop().unwrap();
+    let mut begun: Vec<&str> = Vec::new();
+    let mut before: Option<&Value> = None;
+    for line in &lines {
+        let number = |line: &Value, name: &str| line[name].as_f64();
+        let done = number(line, "done").unwrap_or_else(|| panic!("{line}"));
+        let total = number(line, "total").unwrap_or(f64::INFINITY);
+        assert!(done <= total && number(line, "already") == Some(0.0), "{line}");
+        match (line["state"].as_str().unwrap(), before.take()) {
+            ("begin", None) => {
+                begun.push(line["stage"].as_str().unwrap());
+                assert_eq!(line["done"], 0, "{line}");
+            }
+            (state @ ("running" | "end"), Some(before)) => {
+                assert_eq!(line["stage"], before["stage"], "{before} {line}");
+                assert!(done >= number(before, "done").unwrap(), "{before} {line}");
+                assert!(number(line, "seconds") >= number(before, "seconds"), "{before} {line}");
+                if state == "end" && total.is_finite() {
+                    assert_eq!((done, number(line, "seconds_left")), (total, Some(0.0)), "{line}");
+                }
+                let has_rate = number(line, "per_second").is_some_and(|rate| rate > 0.0);
+                assert_eq!(has_rate, done > 0.0, "{line}");
+            }
+            _ => panic!("out of order: {line}"),
+        }
+        before = (line["state"] != "end").then_some(line);
+    }
+    assert!(before.is_none() && lines.iter().any(|line| line["state"] == "running"), "{}", ran.err);
+    assert_eq!((begun[0], *begun.last().unwrap()), ("hash", "package"));
+    let hash = lines.iter().find(|line| line["state"] == "end").unwrap();
+    assert_eq!(hash["unit"], "bytes");
+
+    let rows = summary["summary"].as_array().unwrap();
+    let named: Vec<&str> = rows.iter().map(|row| row["stage"].as_str().unwrap()).collect();
+    assert_eq!(named, begun, "the summary has each stage once, in order");
+    let seconds = |row: &Value| row["seconds"].as_f64().unwrap();
+    assert!(rows.iter().map(seconds).sum::<f64>() <= seconds(&summary["all"]), "{summary}");
+    if cfg!(target_os = "linux") {
+        check_what_linux_tells(rows, &summary["all"], hash["done"].as_u64().unwrap());
+    }
+}
+
+fn check_what_linux_tells(rows: &[Value], all: &Value, input_bytes: u64) {
+    let mut peak_bytes = 1;
+    for row in rows.iter().chain([all]) {
+        let number = |name: &str| row[name].as_u64().unwrap_or_else(|| panic!("{name}: {row}"));
+        assert!(number("peak_memory_bytes") >= peak_bytes, "{row}");
+        peak_bytes = number("peak_memory_bytes");
+        assert!(row["cpu_seconds"].as_f64().unwrap() >= 0.0, "{row}");
+        let is_long = row["seconds"].as_f64().unwrap() >= 0.2;
+        assert_eq!(row["cores_busy"].is_number(), is_long, "{row}");
+        if row["stage"] == "hash" {
+            assert!(number("read_bytes") >= input_bytes, "{row}");
+        }
+        if row["stage"] == "package" {
+            assert!(number("written_bytes") > 0, "{row}");
+        }
+    }
+}
+
+/// Without a terminal: a line for each stage when it ends, and the table as the last thing.
+#[test]
+fn plain_lines_end_with_the_table() {
+    let ran = build(&[]);
+    let lines: Vec<&str> = ran.err.lines().collect();
+    let heading = lines.iter().position(|line| line.starts_with("stage ")).unwrap();
+    let words = ["done", "wall", "CPU", "cores busy", "rate", "peak memory", "read", "written"];
+    let known = if cfg!(target_os = "linux") { &words[..] } else { &words[..2] };
+    assert!(known.iter().all(|word| lines[heading].contains(word)), "{}", ran.err);
+    let rows = &lines[heading + 1..];
+    assert!(rows.last().unwrap().starts_with("all "), "{}", ran.err);
+    // Each stage had its line before, with the same title.
+    for row in &rows[..rows.len() - 1] {
+        let title = row.split("  ").next().unwrap();
+        let told = lines[..heading].iter().filter(|line| line.starts_with(title)).count();
+        assert!(told >= 1, "{title}: {}", ran.err);
+    }
+    assert!(rows.len() >= 6, "{}", ran.err);
+    assert!(lines[0].starts_with("hashing inputs") && lines[0].contains("B in "), "{}", ran.err);
+}
+
+#[test]
+fn nothing_is_told_to_whoever_asks_for_silence() {
+    assert_eq!(build(&["--quiet"]).err, "");
+}
