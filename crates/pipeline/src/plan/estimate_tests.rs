@@ -9,7 +9,8 @@ pub(in crate::plan) fn file(size: [u64; 2], block: [u64; 2], file_bytes: u64) ->
 
 pub(in crate::plan) fn estimate(tiles: Vec<u64>, files: &[FileBlocks], threads: u64) -> Estimate {
     let memory = MemoryEstimate::new(files, tiles.iter().sum(), threads);
-    Estimate::put_together(1 << 20, tiles, memory, 0, &Ground::recorded())
+    let nodes = tiles.last().copied().unwrap_or(0) << 16;
+    Estimate::put_together(nodes, tiles, memory, 0, &Ground::recorded(nodes, 1.0))
 }
 
 #[test]
@@ -52,9 +53,27 @@ fn four_times_the_tiles_take_four_times_the_disk() {
 fn the_extract_takes_disk_too() {
     let memory = || MemoryEstimate::new(&[], 1, 2);
     let put = |extract_bytes| {
-        Estimate::put_together(1, vec![1], memory(), extract_bytes, &Ground::recorded())
+        Estimate::put_together(1, vec![1], memory(), extract_bytes, &Ground::recorded(1, 1.0))
     };
     let extract = 1_u64 << 30;
     assert!(put(extract).store_bytes > put(0).store_bytes + extract);
     assert!(put(extract).package_bytes > put(0).package_bytes + extract / 4);
+}
+
+/// The packages that the rates were taken from (docs/measured.md): nodes, triangles of all levels and bytes of ground.
+#[test]
+fn recorded_rates_fit_what_they_were_taken_from() {
+    for (name, nodes, ratio, triangles, bytes) in [
+        ("N47E009", 1_442_401, 1.0, 332_000.0, 605_000.0),
+        ("N47E009, 10 m", 1_442_401, 0.637, 559_000.0, 905_000.0),
+        ("N47E009, 5 m", 1_442_401, 0.319, 1_079_000.0, 1_535_000.0),
+        ("Liechtenstein", 2_883_601, 1.0, 849_000.0, 1_500_000.0),
+    ] {
+        let ground = Ground::recorded(nodes, ratio);
+        let all = ground.triangles_per_node * nodes as f64 * rates::ALL_PER_FINEST;
+        assert!((0.75..1.35).contains(&(all / triangles)), "{name}: {all}");
+        let memory = MemoryEstimate::new(&[], 39, 1);
+        let package = Estimate::put_together(nodes, vec![39], memory, 0, &ground).package_bytes;
+        assert!((0.75..1.35).contains(&(package as f64 / bytes)), "{name}: {package}");
+    }
 }
