@@ -1,6 +1,10 @@
 use std::path::PathBuf;
 
+use corniche_dem::{OpenOptions, PlanOptions};
+use corniche_roads::{ClassFilter, FrcTable};
+
 use super::*;
+use crate::{PlanSettings, RoadSettings, Silent, TerrainSettings};
 
 /// A file of one band with so many columns and rows, in blocks.
 pub(in crate::plan) fn file(size: [u64; 2], block: [u64; 2], file_bytes: u64) -> FileBlocks {
@@ -76,4 +80,47 @@ fn recorded_rates_fit_what_they_were_taken_from() {
         let package = Estimate::put_together(nodes, vec![39], memory, 0, &ground).package_bytes;
         assert!((0.75..1.35).contains(&(package as f64 / bytes)), "{name}: {package}");
     }
+}
+
+/// Half of the tiles of the sample tell how many triangles the finest level has: 158 772 (`corniche info`).
+#[test]
+fn some_tiles_tell_how_the_ground_is() {
+    let table = FrcTable::new("one", vec![("motorway".to_owned(), 0)], Vec::new(), 0).unwrap();
+    let settings = PlanSettings {
+        dem: vec![corniche_testing::sample("pass/pass-dem.tif")],
+        osm: None,
+        terrain: TerrainSettings {
+            open: OpenOptions::default(),
+            plan: PlanOptions {
+                crs: None,
+                cell: None,
+                cell_every: None,
+                scale_latitude_deg: None,
+                fill_voids: 32,
+            },
+            height_range_m: None,
+            allow_fine_cell: false,
+            max_error_m: Some(2.5),
+        },
+        roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25 },
+        attribution: Vec::new(),
+        generator: "tests".to_owned(),
+    };
+    let opened = Opened::new(&settings).unwrap();
+    let rectangles = opened.dem.file_nodes(&opened.grid).unwrap();
+    let finest = CoveredTiles::finest(&opened.grid.frame, &rectangles);
+    assert_eq!(finest.count(), 25);
+    let ground = Ground::sampled(&opened, &finest, 1_000_000, &Silent).unwrap();
+    assert_eq!(ground.rates, Rates::Sampled { tiles: 12 });
+    let triangles = ground.triangles_per_node * 1e6;
+    assert!((triangles / 158_772.0 - 1.0).abs() < 0.2, "{triangles}");
+    assert!(ground.core_seconds > 0.0);
+
+    // All of it, as it is done: the sample is too small to be sampled.
+    let resources = Resources { threads: 2, memory_bytes: 1 << 30 };
+    let estimate = Estimate::of(&opened, resources, &Silent).unwrap();
+    assert_eq!((estimate.nodes, estimate.tiles.as_slice()), (1_000_000, &[1, 4, 9, 25][..]));
+    assert_eq!(estimate.rates, Rates::Recorded);
+    // It was 487 kB of ground.
+    assert!((0.8..1.2).contains(&(estimate.package_bytes as f64 / 488_000.0)), "{estimate:?}");
 }
