@@ -177,7 +177,7 @@ impl Estimate {
 }
 
 impl MemoryEstimate {
-    pub(super) fn new(files: &[FileBlocks], tiles: u64, threads: u64) -> Self {
+    pub(crate) fn new(files: &[FileBlocks], tiles: u64, threads: u64) -> Self {
         let largest = files.iter().max_by_key(|file| file.block_bytes());
         let block_bytes = largest.map_or(0, FileBlocks::block_bytes);
         let block_row_bytes = files.iter().map(FileBlocks::row_bytes).max().unwrap_or(0);
@@ -247,4 +247,4 @@ impl Ground {
 
 #[cfg(test)]
 #[path = "estimate_tests.rs"]
-pub(super) mod tests;
+pub(crate) mod tests;

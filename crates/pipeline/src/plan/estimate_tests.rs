@@ -7,11 +7,11 @@ use super::*;
 use crate::{PlanSettings, RoadSettings, Silent, TerrainSettings};
 
 /// A file of one band with so many columns and rows, in blocks.
-pub(in crate::plan) fn file(size: [u64; 2], block: [u64; 2], file_bytes: u64) -> FileBlocks {
+pub(crate) fn file(size: [u64; 2], block: [u64; 2], file_bytes: u64) -> FileBlocks {
     FileBlocks { path: PathBuf::from("dem.tif"), size, block, sample_bytes: 4, file_bytes }
 }
 
-pub(in crate::plan) fn estimate(tiles: Vec<u64>, files: &[FileBlocks], threads: u64) -> Estimate {
+pub(crate) fn estimate(tiles: Vec<u64>, files: &[FileBlocks], threads: u64) -> Estimate {
     let memory = MemoryEstimate::new(files, tiles.iter().sum(), threads);
     let nodes = tiles.last().copied().unwrap_or(0) << 16;
     Estimate::put_together(nodes, tiles, memory, 0, &Ground::recorded(nodes, 1.0))

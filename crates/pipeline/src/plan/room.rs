@@ -12,20 +12,20 @@ use crate::{
 };
 
 /// What a build may use.
-pub(super) struct Room {
+pub(crate) struct Room {
     /// `--memory`.
-    pub(super) memory_bytes: u64,
+    pub(crate) memory_bytes: u64,
     /// The machine's; `None` where it is not known.
-    pub(super) machine_bytes: Option<u64>,
+    pub(crate) machine_bytes: Option<u64>,
     /// Where intermediate results go.
-    pub(super) store: (PathBuf, FileSystem),
+    pub(crate) store: (PathBuf, FileSystem),
     /// Where the package goes.
-    pub(super) target: (PathBuf, FileSystem),
+    pub(crate) target: (PathBuf, FileSystem),
 }
 
 impl Room {
     /// Of this machine.
-    pub(super) fn of(memory_bytes: u64, store: &Path, target: &Path) -> Result<Self, BuildError> {
+    pub(crate) fn of(memory_bytes: u64, store: &Path, target: &Path) -> Result<Self, BuildError> {
         let place = |folder: &Path| -> Result<_, BuildError> {
             let failed = |source| BuildError::Target { folder: folder.to_path_buf(), source };
             let there = nearest_folder(folder).map_err(failed)?;
@@ -40,7 +40,7 @@ impl Room {
     }
 
     /// Fails where the need is greater than what there is.
-    pub(super) fn check(&self, estimate: &Estimate) -> Result<(), BuildError> {
+    pub(crate) fn check(&self, estimate: &Estimate) -> Result<(), BuildError> {
         self.check_memory(estimate)?;
         self.check_disk(estimate)
     }
