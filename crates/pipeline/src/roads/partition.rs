@@ -104,11 +104,10 @@ fn read(
             pool: input.pool,
             memory_bytes: input.memory_bytes,
             scratch,
-            on_progress: None,
+            on_progress: Some(&|done, total| observer.reached(Stage::Roads, done, total)),
         },
         &mut |road| {
             gathered.add(road);
-            observer.advance(Stage::Roads, 1);
         },
         &mut |defect| {
             let defect = Defect::from(defect);
