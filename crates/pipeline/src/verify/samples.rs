@@ -55,8 +55,7 @@ pub(crate) fn measure(
                 // whether a sample lies on it.
                 let frame = &manifest.frame;
                 // A sample without a place in the working CRS is not used.
-                let Some(position_m) =
-                    frame.snap(position_m).map(|point| frame.position_m(point))
+                let Some(position_m) = frame.snap(position_m).map(|point| frame.position_m(point))
                 else {
                     continue;
                 };
