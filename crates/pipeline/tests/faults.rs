@@ -251,7 +251,8 @@ fn a_crash_at_any_time_loses_work_but_never_changes_a_byte() {
             // Nothing more reaches the disk, not even what is done at the end.
             disk.fail_after(0, Failure::Death);
             disk = disk.after_crash(&mut random);
-            went_on += u32::from(disk.paths().iter().any(|path| is_journal_with_entries(&disk, path)));
+            went_on +=
+                u32::from(disk.paths().iter().any(|path| is_journal_with_entries(&disk, path)));
         }
         small.check_goes_on(&disk, &format!("seed {seed}"));
     }
