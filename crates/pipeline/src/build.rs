@@ -81,6 +81,7 @@ pub fn build_on(
     observer.temporary(finished.path());
     let place = (&disk, &*store_folder, sync_interval);
     let store = work_store::open(place, &plan, settings.leftovers, observer)?;
+    observer.keeps(&store_folder);
     let context = Context::new(&plan_settings, settings.resources, &opened, &store, observer);
     let wanted = merge::Target { finished: finished.path(), named: &settings.output };
     let built = (store.scratch().map_err(BuildError::from))

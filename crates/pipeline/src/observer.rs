@@ -130,6 +130,10 @@ pub trait Observer: Sync {
     /// removes it itself.
     fn temporary(&self, _: &Path) {}
 
+    /// The run keeps its intermediate results in this folder, and may be gone on from there if it ends early. A caller that ends the program without
+    /// waiting for the run tells so itself.
+    fn keeps(&self, _: &Path) {}
+
     /// A warning about the inputs, as text for the user.
     fn warning(&self, _: &str) {}
 
