@@ -36,7 +36,12 @@ fn check_same(name: &Path, memories: &[u64]) {
     let bytes = fs::read(name).unwrap();
     let expected = read_within(u64::MAX, &bytes);
     for &memory_bytes in memories {
-        assert_eq!(read_within(memory_bytes, &bytes), expected, "{name:?} in {memory_bytes} bytes");
+        assert_eq!(
+            read_within(memory_bytes, &bytes),
+            expected,
+            "{} in {memory_bytes} bytes",
+            name.display()
+        );
     }
 }
 
