@@ -67,7 +67,7 @@ pub(crate) fn partition(
     observer.begin(Stage::Roads, None);
     let mut gathered = Gathered::new(input, store, scratch);
     let mut defects = DefectsWriter::new(store, observer);
-    let extract = read(input, &mut gathered, &mut defects, observer)?;
+    let extract = read(input, scratch, &mut gathered, &mut defects, observer)?;
     gathered.split_batch();
     if let Some(error) = gathered.failed {
         return Err(error);
@@ -87,6 +87,7 @@ pub(crate) fn partition(
 /// Hands all roads of the extract to `gathered` and its defects to `defects`; returns what it held.
 fn read(
     input: &RoadInput<'_>,
+    scratch: &dyn Scratch,
     gathered: &mut Gathered<'_>,
     defects: &mut DefectsWriter<'_>,
     observer: &dyn Observer,
@@ -105,10 +106,12 @@ fn read(
             table: &input.settings.table,
             place: &place,
             pool: input.pool,
+            memory_bytes: input.memory_bytes,
+            scratch,
+            on_progress: Some(&|done, total| observer.reached(Stage::Roads, done, total)),
         },
         &mut |road| {
             gathered.add(road);
-            observer.advance(Stage::Roads, 1);
         },
         &mut |defect| defects.push(Defect::from(defect)),
         &|| observer.is_cancelled(),
@@ -163,7 +166,8 @@ impl<'a> Gathered<'a> {
                 ..RoadTotals::default()
             },
             lengths: LengthsWriter::new(store),
-            pieces: Sorter::new(scratch, input.memory_bytes),
+            // The reader keeps a third of its memory while it hands out roads.
+            pieces: Sorter::new(scratch, input.memory_bytes / 3 * 2),
             failed: None,
         }
     }

@@ -37,7 +37,7 @@ impl Artifacts for FullStore<'_> {
         let has_room = |room: u64| room.checked_sub(1);
         match self.room.fetch_update(Ordering::Relaxed, Ordering::Relaxed, has_room) {
             Ok(_) => self.store.put(key, bytes),
-            Err(_) => Err(StoreError::Failed { path: "full".into() }),
+            Err(_) => Err(StoreError::ReadOnly { path: "full".into() }),
         }
     }
 
