@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let step = step.map_or_else(|| original.extent(), |step| step.map(to_steps));
     let mut file = BufWriter::new(File::create(output)?);
     file.write_all(&header(&["OsmSchema-V0.6", "DenseNodes"]))?;
-    let side = (1..).find(|side| side * side >= copies).unwrap_or(1);
+    let side = (copies as f64).sqrt().ceil().max(1.0) as i64;
     for copy in 0..copies {
         original.write_nodes(&mut file, copy, [copy % side * step[0], copy / side * step[1]])?;
     }

@@ -42,7 +42,7 @@ pub enum ReadOsmError {
     Feature { path: PathBuf, feature: String },
     #[error(
         "OSM extract {path:?} unpacks to more roads than a file of {len_bytes} bytes can plausibly hold: it may be made to \
-         fill the memory; if the file is correct, rewrite it without compression: \
+         fill memory and disk; if the file is correct, rewrite it without compression: \
          osmium cat IN.osm.pbf -o OUT.osm.pbf -f pbf,pbf_compression=none"
     )]
     TooMuch { path: PathBuf, len_bytes: u64 },

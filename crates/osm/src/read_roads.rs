@@ -32,11 +32,12 @@ use crate::{
 /// `should_stop` is asked every few blobs, and every 65 536 nodes or ways where these are sorted and joined.
 ///
 /// # Memory
-/// Ways and nodes of roads take about [`ReadRequest::memory_bytes`] at most: what does not fit is sorted and joined in
-/// [`ReadRequest::scratch`], where all together takes some 30 bytes per node of a road, and is written at most twice as often as
-/// it is sorted in several steps. The summary's texts (values of `highway` that the table does not know, tags read as another value) and 40
-/// bytes for each blob of the file come on top, and the blobs that are being decoded: see the limits. A few thousand ways with
-/// 100 bytes for each of their nodes are handed out at a time.
+/// Ways and nodes of roads take about [`ReadRequest::memory_bytes`] at most; what does not fit is sorted and joined in
+/// [`ReadRequest::scratch`], where it takes some 30 bytes for each time that a road names a node, and once more as much for
+/// each time that the sorters must merge their runs in several steps. On top come
+/// - the blobs that are being decoded: see the limits;
+/// - a few thousand ways that are handed out at a time, 100 bytes for each of their nodes;
+/// - 48 bytes for each blob of the file, and the texts of the summary.
 ///
 /// # Limits
 /// These limits hold for every file, also for one that was made to do harm:
@@ -54,8 +55,9 @@ use crate::{
 ///
 /// Blocks of up to 16 MiB unpacked, 64 MiB decoded and 16 MiB found are decoded side by side; larger ones, which
 /// ordinary programs do not write, are decoded alone. So blobs take, together and beside what is kept, at most 192
-/// MiB and four packed blobs per thread, and 1 GiB for one that is alone. Sorting takes at most three times the room of what
-/// is kept. Time is proportional to the unpacked size, which deflate keeps below
+/// MiB and four packed blobs per thread, and 1 GiB for one that is alone. A single way takes 100 bytes for each of its nodes, of
+/// which OSM allows 2000. In scratch space there is at most four times as much as is kept, for each step of the
+/// merging. Time, without that of reading an unsorted file anew, is proportional to the unpacked size, which deflate keeps below
 /// 1032 times that of the file.
 ///
 /// # Errors

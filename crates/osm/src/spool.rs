@@ -43,10 +43,10 @@ impl<'a> Spool<'a> {
         if self.open.len() < self.page_bytes {
             return Ok(());
         }
-        // The next page will be about as long as this one.
-        let room = Vec::with_capacity(self.page_bytes);
+        // The last record of a page reaches a little beyond its end, so that the list need not grow.
+        let room = Vec::with_capacity(self.page_bytes + self.page_bytes / 8);
         let page = std::mem::replace(&mut self.open, room);
-        if self.held_bytes + page.capacity() + self.page_bytes > self.memory_bytes {
+        if self.held_bytes + page.capacity() + self.open.capacity() > self.memory_bytes {
             self.pages.push(Page::Kept(self.scratch.append(&page)?));
         } else {
             self.held_bytes += page.capacity();

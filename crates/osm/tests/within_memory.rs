@@ -36,7 +36,12 @@ fn check_same(name: &Path, memories: &[u64]) {
     let bytes = fs::read(name).unwrap();
     let expected = read_within(u64::MAX, &bytes);
     for &memory_bytes in memories {
-        assert_eq!(read_within(memory_bytes, &bytes), expected, "{name:?} in {memory_bytes} bytes");
+        assert_eq!(
+            read_within(memory_bytes, &bytes),
+            expected,
+            "{} in {memory_bytes} bytes",
+            name.display()
+        );
     }
 }
 
@@ -253,6 +258,27 @@ fn a_blob_of_a_sorted_extract_is_read_for_its_nodes_once_and_once_more_where_the
         assert_eq!(extract, expected, "{nodes} nodes at a time");
         assert_eq!(blobs, 45 + 20 + again, "{nodes} nodes at a time");
         assert!(again < 2000_u64.div_ceil(nodes));
+    }
+}
+
+/// How many blobs a file has, and how many of them hold nodes, was counted apart, by a script of its own.
+#[test]
+fn blobs_of_real_extracts_are_read_as_seldom_as_those_of_made_ones() {
+    for (name, all, with_nodes) in [
+        ("liechtenstein/liechtenstein-2021-10-28.osm.pbf", 42, 37),
+        ("liechtenstein/liechtenstein-2013-08-03.osm.pbf", 11, 9),
+        ("swellendam/swellendam-roads.osm.pbf", 3, 2),
+    ] {
+        let Some(path) = real_data(name) else { return };
+        let bytes = fs::read(path).unwrap();
+        let (expected, once) = blobs_read(u64::MAX, &bytes);
+        assert_eq!(once, all + with_nodes, "{name}");
+        for nodes in [100, 1000, 10_000] {
+            let (extract, blobs) = blobs_read(nodes * MEMORY_OF_A_NODE, &bytes);
+            assert_eq!(extract, expected, "{name}: {nodes} nodes at a time");
+            let parts = expected.summary.nodes_needed.div_ceil(nodes);
+            assert!(blobs < once + parts, "{name}: {nodes} nodes at a time: {blobs} blobs");
+        }
     }
 }
 
