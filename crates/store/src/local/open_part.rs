@@ -247,6 +247,12 @@ impl OpenPart {
         self.failed.store(true, Ordering::SeqCst);
     }
 
+    /// Removes the part.
+    pub(crate) fn abandon(self) -> Result<(), StoreError> {
+        self.give_up();
+        remove(self.data.files(), &self.journal)
+    }
+
     fn check_not_failed(&self) -> Result<(), StoreError> {
         if self.failed.load(Ordering::SeqCst) {
             Err(StoreError::Failed { path: self.data.path().to_owned() })
