@@ -93,7 +93,9 @@ pub enum BuildError {
     NotOurs { folder: PathBuf, kept: PathBuf },
     #[error("{path:?} is being built by another process; wait until it has ended")]
     AtWork { path: PathBuf },
-    #[error("{what}: not in the store; run corniche part with --step {step}, or give the folder of its part with --store")]
+    #[error(
+        "{what}: not in the store; run corniche part with --step {step}, or give the folder of its part with --store"
+    )]
     Missing { what: String, step: &'static str },
     #[error("roads could not be sorted on the disk (disk full?)")]
     Storage(#[source] io::Error),

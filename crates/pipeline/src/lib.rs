@@ -33,8 +33,8 @@ pub use defect::{Defect, Loss};
 pub use error::BuildError;
 pub use inputs::PlannedInput;
 pub use machine::{MIN_MEMORY_BYTES, default_memory_bytes, machine_memory_bytes};
-pub use parts::{MergeSettings, PartSettings, PartSummary, Step, make_part, merge};
 pub use observer::{Observer, Silent, Stage, Unit};
+pub use parts::{MergeSettings, PartSettings, PartSummary, Step, make_part, merge};
 pub use plan::{
     BuildPlan, Estimate, FrcTableRecord, MemoryEstimate, PlanError, PlannedGrid, PlannedLevel,
     Rates, plan,

@@ -17,11 +17,7 @@ pub use merge::{MergeSettings, merge};
 pub use part::{PartSettings, PartSummary, Step, make_part};
 
 use self::stores::Stores;
-use crate::{
-    BuildError, BuildPlan, PlanSettings, Resources,
-    context::MemoryShares,
-    plan::Opened,
-};
+use crate::{BuildError, BuildPlan, PlanSettings, Resources, context::MemoryShares, plan::Opened};
 
 /// Opens the inputs of a plan and fails if they, or this program, are not those of the plan.
 fn open(

@@ -177,14 +177,12 @@ impl Pyramid<'_> {
     /// Fails if heights of finest tiles of the subtree `scope` or rasters of any tile are missing.
     pub(crate) fn check_complete(&self, scope: TileId) -> Result<(), BuildError> {
         let (store, data) = (self.store, self.data());
-        let is_missing = |id: TileId| {
-            id.ancestor(scope.z()) == scope && !store.has(Kind::Heights.of_tile(id))
-        };
+        let is_missing =
+            |id: TileId| id.ancestor(scope.z()) == scope && !store.has(Kind::Heights.of_tile(id));
         all_there("the heights", &data.missing(is_missing), "heights")?;
         let levels = 0..self.grid.frame.max_level();
         let all = levels.flat_map(|level| data.above(level).within(TileId::ROOT));
-        let missing: Vec<TileId> =
-            all.filter(|&id| !store.has(Kind::Raster.of_tile(id))).collect();
+        let missing: Vec<TileId> = all.filter(|&id| !store.has(Kind::Raster.of_tile(id))).collect();
         all_there("the heights", &missing, "top")
     }
 

@@ -51,7 +51,11 @@ impl<'a> Stores<'a> {
         if once.is_empty() {
             return Err(BuildError::Start { what: "no store is given".to_owned() });
         }
-        Ok(Self { disk, folders: once.into_iter().map(|(_, folder)| folder).collect(), plan: wanted })
+        Ok(Self {
+            disk,
+            folders: once.into_iter().map(|(_, folder)| folder).collect(),
+            plan: wanted,
+        })
     }
 
     /// Opens them all, and a part of this name to write in the first.

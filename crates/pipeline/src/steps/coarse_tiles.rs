@@ -59,9 +59,8 @@ fn deviations(
 ) -> Result<BTreeMap<TileId, TileDeviation>, BuildError> {
     let store = context.store;
     let data = context.data();
-    let is_missing = |id: TileId| {
-        id.ancestor(scope.z()) == scope && !store.has(Kind::Record.of_tile(id))
-    };
+    let is_missing =
+        |id: TileId| id.ancestor(scope.z()) == scope && !store.has(Kind::Record.of_tile(id));
     all_there("the tiles", &data.missing(is_missing), "tiles")?;
     let mut coarse: BTreeMap<TileId, Seen> = BTreeMap::new();
     // Per finest tile with ground: its own deviation.

@@ -34,8 +34,7 @@ pub(crate) fn check_done(context: &Context<'_>) -> Result<(), BuildError> {
 fn above_subtrees(context: &Context<'_>) -> Vec<TileId> {
     let items = context.store.items(Kind::Subtree as u8);
     let made: BTreeSet<TileId> = items.into_iter().filter_map(tile_of_order).collect();
-    let is_in_another =
-        |id: TileId| (0..id.z()).any(|level| made.contains(&id.ancestor(level)));
+    let is_in_another = |id: TileId| (0..id.z()).any(|level| made.contains(&id.ancestor(level)));
     let subtrees = made.iter().filter(|&&id| !is_in_another(id));
     let above: BTreeSet<TileId> =
         subtrees.flat_map(|id| (0..id.z()).map(|level| id.ancestor(level))).collect();
