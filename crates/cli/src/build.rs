@@ -1,6 +1,6 @@
 //! `corniche build`: runs the pipeline.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use corniche_pipeline::{BuildError, BuildSettings, Existing, Leftovers};
 use corniche_tileset::Manifest;
@@ -24,9 +24,7 @@ pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
         Some(path) => {
             let existing =
                 if args.overwrite { output::Existing::Replace } else { output::Existing::Keep };
-            let mut others: Vec<&Path> = args.work.dem.iter().map(PathBuf::as_path).collect();
-            others.extend(args.work.osm.as_deref());
-            others.extend(args.work.config.as_deref());
+            let mut others: Vec<&Path> = args.work.files().collect();
             others.push(&args.output);
             Some(DefectList::create(path, existing, &others)?)
         }
@@ -70,6 +68,7 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
     let Work { plan, resources, tmp, force } = settings::of(args.work)?;
     Ok(BuildSettings {
         dem: plan.dem,
+        terrain_of: plan.terrain_of,
         osm: plan.osm,
         output: args.output,
         existing: if args.overwrite { Existing::Replace } else { Existing::Keep },

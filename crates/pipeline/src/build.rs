@@ -5,6 +5,8 @@
 //!  heights ─► tiles ──────┴─► merge ─► package
 //! ```
 //!
+//! Where the terrain comes from a package, there is no step *heights*, and the tiles are made from those of the package.
+//!
 //! Each step is a module of [`steps`](crate::steps). What one step hands to the next are artifacts in a store beside the target.
 
 mod unfinished;
@@ -24,6 +26,7 @@ use crate::{
     file_target,
     plan::{Opened, check_room},
     steps::{hashes, merge, roads, tiles},
+    terrain::ground::GroundSource,
 };
 
 /// The result of a build.
@@ -105,7 +108,7 @@ pub fn build_on(
 /// Fails if the target is one of the inputs.
 fn refuse_inputs_as_target(settings: &BuildSettings) -> Result<(), BuildError> {
     let Ok(target) = fs::canonicalize(&settings.output) else { return Ok(()) };
-    for input in settings.dem.iter().chain(&settings.osm) {
+    for input in settings.dem.iter().chain(&settings.terrain_of).chain(&settings.osm) {
         if fs::canonicalize(input).is_ok_and(|input| input == target) {
             return Err(BuildError::TargetIsInput { path: input.clone() });
         }
@@ -140,17 +143,19 @@ fn run(
     scratch: &dyn Scratch,
     target: &merge::Target<'_>,
 ) -> Result<Manifest, BuildError> {
-    let pyramid = context.pyramid();
     warn_of_other_grids(context.grid, context.observer);
     warn_of_unused_latitude(&context.settings.terrain, context.grid, context.observer);
     hashes::make(context)?;
     // Roads come before the long work on heights, so that an unusable extract is reported at once.
     roads::make(context, scratch)?;
-    pyramid.make(TileId::ROOT)?;
-    // Before any tile is made, because no tile has ground where no node has a height.
-    pyramid.check()?;
-    if pyramid.sums()?.samples.with_data == 0 {
-        return Err(BuildError::NoHeights { dem: context.settings.dem.clone() });
+    if let GroundSource::Dem(dem) = context.source {
+        let pyramid = context.pyramid(dem);
+        pyramid.make(TileId::ROOT)?;
+        // Before any tile is made, because no tile has ground where no node has a height.
+        pyramid.check()?;
+        if pyramid.sums()?.samples.with_data == 0 {
+            return Err(BuildError::NoHeights { dem: context.settings.dem.clone() });
+        }
     }
     tiles::make(context, TileId::ROOT)?;
     merge::make(context, scratch, target)

@@ -37,6 +37,8 @@ pub(super) const SECONDS_PER_EXTRACT_BYTE: f64 = 1.0e-6;
 
 /// Time that all steps together take for a tile of any level, on one core, on the machine of `docs/measured.md`.
 pub(super) const SECONDS_PER_TILE: f64 = 0.25;
+/// Time for the tiles of a build that takes the terrain of a package, for each triangle, on one core.
+pub(super) const SECONDS_PER_RECORDED_TRIANGLE: f64 = 3.0e-6;
 /// Time of all steps, divided by the time to triangulate the tile once.
 pub(super) const STEPS_PER_MESH: f64 = 4.0;
 /// Share of the cores' time that the steps use.

@@ -1,15 +1,16 @@
 //! Step *tiles*: each finest tile in one task, from its heights to its payload and record; then the coarse tiles above, within
 //! the subtree.
 
-use corniche_dem::Reader;
+use corniche_dem::{Dem, Reader};
 use corniche_geom::TileId;
 
-use super::{coarse_tiles, tins};
+use super::{coarse_tiles, recorded_tiles, tins};
 use crate::{
     BuildError, Stage,
     artifacts::Kind,
     context::Context,
     heights::finest::FinestHeights,
+    terrain::ground::GroundSource,
     tile::{
         encode,
         grounds::Grounds,
@@ -22,12 +23,16 @@ use crate::{
 
 /// Makes all tiles beneath and at `scope` that are not there yet.
 pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
+    let dem = match context.source {
+        GroundSource::Dem(dem) => dem,
+        GroundSource::Package(terrain) => return recorded_tiles::make(context, terrain, scope),
+    };
     tins::make(context, scope, scope.z()..context.frame().max_level())?;
-    make_finest(context, scope)?;
+    make_finest(context, dem, scope)?;
     coarse_tiles::make(context, scope)
 }
 
-fn make_finest(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
+fn make_finest(context: &Context<'_>, dem: &Dem, scope: TileId) -> Result<(), BuildError> {
     let Context { store, observer, .. } = *context;
     let mut ids = context.data().in_order_within(scope);
     let all = ids.len() as u64;
@@ -39,8 +44,8 @@ fn make_finest(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
         observer,
         context.threads(),
         ids.len(),
-        || Ok(context.dem.reader(context.grid)),
-        |reader, index| make_tile(context, &grounds, reader, ids[index]),
+        || Ok((dem, dem.reader(context.grid))),
+        |source, index| make_tile(context, &grounds, source, ids[index]),
         |_, ()| {
             observer.advance(Stage::Tiles, 1);
             Ok::<_, BuildError>(())
@@ -53,7 +58,7 @@ fn make_finest(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
 fn make_tile(
     context: &Context<'_>,
     grounds: &Grounds<'_>,
-    reader: &mut Reader<'_>,
+    (dem, reader): &mut (&Dem, Reader<'_>),
     id: TileId,
 ) -> Result<(), BuildError> {
     let heights = FinestHeights::get(context.store, id)?;
@@ -61,15 +66,16 @@ fn make_tile(
     let meshed = with_halo.map(|heights| mesh_tile(heights, id, context.levels)).transpose()?;
     let meshed = meshed.filter(|meshed| !meshed.tin.is_empty());
     let column = Column::new(context, grounds, id, meshed.as_ref().map(|meshed| &meshed.tin))?;
-    let levels = column.measure(context, reader, heights.as_ref())?;
+    let levels = column.measure(context, dem, reader, heights.as_ref())?;
     drop(column);
     let own = levels.last().map_or(Seen::default(), |share| share.seen);
+    let owned = || encode::owned_by_heights(context, id, with_halo);
     let record = match meshed {
         Some(meshed) => {
             let deviation = TileDeviation::of(own, 0.0, 0.0);
-            encode::with_ground(context, id, meshed, deviation, with_halo)?
+            encode::with_ground(context, id, meshed, deviation, owned)?
         }
-        None => encode::without_ground(context, id, with_halo)?,
+        None => encode::without_ground(context, id, owned)?,
     };
     TileRecord { levels, ..record }.put(context.store, id)
 }
