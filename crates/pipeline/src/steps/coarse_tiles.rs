@@ -42,7 +42,7 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
                 let heights = rasters::with_halo(store, id)?;
                 encode::owned_by_heights(context, id, heights.as_ref())
             };
-            encode::with_ground(context, id, meshed, deviation, owned)?.put(store, id)
+            encode::with_ground(context, id, meshed, deviation, None, owned)?.put(store, id)
         },
         |_, ()| {
             context.observer.advance(Stage::CoarseTiles, 1);

@@ -7,7 +7,7 @@ use std::{
 
 use corniche_drape::OwnedBorders;
 use corniche_geom::TileId;
-use corniche_tileset::{Sections, Terrain, pmtiles_order};
+use corniche_tileset::{Terrain, pmtiles_order};
 
 use crate::{
     BuildError, Stage,
@@ -66,18 +66,18 @@ fn make_all(
 }
 
 fn make_tile(context: &Context<'_>, borders: &Borders<'_>, id: TileId) -> Result<(), BuildError> {
-    let ground = borders.ground(id)?;
     let owned = || borders.owned(id);
-    let record = match ground {
-        Some(Terrain { tin, normals, geometric_error_m, height_range_m, uncovered_nodes }) => {
+    let record = match borders.ground(id)? {
+        Some((bytes, terrain)) => {
             let deviation = TileDeviation {
-                geometric_error_m,
+                geometric_error_m: terrain.geometric_error_m,
                 // The package does not say it: the manifest takes the figures that are made of it from the package's own.
                 deviation_m: 0.0,
-                height_range_m,
-                uncovered_nodes,
+                height_range_m: terrain.height_range_m,
+                uncovered_nodes: terrain.uncovered_nodes,
             };
-            encode::with_ground(context, id, Meshed { tin, normals }, deviation, owned)?
+            let meshed = Meshed { tin: terrain.tin, normals: terrain.normals };
+            encode::with_ground(context, id, meshed, deviation, Some(&bytes), owned)?
         }
         None => encode::without_ground(context, id, owned)?,
     };
@@ -100,17 +100,10 @@ impl<'a> Borders<'a> {
         Self { context, terrain, kept: Mutex::default(), most }
     }
 
-    /// The ground of a tile; `None` where it has none.
-    fn ground(&self, id: TileId) -> Result<Option<Terrain>, BuildError> {
-        let path = self.terrain.path();
-        let failed = |source| BuildError::PackageTile { path: path.to_path_buf(), source };
-        let payload = self.terrain.package().payload(id, Sections::TERRAIN).map_err(failed)?;
-        let ground = match payload.map(|payload| payload.terrain) {
-            Some(None) => return Err(self.terrain.damaged(&format!("tile {id} has no ground"))),
-            Some(ground) => ground,
-            None => None,
-        };
-        let cells = ground.as_ref().map(|ground| BorderCells::of(&ground.tin));
+    /// The payload of a tile, and its ground decoded; `None` where it has none.
+    fn ground(&self, id: TileId) -> Result<Option<(Vec<u8>, Terrain)>, BuildError> {
+        let ground = self.terrain.ground(id)?;
+        let cells = ground.as_ref().map(|(_, ground)| BorderCells::of(&ground.tin));
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         // Tiles come along a Hilbert curve: what is needed again is found again soon.
         if kept.len() >= self.most {
@@ -126,7 +119,7 @@ impl<'a> Borders<'a> {
         match kept {
             Some(cells) => Ok(cells),
             // Outside the lock: two threads may read the same tile, which is less than making all others wait.
-            None => Ok(self.ground(id)?.map(|ground| BorderCells::of(&ground.tin))),
+            None => Ok(self.ground(id)?.map(|(_, ground)| BorderCells::of(&ground.tin))),
         }
     }
 

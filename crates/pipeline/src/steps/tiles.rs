@@ -73,7 +73,7 @@ fn make_tile(
     let record = match meshed {
         Some(meshed) => {
             let deviation = TileDeviation::of(own, 0.0, 0.0);
-            encode::with_ground(context, id, meshed, deviation, owned)?
+            encode::with_ground(context, id, meshed, deviation, None, owned)?
         }
         None => encode::without_ground(context, id, owned)?,
     };

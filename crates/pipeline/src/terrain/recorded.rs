@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use corniche_dem::{DemError, DemProjection, GridPlan, PlanScale, RecordedCrs, RecordedGrid};
-use corniche_geom::{Frame, TILE_CELLS};
-use corniche_tileset::{FilePackage, InputRecord, Manifest, limits::MAX_TILES};
+use corniche_geom::{Frame, TILE_CELLS, TileId};
+use corniche_tileset::{
+    FilePackage, InputRecord, Manifest, ReadError, Sections, Terrain, decode, limits::MAX_TILES,
+};
 
 use super::data_nodes::data_nodes;
 use crate::{BuildError, TerrainSettings, inputs::InputKind, settings_record};
@@ -115,6 +117,20 @@ impl RecordedTerrain {
     /// WGS84 ⇄ working CRS.
     pub(crate) fn projection(&self) -> Result<DemProjection, DemError> {
         self.crs.projection(self.manifest().wgs84_bounds)
+    }
+
+    /// The payload of a tile, and its ground decoded; `None` where it has none.
+    pub(crate) fn ground(&self, id: TileId) -> Result<Option<(Vec<u8>, Terrain)>, BuildError> {
+        let failed = |source| BuildError::PackageTile { path: self.path().to_path_buf(), source };
+        let Some(bytes) = self.package.tile(id).map_err(failed)? else { return Ok(None) };
+        let manifest = self.manifest();
+        let quantum_m = manifest.vertical.quantum_m;
+        let payload = decode(&bytes, id, &manifest.frame, quantum_m, Sections::TERRAIN)
+            .map_err(|error| failed(ReadError::from(error)))?;
+        match payload.terrain.filter(|terrain| !terrain.tin.is_empty()) {
+            Some(terrain) => Ok(Some((bytes, terrain))),
+            None => Err(self.damaged(&format!("tile {id} has no ground"))),
+        }
     }
 
     /// The elevation files of the package.

@@ -26,12 +26,14 @@ use crate::{
 
 /// Lays a tile's roads on its ground, encodes both and keeps the payload. The record lacks only what finest tiles say of levels.
 ///
-/// `owned` tells which borders are the tile's own. It is asked only where there are roads.
+/// `earlier` is a payload with this ground, if there is one. `owned` tells which borders are the tile's own; it is asked only where
+/// there are roads.
 pub(crate) fn with_ground(
     context: &Context<'_>,
     id: TileId,
     meshed: Meshed,
     deviation: TileDeviation,
+    earlier: Option<&[u8]>,
     owned: impl FnOnce() -> Result<OwnedBorders, BuildError>,
 ) -> Result<TileRecord, BuildError> {
     let levels = context.levels;
@@ -57,7 +59,10 @@ pub(crate) fn with_ground(
     };
     let payload = laid.into_payload(id, terrain);
     let encoding = PayloadContext { frame: *frame, quantum_m: levels.quantum_m() };
-    let encoded = corniche_tileset::encode(&payload, &encoding)?;
+    let encoded = match earlier {
+        Some(earlier) => corniche_tileset::encode_with_ground_of(earlier, &payload, &encoding)?,
+        None => corniche_tileset::encode(&payload, &encoding)?,
+    };
     let classes = class_sums(laid_classes, &payload, &encoded);
     context.store.put(Kind::Payload.of_tile(id), &encoded.bytes)?;
     let terrain_bytes = encoded.sizes.terrain.stored;
