@@ -11,8 +11,6 @@ pub enum Unit {
     Blocks,
     /// Areas of the grid: the finest tiles of one window of the DEM.
     Areas,
-    /// Roads of the extract.
-    Roads,
     /// Tiles of the package.
     Tiles,
 }
@@ -95,8 +93,7 @@ impl Stage {
     #[must_use]
     pub fn unit(self) -> Unit {
         match self {
-            Self::Hash => Unit::Bytes,
-            Self::Roads => Unit::Roads,
+            Self::Hash | Self::Roads => Unit::Bytes,
             Self::Samples => Unit::Blocks,
             Self::Heights => Unit::Areas,
             Self::CoarseTins

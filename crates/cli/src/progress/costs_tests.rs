@@ -38,7 +38,7 @@ all                          13.00 s  21.00 s        1.62                    90.
 #[test]
 fn what_the_system_does_not_tell_has_no_column() {
     let mut costs = Costs::default();
-    costs.add(cost(Stage::Audit, [0, 0], 0, Usage::default()));
+    costs.add(cost(Stage::Samples, [0, 0], 0, Usage::default()));
     let text = costs.to_text(Duration::from_secs(1), &Usage::default());
     let headings: Vec<&str> = text.lines().next().unwrap().split_ascii_whitespace().collect();
     assert_eq!(headings, ["stage", "done", "wall"], "{text}");

@@ -128,7 +128,7 @@ fn different_facts(ours: &[Fact], theirs: &[Fact]) -> Vec<String> {
 }
 
 /// In what the settings for the ground differ from those that a package records, in words; those for roads do not count.
-pub(super) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecord) -> Vec<String> {
+pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecord) -> Vec<String> {
     // The package's roads are not used.
     let theirs = SettingsRecord {
         frc_table: ours.frc_table.clone(),

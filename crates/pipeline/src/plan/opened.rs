@@ -54,7 +54,7 @@ impl Opened {
     }
 
     /// Size of the extract; 0 without one.
-    pub(super) fn extract_bytes(&self) -> Result<u64, BuildError> {
+    pub(crate) fn extract_bytes(&self) -> Result<u64, BuildError> {
         let planned = self.inputs.planned()?;
         let is_extract = |input: &&PlannedInput| input.kind == InputKind::Osm.name();
         Ok(planned.iter().filter(is_extract).map(|input| input.bytes).sum())

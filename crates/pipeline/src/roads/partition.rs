@@ -64,7 +64,7 @@ pub(crate) fn partition(
     }
     observer.begin(Stage::Roads, None);
     let mut gathered = Gathered::new(input, store, scratch);
-    let (extract, defects) = read(input, &mut gathered, observer)?;
+    let (extract, defects) = read(input, scratch, &mut gathered, observer)?;
     gathered.split_batch();
     if let Some(error) = gathered.failed {
         return Err(error);
@@ -83,6 +83,7 @@ pub(crate) fn partition(
 /// Hands all roads of the extract to `gathered`; returns what the extract held, and its defects by name.
 fn read(
     input: &RoadInput<'_>,
+    scratch: &dyn Scratch,
     gathered: &mut Gathered<'_>,
     observer: &dyn Observer,
 ) -> Result<(ExtractSummary, BTreeMap<String, u64>), BuildError> {
@@ -101,10 +102,12 @@ fn read(
             table: &input.settings.table,
             place: &place,
             pool: input.pool,
+            memory_bytes: input.memory_bytes,
+            scratch,
+            on_progress: Some(&|done, total| observer.reached(Stage::Roads, done, total)),
         },
         &mut |road| {
             gathered.add(road);
-            observer.advance(Stage::Roads, 1);
         },
         &mut |defect| {
             let defect = Defect::from(defect);
@@ -163,7 +166,8 @@ impl<'a> Gathered<'a> {
                 ..RoadTotals::default()
             },
             lengths: LengthsWriter::new(store),
-            pieces: Sorter::new(scratch, input.memory_bytes),
+            // The reader keeps a third of its memory while it hands out roads.
+            pieces: Sorter::new(scratch, input.memory_bytes / 3 * 2),
             failed: None,
         }
     }
