@@ -1,6 +1,6 @@
 //! `corniche build`: runs the pipeline.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use corniche_pipeline::{BuildError, BuildSettings, BuildSummary, Existing, Leftovers};
 use corniche_tileset::Manifest;
@@ -17,14 +17,12 @@ use crate::{
 
 pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
     output::writable(&args.output)?;
-    let progress = Progress::new(&args.report);
+    let progress = Progress::new(args.report);
     let defects = match &args.defects {
         Some(path) => {
             let existing =
                 if args.overwrite { output::Existing::Replace } else { output::Existing::Keep };
-            let mut others: Vec<&Path> = args.work.dem.iter().map(PathBuf::as_path).collect();
-            others.extend(args.work.osm.as_deref());
-            others.extend(args.work.config.as_deref());
+            let mut others: Vec<&Path> = args.work.files().collect();
             others.push(&args.output);
             Some(DefectList::create(path, existing, &others)?)
         }
@@ -34,14 +32,14 @@ pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
     let report = args.report;
     let settings = settings(BuildArgs { report, ..*args })?;
     let built = corniche_pipeline::build(&settings, &watch);
-    finish(built, watch, &report, &settings.output)
+    finish(built, watch, report, &settings.output)
 }
 
 /// Tells what became of a build, and puts the list of defects in its place.
 pub(crate) fn finish(
     built: Result<BuildSummary, BuildError>,
     watch: Watch,
-    report: &ReportArgs,
+    report: ReportArgs,
     output: &Path,
 ) -> Result<ExitCode, Failure> {
     let is_json = report.json_progress;
@@ -81,6 +79,7 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
     let Work { plan, resources, tmp, force } = settings::of(args.work)?;
     Ok(BuildSettings {
         dem: plan.dem,
+        terrain_of: plan.terrain_of,
         osm: plan.osm,
         output: args.output,
         existing: if args.overwrite { Existing::Replace } else { Existing::Keep },

@@ -20,7 +20,7 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
     let planned = &args.planned;
     output::writable(&args.output)?;
     let plan = read_plan(&planned.plan)?;
-    let progress = Progress::new(&planned.report);
+    let progress = Progress::new(planned.report);
     let defects = match &args.defects {
         Some(path) => {
             let existing =
@@ -43,5 +43,5 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
         generator: settings::generator(),
     };
     let merged = corniche_pipeline::merge(&merge, &watch);
-    build::finish(merged, watch, &planned.report, &args.output)
+    build::finish(merged, watch, planned.report, &args.output)
 }

@@ -20,7 +20,7 @@ pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
         resources: settings::resources(planned.threads, planned.memory.as_deref())?,
         generator: settings::generator(),
     };
-    let progress = Progress::new(&planned.report);
+    let progress = Progress::new(planned.report);
     let made = corniche_pipeline::make_part(&part, &progress)?;
     let quiet = planned.report.quiet || planned.report.json_progress;
     match made.sealed {

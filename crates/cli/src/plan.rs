@@ -3,7 +3,7 @@
 use std::{
     fmt::Write as _,
     io::{self, Write as _},
-    path::{Path, PathBuf},
+    path::Path,
 };
 
 use corniche_pipeline::{BuildPlan, Estimate, MIN_MEMORY_BYTES, Observer, Resources, Stage};
@@ -24,9 +24,7 @@ pub(crate) fn run(args: PlanArgs) -> Result<ExitCode, Failure> {
     let written = match &args.output {
         Some(path) => {
             let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
-            let mut inputs: Vec<&Path> = args.work.dem.iter().map(PathBuf::as_path).collect();
-            inputs.extend(args.work.osm.as_deref());
-            inputs.extend(args.work.config.as_deref());
+            let inputs: Vec<&Path> = args.work.files().collect();
             Some(Output::create(path, existing, &inputs)?)
         }
         None => None,
@@ -67,7 +65,8 @@ fn subtrees(plan: &BuildPlan, level: u8) -> Result<String, Failure> {
         let message = format!("--subtrees {level}: the finest level is {finest}");
         return Err(Failure::unusable(message));
     }
-    Ok(plan.subtrees(level).iter().map(|id| format!("{id}\n")).collect())
+    let names: Vec<String> = plan.subtrees(level).iter().map(ToString::to_string).collect();
+    Ok(names.iter().flat_map(|name| [name.as_str(), "\n"]).collect())
 }
 
 /// Stops when a signal comes; has nothing to show.

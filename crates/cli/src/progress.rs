@@ -92,7 +92,7 @@ const LINE_INTERVAL: Duration = Duration::from_secs(9);
 const IDLE_INTERVAL: Duration = Duration::from_secs(5);
 
 impl Progress {
-    pub(crate) fn new(args: &ReportArgs) -> Self {
+    pub(crate) fn new(args: ReportArgs) -> Self {
         let manner = if args.quiet {
             Manner::Quiet
         } else if args.json_progress {

@@ -4,7 +4,7 @@ use std::{num::NonZeroUsize, path::PathBuf, thread};
 
 use corniche_geom::Cell;
 use corniche_pipeline::{
-    OpenOptions, PlanOptions, PlanSettings, Resources, RoadSettings, TerrainSettings,
+    OpenOptions, PlanOptions, PlanSettings, Resources, RoadSettings, TerrainRecord, TerrainSettings,
 };
 use corniche_presets::{
     Config, RoadOptions, TerrainOptions, check_cell, class_filter, is_range, parse_memory,
@@ -40,15 +40,19 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     let terrain = args.terrain.or(config.terrain);
     let roads = args.roads.or(config.roads);
     let resources = args.resources.or(config.resources);
+    // What is not given is as it was when the package was made whose terrain is taken, else the usual.
+    let base = match &args.terrain_of {
+        Some(package) => TerrainRecord::of_package(package)?,
+        None => usual_terrain(),
+    };
+    let given = [args.attribution, terrain.attribution.clone()];
+    let attribution = given.into_iter().find(|credits| !credits.is_empty());
     let plan = PlanSettings {
         dem: args.dem,
+        terrain_of: args.terrain_of,
         osm: args.osm,
-        attribution: if args.attribution.is_empty() {
-            terrain.attribution.clone()
-        } else {
-            args.attribution
-        },
-        terrain: terrain_settings(terrain, args.force)?,
+        attribution: attribution.unwrap_or(base.attribution),
+        terrain: terrain_settings(terrain, base.terrain, args.force)?,
         roads: road_settings(roads)?,
         generator: generator(),
     };
@@ -61,7 +65,34 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     })
 }
 
-fn terrain_settings(options: TerrainOptions, force: bool) -> Result<TerrainSettings, Failure> {
+/// Terrain settings where none is given.
+fn usual_terrain() -> TerrainRecord {
+    let open = OpenOptions::default();
+    let plan = PlanOptions {
+        crs: None,
+        cell: None,
+        cell_every: None,
+        scale_latitude_deg: None,
+        fill_voids: FILL_VOIDS,
+    };
+    TerrainRecord {
+        terrain: TerrainSettings {
+            open,
+            plan,
+            height_range_m: None,
+            allow_fine_cell: false,
+            max_error_m: None,
+        },
+        attribution: Vec::new(),
+    }
+}
+
+/// The settings that are given; others are those of `base`.
+fn terrain_settings(
+    options: TerrainOptions,
+    base: TerrainSettings,
+    force: bool,
+) -> Result<TerrainSettings, Failure> {
     check_nodata(&options.nodata)?;
     if let Some([low, high]) = options.height_range.filter(|ends| !is_range(*ends)) {
         return Err(Failure::unusable(format!(
@@ -72,22 +103,22 @@ fn terrain_settings(options: TerrainOptions, force: bool) -> Result<TerrainSetti
     let cell = cell.map_err(|error| Failure::unusable(format!("cell: {error}")))?;
     Ok(TerrainSettings {
         open: OpenOptions {
-            dem_crs: options.dem_crs,
-            nodata: options.nodata,
-            dem_vertical_crs: options.dem_vertical_crs,
-            vertical_crs: options.vertical_crs,
-            vertical_shift_m: options.vertical_shift.unwrap_or(0.0),
+            dem_crs: options.dem_crs.or(base.open.dem_crs),
+            nodata: if options.nodata.is_empty() { base.open.nodata } else { options.nodata },
+            dem_vertical_crs: options.dem_vertical_crs.or(base.open.dem_vertical_crs),
+            vertical_crs: options.vertical_crs.or(base.open.vertical_crs),
+            vertical_shift_m: options.vertical_shift.unwrap_or(base.open.vertical_shift_m),
         },
         plan: PlanOptions {
-            crs: options.crs,
-            cell: cell.map(Cell::from),
-            cell_every: options.cell_every,
-            scale_latitude_deg: options.scale_latitude,
-            fill_voids: options.fill_voids.unwrap_or(FILL_VOIDS),
+            crs: options.crs.or(base.plan.crs),
+            cell: cell.map(Cell::from).or(base.plan.cell),
+            cell_every: options.cell_every.or(base.plan.cell_every),
+            scale_latitude_deg: options.scale_latitude.or(base.plan.scale_latitude_deg),
+            fill_voids: options.fill_voids.unwrap_or(base.plan.fill_voids),
         },
-        height_range_m: options.height_range,
+        height_range_m: options.height_range.or(base.height_range_m),
         allow_fine_cell: force,
-        max_error_m: positive("--max-error", options.max_error)?,
+        max_error_m: positive("--max-error", options.max_error)?.or(base.max_error_m),
     })
 }
 

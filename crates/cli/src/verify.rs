@@ -28,7 +28,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
         osm: extract(args)?,
         threads: threads(args.threads),
     };
-    let report = corniche_pipeline::verify(&settings, &Progress::new(&args.report))?;
+    let report = corniche_pipeline::verify(&settings, &Progress::new(args.report))?;
     let text = if args.json { format!("{}\n", to_json(&report)) } else { to_text(&report) };
     let written = io::stdout().lock().write_all(text.as_bytes());
     if report.holds() {

@@ -5,6 +5,8 @@
 //!  heights ─► tiles ──────┴─► merge ─► package
 //! ```
 //!
+//! Where the terrain comes from a package, there is no step *heights*, and the tiles are made from those of the package.
+//!
 //! Each step is a module of [`steps`](crate::steps). What one step hands to the next are artifacts in a store beside the target.
 
 pub(crate) mod unfinished;
@@ -51,13 +53,14 @@ pub fn build(
     settings: &BuildSettings,
     observer: &dyn Observer,
 ) -> Result<BuildSummary, BuildError> {
-    build_on(Arc::new(SystemDisk), SYNC_INTERVAL, settings, observer)
+    let disk: Arc<dyn Disk> = Arc::new(SystemDisk);
+    build_on(&disk, SYNC_INTERVAL, settings, observer)
 }
 
 /// As [`build`], with the store on any disk, and made durable as often as wanted: tests let it fail.
 #[doc(hidden)]
 pub fn build_on(
-    disk: Arc<dyn Disk>,
+    disk: &Arc<dyn Disk>,
     sync_interval: Duration,
     settings: &BuildSettings,
     observer: &dyn Observer,
@@ -70,7 +73,10 @@ pub fn build_on(
     if settings.existing == Existing::Keep && fs::symlink_metadata(target).is_ok() {
         return Err(BuildError::Exists { path: target.clone() });
     }
-    refuse_inputs_as_target(&settings.output, settings.dem.iter().chain(&settings.osm))?;
+    refuse_inputs_as_target(
+        &settings.output,
+        settings.dem.iter().chain(&settings.terrain_of).chain(&settings.osm),
+    )?;
     let shares = MemoryShares::of(settings.resources.memory_bytes);
     corniche_dem::limit_block_cache(shares.raster_cache)
         .map_err(|error| BuildError::Start { what: error.to_string() })?;
@@ -84,7 +90,7 @@ pub fn build_on(
     }
     let finished = Unfinished::create(target, folder)?;
     observer.temporary(finished.path());
-    let place = (&disk, &*store_folder, sync_interval);
+    let place = (disk, &*store_folder, sync_interval);
     let store = work_store::open(place, &plan, settings.leftovers, observer)?;
     observer.keeps(&store_folder);
     let context = Context::new(&plan_settings, settings.resources, &opened, &store, observer);

@@ -10,6 +10,7 @@ use crate::{
     inputs::Inputs,
     levels::Levels,
     plan::Opened,
+    terrain::ground::GroundSource,
 };
 
 /// What the steps of a build share. It is made from the settings alone, so every process that works on one build has the same.
@@ -17,7 +18,7 @@ pub(crate) struct Context<'a> {
     pub(crate) settings: &'a PlanSettings,
     pub(crate) resources: Resources,
     pub(crate) inputs: &'a Inputs,
-    pub(crate) dem: &'a Dem,
+    pub(crate) source: &'a GroundSource,
     pub(crate) grid: &'a GridPlan,
     pub(crate) levels: &'a Levels,
     pub(crate) coordinates: &'a CoordinateTable,
@@ -36,13 +37,13 @@ impl<'a> Context<'a> {
         store: &'a dyn Artifacts,
         observer: &'a dyn Observer,
     ) -> Self {
-        let Opened { inputs, dem, grid, levels, max_error_m, coordinates } = opened;
+        let Opened { inputs, source, grid, levels, max_error_m, coordinates } = opened;
         let max_error_m = *max_error_m;
         Self {
             settings,
             resources,
             inputs,
-            dem,
+            source,
             grid,
             levels,
             coordinates,
@@ -60,9 +61,18 @@ impl<'a> Context<'a> {
         DataTiles::of(self.grid)
     }
 
-    pub(crate) fn pyramid(&self) -> Pyramid<'_> {
+    /// The heights of the DEM; `None` where the terrain comes from a package.
+    pub(crate) fn pyramid(&self) -> Option<Pyramid<'_>> {
+        match self.source {
+            GroundSource::Dem(dem) => Some(self.pyramid_of(dem)),
+            GroundSource::Package(_) => None,
+        }
+    }
+
+    /// The heights of `dem`, the build's own source.
+    pub(crate) fn pyramid_of(&self, dem: &'a Dem) -> Pyramid<'_> {
         Pyramid {
-            dem: self.dem,
+            dem,
             grid: self.grid,
             range_m: self.settings.terrain.height_range_m,
             threads: self.threads(),

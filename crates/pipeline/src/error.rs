@@ -65,6 +65,16 @@ pub enum BuildError {
          folder on another disk for intermediate results, or begin anyway with --force"
     )]
     NoRoom { folder: PathBuf, need: String, what: String, free: String },
+    #[error(transparent)]
+    Package(#[from] corniche_tileset::OpenError),
+    #[error(
+        "the terrain of {path:?} cannot be taken: {differences}; build from the elevation files with --dem"
+    )]
+    OtherTerrain { path: PathBuf, differences: String },
+    #[error("{path:?} is damaged: {what}; build from the elevation files with --dem")]
+    DamagedPackage { path: PathBuf, what: String },
+    #[error("{path:?} cannot be used; build from the elevation files with --dem")]
+    PackageTile { path: PathBuf, source: corniche_tileset::ReadError },
     #[error("the run could not be set up: {what}")]
     Start { what: String },
     #[error("--max-error must be from 1e-9 to 1e9 metres, not {max_error_m}")]
@@ -151,6 +161,10 @@ impl BuildError {
                 | Self::NoStore { .. }
                 | Self::Subtree { .. }
                 | Self::Missing { .. }
+                | Self::Package(_)
+                | Self::OtherTerrain { .. }
+                | Self::DamagedPackage { .. }
+                | Self::PackageTile { .. }
                 | Self::NoMemory { .. }
                 | Self::NoRoom { .. }
                 | Self::Triangulate { source: corniche_tin::TriangulateError::Height { .. }, .. }

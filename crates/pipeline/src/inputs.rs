@@ -32,18 +32,22 @@ pub(crate) enum InputKind {
     Dem,
     /// A file that such a raster refers to, or that lies beside it and belongs to it.
     DemPart,
+    /// A package whose terrain is taken. It is no input of the package that is made: that has the files of this one.
+    Terrain,
     /// The extract.
     Osm,
 }
 
 impl InputKind {
-    pub(crate) const ALL: [Self; 3] = [Self::Dem, Self::DemPart, Self::Osm];
+    /// Those that a manifest has.
+    pub(crate) const RECORDED: [Self; 3] = [Self::Dem, Self::DemPart, Self::Osm];
 
     /// The word for it in the manifest.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Dem => "dem",
             Self::DemPart => "dem-part",
+            Self::Terrain => "terrain",
             Self::Osm => "osm",
         }
     }
@@ -109,6 +113,18 @@ impl Inputs {
                 files.push(Input::new(InputKind::DemPart, &part)?);
             }
         }
+        if let Some(path) = osm {
+            files.push(Input::new(InputKind::Osm, path)?);
+        }
+        Ok(Self { files })
+    }
+
+    /// The same where the terrain comes from a package.
+    pub(crate) fn find_with_package(
+        package: &Path,
+        osm: Option<&Path>,
+    ) -> Result<Self, InputError> {
+        let mut files = vec![Input::new(InputKind::Terrain, package)?];
         if let Some(path) = osm {
             files.push(Input::new(InputKind::Osm, path)?);
         }

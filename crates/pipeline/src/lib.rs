@@ -22,6 +22,7 @@ mod settings;
 mod settings_record;
 mod steps;
 mod target;
+mod terrain;
 mod tile;
 mod verify;
 mod workers;
@@ -43,6 +44,7 @@ pub use settings::{
     BuildSettings, Existing, Leftovers, PlanSettings, Resources, RoadSettings, TerrainSettings,
 };
 pub use target::{TargetError, file_target};
+pub use terrain::recorded::TerrainRecord;
 pub use verify::{
     Check, CheckId, ErrorFigures, GapFigures, Needs, VerifyError, VerifyOsm, VerifyReport,
     VerifySettings, verify,

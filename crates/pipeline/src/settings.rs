@@ -8,6 +8,8 @@ use corniche_roads::{ClassFilter, FrcTable};
 pub struct BuildSettings {
     /// Elevation rasters; where they overlap, the first has precedence.
     pub dem: Vec<PathBuf>,
+    /// A package whose terrain is taken as it is; then `dem` is empty, and `terrain` what the package records.
+    pub terrain_of: Option<PathBuf>,
     /// OpenStreetMap extract; `None` builds terrain alone.
     pub osm: Option<PathBuf>,
     /// The package to write.
@@ -37,6 +39,8 @@ pub struct BuildSettings {
 pub struct PlanSettings {
     /// Elevation rasters; where they overlap, the first has precedence.
     pub dem: Vec<PathBuf>,
+    /// A package whose terrain is taken as it is; then `dem` is empty, and `terrain` what the package records.
+    pub terrain_of: Option<PathBuf>,
     /// OpenStreetMap extract; `None` plans terrain alone.
     pub osm: Option<PathBuf>,
     /// How the ground is made.
@@ -53,6 +57,7 @@ impl From<&BuildSettings> for PlanSettings {
     fn from(settings: &BuildSettings) -> Self {
         Self {
             dem: settings.dem.clone(),
+            terrain_of: settings.terrain_of.clone(),
             osm: settings.osm.clone(),
             terrain: settings.terrain.clone(),
             roads: settings.roads.clone(),

@@ -17,6 +17,7 @@ fn settings() -> PlanSettings {
     let table = FrcTable::new("few", classes, vec!["steps".to_owned()], 7).unwrap();
     PlanSettings {
         dem: vec![sample("pass/pass-dem.tif")],
+        terrain_of: None,
         osm: Some(sample("pass/pass.osm.pbf")),
         terrain: TerrainSettings {
             open: OpenOptions::default(),

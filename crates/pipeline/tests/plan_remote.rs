@@ -64,6 +64,7 @@ fn a_file_on_a_server_is_known_by_its_size_and_etag() {
     let dem = format!("/vsicurl/http://{address}/dem.tif");
     let settings = PlanSettings {
         dem: vec![dem.clone().into()],
+        terrain_of: None,
         osm: None,
         terrain: TerrainSettings {
             open: OpenOptions::default(),

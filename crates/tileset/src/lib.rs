@@ -32,4 +32,4 @@ pub use payload::{
     SvRoad, Terrain, TilePayload, decode, payload_sizes,
 };
 #[cfg(feature = "write")]
-pub use payload::{EncodedTile, PayloadContext, encode};
+pub use payload::{EncodedTile, PayloadContext, encode, encode_with_ground_of};

@@ -29,7 +29,7 @@ mod damage;
 pub use damage::{Damage, DecodeError, EncodeError};
 pub use decode::decode;
 #[cfg(feature = "write")]
-pub use encode::{EncodedTile, PayloadContext, encode};
+pub use encode::{EncodedTile, PayloadContext, encode, encode_with_ground_of};
 pub use envelope::SectionSize;
 pub use section_kind::Sections;
 pub use sizes::{PayloadSizes, payload_sizes};

@@ -312,9 +312,12 @@ fn bombs_and_foreign_bytes_are_refused() {
 #[test]
 fn hostile_compressed_bytes_do_not_panic() {
     let raw: Vec<u8> = (0..3000_u32).map(|k| (k * k / 1000) as u8 & 0x1f).collect();
-    let sealed = super::envelope::seal(id(), &[(super::section_kind::Kind::Terrain, raw.clone())])
-        .unwrap()
-        .0;
+    let sealed = super::envelope::seal(
+        id(),
+        &[(super::section_kind::Kind::Terrain, super::envelope::Content::Raw(raw.clone()))],
+    )
+    .unwrap()
+    .0;
     let open = |bytes: &[u8]| {
         let mut bytes = bytes.to_vec();
         // Offset, stored length, raw length, checksum: the table's only entry, made right again.

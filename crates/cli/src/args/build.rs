@@ -1,4 +1,4 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use corniche_presets::{ResourceOptions, RoadOptions, TerrainOptions};
@@ -7,8 +7,12 @@ use corniche_presets::{ResourceOptions, RoadOptions, TerrainOptions};
 #[derive(Debug, Args)]
 pub(crate) struct WorkArgs {
     /// Elevation rasters, any format GDAL reads; where they overlap, the first has precedence
-    #[arg(long, value_name = "FILE", num_args = 1.., required = true)]
+    #[arg(long, value_name = "FILE", num_args = 1.., required_unless_present = "terrain_of")]
     pub(crate) dem: Vec<PathBuf>,
+    /// Take the terrain of this package, made by the same program with the same terrain settings, in place of elevation rasters:
+    /// the result is the same, sooner; terrain settings and credits that are not given are the package's
+    #[arg(long = "terrain", value_name = "PACKAGE", conflicts_with = "dem")]
+    pub(crate) terrain_of: Option<PathBuf>,
     /// OpenStreetMap extract (.osm.pbf); without it the package is terrain alone
     #[arg(long, value_name = "FILE")]
     pub(crate) osm: Option<PathBuf>,
@@ -27,6 +31,14 @@ pub(crate) struct WorkArgs {
     pub(crate) roads: RoadOptions,
     #[command(flatten)]
     pub(crate) resources: ResourceOptions,
+}
+
+impl WorkArgs {
+    /// All files that are read.
+    pub(crate) fn files(&self) -> impl Iterator<Item = &Path> {
+        let files = self.dem.iter().chain(&self.terrain_of).chain(&self.osm).chain(&self.config);
+        files.map(PathBuf::as_path)
+    }
 }
 
 #[derive(Debug, Args)]

@@ -31,7 +31,7 @@ fn a_running_stage_tells_what_is_done_of_what_time_left_rate_and_bytes() {
     // What is not known is left out.
     assert_eq!(reading(0, Some(1)).running(), "0 of 1 tile (0 %)");
     assert_eq!(reading(1, None).running(), "1 tile");
-    assert_eq!(Reading { stage: Stage::Roads, ..reading(2, None) }.running(), "2 roads");
+    assert_eq!(Reading { stage: Stage::Heights, ..reading(2, None) }.running(), "2 areas");
 }
 
 /// Not all is done before all is done, and large numbers do not overflow.

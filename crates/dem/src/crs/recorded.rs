@@ -26,6 +26,10 @@ impl RecordedCrs {
         Ok(Self { working: Working { crs, metres_per_unit, middle, is_scaled } })
     }
 
+    pub(crate) fn working(&self) -> &Working {
+        &self.working
+    }
+
     /// "EPSG:…" where it has a code, else its name.
     #[must_use]
     pub fn label(&self) -> &str {

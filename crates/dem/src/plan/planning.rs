@@ -183,7 +183,9 @@ fn method(
     Ok(Method::Resampled(Box::new(positions), Kernel::new(samples_per_node)))
 }
 
-fn libraries() -> String {
+/// Releases of GDAL and PROJ that this program runs with, as packages record them.
+#[must_use]
+pub fn libraries() -> String {
     let proj = VersionInfo::build_info()
         .remove("PROJ_RUNTIME_VERSION")
         .unwrap_or_else(|| "unknown".to_owned());

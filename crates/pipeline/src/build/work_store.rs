@@ -126,6 +126,8 @@ fn is_final(error: &BuildError) -> bool {
             | BuildError::Changed { .. }
             | BuildError::Exists { .. }
             | BuildError::Osm(_)
+            | BuildError::DamagedPackage { .. }
+            | BuildError::PackageTile { .. }
             | BuildError::Dem(DemError::OutOfRange { .. } | DemError::Sentinel { .. })
             | BuildError::Triangulate { .. }
     )

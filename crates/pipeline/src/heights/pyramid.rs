@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use corniche_dem::{Audit, AuditBlock, Dem, GridPlan, SURFACE_RANGE_M};
 use corniche_geom::{HeightGrid, TileId};
 use corniche_store::Artifacts;
-use corniche_tileset::SampleCounts;
+use corniche_tileset::{Manifest, SampleCounts};
 
 use super::{
     area::{AreaReader, AreaRecord, area_level, audit_blocks_of},
@@ -127,6 +127,15 @@ pub(crate) struct HeightSums {
     pub(crate) samples: SampleCounts,
     /// Lowest and highest node; zeros where there is none.
     pub(crate) range_m: [f32; 2],
+}
+
+impl HeightSums {
+    /// Those that a package records.
+    pub(crate) fn recorded(manifest: &Manifest) -> Self {
+        // They were 32-bit numbers before they were written.
+        let range_m = manifest.vertical.range_m.map(|height_m| height_m as f32);
+        Self { samples: manifest.counts.samples, range_m }
+    }
 }
 
 impl Pyramid<'_> {

@@ -15,6 +15,7 @@ use crate::{
     build::{refuse_inputs_as_target, unfinished::Unfinished},
     context::Context,
     file_target,
+    roads::partition::replay_defects,
     steps::{coarse_tiles, merge as sums},
 };
 
@@ -58,7 +59,10 @@ pub fn merge(
     }
     let stores = Stores::look(stores, plan, false)?;
     let (plan_settings, opened) = open(plan, generator, *resources)?;
-    refuse_inputs_as_target(output, plan_settings.dem.iter().chain(&plan_settings.osm))?;
+    refuse_inputs_as_target(
+        output,
+        plan_settings.dem.iter().chain(&plan_settings.terrain_of).chain(&plan_settings.osm),
+    )?;
     let finished = Unfinished::create(target, folder)?;
     observer.temporary(finished.path());
     let store = stores.open(OWN_PART)?;
@@ -83,6 +87,9 @@ fn run(
     target: &sums::Target<'_>,
 ) -> Result<Manifest, BuildError> {
     sums::check_complete(context)?;
+    if context.settings.osm.is_some() {
+        replay_defects(context.store, context.observer)?;
+    }
     coarse_tiles::make(context, TileId::ROOT)?;
     sums::make(context, &store.scratch()?, target)
 }

@@ -198,6 +198,7 @@ impl BuildPlan {
         let table = self.frc_table.table()?;
         Ok(PlanSettings {
             dem: paths("dem").collect(),
+            terrain_of: paths("terrain").next(),
             osm: paths("osm").next(),
             terrain: settings_record::terrain(&self.settings),
             roads: settings_record::roads(&self.settings, table).ok_or(PlanError::Filter)?,

@@ -127,6 +127,24 @@ fn different_facts(ours: &[Fact], theirs: &[Fact]) -> Vec<String> {
     said
 }
 
+/// In what the settings for the ground differ from those that a package records, in words; those for roads do not count.
+pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecord) -> Vec<String> {
+    // The package's roads are not used.
+    let theirs = SettingsRecord {
+        frc_table: ours.frc_table.clone(),
+        frc_table_sha256: ours.frc_table_sha256.clone(),
+        class_max_cell_m: ours.class_max_cell_m.clone(),
+        simplify_cells: ours.simplify_cells,
+        ..package.clone()
+    };
+    setting_facts(ours)
+        .into_iter()
+        .zip(setting_facts(&theirs))
+        .filter(|(ours, theirs)| ours != theirs)
+        .map(|((name, ours), (_, theirs))| format!("{name} is {ours}, it was made with {theirs}"))
+        .collect()
+}
+
 fn list<T: AsRef<str>>(texts: impl IntoIterator<Item = T>) -> String {
     let texts: Vec<String> = texts.into_iter().map(|text| text.as_ref().to_owned()).collect();
     if texts.is_empty() { "none".to_owned() } else { texts.join(", ") }

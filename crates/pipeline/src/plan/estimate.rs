@@ -2,12 +2,13 @@
 
 use std::time::Instant;
 
-use corniche_dem::FileBlocks;
+use corniche_dem::{Dem, FileBlocks};
+use corniche_tileset::{LevelRecord, Manifest};
 use corniche_tin::TinSpec;
 use serde::Serialize;
 
 use super::{Opened, covered_tiles::CoveredTiles, rates};
-use crate::{BuildError, Observer, Resources, inputs::InputKind};
+use crate::{BuildError, Observer, Resources, terrain::ground::GroundSource};
 
 /// From so many finest tiles on some are triangulated to see how the ground is. Less work is estimated well enough without.
 const LEAST_TILES_TO_SAMPLE: u64 = 256;
@@ -102,7 +103,14 @@ impl Estimate {
         resources: Resources,
         observer: &dyn Observer,
     ) -> Result<Self, BuildError> {
-        let rectangles = opened.dem.file_nodes(&opened.grid)?;
+        let extract_bytes = opened.extract_bytes()?;
+        let dem = match &opened.source {
+            GroundSource::Dem(dem) => dem,
+            GroundSource::Package(terrain) => {
+                return Ok(Self::of_recorded(terrain.manifest(), resources, extract_bytes));
+            }
+        };
+        let rectangles = dem.file_nodes(&opened.grid)?;
         let finest = CoveredTiles::finest(&opened.grid.frame, &rectangles);
         let mut tiles = vec![finest.count()];
         let mut level = finest.parents();
@@ -115,27 +123,47 @@ impl Estimate {
             side(south_west.i, north_east.i).saturating_mul(side(south_west.j, north_east.j))
         });
         let nodes = sides.fold(0, u64::saturating_add);
-        let memory = MemoryEstimate::new(
-            &opened.dem.file_blocks()?,
-            tiles.iter().sum(),
-            resources.threads as u64,
-        );
+        let memory =
+            MemoryEstimate::new(&dem.file_blocks()?, tiles.iter().sum(), resources.threads as u64);
         let is_sampled = finest.count() >= LEAST_TILES_TO_SAMPLE
             && memory.block_bytes <= MOST_SAMPLED_BLOCK_BYTES
             && memory.least_bytes <= resources.memory_bytes;
         let ground = if is_sampled {
-            Ground::sampled(opened, &finest, nodes, observer)?
+            Ground::sampled(opened, dem, &finest, nodes, observer)?
         } else {
             let usual_m = opened.grid.frame.cell().shorter_m() / 4.0;
             Ground::recorded(nodes, opened.max_error_m / usual_m)
         };
-        let extract = opened
-            .inputs
-            .planned()?
-            .into_iter()
-            .filter(|input| input.kind == InputKind::Osm.name());
-        let extract_bytes = extract.map(|input| input.bytes).sum();
         Ok(Self::put_together(nodes, tiles, memory, extract_bytes, &ground))
+    }
+
+    /// Of a build that takes the terrain of a package.
+    fn of_recorded(manifest: &Manifest, resources: Resources, extract_bytes: u64) -> Self {
+        let levels = &manifest.levels;
+        let tiles: Vec<u64> = levels.iter().map(|level| level.tiles).collect();
+        let all = tiles.iter().sum::<u64>();
+        let memory = MemoryEstimate::new(&[], all, resources.threads as u64);
+        let of_levels = |count: fn(&LevelRecord) -> u64| levels.iter().map(count).sum::<u64>();
+        let [triangles, terrain_bytes] =
+            [of_levels(|level| level.triangles), of_levels(|level| level.terrain_bytes)];
+        let extract = extract_bytes as f64;
+        let package = terrain_bytes as f64 + rates::ROADS_PER_EXTRACT_BYTE * extract;
+        let records = all * (rates::RECORD_BYTES + 3 * rates::ARTIFACT_BYTES);
+        let pieces = rates::PIECES_PER_EXTRACT_BYTE * extract;
+        let while_sorted = pieces + rates::SORTED_PER_EXTRACT_BYTE * extract;
+        let core_seconds = rates::SECONDS_PER_RECORDED_TRIANGLE * triangles as f64
+            + rates::SECONDS_PER_EXTRACT_BYTE * extract;
+        let cores = memory.threads.max(1) as f64 * rates::CORES_BUSY;
+        Self {
+            nodes: manifest.counts.samples.nodes,
+            tiles,
+            memory,
+            store_bytes: (records as f64 + package + pieces).max(while_sorted).ceil() as u64,
+            package_bytes: package.ceil() as u64,
+            core_seconds,
+            seconds: core_seconds / cores,
+            rates: Rates::Recorded,
+        }
     }
 
     fn put_together(
@@ -215,11 +243,12 @@ impl Ground {
     /// From the average of some tiles, void ones included.
     fn sampled(
         opened: &Opened,
+        dem: &Dem,
         finest: &CoveredTiles,
         nodes: u64,
         observer: &dyn Observer,
     ) -> Result<Self, BuildError> {
-        let Opened { grid, levels, max_error_m, dem, .. } = opened;
+        let Opened { grid, levels, max_error_m, .. } = opened;
         let mut reader = dem.reader(grid);
         let spec = TinSpec { max_error_m: *max_error_m, quantum_m: levels.quantum_m() };
         let tiles = finest.spread(SAMPLED_TILES);

@@ -88,6 +88,7 @@ fn some_tiles_tell_how_the_ground_is() {
     let table = FrcTable::new("one", vec![("motorway".to_owned(), 0)], Vec::new(), 0).unwrap();
     let settings = PlanSettings {
         dem: vec![corniche_testing::sample("pass/pass-dem.tif")],
+        terrain_of: None,
         osm: None,
         terrain: TerrainSettings {
             open: OpenOptions::default(),
@@ -107,10 +108,11 @@ fn some_tiles_tell_how_the_ground_is() {
         generator: "tests".to_owned(),
     };
     let opened = Opened::new(&settings).unwrap();
-    let rectangles = opened.dem.file_nodes(&opened.grid).unwrap();
+    let GroundSource::Dem(dem) = &opened.source else { panic!("it is a DEM") };
+    let rectangles = dem.file_nodes(&opened.grid).unwrap();
     let finest = CoveredTiles::finest(&opened.grid.frame, &rectangles);
     assert_eq!(finest.count(), 25);
-    let ground = Ground::sampled(&opened, &finest, 1_000_000, &Silent).unwrap();
+    let ground = Ground::sampled(&opened, dem, &finest, 1_000_000, &Silent).unwrap();
     assert_eq!(ground.rates, Rates::Sampled { tiles: 12 });
     let triangles = ground.triangles_per_node * 1e6;
     assert!((triangles / 158_772.0 - 1.0).abs() < 0.2, "{triangles}");

@@ -1,11 +1,15 @@
+use std::path::Path;
+
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::CoordinateTable;
 
-use super::coordinates::coordinates;
+use super::{coordinates::coordinates, differences::terrain_differences};
 use crate::{
-    BuildError, PlanSettings, TerrainSettings,
-    inputs::Inputs,
+    BuildError, PlanSettings, PlannedInput, TerrainSettings,
+    inputs::{InputKind, Inputs},
     levels::{Levels, most_scale},
+    settings_record,
+    terrain::{ground::GroundSource, recorded::RecordedTerrain},
 };
 
 /// Tolerances that the finest level can have. Outside this range a package cannot hold the root's tolerance or the height
@@ -15,7 +19,7 @@ const MAX_ERRORS_M: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 /// The inputs, opened, and what follows from them and from the settings before a height is read.
 pub(crate) struct Opened {
     pub(crate) inputs: Inputs,
-    pub(crate) dem: Dem,
+    pub(crate) source: GroundSource,
     pub(crate) grid: GridPlan,
     pub(crate) levels: Levels,
     /// Tolerance of the finest level, given or derived from the cell.
@@ -31,16 +35,33 @@ impl Opened {
     /// When a file cannot be used, the files make no grid, or a setting does not fit them.
     pub(crate) fn new(settings: &PlanSettings) -> Result<Self, BuildError> {
         // The state of the files is noted before anything of them is read.
-        let inputs = Inputs::find(&settings.dem, settings.osm.as_deref())?;
-        match Self::plan(settings) {
-            Ok(planned) => Ok(planned(inputs)),
+        let osm = settings.osm.as_deref();
+        let inputs = match &settings.terrain_of {
+            Some(package) => Inputs::find_with_package(package, osm)?,
+            None => Inputs::find(&settings.dem, osm)?,
+        };
+        let planned = match &settings.terrain_of {
+            Some(package) => Self::recorded(settings, package),
+            None => Self::plan(settings),
+        };
+        match planned {
+            Ok(Planned { source, grid, levels, max_error_m, coordinates }) => {
+                Ok(Self { inputs, source, grid, levels, max_error_m, coordinates })
+            }
             // A changed input may be the cause of any other error, so it is reported instead.
             Err(error) => Err(inputs.check_unchanged().err().map_or(error, BuildError::from)),
         }
     }
 
-    /// All but the inputs.
-    fn plan(settings: &PlanSettings) -> Result<impl FnOnce(Inputs) -> Self, BuildError> {
+    /// Size of the extract; 0 without one.
+    pub(crate) fn extract_bytes(&self) -> Result<u64, BuildError> {
+        let planned = self.inputs.planned()?;
+        let is_extract = |input: &&PlannedInput| input.kind == InputKind::Osm.name();
+        Ok(planned.iter().filter(is_extract).map(|input| input.bytes).sum())
+    }
+
+    /// From elevation files.
+    fn plan(settings: &PlanSettings) -> Result<Planned, BuildError> {
         let terrain = &settings.terrain;
         let dem = Dem::open(&settings.dem, &terrain.open)?;
         let grid = dem.plan(&terrain.plan)?;
@@ -52,8 +73,40 @@ impl Opened {
         let levels = Levels::new(grid.frame, max_error_m, &settings.roads, widest);
         // This fails for files that are too far apart for one package.
         let coordinates = coordinates(&dem, &grid)?;
-        Ok(move |inputs| Self { inputs, dem, grid, levels, max_error_m, coordinates })
+        let source = GroundSource::Dem(Box::new(dem));
+        Ok(Planned { source, grid, levels, max_error_m, coordinates })
     }
+
+    /// From a package.
+    fn recorded(settings: &PlanSettings, package: &Path) -> Result<Planned, BuildError> {
+        let terrain = RecordedTerrain::open(package, &settings.generator)?;
+        let manifest = terrain.manifest();
+        let max_error_m = settings.terrain.max_error_m.unwrap_or(manifest.settings.max_error_m);
+        let ours = settings_record::of(&settings.terrain, &settings.roads, max_error_m);
+        let differences = terrain_differences(&ours, &manifest.settings);
+        if !differences.is_empty() {
+            let differences = differences.join("; ");
+            return Err(BuildError::OtherTerrain { path: package.to_path_buf(), differences });
+        }
+        let widest = most_scale(manifest.scale.largest);
+        let levels = Levels::new(manifest.frame, max_error_m, &settings.roads, widest);
+        if levels.quantum_m().to_bits() != manifest.vertical.quantum_m.to_bits() {
+            return Err(terrain.damaged("its step of heights does not fit its settings"));
+        }
+        let coordinates = manifest.coordinates.clone();
+        let grid = terrain.grid();
+        let source = GroundSource::Package(Box::new(terrain));
+        Ok(Planned { source, grid, levels, max_error_m, coordinates })
+    }
+}
+
+/// What is opened, without the inputs.
+struct Planned {
+    source: GroundSource,
+    grid: GridPlan,
+    levels: Levels,
+    max_error_m: f64,
+    coordinates: CoordinateTable,
 }
 
 /// The tolerance of the finest level: given, or derived from the cell.

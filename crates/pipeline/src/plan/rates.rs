@@ -48,6 +48,8 @@ pub(crate) const SECONDS_PER_NODE: f64 = 0.28e-6;
 /// Time for each triangle of any level, on one core.
 pub(crate) const SECONDS_PER_TRIANGLE: f64 = 3.5e-6;
 
+/// Time for the tiles of a build that takes the terrain of a package, for each triangle, on one core.
+pub(crate) const SECONDS_PER_RECORDED_TRIANGLE: f64 = 1.0e-6;
 /// Time of all steps on all levels, divided by the time to triangulate the finest level.
 pub(crate) const STEPS_PER_MESH: f64 = 3.3;
 /// Share of the cores' time that the steps use.

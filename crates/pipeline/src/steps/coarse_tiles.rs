@@ -38,10 +38,11 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
             let empty = || damaged(Kind::Tin.of_tile(id), &"it has no ground");
             let meshed = Meshed::get(store, id)?.ok_or_else(empty)?;
             let deviation = deviations.get(&id).copied().unwrap_or_default();
-            // Heights are wanted only where there are roads: they decide which borders are the tile's own.
-            let has_roads = store.has(Kind::RoadPieces.of_tile(id));
-            let heights = if has_roads { rasters::with_halo(store, &data, id)? } else { None };
-            encode::with_ground(context, id, meshed, deviation, heights.as_ref())?.put(store, id)
+            let owned = || {
+                let heights = rasters::with_halo(store, &data, id)?;
+                encode::owned_by_heights(context, id, heights.as_ref())
+            };
+            encode::with_ground(context, id, meshed, deviation, None, owned)?.put(store, id)
         },
         |_, ()| {
             context.observer.advance(Stage::CoarseTiles, 1);

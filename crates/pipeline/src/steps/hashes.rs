@@ -6,7 +6,7 @@ use crate::{
     BuildError,
     artifacts::{self, Kind},
     context::Context,
-    inputs::Inputs,
+    inputs::{InputKind, Inputs},
 };
 
 /// Hashes the inputs that are not hashed yet.
@@ -31,5 +31,10 @@ pub(crate) fn records(context: &Context<'_>) -> Result<Vec<InputRecord>, BuildEr
         })?);
     }
     Inputs::in_order(&mut records);
+    if let Some(terrain) = context.source.package() {
+        // The terrain was made from the package's elevation files, not from the package.
+        records.retain(|record| !InputKind::Terrain.is_of(record));
+        records.splice(0..0, terrain.elevation_files().cloned());
+    }
     Ok(records)
 }

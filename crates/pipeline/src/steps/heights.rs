@@ -4,8 +4,10 @@ use corniche_geom::TileId;
 
 use crate::{BuildError, artifacts::Kind, context::Context};
 
-/// Reads the heights beneath and at `scope` that are not there yet.
+/// Reads the heights beneath and at `scope` that are not there yet; none where the terrain comes from a package.
 pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
-    context.pyramid().make(scope)?;
+    if let Some(pyramid) = context.pyramid() {
+        pyramid.make(scope)?;
+    }
     Ok(context.store.put(Kind::Subtree.of_tile(scope), &[])?)
 }

@@ -2,7 +2,7 @@
 
 use corniche_tileset::{
     Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest,
-    ScaleRecord, VerticalRecord,
+    SampleErrorRecord, ScaleRecord, VerticalRecord,
 };
 
 use super::sums::TileSums;
@@ -71,19 +71,28 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
 
 fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
     let levels = outcome.context.levels;
+    let recorded = outcome.context.source.package();
     levels
         .numbers()
         .map(|level| {
+            let recorded = recorded.map(|terrain| &terrain.manifest().levels[usize::from(level)]);
             let sums = outcome.tiles.levels.get(&level).cloned().unwrap_or_default();
             let errors_m = Distribution::of(sums.geometric_errors_m);
+            let measured = Measured {
+                sample_error: outcome.tiles.samples[usize::from(level)].record(),
+                tightness: Distribution::of(sums.tightness),
+                uncovered_nodes: sums.uncovered_nodes,
+            };
+            // A package holds the figures of each level, but of the tiles not what they are made of.
+            let measured = recorded.map_or(measured, Measured::recorded);
             LevelRecord {
                 level,
                 cell_m: levels.frame().level_cell(level),
                 max_error_m: levels.max_error_m(level),
                 geometric_error_m: errors_m.map_or(0.0, |errors_m| errors_m.max),
                 errors_m,
-                sample_error: outcome.tiles.samples[usize::from(level)].record(),
-                tightness: Distribution::of(sums.tightness),
+                sample_error: measured.sample_error,
+                tightness: measured.tightness,
                 least_class: levels
                     .least_class(level)
                     .map(corniche_roads::FunctionalRoadClass::number),
@@ -93,10 +102,24 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
                 triangles: sums.triangles,
                 vertices: sums.vertices,
                 terrain_bytes: sums.terrain_bytes,
-                uncovered_nodes: sums.uncovered_nodes,
+                uncovered_nodes: measured.uncovered_nodes,
             }
         })
         .collect()
+}
+
+/// What is known of a level only by comparing its TINs with the heights.
+struct Measured {
+    sample_error: SampleErrorRecord,
+    tightness: Option<Distribution>,
+    uncovered_nodes: u64,
+}
+
+impl Measured {
+    fn recorded(level: &LevelRecord) -> Self {
+        let &LevelRecord { sample_error, tightness, uncovered_nodes, .. } = level;
+        Self { sample_error, tightness, uncovered_nodes }
+    }
 }
 
 /// Counts of roads: read, kept, and lost by reason.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use corniche_store::Scratch;
-use corniche_tileset::{Manifest, Writer, tile_of_order};
+use corniche_tileset::{LevelRecord, Manifest, Writer, tile_of_order};
 
 use super::{
     hashes,
@@ -16,8 +16,9 @@ use crate::{
     BuildError, Stage,
     artifacts::{self, Kind},
     context::Context,
-    heights::pyramid::all_there,
+    heights::pyramid::{HeightSums, all_there},
     roads::losses::LossFold,
+    terrain::{ground::GroundSource, recorded::RecordedTerrain},
     tile::record::TileRecord,
 };
 
@@ -33,7 +34,9 @@ pub(crate) struct Target<'a> {
 pub(crate) fn check_complete(context: &Context<'_>) -> Result<(), BuildError> {
     hashes::records(context)?;
     roads::check_done(context)?;
-    context.pyramid().sums()?;
+    if let Some(pyramid) = context.pyramid() {
+        pyramid.sums()?;
+    }
     top::check_done(context)?;
     let is_missing = |id| !context.store.has(Kind::Record.of_tile(id));
     all_there("the tiles", &context.data().missing(is_missing), "tiles")
@@ -45,7 +48,10 @@ pub(crate) fn make(
     scratch: &dyn Scratch,
     target: &Target<'_>,
 ) -> Result<Manifest, BuildError> {
-    let heights = context.pyramid().sums()?;
+    let heights = match context.source {
+        GroundSource::Dem(dem) => context.pyramid_of(dem).sums()?,
+        GroundSource::Package(terrain) => HeightSums::recorded(terrain.manifest()),
+    };
     let roads = roads::totals(context)?;
     let mut tiles = TileSums::new(context);
     let mut fold = LossFold::new(scratch, context.memory().sorting);
@@ -78,6 +84,9 @@ pub(crate) fn make(
         roads: roads.as_ref().zip(losses.as_ref()),
         tiles: &tiles,
     });
+    if let Some(terrain) = context.source.package() {
+        check_levels(terrain, &manifest.levels)?;
+    }
     if let (Some(osm), 0) = (&context.settings.osm, manifest.counts.roads_kept) {
         return Err(BuildError::NoGround { osm: osm.clone() });
     }
@@ -85,6 +94,23 @@ pub(crate) fn make(
     context.inputs.check_unchanged()?;
     write(context, target, &manifest)?;
     Ok(manifest)
+}
+
+/// Fails if the levels of a package whose terrain was taken are others than what was found in its tiles.
+fn check_levels(terrain: &RecordedTerrain, found: &[LevelRecord]) -> Result<(), BuildError> {
+    for (said, found) in terrain.manifest().levels.iter().zip(found) {
+        // What depends on the settings for roads may differ.
+        let wanted = LevelRecord {
+            least_class: found.least_class,
+            simplify_tolerance_m: found.simplify_tolerance_m,
+            ..said.clone()
+        };
+        if wanted != *found {
+            let what = format!("the tiles of level {} are not what its manifest says", said.level);
+            return Err(terrain.damaged(&what));
+        }
+    }
+    Ok(())
 }
 
 /// Writes the package.

@@ -36,7 +36,7 @@ pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), B
         .num_threads(context.threads())
         .build()
         .map_err(|error| BuildError::Start { what: error.to_string() })?;
-    let projection = context.dem.projection(context.grid)?;
+    let projection = context.source.projection(context.grid)?;
     let frame = *context.frame();
     let input = RoadInput {
         osm,

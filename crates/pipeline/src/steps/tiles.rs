@@ -1,15 +1,16 @@
 //! Step *tiles*: each finest tile in one task, from its heights to its payload and record; then the coarse tiles above, within
 //! the subtree.
 
-use corniche_dem::Reader;
+use corniche_dem::{Dem, Reader};
 use corniche_geom::TileId;
 
-use super::{coarse_tiles, roads, tins, top};
+use super::{coarse_tiles, recorded_tiles, roads, tins, top};
 use crate::{
     BuildError, Stage,
     artifacts::Kind,
     context::Context,
     heights::finest::FinestHeights,
+    terrain::ground::GroundSource,
     tile::{
         encode,
         grounds::Grounds,
@@ -24,19 +25,23 @@ use crate::{
 /// which borders are a tile's own.
 pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
     top::check_done(context)?;
-    context.pyramid().check_complete(scope)?;
     roads::check_done(context)?;
+    let dem = match context.source {
+        GroundSource::Dem(dem) => dem,
+        GroundSource::Package(terrain) => return recorded_tiles::make(context, terrain, scope),
+    };
+    context.pyramid_of(dem).check_complete(scope)?;
     // Tiles above the subtree are there unless heights were made for larger subtrees.
     let mut coarse: Vec<TileId> = (0..scope.z()).map(|level| scope.ancestor(level)).collect();
     for level in scope.z()..context.frame().max_level() {
         coarse.extend(context.data().above(level).in_order_within(scope));
     }
     tins::make(context, coarse)?;
-    make_finest(context, scope)?;
+    make_finest(context, dem, scope)?;
     coarse_tiles::make(context, scope)
 }
 
-fn make_finest(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
+fn make_finest(context: &Context<'_>, dem: &Dem, scope: TileId) -> Result<(), BuildError> {
     let Context { store, observer, .. } = *context;
     let mut ids = context.data().in_order_within(scope);
     let all = ids.len() as u64;
@@ -48,8 +53,8 @@ fn make_finest(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
         observer,
         context.threads(),
         ids.len(),
-        || Ok(context.dem.reader(context.grid)),
-        |reader, index| make_tile(context, &grounds, reader, ids[index]),
+        || Ok((dem, dem.reader(context.grid))),
+        |source, index| make_tile(context, &grounds, source, ids[index]),
         |_, ()| {
             observer.advance(Stage::Tiles, 1);
             Ok::<_, BuildError>(())
@@ -62,7 +67,7 @@ fn make_finest(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
 fn make_tile(
     context: &Context<'_>,
     grounds: &Grounds<'_>,
-    reader: &mut Reader<'_>,
+    (dem, reader): &mut (&Dem, Reader<'_>),
     id: TileId,
 ) -> Result<(), BuildError> {
     let heights = FinestHeights::get(context.store, id)?;
@@ -70,15 +75,16 @@ fn make_tile(
     let meshed = with_halo.map(|heights| mesh_tile(heights, id, context.levels)).transpose()?;
     let meshed = meshed.filter(|meshed| !meshed.tin.is_empty());
     let column = Column::new(context, grounds, id, meshed.as_ref().map(|meshed| &meshed.tin))?;
-    let levels = column.measure(context, reader, heights.as_ref())?;
+    let levels = column.measure(context, dem, reader, heights.as_ref())?;
     drop(column);
     let own = levels.last().map_or(Seen::default(), |share| share.seen);
+    let owned = || encode::owned_by_heights(context, id, with_halo);
     let record = match meshed {
         Some(meshed) => {
             let deviation = TileDeviation::of(own, 0.0, 0.0);
-            encode::with_ground(context, id, meshed, deviation, with_halo)?
+            encode::with_ground(context, id, meshed, deviation, None, owned)?
         }
-        None => encode::without_ground(context, id, with_halo)?,
+        None => encode::without_ground(context, id, owned)?,
     };
     TileRecord { levels, ..record }.put(context.store, id)
 }

@@ -10,14 +10,15 @@ use crate::{BuildError, artifacts::Kind, context::Context};
 
 /// Checks the heights of all subtrees, which must be there, and makes what lies above them.
 pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
-    let pyramid = context.pyramid();
-    // Before any tile is made, because no tile has ground where no node has a height.
-    pyramid.check()?;
-    if pyramid.sums()?.samples.with_data == 0 {
-        return Err(BuildError::NoHeights { dem: context.settings.dem.clone() });
+    if let Some(pyramid) = context.pyramid() {
+        // Before any tile is made, because no tile has ground where no node has a height.
+        pyramid.check()?;
+        if pyramid.sums()?.samples.with_data == 0 {
+            return Err(BuildError::NoHeights { dem: context.settings.dem.clone() });
+        }
+        pyramid.make_rasters(TileId::ROOT)?;
+        tins::make(context, above_subtrees(context))?;
     }
-    pyramid.make_rasters(TileId::ROOT)?;
-    tins::make(context, above_subtrees(context))?;
     Ok(context.store.put(Kind::Top.item(0), &[])?)
 }
 

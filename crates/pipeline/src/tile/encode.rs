@@ -26,24 +26,25 @@ use crate::{
 
 /// Lays a tile's roads on its ground, encodes both and keeps the payload. The record lacks only what finest tiles say of levels.
 ///
-/// `heights` has one node of halo; it decides which borders are the tile's own.
+/// `earlier` is a payload with this ground, if there is one. `owned` tells which borders are the tile's own; it is asked only where
+/// there are roads.
 pub(crate) fn with_ground(
     context: &Context<'_>,
     id: TileId,
     meshed: Meshed,
     deviation: TileDeviation,
-    heights: Option<&HeightGrid>,
+    earlier: Option<&[u8]>,
+    owned: impl FnOnce() -> Result<OwnedBorders, BuildError>,
 ) -> Result<TileRecord, BuildError> {
     let levels = context.levels;
     let frame = context.frame();
     let pieces = TilePieces::load(context.store, id)?;
-    let mut laid = if let (false, Some(heights)) = (pieces.roads.is_empty(), heights) {
+    let mut laid = if pieces.roads.is_empty() {
+        Laid::default()
+    } else {
         let placement = Placement::of_tile(frame, id, levels.quantum_m());
         let surface = Surface::new(&meshed.tin, placement);
-        let owned = owned_borders(context, id, heights)?;
-        Laid::of_tile(&pieces, &TileToLayOn { id, surface: &surface, owned }, levels)
-    } else {
-        Laid::default()
+        Laid::of_tile(&pieces, &TileToLayOn { id, surface: &surface, owned: owned()? }, levels)
     };
     let fates = std::mem::take(&mut laid.fates);
     let laid_classes = std::mem::take(&mut laid.classes);
@@ -58,7 +59,10 @@ pub(crate) fn with_ground(
     };
     let payload = laid.into_payload(id, terrain);
     let encoding = PayloadContext { frame: *frame, quantum_m: levels.quantum_m() };
-    let encoded = corniche_tileset::encode(&payload, &encoding)?;
+    let encoded = match earlier {
+        Some(earlier) => corniche_tileset::encode_with_ground_of(earlier, &payload, &encoding)?,
+        None => corniche_tileset::encode(&payload, &encoding)?,
+    };
     let classes = class_sums(laid_classes, &payload, &encoded);
     context.store.put(Kind::Payload.of_tile(id), &encoded.bytes)?;
     let terrain_bytes = encoded.sizes.terrain.stored;
@@ -70,11 +74,12 @@ pub(crate) fn with_ground(
     })
 }
 
-/// The record of a finest tile without ground: its roads are lost there. `heights` is `None` where no node has one.
+/// The record of a finest tile without ground: its roads are lost there. `owned` tells which borders are the tile's own. It is
+/// asked only where there are roads.
 pub(crate) fn without_ground(
     context: &Context<'_>,
     id: TileId,
-    heights: Option<&HeightGrid>,
+    owned: impl FnOnce() -> Result<OwnedBorders, BuildError>,
 ) -> Result<TileRecord, BuildError> {
     let pieces = TilePieces::load(context.store, id)?;
     let mut record = TileRecord::default();
@@ -82,29 +87,37 @@ pub(crate) fn without_ground(
         return Ok(record);
     }
     let bounds = context.frame().tile_lattice_bounds(id);
-    let nothing = HeightGrid::from_fn(TILE_NODES + 2, TILE_NODES + 2, |_, _| f32::NAN);
-    let owned = owned_borders(context, id, heights.unwrap_or(&nothing))?;
-    record.fates = lost_pieces(&pieces, &bounds, owned);
+    record.fates = lost_pieces(&pieces, &bounds, owned()?);
     Ok(record)
 }
 
-/// What the tile owns of its borders, by the ground on both sides of them.
-///
-/// A neighbour for which no roads are laid (beside the data, or without ground above the finest level) owns nothing.
-fn owned_borders(
+/// What the tile owns of its borders, by the heights on both sides of them. `with_halo` has one node of halo on every side, and is
+/// `None` where no node has a height.
+pub(crate) fn owned_by_heights(
     context: &Context<'_>,
     id: TileId,
-    with_halo: &HeightGrid,
+    with_halo: Option<&HeightGrid>,
 ) -> Result<OwnedBorders, BuildError> {
+    let neighbours = neighbours(context, id, |other| has_ground(context, other))?;
+    Ok(OwnedBorders::among(neighbours).where_ground(|column, row| {
+        with_halo.is_some_and(|heights| {
+            heights.cell_has_ground((column + 1) as usize, (row + 1) as usize)
+        })
+    }))
+}
+
+/// Which neighbours lay roads, so that a border can be theirs: on the finest level those on the data, on others those with ground.
+pub(crate) fn neighbours(
+    context: &Context<'_>,
+    id: TileId,
+    has_ground: impl Fn(TileId) -> Result<bool, BuildError>,
+) -> Result<Neighbours, BuildError> {
     let is_asked = |east, south| match id.neighbour(east, south) {
         Some(other) if id.z() == context.frame().max_level() => Ok(context.data().contains(other)),
-        Some(other) => has_ground(context, other),
+        Some(other) => has_ground(other),
         None => Ok(false),
     };
-    let neighbours = Neighbours { east: is_asked(1, 0)?, south: is_asked(0, 1)? };
-    Ok(OwnedBorders::among(neighbours).where_ground(|column, row| {
-        with_halo.cell_has_ground((column + 1) as usize, (row + 1) as usize)
-    }))
+    Ok(Neighbours { east: is_asked(1, 0)?, south: is_asked(0, 1)? })
 }
 
 /// Whether a coarse tile has ground: a cell with a height at each corner. Its raster says so, too, where its TIN is made elsewhere.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use corniche_dem::Reader;
+use corniche_dem::{Dem, Reader};
 use corniche_geom::{HeightGrid, TileId};
 use corniche_tin::{Tin, WindowPlacement};
 
@@ -38,6 +38,7 @@ impl Column {
     pub(crate) fn measure(
         &self,
         context: &Context<'_>,
+        dem: &Dem,
         reader: &mut Reader<'_>,
         heights: Option<&FinestHeights>,
     ) -> Result<Vec<LevelShare>, BuildError> {
@@ -56,7 +57,7 @@ impl Column {
             self.at_nodes(context, heights, nodes_are_samples, &mut shares);
         }
         if !nodes_are_samples {
-            self.at_samples(context, reader, &mut shares)?;
+            self.at_samples(context, dem, reader, &mut shares)?;
         }
         Ok(shares)
     }
@@ -112,12 +113,13 @@ impl Column {
     fn at_samples(
         &self,
         context: &Context<'_>,
+        dem: &Dem,
         reader: &mut Reader<'_>,
         shares: &mut [LevelShare],
     ) -> Result<(), BuildError> {
         let (frame, data) = (context.frame(), context.data());
         let root = frame.tile_lattice_bounds(TileId::ROOT);
-        for area in context.dem.sample_areas_of(context.grid, frame.tile_window(self.finest))? {
+        for area in dem.sample_areas_of(context.grid, frame.tile_window(self.finest))? {
             let block = reader.used_samples(&area)?;
             for (&position_m, &height_m) in block.positions_m.iter().zip(&block.heights_m) {
                 let Some(point) = frame.snap(position_m) else { continue };

@@ -1,9 +1,10 @@
 //! The grid of a package and the data's rectangle on it.
 
-use corniche_geom::{Frame, NodeIndex, TILE_CELLS, TileId};
+use corniche_geom::{Frame, TILE_CELLS, TileId};
 use corniche_tileset::Manifest;
 
 use super::checks::{CheckId, Findings};
+use crate::terrain::data_nodes::data_nodes;
 
 pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     let frame = &manifest.frame;
@@ -29,23 +30,6 @@ pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     findings.look(CheckId::SampleSums, said == nodes, || {
         format!("{said} nodes are counted, the data's rectangle has {nodes}")
     });
-}
-
-/// South-western and north-eastern node of the data's rectangle.
-pub(crate) fn data_nodes(manifest: &Manifest) -> [NodeIndex; 2] {
-    let frame = &manifest.frame;
-    let bounds = &manifest.data_bounds;
-    let node = |x: f64, y: f64| {
-        let [i, j] = cells(frame, [x, y]).map(|cells| cells.round() as i64);
-        NodeIndex { i, j }
-    };
-    [node(bounds.min_x, bounds.min_y), node(bounds.max_x, bounds.max_y)]
-}
-
-/// How many finest cells a position lies east and north of node (0, 0).
-fn cells(frame: &Frame, [x, y]: [f64; 2]) -> [f64; 2] {
-    let ([west, south], [east_m, north_m]) = (frame.origin_m(), frame.cell().to_array());
-    [(x - west) / east_m, (y - south) / north_m]
 }
 
 /// First and last of the finest tiles on which the data's rectangle lies: its north-western and south-eastern one.

@@ -163,6 +163,7 @@ pub(crate) fn settings(
 ) -> BuildSettings {
     BuildSettings {
         dem: vec![dem],
+        terrain_of: None,
         osm,
         output,
         existing: Existing::Keep,

@@ -124,6 +124,12 @@ pub(crate) fn section(
     }
 }
 
+/// The section of one kind as it is stored; `None` where it is absent.
+#[cfg(feature = "write")]
+pub(crate) fn find<'a>(sections: &[StoredSection<'a>], kind: Kind) -> Option<StoredSection<'a>> {
+    sections.iter().find(|section| section.kind == kind as u16).copied()
+}
+
 /// How large the section of one kind is; 0 where it is absent.
 pub(crate) fn size(sections: &[StoredSection<'_>], kind: Kind) -> SectionSize {
     let of_kind = sections.iter().find(|section| section.kind == kind as u16);
@@ -186,11 +192,20 @@ pub struct SectionSize {
 #[cfg(feature = "write")]
 const COMPRESSION_LEVEL: i32 = 16;
 
+/// What a section is made of.
+#[cfg(feature = "write")]
+pub(crate) enum Content<'a> {
+    /// Bytes before compression.
+    Raw(Vec<u8>),
+    /// Bytes as another payload of the tile has them.
+    Stored(StoredSection<'a>),
+}
+
 /// Puts header, table and sections together; compresses each section where that makes it smaller.
 #[cfg(feature = "write")]
 pub(crate) fn seal(
     id: TileId,
-    sections: &[(Kind, Vec<u8>)],
+    sections: &[(Kind, Content<'_>)],
 ) -> Result<(Vec<u8>, Vec<SectionSize>), crate::payload::damage::EncodeError> {
     use crate::payload::damage::EncodeError;
 
@@ -203,29 +218,38 @@ pub(crate) fn seal(
     let mut body: Vec<u8> = Vec::new();
     let mut sizes = Vec::with_capacity(sections.len());
     let start = HEADER_BYTES + sections.len() * ENTRY_BYTES + 4;
-    for (kind, raw) in sections {
+    for (kind, content) in sections {
         let section = kind.name();
-        if raw.len() > MAX_SECTION_BYTES {
-            return Err(EncodeError::TooLarge {
-                tile: id,
-                section,
-                bytes: raw.len(),
-                limit: MAX_SECTION_BYTES,
-            });
-        }
-        let compressed = zstd::bulk::compress(raw, COMPRESSION_LEVEL).map_err(|error| {
-            EncodeError::Compress { tile: id, section, reason: error.to_string() }
-        })?;
-        let (compression, stored) =
-            if compressed.len() < raw.len() { (ZSTD, &compressed) } else { (STORED, raw) };
+        let compressed;
+        let (compression, stored, raw_length, checksum) = match content {
+            Content::Stored(stored) => {
+                (stored.compression, stored.bytes, stored.raw_length as usize, stored.checksum)
+            }
+            Content::Raw(raw) => {
+                if raw.len() > MAX_SECTION_BYTES {
+                    return Err(EncodeError::TooLarge {
+                        tile: id,
+                        section,
+                        bytes: raw.len(),
+                        limit: MAX_SECTION_BYTES,
+                    });
+                }
+                compressed = zstd::bulk::compress(raw, COMPRESSION_LEVEL).map_err(|error| {
+                    EncodeError::Compress { tile: id, section, reason: error.to_string() }
+                })?;
+                let (compression, stored) =
+                    if compressed.len() < raw.len() { (ZSTD, &compressed) } else { (STORED, raw) };
+                (compression, stored.as_slice(), raw.len(), crc32fast::hash(stored))
+            }
+        };
         table.extend((*kind as u16).to_le_bytes());
         table.extend([compression, 0]);
-        for number in [start + body.len(), stored.len(), raw.len()] {
+        for number in [start + body.len(), stored.len(), raw_length] {
             table.extend((number as u32).to_le_bytes());
         }
-        table.extend(crc32fast::hash(stored).to_le_bytes());
+        table.extend(checksum.to_le_bytes());
         body.extend(stored);
-        sizes.push(SectionSize { raw: raw.len() as u64, stored: stored.len() as u64 });
+        sizes.push(SectionSize { raw: raw_length as u64, stored: stored.len() as u64 });
     }
     table.extend(crc32fast::hash(&table).to_le_bytes());
     table.extend(body);

@@ -1,0 +1,90 @@
+//! The grid of a package without its elevation files.
+
+use corniche_geom::{Bounds, Frame, NodeIndex};
+
+use crate::RecordedCrs;
+use crate::plan::grid_plan::{GridPlan, PlanScale, Resampling};
+use crate::plan::planning::libraries;
+
+/// What a package records of its grid, beside its CRS.
+#[derive(Debug, Clone)]
+pub struct RecordedGrid {
+    /// Nodes, tiles and levels.
+    pub frame: Frame,
+    /// South-westernmost node at which data can lie.
+    pub south_west: NodeIndex,
+    /// North-easternmost node at which data can lie.
+    pub north_east: NodeIndex,
+    /// Name of the CRS.
+    pub crs: String,
+    /// The CRS as WKT2.
+    pub crs_wkt: String,
+    /// Working metres to a true metre, at the centre.
+    pub point_scale: f64,
+    /// The same along each axis.
+    pub scale: PlanScale,
+    /// Rectangle around the files in WGS84 degrees.
+    pub wgs84_bounds: Bounds,
+    /// Whether nodes are the DEM's samples.
+    pub nodes_are_samples: bool,
+    /// How nodes relate to samples, in words.
+    pub resampling_text: String,
+    /// What heights are measured from, as far as it is known.
+    pub vertical_datum: Option<String>,
+    /// What was done to the files' heights, in words.
+    pub vertical: String,
+    /// A void was filled from data within this many cells.
+    pub fill_voids: u32,
+}
+
+impl RecordedCrs {
+    /// The plan of a package whose elevation files are not there. No height can be read with it: it has no file.
+    #[must_use]
+    pub fn plan(&self, recorded: RecordedGrid) -> GridPlan {
+        let RecordedGrid {
+            frame,
+            south_west,
+            north_east,
+            crs,
+            crs_wkt,
+            point_scale,
+            scale,
+            wgs84_bounds,
+            nodes_are_samples,
+            resampling_text,
+            vertical_datum,
+            vertical,
+            fill_voids,
+        } = recorded;
+        // Whether other nodes than samples are thinned or resampled matters to nobody who has no samples.
+        let resampling =
+            if nodes_are_samples { Resampling::Aligned } else { Resampling::Resampled };
+        let working = self.working().clone();
+        GridPlan {
+            frame,
+            south_west,
+            north_east,
+            crs,
+            crs_wkt,
+            metres_per_unit: working.metres_per_unit,
+            point_scale,
+            scale,
+            data_bounds: Bounds {
+                min_x: frame.x_m(south_west.i),
+                min_y: frame.y_m(south_west.j),
+                max_x: frame.x_m(north_east.i),
+                max_y: frame.y_m(north_east.j),
+            },
+            wgs84_bounds,
+            resampling,
+            resampling_text,
+            resampled_onto_first: None,
+            vertical_datum,
+            vertical,
+            libraries: libraries(),
+            fill_voids,
+            roles: Vec::new(),
+            working,
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! A package as the source of terrain: opened, and checked as far as its manifest tells.
+
+use std::path::{Path, PathBuf};
+
+use corniche_dem::{DemError, DemProjection, GridPlan, PlanScale, RecordedCrs, RecordedGrid};
+use corniche_geom::{Frame, TILE_CELLS, TileId};
+use corniche_tileset::{
+    FilePackage, InputRecord, Manifest, ReadError, Sections, Terrain, decode, limits::MAX_TILES,
+};
+
+use super::data_nodes::data_nodes;
+use crate::{BuildError, TerrainSettings, inputs::InputKind, settings_record};
+
+/// What a package records of how its terrain was made: defaults for a build that takes its terrain.
+#[derive(Debug, Clone)]
+pub struct TerrainRecord {
+    /// How the ground was made. A build that takes it must have the same settings.
+    pub terrain: TerrainSettings,
+    /// Its credits, without the one that its extract called for.
+    pub attribution: Vec<String>,
+}
+
+impl TerrainRecord {
+    /// Reads the record of a package.
+    ///
+    /// # Errors
+    /// When the file cannot be read or is no package of this format version.
+    pub fn of_package(path: &Path) -> Result<Self, BuildError> {
+        let package = FilePackage::open(path)?;
+        let manifest = package.manifest();
+        Ok(Self {
+            terrain: settings_record::terrain(&manifest.settings),
+            attribution: own_credits(manifest),
+        })
+    }
+}
+
+/// The credits of a package that were given: without the last one where that is what its extract called for.
+fn own_credits(manifest: &Manifest) -> Vec<String> {
+    let mut credits = manifest.attribution.clone();
+    let has_roads = manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input));
+    if has_roads && credits.last().is_some_and(|last| last == corniche_osm::ATTRIBUTION) {
+        credits.pop();
+    }
+    credits
+}
+
+/// A package whose terrain is used.
+#[derive(Debug)]
+pub(crate) struct RecordedTerrain {
+    package: FilePackage,
+    crs: RecordedCrs,
+}
+
+impl RecordedTerrain {
+    /// Opens a package that `generator` made with the libraries that it runs with now. Fails for another one, whose terrain could
+    /// differ from what would be made today.
+    pub(crate) fn open(path: &Path, generator: &str) -> Result<Self, BuildError> {
+        let package = FilePackage::open(path)?;
+        let manifest = package.manifest();
+        let this = format!("{generator}, {}", corniche_dem::libraries());
+        if manifest.generator != this {
+            let differences = format!("it was made by {}, this is {this}", manifest.generator);
+            return Err(BuildError::OtherTerrain { path: path.to_path_buf(), differences });
+        }
+        let damaged = |what: &str| damaged(path, what);
+        let crs =
+            RecordedCrs::new(&manifest.crs_wkt, manifest.metres_per_unit, manifest.data_bounds)
+                .map_err(|error| damaged(&format!("its CRS cannot be used ({error})")))?;
+        if crs.label() != manifest.crs {
+            return Err(damaged("its CRS has another name than its WKT"));
+        }
+        check_grid(manifest).map_err(damaged)?;
+        if settings_record::sha256(&manifest.settings) != manifest.settings_sha256 {
+            return Err(damaged("its settings do not match their hash"));
+        }
+        if manifest.levels.iter().all(|level| level.tiles == 0) {
+            return Err(damaged("it has no tile with ground"));
+        }
+        Ok(Self { package, crs })
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        self.package.path()
+    }
+
+    pub(crate) fn package(&self) -> &FilePackage {
+        &self.package
+    }
+
+    pub(crate) fn manifest(&self) -> &Manifest {
+        self.package.manifest()
+    }
+
+    /// The grid; no height can be read with it.
+    pub(crate) fn grid(&self) -> GridPlan {
+        let manifest = self.manifest();
+        let [south_west, north_east] = data_nodes(manifest);
+        let scale = &manifest.scale;
+        self.crs.plan(RecordedGrid {
+            frame: manifest.frame,
+            south_west,
+            north_east,
+            crs: manifest.crs.clone(),
+            crs_wkt: manifest.crs_wkt.clone(),
+            point_scale: manifest.point_scale,
+            scale: PlanScale { center: scale.center, least: scale.least, largest: scale.largest },
+            wgs84_bounds: manifest.wgs84_bounds,
+            nodes_are_samples: manifest.nodes_are_samples,
+            resampling_text: manifest.resampling.clone(),
+            vertical_datum: Some(manifest.vertical.datum.clone()),
+            vertical: manifest.vertical.treatment.clone(),
+            fill_voids: manifest.settings.fill_voids,
+        })
+    }
+
+    /// WGS84 ⇄ working CRS.
+    pub(crate) fn projection(&self) -> Result<DemProjection, DemError> {
+        self.crs.projection(self.manifest().wgs84_bounds)
+    }
+
+    /// The payload of a tile, and its ground decoded; `None` where it has none.
+    pub(crate) fn ground(&self, id: TileId) -> Result<Option<(Vec<u8>, Terrain)>, BuildError> {
+        let failed = |source| BuildError::PackageTile { path: self.path().to_path_buf(), source };
+        let Some(bytes) = self.package.tile(id).map_err(failed)? else { return Ok(None) };
+        let manifest = self.manifest();
+        let quantum_m = manifest.vertical.quantum_m;
+        let payload = decode(&bytes, id, &manifest.frame, quantum_m, Sections::TERRAIN)
+            .map_err(|error| failed(ReadError::from(error)))?;
+        match payload.terrain.filter(|terrain| !terrain.tin.is_empty()) {
+            Some(terrain) => Ok(Some((bytes, terrain))),
+            None => Err(self.damaged(&format!("tile {id} has no ground"))),
+        }
+    }
+
+    /// The elevation files of the package.
+    pub(crate) fn elevation_files(&self) -> impl Iterator<Item = &InputRecord> {
+        let is_dem =
+            |input: &&InputRecord| InputKind::Dem.is_of(input) || InputKind::DemPart.is_of(input);
+        self.manifest().inputs.iter().filter(is_dem)
+    }
+
+    /// The error for content that contradicts itself.
+    pub(crate) fn damaged(&self, what: &str) -> BuildError {
+        damaged(self.path(), what)
+    }
+}
+
+fn damaged(path: &Path, what: &str) -> BuildError {
+    BuildError::DamagedPackage { path: PathBuf::from(path), what: what.to_owned() }
+}
+
+/// The grid decides how much work there is, so it must be one that a build makes.
+fn check_grid(manifest: &Manifest) -> Result<(), &'static str> {
+    let frame = &manifest.frame;
+    let [south_west, north_east] = data_nodes(manifest);
+    let corners = [
+        frame.x_m(south_west.i),
+        frame.y_m(south_west.j),
+        frame.x_m(north_east.i),
+        frame.y_m(north_east.j),
+    ];
+    if corners.map(f64::to_bits) != manifest.data_bounds.to_array().map(f64::to_bits) {
+        return Err("the corners of the data's rectangle are no nodes");
+    }
+    let smallest = Frame::covering(frame.origin_m(), frame.cell(), south_west, north_east);
+    if smallest.as_ref() != Ok(frame) {
+        return Err("its grid is not the smallest over its data");
+    }
+    let tiles = |low: i64, high: i64| ((high - low) / TILE_CELLS + 2).unsigned_abs();
+    let tiles = tiles(south_west.i, north_east.i).saturating_mul(tiles(south_west.j, north_east.j));
+    // At the borders there can be a row and a column more than there are tiles with ground.
+    if tiles > 2 * MAX_TILES as u64 {
+        return Err("its data's rectangle has more tiles than a package can have");
+    }
+    Ok(())
+}
