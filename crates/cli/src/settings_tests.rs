@@ -1,3 +1,5 @@
+use corniche_presets::ResourceOptions;
+
 use super::*;
 
 #[test]
@@ -10,12 +12,12 @@ fn lengths_must_be_lengths() {
 #[test]
 fn a_memory_that_the_command_line_overrides_does_not_matter() {
     let of_file = Config::parse("[resources]\nmemory = \"1M\"\n").unwrap().resources;
-    let error = resource_settings(&of_file).unwrap_err();
+    let error = resources(None, of_file.memory.as_deref()).unwrap_err();
     assert_eq!(
         error.to_string(),
         "--memory \"1M\" is not a size of at least 256M; write it like 512M, 4G or 1T"
     );
     let given = ResourceOptions { memory: Some("512M".to_owned()), ..ResourceOptions::default() };
     let merged = given.or(of_file);
-    assert_eq!(resource_settings(&merged).unwrap().memory_bytes, 512 << 20);
+    assert_eq!(resources(None, merged.memory.as_deref()).unwrap().memory_bytes, 512 << 20);
 }
