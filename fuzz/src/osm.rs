@@ -4,6 +4,7 @@ use corniche_geom::LatticePoint;
 use corniche_osm::{Defect, ReadOsmError, ReadRequest, read_roads_from};
 use corniche_presets::parse_frc_table;
 use corniche_roads::FrcTable;
+use corniche_store::MemoryScratch;
 use corniche_testing::pbf::{header, raw};
 
 /// An extract of these bytes is read or refused, and every way with a `highway` tag is a road or counted under one reason.
@@ -41,6 +42,15 @@ thread_local! {
 }
 
 fn check(file: &[u8]) {
+    // Once with all in memory, once with next to nothing in it: the same roads, defects and refusals.
+    let [large, small] = [u64::MAX, 2048].map(|memory_bytes| read(file, memory_bytes));
+    assert_eq!(large, small);
+}
+
+/// The roads' ids and numbers of points, the defects, and the refusal or the summary in words.
+type Found = (Vec<(i64, usize)>, Vec<Defect>, String);
+
+fn read(file: &[u8], memory_bytes: u64) -> Found {
     // Beyond 170 degrees east this projection has no place.
     let place = |positions_deg: &[[f64; 2]]| {
         let round = |deg: f64| (deg * 1e7).round() as i64;
@@ -49,38 +59,56 @@ fn check(file: &[u8]) {
         };
         positions_deg.iter().map(place).collect()
     };
-    let (mut roads, mut lost, mut is_shorter) = (Vec::new(), 0, false);
+    let (mut roads, mut defects, mut lost, mut is_shorter) = (Vec::new(), Vec::new(), 0, false);
+    let scratch = MemoryScratch::default();
     let read = POOL.with(|pool| {
         TABLE.with(|table| {
             let path = Path::new("made.osm.pbf");
-            let request = ReadRequest { path, table, place: &place, pool };
+            let request = ReadRequest {
+                path,
+                table,
+                place: &place,
+                pool,
+                memory_bytes,
+                scratch: &scratch,
+                on_progress: None,
+            };
             read_roads_from(
                 Cursor::new(file),
                 &request,
                 &mut |road| {
-                    is_shorter |= road.line.points().len() < 2;
-                    roads.push(road.way_id);
+                    let points = road.line.points().len();
+                    is_shorter |= points < 2;
+                    roads.push((road.way_id, points));
                 },
                 &mut |defect: Defect| {
                     lost += u64::from(defect.is_loss_of_way());
                     assert!(!defect.reason().is_empty());
+                    defects.push(defect);
                 },
                 &|| false,
             )
         })
     });
-    match read {
+    let words = match read {
         Ok(summary) => {
             summary.check_invariants();
             let left_out = summary.left_out;
             assert_eq!(left_out.total() - left_out.listed - left_out.class_off, lost);
-            assert!(roads.is_sorted() && !is_shorter);
+            let way_ids = || roads.iter().map(|&(way_id, _)| way_id);
+            assert!(way_ids().is_sorted() && !is_shorter);
             assert_eq!(summary.roads, roads.len() as u64);
-            assert_eq!(summary.road_ways, roads.iter().collect::<BTreeSet<_>>().len() as u64);
+            assert_eq!(summary.road_ways, way_ids().collect::<BTreeSet<_>>().len() as u64);
+            format!("{summary:?}")
         }
         Err(ReadOsmError::Place { .. } | ReadOsmError::Stopped { .. }) => {
             panic!("nobody stopped it, and every position has its answer")
         }
-        Err(error) => assert!(error.to_string().contains("made.osm.pbf"), "{error}"),
-    }
+        Err(ReadOsmError::Scratch { source, .. }) => panic!("memory does not fail: {source}"),
+        Err(error) => {
+            assert!(error.to_string().contains("made.osm.pbf"), "{error}");
+            error.to_string()
+        }
+    };
+    (roads, defects, words)
 }

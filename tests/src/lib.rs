@@ -2,6 +2,7 @@
 
 #[cfg(target_os = "linux")]
 mod display;
+mod job;
 
 use std::{
     fs,
@@ -15,6 +16,7 @@ use std::{
 pub use corniche_testing::{real_data, root, sample};
 #[cfg(target_os = "linux")]
 pub use display::{Display, without_display};
+pub use job::{Job, When};
 use serde_json::Value;
 
 /// The binary under test, built before the scenarios by cargo in the same target folder.

@@ -77,7 +77,6 @@ fn refuses_settings_that_make_no_sense() {
     refuses(folder.path(), &["--dem", dem, "--crs", "EPSG:4326"], 2, &["--crs"]);
     refuses(folder.path(), &["--dem", dem, "--crs", "nonsense"], 2, &["nonsense"]);
     refuses(folder.path(), &["--dem", dem, "--frc-table", "nonsense"], 2, &["nonsense"]);
-    refuses(folder.path(), &["--dem", dem, "--resume"], 2, &["--resume"]);
     refuses(folder.path(), &["--dem", dem, "--photo", dem], 2, &["--photo"]);
 }
 
@@ -166,7 +165,8 @@ fn refuses_packages_that_are_none() {
     }
 }
 
-/// An interrupted build: exit code 4, no file at the target; what was done is kept, and the build goes on from there.
+/// An interrupted build: exit code 4, no file at the target; what was done is kept, and the build goes on from there, to the
+/// package and the list of defects of a build that was not interrupted.
 #[cfg(unix)]
 #[test]
 fn goes_on_after_an_interruption() {
@@ -176,15 +176,25 @@ fn goes_on_after_an_interruption() {
     };
 
     let folder = tempfile::tempdir().unwrap();
-    let target = folder.path().join("out.pmtiles");
+    let [target, list] = ["out.pmtiles", "out.csv"].map(|name| folder.path().join(name));
     let (dem, osm) = (sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf"));
+    let build = |arguments: &[&str]| {
+        let mut command = Command::new(e2e::binary());
+        command
+            .args(["build", "--dem", text(&dem), "--osm", text(&osm), "-o", text(&target)])
+            .args(["--max-error", "0.05", "--defects", text(&list)])
+            .args(arguments);
+        command
+    };
+    let left = || -> Vec<_> {
+        let mut names: Vec<_> =
+            fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
     // With a fine tolerance and one thread the build takes long enough to be interrupted.
-    let mut child = Command::new(e2e::binary())
-        .args(["build", "--dem", text(&dem), "--osm", text(&osm), "-o", text(&target)])
-        .args(["--max-error", "0.05", "--threads", "1", "--json-progress"])
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child =
+        build(&["--threads", "1", "--json-progress"]).stderr(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
     let meshing = lines.any(|line| line.unwrap().contains("\"coarse-tins\""));
     assert!(meshing, "the build ended before it meshed");
@@ -197,18 +207,24 @@ fn goes_on_after_an_interruption() {
     assert_eq!(code, Some(4), "{rest:?}");
     assert!(rest.iter().any(|line| line.contains("interrupted")), "{rest:?}");
     assert!(rest.iter().any(|line| line.contains("--resume")), "{rest:?}");
-    let left: Vec<_> =
-        fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
-    assert_eq!(left, [".out.pmtiles.work"], "only the store is there");
-    let resumed = Command::new(e2e::binary())
-        .args(["build", "--dem", text(&dem), "--osm", text(&osm), "-o", text(&target)])
-        .args(["--max-error", "0.05", "--resume", "--quiet"])
-        .output()
-        .unwrap();
-    assert!(resumed.status.success(), "{resumed:?}");
-    let left: Vec<_> =
-        fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
-    assert_eq!(left, ["out.pmtiles"], "the store is gone");
+    assert_eq!(left(), [".out.pmtiles.work"], "only the store is there");
+
+    let resumed = build(&["--resume", "--json-progress"]).output().unwrap();
+    let said = String::from_utf8_lossy(&resumed.stderr);
+    assert!(resumed.status.success(), "{said}");
+    assert!(
+        said.contains("\"tiles\"") && !said.contains("\"roads\""),
+        "roads are read once: {said}"
+    );
+    assert_eq!(left(), ["out.csv", "out.pmtiles"], "the store is gone");
+    let [package, defects] = [&target, &list].map(|path| fs::read(path).unwrap());
+    let unbroken = build(&["-O", "--quiet"]).output().unwrap();
+    assert!(unbroken.status.success(), "{unbroken:?}");
+    assert!(fs::read(&target).unwrap() == package, "the package is another");
+    let [defects, unbroken] =
+        [defects, fs::read(&list).unwrap()].map(|csv| String::from_utf8(csv).unwrap());
+    assert_eq!(defects, unbroken);
+    assert!(unbroken.contains("self-crossing"), "the sample's extract has defects: {unbroken}");
 }
 
 /// Real extracts that cannot be used: each is refused with its reason before any long work.

@@ -123,16 +123,18 @@ impl Planned {
             subtrees.iter().map(|id| ("heights", Some(id.as_str()))).collect();
         first.extend([("hashes", None), ("roads", None)]);
         shuffle(&mut first, random);
-        first.into_iter().for_each(|(step, subtree)| {
+        for (step, subtree) in first {
             // Without an extract there are no roads, and so no part of them.
             if step != "roads" || self.inputs.iter().any(|option| option == "--osm") {
                 once(step, subtree);
             }
-        });
+        }
         once("top", None);
         let mut subtrees: Vec<&str> = subtrees.iter().map(String::as_str).collect();
         shuffle(&mut subtrees, random);
-        subtrees.into_iter().for_each(|id| once("tiles", Some(id)));
+        for id in subtrees {
+            once("tiles", Some(id));
+        }
         self.check_merged(&stores);
     }
 }

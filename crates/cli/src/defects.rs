@@ -116,6 +116,10 @@ impl Observer for Watch {
         self.progress.temporary(folder);
     }
 
+    fn keeps(&self, folder: &Path) {
+        self.progress.keeps(folder);
+    }
+
     fn warning(&self, text: &str) {
         self.progress.warning(text);
     }

@@ -28,6 +28,9 @@ static SEEN: AtomicBool = AtomicBool::new(false);
 /// What is removed when the program ends early: temporary files and folders beside targets.
 static TEMPORARY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
+/// Where the intermediate results of the run are, which stay.
+static KEPT: Mutex<Option<PathBuf>> = Mutex::new(None);
+
 /// A run that can stop asks more often than this.
 const ASKS_WITHIN: Duration = Duration::from_millis(500);
 /// What a run may take to stop and clean up.
@@ -65,6 +68,11 @@ pub(crate) fn remove_at_end(path: &Path) {
     TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner).push(path.to_path_buf());
 }
 
+/// A folder of intermediate results, from which the same run can go on. It stays when the program ends early, and the user is told.
+pub(crate) fn keep(path: &Path) {
+    *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some(path.to_path_buf());
+}
+
 fn end() -> ! {
     let temporary =
         TEMPORARY.lock().map_or_else(|poisoned| poisoned.into_inner().clone(), |all| all.clone());
@@ -77,6 +85,13 @@ fn end() -> ! {
     // A message can wait for ever when the reader of a full pipe has stopped, so it gets a limited time.
     let (said, waits) = mpsc::channel();
     thread::spawn(move || {
+        let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        if let Some(kept) = kept.filter(|kept| kept.exists()) {
+            eprintln!(
+                "corniche: warning: what was done is kept in {}; the same command with --resume goes on from there, with -O it starts again",
+                kept.display()
+            );
+        }
         Failure::interrupted().tell();
         said.send(())
     });

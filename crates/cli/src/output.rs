@@ -1,5 +1,7 @@
 //! Files beside the package that commands write: a file that is cut off never stands at its target.
 
+mod unfinished;
+
 use std::{
     fmt::Display,
     fs::File,
@@ -86,15 +88,7 @@ impl Output {
             let advice = "choose another name, or delete it first";
             return Err(Failure::new(ExitCode::Exists, anyhow::anyhow!("{what}; {advice}")));
         }
-        let folder = match target.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
-        let mut builder = tempfile::Builder::new();
-        // Temporary files are their owner's alone; this one is to become an ordinary file.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = builder.tempfile_in(folder).map_err(|error| unusable(&error))?;
+        let file = unfinished::create(&target).map_err(|error| unusable(&error))?;
         interrupt::remove_at_end(file.path());
         Ok(Self { target, existing, file: BufWriter::new(file) })
     }

@@ -67,7 +67,12 @@ fn subtrees(plan: &BuildPlan, level: u8) -> Result<String, Failure> {
         let message = format!("--subtrees {level}: the finest level is {finest}");
         return Err(Failure::unusable(message));
     }
-    Ok(plan.subtrees(level).iter().map(|id| format!("{id}\n")).collect())
+    let mut lines = String::new();
+    for id in plan.subtrees(level) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(lines, "{id}");
+    }
+    Ok(lines)
 }
 
 /// Stops when a signal comes; has nothing to show.
@@ -109,13 +114,14 @@ fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources) -> Strin
     say(
         "memory",
         &format!(
-            "at least {}, of {} allowed: {} for the program, {} for its list of tiles, {} threads × {}",
-            bytes(least_bytes),
-            bytes(resources.memory_bytes),
-            bytes(memory.base_bytes),
-            bytes(memory.tiles_bytes),
+            "at least {}, of {} allowed: {} for the program, {} for its list of tiles, {} threads × {} (never less than {})",
+            mebibytes(least_bytes),
+            mebibytes(resources.memory_bytes),
+            mebibytes(memory.base_bytes),
+            mebibytes(memory.tiles_bytes),
             memory.threads,
-            bytes(memory.thread_bytes + memory.block_bytes),
+            mebibytes(memory.thread_bytes + memory.block_bytes),
+            mebibytes(MIN_MEMORY_BYTES),
         ),
     );
     say(
@@ -152,6 +158,11 @@ fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources) -> Strin
         ]);
     }
     text + &table.to_text()
+}
+
+/// Memory as `--memory` takes it, rounded up.
+fn mebibytes(size: u64) -> String {
+    format!("{}M", size.div_ceil(1 << 20))
 }
 
 /// A time for people.

@@ -316,6 +316,10 @@ impl Observer for Progress {
         interrupt::remove_at_end(folder);
     }
 
+    fn keeps(&self, folder: &Path) {
+        interrupt::keep(folder);
+    }
+
     /// Warnings are printed with `--quiet`, too.
     fn warning(&self, text: &str) {
         let line = match self.shared.manner {

@@ -5,6 +5,7 @@ use corniche_geom::Bounds;
 use crate::crs::horizontal::Crs;
 use crate::crs::operation::Operation;
 use crate::crs::scale;
+use crate::files::file_blocks::{self, FileBlocks};
 use crate::files::source::Source;
 use crate::mosaics::data_extent;
 use crate::mosaics::mosaic::{self, Mosaic};
@@ -54,6 +55,18 @@ impl Dem {
         let center_deg = scale::center_deg(&points_deg).unwrap_or([0.0; 2]);
         let heights = vertical_target::resolve(&mut sources, options, wgs84_bounds, center_deg)?;
         Ok(Self { sources, mosaics, wgs84_bounds, center_deg, heights })
+    }
+
+    /// How each file is cut into blocks; of a virtual raster (VRT) also the files that it refers to.
+    ///
+    /// # Errors
+    /// When a file cannot be opened any more.
+    pub fn file_blocks(&self) -> Result<Vec<FileBlocks>, DemError> {
+        let mut found = Vec::new();
+        for source in &self.sources {
+            found.extend(file_blocks::of_file(&source.path)?);
+        }
+        Ok(found)
     }
 }
 

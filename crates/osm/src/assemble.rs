@@ -1,15 +1,24 @@
-//! Makes roads from ways and the positions of their nodes.
+//! Makes roads from ways and the places of their nodes.
+
+use std::ops::Range;
 
 use corniche_geom::{LatticePoint, Polyline};
-use corniche_roads::Road;
+use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes};
 
 use crate::{
-    Defect, ReadOsmError, location,
-    nodes::NodeTable,
-    read_request::Place,
+    Defect, ReadOsmError, location, read_request::Place, records::Stop,
     self_crossings::self_crossings,
-    ways::{RoadWay, Ways},
 };
+
+/// A way that is a road, without its nodes.
+#[derive(Debug)]
+pub(crate) struct RoadWay {
+    pub(crate) way_id: i64,
+    pub(crate) class: FunctionalRoadClass,
+    pub(crate) attributes: RoadAttributes,
+    /// Which of the stops that it was read with are its own.
+    pub(crate) stops: Range<usize>,
+}
 
 /// What became of one way.
 #[derive(Debug, Default)]
@@ -21,54 +30,18 @@ pub(crate) struct Assembled {
 /// Makes roads of some ways, in their order. All their points are placed in one call.
 pub(crate) fn assemble(
     some: &[RoadWay],
-    ways: &Ways,
-    table: &NodeTable,
+    all_stops: &[Stop],
     place: &Place<'_>,
 ) -> Result<Vec<Assembled>, ReadOsmError> {
-    let mut positions_deg = Vec::new();
-    let mut stops = Vec::new();
-    for way in some {
-        for &id in ways.node_ids_of(way) {
-            let number = table.ids.number(id);
-            let found = number.map_or(location::MISSING, |number| table.places.location(number));
-            let position_deg = location::degrees(found);
-            positions_deg.extend(position_deg);
-            stops.push(Stop {
-                is_fixed: number.is_some_and(|number| table.ids.is_shared(number)),
-                place: match position_deg {
-                    Some(_) => StopPlace::Known,
-                    None if found == location::OUT_OF_RANGE => StopPlace::OutOfRange,
-                    None => StopPlace::Missing,
-                },
-            });
-        }
-    }
+    let stops_of = |way: &RoadWay| &all_stops[way.stops.clone()];
+    let stops = some.iter().flat_map(stops_of);
+    let positions_deg: Vec<_> = stops.filter_map(|stop| location::degrees(stop.location)).collect();
     let points = place(&positions_deg);
     if points.len() != positions_deg.len() {
         return Err(ReadOsmError::Place { expected: positions_deg.len(), got: points.len() });
     }
     let mut points = points.into_iter();
-    let mut rest = stops.as_slice();
-    let mut assembled = Vec::with_capacity(some.len());
-    for way in some {
-        let (own, later) = rest.split_at(way.nodes_end - way.nodes_start);
-        assembled.push(assemble_way(way, own, &mut points));
-        rest = later;
-    }
-    Ok(assembled)
-}
-
-/// A node of a way.
-struct Stop {
-    is_fixed: bool,
-    place: StopPlace,
-}
-
-enum StopPlace {
-    /// The node has a position: the next one of the placed points.
-    Known,
-    OutOfRange,
-    Missing,
+    Ok(some.iter().map(|way| assemble_way(way, stops_of(way), &mut points)).collect())
 }
 
 /// Cuts the way where points are missing, merges equal neighbours, and makes a road of each piece.
@@ -87,21 +60,20 @@ fn assemble_way(
     let (mut missing, mut out_of_range, mut outside, mut duplicates, mut strays) = (0, 0, 0, 0, 0);
     let mut pieces: Vec<Vec<(LatticePoint, bool)>> = vec![Vec::new()];
     for stop in stops {
-        let point = match stop.place {
-            StopPlace::Known => points.next().flatten(),
-            StopPlace::OutOfRange | StopPlace::Missing => None,
-        };
-        match (&stop.place, point, pieces.last_mut()) {
-            (StopPlace::Known, Some(point), Some(piece)) => match piece.last_mut() {
+        // The node has a position: the next one of the placed points.
+        let is_known = location::degrees(stop.location).is_some();
+        let point = if is_known { points.next().flatten() } else { None };
+        match (point, pieces.last_mut()) {
+            (Some(point), Some(piece)) => match piece.last_mut() {
                 Some((last, is_fixed)) if *last == point => {
                     duplicates += 1;
-                    *is_fixed |= stop.is_fixed;
+                    *is_fixed |= stop.is_shared();
                 }
-                _ => piece.push((point, stop.is_fixed)),
+                _ => piece.push((point, stop.is_shared())),
             },
-            (StopPlace::Known, ..) => outside += 1,
-            (StopPlace::OutOfRange, ..) => out_of_range += 1,
-            (StopPlace::Missing, ..) => missing += 1,
+            _ if is_known => outside += 1,
+            _ if stop.location == location::OUT_OF_RANGE => out_of_range += 1,
+            _ => missing += 1,
         }
         if point.is_none() {
             pieces.push(Vec::new());

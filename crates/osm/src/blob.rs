@@ -8,7 +8,7 @@ use std::io::Read;
 use flate2::{Decompress, FlushDecompress, Status};
 use osmpbf::BlobReader;
 
-use crate::wire::{self, WireError};
+use crate::wire::{self, WireError, push_varint};
 
 /// A blob header is smaller than this.
 ///
@@ -151,14 +151,6 @@ pub(crate) fn decoder_blob(kind: &str, block: &[u8]) -> Result<osmpbf::Blob, osm
     start.append(&mut raw);
     let no_blob = || std::io::Error::from(std::io::ErrorKind::UnexpectedEof).into();
     BlobReader::new(start.chain(block)).next().unwrap_or_else(|| Err(no_blob()))
-}
-
-fn push_varint(bytes: &mut Vec<u8>, mut number: u64) {
-    while number > 0x7f {
-        bytes.push(number as u8 | 0x80);
-        number >>= 7;
-    }
-    bytes.push(number as u8);
 }
 
 #[cfg(test)]

@@ -76,6 +76,8 @@ struct Part {
 pub(crate) struct Decoding<'a> {
     pub(crate) pool: &'a rayon::ThreadPool,
     pub(crate) should_stop: &'a (dyn Fn() -> bool + Sync),
+    /// Is told after every few blobs how many bytes of them were read since the start.
+    pub(crate) on_bytes: &'a dyn Fn(u64),
 }
 
 impl<R: Read + Seek> BlobFile<R> {
@@ -206,6 +208,11 @@ impl<R: Read + Seek> BlobFile<R> {
         self.len_bytes
     }
 
+    /// Size of the data blobs with these numbers, packed.
+    pub(crate) fn bytes_of(&self, numbers: &[usize]) -> u64 {
+        numbers.iter().map(|&number| self.data[number].blob_bytes).sum()
+    }
+
     /// Decodes the data blobs with these numbers in parallel and hands on what `look` makes of each unpacked block and `scan`
     /// of the decoded one, in their order. `scan` is told how many bytes it may find, and gives up beyond.
     ///
@@ -224,6 +231,7 @@ impl<R: Read + Seek> BlobFile<R> {
             let stopped = ReadOsmError::Stopped { path: path.to_path_buf() };
             if (decoding.should_stop)() { Err(stopped) } else { Ok(()) }
         };
+        let mut read_bytes = 0;
         for batch in numbers.chunks(decoding.pool.current_num_threads() * BLOBS_PER_THREAD) {
             stop(&self.path)?;
             let mut blobs = Vec::with_capacity(batch.len());
@@ -247,6 +255,8 @@ impl<R: Read + Seek> BlobFile<R> {
                 };
                 take(number, looked, scanned)?;
             }
+            read_bytes += self.bytes_of(batch);
+            (decoding.on_bytes)(read_bytes);
         }
         Ok(())
     }

@@ -1,5 +1,7 @@
+use serde::{Deserialize, Serialize};
+
 /// Bad input in an extract that was survived: reported with the object's id, and the rest goes on.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Defect {
     /// The table does not list this `highway` value; the way is left out.

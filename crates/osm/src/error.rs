@@ -42,10 +42,15 @@ pub enum ReadOsmError {
     Feature { path: PathBuf, feature: String },
     #[error(
         "OSM extract {path:?} unpacks to more roads than a file of {len_bytes} bytes can plausibly hold: it may be made to \
-         fill the memory; if the file is correct, rewrite it without compression: \
+         fill memory and disk; if the file is correct, rewrite it without compression: \
          osmium cat IN.osm.pbf -o OUT.osm.pbf -f pbf,pbf_compression=none"
     )]
     TooMuch { path: PathBuf, len_bytes: u64 },
+    #[error(
+        "cannot keep on disk what is read of OSM extract {path:?}, or read it back; if the disk is full, free space on it or \
+         name a folder on another one"
+    )]
+    Scratch { path: PathBuf, source: io::Error },
     #[error("{expected} positions were given to be placed on the lattice, but {got} came back")]
     Place { expected: usize, got: usize },
     #[error("reading OSM extract {path:?} was stopped")]

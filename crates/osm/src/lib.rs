@@ -1,20 +1,30 @@
 //! `OpenStreetMap` extracts (`.osm.pbf`) to roads.
 //!
 //! ```text
-//!  file ──► blobs ──► ways (pass 1) ──► ids of the nodes they need, sorted
-//!                └──► nodes (pass 2) ──► their locations ──► assemble ──► Road, in order of way id
+//!  blobs ──► find_ways ──► WayRecord by way id ──► number_nodes ──► Mention by node id ─┐
+//!                                                       │                              ▼
+//!                                  what the roads are ◄─┘         blobs, again ──► locate_nodes
+//!                                          │                                           │
+//!  Road, in order of way id ◄── assemble ◄─┴─ hand_out ◄── Stop in the ways' order ◄───┘
 //!
 //!  blob ──► unpack, within its limit ──► audit ──► osmpbf ──► objects
 //! ```
 //!
 //! Both passes decode blobs in parallel inside the pool of the caller. No block reaches the decoder before it was checked: what
-//! contradicts itself, would overflow or would fill the memory is refused with its reason. Only what roads need is held: their
-//! tags, their node ids and those nodes' coordinates, whatever the order of the file.
+//! contradicts itself, would overflow or would fill the memory is refused with its reason. Ways and nodes of roads are sorted
+//! and joined within the memory that the caller allows; what does not fit goes to scratch space. There is one way through the
+//! code for extracts of every size and order.
 //!
 //! This crate never judges which road matters at which level, never guesses a class, and starts no threads.
 
 mod read_request;
 mod read_roads;
+mod reading;
+
+mod find_ways;
+mod hand_out;
+mod locate_nodes;
+mod number_nodes;
 
 mod audit;
 mod blob;
@@ -23,11 +33,16 @@ mod formats;
 mod wire;
 
 mod assemble;
+mod id_range;
 mod location;
 mod nodes;
 mod self_crossings;
 mod versions;
 mod ways;
+
+mod records;
+mod spool;
+mod way_bytes;
 
 mod defect;
 mod error;
@@ -35,6 +50,6 @@ mod summary;
 
 pub use defect::Defect;
 pub use error::ReadOsmError;
-pub use read_request::{Place, ReadRequest};
+pub use read_request::{OnProgress, Place, ReadRequest};
 pub use read_roads::{read_roads, read_roads_from};
 pub use summary::{ATTRIBUTION, ExtractSummary, HighwayCount, LeftOut};

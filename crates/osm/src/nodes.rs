@@ -1,24 +1,13 @@
-//! Pass 2: where the nodes lie that roads need.
+//! Where the nodes lie that roads need: a table of some of them at a time.
 
 use osmpbf::PrimitiveBlock;
-use rayon::prelude::*;
 
 use crate::location::{Location, MISSING, degrees, location_from_nano};
-use crate::{Defect, ways::Ways};
-
-/// The nodes that roads need and where they lie.
-#[derive(Debug)]
-pub(crate) struct NodeTable {
-    pub(crate) ids: NodeIds,
-    pub(crate) places: NodePlaces,
-}
 
 /// Ids in ascending order; a node's number is its index here.
 #[derive(Debug)]
 pub(crate) struct NodeIds {
     ids: Vec<i64>,
-    /// Named by two roads, or twice by one: a junction.
-    is_shared: Vec<bool>,
 }
 
 /// Places by number. They are separate from the ids, so that several threads can look up ids while one thread writes
@@ -26,45 +15,16 @@ pub(crate) struct NodeIds {
 #[derive(Debug)]
 pub(crate) struct NodePlaces {
     locations: Vec<Location>,
-    /// Numbers of nodes to which the file gives different places.
-    conflicts: Vec<usize>,
-}
-
-impl NodeTable {
-    /// Lists the nodes of all roads, their places still missing.
-    pub(crate) fn new(ways: &Ways, pool: &rayon::ThreadPool) -> Self {
-        let mut all = Vec::with_capacity(ways.node_ids.len());
-        for way in &ways.roads {
-            // A node that is repeated directly counts as one visit, not two.
-            let mut previous = None;
-            all.extend(
-                ways.node_ids_of(way).iter().filter(|&&id| previous.replace(id) != Some(id)),
-            );
-        }
-        pool.install(|| all.par_sort_unstable());
-        let mut ids = Vec::new();
-        let mut is_shared = Vec::new();
-        for visits in all.chunk_by(|a, b| a == b) {
-            ids.push(visits[0]);
-            is_shared.push(visits.len() > 1);
-        }
-        let locations = vec![MISSING; ids.len()];
-        Self {
-            ids: NodeIds { ids, is_shared },
-            places: NodePlaces { locations, conflicts: Vec::new() },
-        }
-    }
-
-    /// One defect per node with several places, in order of id.
-    pub(crate) fn conflicts(&self) -> impl Iterator<Item = Defect> {
-        let mut numbers = self.places.conflicts.clone();
-        numbers.sort_unstable();
-        numbers.dedup();
-        numbers.into_iter().map(|number| Defect::ConflictingNode { node_id: self.ids.ids[number] })
-    }
+    /// Of nodes to which the file gives different places.
+    is_conflicting: Vec<bool>,
 }
 
 impl NodeIds {
+    /// `ids` ascend, each of them once.
+    pub(crate) fn new(ids: Vec<i64>) -> Self {
+        Self { ids }
+    }
+
     /// The listed nodes of a block, by number, with their places; `None` if they take more than `most_bytes`.
     pub(crate) fn scan(
         &self,
@@ -95,23 +55,24 @@ impl NodeIds {
         self.ids.binary_search(&id).ok()
     }
 
-    pub(crate) fn is_shared(&self, number: usize) -> bool {
-        self.is_shared[number]
-    }
-
-    pub(crate) fn len(&self) -> usize {
-        self.ids.len()
+    pub(crate) fn ids(&self) -> &[i64] {
+        &self.ids
     }
 }
 
 impl NodePlaces {
+    /// Of `count` nodes, none known.
+    pub(crate) fn new(count: usize) -> Self {
+        Self { locations: vec![MISSING; count], is_conflicting: vec![false; count] }
+    }
+
     /// Takes the place of a node; the first that is on Earth stays.
     pub(crate) fn set(&mut self, number: usize, location: Location) {
         let own = &mut self.locations[number];
         if degrees(*own).is_none() {
             *own = location;
         } else if degrees(location).is_some() && *own != location {
-            self.conflicts.push(number);
+            self.is_conflicting[number] = true;
         }
     }
 
@@ -122,6 +83,11 @@ impl NodePlaces {
     /// How many nodes have no place.
     pub(crate) fn missing(&self) -> usize {
         self.locations.iter().filter(|&&location| location == MISSING).count()
+    }
+
+    /// Numbers of nodes with several places.
+    pub(crate) fn conflicts(&self) -> impl Iterator<Item = usize> {
+        (0..self.is_conflicting.len()).filter(|&number| self.is_conflicting[number])
     }
 }
 

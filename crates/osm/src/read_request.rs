@@ -1,12 +1,18 @@
-use std::path::Path;
+use std::{fmt, path::Path};
 
 use corniche_geom::LatticePoint;
 use corniche_roads::FrcTable;
+use corniche_store::Scratch;
 
 /// Maps `[longitude, latitude]` (WGS84, degrees) to points of the package's lattice, one point for each position. A
 /// position gives the same point in every call, whatever positions are with it. `None` where the projection has none.
 /// Called from several threads.
 pub type Place<'a> = dyn Fn(&[[f64; 2]]) -> Vec<Option<LatticePoint>> + Sync + 'a;
+
+/// Is told how much of the reading is done, of how much. Both are counted in bytes of the file, each of them three times:
+/// read for its ways, read for its nodes, handed out as roads. What is done never shrinks and ends at the whole, which does
+/// not change.
+pub type OnProgress<'a> = dyn Fn(u64, u64) + 'a;
 
 /// What to read and how.
 #[derive(Clone, Copy)]
@@ -19,4 +25,21 @@ pub struct ReadRequest<'a> {
     pub place: &'a Place<'a>,
     /// Where blobs are decoded and points placed.
     pub pool: &'a rayon::ThreadPool,
+    /// About how much the ways and nodes of all roads may take, bytes; what does not fit goes to `scratch`. The blobs that
+    /// are being decoded come on top. The result is the same with any number.
+    pub memory_bytes: u64,
+    /// Where ways and nodes are sorted that do not fit.
+    pub scratch: &'a dyn Scratch,
+    /// Called from the thread that reads, after every few blobs.
+    pub on_progress: Option<&'a OnProgress<'a>>,
+}
+
+impl fmt::Debug for ReadRequest<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { path, memory_bytes, .. } = self;
+        f.debug_struct("ReadRequest")
+            .field("path", path)
+            .field("memory_bytes", memory_bytes)
+            .finish_non_exhaustive()
+    }
 }

@@ -4,18 +4,16 @@ use std::{
 };
 
 use corniche_roads::Road;
-use osmpbf::PrimitiveBlock;
-use rayon::prelude::*;
 
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
-    assemble::{Assembled, assemble},
-    blobs::{BlobFile, Decoding},
-    location::Location,
-    nodes::NodeTable,
+    blobs::BlobFile,
+    find_ways::{FoundWays, find_ways},
+    hand_out::hand_out,
+    locate_nodes::{NodeQuestions, locate_nodes},
+    number_nodes::{NumberedNodes, number_nodes},
     read_request::ReadRequest,
-    versions::Versions,
-    ways::Ways,
+    reading::Reading,
 };
 
 /// Reads the roads of an extract and hands them to `sink`, in ascending order of way id.
@@ -28,9 +26,18 @@ use crate::{
 /// - An extract without roads is no error: the summary says 0.
 ///
 /// The file may be in any order, with nodes dense or plain, ids negative, blobs raw or zlib, locations in nodes or in ways
-/// (`LocationsOnWays`). It is read twice: ways, then nodes; of the nodes only those of roads are
-/// held: 17 bytes each, and 8 for every mention in a way.
-/// `should_stop` is asked every few blobs.
+/// (`LocationsOnWays`). It is read twice: ways, then nodes. Blobs whose nodes no road needs are read once. Of an extract that
+/// is sorted by id, each blob is read at most twice, and once more for each time that the needed nodes fill a quarter of
+/// [`ReadRequest::memory_bytes`], at 18 bytes each; one that is not sorted is read anew each time.
+/// `should_stop` is asked every few blobs, and every 65 536 nodes or ways where these are sorted and joined.
+///
+/// # Memory
+/// Ways and nodes of roads take about [`ReadRequest::memory_bytes`] at most; what does not fit is sorted and joined in
+/// [`ReadRequest::scratch`], where it takes some 30 bytes for each time that a road names a node, and once more as much for
+/// each time that the sorters must merge their runs in several steps. On top come
+/// - the blobs that are being decoded: see the limits;
+/// - a few thousand ways that are handed out at a time, 100 bytes for each of their nodes;
+/// - 48 bytes for each blob of the file, and the texts of the summary.
 ///
 /// # Limits
 /// These limits hold for every file, also for one that was made to do harm:
@@ -41,15 +48,16 @@ use crate::{
 /// | a blob, packed and unpacked | 32 MiB, the format's own; 1 MiB for the file's header | damaged |
 /// | a block, decoded | 512 MiB | damaged |
 /// | what is found in a block | 256 MiB | damaged |
-/// | the ways, tags and node ids that are kept | 64 MiB and 64 times the size of the file; real extracts keep less than their own size | [`ReadOsmError::TooMuch`] |
+/// | the ways, tags and node ids that are kept, in memory or in scratch space | 64 MiB and 64 times the size of the file; real extracts keep less than their own size | [`ReadOsmError::TooMuch`] |
 /// | a tag's text | 255 characters, OSM's own | cut, [`Defect::LongText`] |
 /// | tags of a way | 65 536 | damaged |
 /// | comparisons in search of a way's self-crossings | 2 million, enough for the 2000 nodes that OSM allows | not all are found |
 ///
 /// Blocks of up to 16 MiB unpacked, 64 MiB decoded and 16 MiB found are decoded side by side; larger ones, which
 /// ordinary programs do not write, are decoded alone. So blobs take, together and beside what is kept, at most 192
-/// MiB and four packed blobs per thread, and 1 GiB for one that is alone. Lookup and sorting of the nodes take at
-/// most four times the room of what is kept. Time is proportional to the unpacked size, which deflate keeps below
+/// MiB and four packed blobs per thread, and 1 GiB for one that is alone. A single way takes 100 bytes for each of its nodes, of
+/// which OSM allows 2000. In scratch space there is at most four times as much as is kept, for each step of the
+/// merging. Time, without that of reading an unsorted file anew, is proportional to the unpacked size, which deflate keeps below
 /// 1032 times that of the file.
 ///
 /// # Errors
@@ -86,23 +94,32 @@ pub fn read_roads_from<R: Read + Seek>(
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<ExtractSummary, ReadOsmError> {
-    let decoding = Decoding { pool: request.pool, should_stop };
     let mut file = BlobFile::open(request.path, source)?;
-    let (mut ways, blobs_with_nodes) = read_ways(&mut file, request, &decoding)?;
-    ways.defects.drain(..).for_each(&mut *on_defect);
+    let reading = Reading { request, should_stop, len_bytes: file.len_bytes() };
+    let failed = |error| reading.scratch_failed(error);
 
-    let mut table = NodeTable::new(&ways, request.pool);
-    locate_nodes(&mut file, &blobs_with_nodes, &mut ways, &mut table, &decoding)?;
-    table.conflicts().for_each(&mut *on_defect);
+    let FoundWays { ways, located, node_blobs, mut summary } =
+        find_ways(&reading, &mut file, on_defect)?;
+    let ways = ways.finish().map_err(failed)?;
+    let numbered = number_nodes(&reading, ways, on_defect)?;
+    let NumberedNodes { ways, mentions, ways_count, mentions_count, duplicates } = numbered;
+    let questions = NodeQuestions {
+        mentions: mentions.finish().map_err(failed)?,
+        mentions_count,
+        located: located.finish().map_err(failed)?,
+        node_blobs: &node_blobs,
+    };
+    let nodes = locate_nodes(&reading, &mut file, questions, on_defect)?;
 
-    let mut summary = std::mem::take(&mut ways.summary);
-    summary.nodes_needed = table.ids.len() as u64;
-    summary.nodes_missing = table.places.missing() as u64;
+    summary.left_out.duplicate = duplicates;
+    summary.nodes_needed = nodes.needed;
+    summary.nodes_missing = nodes.missing;
     summary.blobs_passed_over = file.blobs_passed_over;
     summary.header_bounds_deg = file.header.bounds_deg;
     summary.generator = file.header.generator.take();
     summary.timestamp_s = file.header.timestamp_s;
-    emit_roads(request, &ways, &table, should_stop, &mut |assembled| {
+    let stops = nodes.stops.finish().map_err(failed)?;
+    hand_out(&reading, ways.read(), ways_count, stops, &mut |assembled| {
         let roads = assembled.roads.len() as u64;
         summary.roads += roads;
         *(if roads > 0 { &mut summary.road_ways } else { &mut summary.left_out.without_line }) += 1;
@@ -110,101 +127,4 @@ pub fn read_roads_from<R: Read + Seek>(
         assembled.roads.into_iter().for_each(&mut *sink);
     })?;
     Ok(summary)
-}
-
-/// What may be kept of any file …
-const HELD_BYTES: u64 = 64 << 20;
-/// … and on top of it for each of its bytes.
-const HELD_BYTES_PER_BYTE: u64 = 64;
-
-/// Pass 1. Also returns which blobs contain nodes.
-fn read_ways<R: Read + Seek>(
-    file: &mut BlobFile<R>,
-    request: &ReadRequest<'_>,
-    decoding: &Decoding<'_>,
-) -> Result<(Ways, Vec<usize>), ReadOsmError> {
-    let mut ways = Ways::default();
-    let mut versions = Versions::default();
-    let mut blobs_with_nodes = Vec::new();
-    let history = |reason| ReadOsmError::History { path: request.path.to_path_buf(), reason };
-    let all: Vec<usize> = (0..file.len()).collect();
-    let len_bytes = file.len_bytes();
-    let most_bytes = HELD_BYTES.saturating_add(len_bytes.saturating_mul(HELD_BYTES_PER_BYTE));
-    file.for_each(
-        &all,
-        decoding,
-        Versions::scan,
-        |block, most_bytes| Ways::scan(block, request.table, most_bytes),
-        |number, versions_of_block, of_block| {
-            versions.append(versions_of_block);
-            if let Some(reason) = versions.history.take() {
-                return Err(history(reason));
-            }
-            if of_block.summary.nodes_seen > 0 {
-                blobs_with_nodes.push(number);
-            }
-            ways.append(of_block);
-            if ways.held_bytes > most_bytes {
-                return Err(ReadOsmError::TooMuch { path: request.path.to_path_buf(), len_bytes });
-            }
-            Ok(())
-        },
-    )?;
-    ways.sort().map_err(history)?;
-    Ok((ways, blobs_with_nodes))
-}
-
-/// Pass 2.
-fn locate_nodes<R: Read + Seek>(
-    file: &mut BlobFile<R>,
-    blobs_with_nodes: &[usize],
-    ways: &mut Ways,
-    table: &mut NodeTable,
-    decoding: &Decoding<'_>,
-) -> Result<(), ReadOsmError> {
-    let NodeTable { ids, places } = table;
-    if ids.len() > 0 {
-        let take = |_, (), found: Vec<(usize, Location)>| {
-            for (number, location) in found {
-                places.set(number, location);
-            }
-            Ok(())
-        };
-        let scan = |block: &PrimitiveBlock, most_bytes| ids.scan(block, most_bytes);
-        file.for_each(blobs_with_nodes, decoding, |_| (), scan, take)?;
-    }
-    for (id, location) in std::mem::take(&mut ways.located) {
-        if let Some(number) = ids.number(id) {
-            places.set(number, location);
-        }
-    }
-    Ok(())
-}
-
-/// Places and assembles the ways a few thousand at a time, so that the roads of a country never lie in memory at once.
-fn emit_roads(
-    request: &ReadRequest<'_>,
-    ways: &Ways,
-    table: &NodeTable,
-    should_stop: &(dyn Fn() -> bool + Sync),
-    take: &mut dyn FnMut(Assembled),
-) -> Result<(), ReadOsmError> {
-    const WAYS_PER_TASK: usize = 256;
-    const TASKS_PER_THREAD: usize = 8;
-    let batch_ways = WAYS_PER_TASK * TASKS_PER_THREAD * request.pool.current_num_threads();
-    for batch in ways.roads.chunks(batch_ways) {
-        if should_stop() {
-            return Err(ReadOsmError::Stopped { path: request.path.to_path_buf() });
-        }
-        let assembled: Vec<_> = request.pool.install(|| {
-            batch
-                .par_chunks(WAYS_PER_TASK)
-                .map(|some| assemble(some, ways, table, request.place))
-                .collect()
-        });
-        for some in assembled {
-            some?.into_iter().for_each(&mut *take);
-        }
-    }
-    Ok(())
 }

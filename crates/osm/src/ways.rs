@@ -1,4 +1,4 @@
-//! Pass 1: the ways that are roads, what they are, and which nodes they need.
+//! The ways of a block that are roads, what they are, and which nodes they need.
 
 use std::{borrow::Cow, collections::BTreeMap};
 
@@ -11,34 +11,28 @@ use osmpbf::{PrimitiveBlock, Way};
 use crate::{
     Defect, ExtractSummary, HighwayCount,
     location::{Location, location_from_nano},
-    versions::{known_version, two_versions},
+    records::WayRecord,
+    versions::known_version,
+    way_bytes::way_bytes,
 };
 
-/// A way that is a road, without its nodes.
-#[derive(Debug)]
-pub(crate) struct RoadWay {
-    pub(crate) way_id: i64,
-    pub(crate) class: FunctionalRoadClass,
-    pub(crate) attributes: RoadAttributes,
-    version: Option<i32>,
-    /// Its nodes are `node_ids[nodes_start..nodes_end]` of the [`Ways`] it belongs to.
-    pub(crate) nodes_start: usize,
-    pub(crate) nodes_end: usize,
-}
-
-/// The road ways of a block or of a whole file, with what is known of its other ways.
+/// The road ways of a block, with what is known of its other ways.
 #[derive(Debug, Default)]
 pub(crate) struct Ways {
-    pub(crate) roads: Vec<RoadWay>,
-    /// The nodes of all roads, one way after another.
-    pub(crate) node_ids: Vec<i64>,
+    /// In the order of the block, which is counted from 0.
+    pub(crate) roads: Vec<WayRecord>,
     /// Where nodes lie, in files that say so in their ways (`LocationsOnWays`).
     pub(crate) located: Vec<(i64, Location)>,
     pub(crate) defects: Vec<Defect>,
     pub(crate) summary: ExtractSummary,
-    /// How much memory all this takes, by an estimate that is not too low.
+    /// How much all this takes, in memory or in scratch space, by an estimate that is not too low.
     pub(crate) held_bytes: u64,
+    /// The nodes of the way that is being looked at.
+    node_ids: Vec<i64>,
 }
+
+/// What counts for each way, besides its nodes and texts.
+const WAY_BYTES: usize = 240;
 
 /// OSM allows 255 characters (OSM wiki, *API v0.6*), each of at most four bytes.
 const MAX_TEXT_CHARS: usize = 255;
@@ -100,7 +94,7 @@ impl Ways {
         let left_out = &mut self.summary.left_out;
         match table.classify(tags) {
             Classified::Road(class) => {
-                self.take(way, class, attributes(tags));
+                self.take(way, class, &attributes(tags));
                 self.count_tags_taken_otherwise(way_id, tags);
             }
             Classified::NotShown(_) => left_out.class_off += 1,
@@ -137,86 +131,45 @@ impl Ways {
         }
     }
 
-    fn take(&mut self, way: &Way<'_>, class: FunctionalRoadClass, attributes: RoadAttributes) {
-        let nodes_start = self.node_ids.len();
+    fn take(&mut self, way: &Way<'_>, class: FunctionalRoadClass, attributes: &RoadAttributes) {
+        self.node_ids.clear();
         self.node_ids.extend(way.refs());
-        let nodes_end = self.node_ids.len();
         let locations = way.node_locations();
-        let locations_count = locations.len();
+        let has_locations = locations.len() > 0;
         // The block was checked: one for each node, or none at all.
-        if locations_count > 0 {
+        if has_locations {
             let locations = locations
                 .map(|location| location_from_nano(location.nano_lon(), location.nano_lat()));
-            self.located.extend(self.node_ids[nodes_start..].iter().copied().zip(locations));
+            self.located.extend(self.node_ids.iter().copied().zip(locations));
         }
-        let text_bytes =
-            attributes.name.len() + attributes.reference.len() + attributes.surface.len();
-        let locations = if locations_count > 0 { size_of::<(i64, Location)>() } else { 0 };
-        let nodes = nodes_end - nodes_start;
-        // Lists grow by doubling.
-        self.held_bytes += (text_bytes
-            + 2 * size_of::<RoadWay>()
-            + 2 * nodes * (size_of::<i64>() + locations)) as u64;
-        let version = way.info().version().and_then(known_version);
-        let way_id = way.id();
-        self.roads.push(RoadWay { way_id, class, attributes, version, nodes_start, nodes_end });
-    }
-
-    /// Adds the ways of a later block.
-    pub(crate) fn append(&mut self, later: Self) {
-        let shift = self.node_ids.len();
-        self.node_ids.extend(later.node_ids);
-        self.located.extend(later.located);
-        self.defects.extend(later.defects);
-        self.held_bytes += later.held_bytes;
-        self.roads.extend(later.roads.into_iter().map(|way| RoadWay {
-            nodes_start: way.nodes_start + shift,
-            nodes_end: way.nodes_end + shift,
-            ..way
-        }));
-        let (own, other) = (&mut self.summary, later.summary);
-        own.nodes_seen += other.nodes_seen;
-        own.ways_seen += other.ways_seen;
-        own.highway_ways += other.highway_ways;
-        own.left_out.listed += other.left_out.listed;
-        own.left_out.class_off += other.left_out.class_off;
-        own.left_out.unknown += other.left_out.unknown;
-        own.left_out.area += other.left_out.area;
-        add_counts(&mut own.unknown_highways, other.unknown_highways);
-        add_counts(&mut own.tags_taken_otherwise, other.tags_taken_otherwise);
-        for (value, count) in other.highways {
-            own.highways.entry(value).and_modify(|own| own.ways += count.ways).or_insert(count);
-        }
-    }
-
-    /// Puts the roads in ascending order of way id; of equal ids the first in the file stays.
-    ///
-    /// Fails, with the reason, if it is there in two versions.
-    pub(crate) fn sort(&mut self) -> Result<(), String> {
-        self.roads.sort_by_key(|way| way.way_id);
-        for same in self.roads.chunk_by(|a, b| a.way_id == b.way_id) {
-            let mut versions = same.iter().filter_map(|way| way.version);
-            if let Some(first) = versions.next()
-                && let Some(second) = versions.find(|&version| version != first)
-            {
-                return Err(two_versions("way", same[0].way_id, [first, second]));
-            }
-        }
-        let (defects, left_out) = (&mut self.defects, &mut self.summary.left_out);
-        self.roads.dedup_by(|later, first| {
-            let is_same = later.way_id == first.way_id;
-            if is_same {
-                left_out.duplicate += 1;
-                defects.push(Defect::DuplicateWay { way_id: later.way_id });
-            }
-            is_same
+        let RoadAttributes { name, reference, surface, .. } = attributes;
+        let text_bytes = name.len() + reference.len() + surface.len();
+        let location_bytes = if has_locations { size_of::<(i64, Location)>() } else { 0 };
+        let node_bytes = size_of::<i64>() + location_bytes;
+        // Lists grow by doubling; each node is sorted twice.
+        self.held_bytes += (text_bytes + WAY_BYTES + 2 * self.node_ids.len() * node_bytes) as u64;
+        self.roads.push(WayRecord {
+            way_id: way.id(),
+            order: self.roads.len() as u64,
+            version: way.info().version().and_then(known_version).unwrap_or_default(),
+            bytes: way_bytes(&self.node_ids, class, attributes),
         });
-        Ok(())
     }
+}
 
-    /// The nodes of a road.
-    pub(crate) fn node_ids_of(&self, way: &RoadWay) -> &[i64] {
-        &self.node_ids[way.nodes_start..way.nodes_end]
+/// Adds the counts of a later block.
+pub(crate) fn add_summary(own: &mut ExtractSummary, later: ExtractSummary) {
+    own.nodes_seen += later.nodes_seen;
+    own.ways_seen += later.ways_seen;
+    own.highway_ways += later.highway_ways;
+    own.left_out.listed += later.left_out.listed;
+    own.left_out.class_off += later.left_out.class_off;
+    own.left_out.unknown += later.left_out.unknown;
+    own.left_out.area += later.left_out.area;
+    add_counts(&mut own.unknown_highways, later.unknown_highways);
+    add_counts(&mut own.tags_taken_otherwise, later.tags_taken_otherwise);
+    for (value, count) in later.highways {
+        own.highways.entry(value).and_modify(|own| own.ways += count.ways).or_insert(count);
     }
 }
 

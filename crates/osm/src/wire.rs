@@ -128,7 +128,7 @@ impl Iterator for Numbers<'_> {
 
 /// Seven bits a byte, least first, the top bit set on all bytes but the last.
 #[inline]
-fn varint(rest: &mut &[u8]) -> Result<u64, WireError> {
+pub(crate) fn varint(rest: &mut &[u8]) -> Result<u64, WireError> {
     let mut number = 0;
     for (place, &byte) in rest.iter().take(10).enumerate() {
         if place == 9 && byte > 1 {
@@ -146,6 +146,20 @@ fn varint(rest: &mut &[u8]) -> Result<u64, WireError> {
 /// The signed number behind a zigzag varint: 0, -1, 1, -2, …
 pub(crate) const fn zigzag(number: u64) -> i64 {
     (number >> 1).cast_signed() ^ -(number & 1).cast_signed()
+}
+
+/// The number that stands for a signed one: the inverse of [`zigzag`].
+pub(crate) const fn to_zigzag(number: i64) -> u64 {
+    ((number << 1) ^ (number >> 63)).cast_unsigned()
+}
+
+/// Appends a varint.
+pub(crate) fn push_varint(bytes: &mut Vec<u8>, mut number: u64) {
+    while number > 0x7f {
+        bytes.push(number as u8 | 0x80);
+        number >>= 7;
+    }
+    bytes.push(number as u8);
 }
 
 #[cfg(test)]

@@ -9,10 +9,11 @@ use std::{
     sync::atomic::{AtomicUsize, Ordering},
 };
 
-use common::{Extract, default_table, fixture, read, read_with, to_lattice};
+use common::{Extract, fixture, read, read_with, request, to_lattice};
 use corniche_geom::LatticePoint;
-use corniche_osm::{Defect, ReadOsmError, ReadRequest, read_roads};
+use corniche_osm::{Defect, ReadOsmError, read_roads};
 use corniche_roads::{Form, Oneway, Road, Structure};
+use corniche_store::MemoryScratch;
 
 fn road(extract: &Extract, way_id: i64) -> &Road {
     extract.roads.iter().find(|road| road.way_id == way_id).unwrap()
@@ -174,8 +175,8 @@ fn refuses_a_place_that_loses_points() {
 #[test]
 fn stops_when_asked_at_any_time() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
-    let (table, path) = (default_table(), fixture("classes.osm.pbf"));
-    let request = ReadRequest { path: &path, table: &table, place: &to_lattice, pool: &pool };
+    let (path, scratch) = (fixture("classes.osm.pbf"), MemoryScratch::default());
+    let request = request(&path, &pool, &to_lattice, &scratch);
     for allowed in 0..3 {
         let asked = AtomicUsize::new(0);
         let should_stop = || asked.fetch_add(1, Ordering::Relaxed) >= allowed;

@@ -5,6 +5,7 @@
 //! | `InputHash` | input, by its place in the plan | size and SHA-256 of its content | hashes | merge |
 //! | `RoadPieces` | tile | the pieces of roads that meet the tile, simplified for its level | roads | tiles, merge |
 //! | `RoadLengths` | block of ordinals | way id, true length and length outside the data of each road | roads | merge |
+//! | `Defects` | block of defects | the extract's defects, in the order in which they were found | roads | roads, merge |
 //! | `RoadTotals` | 0 | counts, classes, defects, what the extract held | roads | merge |
 //! | `Heights` | finest tile | heights of its nodes with one node of halo; which of them are filled voids | heights | tiles |
 //! | `Area` | tile, two levels above the finest | counts and range of its heights; what was seen of heights that cannot be | heights | tiles, merge |
@@ -33,6 +34,7 @@ pub(crate) enum Kind {
     InputHash,
     RoadPieces,
     RoadLengths,
+    Defects,
     RoadTotals,
     Heights,
     Area,
@@ -46,10 +48,11 @@ pub(crate) enum Kind {
 
 impl Kind {
     /// All of them.
-    pub(crate) const ALL: [Self; 12] = [
+    pub(crate) const ALL: [Self; 13] = [
         Self::InputHash,
         Self::RoadPieces,
         Self::RoadLengths,
+        Self::Defects,
         Self::RoadTotals,
         Self::Heights,
         Self::Area,

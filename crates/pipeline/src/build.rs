@@ -14,11 +14,12 @@ use std::{
     fs,
     path::{Path, PathBuf},
     sync::Arc,
+    time::Duration,
 };
 
 use corniche_dem::GridPlan;
 use corniche_geom::TileId;
-use corniche_store::{Disk, Scratch, SystemDisk};
+use corniche_store::{Disk, SYNC_INTERVAL, Scratch, SystemDisk};
 use corniche_tileset::Manifest;
 
 use self::unfinished::Unfinished;
@@ -50,13 +51,14 @@ pub fn build(
     settings: &BuildSettings,
     observer: &dyn Observer,
 ) -> Result<BuildSummary, BuildError> {
-    build_on(Arc::new(SystemDisk), settings, observer)
+    build_on(Arc::new(SystemDisk), SYNC_INTERVAL, settings, observer)
 }
 
-/// As [`build`], with the store on any disk: tests let it fail.
+/// As [`build`], with the store on any disk, and made durable as often as wanted: tests let it fail.
 #[doc(hidden)]
 pub fn build_on(
     disk: Arc<dyn Disk>,
+    sync_interval: Duration,
     settings: &BuildSettings,
     observer: &dyn Observer,
 ) -> Result<BuildSummary, BuildError> {
@@ -82,7 +84,9 @@ pub fn build_on(
     }
     let finished = Unfinished::create(target, folder)?;
     observer.temporary(finished.path());
-    let store = work_store::open(&disk, &store_folder, &plan, settings.leftovers, observer)?;
+    let place = (&disk, &*store_folder, sync_interval);
+    let store = work_store::open(place, &plan, settings.leftovers, observer)?;
+    observer.keeps(&store_folder);
     let context = Context::new(&plan_settings, settings.resources, &opened, &store, observer);
     let wanted = merge::Target { finished: finished.path(), named: &settings.output };
     let built = (store.scratch().map_err(BuildError::from))

@@ -1,5 +1,7 @@
+use serde::{Deserialize, Serialize};
+
 /// Bad input that was skipped and counted, or what was lost by it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Defect {
     /// In the extract.
     Osm(corniche_osm::Defect),
@@ -17,7 +19,7 @@ pub enum Defect {
 }
 
 /// Why a road was lost.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Loss {
     /// It lies beside the elevation data.
     OutsideData,

@@ -11,8 +11,6 @@ pub enum Unit {
     Blocks,
     /// Areas of the grid: the finest tiles of one window of the DEM.
     Areas,
-    /// Roads of the extract.
-    Roads,
     /// Tiles of the package.
     Tiles,
 }
@@ -95,8 +93,7 @@ impl Stage {
     #[must_use]
     pub fn unit(self) -> Unit {
         match self {
-            Self::Hash => Unit::Bytes,
-            Self::Roads => Unit::Roads,
+            Self::Hash | Self::Roads => Unit::Bytes,
             Self::Samples => Unit::Blocks,
             Self::Heights => Unit::Areas,
             Self::CoarseTins
@@ -132,6 +129,10 @@ pub trait Observer: Sync {
     /// The run uses this file or folder and removes it when it ends. A caller that ends the program without waiting for the run
     /// removes it itself.
     fn temporary(&self, _: &Path) {}
+
+    /// The run keeps its intermediate results in this folder, and may be gone on from there if it ends early. A caller that ends the program without
+    /// waiting for the run tells so itself.
+    fn keeps(&self, _: &Path) {}
 
     /// A warning about the inputs, as text for the user.
     fn warning(&self, _: &str) {}

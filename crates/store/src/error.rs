@@ -26,10 +26,8 @@ pub enum StoreError {
     Locked { path: PathBuf, owner: String },
     #[error("{path:?} was removed or replaced while it was in use; start again")]
     Gone { path: PathBuf },
-    #[error(
-        "{path:?}: a write failed earlier, so nothing more can be kept; run again with --resume"
-    )]
-    Failed { path: PathBuf },
+    #[error("{path:?}: nothing more can be kept, because earlier: {cause}")]
+    Failed { path: PathBuf, cause: String },
     #[error("{path:?} is open for reading only")]
     ReadOnly { path: PathBuf },
     #[error(

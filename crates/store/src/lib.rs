@@ -4,6 +4,26 @@
 //! [`LocalStore`] keeps artifacts in a folder such that a crash at any moment loses the last seconds and nothing else; [`MemoryStore`] keeps them in
 //! memory. All input and output goes through [`Disk`], so that tests can let any call fail.
 //!
+//! ```
+//! # fn main() -> Result<(), corniche_store::StoreError> {
+//! # let temporary = tempfile::tempdir().unwrap();
+//! # let folder = temporary.path().join("store");
+//! use std::sync::Arc;
+//! use corniche_store::{Artifacts, Key, LocalStore, SYNC_INTERVAL, StoredPlan, SystemDisk};
+//!
+//! let plan = StoredPlan { hash: [0; 32], bytes: b"{}".to_vec() };
+//! let heights = Key { kind: 0, item: 17 };
+//! let store = LocalStore::create(Arc::new(SystemDisk), &folder, &plan, SYNC_INTERVAL)?;
+//! store.put(heights, b"made at some cost")?;
+//! drop(store); // or the process is killed two seconds later
+//!
+//! let store = LocalStore::open(Arc::new(SystemDisk), &folder, &plan.hash, SYNC_INTERVAL)?;
+//! assert!(store.has(heights));
+//! store.remove()?;
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! This crate knows no tile and no road: a key is two numbers, an artifact is bytes. It never changes what was put, makes no threads, and
 //! removes no file that it did not make.
 

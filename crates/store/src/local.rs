@@ -267,7 +267,7 @@ impl LocalStore {
             let owner = "another process that makes a part".to_owned();
             return Err(StoreError::Locked { path: own.folder.clone(), owner });
         }
-        own.part.give_up();
+        own.part.give_up("the store was removed".to_owned());
         remove_all(&self.files, &own.folder)
     }
 

@@ -121,6 +121,33 @@ fn many_runs_are_merged_in_passes() {
     assert!((20_000 * 12 * 4..20_000 * 28 * 12).contains(&read_bytes), "{read_bytes}");
 }
 
+/// 75 runs, of which 64 are merged at once: only 12 of them are merged before, so that a sixth is written twice.
+#[test]
+fn no_more_runs_are_merged_twice_than_must_be() {
+    let scratch = Counting::default();
+    let memory_bytes = (RUNS_AT_ONCE + 2) * SHORTEST_PAGE;
+    let limit = memory_bytes - page_bytes(memory_bytes, 8);
+    let count = (limit / size_of::<u64>() * 75) as u64;
+    let numbers = (0..count).map(|n| n.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    let lines = sorted(numbers, &scratch, memory_bytes as u64).unwrap();
+    assert!(lines.is_sorted());
+    assert_eq!(lines.len() as u64, count);
+    let read_bytes = scratch.read_bytes.into_inner() as f64 / (9 * count) as f64;
+    assert!((read_bytes - (1.0 + 12.0 / 75.0)).abs() < 0.01, "read {read_bytes} times");
+}
+
+impl SortRecord for u64 {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.to_le_bytes());
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        let (number, rest) = bytes.split_first_chunk()?;
+        *bytes = rest;
+        Some(Self::from_le_bytes(*number))
+    }
+}
+
 #[test]
 fn a_record_larger_than_the_memory_is_sorted_too() {
     let mut lines = some_lines(20);

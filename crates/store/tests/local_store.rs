@@ -3,11 +3,17 @@
 
 mod common;
 
-use std::{collections::BTreeMap, path::Path, sync::Barrier, thread, time::Duration};
+use std::{
+    collections::BTreeMap,
+    path::Path,
+    sync::{Barrier, mpsc},
+    thread,
+    time::Duration,
+};
 
 use common::*;
 use corniche_store::{Artifacts, LocalStore, Scratch, StoreError, StoredPlan};
-use corniche_testing::disks::MemoryDisk;
+use corniche_testing::disks::{Failure, MemoryDisk};
 use proptest::prelude::*;
 
 #[derive(Debug, Clone)]
@@ -159,7 +165,7 @@ fn the_interval_says_how_much_is_lost() {
             store.put(key(1, item), &artifact(key(1, item))).unwrap();
         }
         // The process is dead before it can keep the rest.
-        disk.fail_after(0, corniche_testing::disks::Failure::Death);
+        disk.fail_after(0, Failure::Death);
         drop(store);
         let store = open(&disk.after_kill(), NEVER).unwrap();
         assert_eq!(store.items(1).len(), expected);
@@ -195,6 +201,38 @@ fn a_later_put_of_any_thread_is_later_in_the_journal() {
     assert_eq!(rounds.len(), 120);
     assert!(rounds.is_sorted());
     assert_eq!(check_all_right(&open(&disk, NEVER).unwrap()), 120);
+}
+
+/// A device that takes its time holds up the thread that syncs, and no other.
+#[test]
+fn puts_and_gets_go_on_while_another_thread_syncs() {
+    let disk = empty_disk();
+    let store = create(&disk, ALWAYS).unwrap();
+    disk.hold_syncs();
+    thread::scope(|scope| {
+        let syncing = scope.spawn(|| store.put(key(2, 0), &artifact(key(2, 0))));
+        disk.wait_for_held_sync();
+        let (done, wait) = mpsc::channel();
+        let store = &store;
+        scope.spawn(move || {
+            for item in 0..100 {
+                store.put(key(1, item), &artifact(key(1, item))).unwrap();
+            }
+            assert_eq!(check_all_right(store), 101);
+            done.send(()).unwrap();
+        });
+        let in_time = wait.recv_timeout(Duration::from_mins(1));
+        let is_syncing = !syncing.is_finished();
+        disk.release_syncs();
+        in_time.unwrap();
+        assert!(is_syncing);
+        syncing.join().unwrap().unwrap();
+    });
+    // What was put meanwhile is durable after the next sync.
+    store.flush().unwrap();
+    disk.fail_after(0, Failure::Death);
+    drop(store);
+    assert_eq!(check_all_right(&open(&disk.after_kill(), NEVER).unwrap()), 101);
 }
 
 #[test]
@@ -345,8 +383,9 @@ fn a_store_that_was_removed_while_it_is_in_use_says_so() {
     disk.disk().remove_folder(folder()).unwrap();
     let error = store.flush().unwrap_err();
     assert!(matches!(error, StoreError::Gone { .. }), "{error}");
+    let earlier = error.to_string();
     let error = store.put(key(1, 2), b"more").unwrap_err();
-    assert!(matches!(error, StoreError::Failed { .. }), "{error}");
+    assert!(matches!(&error, StoreError::Failed { cause, .. } if *cause == earlier), "{error}");
 }
 
 /// The same on the file system of the machine, with what a test double cannot show: real locks, real identities.

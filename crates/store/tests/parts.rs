@@ -128,6 +128,27 @@ fn a_killed_part_is_gone_on_with_by_the_next_process_of_its_name_only() {
     assert_eq!(killed.paths().len(), files - 2 + 2 + 1);
 }
 
+/// Of several that were killed the one that holds most is gone on with, and the others are removed.
+#[test]
+fn the_longest_of_several_killed_parts_is_gone_on_with() {
+    for counts in [[3, 9, 5], [9, 1, 0], [0, 0, 9]] {
+        let disk = empty_disk();
+        let stores = counts.map(|count| {
+            let store = open_part(&disk, folder(), "heights").unwrap();
+            for key in keys(1, 0..count) {
+                store.put(key, &artifact(key)).unwrap();
+            }
+            store.flush().unwrap();
+            store
+        });
+        let killed = disk.after_kill();
+        drop(stores);
+        let store = open_part(&killed, folder(), "heights").unwrap();
+        check_holds(&store, &all_of(keys(1, 0..9)));
+        assert_eq!(killed.paths().len(), 5, "{:?}", killed.paths());
+    }
+}
+
 #[test]
 fn parts_of_another_plan_are_refused_by_name() {
     let disk = empty_disk();

@@ -11,38 +11,28 @@
 //! Source: the test files `test6.c` and `ioerr*.test` of `SQLite` (D. Richard Hipp and others); its page *How `SQLite` Is Tested*.
 
 mod crash;
+mod failure;
 mod state;
 
 use std::{
     io,
     path::{Path, PathBuf},
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
 };
 
 use corniche_store::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
 
+pub use failure::Failure;
+
 use crate::Random;
 use state::{NameChange, Node, Owner, State};
-
-/// What happens at a call.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Failure {
-    /// From this call on, calls that need room fail; others do not. [`MemoryDisk::make_room`] ends it.
-    Full,
-    /// This call fails as if the device could not do it (`EIO`).
-    Device,
-    /// This call is interrupted (`EINTR`) and does nothing. Who calls must make it again.
-    Interrupted,
-    /// If this call reads or writes, it does half of it and says so.
-    Short,
-    /// This call and all that follow fail, as if the process were dead: nothing reaches the disk any more.
-    Death,
-}
 
 /// A disk in memory. Clones are the same disk.
 #[derive(Debug, Clone)]
 pub struct MemoryDisk {
     state: Arc<Mutex<State>>,
+    /// Something about held syncs has changed.
+    syncs: Arc<Condvar>,
 }
 
 impl MemoryDisk {
@@ -53,7 +43,7 @@ impl MemoryDisk {
     }
 
     fn of(state: State) -> Self {
-        Self { state: Arc::new(Mutex::new(state)) }
+        Self { state: Arc::new(Mutex::new(state)), syncs: Arc::default() }
     }
 
     /// What the store takes.
@@ -83,6 +73,25 @@ impl MemoryDisk {
     /// Ends [`Failure::Full`].
     pub fn make_room(&self) {
         self.state().is_full = false;
+    }
+
+    /// From here on syncs of files wait until [`Self::release_syncs`], as on a slow device.
+    pub fn hold_syncs(&self) {
+        self.state().holds_syncs = true;
+    }
+
+    /// Lets held syncs go on.
+    pub fn release_syncs(&self) {
+        self.state().holds_syncs = false;
+        self.syncs.notify_all();
+    }
+
+    /// Waits until a thread is held in a sync.
+    pub fn wait_for_held_sync(&self) {
+        let mut state = self.state();
+        while state.held_syncs == 0 {
+            state = self.syncs.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
     }
 
     /// The disk as another process finds it when all that used it were killed, but the machine went on: nothing is lost, no lock is held.
@@ -269,6 +278,12 @@ impl DiskFile for MemoryFile {
 
     fn sync(&self) -> io::Result<()> {
         let (mut state, _) = self.disk.call(Need::Nothing)?;
+        state.held_syncs += 1;
+        while state.holds_syncs {
+            self.disk.syncs.notify_all();
+            state = self.disk.syncs.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+        state.held_syncs -= 1;
         state.files[self.number].sync();
         Ok(())
     }

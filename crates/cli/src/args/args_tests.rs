@@ -8,10 +8,8 @@ fn the_command_line_is_consistent() {
 
 #[test]
 fn options_of_later_issues_are_rejected() {
-    for line in ["--photo x.tif"] {
-        let line = format!("corniche build --dem a.tif -o b {line}");
-        assert!(Arguments::try_parse_from(line.split(' ')).is_err(), "{line}");
-    }
+    let line = "corniche build --dem a.tif -o b --photo x.tif";
+    assert!(Arguments::try_parse_from(line.split(' ')).is_err(), "{line}");
 }
 
 #[test]

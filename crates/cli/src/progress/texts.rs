@@ -81,7 +81,6 @@ fn plural(unit: Unit) -> &'static str {
         Unit::Bytes => "bytes",
         Unit::Blocks => "blocks",
         Unit::Areas => "areas",
-        Unit::Roads => "roads",
         Unit::Tiles => "tiles",
     }
 }

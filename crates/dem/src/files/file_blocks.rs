@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use gdal::Dataset;
 
+use crate::DemError;
 use crate::files::open::open_dataset;
 use crate::files::raster_files::raster_files;
-use crate::{Dem, DemError};
 
 /// How a file is cut into blocks: the least that GDAL can read of it, always decoded whole.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -61,25 +61,16 @@ impl FileBlocks {
     }
 }
 
-impl Dem {
-    /// How each file is cut into blocks; of a virtual raster (VRT) also the files that it refers to.
-    ///
-    /// # Errors
-    /// When a file cannot be opened any more.
-    pub fn file_blocks(&self) -> Result<Vec<FileBlocks>, DemError> {
-        let mut found = Vec::new();
-        for source in &self.sources {
-            let dataset = open_dataset(&source.path)?;
-            found.extend(FileBlocks::of(&source.path, &dataset));
-            if dataset.driver().short_name() != "VRT" {
-                continue;
-            }
-            for part in raster_files(&source.path)? {
-                // Not every part is a raster.
-                let dataset = open_dataset(&part).ok();
-                found.extend(dataset.and_then(|dataset| FileBlocks::of(&part, &dataset)));
-            }
+/// The blocks of a file; of a virtual raster (VRT) also those of the files that it refers to.
+pub(crate) fn of_file(path: &Path) -> Result<Vec<FileBlocks>, DemError> {
+    let dataset = open_dataset(path)?;
+    let mut found: Vec<FileBlocks> = FileBlocks::of(path, &dataset).into_iter().collect();
+    if dataset.driver().short_name() == "VRT" {
+        for part in raster_files(path)?.iter().filter(|part| *part != path) {
+            // Not every part is a raster.
+            let dataset = open_dataset(part).ok();
+            found.extend(dataset.and_then(|dataset| FileBlocks::of(part, &dataset)));
         }
-        Ok(found)
     }
+    Ok(found)
 }

@@ -7,6 +7,7 @@
 )]
 
 mod all_real_data;
+mod blocks;
 mod closed_form;
 mod datums;
 mod fill_rule;

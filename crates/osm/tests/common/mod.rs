@@ -17,6 +17,7 @@ use corniche_osm::{
 };
 use corniche_presets::parse_frc_table;
 use corniche_roads::{FrcTable, Road};
+use corniche_store::{MemoryScratch, Scratch};
 use rayon::ThreadPool;
 
 /// The preset `config/frc/default.toml`.
@@ -87,11 +88,23 @@ pub(crate) fn read_with(
 }
 
 fn read_in(path: &Path, pool: &ThreadPool, place: &Place<'_>) -> Result<Extract, ReadOsmError> {
-    let request = ReadRequest { path, table: &TABLE, place, pool };
+    let scratch = MemoryScratch::default();
+    let request = request(path, pool, place, &scratch);
     gather(|sink, on_defect| read_roads(&request, sink, on_defect, &|| false))
 }
 
-static POOL: LazyLock<ThreadPool> =
+/// With memory for everything.
+pub(crate) fn request<'a>(
+    path: &'a Path,
+    pool: &'a ThreadPool,
+    place: &'a Place<'a>,
+    scratch: &'a dyn Scratch,
+) -> ReadRequest<'a> {
+    let (table, memory_bytes) = (&*TABLE, 1 << 30);
+    ReadRequest { path, table, place, pool, memory_bytes, scratch, on_progress: None }
+}
+
+pub(crate) static POOL: LazyLock<ThreadPool> =
     LazyLock::new(|| rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap());
 static TABLE: LazyLock<FrcTable> = LazyLock::new(default_table);
 
@@ -107,14 +120,27 @@ pub(crate) fn read_bytes(bytes: &[u8]) -> Result<Extract, ReadOsmError> {
 
 /// The same with other threads.
 pub(crate) fn read_bytes_in(pool: &ThreadPool, bytes: &[u8]) -> Result<Extract, ReadOsmError> {
-    let path = Path::new("made.osm.pbf");
-    let request = ReadRequest { path, table: &TABLE, place: &to_lattice, pool };
+    let scratch = MemoryScratch::default();
+    let request = request(Path::new("made.osm.pbf"), pool, &to_lattice, &scratch);
     gather(|sink, on_defect| {
         read_roads_from(Cursor::new(bytes), &request, sink, on_defect, &|| false)
     })
 }
 
-fn gather(
+/// The same with this much memory for ways and nodes.
+pub(crate) fn read_bytes_within(
+    memory_bytes: u64,
+    scratch: &dyn Scratch,
+    bytes: &[u8],
+) -> Result<Extract, ReadOsmError> {
+    let path = Path::new("made.osm.pbf");
+    let request = ReadRequest { memory_bytes, ..request(path, &POOL, &to_lattice, scratch) };
+    gather(|sink, on_defect| {
+        read_roads_from(Cursor::new(bytes), &request, sink, on_defect, &|| false)
+    })
+}
+
+pub(crate) fn gather(
     read: impl FnOnce(
         &mut dyn FnMut(Road),
         &mut dyn FnMut(Defect),

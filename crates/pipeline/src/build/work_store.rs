@@ -3,10 +3,11 @@
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
+    time::Duration,
 };
 
 use corniche_dem::DemError;
-use corniche_store::{Artifacts as _, Disk, LocalStore, SYNC_INTERVAL, StoredPlan};
+use corniche_store::{Artifacts as _, Disk, LocalStore, StoredPlan};
 
 use crate::{BuildError, BuildPlan, Leftovers, Observer, artifacts::Kind};
 
@@ -19,10 +20,10 @@ pub(crate) fn folder_of(target: &Path, tmp: Option<&Path>) -> PathBuf {
     }
 }
 
-/// Makes the store of a build, or goes on with the one that is there, as `leftovers` says.
+/// Makes the store of a build, or goes on with the one that is there, as `leftovers` says. It lies on a disk, in a folder, and is made
+/// durable in an interval.
 pub(crate) fn open(
-    disk: &Arc<dyn Disk>,
-    folder: &Path,
+    (disk, folder, sync_interval): (&Arc<dyn Disk>, &Path, Duration),
     plan: &BuildPlan,
     leftovers: Leftovers,
     observer: &dyn Observer,
@@ -41,7 +42,7 @@ pub(crate) fn open(
                 folder.display()
             ));
         }
-        return Ok(LocalStore::create(Arc::clone(disk), folder, &wanted, SYNC_INTERVAL)?);
+        return Ok(LocalStore::create(Arc::clone(disk), folder, &wanted, sync_interval)?);
     };
     if leftovers == Leftovers::Refuse {
         return Err(BuildError::Leftovers { store: folder.to_path_buf() });
@@ -52,7 +53,7 @@ pub(crate) fn open(
             differences: differences(plan, &there),
         });
     }
-    let store = LocalStore::open(Arc::clone(disk), folder, &wanted.hash, SYNC_INTERVAL)?;
+    let store = LocalStore::open(Arc::clone(disk), folder, &wanted.hash, sync_interval)?;
     if store.repaired() > 0 {
         observer.warning(&format!(
             "{} artifacts in {} were not complete; they are made again",

@@ -4,7 +4,7 @@ use corniche_geom::{Frame, NodeIndex, TILE_CELLS, TileId};
 
 /// The tiles of a level that data can lie in, as runs of columns.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct CoveredTiles {
+pub(crate) struct CoveredTiles {
     level: u8,
     /// Row from the north → first and last column of each run, in order, apart from each other.
     rows: BTreeMap<u32, Vec<[u32; 2]>>,
@@ -12,7 +12,7 @@ pub(super) struct CoveredTiles {
 
 impl CoveredTiles {
     /// The finest tiles that have a cell in one of the rectangles, each given by its south-western and north-eastern node.
-    pub(super) fn finest(frame: &Frame, rectangles: &[[NodeIndex; 2]]) -> Self {
+    pub(crate) fn finest(frame: &Frame, rectangles: &[[NodeIndex; 2]]) -> Self {
         let size = TILE_CELLS;
         let corner = frame.root_corner();
         let most = (1_i64 << frame.max_level()) - 1;
@@ -51,7 +51,7 @@ impl CoveredTiles {
     }
 
     /// The tiles that these are the children of; `None` above the root.
-    pub(super) fn parents(&self) -> Option<Self> {
+    pub(crate) fn parents(&self) -> Option<Self> {
         let level = self.level.checked_sub(1)?;
         let mut rows: BTreeMap<u32, Vec<[u32; 2]>> = BTreeMap::new();
         for (row, runs) in &self.rows {
@@ -62,12 +62,12 @@ impl CoveredTiles {
     }
 
     /// How many they are.
-    pub(super) fn count(&self) -> u64 {
+    pub(crate) fn count(&self) -> u64 {
         self.rows.values().flatten().map(|[first, last]| u64::from(last - first) + 1).sum()
     }
 
     /// At most `wanted` of them, spread evenly over all.
-    pub(super) fn spread(&self, wanted: u64) -> Vec<TileId> {
+    pub(crate) fn spread(&self, wanted: u64) -> Vec<TileId> {
         let count = self.count();
         let picks: Vec<u64> =
             (0..wanted.min(count)).map(|k| (2 * k + 1) * count / (2 * wanted.min(count))).collect();

@@ -5,7 +5,7 @@ fn node(i: i64, j: i64) -> NodeIndex {
 }
 
 /// The tiles of each level, root first.
-fn counts(finest: CoveredTiles) -> Vec<u64> {
+fn counts(finest: &CoveredTiles) -> Vec<u64> {
     let mut levels = vec![finest.clone()];
     while let Some(parents) = levels.last().and_then(CoveredTiles::parents) {
         levels.push(parents);
@@ -18,7 +18,7 @@ fn a_border_alone_makes_no_tile() {
     let (south_west, north_east) = (node(256, 256), node(768, 1024));
     let frame = Frame::covering([0.0; 2], 10.0, south_west, north_east).unwrap();
     let covered = CoveredTiles::finest(&frame, &[[south_west, north_east]]);
-    assert_eq!(counts(covered), [1, 2, 6]);
+    assert_eq!(counts(&covered), [1, 2, 6]);
     let wider = [[south_west, node(769, 1024)]];
     assert_eq!(CoveredTiles::finest(&frame, &wider).count(), 9);
 }
@@ -30,7 +30,7 @@ fn what_lies_between_files_is_not_counted_and_what_they_share_once() {
     let corner = [south_west, node(256, 256)];
     let far = [node(256 * 63, 256 * 63), north_east];
     let covered = CoveredTiles::finest(&frame, &[corner, far, corner]);
-    assert_eq!(counts(covered.clone()), [1, 2, 2, 2, 2, 2, 2]);
+    assert_eq!(counts(&covered), [1, 2, 2, 2, 2, 2, 2]);
     assert_eq!(covered.spread(10).len(), 2);
     let whole = CoveredTiles::finest(&frame, &[[south_west, north_east], corner]);
     assert_eq!(whole.count(), 64 * 64);

@@ -87,9 +87,10 @@ impl Rates {
     }
 }
 
-/// The ground of a tile, on average.
+/// How much there is of the ground of the finest level.
 struct Ground {
-    triangles: f64,
+    triangles_per_node: f64,
+    /// Time of all steps for the ground of all levels, on one core.
     core_seconds: f64,
     rates: Rates,
 }
@@ -123,9 +124,10 @@ impl Estimate {
             && memory.block_bytes <= MOST_SAMPLED_BLOCK_BYTES
             && memory.least_bytes <= resources.memory_bytes;
         let ground = if is_sampled {
-            Ground::sampled(opened, &finest, observer)?
+            Ground::sampled(opened, &finest, nodes, observer)?
         } else {
-            Ground::recorded()
+            let usual_m = opened.grid.frame.cell().shorter_m() / 4.0;
+            Ground::recorded(nodes, opened.max_error_m / usual_m)
         };
         let extract = opened
             .inputs
@@ -147,18 +149,19 @@ impl Estimate {
         let finest = tiles.last().copied().unwrap_or(0);
         let coarse = all - finest;
         let extract = extract_bytes as f64;
-        let tins = ground.triangles * rates::PAYLOAD_BYTES_PER_TRIANGLE * all as f64;
-        let package = tins + rates::ROADS_PER_EXTRACT_BYTE * extract;
+        let finest_triangles = ground.triangles_per_node * nodes as f64;
+        let all_triangles = rates::ALL_PER_FINEST * finest_triangles;
+        let grounds = all_triangles * rates::payload_bytes_per_triangle(ground.triangles_per_node);
+        let package = grounds + rates::ROADS_PER_EXTRACT_BYTE * extract;
         let fixed = finest * rates::HEIGHTS_BYTES
             + coarse * rates::RASTER_BYTES
             + all * (rates::RECORD_BYTES + rates::TILE_ARTIFACTS * rates::ARTIFACT_BYTES);
-        let coarse_tins = ground.triangles * rates::TIN_BYTES_PER_TRIANGLE * coarse as f64;
+        let coarse_tins = (all_triangles - finest_triangles) * rates::TIN_BYTES_PER_TRIANGLE;
         // What is sorted is gone before heights come.
         let pieces = rates::PIECES_PER_EXTRACT_BYTE * extract;
         let while_sorted = pieces + rates::SORTED_PER_EXTRACT_BYTE * extract;
         let store = (fixed as f64 + coarse_tins + package + pieces).max(while_sorted);
-        let core_seconds =
-            ground.core_seconds * all as f64 + rates::SECONDS_PER_EXTRACT_BYTE * extract;
+        let core_seconds = ground.core_seconds + rates::SECONDS_PER_EXTRACT_BYTE * extract;
         let cores = memory.threads.max(1) as f64 * rates::CORES_BUSY;
         Self {
             nodes,
@@ -174,7 +177,7 @@ impl Estimate {
 }
 
 impl MemoryEstimate {
-    pub(super) fn new(files: &[FileBlocks], tiles: u64, threads: u64) -> Self {
+    pub(crate) fn new(files: &[FileBlocks], tiles: u64, threads: u64) -> Self {
         let largest = files.iter().max_by_key(|file| file.block_bytes());
         let block_bytes = largest.map_or(0, FileBlocks::block_bytes);
         let block_row_bytes = files.iter().map(FileBlocks::row_bytes).max().unwrap_or(0);
@@ -195,18 +198,25 @@ impl MemoryEstimate {
 }
 
 impl Ground {
-    fn recorded() -> Self {
+    /// `max_error_ratio` is the tolerance divided by the usual one, a quarter of the cell.
+    fn recorded(nodes: u64, max_error_ratio: f64) -> Self {
+        let triangles_per_node =
+            (rates::TRIANGLES_PER_NODE / max_error_ratio).min(rates::MOST_TRIANGLES_PER_NODE);
+        let nodes = nodes as f64;
+        let all_triangles = rates::ALL_PER_FINEST * triangles_per_node * nodes;
         Self {
-            triangles: rates::TRIANGLES_PER_TILE,
-            core_seconds: rates::SECONDS_PER_TILE,
+            triangles_per_node,
+            core_seconds: nodes * rates::SECONDS_PER_NODE
+                + all_triangles * rates::SECONDS_PER_TRIANGLE,
             rates: Rates::Recorded,
         }
     }
 
-    /// The average of some tiles, void ones included.
+    /// From the average of some tiles, void ones included.
     fn sampled(
         opened: &Opened,
         finest: &CoveredTiles,
+        nodes: u64,
         observer: &dyn Observer,
     ) -> Result<Self, BuildError> {
         let Opened { grid, levels, max_error_m, dem, .. } = opened;
@@ -226,10 +236,10 @@ impl Ground {
             seconds += begun.elapsed().as_secs_f64();
             triangles += tin.triangles().len();
         }
-        let count = tiles.len().max(1) as f64;
+        let share = finest.count() as f64 / tiles.len().max(1) as f64;
         Ok(Self {
-            triangles: triangles as f64 / count,
-            core_seconds: seconds / count * rates::STEPS_PER_MESH,
+            triangles_per_node: triangles as f64 * share / nodes.max(1) as f64,
+            core_seconds: seconds * share * rates::STEPS_PER_MESH,
             rates: Rates::Sampled { tiles: tiles.len() as u64 },
         })
     }
@@ -237,4 +247,4 @@ impl Ground {
 
 #[cfg(test)]
 #[path = "estimate_tests.rs"]
-pub(super) mod tests;
+pub(crate) mod tests;

@@ -1,15 +1,20 @@
 use std::path::PathBuf;
 
+use corniche_dem::{OpenOptions, PlanOptions};
+use corniche_roads::{ClassFilter, FrcTable};
+
 use super::*;
+use crate::{PlanSettings, RoadSettings, Silent, TerrainSettings};
 
 /// A file of one band with so many columns and rows, in blocks.
-pub(in crate::plan) fn file(size: [u64; 2], block: [u64; 2], file_bytes: u64) -> FileBlocks {
+pub(crate) fn file(size: [u64; 2], block: [u64; 2], file_bytes: u64) -> FileBlocks {
     FileBlocks { path: PathBuf::from("dem.tif"), size, block, sample_bytes: 4, file_bytes }
 }
 
-pub(in crate::plan) fn estimate(tiles: Vec<u64>, files: &[FileBlocks], threads: u64) -> Estimate {
+pub(crate) fn estimate(tiles: Vec<u64>, files: &[FileBlocks], threads: u64) -> Estimate {
     let memory = MemoryEstimate::new(files, tiles.iter().sum(), threads);
-    Estimate::put_together(1 << 20, tiles, memory, 0, &Ground::recorded())
+    let nodes = tiles.last().copied().unwrap_or(0) << 16;
+    Estimate::put_together(nodes, tiles, memory, 0, &Ground::recorded(nodes, 1.0))
 }
 
 #[test]
@@ -52,9 +57,70 @@ fn four_times_the_tiles_take_four_times_the_disk() {
 fn the_extract_takes_disk_too() {
     let memory = || MemoryEstimate::new(&[], 1, 2);
     let put = |extract_bytes| {
-        Estimate::put_together(1, vec![1], memory(), extract_bytes, &Ground::recorded())
+        Estimate::put_together(1, vec![1], memory(), extract_bytes, &Ground::recorded(1, 1.0))
     };
     let extract = 1_u64 << 30;
     assert!(put(extract).store_bytes > put(0).store_bytes + extract);
     assert!(put(extract).package_bytes > put(0).package_bytes + extract / 4);
+}
+
+/// The packages that the rates were taken from (docs/measured.md): nodes, triangles of all levels and bytes of ground.
+#[test]
+fn recorded_rates_fit_what_they_were_taken_from() {
+    for (name, nodes, ratio, triangles, bytes) in [
+        ("N47E009", 1_442_401, 1.0, 332_000.0, 605_000.0),
+        ("N47E009, 10 m", 1_442_401, 0.637, 559_000.0, 905_000.0),
+        ("N47E009, 5 m", 1_442_401, 0.319, 1_079_000.0, 1_535_000.0),
+        ("Liechtenstein", 2_883_601, 1.0, 849_000.0, 1_500_000.0),
+    ] {
+        let ground = Ground::recorded(nodes, ratio);
+        let all = ground.triangles_per_node * nodes as f64 * rates::ALL_PER_FINEST;
+        assert!((0.75..1.35).contains(&(all / triangles)), "{name}: {all}");
+        let memory = MemoryEstimate::new(&[], 39, 1);
+        let package = Estimate::put_together(nodes, vec![39], memory, 0, &ground).package_bytes;
+        assert!((0.75..1.35).contains(&(package as f64 / bytes)), "{name}: {package}");
+    }
+}
+
+/// Half of the tiles of the sample tell how many triangles the finest level has: 158 772 (`corniche info`).
+#[test]
+fn some_tiles_tell_how_the_ground_is() {
+    let table = FrcTable::new("one", vec![("motorway".to_owned(), 0)], Vec::new(), 0).unwrap();
+    let settings = PlanSettings {
+        dem: vec![corniche_testing::sample("pass/pass-dem.tif")],
+        osm: None,
+        terrain: TerrainSettings {
+            open: OpenOptions::default(),
+            plan: PlanOptions {
+                crs: None,
+                cell: None,
+                cell_every: None,
+                scale_latitude_deg: None,
+                fill_voids: 32,
+            },
+            height_range_m: None,
+            allow_fine_cell: false,
+            max_error_m: Some(2.5),
+        },
+        roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25 },
+        attribution: Vec::new(),
+        generator: "tests".to_owned(),
+    };
+    let opened = Opened::new(&settings).unwrap();
+    let rectangles = opened.dem.file_nodes(&opened.grid).unwrap();
+    let finest = CoveredTiles::finest(&opened.grid.frame, &rectangles);
+    assert_eq!(finest.count(), 25);
+    let ground = Ground::sampled(&opened, &finest, 1_000_000, &Silent).unwrap();
+    assert_eq!(ground.rates, Rates::Sampled { tiles: 12 });
+    let triangles = ground.triangles_per_node * 1e6;
+    assert!((triangles / 158_772.0 - 1.0).abs() < 0.2, "{triangles}");
+    assert!(ground.core_seconds > 0.0);
+
+    // All of it, as it is done: the sample is too small to be sampled.
+    let resources = Resources { threads: 2, memory_bytes: 1 << 30 };
+    let estimate = Estimate::of(&opened, resources, &Silent).unwrap();
+    assert_eq!((estimate.nodes, estimate.tiles.as_slice()), (1_000_000, &[1, 4, 9, 25][..]));
+    assert_eq!(estimate.rates, Rates::Recorded);
+    // It was 487 kB of ground.
+    assert!((0.8..1.2).contains(&(estimate.package_bytes as f64 / 488_000.0)), "{estimate:?}");
 }

@@ -2,42 +2,53 @@
 //! `docs/measured.md` says how they were measured.
 
 /// Program, libraries, the tables of PROJ and GDAL, buffers of the store: whatever does not depend on input or threads.
-pub(super) const BASE_BYTES: u64 = 80 << 20;
+pub(crate) const BASE_BYTES: u64 = 80 << 20;
 /// Heights of an area, its TIN while it grows, a tile while it is encoded.
-pub(super) const THREAD_BYTES: u64 = 28 << 20;
+pub(crate) const THREAD_BYTES: u64 = 28 << 20;
 /// What is remembered of each tile while the build runs.
-pub(super) const TILE_BYTES: u64 = 200;
+pub(crate) const TILE_BYTES: u64 = 200;
 
 /// Heights of a finest tile with one node of halo, four bytes each.
-pub(super) const HEIGHTS_BYTES: u64 = 259 * 259 * 4;
+pub(crate) const HEIGHTS_BYTES: u64 = 259 * 259 * 4;
 /// Heights of a coarse tile without the east and south border.
-pub(super) const RASTER_BYTES: u64 = 256 * 256 * 4;
+pub(crate) const RASTER_BYTES: u64 = 256 * 256 * 4;
 /// Key, length and checksum of an artifact, in data and journal.
-pub(super) const ARTIFACT_BYTES: u64 = 64;
+pub(crate) const ARTIFACT_BYTES: u64 = 64;
 /// Artifacts of a tile: heights or raster, TIN, record, payload, pieces of roads.
-pub(super) const TILE_ARTIFACTS: u64 = 5;
+pub(crate) const TILE_ARTIFACTS: u64 = 5;
 /// A tile's record.
-pub(super) const RECORD_BYTES: u64 = 1 << 10;
+pub(crate) const RECORD_BYTES: u64 = 1 << 10;
 /// A coarse tile's TIN: ten bytes a vertex, of which there are half as many as triangles, and twelve a triangle.
-pub(super) const TIN_BYTES_PER_TRIANGLE: f64 = 17.0;
+pub(crate) const TIN_BYTES_PER_TRIANGLE: f64 = 17.0;
 
-/// Triangles of a tile with ground everywhere, at the usual tolerance of a quarter of the cell.
-pub(super) const TRIANGLES_PER_TILE: f64 = 15_000.0;
-/// Encoded ground, with normals.
-pub(super) const PAYLOAD_BYTES_PER_TRIANGLE: f64 = 1.9;
+/// Triangles of the finest level for each node, at a tolerance of a quarter of the cell: rough ground. Smooth ground has
+/// fewer. Twice the tolerance halves them.
+pub(crate) const TRIANGLES_PER_NODE: f64 = 0.2;
+/// A TIN cannot have more.
+pub(crate) const MOST_TRIANGLES_PER_NODE: f64 = 2.0;
+/// Triangles of all levels, divided by those of the finest.
+pub(crate) const ALL_PER_FINEST: f64 = 1.4;
+
+/// Bytes of encoded ground for each triangle, with normals: the denser the triangles, the fewer. The curve goes through the
+/// measured points (0.16 triangles per node: 1.82), (0.28: 1.62), (0.54: 1.42); sparse ones take 1.9 to 2.0.
+pub(crate) fn payload_bytes_per_triangle(triangles_per_node: f64) -> f64 {
+    (1.25 * triangles_per_node.powf(-0.22)).min(2.0)
+}
 
 /// Pieces of roads of all levels, for each byte of the extract.
-pub(super) const PIECES_PER_EXTRACT_BYTE: f64 = 1.5;
+pub(crate) const PIECES_PER_EXTRACT_BYTE: f64 = 1.5;
 /// The same while they are sorted into the order of tiles.
-pub(super) const SORTED_PER_EXTRACT_BYTE: f64 = 1.5;
+pub(crate) const SORTED_PER_EXTRACT_BYTE: f64 = 1.5;
 /// Encoded roads of all levels, for each byte of the extract.
-pub(super) const ROADS_PER_EXTRACT_BYTE: f64 = 0.5;
+pub(crate) const ROADS_PER_EXTRACT_BYTE: f64 = 0.5;
 /// Time to read an extract and cut its roads, on one core.
-pub(super) const SECONDS_PER_EXTRACT_BYTE: f64 = 1.0e-6;
+pub(crate) const SECONDS_PER_EXTRACT_BYTE: f64 = 0.5e-6;
+/// Time for each node of the finest level, on one core: to read it and to compare TINs with it.
+pub(crate) const SECONDS_PER_NODE: f64 = 0.28e-6;
+/// Time for each triangle of any level, on one core.
+pub(crate) const SECONDS_PER_TRIANGLE: f64 = 3.5e-6;
 
-/// Time that all steps together take for a tile of any level, on one core, on the machine of `docs/measured.md`.
-pub(super) const SECONDS_PER_TILE: f64 = 0.25;
-/// Time of all steps, divided by the time to triangulate the tile once.
-pub(super) const STEPS_PER_MESH: f64 = 4.0;
+/// Time of all steps on all levels, divided by the time to triangulate the finest level.
+pub(crate) const STEPS_PER_MESH: f64 = 3.3;
 /// Share of the cores' time that the steps use.
-pub(super) const CORES_BUSY: f64 = 0.9;
+pub(crate) const CORES_BUSY: f64 = 0.9;

@@ -5,27 +5,27 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::Estimate;
+use super::{Estimate, MemoryEstimate};
 use crate::{
     BuildError,
     machine::{FileSystem, MIN_MEMORY_BYTES, machine_memory_bytes},
 };
 
 /// What a build may use.
-pub(super) struct Room {
+pub(crate) struct Room {
     /// `--memory`.
-    pub(super) memory_bytes: u64,
+    pub(crate) memory_bytes: u64,
     /// The machine's; `None` where it is not known.
-    pub(super) machine_bytes: Option<u64>,
+    pub(crate) machine_bytes: Option<u64>,
     /// Where intermediate results go.
-    pub(super) store: (PathBuf, FileSystem),
+    pub(crate) store: (PathBuf, FileSystem),
     /// Where the package goes.
-    pub(super) target: (PathBuf, FileSystem),
+    pub(crate) target: (PathBuf, FileSystem),
 }
 
 impl Room {
     /// Of this machine.
-    pub(super) fn of(memory_bytes: u64, store: &Path, target: &Path) -> Result<Self, BuildError> {
+    pub(crate) fn of(memory_bytes: u64, store: &Path, target: &Path) -> Result<Self, BuildError> {
         let place = |folder: &Path| -> Result<_, BuildError> {
             let failed = |source| BuildError::Target { folder: folder.to_path_buf(), source };
             let there = nearest_folder(folder).map_err(failed)?;
@@ -40,21 +40,23 @@ impl Room {
     }
 
     /// Fails where the need is greater than what there is.
-    pub(super) fn check(&self, estimate: &Estimate) -> Result<(), BuildError> {
+    pub(crate) fn check(&self, estimate: &Estimate) -> Result<(), BuildError> {
         self.check_memory(estimate)?;
         self.check_disk(estimate)
     }
 
     fn check_memory(&self, estimate: &Estimate) -> Result<(), BuildError> {
         let need = estimate.memory.least_bytes.max(MIN_MEMORY_BYTES);
-        let (have, whose) = match self.machine_bytes {
-            Some(machine) if machine < self.memory_bytes => (machine, "this machine has"),
-            _ => (self.memory_bytes, "--memory allows"),
-        };
-        if need <= have {
+        let machine_bytes = self.machine_bytes.filter(|machine| *machine < self.memory_bytes);
+        if need <= machine_bytes.unwrap_or(self.memory_bytes) {
             return Ok(());
         }
-        Err(BuildError::NoMemory { why: memory_text(estimate, need, have, whose) })
+        let have = match machine_bytes {
+            Some(machine) => format!("this machine has {}", size(machine)),
+            None => format!("--memory allows {}", size(self.memory_bytes)),
+        };
+        let more = machine_bytes.is_none().then(|| format!("give --memory {}", size(need)));
+        Err(BuildError::NoMemory { why: memory_text(&estimate.memory, need, &have, more) })
     }
 
     fn check_disk(&self, estimate: &Estimate) -> Result<(), BuildError> {
@@ -85,32 +87,35 @@ impl Room {
 }
 
 /// The need of memory, what it is made of, and what to do.
-fn memory_text(estimate: &Estimate, need: u64, have: u64, whose: &str) -> String {
-    let memory = &estimate.memory;
-    let (fixed, threads) = (memory.base_bytes + memory.tiles_bytes, memory.threads);
-    let mut why = format!(
-        "the build needs at least {} of memory, and {whose} {}: {} for the program and its lists, {threads} × {} for threads",
-        size(need),
-        size(have),
-        size(fixed),
-        size(memory.thread_bytes),
-    );
+fn memory_text(memory: &MemoryEstimate, need: u64, have: &str, more: Option<String>) -> String {
+    let threads = memory.threads;
     // Blocks are worth a word when they are more than a thread's other work.
-    if memory.block_bytes > memory.thread_bytes {
-        why += &format!(
-            ", {threads} × {} for a block of {:?}, which can only be decoded as a whole",
-            size(memory.block_bytes),
-            memory.block_file,
-        );
-    }
-    why += &format!("; give --memory {}", size(need));
+    let has_large_blocks = memory.block_bytes > memory.thread_bytes;
+    let mut parts = vec![
+        format!("{} for the program and its lists", size(memory.base_bytes + memory.tiles_bytes)),
+        format!("{threads} × {} for the work of threads", size(memory.thread_bytes)),
+    ];
+    let mut ways: Vec<String> = more.into_iter().collect();
     if threads > 1 {
-        why += ", or fewer --threads";
+        ways.push("take fewer --threads".to_owned());
     }
-    if memory.block_bytes > memory.thread_bytes {
-        why += ", or store the file in tiles (gdal_translate -co TILED=YES -co COMPRESS=DEFLATE)";
+    if has_large_blocks {
+        let block = size(memory.block_bytes);
+        let file = &memory.block_file;
+        parts.push(format!(
+            "{threads} × {block} for a block of {file:?}, which can only be decoded as a whole"
+        ));
+        let store_tiled =
+            "store the file in tiles (gdal_translate -co TILED=YES -co COMPRESS=DEFLATE)";
+        ways.push(store_tiled.to_owned());
     }
-    why + ", or begin anyway with --force"
+    ways.push("begin anyway with --force".to_owned());
+    format!(
+        "the build needs at least {} of memory, and {have}: {}; {}",
+        size(need),
+        parts.join(", "),
+        ways.join(", or ")
+    )
 }
 
 /// The folder itself, or the nearest one above it that exists.

@@ -39,6 +39,7 @@ fn the_machine_itself_may_have_too_little() {
     let small = Room { machine_bytes: Some(300 * M), ..room(64 * G, [G, G], [1, 2]) };
     let said = refusal(&small, &estimate);
     assert!(said.contains("this machine has 300M") && !said.contains("fewer"), "{said}");
+    assert!(!said.contains("give --memory"), "more than the machine has: {said}");
     let unknown = Room { machine_bytes: None, ..room(64 * G, [G, G], [1, 2]) };
     assert!(unknown.check(&estimate).is_ok());
 }

@@ -1,6 +1,7 @@
 //! Roads of the extract, split into pieces by tile and laid on tiles: for the build, and once more for `verify`.
 
 pub(crate) mod counts;
+mod defects;
 pub(crate) mod lay;
 pub(crate) mod lengths;
 pub(crate) mod losses;

@@ -3,13 +3,12 @@
 //! ```text
 //! extract ─► roads ─► pieces by level and tile ─► sorted by tile and ordinal ─► one artifact for each tile
 //!                └──► true lengths ─► one artifact for each block of roads
+//!         defects ─► one artifact for each block of defects
 //! ```
 //!
 //! Nothing that grows with the number of roads stays in memory.
 
 use std::{
-    cell::RefCell,
-    collections::BTreeMap,
     path::Path,
     sync::{Mutex, PoisonError},
 };
@@ -21,7 +20,9 @@ use corniche_store::{Artifacts, Scratch, SortRecord, Sorter};
 use corniche_tileset::pmtiles_order;
 use rayon::prelude::*;
 
+pub(crate) use super::defects::replay_defects;
 use super::{
+    defects::DefectsWriter,
     lengths::TrueLengths,
     pieces::{RoadPiece, TilePiecesWriter},
     split::{SplitRoad, Splitting},
@@ -51,8 +52,8 @@ pub(crate) struct RoadInput<'a> {
     pub(crate) memory_bytes: u64,
 }
 
-/// Keeps the pieces of all tiles, the lengths of all roads, and last their totals. If the totals are in the store, all is, and
-/// nothing is read.
+/// Keeps the pieces of all tiles, the lengths of all roads, the defects of the extract, and last the totals. If the totals are
+/// in the store, all is, and nothing is read. The observer is told of the same defects in the same order either way.
 pub(crate) fn partition(
     input: &RoadInput<'_>,
     store: &dyn Artifacts,
@@ -60,11 +61,13 @@ pub(crate) fn partition(
     observer: &dyn Observer,
 ) -> Result<RoadTotals, BuildError> {
     if let Some(totals) = artifacts::get(store, Kind::RoadTotals.item(0))? {
+        replay_defects(store, observer)?;
         return Ok(totals);
     }
     observer.begin(Stage::Roads, None);
     let mut gathered = Gathered::new(input, store, scratch);
-    let (extract, defects) = read(input, &mut gathered, observer)?;
+    let mut defects = DefectsWriter::new(store, observer);
+    let extract = read(input, scratch, &mut gathered, &mut defects, observer)?;
     gathered.split_batch();
     if let Some(error) = gathered.failed {
         return Err(error);
@@ -74,18 +77,21 @@ pub(crate) fn partition(
     }
     gathered.lengths.finish()?;
     put_pieces(gathered.pieces, store, observer)?;
+    let defects = defects.finish()?;
     let totals = RoadTotals { defects, extract: ExtractCounts::from(&extract), ..gathered.totals };
     artifacts::put(store, Kind::RoadTotals.item(0), &totals)?;
     observer.end(Stage::Roads);
     Ok(totals)
 }
 
-/// Hands all roads of the extract to `gathered`; returns what the extract held, and its defects by name.
+/// Hands all roads of the extract to `gathered` and its defects to `defects`; returns what it held.
 fn read(
     input: &RoadInput<'_>,
+    scratch: &dyn Scratch,
     gathered: &mut Gathered<'_>,
+    defects: &mut DefectsWriter<'_>,
     observer: &dyn Observer,
-) -> Result<(ExtractSummary, BTreeMap<String, u64>), BuildError> {
+) -> Result<ExtractSummary, BuildError> {
     let unprojected = Mutex::new(None);
     let place = |positions_deg: &[[f64; 2]]| {
         place(positions_deg, input.levels.frame(), input.projection).unwrap_or_else(|error| {
@@ -94,23 +100,20 @@ fn read(
             vec![None; positions_deg.len()]
         })
     };
-    let defects = RefCell::new(BTreeMap::new());
     let summary = corniche_osm::read_roads(
         &corniche_osm::ReadRequest {
             path: input.osm,
             table: &input.settings.table,
             place: &place,
             pool: input.pool,
+            memory_bytes: input.memory_bytes,
+            scratch,
+            on_progress: Some(&|done, total| observer.reached(Stage::Roads, done, total)),
         },
         &mut |road| {
             gathered.add(road);
-            observer.advance(Stage::Roads, 1);
         },
-        &mut |defect| {
-            let defect = Defect::from(defect);
-            *defects.borrow_mut().entry(defect.name()).or_default() += 1;
-            observer.defect(&defect);
-        },
+        &mut |defect| defects.push(Defect::from(defect)),
         &|| observer.is_cancelled(),
     );
     if observer.is_cancelled() {
@@ -120,7 +123,7 @@ fn read(
     if let Some(error) = unprojected.into_inner().unwrap_or_else(PoisonError::into_inner) {
         return Err(BuildError::Project(error));
     }
-    Ok((summary, defects.into_inner()))
+    Ok(summary)
 }
 
 fn place(
@@ -163,7 +166,8 @@ impl<'a> Gathered<'a> {
                 ..RoadTotals::default()
             },
             lengths: LengthsWriter::new(store),
-            pieces: Sorter::new(scratch, input.memory_bytes),
+            // The reader keeps a third of its memory while it hands out roads.
+            pieces: Sorter::new(scratch, input.memory_bytes / 3 * 2),
             failed: None,
         }
     }

@@ -1,15 +1,58 @@
-use std::fs;
+use std::{
+    fs,
+    path::PathBuf,
+    sync::atomic::{AtomicU64, Ordering},
+};
 
 use corniche_geom::{Bounds, CoordinateTable, NodeIndex, TileId};
 use corniche_roads::{ClassFilter, FrcTable};
-use corniche_store::{Key, MemoryScratch, MemoryStore};
+use corniche_store::{Key, MemoryScratch, MemoryStore, StoreError};
 use corniche_testing::{FlatProjection, Random, pbf};
 
 use super::*;
-use crate::{
-    Silent,
-    roads::{pieces::TilePieces, totals::lengths_of_block},
-};
+use crate::roads::{pieces::TilePieces, totals::lengths_of_block};
+
+/// Keeps the defects that it is told of.
+#[derive(Default)]
+struct Listener(Mutex<Vec<Defect>>);
+
+impl Observer for Listener {
+    fn begin(&self, _: Stage, _: Option<u64>) {}
+    fn advance(&self, _: Stage, _: u64) {}
+    fn end(&self, _: Stage) {}
+
+    fn defect(&self, defect: &Defect) {
+        self.0.lock().unwrap().push(defect.clone());
+    }
+}
+
+/// A store that takes so many artifacts and no more.
+struct FullStore<'a> {
+    store: &'a MemoryStore,
+    room: AtomicU64,
+}
+
+impl Artifacts for FullStore<'_> {
+    fn put(&self, key: Key, bytes: &[u8]) -> Result<(), StoreError> {
+        let has_room = |room: u64| room.checked_sub(1);
+        match self.room.fetch_update(Ordering::Relaxed, Ordering::Relaxed, has_room) {
+            Ok(_) => self.store.put(key, bytes),
+            Err(_) => Err(StoreError::ReadOnly { path: "full".into() }),
+        }
+    }
+
+    fn get(&self, key: Key) -> Result<Option<Vec<u8>>, StoreError> {
+        self.store.get(key)
+    }
+
+    fn has(&self, key: Key) -> bool {
+        self.store.has(key)
+    }
+
+    fn items(&self, kind: u8) -> Vec<u64> {
+        self.store.items(kind)
+    }
+}
 
 /// Four by four tiles around 0° of a flat world.
 struct World {
@@ -40,6 +83,17 @@ impl World {
         threads: usize,
         memory_bytes: u64,
     ) -> Result<RoadTotals, BuildError> {
+        self.partition_told(osm, store, threads, memory_bytes).1
+    }
+
+    /// The same, and the defects that the observer is told of.
+    fn partition_told(
+        &self,
+        osm: &Path,
+        store: &dyn Artifacts,
+        threads: usize,
+        memory_bytes: u64,
+    ) -> (Vec<Defect>, Result<RoadTotals, BuildError>) {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let frame = *self.levels.frame();
         let input = RoadInput {
@@ -52,12 +106,19 @@ impl World {
             pool: &pool,
             memory_bytes,
         };
-        partition(&input, store, &MemoryScratch::default(), &Silent)
+        let listener = Listener::default();
+        let totals = partition(&input, store, &MemoryScratch::default(), &listener);
+        (listener.0.into_inner().unwrap(), totals)
     }
 }
 
 /// Winding roads over the world, and ways that are no roads.
-fn extract(folder: &Path, roads: usize) -> std::path::PathBuf {
+fn extract(folder: &Path, roads: usize) -> PathBuf {
+    extract_with_moats(folder, roads, 1)
+}
+
+/// The same with `moats` ways of an unknown kind.
+fn extract_with_moats(folder: &Path, roads: usize, moats: usize) -> PathBuf {
     let mut random = Random::new(5);
     let mut next = || random.share() - 0.5;
     let line = |value, points: usize, next: &mut dyn FnMut() -> f64| {
@@ -70,14 +131,14 @@ fn extract(folder: &Path, roads: usize) -> std::path::PathBuf {
     };
     let mut lines: Vec<_> = (0..roads).map(|k| line("primary", 2 + k % 9, &mut next)).collect();
     lines.push(line("no", 2, &mut next));
-    lines.push(line("moat", 2, &mut next));
+    lines.extend((0..moats).map(|_| line("moat", 2, &mut next)));
     let path = folder.join("roads.osm.pbf");
     fs::write(&path, pbf::extract(&["highway", "primary", "no", "moat"], &lines)).unwrap();
     path
 }
 
 fn everything(store: &MemoryStore) -> Vec<(Key, Vec<u8>)> {
-    let kinds = [Kind::RoadPieces, Kind::RoadLengths, Kind::RoadTotals];
+    let kinds = [Kind::RoadPieces, Kind::RoadLengths, Kind::Defects, Kind::RoadTotals];
     let keys = kinds
         .into_iter()
         .flat_map(|kind| store.items(kind as u8).into_iter().map(move |item| kind.item(item)));
@@ -138,4 +199,38 @@ fn an_extract_without_roads_is_an_error_and_leaves_no_totals() {
     let error = World::new().partition(&osm, &store, 1, 0).unwrap_err();
     assert!(matches!(error, BuildError::NoRoads { .. }), "{error}");
     assert!(everything(&store).is_empty());
+}
+
+/// Defects of a run that reads the extract, of one that need not, and of one that goes on from a step that broke off anywhere.
+#[test]
+fn every_run_tells_of_the_same_defects_in_the_same_order() {
+    let folder = tempfile::tempdir().unwrap();
+    // Enough unknown ways for three blocks of defects; some of the roads cross themselves.
+    let osm = extract_with_moats(folder.path(), 60, 9000);
+    let (world, unbroken) = (World::new(), MemoryStore::default());
+    let (wanted, totals) = world.partition_told(&osm, &unbroken, 1, 1 << 20);
+    let totals = totals.unwrap();
+    assert_eq!(totals.defects.values().sum::<u64>(), wanted.len() as u64);
+    assert_eq!(totals.defects["unknown highway value"], 9000);
+    assert!(totals.defects.len() > 1, "{:?}", totals.defects);
+    assert_eq!(unbroken.items(Kind::Defects as u8), [0, 1, 2]);
+    let mut room = 0;
+    loop {
+        let store = MemoryStore::default();
+        let full = FullStore { store: &store, room: room.into() };
+        let broken = world.partition_told(&osm, &full, 2, 1 << 20).1;
+        assert_eq!(broken.is_err(), room < everything(&unbroken).len() as u64, "{room}");
+        let (told, again) = world.partition_told(&osm, &store, 2, 1 << 20);
+        assert!(told == wanted, "after {room} artifacts");
+        assert_eq!(again.unwrap(), totals);
+        assert!(everything(&store) == everything(&unbroken), "after {room} artifacts");
+        if broken.is_ok() {
+            break;
+        }
+        room += 1;
+    }
+    fs::remove_file(&osm).unwrap();
+    let (told, again) = world.partition_told(&osm, &unbroken, 1, 0);
+    assert!(told == wanted, "nothing is read");
+    assert_eq!(again.unwrap(), totals);
 }

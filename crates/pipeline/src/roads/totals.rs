@@ -25,7 +25,8 @@ pub(crate) struct RoadLength {
     pub(crate) outside_um: u64,
 }
 
-/// What is known of all roads. It is kept last: when it is in the store, so are all pieces and lengths.
+/// What is known of all roads. It is kept last: when it is in the store, so are all pieces, lengths and
+/// defects.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct RoadTotals {
     /// How many roads there are: ordinals run from 0 to one less.

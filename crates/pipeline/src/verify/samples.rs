@@ -54,10 +54,13 @@ pub(crate) fn measure(
                 // The point of the lattice is taken, as in the build: at the boundary of the ground half a millimetre decides
                 // whether a sample lies on it.
                 let frame = &manifest.frame;
-                let position_m = frame.snap(position_m).map(|point| frame.position_m(point));
+                // A sample without a place in the working CRS is not used.
+                let Some(position_m) = frame.snap(position_m).map(|point| frame.position_m(point))
+                else {
+                    continue;
+                };
                 for (level, sums) in found.iter_mut().enumerate() {
-                    let ground_m = position_m.and_then(|position_m| {
-                        let id = tile_at(frame, level as u8, position_m)?;
+                    let ground_m = tile_at(frame, level as u8, position_m).and_then(|id| {
                         if grounds.len() >= GROUNDS && !grounds.contains_key(&id) {
                             grounds.clear();
                         }

@@ -183,7 +183,7 @@ pub(crate) fn settings(
             max_error_m: Some(options.max_error_m),
         },
         roads: RoadSettings { table: table(), filter: ClassFilter::usual(), simplify_cells: 0.25 },
-        resources: Resources { threads: options.threads, memory_bytes: 256 << 20 },
+        resources: Resources { threads: options.threads, memory_bytes: 512 << 20 },
         attribution: Vec::new(),
         generator: "tests".to_owned(),
     }

@@ -105,7 +105,13 @@ pub(crate) fn check_hash(
 pub(crate) fn read_plan(files: &Arc<Files>, folder: &Path) -> Result<StoredPlan, StoreError> {
     let (hash, length, crc) = read_header(files, folder)?;
     let path = folder.join(layout::PLAN);
-    let bytes = read_whole(files, &path)?;
+    let bytes = match read_whole(files, &path) {
+        Err(error) if is_kind(&error, std::io::ErrorKind::NotFound) => {
+            let what = "it is missing; remove the store and start again".to_owned();
+            return Err(StoreError::Damaged { path, what });
+        }
+        bytes => bytes?,
+    };
     if bytes.len() as u64 != length || crc32fast::hash(&bytes) != crc {
         let what = "it is not the plan that the store was made with".to_owned();
         return Err(StoreError::Damaged { path, what });

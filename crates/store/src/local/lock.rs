@@ -14,16 +14,19 @@ use crate::{
     local::layout,
 };
 
+/// How often one tries again where another process came in between. That happens once at most, unless the file system gives wrong answers.
+const TRIES: u32 = 100;
+
 /// Takes the lock of the store in `folder`. `Hold::Alone` for a build, `Hold::Shared` for those that each make a part of their own.
 ///
 /// # Errors
-/// [`StoreError::Locked`] if another process has it.
+/// [`StoreError::Locked`] if another process has it; [`StoreError::Gone`] if its file is removed again and again.
 pub(crate) fn lock_store(
     files: &Arc<Files>,
     folder: &Path,
     hold: Hold,
 ) -> Result<OpenFile, StoreError> {
-    loop {
+    for _ in 0..TRIES {
         let file = files.open(&folder.join(layout::LOCK), OpenMode::ChangeOrNew)?;
         if !file.try_lock(hold)? {
             let owner = read_owner(&file);
@@ -37,6 +40,7 @@ pub(crate) fn lock_store(
             return Ok(file);
         }
     }
+    Err(StoreError::Gone { path: folder.to_owned() })
 }
 
 /// Creates a file that no other process takes for a leftover: its lock is held. `name` gives a path for each suffix.
@@ -44,7 +48,7 @@ pub(crate) fn create_owned(
     files: &Arc<Files>,
     name: impl Fn(&str) -> PathBuf,
 ) -> Result<OpenFile, StoreError> {
-    loop {
+    for _ in 0..TRIES {
         let file = match files.open(&name(&suffix()), OpenMode::New) {
             Err(error) if is_kind(&error, std::io::ErrorKind::AlreadyExists) => continue,
             file => file?,
@@ -54,6 +58,7 @@ pub(crate) fn create_owned(
             return Ok(file);
         }
     }
+    Err(StoreError::Gone { path: name("") })
 }
 
 /// Opens a file if its owner is dead, and becomes its owner. `None` if its owner lives, or the file is gone.

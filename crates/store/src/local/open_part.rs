@@ -7,8 +7,8 @@ use std::{
     io, mem,
     path::{Path, PathBuf},
     sync::{
-        Arc, Mutex, MutexGuard, PoisonError, RwLock, TryLockError,
-        atomic::{AtomicBool, AtomicU64, Ordering},
+        Arc, Mutex, MutexGuard, OnceLock, PoisonError, RwLock, TryLockError,
+        atomic::{AtomicU64, Ordering},
     },
     time::{Duration, Instant},
 };
@@ -44,7 +44,8 @@ pub(crate) struct OpenPart {
     journal_bytes: AtomicU64,
     synced_at: Mutex<Instant>,
     /// A sync failed: what the system keeps of the unsynced writes is unknown, so nothing may be built on them.
-    failed: AtomicBool,
+    /// The text says why.
+    failed: OnceLock<String>,
 }
 
 impl OpenPart {
@@ -151,7 +152,7 @@ impl OpenPart {
             journaled: Mutex::new(journaled),
             journal_bytes: AtomicU64::new(journal_bytes(journaled)),
             synced_at: Mutex::new(Instant::now()),
-            failed: AtomicBool::new(false),
+            failed: OnceLock::new(),
         }
     }
 
@@ -217,7 +218,8 @@ impl OpenPart {
         // All of these are written: an entry gets here after its data.
         let batch = mem::take(&mut *locked(&self.pending));
         if !batch.is_empty() {
-            self.journal(&batch, *journaled).inspect_err(|_| self.give_up())?;
+            self.journal(&batch, *journaled)
+                .inspect_err(|error| self.give_up(error.to_string()))?;
             *journaled += batch.len() as u64;
             self.journal_bytes.store(journal_bytes(*journaled), Ordering::Relaxed);
         }
@@ -242,23 +244,22 @@ impl OpenPart {
         self.journal.sync()
     }
 
-    /// From here on nothing is kept any more.
-    pub(crate) fn give_up(&self) {
-        self.failed.store(true, Ordering::SeqCst);
+    /// From here on nothing is kept any more, because of `cause`.
+    pub(crate) fn give_up(&self, cause: String) {
+        // The first cause is the one to be told.
+        let _ = self.failed.set(cause);
     }
 
     /// Removes the part.
     pub(crate) fn abandon(self) -> Result<(), StoreError> {
-        self.give_up();
+        self.give_up("the part was given up".to_owned());
         remove(self.data.files(), &self.journal)
     }
 
     fn check_not_failed(&self) -> Result<(), StoreError> {
-        if self.failed.load(Ordering::SeqCst) {
-            Err(StoreError::Failed { path: self.data.path().to_owned() })
-        } else {
-            Ok(())
-        }
+        self.failed.get().map_or(Ok(()), |cause| {
+            Err(StoreError::Failed { path: self.data.path().to_owned(), cause: cause.clone() })
+        })
     }
 
     /// Ends the part, of which `index` says what it holds. Returns where it is now; `None` if it holds nothing, and is removed.

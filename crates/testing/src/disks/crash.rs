@@ -1,14 +1,12 @@
-use super::{
-    Random,
-    state::{Content, ContentChange, Node, State},
-};
+use super::state::{Content, ContentChange, Node, State};
+use crate::Random;
 
 /// Devices write at least so many bytes as a whole.
 const SECTOR_BYTES: usize = 512;
 
 /// What a loss of power leaves: all that was synced; each change of a name or of content since with even odds, whatever became of those before;
 /// and of the writes among them one in four torn.
-pub(super) fn crashed(state: &State, random: &mut Random) -> State {
+pub(crate) fn crashed(state: &State, random: &mut Random) -> State {
     let mut names = state.durable_names.clone();
     for change in &state.changes {
         if random.below(2) == 0 {

@@ -6,39 +6,43 @@ use std::{
 
 use corniche_store::Hold;
 
-use super::Failure;
+use super::failure::Failure;
 
 /// Tells open files apart.
-pub(super) type Owner = u64;
+pub(crate) type Owner = u64;
 
 /// What a name stands for: a folder, or a file by its number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Node {
+pub(crate) enum Node {
     Folder,
     File(usize),
 }
 
 #[derive(Debug, Clone, Default)]
-pub(super) struct State {
+pub(crate) struct State {
     /// As the code sees them.
-    pub(super) names: BTreeMap<PathBuf, Node>,
+    pub(crate) names: BTreeMap<PathBuf, Node>,
     /// As they surely are after a crash.
-    pub(super) durable_names: BTreeMap<PathBuf, Node>,
+    pub(crate) durable_names: BTreeMap<PathBuf, Node>,
     /// What leads from the latter to the former.
-    pub(super) changes: Vec<NameChange>,
+    pub(crate) changes: Vec<NameChange>,
     /// By number. A file that has no name any more stays.
-    pub(super) files: Vec<Content>,
-    pub(super) calls: u64,
+    pub(crate) files: Vec<Content>,
+    pub(crate) calls: u64,
     /// The number of the call that fails, and how.
-    pub(super) planned: Option<(u64, Failure)>,
-    pub(super) is_full: bool,
-    pub(super) is_dead: bool,
-    pub(super) owners: Owner,
+    pub(crate) planned: Option<(u64, Failure)>,
+    pub(crate) is_full: bool,
+    /// Syncs of files wait.
+    pub(crate) holds_syncs: bool,
+    /// How many do.
+    pub(crate) held_syncs: u32,
+    pub(crate) is_dead: bool,
+    pub(crate) owners: Owner,
 }
 
 /// A change of names. It happens as a whole or not at all.
 #[derive(Debug, Clone)]
-pub(super) enum NameChange {
+pub(crate) enum NameChange {
     Add {
         path: PathBuf,
         node: Node,
@@ -59,7 +63,7 @@ pub(super) enum NameChange {
 }
 
 impl NameChange {
-    pub(super) fn names(&self, name: &Path) -> bool {
+    pub(crate) fn names(&self, name: &Path) -> bool {
         match self {
             Self::Add { path, .. } | Self::Remove { path } => path == name,
             Self::Rename { from, to } | Self::HalfSynced { from, to, .. } => {
@@ -69,7 +73,7 @@ impl NameChange {
     }
 
     /// Does it, if it can be done: an earlier change may be missing.
-    pub(super) fn apply(&self, names: &mut BTreeMap<PathBuf, Node>) {
+    pub(crate) fn apply(&self, names: &mut BTreeMap<PathBuf, Node>) {
         match self {
             Self::Add { path, node } => {
                 names.insert(path.clone(), *node);
@@ -105,14 +109,14 @@ impl NameChange {
 }
 
 impl State {
-    pub(super) fn with_folder(folder: &Path) -> Self {
+    pub(crate) fn with_folder(folder: &Path) -> Self {
         let names: BTreeMap<_, _> =
             folder.ancestors().map(|path| (path.to_owned(), Node::Folder)).collect();
         Self { durable_names: names.clone(), names, ..Self::default() }
     }
 
     /// Counts a call. `true` if it is to do half of its work.
-    pub(super) fn count(&mut self, needs_room: bool) -> io::Result<bool> {
+    pub(crate) fn count(&mut self, needs_room: bool) -> io::Result<bool> {
         let number = self.calls;
         self.calls += 1;
         let mut is_short = false;
@@ -135,35 +139,35 @@ impl State {
         Ok(is_short)
     }
 
-    pub(super) fn next_owner(&mut self) -> Owner {
+    pub(crate) fn next_owner(&mut self) -> Owner {
         self.owners += 1;
         self.owners
     }
 
-    pub(super) fn file_at(&self, path: &Path) -> Option<usize> {
+    pub(crate) fn file_at(&self, path: &Path) -> Option<usize> {
         match self.names.get(path) {
             Some(Node::File(number)) => Some(*number),
             _ => None,
         }
     }
 
-    pub(super) fn add_file(&mut self, path: &Path) -> usize {
+    pub(crate) fn add_file(&mut self, path: &Path) -> usize {
         let number = self.files.len();
         self.files.push(Content::default());
         self.change(NameChange::Add { path: path.to_owned(), node: Node::File(number) });
         number
     }
 
-    pub(super) fn change(&mut self, change: NameChange) {
+    pub(crate) fn change(&mut self, change: NameChange) {
         change.apply(&mut self.names);
         self.changes.push(change);
     }
 
-    pub(super) fn check_parent(&self, path: &Path) -> io::Result<()> {
+    pub(crate) fn check_parent(&self, path: &Path) -> io::Result<()> {
         self.check_folder(path.parent().unwrap_or(Path::new("")))
     }
 
-    pub(super) fn check_folder(&self, path: &Path) -> io::Result<()> {
+    pub(crate) fn check_folder(&self, path: &Path) -> io::Result<()> {
         match self.names.get(path) {
             Some(Node::Folder) => Ok(()),
             Some(Node::File(_)) => Err(io::ErrorKind::NotADirectory.into()),
@@ -171,7 +175,7 @@ impl State {
         }
     }
 
-    pub(super) fn sync_folder(&mut self, folder: &Path) {
+    pub(crate) fn sync_folder(&mut self, folder: &Path) {
         let mut rest = Vec::new();
         for change in self.changes.drain(..) {
             match change.after_sync(folder) {
@@ -182,7 +186,7 @@ impl State {
         self.changes = rest;
     }
 
-    pub(super) fn after_kill(&self) -> Self {
+    pub(crate) fn after_kill(&self) -> Self {
         let mut files = self.files.clone();
         for file in &mut files {
             file.locks.clear();
@@ -199,24 +203,24 @@ impl State {
 
 /// What a file holds.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Content {
+pub(crate) struct Content {
     /// As the code sees it.
-    pub(super) bytes: Vec<u8>,
+    pub(crate) bytes: Vec<u8>,
     /// As it surely is after a crash, if no change was made after the sync.
-    pub(super) durable: Vec<u8>,
+    pub(crate) durable: Vec<u8>,
     /// What leads from the latter to the former.
-    pub(super) changes: Vec<ContentChange>,
+    pub(crate) changes: Vec<ContentChange>,
     locks: Vec<(Owner, Hold)>,
 }
 
 #[derive(Debug, Clone)]
-pub(super) enum ContentChange {
+pub(crate) enum ContentChange {
     Write { offset: usize, bytes: Vec<u8> },
     Length(usize),
 }
 
 impl ContentChange {
-    pub(super) fn apply(&self, content: &mut Vec<u8>) {
+    pub(crate) fn apply(&self, content: &mut Vec<u8>) {
         match self {
             Self::Write { offset, bytes } => {
                 let end = offset + bytes.len();
@@ -231,21 +235,21 @@ impl ContentChange {
 }
 
 impl Content {
-    pub(super) fn of(bytes: Vec<u8>) -> Self {
+    pub(crate) fn of(bytes: Vec<u8>) -> Self {
         Self { durable: bytes.clone(), bytes, ..Self::default() }
     }
 
-    pub(super) fn set(&mut self, bytes: &[u8]) {
+    pub(crate) fn set(&mut self, bytes: &[u8]) {
         self.bytes = bytes.to_vec();
         self.durable.clone_from(&self.bytes);
         self.changes.clear();
     }
 
-    pub(super) fn write(&mut self, offset: usize, bytes: &[u8]) {
+    pub(crate) fn write(&mut self, offset: usize, bytes: &[u8]) {
         self.change(ContentChange::Write { offset, bytes: bytes.to_vec() });
     }
 
-    pub(super) fn set_length(&mut self, length: usize) {
+    pub(crate) fn set_length(&mut self, length: usize) {
         self.change(ContentChange::Length(length));
     }
 
@@ -254,13 +258,13 @@ impl Content {
         self.changes.push(change);
     }
 
-    pub(super) fn sync(&mut self) {
+    pub(crate) fn sync(&mut self) {
         for change in self.changes.drain(..) {
             change.apply(&mut self.durable);
         }
     }
 
-    pub(super) fn try_lock(&mut self, owner: Owner, hold: Hold) -> bool {
+    pub(crate) fn try_lock(&mut self, owner: Owner, hold: Hold) -> bool {
         let is_free = (self.locks.iter().filter(|(other, _)| *other != owner))
             .all(|(_, other)| hold == Hold::Shared && *other == Hold::Shared);
         if is_free {
@@ -270,7 +274,7 @@ impl Content {
         is_free
     }
 
-    pub(super) fn unlock(&mut self, owner: Owner) {
+    pub(crate) fn unlock(&mut self, owner: Owner) {
         self.locks.retain(|(other, _)| *other != owner);
     }
 }

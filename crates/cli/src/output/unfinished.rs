@@ -1,0 +1,84 @@
+//! The file that is written beside its target until it is complete.
+//!
+//! Its name follows from the target's, so that one which a killed program left is found and removed. A lock, which the kernel gives back, tells
+//! it from one that is being written.
+
+use std::{
+    fs::{self, File, TryLockError},
+    io,
+    path::{Path, PathBuf},
+};
+
+use tempfile::{NamedTempFile, TempPath};
+
+/// How often it is tried again when another program removes what was just made, because it took it for a leftover.
+const TRIES: usize = 5;
+
+/// Makes the file for `target`.
+///
+/// # Errors
+/// Of kind `ResourceBusy` if another program writes it; else where the folder cannot be written.
+pub(super) fn create(target: &Path) -> io::Result<NamedTempFile> {
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    let path = target.with_file_name(format!(".{name}.unfinished"));
+    for _ in 0..TRIES {
+        match File::options().write(true).create_new(true).open(&path) {
+            Ok(file) => {
+                lock(&file)?;
+                if is_at(&file, &path)? {
+                    return Ok(NamedTempFile::from_parts(file, TempPath::try_from_path(path)?));
+                }
+            }
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => remove_leftover(&path)?,
+            Err(error) => return Err(error),
+        }
+    }
+    Err(busy())
+}
+
+fn busy() -> io::Error {
+    io::Error::new(io::ErrorKind::ResourceBusy, "another program is writing it")
+}
+
+fn lock(file: &File) -> io::Result<()> {
+    match file.try_lock() {
+        Ok(()) => Ok(()),
+        Err(TryLockError::WouldBlock) => Err(busy()),
+        // Some network file systems have no locks. There the last one to finish wins.
+        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
+        Err(TryLockError::Error(error)) => Err(error),
+    }
+}
+
+/// Removes a file that nobody writes any more.
+fn remove_leftover(path: &PathBuf) -> io::Result<()> {
+    if !fs::symlink_metadata(path)?.is_file() {
+        let what = format!("{} is in the way; move it away", path.display());
+        return Err(io::Error::new(io::ErrorKind::AlreadyExists, what));
+    }
+    let file = File::options().write(true).open(path)?;
+    lock(&file)?;
+    if is_at(&file, path)? { fs::remove_file(path) } else { Ok(()) }
+}
+
+/// Whether an open file still has this name.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt as _;
+    let named = match fs::symlink_metadata(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
+        named => named?,
+    };
+    let file = file.metadata()?;
+    Ok((file.dev(), file.ino()) == (named.dev(), named.ino()))
+}
+
+/// Elsewhere an open file keeps its name.
+#[cfg(not(unix))]
+fn is_at(_: &File, _: &Path) -> io::Result<bool> {
+    Ok(true)
+}
+
+#[cfg(test)]
+#[path = "unfinished_tests.rs"]
+mod tests;

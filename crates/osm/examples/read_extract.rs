@@ -1,0 +1,107 @@
+//! Reads the roads of an extract within so much memory, and says what that took.
+//!
+//! ```sh
+//! cargo run -p corniche-osm --example read_extract -- FILE.osm.pbf MEMORY_MIB [THREADS]
+//! ```
+//!
+//! Scratch space is a file without a name in the system's folder for such files (`TMPDIR`). The digest is over all roads,
+//! defects and counts: the same extract has the same one with any memory and any number of threads.
+#![expect(clippy::print_stdout, reason = "an example prints its result")]
+
+use std::{
+    env,
+    error::Error,
+    fs::{self, File},
+    hash::{DefaultHasher, Hash, Hasher},
+    io::{self, Read, Seek, SeekFrom, Write},
+    sync::{Mutex, PoisonError},
+};
+
+use corniche_geom::LatticePoint;
+use corniche_osm::{ReadRequest, read_roads};
+use corniche_presets::parse_frc_table;
+use corniche_store::{Scratch, Span};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    let [file, memory_mib, threads @ ..] = arguments.as_slice() else {
+        return Err("usage: read_extract FILE MEMORY_MIB [THREADS]".into());
+    };
+    let threads: usize = threads.first().map_or(Ok(2), |text| text.parse())?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let table = parse_frc_table(include_str!("../../../config/frc/default.toml"))?;
+    let scratch = FileScratch::new()?;
+    let request = ReadRequest {
+        path: file.as_ref(),
+        table: &table,
+        place: &to_lattice,
+        pool: &pool,
+        memory_bytes: memory_mib.parse::<u64>()? << 20,
+        scratch: &scratch,
+        on_progress: None,
+    };
+    let (mut roads, mut points, mut digest) = (0, 0, [(); 2].map(|()| DefaultHasher::new()));
+    let [of_roads, of_defects] = &mut digest;
+    let summary = read_roads(
+        &request,
+        &mut |road| {
+            roads += 1;
+            points += road.line.points().len();
+            format!("{road:?}").hash(of_roads);
+        },
+        &mut |defect| format!("{defect:?}").hash(of_defects),
+        &|| false,
+    )?;
+    format!("{summary:?}").hash(of_defects);
+    let digest = digest.map(|digest| format!("{:016x}", digest.finish())).concat();
+    let scratch_mib = scratch.0.into_inner().unwrap_or_else(PoisonError::into_inner).1 >> 20;
+    println!(
+        "{} nodes of roads, {roads} roads, {points} points, digest {digest}; {scratch_mib} MiB of scratch space, peak {}",
+        summary.nodes_needed,
+        peak().unwrap_or_else(|| "not told by this system".to_owned()),
+    );
+    Ok(())
+}
+
+/// A lattice of 1e-7 degrees.
+fn to_lattice(positions_deg: &[[f64; 2]]) -> Vec<Option<LatticePoint>> {
+    let round = |deg: f64| (deg * 1e7).round() as i64;
+    let place = |&[lon, lat]: &[f64; 2]| Some(LatticePoint::new(round(lon), round(lat)));
+    positions_deg.iter().map(place).collect()
+}
+
+/// The most memory that the process had, as the kernel says.
+fn peak() -> Option<String> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(line.trim().to_owned())
+}
+
+/// A file, and its length.
+struct FileScratch(Mutex<(File, u64)>);
+
+impl FileScratch {
+    fn new() -> io::Result<Self> {
+        Ok(Self(Mutex::new((tempfile::tempfile()?, 0))))
+    }
+}
+
+impl Scratch for FileScratch {
+    fn append(&self, bytes: &[u8]) -> io::Result<Span> {
+        let mut own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let (file, end) = &mut *own;
+        file.seek(SeekFrom::Start(*end))?;
+        file.write_all(bytes)?;
+        let span = Span { offset: *end, length: bytes.len() as u64 };
+        *end += span.length;
+        Ok(span)
+    }
+
+    fn read(&self, span: Span) -> io::Result<Vec<u8>> {
+        let mut own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        own.0.seek(SeekFrom::Start(span.offset))?;
+        let mut bytes = vec![0; span.length as usize];
+        own.0.read_exact(&mut bytes)?;
+        Ok(bytes)
+    }
+}

@@ -1,0 +1,93 @@
+//! Pass 1: the road ways of the whole file, and where its nodes are.
+
+use std::io::{Read, Seek};
+
+use corniche_store::Sorter;
+
+use crate::{
+    Defect, ExtractSummary, ReadOsmError,
+    blobs::{BlobFile, Decoding},
+    id_range::IdRange,
+    reading::{Reading, Step},
+    records::{Located, WayRecord},
+    versions::Versions,
+    ways::{Ways, add_summary},
+};
+
+/// What may be kept of any file, in memory or in scratch space, …
+const HELD_BYTES: u64 = 64 << 20;
+/// … and on top of it for each of its bytes.
+const HELD_BYTES_PER_BYTE: u64 = 64;
+
+/// What the first pass finds.
+pub(crate) struct FoundWays<'a> {
+    pub(crate) ways: Sorter<'a, WayRecord>,
+    pub(crate) located: Sorter<'a, Located>,
+    pub(crate) node_blobs: Vec<NodeBlob>,
+    pub(crate) summary: ExtractSummary,
+}
+
+/// A blob with nodes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct NodeBlob {
+    pub(crate) number: usize,
+    pub(crate) ids: IdRange,
+}
+
+/// Reads all blobs. What is wrong with tags goes to `on_defect`, in the order of the file.
+pub(crate) fn find_ways<'a, R: Read + Seek>(
+    reading: &Reading<'a>,
+    file: &mut BlobFile<R>,
+    on_defect: &mut dyn FnMut(Defect),
+) -> Result<FoundWays<'a>, ReadOsmError> {
+    let (request, shares) = (reading.request, reading.shares());
+    let mut found = FoundWays {
+        ways: Sorter::new(request.scratch, shares.ways),
+        located: Sorter::new(request.scratch, shares.located),
+        node_blobs: Vec::new(),
+        summary: ExtractSummary::default(),
+    };
+    let path = || request.path.to_path_buf();
+    let len_bytes = reading.len_bytes;
+    let most_bytes = HELD_BYTES.saturating_add(len_bytes.saturating_mul(HELD_BYTES_PER_BYTE));
+    let (mut versions, mut held_bytes, mut roads, mut locations) = (Versions::default(), 0, 0, 0);
+    let all: Vec<usize> = (0..file.len()).collect();
+    let data_bytes = file.bytes_of(&all);
+    let table = request.table;
+    let decoding = Decoding {
+        pool: request.pool,
+        should_stop: reading.should_stop,
+        on_bytes: &|bytes| reading.tell(Step::Ways, bytes, data_bytes),
+    };
+    file.for_each(
+        &all,
+        &decoding,
+        |block| (Versions::scan(block), IdRange::scan(block)),
+        |block, most_bytes| Ways::scan(block, table, most_bytes),
+        |number, (versions_of_block, ids), of_block| {
+            versions.append(versions_of_block);
+            if let Some(reason) = versions.history.take() {
+                return Err(ReadOsmError::History { path: path(), reason });
+            }
+            held_bytes += of_block.held_bytes;
+            if held_bytes > most_bytes {
+                return Err(ReadOsmError::TooMuch { path: path(), len_bytes });
+            }
+            found.node_blobs.extend(ids.map(|ids| NodeBlob { number, ids }));
+            of_block.defects.into_iter().for_each(&mut *on_defect);
+            add_summary(&mut found.summary, of_block.summary);
+            for mut way in of_block.roads {
+                way.order = roads;
+                roads += 1;
+                found.ways.push(way).map_err(|error| reading.scratch_failed(error))?;
+            }
+            for (node_id, location) in of_block.located {
+                let located = Located { node_id, order: locations, location };
+                locations += 1;
+                found.located.push(located).map_err(|error| reading.scratch_failed(error))?;
+            }
+            Ok(())
+        },
+    )?;
+    Ok(found)
+}

@@ -1,0 +1,64 @@
+//! Between which ids the nodes of a block lie, so that pass 2 can leave out blobs.
+
+use crate::wire::{self, Field, Value, zigzag};
+
+/// The smallest and the largest id of a block's nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct IdRange {
+    pub(crate) least: i64,
+    pub(crate) most: i64,
+}
+
+impl IdRange {
+    /// Looks through a block (message `PrimitiveBlock`) that was audited: all of it can be read. `None` without nodes.
+    pub(crate) fn scan(block: &[u8]) -> Option<Self> {
+        let mut range: Option<Self> = None;
+        let mut include = |id: i64| {
+            let own = range.get_or_insert(Self { least: id, most: id });
+            own.least = own.least.min(id);
+            own.most = own.most.max(id);
+        };
+        for group in wire::fields(block).flatten().filter_map(|field| bytes_of(field, 2)) {
+            for field in wire::fields(group).flatten() {
+                if let Some(node) = bytes_of(field, 1) {
+                    include(plain_id(node));
+                } else if let Some(nodes) = bytes_of(field, 2) {
+                    let mut id = 0_i64;
+                    let ids = wire::fields(nodes).flatten().filter(|field| field.number == 1);
+                    for numbers in ids.filter_map(|field| field.value.numbers().ok()) {
+                        for step in numbers.flatten() {
+                            id = id.wrapping_add(zigzag(step));
+                            include(id);
+                        }
+                    }
+                }
+            }
+        }
+        range
+    }
+
+    /// Whether the ranges have an id in common.
+    pub(crate) fn meets(self, other: Self) -> bool {
+        self.least <= other.most && other.least <= self.most
+    }
+}
+
+/// Of a field that comes twice the last one counts.
+fn plain_id(node: &[u8]) -> i64 {
+    let id_of = |field: Field<'_>| match (field.number, field.value) {
+        (1, Value::Varint(id)) => Some(zigzag(id)),
+        _ => None,
+    };
+    wire::fields(node).flatten().filter_map(id_of).last().unwrap_or_default()
+}
+
+fn bytes_of(field: Field<'_>, number: u32) -> Option<&[u8]> {
+    match field.value {
+        Value::Bytes(bytes) if field.number == number => Some(bytes),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+#[path = "id_range_tests.rs"]
+mod tests;

@@ -1,0 +1,238 @@
+//! Pass 2: where the nodes of roads lie.
+//!
+//! The nodes that roads name come in ascending order of id. As many as fit in memory are a chunk; for each chunk the blobs are
+//! read that may hold its nodes. In a file that is sorted by id these are a few neighbours, so a blob is read once, or twice where
+//! a chunk ends within it. In a file that is not sorted all blobs with nodes are read for each chunk.
+
+use std::io::{self, Read, Seek};
+
+use corniche_store::{SortRecord, Sorted, Sorter};
+use osmpbf::PrimitiveBlock;
+
+use crate::{
+    Defect, ReadOsmError,
+    blobs::{BlobFile, Decoding},
+    find_ways::NodeBlob,
+    id_range::IdRange,
+    location::Location,
+    nodes::{NodeIds, NodePlaces},
+    reading::{Reading, Step},
+    records::{Located, Mention, Stop},
+    spool::{Spool, damaged},
+    wire::{push_varint, varint},
+};
+
+/// What a node of a chunk takes: its id, its place, two marks.
+const BYTES_PER_NODE: u64 = 8 + 8 + 1 + 1;
+
+/// The nodes of all roads, in the order of ways.
+pub(crate) struct LocatedNodes<'a> {
+    pub(crate) stops: Sorter<'a, Stop>,
+    /// Different nodes that roads name.
+    pub(crate) needed: u64,
+    /// How many of them have no place.
+    pub(crate) missing: u64,
+}
+
+/// What is asked of the nodes.
+pub(crate) struct NodeQuestions<'a, 'b> {
+    pub(crate) mentions: Sorted<'a, Mention>,
+    pub(crate) mentions_count: u64,
+    pub(crate) located: Sorted<'a, Located>,
+    pub(crate) node_blobs: &'b [NodeBlob],
+}
+
+/// Finds the places of all nodes that roads name. Nodes with several places go to `on_defect`, in order of id.
+pub(crate) fn locate_nodes<'a, R: Read + Seek>(
+    reading: &Reading<'a>,
+    file: &mut BlobFile<R>,
+    questions: NodeQuestions<'a, '_>,
+    on_defect: &mut dyn FnMut(Defect),
+) -> Result<LocatedNodes<'a>, ReadOsmError> {
+    let NodeQuestions { mentions, mentions_count, located, node_blobs } = questions;
+    let stops = Sorter::new(reading.request.scratch, reading.shares().stops);
+    let mut nodes = LocatedNodes { stops, needed: 0, missing: 0 };
+    let mut mentions = Ahead::new(mentions);
+    let mut located = Ahead::new(located);
+    let mut done = 0;
+    while let Some(chunk) = Chunk::gather(reading, &mut mentions, mentions_count - done)? {
+        let mut places = NodePlaces::new(chunk.ids.ids().len());
+        let share = ShareOfNodes { before: done, own: chunk.mentions_count, all: mentions_count };
+        chunk.read_blobs(reading, file, node_blobs, &share, &mut places)?;
+        chunk.take_located(reading, &mut located, &mut places)?;
+        nodes.needed += chunk.ids.ids().len() as u64;
+        nodes.missing += places.missing() as u64;
+        for number in places.conflicts() {
+            on_defect(Defect::ConflictingNode { node_id: chunk.ids.ids()[number] });
+        }
+        done += chunk.mentions_count;
+        chunk.answer(reading, &places, &mut nodes.stops)?;
+    }
+    reading.tell(Step::Nodes, 1, 1);
+    Ok(nodes)
+}
+
+/// Which part of all mentions a chunk is; for the progress.
+struct ShareOfNodes {
+    before: u64,
+    own: u64,
+    all: u64,
+}
+
+/// Some of the nodes that roads name, with neighbouring ids.
+struct Chunk<'a> {
+    ids: NodeIds,
+    /// Named by two roads, or twice by one: a junction.
+    is_shared: Vec<bool>,
+    /// Numbers of the mentions, node by node.
+    ///
+    /// ```text
+    ///  │ number: 63 bits │ 1 if it is the first one of its node │
+    /// ```
+    visits: Spool<'a>,
+    mentions_count: u64,
+}
+
+impl<'a> Chunk<'a> {
+    /// Takes the mentions of as many nodes as fit; `None` if there are no more. `most` mentions are to come.
+    fn gather(
+        reading: &Reading<'a>,
+        mentions: &mut Ahead<'a, Mention>,
+        most: u64,
+    ) -> Result<Option<Self>, ReadOsmError> {
+        let shares = reading.shares();
+        let failed = |error| reading.scratch_failed(error);
+        let most_ids = (shares.ids / BYTES_PER_NODE).max(1).min(most) as usize;
+        // Of this size at once: lists that grow by doubling would take up to three times as much.
+        let mut ids: Vec<i64> = Vec::with_capacity(most_ids);
+        let mut is_shared = Vec::with_capacity(most_ids);
+        let mut visits = Spool::new(reading.request.scratch, shares.visits);
+        let mut mentions_count = 0;
+        while let Some(mention) = mentions.peek().map_err(failed)? {
+            let is_first = ids.last() != Some(&mention.node_id);
+            if is_first {
+                if ids.len() == most_ids {
+                    break;
+                }
+                ids.push(mention.node_id);
+                is_shared.push(false);
+            } else if !mention.is_repeat()
+                && let Some(is_shared) = is_shared.last_mut()
+            {
+                *is_shared = true;
+            }
+            let visit = (mention.number() << 1) | u64::from(is_first);
+            visits.push(|bytes| push_varint(bytes, visit)).map_err(failed)?;
+            mentions.take();
+            reading.check_stop_at(mentions_count)?;
+            mentions_count += 1;
+        }
+        let chunk = Self { ids: NodeIds::new(ids), is_shared, visits, mentions_count };
+        Ok((mentions_count > 0).then_some(chunk))
+    }
+
+    /// Reads the blobs that may hold nodes of the chunk.
+    fn read_blobs<R: Read + Seek>(
+        &self,
+        reading: &Reading<'_>,
+        file: &mut BlobFile<R>,
+        node_blobs: &[NodeBlob],
+        share: &ShareOfNodes,
+        places: &mut NodePlaces,
+    ) -> Result<(), ReadOsmError> {
+        let (Some(&least), Some(&most)) = (self.ids.ids().first(), self.ids.ids().last()) else {
+            return Ok(());
+        };
+        let own = IdRange { least, most };
+        let numbers: Vec<usize> =
+            node_blobs.iter().filter(|blob| blob.ids.meets(own)).map(|blob| blob.number).collect();
+        let all_bytes = file.bytes_of(&numbers).max(1);
+        let on_bytes = |bytes: u64| {
+            let done = u128::from(share.own) * u128::from(bytes) / u128::from(all_bytes);
+            reading.tell(Step::Nodes, share.before + done as u64, share.all);
+        };
+        let decoding = Decoding {
+            pool: reading.request.pool,
+            should_stop: reading.should_stop,
+            on_bytes: &on_bytes,
+        };
+        let take = |_, (), found: Vec<(usize, Location)>| {
+            for (number, location) in found {
+                places.set(number, location);
+            }
+            Ok(())
+        };
+        let scan = |block: &PrimitiveBlock, most_bytes| self.ids.scan(block, most_bytes);
+        file.for_each(&numbers, &decoding, |_| (), scan, take)
+    }
+
+    /// Takes the places that ways give for nodes of the chunk, in the order of the file.
+    fn take_located(
+        &self,
+        reading: &Reading<'_>,
+        located: &mut Ahead<'_, Located>,
+        places: &mut NodePlaces,
+    ) -> Result<(), ReadOsmError> {
+        let mut count = 0;
+        while let Some(next) = located.peek().map_err(|error| reading.scratch_failed(error))? {
+            if self.ids.ids().last().is_some_and(|&last| next.node_id > last) {
+                break;
+            }
+            // Not there: a duplicate named the node, and was left out.
+            if let Some(number) = self.ids.number(next.node_id) {
+                places.set(number, next.location);
+            }
+            located.take();
+            reading.check_stop_at(count)?;
+            count += 1;
+        }
+        Ok(())
+    }
+
+    /// Gives each mention the place of its node.
+    fn answer(
+        self,
+        reading: &Reading<'_>,
+        places: &NodePlaces,
+        stops: &mut Sorter<'_, Stop>,
+    ) -> Result<(), ReadOsmError> {
+        let failed = |error| reading.scratch_failed(error);
+        let mut visits = self.visits.read();
+        let mut nodes = 0;
+        for count in 0..self.mentions_count {
+            reading.check_stop_at(count)?;
+            let visit = visits.next(|bytes| varint(bytes).ok()).map_err(failed)?;
+            let visit = visit.ok_or_else(damaged).map_err(failed)?;
+            nodes += (visit & 1) as usize;
+            let node = nodes.checked_sub(1).filter(|&node| node < self.is_shared.len());
+            let node = node.ok_or_else(damaged).map_err(failed)?;
+            let stop = Stop::new(visit >> 1, self.is_shared[node], places.location(node));
+            stops.push(stop).map_err(failed)?;
+        }
+        Ok(())
+    }
+}
+
+/// Sorted records, of which the next one can be seen before it is taken.
+struct Ahead<'a, T> {
+    records: Sorted<'a, T>,
+    next: Option<T>,
+}
+
+impl<'a, T: SortRecord> Ahead<'a, T> {
+    fn new(records: Sorted<'a, T>) -> Self {
+        Self { records, next: None }
+    }
+
+    fn peek(&mut self) -> io::Result<Option<&T>> {
+        if self.next.is_none() {
+            self.next = self.records.next().transpose()?;
+        }
+        Ok(self.next.as_ref())
+    }
+
+    /// Passes over the record that was seen.
+    fn take(&mut self) {
+        self.next = None;
+    }
+}

@@ -1,0 +1,87 @@
+//! Puts the road ways in order of id and numbers their nodes through.
+
+use corniche_store::{Sorted, Sorter};
+
+use crate::{
+    Defect, ReadOsmError,
+    reading::Reading,
+    records::{Mention, WayRecord},
+    spool::Spool,
+    versions::{known_version, two_versions},
+    way_bytes::take_node_ids,
+    wire::{push_varint, to_zigzag},
+};
+
+/// What is left of the ways, and the nodes that they name.
+pub(crate) struct NumberedNodes<'a> {
+    /// Per way its id, how many nodes it has and what it is, in ascending order of way id; see [`crate::hand_out`].
+    pub(crate) ways: Spool<'a>,
+    pub(crate) mentions: Sorter<'a, Mention>,
+    pub(crate) ways_count: u64,
+    pub(crate) mentions_count: u64,
+    /// Ways with the id of another one.
+    pub(crate) duplicates: u64,
+}
+
+/// Of ways with one id the first in the file stays.
+///
+/// Fails if a way is there in two versions.
+pub(crate) fn number_nodes<'a>(
+    reading: &Reading<'a>,
+    ways: Sorted<'a, WayRecord>,
+    on_defect: &mut dyn FnMut(Defect),
+) -> Result<NumberedNodes<'a>, ReadOsmError> {
+    let (request, shares) = (reading.request, reading.shares());
+    let failed = |error| reading.scratch_failed(error);
+    let mut numbered = NumberedNodes {
+        ways: Spool::new(request.scratch, shares.spool),
+        mentions: Sorter::new(request.scratch, shares.mentions),
+        ways_count: 0,
+        mentions_count: 0,
+        duplicates: 0,
+    };
+    let mut last: Option<(i64, Option<i32>)> = None;
+    for (count, way) in (0..).zip(ways) {
+        reading.check_stop_at(count)?;
+        let way = way.map_err(failed)?;
+        let version = known_version(way.version);
+        match &mut last {
+            Some((way_id, first)) if *way_id == way.way_id => {
+                if let (Some(first), Some(second)) = (*first, version)
+                    && first != second
+                {
+                    let reason = two_versions("way", way.way_id, [first, second]);
+                    return Err(ReadOsmError::History { path: request.path.to_path_buf(), reason });
+                }
+                *first = first.or(version);
+                numbered.duplicates += 1;
+                on_defect(Defect::DuplicateWay { way_id: way.way_id });
+            }
+            _ => {
+                last = Some((way.way_id, version));
+                numbered.add(&way).map_err(failed)?;
+            }
+        }
+    }
+    Ok(numbered)
+}
+
+impl NumberedNodes<'_> {
+    fn add(&mut self, way: &WayRecord) -> std::io::Result<()> {
+        let Self { ways, mentions, ways_count, mentions_count, .. } = self;
+        let mut road = &*way.bytes;
+        let mut previous = None;
+        let nodes = take_node_ids(&mut road, |id| {
+            let is_repeat = previous.replace(id) == Some(id);
+            mentions.push(Mention::new(id, *mentions_count, is_repeat))?;
+            *mentions_count += 1;
+            Ok(())
+        })?;
+        *ways_count += 1;
+        ways.push(|bytes| {
+            push_varint(bytes, to_zigzag(way.way_id));
+            push_varint(bytes, nodes);
+            bytes.extend(road);
+        })
+    }
+}

@@ -1,0 +1,90 @@
+//! What every step of a reading needs.
+
+use std::io;
+
+use crate::{ReadOsmError, read_request::ReadRequest};
+
+/// What takes of the memory, as a part of the whole. At no time is there more than the whole, in sixteenths:
+///
+/// | | ways | mentions | located | spool | ids | visits | stops | all |
+/// |---|---|---|---|---|---|---|---|---|
+/// | ways are read | 8 | | 1 | | | | | 9 |
+/// | nodes are numbered | 8 | 4 | 1 | 1 | | | | 14 |
+/// | nodes are located | | 4 | 1 | 1 | 4 | 2 | 4 | 16 |
+/// | roads are handed out | | | | 1 | | | 4 | 5 |
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shares {
+    /// Road ways that are sorted by id, bytes; so are all of these.
+    pub(crate) ways: u64,
+    /// Nodes of ways that are sorted by id.
+    pub(crate) mentions: u64,
+    /// The same with the places that the ways give.
+    pub(crate) located: u64,
+    /// What the roads are, in their order.
+    pub(crate) spool: u64,
+    /// Nodes whose places are sought.
+    pub(crate) ids: u64,
+    /// Where the ways name them.
+    pub(crate) visits: u64,
+    /// Nodes of ways with their places, which are sorted by way.
+    pub(crate) stops: u64,
+}
+
+/// The steps that [`crate::read_request::OnProgress`] counts the file's bytes in.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Step {
+    Ways,
+    Nodes,
+    Roads,
+}
+
+const STEPS: u64 = 3;
+
+/// A request, what the steps ask of it, and the size of the file.
+#[derive(Clone, Copy)]
+pub(crate) struct Reading<'a> {
+    pub(crate) request: &'a ReadRequest<'a>,
+    pub(crate) should_stop: &'a (dyn Fn() -> bool + Sync),
+    pub(crate) len_bytes: u64,
+}
+
+impl Reading<'_> {
+    pub(crate) fn shares(&self) -> Shares {
+        let sixteenth = self.request.memory_bytes / 16;
+        Shares {
+            ways: 8 * sixteenth,
+            mentions: 4 * sixteenth,
+            located: sixteenth,
+            spool: sixteenth,
+            ids: 4 * sixteenth,
+            visits: 2 * sixteenth,
+            stops: 4 * sixteenth,
+        }
+    }
+
+    /// Fails if the caller wants no more.
+    pub(crate) fn check_stop(&self) -> Result<(), ReadOsmError> {
+        let stopped = || ReadOsmError::Stopped { path: self.request.path.to_path_buf() };
+        if (self.should_stop)() { Err(stopped()) } else { Ok(()) }
+    }
+
+    /// The same, for loops over small things: asks once in a while. `count` counts them.
+    pub(crate) fn check_stop_at(&self, count: u64) -> Result<(), ReadOsmError> {
+        const OFTEN: u64 = 1 << 16;
+        if count.is_multiple_of(OFTEN) { self.check_stop() } else { Ok(()) }
+    }
+
+    /// The scratch space failed.
+    pub(crate) fn scratch_failed(&self, source: io::Error) -> ReadOsmError {
+        ReadOsmError::Scratch { path: self.request.path.to_path_buf(), source }
+    }
+
+    /// Tells that `done` of `all` of a step are done, and the steps before it.
+    pub(crate) fn tell(&self, step: Step, done: u64, all: u64) {
+        if let Some(on_progress) = self.request.on_progress {
+            let of_step =
+                u128::from(self.len_bytes) * u128::from(done.min(all)) / u128::from(all.max(1));
+            on_progress(step as u64 * self.len_bytes + of_step as u64, STEPS * self.len_bytes);
+        }
+    }
+}

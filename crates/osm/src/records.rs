@@ -1,0 +1,158 @@
+//! What is sorted on the way from ways and nodes to roads.
+//!
+//! ```text
+//!  WayRecord  by way id ──► Mention  by node id ──► Stop  in the order of the ways and of their nodes
+//!                           Located  by node id ──┘
+//! ```
+
+use corniche_store::SortRecord;
+
+use crate::{
+    location::Location,
+    wire::{push_varint, to_zigzag, varint, zigzag},
+};
+
+/// A way that is a road, as it stands in the file.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct WayRecord {
+    pub(crate) way_id: i64,
+    /// How many roads come before it in the file.
+    pub(crate) order: u64,
+    /// 0 if it is not known.
+    pub(crate) version: i32,
+    /// Its nodes, then what it is: see [`crate::way_bytes`].
+    pub(crate) bytes: Box<[u8]>,
+}
+
+impl SortRecord for WayRecord {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        push_varint(bytes, to_zigzag(self.way_id));
+        push_varint(bytes, self.order);
+        push_varint(bytes, to_zigzag(self.version.into()));
+        push_varint(bytes, self.bytes.len() as u64);
+        bytes.extend(&self.bytes);
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        let way_id = zigzag(varint(bytes).ok()?);
+        let order = varint(bytes).ok()?;
+        let version = zigzag(varint(bytes).ok()?).try_into().ok()?;
+        let length = varint(bytes).ok()?.try_into().ok()?;
+        let (own, rest) = bytes.split_at_checked(length)?;
+        *bytes = rest;
+        Some(Self { way_id, order, version, bytes: own.into() })
+    }
+
+    fn extra_bytes(&self) -> usize {
+        /// What the allocator keeps of each list, and rounds up to.
+        const OF_ALLOCATOR_BYTES: usize = 16;
+        self.bytes.len() + OF_ALLOCATOR_BYTES
+    }
+}
+
+/// A node that a way names. The nodes of all ways are numbered through, in the order of the ways.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Mention {
+    pub(crate) node_id: i64,
+    /// ```text
+    ///  │ number: 63 bits │ 1 if the node before it in the way is the same │
+    /// ```
+    visit: u64,
+}
+
+impl Mention {
+    /// `is_repeat`: the way names the same node directly before.
+    pub(crate) fn new(node_id: i64, number: u64, is_repeat: bool) -> Self {
+        Self { node_id, visit: (number << 1) | u64::from(is_repeat) }
+    }
+
+    pub(crate) fn number(&self) -> u64 {
+        self.visit >> 1
+    }
+
+    /// A node that is repeated directly counts as one visit, not two.
+    pub(crate) fn is_repeat(&self) -> bool {
+        self.visit & 1 == 1
+    }
+}
+
+impl SortRecord for Mention {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        push_varint(bytes, to_zigzag(self.node_id));
+        push_varint(bytes, self.visit);
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        Some(Self { node_id: zigzag(varint(bytes).ok()?), visit: varint(bytes).ok()? })
+    }
+}
+
+/// Where a way says that one of its nodes lies (`LocationsOnWays`).
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Located {
+    pub(crate) node_id: i64,
+    /// How many of these come before it in the file.
+    pub(crate) order: u64,
+    pub(crate) location: Location,
+}
+
+impl SortRecord for Located {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        push_varint(bytes, to_zigzag(self.node_id));
+        push_varint(bytes, self.order);
+        push_location(bytes, self.location);
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        let node_id = zigzag(varint(bytes).ok()?);
+        let order = varint(bytes).ok()?;
+        Some(Self { node_id, order, location: take_location(bytes)? })
+    }
+}
+
+/// A node of a way with its place.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Stop {
+    /// ```text
+    ///  │ number of the mention: 63 bits │ 1 if it is a junction │
+    /// ```
+    visit: u64,
+    pub(crate) location: Location,
+}
+
+impl Stop {
+    /// `is_shared`: two roads name the node, or one does twice.
+    pub(crate) fn new(number: u64, is_shared: bool, location: Location) -> Self {
+        Self { visit: (number << 1) | u64::from(is_shared), location }
+    }
+
+    pub(crate) fn is_shared(&self) -> bool {
+        self.visit & 1 == 1
+    }
+}
+
+impl SortRecord for Stop {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        push_varint(bytes, self.visit);
+        push_location(bytes, self.location);
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        Some(Self { visit: varint(bytes).ok()?, location: take_location(bytes)? })
+    }
+}
+
+fn push_location(bytes: &mut Vec<u8>, location: Location) {
+    bytes.extend(location.iter().flat_map(|part| part.to_le_bytes()));
+}
+
+fn take_location(bytes: &mut &[u8]) -> Option<Location> {
+    let (parts, rest) = bytes.split_first_chunk::<8>()?;
+    *bytes = rest;
+    let [a, b, c, d, e, f, g, h] = *parts;
+    Some([i32::from_le_bytes([a, b, c, d]), i32::from_le_bytes([e, f, g, h])])
+}
+
+#[cfg(test)]
+#[path = "records_tests.rs"]
+mod tests;

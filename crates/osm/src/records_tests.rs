@@ -1,0 +1,44 @@
+use proptest::prelude::*;
+
+use super::*;
+
+/// A record comes back as it was, with nothing left over; cut off anywhere, it is none.
+#[track_caller]
+fn check<T: SortRecord + std::fmt::Debug>(record: &T) {
+    let mut bytes = Vec::new();
+    record.encode(&mut bytes);
+    let mut rest = bytes.as_slice();
+    assert_eq!(
+        T::decode(&mut rest).as_ref().map(|found| found.cmp(record)),
+        Some(std::cmp::Ordering::Equal)
+    );
+    assert_eq!(rest, b"");
+    for len in 0..bytes.len() {
+        assert!(T::decode(&mut &bytes[..len]).is_none(), "{record:?} cut at {len}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn records_come_back(
+        id: i64,
+        order: u64,
+        version: i32,
+        bytes: Vec<u8>,
+        location: [i32; 2],
+        mark: bool,
+    ) {
+        check(&WayRecord { way_id: id, order, version, bytes: bytes.into() });
+        check(&Mention::new(id, order >> 1, mark));
+        check(&Located { node_id: id, order, location });
+        check(&Stop::new(order >> 1, mark, location));
+    }
+
+    #[test]
+    fn a_mark_does_not_change_the_number(number in 0..1_u64 << 63, mark: bool) {
+        let mention = Mention::new(5, number, mark);
+        prop_assert_eq!((mention.number(), mention.is_repeat()), (number, mark));
+        let stop = Stop::new(number, mark, [0; 2]);
+        prop_assert_eq!((stop.visit >> 1, stop.is_shared()), (number, mark));
+    }
+}

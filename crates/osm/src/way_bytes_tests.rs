@@ -1,0 +1,40 @@
+use proptest::prelude::*;
+
+use super::*;
+
+fn take_all(bytes: &mut &[u8]) -> Option<(Vec<i64>, FunctionalRoadClass, RoadAttributes)> {
+    let mut ids = Vec::new();
+    let count = take_node_ids(bytes, |id| {
+        ids.push(id);
+        Ok(())
+    });
+    let count = count.ok()?;
+    assert_eq!(count, ids.len() as u64);
+    let (class, attributes) = take_road(bytes)?;
+    Some((ids, class, attributes))
+}
+
+proptest! {
+    #[test]
+    fn a_road_comes_back_from_its_bytes(
+        near: Vec<i8>,
+        far: Vec<i64>,
+        class in 0..FunctionalRoadClass::COUNT as u8,
+        form in prop::sample::select(Form::ALL),
+        structure in prop::sample::select(Structure::ALL),
+        oneway in prop::sample::select(Oneway::ALL),
+        layer: i8,
+        [name, reference, surface] in prop::array::uniform3(".*"),
+    ) {
+        let ids: Vec<i64> = near.into_iter().map(i64::from).chain(far).collect();
+        let class = FunctionalRoadClass::new(class).unwrap();
+        let attributes = RoadAttributes { form, structure, layer, oneway, name, reference, surface };
+        let bytes = way_bytes(&ids, class, &attributes);
+        let mut rest = &*bytes;
+        prop_assert_eq!(take_all(&mut rest), Some((ids, class, attributes)));
+        prop_assert_eq!(rest, b"");
+        for len in 0..bytes.len() {
+            prop_assert_eq!(take_all(&mut &bytes[..len]), None);
+        }
+    }
+}

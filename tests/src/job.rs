@@ -1,0 +1,199 @@
+//! A build in a folder of its own, which tests interrupt and go on with.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Child, Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+use tempfile::TempDir;
+
+use crate::{Ran, binary, ended, sample, text};
+
+/// Bytes at the beginning of a journal, before its first entry.
+const JOURNAL_HEADER_BYTES: u64 = 48;
+
+/// A build of the sample `pass`, with a list of its defects.
+pub struct Job {
+    folder: TempDir,
+    inputs: [PathBuf; 2],
+    options: Vec<String>,
+}
+
+impl Job {
+    /// With more options.
+    ///
+    /// # Panics
+    /// When there is no place for it.
+    #[must_use]
+    pub fn new(options: &[&str]) -> Self {
+        let folder = match tempfile::tempdir() {
+            Ok(folder) => folder,
+            Err(error) => panic!("no folder: {error}"),
+        };
+        let inputs = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
+        Self { folder, inputs, options: options.iter().map(ToString::to_string).collect() }
+    }
+
+    /// The same build from other files.
+    #[must_use]
+    pub fn of(self, inputs: [PathBuf; 2]) -> Self {
+        Self { inputs, ..self }
+    }
+
+    /// Where the package, the list of defects and the store are.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// The package that it makes.
+    #[must_use]
+    pub fn package(&self) -> PathBuf {
+        self.folder().join("out.pmtiles")
+    }
+
+    /// The list of defects that it makes.
+    #[must_use]
+    pub fn defects(&self) -> PathBuf {
+        self.folder().join("defects.csv")
+    }
+
+    /// Where its store is unless `--tmp` says something else.
+    #[must_use]
+    pub fn store(&self) -> PathBuf {
+        self.folder().join(".out.pmtiles.work")
+    }
+
+    fn command(&self, more: &[&str]) -> Command {
+        let mut command = Command::new(binary());
+        let [dem, osm] = &self.inputs;
+        command.args(["build", "--dem", text(dem), "--osm", text(osm)]);
+        command.args(["-o", text(&self.package()), "--defects", text(&self.defects())]);
+        command.args(&self.options).args(more);
+        command
+    }
+
+    /// Runs it to its end.
+    ///
+    /// # Panics
+    /// When it does not start.
+    #[must_use]
+    pub fn run(&self, more: &[&str]) -> Ran {
+        match self.command(more).output() {
+            Ok(output) => output.into(),
+            Err(error) => panic!("the binary does not start: {error}"),
+        }
+    }
+
+    /// Runs it to its end, which must be a good one.
+    ///
+    /// # Panics
+    /// When it fails.
+    pub fn succeed(&self, more: &[&str]) -> Ran {
+        let ran = self.run(more);
+        assert_eq!(ran.code, 0, "{more:?}: {}", ran.err);
+        ran
+    }
+
+    /// Starts it.
+    ///
+    /// # Panics
+    /// When it does not start.
+    #[must_use]
+    pub fn start(&self, more: &[&str]) -> Child {
+        match self.command(more).stderr(Stdio::piped()).spawn() {
+            Ok(child) => child,
+            Err(error) => panic!("the binary does not start: {error}"),
+        }
+    }
+
+    /// Starts it, and sends it a signal as soon as the store holds durable work that was not there before, or after so long.
+    /// Returns how it ended: well, if it was faster.
+    ///
+    /// # Panics
+    /// When it does not start or never ends.
+    #[must_use]
+    pub fn stop(&self, more: &[&str], signal: &str, when: When) -> Ran {
+        let before = self.journal_bytes();
+        let mut child = self.start(&[&["--quiet"], more].concat());
+        let begun = Instant::now();
+        let is_time = || match when {
+            When::After(time) => begun.elapsed() >= time,
+            When::Worked => self.journal_bytes() > before.max(JOURNAL_HEADER_BYTES),
+        };
+        while !is_time() && matches!(child.try_wait(), Ok(None)) {
+            thread::sleep(Duration::from_millis(2));
+        }
+        let sent = Command::new("kill").args(["-s", signal, &child.id().to_string()]).output();
+        assert!(sent.is_ok(), "there is no program named kill");
+        ended(&mut child)
+    }
+
+    /// The names of all that is in its folder, ascending.
+    ///
+    /// # Panics
+    /// When the folder cannot be read.
+    #[must_use]
+    pub fn names(&self) -> Vec<String> {
+        let names = self.files_of(self.folder()).into_iter();
+        names.map(|(path, _)| text(&path).to_owned()).collect()
+    }
+
+    /// The store's files with their content. The one that is only there to be locked is left out.
+    #[must_use]
+    pub fn stored(&self) -> Vec<(PathBuf, Vec<u8>)> {
+        let files = self.files_of(&self.store()).into_iter();
+        files
+            .filter(|(name, _)| name != Path::new("lock"))
+            .map(|(name, path)| (name, fs::read(path).unwrap_or_default()))
+            .collect()
+    }
+
+    /// The names in a folder, ascending, with their paths.
+    fn files_of(&self, folder: &Path) -> Vec<(PathBuf, PathBuf)> {
+        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+        let mut files: Vec<_> =
+            entries.map(|entry| (PathBuf::from(entry.file_name()), entry.path())).collect();
+        files.sort();
+        files
+    }
+
+    /// Bytes of the longest journal in the store; 0 without one.
+    #[must_use]
+    pub fn journal_bytes(&self) -> u64 {
+        let files = self.files_of(&self.store()).into_iter();
+        let journals = files.filter(|(name, _)| name.extension().is_some_and(|e| e == "journal"));
+        journals.filter_map(|(_, path)| Some(fs::metadata(path).ok()?.len())).max().unwrap_or(0)
+    }
+
+    /// Whether the store holds durable work.
+    #[must_use]
+    pub fn has_work(&self) -> bool {
+        self.journal_bytes() > JOURNAL_HEADER_BYTES
+    }
+
+    /// The package and the list of defects, and nothing else is beside them.
+    ///
+    /// # Panics
+    /// When one is missing, or something else is there.
+    #[must_use]
+    pub fn result(&self) -> [Vec<u8>; 2] {
+        assert_eq!(self.names(), ["defects.csv", "out.pmtiles"]);
+        [self.package(), self.defects()].map(|path| match fs::read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) => panic!("{}: {error}", path.display()),
+        })
+    }
+}
+
+/// When a build is stopped.
+#[derive(Debug, Clone, Copy)]
+pub enum When {
+    /// After so long.
+    After(Duration),
+    /// When more durable work is there than at its start.
+    Worked,
+}

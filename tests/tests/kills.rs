@@ -1,0 +1,115 @@
+//! Builds that are killed at any time go on to the same bytes as an unbroken one.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+#![cfg(unix)]
+
+use std::time::{Duration, Instant};
+
+use corniche_testing::Random;
+use e2e::{Job, Ran, When};
+
+/// So long that work becomes durable several times, every two seconds.
+const OPTIONS: [&str; 2] = ["--max-error", "0.25"];
+
+/// The exit code of a process that SIGKILL ended.
+const KILLED: i32 = -1;
+
+/// The build that is interrupted, and what it makes unbroken.
+struct Campaign {
+    options: [&'static str; 4],
+    whole: [Vec<u8>; 2],
+    takes: Duration,
+}
+
+impl Campaign {
+    fn new(threads: &'static str) -> Self {
+        let [name, value] = OPTIONS;
+        let options = [name, value, "--threads", threads];
+        let job = Job::new(&options);
+        let begun = Instant::now();
+        job.succeed(&["--quiet"]);
+        let takes = begun.elapsed();
+        let whole = job.result();
+        assert!(whole[1].split(|&byte| byte == b'\n').count() > 3, "the list of defects is empty");
+        Self { options, whole, takes }
+    }
+
+    /// Kills a build at a random time, goes on, sometimes kills it again, and compares. Returns how many kills met it at work, and whether
+    /// there was durable work to go on from.
+    fn kill(&self, seed: u64) -> (u32, bool) {
+        let mut random = Random::new(seed);
+        let job = Job::new(&self.options);
+        let (mut kills, mut had_work) = (0, false);
+        for _ in 0..=random.below(3) {
+            let when = match random.below(3) {
+                0 => When::Worked,
+                _ => When::After(self.takes.mul_f64(random.share())),
+            };
+            let resume: &[&str] = if kills > 0 { &["--resume"] } else { &[] };
+            let ran = job.stop(resume, "KILL", when);
+            if ran.code != KILLED {
+                assert_eq!(ran.code, 0, "seed {seed}: {}", ran.err);
+                break;
+            }
+            kills += 1;
+            had_work |= job.has_work();
+        }
+        if job.package().exists() {
+            // It was complete before, or just before the kill, and then it may have had no time to clean up.
+            if kills > 0 {
+                job.succeed(&["--quiet", "--resume", "-O"]);
+            }
+        } else {
+            let ran = job.succeed(&["--json-progress", "--resume"]);
+            assert!(!job.has_work() && (went_on(&ran) || !had_work), "seed {seed}: {}", ran.err);
+        }
+        assert!(job.result() == self.whole, "seed {seed}: other bytes after {kills} kills");
+        (kills, had_work)
+    }
+}
+
+/// Whether a build found something done.
+fn went_on(ran: &Ran) -> bool {
+    let lines = ran.err.lines().filter_map(|line| line.split_once("\"already\":"));
+    lines.into_iter().any(|(_, rest)| !rest.starts_with('0'))
+}
+
+fn killed_builds(seeds: std::ops::Range<u64>, threads: &'static str) {
+    let campaign = Campaign::new(threads);
+    let (mut kills, mut with_work) = (0, 0);
+    for seed in seeds.clone() {
+        let (more, had_work) = campaign.kill(seed);
+        kills += more;
+        with_work += u64::from(had_work);
+    }
+    let builds = seeds.count() as u64;
+    assert!(u64::from(kills) >= builds / 2, "only {kills} kills met a build at work");
+    // On a machine so fast that nothing is durable before the end this would see nothing.
+    assert!(with_work >= builds / 4, "only {with_work} of {builds} builds had durable work");
+}
+
+#[test]
+fn twelve_killed_builds_with_one_thread_go_on_to_the_same_bytes() {
+    killed_builds(0..12, "1");
+}
+
+#[test]
+fn twelve_killed_builds_with_two_threads_go_on_to_the_same_bytes() {
+    killed_builds(12..24, "2");
+}
+
+/// A signal that asks the build to end: what was done is kept, and the message says how to go on.
+#[test]
+fn an_interrupted_build_ends_with_code_4_and_goes_on_where_it_was() {
+    let campaign = Campaign::new("2");
+    for signal in ["INT", "TERM"] {
+        let job = Job::new(&campaign.options);
+        let ran = job.stop(&[], signal, When::Worked);
+        assert_eq!(ran.code, 4, "{signal}: {}", ran.err);
+        assert!(ran.err.contains("--resume"), "{signal}: {}", ran.err);
+        assert_eq!(job.names(), [".out.pmtiles.work"], "{signal}");
+        let ran = job.succeed(&["--resume", "--json-progress"]);
+        assert!(went_on(&ran), "{signal}: {}", ran.err);
+        assert!(job.result() == campaign.whole, "{signal}: other bytes");
+    }
+}
