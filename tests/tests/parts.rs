@@ -4,10 +4,11 @@
 
 use std::{
     fs,
+    io::{BufRead as _, BufReader},
     path::{Path, PathBuf},
     process::{Command, Stdio},
     thread,
-    time::Instant,
+    time::{Instant, SystemTime},
 };
 
 use corniche_testing::Random;
@@ -85,9 +86,28 @@ impl Planned {
         fs::remove_file(package).unwrap();
     }
 
+    /// The subtrees of a level, some of them split into those of the next so that they are `count` in all.
+    fn mixed_subtrees(&self, level: u8, count: usize) -> Vec<String> {
+        let finer = self.subtrees(level + 1);
+        let mut split: Vec<Vec<String>> = Vec::new();
+        for id in self.subtrees(level) {
+            split.push(finer.iter().filter(|finer| is_beneath(finer, &id)).cloned().collect());
+        }
+        let whole = self.subtrees(level);
+        let mut mixed = whole.clone();
+        for (id, parts) in whole.iter().zip(split) {
+            if mixed.len() - 1 + parts.len() <= count {
+                mixed.retain(|other| other != id);
+                mixed.extend(parts);
+            }
+        }
+        assert_eq!(mixed.len(), count, "{mixed:?}");
+        mixed
+    }
+
     /// All parts in one store, those of a step in any order and each twice.
-    fn check_subtrees(&self, level: u8, random: &mut Random) {
-        let store = self.path(&format!("store-{level}"));
+    fn check_subtrees(&self, subtrees: &[String], random: &mut Random) {
+        let store = self.path(&format!("store-{}", subtrees.len()));
         let stores = [store.as_path()];
         let once = |step: &str, subtree: Option<&str>| {
             let made = succeed(self.part(&stores, step, subtree));
@@ -99,7 +119,6 @@ impl Planned {
             let again = succeed(self.part(&stores, step, subtree));
             assert_eq!(again.out, "", "it is there already");
         };
-        let subtrees = self.subtrees(level);
         let mut first: Vec<(&str, Option<&str>)> =
             subtrees.iter().map(|id| ("heights", Some(id.as_str()))).collect();
         first.extend([("hashes", None), ("roads", None)]);
@@ -140,14 +159,14 @@ fn shuffle<T>(list: &mut [T], random: &mut Random) {
     }
 }
 
-/// All files of a store with their sizes.
+/// All files of a store with their sizes, but for the lock, which only says who had it last.
 fn files(store: &Path) -> Vec<(PathBuf, u64)> {
     let mut found = Vec::new();
     for entry in fs::read_dir(store).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
             found.extend(files(&path));
-        } else {
+        } else if !path.ends_with("lock") {
             let size = fs::metadata(&path).unwrap().len();
             found.push((path, size));
         }
@@ -171,14 +190,15 @@ fn one_subtree_and_four_make_the_bytes_of_a_build() {
     let mut random = Random::new(4);
     assert_eq!(planned.subtrees(0), ["0/0/0"]);
     assert_eq!(planned.subtrees(1).len(), 4);
-    planned.check_subtrees(0, &mut random);
-    planned.check_subtrees(1, &mut random);
+    planned.check_subtrees(&planned.subtrees(0), &mut random);
+    planned.check_subtrees(&planned.subtrees(1), &mut random);
 }
 
 /// Samples are measured apart from nodes where they are not the same.
 #[test]
 fn a_resampled_dem_makes_the_same_bytes_in_parts() {
-    Planned::pass(&["--crs", "EPSG:32633"]).check_subtrees(1, &mut Random::new(5));
+    let planned = Planned::pass(&["--crs", "EPSG:32633"]);
+    planned.check_subtrees(&planned.subtrees(1), &mut Random::new(5));
 }
 
 /// Heights in a strip across the middle of two subtrees, and two islands without any cell of the levels above: what has no height is
@@ -198,8 +218,8 @@ fn voids_make_the_same_bytes_in_parts() {
     let options = ["--dem-crs", "EPSG:32632", "--fill-voids", "0", "--max-error", "10"];
     let planned = Planned::new(&[&["--dem", text(&dem)], &options[..]].concat());
     let mut random = Random::new(6);
-    planned.check_subtrees(1, &mut random);
-    planned.check_subtrees(2, &mut random);
+    planned.check_subtrees(&planned.subtrees(1), &mut random);
+    planned.check_subtrees(&planned.subtrees(2), &mut random);
 }
 
 /// Each part in a folder of its own, subtrees of several sizes, one above the other, some made twice.
@@ -239,12 +259,12 @@ fn parts_of_several_folders_overlap() {
     refused(&ran, &[&quarters[2], &quarters[3], "--step tiles"]);
 }
 
-/// Whether `tile` of level 2 lies beneath `quarter` of level 1.
-fn is_beneath(tile: &str, quarter: &str) -> bool {
+/// Whether `tile` lies beneath `above`, of the level above.
+fn is_beneath(tile: &str, above: &str) -> bool {
     let numbers =
         |id: &str| id.split('/').map(|part| part.parse::<u32>().unwrap()).collect::<Vec<_>>();
-    let (tile, quarter) = (numbers(tile), numbers(quarter));
-    [tile[1] / 2, tile[2] / 2] == quarter[1..]
+    let (tile, above) = (numbers(tile), numbers(above));
+    [tile[0] - 1, tile[1] / 2, tile[2] / 2] == above[..]
 }
 
 #[test]
@@ -325,7 +345,7 @@ fn stores_and_plans_that_do_not_fit_are_refused() {
     }
 
     let touched = fs::File::options().append(true).open(&dem).unwrap();
-    touched.set_modified(std::time::SystemTime::UNIX_EPOCH).unwrap();
+    touched.set_modified(SystemTime::UNIX_EPOCH).unwrap();
     refused(&planned.part(&stores, "heights", None), &["dem.tif", "its time is"]);
 }
 
@@ -334,33 +354,100 @@ fn stores_and_plans_that_do_not_fit_are_refused() {
 fn a_killed_part_is_made_to_its_end_by_the_same_command() {
     let planned = Planned::pass(&[]);
     let [store, aside] = ["store", "aside"].map(|name| planned.path(name));
-    for step in ["hashes", "roads", "heights", "top"] {
-        succeed(planned.part(&[&store], step, None));
-    }
-    let begun = Instant::now();
-    succeed(planned.part(&[&aside, &store], "tiles", None));
-    let unbroken = begun.elapsed();
     let mut random = Random::new(7);
+    succeed(planned.part(&[&store], "hashes", None));
+    succeed(planned.part(&[&store], "roads", None));
+    check_killed(&planned, [&store, &aside], "heights", &mut random);
+    succeed(planned.part(&[&store], "top", None));
+    check_killed(&planned, [&store, &aside], "tiles", &mut random);
+    let left: Vec<PathBuf> = files(&store).into_iter().map(|(path, _)| path).collect();
+    assert_eq!(left.len(), 2 + 5, "the store's own files and the parts: {left:?}");
+    planned.check_merged(&[&store]);
+}
+
+/// Makes a part of all tiles in `store`, with kills, and undisturbed in `aside`: they are the same.
+fn check_killed(planned: &Planned, [store, aside]: [&Path; 2], step: &str, random: &mut Random) {
+    let begun = Instant::now();
+    succeed(planned.part(&[aside, store], step, None));
+    let undisturbed = begun.elapsed();
     let mut killed = 0;
     for _ in 0..4 {
         let mut child = Command::new(e2e::binary())
-            .args(planned.part_command(&[&store], "tiles", None))
+            .args(planned.part_command(&[store], step, None))
             .stdout(Stdio::null())
             .spawn()
             .unwrap();
-        thread::sleep(unbroken.mul_f64(random.share()));
+        thread::sleep(undisturbed.mul_f64(random.share()));
         child.kill().unwrap();
         killed += u32::from(!child.wait().unwrap().success());
     }
     assert!(killed > 0, "no run was killed before its end");
-    let ran = planned.part(&[&store], "tiles", None);
-    assert_eq!(ran.code, 0, "{}", ran.err);
-    assert_eq!(
-        sealed(&store, "tiles-0-0-0").file_name(),
-        sealed(&aside, "tiles-0-0-0").file_name()
-    );
-    let left: Vec<PathBuf> = files(&store).into_iter().map(|(path, _)| path).collect();
-    assert_eq!(left.len(), 3 + 5, "the parts, the plan and the lock: {left:?}");
+    succeed(planned.part(&[store], step, None));
+    let name = format!("{step}-0-0-0");
+    assert_eq!(sealed(store, &name).file_name(), sealed(aside, &name).file_name());
+}
+
+/// Parts of a step are made at once by processes that know nothing of each other, in a folder that is not there at the start.
+#[test]
+fn parts_are_made_side_by_side_in_one_folder() {
+    let planned = Planned::pass(&[]);
+    let store = planned.path("store");
+    let at_once = |parts: &[(&str, Option<&str>)]| {
+        let begun: Vec<_> = (parts.iter())
+            .map(|(step, subtree)| {
+                Command::new(e2e::binary())
+                    .args(planned.part_command(&[&store], step, *subtree))
+                    .stdout(Stdio::null())
+                    .stderr(Stdio::piped())
+                    .spawn()
+                    .unwrap()
+            })
+            .collect();
+        for child in begun {
+            succeed(child.wait_with_output().unwrap().into());
+        }
+    };
+    let quarters = planned.subtrees(1);
+    let of = |step| quarters.iter().map(move |id| (step, Some(id.as_str())));
+    at_once(&of("heights").chain([("hashes", None), ("roads", None)]).collect::<Vec<_>>());
+    at_once(&[("top", None), ("top", None)]);
+    at_once(&of("tiles").chain(of("tiles").take(1)).collect::<Vec<_>>());
+    assert_eq!(files(&store.join("parts")).len(), 2 + 4 + 1 + 4);
+    planned.check_merged(&[&store]);
+}
+
+/// What was made from an input that changes meanwhile is not kept, even if the input looks as before afterwards.
+#[test]
+fn an_input_that_changes_leaves_nothing_of_the_part() {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = folder.path().join("dem.tif");
+    fs::copy(sample("pass/pass-dem.tif"), &dem).unwrap();
+    let planned = Planned::new(&["--dem", text(&dem), "--max-error", "2"]);
+    let store = planned.path("store");
+    for step in ["hashes", "heights", "top"] {
+        succeed(planned.part(&[&store], step, None));
+    }
+    let before = files(&store);
+    let written = fs::metadata(&dem).unwrap().modified().unwrap();
+    let touch = |time| {
+        fs::File::options().append(true).open(&dem).unwrap().set_modified(time).unwrap();
+    };
+    let command = planned.part_command(&[&store], "tiles", None);
+    let mut child = Command::new(e2e::binary())
+        .args(command.iter().filter(|option| *option != "-q"))
+        .arg("--json-progress")
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+    assert!(lines.any(|line| line.unwrap().contains("\"tiles\"")), "it makes no tiles");
+    touch(SystemTime::UNIX_EPOCH);
+    let said: Vec<String> = lines.map(Result::unwrap).collect();
+    assert_eq!(child.wait().unwrap().code(), Some(1), "{said:?}");
+    assert!(said.last().unwrap().contains("changed while it was read"), "{said:?}");
+    assert_eq!(files(&store), before);
+    touch(written);
+    succeed(planned.part(&[&store], "tiles", None));
     planned.check_merged(&[&store]);
 }
 
@@ -381,9 +468,9 @@ fn sixteen_subtrees_make_the_bytes_of_a_build() {
         let inputs = ["--dem", text(&dem), "--osm", text(&osm)];
         let planned = Planned::new(&[&inputs[..], crs].concat());
         let mut random = Random::new(8);
-        for level in [0, 1, 2] {
-            planned.check_subtrees(level, &mut random);
+        for level in [0, 1, 3] {
+            planned.check_subtrees(&planned.subtrees(level), &mut random);
         }
-        assert_eq!(planned.subtrees(2).len(), 16);
+        planned.check_subtrees(&planned.mixed_subtrees(2, 16), &mut random);
     }
 }

@@ -65,8 +65,12 @@ fn subtrees(plan: &BuildPlan, level: u8) -> Result<String, Failure> {
         let message = format!("--subtrees {level}: the finest level is {finest}");
         return Err(Failure::unusable(message));
     }
-    let names: Vec<String> = plan.subtrees(level).iter().map(ToString::to_string).collect();
-    Ok(names.iter().flat_map(|name| [name.as_str(), "\n"]).collect())
+    let mut lines = String::new();
+    for id in plan.subtrees(level) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(lines, "{id}");
+    }
+    Ok(lines)
 }
 
 /// Stops when a signal comes; has nothing to show.

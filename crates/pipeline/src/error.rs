@@ -1,6 +1,6 @@
 use std::{io, path::PathBuf};
 
-use crate::{TargetError, workers::Interrupted};
+use crate::{TargetError, plan_error::PlanError, workers::Interrupted};
 
 /// Why a package could not be built.
 #[derive(Debug, thiserror::Error)]
@@ -88,7 +88,7 @@ pub enum BuildError {
     )]
     OtherBuild { store: PathBuf, differences: String },
     #[error(transparent)]
-    Plan(#[from] crate::PlanError),
+    Plan(#[from] PlanError),
     #[error(
         "{store:?} is of another plan: {differences}; give the plan that it was made with, or another --store"
     )]

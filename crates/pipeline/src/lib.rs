@@ -16,6 +16,7 @@ mod manifest_texts;
 mod observer;
 mod parts;
 mod plan;
+mod plan_error;
 mod roads;
 mod sample_deviation;
 mod settings;
@@ -37,9 +38,9 @@ pub use machine::{MIN_MEMORY_BYTES, default_memory_bytes, machine_memory_bytes};
 pub use observer::{Observer, Silent, Stage, Unit};
 pub use parts::{MergeSettings, PartSettings, PartSummary, Step, make_part, merge};
 pub use plan::{
-    BuildPlan, Estimate, FrcTableRecord, MemoryEstimate, PlanError, PlannedGrid, PlannedLevel,
-    Rates, plan,
+    BuildPlan, Estimate, FrcTableRecord, MemoryEstimate, PlannedGrid, PlannedLevel, Rates, plan,
 };
+pub use plan_error::PlanError;
 pub use settings::{
     BuildSettings, Existing, Leftovers, PlanSettings, Resources, RoadSettings, TerrainSettings,
 };

@@ -11,25 +11,8 @@
 
 mod merge;
 mod part;
+mod planned;
 mod stores;
 
 pub use merge::{MergeSettings, merge};
 pub use part::{PartSettings, PartSummary, Step, make_part};
-
-use self::stores::Stores;
-use crate::{BuildError, BuildPlan, PlanSettings, Resources, context::MemoryShares, plan::Opened};
-
-/// Opens the inputs of a plan and fails if they, or this program, are not those of the plan.
-fn open(
-    plan: &BuildPlan,
-    generator: &str,
-    resources: Resources,
-) -> Result<(PlanSettings, Opened), BuildError> {
-    let shares = MemoryShares::of(resources.memory_bytes);
-    corniche_dem::limit_block_cache(shares.raster_cache)
-        .map_err(|error| BuildError::Start { what: error.to_string() })?;
-    let settings = PlanSettings { generator: generator.to_owned(), ..plan.settings()? };
-    let opened = Opened::new(&settings)?;
-    plan.check_same(&BuildPlan::of(&settings, &opened)?)?;
-    Ok((settings, opened))
-}

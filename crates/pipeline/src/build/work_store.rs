@@ -12,7 +12,7 @@ use corniche_store::{Artifacts as _, Disk, LocalStore, StoredPlan};
 use crate::{BuildError, BuildPlan, Leftovers, Observer, artifacts::Kind};
 
 /// The folder of the store of a build: beside the package, or in `tmp`.
-pub(super) fn folder_of(target: &Path, tmp: Option<&Path>) -> PathBuf {
+pub(crate) fn folder_of(target: &Path, tmp: Option<&Path>) -> PathBuf {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     match tmp {
         Some(tmp) => tmp.join(format!("{name}.work")),
@@ -22,7 +22,7 @@ pub(super) fn folder_of(target: &Path, tmp: Option<&Path>) -> PathBuf {
 
 /// Makes the store of a build, or goes on with the one that is there, as `leftovers` says. It lies on a disk, in a folder, and is made
 /// durable in an interval.
-pub(super) fn open(
+pub(crate) fn open(
     (disk, folder, sync_interval): (&Arc<dyn Disk>, &Path, Duration),
     plan: &BuildPlan,
     leftovers: Leftovers,
@@ -81,7 +81,7 @@ pub(crate) fn differences(plan: &BuildPlan, there: &StoredPlan) -> String {
 }
 
 /// Removes the store of a build that is done. What cannot be removed is only told of: the package is complete.
-pub(super) fn remove(store: LocalStore, observer: &dyn Observer) {
+pub(crate) fn remove(store: LocalStore, observer: &dyn Observer) {
     match store.remove() {
         Ok(kept) => {
             for path in kept {
@@ -93,7 +93,7 @@ pub(super) fn remove(store: LocalStore, observer: &dyn Observer) {
 }
 
 /// What a failed build leaves: the store, if a build with `--resume` can go on from it. Tells so.
-pub(super) fn after_failure(
+pub(crate) fn after_failure(
     store: LocalStore,
     folder: &Path,
     error: &BuildError,

@@ -87,12 +87,12 @@ impl FinestHeights {
 }
 
 /// A grid's heights, little-endian, row by row.
-pub(super) fn height_bytes(grid: &HeightGrid) -> Vec<u8> {
+pub(crate) fn height_bytes(grid: &HeightGrid) -> Vec<u8> {
     grid.raw().iter().flat_map(|height_m| height_m.to_le_bytes()).collect()
 }
 
 /// The square grid of so many nodes a side that [`height_bytes`] wrote.
-pub(super) fn grid_of(bytes: &[u8], side: usize) -> HeightGrid {
+pub(crate) fn grid_of(bytes: &[u8], side: usize) -> HeightGrid {
     let heights_m =
         bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
     HeightGrid::new(side, side, heights_m)

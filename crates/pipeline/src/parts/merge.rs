@@ -9,7 +9,7 @@ use corniche_geom::TileId;
 use corniche_store::LocalStore;
 use corniche_tileset::Manifest;
 
-use super::{Stores, open};
+use super::{planned::open, stores::Stores};
 use crate::{
     BuildError, BuildPlan, BuildSummary, Existing, Observer, Resources,
     build::{refuse_inputs_as_target, unfinished::Unfinished},

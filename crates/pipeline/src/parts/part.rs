@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use corniche_geom::TileId;
 use corniche_store::LocalStore;
 
-use super::{Stores, open};
+use super::{planned::open, stores::Stores};
 use crate::{
     BuildError, BuildPlan, Observer, Resources,
     build::warn,

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Folders of stores that are all of one plan.
-pub(super) struct Stores<'a> {
+pub(crate) struct Stores<'a> {
     disk: Arc<dyn Disk>,
     /// Each once; the first is written, too.
     folders: Vec<&'a Path>,
@@ -23,7 +23,7 @@ pub(super) struct Stores<'a> {
 
 impl<'a> Stores<'a> {
     /// Looks which plans the folders are of. The first need not be there yet if it `may_be_new`.
-    pub(super) fn look(
+    pub(crate) fn look(
         folders: &'a [PathBuf],
         plan: &BuildPlan,
         may_be_new: bool,
@@ -59,7 +59,7 @@ impl<'a> Stores<'a> {
     }
 
     /// Opens them all, and a part of this name to write in the first.
-    pub(super) fn open(&self, name: &str) -> Result<LocalStore, BuildError> {
+    pub(crate) fn open(&self, name: &str) -> Result<LocalStore, BuildError> {
         let &[folder, ref others @ ..] = self.folders.as_slice() else {
             return Err(BuildError::Start { what: "no store is given".to_owned() });
         };

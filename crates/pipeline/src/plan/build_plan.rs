@@ -10,12 +10,14 @@ use sha2::{Digest, Sha256};
 
 use super::Opened;
 use crate::{
-    BuildError, PlanSettings, PlannedInput, heights::data_tiles::DataTiles, hex::hex,
-    levels::Levels, manifest_texts, settings_record,
+    BuildError, PlanSettings, PlannedInput,
+    heights::data_tiles::DataTiles,
+    hex::hex,
+    levels::Levels,
+    manifest_texts,
+    plan_error::{PLAN_VERSION, PlanError},
+    settings_record,
 };
-
-/// Version of a plan's JSON; other versions are refused.
-const PLAN_VERSION: u32 = 1;
 
 /// Everything that a worker needs to know to make its part of a package, and nothing about how it works: neither threads nor
 /// memory nor where results are kept.
@@ -106,30 +108,6 @@ pub struct PlannedLevel {
     pub simplify_tolerance_m: f64,
     /// How far outside a tile its SV lines reach, metres.
     pub width_margin_m: f64,
-}
-
-/// Why a text is no plan, or a plan cannot be used here.
-#[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
-#[non_exhaustive]
-pub enum PlanError {
-    #[error("this is no plan of a build: make one with corniche plan -o FILE")]
-    Json(#[from] serde_json::Error),
-    #[error(
-        "the plan is of version {found}, and this program reads version {PLAN_VERSION}; make the plan again with this program"
-    )]
-    Version { found: u32 },
-    #[error("the plan's FRC table makes no sense; make the plan again")]
-    FrcTable(#[from] FrcTableError),
-    #[error(
-        "the plan says on which levels classes of roads are shown, and this makes no sense; make the plan again"
-    )]
-    Filter,
-    #[error(
-        "the plan does not fit this machine or its files any more: {}; make the plan again, or use the files and the program that it was made with",
-        differences.join("; ")
-    )]
-    Differs { differences: Vec<String> },
 }
 
 impl BuildPlan {

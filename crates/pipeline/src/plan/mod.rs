@@ -16,7 +16,7 @@ mod room;
 
 use std::path::Path;
 
-pub use build_plan::{BuildPlan, FrcTableRecord, PlanError, PlannedGrid, PlannedLevel};
+pub use build_plan::{BuildPlan, FrcTableRecord, PlannedGrid, PlannedLevel};
 pub use estimate::{Estimate, MemoryEstimate, Rates};
 pub(crate) use opened::Opened;
 

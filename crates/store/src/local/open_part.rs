@@ -252,7 +252,7 @@ impl OpenPart {
 
     /// Removes the part.
     pub(crate) fn abandon(self) -> Result<(), StoreError> {
-        self.give_up("it was given up".to_owned());
+        self.give_up("the part was given up".to_owned());
         remove(self.data.files(), &self.journal)
     }
 

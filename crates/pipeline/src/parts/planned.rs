@@ -1,0 +1,18 @@
+//! What a plan is about, opened and compared with the plan.
+
+use crate::{BuildError, BuildPlan, PlanSettings, Resources, context::MemoryShares, plan::Opened};
+
+/// Opens the inputs of a plan and fails if they, or this program, are not those of the plan.
+pub(crate) fn open(
+    plan: &BuildPlan,
+    generator: &str,
+    resources: Resources,
+) -> Result<(PlanSettings, Opened), BuildError> {
+    let shares = MemoryShares::of(resources.memory_bytes);
+    corniche_dem::limit_block_cache(shares.raster_cache)
+        .map_err(|error| BuildError::Start { what: error.to_string() })?;
+    let settings = PlanSettings { generator: generator.to_owned(), ..plan.settings()? };
+    let opened = Opened::new(&settings)?;
+    plan.check_same(&BuildPlan::of(&settings, &opened)?)?;
+    Ok((settings, opened))
+}

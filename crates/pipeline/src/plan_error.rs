@@ -1,0 +1,28 @@
+use corniche_roads::FrcTableError;
+
+/// Version of a plan's JSON; other versions are refused.
+pub(crate) const PLAN_VERSION: u32 = 1;
+
+/// Why a text is no plan, or a plan cannot be used here.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum PlanError {
+    #[error("this is no plan of a build: make one with corniche plan -o FILE")]
+    Json(#[from] serde_json::Error),
+    #[error(
+        "the plan is of version {found}, and this program reads version {PLAN_VERSION}; make the plan again with this program"
+    )]
+    Version { found: u32 },
+    #[error("the plan's FRC table makes no sense; make the plan again")]
+    FrcTable(#[from] FrcTableError),
+    #[error(
+        "the plan says on which levels classes of roads are shown, and this makes no sense; make the plan again"
+    )]
+    Filter,
+    #[error(
+        "the plan does not fit this machine or its files any more: {}; make the plan again, or use the files and the program that it was made with",
+        differences.join("; ")
+    )]
+    Differs { differences: Vec<String> },
+}
