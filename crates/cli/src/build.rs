@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_pipeline::{BuildError, BuildSettings, Existing, Leftovers};
+use corniche_pipeline::{BuildError, BuildSettings, BuildSummary, Existing, Leftovers};
 use corniche_tileset::Manifest;
 
 use crate::{
-    args::BuildArgs,
+    args::{BuildArgs, ReportArgs},
     defects::{DefectList, Watch},
     exit::ExitCode,
     failure::Failure,
@@ -18,8 +18,6 @@ use crate::{
 pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
     output::writable(&args.output)?;
     let progress = Progress::new(&args.report);
-    let is_json = args.report.json_progress;
-    let quiet = args.report.quiet || is_json;
     let defects = match &args.defects {
         Some(path) => {
             let existing =
@@ -33,8 +31,21 @@ pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
         None => None,
     };
     let watch = Watch { progress, defects };
-    let settings = settings(*args)?;
+    let report = args.report;
+    let settings = settings(BuildArgs { report, ..*args })?;
     let built = corniche_pipeline::build(&settings, &watch);
+    finish(built, watch, &report, &settings.output)
+}
+
+/// Tells what became of a build, and puts the list of defects in its place.
+pub(crate) fn finish(
+    built: Result<BuildSummary, BuildError>,
+    watch: Watch,
+    report: &ReportArgs,
+    output: &Path,
+) -> Result<ExitCode, Failure> {
+    let is_json = report.json_progress;
+    let quiet = report.quiet || is_json;
     // A list is put in its place only if it is complete. That is so after a run that failed because no road was kept: all
     // roads were looked at, and the list tells why they were lost.
     let is_complete = match &built {
@@ -48,7 +59,7 @@ pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
         tell_warnings(&summary.manifest, is_json);
     } else {
         eprintln!("\n{}", info::to_text(&summary.manifest, summary.package_bytes));
-        eprintln!("wrote {}", settings.output.display());
+        eprintln!("wrote {}", output.display());
     }
     watch.progress.tell_costs();
     Ok(ExitCode::Done)

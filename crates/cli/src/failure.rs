@@ -23,6 +23,11 @@ impl Failure {
         Self::new(ExitCode::Unusable, anyhow::anyhow!("{message}"))
     }
 
+    /// The same, with the file that it is about in front.
+    pub(crate) fn about(self, path: &std::path::Path) -> Self {
+        Self { error: self.error.context(path.display().to_string()), ..self }
+    }
+
     /// A signal came.
     pub(crate) fn interrupted() -> Self {
         Self::new(ExitCode::Interrupted, anyhow::anyhow!("interrupted"))

@@ -14,7 +14,9 @@ mod fly;
 mod growth;
 mod info;
 mod interrupt;
+mod merge;
 mod output;
+mod part;
 mod plan;
 mod presets;
 mod progress;
@@ -60,6 +62,8 @@ fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
     match arguments.command {
         Command::Build(args) => build::run(args),
         Command::Plan(args) => plan::run(*args),
+        Command::Part(args) => part::run(&args),
+        Command::Merge(args) => merge::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Growth(args) => growth::run(&args),
         Command::Verify(args) => verify::run(&args),

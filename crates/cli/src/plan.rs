@@ -32,10 +32,18 @@ pub(crate) fn run(args: PlanArgs) -> Result<ExitCode, Failure> {
         None => None,
     };
     let work = settings::of(args.work)?;
+    if let Some(level) = args.subtrees {
+        let plan = BuildPlan::make(&work.plan)?;
+        let subtrees = subtrees(&plan, level)?;
+        if let Some(file) = written {
+            write_plan(file, &plan)?;
+        }
+        io::stdout().lock().write_all(subtrees.as_bytes())?;
+        return Ok(ExitCode::Done);
+    }
     let (plan, estimate) = corniche_pipeline::plan(&work.plan, work.resources, &Signals)?;
     if let Some(file) = written {
-        let text = plan.to_json().map_err(|error| Failure::new(ExitCode::Failed, error))?;
-        file.write_whole(text.as_bytes())?;
+        write_plan(file, &plan)?;
     }
     let mut out = io::stdout().lock();
     if args.json {
@@ -45,6 +53,21 @@ pub(crate) fn run(args: PlanArgs) -> Result<ExitCode, Failure> {
         out.write_all(to_text(&plan, &estimate, work.resources).as_bytes())?;
     }
     Ok(ExitCode::Done)
+}
+
+fn write_plan(file: Output, plan: &BuildPlan) -> Result<(), Failure> {
+    let text = plan.to_json().map_err(|error| Failure::new(ExitCode::Failed, error))?;
+    file.write_whole(text.as_bytes())
+}
+
+/// The subtrees of a level, one per line.
+fn subtrees(plan: &BuildPlan, level: u8) -> Result<String, Failure> {
+    let finest = plan.grid.frame.max_level();
+    if level > finest {
+        let message = format!("--subtrees {level}: the finest level is {finest}");
+        return Err(Failure::unusable(message));
+    }
+    Ok(plan.subtrees(level).iter().map(|id| format!("{id}\n")).collect())
 }
 
 /// Stops when a signal comes; has nothing to show.
@@ -77,6 +100,9 @@ fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources) -> Strin
         say(&input.kind, &format!("{}, {}", input.path, bytes(input.bytes)));
     }
     say("nodes", &count(estimate.nodes));
+    let subtrees = |level| format!("{} on level {level}", plan.subtrees(level).len());
+    let few: Vec<String> = (0..=grid.frame.max_level().min(3)).map(subtrees).collect();
+    say("subtrees", &format!("with data: {}", few.join(", ")));
     say("tiles", &count(estimate.tiles.iter().sum()));
     let memory = &estimate.memory;
     let least_bytes = memory.least_bytes.max(MIN_MEMORY_BYTES);

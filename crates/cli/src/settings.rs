@@ -7,8 +7,7 @@ use corniche_pipeline::{
     OpenOptions, PlanOptions, PlanSettings, Resources, RoadSettings, TerrainSettings,
 };
 use corniche_presets::{
-    Config, ResourceOptions, RoadOptions, TerrainOptions, check_cell, class_filter, is_range,
-    parse_memory,
+    Config, RoadOptions, TerrainOptions, check_cell, class_filter, is_range, parse_memory,
 };
 use corniche_roads::ClassFilter;
 
@@ -51,10 +50,15 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
         },
         terrain: terrain_settings(terrain, args.force)?,
         roads: road_settings(roads)?,
-        generator: format!("corniche {}", env!("CARGO_PKG_VERSION")),
+        generator: generator(),
     };
     let force = args.force;
-    Ok(Work { plan, resources: resource_settings(&resources)?, tmp: resources.tmp, force })
+    Ok(Work {
+        plan,
+        resources: self::resources(resources.threads, resources.memory.as_deref())?,
+        tmp: resources.tmp,
+        force,
+    })
 }
 
 fn terrain_settings(options: TerrainOptions, force: bool) -> Result<TerrainSettings, Failure> {
@@ -103,14 +107,23 @@ fn road_settings(options: RoadOptions) -> Result<RoadSettings, Failure> {
     Ok(RoadSettings { table, filter, simplify_cells })
 }
 
-fn resource_settings(options: &ResourceOptions) -> Result<Resources, Failure> {
-    let memory_bytes = match &options.memory {
+/// Program and version.
+pub(crate) fn generator() -> String {
+    format!("corniche {}", env!("CARGO_PKG_VERSION"))
+}
+
+/// What a run may use.
+pub(crate) fn resources(
+    threads_asked: Option<NonZeroUsize>,
+    memory: Option<&str>,
+) -> Result<Resources, Failure> {
+    let memory_bytes = match memory {
         Some(text) => {
             parse_memory(text).map_err(|error| Failure::unusable(format!("--memory {error}")))?
         }
         None => corniche_pipeline::default_memory_bytes(),
     };
-    Ok(Resources { threads: threads(options.threads), memory_bytes })
+    Ok(Resources { threads: threads(threads_asked), memory_bytes })
 }
 
 fn positive(option: &str, value: Option<f64>) -> Result<Option<f64>, Failure> {

@@ -13,9 +13,12 @@
 //! | `Tin` | coarse tile | its TIN with normals; empty where it has no ground | top, tiles | tiles, merge |
 //! | `Record` | tile | counts and sums, deviations of itself and its share in those of its ancestors | tiles, merge | merge |
 //! | `Payload` | tile | its encoded bytes | tiles, merge | merge |
+//! | `Subtree` | tile | nothing: the heights beneath it are there | heights | top |
+//! | `Top` | 0 | nothing: all heights are there and can be heights | top | tiles, merge |
 //!
 //! A tile is finished when its `Record` is there: it is put last. So is an area when its `Area` is there, and the roads when
-//! `RoadTotals` is.
+//! `RoadTotals` is. Heights, rasters and TINs of tiles without any are kept as well, empty: what is not there was not made, and is
+//! never taken for a void.
 
 use corniche_geom::TileId;
 use corniche_store::{Artifacts, Key};
@@ -39,11 +42,13 @@ pub(crate) enum Kind {
     Tin,
     Record,
     Payload,
+    Subtree,
+    Top,
 }
 
 impl Kind {
     /// All of them.
-    pub(crate) const ALL: [Self; 11] = [
+    pub(crate) const ALL: [Self; 13] = [
         Self::InputHash,
         Self::RoadPieces,
         Self::RoadLengths,
@@ -55,6 +60,8 @@ impl Kind {
         Self::Tin,
         Self::Record,
         Self::Payload,
+        Self::Subtree,
+        Self::Top,
     ];
 
     /// The key of what belongs to a tile.

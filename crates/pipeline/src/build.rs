@@ -7,10 +7,15 @@
 //!
 //! Each step is a module of [`steps`](crate::steps). What one step hands to the next are artifacts in a store beside the target.
 
-mod unfinished;
-mod work_store;
+pub(crate) mod unfinished;
+pub(crate) mod work_store;
 
-use std::{fs, path::Path, sync::Arc, time::Duration};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    sync::Arc,
+    time::Duration,
+};
 
 use corniche_dem::GridPlan;
 use corniche_geom::TileId;
@@ -23,7 +28,7 @@ use crate::{
     context::{Context, MemoryShares},
     file_target,
     plan::{Opened, check_room},
-    steps::{hashes, merge, roads, tiles},
+    steps::{hashes, heights, merge, roads, tiles, top},
 };
 
 /// The result of a build.
@@ -65,7 +70,7 @@ pub fn build_on(
     if settings.existing == Existing::Keep && fs::symlink_metadata(target).is_ok() {
         return Err(BuildError::Exists { path: target.clone() });
     }
-    refuse_inputs_as_target(settings)?;
+    refuse_inputs_as_target(&settings.output, settings.dem.iter().chain(&settings.osm))?;
     let shares = MemoryShares::of(settings.resources.memory_bytes);
     corniche_dem::limit_block_cache(shares.raster_cache)
         .map_err(|error| BuildError::Start { what: error.to_string() })?;
@@ -106,14 +111,23 @@ pub fn build_on(
 }
 
 /// Fails if the target is one of the inputs.
-fn refuse_inputs_as_target(settings: &BuildSettings) -> Result<(), BuildError> {
-    let Ok(target) = fs::canonicalize(&settings.output) else { return Ok(()) };
-    for input in settings.dem.iter().chain(&settings.osm) {
+pub(crate) fn refuse_inputs_as_target<'a>(
+    output: &Path,
+    inputs: impl Iterator<Item = &'a PathBuf>,
+) -> Result<(), BuildError> {
+    let Ok(target) = fs::canonicalize(output) else { return Ok(()) };
+    for input in inputs {
         if fs::canonicalize(input).is_ok_and(|input| input == target) {
             return Err(BuildError::TargetIsInput { path: input.clone() });
         }
     }
     Ok(())
+}
+
+/// Warns of what a user may not have meant, before any work.
+pub(crate) fn warn(context: &Context<'_>) {
+    warn_of_other_grids(context.grid, context.observer);
+    warn_of_unused_latitude(&context.settings.terrain, context.grid, context.observer);
 }
 
 /// Warns of files that are resampled onto the grid of the first one.
@@ -143,18 +157,12 @@ fn run(
     scratch: &dyn Scratch,
     target: &merge::Target<'_>,
 ) -> Result<Manifest, BuildError> {
-    let pyramid = context.pyramid();
-    warn_of_other_grids(context.grid, context.observer);
-    warn_of_unused_latitude(&context.settings.terrain, context.grid, context.observer);
+    warn(context);
     hashes::make(context)?;
     // Roads come before the long work on heights, so that an unusable extract is reported at once.
     roads::make(context, scratch)?;
-    pyramid.make(TileId::ROOT)?;
-    // Before any tile is made, because no tile has ground where no node has a height.
-    pyramid.check()?;
-    if pyramid.sums()?.samples.with_data == 0 {
-        return Err(BuildError::NoHeights { dem: context.settings.dem.clone() });
-    }
+    heights::make(context, TileId::ROOT)?;
+    top::make(context)?;
     tiles::make(context, TileId::ROOT)?;
     merge::make(context, scratch, target)
 }

@@ -77,13 +77,25 @@ pub enum BuildError {
         "{store:?} is of another build: {differences}; give the inputs and settings of that build, or -O to start again"
     )]
     OtherBuild { store: PathBuf, differences: String },
+    #[error(transparent)]
+    Plan(#[from] crate::PlanError),
+    #[error(
+        "{store:?} is of another plan: {differences}; give the plan that it was made with, or another --store"
+    )]
+    OtherPlan { store: PathBuf, differences: String },
+    #[error("{folder:?} holds no store; nothing was kept there yet, or the name is wrong")]
+    NoStore { folder: PathBuf },
+    #[error("--subtree {subtree}: {why}")]
+    Subtree { subtree: corniche_geom::TileId, why: String },
     #[error(
         "{folder:?} holds {kept:?}, which is not Corniche's; move it away or choose another --tmp"
     )]
     NotOurs { folder: PathBuf, kept: PathBuf },
     #[error("{path:?} is being built by another process; wait until it has ended")]
     AtWork { path: PathBuf },
-    #[error("{what} is missing in the store; run the step {step} first")]
+    #[error(
+        "{what}: not in the store; run corniche part with --step {step}, or give the folder of its part with --store"
+    )]
     Missing { what: String, step: &'static str },
     #[error("roads could not be sorted on the disk (disk full?)")]
     Storage(#[source] io::Error),
@@ -134,6 +146,11 @@ impl BuildError {
                 | Self::NoGround { .. }
                 | Self::Coordinates(_)
                 | Self::MaxError { .. }
+                | Self::Plan(_)
+                | Self::OtherPlan { .. }
+                | Self::NoStore { .. }
+                | Self::Subtree { .. }
+                | Self::Missing { .. }
                 | Self::NoMemory { .. }
                 | Self::NoRoom { .. }
                 | Self::Triangulate { source: corniche_tin::TriangulateError::Height { .. }, .. }

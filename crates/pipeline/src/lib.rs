@@ -14,6 +14,7 @@ mod levels;
 mod machine;
 mod manifest_texts;
 mod observer;
+mod parts;
 mod plan;
 mod roads;
 mod sample_deviation;
@@ -33,6 +34,7 @@ pub use error::BuildError;
 pub use inputs::PlannedInput;
 pub use machine::{MIN_MEMORY_BYTES, default_memory_bytes, machine_memory_bytes};
 pub use observer::{Observer, Silent, Stage, Unit};
+pub use parts::{MergeSettings, PartSettings, PartSummary, Step, make_part, merge};
 pub use plan::{
     BuildPlan, Estimate, FrcTableRecord, MemoryEstimate, PlanError, PlannedGrid, PlannedLevel,
     Rates, plan,

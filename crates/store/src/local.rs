@@ -238,6 +238,15 @@ impl LocalStore {
         own.part.seal(&own.folder, &self.index())
     }
 
+    /// Gives the own part up: what was put into it is removed. Sealed parts stay as they are.
+    ///
+    /// # Errors
+    /// [`StoreError::ReadOnly`]; where the disk fails.
+    pub fn abandon(mut self) -> Result<(), StoreError> {
+        let own = self.own.take().ok_or_else(|| self.read_only())?;
+        own.part.abandon()
+    }
+
     /// Scratch space in the store's folder.
     ///
     /// # Errors

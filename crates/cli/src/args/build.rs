@@ -61,11 +61,14 @@ pub(crate) struct PlanArgs {
     /// Print the estimates as JSON, for programs
     #[arg(long)]
     pub(crate) json: bool,
+    /// Print only the tiles of this level that hold data, one Z/X/Y per line: subtrees for corniche part
+    #[arg(long, value_name = "LEVEL", conflicts_with = "json")]
+    pub(crate) subtrees: Option<u8>,
     #[command(flatten)]
     pub(crate) work: WorkArgs,
 }
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Copy, Args)]
 #[command(next_help_heading = "Progress")]
 pub(crate) struct ReportArgs {
     /// Print only errors and warnings

@@ -5,6 +5,7 @@ mod camera;
 mod drawing;
 mod ground;
 mod look;
+mod part;
 mod reading;
 mod values;
 mod view;
@@ -14,6 +15,7 @@ use clap::{Parser, Subcommand};
 pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use look::Roads;
+pub(crate) use part::{MergeArgs, PartArgs};
 pub(crate) use reading::{Coordinates, GrowthArgs, InfoArgs, TileArgs, VerifyArgs};
 pub(crate) use view::{Motion, ViewArgs};
 
@@ -31,6 +33,10 @@ pub(crate) enum Command {
     Build(Box<BuildArgs>),
     /// Tell what a build will make and what it will take, and write its plan
     Plan(Box<PlanArgs>),
+    /// Make one part of a planned build; prints the path of its file
+    Part(PartArgs),
+    /// Write the package of a plan from all its parts
+    Merge(MergeArgs),
     /// Tell what a package holds and what became of its inputs
     Info(InfoArgs),
     /// Tell what laying roads on the terrain costs, per level and class

@@ -10,7 +10,7 @@ use crate::{BuildError, Existing};
 
 /// The file that becomes the package. It is removed when the build fails. After a build that was killed it stays until the next
 /// one takes it over.
-pub(super) struct Unfinished {
+pub(crate) struct Unfinished {
     path: PathBuf,
     /// Holds the lock.
     _file: File,
@@ -18,7 +18,7 @@ pub(super) struct Unfinished {
 
 impl Unfinished {
     /// Makes the file in `folder`, that of the target, and locks it: of two builds of one target one is refused.
-    pub(super) fn create(target: &Path, folder: &Path) -> Result<Self, BuildError> {
+    pub(crate) fn create(target: &Path, folder: &Path) -> Result<Self, BuildError> {
         let unusable = |source| BuildError::Target { folder: folder.to_path_buf(), source };
         let name = target.file_name().unwrap_or_default().to_string_lossy();
         let path = target.with_file_name(format!(".{name}.unfinished"));
@@ -41,12 +41,12 @@ impl Unfinished {
         }
     }
 
-    pub(super) fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
     /// Writes the finished package's bytes to the disk, then moves the file to its place. Returns its size.
-    pub(super) fn place(&self, target: &Path, existing: Existing) -> Result<u64, BuildError> {
+    pub(crate) fn place(&self, target: &Path, existing: Existing) -> Result<u64, BuildError> {
         let failed = |source| BuildError::Rename { path: target.to_path_buf(), source };
         let file = File::options().write(true).open(&self.path).map_err(failed)?;
         file.sync_all().map_err(failed)?;

@@ -71,7 +71,7 @@ pub(crate) fn stored(plan: &BuildPlan) -> Result<StoredPlan, BuildError> {
 }
 
 /// How a plan differs from the one of a store, in words.
-fn differences(plan: &BuildPlan, there: &StoredPlan) -> String {
+pub(crate) fn differences(plan: &BuildPlan, there: &StoredPlan) -> String {
     let earlier =
         std::str::from_utf8(&there.bytes).ok().and_then(|text| BuildPlan::from_json(text).ok());
     match earlier.map(|earlier| plan.differences(&earlier)) {

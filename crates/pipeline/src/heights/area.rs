@@ -123,8 +123,9 @@ impl<'a> AreaReader<'a> {
             let window = self.reader.window(window_of(&frame, first, last))?;
             for &id in &tiles {
                 let (left, top) = place([first.x(), first.y()], id);
-                if let Some(heights) = FinestHeights::cut(&window, left, top) {
-                    heights.put(self.store, id)?;
+                match FinestHeights::cut(&window, left, top) {
+                    Some(heights) => heights.put(self.store, id)?,
+                    None => FinestHeights::put_none(self.store, id)?,
                 }
                 record.count(&window, id, [left, top], frame.max_level());
             }

@@ -1,7 +1,9 @@
 //! The finest tiles on which the DEM's rectangle lies.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use corniche_dem::GridPlan;
-use corniche_geom::{Frame, LatticeBounds, LatticePoint, TILE_CELLS, TileId};
+use corniche_geom::{Frame, LatticeBounds, LatticePoint, NodeIndex, TILE_CELLS, TileId};
 use corniche_tileset::pmtiles_order;
 
 /// A rectangle of finest tiles; both ends belong to it.
@@ -18,13 +20,18 @@ impl DataTiles {
     /// Those of a plan. Nodes on a border belong to the tile in the east or south; on the root's own east or south border, to
     /// its last tiles.
     pub(crate) fn of(plan: &GridPlan) -> Self {
-        let corner = plan.frame.root_corner();
-        let last = (1_i64 << plan.frame.max_level()) - 1;
+        Self::between(&plan.frame, plan.south_west, plan.north_east)
+    }
+
+    /// Those on which the nodes between two corners lie.
+    pub(crate) fn between(frame: &Frame, south_west: NodeIndex, north_east: NodeIndex) -> Self {
+        let corner = frame.root_corner();
+        let last = (1_i64 << frame.max_level()) - 1;
         let index = |cells: i64| cells.div_euclid(TILE_CELLS).clamp(0, last) as u32;
         Self {
-            level: plan.frame.max_level(),
-            columns: [plan.south_west.i, plan.north_east.i].map(|i| index(i - corner.i)),
-            rows: [plan.north_east.j, plan.south_west.j].map(|j| index(corner.j - j)),
+            level: frame.max_level(),
+            columns: [south_west.i, north_east.i].map(|i| index(i - corner.i)),
+            rows: [north_east.j, south_west.j].map(|j| index(corner.j - j)),
         }
     }
 
@@ -71,6 +78,33 @@ impl DataTiles {
         tiles
     }
 
+    /// The tiles that `is_missing` says are missing, of these and those above: the largest of which nothing is there.
+    pub(crate) fn missing(&self, is_missing: impl Fn(TileId) -> bool) -> Vec<TileId> {
+        let mut level = *self;
+        let mut missing: BTreeSet<TileId> =
+            self.within(TileId::ROOT).into_iter().filter(|&id| is_missing(id)).collect();
+        let mut largest = Vec::new();
+        while level.level > 0 {
+            let mut by_parent: BTreeMap<TileId, Vec<TileId>> = BTreeMap::new();
+            for id in missing {
+                by_parent.entry(id.ancestor(id.z() - 1)).or_default().push(id);
+            }
+            let all = |parent: TileId| parent.children().filter(|&id| level.contains(id)).count();
+            missing = BTreeSet::new();
+            for (parent, children) in by_parent {
+                if children.len() == all(parent) {
+                    missing.insert(parent);
+                } else {
+                    largest.extend(children);
+                }
+            }
+            level = self.above(level.level - 1);
+        }
+        largest.extend(missing);
+        largest.sort_unstable();
+        largest
+    }
+
     /// The rectangle of all of them.
     pub(crate) fn bounds(&self, frame: &Frame) -> LatticeBounds {
         let corner = |x: u32, y: u32| {
@@ -79,3 +113,7 @@ impl DataTiles {
         corner(self.columns[0], self.rows[0]).union(&corner(self.columns[1], self.rows[1]))
     }
 }
+
+#[cfg(test)]
+#[path = "data_tiles_tests.rs"]
+mod tests;

@@ -61,10 +61,20 @@ impl FinestHeights {
         Ok(store.put(Kind::Heights.of_tile(id), &bytes)?)
     }
 
-    /// `None` where the tile has no height.
+    /// Says that a tile has no height: what is not there was not made.
+    pub(crate) fn put_none(store: &dyn Artifacts, id: TileId) -> Result<(), BuildError> {
+        Ok(store.put(Kind::Heights.of_tile(id), &[])?)
+    }
+
+    /// `None` where the tile has no height. It must be one of the data's tiles.
     pub(crate) fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<Self>, BuildError> {
         let key = Kind::Heights.of_tile(id);
-        let Some(bytes) = store.get(key)? else { return Ok(None) };
+        let missing =
+            || BuildError::Missing { what: format!("the heights of tile {id}"), step: "heights" };
+        let bytes = store.get(key)?.ok_or_else(missing)?;
+        if bytes.is_empty() {
+            return Ok(None);
+        }
         let (heights, filled) = bytes
             .split_at_checked(HALO_NODES * HALO_NODES * 4)
             .ok_or_else(|| damaged(key, &"it is too short"))?;

@@ -32,12 +32,26 @@ impl Pyramid<'_> {
         self.make_rasters(scope)
     }
 
+    /// Whether all that is made of an area is there. An area above it has the same.
+    fn has_area(&self, area: TileId) -> bool {
+        let (store, data) = (self.store, self.data());
+        let finest_level = self.grid.frame.max_level();
+        let mut rasters = (area.z()..finest_level).flat_map(|level| data.above(level).within(area));
+        (0..=area.z()).any(|level| store.has(Kind::Area.of_tile(area.ancestor(level))))
+            && data.within(area).into_iter().all(|id| store.has(Kind::Heights.of_tile(id)))
+            && rasters.all(|id| store.has(Kind::Raster.of_tile(id)))
+    }
+
+    fn data(&self) -> DataTiles {
+        DataTiles::of(self.grid)
+    }
+
     fn read_areas(&self, scope: TileId) -> Result<(), BuildError> {
         let &Self { dem, grid, store, observer, .. } = self;
         let level = area_level(&grid.frame, scope);
-        let all = DataTiles::of(grid).above(level).within(scope);
-        let is_missing = |area: &&TileId| !store.has(Kind::Area.of_tile(**area));
-        let missing: Vec<TileId> = all.iter().filter(is_missing).copied().collect();
+        let all = self.data().above(level).within(scope);
+        let missing: Vec<TileId> =
+            all.iter().copied().filter(|&area| !self.has_area(area)).collect();
         observer.begin(Stage::Heights, Some(all.len() as u64));
         observer.already(Stage::Heights, (all.len() - missing.len()) as u64);
         let mut blocks: BTreeMap<TileId, Vec<AuditBlock>> = BTreeMap::new();
@@ -67,15 +81,16 @@ impl Pyramid<'_> {
 
     /// Makes the rasters that are missing beneath and at `scope`, from those that are there up.
     pub(crate) fn make_rasters(&self, scope: TileId) -> Result<(), BuildError> {
-        let store = self.store;
+        let (store, data) = (self.store, self.data());
         for level in (scope.z()..self.grid.frame.max_level()).rev() {
-            let ids = missing_rasters(store, &DataTiles::of(self.grid).above(level), scope);
+            let mut ids = data.above(level).within(scope);
+            ids.retain(|&id| !store.has(Kind::Raster.of_tile(id)));
             workers::in_order_unless_cancelled(
                 self.observer,
                 self.threads,
                 ids.len(),
                 || Ok(()),
-                |(), index| rasters::put_from_children(store, ids[index]),
+                |(), index| rasters::put_from_children(store, &data, ids[index]),
                 |_, ()| Ok::<_, BuildError>(()),
             )?;
         }
@@ -84,18 +99,26 @@ impl Pyramid<'_> {
 
     /// The heights of a tile with one node of halo on every side (259 × 259); `None` where the tile has no height.
     pub(crate) fn tile(&self, id: TileId) -> Result<Option<HeightGrid>, BuildError> {
-        rasters::of_any_level(self.store, id, self.grid.frame.max_level())
+        rasters::of_any_level(self.store, &self.data(), id)
     }
 }
 
-/// Tiles without a raster that have a child with one.
-fn missing_rasters(store: &dyn Artifacts, level: &DataTiles, scope: TileId) -> Vec<TileId> {
-    let mut tiles = level.within(scope);
-    tiles.retain(|&id| {
-        !store.has(Kind::Raster.of_tile(id))
-            && id.children().any(|child| store.has(Kind::Raster.of_tile(child)))
-    });
-    tiles
+/// Fails if some tiles are missing, naming them.
+pub(crate) fn all_there(
+    what: &str,
+    missing: &[TileId],
+    step: &'static str,
+) -> Result<(), BuildError> {
+    const NAMED: usize = 8;
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let mut names: Vec<String> = missing.iter().take(NAMED).map(ToString::to_string).collect();
+    if missing.len() > NAMED {
+        names.push(format!("and {} more", missing.len() - NAMED));
+    }
+    let what = format!("{what} of {}", names.join(", "));
+    Err(BuildError::Missing { what, step })
 }
 
 /// What the heights of all areas add up to.
@@ -132,21 +155,35 @@ impl Pyramid<'_> {
 
     /// The records of all areas together; fails if one is missing.
     ///
-    /// The areas of a build that was split may lie on several levels. Each finest tile counts for the lowest that is there.
+    /// The areas of a build that was split may lie on several levels, and even one above the other. Each finest tile counts for
+    /// the highest that is there: so do all others beneath that one, and nothing counts twice.
     fn all_areas(&self) -> Result<AreaRecord, BuildError> {
         let store = self.store;
+        let area_of = |finest: TileId| {
+            let mut areas = (0..=finest.z()).map(|level| finest.ancestor(level));
+            areas.find(|&area| store.has(Kind::Area.of_tile(area)))
+        };
+        let data = self.data();
+        all_there("the heights", &data.missing(|id| area_of(id).is_none()), "heights")?;
+        let areas: BTreeSet<TileId> =
+            data.within(TileId::ROOT).into_iter().filter_map(area_of).collect();
         let mut all = AreaRecord::default();
-        let mut found = BTreeSet::new();
-        for finest in DataTiles::of(self.grid).within(TileId::ROOT) {
-            let mut areas = (0..=finest.z()).rev().map(|level| finest.ancestor(level));
-            let area = areas.find(|&area| store.has(Kind::Area.of_tile(area)));
-            let what = || format!("the heights of tile {finest}");
-            let area = area.ok_or_else(|| BuildError::Missing { what: what(), step: "heights" })?;
-            if found.insert(area) {
-                all.merge(AreaRecord::get(store, area)?.unwrap_or_default());
-            }
+        for area in areas {
+            all.merge(AreaRecord::get(store, area)?.unwrap_or_default());
         }
         Ok(all)
+    }
+
+    /// Fails if heights of finest tiles of the subtree `scope` or rasters of any tile are missing.
+    pub(crate) fn check_complete(&self, scope: TileId) -> Result<(), BuildError> {
+        let (store, data) = (self.store, self.data());
+        let is_missing =
+            |id: TileId| id.ancestor(scope.z()) == scope && !store.has(Kind::Heights.of_tile(id));
+        all_there("the heights", &data.missing(is_missing), "heights")?;
+        let levels = 0..self.grid.frame.max_level();
+        let all = levels.flat_map(|level| data.above(level).within(TileId::ROOT));
+        let missing: Vec<TileId> = all.filter(|&id| !store.has(Kind::Raster.of_tile(id))).collect();
+        all_there("the heights", &missing, "top")
     }
 
     /// Lowest and highest height that samples may have, metres.

@@ -5,41 +5,67 @@
 use corniche_geom::{HeightGrid, TILE_CELLS, TileId};
 use corniche_store::Artifacts;
 
-use super::finest::{FinestHeights, HALO_NODES, TILE_NODES, grid_of, height_bytes};
+use super::{
+    data_tiles::DataTiles,
+    finest::{FinestHeights, HALO_NODES, TILE_NODES, grid_of, height_bytes},
+};
 use crate::{
     BuildError,
     artifacts::{Kind, damaged},
 };
 
-/// Keeps a tile's raster, if it has any height.
+/// Keeps a tile's raster. Without any height it has no bytes, but it is there: what is not there was not made.
 pub(crate) fn put(
     store: &dyn Artifacts,
     id: TileId,
     raster: &HeightGrid,
 ) -> Result<(), BuildError> {
-    if raster.count_heights() == 0 {
-        return Ok(());
-    }
-    Ok(store.put(Kind::Raster.of_tile(id), &height_bytes(raster))?)
+    let bytes = if raster.count_heights() == 0 { Vec::new() } else { height_bytes(raster) };
+    Ok(store.put(Kind::Raster.of_tile(id), &bytes)?)
 }
 
-/// A tile's raster; `None` where it has no height.
-pub(crate) fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<HeightGrid>, BuildError> {
+/// The raster of a tile above the finest level; `None` where it has no height, and beside the data.
+pub(crate) fn get(
+    store: &dyn Artifacts,
+    data: &DataTiles,
+    id: TileId,
+) -> Result<Option<HeightGrid>, BuildError> {
+    if !data.above(id.z()).contains(id) {
+        return Ok(None);
+    }
     let key = Kind::Raster.of_tile(id);
-    let Some(bytes) = store.get(key)? else { return Ok(None) };
-    if bytes.len() == TILE_NODES * TILE_NODES * 4 {
-        Ok(Some(grid_of(&bytes, TILE_NODES)))
-    } else {
-        Err(damaged(key, &"it has another size"))
+    let missing = || BuildError::Missing { what: format!("the heights of tile {id}"), step: "top" };
+    let bytes = store.get(key)?.ok_or_else(missing)?;
+    match bytes.len() {
+        0 => Ok(None),
+        length if length == TILE_NODES * TILE_NODES * 4 => Ok(Some(grid_of(&bytes, TILE_NODES))),
+        _ => Err(damaged(key, &"it has another size")),
     }
 }
 
-/// Makes a tile's raster from those of its children.
-pub(crate) fn put_from_children(store: &dyn Artifacts, id: TileId) -> Result<(), BuildError> {
+/// The nodes of any tile, borders included; `None` where it has no height, and beside the data.
+fn own_nodes(
+    store: &dyn Artifacts,
+    data: &DataTiles,
+    id: TileId,
+) -> Result<Option<HeightGrid>, BuildError> {
+    if data.contains(id) {
+        Ok(FinestHeights::get(store, id)?.map(|heights| heights.own()))
+    } else {
+        get(store, data, id)
+    }
+}
+
+/// Makes a tile's raster from the heights of its children.
+pub(crate) fn put_from_children(
+    store: &dyn Artifacts,
+    data: &DataTiles,
+    id: TileId,
+) -> Result<(), BuildError> {
     let half = TILE_CELLS as usize / 2;
     let mut heights_m = vec![f32::NAN; TILE_NODES * TILE_NODES];
     for child in id.children() {
-        let Some(raster) = get(store, child)? else { continue };
+        let Some(raster) = own_nodes(store, data, child)? else { continue };
         let (left, top) = ((child.x() % 2) as usize * half, (child.y() % 2) as usize * half);
         for row in 0..=half {
             for column in 0..=half {
@@ -57,9 +83,10 @@ pub(crate) fn put_from_children(store: &dyn Artifacts, id: TileId) -> Result<(),
 /// tile itself has no height.
 pub(crate) fn with_halo(
     store: &dyn Artifacts,
+    data: &DataTiles,
     id: TileId,
 ) -> Result<Option<HeightGrid>, BuildError> {
-    let Some(own) = get(store, id)? else { return Ok(None) };
+    let Some(own) = get(store, data, id)? else { return Ok(None) };
     let mut heights_m = vec![f32::NAN; HALO_NODES * HALO_NODES];
     let mut fill = |raster: &HeightGrid, dx: i32, dy: i32| {
         // The part of the window that a neighbour fills, and where it begins in the neighbour. Borders are the same in both.
@@ -79,22 +106,22 @@ pub(crate) fn with_halo(
     fill(&own, 0, 0);
     for (dx, dy) in [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)] {
         let Some(neighbour) = id.neighbour(dx, dy) else { continue };
-        if let Some(raster) = get(store, neighbour)? {
+        if let Some(raster) = get(store, data, neighbour)? {
             fill(&raster, dx, dy);
         }
     }
     Ok(Some(HeightGrid::new(HALO_NODES, HALO_NODES, heights_m)))
 }
 
-/// The heights of any tile with one node of halo; `None` where the tile has no height.
+/// The heights of any tile with one node of halo; `None` where the tile has no height, and beside the data.
 pub(crate) fn of_any_level(
     store: &dyn Artifacts,
+    data: &DataTiles,
     id: TileId,
-    finest_level: u8,
 ) -> Result<Option<HeightGrid>, BuildError> {
-    if id.z() == finest_level {
+    if data.contains(id) {
         Ok(FinestHeights::get(store, id)?.map(|heights| heights.with_halo))
     } else {
-        with_halo(store, id)
+        with_halo(store, data, id)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use corniche_geom::{Bounds, Cell, Frame, NodeIndex};
+use corniche_geom::{Bounds, Cell, Frame, NodeIndex, TileId};
 use corniche_roads::{FrcTable, FrcTableError};
 use corniche_tileset::SettingsRecord;
 use serde::{Deserialize, Serialize};
@@ -10,8 +10,8 @@ use sha2::{Digest, Sha256};
 
 use super::Opened;
 use crate::{
-    BuildError, PlanSettings, PlannedInput, hex::hex, levels::Levels, manifest_texts,
-    settings_record,
+    BuildError, PlanSettings, PlannedInput, heights::data_tiles::DataTiles, hex::hex,
+    levels::Levels, manifest_texts, settings_record,
 };
 
 /// Version of a plan's JSON; other versions are refused.
@@ -171,6 +171,19 @@ impl BuildPlan {
             },
             levels: planned_levels(&opened.levels),
         })
+    }
+
+    /// The tiles of a level on which data can lie, in package order: subtrees that a build can be split into. None below the finest
+    /// level.
+    #[must_use]
+    pub fn subtrees(&self, level: u8) -> Vec<TileId> {
+        let PlannedGrid { frame, south_west, north_east, .. } = &self.grid;
+        if level > frame.max_level() {
+            return Vec::new();
+        }
+        DataTiles::between(frame, *south_west, *north_east)
+            .above(level)
+            .in_order_within(TileId::ROOT)
     }
 
     /// The settings to plan it again with, with the paths of the plan.

@@ -6,9 +6,9 @@ use corniche_geom::TileId;
 
 use crate::{
     BuildError, Stage,
-    artifacts::Kind,
+    artifacts::{Kind, damaged},
     context::Context,
-    heights::rasters,
+    heights::{pyramid::all_there, rasters},
     tile::{
         encode,
         mesh::Meshed,
@@ -19,7 +19,7 @@ use crate::{
 
 /// Makes the coarse tiles beneath and at `scope` that are not there yet. All finest tiles beneath must be there.
 pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
-    let store = context.store;
+    let (store, data) = (context.store, context.data());
     let deviations = deviations(context, scope)?;
     let mut ids: Vec<TileId> = deviations.keys().copied().collect();
     let all = ids.len() as u64;
@@ -34,13 +34,13 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
         || Ok(()),
         |(), index| {
             let id = ids[index];
-            let missing =
-                || BuildError::Missing { what: format!("the TIN of tile {id}"), step: "top" };
-            let meshed = Meshed::get(store, id)?.ok_or_else(missing)?;
+            // Records of finest tiles say that it has ground.
+            let empty = || damaged(Kind::Tin.of_tile(id), &"it has no ground");
+            let meshed = Meshed::get(store, id)?.ok_or_else(empty)?;
             let deviation = deviations.get(&id).copied().unwrap_or_default();
             // Heights are wanted only where there are roads: they decide which borders are the tile's own.
             let has_roads = store.has(Kind::RoadPieces.of_tile(id));
-            let heights = if has_roads { rasters::with_halo(store, id)? } else { None };
+            let heights = if has_roads { rasters::with_halo(store, &data, id)? } else { None };
             encode::with_ground(context, id, meshed, deviation, heights.as_ref())?.put(store, id)
         },
         |_, ()| {
@@ -58,10 +58,14 @@ fn deviations(
     scope: TileId,
 ) -> Result<BTreeMap<TileId, TileDeviation>, BuildError> {
     let store = context.store;
+    let data = context.data();
+    let is_missing =
+        |id: TileId| id.ancestor(scope.z()) == scope && !store.has(Kind::Record.of_tile(id));
+    all_there("the tiles", &data.missing(is_missing), "tiles")?;
     let mut coarse: BTreeMap<TileId, Seen> = BTreeMap::new();
     // Per finest tile with ground: its own deviation.
     let mut finest_m: BTreeMap<TileId, f64> = BTreeMap::new();
-    for id in context.data().in_order_within(scope) {
+    for id in data.in_order_within(scope) {
         let record = TileRecord::get(store, id)?
             .ok_or_else(|| BuildError::Missing { what: format!("tile {id}"), step: "tiles" })?;
         if let Some(ground) = record.ground {

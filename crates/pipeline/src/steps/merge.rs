@@ -8,13 +8,16 @@ use corniche_tileset::{Manifest, Writer, tile_of_order};
 use super::{
     hashes,
     manifest::{self, Outcome},
+    roads,
     sums::TileSums,
+    top,
 };
 use crate::{
     BuildError, Stage,
     artifacts::{self, Kind},
     context::Context,
-    roads::{losses::LossFold, totals::RoadTotals},
+    heights::pyramid::all_there,
+    roads::losses::LossFold,
     tile::record::TileRecord,
 };
 
@@ -26,6 +29,16 @@ pub(crate) struct Target<'a> {
     pub(crate) named: &'a Path,
 }
 
+/// Fails if one of the steps was not done for all tiles.
+pub(crate) fn check_complete(context: &Context<'_>) -> Result<(), BuildError> {
+    hashes::records(context)?;
+    roads::check_done(context)?;
+    context.pyramid().sums()?;
+    top::check_done(context)?;
+    let is_missing = |id| !context.store.has(Kind::Record.of_tile(id));
+    all_there("the tiles", &context.data().missing(is_missing), "tiles")
+}
+
 /// Adds up all records and writes the package.
 pub(crate) fn make(
     context: &Context<'_>,
@@ -33,21 +46,16 @@ pub(crate) fn make(
     target: &Target<'_>,
 ) -> Result<Manifest, BuildError> {
     let heights = context.pyramid().sums()?;
-    let roads = match &context.settings.osm {
-        Some(_) => {
-            let totals: Option<RoadTotals> =
-                artifacts::get(context.store, Kind::RoadTotals.item(0))?;
-            let what = "the extract's list of roads".to_owned();
-            Some(totals.ok_or(BuildError::Missing { what, step: "roads" })?)
-        }
-        None => None,
-    };
+    let roads = roads::totals(context)?;
     let mut tiles = TileSums::new(context);
     let mut fold = LossFold::new(scratch, context.memory().sorting);
     for item in context.store.items(Kind::Record as u8) {
         let id = tile_of_order(item)
             .ok_or_else(|| artifacts::damaged(Kind::Record.item(item), &"there is no such tile"))?;
         if let Some(record) = TileRecord::get(context.store, id)? {
+            if record.ground.is_some() && !context.store.has(Kind::Payload.item(item)) {
+                return Err(BuildError::Missing { what: format!("the tile {id}"), step: "tiles" });
+            }
             tiles.add(id.z(), &record);
             fold.add(&record.fates)?;
         }

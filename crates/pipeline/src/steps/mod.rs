@@ -7,9 +7,11 @@
 
 pub(crate) mod coarse_tiles;
 pub(crate) mod hashes;
+pub(crate) mod heights;
 pub(crate) mod manifest;
 pub(crate) mod merge;
 pub(crate) mod roads;
 pub(crate) mod sums;
 pub(crate) mod tiles;
 pub(crate) mod tins;
+pub(crate) mod top;

@@ -4,13 +4,30 @@ use corniche_store::Scratch;
 
 use crate::{
     BuildError,
+    artifacts::{self, Kind},
     context::Context,
     roads::{
         lengths::TrueLengths,
         overlap::check_overlap,
         partition::{RoadInput, partition},
+        totals::RoadTotals,
     },
 };
+
+/// What is known of all roads, which must be there; `None` without an extract.
+pub(crate) fn totals(context: &Context<'_>) -> Result<Option<RoadTotals>, BuildError> {
+    check_done(context)?;
+    artifacts::get(context.store, Kind::RoadTotals.item(0))
+}
+
+/// Fails if there is an extract and its roads were not partitioned.
+pub(crate) fn check_done(context: &Context<'_>) -> Result<(), BuildError> {
+    let store = context.store;
+    if context.settings.osm.is_none() || store.has(Kind::RoadTotals.item(0)) {
+        return Ok(());
+    }
+    Err(BuildError::Missing { what: "the list of the extract's roads".to_owned(), step: "roads" })
+}
 
 /// Reads the extract, if there is one and it was not read yet; fails if none of its roads lies on the elevation data.
 pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), BuildError> {

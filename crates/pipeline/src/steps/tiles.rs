@@ -4,7 +4,7 @@
 use corniche_dem::Reader;
 use corniche_geom::TileId;
 
-use super::{coarse_tiles, tins};
+use super::{coarse_tiles, roads, tins, top};
 use crate::{
     BuildError, Stage,
     artifacts::Kind,
@@ -20,9 +20,18 @@ use crate::{
     workers,
 };
 
-/// Makes all tiles beneath and at `scope` that are not there yet.
+/// Makes all tiles beneath and at `scope` that are not there yet. All heights and roads must be there: those of neighbours decide
+/// which borders are a tile's own.
 pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
-    tins::make(context, scope, scope.z()..context.frame().max_level())?;
+    top::check_done(context)?;
+    context.pyramid().check_complete(scope)?;
+    roads::check_done(context)?;
+    // Tiles above the subtree are there unless heights were made for larger subtrees.
+    let mut coarse: Vec<TileId> = (0..scope.z()).map(|level| scope.ancestor(level)).collect();
+    for level in scope.z()..context.frame().max_level() {
+        coarse.extend(context.data().above(level).in_order_within(scope));
+    }
+    tins::make(context, coarse)?;
     make_finest(context, scope)?;
     coarse_tiles::make(context, scope)
 }

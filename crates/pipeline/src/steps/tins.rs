@@ -11,26 +11,16 @@ use crate::{
     workers,
 };
 
-/// Triangulates the coarse tiles of some levels beneath and at `scope` that are not there yet.
-pub(crate) fn make(
-    context: &Context<'_>,
-    scope: TileId,
-    levels: std::ops::Range<u8>,
-) -> Result<(), BuildError> {
-    let store = context.store;
-    let mut ids = Vec::new();
-    let mut done = 0;
-    for level in levels {
-        for id in context.data().above(level).in_order_within(scope) {
-            if store.has(Kind::Tin.of_tile(id)) {
-                done += 1;
-            } else if store.has(Kind::Raster.of_tile(id)) {
-                ids.push(id);
-            }
-        }
+/// Triangulates those of some coarse tiles of the data that are not there yet.
+pub(crate) fn make(context: &Context<'_>, mut ids: Vec<TileId>) -> Result<(), BuildError> {
+    if ids.is_empty() {
+        return Ok(());
     }
-    context.observer.begin(Stage::CoarseTins, Some(ids.len() as u64 + done));
-    context.observer.already(Stage::CoarseTins, done);
+    let (store, data) = (context.store, context.data());
+    let all = ids.len() as u64;
+    ids.retain(|&id| !store.has(Kind::Tin.of_tile(id)));
+    context.observer.begin(Stage::CoarseTins, Some(all));
+    context.observer.already(Stage::CoarseTins, all - ids.len() as u64);
     workers::in_order_unless_cancelled(
         context.observer,
         context.threads(),
@@ -38,7 +28,7 @@ pub(crate) fn make(
         || Ok(()),
         |(), index| {
             let id = ids[index];
-            let meshed = match rasters::with_halo(store, id)? {
+            let meshed = match rasters::with_halo(store, &data, id)? {
                 Some(heights) => mesh_tile(&heights, id, context.levels)?,
                 None => Meshed::default(),
             };

@@ -109,7 +109,7 @@ fn owned_borders(
 
 /// Whether a coarse tile has ground: a cell with a height at each corner. Its raster says so, too, where its TIN is made elsewhere.
 fn has_ground(context: &Context<'_>, id: TileId) -> Result<bool, BuildError> {
-    let Some(raster) = rasters::get(context.store, id)? else { return Ok(false) };
+    let Some(raster) = rasters::get(context.store, &context.data(), id)? else { return Ok(false) };
     Ok((0..TILE_NODES - 1)
         .any(|row| (0..TILE_NODES - 1).any(|column| raster.cell_has_ground(column, row))))
 }

@@ -36,10 +36,11 @@ impl Meshed {
         Ok(store.put(Kind::Tin.of_tile(id), &to_bytes(self))?)
     }
 
-    /// The TIN of a coarse tile; `None` where there is none, or an empty one: the tile has no ground.
+    /// The TIN of a coarse tile of the data; `None` where it is empty: the tile has no ground.
     pub(crate) fn get(store: &dyn Artifacts, id: TileId) -> Result<Option<Self>, BuildError> {
         let key = Kind::Tin.of_tile(id);
-        let Some(bytes) = store.get(key)? else { return Ok(None) };
+        let missing = || BuildError::Missing { what: format!("the TIN of tile {id}"), step: "top" };
+        let bytes = store.get(key)?.ok_or_else(missing)?;
         let meshed = from_bytes(&bytes).ok_or_else(|| damaged(key, &"it is no TIN"))?;
         Ok(Some(meshed).filter(|meshed| !meshed.tin.is_empty()))
     }

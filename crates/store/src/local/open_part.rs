@@ -250,6 +250,12 @@ impl OpenPart {
         let _ = self.failed.set(cause);
     }
 
+    /// Removes the part.
+    pub(crate) fn abandon(self) -> Result<(), StoreError> {
+        self.give_up();
+        remove(self.data.files(), &self.journal)
+    }
+
     fn check_not_failed(&self) -> Result<(), StoreError> {
         self.failed.get().map_or(Ok(()), |cause| {
             Err(StoreError::Failed { path: self.data.path().to_owned(), cause: cause.clone() })

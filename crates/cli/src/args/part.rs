@@ -1,0 +1,82 @@
+//! Commands that make a package in parts.
+
+use std::{num::NonZeroUsize, path::PathBuf};
+
+use clap::{Args, ValueEnum};
+use corniche_geom::TileId;
+use corniche_pipeline::Step;
+
+use super::ReportArgs;
+
+/// A step of a build that a process can do alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum StepName {
+    /// Hash the inputs
+    Hashes,
+    /// Read the extract and cut its roads by tile
+    Roads,
+    /// Read the heights of a subtree
+    Heights,
+    /// Check all heights and make what lies above the subtrees; needs the heights of all
+    Top,
+    /// Make the tiles of a subtree; needs the heights of all, top and roads
+    Tiles,
+}
+
+impl From<StepName> for Step {
+    fn from(name: StepName) -> Self {
+        match name {
+            StepName::Hashes => Self::Hashes,
+            StepName::Roads => Self::Roads,
+            StepName::Heights => Self::Heights,
+            StepName::Top => Self::Top,
+            StepName::Tiles => Self::Tiles,
+        }
+    }
+}
+
+// Which plan, which stores, and what the run may use: the same for `part` and `merge`.
+#[derive(Debug, Args)]
+pub(crate) struct PlannedArgs {
+    /// The plan, made with corniche plan -o
+    #[arg(value_name = "PLAN.json")]
+    pub(crate) plan: PathBuf,
+    /// Folders with parts. All are read; the first is also written
+    #[arg(long, value_name = "FOLDER", num_args = 1.., required = true)]
+    pub(crate) store: Vec<PathBuf>,
+    /// Worker threads [default: one per processor]
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+    /// The most memory to use, such as 512M, 4G or 1T, at least 256M [default: half of the machine's, at most 4G]
+    #[arg(long, value_name = "BYTES")]
+    pub(crate) memory: Option<String>,
+    #[command(flatten)]
+    pub(crate) report: ReportArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PartArgs {
+    /// The step to do
+    #[arg(long, value_enum, value_name = "STEP")]
+    pub(crate) step: StepName,
+    /// Only the tiles beneath and at this one, for the steps heights and tiles [default: 0/0/0, all]
+    #[arg(long, value_name = "Z/X/Y")]
+    pub(crate) subtree: Option<TileId>,
+    #[command(flatten)]
+    pub(crate) planned: PlannedArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MergeArgs {
+    /// The package to write (.pmtiles)
+    #[arg(short, long, value_name = "PACKAGE")]
+    pub(crate) output: PathBuf,
+    /// Replace the package if it exists, once the new one is complete; if it is a link, replace the file it leads to
+    #[arg(short = 'O', long)]
+    pub(crate) overwrite: bool,
+    /// Also list every road lost, one per line (CSV); an existing list is kept unless -O is given
+    #[arg(long, value_name = "CSV")]
+    pub(crate) defects: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) planned: PlannedArgs,
+}

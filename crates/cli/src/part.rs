@@ -1,0 +1,42 @@
+//! `corniche part`: one step of a planned build, for one subtree.
+
+use std::{
+    fs,
+    io::{self, Write as _},
+    path::Path,
+};
+
+use corniche_pipeline::{BuildPlan, PartSettings};
+
+use crate::{args::PartArgs, exit::ExitCode, failure::Failure, progress::Progress, settings};
+
+pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
+    let planned = &args.planned;
+    let part = PartSettings {
+        plan: read_plan(&planned.plan)?,
+        stores: planned.store.clone(),
+        step: args.step.into(),
+        subtree: args.subtree,
+        resources: settings::resources(planned.threads, planned.memory.as_deref())?,
+        generator: settings::generator(),
+    };
+    let progress = Progress::new(&planned.report);
+    let made = corniche_pipeline::make_part(&part, &progress)?;
+    let quiet = planned.report.quiet || planned.report.json_progress;
+    match made.sealed {
+        Some(path) => writeln!(io::stdout(), "{}", path.display())?,
+        None if quiet => {}
+        None => eprintln!(
+            "nothing to do: there is no data in this part, or it is in the stores already"
+        ),
+    }
+    progress.tell_costs();
+    Ok(ExitCode::Done)
+}
+
+/// Reads a plan's file.
+pub(crate) fn read_plan(path: &Path) -> Result<BuildPlan, Failure> {
+    let text = fs::read_to_string(path)
+        .map_err(|error| Failure::unusable(format!("cannot read {}: {error}", path.display())))?;
+    BuildPlan::from_json(&text).map_err(|error| Failure::new(ExitCode::Unusable, error).about(path))
+}

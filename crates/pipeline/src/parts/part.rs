@@ -1,0 +1,134 @@
+//! One step for one subtree.
+
+use std::path::PathBuf;
+
+use corniche_geom::TileId;
+use corniche_store::LocalStore;
+
+use super::{Stores, open};
+use crate::{
+    BuildError, BuildPlan, Observer, Resources,
+    build::warn,
+    context::Context,
+    steps::{hashes, heights, roads, tiles, top},
+};
+
+/// A step of a build that a process can do alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Step {
+    /// Hash the inputs.
+    Hashes,
+    /// Read the extract and cut its roads by tile.
+    Roads,
+    /// Read the heights of a subtree.
+    Heights,
+    /// Check the heights of all subtrees, and make what lies above them.
+    Top,
+    /// Make the tiles of a subtree.
+    Tiles,
+}
+
+impl Step {
+    /// All steps, in an order in which they can be done.
+    pub const ALL: [Self; 5] = [Self::Hashes, Self::Roads, Self::Heights, Self::Top, Self::Tiles];
+
+    /// Its name on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Hashes => "hashes",
+            Self::Roads => "roads",
+            Self::Heights => "heights",
+            Self::Top => "top",
+            Self::Tiles => "tiles",
+        }
+    }
+
+    /// Whether it can be done for one subtree alone.
+    #[must_use]
+    pub const fn has_subtrees(self) -> bool {
+        matches!(self, Self::Heights | Self::Tiles)
+    }
+}
+
+/// Which part of a build to make.
+#[derive(Debug, Clone)]
+pub struct PartSettings {
+    /// What is built.
+    pub plan: BuildPlan,
+    /// Folders of parts: all are read, and the first is written and made if it is not there.
+    pub stores: Vec<PathBuf>,
+    /// The step to do.
+    pub step: Step,
+    /// For which tiles, of [steps with subtrees](Step::has_subtrees); `None`: all.
+    pub subtree: Option<TileId>,
+    /// What the run may use.
+    pub resources: Resources,
+    /// Program and version. It must be the one that made the plan.
+    pub generator: String,
+}
+
+/// What came of it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PartSummary {
+    /// The part's file; `None` if all of it was in the stores already.
+    pub sealed: Option<PathBuf>,
+}
+
+/// Makes a part of a build and keeps it in the first store, as one file that is never changed again. If the run ends early, what was
+/// done is kept beside it, and the same part goes on from there.
+///
+/// # Errors
+/// See [`BuildError`]; [`BuildError::Missing`] if an earlier step is not in the stores.
+pub fn make_part(
+    settings: &PartSettings,
+    observer: &dyn Observer,
+) -> Result<PartSummary, BuildError> {
+    let PartSettings { plan, stores, step, subtree, resources, generator } = settings;
+    if let (Some(subtree), false) = (subtree, step.has_subtrees()) {
+        let why = format!("the step {} is done for all tiles at once; leave it out", step.name());
+        return Err(BuildError::Subtree { subtree: *subtree, why });
+    }
+    let scope = subtree.unwrap_or(TileId::ROOT);
+    let stores = Stores::look(stores, plan, true)?;
+    let (plan_settings, opened) = open(plan, generator, *resources)?;
+    let finest_level = opened.grid.frame.max_level();
+    if scope.z() > finest_level {
+        let why = format!("the finest level is {finest_level}");
+        return Err(BuildError::Subtree { subtree: scope, why });
+    }
+    let name = if step.has_subtrees() {
+        format!("{}-{}-{}-{}", step.name(), scope.z(), scope.x(), scope.y())
+    } else {
+        step.name().to_owned()
+    };
+    let store = stores.open(&name)?;
+    let context = Context::new(&plan_settings, *resources, &opened, &store, observer);
+    let made = make(&context, *step, scope, &store);
+    // The plan says what the inputs were at the start. If they have changed since, nothing of the part may be used.
+    if let Err(changed) = opened.inputs.check_unchanged() {
+        store.abandon()?;
+        return Err(changed.into());
+    }
+    made?;
+    Ok(PartSummary { sealed: store.seal()? })
+}
+
+fn make(
+    context: &Context<'_>,
+    step: Step,
+    scope: TileId,
+    store: &LocalStore,
+) -> Result<(), BuildError> {
+    match step {
+        Step::Hashes => hashes::make(context),
+        Step::Roads => roads::make(context, &store.scratch()?),
+        Step::Heights | Step::Tiles if context.data().within(scope).is_empty() => Ok(()),
+        Step::Heights => heights::make(context, scope),
+        Step::Top => {
+            warn(context);
+            top::make(context)
+        }
+        Step::Tiles => tiles::make(context, scope),
+    }
+}

@@ -1,0 +1,44 @@
+//! Step *top*: what all subtrees of heights add up to, and the rasters and TINs of the tiles above them.
+
+use std::collections::BTreeSet;
+
+use corniche_geom::TileId;
+use corniche_tileset::{pmtiles_order, tile_of_order};
+
+use super::tins;
+use crate::{BuildError, artifacts::Kind, context::Context};
+
+/// Checks the heights of all subtrees, which must be there, and makes what lies above them.
+pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
+    let pyramid = context.pyramid();
+    // Before any tile is made, because no tile has ground where no node has a height.
+    pyramid.check()?;
+    if pyramid.sums()?.samples.with_data == 0 {
+        return Err(BuildError::NoHeights { dem: context.settings.dem.clone() });
+    }
+    pyramid.make_rasters(TileId::ROOT)?;
+    tins::make(context, above_subtrees(context))?;
+    Ok(context.store.put(Kind::Top.item(0), &[])?)
+}
+
+/// Fails if the step was not done.
+pub(crate) fn check_done(context: &Context<'_>) -> Result<(), BuildError> {
+    if context.store.has(Kind::Top.item(0)) {
+        return Ok(());
+    }
+    let what = "what lies above the subtrees of heights".to_owned();
+    Err(BuildError::Missing { what, step: "top" })
+}
+
+/// The tiles above all subtrees that heights were made for, in package order.
+fn above_subtrees(context: &Context<'_>) -> Vec<TileId> {
+    let items = context.store.items(Kind::Subtree as u8);
+    let made: BTreeSet<TileId> = items.into_iter().filter_map(tile_of_order).collect();
+    let is_in_another = |id: TileId| (0..id.z()).any(|level| made.contains(&id.ancestor(level)));
+    let subtrees = made.iter().filter(|&&id| !is_in_another(id));
+    let above: BTreeSet<TileId> =
+        subtrees.flat_map(|id| (0..id.z()).map(|level| id.ancestor(level))).collect();
+    let mut above: Vec<TileId> = above.into_iter().collect();
+    above.sort_unstable_by_key(|&id| pmtiles_order(id));
+    above
+}

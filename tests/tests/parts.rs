@@ -1,0 +1,387 @@
+//! A build in parts: the same bytes whatever the subtrees, the order and the folders; a part that is missing is named.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    thread,
+    time::Instant,
+};
+
+use corniche_testing::Random;
+use e2e::{Ran, corniche, real_data, sample, text, write_ascii_grid};
+use tempfile::TempDir;
+
+/// A planned build, and the package that an ordinary build makes.
+struct Planned {
+    folder: TempDir,
+    inputs: Vec<String>,
+    plan: PathBuf,
+    whole: Vec<u8>,
+}
+
+impl Planned {
+    /// `inputs` are the options that say what is built from what.
+    fn new(inputs: &[&str]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let (plan, package) =
+            (folder.path().join("plan.json"), folder.path().join("whole.pmtiles"));
+        let build = [&["build", "-q", "-o", text(&package)], inputs].concat();
+        succeed(corniche(build));
+        succeed(corniche([&["plan", "-o", text(&plan)], inputs].concat()));
+        let whole = fs::read(package).unwrap();
+        let inputs = inputs.iter().map(|&option| option.to_owned()).collect();
+        Self { folder, inputs, plan, whole }
+    }
+
+    /// Of the sample `pass`.
+    fn pass(options: &[&str]) -> Self {
+        let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
+        let inputs = ["--dem", text(&dem), "--osm", text(&osm), "--max-error", "10"];
+        Self::new(&[&inputs[..], options].concat())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// The subtrees of a level that hold data.
+    fn subtrees(&self, level: u8) -> Vec<String> {
+        let level = level.to_string();
+        let command = ["plan", "--subtrees", &level].map(str::to_owned);
+        let ran = succeed(corniche(command.iter().chain(&self.inputs)));
+        ran.out.lines().map(str::to_owned).collect()
+    }
+
+    /// Makes a part in the first of some stores.
+    fn part(&self, stores: &[&Path], step: &str, subtree: Option<&str>) -> Ran {
+        corniche(self.part_command(stores, step, subtree))
+    }
+
+    fn part_command(&self, stores: &[&Path], step: &str, subtree: Option<&str>) -> Vec<String> {
+        let mut command = vec!["part", text(&self.plan), "-q", "--threads", "2", "--step", step];
+        command.extend(subtree.into_iter().flat_map(|subtree| ["--subtree", subtree]));
+        command.push("--store");
+        command.extend(stores.iter().map(|store| text(store)));
+        command.into_iter().map(str::to_owned).collect()
+    }
+
+    fn merge(&self, stores: &[&Path], package: &Path) -> Ran {
+        let mut command = vec!["merge", text(&self.plan), "-q", "-o", text(package), "--store"];
+        command.extend(stores.iter().map(|store| text(store)));
+        corniche(command)
+    }
+
+    /// Merges, and compares with the ordinary build.
+    fn check_merged(&self, stores: &[&Path]) {
+        let package = self.path("merged.pmtiles");
+        let before = stores.iter().flat_map(|store| files(store)).collect::<Vec<_>>();
+        succeed(self.merge(stores, &package));
+        assert!(fs::read(&package).unwrap() == self.whole, "another package than build makes");
+        let after = stores.iter().flat_map(|store| files(store)).collect::<Vec<_>>();
+        assert_eq!(before, after, "a merge leaves the stores as they are");
+        fs::remove_file(package).unwrap();
+    }
+
+    /// All parts in one store, those of a step in any order and each twice.
+    fn check_subtrees(&self, level: u8, random: &mut Random) {
+        let store = self.path(&format!("store-{level}"));
+        let stores = [store.as_path()];
+        let once = |step: &str, subtree: Option<&str>| {
+            let made = succeed(self.part(&stores, step, subtree));
+            let sealed = Path::new(made.out.trim_end());
+            let name = sealed.file_name().unwrap().to_str().unwrap();
+            let wanted = subtree.map_or(step.to_owned(), |tile| format!("{step}/{tile}"));
+            assert!(name.starts_with(&wanted.replace('/', "-")), "{name}");
+            assert!(sealed.is_file() && sealed.starts_with(&store), "{}", made.out);
+            let again = succeed(self.part(&stores, step, subtree));
+            assert_eq!(again.out, "", "it is there already");
+        };
+        let subtrees = self.subtrees(level);
+        let mut first: Vec<(&str, Option<&str>)> =
+            subtrees.iter().map(|id| ("heights", Some(id.as_str()))).collect();
+        first.extend([("hashes", None), ("roads", None)]);
+        shuffle(&mut first, random);
+        first.into_iter().for_each(|(step, subtree)| {
+            // Without an extract there are no roads, and so no part of them.
+            if step != "roads" || self.inputs.iter().any(|option| option == "--osm") {
+                once(step, subtree);
+            }
+        });
+        once("top", None);
+        let mut subtrees: Vec<&str> = subtrees.iter().map(String::as_str).collect();
+        shuffle(&mut subtrees, random);
+        subtrees.into_iter().for_each(|id| once("tiles", Some(id)));
+        self.check_merged(&stores);
+    }
+}
+
+fn succeed(ran: Ran) -> Ran {
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    ran
+}
+
+/// Checks that a run was refused as unusable, and that it says all of `parts`.
+fn refused(ran: &Ran, parts: &[&str]) {
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    for part in parts {
+        assert!(ran.err.contains(part), "{part}: {}", ran.err);
+    }
+    assert_eq!(ran.out, "");
+}
+
+fn shuffle<T>(list: &mut [T], random: &mut Random) {
+    for last in (1..list.len()).rev() {
+        list.swap(last, random.below(last as i64 + 1) as usize);
+    }
+}
+
+/// All files of a store with their sizes.
+fn files(store: &Path) -> Vec<(PathBuf, u64)> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(store).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(files(&path));
+        } else {
+            let size = fs::metadata(&path).unwrap().len();
+            found.push((path, size));
+        }
+    }
+    found.sort();
+    found
+}
+
+/// The file of a sealed part.
+fn sealed(store: &Path, name: &str) -> PathBuf {
+    let parts = files(&store.join("parts")).into_iter().map(|(path, _)| path);
+    let is_it = |path: &PathBuf| {
+        path.file_name().unwrap().to_str().unwrap().starts_with(&format!("{name}."))
+    };
+    parts.into_iter().find(is_it).unwrap()
+}
+
+#[test]
+fn one_subtree_and_four_make_the_bytes_of_a_build() {
+    let planned = Planned::pass(&[]);
+    let mut random = Random::new(4);
+    assert_eq!(planned.subtrees(0), ["0/0/0"]);
+    assert_eq!(planned.subtrees(1).len(), 4);
+    planned.check_subtrees(0, &mut random);
+    planned.check_subtrees(1, &mut random);
+}
+
+/// Samples are measured apart from nodes where they are not the same.
+#[test]
+fn a_resampled_dem_makes_the_same_bytes_in_parts() {
+    Planned::pass(&["--crs", "EPSG:32633"]).check_subtrees(1, &mut Random::new(5));
+}
+
+/// Heights in a strip across the middle of two subtrees, and two islands without any cell of the levels above: what has no height is
+/// told from what is missing.
+#[test]
+fn voids_make_the_same_bytes_in_parts() {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = folder.path().join("voids.asc");
+    let place = "xllcorner 500000\nyllcorner 5000000\ncellsize 10\nNODATA_value -9999";
+    write_ascii_grid(&dem, [1500, 1100], place, |column, row| {
+        let strip = column < 1400 && (300..420).contains(&row);
+        let island = [[1100, 900], [40, 1000]].iter().any(|&[east, south]| {
+            (east..east + 3).contains(&column) && (south..south + 3).contains(&row)
+        });
+        if strip || island { ((column * 7 + row * 13) % 50) as f64 } else { -9999.0 }
+    });
+    let options = ["--dem-crs", "EPSG:32632", "--fill-voids", "0", "--max-error", "10"];
+    let planned = Planned::new(&[&["--dem", text(&dem)], &options[..]].concat());
+    let mut random = Random::new(6);
+    planned.check_subtrees(1, &mut random);
+    planned.check_subtrees(2, &mut random);
+}
+
+/// Each part in a folder of its own, subtrees of several sizes, one above the other, some made twice.
+#[test]
+fn parts_of_several_folders_overlap() {
+    let planned = Planned::pass(&[]);
+    let [roads, again, whole, split, tiles, more] =
+        ["roads", "again", "whole", "split", "tiles", "more"].map(|name| planned.path(name));
+    succeed(planned.part(&[&roads], "hashes", None));
+    succeed(planned.part(&[&roads], "roads", None));
+    succeed(planned.part(&[&again], "roads", None));
+    assert_eq!(sealed(&roads, "roads").file_name(), sealed(&again, "roads").file_name());
+    succeed(planned.part(&[&whole], "heights", None));
+    // Of one quarter the parts are smaller.
+    let quarters = planned.subtrees(1);
+    let small: Vec<String> =
+        planned.subtrees(2).into_iter().filter(|id| is_beneath(id, &quarters[0])).collect();
+    for id in quarters[1..].iter().chain(&small) {
+        succeed(planned.part(&[&split], "heights", Some(id)));
+    }
+    for heights in [&whole, &split] {
+        succeed(planned.part(&[heights], "top", None));
+    }
+    // A part made from the one is the same as from the other.
+    for id in quarters.iter().take(2) {
+        succeed(planned.part(&[&tiles, &whole, &roads], "tiles", Some(id)));
+        succeed(planned.part(&[&more, &split, &again], "tiles", Some(id)));
+    }
+    for id in
+        planned.subtrees(2).iter().filter(|id| quarters[..2].iter().all(|q| !is_beneath(id, q)))
+    {
+        succeed(planned.part(&[&more, &split, &again], "tiles", Some(id)));
+    }
+    planned.check_merged(&[&split, &roads, &more]);
+    planned.check_merged(&[&tiles, &whole, &roads, &again, &split, &more]);
+    let ran = planned.merge(&[&tiles, &whole, &roads], &planned.path("out.pmtiles"));
+    refused(&ran, &[&quarters[2], &quarters[3], "--step tiles"]);
+}
+
+/// Whether `tile` of level 2 lies beneath `quarter` of level 1.
+fn is_beneath(tile: &str, quarter: &str) -> bool {
+    let numbers =
+        |id: &str| id.split('/').map(|part| part.parse::<u32>().unwrap()).collect::<Vec<_>>();
+    let (tile, quarter) = (numbers(tile), numbers(quarter));
+    [tile[1] / 2, tile[2] / 2] == quarter[1..]
+}
+
+#[test]
+fn a_missing_part_is_named_and_never_taken_for_a_void() {
+    let planned = Planned::pass(&[]);
+    let (store, package) = (planned.path("store"), planned.path("out.pmtiles"));
+    let stores = [store.as_path()];
+    let tiles = |id: &str| planned.part(&stores, "tiles", Some(id));
+    let quarters = planned.subtrees(1);
+    refused(&planned.merge(&stores, &package), &["store", "holds no store"]);
+    refused(&tiles(&quarters[0]), &["--step top"]);
+    for id in &quarters[..3] {
+        succeed(planned.part(&stores, "heights", Some(id)));
+    }
+    refused(&planned.part(&stores, "top", None), &["heights of", &quarters[3], "--step heights"]);
+    succeed(planned.part(&stores, "heights", Some(&quarters[3])));
+    succeed(planned.part(&stores, "top", None));
+    refused(&tiles(&quarters[0]), &["roads", "--step roads"]);
+    succeed(planned.part(&stores, "roads", None));
+
+    // Heights that are gone by now: of the subtree itself, and of its neighbour.
+    let name = format!("heights-{}", quarters[1].replace('/', "-"));
+    let (part, away) = (sealed(&store, &name), planned.path("away"));
+    fs::rename(&part, &away).unwrap();
+    refused(&tiles(&quarters[1]), &["heights of", &quarters[1]]);
+    refused(&tiles(&quarters[0]), &["heights of"]);
+    fs::rename(&away, &part).unwrap();
+
+    for id in &quarters[..3] {
+        succeed(tiles(id));
+    }
+    refused(&planned.merge(&stores, &package), &["hash", "--step hashes"]);
+    succeed(planned.part(&stores, "hashes", None));
+    refused(&planned.merge(&stores, &package), &["tiles of", &quarters[3], "--step tiles"]);
+    assert!(!package.exists());
+    succeed(tiles(&quarters[3]));
+    fs::rename(&part, &away).unwrap();
+    refused(&planned.merge(&stores, &package), &["heights of", &quarters[1], "--step heights"]);
+    // It can be made again.
+    succeed(planned.part(&stores, "heights", Some(&quarters[1])));
+    assert_eq!(sealed(&store, &name), part);
+    planned.check_merged(&stores);
+}
+
+#[test]
+fn stores_and_plans_that_do_not_fit_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = folder.path().join("dem.tif");
+    fs::copy(sample("pass/pass-dem.tif"), &dem).unwrap();
+    let planned = Planned::new(&["--dem", text(&dem), "--max-error", "10"]);
+    let store = planned.path("store");
+    let stores = [store.as_path()];
+    succeed(planned.part(&stores, "hashes", None));
+
+    let other = Planned::new(&["--dem", text(&dem), "--max-error", "11"]);
+    let ran = other.part(&stores, "hashes", None);
+    refused(&ran, &["is of another plan", "--max-error is 11", "10"]);
+    refused(&other.merge(&stores, &other.path("out.pmtiles")), &["is of another plan"]);
+
+    refused(&planned.part(&stores, "top", Some("1/0/0")), &["--subtree 1/0/0", "top"]);
+    refused(&planned.part(&stores, "tiles", Some("9/0/0")), &["--subtree 9/0/0", "finest level"]);
+    let none = planned.path("none");
+    refused(&planned.part(&[&store, &none], "hashes", None), &["none", "holds no store"]);
+    assert!(!none.exists());
+    refused(&corniche(["part", text(&dem), "--step", "top", "--store", text(&none)]), &["dem.tif"]);
+
+    let package = planned.path("whole.pmtiles");
+    let ran = planned.merge(&stores, &package);
+    assert_eq!(ran.code, 3, "{}", ran.err);
+
+    // A subtree without data.
+    let deep = planned.subtrees(3);
+    let empty = ["3/7/7", "3/0/7", "3/7/0", "3/0/0"].into_iter();
+    let empty = empty.filter(|id| !deep.iter().any(|other| other == id));
+    for id in empty.take(1) {
+        let ran = succeed(planned.part(&stores, "tiles", Some(id)));
+        assert_eq!(ran.out, "");
+    }
+
+    let touched = fs::File::options().append(true).open(&dem).unwrap();
+    touched.set_modified(std::time::SystemTime::UNIX_EPOCH).unwrap();
+    refused(&planned.part(&stores, "heights", None), &["dem.tif", "its time is"]);
+}
+
+/// Kills at several moments of a part: what was kept is gone on from, and what was not is made again.
+#[test]
+fn a_killed_part_is_made_to_its_end_by_the_same_command() {
+    let planned = Planned::pass(&[]);
+    let [store, aside] = ["store", "aside"].map(|name| planned.path(name));
+    for step in ["hashes", "roads", "heights", "top"] {
+        succeed(planned.part(&[&store], step, None));
+    }
+    let begun = Instant::now();
+    succeed(planned.part(&[&aside, &store], "tiles", None));
+    let unbroken = begun.elapsed();
+    let mut random = Random::new(7);
+    let mut killed = 0;
+    for _ in 0..4 {
+        let mut child = Command::new(e2e::binary())
+            .args(planned.part_command(&[&store], "tiles", None))
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap();
+        thread::sleep(unbroken.mul_f64(random.share()));
+        child.kill().unwrap();
+        killed += u32::from(!child.wait().unwrap().success());
+    }
+    assert!(killed > 0, "no run was killed before its end");
+    let ran = planned.part(&[&store], "tiles", None);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert_eq!(
+        sealed(&store, "tiles-0-0-0").file_name(),
+        sealed(&aside, "tiles-0-0-0").file_name()
+    );
+    let left: Vec<PathBuf> = files(&store).into_iter().map(|(path, _)| path).collect();
+    assert_eq!(left.len(), 3 + 5, "the parts, the plan and the lock: {left:?}");
+    planned.check_merged(&[&store]);
+}
+
+/// Real data, 16 subtrees and their ancestors' levels.
+#[test]
+fn sixteen_subtrees_make_the_bytes_of_a_build() {
+    if std::env::var_os("CORNICHE_TEST_FULL").is_none() {
+        e2e::skipped("set CORNICHE_TEST_FULL to build Liechtenstein in 16 parts");
+        return;
+    }
+    let [Some(dem), Some(osm)] =
+        ["liechtenstein/N47E009.hgt", "liechtenstein/liechtenstein-2021-10-28.osm.pbf"]
+            .map(real_data)
+    else {
+        return;
+    };
+    for crs in [&[][..], &["--crs", "utm"]] {
+        let inputs = ["--dem", text(&dem), "--osm", text(&osm)];
+        let planned = Planned::new(&[&inputs[..], crs].concat());
+        let mut random = Random::new(8);
+        for level in [0, 1, 2] {
+            planned.check_subtrees(level, &mut random);
+        }
+        assert_eq!(planned.subtrees(2).len(), 16);
+    }
+}
