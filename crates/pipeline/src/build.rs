@@ -51,13 +51,14 @@ pub fn build(
     settings: &BuildSettings,
     observer: &dyn Observer,
 ) -> Result<BuildSummary, BuildError> {
-    build_on(Arc::new(SystemDisk), SYNC_INTERVAL, settings, observer)
+    let disk: Arc<dyn Disk> = Arc::new(SystemDisk);
+    build_on(&disk, SYNC_INTERVAL, settings, observer)
 }
 
 /// As [`build`], with the store on any disk, and made durable as often as wanted: tests let it fail.
 #[doc(hidden)]
 pub fn build_on(
-    disk: Arc<dyn Disk>,
+    disk: &Arc<dyn Disk>,
     sync_interval: Duration,
     settings: &BuildSettings,
     observer: &dyn Observer,
@@ -84,7 +85,7 @@ pub fn build_on(
     }
     let finished = Unfinished::create(target, folder)?;
     observer.temporary(finished.path());
-    let place = (&disk, &*store_folder, sync_interval);
+    let place = (disk, &*store_folder, sync_interval);
     let store = work_store::open(place, &plan, settings.leftovers, observer)?;
     observer.keeps(&store_folder);
     let context = Context::new(&plan_settings, settings.resources, &opened, &store, observer);

@@ -70,7 +70,7 @@ impl Small {
     }
 
     fn build(&self, disk: &MemoryDisk, interval: Duration) -> Result<(), BuildError> {
-        build_on(disk.disk(), interval, &self.settings, &Silent).map(drop)
+        build_on(&disk.disk(), interval, &self.settings, &Silent).map(drop)
     }
 
     /// Builds, and takes the package away.
