@@ -87,15 +87,15 @@ is_near() { awk -v used="$1" -v estimate="$2" 'BEGIN { exit !(used >= 0.8 * esti
 mount_small() {
     mkdir -p "$1"
     truncate -s 400M "$work/small.image"
-    mkfs.ext4 -q -F "$work/small.image" && mount -o loop "$work/small.image" "$1" || return 1
+    mkfs.ext4 -q -F -m 0 "$work/small.image" && mount -o loop "$work/small.image" "$1" || return 1
     mounted=$1
 }
 
-# fill_up DISK MEGABYTES: leaves so much free.
+# fill_up DISK KIB: leaves so much free.
 fill_up() {
     local free_kb
     free_kb=$(df --output=avail -k "$1" | tail -n 1)
-    fallocate -l "$((free_kb - $2 * 1024))K" "$1/filler"
+    fallocate -l "$((free_kb - $2))K" "$1/filler"
 }
 
 # fails_full SECTION WHAT FOLDER COMMAND…: the command must end with exit code 1, say that the disk is full, and make no package in FOLDER.

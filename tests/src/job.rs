@@ -92,8 +92,16 @@ impl Job {
     ///
     /// # Panics
     /// When it fails.
-    #[allow(clippy::must_use_candidate, reason = "that it succeeds is what matters")]
-    pub fn succeed(&self, more: &[&str]) -> Ran {
+    pub fn succeed(&self, more: &[&str]) {
+        let _ = self.said(more);
+    }
+
+    /// As [`Job::succeed`]; what it said.
+    ///
+    /// # Panics
+    /// When it fails.
+    #[must_use]
+    pub fn said(&self, more: &[&str]) -> Ran {
         let ran = self.run(more);
         assert_eq!(ran.code, 0, "{more:?}: {}", ran.err);
         ran
@@ -139,33 +147,24 @@ impl Job {
     /// When the folder cannot be read.
     #[must_use]
     pub fn names(&self) -> Vec<String> {
-        let names = Self::files_of(self.folder()).into_iter();
+        let names = files_of(self.folder()).into_iter();
         names.map(|(path, _)| text(&path).to_owned()).collect()
     }
 
     /// The store's files with their content. The one that is only there to be locked is left out.
     #[must_use]
     pub fn stored(&self) -> Vec<(PathBuf, Vec<u8>)> {
-        let files = Self::files_of(&self.store()).into_iter();
+        let files = files_of(&self.store()).into_iter();
         files
             .filter(|(name, _)| name != Path::new("lock"))
             .map(|(name, path)| (name, fs::read(path).unwrap_or_default()))
             .collect()
     }
 
-    /// The names in a folder, ascending, with their paths.
-    fn files_of(folder: &Path) -> Vec<(PathBuf, PathBuf)> {
-        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-        let mut files: Vec<_> =
-            entries.map(|entry| (PathBuf::from(entry.file_name()), entry.path())).collect();
-        files.sort();
-        files
-    }
-
     /// Bytes of the longest journal in the store; 0 without one.
     #[must_use]
     pub fn journal_bytes(&self) -> u64 {
-        let files = Self::files_of(&self.store()).into_iter();
+        let files = files_of(&self.store()).into_iter();
         let journals = files.filter(|(name, _)| name.extension().is_some_and(|e| e == "journal"));
         journals.filter_map(|(_, path)| Some(fs::metadata(path).ok()?.len())).max().unwrap_or(0)
     }
@@ -188,6 +187,15 @@ impl Job {
             Err(error) => panic!("{}: {error}", path.display()),
         })
     }
+}
+
+/// The names in a folder, ascending, with their paths.
+fn files_of(folder: &Path) -> Vec<(PathBuf, PathBuf)> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut files: Vec<_> =
+        entries.map(|entry| (PathBuf::from(entry.file_name()), entry.path())).collect();
+    files.sort();
+    files
 }
 
 /// When a build is stopped.

@@ -60,7 +60,7 @@ impl Campaign {
                 job.succeed(&["--quiet", "--resume", "-O"]);
             }
         } else {
-            let ran = job.succeed(&["--json-progress", "--resume"]);
+            let ran = job.said(&["--json-progress", "--resume"]);
             assert!(!job.has_work() && (went_on(&ran) || !had_work), "seed {seed}: {}", ran.err);
         }
         assert!(job.result() == self.whole, "seed {seed}: other bytes after {kills} kills");
@@ -108,7 +108,7 @@ fn an_interrupted_build_ends_with_code_4_and_goes_on_where_it_was() {
         assert_eq!(ran.code, 4, "{signal}: {}", ran.err);
         assert!(ran.err.contains("--resume"), "{signal}: {}", ran.err);
         assert_eq!(job.names(), [".out.pmtiles.work"], "{signal}");
-        let ran = job.succeed(&["--resume", "--json-progress"]);
+        let ran = job.said(&["--resume", "--json-progress"]);
         assert!(went_on(&ran), "{signal}: {}", ran.err);
         assert!(job.result() == campaign.whole, "{signal}: other bytes");
     }

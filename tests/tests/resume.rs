@@ -41,7 +41,7 @@ fn leftovers_are_named_and_nothing_is_touched_until_one_says_what_to_do() {
     let job = stopped(Job::new(&OPTIONS));
     check_refused(&job, &[], 1, &[".out.pmtiles.work", "--resume", "-O"]);
     // Discarded, it starts again, and nothing is said to be done already.
-    let ran = job.succeed(&["-O", "--json-progress"]);
+    let ran = job.said(&["-O", "--json-progress"]);
     assert!(!ran.err.contains("--resume"), "{}", ran.err);
     let begun = ran.err.lines().filter(|line| line.contains("\"already\":"));
     assert!(begun.clone().count() > 5 && begun.clone().all(|line| line.contains("\"already\":0")));
@@ -82,7 +82,7 @@ fn a_store_of_inputs_that_changed_since_is_refused_by_name() {
 #[test]
 fn with_nothing_to_go_on_from_a_build_starts() {
     let job = Job::new(&["--quiet"]);
-    let ran = job.succeed(&["--resume"]);
+    let ran = job.said(&["--resume"]);
     assert!(ran.err.contains("holds nothing to go on from"), "{}", ran.err);
     let first = job.result();
     // A package is replaced only if asked.

@@ -7,7 +7,7 @@
 //! `OUT.tif` has `SIDE` × `SIDE` samples with the spacing of the source: 20000 gives 400 million. The source lies in the
 //! middle, and mirrored beside itself, again and again, so that there are no steps. A smooth field of ±60 m over it differs
 //! everywhere, so no two tiles are the same. Voids stay voids. The same arguments give the same bytes. Samples are 16-bit whole
-//! metres in tiles of 512 × 512, compressed; memory is needed for one row of tiles.
+//! metres in tiles of 512 × 512, compressed.
 #![allow(clippy::print_stderr, reason = "a program to run by hand")]
 
 use std::{error::Error, process::ExitCode};
