@@ -1,5 +1,7 @@
 //! What TINs say of the cells along borders is what the heights say that the TINs were made of.
 
+use std::collections::BTreeMap;
+
 use corniche_dem::{Dem, OpenOptions, PlanOptions};
 use corniche_geom::{HeightGrid, TileId};
 use corniche_tin::{TinSpec, triangulate};
@@ -13,8 +15,13 @@ const HALO_NODES: usize = TILE_CELLS as usize + 3;
 /// Tiles by their heights with halo, and what both ways say that each of them owns.
 fn check(heights: &dyn Fn(i64, i64) -> Option<HeightGrid>, [columns, rows]: [i64; 2]) -> usize {
     let spec = TinSpec { max_error_m: 4.0, quantum_m: 1.0 / 32.0 };
-    let cells = |x, y| match heights(x, y) {
-        Some(heights) => BorderCells::of(&triangulate(&heights, spec).unwrap()),
+    // With the neighbours around all of them.
+    let all: BTreeMap<[i64; 2], HeightGrid> = (-1..=rows)
+        .flat_map(|y| (-1..=columns).map(move |x| [x, y]))
+        .filter_map(|[x, y]| Some(([x, y], heights(x, y)?)))
+        .collect();
+    let cells = |x, y| match all.get(&[x, y]) {
+        Some(heights) => BorderCells::of(&triangulate(heights, spec).unwrap()),
         None => BorderCells::default(),
     };
     let mut partly = 0;
@@ -30,7 +37,7 @@ fn check(heights: &dyn Fn(i64, i64) -> Option<HeightGrid>, [columns, rows]: [i64
             .map(|(east, south)| Neighbours { east, south })
         {
             let by_heights = OwnedBorders::among(neighbours).where_ground(|column, row| {
-                heights(x, y).is_some_and(|heights| {
+                all.get(&[x, y]).is_some_and(|heights| {
                     heights.cell_has_ground((column + 1) as usize, (row + 1) as usize)
                 })
             });
