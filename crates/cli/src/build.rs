@@ -29,7 +29,7 @@ pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
         None => None,
     };
     let watch = Watch { progress, defects };
-    let report = args.report.clone();
+    let report = args.report;
     let settings = settings(*args)?;
     let built = corniche_pipeline::build(&settings, &watch);
     finish(built, watch, report, &settings.output)

@@ -80,7 +80,7 @@ pub(crate) struct PlanArgs {
     pub(crate) work: WorkArgs,
 }
 
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Clone, Copy, Args)]
 #[command(next_help_heading = "Progress")]
 pub(crate) struct ReportArgs {
     /// Print only errors and warnings

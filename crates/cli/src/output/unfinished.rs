@@ -18,7 +18,7 @@ const TRIES: usize = 5;
 ///
 /// # Errors
 /// Of kind `ResourceBusy` if another program writes it; else where the folder cannot be written.
-pub(super) fn create(target: &Path) -> io::Result<NamedTempFile> {
+pub(crate) fn create(target: &Path) -> io::Result<NamedTempFile> {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     let path = target.with_file_name(format!(".{name}.unfinished"));
     for _ in 0..TRIES {
