@@ -75,7 +75,7 @@ fn voids_along_borders_and_on_corners_are_seen_by_both_sides() {
         ),
         ("the corner", Box::new(move |c, r| outside(c, r) || border(c) && border(r))),
         ("one tile", Box::new(move |c, r| outside(c, r) || c > TILE_CELLS && r > TILE_CELLS)),
-        ("every cell", Box::new(move |c, r| outside(c, r) || (c + r) % 2 == 0)),
+        ("diagonals", Box::new(move |c, r| outside(c, r) || (c + r) % 5 == 0)),
     ];
     for (name, is_void) in &voids {
         let partly = check(&|x, y| of_tile(is_void, x, y), [2, 2]);
@@ -124,6 +124,8 @@ fn the_sample_with_and_without_voids() {
             });
             (heights.count_heights() > 0).then_some(heights)
         };
-        assert!(check(&heights, [side, side]) > 20);
+        let partly = check(&heights, [side, side]);
+        // The data end within tiles, so without voids both sides of every border are alike.
+        assert!(partly > 20 || !is_holey, "{partly}");
     }
 }
