@@ -10,6 +10,7 @@ mod coordinates;
 mod covered_tiles;
 mod differences;
 mod estimate;
+mod facts;
 mod opened;
 mod rates;
 mod room;

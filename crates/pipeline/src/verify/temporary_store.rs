@@ -9,13 +9,13 @@ use super::error::VerifyError;
 use crate::Observer;
 
 /// A store in a temporary folder, which is removed with it.
-pub(super) struct TemporaryStore {
-    pub(super) store: LocalStore,
+pub(crate) struct TemporaryStore {
+    pub(crate) store: LocalStore,
     _folder: TempDir,
 }
 
 impl TemporaryStore {
-    pub(super) fn new(observer: &dyn Observer) -> Result<Self, VerifyError> {
+    pub(crate) fn new(observer: &dyn Observer) -> Result<Self, VerifyError> {
         let folder = tempfile::tempdir().map_err(VerifyError::Work)?;
         observer.temporary(folder.path());
         // Nothing is gone on from here, so it is bound to nothing, and nothing has to be durable.
@@ -25,7 +25,7 @@ impl TemporaryStore {
         Ok(Self { store, _folder: folder })
     }
 
-    pub(super) fn scratch(&self) -> Result<LocalScratch, VerifyError> {
+    pub(crate) fn scratch(&self) -> Result<LocalScratch, VerifyError> {
         self.store.scratch().map_err(failed)
     }
 }
