@@ -109,7 +109,7 @@ fn roads(
 }
 
 /// A change of settings.
-type Change = fn(&mut BuildSettings);
+type OtherSetting = fn(&mut BuildSettings);
 
 #[test]
 fn every_terrain_with_voids_on_borders_gives_the_same_package() {
@@ -265,7 +265,7 @@ fn packages_of_other_programs_and_settings_are_refused() {
     }
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("sound.pmtiles"), &SOUND.bytes).unwrap();
-    let changes: [(&str, Change); 10] = [
+    let changes: [(&str, OtherSetting); 10] = [
         ("--max-error is 3, it was made with 10", |s| s.terrain.max_error_m = Some(3.0)),
         ("--fill-voids is 0, it was made with 32", |s| s.terrain.plan.fill_voids = 0),
         ("--crs is utm, it was made with not given", |s| {

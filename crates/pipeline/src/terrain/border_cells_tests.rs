@@ -61,12 +61,15 @@ fn of_tile(is_void: &dyn Fn(i64, i64) -> bool, x: i64, y: i64) -> Option<HeightG
     (heights.count_heights() > 0).then_some(heights)
 }
 
+/// Whether a node is a void.
+type IsVoid = Box<dyn Fn(i64, i64) -> bool>;
+
 #[test]
 fn voids_along_borders_and_on_corners_are_seen_by_both_sides() {
     let last = 2 * TILE_CELLS;
     let outside = move |c: i64, r: i64| !(0..=last).contains(&c) || !(0..=last).contains(&r);
     let border = |at: i64| (TILE_CELLS - 1..=TILE_CELLS + 1).contains(&at);
-    let voids: [(&str, Box<dyn Fn(i64, i64) -> bool>); 6] = [
+    let voids: [(&str, IsVoid); 6] = [
         ("the data's edge alone", Box::new(outside)),
         ("single nodes on borders", Box::new(move |c, r| outside(c, r) || border(c) && r % 7 == 0)),
         (
