@@ -17,7 +17,7 @@ fn build(what: &[&str], osm: &Path, package: &Path, options: &[&str]) -> e2e::Ra
 fn built(what: &[&str], osm: &Path, package: &Path, options: &[&str]) -> Vec<u8> {
     let ran = build(what, osm, package, options);
     assert_eq!(ran.code, 0, "{what:?} {options:?}: {}", ran.err);
-    fs::read(package).unwrap()
+    fs::read(package).expect("the package")
 }
 
 /// Two years of roads, on the terrain of the first and on a package without roads; the result keeps every promise.
@@ -27,7 +27,7 @@ fn check_liechtenstein(options: &[&str]) {
         real_data(&if name.contains('-') { extract } else { format!("liechtenstein/{name}") })
     });
     let [Some(west), Some(east), Some(old), Some(new)] = files else { return };
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().expect("a temporary folder");
     let at = |name: &str| folder.path().join(name);
     let dem = ["--dem", text(&west), text(&east)];
     built(&dem, &old, &at("old.pmtiles"), options);
