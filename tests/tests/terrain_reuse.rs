@@ -17,7 +17,7 @@ fn build(what: &[&str], osm: &Path, package: &Path, options: &[&str]) -> e2e::Ra
 fn built(what: &[&str], osm: &Path, package: &Path, options: &[&str]) -> Vec<u8> {
     let ran = build(what, osm, package, options);
     assert_eq!(ran.code, 0, "{what:?} {options:?}: {}", ran.err);
-    fs::read(package).expect("the package is there")
+    fs::read(package).expect("the package")
 }
 
 /// Two years of roads, on the terrain of the first and on a package without roads; the result keeps every promise.

@@ -313,7 +313,7 @@ fn packages_that_contradict_themselves_are_refused() {
             // A byte of the ground, which is the first section.
             tiles[5].1[150] ^= 16;
         }),
-        ("cannot be used", |_, tiles| {
+        ("cannot use package", |_, tiles| {
             let bytes = tiles[5].1.clone();
             tiles[6].1 = bytes;
         }),

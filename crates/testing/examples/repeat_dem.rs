@@ -99,7 +99,7 @@ impl Source {
                 let added_m = field.row(row as u64, side);
                 values.extend(columns.iter().zip(added_m).map(|(column, added_m)| {
                     let height_m = self.heights_m[from + column];
-                    let is_void = height_m == self.nodata || height_m.is_nan();
+                    let is_void = height_m.is_nan() || height_m.to_bits() == self.nodata.to_bits();
                     if is_void { VOID } else { (f64::from(height_m) + added_m).round() as i16 }
                 }));
             }
