@@ -226,8 +226,8 @@ fn voids_make_the_same_bytes_in_parts() {
 #[test]
 fn parts_of_several_folders_overlap() {
     let planned = Planned::pass(&[]);
-    let [roads, again, whole, split, tiles, more] =
-        ["roads", "again", "whole", "split", "tiles", "more"].map(|name| planned.path(name));
+    let [roads, again, whole, split, tiles, more, one] =
+        ["roads", "again", "whole", "split", "tiles", "more", "one"].map(|name| planned.path(name));
     succeed(planned.part(&[&roads], "hashes", None));
     succeed(planned.part(&[&roads], "roads", None));
     succeed(planned.part(&[&again], "roads", None));
@@ -240,6 +240,8 @@ fn parts_of_several_folders_overlap() {
     for id in quarters[1..].iter().chain(&small) {
         succeed(planned.part(&[&split], "heights", Some(id)));
     }
+    // Nodes of this one must not count twice.
+    succeed(planned.part(&[&one], "heights", Some(&small[0])));
     for heights in [&whole, &split] {
         succeed(planned.part(&[heights], "top", None));
     }
@@ -255,6 +257,7 @@ fn parts_of_several_folders_overlap() {
     }
     planned.check_merged(&[&split, &roads, &more]);
     planned.check_merged(&[&tiles, &whole, &roads, &again, &split, &more]);
+    planned.check_merged(&[&whole, &roads, &more, &one]);
     let ran = planned.merge(&[&tiles, &whole, &roads], &planned.path("out.pmtiles"));
     refused(&ran, &[&quarters[2], &quarters[3], "--step tiles"]);
 }

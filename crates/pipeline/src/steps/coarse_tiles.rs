@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
 
+use super::tins;
 use crate::{
     BuildError, Stage,
     artifacts::{Kind, damaged},
@@ -25,6 +26,11 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
     let all = ids.len() as u64;
     ids.retain(|&id| !store.has(Kind::Record.of_tile(id)));
     ids.sort_unstable_by_key(|&id| corniche_tileset::pmtiles_order(id));
+    // They are there, unless the part that made them for the tiles beneath is not among the stores.
+    tins::make(
+        context,
+        ids.iter().copied().filter(|&id| !store.has(Kind::Tin.of_tile(id))).collect(),
+    )?;
     context.observer.begin(Stage::CoarseTiles, Some(all));
     context.observer.already(Stage::CoarseTiles, all - ids.len() as u64);
     workers::in_order_unless_cancelled(
