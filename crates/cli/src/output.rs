@@ -1,7 +1,5 @@
 //! Files beside the package that commands write: a file that is cut off never stands at its target.
 
-mod unfinished;
-
 use std::{
     fmt::Display,
     fs::File,
@@ -88,7 +86,7 @@ impl Output {
             let advice = "choose another name, or delete it first";
             return Err(Failure::new(ExitCode::Exists, anyhow::anyhow!("{what}; {advice}")));
         }
-        let file = unfinished::create(&target).map_err(|error| unusable(&error))?;
+        let file = corniche_pipeline::unfinished_file(&target).map_err(|error| unusable(&error))?;
         interrupt::remove_at_end(file.path());
         Ok(Self { target, existing, file: BufWriter::new(file) })
     }

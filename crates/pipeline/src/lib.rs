@@ -25,6 +25,7 @@ mod steps;
 mod target;
 mod terrain;
 mod tile;
+mod unfinished;
 mod verify;
 mod workers;
 
@@ -46,6 +47,7 @@ pub use settings::{
 };
 pub use target::{TargetError, file_target};
 pub use terrain::recorded::TerrainRecord;
+pub use unfinished::unfinished_file;
 pub use verify::{
     Check, CheckId, ErrorFigures, GapFigures, Needs, VerifyError, VerifyOsm, VerifyReport,
     VerifySettings, verify,

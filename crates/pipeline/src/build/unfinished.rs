@@ -6,70 +6,66 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{BuildError, Existing};
+use tempfile::NamedTempFile;
 
-/// The file that becomes the package. It is removed when the build fails. After a build that was killed it stays until the next
-/// one takes it over.
+use crate::{BuildError, Existing, unfinished_file};
+
+/// The file that becomes the package. It is removed when the build fails; what a killed build leaves is removed by the next one.
 pub(crate) struct Unfinished {
-    path: PathBuf,
-    /// Holds the lock.
-    _file: File,
+    file: NamedTempFile,
+    folder: PathBuf,
 }
 
 impl Unfinished {
     /// Makes the file in `folder`, that of the target, and locks it: of two builds of one target one is refused.
     pub(crate) fn create(target: &Path, folder: &Path) -> Result<Self, BuildError> {
-        let unusable = |source| BuildError::Target { folder: folder.to_path_buf(), source };
-        let name = target.file_name().unwrap_or_default().to_string_lossy();
-        let path = target.with_file_name(format!(".{name}.unfinished"));
-        let file = File::options()
-            .create(true)
-            .write(true)
-            .truncate(false)
-            .open(&path)
-            .map_err(unusable)?;
-        match file.try_lock() {
-            Ok(()) => Ok(Self { path, _file: file }),
-            Err(fs::TryLockError::WouldBlock) => {
+        let folder = folder.to_path_buf();
+        match unfinished_file(target) {
+            Ok(file) => Ok(Self { file, folder }),
+            Err(error) if error.kind() == io::ErrorKind::ResourceBusy => {
                 Err(BuildError::AtWork { path: target.to_path_buf() })
             }
-            // Some network file systems have no locks; the store has one of its own.
-            Err(fs::TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {
-                Ok(Self { path, _file: file })
-            }
-            Err(fs::TryLockError::Error(error)) => Err(unusable(error)),
+            Err(source) => Err(BuildError::Target { folder, source }),
         }
     }
 
     pub(crate) fn path(&self) -> &Path {
-        &self.path
+        self.file.path()
     }
 
-    /// Writes the finished package's bytes to the disk, then moves the file to its place. Returns its size.
-    pub(crate) fn place(&self, target: &Path, existing: Existing) -> Result<u64, BuildError> {
+    /// Writes the finished package's bytes to the disk, then moves the file to its place, and makes its name durable. Returns
+    /// its size.
+    pub(crate) fn place(self, target: &Path, existing: Existing) -> Result<u64, BuildError> {
         let failed = |source| BuildError::Rename { path: target.to_path_buf(), source };
-        let file = File::options().write(true).open(&self.path).map_err(failed)?;
-        file.sync_all().map_err(failed)?;
-        let bytes = file.metadata().map_err(failed)?.len();
+        let Self { file, folder } = self;
+        file.as_file().sync_all().map_err(failed)?;
+        let bytes = file.as_file().metadata().map_err(failed)?.len();
+        let persist = |file: NamedTempFile| file.persist(target).map_err(|error| failed(error.error));
         match existing {
-            Existing::Replace => fs::rename(&self.path, target).map_err(failed)?,
+            Existing::Replace => drop(persist(file)?),
             // A link fails where a rename would replace what someone put there while the build ran.
-            Existing::Keep => match fs::hard_link(&self.path, target) {
-                Ok(()) => {}
+            Existing::Keep => match fs::hard_link(file.path(), target) {
+                // The package has two names now. The other one goes at once, so that nobody takes it for a leftover.
+                Ok(()) => file.close().map_err(failed)?,
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
                     return Err(BuildError::Exists { path: target.to_path_buf() });
                 }
                 // Not every file system has hard links. Without them only the check at the start protects an existing file.
-                Err(_) => fs::rename(&self.path, target).map_err(failed)?,
+                Err(_) => drop(persist(file)?),
             },
         }
+        sync_folder(&folder).map_err(failed)?;
         Ok(bytes)
     }
 }
 
-impl Drop for Unfinished {
-    fn drop(&mut self) {
-        // It may have got its place already.
-        let _ = fs::remove_file(&self.path);
-    }
+/// Makes the names in a folder durable: a store is removed only after that.
+#[cfg(unix)]
+fn sync_folder(folder: &Path) -> io::Result<()> {
+    File::open(folder)?.sync_all()
+}
+
+#[cfg(not(unix))]
+fn sync_folder(_: &Path) -> io::Result<()> {
+    Ok(())
 }

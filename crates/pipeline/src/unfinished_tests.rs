@@ -10,7 +10,7 @@ fn what_a_killed_program_left_is_taken_over() {
     let folder = tempfile::tempdir().unwrap();
     let target = folder.path().join("list.csv");
     fs::write(folder.path().join(".list.csv.unfinished"), "half of it").unwrap();
-    let file = create(&target).unwrap();
+    let file = unfinished_file(&target).unwrap();
     assert_eq!(names(folder.path()), [".list.csv.unfinished"]);
     assert_eq!(file.as_file().metadata().unwrap().len(), 0);
     file.persist(&target).unwrap();
@@ -21,12 +21,12 @@ fn what_a_killed_program_left_is_taken_over() {
 fn of_two_programs_one_is_refused_and_the_other_goes_on() {
     let folder = tempfile::tempdir().unwrap();
     let target = folder.path().join("list.csv");
-    let first = create(&target).unwrap();
-    assert_eq!(create(&target).unwrap_err().kind(), io::ErrorKind::ResourceBusy);
+    let first = unfinished_file(&target).unwrap();
+    assert_eq!(unfinished_file(&target).unwrap_err().kind(), io::ErrorKind::ResourceBusy);
     first.persist(&target).unwrap();
     // A finished one is nobody's any more, and is not touched.
     fs::write(&target, "all of it").unwrap();
-    drop(create(&target).unwrap());
+    drop(unfinished_file(&target).unwrap());
     assert_eq!(names(folder.path()), ["list.csv"]);
     assert_eq!(fs::read(&target).unwrap(), b"all of it");
 }
@@ -38,7 +38,7 @@ fn a_link_of_that_name_is_not_followed() {
     let precious = folder.path().join("precious");
     fs::write(&precious, "mine").unwrap();
     std::os::unix::fs::symlink(&precious, folder.path().join(".list.csv.unfinished")).unwrap();
-    let error = create(&folder.path().join("list.csv")).unwrap_err();
+    let error = unfinished_file(&folder.path().join("list.csv")).unwrap_err();
     assert!(error.to_string().contains("in the way"), "{error}");
     assert_eq!(fs::read(&precious).unwrap(), b"mine");
 }

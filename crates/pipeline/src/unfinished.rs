@@ -14,11 +14,11 @@ use tempfile::{NamedTempFile, TempPath};
 /// How often it is tried again when another program removes what was just made, because it took it for a leftover.
 const TRIES: usize = 5;
 
-/// Makes the file for `target`.
+/// Makes the file that becomes `target`: `.NAME.unfinished` beside it. It is removed when it is dropped.
 ///
 /// # Errors
 /// Of kind `ResourceBusy` if another program writes it; else where the folder cannot be written.
-pub(crate) fn create(target: &Path) -> io::Result<NamedTempFile> {
+pub fn unfinished_file(target: &Path) -> io::Result<NamedTempFile> {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     let path = target.with_file_name(format!(".{name}.unfinished"));
     for _ in 0..TRIES {
