@@ -9,7 +9,7 @@
 //! | `RoadTotals` | 0 | counts, classes, defects, what the extract held | roads | merge |
 //! | `Heights` | finest tile | heights of its nodes with one node of halo; which of them are filled voids | heights | tiles |
 //! | `Area` | tile, two levels above the finest | counts and range of its heights; what was seen of heights that cannot be | heights | tiles, merge |
-//! | `Raster` | coarse tile | heights of its nodes without the east and south border | heights, top | top, tiles |
+//! | `Raster` | coarse tile | heights of its 257 × 257 nodes, borders included | heights, top | top, tiles |
 //! | `Tin` | coarse tile | its TIN with normals; empty where it has no ground | top, tiles | tiles, merge |
 //! | `Record` | tile | counts and sums, deviations of itself and its share in those of its ancestors | tiles, merge | merge |
 //! | `Payload` | tile | its encoded bytes | tiles, merge | merge |

@@ -21,7 +21,7 @@ use std::{
 
 use corniche_dem::GridPlan;
 use corniche_geom::TileId;
-use corniche_store::{Disk, SYNC_INTERVAL, Scratch, SystemDisk};
+use corniche_store::{Disk, LocalStore, SYNC_INTERVAL, SystemDisk};
 use corniche_tileset::Manifest;
 
 use self::unfinished::Unfinished;
@@ -45,7 +45,7 @@ pub struct BuildSummary {
 /// Builds a package. At the target there is either what was there before or the complete package.
 ///
 /// Intermediate results are kept in a store beside the package, or in `settings.tmp`. When the build is interrupted or the disk
-/// fails, they stay, and a build with [`Leftovers::Resume`] goes on from them.
+/// fails, they stay, and a build with [`Leftovers::Resume`](crate::Leftovers::Resume) goes on from them.
 ///
 /// # Errors
 /// See [`BuildError`].
@@ -84,19 +84,20 @@ pub fn build_on(
     let opened = Opened::new(&plan_settings)?;
     let plan = BuildPlan::of(&plan_settings, &opened)?;
     let store_folder = work_store::folder_of(target, settings.tmp.as_deref());
+    let held_bytes = work_store::look(disk, &store_folder, &plan, settings.leftovers)?;
     if !settings.force {
         let store = settings.tmp.as_deref().unwrap_or(folder);
-        check_room(&opened, settings.resources, [store, folder], observer)?;
+        check_room(&opened, settings.resources, [store, folder], held_bytes, observer)?;
     }
     let finished = Unfinished::create(target, folder)?;
     observer.temporary(finished.path());
+    let finished_path = finished.path().to_path_buf();
     let place = (disk, &*store_folder, sync_interval);
     let store = work_store::open(place, &plan, settings.leftovers, observer)?;
     observer.keeps(&store_folder);
     let context = Context::new(&plan_settings, settings.resources, &opened, &store, observer);
-    let wanted = merge::Target { finished: finished.path(), named: &settings.output };
-    let built = (store.scratch().map_err(BuildError::from))
-        .and_then(|scratch| run(&context, &scratch, &wanted))
+    let wanted = merge::Target { finished: &finished_path, named: &settings.output };
+    let built = run(&context, &store, &wanted)
         .and_then(|manifest| Ok((manifest, finished.place(target, settings.existing)?)));
     match built {
         Ok((manifest, package_bytes)) => {
@@ -105,12 +106,11 @@ pub fn build_on(
         }
         Err(error) => {
             // A changed input may be the cause of any other error, so it is reported instead.
-            let changed = match &error {
-                BuildError::Interrupted => None,
-                _ => opened.inputs.check_unchanged().err(),
+            let error = match error {
+                BuildError::Interrupted => BuildError::Interrupted,
+                error => opened.inputs.changed_instead_of(error),
             };
-            let error = changed.map_or(error, BuildError::from);
-            work_store::after_failure(store, &store_folder, &error, observer);
+            work_store::after_failure(store, &store_folder, &plan, &error, observer);
             Err(error)
         }
     }
@@ -160,15 +160,18 @@ fn warn_of_unused_latitude(terrain: &TerrainSettings, plan: &GridPlan, observer:
 /// All steps in order; the package is written to `finished`.
 fn run(
     context: &Context<'_>,
-    scratch: &dyn Scratch,
+    store: &LocalStore,
     target: &merge::Target<'_>,
 ) -> Result<Manifest, BuildError> {
     warn(context);
     hashes::make(context)?;
     // Roads come before the long work on heights, so that an unusable extract is reported at once.
-    roads::make(context, scratch)?;
+    // Scratch space is given back when a step ends, and what the step made is durable.
+    roads::make(context, &store.scratch()?)?;
+    store.flush()?;
     heights::make(context, TileId::ROOT)?;
     top::make(context)?;
     tiles::make(context, TileId::ROOT)?;
-    merge::make(context, scratch, target)
+    store.flush()?;
+    merge::make(context, &store.scratch()?, target)
 }

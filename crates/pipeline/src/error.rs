@@ -107,7 +107,9 @@ pub enum BuildError {
         "{what}: not in the store; run corniche part with --step {step}, or give the folder of its part with --store"
     )]
     Missing { what: String, step: &'static str },
-    #[error("roads could not be sorted on the disk (disk full?)")]
+    #[error(
+        "roads could not be sorted on the disk: if it is full, free space or name another folder with --tmp"
+    )]
     Storage(#[source] io::Error),
     #[error(transparent)]
     Store(#[from] corniche_store::StoreError),

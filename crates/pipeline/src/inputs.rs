@@ -188,12 +188,25 @@ impl Inputs {
         }
     }
 
-    /// Fails if a file is no longer what it was when it was found.
-    pub(crate) fn check_unchanged(&self) -> Result<(), InputError> {
-        match self.files.iter().find(|input| !input.stamp.still_holds()) {
-            Some(input) => Err(InputError::Changed { path: input.path.clone() }),
-            None => Ok(()),
+    /// The error to report after a failure: a changed input may be the cause of any other error. One that cannot be looked at says
+    /// nothing.
+    pub(crate) fn changed_instead_of(&self, error: BuildError) -> BuildError {
+        match self.check_unchanged() {
+            Err(changed @ InputError::Changed { .. }) => changed.into(),
+            _ => error,
         }
+    }
+
+    /// Fails if a file is no longer what it was when it was found, or cannot be looked at.
+    pub(crate) fn check_unchanged(&self) -> Result<(), InputError> {
+        for input in &self.files {
+            match input.stamp.still_holds() {
+                Ok(true) => {}
+                Ok(false) => return Err(InputError::Changed { path: input.path.clone() }),
+                Err(source) => return Err(InputError::Read { path: input.path.clone(), source }),
+            }
+        }
+        Ok(())
     }
 }
 

@@ -53,6 +53,13 @@ pub struct PlanSettings {
     pub generator: String,
 }
 
+impl PlanSettings {
+    /// The files that the terrain comes from: rasters, or a package.
+    pub(crate) fn terrain_files(&self) -> Vec<PathBuf> {
+        self.dem.iter().chain(&self.terrain_of).cloned().collect()
+    }
+}
+
 impl From<&BuildSettings> for PlanSettings {
     fn from(settings: &BuildSettings) -> Self {
         Self {

@@ -228,6 +228,13 @@ impl LocalStore {
         self.own.as_ref().map_or(Ok(()), |own| own.part.flush())
     }
 
+    /// From here on nothing is kept: dropping the store writes nothing more. For a store that is removed with its folder.
+    pub fn give_up(&self) {
+        if let Some(own) = &self.own {
+            own.part.give_up("the store was given up".to_owned());
+        }
+    }
+
     /// Ends the own part: makes it durable under a name that says what it holds, and returns that; `None` if nothing was put. If the
     /// same part is there already, this copy is dropped.
     ///

@@ -40,7 +40,8 @@ impl Unfinished {
         let Self { file, folder } = self;
         file.as_file().sync_all().map_err(failed)?;
         let bytes = file.as_file().metadata().map_err(failed)?.len();
-        let persist = |file: NamedTempFile| file.persist(target).map_err(|error| failed(error.error));
+        let persist =
+            |file: NamedTempFile| file.persist(target).map_err(|error| failed(error.error));
         match existing {
             Existing::Replace => drop(persist(file)?),
             // A link fails where a rename would replace what someone put there while the build ran.

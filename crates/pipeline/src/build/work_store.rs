@@ -1,23 +1,67 @@
 //! Where a build keeps its store, and what it does with one that an earlier build left.
 
 use std::{
+    fs,
     path::{Path, PathBuf},
     sync::Arc,
     time::Duration,
 };
 
 use corniche_dem::DemError;
-use corniche_store::{Artifacts as _, Disk, LocalStore, StoredPlan};
+use corniche_osm::ReadOsmError;
+use corniche_store::{Artifacts as _, Disk, LocalStore, StoreError, StoredPlan};
+use sha2::{Digest as _, Sha256};
 
-use crate::{BuildError, BuildPlan, Leftovers, Observer, artifacts::Kind};
+use crate::{BuildError, BuildPlan, Leftovers, Observer, artifacts::Kind, hex::hex};
+
+/// Inputs of so many bytes take long to hash: their hashes alone are worth keeping.
+const LONG_TO_HASH_BYTES: u64 = 1 << 30;
 
 /// The folder of the store of a build: beside the package, or in `tmp`.
 pub(crate) fn folder_of(target: &Path, tmp: Option<&Path>) -> PathBuf {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     match tmp {
-        Some(tmp) => tmp.join(format!("{name}.work")),
+        // Packages of one name in different folders have stores of their own there.
+        Some(tmp) => {
+            let path = std::path::absolute(target).unwrap_or_else(|_| target.to_path_buf());
+            let digest = hex(&Sha256::digest(path.as_os_str().as_encoded_bytes()));
+            tmp.join(format!("{name}.{}.work", &digest[..8]))
+        }
         None => target.with_file_name(format!(".{name}.work")),
     }
+}
+
+/// Fails if a store is there that the build may not use; nothing is changed. Returns the bytes that it takes.
+pub(crate) fn look(
+    disk: &Arc<dyn Disk>,
+    folder: &Path,
+    plan: &BuildPlan,
+    leftovers: Leftovers,
+) -> Result<u64, BuildError> {
+    if leftovers != Leftovers::Discard
+        && let Some(there) = LocalStore::stored_plan(Arc::clone(disk), folder)?
+    {
+        check(folder, plan, &there, leftovers)?;
+    }
+    let files = fs::read_dir(folder).into_iter().flatten().flatten();
+    Ok(files.filter_map(|file| Some(file.metadata().ok()?.len())).sum())
+}
+
+/// Fails if the store of an earlier build may not be gone on with.
+fn check(
+    folder: &Path,
+    plan: &BuildPlan,
+    there: &StoredPlan,
+    leftovers: Leftovers,
+) -> Result<(), BuildError> {
+    let store = folder.to_path_buf();
+    if leftovers == Leftovers::Refuse {
+        return Err(BuildError::Leftovers { store });
+    }
+    if there.hash != plan.digest() {
+        return Err(BuildError::OtherBuild { store, differences: differences(plan, there) });
+    }
+    Ok(())
 }
 
 /// Makes the store of a build, or goes on with the one that is there, as `leftovers` says. It lies on a disk, in a folder, and is made
@@ -44,15 +88,7 @@ pub(crate) fn open(
         }
         return Ok(LocalStore::create(Arc::clone(disk), folder, &wanted, sync_interval)?);
     };
-    if leftovers == Leftovers::Refuse {
-        return Err(BuildError::Leftovers { store: folder.to_path_buf() });
-    }
-    if there.hash != wanted.hash {
-        return Err(BuildError::OtherBuild {
-            store: folder.to_path_buf(),
-            differences: differences(plan, &there),
-        });
-    }
+    check(folder, plan, &there, leftovers)?;
     let store = LocalStore::open(Arc::clone(disk), folder, &wanted.hash, sync_interval)?;
     if store.repaired() > 0 {
         observer.warning(&format!(
@@ -96,18 +132,23 @@ pub(crate) fn remove(store: LocalStore, observer: &dyn Observer) {
 pub(crate) fn after_failure(
     store: LocalStore,
     folder: &Path,
+    plan: &BuildPlan,
     error: &BuildError,
     observer: &dyn Observer,
 ) {
-    // Hashes of inputs are made in no time.
-    let kinds = Kind::ALL.iter().filter(|&&kind| kind != Kind::InputHash);
-    let has_work = kinds.clone().any(|&kind| !store.items(kind as u8).is_empty());
+    let input_bytes = plan.inputs.iter().map(|input| input.bytes).fold(0, u64::saturating_add);
+    let mut kinds = Kind::ALL
+        .iter()
+        .filter(|&&kind| kind != Kind::InputHash || input_bytes >= LONG_TO_HASH_BYTES);
+    let has_work = kinds.any(|&kind| !store.items(kind as u8).is_empty());
     if is_final(error) || !has_work {
         remove(store, observer);
         return;
     }
-    // What was put since the last time is made durable. If that fails, a little less is there.
-    let _ = store.flush();
+    // What was put since the last time is made durable. If that fails, a little less is there, or nothing any more.
+    if matches!(store.flush(), Err(StoreError::Gone { .. })) {
+        return;
+    }
     observer.warning(&format!(
         "what was done is kept in {}; the same command with --resume goes on from there, with -O it starts again",
         folder.display()
@@ -116,19 +157,19 @@ pub(crate) fn after_failure(
 
 /// Whether the same build must fail again: a store is bound to its inputs and settings, and these must change.
 fn is_final(error: &BuildError) -> bool {
-    matches!(
-        error,
-        BuildError::NoHeights { .. }
-            | BuildError::NoCell { .. }
-            | BuildError::NoRoads { .. }
-            | BuildError::NoOverlap { .. }
-            | BuildError::NoGround { .. }
-            | BuildError::Changed { .. }
-            | BuildError::Exists { .. }
-            | BuildError::Osm(_)
-            | BuildError::DamagedPackage { .. }
-            | BuildError::PackageTile { .. }
-            | BuildError::Dem(DemError::OutOfRange { .. } | DemError::Sentinel { .. })
-            | BuildError::Triangulate { .. }
-    )
+    let is_bad_extract = |error: &ReadOsmError| !matches!(error, ReadOsmError::Read { .. });
+    matches!(error, BuildError::Osm(error) if is_bad_extract(error))
+        || matches!(
+            error,
+            BuildError::NoHeights { .. }
+                | BuildError::NoCell { .. }
+                | BuildError::NoRoads { .. }
+                | BuildError::NoOverlap { .. }
+                | BuildError::NoGround { .. }
+                | BuildError::Changed { .. }
+                | BuildError::DamagedPackage { .. }
+                | BuildError::PackageTile { .. }
+                | BuildError::Dem(DemError::OutOfRange { .. } | DemError::Sentinel { .. })
+                | BuildError::Triangulate { .. }
+        )
 }

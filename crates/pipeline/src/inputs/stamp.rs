@@ -46,15 +46,11 @@ impl Stamp {
         }
     }
 
-    /// Whether the file is still what it was.
-    pub(crate) fn still_holds(&self) -> bool {
+    /// Whether the file is still what it was; an error where it cannot be looked at.
+    pub(crate) fn still_holds(&self) -> io::Result<bool> {
         match self {
-            Self::File(path, state) => {
-                fs::metadata(path).is_ok_and(|now| FileState::of(&now) == *state)
-            }
-            Self::Remote(path, size) => VirtualFile::open(path)
-                .and_then(VirtualFile::into_size)
-                .is_ok_and(|now| now == *size),
+            Self::File(path, state) => Ok(FileState::of(&fs::metadata(path)?) == *state),
+            Self::Remote(path, size) => Ok(VirtualFile::open(path)?.into_size()? == *size),
         }
     }
 }

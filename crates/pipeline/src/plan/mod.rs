@@ -39,13 +39,15 @@ pub fn plan(
     Ok((BuildPlan::of(settings, &opened)?, estimate))
 }
 
-/// Fails if memory or disk space cannot suffice. Intermediate results go to `store`, the package to `target`: both folders.
+/// Fails if memory or disk space cannot suffice. Intermediate results go to the first folder, where they take `held_bytes` already; the
+/// package goes to the second.
 pub(crate) fn check_room(
     opened: &Opened,
     resources: Resources,
-    [store, target]: [&Path; 2],
+    folders: [&Path; 2],
+    held_bytes: u64,
     observer: &dyn Observer,
 ) -> Result<(), BuildError> {
     let estimate = Estimate::of(opened, resources, observer)?;
-    room::Room::of(resources.memory_bytes, store, target)?.check(&estimate)
+    room::Room::of(resources.memory_bytes, folders, held_bytes)?.check(&estimate)
 }

@@ -49,7 +49,7 @@ impl Opened {
                 Ok(Self { inputs, source, grid, levels, max_error_m, coordinates })
             }
             // A changed input may be the cause of any other error, so it is reported instead.
-            Err(error) => Err(inputs.check_unchanged().err().map_or(error, BuildError::from)),
+            Err(error) => Err(inputs.changed_instead_of(error)),
         }
     }
 

@@ -10,8 +10,8 @@ pub(crate) const TILE_BYTES: u64 = 200;
 
 /// Heights of a finest tile with one node of halo, four bytes each.
 pub(crate) const HEIGHTS_BYTES: u64 = 259 * 259 * 4;
-/// Heights of a coarse tile without the east and south border.
-pub(crate) const RASTER_BYTES: u64 = 256 * 256 * 4;
+/// Heights of a coarse tile.
+pub(crate) const RASTER_BYTES: u64 = 257 * 257 * 4;
 /// Key, length and checksum of an artifact, in data and journal.
 pub(crate) const ARTIFACT_BYTES: u64 = 64;
 /// Artifacts of a tile: heights or raster, TIN, record, payload, pieces of roads.

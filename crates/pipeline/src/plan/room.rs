@@ -24,19 +24,23 @@ pub(crate) struct Room {
 }
 
 impl Room {
-    /// Of this machine.
-    pub(crate) fn of(memory_bytes: u64, store: &Path, target: &Path) -> Result<Self, BuildError> {
+    /// Of this machine. `held_bytes` is what a store that is there takes already: the build goes on from it, or removes it first.
+    pub(crate) fn of(
+        memory_bytes: u64,
+        [store, target]: [&Path; 2],
+        held_bytes: u64,
+    ) -> Result<Self, BuildError> {
         let place = |folder: &Path| -> Result<_, BuildError> {
             let failed = |source| BuildError::Target { folder: folder.to_path_buf(), source };
             let there = nearest_folder(folder).map_err(failed)?;
             Ok((folder.to_path_buf(), FileSystem::of(&there).map_err(failed)?))
         };
-        Ok(Self {
-            memory_bytes,
-            machine_bytes: machine_memory_bytes(),
-            store: place(store)?,
-            target: place(target)?,
-        })
+        let (mut store, mut target) = (place(store)?, place(target)?);
+        if store.1.device == target.1.device {
+            target.1.free_bytes = target.1.free_bytes.saturating_add(held_bytes);
+        }
+        store.1.free_bytes = store.1.free_bytes.saturating_add(held_bytes);
+        Ok(Self { memory_bytes, machine_bytes: machine_memory_bytes(), store, target })
     }
 
     /// Fails where the need is greater than what there is.

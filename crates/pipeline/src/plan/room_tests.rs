@@ -66,7 +66,16 @@ fn a_disk_that_is_too_small_is_refused_with_the_need() {
 fn a_folder_that_does_not_exist_yet_is_looked_at_where_it_will_be() {
     let folder = tempfile::tempdir().unwrap();
     let later = folder.path().join("later/still");
-    let found = Room::of(G, &later, folder.path()).unwrap();
+    let found = Room::of(G, [&later, folder.path()], 0).unwrap();
     assert_eq!(found.store.1.device, found.target.1.device);
     assert_eq!(found.store.0, later);
+}
+
+/// A build that goes on needs no second time what its store takes already: here more than any disk has free.
+#[test]
+fn what_a_store_takes_already_counts_as_free() {
+    let folder = tempfile::tempdir().unwrap();
+    let held = 1 << 60;
+    let found = Room::of(G, [folder.path(); 2], held).unwrap();
+    assert!(found.store.1.free_bytes >= held && found.target.1.free_bytes >= held);
 }

@@ -14,7 +14,7 @@ use std::{
 };
 
 use corniche_geom::{Frame, LatticeBounds, LatticePoint, ProjectError, Projection, TileId};
-use corniche_osm::ExtractSummary;
+use corniche_osm::{ExtractSummary, ReadOsmError};
 use corniche_roads::{FunctionalRoadClass, Road};
 use corniche_store::{Artifacts, Scratch, SortRecord, Sorter};
 use corniche_tileset::pmtiles_order;
@@ -119,7 +119,11 @@ fn read(
     if observer.is_cancelled() {
         return Err(BuildError::Interrupted);
     }
-    let summary = summary?;
+    let summary = summary.map_err(|error| match error {
+        // The disk is at fault, not the extract.
+        ReadOsmError::Scratch { source, .. } => BuildError::Storage(source),
+        error => BuildError::Osm(error),
+    })?;
     if let Some(error) = unprojected.into_inner().unwrap_or_else(PoisonError::into_inner) {
         return Err(BuildError::Project(error));
     }

@@ -70,7 +70,7 @@ pub(crate) fn make(
         }
     }
     if tiles.levels.values().all(|level| level.tiles == 0) {
-        let dem = context.settings.dem.clone();
+        let dem = context.settings.terrain_files();
         return Err(BuildError::NoCell { dem, nodes: heights.samples.with_data });
     }
     let losses = match &roads {

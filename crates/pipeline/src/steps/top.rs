@@ -14,7 +14,7 @@ pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
         // Before any tile is made, because no tile has ground where no node has a height.
         pyramid.check()?;
         if pyramid.sums()?.samples.with_data == 0 {
-            return Err(BuildError::NoHeights { dem: context.settings.dem.clone() });
+            return Err(BuildError::NoHeights { dem: context.settings.terrain_files() });
         }
         pyramid.make_rasters(TileId::ROOT)?;
         tins::make(context, above_subtrees(context))?;

@@ -30,6 +30,13 @@ impl TemporaryStore {
     }
 }
 
+impl Drop for TemporaryStore {
+    /// Nothing has to reach the disk any more.
+    fn drop(&mut self) {
+        self.store.give_up();
+    }
+}
+
 fn failed(error: StoreError) -> VerifyError {
     VerifyError::Work(error.into())
 }
