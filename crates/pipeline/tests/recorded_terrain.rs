@@ -231,6 +231,9 @@ fn a_build_that_was_stopped_goes_on_but_not_with_another_package() {
     assert!(error.to_string().contains("sound.pmtiles was changed"), "{error}");
 }
 
+/// Another setting.
+type SettingsChange = fn(&mut BuildSettings);
+
 /// What is wrong with a package.
 type Change = fn(&mut Manifest, &mut Vec<(TileId, Vec<u8>)>);
 
@@ -262,7 +265,7 @@ fn packages_of_other_programs_and_settings_are_refused() {
     }
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("sound.pmtiles"), &SOUND.bytes).unwrap();
-    let changes: [(&str, fn(&mut BuildSettings)); 10] = [
+    let changes: [(&str, SettingsChange); 10] = [
         ("--max-error is 3, it was made with 10", |s| s.terrain.max_error_m = Some(3.0)),
         ("--fill-voids is 0, it was made with 32", |s| s.terrain.plan.fill_voids = 0),
         ("--crs is utm, it was made with not given", |s| {
