@@ -13,6 +13,7 @@ mod estimate;
 mod opened;
 mod rates;
 mod room;
+mod setting_facts;
 
 use std::path::Path;
 

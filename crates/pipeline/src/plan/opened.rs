@@ -3,7 +3,7 @@ use std::path::Path;
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::CoordinateTable;
 
-use super::{coordinates::coordinates, differences::terrain_differences};
+use super::{coordinates::coordinates, setting_facts::terrain_differences};
 use crate::{
     BuildError, PlanSettings, PlannedInput, TerrainSettings,
     inputs::{InputKind, Inputs},

@@ -9,6 +9,9 @@ use proptest::prelude::*;
 
 use super::*;
 
+/// Which nodes have no height, by column and row.
+type Voids = Box<dyn Fn(i64, i64) -> bool>;
+
 /// Nodes along a side of a tile with one node of halo at both ends.
 const HALO_NODES: usize = TILE_CELLS as usize + 3;
 
@@ -66,7 +69,7 @@ fn voids_along_borders_and_on_corners_are_seen_by_both_sides() {
     let last = 2 * TILE_CELLS;
     let outside = move |c: i64, r: i64| !(0..=last).contains(&c) || !(0..=last).contains(&r);
     let border = |at: i64| (TILE_CELLS - 1..=TILE_CELLS + 1).contains(&at);
-    let voids: [(&str, Box<dyn Fn(i64, i64) -> bool>); 6] = [
+    let voids: [(&str, Voids); 6] = [
         ("the data's edge alone", Box::new(outside)),
         ("single nodes on borders", Box::new(move |c, r| outside(c, r) || border(c) && r % 7 == 0)),
         (

@@ -1,0 +1,85 @@
+//! Settings in the words of the command line, to be compared.
+
+use corniche_tileset::SettingsRecord;
+
+/// A setting's name, and its value in words.
+pub(crate) type Fact = (String, String);
+
+/// In what the settings for the ground differ from those that a package records, in words; those for roads do not count.
+pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecord) -> Vec<String> {
+    // The package's roads are not used.
+    let theirs = SettingsRecord {
+        frc_table: ours.frc_table.clone(),
+        frc_table_sha256: ours.frc_table_sha256.clone(),
+        class_max_cell_m: ours.class_max_cell_m.clone(),
+        simplify_cells: ours.simplify_cells,
+        ..package.clone()
+    };
+    setting_facts(ours)
+        .into_iter()
+        .zip(setting_facts(&theirs))
+        .filter(|(ours, theirs)| ours != theirs)
+        .map(|((name, ours), (_, theirs))| format!("{name} is {ours}, it was made with {theirs}"))
+        .collect()
+}
+
+pub(crate) fn list<T: AsRef<str>>(texts: impl IntoIterator<Item = T>) -> String {
+    let texts: Vec<String> = texts.into_iter().map(|text| text.as_ref().to_owned()).collect();
+    if texts.is_empty() { "none".to_owned() } else { texts.join(", ") }
+}
+
+pub(crate) fn given<T: ToString>(value: Option<&T>) -> String {
+    value.map_or_else(|| "not given".to_owned(), ToString::to_string)
+}
+
+pub(crate) fn pair([a, b]: [f64; 2]) -> String {
+    format!("{a},{b}")
+}
+
+pub(crate) fn fact(name: &str, value: &impl ToString) -> Fact {
+    (name.to_owned(), value.to_string())
+}
+
+pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
+    // Every field is named, so that a new one cannot be forgotten here.
+    let SettingsRecord {
+        max_error_m,
+        fill_voids,
+        nodata,
+        height_range_m,
+        dem_crs,
+        dem_vertical_crs,
+        vertical_crs,
+        vertical_shift_m,
+        crs,
+        cell_m,
+        cell_every,
+        scale_latitude_deg,
+        frc_table,
+        // The table's entries are compared one by one.
+        frc_table_sha256: _,
+        class_max_cell_m,
+        simplify_cells,
+    } = record;
+    let classes = class_max_cell_m.iter().enumerate().map(|(class, cell_m)| match cell_m {
+        Some(cell_m) => format!("{class}: {cell_m}"),
+        None => format!("{class}: all"),
+    });
+    vec![
+        fact("--max-error", max_error_m),
+        fact("--fill-voids", fill_voids),
+        fact("--nodata", &list(nodata.iter().map(ToString::to_string))),
+        fact("--height-range", &given(height_range_m.map(pair).as_ref())),
+        fact("--dem-crs", &given(dem_crs.as_ref())),
+        fact("--dem-vertical-crs", &given(dem_vertical_crs.as_ref())),
+        fact("--vertical-crs", &given(vertical_crs.as_ref())),
+        fact("--vertical-shift", vertical_shift_m),
+        fact("--crs", &given(crs.as_ref())),
+        fact("--cell", &given(cell_m.map(|cell| pair(cell.to_array())).as_ref())),
+        fact("--cell-every", &given(cell_every.as_ref())),
+        fact("--scale-latitude", &given(scale_latitude_deg.as_ref())),
+        fact("--frc-table", frc_table),
+        fact("class-max-cell (--all-classes)", &list(classes)),
+        fact("--simplify", simplify_cells),
+    ]
+}
