@@ -155,8 +155,12 @@ pub(crate) fn after_failure(
     ));
 }
 
-/// Whether the same build must fail again: a store is bound to its inputs and settings, and these must change.
+/// Whether the store is of no use any more: it is bound to its inputs and settings, and these must change.
 fn is_final(error: &BuildError) -> bool {
+    // An input that is gone may come back, with the disk that it lies on.
+    if let BuildError::Changed { path } = error {
+        return path.exists();
+    }
     let is_bad_extract = |error: &ReadOsmError| !matches!(error, ReadOsmError::Read { .. });
     matches!(error, BuildError::Osm(error) if is_bad_extract(error))
         || matches!(
@@ -166,7 +170,6 @@ fn is_final(error: &BuildError) -> bool {
                 | BuildError::NoRoads { .. }
                 | BuildError::NoOverlap { .. }
                 | BuildError::NoGround { .. }
-                | BuildError::Changed { .. }
                 | BuildError::DamagedPackage { .. }
                 | BuildError::PackageTile { .. }
                 | BuildError::Dem(DemError::OutOfRange { .. } | DemError::Sentinel { .. })

@@ -46,10 +46,14 @@ impl Stamp {
         }
     }
 
-    /// Whether the file is still what it was; an error where it cannot be looked at.
+    /// Whether the file is still there and what it was; an error where it cannot be looked at.
     pub(crate) fn still_holds(&self) -> io::Result<bool> {
         match self {
-            Self::File(path, state) => Ok(FileState::of(&fs::metadata(path)?) == *state),
+            Self::File(path, state) => match fs::metadata(path) {
+                Ok(now) => Ok(FileState::of(&now) == *state),
+                Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+                Err(error) => Err(error),
+            },
             Self::Remote(path, size) => Ok(VirtualFile::open(path)?.into_size()? == *size),
         }
     }
