@@ -53,6 +53,10 @@ impl Campaign {
             }
             kills += 1;
             had_work |= job.has_work();
+            if job.package().exists() {
+                // Killed after the package was placed: without -O a further build would be refused.
+                break;
+            }
         }
         if job.package().exists() {
             // It was complete before, or just before the kill, and then it may have had no time to clean up.

@@ -15,33 +15,38 @@ use corniche_testing::Random;
 use e2e::{Ran, corniche, real_data, sample, text, write_ascii_grid};
 use tempfile::TempDir;
 
-/// A planned build, and the package that an ordinary build makes.
+/// A planned build, and what an ordinary build makes.
 struct Planned {
     folder: TempDir,
     inputs: Vec<String>,
     plan: PathBuf,
     whole: Vec<u8>,
+    /// The list of defects; empty without an extract.
+    defects: String,
 }
 
 impl Planned {
     /// `inputs` are the options that say what is built from what.
     fn new(inputs: &[&str]) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let (plan, package) =
-            (folder.path().join("plan.json"), folder.path().join("whole.pmtiles"));
-        let build = [&["build", "-q", "-o", text(&package)], inputs].concat();
-        succeed(corniche(build));
+        let [plan, package, defects] =
+            ["plan.json", "whole.pmtiles", "whole.csv"].map(|name| folder.path().join(name));
+        let outputs = ["build", "-q", "-o", text(&package)];
+        succeed(corniche([&outputs, list_of(inputs, &defects).as_slice(), inputs].concat()));
         succeed(corniche([&["plan", "-o", text(&plan)], inputs].concat()));
         let whole = fs::read(package).unwrap();
+        let defects = fs::read_to_string(defects).unwrap_or_default();
         let inputs = inputs.iter().map(|&option| option.to_owned()).collect();
-        Self { folder, inputs, plan, whole }
+        Self { folder, inputs, plan, whole, defects }
     }
 
     /// Of the sample `pass`.
     fn pass(options: &[&str]) -> Self {
         let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
         let inputs = ["--dem", text(&dem), "--osm", text(&osm), "--max-error", "10"];
-        Self::new(&[&inputs[..], options].concat())
+        let planned = Self::new(&[&inputs[..], options].concat());
+        assert!(planned.defects.lines().count() > 3, "the list of defects is empty");
+        planned
     }
 
     fn path(&self, name: &str) -> PathBuf {
@@ -70,20 +75,32 @@ impl Planned {
     }
 
     fn merge(&self, stores: &[&Path], package: &Path) -> Ran {
-        let mut command = vec!["merge", text(&self.plan), "-q", "-o", text(package), "--store"];
+        corniche(self.merge_command(stores, package, &[]))
+    }
+
+    fn merge_command(&self, stores: &[&Path], package: &Path, options: &[&str]) -> Vec<String> {
+        let mut command = vec!["merge", text(&self.plan), "-q", "-o", text(package)];
+        command.extend(options);
+        command.push("--store");
         command.extend(stores.iter().map(|store| text(store)));
-        corniche(command)
+        command.into_iter().map(str::to_owned).collect()
     }
 
     /// Merges, and compares with the ordinary build.
     fn check_merged(&self, stores: &[&Path]) {
-        let package = self.path("merged.pmtiles");
+        let [package, defects] = ["merged.pmtiles", "merged.csv"].map(|name| self.path(name));
         let before = stores.iter().flat_map(|store| files(store)).collect::<Vec<_>>();
-        succeed(self.merge(stores, &package));
+        let list = list_of(&self.inputs, &defects);
+        succeed(corniche(self.merge_command(stores, &package, &list)));
         assert!(fs::read(&package).unwrap() == self.whole, "another package than build makes");
+        let listed = fs::read_to_string(&defects).unwrap_or_default();
+        assert_eq!(listed, self.defects, "another list of defects than build makes");
         let after = stores.iter().flat_map(|store| files(store)).collect::<Vec<_>>();
         assert_eq!(before, after, "a merge leaves the stores as they are");
         fs::remove_file(package).unwrap();
+        if !list.is_empty() {
+            fs::remove_file(defects).unwrap();
+        }
     }
 
     /// The subtrees of a level, some of them split into those of the next so that they are `count` in all.
@@ -137,6 +154,12 @@ impl Planned {
         }
         self.check_merged(&stores);
     }
+}
+
+/// The options that ask for a list of defects, which there is only with an extract.
+fn list_of<'a>(inputs: &[impl AsRef<str>], defects: &'a Path) -> Vec<&'a str> {
+    let has_extract = inputs.iter().any(|option| option.as_ref() == "--osm");
+    if has_extract { vec!["--defects", text(defects)] } else { Vec::new() }
 }
 
 fn succeed(ran: Ran) -> Ran {
@@ -417,6 +440,36 @@ fn parts_are_made_side_by_side_in_one_folder() {
     at_once(&of("tiles").chain(of("tiles").take(1)).collect::<Vec<_>>());
     assert_eq!(files(&store.join("parts")).len(), 2 + 4 + 1 + 4);
     planned.check_merged(&[&store]);
+}
+
+/// Each part is an open file while it is read. A low limit is raised as far as it can be; where that does not suffice, the error says what
+/// to do.
+#[cfg(unix)]
+#[test]
+fn more_parts_than_open_files_are_allowed_are_read_or_refused_with_advice() {
+    let planned = Planned::pass(&[]);
+    let store = planned.path("store");
+    let quarters = planned.subtrees(1);
+    let of = |step| quarters.iter().map(move |id| (step, Some(id.as_str())));
+    let others = [("hashes", None), ("roads", None)];
+    for (step, subtree) in
+        others.into_iter().chain(of("heights")).chain([("top", None)]).chain(of("tiles"))
+    {
+        succeed(planned.part(&[&store], step, subtree));
+    }
+    let package = planned.path("limited.pmtiles");
+    let merge = |limit: &str| {
+        let line = format!("ulimit {limit} 16 && exec \"$0\" \"$@\"");
+        let command = planned.merge_command(&[&store], &package, &[]);
+        let mut shell = Command::new("sh");
+        Ran::from(shell.args(["-c", &line]).arg(e2e::binary()).args(command).output().unwrap())
+    };
+    let refused = merge("-n");
+    assert_eq!(refused.code, 1, "{}", refused.err);
+    assert!(refused.err.contains(".part") && refused.err.contains("ulimit -n"), "{}", refused.err);
+    assert!(!package.exists());
+    succeed(merge("-S -n"));
+    assert!(fs::read(&package).unwrap() == planned.whole);
 }
 
 /// What was made from an input that changes meanwhile is not kept, even if the input looks as before afterwards.

@@ -15,6 +15,7 @@ mod growth;
 mod info;
 mod interrupt;
 mod merge;
+mod open_files;
 mod output;
 mod part;
 mod plan;
@@ -59,6 +60,7 @@ fn main() -> process::ExitCode {
 
 fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
     interrupt::watch()?;
+    open_files::allow_many();
     match arguments.command {
         Command::Build(args) => build::run(args),
         Command::Plan(args) => plan::run(*args),

@@ -113,7 +113,9 @@ pub enum BuildError {
     Storage(#[source] io::Error),
     #[error(transparent)]
     Store(#[from] corniche_store::StoreError),
-    #[error("intermediate results beside the package were damaged while the build ran: {what}")]
+    #[error(
+        "intermediate results are damaged: {what}; remove the store and start again (build: with -O)"
+    )]
     Damaged { what: String },
     #[error("tile {id} could not be triangulated")]
     Triangulate { id: corniche_geom::TileId, source: corniche_tin::TriangulateError },

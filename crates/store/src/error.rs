@@ -18,7 +18,9 @@ pub enum StoreError {
     NotAStore { path: PathBuf, what: String },
     #[error("{path:?} holds no store; nothing was begun here, or it is done")]
     NoStore { path: PathBuf },
-    #[error("{path:?} already holds a store; go on from it with --resume, or remove it")]
+    #[error(
+        "{path:?} already holds a store; go on from it (build: with --resume), or remove it and start again (build: with -O)"
+    )]
     Exists { path: PathBuf },
     #[error("{path:?} belongs to another plan: an input or a setting differs")]
     OtherPlan { path: PathBuf },
@@ -41,20 +43,30 @@ pub enum StoreError {
     PartName { name: String },
 }
 
-/// What to do about a cause that has a remedy.
+/// What to do about a cause that has a remedy. Every command with a store says this, so options of one command are told with its name.
 fn advice(source: &io::Error) -> &'static str {
+    if is_too_many_open_files(source) {
+        return ": too many files are open, and each part of a store is one; allow more (ulimit -n) or make parts of larger \
+                subtrees, then run the same command again";
+    }
     match source.kind() {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            ": the disk is full; free space or choose another folder with --tmp, then run again with --resume"
+            ": the disk is full; free space and run the same command again (build: with --resume), or choose another folder \
+             (build: with --tmp)"
         }
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
-            ": no permission; choose another folder with --tmp"
+            ": no permission; choose another folder (build: with --tmp)"
         }
         io::ErrorKind::Unsupported => {
-            ": this file system cannot do it; choose another folder with --tmp"
+            ": this file system cannot do it; choose another folder (build: with --tmp)"
         }
         _ => "",
     }
+}
+
+/// Whether the limit of open files is reached, of the process (`EMFILE`) or of the machine (`ENFILE`). All Unix systems have the same numbers.
+fn is_too_many_open_files(source: &io::Error) -> bool {
+    cfg!(unix) && matches!(source.raw_os_error(), Some(23 | 24))
 }
 
 impl From<StoreError> for io::Error {
@@ -67,3 +79,7 @@ impl From<StoreError> for io::Error {
         Self::new(kind, error)
     }
 }
+
+#[cfg(test)]
+#[path = "error_tests.rs"]
+mod tests;

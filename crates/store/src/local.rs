@@ -42,6 +42,7 @@ use crate::{
 };
 use binding::FolderState;
 use entry::Entry;
+use header::FileKind;
 use index::{Index, Place};
 use layout::Role;
 use open_part::{OPEN_PART, OpenPart};
@@ -332,21 +333,23 @@ impl Artifacts for LocalStore {
 
     fn get(&self, key: Key) -> Result<Option<Vec<u8>>, StoreError> {
         let Some(place) = self.index().get(key) else { return Ok(None) };
-        let file = match (&self.own, self.sealed.get(usize::from(place.part))) {
-            (_, Some(file)) => file,
-            (Some(own), None) => own.part.data(),
+        let (is_sealed, file) = match (&self.own, self.sealed.get(usize::from(place.part))) {
+            (_, Some(file)) => (true, file),
+            (Some(own), None) => (false, own.part.data()),
             (None, None) => return Ok(None),
         };
         let mut bytes = vec![0; place.length as usize];
         file.read_exact_at(&mut bytes, place.offset)?;
         if crc32fast::hash(&bytes) != place.crc {
-            return Err(StoreError::Damaged {
-                path: file.path().to_owned(),
-                what: format!(
-                    "artifact {} of kind {} has another checksum than when it was put; \
-                     run again with --resume, or remove the file and make the part again",
-                    key.item, key.kind
-                ),
+            let Key { kind, item } = key;
+            let what =
+                format!("artifact {item} of kind {kind} has another checksum than when it was put");
+            return Err(if is_sealed {
+                FileKind::Sealed.damaged(file.path(), &what)
+            } else {
+                // What is damaged is cut off when the part is opened again.
+                let what = format!("{what}; run the same command again (build: with --resume)");
+                StoreError::Damaged { path: file.path().to_owned(), what }
             });
         }
         Ok(Some(bytes))

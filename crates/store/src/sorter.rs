@@ -315,7 +315,12 @@ fn read_length(bytes: &mut &[u8]) -> Option<usize> {
 }
 
 fn broken(what: &str) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, format!("scratch space is damaged: {what}"))
+    io::Error::new(
+        io::ErrorKind::InvalidData,
+        format!(
+            "scratch space is damaged: {what}; run the same command again (build: with --resume)"
+        ),
+    )
 }
 
 #[cfg(test)]

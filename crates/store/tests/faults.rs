@@ -118,7 +118,7 @@ fn a_disk_that_is_full_at_any_call_says_so_and_the_build_goes_on_when_there_is_r
             let text = error.to_string();
             assert!(text.contains("/data"), "{text}");
             assert!(
-                text.contains("the disk is full; free space or choose another folder with --tmp"),
+                text.contains("the disk is full; free space and run the same command"),
                 "{text}"
             );
             // While it is full, going on fails in the same way, and harms nothing.

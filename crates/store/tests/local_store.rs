@@ -152,7 +152,7 @@ fn reading_a_damaged_artifact_is_an_error() {
     *data.last_mut().unwrap() ^= 1;
     disk.set_content(&path, &data);
     let error = store.get(key(1, 1)).unwrap_err();
-    assert!(matches!(&error, StoreError::Damaged { path: found, .. } if *found == path), "{error}");
+    check_damaged(&error, &path, "run the same command again (build: with --resume)");
 }
 
 /// Only what the interval asks for is made durable on the way; a loss of power costs no more than that.
@@ -275,11 +275,35 @@ fn a_header_or_a_plan_with_a_wrong_bit_is_refused() {
         bytes[at] ^= 0x10;
         disk.set_content(&path, &bytes);
         let error = LocalStore::stored_plan(disk.disk(), folder()).unwrap_err();
-        assert!(
-            matches!(&error, StoreError::Damaged { path: found, .. } if *found == path),
-            "{error}"
-        );
+        check_damaged(&error, &path, "remove the store and start again (build: with -O)");
     }
+}
+
+/// What the error about a damaged file says helps.
+#[test]
+fn a_part_with_a_damaged_header_is_made_again_when_the_named_file_is_removed() {
+    for file in ["journal", "data"] {
+        let disk = empty_disk();
+        let store = create(&disk, ALWAYS).unwrap();
+        store.put(key(1, 1), &artifact(key(1, 1))).unwrap();
+        drop(store);
+        let path = part_file(&disk, file);
+        let mut bytes = disk.content(&path).unwrap();
+        bytes[3] ^= 0x10;
+        disk.set_content(&path, &bytes);
+        let error = open(&disk, NEVER).unwrap_err();
+        check_damaged(&error, &path, "remove the file and run the same command again");
+        disk.disk().remove(&path).unwrap();
+        let store = open(&disk, NEVER).unwrap();
+        check_holds(&store, &all_of([]));
+        store.put(key(1, 1), &artifact(key(1, 1))).unwrap();
+    }
+}
+
+/// An error about damage names the file and what to do.
+fn check_damaged(error: &StoreError, path: &Path, remedy: &str) {
+    assert!(matches!(error, StoreError::Damaged { path: found, .. } if found == path), "{error}");
+    assert!(error.to_string().contains(remedy), "{error}");
 }
 
 #[test]

@@ -214,6 +214,8 @@ fn any_wrong_byte_of_a_sealed_part_is_noticed() {
         let error =
             LocalStore::open_parts(disk.disk(), &[folder()], &plan().hash, None).unwrap_err();
         assert!(matches!(&error, StoreError::Damaged { .. }), "{error}");
+        let said = error.to_string();
+        assert!(said.contains("remove the file and make the part again"), "{said}");
     }
 }
 

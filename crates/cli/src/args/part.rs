@@ -74,7 +74,8 @@ pub(crate) struct MergeArgs {
     /// Replace the package if it exists, once the new one is complete; if it is a link, replace the file it leads to
     #[arg(short = 'O', long)]
     pub(crate) overwrite: bool,
-    /// Also list every road lost, one per line (CSV); an existing list is kept unless -O is given
+    /// Also list every defect of the extract and every road lost, one per line (CSV); an existing list is kept
+    /// unless -O is given
     #[arg(long, value_name = "CSV")]
     pub(crate) defects: Option<PathBuf>,
     #[command(flatten)]

@@ -107,14 +107,13 @@ pub(crate) fn read_plan(files: &Arc<Files>, folder: &Path) -> Result<StoredPlan,
     let path = folder.join(layout::PLAN);
     let bytes = match read_whole(files, &path) {
         Err(error) if is_kind(&error, std::io::ErrorKind::NotFound) => {
-            let what = "it is missing; remove the store and start again".to_owned();
-            return Err(StoreError::Damaged { path, what });
+            return Err(FileKind::Store.damaged(&path, "it is missing"));
         }
         bytes => bytes?,
     };
     if bytes.len() as u64 != length || crc32fast::hash(&bytes) != crc {
-        let what = "it is not the plan that the store was made with".to_owned();
-        return Err(StoreError::Damaged { path, what });
+        let what = "it is not the plan that the store was made with";
+        return Err(FileKind::Store.damaged(&path, what));
     }
     Ok(StoredPlan { hash, bytes })
 }
@@ -131,7 +130,7 @@ fn read_header(files: &Arc<Files>, folder: &Path) -> Result<(PlanHash, u64, u32)
     let hash = header::decode(FileKind::Store, &bytes, &path)?;
     let rest = &bytes[HEADER_BYTES as usize..];
     if rest.len() != 16 || u32_at(rest, 12) != crc32fast::hash(&rest[..12]) {
-        return Err(StoreError::Damaged { path, what: "its checksum is wrong".to_owned() });
+        return Err(FileKind::Store.damaged(&path, "its checksum is wrong"));
     }
     Ok((hash, u64_at(rest, 0), u32_at(rest, 8)))
 }

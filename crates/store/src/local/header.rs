@@ -25,6 +25,8 @@ pub(crate) enum FileKind {
     Store,
     Journal,
     Data,
+    /// Begins as data does: it was data before.
+    Sealed,
 }
 
 impl FileKind {
@@ -32,8 +34,20 @@ impl FileKind {
         match self {
             Self::Store => b"CORNSTOR",
             Self::Journal => b"CORNJOUR",
-            Self::Data => b"CORNDATA",
+            Self::Data | Self::Sealed => b"CORNDATA",
         }
+    }
+
+    /// The error about such a file that is damaged: what is wrong, and what to do.
+    pub(crate) fn damaged(self, path: &Path, what: &str) -> StoreError {
+        let remedy = match self {
+            Self::Store => "remove the store and start again (build: with -O)",
+            Self::Journal | Self::Data => {
+                "remove the file and run the same command again (build: with --resume)"
+            }
+            Self::Sealed => "remove the file and make the part again",
+        };
+        StoreError::Damaged { path: path.to_owned(), what: format!("{what}; {remedy}") }
     }
 }
 
@@ -52,7 +66,7 @@ pub(crate) fn encode(kind: FileKind, plan: &PlanHash) -> [u8; HEADER_BYTES as us
 /// # Errors
 /// Where it is of another version, damaged, or no header of this kind of file.
 pub(crate) fn decode(kind: FileKind, bytes: &[u8], path: &Path) -> Result<PlanHash, StoreError> {
-    let damaged = |what: &str| StoreError::Damaged { path: path.to_owned(), what: what.to_owned() };
+    let damaged = |what| kind.damaged(path, what);
     let Some((bytes, _)) = bytes.split_first_chunk::<{ HEADER_BYTES as usize }>() else {
         return Err(damaged("it is too short"));
     };

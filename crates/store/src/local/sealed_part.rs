@@ -89,14 +89,11 @@ pub(crate) fn open(
     visit: &mut Visit<'_>,
 ) -> Result<OpenFile, StoreError> {
     let file = files.open(path, OpenMode::Read)?;
-    let damaged = |what: &str| StoreError::Damaged {
-        path: path.to_owned(),
-        what: format!("{what}; remove the file and make the part again"),
-    };
+    let damaged = |what| FileKind::Sealed.damaged(path, what);
     let length = file.length()?;
     let mut bytes = vec![0; length.min(HEADER_BYTES) as usize];
     file.read_exact_at(&mut bytes, 0)?;
-    header::check(FileKind::Data, &bytes, path, plan)?;
+    header::check(FileKind::Sealed, &bytes, path, plan)?;
 
     let ended = length.checked_sub(FOOTER_BYTES as u64).filter(|&ended| ended >= HEADER_BYTES);
     let ended = ended.ok_or_else(|| damaged("it is too short"))?;
