@@ -6,7 +6,7 @@ use std::{
     thread,
 };
 
-use crate::Observer;
+use crate::{Observer, Stage};
 
 /// A run was cancelled by its [`Observer`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,6 +28,36 @@ pub(crate) fn in_order_unless_cancelled<S, R: Send, E: Send + From<Interrupted>>
         if observer.is_cancelled() { Err(Interrupted.into()) } else { work(state, index) }
     };
     in_order(threads, count, start, work, write)
+}
+
+/// Makes the `missing` of `all` items of a stage, each by `work`, and tells `observer` how far it is. What the items become is kept by
+/// `work` itself.
+///
+/// # Errors
+/// Those of [`in_order`], or [`Interrupted`].
+pub(crate) fn make_missing<S, T: Sync, E: Send + From<Interrupted>>(
+    observer: &dyn Observer,
+    stage: Stage,
+    threads: usize,
+    (missing, all): (&[T], usize),
+    start: impl Fn() -> Result<S, E> + Sync,
+    work: impl Fn(&mut S, &T) -> Result<(), E> + Sync,
+) -> Result<(), E> {
+    observer.begin(stage, Some(all as u64));
+    observer.already(stage, (all - missing.len()) as u64);
+    in_order_unless_cancelled(
+        observer,
+        threads,
+        missing.len(),
+        start,
+        |state, index| work(state, &missing[index]),
+        |_, ()| {
+            observer.advance(stage, 1);
+            Ok(())
+        },
+    )?;
+    observer.end(stage);
+    Ok(())
 }
 
 /// State that workers and the one writer share.

@@ -52,8 +52,6 @@ impl Pyramid<'_> {
         let all = self.data().above(level).within(scope);
         let missing: Vec<TileId> =
             all.iter().copied().filter(|&area| !self.has_area(area)).collect();
-        observer.begin(Stage::Heights, Some(all.len() as u64));
-        observer.already(Stage::Heights, (all.len() - missing.len()) as u64);
         let mut blocks: BTreeMap<TileId, Vec<AuditBlock>> = BTreeMap::new();
         let wanted: BTreeSet<TileId> = missing.iter().copied().collect();
         for (area, block) in audit_blocks_of(dem, grid, level)? {
@@ -61,22 +59,14 @@ impl Pyramid<'_> {
                 blocks.entry(area).or_default().push(block);
             }
         }
-        workers::in_order_unless_cancelled(
+        workers::make_missing(
             observer,
+            Stage::Heights,
             self.threads,
-            missing.len(),
-            || Ok::<_, BuildError>(AreaReader::new(dem, grid, self.allowed_m(), store)),
-            |reader, index| {
-                let area = missing[index];
-                reader.make(area, blocks.get(&area).map_or(&[], Vec::as_slice))
-            },
-            |_, ()| {
-                observer.advance(Stage::Heights, 1);
-                Ok(())
-            },
-        )?;
-        observer.end(Stage::Heights);
-        Ok(())
+            (&missing, all.len()),
+            || Ok(AreaReader::new(dem, grid, self.allowed_m(), store)),
+            |reader, area| reader.make(*area, blocks.get(area).map_or(&[], Vec::as_slice)),
+        )
     }
 
     /// Makes the rasters that are missing beneath and at `scope`, from those that are there up.

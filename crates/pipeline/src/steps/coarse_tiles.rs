@@ -23,7 +23,7 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
     let (store, data) = (context.store, context.data());
     let deviations = deviations(context, scope)?;
     let mut ids: Vec<TileId> = deviations.keys().copied().collect();
-    let all = ids.len() as u64;
+    let all = ids.len();
     ids.retain(|&id| !store.has(Kind::Record.of_tile(id)));
     ids.sort_unstable_by_key(|&id| corniche_tileset::pmtiles_order(id));
     // They are there, unless the part that made them for the tiles beneath is not among the stores.
@@ -31,15 +31,13 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
         context,
         ids.iter().copied().filter(|&id| !store.has(Kind::Tin.of_tile(id))).collect(),
     )?;
-    context.observer.begin(Stage::CoarseTiles, Some(all));
-    context.observer.already(Stage::CoarseTiles, all - ids.len() as u64);
-    workers::in_order_unless_cancelled(
+    workers::make_missing(
         context.observer,
+        Stage::CoarseTiles,
         context.threads(),
-        ids.len(),
+        (&ids, all),
         || Ok(()),
-        |(), index| {
-            let id = ids[index];
+        |(), &id| {
             // Records of finest tiles say that it has ground.
             let empty = || damaged(Kind::Tin.of_tile(id), &"it has no ground");
             let meshed = Meshed::get(store, id)?.ok_or_else(empty)?;
@@ -50,13 +48,7 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
             };
             encode::with_ground(context, id, meshed, deviation, None, owned)?.put(store, id)
         },
-        |_, ()| {
-            context.observer.advance(Stage::CoarseTiles, 1);
-            Ok::<_, BuildError>(())
-        },
-    )?;
-    context.observer.end(Stage::CoarseTiles);
-    Ok(())
+    )
 }
 
 /// The deviations of the coarse tiles with ground beneath and at `scope`, from the records of finest tiles.

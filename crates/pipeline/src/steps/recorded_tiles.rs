@@ -45,24 +45,17 @@ fn make_all(
     mut ids: Vec<TileId>,
 ) -> Result<(), BuildError> {
     let Context { store, observer, .. } = *context;
-    let all = ids.len() as u64;
+    let all = ids.len();
     ids.retain(|&id| !store.has(Kind::Record.of_tile(id)));
     ids.sort_unstable_by_key(|&id| pmtiles_order(id));
-    observer.begin(stage, Some(all));
-    observer.already(stage, all - ids.len() as u64);
-    workers::in_order_unless_cancelled(
+    workers::make_missing(
         observer,
+        stage,
         context.threads(),
-        ids.len(),
+        (&ids, all),
         || Ok(()),
-        |(), index| make_tile(context, borders, ids[index]),
-        |_, ()| {
-            observer.advance(stage, 1);
-            Ok::<_, BuildError>(())
-        },
-    )?;
-    observer.end(stage);
-    Ok(())
+        |(), &id| make_tile(context, borders, id),
+    )
 }
 
 fn make_tile(context: &Context<'_>, borders: &Borders<'_>, id: TileId) -> Result<(), BuildError> {

@@ -44,24 +44,17 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
 fn make_finest(context: &Context<'_>, dem: &Dem, scope: TileId) -> Result<(), BuildError> {
     let Context { store, observer, .. } = *context;
     let mut ids = context.data().in_order_within(scope);
-    let all = ids.len() as u64;
+    let all = ids.len();
     ids.retain(|&id| !store.has(Kind::Record.of_tile(id)));
-    observer.begin(Stage::Tiles, Some(all));
-    observer.already(Stage::Tiles, all - ids.len() as u64);
     let grounds = Grounds::new(context);
-    workers::in_order_unless_cancelled(
+    workers::make_missing(
         observer,
+        Stage::Tiles,
         context.threads(),
-        ids.len(),
+        (&ids, all),
         || Ok((dem, dem.reader(context.grid))),
-        |source, index| make_tile(context, &grounds, source, ids[index]),
-        |_, ()| {
-            observer.advance(Stage::Tiles, 1);
-            Ok::<_, BuildError>(())
-        },
-    )?;
-    observer.end(Stage::Tiles);
-    Ok(())
+        |source, &id| make_tile(context, &grounds, source, id),
+    )
 }
 
 fn make_tile(

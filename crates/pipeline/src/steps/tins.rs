@@ -17,28 +17,20 @@ pub(crate) fn make(context: &Context<'_>, mut ids: Vec<TileId>) -> Result<(), Bu
         return Ok(());
     }
     let (store, data) = (context.store, context.data());
-    let all = ids.len() as u64;
+    let all = ids.len();
     ids.retain(|&id| !store.has(Kind::Tin.of_tile(id)));
-    context.observer.begin(Stage::CoarseTins, Some(all));
-    context.observer.already(Stage::CoarseTins, all - ids.len() as u64);
-    workers::in_order_unless_cancelled(
+    workers::make_missing(
         context.observer,
+        Stage::CoarseTins,
         context.threads(),
-        ids.len(),
+        (&ids, all),
         || Ok(()),
-        |(), index| {
-            let id = ids[index];
+        |(), &id| {
             let meshed = match rasters::with_halo(store, &data, id)? {
                 Some(heights) => mesh_tile(&heights, id, context.levels)?,
                 None => Meshed::default(),
             };
             meshed.put(store, id)
         },
-        |_, ()| {
-            context.observer.advance(Stage::CoarseTins, 1);
-            Ok::<_, BuildError>(())
-        },
-    )?;
-    context.observer.end(Stage::CoarseTins);
-    Ok(())
+    )
 }
