@@ -96,9 +96,9 @@ fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources) -> Strin
     let [east_m, north_m] = grid.frame.cell().to_array();
     say("plan", &plan.hash());
     say("CRS", &grid.crs);
-    say("grid", &format!("cell {east_m} × {north_m} m, {}", grid.resampling));
+    say("grid", &format!("cell {east_m:.3} × {north_m:.3} m, {}", grid.resampling));
     say("heights", &grid.vertical_treatment);
-    say("max error", &format!("{} m on the finest level", plan.settings.max_error_m));
+    say("max error", &format!("{:.3} m on the finest level", plan.settings.max_error_m));
     for input in &plan.inputs {
         say(&input.kind, &format!("{}, {}", input.path, bytes(input.bytes)));
     }
