@@ -54,6 +54,10 @@ fn advice(source: &io::Error) -> &'static str {
             ": the disk is full; free space and run the same command again (build: with --resume), or choose another folder \
              (build: with --tmp)"
         }
+        io::ErrorKind::FileTooLarge => {
+            ": a limit on the size of files is reached (ulimit -f, or the file system's own); raise it, or choose another folder (build: \
+             with --tmp), then run the same command again (build: with --resume)"
+        }
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             ": no permission; choose another folder (build: with --tmp)"
         }
