@@ -3,7 +3,11 @@
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 #![cfg(unix)]
 
-use std::{fs, path::Path, time::Duration};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    time::Duration,
+};
 
 use e2e::{Job, Ran, When, sample, text};
 
@@ -122,16 +126,26 @@ fn of_two_builds_of_one_target_one_is_refused() {
 fn the_store_lies_where_tmp_says() {
     let elsewhere = tempfile::tempdir().unwrap();
     let job = Job::new(&[&OPTIONS[..], &["--tmp", text(elsewhere.path())]].concat());
-    let store = elsewhere.path().join("out.pmtiles.work");
     let mut child = job.start(&["--quiet"]);
-    let has_work = || fs::read_dir(&store).is_ok_and(|files| files.count() > 2);
+    // Its name begins with the package's and has a part that stands for the package's folder.
+    let stores = || -> Vec<PathBuf> {
+        let entries = fs::read_dir(elsewhere.path()).unwrap();
+        entries.map(|entry| entry.unwrap().path()).collect()
+    };
+    let has_work = || {
+        let store = stores().pop();
+        store.is_some_and(|store| fs::read_dir(store).is_ok_and(|files| files.count() > 2))
+    };
     while !has_work() {
         assert!(child.try_wait().unwrap().is_none(), "the build ended before it was at work");
     }
     std::thread::sleep(Duration::from_millis(300));
     child.kill().unwrap();
     child.wait().unwrap();
-    assert!(!job.store().exists() && store.exists());
+    let store = stores().pop().unwrap();
+    let name = store.file_name().unwrap().to_string_lossy().into_owned();
+    assert!(name.starts_with("out.pmtiles.") && name.ends_with(".work"), "{name}");
+    assert!(!job.store().exists() && stores().len() == 1);
     let ran = job.run(&["--quiet"]);
     assert!(ran.code == 1 && ran.err.contains(text(&store)), "{}", ran.err);
     job.succeed(&["--quiet", "--resume"]);

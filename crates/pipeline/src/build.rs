@@ -84,14 +84,15 @@ pub fn build_on(
     let opened = Opened::new(&plan_settings)?;
     let plan = BuildPlan::of(&plan_settings, &opened)?;
     let store_folder = work_store::folder_of(target, settings.tmp.as_deref());
+    // Before the store is looked at: what another build is at work on is no leftover.
+    let finished = Unfinished::create(target, folder)?;
+    observer.temporary(finished.path());
+    let finished_path = finished.path().to_path_buf();
     let held_bytes = work_store::look(disk, &store_folder, &plan, settings.leftovers)?;
     if !settings.force {
         let store = settings.tmp.as_deref().unwrap_or(folder);
         check_room(&opened, settings.resources, [store, folder], held_bytes, observer)?;
     }
-    let finished = Unfinished::create(target, folder)?;
-    observer.temporary(finished.path());
-    let finished_path = finished.path().to_path_buf();
     let place = (disk, &*store_folder, sync_interval);
     let store = work_store::open(place, &plan, settings.leftovers, observer)?;
     observer.keeps(&store_folder);
