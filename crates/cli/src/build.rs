@@ -11,25 +11,15 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     info, output,
-    progress::Progress,
     settings::{self, Work},
 };
 
 pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
     output::writable(&args.output)?;
-    let progress = Progress::new(args.report);
-    let defects = match &args.defects {
-        Some(path) => {
-            let existing =
-                if args.overwrite { output::Existing::Replace } else { output::Existing::Keep };
-            let mut others: Vec<&Path> = args.work.files().collect();
-            others.push(&args.output);
-            Some(DefectList::create(path, existing, &others)?)
-        }
-        None => None,
-    };
-    let watch = Watch { progress, defects };
     let report = args.report;
+    let mut others: Vec<&Path> = args.work.files().collect();
+    others.push(&args.output);
+    let watch = Watch::new(report, args.defects.as_deref(), args.overwrite, &others)?;
     let settings = settings(*args)?;
     let built = corniche_pipeline::build(&settings, &watch);
     finish(built, watch, report, &settings.output)
@@ -78,9 +68,7 @@ fn tell_warnings(manifest: &Manifest, as_json: bool) {
 fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
     let Work { plan, resources, tmp, force } = settings::of(args.work)?;
     Ok(BuildSettings {
-        dem: plan.dem,
-        terrain_of: plan.terrain_of,
-        osm: plan.osm,
+        plan,
         output: args.output,
         existing: if args.overwrite { Existing::Replace } else { Existing::Keep },
         tmp,
@@ -90,10 +78,6 @@ fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
             (false, false) => Leftovers::Refuse,
         },
         force,
-        attribution: plan.attribution,
-        terrain: plan.terrain,
-        roads: plan.roads,
         resources,
-        generator: plan.generator,
     })
 }

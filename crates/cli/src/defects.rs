@@ -10,6 +10,7 @@ use std::{
 use corniche_pipeline::{Defect, Observer, Stage};
 
 use crate::{
+    args::ReportArgs,
     failure::Failure,
     output::{self, Existing, Output},
     progress::Progress,
@@ -83,6 +84,20 @@ fn quoted(text: &str) -> String {
 pub(crate) struct Watch {
     pub(crate) progress: Progress,
     pub(crate) defects: Option<DefectList>,
+}
+
+impl Watch {
+    /// Begins the list if one is asked for; it must be none of `others`.
+    pub(crate) fn new(
+        report: ReportArgs,
+        list: Option<&Path>,
+        overwrite: bool,
+        others: &[&Path],
+    ) -> Result<Self, Failure> {
+        let existing = Existing::of(overwrite);
+        let defects = list.map(|target| DefectList::create(target, existing, others));
+        Ok(Self { progress: Progress::new(report), defects: defects.transpose()? })
+    }
 }
 
 impl Observer for Watch {

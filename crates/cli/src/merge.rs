@@ -1,39 +1,21 @@
 //! `corniche merge`: the package of a planned build from its parts.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use corniche_pipeline::{Existing, MergeSettings};
 
 use crate::{
-    args::MergeArgs,
-    build,
-    defects::{DefectList, Watch},
-    exit::ExitCode,
-    failure::Failure,
-    output,
-    part::read_plan,
-    progress::Progress,
-    settings,
+    args::MergeArgs, build, defects::Watch, exit::ExitCode, failure::Failure, output,
+    part::read_plan, settings,
 };
 
 pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
     let planned = &args.planned;
     output::writable(&args.output)?;
     let plan = read_plan(&planned.plan)?;
-    let progress = Progress::new(planned.report);
-    let defects = match &args.defects {
-        Some(path) => {
-            let existing =
-                if args.overwrite { output::Existing::Replace } else { output::Existing::Keep };
-            let inputs: Vec<PathBuf> =
-                plan.inputs.iter().map(|input| PathBuf::from(&input.path)).collect();
-            let mut others: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
-            others.extend([args.output.as_path(), planned.plan.as_path()]);
-            Some(DefectList::create(path, existing, &others)?)
-        }
-        None => None,
-    };
-    let watch = Watch { progress, defects };
+    let mut others: Vec<&Path> = plan.inputs.iter().map(|input| Path::new(&input.path)).collect();
+    others.extend([args.output.as_path(), planned.plan.as_path()]);
+    let watch = Watch::new(planned.report, args.defects.as_deref(), args.overwrite, &others)?;
     let merge = MergeSettings {
         plan,
         stores: planned.store.clone(),

@@ -23,6 +23,13 @@ pub(crate) enum Existing {
     ReplaceLike(Kind),
 }
 
+impl Existing {
+    /// As `-O` says.
+    pub(crate) fn of(overwrite: bool) -> Self {
+        if overwrite { Self::Replace } else { Self::Keep }
+    }
+}
+
 /// What a file is, by how it begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {

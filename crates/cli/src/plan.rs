@@ -23,9 +23,8 @@ pub(crate) fn run(args: PlanArgs) -> Result<ExitCode, Failure> {
     // An unusable place is reported before the files are looked at.
     let written = match &args.output {
         Some(path) => {
-            let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
             let inputs: Vec<&Path> = args.work.files().collect();
-            Some(Output::create(path, existing, &inputs)?)
+            Some(Output::create(path, Existing::of(args.overwrite), &inputs)?)
         }
         None => None,
     };

@@ -67,22 +67,9 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
 
 /// Terrain settings where none is given.
 fn usual_terrain() -> TerrainRecord {
-    let open = OpenOptions::default();
-    let plan = PlanOptions {
-        crs: None,
-        cell: None,
-        cell_every: None,
-        scale_latitude_deg: None,
-        fill_voids: FILL_VOIDS,
-    };
+    let plan = PlanOptions { fill_voids: FILL_VOIDS, ..PlanOptions::default() };
     TerrainRecord {
-        terrain: TerrainSettings {
-            open,
-            plan,
-            height_range_m: None,
-            allow_fine_cell: false,
-            max_error_m: None,
-        },
+        terrain: TerrainSettings { plan, ..TerrainSettings::default() },
         attribution: Vec::new(),
     }
 }

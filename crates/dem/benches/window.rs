@@ -37,9 +37,8 @@ fn options(cell_m: f64) -> PlanOptions {
     PlanOptions {
         crs: Some("utm".to_owned()),
         cell: Some(cell_m.into()),
-        cell_every: None,
-        scale_latitude_deg: None,
         fill_voids: 32,
+        ..PlanOptions::default()
     }
 }
 

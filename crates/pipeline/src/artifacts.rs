@@ -22,7 +22,7 @@
 
 use corniche_geom::TileId;
 use corniche_store::{Artifacts, Key};
-use corniche_tileset::pmtiles_order;
+use corniche_tileset::{pmtiles_order, tile_of_order};
 use serde::{Serialize, de::DeserializeOwned};
 
 use crate::BuildError;
@@ -97,6 +97,11 @@ pub(crate) fn get<T: DeserializeOwned>(
         Ok(_) => Err(damaged(key, &"it is longer than what it holds")),
         Err(error) => Err(damaged(key, &error)),
     }
+}
+
+/// The tile that a key is of.
+pub(crate) fn tile_of(key: Key) -> Result<TileId, BuildError> {
+    tile_of_order(key.item).ok_or_else(|| damaged(key, &"there is no such tile"))
 }
 
 /// The error for an artifact whose bytes are as they were kept, but make no sense.

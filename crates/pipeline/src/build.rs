@@ -9,26 +9,22 @@
 //!
 //! Each step is a module of [`steps`](crate::steps). What one step hands to the next are artifacts in a store beside the target.
 
+pub(crate) mod destination;
 pub(crate) mod unfinished;
 pub(crate) mod work_store;
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    sync::Arc,
-    time::Duration,
-};
+use std::{sync::Arc, time::Duration};
 
 use corniche_dem::GridPlan;
 use corniche_geom::TileId;
 use corniche_store::{Disk, LocalStore, SYNC_INTERVAL, SystemDisk};
 use corniche_tileset::Manifest;
 
-use self::unfinished::Unfinished;
+use self::{destination::Destination, unfinished::Unfinished};
 use crate::{
-    BuildError, BuildPlan, BuildSettings, Existing, Observer, PlanSettings, TerrainSettings,
-    context::{Context, MemoryShares},
-    file_target,
+    BuildError, BuildPlan, BuildSettings, Observer, TerrainSettings,
+    context::Context,
+    memory_shares::MemoryShares,
     plan::{Opened, check_room},
     steps::{hashes, heights, merge, roads, tiles, top},
 };
@@ -65,41 +61,29 @@ pub fn build_on(
     settings: &BuildSettings,
     observer: &dyn Observer,
 ) -> Result<BuildSummary, BuildError> {
-    let target = &file_target(&settings.output)?;
-    let folder = match target.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    if settings.existing == Existing::Keep && fs::symlink_metadata(target).is_ok() {
-        return Err(BuildError::Exists { path: target.clone() });
-    }
-    refuse_inputs_as_target(
-        &settings.output,
-        settings.dem.iter().chain(&settings.terrain_of).chain(&settings.osm),
-    )?;
-    let shares = MemoryShares::of(settings.resources.memory_bytes);
-    corniche_dem::limit_block_cache(shares.raster_cache)
-        .map_err(|error| BuildError::Start { what: error.to_string() })?;
-    let plan_settings = PlanSettings::from(settings);
-    let opened = Opened::new(&plan_settings)?;
-    let plan = BuildPlan::of(&plan_settings, &opened)?;
-    let store_folder = work_store::folder_of(target, settings.tmp.as_deref());
+    let destination = Destination::of(&settings.output, settings.existing)?;
+    destination.refuse_inputs(&settings.plan)?;
+    MemoryShares::limit_raster_cache(settings.resources)?;
+    let opened = Opened::new(&settings.plan)?;
+    let plan = BuildPlan::of(&settings.plan, &opened)?;
+    let store_folder = work_store::folder_of(&destination.target, settings.tmp.as_deref());
     // Before the store is looked at: what another build is at work on is no leftover.
-    let finished = Unfinished::create(target, folder)?;
+    let finished = Unfinished::create(&destination)?;
     observer.temporary(finished.path());
     let finished_path = finished.path().to_path_buf();
     let held_bytes = work_store::look(disk, &store_folder, &plan, settings.leftovers)?;
     if !settings.force {
+        let folder = &*destination.folder;
         let store = settings.tmp.as_deref().unwrap_or(folder);
         check_room(&opened, settings.resources, [store, folder], held_bytes, observer)?;
     }
     let place = (disk, &*store_folder, sync_interval);
     let store = work_store::open(place, &plan, settings.leftovers, observer)?;
     observer.keeps(&store_folder);
-    let context = Context::new(&plan_settings, settings.resources, &opened, &store, observer);
+    let context = Context::new(&settings.plan, settings.resources, &opened, &store, observer);
     let wanted = merge::Target { finished: &finished_path, named: &settings.output };
     let built = run(&context, &store, &wanted)
-        .and_then(|manifest| Ok((manifest, finished.place(target, settings.existing)?)));
+        .and_then(|manifest| Ok((manifest, finished.place(&destination)?)));
     match built {
         Ok((manifest, package_bytes)) => {
             work_store::remove(store, observer);
@@ -115,20 +99,6 @@ pub fn build_on(
             Err(error)
         }
     }
-}
-
-/// Fails if the target is one of the inputs.
-pub(crate) fn refuse_inputs_as_target<'a>(
-    output: &Path,
-    inputs: impl Iterator<Item = &'a PathBuf>,
-) -> Result<(), BuildError> {
-    let Ok(target) = fs::canonicalize(output) else { return Ok(()) };
-    for input in inputs {
-        if fs::canonicalize(input).is_ok_and(|input| input == target) {
-            return Err(BuildError::TargetIsInput { path: input.clone() });
-        }
-    }
-    Ok(())
 }
 
 /// Warns of what a user may not have meant, before any work.

@@ -9,6 +9,7 @@ use crate::{
     heights::{data_tiles::DataTiles, pyramid::Pyramid},
     inputs::Inputs,
     levels::Levels,
+    memory_shares::MemoryShares,
     plan::Opened,
     terrain::ground::GroundSource,
 };
@@ -88,26 +89,5 @@ impl<'a> Context<'a> {
     /// How the memory that a run may use is shared out.
     pub(crate) fn memory(&self) -> MemoryShares {
         MemoryShares::of(self.resources.memory_bytes)
-    }
-}
-
-/// Shares of `--memory`, bytes. What is left serves the program itself and what threads work on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct MemoryShares {
-    /// GDAL's cache of raster blocks, for all threads.
-    pub(crate) raster_cache: u64,
-    /// Grounds of coarse tiles, for all threads.
-    pub(crate) grounds: u64,
-    /// Sorting of roads.
-    pub(crate) sorting: u64,
-}
-
-impl MemoryShares {
-    pub(crate) fn of(memory_bytes: u64) -> Self {
-        Self {
-            raster_cache: memory_bytes / 8,
-            grounds: memory_bytes / 8,
-            sorting: memory_bytes / 4,
-        }
     }
 }

@@ -13,6 +13,7 @@ mod inputs;
 mod levels;
 mod machine;
 mod manifest_texts;
+mod memory_shares;
 mod observer;
 mod parts;
 mod plan;

@@ -6,12 +6,8 @@ use corniche_roads::{ClassFilter, FrcTable};
 /// What to build, from what, and how: checked, ready to run.
 #[derive(Debug, Clone)]
 pub struct BuildSettings {
-    /// Elevation rasters; where they overlap, the first has precedence.
-    pub dem: Vec<PathBuf>,
-    /// A package whose terrain is taken as it is; then `dem` is empty, and `terrain` what the package records.
-    pub terrain_of: Option<PathBuf>,
-    /// OpenStreetMap extract; `None` builds terrain alone.
-    pub osm: Option<PathBuf>,
+    /// What is made.
+    pub plan: PlanSettings,
     /// The package to write.
     pub output: PathBuf,
     /// What to do when the package exists.
@@ -22,16 +18,8 @@ pub struct BuildSettings {
     pub leftovers: Leftovers,
     /// Whether to begin although memory or disk space are not expected to suffice.
     pub force: bool,
-    /// How the ground is made.
-    pub terrain: TerrainSettings,
-    /// How roads are made.
-    pub roads: RoadSettings,
     /// What the run may use.
     pub resources: Resources,
-    /// Credits beside those that the inputs call for, such as a DEM's.
-    pub attribution: Vec<String>,
-    /// Program and version, for the manifest.
-    pub generator: String,
 }
 
 /// The part of the settings that decides what is made: the same for every worker that takes part in a build.
@@ -60,20 +48,6 @@ impl PlanSettings {
     }
 }
 
-impl From<&BuildSettings> for PlanSettings {
-    fn from(settings: &BuildSettings) -> Self {
-        Self {
-            dem: settings.dem.clone(),
-            terrain_of: settings.terrain_of.clone(),
-            osm: settings.osm.clone(),
-            terrain: settings.terrain.clone(),
-            roads: settings.roads.clone(),
-            attribution: settings.attribution.clone(),
-            generator: settings.generator.clone(),
-        }
-    }
-}
-
 /// What to do with a package that exists at the target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existing {
@@ -94,8 +68,8 @@ pub enum Leftovers {
     Discard,
 }
 
-/// How the ground is made.
-#[derive(Debug, Clone, PartialEq)]
+/// How the ground is made. The default asks for nothing, and fills no voids.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct TerrainSettings {
     /// How the elevation files are understood.
     pub open: OpenOptions,

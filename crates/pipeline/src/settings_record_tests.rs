@@ -9,17 +9,10 @@ type Change = (&'static str, fn(&mut Settings));
 
 fn settings() -> Settings {
     let terrain = TerrainSettings {
-        open: OpenOptions::default(),
-        plan: PlanOptions {
-            crs: None,
-            cell: None,
-            cell_every: None,
-            scale_latitude_deg: None,
-            fill_voids: 32,
-        },
-        height_range_m: None,
+        plan: PlanOptions { fill_voids: 32, ..PlanOptions::default() },
         allow_fine_cell: true,
         max_error_m: Some(MAX_ERROR_M),
+        ..TerrainSettings::default()
     };
     (
         terrain,

@@ -150,7 +150,7 @@ fn a_latitude_that_changes_nothing_is_told() {
         write_samples(&dem, [40, 40], (epsg, north_west, [step; 2]), values.clone());
         let output = folder.path().join(format!("{epsg}.pmtiles"));
         let mut asked = settings(dem.clone(), None, output, Options::plain(5.0));
-        asked.terrain.plan.scale_latitude_deg = Some(46.5);
+        asked.plan.terrain.plan.scale_latitude_deg = Some(46.5);
         let heard = Heard::default();
         build(&asked, &heard).unwrap();
         let warnings = heard.0.into_inner().unwrap();

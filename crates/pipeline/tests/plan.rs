@@ -4,9 +4,7 @@
 
 use std::fs;
 
-use corniche_pipeline::{
-    BuildPlan, OpenOptions, PlanOptions, PlanSettings, RoadSettings, TerrainSettings,
-};
+use corniche_pipeline::{BuildPlan, PlanOptions, PlanSettings, RoadSettings, TerrainSettings};
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_testing::sample;
 use serde_json::{Value, json};
@@ -20,17 +18,8 @@ fn settings() -> PlanSettings {
         terrain_of: None,
         osm: Some(sample("pass/pass.osm.pbf")),
         terrain: TerrainSettings {
-            open: OpenOptions::default(),
-            plan: PlanOptions {
-                crs: None,
-                cell: None,
-                cell_every: None,
-                scale_latitude_deg: None,
-                fill_voids: 32,
-            },
-            height_range_m: None,
-            allow_fine_cell: false,
-            max_error_m: None,
+            plan: PlanOptions { fill_voids: 32, ..PlanOptions::default() },
+            ..TerrainSettings::default()
         },
         roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25 },
         attribution: vec!["a credit".to_owned()],

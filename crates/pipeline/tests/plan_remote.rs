@@ -7,9 +7,7 @@ use std::{
     thread,
 };
 
-use corniche_pipeline::{
-    BuildPlan, OpenOptions, PlanOptions, PlanSettings, RoadSettings, TerrainSettings,
-};
+use corniche_pipeline::{BuildPlan, PlanSettings, RoadSettings, TerrainSettings};
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_testing::sample;
 
@@ -66,19 +64,7 @@ fn a_file_on_a_server_is_known_by_its_size_and_etag() {
         dem: vec![dem.clone().into()],
         terrain_of: None,
         osm: None,
-        terrain: TerrainSettings {
-            open: OpenOptions::default(),
-            plan: PlanOptions {
-                crs: None,
-                cell: None,
-                cell_every: None,
-                scale_latitude_deg: None,
-                fill_voids: 0,
-            },
-            height_range_m: None,
-            allow_fine_cell: false,
-            max_error_m: None,
-        },
+        terrain: TerrainSettings::default(),
         roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25 },
         attribution: Vec::new(),
         generator: "tests".to_owned(),

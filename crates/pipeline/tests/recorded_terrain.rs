@@ -13,8 +13,7 @@ use std::{
 
 use corniche_geom::TileId;
 use corniche_pipeline::{
-    BuildError, BuildSettings, Existing, Leftovers, Observer, PlanSettings, Silent, Stage, build,
-    plan,
+    BuildError, BuildSettings, Existing, Leftovers, Observer, Silent, Stage, build, plan,
 };
 use corniche_roads::ClassFilter;
 use corniche_testing::Random;
@@ -56,7 +55,7 @@ impl Files {
     /// Settings of a build with the terrain of `package`.
     fn with_terrain(&self, package: &str, osm: Option<&str>, output: &str) -> BuildSettings {
         let settings = self.settings(osm, output);
-        BuildSettings { dem: Vec::new(), terrain_of: Some(self.at(package)), ..settings }
+        of_package(settings, self.at(package))
     }
 
     fn bytes(settings: &BuildSettings) -> Vec<u8> {
@@ -149,14 +148,21 @@ fn resampled_data_and_islands_give_the_same_package() {
 fn sample_settings(output: PathBuf) -> BuildSettings {
     let options = Options { fill_voids: 32, ..Options::plain(support::parts::MAX_ERROR_M) };
     let mut made = settings(sample("pass-dem.tif"), Some(sample("pass.osm.pbf")), output, options);
-    made.roads.simplify_cells = 0.5;
+    made.plan.roads.simplify_cells = 0.5;
     made
+}
+
+/// The same settings with the terrain of a package in place of a DEM.
+fn of_package(mut settings: BuildSettings, package: PathBuf) -> BuildSettings {
+    settings.plan.dem.clear();
+    settings.plan.terrain_of = Some(package);
+    settings
 }
 
 /// A package in a folder of its own, and the settings of a build with its terrain.
 fn from_package(folder: &Path, name: &str) -> BuildSettings {
     let made = sample_settings(folder.join(format!("from-{name}")));
-    BuildSettings { dem: Vec::new(), terrain_of: Some(folder.join(name)), ..made }
+    of_package(made, folder.join(name))
 }
 
 #[test]
@@ -164,9 +170,9 @@ fn settings_for_roads_credits_threads_and_memory_are_those_of_the_new_build() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("sound.pmtiles"), &SOUND.bytes).unwrap();
     let change = |settings: &mut BuildSettings| {
-        settings.roads.simplify_cells = 0.0;
-        settings.roads.filter = ClassFilter::all();
-        settings.attribution = vec!["Heights: us".to_owned()];
+        settings.plan.roads.simplify_cells = 0.0;
+        settings.plan.roads.filter = ClassFilter::all();
+        settings.plan.attribution = vec!["Heights: us".to_owned()];
         settings.existing = Existing::Replace;
     };
     let mut full = sample_settings(folder.path().join("full.pmtiles"));
@@ -266,18 +272,20 @@ fn packages_of_other_programs_and_settings_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("sound.pmtiles"), &SOUND.bytes).unwrap();
     let changes: [(&str, OtherSetting); 10] = [
-        ("--max-error is 3, it was made with 10", |s| s.terrain.max_error_m = Some(3.0)),
-        ("--fill-voids is 0, it was made with 32", |s| s.terrain.plan.fill_voids = 0),
+        ("--max-error is 3, it was made with 10", |s| s.plan.terrain.max_error_m = Some(3.0)),
+        ("--fill-voids is 0, it was made with 32", |s| s.plan.terrain.plan.fill_voids = 0),
         ("--crs is utm, it was made with not given", |s| {
-            s.terrain.plan.crs = Some("utm".to_owned());
+            s.plan.terrain.plan.crs = Some("utm".to_owned());
         }),
-        ("--cell is 20,20, ", |s| s.terrain.plan.cell = Some(20.0.into())),
-        ("--cell-every is 2, ", |s| s.terrain.plan.cell_every = Some(2)),
-        ("--vertical-shift is 1, it was made with 0", |s| s.terrain.open.vertical_shift_m = 1.0),
-        ("--nodata is 0, ", |s| s.terrain.open.nodata = vec![0.0]),
-        ("--dem-crs is EPSG:1, ", |s| s.terrain.open.dem_crs = Some("EPSG:1".to_owned())),
-        ("--height-range is 0,1, ", |s| s.terrain.height_range_m = Some([0.0, 1.0])),
-        ("--scale-latitude is 5, ", |s| s.terrain.plan.scale_latitude_deg = Some(5.0)),
+        ("--cell is 20,20, ", |s| s.plan.terrain.plan.cell = Some(20.0.into())),
+        ("--cell-every is 2, ", |s| s.plan.terrain.plan.cell_every = Some(2)),
+        ("--vertical-shift is 1, it was made with 0", |s| {
+            s.plan.terrain.open.vertical_shift_m = 1.0;
+        }),
+        ("--nodata is 0, ", |s| s.plan.terrain.open.nodata = vec![0.0]),
+        ("--dem-crs is EPSG:1, ", |s| s.plan.terrain.open.dem_crs = Some("EPSG:1".to_owned())),
+        ("--height-range is 0,1, ", |s| s.plan.terrain.height_range_m = Some([0.0, 1.0])),
+        ("--scale-latitude is 5, ", |s| s.plan.terrain.plan.scale_latitude_deg = Some(5.0)),
     ];
     for (wanted, change) in changes {
         let mut settings = from_package(folder.path(), "sound.pmtiles");
@@ -365,7 +373,7 @@ fn the_package_is_no_target_and_the_plan_says_what_it_makes() {
     let package = folder.path().join("sound.pmtiles");
     fs::write(&package, &SOUND.bytes).unwrap();
     let mut settings = from_package(folder.path(), "sound.pmtiles");
-    let made = PlanSettings::from(&settings);
+    let made = settings.plan.clone();
     let (planned, estimate) = plan(&made, settings.resources, &Silent).unwrap();
     let tiles: Vec<u64> = SOUND.parts.manifest.levels.iter().map(|level| level.tiles).collect();
     assert_eq!(estimate.tiles, tiles);
@@ -377,7 +385,7 @@ fn the_package_is_no_target_and_the_plan_says_what_it_makes() {
     assert_eq!(again.terrain_of.as_deref(), Some(package.as_path()));
     assert_eq!(plan(&again, settings.resources, &Silent).unwrap().0, planned);
     // The grid is that of a plan from the elevation files.
-    let from_dem = PlanSettings::from(&sample_settings(folder.path().join("x.pmtiles")));
+    let from_dem = sample_settings(folder.path().join("x.pmtiles")).plan;
     let (mut from_dem, _) = plan(&from_dem, settings.resources, &Silent).unwrap();
     // GDAL writes the datum in one of two forms, whichever this thread has used before.
     from_dem.grid.crs_wkt.clone_from(&planned.grid.crs_wkt);

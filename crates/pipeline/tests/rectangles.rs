@@ -127,7 +127,7 @@ fn the_shorter_side_stands_for_the_cell() {
         let [dem, package] = ["dem.tif", "a.pmtiles"].map(|name| folder.path().join(name));
         raster.write(&dem);
         let mut settings = support::settings(dem, None, package.clone(), Options::plain(1.0));
-        settings.terrain.max_error_m = None;
+        settings.plan.terrain.max_error_m = None;
         build(&settings, &Silent).unwrap();
         let manifest = manifest(&package);
         let shorter_m = Cell::from(cell_m).fitted().shorter_m();

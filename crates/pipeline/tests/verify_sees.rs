@@ -286,7 +286,7 @@ fn a_package_of_every_seventh_sample_keeps_its_promises() {
     // Three arc seconds.
     write_degrees(&dem, 361, [9.0, 47.3], 1.0 / 1200.0, height_m);
     let mut settings = settings(dem.clone(), None, output.clone(), Options::plain(MAX_ERROR_M));
-    settings.terrain.plan.cell_every = Some(7);
+    settings.plan.terrain.plan.cell_every = Some(7);
     build(&settings, &Silent).unwrap();
     let settings = VerifySettings { package: output, dem: vec![dem], osm: None, threads: 2 };
     assert_broken(verify(&settings, &Silent).unwrap(), &[]);

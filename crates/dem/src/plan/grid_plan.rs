@@ -6,8 +6,8 @@ use crate::plan::alignment::Alignment;
 use crate::plan::kernel::Kernel;
 use crate::plan::node_positions::NodePositions;
 
-/// What the user can choose about the grid.
-#[derive(Debug, Clone, PartialEq)]
+/// What the user can choose about the grid. The default chooses nothing, and fills no voids.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct PlanOptions {
     /// Working CRS: "dem" (the first file's own), "utm" (both in any case), "EPSG:n" or WKT; `None` chooses one.
     pub crs: Option<String>,
@@ -101,6 +101,16 @@ pub(crate) struct MosaicRole {
 pub(crate) enum Method {
     Aligned(Alignment),
     Resampled(Box<NodePositions>, Kernel),
+}
+
+/// The rectangle between two nodes, working metres.
+pub(crate) fn bounds_of(frame: &Frame, [south_west, north_east]: [NodeIndex; 2]) -> Bounds {
+    Bounds {
+        min_x: frame.x_m(south_west.i),
+        min_y: frame.y_m(south_west.j),
+        max_x: frame.x_m(north_east.i),
+        max_y: frame.y_m(north_east.j),
+    }
 }
 
 impl GridPlan {

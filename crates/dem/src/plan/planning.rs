@@ -1,13 +1,13 @@
 //! From a DEM and what the user says to the grid of a package.
 
-use corniche_geom::{Bounds, Frame, NodeIndex};
+use corniche_geom::{Frame, NodeIndex};
 use gdal::version::VersionInfo;
 
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
 use crate::mosaics::mosaic::Mosaic;
 use crate::plan::description::{describe, resampled_onto_first};
-use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, Resampling};
+use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, Resampling, bounds_of};
 use crate::plan::kernel::Kernel;
 use crate::plan::layout::{self, Layout};
 use crate::plan::node_positions::NodePositions;
@@ -104,12 +104,7 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         metres_per_unit: working.metres_per_unit,
         point_scale: (scale.center[0] * scale.center[1]).sqrt(),
         scale,
-        data_bounds: Bounds {
-            min_x: frame.x_m(south_west.i),
-            min_y: frame.y_m(south_west.j),
-            max_x: frame.x_m(north_east.i),
-            max_y: frame.y_m(north_east.j),
-        },
+        data_bounds: bounds_of(&frame, [south_west, north_east]),
         wgs84_bounds: dem.wgs84_bounds,
         resampling: resampling(&roles),
         resampling_text: describe(dem, &roles),

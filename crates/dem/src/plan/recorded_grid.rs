@@ -3,7 +3,7 @@
 use corniche_geom::{Bounds, Frame, NodeIndex};
 
 use crate::RecordedCrs;
-use crate::plan::grid_plan::{GridPlan, PlanScale, Resampling};
+use crate::plan::grid_plan::{GridPlan, PlanScale, Resampling, bounds_of};
 use crate::plan::planning::libraries;
 
 /// What a package records of its grid, beside its CRS.
@@ -69,12 +69,7 @@ impl RecordedCrs {
             metres_per_unit: working.metres_per_unit,
             point_scale,
             scale,
-            data_bounds: Bounds {
-                min_x: frame.x_m(south_west.i),
-                min_y: frame.y_m(south_west.j),
-                max_x: frame.x_m(north_east.i),
-                max_y: frame.y_m(north_east.j),
-            },
+            data_bounds: bounds_of(&frame, [south_west, north_east]),
             wgs84_bounds,
             resampling,
             resampling_text,

@@ -109,7 +109,7 @@ pub(crate) fn plan(dem: &Dem) -> GridPlan {
 }
 
 pub(crate) fn options() -> PlanOptions {
-    PlanOptions { crs: None, cell: None, cell_every: None, scale_latitude_deg: None, fill_voids: 0 }
+    PlanOptions::default()
 }
 
 /// Options for tests of resampling: a geographic DEM is carried to UTM.

@@ -1,31 +1,29 @@
 //! The package while it is written: a file beside the target, which gets the target's name when it is complete.
 
-use std::{
-    fs::{self, File},
-    io,
-    path::{Path, PathBuf},
-};
+#[cfg(unix)]
+use std::fs::File;
+use std::{io, path::Path};
 
 use tempfile::NamedTempFile;
 
+use super::destination::Destination;
 use crate::{BuildError, Existing, unfinished_file};
 
 /// The file that becomes the package. It is removed when the build fails; what a killed build leaves is removed by the next one.
 pub(crate) struct Unfinished {
     file: NamedTempFile,
-    folder: PathBuf,
 }
 
 impl Unfinished {
-    /// Makes the file in `folder`, that of the target, and locks it: of two builds of one target one is refused.
-    pub(crate) fn create(target: &Path, folder: &Path) -> Result<Self, BuildError> {
-        let folder = folder.to_path_buf();
+    /// Makes the file and locks it: of two builds of one target one is refused.
+    pub(crate) fn create(destination: &Destination) -> Result<Self, BuildError> {
+        let Destination { target, folder, .. } = destination;
         match unfinished_file(target) {
-            Ok(file) => Ok(Self { file, folder }),
+            Ok(file) => Ok(Self { file }),
             Err(error) if error.kind() == io::ErrorKind::ResourceBusy => {
-                Err(BuildError::AtWork { path: target.to_path_buf() })
+                Err(BuildError::AtWork { path: target.clone() })
             }
-            Err(source) => Err(BuildError::Target { folder, source }),
+            Err(source) => Err(BuildError::Target { folder: folder.clone(), source }),
         }
     }
 
@@ -35,27 +33,26 @@ impl Unfinished {
 
     /// Writes the finished package's bytes to the disk, then moves the file to its place, and makes its name durable. Returns
     /// its size.
-    pub(crate) fn place(self, target: &Path, existing: Existing) -> Result<u64, BuildError> {
-        let failed = |source| BuildError::Rename { path: target.to_path_buf(), source };
-        let Self { file, folder } = self;
+    pub(crate) fn place(self, destination: &Destination) -> Result<u64, BuildError> {
+        let Destination { target, folder, existing } = destination;
+        let failed = |source| BuildError::Rename { path: target.clone(), source };
+        let file = self.file;
         file.as_file().sync_all().map_err(failed)?;
         let bytes = file.as_file().metadata().map_err(failed)?.len();
-        let persist =
-            |file: NamedTempFile| file.persist(target).map_err(|error| failed(error.error));
-        match existing {
-            Existing::Replace => drop(persist(file)?),
-            // A link fails where a rename would replace what someone put there while the build ran.
-            Existing::Keep => match fs::hard_link(file.path(), target) {
-                // The package has two names now. The other one goes at once, so that nobody takes it for a leftover.
-                Ok(()) => file.close().map_err(failed)?,
-                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                    return Err(BuildError::Exists { path: target.to_path_buf() });
+        let placed = match existing {
+            Existing::Replace => file.persist(target),
+            // This fails where the other would replace what someone put there while the build ran.
+            Existing::Keep => match file.persist_noclobber(target) {
+                Err(refused) if refused.error.kind() == io::ErrorKind::AlreadyExists => {
+                    return Err(BuildError::Exists { path: target.clone() });
                 }
-                // Not every file system has hard links. Without them only the check at the start protects an existing file.
-                Err(_) => drop(persist(file)?),
+                // Not every file system can do that. Without it only the check at the start protects an existing file.
+                Err(refused) => refused.file.persist(target),
+                placed => placed,
             },
-        }
-        sync_folder(&folder).map_err(failed)?;
+        };
+        placed.map_err(|refused| failed(refused.error))?;
+        sync_folder(folder).map_err(failed)?;
         Ok(bytes)
     }
 }

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     data_tiles::DataTiles,
-    finest::{FinestHeights, TILE_NODES},
+    finest::{FinestHeights, TILE_NODES, own_size},
     rasters,
 };
 use crate::{
@@ -127,7 +127,7 @@ impl<'a> AreaReader<'a> {
                     Some(heights) => heights.put(self.store, id)?,
                     None => FinestHeights::put_none(self.store, id)?,
                 }
-                record.count(&window, id, [left, top], frame.max_level());
+                record.count(&window, id, [left, top]);
             }
             self.put_rasters(area, first, &window)?;
         }
@@ -167,11 +167,9 @@ impl<'a> AreaReader<'a> {
 }
 
 impl AreaRecord {
-    /// Counts the nodes that belong to a tile: not those of its east and south border, but for the root's own.
-    fn count(&mut self, window: &DemWindow, id: TileId, [left, top]: [usize; 2], finest: u8) {
-        let last = (1_u32 << finest) - 1;
-        let columns = TILE_NODES - usize::from(id.x() < last);
-        let rows = TILE_NODES - usize::from(id.y() < last);
+    /// Counts the nodes that belong to a tile.
+    fn count(&mut self, window: &DemWindow, id: TileId, [left, top]: [usize; 2]) {
+        let [columns, rows] = own_size(id);
         let own = window.heights.window(left, top, columns, rows);
         self.with_height += own.count_heights() as u64;
         self.range_m = union(self.range_m, own.range_m());

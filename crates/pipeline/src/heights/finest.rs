@@ -14,6 +14,13 @@ pub(crate) const TILE_NODES: usize = TILE_CELLS as usize + 1;
 /// The same with one node of halo at both ends.
 pub(crate) const HALO_NODES: usize = TILE_NODES + 2;
 
+/// Columns and rows of a tile's nodes that belong to it: those on the east and south border belong to the next tile, if there can
+/// be one.
+pub(crate) fn own_size(id: TileId) -> [usize; 2] {
+    let last = (1_u32 << id.z()) - 1;
+    [id.x(), id.y()].map(|at| TILE_NODES - usize::from(at < last))
+}
+
 /// Heights of a finest tile.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FinestHeights {

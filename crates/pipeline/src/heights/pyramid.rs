@@ -129,16 +129,15 @@ impl HeightSums {
 }
 
 impl Pyramid<'_> {
-    /// Fails if the DEM has samples that cannot be heights; see [`Audit::check`].
-    pub(crate) fn check(&self) -> Result<(), BuildError> {
+    /// Fails if samples of `areas` cannot be heights; see [`Audit::check`].
+    pub(crate) fn check(&self, areas: &AreaRecord) -> Result<(), BuildError> {
         let mut audit = Audit::none_of(self.dem, self.allowed_m());
-        self.all_areas()?.audit.iter().for_each(|part| audit.merge(part));
+        areas.audit.iter().for_each(|part| audit.merge(part));
         Ok(audit.check(self.dem, self.range_m.is_some())?)
     }
 
-    /// Counts over the whole DEM.
-    pub(crate) fn sums(&self) -> Result<HeightSums, BuildError> {
-        let all = self.all_areas()?;
+    /// Counts over `all` areas.
+    pub(crate) fn sums(&self, all: &AreaRecord) -> HeightSums {
         let plan = self.grid;
         let span = |low: i64, high: i64| (high - low + 1) as u64;
         let nodes =
@@ -149,14 +148,14 @@ impl Pyramid<'_> {
             filled: all.filled,
             void: nodes.saturating_sub(all.with_height),
         };
-        Ok(HeightSums { samples, range_m: all.range_m.unwrap_or_default() })
+        HeightSums { samples, range_m: all.range_m.unwrap_or_default() }
     }
 
     /// The records of all areas together; fails if one is missing.
     ///
     /// The areas of a build that was split may lie on several levels, and even one above the other. Each finest tile counts for
     /// the highest that is there: so do all others beneath that one, and nothing counts twice.
-    fn all_areas(&self) -> Result<AreaRecord, BuildError> {
+    pub(crate) fn all_areas(&self) -> Result<AreaRecord, BuildError> {
         let store = self.store;
         let area_of = |finest: TileId| {
             let mut areas = (0..=finest.z()).map(|level| finest.ancestor(level));

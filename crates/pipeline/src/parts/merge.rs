@@ -1,9 +1,6 @@
 //! The package from all parts.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::path::PathBuf;
 
 use corniche_geom::TileId;
 use corniche_store::LocalStore;
@@ -12,9 +9,8 @@ use corniche_tileset::Manifest;
 use super::{planned::open, stores::Stores};
 use crate::{
     BuildError, BuildPlan, BuildSummary, Existing, Observer, Resources,
-    build::{refuse_inputs_as_target, unfinished::Unfinished},
+    build::{destination::Destination, unfinished::Unfinished},
     context::Context,
-    file_target,
     roads::partition::replay_defects,
     steps::{coarse_tiles, merge as sums, recorded_tiles},
     terrain::ground::GroundSource,
@@ -50,27 +46,17 @@ pub fn merge(
     observer: &dyn Observer,
 ) -> Result<BuildSummary, BuildError> {
     let MergeSettings { plan, stores, output, existing, resources, generator } = settings;
-    let target = &file_target(output)?;
-    let folder = match target.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    if *existing == Existing::Keep && fs::symlink_metadata(target).is_ok() {
-        return Err(BuildError::Exists { path: target.clone() });
-    }
+    let destination = Destination::of(output, *existing)?;
     let stores = Stores::look(stores, plan, false)?;
     let (plan_settings, opened) = open(plan, generator, *resources)?;
-    refuse_inputs_as_target(
-        output,
-        plan_settings.dem.iter().chain(&plan_settings.terrain_of).chain(&plan_settings.osm),
-    )?;
-    let finished = Unfinished::create(target, folder)?;
+    destination.refuse_inputs(&plan_settings)?;
+    let finished = Unfinished::create(&destination)?;
     observer.temporary(finished.path());
     let store = stores.open(OWN_PART)?;
     let context = Context::new(&plan_settings, *resources, &opened, &store, observer);
     let wanted = sums::Target { finished: finished.path(), named: output };
     let merged = run(&context, &store, &wanted)
-        .and_then(|manifest| Ok((manifest, finished.place(target, *existing)?)));
+        .and_then(|manifest| Ok((manifest, finished.place(&destination)?)));
     let abandoned = store.abandon();
     let (manifest, package_bytes) = merged.map_err(|error| {
         // A changed input may be the cause of any other error, so it is reported instead.

@@ -1,6 +1,8 @@
 //! What a plan is about, opened and compared with the plan.
 
-use crate::{BuildError, BuildPlan, PlanSettings, Resources, context::MemoryShares, plan::Opened};
+use crate::{
+    BuildError, BuildPlan, PlanSettings, Resources, memory_shares::MemoryShares, plan::Opened,
+};
 
 /// Opens the inputs of a plan and fails if they, or this program, are not those of the plan.
 pub(crate) fn open(
@@ -8,9 +10,7 @@ pub(crate) fn open(
     generator: &str,
     resources: Resources,
 ) -> Result<(PlanSettings, Opened), BuildError> {
-    let shares = MemoryShares::of(resources.memory_bytes);
-    corniche_dem::limit_block_cache(shares.raster_cache)
-        .map_err(|error| BuildError::Start { what: error.to_string() })?;
+    MemoryShares::limit_raster_cache(resources)?;
     let settings = PlanSettings { generator: generator.to_owned(), ..plan.settings()? };
     let opened = Opened::new(&settings)?;
     plan.check_same(&BuildPlan::of(&settings, &opened)?)?;

@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use corniche_dem::{OpenOptions, PlanOptions};
+use corniche_dem::PlanOptions;
 use corniche_roads::{ClassFilter, FrcTable};
 
 use super::*;
@@ -91,17 +91,9 @@ fn some_tiles_tell_how_the_ground_is() {
         terrain_of: None,
         osm: None,
         terrain: TerrainSettings {
-            open: OpenOptions::default(),
-            plan: PlanOptions {
-                crs: None,
-                cell: None,
-                cell_every: None,
-                scale_latitude_deg: None,
-                fill_voids: 32,
-            },
-            height_range_m: None,
-            allow_fine_cell: false,
+            plan: PlanOptions { fill_voids: 32, ..PlanOptions::default() },
             max_error_m: Some(2.5),
+            ..TerrainSettings::default()
         },
         roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25 },
         attribution: Vec::new(),

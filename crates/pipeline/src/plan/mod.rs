@@ -21,7 +21,7 @@ pub use build_plan::{BuildPlan, FrcTableRecord, PlannedGrid, PlannedLevel};
 pub use estimate::{Estimate, MemoryEstimate, Rates};
 pub(crate) use opened::Opened;
 
-use crate::{BuildError, Observer, PlanSettings, Resources};
+use crate::{BuildError, Observer, PlanSettings, Resources, memory_shares::MemoryShares};
 
 /// Plans a build and estimates what it will take. Of many data some tiles are read for it.
 ///
@@ -32,8 +32,7 @@ pub fn plan(
     resources: Resources,
     observer: &dyn Observer,
 ) -> Result<(BuildPlan, Estimate), BuildError> {
-    corniche_dem::limit_block_cache(resources.memory_bytes / 8)
-        .map_err(|error| BuildError::Start { what: error.to_string() })?;
+    MemoryShares::limit_raster_cache(resources)?;
     let opened = Opened::new(settings)?;
     let estimate = Estimate::of(&opened, resources, observer)?;
     Ok((BuildPlan::of(settings, &opened)?, estimate))

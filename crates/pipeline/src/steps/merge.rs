@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use corniche_store::Scratch;
-use corniche_tileset::{LevelRecord, Manifest, Writer, tile_of_order};
+use corniche_tileset::{LevelRecord, Manifest, Writer};
 
 use super::{
     hashes,
@@ -35,7 +35,7 @@ pub(crate) fn check_complete(context: &Context<'_>) -> Result<(), BuildError> {
     hashes::records(context)?;
     roads::check_done(context)?;
     if let Some(pyramid) = context.pyramid() {
-        pyramid.sums()?;
+        pyramid.all_areas()?;
     }
     top::check_done(context)?;
     let is_missing = |id| !context.store.has(Kind::Record.of_tile(id));
@@ -49,15 +49,17 @@ pub(crate) fn make(
     target: &Target<'_>,
 ) -> Result<Manifest, BuildError> {
     let heights = match context.source {
-        GroundSource::Dem(dem) => context.pyramid_of(dem).sums()?,
+        GroundSource::Dem(dem) => {
+            let pyramid = context.pyramid_of(dem);
+            pyramid.sums(&pyramid.all_areas()?)
+        }
         GroundSource::Package(terrain) => HeightSums::recorded(terrain.manifest()),
     };
     let roads = roads::totals(context)?;
     let mut tiles = TileSums::new(context);
     let mut fold = LossFold::new(scratch, context.memory().sorting);
     for item in context.store.items(Kind::Record as u8) {
-        let id = tile_of_order(item)
-            .ok_or_else(|| artifacts::damaged(Kind::Record.item(item), &"there is no such tile"))?;
+        let id = artifacts::tile_of(Kind::Record.item(item))?;
         if let Some(record) = TileRecord::get(context.store, id)? {
             if record.ground.is_some() && !context.store.has(Kind::Payload.item(item)) {
                 return Err(BuildError::Missing { what: format!("the tile {id}"), step: "tiles" });
@@ -128,8 +130,7 @@ fn write(
             return Err(BuildError::Interrupted);
         }
         let key = Kind::Payload.item(item);
-        let id =
-            tile_of_order(item).ok_or_else(|| artifacts::damaged(key, &"there is no such tile"))?;
+        let id = artifacts::tile_of(key)?;
         let bytes = context.store.get(key)?;
         let bytes = bytes.ok_or_else(|| artifacts::damaged(key, &"it is gone"))?;
         writer.add(id, &bytes).map_err(failed)?;

@@ -105,13 +105,7 @@ proptest! {
 #[test]
 fn the_sample_with_and_without_voids() {
     let path = corniche_testing::sample("pass/pass-dem.tif");
-    let options = |fill_voids| PlanOptions {
-        crs: None,
-        cell: None,
-        cell_every: None,
-        scale_latitude_deg: None,
-        fill_voids,
-    };
+    let options = |fill_voids| PlanOptions { fill_voids, ..PlanOptions::default() };
     let dem = Dem::open(&[path], &OpenOptions::default()).unwrap();
     let plan = dem.plan(&options(0)).unwrap();
     let (frame, level) = (plan.frame, plan.frame.max_level());

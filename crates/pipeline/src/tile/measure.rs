@@ -11,7 +11,10 @@ use super::{
     record::{LevelShare, Seen},
 };
 use crate::{
-    BuildError, context::Context, heights::finest::FinestHeights, sample_deviation::SampleSums,
+    BuildError,
+    context::Context,
+    heights::finest::{FinestHeights, own_size},
+    sample_deviation::SampleSums,
 };
 
 /// The grounds above and on a finest tile, root first; `None` where a level has none there.
@@ -144,9 +147,7 @@ impl Column {
 /// Which nodes of a tile count as samples: not filled voids, and not those on the east and south border, which belong to the
 /// next tile if there can be one.
 fn own_samples(finest: TileId, window: &HeightGrid, filled: &[usize]) -> Vec<bool> {
-    let last_tile = (1_u32 << finest.z()) - 1;
-    let columns = window.columns() - usize::from(finest.x() < last_tile);
-    let rows = window.rows() - usize::from(finest.y() < last_tile);
+    let [columns, rows] = own_size(finest);
     let mut is_own = vec![false; window.columns() * window.rows()];
     for row in 0..rows {
         let from = row * window.columns();

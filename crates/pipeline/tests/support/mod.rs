@@ -17,10 +17,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_dem::{OpenOptions, PlanOptions};
+use corniche_dem::PlanOptions;
 use corniche_geom::{Frame, NodeIndex, TileId};
 use corniche_pipeline::{
-    BuildError, BuildSettings, Existing, Leftovers, Resources, RoadSettings, Silent,
+    BuildError, BuildSettings, Existing, Leftovers, PlanSettings, Resources, RoadSettings, Silent,
     TerrainSettings, build,
 };
 use corniche_roads::{ClassFilter, FrcTable};
@@ -162,31 +162,35 @@ pub(crate) fn settings(
     options: Options,
 ) -> BuildSettings {
     BuildSettings {
-        dem: vec![dem],
-        terrain_of: None,
-        osm,
+        plan: PlanSettings {
+            dem: vec![dem],
+            terrain_of: None,
+            osm,
+            terrain: TerrainSettings {
+                plan: PlanOptions {
+                    crs: options.crs.map(str::to_owned),
+                    cell: options.cell_m.map(corniche_geom::Cell::from),
+                    fill_voids: options.fill_voids,
+                    ..PlanOptions::default()
+                },
+                height_range_m: options.height_range_m,
+                max_error_m: Some(options.max_error_m),
+                ..TerrainSettings::default()
+            },
+            roads: RoadSettings {
+                table: table(),
+                filter: ClassFilter::usual(),
+                simplify_cells: 0.25,
+            },
+            attribution: Vec::new(),
+            generator: "tests".to_owned(),
+        },
         output,
         existing: Existing::Keep,
         tmp: None,
         leftovers: Leftovers::Discard,
         force: false,
-        terrain: TerrainSettings {
-            open: OpenOptions::default(),
-            plan: PlanOptions {
-                crs: options.crs.map(str::to_owned),
-                cell: options.cell_m.map(corniche_geom::Cell::from),
-                cell_every: None,
-                scale_latitude_deg: None,
-                fill_voids: options.fill_voids,
-            },
-            height_range_m: options.height_range_m,
-            allow_fine_cell: false,
-            max_error_m: Some(options.max_error_m),
-        },
-        roads: RoadSettings { table: table(), filter: ClassFilter::usual(), simplify_cells: 0.25 },
         resources: Resources { threads: options.threads, memory_bytes: 512 << 20 },
-        attribution: Vec::new(),
-        generator: "tests".to_owned(),
     }
 }
 

@@ -58,7 +58,7 @@ pub(crate) fn build_sample() -> Sound {
     let options = Options { fill_voids: 32, ..Options::plain(MAX_ERROR_M) };
     let (dem, osm) = (sample("pass-dem.tif"), sample("pass.osm.pbf"));
     let mut settings = super::settings(dem, Some(osm), path.clone(), options);
-    settings.roads.simplify_cells = 0.5;
+    settings.plan.roads.simplify_cells = 0.5;
     build(&settings, &Silent).expect("the sample can be built");
     let package = FilePackage::open(&path).expect("the package can be opened");
     let payload = |id| package.payload(id, Sections::ALL).expect("a whole tile");

@@ -1,0 +1,30 @@
+//! How the memory that a run may use is shared out.
+
+use crate::{BuildError, Resources};
+
+/// Shares of `--memory`, bytes. What is left serves the program itself and what threads work on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct MemoryShares {
+    /// GDAL's cache of raster blocks, for all threads.
+    pub(crate) raster_cache: u64,
+    /// Grounds of coarse tiles, for all threads.
+    pub(crate) grounds: u64,
+    /// Sorting of roads.
+    pub(crate) sorting: u64,
+}
+
+impl MemoryShares {
+    pub(crate) fn of(memory_bytes: u64) -> Self {
+        Self {
+            raster_cache: memory_bytes / 8,
+            grounds: memory_bytes / 8,
+            sorting: memory_bytes / 4,
+        }
+    }
+
+    /// Gives GDAL its share. To be called before the first raster is opened.
+    pub(crate) fn limit_raster_cache(resources: Resources) -> Result<(), BuildError> {
+        corniche_dem::limit_block_cache(Self::of(resources.memory_bytes).raster_cache)
+            .map_err(|error| BuildError::Start { what: error.to_string() })
+    }
+}
