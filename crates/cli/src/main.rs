@@ -11,6 +11,7 @@ mod defects;
 mod exit;
 mod failure;
 mod fly;
+mod free_memory;
 mod growth;
 mod info;
 mod interrupt;
@@ -61,6 +62,7 @@ fn main() -> process::ExitCode {
 fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
     interrupt::watch()?;
     open_files::allow_many();
+    free_memory::give_back_early();
     match arguments.command {
         Command::Build(args) => build::run(args),
         Command::Plan(args) => plan::run(*args),

@@ -1,6 +1,8 @@
 //! What the machine has to offer.
 
-use std::{fs, io, path::Path};
+use std::{fs, io, path::Path, time::Duration};
+#[cfg(not(unix))]
+use std::{sync::OnceLock, time::Instant};
 
 /// Less memory than this is not enough for a build.
 pub const MIN_MEMORY_BYTES: u64 = 256 << 20;
@@ -37,6 +39,20 @@ pub fn machine_memory_bytes() -> Option<u64> {
 fn total_of_meminfo(text: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix("MemTotal:"))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1 << 10)
+}
+
+/// For how long this thread has used a processor, from any start. Unlike the time that passes, it is the same on a busy machine.
+#[cfg(unix)]
+pub(crate) fn thread_time() -> Duration {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec as u32)
+}
+
+/// The time that passes stands for it: the processor's is not known here.
+#[cfg(not(unix))]
+pub(crate) fn thread_time() -> Duration {
+    static START: OnceLock<Instant> = OnceLock::new();
+    START.get_or_init(Instant::now).elapsed()
 }
 
 /// The file system of a folder.

@@ -1,6 +1,6 @@
 //! What a build will take, before it begins.
 
-use std::time::Instant;
+use std::time::Duration;
 
 use corniche_dem::{Dem, FileBlocks};
 use corniche_tileset::{LevelRecord, Manifest};
@@ -8,7 +8,7 @@ use corniche_tin::TinSpec;
 use serde::Serialize;
 
 use super::{Opened, covered_tiles::CoveredTiles, rates};
-use crate::{BuildError, Observer, Resources, terrain::ground::GroundSource};
+use crate::{BuildError, Observer, Resources, machine::thread_time, terrain::ground::GroundSource};
 
 /// From so many finest tiles on some are triangulated to see how the ground is. Less work is estimated well enough without.
 const LEAST_TILES_TO_SAMPLE: u64 = 256;
@@ -64,7 +64,7 @@ pub struct MemoryEstimate {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rates {
-    /// From builds of other data on another machine, as `docs/measured.md` says.
+    /// From builds of other data on another machine, as `docs/build-costs.md` says.
     Recorded,
     /// From so many tiles of these data, triangulated on this machine.
     Sampled {
@@ -79,7 +79,8 @@ impl Rates {
     pub fn text(self) -> String {
         match self {
             Self::Recorded => {
-                "from recorded rates of other data on another machine (docs/measured.md)".to_owned()
+                "from recorded rates of other data on another machine (docs/build-costs.md)"
+                    .to_owned()
             }
             Self::Sampled { tiles } => {
                 format!("from {tiles} tiles of these data, triangulated on this machine")
@@ -128,12 +129,15 @@ impl Estimate {
         let is_sampled = finest.count() >= LEAST_TILES_TO_SAMPLE
             && memory.block_bytes <= MOST_SAMPLED_BLOCK_BYTES
             && memory.least_bytes <= resources.memory_bytes;
-        let ground = if is_sampled {
+        let mut ground = if is_sampled {
             Ground::sampled(opened, dem, &finest, nodes, observer)?
         } else {
             let usual_m = opened.grid.frame.cell().shorter_m() / 4.0;
             Ground::recorded(nodes, opened.max_error_m / usual_m)
         };
+        if !opened.grid.nodes_are_samples() {
+            ground.core_seconds += rates::SECONDS_PER_RESAMPLED_NODE * nodes as f64;
+        }
         Ok(Self::put_together(nodes, tiles, memory, extract_bytes, &ground))
     }
 
@@ -253,25 +257,25 @@ impl Ground {
         let spec = TinSpec { max_error_m: *max_error_m, quantum_m: levels.quantum_m() };
         let tiles = finest.spread(SAMPLED_TILES);
         let mut triangles = 0;
-        let mut seconds = 0.0;
+        let mut spent = Duration::ZERO;
         for &id in &tiles {
             if observer.is_cancelled() {
                 return Err(BuildError::Interrupted);
             }
             let window = reader.window(grid.frame.tile_window(id).with_halo(1))?;
-            let begun = Instant::now();
+            let begun = thread_time();
             // Values that are no heights are found, and told, when all samples are looked at.
             let Ok(tin) = corniche_tin::triangulate(&window.heights, spec) else {
                 let usual_m = grid.frame.cell().shorter_m() / 4.0;
                 return Ok(Self::recorded(nodes, max_error_m / usual_m));
             };
-            seconds += begun.elapsed().as_secs_f64();
+            spent += thread_time().saturating_sub(begun);
             triangles += tin.triangles().len();
         }
         let share = finest.count() as f64 / tiles.len().max(1) as f64;
         Ok(Self {
             triangles_per_node: triangles as f64 * share / nodes.max(1) as f64,
-            core_seconds: seconds * share * rates::STEPS_PER_MESH,
+            core_seconds: spent.as_secs_f64() * share * rates::STEPS_PER_MESH,
             rates: Rates::Sampled { tiles: tiles.len() as u64 },
         })
     }

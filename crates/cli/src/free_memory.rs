@@ -1,0 +1,25 @@
+//! Memory that is free goes back to the system.
+#![cfg_attr(
+    all(target_os = "linux", target_env = "gnu"),
+    expect(unsafe_code, reason = "mallopt has no safe wrapper")
+)]
+
+/// Blocks of this size and larger are given back as soon as they are free, bytes.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+const GIVEN_BACK_BYTES: i32 = 1 << 20;
+
+/// Lets the C library's allocator give back large blocks when they are freed, which `--memory` counts on.
+///
+/// By default it keeps more and more of them, up to 32 MiB each: after an extract was sorted, 110 MB stayed with the process for the
+/// rest of a build, in pieces. (glibc manual, "Malloc Tunable Parameters": the threshold adjusts itself unless it is set.)
+pub(crate) fn give_back_early() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    {
+        // SAFETY: `mallopt` takes two numbers and touches nothing but the allocator's parameters, under the allocator's lock. If it refuses
+        // them, it returns 0, and they stay as they are.
+        let _ = unsafe {
+            libc::mallopt(libc::M_MMAP_THRESHOLD, GIVEN_BACK_BYTES)
+                & libc::mallopt(libc::M_TRIM_THRESHOLD, GIVEN_BACK_BYTES)
+        };
+    }
+}
