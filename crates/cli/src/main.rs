@@ -14,6 +14,7 @@ mod fly;
 mod growth;
 mod info;
 mod interrupt;
+mod jobs;
 mod merge;
 mod open_files;
 mod output;
@@ -64,6 +65,7 @@ fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
     match arguments.command {
         Command::Build(args) => build::run(args),
         Command::Plan(args) => plan::run(*args),
+        Command::Jobs(args) => jobs::run(&args),
         Command::Part(args) => part::run(&args),
         Command::Merge(args) => merge::run(&args),
         Command::Info(args) => info::run(&args),
