@@ -145,7 +145,9 @@ pub(crate) fn read_places<R: Read + Seek>(
         on_bytes: &|bytes| on_bytes(bytes, all_bytes),
     };
     let take = |_, (), found: Vec<(usize, Location)>| {
-        found.into_iter().for_each(|(number, location)| take(number, location));
+        for (number, location) in found {
+            take(number, location);
+        }
         Ok(())
     };
     let scan = |block: &PrimitiveBlock, most_bytes| ids.scan(block, most_bytes);

@@ -75,6 +75,13 @@ struct Own {
     lock: OpenFile,
 }
 
+/// Which parts a store is read from.
+struct Sources<'a> {
+    folders: &'a [&'a Path],
+    /// By the part's name, without its digest.
+    wanted: &'a dyn Fn(&str) -> bool,
+}
+
 /// A part to be written by [`LocalStore::open_parts`].
 #[derive(Debug, Clone, Copy)]
 pub struct OwnPart<'a> {
@@ -123,7 +130,13 @@ impl LocalStore {
         refuse_store(&files, folder)?;
         remove_own_files(&files, folder)?;
         binding::bind(&files, folder, plan)?;
-        Self::assemble(files, (&[], &|_| true), Some((folder, BUILD, lock)), &plan.hash, interval)
+        Self::assemble(
+            files,
+            Sources { folders: &[], wanted: &|_| true },
+            Some((folder, BUILD, lock)),
+            &plan.hash,
+            interval,
+        )
     }
 
     /// Goes on with the store of a build. What a crash left half is cut off ([`Self::repaired`]).
@@ -140,7 +153,13 @@ impl LocalStore {
         binding::check_hash(&files, folder, plan)?;
         let lock = lock::lock_store(&files, folder, Hold::Alone)?;
         binding::check_hash(&files, folder, plan)?;
-        Self::assemble(files, (&[folder], &|_| true), Some((folder, BUILD, lock)), plan, interval)
+        Self::assemble(
+            files,
+            Sources { folders: &[folder], wanted: &|_| true },
+            Some((folder, BUILD, lock)),
+            plan,
+            interval,
+        )
     }
 
     /// Opens the sealed parts of several stores as one, and a part of its own to write if asked. Without one the store can only be read.
@@ -177,7 +196,13 @@ impl LocalStore {
             for folder in folders {
                 binding::check_hash(&files, folder, plan)?;
             }
-            return Self::assemble(files, (&read, wanted), None, plan, SYNC_INTERVAL);
+            return Self::assemble(
+                files,
+                Sources { folders: &read, wanted },
+                None,
+                plan,
+                SYNC_INTERVAL,
+            );
         };
         layout::check_part_name(own.name)?;
         binding::state(&files, own.folder)?;
@@ -194,7 +219,7 @@ impl LocalStore {
         }
         Self::assemble(
             files,
-            (&read, wanted),
+            Sources { folders: &read, wanted },
             Some((own.folder, own.name, lock)),
             plan,
             own.interval,
@@ -204,7 +229,7 @@ impl LocalStore {
     /// Reads what the wanted parts of the folders hold and opens the own part.
     fn assemble(
         files: Arc<Files>,
-        (folders, wanted): (&[&Path], &dyn Fn(&str) -> bool),
+        Sources { folders, wanted }: Sources<'_>,
         own: Option<(&Path, &str, OpenFile)>,
         plan: &PlanHash,
         interval: Duration,

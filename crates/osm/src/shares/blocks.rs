@@ -11,7 +11,7 @@ use crate::{kept_error::KeptError, share::Share};
 
 /// A block ends with the record that reaches this size: large enough that a store on a server is asked seldom, small enough that blocks of
 /// all shares fit in memory. It decides the bytes of parts, so it must not depend on the memory that a process has.
-const BLOCK_BYTES: usize = 256 << 10;
+pub(crate) const BLOCK_BYTES: usize = 256 << 10;
 
 /// What blocks are made of.
 pub(crate) trait BlockRecord: Sized {

@@ -3,8 +3,12 @@
 use corniche_roads::Road;
 
 use super::{
-    blocks::BlockReader, kept::Kept, kept_records::PlaceRecord, merged::Merged,
-    nodes_of_share::blocks_of, ways_record::WaysRecord,
+    blocks::{BLOCK_BYTES, BlockReader},
+    kept::Kept,
+    kept_records::PlaceRecord,
+    merged::Merged,
+    nodes_of_share::blocks_of,
+    ways_record::WaysRecord,
 };
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
@@ -42,6 +46,11 @@ pub fn read_kept_roads(
     let Some(first) = records.first() else {
         return Err(failed(KeptError::Missing { what: "ways", share: Share::WHOLE }));
     };
+    // A block of places and one of those in ways is in memory for each share; what is sorted gets the rest.
+    let blocks_bytes = u64::from(of) * 2 * BLOCK_BYTES as u64;
+    let sorted_bytes = request.memory_bytes.saturating_sub(blocks_bytes);
+    let memory_bytes = sorted_bytes.max(request.memory_bytes / 2);
+    let request = &ReadRequest { memory_bytes, ..*request };
     let reading = Reading { request, should_stop, len_bytes: first.len_bytes };
     let mut summary = ExtractSummary {
         blobs_passed_over: first.blobs_passed_over,

@@ -117,14 +117,13 @@ fn read(
     let mut on_defect = |defect| defects.push(Defect::from(defect));
     let should_stop = || observer.is_cancelled();
     let kept = kept_in(store);
-    let summary = match kept.complete() {
-        Some(of) => read_kept_roads(&request, of, kept, &mut sink, &mut on_defect, &should_stop),
-        None => {
-            if kept.has_any() {
-                observer.warning(SOME_SHARES);
-            }
-            read_roads(&request, &mut sink, &mut on_defect, &should_stop)
+    let summary = if let Some(of) = kept.complete() {
+        read_kept_roads(&request, of, kept, &mut sink, &mut on_defect, &should_stop)
+    } else {
+        if kept.has_any() {
+            observer.warning(SOME_SHARES);
         }
+        read_roads(&request, &mut sink, &mut on_defect, &should_stop)
     };
     if observer.is_cancelled() {
         return Err(BuildError::Interrupted);
