@@ -15,6 +15,7 @@ mod free_memory;
 mod growth;
 mod info;
 mod interrupt;
+mod jobs;
 mod merge;
 mod open_files;
 mod output;
@@ -66,6 +67,7 @@ fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
     match arguments.command {
         Command::Build(args) => build::run(args),
         Command::Plan(args) => plan::run(*args),
+        Command::Jobs(args) => jobs::run(&args),
         Command::Part(args) => part::run(&args),
         Command::Merge(args) => merge::run(&args),
         Command::Info(args) => info::run(&args),

@@ -17,6 +17,7 @@ pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
         stores: planned.store.clone(),
         step: args.step.into(),
         subtree: args.subtree,
+        share: args.share,
         resources: settings::resources(planned.threads, planned.memory.as_deref())?,
         generator: settings::generator(),
     };

@@ -13,7 +13,7 @@ use crate::{
     args::PlanArgs,
     exit::ExitCode,
     failure::Failure,
-    interrupt,
+    interrupt, jobs,
     output::{Existing, Output},
     settings,
     table::{Table, bytes, count},
@@ -37,6 +37,13 @@ pub(crate) fn run(args: PlanArgs) -> Result<ExitCode, Failure> {
         }
         io::stdout().lock().write_all(subtrees.as_bytes())?;
         return Ok(ExitCode::Done);
+    }
+    if let Some(slots) = args.jobs {
+        let (plan, jobs) = corniche_pipeline::plan_with_jobs(&work.plan, work.resources, slots)?;
+        if let Some(file) = written {
+            write_plan(file, &plan)?;
+        }
+        return jobs::print(&jobs);
     }
     let (plan, estimate) = corniche_pipeline::plan(&work.plan, work.resources, &Signals)?;
     if let Some(file) = written {

@@ -7,6 +7,7 @@ use std::{
 
 use osmpbf::{BlobError, ErrorKind, HeaderBlock, PrimitiveBlock};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::{
     ReadOsmError,
@@ -55,7 +56,7 @@ pub(crate) struct BlobFile<R> {
 }
 
 /// What the file's header says.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Header {
     pub(crate) bounds_deg: Option<[f64; 4]>,
     pub(crate) generator: Option<String>,
@@ -206,6 +207,16 @@ impl<R: Read + Seek> BlobFile<R> {
     /// Size of the file.
     pub(crate) fn len_bytes(&self) -> u64 {
         self.len_bytes
+    }
+
+    /// Size of each data blob, packed.
+    pub(crate) fn sizes(&self) -> impl Iterator<Item = u64> + Clone {
+        self.data.iter().map(|part| part.blob_bytes)
+    }
+
+    /// Size of the data blob with this number, packed.
+    pub(crate) fn size(&self, number: usize) -> u64 {
+        self.data.get(number).map_or(0, |part| part.blob_bytes)
     }
 
     /// Size of the data blobs with these numbers, packed.

@@ -1,5 +1,7 @@
 use std::{io, path::PathBuf};
 
+use crate::kept_error::KeptError;
+
 /// Why an extract could not be read.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
@@ -51,6 +53,8 @@ pub enum ReadOsmError {
          name a folder on another one"
     )]
     Scratch { path: PathBuf, source: io::Error },
+    #[error("what was kept of OSM extract {path:?} in shares cannot be used, or nothing be kept")]
+    Kept { path: PathBuf, source: KeptError },
     #[error("{expected} positions were given to be placed on the lattice, but {got} came back")]
     Place { expected: usize, got: usize },
     #[error("reading OSM extract {path:?} was stopped")]

@@ -1,8 +1,9 @@
-//! Pass 1: the road ways of the whole file, and where its nodes are.
+//! Pass 1: the road ways of a file, or of some of its blobs, and where nodes are.
 
 use std::io::{Read, Seek};
 
 use corniche_store::Sorter;
+use serde::{Deserialize, Serialize};
 
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
@@ -25,19 +26,23 @@ pub(crate) struct FoundWays<'a> {
     pub(crate) located: Sorter<'a, Located>,
     pub(crate) node_blobs: Vec<NodeBlob>,
     pub(crate) summary: ExtractSummary,
+    pub(crate) versions: Versions,
+    /// What all this takes, by an estimate that is not too low.
+    pub(crate) held_bytes: u64,
 }
 
 /// A blob with nodes.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(crate) struct NodeBlob {
     pub(crate) number: usize,
     pub(crate) ids: IdRange,
 }
 
-/// Reads all blobs. What is wrong with tags goes to `on_defect`, in the order of the file.
+/// Reads the blobs with these numbers. What is wrong with tags goes to `on_defect`, in the order of the file.
 pub(crate) fn find_ways<'a, R: Read + Seek>(
     reading: &Reading<'a>,
     file: &mut BlobFile<R>,
+    numbers: &[usize],
     on_defect: &mut dyn FnMut(Defect),
 ) -> Result<FoundWays<'a>, ReadOsmError> {
     let (request, shares) = (reading.request, reading.shares());
@@ -46,13 +51,11 @@ pub(crate) fn find_ways<'a, R: Read + Seek>(
         located: Sorter::new(request.scratch, shares.located),
         node_blobs: Vec::new(),
         summary: ExtractSummary::default(),
+        versions: Versions::default(),
+        held_bytes: 0,
     };
-    let path = || request.path.to_path_buf();
-    let len_bytes = reading.len_bytes;
-    let most_bytes = HELD_BYTES.saturating_add(len_bytes.saturating_mul(HELD_BYTES_PER_BYTE));
-    let (mut versions, mut held_bytes, mut roads, mut locations) = (Versions::default(), 0, 0, 0);
-    let all: Vec<usize> = (0..file.len()).collect();
-    let data_bytes = file.bytes_of(&all);
+    let (mut roads, mut locations) = (0, 0);
+    let data_bytes = file.bytes_of(numbers);
     let table = request.table;
     let decoding = Decoding {
         pool: request.pool,
@@ -60,19 +63,14 @@ pub(crate) fn find_ways<'a, R: Read + Seek>(
         on_bytes: &|bytes| reading.tell(Step::Ways, bytes, data_bytes),
     };
     file.for_each(
-        &all,
+        numbers,
         &decoding,
         |block| (Versions::scan(block), IdRange::scan(block)),
         |block, most_bytes| Ways::scan(block, table, most_bytes),
         |number, (versions_of_block, ids), of_block| {
-            versions.append(versions_of_block);
-            if let Some(reason) = versions.history.take() {
-                return Err(ReadOsmError::History { path: path(), reason });
-            }
-            held_bytes += of_block.held_bytes;
-            if held_bytes > most_bytes {
-                return Err(ReadOsmError::TooMuch { path: path(), len_bytes });
-            }
+            append_versions(reading, &mut found.versions, versions_of_block)?;
+            found.held_bytes += of_block.held_bytes;
+            check_held(reading, found.held_bytes)?;
             found.node_blobs.extend(ids.map(|ids| NodeBlob { number, ids }));
             of_block.defects.into_iter().for_each(&mut *on_defect);
             add_summary(&mut found.summary, of_block.summary);
@@ -90,4 +88,25 @@ pub(crate) fn find_ways<'a, R: Read + Seek>(
         },
     )?;
     Ok(found)
+}
+
+/// Adds later blobs; fails if they and those before are of more than one point in time.
+pub(crate) fn append_versions(
+    reading: &Reading<'_>,
+    versions: &mut Versions,
+    later: Versions,
+) -> Result<(), ReadOsmError> {
+    versions.append(later);
+    let path = || reading.request.path.to_path_buf();
+    let history = versions.history.take();
+    history.map_or(Ok(()), |reason| Err(ReadOsmError::History { path: path(), reason }))
+}
+
+/// Fails if what is found takes more than a file of this size can plausibly hold.
+pub(crate) fn check_held(reading: &Reading<'_>, held_bytes: u64) -> Result<(), ReadOsmError> {
+    let len_bytes = reading.len_bytes;
+    if held_bytes > HELD_BYTES.saturating_add(len_bytes.saturating_mul(HELD_BYTES_PER_BYTE)) {
+        return Err(ReadOsmError::TooMuch { path: reading.request.path.to_path_buf(), len_bytes });
+    }
+    Ok(())
 }

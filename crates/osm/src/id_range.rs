@@ -1,9 +1,11 @@
 //! Between which ids the nodes of a block lie, so that pass 2 can leave out blobs.
 
+use serde::{Deserialize, Serialize};
+
 use crate::wire::{self, Field, Value, zigzag};
 
 /// The smallest and the largest id of a block's nodes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct IdRange {
     pub(crate) least: i64,
     pub(crate) most: i64,
@@ -35,6 +37,15 @@ impl IdRange {
             }
         }
         range
+    }
+
+    /// The smallest range with both in it.
+    pub(crate) fn union(self, other: Self) -> Self {
+        Self { least: self.least.min(other.least), most: self.most.max(other.most) }
+    }
+
+    pub(crate) fn contains(self, id: i64) -> bool {
+        (self.least..=self.most).contains(&id)
     }
 
     /// Whether the ranges have an id in common.

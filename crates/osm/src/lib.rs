@@ -15,21 +15,28 @@
 //! and joined within the memory that the caller allows; what does not fit goes to scratch space. There is one way through the
 //! code for extracts of every size and order.
 //!
+//! The two passes can also be split into shares of the blobs and made by several processes: see [`shares`].
+//!
 //! This crate never judges which road matters at which level, never guesses a class, and starts no threads.
 
 mod read_request;
 mod read_roads;
 mod reading;
 
+mod share;
+mod shares;
+
 mod find_ways;
 mod hand_out;
 mod locate_nodes;
+mod make_roads;
 mod number_nodes;
 
 mod audit;
 mod blob;
 mod blobs;
 mod formats;
+mod open_file;
 mod wire;
 
 mod assemble;
@@ -40,16 +47,21 @@ mod self_crossings;
 mod versions;
 mod ways;
 
+mod ahead;
 mod records;
 mod spool;
 mod way_bytes;
 
 mod defect;
 mod error;
+mod kept_error;
 mod summary;
 
 pub use defect::Defect;
 pub use error::ReadOsmError;
+pub use kept_error::KeptError;
 pub use read_request::{OnProgress, Place, ReadRequest};
 pub use read_roads::{read_roads, read_roads_from};
+pub use share::{Share, ShareError};
+pub use shares::{Kept, KeptKinds, keep_nodes, keep_ways, read_kept_roads};
 pub use summary::{ATTRIBUTION, ExtractSummary, HighwayCount, LeftOut};

@@ -6,11 +6,12 @@
 
 use std::io::{self, Read, Seek};
 
-use corniche_store::{SortRecord, Sorted, Sorter};
+use corniche_store::{Sorted, Sorter};
 use osmpbf::PrimitiveBlock;
 
 use crate::{
     Defect, ReadOsmError,
+    ahead::Ahead,
     blobs::{BlobFile, Decoding},
     find_ways::NodeBlob,
     id_range::IdRange,
@@ -23,7 +24,7 @@ use crate::{
 };
 
 /// What a node of a chunk takes: its id, its place, two marks.
-const BYTES_PER_NODE: u64 = 8 + 8 + 1 + 1;
+pub(crate) const BYTES_PER_NODE: u64 = 8 + 8 + 1 + 1;
 
 /// The nodes of all roads, in the order of ways.
 pub(crate) struct LocatedNodes<'a> {
@@ -35,21 +36,39 @@ pub(crate) struct LocatedNodes<'a> {
 }
 
 /// What is asked of the nodes.
-pub(crate) struct NodeQuestions<'a, 'b> {
+pub(crate) struct NodeQuestions<'a, L> {
     pub(crate) mentions: Sorted<'a, Mention>,
     pub(crate) mentions_count: u64,
-    pub(crate) located: Sorted<'a, Located>,
-    pub(crate) node_blobs: &'b [NodeBlob],
+    /// Places that ways give, in order of node id.
+    pub(crate) located: L,
+}
+
+/// Where the places of nodes come from.
+pub(crate) trait NodeSource {
+    /// Gives the places of nodes, in the order of the file. Their ids follow those that were asked for before.
+    fn read(
+        &mut self,
+        reading: &Reading<'_>,
+        ids: &NodeIds,
+        share: &ShareOfNodes,
+        places: &mut NodePlaces,
+    ) -> Result<(), ReadOsmError>;
+}
+
+/// Places of nodes from an extract.
+pub(crate) struct FileNodes<'a, R> {
+    pub(crate) file: &'a mut BlobFile<R>,
+    pub(crate) node_blobs: &'a [NodeBlob],
 }
 
 /// Finds the places of all nodes that roads name. Nodes with several places go to `on_defect`, in order of id.
-pub(crate) fn locate_nodes<'a, R: Read + Seek>(
+pub(crate) fn locate_nodes<'a>(
     reading: &Reading<'a>,
-    file: &mut BlobFile<R>,
-    questions: NodeQuestions<'a, '_>,
+    source: &mut dyn NodeSource,
+    questions: NodeQuestions<'a, impl Iterator<Item = io::Result<Located>>>,
     on_defect: &mut dyn FnMut(Defect),
 ) -> Result<LocatedNodes<'a>, ReadOsmError> {
-    let NodeQuestions { mentions, mentions_count, located, node_blobs } = questions;
+    let NodeQuestions { mentions, mentions_count, located } = questions;
     let stops = Sorter::new(reading.request.scratch, reading.shares().stops);
     let mut nodes = LocatedNodes { stops, needed: 0, missing: 0 };
     let mut mentions = Ahead::new(mentions);
@@ -58,7 +77,7 @@ pub(crate) fn locate_nodes<'a, R: Read + Seek>(
     while let Some(chunk) = Chunk::gather(reading, &mut mentions, mentions_count - done)? {
         let mut places = NodePlaces::new(chunk.ids.ids().len());
         let share = ShareOfNodes { before: done, own: chunk.mentions_count, all: mentions_count };
-        chunk.read_blobs(reading, file, node_blobs, &share, &mut places)?;
+        source.read(reading, &chunk.ids, &share, &mut places)?;
         chunk.take_located(reading, &mut located, &mut places)?;
         nodes.needed += chunk.ids.ids().len() as u64;
         nodes.missing += places.missing() as u64;
@@ -73,10 +92,67 @@ pub(crate) fn locate_nodes<'a, R: Read + Seek>(
 }
 
 /// Which part of all mentions a chunk is; for the progress.
-struct ShareOfNodes {
-    before: u64,
-    own: u64,
-    all: u64,
+pub(crate) struct ShareOfNodes {
+    pub(crate) before: u64,
+    pub(crate) own: u64,
+    pub(crate) all: u64,
+}
+
+impl ShareOfNodes {
+    /// Mentions up to the end of the chunk.
+    pub(crate) fn done(&self) -> u64 {
+        self.before + self.own
+    }
+}
+
+impl<R: Read + Seek> NodeSource for FileNodes<'_, R> {
+    /// Reads the blobs that may hold nodes of the chunk.
+    fn read(
+        &mut self,
+        reading: &Reading<'_>,
+        ids: &NodeIds,
+        share: &ShareOfNodes,
+        places: &mut NodePlaces,
+    ) -> Result<(), ReadOsmError> {
+        let on_bytes = |bytes: u64, all_bytes: u64| {
+            let done = u128::from(share.own) * u128::from(bytes) / u128::from(all_bytes.max(1));
+            reading.tell(Step::Nodes, share.before + done as u64, share.all);
+        };
+        let take = &mut |number, location| places.set(number, location);
+        read_places(reading, self.file, self.node_blobs, ids, &on_bytes, take)?;
+        Ok(())
+    }
+}
+
+/// Reads those of some blobs that may hold some nodes, and hands on the places of these nodes by their numbers. `on_bytes` is told how
+/// many of how many bytes were read. Returns how many bytes these blobs have.
+pub(crate) fn read_places<R: Read + Seek>(
+    reading: &Reading<'_>,
+    file: &mut BlobFile<R>,
+    node_blobs: &[NodeBlob],
+    ids: &NodeIds,
+    on_bytes: &dyn Fn(u64, u64),
+    take: &mut dyn FnMut(usize, Location),
+) -> Result<u64, ReadOsmError> {
+    let (Some(&least), Some(&most)) = (ids.ids().first(), ids.ids().last()) else { return Ok(0) };
+    let own = IdRange { least, most };
+    let numbers: Vec<usize> =
+        node_blobs.iter().filter(|blob| blob.ids.meets(own)).map(|blob| blob.number).collect();
+    let all_bytes = file.bytes_of(&numbers);
+    let decoding = Decoding {
+        pool: reading.request.pool,
+        should_stop: reading.should_stop,
+        on_bytes: &|bytes| on_bytes(bytes, all_bytes),
+    };
+    let take = |_, (), found: Vec<(usize, Location)>| {
+        for (number, location) in found {
+            take(number, location);
+        }
+        Ok(())
+    };
+    let scan = |block: &PrimitiveBlock, most_bytes| ids.scan(block, most_bytes);
+    file.for_each(&numbers, &decoding, |_| (), scan, take)?;
+    Ok(all_bytes)
 }
 
 /// Some of the nodes that roads name, with neighbouring ids.
@@ -97,7 +173,7 @@ impl<'a> Chunk<'a> {
     /// Takes the mentions of as many nodes as fit; `None` if there are no more. `most` mentions are to come.
     fn gather(
         reading: &Reading<'a>,
-        mentions: &mut Ahead<'a, Mention>,
+        mentions: &mut Ahead<Sorted<'a, Mention>>,
         most: u64,
     ) -> Result<Option<Self>, ReadOsmError> {
         let shares = reading.shares();
@@ -131,46 +207,11 @@ impl<'a> Chunk<'a> {
         Ok((mentions_count > 0).then_some(chunk))
     }
 
-    /// Reads the blobs that may hold nodes of the chunk.
-    fn read_blobs<R: Read + Seek>(
-        &self,
-        reading: &Reading<'_>,
-        file: &mut BlobFile<R>,
-        node_blobs: &[NodeBlob],
-        share: &ShareOfNodes,
-        places: &mut NodePlaces,
-    ) -> Result<(), ReadOsmError> {
-        let (Some(&least), Some(&most)) = (self.ids.ids().first(), self.ids.ids().last()) else {
-            return Ok(());
-        };
-        let own = IdRange { least, most };
-        let numbers: Vec<usize> =
-            node_blobs.iter().filter(|blob| blob.ids.meets(own)).map(|blob| blob.number).collect();
-        let all_bytes = file.bytes_of(&numbers).max(1);
-        let on_bytes = |bytes: u64| {
-            let done = u128::from(share.own) * u128::from(bytes) / u128::from(all_bytes);
-            reading.tell(Step::Nodes, share.before + done as u64, share.all);
-        };
-        let decoding = Decoding {
-            pool: reading.request.pool,
-            should_stop: reading.should_stop,
-            on_bytes: &on_bytes,
-        };
-        let take = |_, (), found: Vec<(usize, Location)>| {
-            for (number, location) in found {
-                places.set(number, location);
-            }
-            Ok(())
-        };
-        let scan = |block: &PrimitiveBlock, most_bytes| self.ids.scan(block, most_bytes);
-        file.for_each(&numbers, &decoding, |_| (), scan, take)
-    }
-
     /// Takes the places that ways give for nodes of the chunk, in the order of the file.
     fn take_located(
         &self,
         reading: &Reading<'_>,
-        located: &mut Ahead<'_, Located>,
+        located: &mut Ahead<impl Iterator<Item = io::Result<Located>>>,
         places: &mut NodePlaces,
     ) -> Result<(), ReadOsmError> {
         let mut count = 0;
@@ -210,29 +251,5 @@ impl<'a> Chunk<'a> {
             stops.push(stop).map_err(failed)?;
         }
         Ok(())
-    }
-}
-
-/// Sorted records, of which the next one can be seen before it is taken.
-struct Ahead<'a, T> {
-    records: Sorted<'a, T>,
-    next: Option<T>,
-}
-
-impl<'a, T: SortRecord> Ahead<'a, T> {
-    fn new(records: Sorted<'a, T>) -> Self {
-        Self { records, next: None }
-    }
-
-    fn peek(&mut self) -> io::Result<Option<&T>> {
-        if self.next.is_none() {
-            self.next = self.records.next().transpose()?;
-        }
-        Ok(self.next.as_ref())
-    }
-
-    /// Passes over the record that was seen.
-    fn take(&mut self) {
-        self.next = None;
     }
 }

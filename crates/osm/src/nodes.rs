@@ -37,7 +37,7 @@ impl NodeIds {
             let dense = dense.map(|node| (node.id(), node.nano_lon(), node.nano_lat()));
             let plain = group.nodes();
             let plain = plain.map(|node| (node.id(), node.nano_lon(), node.nano_lat()));
-            let mut search = Search { ids: &self.ids, at: 0 };
+            let mut search = self.search();
             for (id, lon_nano_deg, lat_nano_deg) in dense.chain(plain) {
                 if let Some(number) = search.find(id) {
                     found.push((number, location_from_nano(lon_nano_deg, lat_nano_deg)));
@@ -58,6 +58,11 @@ impl NodeIds {
     pub(crate) fn ids(&self) -> &[i64] {
         &self.ids
     }
+
+    /// Looks up the numbers of nodes that mostly ascend.
+    pub(crate) fn search(&self) -> Search<'_> {
+        Search { ids: &self.ids, at: 0 }
+    }
 }
 
 impl NodePlaces {
@@ -76,6 +81,16 @@ impl NodePlaces {
         }
     }
 
+    /// Takes what is known of later places of a node: the first on Earth, or the last if none is, and whether there are several.
+    pub(crate) fn add(&mut self, number: usize, location: Location, is_conflicting: bool) {
+        self.set(number, location);
+        self.is_conflicting[number] |= is_conflicting;
+    }
+
+    pub(crate) fn is_conflicting(&self, number: usize) -> bool {
+        self.is_conflicting[number]
+    }
+
     pub(crate) fn location(&self, number: usize) -> Location {
         self.locations[number]
     }
@@ -92,13 +107,13 @@ impl NodePlaces {
 }
 
 /// Looks up ids that mostly ascend: from where the last one was found, in doubling steps.
-struct Search<'a> {
+pub(crate) struct Search<'a> {
     ids: &'a [i64],
     at: usize,
 }
 
 impl Search<'_> {
-    fn find(&mut self, id: i64) -> Option<usize> {
+    pub(crate) fn find(&mut self, id: i64) -> Option<usize> {
         let rest = &self.ids[self.at..];
         let (mut low, mut step) = (0, 1);
         if rest.first().is_none_or(|&first| id < first) {

@@ -1,6 +1,8 @@
 //! Puts the road ways in order of id and numbers their nodes through.
 
-use corniche_store::{Sorted, Sorter};
+use std::io;
+
+use corniche_store::Sorter;
 
 use crate::{
     Defect, ReadOsmError,
@@ -28,7 +30,7 @@ pub(crate) struct NumberedNodes<'a> {
 /// Fails if a way is there in two versions.
 pub(crate) fn number_nodes<'a>(
     reading: &Reading<'a>,
-    ways: Sorted<'a, WayRecord>,
+    ways: impl Iterator<Item = io::Result<WayRecord>>,
     on_defect: &mut dyn FnMut(Defect),
 ) -> Result<NumberedNodes<'a>, ReadOsmError> {
     let (request, shares) = (reading.request, reading.shares());
@@ -67,7 +69,7 @@ pub(crate) fn number_nodes<'a>(
 }
 
 impl NumberedNodes<'_> {
-    fn add(&mut self, way: &WayRecord) -> std::io::Result<()> {
+    fn add(&mut self, way: &WayRecord) -> io::Result<()> {
         let Self { ways, mentions, ways_count, mentions_count, .. } = self;
         let mut road = &*way.bytes;
         let mut previous = None;

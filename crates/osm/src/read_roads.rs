@@ -1,7 +1,4 @@
-use std::{
-    fs::{self, File},
-    io::{Read, Seek},
-};
+use std::io::{Read, Seek};
 
 use corniche_roads::Road;
 
@@ -9,9 +6,9 @@ use crate::{
     Defect, ExtractSummary, ReadOsmError,
     blobs::BlobFile,
     find_ways::{FoundWays, find_ways},
-    hand_out::hand_out,
-    locate_nodes::{NodeQuestions, locate_nodes},
-    number_nodes::{NumberedNodes, number_nodes},
+    locate_nodes::FileNodes,
+    make_roads::{WaysAndNodes, make_roads},
+    open_file::open_file,
     read_request::ReadRequest,
     reading::Reading,
 };
@@ -70,15 +67,7 @@ pub fn read_roads(
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<ExtractSummary, ReadOsmError> {
-    let path = request.path;
-    let not_open = |source| ReadOsmError::Open { path: path.to_path_buf(), source };
-    // Opening a pipe would block until something is written to it.
-    let kind = fs::metadata(path).map_err(not_open)?.file_type();
-    if !kind.is_file() {
-        let found = if kind.is_dir() { "a folder" } else { "a pipe or a device" };
-        return Err(ReadOsmError::NotAFile { path: path.to_path_buf(), found });
-    }
-    let file = File::open(path).map_err(not_open)?;
+    let file = open_file(request.path)?;
     read_roads_from(file, request, sink, on_defect, should_stop)
 }
 
@@ -98,33 +87,18 @@ pub fn read_roads_from<R: Read + Seek>(
     let reading = Reading { request, should_stop, len_bytes: file.len_bytes() };
     let failed = |error| reading.scratch_failed(error);
 
-    let FoundWays { ways, located, node_blobs, mut summary } =
-        find_ways(&reading, &mut file, on_defect)?;
-    let ways = ways.finish().map_err(failed)?;
-    let numbered = number_nodes(&reading, ways, on_defect)?;
-    let NumberedNodes { ways, mentions, ways_count, mentions_count, duplicates } = numbered;
-    let questions = NodeQuestions {
-        mentions: mentions.finish().map_err(failed)?,
-        mentions_count,
-        located: located.finish().map_err(failed)?,
-        node_blobs: &node_blobs,
-    };
-    let nodes = locate_nodes(&reading, &mut file, questions, on_defect)?;
-
-    summary.left_out.duplicate = duplicates;
-    summary.nodes_needed = nodes.needed;
-    summary.nodes_missing = nodes.missing;
+    let all: Vec<usize> = (0..file.len()).collect();
+    let FoundWays { ways, located, node_blobs, mut summary, .. } =
+        find_ways(&reading, &mut file, &all, on_defect)?;
     summary.blobs_passed_over = file.blobs_passed_over;
     summary.header_bounds_deg = file.header.bounds_deg;
     summary.generator = file.header.generator.take();
     summary.timestamp_s = file.header.timestamp_s;
-    let stops = nodes.stops.finish().map_err(failed)?;
-    hand_out(&reading, ways.read(), ways_count, stops, &mut |assembled| {
-        let roads = assembled.roads.len() as u64;
-        summary.roads += roads;
-        *(if roads > 0 { &mut summary.road_ways } else { &mut summary.left_out.without_line }) += 1;
-        assembled.defects.into_iter().for_each(&mut *on_defect);
-        assembled.roads.into_iter().for_each(&mut *sink);
-    })?;
+    let found = WaysAndNodes {
+        ways: ways.finish().map_err(failed)?,
+        located: located.finish().map_err(failed)?,
+        nodes: &mut FileNodes { file: &mut file, node_blobs: &node_blobs },
+    };
+    make_roads(&reading, found, &mut summary, sink, on_defect)?;
     Ok(summary)
 }

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use crate::{ReadOsmError, read_request::ReadRequest};
+use crate::{ReadOsmError, kept_error::KeptError, read_request::ReadRequest};
 
 /// What takes of the memory, as a part of the whole. At no time is there more than the whole, in sixteenths:
 ///
@@ -74,9 +74,17 @@ impl Reading<'_> {
         if count.is_multiple_of(OFTEN) { self.check_stop() } else { Ok(()) }
     }
 
-    /// The scratch space failed.
+    /// The scratch space failed, or what shares kept could not be read.
     pub(crate) fn scratch_failed(&self, source: io::Error) -> ReadOsmError {
-        ReadOsmError::Scratch { path: self.request.path.to_path_buf(), source }
+        match source.downcast() {
+            Ok(kept) => self.kept_failed(kept),
+            Err(source) => ReadOsmError::Scratch { path: self.request.path.to_path_buf(), source },
+        }
+    }
+
+    /// What shares keep could not be kept or read.
+    pub(crate) fn kept_failed(&self, source: KeptError) -> ReadOsmError {
+        ReadOsmError::Kept { path: self.request.path.to_path_buf(), source }
     }
 
     /// Tells that `done` of `all` of a step are done, and the steps before it.

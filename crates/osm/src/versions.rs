@@ -12,12 +12,14 @@
 //!
 //! This reads the block itself: the decoder forgets versions and marks of dense nodes that come without times and users.
 
+use serde::{Deserialize, Serialize};
+
 use crate::wire::{self, Field, Value, zigzag};
 
 const KINDS: [&str; 3] = ["node", "way", "relation"];
 
 /// What versions the objects of a block, or of the file so far, have.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Versions {
     /// Nodes, ways, relations.
     runs: [Run; 3],
@@ -26,13 +28,13 @@ pub(crate) struct Versions {
 }
 
 /// The objects of one kind, in the order of the file; those without a version are skipped.
-#[derive(Debug, Default, Clone, Copy)]
+#[derive(Debug, Default, Clone, Copy, Serialize, Deserialize)]
 struct Run {
     first: Option<Versioned>,
     last: Option<Versioned>,
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Versioned {
     id: i64,
     version: i32,

@@ -13,11 +13,15 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-use common::{Extract, POOL, fixture, gather, read_bytes_within, request, to_lattice};
+use common::{
+    Extract, POOL, fixture, gather,
+    made::{Order, made_file, made_way},
+    read_bytes_within, request, to_lattice,
+};
 use corniche_osm::{ReadOsmError, ReadRequest, read_roads_from};
 use corniche_store::{MemoryScratch, Scratch, Span};
 use corniche_testing::{
-    pbf::{Block, deltas, field, number, packed_blob, plain_header, raw},
+    pbf::{Block, plain_header, raw},
     real_data,
 };
 use proptest::prelude::*;
@@ -78,98 +82,6 @@ fn fixtures_are_the_same_with_any_memory() {
     ] {
         check_same(&fixture(name), &[0, 1, 64, 300, 1000, 5000]);
     }
-}
-
-/// A way of a random extract.
-#[derive(Debug, Clone)]
-struct MadeWay {
-    id: i64,
-    tags: Vec<(&'static str, &'static str)>,
-    node_ids: Vec<i64>,
-    version: i64,
-    /// Latitude and longitude of each node, in ways that say so.
-    places: Option<Vec<(i64, i64)>>,
-}
-
-fn made_way() -> impl Strategy<Value = MadeWay> {
-    let highways = vec!["track", "residential", "motorway_link", "footway", "goat_trail"];
-    let more = prop::sample::subsequence(
-        vec![("name", "Bé"), ("area", "yes"), ("layer", "1000"), ("tunnel", "culvert")],
-        0..2,
-    );
-    let node_ids = prop_oneof![
-        3 => (-20_i64..60, 0_i64..9).prop_map(|(first, count)| (first..first + count).collect()),
-        2 => prop::collection::vec(-20_i64..60, 0..9),
-    ];
-    let version = prop::sample::select(vec![0, 0, 0, 0, 0, 0, 0, 0, 0, 7, 7, 8]);
-    (
-        -9_i64..40,
-        prop::sample::select(highways),
-        more,
-        node_ids,
-        version,
-        any::<bool>(),
-        any::<u32>(),
-    )
-        .prop_map(|(id, highway, more, node_ids, version, has_places, salt)| {
-            let tags = [vec![("highway", highway)], more].concat();
-            let place = |&id: &i64| {
-                let mix = (id.unsigned_abs() * 7 + u64::from(salt) % 3) as i64;
-                (mix % 5, if mix % 13 == 0 { 2_000_000_000 } else { mix % 4 })
-            };
-            let places = has_places.then(|| node_ids.iter().map(place).collect());
-            MadeWay { id, tags, node_ids, version, places }
-        })
-}
-
-/// The order of a made file.
-#[derive(Debug, Clone, Copy)]
-enum Order {
-    Sorted,
-    AsMade,
-    BlobsBackwards,
-}
-
-fn made_file(
-    ways: &[MadeWay],
-    nodes: &[(i64, i64, i64)],
-    per_block: usize,
-    order: Order,
-    has_places: bool,
-) -> Vec<u8> {
-    let (mut ways, mut nodes) = (ways.to_vec(), nodes.to_vec());
-    if matches!(order, Order::Sorted) {
-        ways.sort_by_key(|way| way.id);
-        nodes.sort_by_key(|node| node.0);
-    }
-    let mut blobs = Vec::new();
-    for some in nodes.chunks(per_block) {
-        let mut block = Block::new();
-        let (dense, plain) = some.split_at(some.len() / 2);
-        block.dense(dense);
-        block.plain(plain);
-        blobs.push(packed_blob(b"OSMData", &block.bytes()));
-    }
-    for some in ways.chunks(per_block) {
-        let mut block = Block::new();
-        for way in some {
-            let mut message = block.way_message(way.id, &way.tags, &way.node_ids);
-            if way.version > 0 {
-                message.extend(field(4, &number(1, way.version)));
-            }
-            if let Some(places) = way.places.as_ref().filter(|_| has_places) {
-                let column = |of: fn(&(i64, i64)) -> i64| places.iter().map(of).collect::<Vec<_>>();
-                message.extend(field(9, &deltas(&column(|place| place.0))));
-                message.extend(field(10, &deltas(&column(|place| place.1))));
-            }
-            block.groups.push(field(3, &message));
-        }
-        blobs.push(raw(b"OSMData", &block.bytes()));
-    }
-    if matches!(order, Order::BlobsBackwards) {
-        blobs.reverse();
-    }
-    [plain_header(), blobs.concat()].concat()
 }
 
 proptest! {

@@ -15,9 +15,15 @@
 //! | `Payload` | tile | its encoded bytes | tiles, merge | merge |
 //! | `Subtree` | tile | nothing: the heights beneath it are there | heights | top |
 //! | `Top` | 0 | nothing: all heights are there and can be heights | top | tiles, merge |
+//! | `Ways` | share, block | road ways of a share of the extract, by id | ways | nodes, roads |
+//! | `Located` | share, block | places that these ways give for their nodes, by node | ways | roads |
+//! | `WayDefects` | share, block | the share's defects, in the order of the file | ways | roads |
+//! | `WaysShare` | share | counts of the share, which of its blobs have nodes | ways | nodes, roads |
+//! | `Places` | share, block | places of nodes that road ways name, by node | nodes | roads |
+//! | `NodesShare` | share | how many blocks of places there are | nodes | roads |
 //!
 //! A tile is finished when its `Record` is there: it is put last. So is an area when its `Area` is there, and the roads when
-//! `RoadTotals` is. Heights, rasters and TINs of tiles without any are kept as well, empty: what is not there was not made, and is
+//! `RoadTotals` is, and a share of the extract when its `WaysShare` or `NodesShare` is. Heights, rasters and TINs of tiles without any are kept as well, empty: what is not there was not made, and is
 //! never taken for a void.
 
 use corniche_geom::TileId;
@@ -44,11 +50,17 @@ pub(crate) enum Kind {
     Payload,
     Subtree,
     Top,
+    Ways,
+    Located,
+    WayDefects,
+    WaysShare,
+    Places,
+    NodesShare,
 }
 
 impl Kind {
     /// All of them.
-    pub(crate) const ALL: [Self; 13] = [
+    pub(crate) const ALL: [Self; 19] = [
         Self::InputHash,
         Self::RoadPieces,
         Self::RoadLengths,
@@ -62,6 +74,12 @@ impl Kind {
         Self::Payload,
         Self::Subtree,
         Self::Top,
+        Self::Ways,
+        Self::Located,
+        Self::WayDefects,
+        Self::WaysShare,
+        Self::Places,
+        Self::NodesShare,
     ];
 
     /// The key of what belongs to a tile.

@@ -97,6 +97,8 @@ pub enum BuildError {
     NoStore { folder: PathBuf },
     #[error("--subtree {subtree}: {why}")]
     Subtree { subtree: corniche_geom::TileId, why: String },
+    #[error("--share {share}: {why}")]
+    Share { share: corniche_osm::Share, why: String },
     #[error(
         "{folder:?} holds {kept:?}, which is not Corniche's; move it away or choose another --tmp"
     )]
@@ -164,6 +166,7 @@ impl BuildError {
                 | Self::OtherPlan { .. }
                 | Self::NoStore { .. }
                 | Self::Subtree { .. }
+                | Self::Share { .. }
                 | Self::Missing { .. }
                 | Self::Package(_)
                 | Self::OtherTerrain { .. }

@@ -32,13 +32,16 @@ mod workers;
 
 pub use build::{BuildSummary, build, build_on};
 pub use corniche_dem::{OpenOptions, PlanOptions};
-pub use corniche_osm::Defect as OsmDefect;
+pub use corniche_osm::{Defect as OsmDefect, Share};
 pub use defect::{Defect, Loss};
 pub use error::BuildError;
 pub use inputs::PlannedInput;
 pub use machine::{MIN_MEMORY_BYTES, default_memory_bytes, machine_memory_bytes};
 pub use observer::{Observer, Silent, Stage, Unit};
-pub use parts::{MergeSettings, PartSettings, PartSummary, Step, make_part, merge};
+pub use parts::{
+    Job, JobSettings, MergeSettings, PartSettings, PartSummary, Step, jobs, make_part, merge,
+    plan_with_jobs,
+};
 pub use plan::{
     BuildPlan, Estimate, FrcTableRecord, MemoryEstimate, PlannedGrid, PlannedLevel, Rates, plan,
 };

@@ -2,17 +2,20 @@
 //!
 //! ```text
 //!  plan ─┬─ hashes ──────────────────────────────────────┐
-//!        ├─ roads ──────────────────────┐                │
+//!        ├─ ways ─ nodes ─ roads ───────┐                │
 //!        └─ heights of each subtree ─ top ─ tiles of each subtree ─ merge ─► package
 //! ```
 //!
 //! Parts of one column may be made at once, in any order, on any machine that has the inputs at the paths of the plan. What is in the
 //! stores already is not made again, so a part may be made twice.
 
+mod jobs;
 mod merge;
+mod needed_parts;
 mod part;
 mod planned;
 mod stores;
 
+pub use jobs::{Job, JobSettings, jobs, plan_with_jobs};
 pub use merge::{MergeSettings, merge};
 pub use part::{PartSettings, PartSummary, Step, make_part};

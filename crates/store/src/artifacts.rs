@@ -26,6 +26,14 @@ pub trait Artifacts: Send + Sync {
     /// When the device fails, or the bytes are not those that were kept.
     fn get(&self, key: Key) -> Result<Option<Vec<u8>>, StoreError>;
 
+    /// How many bytes are kept under `key`; `None` if there is nothing. They need not be read for it.
+    ///
+    /// # Errors
+    /// As [`Self::get`], where it is made with that.
+    fn length(&self, key: Key) -> Result<Option<u64>, StoreError> {
+        Ok(self.get(key)?.map(|bytes| bytes.len() as u64))
+    }
+
     /// Whether there is something under `key`.
     fn has(&self, key: Key) -> bool;
 

@@ -75,6 +75,13 @@ struct Own {
     lock: OpenFile,
 }
 
+/// Which parts a store is read from.
+struct Sources<'a> {
+    folders: &'a [&'a Path],
+    /// By the part's name, without its digest.
+    wanted: &'a dyn Fn(&str) -> bool,
+}
+
 /// A part to be written by [`LocalStore::open_parts`].
 #[derive(Debug, Clone, Copy)]
 pub struct OwnPart<'a> {
@@ -123,7 +130,13 @@ impl LocalStore {
         refuse_store(&files, folder)?;
         remove_own_files(&files, folder)?;
         binding::bind(&files, folder, plan)?;
-        Self::assemble(files, &[], Some((folder, BUILD, lock)), &plan.hash, interval)
+        Self::assemble(
+            files,
+            Sources { folders: &[], wanted: &|_| true },
+            Some((folder, BUILD, lock)),
+            &plan.hash,
+            interval,
+        )
     }
 
     /// Goes on with the store of a build. What a crash left half is cut off ([`Self::repaired`]).
@@ -140,7 +153,13 @@ impl LocalStore {
         binding::check_hash(&files, folder, plan)?;
         let lock = lock::lock_store(&files, folder, Hold::Alone)?;
         binding::check_hash(&files, folder, plan)?;
-        Self::assemble(files, &[folder], Some((folder, BUILD, lock)), plan, interval)
+        Self::assemble(
+            files,
+            Sources { folders: &[folder], wanted: &|_| true },
+            Some((folder, BUILD, lock)),
+            plan,
+            interval,
+        )
     }
 
     /// Opens the sealed parts of several stores as one, and a part of its own to write if asked. Without one the store can only be read.
@@ -156,13 +175,34 @@ impl LocalStore {
         plan: &PlanHash,
         own: Option<OwnPart<'_>>,
     ) -> Result<Self, StoreError> {
+        Self::open_some_parts(disk, folders, plan, own, &|_| true)
+    }
+
+    /// As [`Self::open_parts`], but of the sealed parts only those with a `wanted` name, without the digest: what the others hold is as if it
+    /// were not there.
+    ///
+    /// # Errors
+    /// As [`Self::open_parts`].
+    pub fn open_some_parts(
+        disk: Arc<dyn Disk>,
+        folders: &[&Path],
+        plan: &PlanHash,
+        own: Option<OwnPart<'_>>,
+        wanted: &dyn Fn(&str) -> bool,
+    ) -> Result<Self, StoreError> {
         let files = Files::new(disk);
         let mut read = folders.to_vec();
         let Some(own) = own else {
             for folder in folders {
                 binding::check_hash(&files, folder, plan)?;
             }
-            return Self::assemble(files, &read, None, plan, SYNC_INTERVAL);
+            return Self::assemble(
+                files,
+                Sources { folders: &read, wanted },
+                None,
+                plan,
+                SYNC_INTERVAL,
+            );
         };
         layout::check_part_name(own.name)?;
         binding::state(&files, own.folder)?;
@@ -177,13 +217,19 @@ impl LocalStore {
         for folder in &read {
             binding::check_hash(&files, folder, plan)?;
         }
-        Self::assemble(files, &read, Some((own.folder, own.name, lock)), plan, own.interval)
+        Self::assemble(
+            files,
+            Sources { folders: &read, wanted },
+            Some((own.folder, own.name, lock)),
+            plan,
+            own.interval,
+        )
     }
 
-    /// Reads what the folders hold and opens the own part.
+    /// Reads what the wanted parts of the folders hold and opens the own part.
     fn assemble(
         files: Arc<Files>,
-        folders: &[&Path],
+        Sources { folders, wanted }: Sources<'_>,
         own: Option<(&Path, &str, OpenFile)>,
         plan: &PlanHash,
         interval: Duration,
@@ -191,6 +237,9 @@ impl LocalStore {
         let (mut index, mut sealed, mut sealed_bytes) = (Index::default(), Vec::new(), 0);
         for folder in folders {
             for path in sealed_parts(&files, folder)? {
+                if !layout::part_of_sealed(&path).is_none_or(wanted) {
+                    continue;
+                }
                 let number = part_number(&path, sealed.len())?;
                 let visit = &mut |path: &Path, entry| add(&mut index, &sealed, number, path, entry);
                 let file = sealed_part::open(&files, &path, plan, visit)?;
@@ -353,6 +402,10 @@ impl Artifacts for LocalStore {
             });
         }
         Ok(Some(bytes))
+    }
+
+    fn length(&self, key: Key) -> Result<Option<u64>, StoreError> {
+        Ok(self.index().get(key).map(|place| u64::from(place.length)))
     }
 
     fn has(&self, key: Key) -> bool {

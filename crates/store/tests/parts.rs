@@ -56,6 +56,24 @@ fn parts_of_several_folders_are_read_as_one() {
     check_holds(&store, &all);
 }
 
+/// Parts that are not wanted are not even opened: one that is damaged is no error then.
+#[test]
+fn parts_that_are_not_wanted_are_as_if_they_were_not_there() {
+    let disk = empty_disk();
+    let folder = Path::new("/data/first");
+    make_part(&disk, folder, "heights-1-0-0", &keys(1, 0..40));
+    let roads = make_part(&disk, folder, "roads", &keys(2, 0..3000));
+    let open = |wanted: &dyn Fn(&str) -> bool| {
+        LocalStore::open_some_parts(disk.disk(), &[folder], &plan().hash, None, wanted)
+    };
+    check_holds(&open(&|name| name == "heights-1-0-0").unwrap(), &all_of(keys(1, 0..40)));
+    check_holds(&open(&|name| name.len() == 5).unwrap(), &all_of(keys(2, 0..3000)));
+    let bytes = disk.content(&roads).unwrap();
+    disk.set_content(&roads, &bytes[..100]);
+    check_holds(&open(&|name| name != "roads").unwrap(), &all_of(keys(1, 0..40)));
+    assert!(matches!(open(&|_| true).unwrap_err(), StoreError::Damaged { .. }));
+}
+
 /// The name of a part depends on what it holds, not on the order in which it was put, and a second copy is dropped.
 #[test]
 fn a_part_made_twice_is_one_file() {

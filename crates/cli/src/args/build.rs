@@ -1,4 +1,7 @@
-use std::path::{Path, PathBuf};
+use std::{
+    num::NonZeroU32,
+    path::{Path, PathBuf},
+};
 
 use clap::Args;
 use corniche_presets::{ResourceOptions, RoadOptions, TerrainOptions};
@@ -76,6 +79,9 @@ pub(crate) struct PlanArgs {
     /// Print only the tiles of this level that hold data, one Z/X/Y per line: subtrees for corniche part
     #[arg(long, value_name = "LEVEL", conflicts_with = "json")]
     pub(crate) subtrees: Option<u8>,
+    /// Print only the parts of the build for so many processes at once, one JSON object per line, as corniche jobs does
+    #[arg(long, value_name = "N", conflicts_with_all = ["json", "subtrees"])]
+    pub(crate) jobs: Option<NonZeroU32>,
     #[command(flatten)]
     pub(crate) work: WorkArgs,
 }

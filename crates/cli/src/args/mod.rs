@@ -15,7 +15,7 @@ use clap::{Parser, Subcommand};
 pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use look::Roads;
-pub(crate) use part::{MergeArgs, PartArgs};
+pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
 pub(crate) use reading::{Coordinates, GrowthArgs, InfoArgs, TileArgs, VerifyArgs};
 pub(crate) use view::{Motion, ViewArgs};
 
@@ -33,6 +33,8 @@ pub(crate) enum Command {
     Build(Box<BuildArgs>),
     /// Tell what a build will make and what it will take, and write its plan
     Plan(Box<PlanArgs>),
+    /// List the parts of a planned build for so many processes, one JSON object per line
+    Jobs(JobsArgs),
     /// Make one part of a planned build; prints the path of its file
     Part(PartArgs),
     /// Write the package of a plan from all its parts

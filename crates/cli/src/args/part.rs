@@ -1,10 +1,13 @@
 //! Commands that make a package in parts.
 
-use std::{num::NonZeroUsize, path::PathBuf};
+use std::{
+    num::{NonZeroU32, NonZeroUsize},
+    path::PathBuf,
+};
 
 use clap::{Args, ValueEnum};
 use corniche_geom::TileId;
-use corniche_pipeline::Step;
+use corniche_pipeline::{Share, Step};
 
 use super::ReportArgs;
 
@@ -13,7 +16,11 @@ use super::ReportArgs;
 pub(crate) enum StepName {
     /// Hash the inputs
     Hashes,
-    /// Read the extract and cut its roads by tile
+    /// Find the road ways in a share of the extract; may be left out
+    Ways,
+    /// Find the nodes of road ways in a share of the extract; needs the ways of all shares
+    Nodes,
+    /// Cut the extract's roads by tile: from all shares of ways and nodes, else from the extract itself
     Roads,
     /// Read the heights of a subtree
     Heights,
@@ -27,6 +34,8 @@ impl From<StepName> for Step {
     fn from(name: StepName) -> Self {
         match name {
             StepName::Hashes => Self::Hashes,
+            StepName::Ways => Self::Ways,
+            StepName::Nodes => Self::Nodes,
             StepName::Roads => Self::Roads,
             StepName::Heights => Self::Heights,
             StepName::Top => Self::Top,
@@ -62,8 +71,29 @@ pub(crate) struct PartArgs {
     /// Only the tiles beneath and at this one, for the steps heights and tiles [default: 0/0/0, all]
     #[arg(long, value_name = "Z/X/Y")]
     pub(crate) subtree: Option<TileId>,
+    /// Only this share of the extract, for the steps ways and nodes; N is the same for all of them, at most 256 [default: 1/1,
+    /// all]
+    #[arg(long, value_name = "I/N")]
+    pub(crate) share: Option<Share>,
     #[command(flatten)]
     pub(crate) planned: PlannedArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct JobsArgs {
+    /// The plan, made with corniche plan -o
+    #[arg(value_name = "PLAN.json")]
+    pub(crate) plan: PathBuf,
+    /// How many processes will work at once
+    #[arg(long, value_name = "N")]
+    pub(crate) slots: NonZeroU32,
+    /// Stores with parts. Once the roads are in them, the parts of the step tiles are sized by the roads of each tile, too
+    #[arg(long, value_name = "STORE", num_args = 1..)]
+    pub(crate) store: Vec<PathBuf>,
+    /// Make no part smaller than this without need, in estimated seconds on one core [default: 20 times what the start of a part
+    /// takes]
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) least_work: Option<f64>,
 }
 
 #[derive(Debug, Args)]

@@ -3,6 +3,8 @@
 #![allow(dead_code, reason = "each test binary uses its own part")]
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
+pub(crate) mod made;
+
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,

@@ -3,5 +3,6 @@
 pub(crate) mod area;
 pub(crate) mod data_tiles;
 pub(crate) mod finest;
+pub(crate) mod near;
 pub(crate) mod pyramid;
 pub(crate) mod rasters;

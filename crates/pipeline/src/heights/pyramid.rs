@@ -10,6 +10,7 @@ use corniche_tileset::{Manifest, SampleCounts};
 use super::{
     area::{AreaReader, AreaRecord, area_level, audit_blocks_of},
     data_tiles::DataTiles,
+    near::is_near,
     rasters,
 };
 use crate::{BuildError, Observer, Stage, artifacts::Kind, workers};
@@ -172,7 +173,7 @@ impl Pyramid<'_> {
         Ok(all)
     }
 
-    /// Fails if heights of finest tiles of the subtree `scope` or rasters of any tile are missing.
+    /// Fails if heights of finest tiles of the subtree `scope` are missing, or rasters of tiles in it, above it or around these.
     pub(crate) fn check_complete(&self, scope: TileId) -> Result<(), BuildError> {
         let (store, data) = (self.store, self.data());
         let is_missing =
@@ -180,7 +181,8 @@ impl Pyramid<'_> {
         all_there("the heights", &data.missing(is_missing), "heights")?;
         let levels = 0..self.grid.frame.max_level();
         let all = levels.flat_map(|level| data.above(level).within(TileId::ROOT));
-        let missing: Vec<TileId> = all.filter(|&id| !store.has(Kind::Raster.of_tile(id))).collect();
+        let is_missing = |&id: &TileId| is_near(scope, id) && !store.has(Kind::Raster.of_tile(id));
+        let missing: Vec<TileId> = all.filter(is_missing).collect();
         all_there("the heights", &missing, "top")
     }
 

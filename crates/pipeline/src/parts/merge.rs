@@ -6,7 +6,7 @@ use corniche_geom::TileId;
 use corniche_store::LocalStore;
 use corniche_tileset::Manifest;
 
-use super::{planned::open, stores::Stores};
+use super::{needed_parts::is_merged, planned::open, stores::Stores};
 use crate::{
     BuildError, BuildPlan, BuildSummary, Existing, Observer, Resources,
     build::{destination::Destination, unfinished::Unfinished},
@@ -52,7 +52,7 @@ pub fn merge(
     destination.refuse_inputs(&plan_settings)?;
     let finished = Unfinished::create(&destination)?;
     observer.temporary(finished.path());
-    let store = stores.open(OWN_PART)?;
+    let store = stores.open(OWN_PART, &is_merged)?;
     let context = Context::new(&plan_settings, *resources, &opened, &store, observer);
     let wanted = sums::Target { finished: finished.path(), named: output };
     let merged = run(&context, &store, &wanted)

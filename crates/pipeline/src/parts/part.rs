@@ -3,15 +3,20 @@
 use std::path::PathBuf;
 
 use corniche_geom::TileId;
+use corniche_osm::Share;
 use corniche_store::LocalStore;
 
-use super::{planned::open, stores::Stores};
+use super::{
+    needed_parts::{is_needed, part_name},
+    planned::open,
+    stores::Stores,
+};
 use crate::{
     BuildError, BuildPlan, Observer, Resources,
     build::warn,
     context::Context,
     inputs::InputError,
-    steps::{hashes, heights, roads, tiles, top},
+    steps::{hashes, heights, roads, shares, tiles, top},
 };
 
 /// A step of a build that a process can do alone.
@@ -19,7 +24,11 @@ use crate::{
 pub enum Step {
     /// Hash the inputs.
     Hashes,
-    /// Read the extract and cut its roads by tile.
+    /// Find the road ways in a share of the extract.
+    Ways,
+    /// Find the nodes of road ways in a share of the extract.
+    Nodes,
+    /// Cut the extract's roads by tile, from the shares or from the extract itself.
     Roads,
     /// Read the heights of a subtree.
     Heights,
@@ -31,18 +40,27 @@ pub enum Step {
 
 impl Step {
     /// All steps, in an order in which they can be done.
-    pub const ALL: [Self; 5] = [Self::Hashes, Self::Roads, Self::Heights, Self::Top, Self::Tiles];
+    pub const ALL: [Self; 7] =
+        [Self::Hashes, Self::Ways, Self::Nodes, Self::Roads, Self::Heights, Self::Top, Self::Tiles];
 
     /// Its name on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Hashes => "hashes",
+            Self::Ways => "ways",
+            Self::Nodes => "nodes",
             Self::Roads => "roads",
             Self::Heights => "heights",
             Self::Top => "top",
             Self::Tiles => "tiles",
         }
+    }
+
+    /// Whether it can be done for one share of the extract alone.
+    #[must_use]
+    pub const fn has_shares(self) -> bool {
+        matches!(self, Self::Ways | Self::Nodes)
     }
 
     /// Whether it can be done for one subtree alone.
@@ -63,6 +81,8 @@ pub struct PartSettings {
     pub step: Step,
     /// For which tiles, of [steps with subtrees](Step::has_subtrees); `None`: all.
     pub subtree: Option<TileId>,
+    /// For which share of the extract, of [steps with shares](Step::has_shares); `None`: all of it.
+    pub share: Option<Share>,
     /// What the run may use.
     pub resources: Resources,
     /// Program and version. It must be the one that made the plan.
@@ -85,12 +105,17 @@ pub fn make_part(
     settings: &PartSettings,
     observer: &dyn Observer,
 ) -> Result<PartSummary, BuildError> {
-    let PartSettings { plan, stores, step, subtree, resources, generator } = settings;
+    let PartSettings { plan, stores, step, subtree, share, resources, generator } = settings;
     if let (Some(subtree), false) = (subtree, step.has_subtrees()) {
         let why = format!("the step {} is done for all tiles at once; leave it out", step.name());
         return Err(BuildError::Subtree { subtree: *subtree, why });
     }
+    if let (Some(share), false) = (share, step.has_shares()) {
+        let why = format!("the step {} has no shares; leave it out", step.name());
+        return Err(BuildError::Share { share: *share, why });
+    }
     let scope = subtree.unwrap_or(TileId::ROOT);
+    let share = share.unwrap_or(Share::WHOLE);
     let stores = Stores::look(stores, plan, true)?;
     let (plan_settings, opened) = open(plan, generator, *resources)?;
     let finest_level = opened.grid.frame.max_level();
@@ -98,14 +123,10 @@ pub fn make_part(
         let why = format!("the finest level is {finest_level}");
         return Err(BuildError::Subtree { subtree: scope, why });
     }
-    let name = if step.has_subtrees() {
-        format!("{}-{}-{}-{}", step.name(), scope.z(), scope.x(), scope.y())
-    } else {
-        step.name().to_owned()
-    };
-    let store = stores.open(&name)?;
+    let name = part_name(*step, scope, share);
+    let store = stores.open(&name, &|part| is_needed(*step, scope, share, part))?;
     let context = Context::new(&plan_settings, *resources, &opened, &store, observer);
-    let made = make(&context, *step, scope, &store);
+    let made = make(&context, *step, (scope, share), &store);
     // The plan says what the inputs were at the start. If they have changed since, nothing of the part may be used.
     match opened.inputs.check_unchanged() {
         Err(changed @ InputError::Changed { .. }) => {
@@ -122,11 +143,13 @@ pub fn make_part(
 fn make(
     context: &Context<'_>,
     step: Step,
-    scope: TileId,
+    (scope, share): (TileId, Share),
     store: &LocalStore,
 ) -> Result<(), BuildError> {
     match step {
         Step::Hashes => hashes::make(context),
+        Step::Ways => shares::make_ways(context, share, &store.scratch()?),
+        Step::Nodes => shares::make_nodes(context, share, &store.scratch()?),
         Step::Roads => roads::make(context, &store.scratch()?),
         Step::Heights | Step::Tiles if context.data().within(scope).is_empty() => Ok(()),
         Step::Heights => heights::make(context, scope),

@@ -58,13 +58,35 @@ impl<'a> Stores<'a> {
         })
     }
 
-    /// Opens them all, and a part of this name to write in the first.
-    pub(crate) fn open(&self, name: &str) -> Result<LocalStore, BuildError> {
+    /// Opens those of their parts whose names, without the digest, are `wanted`, and a part of this name to write in the first.
+    pub(crate) fn open(
+        &self,
+        name: &str,
+        wanted: &dyn Fn(&str) -> bool,
+    ) -> Result<LocalStore, BuildError> {
         let &[folder, ref others @ ..] = self.folders.as_slice() else {
             return Err(BuildError::Start { what: "no store is given".to_owned() });
         };
         let own = OwnPart { folder, name, plan: &self.plan, interval: SYNC_INTERVAL };
         let disk = Arc::clone(&self.disk);
-        Ok(LocalStore::open_parts(disk, others, &self.plan.hash, Some(own))?)
+        Ok(LocalStore::open_some_parts(disk, others, &self.plan.hash, Some(own), wanted)?)
+    }
+
+    /// Opens those that are there, to be read alone, as [`Self::open`] does; `None` if none is.
+    pub(crate) fn open_to_read(
+        &self,
+        wanted: &dyn Fn(&str) -> bool,
+    ) -> Result<Option<LocalStore>, BuildError> {
+        let mut there = Vec::new();
+        for &folder in &self.folders {
+            if LocalStore::stored_plan(Arc::clone(&self.disk), folder)?.is_some() {
+                there.push(folder);
+            }
+        }
+        if there.is_empty() {
+            return Ok(None);
+        }
+        let disk = Arc::clone(&self.disk);
+        Ok(Some(LocalStore::open_some_parts(disk, &there, &self.plan.hash, None, wanted)?))
     }
 }

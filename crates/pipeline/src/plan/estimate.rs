@@ -232,8 +232,7 @@ impl MemoryEstimate {
 impl Ground {
     /// `max_error_ratio` is the tolerance divided by the usual one, a quarter of the cell.
     fn recorded(nodes: u64, max_error_ratio: f64) -> Self {
-        let triangles_per_node =
-            (rates::TRIANGLES_PER_NODE / max_error_ratio).min(rates::MOST_TRIANGLES_PER_NODE);
+        let triangles_per_node = rates::triangles_per_node(max_error_ratio);
         let nodes = nodes as f64;
         let all_triangles = rates::ALL_PER_FINEST * triangles_per_node * nodes;
         Self {

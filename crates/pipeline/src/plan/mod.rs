@@ -12,7 +12,7 @@ mod differences;
 mod estimate;
 mod facts;
 mod opened;
-mod rates;
+pub(crate) mod rates;
 mod room;
 
 use std::path::Path;

@@ -29,6 +29,11 @@ pub(crate) const MOST_TRIANGLES_PER_NODE: f64 = 2.0;
 /// Triangles of all levels, divided by those of the finest.
 pub(crate) const ALL_PER_FINEST: f64 = 1.4;
 
+/// Triangles of the finest level for each node. `max_error_ratio` is the tolerance divided by the usual one, a quarter of the cell.
+pub(crate) fn triangles_per_node(max_error_ratio: f64) -> f64 {
+    (TRIANGLES_PER_NODE / max_error_ratio).min(MOST_TRIANGLES_PER_NODE)
+}
+
 /// Bytes of encoded ground for each triangle, with normals: the denser the triangles, the fewer. The curve goes through the
 /// measured points (0.16 triangles per node: 1.82), (0.28: 1.62), (0.54: 1.42); sparse ones take 1.9 to 2.0.
 pub(crate) fn payload_bytes_per_triangle(triangles_per_node: f64) -> f64 {
@@ -57,3 +62,30 @@ pub(crate) const SECONDS_PER_RECORDED_TRIANGLE: f64 = 1.0e-6;
 pub(crate) const STEPS_PER_MESH: f64 = 3.3;
 /// Share of the cores' time that the steps use.
 pub(crate) const CORES_BUSY: f64 = 0.9;
+
+/// What follows are times of single steps, for jobs: to start a process, and to open an input. A part is worth its start if its work takes
+/// many times as long.
+pub(crate) const PART_START_SECONDS: f64 = 0.1;
+pub(crate) const START_SECONDS_PER_INPUT: f64 = 0.5e-3;
+pub(crate) const PART_WORTH_STARTS: u64 = 20;
+/// Time to hash a byte.
+pub(crate) const SECONDS_PER_HASHED_BYTE: f64 = 1.0e-9;
+/// Times of the steps *ways*, *nodes* and *roads* for each byte of the extract.
+pub(crate) const WAY_SECONDS_PER_EXTRACT_BYTE: f64 = 0.06e-6;
+pub(crate) const NODE_SECONDS_PER_EXTRACT_BYTE: f64 = 0.06e-6;
+pub(crate) const ROAD_SECONDS_PER_EXTRACT_BYTE: f64 = 0.18e-6;
+/// Shares of an extract with less than this are not worth the start of their processes.
+pub(crate) const LEAST_SHARE_BYTES: f64 = 32.0e6;
+/// Part of [`SECONDS_PER_NODE`] in the step *heights*: to read a node and to keep it.
+pub(crate) const HEIGHT_SECONDS_PER_NODE: f64 = 0.06e-6;
+/// Time for each node of a coarse raster.
+pub(crate) const RASTER_SECONDS_PER_NODE: f64 = 0.01e-6;
+/// Time of a step for a tile without data: to find that there is none, and to keep that.
+pub(crate) const VOID_TILE_SECONDS: f64 = 1.0e-3;
+/// Time to triangulate a coarse tile.
+pub(crate) const COARSE_TIN_SECONDS: f64 = 0.05;
+/// Time of the step *tiles* for each byte of road pieces.
+pub(crate) const TILE_SECONDS_PER_PIECE_BYTE: f64 = 0.15e-6;
+/// Time of the merge for each tile and for each byte of road pieces.
+pub(crate) const MERGE_SECONDS_PER_TILE: f64 = 1.0e-3;
+pub(crate) const MERGE_SECONDS_PER_PIECE_BYTE: f64 = 2.0e-9;

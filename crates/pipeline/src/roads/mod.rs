@@ -2,6 +2,7 @@
 
 pub(crate) mod counts;
 mod defects;
+pub(crate) mod extract;
 pub(crate) mod lay;
 pub(crate) mod lengths;
 pub(crate) mod losses;

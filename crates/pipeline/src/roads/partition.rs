@@ -1,4 +1,4 @@
-//! Reads the extract once and keeps, for each tile of each level, the pieces of roads that it needs.
+//! Reads the extract once, or what was kept of it in shares, and keeps, for each tile of each level, the pieces of roads that it needs.
 //!
 //! ```text
 //! extract ─► roads ─► pieces by level and tile ─► sorted by tile and ordinal ─► one artifact for each tile
@@ -14,7 +14,7 @@ use std::{
 };
 
 use corniche_geom::{Frame, LatticeBounds, LatticePoint, ProjectError, Projection, TileId};
-use corniche_osm::{ExtractSummary, ReadOsmError};
+use corniche_osm::{ExtractSummary, ReadRequest, read_kept_roads, read_roads};
 use corniche_roads::{FunctionalRoadClass, Road};
 use corniche_store::{Artifacts, Scratch, SortRecord, Sorter};
 use corniche_tileset::pmtiles_order;
@@ -23,6 +23,7 @@ use rayon::prelude::*;
 pub(crate) use super::defects::replay_defects;
 use super::{
     defects::DefectsWriter,
+    extract::{kept_in, not_read},
     lengths::TrueLengths,
     pieces::{RoadPiece, TilePiecesWriter},
     split::{SplitRoad, Splitting},
@@ -37,6 +38,9 @@ use crate::{
 /// Roads and points of roads that are split at once.
 const BATCH_ROADS: usize = 1024;
 const BATCH_POINTS: usize = 1 << 16;
+
+/// What is said if the ways of some shares are there, but not ways and nodes of all.
+const SOME_SHARES: &str = "not all shares of the steps ways and nodes are in the stores, so the whole extract is read again";
 
 /// What the partition needs.
 pub(crate) struct RoadInput<'a> {
@@ -67,7 +71,7 @@ pub(crate) fn partition(
     observer.begin(Stage::Roads, None);
     let mut gathered = Gathered::new(input, store, scratch);
     let mut defects = DefectsWriter::new(store, observer);
-    let extract = read(input, scratch, &mut gathered, &mut defects, observer)?;
+    let extract = read(input, (store, scratch), &mut gathered, &mut defects, observer)?;
     gathered.split_batch();
     if let Some(error) = gathered.failed {
         return Err(error);
@@ -87,7 +91,7 @@ pub(crate) fn partition(
 /// Hands all roads of the extract to `gathered` and its defects to `defects`; returns what it held.
 fn read(
     input: &RoadInput<'_>,
-    scratch: &dyn Scratch,
+    (store, scratch): (&dyn Artifacts, &dyn Scratch),
     gathered: &mut Gathered<'_>,
     defects: &mut DefectsWriter<'_>,
     observer: &dyn Observer,
@@ -100,30 +104,31 @@ fn read(
             vec![None; positions_deg.len()]
         })
     };
-    let summary = corniche_osm::read_roads(
-        &corniche_osm::ReadRequest {
-            path: input.osm,
-            table: &input.settings.table,
-            place: &place,
-            pool: input.pool,
-            memory_bytes: input.memory_bytes,
-            scratch,
-            on_progress: Some(&|done, total| observer.reached(Stage::Roads, done, total)),
-        },
-        &mut |road| {
-            gathered.add(road);
-        },
-        &mut |defect| defects.push(Defect::from(defect)),
-        &|| observer.is_cancelled(),
-    );
+    let request = ReadRequest {
+        path: input.osm,
+        table: &input.settings.table,
+        place: &place,
+        pool: input.pool,
+        memory_bytes: input.memory_bytes,
+        scratch,
+        on_progress: Some(&|done, total| observer.reached(Stage::Roads, done, total)),
+    };
+    let mut sink = |road| gathered.add(road);
+    let mut on_defect = |defect| defects.push(Defect::from(defect));
+    let should_stop = || observer.is_cancelled();
+    let kept = kept_in(store);
+    let summary = if let Some(of) = kept.complete() {
+        read_kept_roads(&request, of, kept, &mut sink, &mut on_defect, &should_stop)
+    } else {
+        if kept.has_any() {
+            observer.warning(SOME_SHARES);
+        }
+        read_roads(&request, &mut sink, &mut on_defect, &should_stop)
+    };
     if observer.is_cancelled() {
         return Err(BuildError::Interrupted);
     }
-    let summary = summary.map_err(|error| match error {
-        // The disk is at fault, not the extract.
-        ReadOsmError::Scratch { source, .. } => BuildError::Storage(source),
-        error => BuildError::Osm(error),
-    })?;
+    let summary = summary.map_err(not_read)?;
     if let Some(error) = unprojected.into_inner().unwrap_or_else(PoisonError::into_inner) {
         return Err(BuildError::Project(error));
     }

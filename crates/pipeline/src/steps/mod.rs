@@ -1,8 +1,8 @@
 //! The steps of a build. Each makes what is not yet in the store, and may be done again, by any process, for any subtree.
 //!
 //! ```text
-//!  hashes   roads ────────────────┐
-//!  heights ─► top ─► tiles ───────┴─► merge
+//!  hashes   ways ─► nodes ─► roads ─┐      (build leaves out ways and nodes: roads reads the extract itself)
+//!  heights ─► top ─► tiles ─────────┴─► merge
 //! ```
 
 pub(crate) mod coarse_tiles;
@@ -12,6 +12,7 @@ pub(crate) mod manifest;
 pub(crate) mod merge;
 pub(crate) mod recorded_tiles;
 pub(crate) mod roads;
+pub(crate) mod shares;
 pub(crate) mod sums;
 pub(crate) mod tiles;
 pub(crate) mod tins;

@@ -1,6 +1,6 @@
 //! Step *roads*: the extract to pieces of roads by tile.
 
-use corniche_store::Scratch;
+use corniche_store::{Artifacts, Scratch};
 
 use crate::{
     BuildError,
@@ -22,20 +22,29 @@ pub(crate) fn totals(context: &Context<'_>) -> Result<Option<RoadTotals>, BuildE
 
 /// Fails if there is an extract and its roads were not partitioned.
 pub(crate) fn check_done(context: &Context<'_>) -> Result<(), BuildError> {
-    let store = context.store;
-    if context.settings.osm.is_none() || store.has(Kind::RoadTotals.item(0)) {
+    if context.settings.osm.is_none() || are_done(context.store) {
         return Ok(());
     }
     Err(BuildError::Missing { what: "the list of the extract's roads".to_owned(), step: "roads" })
 }
 
+/// Whether the roads of an extract are in a store.
+pub(crate) fn are_done(store: &dyn Artifacts) -> bool {
+    store.has(Kind::RoadTotals.item(0))
+}
+
+/// Threads for the reading of an extract.
+pub(crate) fn pool(context: &Context<'_>) -> Result<rayon::ThreadPool, BuildError> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(context.threads())
+        .build()
+        .map_err(|error| BuildError::Start { what: error.to_string() })
+}
+
 /// Reads the extract, if there is one and it was not read yet; fails if none of its roads lies on the elevation data.
 pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), BuildError> {
     let Some(osm) = &context.settings.osm else { return Ok(()) };
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(context.threads())
-        .build()
-        .map_err(|error| BuildError::Start { what: error.to_string() })?;
+    let pool = pool(context)?;
     let projection = context.source.projection(context.grid)?;
     let frame = *context.frame();
     let input = RoadInput {

@@ -72,6 +72,12 @@ pub(crate) fn digest_of_sealed(name: &str) -> Option<&str> {
     name.strip_suffix(SEALED)?.rsplit_once('.').map(|(_, digest)| digest)
 }
 
+/// The name of a sealed part, without its digest.
+pub(crate) fn part_of_sealed(path: &Path) -> Option<&str> {
+    let name = path.file_name()?.to_str()?.strip_suffix(SEALED)?;
+    name.rsplit_once('.').map(|(part, _)| part)
+}
+
 /// Which open part a journal belongs to.
 pub(crate) fn part_of_journal(name: &str) -> Option<&str> {
     name.strip_suffix(JOURNAL)?.rsplit_once('.').map(|(part, _)| part)

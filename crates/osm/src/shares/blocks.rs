@@ -1,0 +1,111 @@
+//! Records of a share in blocks of bytes, each of which is one artifact.
+//!
+//! ```text
+//!  ┌ block: record, record, … ┐┌ block ┐┌ block ┐ …      no record crosses a block's end
+//! ```
+
+use std::io;
+
+use super::kept::{Kept, key};
+use crate::{kept_error::KeptError, share::Share};
+
+/// A block ends with the record that reaches this size: large enough that a store on a server is asked seldom, small enough that blocks of
+/// all shares fit in memory. It decides the bytes of parts, so it must not depend on the memory that a process has.
+pub(crate) const BLOCK_BYTES: usize = 256 << 10;
+
+/// What blocks are made of.
+pub(crate) trait BlockRecord: Sized {
+    /// What a record's bytes depend on: something of the record before it in the block.
+    type Before: Default;
+
+    /// Appends the record's bytes.
+    fn write(&self, before: &mut Self::Before, bytes: &mut Vec<u8>);
+
+    /// Takes a record from the front of `bytes`; `None` where they hold none.
+    fn take(before: &mut Self::Before, bytes: &mut &[u8]) -> Option<Self>;
+}
+
+/// Writes blocks.
+pub(crate) struct BlockWriter<'a, T: BlockRecord> {
+    kept: Kept<'a>,
+    kind: u8,
+    share: Share,
+    blocks: u32,
+    bytes: Vec<u8>,
+    before: T::Before,
+}
+
+impl<'a, T: BlockRecord> BlockWriter<'a, T> {
+    pub(crate) fn new(kept: Kept<'a>, kind: u8, share: Share) -> Self {
+        let (bytes, before) = (Vec::new(), T::Before::default());
+        Self { kept, kind, share, blocks: 0, bytes, before }
+    }
+
+    pub(crate) fn push(&mut self, record: &T) -> Result<(), KeptError> {
+        record.write(&mut self.before, &mut self.bytes);
+        if self.bytes.len() < BLOCK_BYTES { Ok(()) } else { self.put() }
+    }
+
+    /// Ends the last block; returns how many there are.
+    pub(crate) fn finish(mut self) -> Result<u32, KeptError> {
+        if !self.bytes.is_empty() {
+            self.put()?;
+        }
+        Ok(self.blocks)
+    }
+
+    fn put(&mut self) -> Result<(), KeptError> {
+        self.kept.store.put(key(self.kind, self.share, self.blocks), &self.bytes)?;
+        self.blocks += 1;
+        self.bytes.clear();
+        self.before = T::Before::default();
+        Ok(())
+    }
+}
+
+/// Reads the records of a share, one block at a time. An error ends the reading.
+pub(crate) struct BlockReader<'a, T: BlockRecord> {
+    kept: Kept<'a>,
+    kind: u8,
+    share: Share,
+    blocks: std::ops::Range<u32>,
+    bytes: Vec<u8>,
+    at: usize,
+    before: T::Before,
+}
+
+impl<'a, T: BlockRecord> BlockReader<'a, T> {
+    /// Of so many blocks.
+    pub(crate) fn new(kept: Kept<'a>, kind: u8, share: Share, blocks: u32) -> Self {
+        let (bytes, before) = (Vec::new(), T::Before::default());
+        Self { kept, kind, share, blocks: 0..blocks, bytes, at: 0, before }
+    }
+
+    fn read(&mut self) -> Result<Option<T>, KeptError> {
+        let damaged = |share, what| KeptError::Damaged { share, what };
+        while self.at == self.bytes.len() {
+            let Some(block) = self.blocks.next() else { return Ok(None) };
+            let bytes = self.kept.store.get(key(self.kind, self.share, block))?;
+            self.bytes = bytes.ok_or_else(|| damaged(self.share, "a block of it is not there"))?;
+            (self.at, self.before) = (0, T::Before::default());
+        }
+        let mut rest = &self.bytes[self.at..];
+        let record = T::take(&mut self.before, &mut rest);
+        let record = record.ok_or_else(|| damaged(self.share, "a block of it makes no sense"))?;
+        self.at = self.bytes.len() - rest.len();
+        Ok(Some(record))
+    }
+}
+
+impl<T: BlockRecord> Iterator for BlockReader<'_, T> {
+    type Item = io::Result<T>;
+
+    fn next(&mut self) -> Option<io::Result<T>> {
+        let read = self.read();
+        if read.is_err() {
+            self.blocks = 0..0;
+            (self.bytes, self.at) = (Vec::new(), 0);
+        }
+        read.map_err(io::Error::from).transpose()
+    }
+}

@@ -1,0 +1,119 @@
+//! What is kept in blocks, and how: ways and places that they give as they are sorted anyway, places of nodes as differences.
+
+use corniche_store::SortRecord;
+
+use super::{blocks::BlockRecord, merged::HasId};
+use crate::{
+    Defect,
+    location::Location,
+    records::{Located, WayRecord},
+    wire::{push_varint, to_zigzag, varint, zigzag},
+};
+
+/// Where the blobs of a share say that a node lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct PlaceRecord {
+    pub(crate) node_id: i64,
+    /// The first that is on Earth; if none is, the last.
+    pub(crate) location: Location,
+    /// Whether they give several on Earth.
+    pub(crate) is_conflicting: bool,
+}
+
+impl BlockRecord for PlaceRecord {
+    /// Id and place.
+    type Before = (i64, Location);
+
+    /// ```text
+    ///  │ id − the one before │ longitude − the one before │ latitude − the one before │ 1 if conflicting │
+    /// ```
+    /// Three zigzag varints; the mark is the lowest bit of the last.
+    fn write(&self, before: &mut Self::Before, bytes: &mut Vec<u8>) {
+        let (id, [lon, lat]) = *before;
+        let difference = |own: i32, before: i32| to_zigzag(i64::from(own) - i64::from(before));
+        push_varint(bytes, to_zigzag(self.node_id.wrapping_sub(id)));
+        push_varint(bytes, difference(self.location[0], lon));
+        let lat = difference(self.location[1], lat);
+        push_varint(bytes, lat << 1 | u64::from(self.is_conflicting));
+        *before = (self.node_id, self.location);
+    }
+
+    fn take(before: &mut Self::Before, bytes: &mut &[u8]) -> Option<Self> {
+        let mut number = || varint(bytes).ok();
+        let (id, lon, lat) = (number()?, number()?, number()?);
+        let sum = |before: i32, difference: u64| {
+            i32::try_from(i64::from(before).checked_add(zigzag(difference))?).ok()
+        };
+        let own = Self {
+            node_id: before.0.wrapping_add(zigzag(id)),
+            location: [sum(before.1[0], lon)?, sum(before.1[1], lat >> 1)?],
+            is_conflicting: lat & 1 == 1,
+        };
+        *before = (own.node_id, own.location);
+        Some(own)
+    }
+}
+
+impl HasId for PlaceRecord {
+    fn id(&self) -> i64 {
+        self.node_id
+    }
+}
+
+impl BlockRecord for WayRecord {
+    type Before = ();
+
+    fn write(&self, (): &mut (), bytes: &mut Vec<u8>) {
+        self.encode(bytes);
+    }
+
+    fn take((): &mut (), bytes: &mut &[u8]) -> Option<Self> {
+        Self::decode(bytes)
+    }
+}
+
+impl HasId for WayRecord {
+    fn id(&self) -> i64 {
+        self.way_id
+    }
+}
+
+impl BlockRecord for Located {
+    type Before = ();
+
+    fn write(&self, (): &mut (), bytes: &mut Vec<u8>) {
+        self.encode(bytes);
+    }
+
+    fn take((): &mut (), bytes: &mut &[u8]) -> Option<Self> {
+        Self::decode(bytes)
+    }
+}
+
+impl HasId for Located {
+    fn id(&self) -> i64 {
+        self.node_id
+    }
+}
+
+impl BlockRecord for Defect {
+    type Before = ();
+
+    fn write(&self, (): &mut (), bytes: &mut Vec<u8>) {
+        // Writing to a list cannot fail, and every defect can be written.
+        let written =
+            bincode::serde::encode_into_std_write(self, bytes, bincode::config::standard());
+        debug_assert!(written.is_ok(), "{self:?}");
+    }
+
+    fn take((): &mut (), bytes: &mut &[u8]) -> Option<Self> {
+        let (defect, used) =
+            bincode::serde::decode_from_slice(bytes, bincode::config::standard()).ok()?;
+        *bytes = bytes.get(used..)?;
+        Some(defect)
+    }
+}
+
+#[cfg(test)]
+#[path = "kept_records_tests.rs"]
+mod tests;

@@ -1,0 +1,166 @@
+//! What a planned build is split into, for as many processes as work on it at once.
+//!
+//! ```text
+//!  rectangles of the files ─► nodes of each tile ─┐
+//!  bytes of road pieces ──────────────────────────┴─► costs of tiles ─► subtrees of nearly the same cost ─► jobs
+//! ```
+//!
+//! Estimates come from recorded rates alone: the same plan and stores give the same jobs on every machine.
+
+mod grounds;
+mod list;
+mod node_counts;
+mod tile_costs;
+
+use std::{num::NonZeroU32, path::PathBuf};
+
+use corniche_geom::TileId;
+use corniche_store::Artifacts as _;
+
+use grounds::Grounds;
+pub use list::Job;
+use list::{Costs, ExtractCosts, list, micros};
+use node_counts::nodes_by_tile;
+use tile_costs::TileCosts;
+
+use super::{needed_parts::has_roads, planned::open, stores::Stores};
+use crate::{
+    BuildError, BuildPlan, PlanSettings, Resources,
+    artifacts::{self, Kind},
+    heights::data_tiles::DataTiles,
+    inputs::InputKind,
+    memory_shares::MemoryShares,
+    plan::{Opened, rates},
+    steps::roads,
+    terrain::ground::GroundSource,
+};
+
+/// Shares of an extract for each slot: they are not all as much work.
+const SHARES_PER_SLOT: u64 = 2;
+/// More shares are not worth it: each share of nodes reads the ways of all, and the step *roads* waits for the last of them.
+const MOST_SHARES: u64 = 64;
+
+/// What to split, and for whom.
+#[derive(Debug, Clone)]
+pub struct JobSettings {
+    /// What is built.
+    pub plan: BuildPlan,
+    /// Stores with parts: where the roads are in them, it is known how many each tile has. Those that are not there yet hold nothing.
+    pub stores: Vec<PathBuf>,
+    /// How many processes work at once.
+    pub slots: NonZeroU32,
+    /// No part is made smaller than this without need, seconds on one core; `None`: many times what the start of a process takes.
+    pub least_seconds: Option<f64>,
+    /// What this process may use.
+    pub resources: Resources,
+    /// Program and version. It must be the one that made the plan.
+    pub generator: String,
+}
+
+/// The jobs of a plan, in an order in which one process could do them: those of a step with the most work first, the merge last.
+///
+/// # Errors
+/// When the inputs are not those of the plan, or a store cannot be read.
+pub fn jobs(settings: &JobSettings) -> Result<Vec<Job>, BuildError> {
+    let JobSettings { plan, stores, slots, least_seconds, resources, generator } = settings;
+    let (_, opened) = open(plan, generator, *resources)?;
+    let pieces = if stores.is_empty() { None } else { piece_bytes(stores, plan)? };
+    let costs = costs(&opened, slots.get(), pieces)?;
+    let least_us = least_seconds.map_or_else(|| costs.least_us(), micros);
+    Ok(list(&costs, slots.get(), least_us))
+}
+
+/// A plan and its jobs, as [`jobs`] lists them before anything is made.
+///
+/// # Errors
+/// When a file cannot be used, the files make no grid, or a setting does not fit them.
+pub fn plan_with_jobs(
+    settings: &PlanSettings,
+    resources: Resources,
+    slots: NonZeroU32,
+) -> Result<(BuildPlan, Vec<Job>), BuildError> {
+    MemoryShares::limit_raster_cache(resources)?;
+    let opened = Opened::new(settings)?;
+    let costs = costs(&opened, slots.get(), None)?;
+    let jobs = list(&costs, slots.get(), costs.least_us());
+    Ok((BuildPlan::of(settings, &opened)?, jobs))
+}
+
+/// How many bytes of road pieces each tile has; `None` where the roads are not in the stores yet.
+fn piece_bytes(
+    stores: &[PathBuf],
+    plan: &BuildPlan,
+) -> Result<Option<Vec<(TileId, u64)>>, BuildError> {
+    let Some(store) = Stores::look(stores, plan, true)?.open_to_read(&has_roads)? else {
+        return Ok(None);
+    };
+    if !roads::are_done(&store) {
+        return Ok(None);
+    }
+    let mut bytes = Vec::new();
+    for item in store.items(Kind::RoadPieces as u8) {
+        let key = Kind::RoadPieces.item(item);
+        bytes.push((artifacts::tile_of(key)?, store.length(key)?.unwrap_or_default()));
+    }
+    Ok(Some(bytes))
+}
+
+fn costs(
+    opened: &Opened,
+    slots: u32,
+    pieces: Option<Vec<(TileId, u64)>>,
+) -> Result<Costs, BuildError> {
+    let inputs = opened.inputs.planned()?;
+    let input_bytes = inputs.iter().map(|input| input.bytes).fold(0, u64::saturating_add);
+    let has_extract = inputs.iter().any(|input| input.kind == InputKind::Osm.name());
+    let extract_bytes = opened.extract_bytes()? as f64;
+    let Grounds { heights, mut tiles } = match &opened.source {
+        GroundSource::Dem(dem) => {
+            let rectangles = dem.file_nodes(&opened.grid)?;
+            let data = DataTiles::of(&opened.grid);
+            Grounds::measured(opened, &nodes_by_tile(&opened.grid.frame, &data, &rectangles))
+        }
+        GroundSource::Package(terrain) => Grounds::recorded(opened, terrain)?,
+    };
+    let tiles_count = tiles.len() as f64;
+    let pieces =
+        pieces.unwrap_or_else(|| spread(rates::PIECES_PER_EXTRACT_BYTE * extract_bytes, &tiles));
+    let piece_bytes: u64 = pieces.iter().map(|(_, bytes)| bytes).sum();
+    tiles.extend(
+        pieces
+            .into_iter()
+            .map(|(id, bytes)| (id, micros(bytes as f64 * rates::TILE_SECONDS_PER_PIECE_BYTE))),
+    );
+    let max_level = opened.grid.frame.max_level();
+    Ok(Costs {
+        hashes_us: micros(input_bytes as f64 * rates::SECONDS_PER_HASHED_BYTE),
+        extract: has_extract.then(|| extract_costs(extract_bytes, slots)),
+        heights: heights.map(|heights| TileCosts::new(max_level, heights)),
+        tiles: TileCosts::new(max_level, tiles),
+        merge_us: micros(
+            tiles_count * rates::MERGE_SECONDS_PER_TILE
+                + piece_bytes as f64 * rates::MERGE_SECONDS_PER_PIECE_BYTE,
+        ),
+        start_us: micros(
+            rates::PART_START_SECONDS + inputs.len() as f64 * rates::START_SECONDS_PER_INPUT,
+        ),
+    })
+}
+
+fn extract_costs(extract_bytes: f64, slots: u32) -> ExtractCosts {
+    let most = (extract_bytes / rates::LEAST_SHARE_BYTES) as u64;
+    let shares = most.min(u64::from(slots) * SHARES_PER_SLOT).clamp(1, MOST_SHARES);
+    let whole_us = |seconds_per_byte: f64| micros(extract_bytes * seconds_per_byte);
+    ExtractCosts {
+        shares: shares as u16,
+        ways_us: whole_us(rates::WAY_SECONDS_PER_EXTRACT_BYTE),
+        nodes_us: whole_us(rates::NODE_SECONDS_PER_EXTRACT_BYTE),
+        roads_us: whole_us(rates::ROAD_SECONDS_PER_EXTRACT_BYTE),
+    }
+}
+
+/// Bytes of road pieces before anybody knows where the roads are: as if they lay where the ground costs most.
+fn spread(bytes: f64, tiles: &[(TileId, u64)]) -> Vec<(TileId, u64)> {
+    let all_us = tiles.iter().map(|(_, cost_us)| cost_us).sum::<u64>().max(1) as f64;
+    tiles.iter().map(|&(id, cost_us)| (id, (bytes * cost_us as f64 / all_us) as u64)).collect()
+}

@@ -1,0 +1,87 @@
+//! What the ground of each tile costs.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use corniche_geom::{TILE_CELLS, TileId};
+
+use super::list::micros;
+use crate::{
+    BuildError,
+    heights::data_tiles::DataTiles,
+    plan::{Opened, rates},
+    terrain::recorded::RecordedTerrain,
+};
+
+/// Costs of tiles on all levels, microseconds of one core.
+pub(crate) struct Grounds {
+    /// Of the step *heights*; `None` where the terrain comes from a package.
+    pub(crate) heights: Option<Vec<(TileId, u64)>>,
+    /// Of the step *tiles*, without roads.
+    pub(crate) tiles: Vec<(TileId, u64)>,
+}
+
+impl Grounds {
+    /// Of elevation files, from the nodes of each finest tile.
+    pub(crate) fn measured(opened: &Opened, nodes: &[(TileId, u64)]) -> Self {
+        let usual_m = opened.grid.frame.cell().shorter_m() / 4.0;
+        let triangles_per_node = rates::triangles_per_node(opened.max_error_m / usual_m);
+        let tile_seconds_per_node = rates::SECONDS_PER_NODE - rates::HEIGHT_SECONDS_PER_NODE
+            + triangles_per_node * rates::SECONDS_PER_TRIANGLE;
+        let finest = |seconds_per_node: f64| {
+            nodes.iter().map(move |&(id, nodes)| {
+                (id, micros(rates::VOID_TILE_SECONDS + nodes as f64 * seconds_per_node))
+            })
+        };
+        // A coarse tile has as many nodes as a finest one; where only a part of it has data, it has less.
+        let tile_nodes = (TILE_CELLS * TILE_CELLS) as f64;
+        let coarse = |seconds_per_node: f64| {
+            let beneath = nodes_above(nodes);
+            beneath.into_iter().map(move |(id, nodes)| {
+                let nodes = nodes.min(tile_nodes);
+                (id, micros(rates::VOID_TILE_SECONDS + nodes * seconds_per_node))
+            })
+        };
+        let heights =
+            finest(rates::HEIGHT_SECONDS_PER_NODE).chain(coarse(rates::RASTER_SECONDS_PER_NODE));
+        Self {
+            heights: Some(heights.collect()),
+            tiles: finest(tile_seconds_per_node).chain(coarse(tile_seconds_per_node)).collect(),
+        }
+    }
+
+    /// Of the terrain of a package: of each tile with ground the same, because only its levels say how much they hold.
+    pub(crate) fn recorded(opened: &Opened, terrain: &RecordedTerrain) -> Result<Self, BuildError> {
+        let levels = &terrain.manifest().levels;
+        let with_ground: BTreeSet<TileId> = terrain.package().tile_ids()?.into_iter().collect();
+        let ground_us = |id: &TileId| {
+            let level = levels.get(usize::from(id.z()))?;
+            let triangles = level.triangles as f64 / level.tiles.max(1) as f64;
+            Some(micros(triangles * rates::SECONDS_PER_RECORDED_TRIANGLE))
+        };
+        let void_us = micros(rates::VOID_TILE_SECONDS);
+        let voids = DataTiles::of(&opened.grid).within(TileId::ROOT);
+        let voids = voids.into_iter().map(|id| (id, void_us));
+        let grounds = with_ground.iter().map(|id| (*id, ground_us(id).unwrap_or_default()));
+        Ok(Self { heights: None, tiles: voids.chain(grounds).collect() })
+    }
+}
+
+/// For each tile above some finest ones the nodes of its own level that lie in the data.
+fn nodes_above(finest: &[(TileId, u64)]) -> BTreeMap<TileId, f64> {
+    let mut all = BTreeMap::new();
+    let mut level: BTreeMap<TileId, f64> =
+        finest.iter().map(|&(id, nodes)| (id, nodes as f64)).collect();
+    loop {
+        let mut above: BTreeMap<TileId, f64> = BTreeMap::new();
+        for (id, nodes) in level {
+            if let Some(up) = id.z().checked_sub(1) {
+                *above.entry(id.ancestor(up)).or_default() += nodes / 4.0;
+            }
+        }
+        if above.is_empty() {
+            return all;
+        }
+        all.extend(&above);
+        level = above;
+    }
+}

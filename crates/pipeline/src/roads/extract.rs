@@ -1,0 +1,29 @@
+//! What shares of an extract keep in the store, and why an extract could not be read.
+
+use corniche_osm::{Kept, KeptError, KeptKinds, ReadOsmError};
+use corniche_store::Artifacts;
+
+use crate::{BuildError, artifacts::Kind};
+
+/// Where shares of the extract are kept.
+pub(crate) fn kept_in(store: &dyn Artifacts) -> Kept<'_> {
+    let kinds = KeptKinds {
+        ways: Kind::Ways as u8,
+        located: Kind::Located as u8,
+        defects: Kind::WayDefects as u8,
+        ways_records: Kind::WaysShare as u8,
+        places: Kind::Places as u8,
+        nodes_records: Kind::NodesShare as u8,
+    };
+    Kept { store, kinds }
+}
+
+/// The error of a build whose extract could not be read.
+pub(crate) fn not_read(error: ReadOsmError) -> BuildError {
+    match error {
+        // The disk is at fault, not the extract.
+        ReadOsmError::Scratch { source, .. } => BuildError::Storage(source),
+        ReadOsmError::Kept { source: KeptError::Store(error), .. } => BuildError::Store(error),
+        error => BuildError::Osm(error),
+    }
+}

@@ -1,0 +1,70 @@
+//! Steps *ways* and *nodes*: the two passes over a share of the extract. They may be left out: then the step *roads* makes both.
+
+use corniche_osm::{ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways};
+use corniche_store::Scratch;
+
+use super::roads::{are_done, pool};
+use crate::{
+    BuildError, Stage,
+    context::Context,
+    roads::extract::{kept_in, not_read},
+};
+
+/// Keeps the road ways of a share that are not there yet; none without an extract, or if the roads are there.
+pub(crate) fn make_ways(
+    context: &Context<'_>,
+    share: Share,
+    scratch: &dyn Scratch,
+) -> Result<(), BuildError> {
+    read(context, scratch, &|request| {
+        keep_ways(request, share, kept_in(context.store), &|| context.observer.is_cancelled())
+    })
+}
+
+/// Keeps the places of nodes of a share that are not there yet; none without an extract, or if the roads are there. The ways of all shares
+/// must be there.
+pub(crate) fn make_nodes(
+    context: &Context<'_>,
+    share: Share,
+    scratch: &dyn Scratch,
+) -> Result<(), BuildError> {
+    let kept = kept_in(context.store);
+    read(context, scratch, &|request| {
+        keep_nodes(request, share, kept, &|| context.observer.is_cancelled())
+    })
+    .map_err(|error| match kept.missing_ways(share.of()) {
+        Some(missing) => {
+            BuildError::Missing { what: format!("share {missing} of the ways"), step: "ways" }
+        }
+        None => error,
+    })
+}
+
+fn read(
+    context: &Context<'_>,
+    scratch: &dyn Scratch,
+    step: &dyn Fn(&ReadRequest<'_>) -> Result<(), ReadOsmError>,
+) -> Result<(), BuildError> {
+    let Some(osm) = &context.settings.osm else { return Ok(()) };
+    if are_done(context.store) {
+        return Ok(());
+    }
+    let observer = context.observer;
+    observer.begin(Stage::Roads, None);
+    let read = step(&ReadRequest {
+        path: osm,
+        table: &context.settings.roads.table,
+        // Places on the lattice are the business of the step that makes roads.
+        place: &|positions_deg| vec![None; positions_deg.len()],
+        pool: &pool(context)?,
+        memory_bytes: context.memory().sorting,
+        scratch,
+        on_progress: Some(&|done, total| observer.reached(Stage::Roads, done, total)),
+    });
+    if observer.is_cancelled() {
+        return Err(BuildError::Interrupted);
+    }
+    read.map_err(not_read)?;
+    observer.end(Stage::Roads);
+    Ok(())
+}
