@@ -17,6 +17,7 @@ mod interrupt;
 mod merge;
 mod open_files;
 mod output;
+mod parent;
 mod part;
 mod plan;
 mod presets;
@@ -50,6 +51,7 @@ fn main() -> process::ExitCode {
     match run(arguments) {
         Ok(code) => code.into(),
         Err(failure) => {
+            let failure = interrupt::explain(failure);
             if !failure.is_closed_pipe() {
                 failure.tell();
             }
