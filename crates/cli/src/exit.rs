@@ -15,14 +15,21 @@ pub(crate) enum ExitCode {
     Interrupted,
 }
 
+impl ExitCode {
+    /// What the system is told.
+    pub(crate) const fn number(self) -> u8 {
+        match self {
+            Self::Done => 0,
+            Self::Failed => 1,
+            Self::Unusable => 2,
+            Self::Exists => 3,
+            Self::Interrupted => 4,
+        }
+    }
+}
+
 impl From<ExitCode> for process::ExitCode {
     fn from(code: ExitCode) -> Self {
-        Self::from(match code {
-            ExitCode::Done => 0,
-            ExitCode::Failed => 1,
-            ExitCode::Unusable => 2,
-            ExitCode::Exists => 3,
-            ExitCode::Interrupted => 4,
-        })
+        Self::from(code.number())
     }
 }

@@ -1,4 +1,7 @@
-use std::{fmt, io};
+use std::{
+    fmt,
+    io::{self, Write as _},
+};
 
 use corniche_pipeline::{BuildError, VerifyError};
 use corniche_tileset::OpenError;
@@ -33,9 +36,9 @@ impl Failure {
         Self::new(ExitCode::Interrupted, anyhow::anyhow!("interrupted"))
     }
 
-    /// Prints it on standard error.
+    /// Prints it on standard error. If nobody reads that any more, the exit code alone must tell.
     pub(crate) fn tell(&self) {
-        eprintln!("corniche: {self}");
+        let _ = writeln!(io::stderr(), "corniche: {self}");
     }
 
     pub(crate) fn code(&self) -> ExitCode {

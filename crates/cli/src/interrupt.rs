@@ -1,9 +1,10 @@
-//! Ctrl-C and other signals that ask a program to end. The run stops as soon as it asks, and cleans up. If it does not ask,
-//! because it waits in a read that never returns, or if a second signal comes, the program cleans up and ends at once.
+//! Ctrl-C and other signals that ask a program to end, and the end of the process that started it. The run stops as soon as it
+//! asks, and cleans up. If it does not ask, because it waits in a read that never returns, or if a second signal comes, the
+//! program cleans up and ends at once.
 //!
 //! ```text
-//!   first signal ─► noted ─┬─ asked for within half a second: the run ends itself, in ten seconds at most
-//!                          └─ not asked for: the program removes temporary files and exits
+//!   first signal, or parent gone ─► noted ─┬─ asked for within half a second: the run ends itself, in ten seconds at most
+//!                                          └─ not asked for: the program removes temporary files and exits
 //!   second signal ─► the program removes temporary files and exits
 //! ```
 
@@ -11,7 +12,7 @@ use std::{
     fs,
     path::{Path, PathBuf},
     sync::{
-        Mutex, PoisonError,
+        Mutex, OnceLock, PoisonError,
         atomic::{AtomicBool, Ordering},
         mpsc,
     },
@@ -19,10 +20,21 @@ use std::{
     time::Duration,
 };
 
-use crate::failure::Failure;
+use crate::{exit::ExitCode, failure::Failure};
 
-/// A signal came.
+/// What asks the program to end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Cause {
+    /// A signal.
+    Signal,
+    /// The process that started this one is gone.
+    ParentGone,
+}
+
+/// The program was asked to end.
 static NOTED: AtomicBool = AtomicBool::new(false);
+/// By what; set before `NOTED`.
+static CAUSE: OnceLock<Cause> = OnceLock::new();
 /// The run knows of it.
 static SEEN: AtomicBool = AtomicBool::new(false);
 /// What is removed when the program ends early: temporary files and folders beside targets.
@@ -38,23 +50,50 @@ const STOPS_WITHIN: Duration = Duration::from_secs(10);
 
 /// From now on a signal is noted instead of ending the program at once.
 pub(crate) fn watch() -> Result<(), Failure> {
-    ctrlc::set_handler(|| {
-        if NOTED.swap(true, Ordering::SeqCst) {
-            end();
-        }
-        thread::spawn(|| {
-            thread::sleep(ASKS_WITHIN);
-            if SEEN.load(Ordering::SeqCst) {
-                thread::sleep(STOPS_WITHIN);
-            }
-            end();
-        });
-    })
-    .map_err(|error| Failure::new(crate::exit::ExitCode::Failed, error))?;
+    ctrlc::set_handler(|| note(Cause::Signal))
+        .map_err(|error| Failure::new(ExitCode::Failed, error))?;
     spare_from_file_limits()
 }
 
-/// Whether a signal came.
+/// Notes that the program is to end, and sees to it that it does.
+pub(crate) fn note(cause: Cause) {
+    // The first cause is the one that is told.
+    let _ = CAUSE.set(cause);
+    if NOTED.swap(true, Ordering::SeqCst) {
+        if cause == Cause::Signal {
+            end();
+        }
+        return;
+    }
+    thread::spawn(|| {
+        thread::sleep(ASKS_WITHIN);
+        if SEEN.load(Ordering::SeqCst) {
+            thread::sleep(STOPS_WITHIN);
+        }
+        end();
+    });
+}
+
+/// A run that was interrupted failed for the reason that was noted; other failures stay what they are.
+pub(crate) fn explain(failure: Failure) -> Failure {
+    if failure.code() == ExitCode::Interrupted { reason() } else { failure }
+}
+
+/// Why the program ends early.
+fn reason() -> Failure {
+    match CAUSE.get() {
+        Some(Cause::ParentGone) => Failure::new(
+            ExitCode::Failed,
+            anyhow::anyhow!(
+                "standard input has ended, so the process that started this one is gone (--die-with-parent); what was done of \
+                 a part is kept, and the same command goes on from there"
+            ),
+        ),
+        Some(Cause::Signal) | None => Failure::interrupted(),
+    }
+}
+
+/// Whether the program was asked to end.
 pub(crate) fn is_noted() -> bool {
     let is_noted = NOTED.load(Ordering::SeqCst);
     if is_noted {
@@ -84,6 +123,7 @@ fn end() -> ! {
     }
     // A message can wait for ever when the reader of a full pipe has stopped, so it gets a limited time.
     let (said, waits) = mpsc::channel();
+    let code = i32::from(reason().code().number());
     thread::spawn(move || {
         let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner).clone();
         if let Some(kept) = kept.filter(|kept| kept.exists()) {
@@ -92,15 +132,15 @@ fn end() -> ! {
                 kept.display()
             );
         }
-        Failure::interrupted().tell();
+        reason().tell();
         said.send(())
     });
     let _ = waits.recv_timeout(ASKS_WITHIN);
     // A normal exit would wait for locks of other threads.
     #[cfg(unix)]
-    signal_hook::low_level::exit(4);
+    signal_hook::low_level::exit(code);
     #[cfg(not(unix))]
-    std::process::exit(4);
+    std::process::exit(code);
 }
 
 /// Makes a limit on the size of files (`ulimit -f`) look like a full disk: writing fails with an error, instead of a signal
@@ -112,7 +152,7 @@ fn spare_from_file_limits() -> Result<(), Failure> {
         // The handler does nothing: it only replaces the default action, which is to end the program.
         let ignored = Arc::new(AtomicBool::new(false));
         signal_hook::flag::register(signal_hook::consts::SIGXFSZ, ignored)
-            .map_err(|error| Failure::new(crate::exit::ExitCode::Failed, error))?;
+            .map_err(|error| Failure::new(ExitCode::Failed, error))?;
     }
     Ok(())
 }

@@ -19,6 +19,7 @@ mod jobs;
 mod merge;
 mod open_files;
 mod output;
+mod parent;
 mod part;
 mod plan;
 mod presets;
@@ -52,6 +53,7 @@ fn main() -> process::ExitCode {
     match run(arguments) {
         Ok(code) => code.into(),
         Err(failure) => {
+            let failure = interrupt::explain(failure);
             if !failure.is_closed_pipe() {
                 failure.tell();
             }

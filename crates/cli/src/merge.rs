@@ -5,12 +5,15 @@ use std::path::Path;
 use corniche_pipeline::{Existing, MergeSettings};
 
 use crate::{
-    args::MergeArgs, build, defects::Watch, exit::ExitCode, failure::Failure, output,
+    args::MergeArgs, build, defects::Watch, exit::ExitCode, failure::Failure, output, parent,
     part::read_plan, settings,
 };
 
 pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
     let planned = &args.planned;
+    if planned.die_with_parent {
+        parent::watch()?;
+    }
     output::writable(&args.output)?;
     let plan = read_plan(&planned.plan)?;
     let mut others: Vec<&Path> = plan.inputs.iter().map(|input| Path::new(&input.path)).collect();

@@ -8,10 +8,15 @@ use std::{
 
 use corniche_pipeline::{BuildPlan, PartSettings};
 
-use crate::{args::PartArgs, exit::ExitCode, failure::Failure, progress::Progress, settings};
+use crate::{
+    args::PartArgs, exit::ExitCode, failure::Failure, parent, progress::Progress, settings,
+};
 
 pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
     let planned = &args.planned;
+    if planned.die_with_parent {
+        parent::watch()?;
+    }
     let part = PartSettings {
         plan: read_plan(&planned.plan)?,
         stores: planned.store.clone(),

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# A build on Kubernetes without any other engine: one Indexed Job for each round of parts.
+#
+#   SLOTS=16 VOLUME=/mnt/work examples/clusters/kubernetes.sh --dem /work/dem.tif --osm /work/roads.osm.pbf
+#
+#   SLOTS     pods at once
+#   VOLUME    where this machine sees the volume that pods mount at /work (claim corniche-work, ReadWriteMany): plan and lists are written there
+#   STORE     the store, as pods see it [default: /work/store], or s3://BUCKET/PREFIX
+#   PACKAGE   the package, as pods see it [default: /work/out.pmtiles]
+#   MEMORY    memory of each process [default: 1792M, for pods of 2Gi]
+#
+# All other options are those of `corniche plan`, with paths as pods see them: run this in a pod with the same volume, or see to it that this machine
+# sees it at the same path. Change image, volume and resources in kubernetes-round.yaml. The same command goes on after anything was stopped.
+# Needs corniche, jq, sed and kubectl.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+# shellcheck source=examples/clusters/rounds.sh
+. "$here/rounds.sh"
+: "${SLOTS:?}" "${VOLUME:?}"
+store=${STORE:-/work/store} package=${PACKAGE:-/work/out.pmtiles}
+
+corniche plan "$@" -o "$VOLUME/plan.json" -O
+corniche jobs "$VOLUME/plan.json" --slots "$SLOTS" >"$VOLUME/parts"
+options=(--threads 1 --memory "${MEMORY:-1792M}" --quiet --store "$store")
+number=0
+while next_round "$VOLUME/parts" "$VOLUME/round.json"; do
+    number=$((number + 1))
+    commands "$VOLUME/round.json" /work/plan.json "$package" "${options[@]}" >"$VOLUME/round-$number"
+    count=$(wc -l <"$VOLUME/round-$number")
+    kubectl delete job "corniche-round-$number" --ignore-not-found
+    sed -e "s|name: corniche-round|name: corniche-round-$number|" -e "s|value: /work/round|value: /work/round-$number|" \
+        -e "s|completions: .*|completions: $count|" -e "s|parallelism: .*|parallelism: $SLOTS|" -e "s|backoffLimit: .*|backoffLimit: $((3 * count))|" \
+        "$here/kubernetes-round.yaml" | kubectl apply -f -
+    while true; do
+        state=$(kubectl get job "corniche-round-$number" -o 'jsonpath={.status.conditions[?(@.status=="True")].type}')
+        case " $state " in
+        *" Complete "*) break ;;
+        *" Failed "*) echo "round $number failed; kubectl logs job/corniche-round-$number tells why" >&2 && exit 1 ;;
+        esac
+        sleep 10
+    done
+    end_round "$VOLUME/round.json"
+done

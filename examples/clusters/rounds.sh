@@ -1,0 +1,29 @@
+# Sourced by the other scripts: which parts of a build can be made next.
+# shellcheck shell=bash
+#
+# `corniche jobs` prints one part per line. `after` names the steps of which all parts must be made before. A round is all parts that can be made
+# once the steps in $done are: first hashes, heights and the extract's shares, then top, and so on; the package is the last one.
+
+done_steps='[]'
+
+# next_round FILE ROUND: writes the parts of the next round, largest first; false if there are none. FILE has what `corniche jobs` printed.
+next_round() {
+    jq -c --slurp --argjson done "$done_steps" '
+        map(select((.step as $step | $done | index($step) | not) and (.after - $done) == []))
+        | sort_by(-.work) | .[]' "$1" >"$2"
+    [ -s "$2" ]
+}
+
+# end_round ROUND: its steps are made.
+end_round() {
+    done_steps=$(jq -c --slurp --argjson done "$done_steps" '$done + map(.step) | unique' "$1")
+}
+
+# commands ROUND PLAN PACKAGE OPTION…: the command line of each part of a round; options are those of both `corniche part` and `corniche merge`.
+commands() {
+    local round=$1 plan=$2 package=$3
+    shift 3
+    jq -r --arg plan "$plan" --arg package "$package" --arg options "$(printf '%q ' "$@")" '
+        if .step == "merge" then "corniche merge \($plan | @sh) \($options) \(.args | @sh) -o \($package | @sh)"
+        else "corniche part \($plan | @sh) \($options) \(.args | @sh)" end' "$round"
+}

@@ -1,0 +1,170 @@
+"""``corniche-dask cost``: a table in Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ..errors import UsageError
+from ..progress import duration
+from ..summary import bytes_text
+from .model import MEASURES, STEPS, Model, Shape, check, fit_model, forecast, shape_of
+from .runs import Run, Size, read_runs
+
+#: Numbers of workers in the tables.
+WORKERS = (1, 4, 16, 64, 256, 1024, 4096)
+#: Areas of countries divided by those of a cell; bytes of extracts are of the order of those that Geofabrik offers in 2025.
+TARGETS = ("Utah at 5 m,11.0e9,0.15e9", "Switzerland at 1 m,41.3e9,0.5e9")
+
+
+def add_command(commands: Any) -> None:
+    """Adds the command to a parser's commands."""
+    parser = commands.add_parser(
+        "cost",
+        allow_abbrev=False,
+        help="tell what larger builds would cost, from reports of measured ones",
+        description="Fits the cost of each step to measured builds, checks it against each of them, and extrapolates. Prints Markdown.",
+    )
+    parser.add_argument("runs", metavar="REPORT.json", nargs="+", help="what corniche-dask build --report wrote; at least three sizes")
+    parser.add_argument(
+        "--target",
+        metavar="NAME,NODES,EXTRACT[,DEM]",
+        action="append",
+        help=f"a build to extrapolate to: nodes, bytes of the extract, bytes of the DEM [default: as many for a node as measured]; {TARGETS}",
+    )
+    parser.add_argument("--storage", metavar="BYTES", type=float, default=1e9, help="what the storage moves in a second, all together [default: 1e9]")
+    parser.add_argument("--price", metavar="P", type=float, help="price of a core for an hour, in any currency; adds a column")
+
+
+def run(reports: Sequence[str], targets: Sequence[str] | None, storage: float, price: float | None) -> str:
+    """The Markdown."""
+    if storage <= 0:
+        raise UsageError("--storage must be above 0")
+    runs = read_runs(reports)
+    model = fit_model(runs)
+    sections = [_measured(runs), _factors(model), _checks(runs)]
+    for text in targets or TARGETS:
+        name, size = _target(text, runs[-1])
+        sections.append(_forecasts(name, size, model, storage, price))
+    return "\n\n".join(sections)
+
+
+def _target(text: str, largest: Run) -> tuple[str, Size]:
+    name, *numbers = text.split(",")
+    try:
+        nodes, extract, *dem = (float(number) for number in numbers)
+    except ValueError as error:
+        raise UsageError(f"--target {text!r}: it is NAME,NODES,EXTRACT[,DEM]") from error
+    if not nodes > 0 or extract < 0 or len(dem) > 1:
+        raise UsageError(f"--target {text!r}: it is NAME,NODES,EXTRACT[,DEM]")
+    return name, Size(nodes, extract, dem[0] if dem else largest.size.dem_bytes / largest.size.nodes * nodes)
+
+
+def _markdown(heading: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [heading, ["---"] + ["---:"] * (len(heading) - 1), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def _measured(runs: Sequence[Run]) -> str:
+    rows = []
+    for measured in runs:
+        shape = shape_of(measured)
+        moved = sum(part.read_bytes + part.written_bytes for part in measured.parts)
+        rows.append(
+            [
+                measured.name,
+                f"{measured.size.nodes / 1e6:.1f} M",
+                bytes_text(measured.size.extract_bytes),
+                f"{shape.heights} + {shape.tiles}",
+                f"{sum(part.cpu_seconds for part in measured.parts):.1f} s",
+                bytes_text(moved),
+                bytes_text(sum(part.stored_bytes for part in measured.parts)),
+                bytes_text(measured.package_bytes),
+            ]
+        )
+    heading = ["measured", "nodes", "extract", "parts (heights + tiles)", "processors", "read and written", "stored", "package"]
+    return _markdown(heading, rows)
+
+
+#: What factors are shown for.
+_UNITS = {"node": ("million nodes", 1e6), "extract byte": ("MB of extract", 1e6), "input byte": ("GB of input", 1e9), "part": ("part", 1.0)}
+
+
+def _factors(model: Model) -> str:
+    rows = []
+    for step in STEPS:
+        if not model.has(step):
+            continue
+        for term in STEPS[step]:
+            unit, scale = _UNITS.get(term, (term, 1.0))
+            factors = [model.factors[measure][step][term] * scale for measure in MEASURES]
+            if any(factors):
+                rows.append([f"{step}, for a {unit}", f"{factors[0]:.4g}", *(bytes_text(factor) for factor in factors[1:])])
+    rows.append(["package, for a million nodes", "", "", "", bytes_text(model.package[0] * 1e6)])
+    rows.append(["package, for a MB of extract", "", "", "", bytes_text(model.package[1] * 1e6)])
+    return _markdown(["fitted", "seconds on a core", "read", "written", "stored"], rows)
+
+
+def _checks(runs: Sequence[Run]) -> str:
+    if len(runs) < 2:
+        return "Not checked: that takes at least two builds."
+    rows = []
+    for seconds, stored in zip(check(runs, "seconds"), check(runs, "stored"), strict=True):
+        rows.append(
+            [
+                seconds.run.name,
+                f"{seconds.measured:.1f} s",
+                f"{seconds.predicted:.1f} s",
+                _difference(seconds.measured, seconds.predicted),
+                bytes_text(stored.measured),
+                bytes_text(stored.predicted),
+                _difference(stored.measured, stored.predicted),
+            ]
+        )
+    heading = ["from the other builds alone", "core seconds measured", "predicted", "off by", "stored, measured", "predicted", "off by"]
+    return _markdown(heading, rows)
+
+
+def _difference(measured: float, predicted: float) -> str:
+    return f"{100 * (predicted / measured - 1):+.1f} %" if measured > 0 else ""
+
+
+def _forecasts(name: str, size: Size, model: Model, storage: float, price: float | None) -> str:
+    one = forecast(model, size, 1, storage)
+    moved = model.total("read", size, one.shape) + model.total("written", size, one.shape)
+    text = (
+        f"**{name}**: {size.nodes / 1e9:.1f} billion nodes, {bytes_text(size.extract_bytes)} of extract, {bytes_text(size.dem_bytes)} of DEM; "
+        f"{one.core_seconds / 3600:.0f} core-hours, {bytes_text(moved)} read and written, {bytes_text(model.total('stored', size, one.shape))} "
+        f"stored, a package of {bytes_text(model.package_bytes(size))}. Storage that moves {bytes_text(storage)}/s."
+    )
+    rows = []
+    for workers in WORKERS:
+        told = forecast(model, size, workers, storage)
+        row = [
+            f"{workers}",
+            f"{told.shape.parts}",
+            duration(told.seconds),
+            f"{workers * told.seconds / 3600:.0f}",
+            f"{100 * told.core_seconds / (workers * told.seconds):.0f} %",
+            duration(told.serial_seconds),
+            f"{bytes_text(told.bytes_per_second)}/s",
+            told.limit,
+        ]
+        rows.append(row + ([f"{workers * told.seconds / 3600 * price:.2f}"] if price is not None else []))
+    heading = ["workers of one core", "parts", "time", "core-hours held", "busy", "one worker alone", "tiles move", "limit"]
+    return text + "\n\n" + _markdown(heading + (["price"] if price is not None else []), rows) + "\n\n" + _limits(size, model, storage)
+
+
+def _limits(size: Size, model: Model, storage: float) -> str:
+    """From how many workers on something else than their number decides."""
+    shape = Shape(64, 64, 64)
+    parallel = sum(model.of_step("seconds", step, size, shape) for step in ("heights", "tiles", "ways", "nodes"))
+    alone = {step: model.of_step("seconds", step, size, shape) for step in ("roads", "top", "merge") if model.has(step)}
+    tiles = model.of_step("seconds", "tiles", size, shape)
+    moved = model.of_step("read", "tiles", size, shape) + model.of_step("written", "tiles", size, shape)
+    told = [f"with {shape.parts} parts, {step} takes {duration(seconds)} on one worker" for step, seconds in alone.items()]
+    if sum(alone.values()) > 0:
+        told.append(f"all steps of one worker together take as long as the others on {parallel / sum(alone.values()):.0f} workers")
+    if moved > 0:
+        told.append(f"the storage is busy with {storage / (moved / tiles):.0f} workers")
+    return "; ".join(told) + "."

@@ -1,0 +1,68 @@
+"""How many parts a worker makes at once, and what each of them may use."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from .errors import UsageError
+
+#: The resource that a cluster declares to say how many parts a worker makes at once.
+SLOT = "slot"
+#: What the Python process of a worker takes of the worker's memory, in bytes.
+WORKER_BYTES = 192 << 20
+#: The least that corniche works with, in bytes.
+LEAST_BYTES = 256 << 20
+#: What a process may use if its worker has no limit, in bytes: corniche's own greatest default.
+DEFAULT_BYTES = 4 << 30
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What one process of corniche may use."""
+
+    threads: int
+    memory_bytes: int
+
+
+def limits_of(
+    worker: str,
+    threads: int,
+    memory_bytes: int | None,
+    resources: Mapping[str, float],
+    asked_threads: int | None = None,
+    asked_bytes: int | None = None,
+) -> Limits:
+    """The share of one slot of a worker with so many threads, so much memory (``None``: no limit) and these resources."""
+    slots = max(1, int(resources.get(SLOT, threads)))
+    of_memory = DEFAULT_BYTES if memory_bytes is None else (memory_bytes - WORKER_BYTES) // slots
+    limits = Limits(asked_threads or max(1, threads // slots), asked_bytes or of_memory)
+    if limits.memory_bytes < LEAST_BYTES:
+        mebi = 1 << 20
+        raise UsageError(
+            f"worker {worker} has {(memory_bytes or 0) // mebi} MiB for {slots} parts at once, and itself takes {WORKER_BYTES // mebi} MiB; "
+            f"a part needs {LEAST_BYTES // mebi} MiB: give workers more memory, or fewer threads or slots"
+        )
+    return limits
+
+
+def slots_of(workers: Mapping[str, Mapping[str, Any]]) -> tuple[int, bool]:
+    """How many parts all workers make at once, from what the scheduler tells of them, and whether they declare slots."""
+    declared = [int((worker.get("resources") or {}).get(SLOT, 0)) for worker in workers.values()]
+    if any(declared):
+        return sum(declared), True
+    return sum(int(worker["nthreads"]) for worker in workers.values()), False
+
+
+def parse_bytes(text: str) -> int:
+    """Bytes from text as ``corniche --memory`` takes it, such as 512M, 4G or 1T."""
+    units = {"K": 10, "M": 20, "G": 30, "T": 40}
+    number, unit = (text[:-1], text[-1].upper()) if text[-1:].upper() in units else (text, "")
+    try:
+        parsed = int(float(number) * (1 << units.get(unit, 0)))
+    except (ValueError, OverflowError) as error:
+        raise UsageError(f"{text!r} is no size; write it as 512M, 4G or 1T") from error
+    if parsed <= 0:
+        raise UsageError(f"{text!r} is no size above 0")
+    return parsed

@@ -1,0 +1,280 @@
+"""What runs in the processes of workers."""
+
+from __future__ import annotations
+
+import asyncio
+import filecmp
+import os
+import subprocess
+import tempfile
+import threading
+import time
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import lru_cache
+from pathlib import Path
+
+from distributed import Reschedule, Worker, WorkerPlugin, get_worker
+
+from .child import Child, Ended
+from .errors import EXISTS, FAILED, UNUSABLE, CornicheError, PartFailed, ProgramError
+from .limits import Limits, limits_of
+from .program import environment_of_child, find_program, version_of
+from .tasks import PartResult, PartTask, Setting, is_object_storage, part_of_name
+
+#: The processes that a worker waits for, by the worker's address.
+_children: defaultdict[str, set[Child]] = defaultdict(set)
+_lock = threading.Lock()
+#: Seconds in which children are given time to end by themselves when their worker closes; then they are killed.
+_CLOSES_WITHIN = 3.0
+#: What a merge says while another process writes the same package.
+_BEING_BUILT = "is being built by another process"
+#: Seconds until it is tried again.
+_TRIES_EVERY = 2.0
+
+
+class PlanPlugin(WorkerPlugin):
+    """Gives a plan to every worker, also to those that come later, and ends the processes of a worker that closes.
+
+    It stays at the scheduler when a build is over: another client may be making the same plan.
+    """
+
+    idempotent = True
+
+    def __init__(self, plan: str, digest: str) -> None:
+        self._plan = plan
+        self._digest = digest
+        self.name = f"corniche-plan-{digest}"
+
+    def setup(self, worker: Worker) -> None:
+        """Writes the plan into the worker's own folder, which Dask removes with the worker."""
+        path = _plan_file(worker, self._digest)
+        part = path.with_suffix(f".{os.getpid()}.new")
+        part.write_text(self._plan, encoding="utf-8")
+        part.replace(path)
+
+    async def teardown(self, worker: Worker) -> None:
+        """Ends the worker's processes. If the worker is killed before, their pipes close all the same."""
+        for child in _children_of(worker.address):
+            child.stop()
+        begun = time.monotonic()
+        while _children_of(worker.address) and time.monotonic() - begun < _CLOSES_WITHIN:
+            await asyncio.sleep(0.05)
+        for child in _children_of(worker.address):
+            child.kill()
+
+
+def _children_of(worker: str) -> list[Child]:
+    with _lock:
+        return list(_children.get(worker, ()))
+
+
+def _plan_file(worker: Worker, digest: str) -> Path:
+    return Path(worker.local_directory) / f"corniche-plan-{digest}.json"
+
+
+@lru_cache(maxsize=16)
+def _program(asked: str | None, generator: str) -> str:
+    """The program, of the version that made the plan."""
+    program = find_program(asked)
+    version = version_of(program)
+    if version != generator:
+        raise ProgramError(f"{program} is {version}, but the plan was made by {generator}")
+    return program
+
+
+def look_at_worker(setting: Setting, dask_worker: Worker) -> str | None:
+    """What keeps this worker from making parts; ``None``: nothing."""
+    try:
+        _program(setting.program, setting.generator)
+        _limits(dask_worker, setting)
+    except CornicheError as error:
+        return str(error)
+    folders = [store for store in setting.stores if not is_object_storage(store)]
+    missing = [folder for folder in folders if not os.path.isdir(folder)]
+    if missing:
+        return f"it does not see the folder {missing[0]}: a store must be a folder that all workers share, or s3://…"
+    return None
+
+
+def is_there(output: str) -> bool:
+    """Whether something is at a path, as this machine sees it."""
+    return os.path.lexists(output)
+
+
+def list_parts(setting: Setting, slots: int, least_work: float | None, with_store: bool) -> str:
+    """What ``corniche jobs`` prints; with what is in the stores, if asked for."""
+    worker = get_worker()
+    command = [_program(setting.program, setting.generator), "jobs", str(_plan(worker, setting)), "--slots", str(slots)]
+    if least_work is not None:
+        command += ["--least-work", str(least_work)]
+    if with_store:
+        command += ["--store", *setting.stores]
+    ran = subprocess.run(
+        command,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        env=environment_of_child(),
+        check=False,
+    )
+    if ran.returncode != 0:
+        raise PartFailed(f"corniche jobs failed on {worker.address}, exit code {ran.returncode}:\n{ran.stderr.strip()}")
+    return ran.stdout
+
+
+def make_part(task: PartTask) -> PartResult:
+    """Makes a part and returns a digest of it.
+
+    Raises ``PartFailed`` if it is worth to try again. What would fail again the same way is returned.
+    """
+    worker = get_worker()
+    setting, job = task.setting, task.job
+    try:
+        program = _program(setting.program, setting.generator)
+        limits = _limits(worker, setting)
+    except CornicheError as error:
+        message = f"part {job.id} cannot be made on {worker.address}: {error}"
+        return _result(task, worker, Limits(0, 0), None, exit_code=UNUSABLE, error=message)
+    plan = str(_plan(worker, setting))
+    if not job.is_merge:
+        command = [program, "part", plan, *job.args, *_common(setting, limits)]
+        ended = _run(command, task, worker)
+        return _judged(task, worker, limits, ended)
+    merge = [program, "merge", plan, *job.args, *_common(setting, limits)]
+    overwrite = ["-O"] if setting.overwrite else []
+    defects = ["--defects", setting.defects] if setting.defects else []
+    ended = _run([*merge, *overwrite, *defects, "-o", setting.output], task, worker)
+    while ended.exit_code == FAILED and any(_BEING_BUILT in line for line in ended.log):
+        # The same merge of a worker that was only thought to be dead. Its package will be looked at.
+        time.sleep(_TRIES_EVERY)
+        ended = _run([*merge, *overwrite, *defects, "-o", setting.output], task, worker)
+    if ended.exit_code == EXISTS and not setting.overwrite and _is_same_package(merge, task, worker):
+        return _result(task, worker, limits, ended, name=setting.output, was_made=False)
+    return _judged(task, worker, limits, ended)
+
+
+def _is_same_package(merge: Sequence[str], task: PartTask, worker: Worker) -> bool:
+    """Whether the package that is there is the one that this merge makes.
+
+    Dask may run a task twice, for example when a worker dies after its end. The first run's package is then no reason to fail.
+    """
+    output = task.setting.output
+    if is_object_storage(output) or not os.path.isfile(output):
+        return False
+    with tempfile.TemporaryDirectory(prefix=".corniche-", dir=os.path.dirname(output)) as folder:
+        again = os.path.join(folder, "again.pmtiles")
+        ended = _run([*merge, "-o", again], task, worker)
+        return ended.exit_code == 0 and filecmp.cmp(again, output, shallow=False)
+
+
+def _common(setting: Setting, limits: Limits) -> list[str]:
+    options = ["--die-with-parent", "--json-progress", "--threads", str(limits.threads), "--memory", str(limits.memory_bytes)]
+    if setting.tmp:
+        options += ["--tmp", setting.tmp]
+    return [*options, "--store", *setting.stores]
+
+
+def _run(command: Sequence[str], task: PartTask, worker: Worker) -> Ended:
+    """Runs a process to its end, or to the moment when Dask does not want the task any more."""
+    child = Child(command, environment_of_child())
+    with _registered(worker.address, child):
+        ended = child.wait(lambda: _is_wanted(worker, task.key))
+    if ended.was_stopped and ended.exit_code != 0:
+        # If somebody wants it all the same, it is given out again; that is no failure.
+        raise Reschedule()
+    return ended
+
+
+@contextmanager
+def _registered(worker: str, child: Child) -> Iterator[None]:
+    with _lock:
+        _children[worker].add(child)
+    try:
+        yield
+    finally:
+        with _lock:
+            _children[worker].discard(child)
+
+
+def _is_wanted(worker: Worker, key: str) -> bool:
+    """Whether the task was neither cancelled nor released since it began. A task in a thread is not told."""
+    state = worker.state.tasks.get(key)
+    return state is not None and state.state != "cancelled"
+
+
+def _judged(task: PartTask, worker: Worker, limits: Limits, ended: Ended) -> PartResult:
+    job = task.job
+    if ended.exit_code == 0:
+        if job.is_merge:
+            return _result(task, worker, limits, ended, name=task.setting.output, was_made=True)
+        name, digest = part_of_name(ended.stdout)
+        return _result(task, worker, limits, ended, name=name, digest=digest, was_made=name is not None)
+    how = f"exit code {ended.exit_code}" if ended.exit_code > 0 else f"ended by signal {-ended.exit_code}"
+    if ended.exit_code < 0 and ended.usage.peak_bytes is not None:
+        how += f" when it used {ended.usage.peak_bytes >> 20} MiB of {limits.memory_bytes >> 20} MiB"
+    log = "\n".join(f"    {line}" for line in ended.log)
+    message = f"part {job.id} ({job.title()}) failed on {worker.address}: {how}; the last lines of its log:\n{log}"
+    if ended.exit_code in (UNUSABLE, EXISTS):
+        return _result(task, worker, limits, ended, exit_code=ended.exit_code, error=message)
+    raise PartFailed(message)
+
+
+def _result(
+    task: PartTask,
+    worker: Worker,
+    limits: Limits,
+    ended: Ended | None,
+    exit_code: int = 0,
+    error: str | None = None,
+    name: str | None = None,
+    digest: str | None = None,
+    was_made: bool = False,
+) -> PartResult:
+    usage = ended.usage if ended else None
+    return PartResult(
+        id=task.job.id,
+        step=task.job.step,
+        work=task.job.work,
+        exit_code=exit_code,
+        error=error,
+        was_made=was_made,
+        name=name,
+        digest=digest,
+        file_bytes=_size(name if task.job.is_merge or ended is None else ended.stdout.strip()) if name else None,
+        worker=worker.address,
+        seconds=ended.seconds if ended else 0.0,
+        cpu_seconds=usage.cpu_seconds if usage else None,
+        read_bytes=usage.read_bytes if usage else None,
+        written_bytes=usage.written_bytes if usage else None,
+        peak_bytes=usage.peak_bytes if usage else None,
+        memory_bytes=limits.memory_bytes,
+        threads=limits.threads,
+    )
+
+
+def _size(path: str) -> int | None:
+    """Bytes of a file, if it is one that this machine can look at."""
+    try:
+        return os.stat(path).st_size
+    except OSError:
+        return None
+
+
+def _plan(worker: Worker, setting: Setting) -> Path:
+    path = _plan_file(worker, setting.plan_digest)
+    if not path.is_file():
+        raise PartFailed(f"worker {worker.address} has no copy of the plan in {path.parent}; is its disk full?")
+    return path
+
+
+def _limits(worker: Worker, setting: Setting) -> Limits:
+    return limits_of(
+        worker.address,
+        worker.state.nthreads,
+        worker.memory_manager.memory_limit,
+        worker.state.total_resources,
+        setting.threads,
+        setting.memory_bytes,
+    )
