@@ -95,6 +95,15 @@ impl TileId {
             .map(move |(dx, dy)| Self { z: self.z + 1, x: self.x * 2 + dx, y: self.y * 2 + dy })
     }
 
+    /// Whether two tiles are the same or touch, also at a corner. Of tiles on different levels, the one above the smaller on the level of the larger
+    /// counts.
+    #[must_use]
+    pub fn is_beside(self, other: Self) -> bool {
+        let level = self.z.min(other.z);
+        let (a, b) = (self.ancestor(level), other.ancestor(level));
+        a.x.abs_diff(b.x) <= 1 && a.y.abs_diff(b.y) <= 1
+    }
+
     /// The tile `dx` columns east and `dy` rows south on the same level, if there is one.
     #[must_use]
     pub fn neighbour(self, dx: i32, dy: i32) -> Option<Self> {

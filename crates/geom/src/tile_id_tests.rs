@@ -20,3 +20,20 @@ fn children_know_their_parent() {
     assert!(id.children().all(|child| child.parent() == Some(id) && child.ancestor(3) == id));
     assert_eq!(TileId::ROOT.parent(), None);
 }
+
+#[test]
+fn tiles_beside_each_other_touch_on_the_level_of_the_larger() {
+    let id = |text: &str| text.parse::<TileId>().unwrap();
+    for (a, b, expected) in [
+        ("3/4/4", "3/4/4", true),
+        ("3/4/4", "3/5/5", true),
+        ("3/4/4", "3/4/6", false),
+        ("3/4/4", "0/0/0", true),
+        // 5/22/16 lies in 3/5/4, and 5/24/16 in 3/6/4.
+        ("3/4/4", "5/22/16", true),
+        ("3/4/4", "5/24/16", false),
+    ] {
+        assert_eq!(id(a).is_beside(id(b)), expected, "{a} {b}");
+        assert_eq!(id(b).is_beside(id(a)), expected, "{b} {a}");
+    }
+}

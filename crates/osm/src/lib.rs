@@ -17,6 +17,7 @@
 //!
 //! This crate never judges which road matters at which level, never guesses a class, and starts no threads.
 
+mod open_file;
 mod read_request;
 mod read_roads;
 mod reading;

@@ -1,7 +1,4 @@
-use std::{
-    fs::{self, File},
-    io::{Read, Seek},
-};
+use std::io::{Read, Seek};
 
 use corniche_roads::Road;
 
@@ -12,6 +9,7 @@ use crate::{
     hand_out::hand_out,
     locate_nodes::{NodeQuestions, locate_nodes},
     number_nodes::{NumberedNodes, number_nodes},
+    open_file::open_file,
     read_request::ReadRequest,
     reading::Reading,
 };
@@ -70,15 +68,7 @@ pub fn read_roads(
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<ExtractSummary, ReadOsmError> {
-    let path = request.path;
-    let not_open = |source| ReadOsmError::Open { path: path.to_path_buf(), source };
-    // Opening a pipe would block until something is written to it.
-    let kind = fs::metadata(path).map_err(not_open)?.file_type();
-    if !kind.is_file() {
-        let found = if kind.is_dir() { "a folder" } else { "a pipe or a device" };
-        return Err(ReadOsmError::NotAFile { path: path.to_path_buf(), found });
-    }
-    let file = File::open(path).map_err(not_open)?;
+    let file = open_file(request.path)?;
     read_roads_from(file, request, sink, on_defect, should_stop)
 }
 

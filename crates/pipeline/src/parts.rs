@@ -7,12 +7,14 @@
 //! ```
 //!
 //! Parts of one column may be made at once, in any order, on any machine that has the inputs at the paths of the plan. What is in the
-//! stores already is not made again, so a part may be made twice.
+//! stores already is not made again, so a part may be made twice. Stores are folders, or prefixes in object storage; the package, too, may go there.
 
 mod merge;
+mod needed;
+mod package;
 mod part;
 mod planned;
 mod stores;
 
-pub use merge::{MergeSettings, merge};
+pub use merge::{MergeSettings, MergeSummary, merge};
 pub use part::{PartSettings, PartSummary, Step, make_part};

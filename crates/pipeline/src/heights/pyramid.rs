@@ -172,7 +172,7 @@ impl Pyramid<'_> {
         Ok(all)
     }
 
-    /// Fails if heights of finest tiles of the subtree `scope` or rasters of any tile are missing.
+    /// Fails if heights of finest tiles of the subtree `scope`, or rasters of tiles in, above or beside it are missing: no others are read.
     pub(crate) fn check_complete(&self, scope: TileId) -> Result<(), BuildError> {
         let (store, data) = (self.store, self.data());
         let is_missing =
@@ -180,7 +180,8 @@ impl Pyramid<'_> {
         all_there("the heights", &data.missing(is_missing), "heights")?;
         let levels = 0..self.grid.frame.max_level();
         let all = levels.flat_map(|level| data.above(level).within(TileId::ROOT));
-        let missing: Vec<TileId> = all.filter(|&id| !store.has(Kind::Raster.of_tile(id))).collect();
+        let is_missing = |id: &TileId| id.is_beside(scope) && !store.has(Kind::Raster.of_tile(*id));
+        let missing: Vec<TileId> = all.filter(is_missing).collect();
         all_there("the heights", &missing, "top")
     }
 
