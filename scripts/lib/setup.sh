@@ -28,6 +28,8 @@ missing_for_fuzz() {
 missing_for_check() {
     python_with numpy >/dev/null || echo python3-numpy
     python_with shapely >/dev/null || echo python3-shapely
+    # To install moto's server, which stands in for object storage.
+    python_with moto.server >/dev/null || python_with venv ensurepip >/dev/null || echo python3-venv
 }
 
 # For the tests of the window: a virtual display, a program that moves the mouse there, and the libraries that a window loads.
@@ -77,6 +79,21 @@ python_with() {
         fi
     done
     return 1
+}
+
+# Prints a Python interpreter that has moto's server, which stands in for object storage in tests. Where there is none, a virtual environment is
+# made in the target folder, once. Fails, and says why, where that cannot be done.
+object_storage_python() {
+    local folder=${CARGO_TARGET_DIR:-target}/object-storage base
+    python_with moto.server && return 0
+    if "$folder/bin/python" -c "import moto.server" 2>/dev/null; then
+        echo "$(cd "$folder" && pwd)/bin/python"
+        return 0
+    fi
+    base=$(python_with venv ensurepip) || { say "no python3 can make a virtual environment (Debian: python3-venv)"; return 1; }
+    say "installing moto's server into $folder"
+    "$base" -m venv "$folder" >&2 && "$folder/bin/python" -m pip install -q 'moto[server]==5.2.5' >&2 || return 1
+    echo "$(cd "$folder" && pwd)/bin/python"
 }
 
 # Installs the packages that the named functions print. If none is missing, it does nothing, not even `apt-get update`.

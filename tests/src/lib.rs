@@ -3,6 +3,7 @@
 #[cfg(target_os = "linux")]
 mod display;
 mod job;
+mod object_storage;
 
 use std::{
     fs,
@@ -17,6 +18,7 @@ pub use corniche_testing::{real_data, root, sample};
 #[cfg(target_os = "linux")]
 pub use display::{Display, without_display};
 pub use job::{Job, When};
+pub use object_storage::{ObjectStorage, Proxy};
 use serde_json::Value;
 
 /// The binary under test, built before the scenarios by cargo in the same target folder.

@@ -5,8 +5,14 @@ use std::path::Path;
 use corniche_pipeline::{Existing, MergeSettings};
 
 use crate::{
-    args::MergeArgs, build, defects::Watch, exit::ExitCode, failure::Failure, output, parent,
-    part::read_plan, settings,
+    args::MergeArgs,
+    build,
+    defects::Watch,
+    exit::ExitCode,
+    failure::Failure,
+    output, parent,
+    part::{read_plan, told},
+    settings,
 };
 
 pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
@@ -14,7 +20,9 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
     if planned.die_with_parent {
         parent::watch()?;
     }
-    output::writable(&args.output)?;
+    if !is_object(&args.output) {
+        output::writable(&args.output)?;
+    }
     let plan = read_plan(&planned.plan)?;
     let mut others: Vec<&Path> = plan.inputs.iter().map(|input| Path::new(&input.path)).collect();
     others.extend([args.output.as_path(), planned.plan.as_path()]);
@@ -22,11 +30,26 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
     let merge = MergeSettings {
         plan,
         stores: planned.store.clone(),
+        tmp: planned.tmp.clone(),
         output: args.output.clone(),
         existing: if args.overwrite { Existing::Replace } else { Existing::Keep },
         resources: settings::resources(planned.threads, planned.memory.as_deref())?,
         generator: settings::generator(),
     };
     let merged = corniche_pipeline::merge(&merge, &watch);
-    build::finish(merged, watch, planned.report, &args.output)
+    let (package, requests) = match merged {
+        Ok(merged) => (Ok(merged.package), merged.requests),
+        Err(error) => (Err(error), None),
+    };
+    let code = build::finish(package, watch, planned.report, &args.output)?;
+    let quiet = planned.report.quiet || planned.report.json_progress;
+    if let Some(requests) = requests.filter(|_| !quiet) {
+        eprintln!("{}", told(&requests));
+    }
+    Ok(code)
+}
+
+/// Whether a name is an address in object storage, where no file is.
+fn is_object(output: &Path) -> bool {
+    output.to_str().is_some_and(|text| text.starts_with("s3://"))
 }

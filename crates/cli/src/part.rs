@@ -6,10 +6,10 @@ use std::{
     path::Path,
 };
 
-use corniche_pipeline::{BuildPlan, PartSettings};
+use corniche_pipeline::{BuildPlan, PartSettings, Requests};
 
 use crate::{
-    args::PartArgs, exit::ExitCode, failure::Failure, parent, progress::Progress, settings,
+    args::PartArgs, exit::ExitCode, failure::Failure, parent, progress::Progress, settings, table::bytes,
 };
 
 pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
@@ -20,6 +20,7 @@ pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
     let part = PartSettings {
         plan: read_plan(&planned.plan)?,
         stores: planned.store.clone(),
+        tmp: planned.tmp.clone(),
         step: args.step.into(),
         subtree: args.subtree,
         share: args.share,
@@ -37,7 +38,22 @@ pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
         ),
     }
     progress.tell_costs();
+    if let Some(requests) = made.requests.filter(|_| !quiet) {
+        eprintln!("{}", told(&requests));
+    }
     Ok(ExitCode::Done)
+}
+
+/// What was asked of object storage, which may cost money.
+pub(crate) fn told(requests: &Requests) -> String {
+    let counts: Vec<String> =
+        requests.by_method.iter().map(|(method, count)| format!("{count} {method}")).collect();
+    format!(
+        "object storage: {}; {} received, {} sent",
+        counts.join(", "),
+        bytes(requests.received_bytes),
+        bytes(requests.sent_bytes)
+    )
 }
 
 /// Reads a plan's file.

@@ -48,9 +48,9 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     let given = [args.attribution, terrain.attribution.clone()];
     let attribution = given.into_iter().find(|credits| !credits.is_empty());
     let plan = PlanSettings {
-        dem: args.dem,
+        dem: args.dem.into_iter().map(input_name).collect::<Result<_, _>>()?,
         terrain_of: args.terrain_of,
-        osm: args.osm,
+        osm: args.osm.map(input_name).transpose()?,
         attribution: attribution.unwrap_or(base.attribution),
         terrain: terrain_settings(terrain, base.terrain, args.force)?,
         roads: road_settings(roads)?,
@@ -63,6 +63,11 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
         tmp: resources.tmp,
         force,
     })
+}
+
+/// The name of an input for GDAL and for plans.
+pub(crate) fn input_name(path: PathBuf) -> Result<PathBuf, Failure> {
+    corniche_pipeline::input_name(path).map_err(Failure::unusable)
 }
 
 /// Terrain settings where none is given.

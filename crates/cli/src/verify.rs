@@ -17,14 +17,14 @@ use crate::{
     info::or_dash,
     presets,
     progress::Progress,
-    settings::threads,
+    settings::{input_name, threads},
     table::{Table, count},
 };
 
 pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
     let settings = VerifySettings {
         package: args.package.clone(),
-        dem: args.dem.clone(),
+        dem: args.dem.iter().cloned().map(input_name).collect::<Result<_, _>>()?,
         osm: extract(args)?,
         threads: threads(args.threads),
     };
@@ -45,7 +45,7 @@ const MEMORY_BYTES: u64 = 256 << 20;
 
 /// The extract to read again, with the FRC table that the package names: given, or the preset of that name.
 fn extract(args: &VerifyArgs) -> Result<Option<VerifyOsm>, Failure> {
-    let Some(path) = args.osm.clone() else { return Ok(None) };
+    let Some(path) = args.osm.clone().map(input_name).transpose()? else { return Ok(None) };
     let table = if let Some(table) = &args.frc_table {
         presets::frc_table(table)?
     } else {

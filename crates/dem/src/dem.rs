@@ -79,3 +79,14 @@ pub fn limit_block_cache(bytes: u64) -> Result<(), gdal::errors::GdalError> {
     // GDAL reads small numbers as megabytes; a megabyte is the least that is sensible anyway.
     gdal::config::set_config_option("GDAL_CACHEMAX", &bytes.max(1 << 20).to_string())
 }
+
+/// Sets one of GDAL's options for the whole process, unless the user has set it, in the environment or in GDAL's own settings file.
+///
+/// # Errors
+/// When GDAL refuses.
+pub fn set_unless_set(option: &str, value: &str) -> Result<(), gdal::errors::GdalError> {
+    if gdal::config::get_config_option(option, "")?.is_empty() {
+        gdal::config::set_config_option(option, value)?;
+    }
+    Ok(())
+}

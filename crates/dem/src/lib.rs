@@ -28,7 +28,7 @@ mod library_error;
 pub use audit::{Audit, AuditBlock, AuditPart, Auditor, SURFACE_RANGE_M};
 pub use crs::projection::DemProjection;
 pub use crs::recorded::RecordedCrs;
-pub use dem::{Dem, limit_block_cache};
+pub use dem::{Dem, limit_block_cache, set_unless_set};
 pub use error::DemError;
 pub use files::file_blocks::FileBlocks;
 pub use files::open_options::OpenOptions;

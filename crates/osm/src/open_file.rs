@@ -1,18 +1,66 @@
 use std::{
     fs::{self, File},
+    io::{self, Read, Seek, SeekFrom},
     path::Path,
 };
 
+use corniche_objects::{ObjectAddress, ObjectError, ObjectReader, Storage, StorageSettings};
+
 use crate::ReadOsmError;
 
-/// Opens an extract, which must be a file.
-pub(crate) fn open_file(path: &Path) -> Result<File, ReadOsmError> {
+/// An extract that is open: a file, or an object, of which only the ranges are fetched that are read.
+#[derive(Debug)]
+pub(crate) enum Extract {
+    File(File),
+    Object(Box<ObjectReader>),
+}
+
+/// Opens an extract: a file, or `/vsis3/BUCKET/NAME`, which is GDAL's name for an object.
+pub(crate) fn open_file(path: &Path) -> Result<Extract, ReadOsmError> {
     let not_open = |source| ReadOsmError::Open { path: path.to_path_buf(), source };
+    if let Some(name) = path.to_str().filter(|name| name.starts_with("/vsi") && !path.exists()) {
+        let object = open_object(name).map_err(not_open)?;
+        return Ok(Extract::Object(Box::new(object)));
+    }
     // Opening a pipe would block until something is written to it.
     let kind = fs::metadata(path).map_err(not_open)?.file_type();
     if !kind.is_file() {
         let found = if kind.is_dir() { "a folder" } else { "a pipe or a device" };
         return Err(ReadOsmError::NotAFile { path: path.to_path_buf(), found });
     }
-    File::open(path).map_err(not_open)
+    Ok(Extract::File(File::open(path).map_err(not_open)?))
+}
+
+fn open_object(name: &str) -> io::Result<ObjectReader> {
+    let address = match name.strip_prefix("/vsis3/") {
+        Some(rest) => ObjectAddress::parse(&format!("s3://{rest}"))?,
+        None => None,
+    };
+    let Some(ObjectAddress { bucket, key }) = address else {
+        let what = "an extract is read from a file or from object storage (s3://BUCKET/NAME); save it to a file first";
+        return Err(io::Error::new(io::ErrorKind::Unsupported, what));
+    };
+    let open = || {
+        let storage = Storage::new(StorageSettings::of_environment())?;
+        ObjectReader::open(storage.bucket(&bucket)?, &key, None)
+    };
+    open().map_err(|error: ObjectError| error.into())
+}
+
+impl Read for Extract {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Self::File(file) => file.read(buffer),
+            Self::Object(object) => object.read(buffer),
+        }
+    }
+}
+
+impl Seek for Extract {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        match self {
+            Self::File(file) => file.seek(to),
+            Self::Object(object) => object.seek(to),
+        }
+    }
 }

@@ -115,6 +115,8 @@ pub enum BuildError {
     Storage(#[source] io::Error),
     #[error(transparent)]
     Store(#[from] corniche_store::StoreError),
+    #[error(transparent)]
+    Objects(#[from] corniche_objects::ObjectError),
     #[error(
         "intermediate results are damaged: {what}; remove the store and start again (build: with -O)"
     )]
@@ -145,6 +147,11 @@ impl BuildError {
     /// Whether the cause is an unusable input or setting, rather than a failure while the build ran.
     #[must_use]
     pub fn is_unusable_input(&self) -> bool {
+        match self {
+            Self::Store(error) => return error.is_unusable(),
+            Self::Objects(error) => return error.is_unusable(),
+            _ => {}
+        }
         matches!(
             self,
             Self::Target { .. }

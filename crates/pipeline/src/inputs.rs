@@ -9,6 +9,7 @@
 //! ```
 
 mod planned_input;
+mod servers;
 mod stamp;
 
 use std::{
@@ -21,8 +22,8 @@ use corniche_dem::{DemError, VirtualFile, raster_files};
 use corniche_tileset::InputRecord;
 use sha2::{Digest, Sha256};
 
-pub use self::planned_input::PlannedInput;
-use self::stamp::Stamp;
+pub use self::{planned_input::PlannedInput, servers::input_name};
+use self::{servers::reach_servers, stamp::Stamp};
 use crate::{BuildError, Observer, Stage, hex::hex};
 
 /// What an input is.
@@ -91,6 +92,7 @@ pub(crate) enum InputError {
     Name { path: PathBuf },
     Stream { path: PathBuf },
     Dem(DemError),
+    Setting { what: String },
     Changed { path: PathBuf },
     Interrupted,
 }
@@ -98,6 +100,7 @@ pub(crate) enum InputError {
 impl Inputs {
     /// Finds all files and notes what they are, before anything of them is read for use.
     pub(crate) fn find(dem: &[PathBuf], osm: Option<&Path>) -> Result<Self, InputError> {
+        reach_servers(dem.iter().map(PathBuf::as_path).chain(osm))?;
         let mut files: Vec<Input> = Vec::new();
         for path in dem {
             // The stamp is taken before GDAL reads the file for the names of its parts.
@@ -124,6 +127,7 @@ impl Inputs {
         package: &Path,
         osm: Option<&Path>,
     ) -> Result<Self, InputError> {
+        reach_servers(osm.into_iter())?;
         let mut files = vec![Input::new(InputKind::Terrain, package)?];
         if let Some(path) = osm {
             files.push(Input::new(InputKind::Osm, path)?);
@@ -233,7 +237,7 @@ impl Input {
         let text = text.ok_or_else(|| InputError::Name { path: self.path.clone() })?;
         let (bytes, modified_ns, etag) = match &self.stamp {
             Stamp::File(_, state) => (state.size(), state.modified_ns(), None),
-            Stamp::Remote(path, bytes) => (*bytes, None, VirtualFile::etag(path)),
+            Stamp::Remote { bytes, etag, .. } => (*bytes, None, etag.clone()),
         };
         // The size of a folder is that of the list of its files, and no matter.
         let bytes = if matches!(self.content, Content::Folder) { 0 } else { bytes };
@@ -252,7 +256,7 @@ impl Input {
         match (&self.content, &self.stamp) {
             (Content::Folder, _) => Some(0),
             (Content::File(_), Stamp::File(_, state)) => Some(state.size()),
-            (_, Stamp::Remote(_, size)) => Some(*size),
+            (_, Stamp::Remote { bytes, .. }) => Some(*bytes),
             // Inside an archive: only the archive's own size is known.
             (Content::Virtual(_), Stamp::File(..)) => None,
         }
@@ -342,6 +346,7 @@ impl From<InputError> for BuildError {
             InputError::Name { path } => Self::InputName { path },
             InputError::Stream { path } => Self::Stream { path },
             InputError::Dem(error) => Self::Dem(error),
+            InputError::Setting { what } => Self::Start { what },
             InputError::Changed { path } => Self::Changed { path },
             InputError::Interrupted => Self::Interrupted,
         }

@@ -14,6 +14,7 @@ mod levels;
 mod machine;
 mod manifest_texts;
 mod memory_shares;
+mod objects;
 mod observer;
 mod parts;
 mod plan;
@@ -32,14 +33,15 @@ mod workers;
 
 pub use build::{BuildSummary, build, build_on};
 pub use corniche_dem::{OpenOptions, PlanOptions};
+pub use corniche_objects::Requests;
 pub use corniche_osm::{Defect as OsmDefect, Share};
 pub use defect::{Defect, Loss};
 pub use error::BuildError;
-pub use inputs::PlannedInput;
+pub use inputs::{PlannedInput, input_name};
 pub use machine::{MIN_MEMORY_BYTES, default_memory_bytes, machine_memory_bytes};
 pub use observer::{Observer, Silent, Stage, Unit};
 pub use parts::{
-    Job, JobSettings, MergeSettings, PartSettings, PartSummary, Step, jobs, make_part, merge,
+    Job, JobSettings, MergeSettings, MergeSummary, PartSettings, PartSummary, Step, jobs, make_part, merge,
     plan_with_jobs,
 };
 pub use plan::{

@@ -11,6 +11,8 @@ pub(crate) struct MemoryShares {
     pub(crate) grounds: u64,
     /// Sorting of roads.
     pub(crate) sorting: u64,
+    /// Blocks of objects, where stores are in object storage.
+    pub(crate) blocks: u64,
 }
 
 impl MemoryShares {
@@ -19,6 +21,7 @@ impl MemoryShares {
             raster_cache: memory_bytes / 8,
             grounds: memory_bytes / 8,
             sorting: memory_bytes / 4,
+            blocks: memory_bytes / 16,
         }
     }
 

@@ -7,15 +7,16 @@
 //! ```
 //!
 //! Parts of one column may be made at once, in any order, on any machine that has the inputs at the paths of the plan. What is in the
-//! stores already is not made again, so a part may be made twice.
+//! stores already is not made again, so a part may be made twice. Stores are folders, or prefixes in object storage; the package, too, may go there.
 
 mod jobs;
 mod merge;
 mod needed_parts;
+mod package;
 mod part;
 mod planned;
 mod stores;
 
 pub use jobs::{Job, JobSettings, jobs, plan_with_jobs};
-pub use merge::{MergeSettings, merge};
+pub use merge::{MergeSettings, MergeSummary, merge};
 pub use part::{PartSettings, PartSummary, Step, make_part};

@@ -41,6 +41,16 @@ pub enum StoreError {
     TooLarge { path: PathBuf, what: &'static str, length: u64, limit: u64 },
     #[error("{name:?} cannot be the name of a part: use letters, digits, '-' and '_'")]
     PartName { name: String },
+    #[error("{what}")]
+    Place { what: String, is_unusable: bool },
+}
+
+impl StoreError {
+    /// Whether what was given cannot be used (a name, an address, credentials), rather than that something failed.
+    #[must_use]
+    pub fn is_unusable(&self) -> bool {
+        matches!(self, Self::Place { is_unusable: true, .. })
+    }
 }
 
 /// What to do about a cause that has a remedy. Every command with a store says this, so options of one command are told with its name.

@@ -10,7 +10,7 @@ use std::{
     },
 };
 
-use crate::{Disk, DiskFile, Hold, Listed, OpenMode, StoreError};
+use crate::{Disk, DiskFile, Hold, Listed, OpenMode, PartFile, StoreError};
 
 /// Bytes that went through the store so far.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -169,6 +169,20 @@ impl OpenFile {
         let own = named(&self.path, "look at", || self.file.identity())?;
         let named_so = named(&self.path, "look for", || self.files.disk.identity(&self.path))?;
         Ok(named_so == Some(own))
+    }
+}
+
+impl PartFile for OpenFile {
+    fn path(&self) -> &Path {
+        self.path()
+    }
+
+    fn length(&self) -> Result<u64, StoreError> {
+        self.length()
+    }
+
+    fn read_exact_at(&self, bytes: &mut [u8], offset: u64) -> Result<(), StoreError> {
+        self.read_exact_at(bytes, offset)
     }
 }
 

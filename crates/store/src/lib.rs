@@ -24,6 +24,8 @@
 //! # }
 //! ```
 //!
+//! A store reads sealed parts from any number of [places](Place): folders, or what another crate makes one, such as object storage.
+//!
 //! This crate knows no tile and no road: a key is two numbers, an artifact is bytes. It never changes what was put, makes no threads, and
 //! removes no file that it did not make.
 
@@ -33,16 +35,23 @@ mod error;
 mod files;
 mod local;
 mod memory;
+mod place;
 mod scratch;
 mod sorter;
+mod stored_plan;
 mod system_disk;
 
 pub use artifacts::{Artifacts, Key};
 pub use disk::{Disk, DiskFile, FileId, Hold, Listed, OpenMode};
 pub use error::StoreError;
 pub use files::Traffic;
-pub use local::{LocalScratch, LocalStore, OwnPart, PlanHash, SYNC_INTERVAL, StoredPlan};
+pub use local::{
+    Folder, LocalScratch, LocalStore, OwnPart, PARTS_NAME, PLAN_NAME, STORE_NAME, SYNC_INTERVAL,
+    SealedParts, check_sealed, part_of_sealed, plan_of_header, store_header,
+};
 pub use memory::{MemoryScratch, MemoryStore};
+pub use place::{PartFile, Place, Publish};
 pub use scratch::{Scratch, Span};
 pub use sorter::{SortRecord, Sorted, Sorter};
+pub use stored_plan::{PlanHash, StoredPlan};
 pub use system_disk::SystemDisk;

@@ -15,6 +15,7 @@
 
 mod binding;
 mod entry;
+mod folder;
 mod header;
 mod index;
 mod layout;
@@ -32,18 +33,20 @@ use std::{
     time::Duration,
 };
 
-pub use binding::StoredPlan;
-pub use header::PlanHash;
+pub use binding::{plan_of_header, store_header};
+pub use folder::Folder;
+pub use layout::{PARTS as PARTS_NAME, PLAN as PLAN_NAME, STORE as STORE_NAME, part_of_sealed};
 pub use scratch::LocalScratch;
+pub use sealed_part::check_sealed;
 
 use crate::{
-    Artifacts, Disk, Hold, Key, StoreError,
+    Artifacts, Disk, Hold, Key, PartFile, Place, PlanHash, Publish, StoreError, StoredPlan,
     files::{Files, OpenFile, Traffic},
 };
 use binding::FolderState;
 use entry::Entry;
 use header::FileKind;
-use index::{Index, Place};
+use index::{Index, Location};
 use layout::Role;
 use open_part::{OPEN_PART, OpenPart};
 
@@ -59,7 +62,7 @@ pub struct LocalStore {
     files: Arc<Files>,
     index: RwLock<Index>,
     /// By their numbers in the index.
-    sealed: Vec<OpenFile>,
+    sealed: Vec<Box<dyn PartFile>>,
     own: Option<Own>,
 }
 
@@ -75,13 +78,6 @@ struct Own {
     lock: OpenFile,
 }
 
-/// Which parts a store is read from.
-struct Sources<'a> {
-    folders: &'a [&'a Path],
-    /// By the part's name, without its digest.
-    wanted: &'a dyn Fn(&str) -> bool,
-}
-
 /// A part to be written by [`LocalStore::open_parts`].
 #[derive(Debug, Clone, Copy)]
 pub struct OwnPart<'a> {
@@ -95,6 +91,16 @@ pub struct OwnPart<'a> {
     pub interval: Duration,
 }
 
+/// The sealed parts that [`LocalStore::open_places`] reads.
+#[derive(Clone, Copy)]
+pub struct SealedParts<'a> {
+    /// Where they lie.
+    pub places: &'a [&'a dyn Place],
+    /// Which of them are needed, by their names without digest. The others are not even opened, and neither are those in the folder of the
+    /// own part.
+    pub is_needed: &'a dyn Fn(&str) -> bool,
+}
+
 impl LocalStore {
     /// The plan that the store in `folder` is bound to; `None` if the folder is not there, empty, or only what is left of making or removing a store.
     /// Changes nothing.
@@ -105,11 +111,7 @@ impl LocalStore {
         disk: Arc<dyn Disk>,
         folder: &Path,
     ) -> Result<Option<StoredPlan>, StoreError> {
-        let files = Files::new(disk);
-        match binding::state(&files, folder)?.0 {
-            FolderState::Store => binding::read_plan(&files, folder).map(Some),
-            FolderState::Absent | FolderState::Free => Ok(None),
-        }
+        Folder::new(disk, folder).stored_plan()
     }
 
     /// Makes a store for a build of its own, in a folder that is empty or not there. The folder around it must be there.
@@ -130,13 +132,7 @@ impl LocalStore {
         refuse_store(&files, folder)?;
         remove_own_files(&files, folder)?;
         binding::bind(&files, folder, plan)?;
-        Self::assemble(
-            files,
-            Sources { folders: &[], wanted: &|_| true },
-            Some((folder, BUILD, lock)),
-            &plan.hash,
-            interval,
-        )
+        Self::assemble(files, NO_PARTS, Some((folder, BUILD, lock)), &plan.hash, interval)
     }
 
     /// Goes on with the store of a build. What a crash left half is cut off ([`Self::repaired`]).
@@ -153,97 +149,95 @@ impl LocalStore {
         binding::check_hash(&files, folder, plan)?;
         let lock = lock::lock_store(&files, folder, Hold::Alone)?;
         binding::check_hash(&files, folder, plan)?;
-        Self::assemble(
-            files,
-            Sources { folders: &[folder], wanted: &|_| true },
-            Some((folder, BUILD, lock)),
-            plan,
-            interval,
-        )
+        let place = Folder::of(&files, folder);
+        let sealed = SealedParts { places: &[&place], ..NO_PARTS };
+        Self::assemble(files, sealed, Some((folder, BUILD, lock)), plan, interval)
     }
 
-    /// Opens the sealed parts of several stores as one, and a part of its own to write if asked. Without one the store can only be read.
-    /// Several processes may do so at once in one folder. What is in the own part's folder is read too.
+    /// Opens the sealed parts of several folders as one, and a part of its own to write if asked: [`Self::open_places`] for folders, of which every
+    /// part is read, and where several processes may work in one folder at once.
     ///
     /// # Errors
-    /// [`StoreError::NoStore`], [`StoreError::OtherPlan`], [`StoreError::OtherVersion`] or [`StoreError::Damaged`] with the name of the part;
-    /// [`StoreError::Differs`] where two parts contradict each other; [`StoreError::Locked`] where a build has the folder of the own part;
-    /// and where the disk fails.
+    /// As [`Self::open_places`].
     pub fn open_parts(
         disk: Arc<dyn Disk>,
         folders: &[&Path],
         plan: &PlanHash,
         own: Option<OwnPart<'_>>,
     ) -> Result<Self, StoreError> {
-        Self::open_some_parts(disk, folders, plan, own, &|_| true)
+        let files = Files::new(disk);
+        let folders: Vec<Folder> =
+            folders.iter().map(|folder| Folder::of(&files, folder)).collect();
+        let places: Vec<&dyn Place> = folders.iter().map(|folder| folder as &dyn Place).collect();
+        let sealed = SealedParts { places: &places, ..NO_PARTS };
+        Self::open_of(files, sealed, plan, own.map(|own| (own, Hold::Shared)))
     }
 
-    /// As [`Self::open_parts`], but of the sealed parts only those with a `wanted` name, without the digest: what the others hold is as if it
-    /// were not there.
+    /// Opens the sealed parts of several places as one, and a part of its own to write if asked. Without one the store can only be read.
+    /// The sealed parts in the own part's folder are read too. `Hold::Shared` lets other processes make their parts in that folder at the same
+    /// time.
     ///
     /// # Errors
-    /// As [`Self::open_parts`].
-    pub fn open_some_parts(
+    /// [`StoreError::NoStore`], [`StoreError::OtherPlan`], [`StoreError::OtherVersion`] or [`StoreError::Damaged`] with the name of the part;
+    /// [`StoreError::Differs`] where two parts contradict each other; [`StoreError::Locked`] where the folder of the own part is in use;
+    /// and where the disk or a place fails.
+    pub fn open_places(
         disk: Arc<dyn Disk>,
-        folders: &[&Path],
+        sealed: SealedParts<'_>,
         plan: &PlanHash,
-        own: Option<OwnPart<'_>>,
-        wanted: &dyn Fn(&str) -> bool,
+        own: Option<(OwnPart<'_>, Hold)>,
     ) -> Result<Self, StoreError> {
-        let files = Files::new(disk);
-        let mut read = folders.to_vec();
-        let Some(own) = own else {
-            for folder in folders {
-                binding::check_hash(&files, folder, plan)?;
-            }
-            return Self::assemble(
-                files,
-                Sources { folders: &read, wanted },
-                None,
-                plan,
-                SYNC_INTERVAL,
-            );
+        Self::open_of(Files::new(disk), sealed, plan, own)
+    }
+
+    fn open_of(
+        files: Arc<Files>,
+        sealed: SealedParts<'_>,
+        plan: &PlanHash,
+        own: Option<(OwnPart<'_>, Hold)>,
+    ) -> Result<Self, StoreError> {
+        let SealedParts { places, is_needed } = sealed;
+        let Some((own, hold)) = own else {
+            check_plans(places, plan)?;
+            return Self::assemble(files, sealed, None, plan, SYNC_INTERVAL);
         };
         layout::check_part_name(own.name)?;
         binding::state(&files, own.folder)?;
         files.create_folder(own.folder)?;
-        let lock = lock::lock_store(&files, own.folder, Hold::Shared)?;
+        let lock = lock::lock_store(&files, own.folder, hold)?;
         if !matches!(binding::state(&files, own.folder)?.0, FolderState::Store) {
             binding::bind(&files, own.folder, own.plan)?;
         }
-        if !read.contains(&own.folder) {
-            read.push(own.folder);
+        let own_folder = Folder::of(&files, own.folder);
+        let mut places = places.to_vec();
+        if !places.iter().any(|place| place.name() == own.folder) {
+            places.push(&own_folder);
         }
-        for folder in &read {
-            binding::check_hash(&files, folder, plan)?;
-        }
-        Self::assemble(
-            files,
-            Sources { folders: &read, wanted },
-            Some((own.folder, own.name, lock)),
-            plan,
-            own.interval,
-        )
+        check_plans(&places, plan)?;
+        let sealed = SealedParts { places: &places, is_needed };
+        Self::assemble(files, sealed, Some((own.folder, own.name, lock)), plan, own.interval)
     }
 
-    /// Reads what the wanted parts of the folders hold and opens the own part.
+    /// Reads what the places hold and opens the own part.
     fn assemble(
         files: Arc<Files>,
-        Sources { folders, wanted }: Sources<'_>,
+        parts: SealedParts<'_>,
         own: Option<(&Path, &str, OpenFile)>,
         plan: &PlanHash,
         interval: Duration,
     ) -> Result<Self, StoreError> {
-        let (mut index, mut sealed, mut sealed_bytes) = (Index::default(), Vec::new(), 0);
-        for folder in folders {
-            for path in sealed_parts(&files, folder)? {
-                if !layout::part_of_sealed(&path).is_none_or(wanted) {
+        let mut index = Index::default();
+        let (mut sealed, mut sealed_bytes) = (Vec::<Box<dyn PartFile>>::new(), 0);
+        for place in parts.places {
+            for name in place.parts()? {
+                if !layout::part_of_sealed(&name).is_some_and(parts.is_needed) {
                     continue;
                 }
-                let number = part_number(&path, sealed.len())?;
+                let file = place.open(&name)?;
+                let number = part_number(file.path(), sealed.len())?;
                 let visit = &mut |path: &Path, entry| add(&mut index, &sealed, number, path, entry);
-                let file = sealed_part::open(&files, &path, plan, visit)?;
-                if own.as_ref().is_some_and(|(own, ..)| own == folder) {
+                sealed_part::read_list(&*file, plan, visit)?;
+                if own.as_ref().is_some_and(|(own, ..)| *own == place.name()) {
                     sealed_bytes += file.length()?;
                 }
                 sealed.push(file);
@@ -293,6 +287,28 @@ impl LocalStore {
     pub fn seal(mut self) -> Result<Option<PathBuf>, StoreError> {
         let own = self.own.take().ok_or_else(|| self.read_only())?;
         own.part.seal(&own.folder, &self.index())
+    }
+
+    /// Ends the own part as [`Self::seal`] does, sends it to a place, with whatever an earlier process left sealed in the folder, and removes the
+    /// folder. Returns where the part is then; `None` if there was nothing to send. If that fails, everything stays in the folder, and the same
+    /// part sends it when it is published again.
+    ///
+    /// # Errors
+    /// [`StoreError::ReadOnly`]; where the disk or the place fails.
+    pub fn publish(
+        mut self,
+        place: &dyn Publish,
+        should_stop: &dyn Fn() -> bool,
+    ) -> Result<Option<PathBuf>, StoreError> {
+        let own = self.own.take().ok_or_else(|| self.read_only())?;
+        own.part.seal(&own.folder, &self.index())?;
+        let mut published = None;
+        for path in sealed_paths(&self.files, &own.folder)? {
+            published = Some(place.publish(&path, should_stop)?);
+            self.files.remove(&path)?;
+        }
+        remove_all(&self.files, &own.folder)?;
+        Ok(published)
     }
 
     /// Gives the own part up: what was put into it is removed. Sealed parts stay as they are.
@@ -383,8 +399,8 @@ impl Artifacts for LocalStore {
     fn get(&self, key: Key) -> Result<Option<Vec<u8>>, StoreError> {
         let Some(place) = self.index().get(key) else { return Ok(None) };
         let (is_sealed, file) = match (&self.own, self.sealed.get(usize::from(place.part))) {
-            (_, Some(file)) => (true, file),
-            (Some(own), None) => (false, own.part.data()),
+            (_, Some(file)) => (true, &**file),
+            (Some(own), None) => (false, own.part.data() as &dyn PartFile),
             (None, None) => return Ok(None),
         };
         let mut bytes = vec![0; place.length as usize];
@@ -417,21 +433,37 @@ impl Artifacts for LocalStore {
     }
 }
 
+/// No part; for all of some places.
+const NO_PARTS: SealedParts<'static> = SealedParts { places: &[], is_needed: &|_| true };
+
+/// Fails unless all places are of this plan.
+fn check_plans(places: &[&dyn Place], plan: &PlanHash) -> Result<(), StoreError> {
+    for place in places {
+        let path = place.name().to_owned();
+        match place.stored_plan()? {
+            Some(stored) if stored.hash == *plan => {}
+            Some(_) => return Err(StoreError::OtherPlan { path }),
+            None => return Err(StoreError::NoStore { path }),
+        }
+    }
+    Ok(())
+}
+
 /// Adds an entry of a part. What another part holds too must be the same there.
 fn add(
     index: &mut Index,
-    sealed: &[OpenFile],
+    sealed: &[Box<dyn PartFile>],
     part: u16,
     path: &Path,
     entry: Entry,
 ) -> Result<(), StoreError> {
     let Entry { key, offset, length, crc } = entry;
-    if index.insert(key, Place { part, offset, length, crc }) {
+    if index.insert(key, Location { part, offset, length, crc }) {
         return Ok(());
     }
     match index.get(key) {
         Some(place) if place.part != part && (place.length, place.crc) != (length, crc) => {
-            let first = sealed.get(usize::from(place.part)).map_or(path, OpenFile::path);
+            let first = sealed.get(usize::from(place.part)).map_or(path, |file| file.path());
             Err(StoreError::Differs {
                 kind: key.kind,
                 item: key.item,
@@ -464,13 +496,10 @@ fn refuse_store(files: &Files, folder: &Path) -> Result<(), StoreError> {
     }
 }
 
-/// The sealed parts of a folder, by name.
-fn sealed_parts(files: &Files, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
-    let parts = folder.join(layout::PARTS);
-    let listed = files.list(&parts)?.unwrap_or_default();
-    let names =
-        listed.iter().filter(|entry| !entry.is_folder).filter_map(|entry| entry.name.to_str());
-    Ok(names.filter(|name| layout::is_sealed(name)).map(|name| parts.join(name)).collect())
+/// The paths of the sealed parts of a folder, by name.
+fn sealed_paths(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
+    let names = Folder::of(files, folder).parts()?;
+    Ok(names.into_iter().map(|name| folder.join(layout::PARTS).join(name)).collect())
 }
 
 /// Removes the scratch space of dead processes.
@@ -511,7 +540,7 @@ fn remove_all(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreEr
 fn remove_own_files(files: &Arc<Files>, folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
     let found = layout::look(files, folder)?.unwrap_or_default();
     let mut left: Vec<PathBuf> = found.foreign.iter().map(|name| folder.join(name)).collect();
-    for path in sealed_parts(files, folder)? {
+    for path in sealed_paths(files, folder)? {
         files.remove(&path)?;
     }
     let parts = folder.join(layout::PARTS);

@@ -6,7 +6,9 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use common::*;
-use corniche_store::{Artifacts, Key, LocalStore, OwnPart, StoreError, StoredPlan};
+use corniche_store::{
+    Artifacts, Folder, Key, LocalStore, OwnPart, SealedParts, StoreError, StoredPlan,
+};
 use corniche_testing::{Random, disks::MemoryDisk};
 
 fn own<'a>(folder: &'a Path, name: &'a str, plan: &'a StoredPlan) -> OwnPart<'a> {
@@ -63,8 +65,10 @@ fn parts_that_are_not_wanted_are_as_if_they_were_not_there() {
     let folder = Path::new("/data/first");
     make_part(&disk, folder, "heights-1-0-0", &keys(1, 0..40));
     let roads = make_part(&disk, folder, "roads", &keys(2, 0..3000));
-    let open = |wanted: &dyn Fn(&str) -> bool| {
-        LocalStore::open_some_parts(disk.disk(), &[folder], &plan().hash, None, wanted)
+    let place = Folder::new(disk.disk(), folder);
+    let open = |is_needed: &dyn Fn(&str) -> bool| {
+        let sealed = SealedParts { places: &[&place], is_needed };
+        LocalStore::open_places(disk.disk(), sealed, &plan().hash, None)
     };
     check_holds(&open(&|name| name == "heights-1-0-0").unwrap(), &all_of(keys(1, 0..40)));
     check_holds(&open(&|name| name.len() == 5).unwrap(), &all_of(keys(2, 0..3000)));

@@ -65,6 +65,14 @@ impl VirtualFile {
         if moved == 0 { Ok(size) } else { Err(io::Error::other("GDAL cannot find its end")) }
     }
 
+    /// Lets GDAL forget what it knows of a file on a server, so that it asks the server again.
+    pub fn forget(path: &Path) {
+        if let Ok(name) = c_name(path) {
+            // SAFETY: the argument is a C string that outlives the call.
+            unsafe { gdal_sys::VSICurlPartialClearCache(name.as_ptr()) }
+        }
+    }
+
     /// The `ETag` that a server gives for the file, which changes with its content; `None` if the server gives none, or the
     /// file is on no server.
     #[must_use]

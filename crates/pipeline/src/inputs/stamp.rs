@@ -18,8 +18,8 @@ const CLOCK: Duration = Duration::from_millis(20);
 pub(crate) enum Stamp {
     /// On disk: of a raster in an archive, the archive.
     File(PathBuf, FileState),
-    /// On a server: its size is all that is known of it.
-    Remote(PathBuf, u64),
+    /// On a server: its size, and its `ETag` if the server gives one.
+    Remote { path: PathBuf, bytes: u64, etag: Option<String> },
 }
 
 /// The content of a file cannot change without a change of one of these values: neither by writing, nor by exchanging the
@@ -42,7 +42,10 @@ impl Stamp {
     pub(crate) fn of_virtual(path: &Path) -> io::Result<Self> {
         match path.to_str().and_then(container) {
             Some(container) => Self::of_file(&container),
-            None => Ok(Self::Remote(path.to_path_buf(), VirtualFile::open(path)?.into_size()?)),
+            None => {
+                let bytes = VirtualFile::open(path)?.into_size()?;
+                Ok(Self::Remote { path: path.to_path_buf(), bytes, etag: VirtualFile::etag(path) })
+            }
         }
     }
 
@@ -54,7 +57,15 @@ impl Stamp {
                 Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
                 Err(error) => Err(error),
             },
-            Self::Remote(path, size) => Ok(VirtualFile::open(path)?.into_size()? == *size),
+            Self::Remote { path, bytes, etag } => {
+                // Else GDAL answers without asking the server.
+                VirtualFile::forget(path);
+                let now = VirtualFile::open(path)?.into_size()?;
+                match (etag, VirtualFile::etag(path)) {
+                    (Some(_), None) => Err(io::Error::other("the server does not tell its ETag")),
+                    (then, etag) => Ok(now == *bytes && etag == *then),
+                }
+            }
         }
     }
 }

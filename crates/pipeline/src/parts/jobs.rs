@@ -23,13 +23,18 @@ use list::{Costs, ExtractCosts, list, micros};
 use node_counts::nodes_by_tile;
 use tile_costs::TileCosts;
 
-use super::{needed_parts::has_roads, planned::open, stores::Stores};
+use super::{
+    needed_parts::has_roads,
+    planned::open,
+    stores::{GivenStores, Stores},
+};
 use crate::{
     BuildError, BuildPlan, PlanSettings, Resources,
     artifacts::{self, Kind},
     heights::data_tiles::DataTiles,
     inputs::InputKind,
     memory_shares::MemoryShares,
+    objects::ObjectAccess,
     plan::{Opened, rates},
     steps::roads,
     terrain::ground::GroundSource,
@@ -64,7 +69,7 @@ pub struct JobSettings {
 pub fn jobs(settings: &JobSettings) -> Result<Vec<Job>, BuildError> {
     let JobSettings { plan, stores, slots, least_seconds, resources, generator } = settings;
     let (_, opened) = open(plan, generator, *resources)?;
-    let pieces = if stores.is_empty() { None } else { piece_bytes(stores, plan)? };
+    let pieces = if stores.is_empty() { None } else { piece_bytes(stores, plan, *resources)? };
     let costs = costs(&opened, slots.get(), pieces)?;
     let least_us = least_seconds.map_or_else(|| costs.least_us(), micros);
     Ok(list(&costs, slots.get(), least_us))
@@ -90,10 +95,11 @@ pub fn plan_with_jobs(
 fn piece_bytes(
     stores: &[PathBuf],
     plan: &BuildPlan,
+    resources: Resources,
 ) -> Result<Option<Vec<(TileId, u64)>>, BuildError> {
-    let Some(store) = Stores::look(stores, plan, true)?.open_to_read(&has_roads)? else {
-        return Ok(None);
-    };
+    let given = GivenStores { names: stores, tmp: None };
+    let stores = Stores::look(given, plan, ObjectAccess::new(resources), true)?;
+    let Some(store) = stores.open_to_read(&has_roads)? else { return Ok(None) };
     if !roads::are_done(&store) {
         return Ok(None);
     }

@@ -3,14 +3,21 @@
 use std::path::PathBuf;
 
 use corniche_geom::TileId;
+use corniche_objects::Requests;
 use corniche_store::LocalStore;
 use corniche_tileset::Manifest;
 
-use super::{needed_parts::is_merged, planned::open, stores::Stores};
+use super::{
+    needed_parts::is_merged,
+    package::PackagePlace,
+    planned::open,
+    stores::{GivenStores, Stores},
+};
 use crate::{
     BuildError, BuildPlan, BuildSummary, Existing, Observer, Resources,
-    build::{destination::Destination, unfinished::Unfinished},
+    build::unfinished::Unfinished,
     context::Context,
+    objects::ObjectAccess,
     roads::partition::replay_defects,
     steps::{coarse_tiles, merge as sums, recorded_tiles},
     terrain::ground::GroundSource,
@@ -24,9 +31,11 @@ const OWN_PART: &str = "merge";
 pub struct MergeSettings {
     /// What is built.
     pub plan: BuildPlan,
-    /// Folders of parts. The first also holds intermediate results while the merge runs.
+    /// Folders of parts, or addresses in object storage. If the first is a folder, it also holds intermediate results while the merge runs.
     pub stores: Vec<PathBuf>,
-    /// The package to write.
+    /// Where intermediate results lie else, and a package that then goes to object storage; `None`: the system's folder for temporary files.
+    pub tmp: Option<PathBuf>,
+    /// The package to write: a file, or an address in object storage.
     pub output: PathBuf,
     /// What to do when the package exists.
     pub existing: Existing,
@@ -34,6 +43,15 @@ pub struct MergeSettings {
     pub resources: Resources,
     /// Program and version. It must be the one that made the plan.
     pub generator: String,
+}
+
+/// What came of it.
+#[derive(Debug, Clone)]
+pub struct MergeSummary {
+    /// The package.
+    pub package: BuildSummary,
+    /// What was asked of object storage; `None` if neither a store nor the package is there.
+    pub requests: Option<Requests>,
 }
 
 /// Writes the package of a plan from its parts: the same bytes as [`build`](crate::build) with the plan's settings. The stores stay as
@@ -44,20 +62,24 @@ pub struct MergeSettings {
 pub fn merge(
     settings: &MergeSettings,
     observer: &dyn Observer,
-) -> Result<BuildSummary, BuildError> {
-    let MergeSettings { plan, stores, output, existing, resources, generator } = settings;
-    let destination = Destination::of(output, *existing)?;
-    let stores = Stores::look(stores, plan, false)?;
+) -> Result<MergeSummary, BuildError> {
+    let MergeSettings { plan, stores, tmp, output, existing, resources, generator } = settings;
+    let mut access = ObjectAccess::new(*resources);
+    let place = PackagePlace::of(output, *existing, tmp.as_deref(), &mut access)?;
+    let destination = &place.destination;
+    let given = GivenStores { names: stores, tmp: tmp.as_deref() };
+    let stores = Stores::look(given, plan, access, false)?;
     let (plan_settings, opened) = open(plan, generator, *resources)?;
     destination.refuse_inputs(&plan_settings)?;
-    let finished = Unfinished::create(&destination)?;
+    let finished = Unfinished::create(destination)?;
     observer.temporary(finished.path());
-    let store = stores.open(OWN_PART, &is_merged)?;
-    let context = Context::new(&plan_settings, *resources, &opened, &store, observer);
+    let open_stores = stores.open(OWN_PART, &is_merged)?;
+    let store = &open_stores.store;
+    let context = Context::new(&plan_settings, *resources, &opened, store, observer);
     let wanted = sums::Target { finished: finished.path(), named: output };
-    let merged = run(&context, &store, &wanted)
-        .and_then(|manifest| Ok((manifest, finished.place(&destination)?)));
-    let abandoned = store.abandon();
+    let merged = run(&context, store, &wanted)
+        .and_then(|manifest| Ok((manifest, finished.place(destination)?)));
+    let abandoned = open_stores.abandon();
     let (manifest, package_bytes) = merged.map_err(|error| {
         // A changed input may be the cause of any other error, so it is reported instead.
         opened.inputs.changed_instead_of(error)
@@ -65,7 +87,9 @@ pub fn merge(
     if let Err(error) = abandoned {
         observer.warning(&format!("intermediate results were not removed: {error}"));
     }
-    Ok(BuildSummary { manifest, package_bytes })
+    place.send(observer)?;
+    let package = BuildSummary { manifest, package_bytes };
+    Ok(MergeSummary { package, requests: stores.requests() })
 }
 
 fn run(

@@ -3,19 +3,21 @@
 use std::path::PathBuf;
 
 use corniche_geom::TileId;
+use corniche_objects::Requests;
 use corniche_osm::Share;
 use corniche_store::LocalStore;
 
 use super::{
     needed_parts::{is_needed, part_name},
     planned::open,
-    stores::Stores,
+    stores::{GivenStores, Stores},
 };
 use crate::{
     BuildError, BuildPlan, Observer, Resources,
     build::warn,
     context::Context,
     inputs::InputError,
+    objects::ObjectAccess,
     steps::{hashes, heights, roads, shares, tiles, top},
 };
 
@@ -75,8 +77,10 @@ impl Step {
 pub struct PartSettings {
     /// What is built.
     pub plan: BuildPlan,
-    /// Folders of parts: all are read, and the first is written and made if it is not there.
+    /// Folders of parts, or addresses in object storage (`s3://BUCKET/PREFIX`): all are read, and the first is written and made if it is not there.
     pub stores: Vec<PathBuf>,
+    /// Where a part is made that then goes to object storage; `None`: the system's folder for temporary files.
+    pub tmp: Option<PathBuf>,
     /// The step to do.
     pub step: Step,
     /// For which tiles, of [steps with subtrees](Step::has_subtrees); `None`: all.
@@ -92,8 +96,10 @@ pub struct PartSettings {
 /// What came of it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PartSummary {
-    /// The part's file; `None` if all of it was in the stores already.
+    /// The part's file or address; `None` if all of it was in the stores already.
     pub sealed: Option<PathBuf>,
+    /// What was asked of object storage; `None` if no store is there.
+    pub requests: Option<Requests>,
 }
 
 /// Makes a part of a build and keeps it in the first store, as one file that is never changed again. If the run ends early, what was
@@ -105,7 +111,7 @@ pub fn make_part(
     settings: &PartSettings,
     observer: &dyn Observer,
 ) -> Result<PartSummary, BuildError> {
-    let PartSettings { plan, stores, step, subtree, share, resources, generator } = settings;
+    let PartSettings { plan, stores, tmp, step, subtree, share, resources, generator } = settings;
     if let (Some(subtree), false) = (subtree, step.has_subtrees()) {
         let why = format!("the step {} is done for all tiles at once; leave it out", step.name());
         return Err(BuildError::Subtree { subtree: *subtree, why });
@@ -116,7 +122,8 @@ pub fn make_part(
     }
     let scope = subtree.unwrap_or(TileId::ROOT);
     let share = share.unwrap_or(Share::WHOLE);
-    let stores = Stores::look(stores, plan, true)?;
+    let given = GivenStores { names: stores, tmp: tmp.as_deref() };
+    let stores = Stores::look(given, plan, ObjectAccess::new(*resources), true)?;
     let (plan_settings, opened) = open(plan, generator, *resources)?;
     let finest_level = opened.grid.frame.max_level();
     if scope.z() > finest_level {
@@ -124,20 +131,26 @@ pub fn make_part(
         return Err(BuildError::Subtree { subtree: scope, why });
     }
     let name = part_name(*step, scope, share);
-    let store = stores.open(&name, &|part| is_needed(*step, scope, share, part))?;
-    let context = Context::new(&plan_settings, *resources, &opened, &store, observer);
-    let made = make(&context, *step, (scope, share), &store);
+    let open = stores.open(&name, &|part| is_needed(*step, scope, share, part))?;
+    let store = &open.store;
+    let context = Context::new(&plan_settings, *resources, &opened, store, observer);
+    let made = make(&context, *step, (scope, share), store);
     // The plan says what the inputs were at the start. If they have changed since, nothing of the part may be used.
     match opened.inputs.check_unchanged() {
         Err(changed @ InputError::Changed { .. }) => {
-            store.abandon()?;
+            open.abandon()?;
             return Err(changed.into());
         }
         // One that cannot be looked at says nothing about what was made.
-        Err(unseen) => made.and(Err(unseen.into()))?,
-        Ok(()) => made?,
+        unchanged => {
+            if let Err(error) = made.and(unchanged.map_err(BuildError::from)) {
+                open.leave(observer);
+                return Err(error);
+            }
+        }
     }
-    Ok(PartSummary { sealed: store.seal()? })
+    let sealed = open.keep(observer)?;
+    Ok(PartSummary { sealed, requests: stores.requests() })
 }
 
 fn make(

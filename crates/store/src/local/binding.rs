@@ -6,23 +6,14 @@
 use std::{path::Path, sync::Arc};
 
 use crate::{
-    OpenMode, StoreError,
+    OpenMode, PlanHash, StoreError, StoredPlan,
     files::{Files, is_kind},
     local::{
-        header::{self, FileKind, HEADER_BYTES, PlanHash, u32_at, u64_at},
+        header::{self, FileKind, HEADER_BYTES, u32_at, u64_at},
         layout::{self, Found},
         lock,
     },
 };
-
-/// What a store is bound to.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct StoredPlan {
-    /// Says whether two plans are the same.
-    pub hash: PlanHash,
-    /// The plan as the caller writes it; the store only keeps it.
-    pub bytes: Vec<u8>,
-}
 
 /// What a folder is.
 pub(crate) enum FolderState {
@@ -54,14 +45,37 @@ pub(crate) fn state(files: &Files, folder: &Path) -> Result<(FolderState, Found)
     }
 }
 
-/// Makes a folder a store. If two processes do it at once with the same plan, nothing is wrong.
-pub(crate) fn bind(files: &Arc<Files>, folder: &Path, plan: &StoredPlan) -> Result<(), StoreError> {
+/// The content of a store's header, the file `store`.
+#[must_use]
+pub fn store_header(plan: &StoredPlan) -> Vec<u8> {
     let mut record = header::encode(FileKind::Store, &plan.hash).to_vec();
     record.extend((plan.bytes.len() as u64).to_le_bytes());
     record.extend(crc32fast::hash(&plan.bytes).to_le_bytes());
     let check = crc32fast::hash(&record[HEADER_BYTES as usize..]);
     record.extend(check.to_le_bytes());
+    record
+}
 
+/// The plan that a header, the content of the file `store` at `path`, says that `bytes` are.
+///
+/// # Errors
+/// [`StoreError::OtherVersion`]; [`StoreError::Damaged`] where the header is none, or they do not belong together.
+pub fn plan_of_header(
+    header: &[u8],
+    bytes: Vec<u8>,
+    path: &Path,
+) -> Result<StoredPlan, StoreError> {
+    let (hash, length, crc) = decode_header(header, path)?;
+    if bytes.len() as u64 != length || crc32fast::hash(&bytes) != crc {
+        let what = "it is not the plan that the store was made with";
+        return Err(FileKind::Store.damaged(&path.with_file_name(layout::PLAN), what));
+    }
+    Ok(StoredPlan { hash, bytes })
+}
+
+/// Makes a folder a store. If two processes do it at once with the same plan, nothing is wrong.
+pub(crate) fn bind(files: &Arc<Files>, folder: &Path, plan: &StoredPlan) -> Result<(), StoreError> {
+    let record = store_header(plan);
     for (name, bytes) in [(layout::PLAN, &plan.bytes), (layout::STORE, &record)] {
         let new = layout::new(folder, name, &lock::suffix());
         let file = files.open(&new, OpenMode::New)?;
@@ -85,7 +99,8 @@ fn sync_parent(files: &Files, folder: &Path) -> Result<(), StoreError> {
 
 /// The hash in a store's header.
 pub(crate) fn read_hash(files: &Arc<Files>, folder: &Path) -> Result<PlanHash, StoreError> {
-    read_header(files, folder).map(|(hash, ..)| hash)
+    let header = read_header(files, folder)?;
+    decode_header(&header, &folder.join(layout::STORE)).map(|(hash, ..)| hash)
 }
 
 /// As `read_hash`, and it must be `plan`.
@@ -103,7 +118,7 @@ pub(crate) fn check_hash(
 
 /// The plan that a store is bound to.
 pub(crate) fn read_plan(files: &Arc<Files>, folder: &Path) -> Result<StoredPlan, StoreError> {
-    let (hash, length, crc) = read_header(files, folder)?;
+    let header = read_header(files, folder)?;
     let path = folder.join(layout::PLAN);
     let bytes = match read_whole(files, &path) {
         Err(error) if is_kind(&error, std::io::ErrorKind::NotFound) => {
@@ -111,26 +126,25 @@ pub(crate) fn read_plan(files: &Arc<Files>, folder: &Path) -> Result<StoredPlan,
         }
         bytes => bytes?,
     };
-    if bytes.len() as u64 != length || crc32fast::hash(&bytes) != crc {
-        let what = "it is not the plan that the store was made with";
-        return Err(FileKind::Store.damaged(&path, what));
+    plan_of_header(&header, bytes, &folder.join(layout::STORE))
+}
+
+/// The content of the header of a folder that must be a store.
+fn read_header(files: &Arc<Files>, folder: &Path) -> Result<Vec<u8>, StoreError> {
+    match read_whole(files, &folder.join(layout::STORE)) {
+        Err(error) if is_kind(&error, std::io::ErrorKind::NotFound) => {
+            Err(StoreError::NoStore { path: folder.to_owned() })
+        }
+        bytes => bytes,
     }
-    Ok(StoredPlan { hash, bytes })
 }
 
 /// The plan's hash, length and CRC-32.
-fn read_header(files: &Arc<Files>, folder: &Path) -> Result<(PlanHash, u64, u32), StoreError> {
-    let path = folder.join(layout::STORE);
-    let bytes = match read_whole(files, &path) {
-        Err(error) if is_kind(&error, std::io::ErrorKind::NotFound) => {
-            return Err(StoreError::NoStore { path: folder.to_owned() });
-        }
-        bytes => bytes?,
-    };
-    let hash = header::decode(FileKind::Store, &bytes, &path)?;
+fn decode_header(bytes: &[u8], path: &Path) -> Result<(PlanHash, u64, u32), StoreError> {
+    let hash = header::decode(FileKind::Store, bytes, path)?;
     let rest = &bytes[HEADER_BYTES as usize..];
     if rest.len() != 16 || u32_at(rest, 12) != crc32fast::hash(&rest[..12]) {
-        return Err(FileKind::Store.damaged(&path, "its checksum is wrong"));
+        return Err(FileKind::Store.damaged(path, "its checksum is wrong"));
     }
     Ok((hash, u64_at(rest, 0), u32_at(rest, 8)))
 }

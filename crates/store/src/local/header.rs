@@ -9,15 +9,12 @@
 
 use std::path::Path;
 
-use crate::StoreError;
+use crate::{PlanHash, StoreError};
 
 /// The format that this version writes, and the only one that it reads.
 pub(crate) const VERSION: u32 = 1;
 /// Bytes of a header.
 pub(crate) const HEADER_BYTES: u64 = 48;
-
-/// SHA-256 of what a store is bound to.
-pub type PlanHash = [u8; 32];
 
 /// What a file is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use crate::Key;
 
 /// Where an artifact is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Place {
+pub(crate) struct Location {
     /// Which file it is in.
     pub(crate) part: u16,
     /// Bytes before it, below [`OFFSET_LIMIT`].
@@ -49,7 +49,7 @@ const FEWEST_RECENT: usize = 256;
 
 impl Index {
     /// Adds an artifact. `false`, and nothing changes, if there is one under this key.
-    pub(crate) fn insert(&mut self, key: Key, place: Place) -> bool {
+    pub(crate) fn insert(&mut self, key: Key, place: Location) -> bool {
         let kind = usize::from(key.kind);
         if kind >= self.kinds.len() {
             self.kinds.resize_with(kind + 1, OneKind::default);
@@ -62,7 +62,7 @@ impl Index {
         })
     }
 
-    pub(crate) fn get(&self, key: Key) -> Option<Place> {
+    pub(crate) fn get(&self, key: Key) -> Option<Location> {
         Some(self.kinds.get(usize::from(key.kind))?.get(key.item)?.place())
     }
 
@@ -73,7 +73,7 @@ impl Index {
     }
 
     /// All artifacts, by key.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = (Key, Place)> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (Key, Location)> {
         self.kinds.iter().enumerate().flat_map(|(number, kind)| {
             kind.entries()
                 .map(move |entry| (Key { kind: number as u8, item: entry.item }, entry.place()))
@@ -82,8 +82,8 @@ impl Index {
 }
 
 impl Entry {
-    fn place(self) -> Place {
-        Place {
+    fn place(self) -> Location {
+        Location {
             part: (self.place >> 48) as u16,
             offset: self.place & (OFFSET_LIMIT - 1),
             length: self.length,

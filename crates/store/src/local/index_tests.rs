@@ -4,9 +4,14 @@ use proptest::prelude::*;
 
 use super::*;
 
-fn place(number: u64) -> Place {
+fn place(number: u64) -> Location {
     let part = if number.is_multiple_of(3) { u16::MAX } else { number as u16 };
-    Place { part, offset: number * 977 % OFFSET_LIMIT, length: number as u32, crc: !number as u32 }
+    Location {
+        part,
+        offset: number * 977 % OFFSET_LIMIT,
+        length: number as u32,
+        crc: !number as u32,
+    }
 }
 
 proptest! {
@@ -37,7 +42,8 @@ proptest! {
 /// The largest values that an entry has room for come back.
 #[test]
 fn keeps_the_largest_values() {
-    let place = Place { part: u16::MAX, offset: OFFSET_LIMIT - 1, length: u32::MAX, crc: u32::MAX };
+    let place =
+        Location { part: u16::MAX, offset: OFFSET_LIMIT - 1, length: u32::MAX, crc: u32::MAX };
     let key = Key { kind: u8::MAX, item: u64::MAX };
     let mut index = Index::default();
     assert!(index.insert(key, place));

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use crate::{StoreError, files::Files};
 
 /// Header of the store; with it the folder is a store.
-pub(crate) const STORE: &str = "store";
+pub const STORE: &str = "store";
 /// The plan that the store is bound to, as the caller wrote it.
-pub(crate) const PLAN: &str = "plan.json";
+pub const PLAN: &str = "plan.json";
 /// Its lock says who works here.
 pub(crate) const LOCK: &str = "lock";
 /// Folder of the sealed parts.
-pub(crate) const PARTS: &str = "parts";
+pub const PARTS: &str = "parts";
 
 const JOURNAL: &str = ".journal";
 const DATA: &str = ".data";
@@ -63,19 +63,15 @@ pub(crate) fn sealed(folder: &Path, part: &str, digest: &str) -> PathBuf {
     folder.join(PARTS).join(format!("{part}.{digest}{SEALED}"))
 }
 
-pub(crate) fn is_sealed(name: &str) -> bool {
-    name.ends_with(SEALED)
+/// Which part a file name is that of (`NAME.DIGEST.part`); `None` if it is no name of a sealed part.
+#[must_use]
+pub fn part_of_sealed(file_name: &str) -> Option<&str> {
+    file_name.strip_suffix(SEALED)?.rsplit_once('.').map(|(part, _)| part)
 }
 
 /// The digest in the name of a sealed part.
 pub(crate) fn digest_of_sealed(name: &str) -> Option<&str> {
     name.strip_suffix(SEALED)?.rsplit_once('.').map(|(_, digest)| digest)
-}
-
-/// The name of a sealed part, without its digest.
-pub(crate) fn part_of_sealed(path: &Path) -> Option<&str> {
-    let name = path.file_name()?.to_str()?.strip_suffix(SEALED)?;
-    name.rsplit_once('.').map(|(part, _)| part)
 }
 
 /// Which open part a journal belongs to.

@@ -14,12 +14,12 @@ use std::{
 };
 
 use crate::{
-    Key, OpenMode, StoreError,
+    Key, OpenMode, PlanHash, StoreError,
     files::{Files, OpenFile, is_kind},
     local::{
         entry::{ENTRY_BYTES, Entry, Visit},
-        header::{self, FileKind, HEADER_BYTES, PlanHash},
-        index::{Index, OFFSET_LIMIT, Place},
+        header::{self, FileKind, HEADER_BYTES},
+        index::{Index, Location, OFFSET_LIMIT},
         layout, lock, sealed_part,
     },
 };
@@ -193,7 +193,7 @@ impl OpenPart {
         {
             // Nobody sees the artifact before its entry is in line: whatever is made from it gets a later entry.
             let mut pending = locked(&self.pending);
-            let place = Place { part: OPEN_PART, offset, length, crc };
+            let place = Location { part: OPEN_PART, offset, length, crc };
             if index.write().unwrap_or_else(PoisonError::into_inner).insert(key, place) {
                 pending.push(Entry { key, offset, length, crc });
             }
@@ -269,7 +269,7 @@ impl OpenPart {
         let mut entries = index
             .iter()
             .filter(|(_, place)| place.part == OPEN_PART)
-            .map(|(key, Place { offset, length, crc, .. })| Entry { key, offset, length, crc })
+            .map(|(key, Location { offset, length, crc, .. })| Entry { key, offset, length, crc })
             .peekable();
         let path = if entries.peek().is_none() {
             files.remove(self.data.path())?;

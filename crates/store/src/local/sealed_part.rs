@@ -16,25 +16,28 @@
 use std::{
     fmt::Write as _,
     path::{Path, PathBuf},
-    sync::Arc,
 };
 
 use sha2::{Digest as _, Sha256};
 
 use crate::{
-    Key, OpenMode, StoreError,
-    files::{Files, OpenFile},
+    Key, PartFile, PlanHash, StoreError,
+    files::OpenFile,
     local::{
         entry::{ENTRY_BYTES, Entry, Visit},
-        header::{self, FileKind, HEADER_BYTES, PlanHash, u32_at, u64_at},
+        header::{self, FileKind, HEADER_BYTES, u32_at, u64_at},
         layout,
     },
 };
 
 const FOOTER_BYTES: usize = 32;
 const FOOTER_MAGIC: &[u8; 8] = b"CORNSEAL";
-/// How many entries are read or written at once.
+/// How many entries are written at once.
 const ENTRIES_AT_ONCE: usize = 2048;
+/// How much of a list is read at once.
+const LIST_BYTES_AT_ONCE: u64 = 32_768 * ENTRY_BYTES as u64;
+/// How much of what lies before the footer is read with it.
+const TAIL_BYTES: u64 = 2048 * ENTRY_BYTES as u64;
 
 /// Ends a data file whose artifacts end at `end`, makes it durable and gives it its name in the folder of parts. `entries` are sorted by key.
 /// If the same part is there already, the file is removed.
@@ -81,24 +84,35 @@ pub(crate) fn seal(
     Ok(path)
 }
 
-/// Opens a sealed part and hands out what it holds, by key. The artifacts are not read: each is checked when it is.
-pub(crate) fn open(
-    files: &Arc<Files>,
-    path: &Path,
+/// Fails unless a file is a whole sealed part of this plan, and the one that its name says. The artifacts are not read: each is checked when
+/// it is.
+///
+/// # Errors
+/// [`StoreError::Damaged`], [`StoreError::OtherPlan`] and [`StoreError::OtherVersion`]; where it cannot be read.
+pub fn check_sealed(file: &dyn PartFile, plan: &PlanHash) -> Result<(), StoreError> {
+    read_list(file, plan, &mut |_, _| Ok(()))
+}
+
+/// Hands out what a sealed part holds, by key. What is wrong with it is noticed by the end of the list.
+pub(crate) fn read_list(
+    file: &dyn PartFile,
     plan: &PlanHash,
     visit: &mut Visit<'_>,
-) -> Result<OpenFile, StoreError> {
-    let file = files.open(path, OpenMode::Read)?;
+) -> Result<(), StoreError> {
+    let path = file.path();
     let damaged = |what| FileKind::Sealed.damaged(path, what);
     let length = file.length()?;
     let mut bytes = vec![0; length.min(HEADER_BYTES) as usize];
-    file.read_exact_at(&mut bytes, 0)?;
+    file.read_alone_at(&mut bytes, 0)?;
     header::check(FileKind::Sealed, &bytes, path, plan)?;
 
     let ended = length.checked_sub(FOOTER_BYTES as u64).filter(|&ended| ended >= HEADER_BYTES);
     let ended = ended.ok_or_else(|| damaged("it is too short"))?;
-    let mut footer = [0; FOOTER_BYTES];
-    file.read_exact_at(&mut footer, ended)?;
+    // The end of the list comes with the footer: of most parts that is all of it, and elsewhere than on a disk each reading takes long.
+    let tail_from = ended - (ended - HEADER_BYTES).min(TAIL_BYTES);
+    let mut tail = vec![0; (length - tail_from) as usize];
+    file.read_alone_at(&mut tail, tail_from)?;
+    let footer = tail.split_off((ended - tail_from) as usize);
     let (from, count) =
         decode_footer(&footer).ok_or_else(|| damaged("it does not end as a sealed part ends"))?;
     let entry_bytes = count.checked_mul(ENTRY_BYTES as u64);
@@ -112,8 +126,14 @@ pub(crate) fn open(
     let mut number = 0;
     while number < count {
         let offset = from + number * ENTRY_BYTES as u64;
-        bytes.resize((ended - offset).min((ENTRIES_AT_ONCE * ENTRY_BYTES) as u64) as usize, 0);
-        file.read_exact_at(&mut bytes, offset)?;
+        let end = ended.min(offset + LIST_BYTES_AT_ONCE);
+        match offset.checked_sub(tail_from) {
+            Some(at) => tail[at as usize..].clone_into(&mut bytes),
+            None => {
+                bytes.resize((end - offset) as usize, 0);
+                file.read_alone_at(&mut bytes, offset)?;
+            }
+        }
         for entry in bytes.chunks(ENTRY_BYTES) {
             let entry = Entry::decode(number, entry, from)
                 .filter(|entry| last.is_none_or(|last| last < entry.key))
@@ -128,7 +148,7 @@ pub(crate) fn open(
     if layout::digest_of_sealed(&name) != Some(&digest.finish()) {
         return Err(damaged("it holds something else than its name says"));
     }
-    Ok(file)
+    Ok(())
 }
 
 fn footer(from: u64, count: u64) -> [u8; FOOTER_BYTES] {
@@ -141,8 +161,10 @@ fn footer(from: u64, count: u64) -> [u8; FOOTER_BYTES] {
     bytes
 }
 
-fn decode_footer(bytes: &[u8; FOOTER_BYTES]) -> Option<(u64, u64)> {
-    let whole = &bytes[24..] == FOOTER_MAGIC && u32_at(bytes, 16) == crc32fast::hash(&bytes[..16]);
+fn decode_footer(bytes: &[u8]) -> Option<(u64, u64)> {
+    let whole = bytes.len() == FOOTER_BYTES
+        && &bytes[24..] == FOOTER_MAGIC
+        && u32_at(bytes, 16) == crc32fast::hash(&bytes[..16]);
     whole.then(|| (u64_at(bytes, 0), u64_at(bytes, 8)))
 }
 

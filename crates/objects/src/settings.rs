@@ -1,0 +1,123 @@
+//! What the environment says of object storage: the variables that Amazon's own programs read.
+
+use std::{env, time::Duration};
+
+use object_store::{
+    BackoffConfig, ClientOptions, RetryConfig,
+    aws::{AmazonS3Builder, AmazonS3ConfigKey},
+};
+
+use crate::ObjectError;
+
+/// How often what fails for a moment is tried again.
+#[derive(Debug, Clone, Copy)]
+pub struct Retries {
+    /// The most tries after the first one.
+    pub count: usize,
+    /// The pause before the first of them. Each later pause is longer, up to twice the one before, by chance.
+    pub first_pause: Duration,
+    /// The longest pause.
+    pub longest_pause: Duration,
+}
+
+impl Default for Retries {
+    /// Half a minute to two minutes in all: a server that asks for patience gets it.
+    fn default() -> Self {
+        Self {
+            count: 10,
+            first_pause: Duration::from_millis(200),
+            longest_pause: Duration::from_secs(15),
+        }
+    }
+}
+
+/// How object storage is reached.
+#[derive(Debug, Clone)]
+pub struct StorageSettings {
+    /// Environment variables and their values; those whose names begin with `AWS_` count.
+    pub variables: Vec<(String, String)>,
+    /// How often is tried.
+    pub retries: Retries,
+}
+
+/// No object takes as long as this, and no credentials live so short.
+const RETRY_TIMEOUT: Duration = Duration::from_secs(240);
+/// One request with its answer, of at most some 16 MiB.
+const REQUEST_TIMEOUT: Duration = Duration::from_secs(120);
+
+impl StorageSettings {
+    /// Those of the process.
+    #[must_use]
+    pub fn of_environment() -> Self {
+        let variables = env::vars_os().filter_map(|(name, value)| {
+            let name = name.into_string().ok().filter(|name| name.starts_with("AWS_"))?;
+            Some((name, value.into_string().ok()?))
+        });
+        Self { variables: variables.collect(), retries: Retries::default() }
+    }
+
+    /// The endpoint; `None` for Amazon's own.
+    #[must_use]
+    pub fn endpoint(&self) -> Option<&str> {
+        self.get("AWS_ENDPOINT_URL_S3").or_else(|| self.get("AWS_ENDPOINT_URL"))
+    }
+
+    /// Whether requests are not signed: for buckets that are open to all.
+    #[must_use]
+    pub fn is_unsigned(&self) -> bool {
+        self.get("AWS_SKIP_SIGNATURE")
+            .is_some_and(|value| matches!(value, "1" | "true" | "TRUE" | "True"))
+    }
+
+    /// The value of a variable that is not empty.
+    pub(crate) fn get(&self, name: &str) -> Option<&str> {
+        let found = self.variables.iter().rfind(|(other, _)| other == name);
+        found.map(|(_, value)| value.as_str()).filter(|value| !value.is_empty())
+    }
+
+    /// How a bucket is reached.
+    pub(crate) fn builder(&self, bucket: &str) -> Result<AmazonS3Builder, ObjectError> {
+        let endpoint = self.endpoint().unwrap_or_default();
+        let authority = endpoint.split_once("://").map_or(endpoint, |(_, rest)| rest);
+        let authority = authority.split('/').next().unwrap_or_default();
+        if authority.contains('@') {
+            let what = "AWS_ENDPOINT_URL must not hold a user name or a password".to_owned();
+            return Err(ObjectError::Settings { what });
+        }
+        if !endpoint.is_empty()
+            && !endpoint.starts_with("http://")
+            && !endpoint.starts_with("https://")
+        {
+            let what =
+                format!("AWS_ENDPOINT_URL must begin with http:// or https://, not {endpoint:?}");
+            return Err(ObjectError::Settings { what });
+        }
+        let mut options = ClientOptions::new()
+            .with_timeout(REQUEST_TIMEOUT)
+            .with_connect_timeout(Duration::from_secs(10));
+        // Whoever names an endpoint without TLS wants it so.
+        if endpoint.starts_with("http://") {
+            options = options.with_allow_http(true);
+        }
+        let Retries { count, first_pause, longest_pause } = self.retries;
+        let mut builder =
+            AmazonS3Builder::new().with_client_options(options).with_retry(RetryConfig {
+                backoff: BackoffConfig {
+                    init_backoff: first_pause,
+                    max_backoff: longest_pause,
+                    base: 2.0,
+                },
+                max_retries: count,
+                retry_timeout: RETRY_TIMEOUT,
+            });
+        for (name, value) in self.variables.iter().filter(|(_, value)| !value.is_empty()) {
+            // Other programs have further variables of this kind.
+            if let Ok(key) = name.to_ascii_lowercase().parse::<AmazonS3ConfigKey>()
+                && name.starts_with("AWS_")
+            {
+                builder = builder.with_config(key, value.clone());
+            }
+        }
+        Ok(builder.with_bucket_name(bucket))
+    }
+}

@@ -1,0 +1,180 @@
+//! Between `object_store` and the network: what passes is counted, and three things are done that `object_store` does not do.
+//!
+//! - The end of an upload in parts is made conditional (`If-None-Match: *`). S3 knows that, `object_store` asks for it only when it copies.
+//! - A refusal that no repetition can change ends at once, and with the words that S3 has for it.
+//! - A request that was cut off is made again also where it may have arrived: every request of this crate can be made twice.
+
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex, PoisonError},
+};
+
+use async_trait::async_trait;
+use object_store::{
+    ClientOptions, HeaderValue,
+    client::{
+        HttpClient, HttpConnector, HttpError, HttpErrorKind, HttpRequest, HttpResponse,
+        HttpResponseBody, HttpService, ReqwestConnector,
+    },
+};
+
+/// What passed so far, by the name of the method: how many requests, and the bytes of their bodies there and back.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Requests {
+    /// `GET`, `HEAD`, `PUT`, `POST`, `DELETE` and how often each was sent, repetitions included.
+    pub by_method: BTreeMap<String, u64>,
+    /// Bytes of bodies sent.
+    pub sent_bytes: u64,
+    /// Bytes of bodies received, as the answers announce them.
+    pub received_bytes: u64,
+}
+
+/// Counts of one [`Storage`](crate::Storage), shared by its buckets.
+#[derive(Debug, Default)]
+pub(crate) struct Counter(Mutex<Requests>);
+
+impl Counter {
+    pub(crate) fn so_far(&self) -> Requests {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    fn change(&self, change: impl FnOnce(&mut Requests)) {
+        change(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+}
+
+/// What an upload in parts does at its end where there is an object of that name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum AtTheEnd {
+    Refuse,
+    Replace,
+}
+
+/// Makes HTTP clients that are watched.
+#[derive(Debug)]
+pub(crate) struct Watch {
+    pub(crate) counter: Arc<Counter>,
+    pub(crate) at_the_end: AtTheEnd,
+}
+
+impl HttpConnector for Watch {
+    fn connect(&self, options: &ClientOptions) -> object_store::Result<HttpClient> {
+        let inner = ReqwestConnector::default().connect(options)?;
+        let Self { counter, at_the_end } = self;
+        let counter = Arc::clone(counter);
+        Ok(HttpClient::new(Watched { inner, counter, at_the_end: *at_the_end }))
+    }
+}
+
+#[derive(Debug)]
+struct Watched {
+    inner: HttpClient,
+    counter: Arc<Counter>,
+    at_the_end: AtTheEnd,
+}
+
+/// A refusal that no repetition can change.
+#[derive(Debug, thiserror::Error)]
+#[error("{status} {code}: {message}")]
+pub(crate) struct Refusal {
+    pub(crate) status: u16,
+    /// S3's word for it; empty where the answer has none.
+    pub(crate) code: String,
+    pub(crate) message: String,
+}
+
+/// The server sent the whole object where a part of it was asked for.
+#[derive(Debug, thiserror::Error)]
+#[error("the answer holds the whole object instead of the range that was asked for")]
+pub(crate) struct RangeIgnored;
+
+/// This machine gives no credentials.
+#[derive(Debug, thiserror::Error)]
+#[error("no credentials are set, and this machine gives none")]
+pub(crate) struct NoMachineCredentials;
+
+#[async_trait]
+impl HttpService for Watched {
+    async fn call(&self, mut request: HttpRequest) -> Result<HttpResponse, HttpError> {
+        let method = request.method().clone();
+        // Where machines of a cloud ask for credentials. Elsewhere nobody answers, however often one asks.
+        let is_metadata = request.uri().host().is_some_and(|host| host.starts_with("169.254."));
+        let has_range = request.headers().contains_key("range");
+        let is_end_of_upload = method.as_str() == "POST"
+            && request.uri().query().is_some_and(|query| query.contains("uploadId="));
+        if is_end_of_upload && self.at_the_end == AtTheEnd::Refuse {
+            // Only headers that begin with x-amz- must be signed.
+            request.headers_mut().insert("if-none-match", HeaderValue::from_static("*"));
+        }
+        let sent_bytes = request.body().content_length() as u64;
+        self.counter.change(|counts| {
+            *counts.by_method.entry(method.as_str().to_owned()).or_default() += 1;
+            counts.sent_bytes += sent_bytes;
+        });
+        let response = self.inner.execute(request).await.map_err(|error| {
+            let kind = error.kind();
+            match kind {
+                _ if is_metadata => HttpError::new(HttpErrorKind::Unknown, NoMachineCredentials),
+                HttpErrorKind::Interrupted | HttpErrorKind::Timeout | HttpErrorKind::Unknown => {
+                    HttpError::new(HttpErrorKind::Request, error)
+                }
+                _ => error,
+            }
+        })?;
+        let received = response.headers().get("content-length");
+        let received = received.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
+        if method.as_str() != "HEAD" {
+            self.counter.change(|counts| counts.received_bytes += received.unwrap_or_default());
+        }
+        let status = response.status();
+        if has_range && status.as_u16() == 200 {
+            return Err(HttpError::new(HttpErrorKind::Decode, RangeIgnored));
+        }
+        if status.is_success() || status.as_u16() == 304 {
+            return Ok(response);
+        }
+        if is_metadata {
+            return Err(HttpError::new(HttpErrorKind::Decode, NoMachineCredentials));
+        }
+        let (parts, body) = response.into_parts();
+        let body = body.bytes().await.unwrap_or_default();
+        let body = String::from_utf8_lossy(&body);
+        let code = element(&body, "Code");
+        let message = element(&body, "Message");
+        let is_final = match status.as_u16() {
+            300..=399 | 400 | 401 | 403 | 405 | 411 | 501 => true,
+            404 => code == "NoSuchBucket",
+            _ => false,
+        };
+        // With a request that took too long, the server asks to send it again.
+        if is_final && code != "RequestTimeout" {
+            let message = match parts.headers.get("x-amz-bucket-region") {
+                Some(region) if status.is_redirection() || status.as_u16() == 400 => {
+                    format!("the bucket is in the region {}", region.to_str().unwrap_or("?"))
+                }
+                _ if message.is_empty() => status.canonical_reason().unwrap_or_default().to_owned(),
+                _ => message,
+            };
+            let refusal = Refusal { status: status.as_u16(), code, message };
+            return Err(HttpError::new(HttpErrorKind::Decode, refusal));
+        }
+        // Short, so that it fits a message.
+        let told = if code.is_empty() { String::new() } else { format!("{code}: {message}") };
+        Ok(HttpResponse::from_parts(parts, HttpResponseBody::from(told)))
+    }
+}
+
+/// The text of the first element of this name, on one line and not too long; empty if there is none.
+fn element(xml: &str, name: &str) -> String {
+    const LONGEST: usize = 200;
+    let inside = xml
+        .split_once(&format!("<{name}>"))
+        .and_then(|(_, rest)| rest.split_once(&format!("</{name}>")))
+        .map_or("", |(text, _)| text);
+    let words: Vec<&str> = inside.split_whitespace().collect();
+    words.join(" ").chars().take(LONGEST).collect()
+}
+
+#[cfg(test)]
+#[path = "watch_tests.rs"]
+mod tests;

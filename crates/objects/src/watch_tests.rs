@@ -1,0 +1,13 @@
+use super::*;
+
+#[test]
+fn the_words_of_an_answer_are_found_and_kept_short() {
+    let xml = "<?xml version=\"1.0\"?><Error><Code>SlowDown</Code>\n<Message>Please reduce\n  your request rate.</Message></Error>";
+    assert_eq!(element(xml, "Code"), "SlowDown");
+    assert_eq!(element(xml, "Message"), "Please reduce your request rate.");
+    for odd in ["", "<Code>", "</Code><Code>", "<html>502</html>"] {
+        assert_eq!(element(odd, "Code"), "", "{odd}");
+    }
+    let long = format!("<Message>{}</Message>", "ö".repeat(5000));
+    assert_eq!(element(&long, "Message").chars().count(), 200);
+}

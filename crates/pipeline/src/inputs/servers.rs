@@ -1,0 +1,61 @@
+//! Inputs on servers: what users call them, what GDAL calls them, and how GDAL reaches them.
+
+use std::path::{Path, PathBuf};
+
+use corniche_dem::set_unless_set;
+use corniche_objects::{ObjectAddress, StorageSettings};
+
+use super::InputError;
+
+/// The name by which GDAL knows an input: `s3://BUCKET/NAME` is `/vsis3/BUCKET/NAME`, `https://…` is `/vsicurl/https://…`. Other names stay as they are.
+///
+/// # Errors
+/// Where it begins as an address in object storage and is none.
+pub fn input_name(path: PathBuf) -> Result<PathBuf, corniche_objects::ObjectError> {
+    let Some(text) = path.to_str() else { return Ok(path) };
+    if let Some(ObjectAddress { bucket, key }) = ObjectAddress::parse(text)? {
+        return Ok(format!("/vsis3/{bucket}/{key}").into());
+    }
+    if text.starts_with("https://") || text.starts_with("http://") {
+        return Ok(format!("/vsicurl/{text}").into());
+    }
+    Ok(path)
+}
+
+/// Tells GDAL how servers are reached, before it is asked for the first of these files. Its own settings count for more, and are left alone.
+pub(crate) fn reach_servers<'a>(
+    files: impl IntoIterator<Item = &'a Path>,
+) -> Result<(), InputError> {
+    let names: Vec<&str> = files.into_iter().filter_map(Path::to_str).collect();
+    if !names.iter().any(|name| name.contains("/vsi")) {
+        return Ok(());
+    }
+    for (option, value) in options(&StorageSettings::of_environment()) {
+        set_unless_set(option, &value)
+            .map_err(|error| InputError::Setting { what: format!("{option}: {error}") })?;
+    }
+    Ok(())
+}
+
+/// GDAL's options for what the environment says.
+fn options(settings: &StorageSettings) -> Vec<(&'static str, String)> {
+    let text = str::to_owned;
+    // What fails for a moment is tried again. GDAL does so only if it is told.
+    let mut options =
+        vec![("GDAL_HTTP_MAX_RETRY", text("8")), ("GDAL_HTTP_RETRY_DELAY", text("0.5"))];
+    if let Some(endpoint) = settings.endpoint() {
+        let is_plain = endpoint.starts_with("http://");
+        let host = endpoint.split_once("://").map_or(endpoint, |(_, host)| host);
+        options.push(("AWS_S3_ENDPOINT", text(host.trim_end_matches('/'))));
+        options.push(("AWS_HTTPS", text(if is_plain { "NO" } else { "YES" })));
+        options.push(("AWS_VIRTUAL_HOSTING", text("FALSE")));
+    }
+    if settings.is_unsigned() {
+        options.push(("AWS_NO_SIGN_REQUEST", text("YES")));
+    }
+    options
+}
+
+#[cfg(test)]
+#[path = "servers_tests.rs"]
+mod tests;

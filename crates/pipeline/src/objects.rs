@@ -1,0 +1,53 @@
+//! Object storage as a run uses it: one access for all names, within the memory that the run may use.
+
+use std::{path::Path, sync::Arc};
+
+use corniche_objects::{
+    BlockCache, Bucket, ObjectAddress, ObjectError, ObjectPlace, Requests, Storage, StorageSettings,
+};
+
+use crate::{Resources, memory_shares::MemoryShares};
+
+/// The address that a name is; `None` for names of files.
+pub(crate) fn address(name: &Path) -> Result<Option<ObjectAddress>, ObjectError> {
+    match name.to_str() {
+        Some(text) => ObjectAddress::parse(text),
+        None => Ok(None),
+    }
+}
+
+/// Access to object storage, made when it is first needed: without one, no thread is.
+pub(crate) struct ObjectAccess {
+    storage: Option<Storage>,
+    blocks: Arc<BlockCache>,
+}
+
+impl ObjectAccess {
+    pub(crate) fn new(resources: Resources) -> Self {
+        let blocks = MemoryShares::of(resources.memory_bytes).blocks;
+        Self { storage: None, blocks: Arc::new(BlockCache::new(blocks)) }
+    }
+
+    /// The store at an address.
+    pub(crate) fn place(&mut self, address: &ObjectAddress) -> Result<ObjectPlace, ObjectError> {
+        let blocks = Arc::clone(&self.blocks);
+        ObjectPlace::new(self.storage()?, address, &blocks)
+    }
+
+    pub(crate) fn bucket(&mut self, name: &str) -> Result<Bucket, ObjectError> {
+        self.storage()?.bucket(name)
+    }
+
+    /// What was asked of it so far; `None` if nothing is there.
+    pub(crate) fn requests(&self) -> Option<Requests> {
+        self.storage.as_ref().map(Storage::requests)
+    }
+
+    fn storage(&mut self) -> Result<&Storage, ObjectError> {
+        let storage = match self.storage.take() {
+            Some(storage) => storage,
+            None => Storage::new(StorageSettings::of_environment())?,
+        };
+        Ok(self.storage.insert(storage))
+    }
+}

@@ -1,0 +1,235 @@
+//! Object storage on the loopback: moto's server, a Python package that behaves like S3, and a proxy before it that can hold requests up.
+
+use std::{
+    env,
+    io::{BufRead as _, BufReader, Read as _, Write as _},
+    net::{Shutdown, TcpListener, TcpStream},
+    process::{Child, Command, Stdio},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use crate::{binary, skipped};
+
+/// Moto's server with an empty bucket `maps`; it ends with this.
+#[derive(Debug)]
+pub struct ObjectStorage {
+    server: Child,
+    /// Where it listens: address and port.
+    address: String,
+    proxy: Proxy,
+}
+
+impl Drop for ObjectStorage {
+    fn drop(&mut self) {
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+impl ObjectStorage {
+    /// `None`, and says why, where moto is not installed; in CI that is a failure.
+    ///
+    /// # Panics
+    /// When it does not start, or is not installed in CI.
+    #[must_use]
+    pub fn start() -> Option<Self> {
+        let python = env::var("CORNICHE_S3_PYTHON").unwrap_or_default();
+        let python = if python.is_empty() { "python3".to_owned() } else { python };
+        let found = Command::new(&python).args(["-c", "import moto.server"]).output();
+        if !found.is_ok_and(|found| found.status.success()) {
+            assert!(env::var_os("CI").is_none(), "CI needs moto[server] for {python}");
+            skipped("moto[server] is not installed (scripts/test installs it)");
+            return None;
+        }
+        let server = Command::new(&python)
+            .args(["-m", "moto.server", "-H", "127.0.0.1", "-p", "0"])
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn();
+        let Ok(mut server) = server else { panic!("moto does not start: {server:?}") };
+        let lines = server.stderr.take().map(|said| BufReader::new(said).lines());
+        let Some(mut lines) = lines else { panic!("moto says nothing") };
+        let mut said = Vec::new();
+        let address = loop {
+            let Some(Ok(line)) = lines.next() else { panic!("moto does not start: {said:?}") };
+            if let Some((_, address)) = line.split_once("Running on http://") {
+                break address.trim().to_owned();
+            }
+            said.push(line);
+        };
+        // It says a line for each request; nobody may let it wait.
+        thread::spawn(move || lines.for_each(drop));
+        let proxy = Proxy::start(&address);
+        let storage = Self { server, address, proxy };
+        assert_eq!(storage.ask("PUT", "/maps", b"").0, 200, "no bucket can be made");
+        Some(storage)
+    }
+
+    /// Puts an object into the bucket.
+    ///
+    /// # Panics
+    /// When it is refused.
+    pub fn put(&self, key: &str, bytes: &[u8]) {
+        let (status, _) = self.ask("PUT", &format!("/maps/{key}"), bytes);
+        assert_eq!(status, 200, "{key} cannot be put");
+    }
+
+    /// An object of the bucket, if it is there.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<Vec<u8>> {
+        let (status, bytes) = self.ask("GET", &format!("/maps/{key}"), b"");
+        (status == 200).then_some(bytes)
+    }
+
+    /// The keys of all objects of the bucket, ascending.
+    #[must_use]
+    pub fn keys(&self) -> Vec<String> {
+        self.texts("/maps?list-type=2", "Key")
+    }
+
+    /// The keys of uploads that were begun and neither completed nor ended.
+    #[must_use]
+    pub fn uploads(&self) -> Vec<String> {
+        self.texts("/maps?uploads", "Key")
+    }
+
+    fn texts(&self, target: &str, element: &str) -> Vec<String> {
+        let xml = self.ask("GET", target, b"").1;
+        let xml = String::from_utf8_lossy(&xml).into_owned();
+        let begin = format!("<{element}>");
+        let texts = xml.split(&begin).skip(1).filter_map(|part| part.split('<').next());
+        texts.map(str::to_owned).collect()
+    }
+
+    /// The proxy, through which [`Self::corniche`] goes.
+    #[must_use]
+    pub fn proxy(&self) -> &Proxy {
+        &self.proxy
+    }
+
+    /// The binary under test, with the variables that lead it here.
+    #[must_use]
+    pub fn command(&self) -> Command {
+        let mut command = Command::new(binary());
+        for (name, _) in env::vars_os() {
+            let name = name.to_string_lossy();
+            if name.starts_with("AWS_") || name.to_lowercase().ends_with("_proxy") {
+                command.env_remove(&*name);
+            }
+        }
+        command
+            .env("AWS_ENDPOINT_URL", format!("http://{}", self.proxy.address))
+            .env("AWS_ACCESS_KEY_ID", "tester")
+            .env("AWS_SECRET_ACCESS_KEY", "not-to-be-told")
+            .env("AWS_REGION", "us-east-1");
+        command
+    }
+
+    /// Asks the server itself; returns the status and the body.
+    fn ask(&self, method: &str, target: &str, body: &[u8]) -> (u16, Vec<u8>) {
+        let ask = || {
+            let mut stream = TcpStream::connect(&self.address)?;
+            // The date and the region in the name are no matter: signatures are not checked.
+            write!(
+                stream,
+                "{method} {target} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\nContent-Length: {}\r\n\
+                 Authorization: AWS4-HMAC-SHA256 Credential=tester/20261122/us-east-1/s3/aws4_request, \
+                 SignedHeaders=host, Signature=0\r\n\r\n",
+                self.address,
+                body.len()
+            )?;
+            stream.write_all(body)?;
+            let mut answer = Vec::new();
+            stream.read_to_end(&mut answer)?;
+            Ok::<_, std::io::Error>(answer)
+        };
+        let answer = ask().unwrap_or_else(|error| panic!("{method} {target}: {error}"));
+        let head = answer.windows(4).position(|bytes| bytes == b"\r\n\r\n").unwrap_or(0);
+        let text = String::from_utf8_lossy(&answer[..head]).into_owned();
+        let status = text.split(' ').nth(1).and_then(|word| word.parse().ok()).unwrap_or(0);
+        (status, answer.get(head + 4..).unwrap_or_default().to_vec())
+    }
+}
+
+/// Hands all on, and holds up what it is told to.
+#[derive(Debug, Clone)]
+pub struct Proxy {
+    address: String,
+    is_closed: Arc<AtomicBool>,
+    has_held: Arc<AtomicBool>,
+}
+
+impl Proxy {
+    fn start(server: &str) -> Self {
+        let listener = match TcpListener::bind("127.0.0.1:0") {
+            Ok(listener) => listener,
+            Err(error) => panic!("no port: {error}"),
+        };
+        let address = listener.local_addr().map(|address| address.to_string()).unwrap_or_default();
+        let proxy = Self { address, is_closed: Arc::default(), has_held: Arc::default() };
+        let (own, server) = (proxy.clone(), server.to_owned());
+        thread::spawn(move || {
+            for client in listener.incoming().flatten() {
+                let (own, server) = (own.clone(), server.clone());
+                thread::spawn(move || own.pass(&client, &server));
+            }
+        });
+        proxy
+    }
+
+    /// From now on requests that send a sealed part are held up.
+    pub fn close(&self) {
+        self.has_held.store(false, Ordering::SeqCst);
+        self.is_closed.store(true, Ordering::SeqCst);
+    }
+
+    /// From now on all passes.
+    pub fn open(&self) {
+        self.is_closed.store(false, Ordering::SeqCst);
+    }
+
+    /// Waits until a request is held up.
+    ///
+    /// # Panics
+    /// When none comes within a minute.
+    pub fn wait_until_held(&self) {
+        let begun = Instant::now();
+        while !self.has_held.load(Ordering::SeqCst) {
+            assert!(begun.elapsed() < Duration::from_mins(1), "no part is sent");
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    fn pass(&self, client: &TcpStream, server: &str) {
+        let pass = || {
+            let upstream = TcpStream::connect(server)?;
+            let (mut from, mut to) = (upstream.try_clone()?, client.try_clone()?);
+            thread::spawn(move || {
+                let _ = std::io::copy(&mut from, &mut to);
+                let _ = to.shutdown(Shutdown::Both);
+            });
+            let (mut from, mut to) = (client.try_clone()?, upstream);
+            let mut buffer = vec![0; 64 << 10];
+            loop {
+                let read = from.read(&mut buffer)?;
+                if read == 0 {
+                    return to.shutdown(Shutdown::Both);
+                }
+                let is_part = buffer[..read].starts_with(b"PUT ")
+                    && buffer[..read.min(200)].windows(7).any(|bytes| bytes == b"/parts/");
+                while is_part && self.is_closed.load(Ordering::SeqCst) {
+                    self.has_held.store(true, Ordering::SeqCst);
+                    thread::sleep(Duration::from_millis(5));
+                }
+                to.write_all(&buffer[..read])?;
+            }
+        };
+        // A connection that was cut is the client's matter.
+        let _ = pass();
+    }
+}

@@ -1,0 +1,270 @@
+//! A build in parts on object storage: inputs, stores and package there, the bytes of an ordinary build, whatever is killed on the way.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+#![cfg(unix)]
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Child, Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+use e2e::{ObjectStorage, Ran, corniche, ended, sample, text};
+use tempfile::TempDir;
+
+const STORE: &str = "s3://maps/alps/work";
+/// So that tiles take some seconds.
+const FINE: [&str; 2] = ["--max-error", "0.25"];
+const COARSE: [&str; 2] = ["--max-error", "10"];
+
+/// A plan from inputs on object storage, and what an ordinary build makes from the same files.
+struct Planned {
+    storage: ObjectStorage,
+    folder: TempDir,
+    plan: PathBuf,
+    tmp: PathBuf,
+    options: [&'static str; 2],
+    whole: Vec<u8>,
+}
+
+impl Planned {
+    /// `None` where there is no stand-in for object storage.
+    fn new(options: [&'static str; 2]) -> Option<Self> {
+        let storage = ObjectStorage::start()?;
+        let folder = tempfile::tempdir().unwrap();
+        let [plan, package, tmp] =
+            ["plan.json", "whole.pmtiles", "tmp"].map(|name| folder.path().join(name));
+        fs::create_dir(&tmp).unwrap();
+        let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
+        storage.put("in/pass-dem.tif", &fs::read(&dem).unwrap());
+        storage.put("in/pass.osm.pbf", &fs::read(&osm).unwrap());
+        let inputs = ["--dem", text(&dem), "--osm", text(&osm), "-q", "-o", text(&package)];
+        succeed(corniche([&["build"], &inputs[..], &options].concat()));
+        let whole = fs::read(package).unwrap();
+        let planned = Self { storage, folder, plan, tmp, options, whole };
+        succeed(planned.plan_with(&options, &planned.plan));
+        Some(planned)
+    }
+
+    fn plan_with(&self, options: &[&str], plan: &Path) -> Ran {
+        let inputs = ["--dem", "s3://maps/in/pass-dem.tif", "--osm", "s3://maps/in/pass.osm.pbf"];
+        self.run(&[&["plan"], &inputs[..], options, &["-o", text(plan)]].concat())
+    }
+
+    fn run(&self, arguments: &[&str]) -> Ran {
+        self.command(arguments).output().unwrap().into()
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = self.storage.command();
+        command.args(arguments);
+        command
+    }
+
+    fn subtrees(&self) -> Vec<String> {
+        let inputs = ["--dem", "s3://maps/in/pass-dem.tif", "--osm", "s3://maps/in/pass.osm.pbf"];
+        let command = [&["plan", "--subtrees", "1"], &inputs[..], &self.options].concat();
+        succeed(self.run(&command)).out.lines().map(str::to_owned).collect()
+    }
+
+    fn part<'a>(&'a self, step: &'a str, subtree: Option<&'a str>) -> Vec<&'a str> {
+        let mut command = vec!["part", text(&self.plan), "--threads", "2", "--step", step];
+        command.extend(subtree.into_iter().flat_map(|subtree| ["--subtree", subtree]));
+        command.extend(["--store", STORE, "--tmp", text(&self.tmp)]);
+        command
+    }
+
+    fn make(&self, step: &str, subtree: Option<&str>) -> Ran {
+        succeed(self.run(&self.part(step, subtree)))
+    }
+
+    fn merge(&self, output: &str, options: &[&str]) -> Ran {
+        let command = ["merge", text(&self.plan), "-o", output, "--store", STORE];
+        self.run(&[&command[..], &["--tmp", text(&self.tmp)], options].concat())
+    }
+
+    /// The package of what is in the store is that of the ordinary build, and nothing is left anywhere.
+    fn check_merged(&self) {
+        let package = self.folder.path().join("merged.pmtiles");
+        succeed(self.merge(text(&package), &["-q"]));
+        assert!(fs::read(&package).unwrap() == self.whole, "another package than build makes");
+        fs::remove_file(package).unwrap();
+        self.check_clean();
+    }
+
+    fn check_clean(&self) {
+        assert_eq!(fs::read_dir(&self.tmp).unwrap().count(), 0, "something is left in --tmp");
+        assert_eq!(self.storage.uploads(), [""; 0], "uploads are left");
+        let keys = self.storage.keys().into_iter();
+        let others: Vec<String> = keys
+            .filter(|key| !key.starts_with("alps/work/parts/"))
+            .filter(|key| !key.starts_with("in/") && !key.ends_with(".pmtiles"))
+            .collect();
+        assert_eq!(others, ["alps/work/plan.json", "alps/work/store"]);
+    }
+
+    /// How many parts of this name are in the store.
+    fn count(&self, part: &str) -> usize {
+        let begin = format!("alps/work/parts/{part}.");
+        self.storage.keys().iter().filter(|key| key.starts_with(&begin)).count()
+    }
+
+    /// Starts a part; its words are read at its end.
+    fn start(&self, step: &str, subtree: Option<&str>) -> Child {
+        let mut command = self.command(&self.part(step, subtree));
+        command.arg("--json-progress").stdout(Stdio::null()).stderr(Stdio::piped());
+        command.spawn().unwrap()
+    }
+
+    /// Bytes of the longest journal in `--tmp`.
+    fn journal_bytes(&self) -> u64 {
+        let folders = fs::read_dir(&self.tmp).unwrap().flatten();
+        let files = folders.filter_map(|folder| fs::read_dir(folder.path()).ok()).flatten();
+        let files = files.flatten().map(|file| file.path());
+        let journals = files.filter(|path| path.extension().is_some_and(|end| end == "journal"));
+        journals.filter_map(|path| Some(fs::metadata(path).ok()?.len())).max().unwrap_or(0)
+    }
+}
+
+#[track_caller]
+fn succeed(ran: Ran) -> Ran {
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    ran
+}
+
+fn kill(mut child: Child) {
+    child.kill().unwrap();
+    let _ = ended(&mut child);
+}
+
+/// Inputs, store and package are all in object storage; the parts are made one by one and some at once, some twice.
+#[test]
+fn a_build_on_object_storage_makes_the_bytes_of_a_build() {
+    let Some(planned) = Planned::new(COARSE) else { return };
+    let quarters = planned.subtrees();
+    assert_eq!(quarters.len(), 4);
+    let made = planned.make("hashes", None);
+    assert!(made.out.starts_with("s3://maps/alps/work/parts/hashes."), "{}", made.out);
+    assert!(made.err.contains("object storage:") && made.err.contains("GET"), "{}", made.err);
+    let again = planned.make("hashes", None);
+    assert_eq!(again.out, "", "it is there already");
+    planned.make("roads", None);
+    for subtree in &quarters {
+        planned.make("heights", Some(subtree));
+    }
+    // Two processes make the same part at once.
+    let both = [planned.start("top", None), planned.start("top", None)];
+    for mut child in both {
+        succeed(ended(&mut child));
+    }
+    let early = planned.merge(text(&planned.folder.path().join("early.pmtiles")), &[]);
+    assert_eq!(early.code, 2, "{}", early.err);
+    assert!(early.err.contains("--step tiles"), "{}", early.err);
+    let begun: Vec<Child> =
+        quarters.iter().chain(&quarters).map(|id| planned.start("tiles", Some(id))).collect();
+    for mut child in begun {
+        succeed(ended(&mut child));
+    }
+    for part in ["hashes", "roads", "top"] {
+        assert_eq!(planned.count(part), 1, "{part}");
+    }
+    assert_eq!(planned.storage.keys().iter().filter(|key| key.contains("/parts/")).count(), 11);
+    planned.check_merged();
+
+    // The package goes there, too: whole, once, and replaced only if that is asked for.
+    let merge = |options: &[&str]| planned.merge("s3://maps/alps/pass.pmtiles", options);
+    succeed(merge(&[]));
+    assert!(planned.storage.get("alps/pass.pmtiles").unwrap() == planned.whole);
+    let refused = merge(&[]);
+    assert_eq!(refused.code, 3, "{}", refused.err);
+    assert!(refused.err.contains("s3://maps/alps/pass.pmtiles"), "{}", refused.err);
+    planned.storage.put("alps/pass.pmtiles", b"an older one");
+    succeed(merge(&["-O"]));
+    assert!(planned.storage.get("alps/pass.pmtiles").unwrap() == planned.whole);
+    planned.check_clean();
+}
+
+#[test]
+fn stores_and_inputs_that_are_others_are_refused() {
+    let Some(planned) = Planned::new(COARSE) else { return };
+    planned.make("hashes", None);
+    let other = planned.folder.path().join("other.json");
+    succeed(planned.plan_with(&["--max-error", "5"], &other));
+    let command = |plan: &Path, store: &str| {
+        planned.run(&[
+            "part",
+            text(plan),
+            "--step",
+            "hashes",
+            "--store",
+            store,
+            "--tmp",
+            text(&planned.tmp),
+        ])
+    };
+    let refused = command(&other, STORE);
+    assert_eq!(refused.code, 2, "{}", refused.err);
+    assert!(refused.err.contains("max_error"), "{}", refused.err);
+    let nowhere = command(&planned.plan, "s3://mops/work");
+    assert_eq!(nowhere.code, 2, "{}", nowhere.err);
+    assert!(
+        nowhere.err.contains("mops") && !nowhere.err.contains("not-to-be-told"),
+        "{}",
+        nowhere.err
+    );
+    let taken = command(&planned.plan, "s3://maps/in");
+    assert_eq!(taken.code, 1, "{}", taken.err);
+    assert!(taken.err.contains("in/pass"), "{}", taken.err);
+    let no_merge = planned.run(&[
+        "merge",
+        text(&planned.plan),
+        "--store",
+        "s3://maps/none",
+        "-o",
+        "x.pmtiles",
+    ]);
+    assert_eq!(no_merge.code, 2, "{}", no_merge.err);
+    // An input that is exchanged makes another plan, because its ETag is another.
+    let mut dem = fs::read(sample("pass/pass-dem.tif")).unwrap();
+    dem.push(0);
+    planned.storage.put("in/pass-dem.tif", &dem);
+    let changed = command(&planned.plan, STORE);
+    assert_eq!(changed.code, 2, "{}", changed.err);
+    assert!(changed.err.contains("pass-dem.tif"), "{}", changed.err);
+}
+
+/// Killed while it is made, the part is gone on with; killed while it is sent, it is sent again. What was in the store before is all that is there.
+#[test]
+fn a_part_that_is_killed_is_made_and_sent_by_the_next() {
+    let Some(planned) = Planned::new(FINE) else { return };
+    for step in ["hashes", "roads", "heights", "top"] {
+        planned.make(step, None);
+    }
+    let mut child = planned.start("tiles", None);
+    let begun = Instant::now();
+    while planned.journal_bytes() <= 48 && matches!(child.try_wait(), Ok(None)) {
+        assert!(begun.elapsed() < Duration::from_mins(2), "no tile is made");
+        thread::sleep(Duration::from_millis(5));
+    }
+    kill(child);
+    assert!(planned.journal_bytes() > 48, "it was faster than the kill");
+    assert_eq!(planned.count("tiles-0-0-0"), 0);
+
+    planned.storage.proxy().close();
+    let mut child = planned.start("tiles", None);
+    planned.storage.proxy().wait_until_held();
+    assert!(matches!(child.try_wait(), Ok(None)));
+    kill(child);
+    planned.storage.proxy().open();
+    assert_eq!(planned.count("tiles-0-0-0"), 0);
+
+    let mut child = planned.start("tiles", None);
+    let ran = succeed(ended(&mut child));
+    let already = ran.err.lines().filter_map(|line| line.split_once("\"already\":"));
+    let already: Vec<&str> = already.map(|(_, rest)| rest).collect();
+    assert!(already.iter().any(|rest| !rest.starts_with('0')), "all is made again: {}", ran.err);
+    assert_eq!(planned.count("tiles-0-0-0"), 1);
+    planned.check_merged();
+}
