@@ -9,7 +9,8 @@ use std::{
 use corniche_pipeline::{BuildPlan, PartSettings, Requests};
 
 use crate::{
-    args::PartArgs, exit::ExitCode, failure::Failure, parent, progress::Progress, settings, table::bytes,
+    args::PartArgs, exit::ExitCode, failure::Failure, parent, progress::Progress, settings,
+    table::bytes,
 };
 
 pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {

@@ -35,7 +35,8 @@ impl ObjectAddress {
     }
 
     /// The key of an object beneath this one.
-    pub(crate) fn beneath(&self, name: &str) -> String {
+    #[must_use]
+    pub fn beneath(&self, name: &str) -> String {
         if self.key.is_empty() { name.to_owned() } else { format!("{}/{name}", self.key) }
     }
 

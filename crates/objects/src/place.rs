@@ -72,7 +72,9 @@ impl ObjectPlace {
         let own = [PLAN_NAME, STORE_NAME].map(|name| self.address.beneath(name));
         let (found, folders) = self.bucket.list(&self.address.key)?;
         let parts = self.parts_key();
-        let others = found.into_iter().map(|found| found.key).filter(|key| !own.contains(key));
+        // Programs that show folders make an object for the prefix itself.
+        let is_other = |key: &String| !own.contains(key) && *key != self.address.key;
+        let others = found.into_iter().map(|found| found.key).filter(is_other);
         let folders = folders.into_iter().filter(|folder| *folder != parts);
         match others.chain(folders).next() {
             Some(other) => Err(StoreError::NotAStore {
@@ -145,7 +147,8 @@ impl Publish for ObjectPlace {
         let key = self.address.beneath(PLAN_NAME);
         if !self.bucket.create(&key, plan.bytes.clone())? {
             // Someone else came first, now or before, and was perhaps killed before the header.
-            let bytes = self.bucket.get(&key)?.unwrap_or_default();
+            let missing = || ObjectError::Missing { name: self.bucket.address(&key).to_string() };
+            let bytes = self.bucket.get(&key)?.ok_or_else(missing)?;
             if bytes != plan.bytes {
                 return Ok(StoredPlan { hash: [0; 32], bytes });
             }
@@ -166,7 +169,10 @@ impl Publish for ObjectPlace {
         let key = format!("{}/{name}", self.parts_key());
         let address = PathBuf::from(self.bucket.address(&key).to_string());
         let upload = Upload { file: sealed, key: &key, existing: Existing::Keep, should_stop };
-        if self.find_part(name)?.is_none() {
+        if self.find_part(name)?.is_some() {
+            // Someone else sent it, perhaps after this machine had begun to.
+            self.bucket.end_earlier_upload(sealed)?;
+        } else {
             match self.bucket.upload(&upload) {
                 Ok(_) => return Ok(address),
                 Err(ObjectError::Exists { .. }) => {}

@@ -1,6 +1,6 @@
 //! What the environment says of object storage: the variables that Amazon's own programs read.
 
-use std::{env, time::Duration};
+use std::{env, fmt, time::Duration};
 
 use object_store::{
     BackoffConfig, ClientOptions, RetryConfig,
@@ -32,12 +32,20 @@ impl Default for Retries {
 }
 
 /// How object storage is reached.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct StorageSettings {
     /// Environment variables and their values; those whose names begin with `AWS_` count.
     pub variables: Vec<(String, String)>,
     /// How often is tried.
     pub retries: Retries,
+}
+
+impl fmt::Debug for StorageSettings {
+    /// The names of the variables alone: some of their values are secrets.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names: Vec<&str> = self.variables.iter().map(|(name, _)| name.as_str()).collect();
+        f.debug_struct("StorageSettings").field("variables", &names).finish_non_exhaustive()
+    }
 }
 
 /// No object takes as long as this, and no credentials live so short.
@@ -114,9 +122,13 @@ impl StorageSettings {
             // Other programs have further variables of this kind.
             if let Ok(key) = name.to_ascii_lowercase().parse::<AmazonS3ConfigKey>()
                 && name.starts_with("AWS_")
+                && !matches!(key, AmazonS3ConfigKey::Endpoint | AmazonS3ConfigKey::S3Endpoint)
             {
                 builder = builder.with_config(key, value.clone());
             }
+        }
+        if !endpoint.is_empty() {
+            builder = builder.with_endpoint(endpoint);
         }
         Ok(builder.with_bucket_name(bucket))
     }

@@ -149,7 +149,11 @@ impl Bucket {
         sent
     }
 
-    /// Ends the upload of an earlier process that was killed.
+    /// Ends the upload of a file by an earlier process that was killed.
+    pub(crate) fn end_earlier_upload(&self, file: &Path) -> Result<(), ObjectError> {
+        self.end_earlier(&Note::of(file))
+    }
+
     fn end_earlier(&self, note: &Note) -> Result<(), ObjectError> {
         let Some((key, id)) = note.read() else { return Ok(()) };
         let explain = |error| self.explain(&key, "end an earlier upload of", error);

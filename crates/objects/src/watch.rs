@@ -1,6 +1,7 @@
-//! Between `object_store` and the network: what passes is counted, and three things are done that `object_store` does not do.
+//! Between `object_store` and the network: what passes is counted, and four things are done that `object_store` does not do.
 //!
 //! - The end of an upload in parts is made conditional (`If-None-Match: *`). S3 knows that, `object_store` asks for it only when it copies.
+//! - That two write one object at the same moment (409) is no answer yet: the request is made again, and then one of them was first.
 //! - A refusal that no repetition can change ends at once, and with the words that S3 has for it.
 //! - A request that was cut off is made again also where it may have arrived: every request of this crate can be made twice.
 
@@ -114,7 +115,9 @@ impl HttpService for Watched {
         let response = self.inner.execute(request).await.map_err(|error| {
             let kind = error.kind();
             match kind {
-                _ if is_metadata => HttpError::new(HttpErrorKind::Unknown, NoMachineCredentials),
+                HttpErrorKind::Connect | HttpErrorKind::Timeout if is_metadata => {
+                    HttpError::new(HttpErrorKind::Unknown, NoMachineCredentials)
+                }
                 HttpErrorKind::Interrupted | HttpErrorKind::Timeout | HttpErrorKind::Unknown => {
                     HttpError::new(HttpErrorKind::Request, error)
                 }
@@ -133,10 +136,18 @@ impl HttpService for Watched {
         if status.is_success() || status.as_u16() == 304 {
             return Ok(response);
         }
-        if is_metadata {
+        // One that asks for patience has credentials.
+        if is_metadata && status.is_client_error() && status.as_u16() != 429 {
             return Err(HttpError::new(HttpErrorKind::Decode, NoMachineCredentials));
         }
-        let (parts, body) = response.into_parts();
+        let (mut parts, body) = response.into_parts();
+        // S3: "ConditionalRequestConflict", "OperationAborted"; `object_store` would take it for an object that is there.
+        if status.as_u16() == 409
+            && (method.as_str() == "PUT" || is_end_of_upload)
+            && let Ok(busy) = 503.try_into()
+        {
+            parts.status = busy;
+        }
         let body = body.bytes().await.unwrap_or_default();
         let body = String::from_utf8_lossy(&body);
         let code = element(&body, "Code");

@@ -54,7 +54,10 @@ impl Share {
     pub(crate) fn part_of(self, sizes: impl Iterator<Item = u64> + Clone) -> Range<usize> {
         let total: u64 = sizes.clone().sum();
         let of = u128::from(self.of);
-        let share_of = |before: u64| (u128::from(before) * of / u128::from(total.max(1))) as u16;
+        // Those of no size at the end begin behind everything, and belong to the last share.
+        let share_of = |before: u64| {
+            ((u128::from(before) * of / u128::from(total.max(1))) as u16).min(self.of - 1)
+        };
         let (mut before, mut range) = (0, 0..0);
         for size in sizes {
             let share = share_of(before);

@@ -41,8 +41,8 @@ pub use inputs::{PlannedInput, input_name};
 pub use machine::{MIN_MEMORY_BYTES, default_memory_bytes, machine_memory_bytes};
 pub use observer::{Observer, Silent, Stage, Unit};
 pub use parts::{
-    Job, JobSettings, MergeSettings, MergeSummary, PartSettings, PartSummary, Step, jobs, make_part, merge,
-    plan_with_jobs,
+    Job, JobSettings, MergeSettings, MergeSummary, PartSettings, PartSummary, Step, jobs,
+    make_part, merge, plan_with_jobs,
 };
 pub use plan::{
     BuildPlan, Estimate, FrcTableRecord, MemoryEstimate, PlannedGrid, PlannedLevel, Rates, plan,

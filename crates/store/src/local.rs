@@ -289,9 +289,9 @@ impl LocalStore {
         own.part.seal(&own.folder, &self.index())
     }
 
-    /// Ends the own part as [`Self::seal`] does, sends it to a place, with whatever an earlier process left sealed in the folder, and removes the
-    /// folder. Returns where the part is then; `None` if there was nothing to send. If that fails, everything stays in the folder, and the same
-    /// part sends it when it is published again.
+    /// Ends the own part as [`Self::seal`] does, and sends it to a place, with whatever an earlier process left sealed in the folder. Returns where
+    /// the part is then; `None` if there was nothing to send. If that fails, everything stays in the folder, and the same part sends it when it
+    /// is published again. What is sent is removed; the folder can then be [discarded](Self::discard).
     ///
     /// # Errors
     /// [`StoreError::ReadOnly`]; where the disk or the place fails.
@@ -307,7 +307,6 @@ impl LocalStore {
             published = Some(place.publish(&path, should_stop)?);
             self.files.remove(&path)?;
         }
-        remove_all(&self.files, &own.folder)?;
         Ok(published)
     }
 

@@ -22,15 +22,20 @@ pub fn input_name(path: PathBuf) -> Result<PathBuf, corniche_objects::ObjectErro
     Ok(path)
 }
 
-/// Tells GDAL how servers are reached, before it is asked for the first of these files. Its own settings count for more, and are left alone.
+/// Tells GDAL how servers are reached, before it is asked for the first of these files, which may be on servers, or name others that are. Its own
+/// settings count for more, and are left alone.
 pub(crate) fn reach_servers<'a>(
     files: impl IntoIterator<Item = &'a Path>,
 ) -> Result<(), InputError> {
-    let names: Vec<&str> = files.into_iter().filter_map(Path::to_str).collect();
-    if !names.iter().any(|name| name.contains("/vsi")) {
+    let settings = StorageSettings::of_environment();
+    let mut names = files.into_iter().filter_map(Path::to_str);
+    if !names.any(|name| name.contains("/vsi"))
+        && settings.endpoint().is_none()
+        && !settings.is_unsigned()
+    {
         return Ok(());
     }
-    for (option, value) in options(&StorageSettings::of_environment()) {
+    for (option, value) in options(&settings) {
         set_unless_set(option, &value)
             .map_err(|error| InputError::Setting { what: format!("{option}: {error}") })?;
     }

@@ -70,7 +70,7 @@ pub fn merge(
     let given = GivenStores { names: stores, tmp: tmp.as_deref() };
     let stores = Stores::look(given, plan, access, false)?;
     let (plan_settings, opened) = open(plan, generator, *resources)?;
-    destination.refuse_inputs(&plan_settings)?;
+    place.refuse_inputs(&plan_settings, &settings.stores)?;
     let finished = Unfinished::create(destination)?;
     observer.temporary(finished.path());
     let open_stores = stores.open(OWN_PART, &is_merged)?;

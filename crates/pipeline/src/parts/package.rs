@@ -6,11 +6,13 @@ use std::{
 };
 
 use corniche_objects::{Bucket, Existing as ExistingObject, ObjectAddress, ObjectError, Upload};
+use corniche_store::{PARTS_NAME, PLAN_NAME, STORE_NAME};
 use sha2::{Digest as _, Sha256};
+use tempfile::NamedTempFile;
 
 use crate::{
-    BuildError, Existing, Observer, build::destination::Destination, hex::hex,
-    objects::ObjectAccess,
+    BuildError, Existing, Observer, PlanSettings, build::destination::Destination, hex::hex,
+    objects::ObjectAccess, unfinished_file,
 };
 
 /// Where a package goes, looked at before any work is done.
@@ -25,8 +27,19 @@ struct PackageObject {
     bucket: Bucket,
     address: ObjectAddress,
     existing: Existing,
-    /// Holds nothing but the file.
-    folder: PathBuf,
+    /// Is locked until the package is sent. Its name follows from the address: of two merges of one package at once, one is refused.
+    _lock: NamedTempFile,
+    /// Holds nothing but the file and the lock. Dropped last.
+    _folder: EmptyFolder,
+}
+
+/// Removes a folder that is empty; one in which another merge is at work stays.
+struct EmptyFolder(PathBuf);
+
+impl Drop for EmptyFolder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir(&self.0);
+    }
 }
 
 impl PackagePlace {
@@ -45,10 +58,14 @@ impl PackagePlace {
             return Err(ObjectError::Address { text: address.to_string() }.into());
         }
         let bucket = access.bucket(&address.bucket)?;
-        if bucket.find(&address.key)?.is_some() && existing == Existing::Keep {
-            return Err(BuildError::Exists { path: output.to_path_buf() });
+        match bucket.find(&address.key)? {
+            Some(_) if existing == Existing::Keep => {
+                return Err(BuildError::Exists { path: output.to_path_buf() });
+            }
+            Some(_) => {}
+            // Only a list tells apart a bucket that is missing.
+            None => drop(bucket.list(&address.key)?),
         }
-        // The name follows from the address: of two merges of one package at once, one is refused.
         let digest = hex(&Sha256::digest(address.to_string().as_bytes()));
         let tmp = tmp.map_or_else(env::temp_dir, Path::to_path_buf);
         let folder = tmp.join(format!("corniche-{}-package", &digest[..16]));
@@ -58,9 +75,43 @@ impl PackagePlace {
             }
             _ => {}
         }
+        let lock = match unfinished_file(&folder.join("merge")) {
+            Ok(lock) => lock,
+            Err(error) if error.kind() == io::ErrorKind::ResourceBusy => {
+                return Err(BuildError::AtWork { path: output.to_path_buf() });
+            }
+            Err(source) => return Err(BuildError::Target { folder, source }),
+        };
         let file = folder.join(address.file_name());
         let destination = Destination::of(&file, Existing::Replace)?;
-        Ok(Self { destination, object: Some(PackageObject { bucket, address, existing, folder }) })
+        let object =
+            PackageObject { bucket, address, existing, _lock: lock, _folder: EmptyFolder(folder) };
+        Ok(Self { destination, object: Some(object) })
+    }
+
+    /// Fails if the package would replace one of the inputs, or an object of one of the stores.
+    pub(crate) fn refuse_inputs(
+        &self,
+        settings: &PlanSettings,
+        stores: &[PathBuf],
+    ) -> Result<(), BuildError> {
+        let Some(PackageObject { address: package, .. }) = &self.object else {
+            return self.destination.refuse_inputs(settings);
+        };
+        let name = PathBuf::from(format!("/vsis3/{}/{}", package.bucket, package.key));
+        if settings.terrain_files().iter().chain(&settings.osm).any(|input| *input == name) {
+            return Err(BuildError::TargetIsInput { path: name });
+        }
+        for store in stores {
+            let Some(address) = crate::objects::address(store)? else { continue };
+            let of_store = [PARTS_NAME, PLAN_NAME, STORE_NAME].map(|name| address.beneath(name));
+            let is_in =
+                |key: &String| package.key == *key || package.key.starts_with(&format!("{key}/"));
+            if address.bucket == package.bucket && of_store.iter().any(is_in) {
+                return Err(BuildError::TargetIsInput { path: store.clone() });
+            }
+        }
+        Ok(())
     }
 
     /// Sends the file that is complete now to where the package belongs.
@@ -78,8 +129,15 @@ impl PackagePlace {
             },
             should_stop: &|| observer.is_cancelled(),
         });
-        // Whatever came of it: the parts are in the stores, and merging them again takes little.
-        if let Err(error) = fs::remove_file(file) {
+        // Where it was stopped or refused: the parts are in the stores, and merging them again takes little.
+        let is_kept =
+            !matches!(sent, Ok(_) | Err(ObjectError::Stopped { .. } | ObjectError::Exists { .. }));
+        if is_kept {
+            let file = file.display();
+            observer.warning(&format!(
+                "the package is complete, but was not sent; it is kept as {file}"
+            ));
+        } else if let Err(error) = fs::remove_file(file) {
             observer.warning(&format!("{} was not removed: {error}", file.display()));
         }
         match sent {
@@ -88,12 +146,5 @@ impl PackagePlace {
             Err(ObjectError::Exists { name }) => Err(BuildError::Exists { path: name.into() }),
             Err(error) => Err(error.into()),
         }
-    }
-}
-
-impl Drop for PackageObject {
-    fn drop(&mut self) {
-        // Another merge may be at work in it, and then it stays.
-        let _ = fs::remove_dir(&self.folder);
     }
 }

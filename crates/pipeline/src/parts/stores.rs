@@ -1,7 +1,7 @@
 //! The stores that a part or a merge works with: folders, and prefixes in object storage.
 
 use std::{
-    env, fs,
+    env, fs, io,
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -22,6 +22,8 @@ use crate::{
 
 /// So many processes of one machine can make the same part at once.
 const MOST_COPIES: u32 = 16;
+/// So often a folder may be removed while it is being opened.
+const MOST_TRIES: u32 = 8;
 
 /// What a user says of stores.
 #[derive(Clone, Copy)]
@@ -113,6 +115,7 @@ impl<'a> Stores<'a> {
                 let folder = self.tmp.join(self.work_name(place.name(), name));
                 // Of two processes that make the same part, each has a folder of its own. After a kill the folder is free again.
                 let mut copies = (2..=MOST_COPIES).map(|copy| numbered(&folder, copy));
+                let mut tries_left = MOST_TRIES;
                 let mut folder = folder.clone();
                 let store = loop {
                     match self.open_in(&folder, name, is_needed, Hold::Alone) {
@@ -120,6 +123,12 @@ impl<'a> Stores<'a> {
                             Some(next) => folder = next,
                             None => return Err(StoreError::Locked { path, owner }.into()),
                         },
+                        // The process that made it removed the folder at this moment.
+                        Err(StoreError::Io { source, .. })
+                            if source.kind() == io::ErrorKind::NotFound && tries_left > 0 =>
+                        {
+                            tries_left -= 1;
+                        }
                         store => break store?,
                     }
                 };
@@ -188,10 +197,22 @@ impl OpenStores<'_> {
     pub(crate) fn keep(self, observer: &dyn Observer) -> Result<Option<PathBuf>, BuildError> {
         let Some((place, folder)) = self.sent else { return Ok(self.store.seal()?) };
         let sent = self.store.publish(place, &|| observer.is_cancelled());
-        sent.map_err(|error| {
+        let sent = sent.map_err(|error| {
             tell_of_what_is_kept(&folder, observer);
-            if observer.is_cancelled() { BuildError::Interrupted } else { error.into() }
-        })
+            if observer.is_cancelled() { BuildError::Interrupted } else { BuildError::from(error) }
+        })?;
+        // The part is where it belongs. What cannot be removed is no failure.
+        let left = match LocalStore::discard(Arc::new(SystemDisk), &folder) {
+            Ok(left) => left.into_iter().map(|path| path.display().to_string()).collect(),
+            // Another process begins to make the same part there.
+            Err(StoreError::Locked { .. } | StoreError::Gone { .. }) => Vec::new(),
+            Err(error) => vec![error.to_string()],
+        };
+        if !left.is_empty() {
+            let left = left.join(", ");
+            observer.warning(&format!("{} was not removed: {left}", folder.display()));
+        }
+        Ok(sent)
     }
 
     /// After a failure: what was done stays. The user is told where, if that is not the store.

@@ -18,6 +18,7 @@ from typing import Any, NoReturn
 
 from dask.system import CPU_COUNT
 from distributed import Client, LocalCluster
+from distributed.system import MEMORY_LIMIT
 
 from . import cost
 from .build import build
@@ -26,6 +27,10 @@ from .limits import SLOT, parse_bytes
 from .program import find_program, make_plan
 from .progress import Progress
 from .tasks import absolute, is_object_storage
+
+
+#: The share of this machine's memory that the workers of a local cluster have together.
+_LOCAL_MEMORY = 0.75
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -164,6 +169,8 @@ def _end(_: int, __: FrameType | None) -> NoReturn:
 @contextmanager
 def _client(given: argparse.Namespace) -> Iterator[Client]:
     if given.local is None:
+        if given.scheduler_file and not os.path.exists(given.scheduler_file):
+            print(f"waiting for a scheduler to write {given.scheduler_file}", file=sys.stderr)
         try:
             client = Client(scheduler_file=given.scheduler_file) if given.scheduler_file else Client(given.scheduler)
         except (OSError, ValueError) as error:
@@ -174,11 +181,12 @@ def _client(given: argparse.Namespace) -> Iterator[Client]:
     cluster = LocalCluster(
         n_workers=given.local,
         threads_per_worker=given.threads_per_worker or max(1, CPU_COUNT // given.local),
-        memory_limit=given.memory_limit or "auto",
+        # Dask's own choice gives each worker all memory if it has as many threads as there are processors.
+        memory_limit=given.memory_limit or int(MEMORY_LIMIT * _LOCAL_MEMORY) // given.local,
         resources={SLOT: 1},
         processes=True,
         host="127.0.0.1",
-        dashboard_address=":8787" if importlib.util.find_spec("bokeh") else ":0",
+        dashboard_address="127.0.0.1:8787" if importlib.util.find_spec("bokeh") else "127.0.0.1:0",
         # What fails is told by this command.
         silence_logs=logging.CRITICAL,
     )

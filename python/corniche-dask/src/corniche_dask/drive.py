@@ -50,7 +50,9 @@ class Slots:
     def _look(self) -> None:
         now = time.monotonic()
         if self._asked is None or now - self._asked > SLOTS_EVERY:
-            self._count, self._are_declared = slots_of(workers_of(self._client))
+            self._count, are_declared = slots_of(workers_of(self._client))
+            # Once for all: workers that declare slots may be away for a while, and must not come back to more parts than they have slots.
+            self._are_declared |= are_declared
             self._asked = now
 
 
@@ -120,6 +122,10 @@ class Drive(Generic[Result]):
             if not isinstance(error, KilledWorker):
                 raise error
             self._give_out_again(completed, future, job, error)
+        elif future.status in ("lost", "pending") and self._client.status == "running":
+            # The worker with the result died at this moment. Dask makes the part again, which finds it in the store.
+            self._jobs[future] = job
+            completed.add(future)
         else:
             raise lost(self._client)
 
@@ -137,6 +143,6 @@ class Drive(Generic[Result]):
         self._jobs.clear()
         if futures and self._client.status == "running":
             try:
-                self._client.cancel(futures, force=True)
+                self._client.cancel(futures)
             except Exception as error:  # noqa: BLE001  the error that ended the run is the one to tell
                 self._told(f"parts that are being made could not be cancelled: {error!r}")

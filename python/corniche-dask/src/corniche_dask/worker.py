@@ -18,7 +18,7 @@ from pathlib import Path
 from distributed import Reschedule, Worker, WorkerPlugin, get_worker
 
 from .child import Child, Ended
-from .errors import EXISTS, FAILED, UNUSABLE, CornicheError, PartFailed, ProgramError
+from .errors import EXISTS, FAILED, INTERRUPTED, UNUSABLE, CornicheError, PartFailed, ProgramError
 from .limits import Limits, limits_of
 from .program import environment_of_child, find_program, version_of
 from .tasks import PartResult, PartTask, Setting, is_object_storage, part_of_name
@@ -30,6 +30,8 @@ _lock = threading.Lock()
 _CLOSES_WITHIN = 3.0
 #: What a merge says while another process writes the same package.
 _BEING_BUILT = "is being built by another process"
+#: What a part says whose earlier step is not there.
+_NOT_IN_STORE = "not in the store"
 #: Seconds until it is tried again.
 _TRIES_EVERY = 2.0
 
@@ -211,11 +213,19 @@ def _judged(task: PartTask, worker: Worker, limits: Limits, ended: Ended) -> Par
             return _result(task, worker, limits, ended, name=task.setting.output, was_made=True)
         name, digest = part_of_name(ended.stdout)
         return _result(task, worker, limits, ended, name=name, digest=digest, was_made=name is not None)
+    if ended.exit_code == INTERRUPTED:
+        # Somebody sent a signal to all processes of the machine, which may be about to be taken away. The part goes on elsewhere.
+        time.sleep(_TRIES_EVERY)
+        raise Reschedule()
     how = f"exit code {ended.exit_code}" if ended.exit_code > 0 else f"ended by signal {-ended.exit_code}"
     if ended.exit_code < 0 and ended.usage.peak_bytes is not None:
         how += f" when it used {ended.usage.peak_bytes >> 20} MiB of {limits.memory_bytes >> 20} MiB"
     log = "\n".join(f"    {line}" for line in ended.log)
     message = f"part {job.id} ({job.title()}) failed on {worker.address}: {how}; the last lines of its log:\n{log}"
+    if any(_NOT_IN_STORE in line for line in ended.log):
+        # Network file systems show late what another machine wrote; the step before it has ended.
+        time.sleep(_TRIES_EVERY)
+        raise PartFailed(message)
     if ended.exit_code in (UNUSABLE, EXISTS):
         return _result(task, worker, limits, ended, exit_code=ended.exit_code, error=message)
     raise PartFailed(message)
