@@ -14,8 +14,10 @@ mod merge;
 mod needed_parts;
 mod part;
 mod planned;
+mod step;
 mod stores;
 
 pub use jobs::{Job, JobSettings, jobs, plan_with_jobs};
 pub use merge::{MergeSettings, merge};
-pub use part::{PartSettings, PartSummary, Step, make_part};
+pub use part::{PartSettings, PartSummary, make_part};
+pub use step::Step;

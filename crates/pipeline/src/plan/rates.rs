@@ -82,7 +82,7 @@ pub(crate) const VOID_TILE_SECONDS: f64 = 1.0e-3;
 /// Time to triangulate a coarse tile.
 pub(crate) const COARSE_TIN_SECONDS: f64 = 0.05;
 /// Time of the step *tiles* for each byte of road pieces.
-pub(crate) const TILE_SECONDS_PER_PIECE_BYTE: f64 = 0.5e-6;
+pub(crate) const TILE_SECONDS_PER_PIECE_BYTE: f64 = 0.6e-6;
 /// Time of the merge for each tile and for each byte of road pieces.
 pub(crate) const MERGE_SECONDS_PER_TILE: f64 = 0.3e-3;
 pub(crate) const MERGE_SECONDS_PER_PIECE_BYTE: f64 = 2.0e-9;
