@@ -15,8 +15,10 @@ mod needed_parts;
 mod package;
 mod part;
 mod planned;
+mod step;
 mod stores;
 
 pub use jobs::{Job, JobSettings, jobs, plan_with_jobs};
 pub use merge::{MergeSettings, MergeSummary, merge};
-pub use part::{PartSettings, PartSummary, Step, make_part};
+pub use part::{PartSettings, PartSummary, make_part};
+pub use step::Step;

@@ -40,8 +40,9 @@ use crate::{
     terrain::ground::GroundSource,
 };
 
-/// Shares of an extract for each slot: they are not all as much work.
-const SHARES_PER_SLOT: u64 = 2;
+/// Shares of an extract for each slot. They are not all as much work: ways take up to nine times as long as as many bytes of nodes, and nobody
+/// knows where the ways begin.
+const SHARES_PER_SLOT: u64 = 8;
 /// More shares are not worth it: each share of nodes reads the ways of all, and the step *roads* waits for the last of them.
 const MOST_SHARES: u64 = 64;
 

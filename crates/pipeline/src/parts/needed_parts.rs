@@ -3,7 +3,7 @@
 use corniche_geom::TileId;
 use corniche_osm::Share;
 
-use super::part::Step;
+use super::step::Step;
 use crate::heights::near::is_near;
 
 /// Whether the part with this name, without its digest, can hold what the step reads, or what it would make. If the name is none that

@@ -63,21 +63,21 @@ pub(crate) const STEPS_PER_MESH: f64 = 3.3;
 /// Share of the cores' time that the steps use.
 pub(crate) const CORES_BUSY: f64 = 0.9;
 
-/// What follows are times of single steps, for jobs: to start a process, and to open an input. A part is worth its start if its work takes
-/// many times as long.
-pub(crate) const PART_START_SECONDS: f64 = 0.1;
+/// What follows are times of single steps, for jobs: to start a process with its libraries, and to open an input beside the disk. A part is
+/// worth its start if its work takes many times as long.
+pub(crate) const PART_START_SECONDS: f64 = 0.07;
 pub(crate) const START_SECONDS_PER_INPUT: f64 = 0.5e-3;
 pub(crate) const PART_WORTH_STARTS: u64 = 20;
 /// Time to hash a byte.
-pub(crate) const SECONDS_PER_HASHED_BYTE: f64 = 1.0e-9;
-/// Times of the steps *ways*, *nodes* and *roads* for each byte of the extract.
-pub(crate) const WAY_SECONDS_PER_EXTRACT_BYTE: f64 = 0.06e-6;
-pub(crate) const NODE_SECONDS_PER_EXTRACT_BYTE: f64 = 0.06e-6;
-pub(crate) const ROAD_SECONDS_PER_EXTRACT_BYTE: f64 = 0.18e-6;
+pub(crate) const SECONDS_PER_HASHED_BYTE: f64 = 1.5e-9;
+/// Times of the steps *ways*, *nodes* and *roads* for each byte of an extract of roads alone, the most that there can be.
+pub(crate) const WAY_SECONDS_PER_EXTRACT_BYTE: f64 = 0.055e-6;
+pub(crate) const NODE_SECONDS_PER_EXTRACT_BYTE: f64 = 0.022e-6;
+pub(crate) const ROAD_SECONDS_PER_EXTRACT_BYTE: f64 = 0.09e-6;
 /// Shares of an extract with less than this are not worth the start of their processes.
-pub(crate) const LEAST_SHARE_BYTES: f64 = 32.0e6;
-/// Part of [`SECONDS_PER_NODE`] in the step *heights*: to read a node and to keep it.
-pub(crate) const HEIGHT_SECONDS_PER_NODE: f64 = 0.06e-6;
+pub(crate) const LEAST_SHARE_BYTES: f64 = 16.0e6;
+/// Part of [`SECONDS_PER_NODE`] in the step *heights*: to read a node and to keep it. Between 0.05e-6 for plain files and 0.18e-6 for packed ones.
+pub(crate) const HEIGHT_SECONDS_PER_NODE: f64 = 0.1e-6;
 /// Time for each node of a coarse raster.
 pub(crate) const RASTER_SECONDS_PER_NODE: f64 = 0.01e-6;
 /// Time of a step for a tile without data: to find that there is none, and to keep that.
@@ -85,7 +85,7 @@ pub(crate) const VOID_TILE_SECONDS: f64 = 1.0e-3;
 /// Time to triangulate a coarse tile.
 pub(crate) const COARSE_TIN_SECONDS: f64 = 0.05;
 /// Time of the step *tiles* for each byte of road pieces.
-pub(crate) const TILE_SECONDS_PER_PIECE_BYTE: f64 = 0.15e-6;
+pub(crate) const TILE_SECONDS_PER_PIECE_BYTE: f64 = 0.6e-6;
 /// Time of the merge for each tile and for each byte of road pieces.
-pub(crate) const MERGE_SECONDS_PER_TILE: f64 = 1.0e-3;
+pub(crate) const MERGE_SECONDS_PER_TILE: f64 = 0.3e-3;
 pub(crate) const MERGE_SECONDS_PER_PIECE_BYTE: f64 = 2.0e-9;

@@ -4,7 +4,7 @@ use corniche_osm::Share;
 use serde::Serialize;
 
 use super::tile_costs::{Subtree, TileCosts, tiles_above};
-use crate::{parts::part::Step, plan::rates};
+use crate::{parts::step::Step, plan::rates};
 
 /// No part is to be more than this part of what a slot has to do: with the largest first, slots then end nearly together.
 const PARTS_PER_SLOT: u64 = 8;
