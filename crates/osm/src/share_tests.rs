@@ -14,7 +14,9 @@ fn a_share_is_read_as_it_is_printed() {
 
 #[test]
 fn what_has_no_size_at_the_end_belongs_to_the_last_share() {
-    for (sizes, of, last) in [(&[5, 0][..], 1, 0..2), (&[5, 0], 3, 1..2), (&[0], 2, 1..1), (&[3, 3, 0, 0], 2, 1..4)] {
+    for (sizes, of, last) in
+        [(&[5, 0][..], 1, 0..2), (&[5, 0], 3, 1..2), (&[0], 2, 1..1), (&[3, 3, 0, 0], 2, 1..4)]
+    {
         let own = Share::new(of, of).unwrap().part_of(sizes.iter().copied());
         assert_eq!(own, last, "{sizes:?} in {of}");
     }
