@@ -8,6 +8,7 @@
 #   STORE     the store, as pods see it [default: /work/store], or s3://BUCKET/PREFIX
 #   PACKAGE   the package, as pods see it [default: /work/out.pmtiles]
 #   MEMORY    memory of each process [default: 1792M, for pods of 2Gi]
+#   LEAST     no part is made smaller than this without need, in estimated seconds on one core [default: what corniche jobs chooses]
 #
 # All other options are those of `corniche plan`, with paths as pods see them: run this in a pod with the same volume, or see to it that this machine
 # sees it at the same path. Change image, volume and resources in kubernetes-round.yaml. The same command goes on after anything was stopped.
@@ -20,7 +21,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 store=${STORE:-/work/store} package=${PACKAGE:-/work/out.pmtiles}
 
 corniche plan "$@" -o "$VOLUME/plan.json" -O
-corniche jobs "$VOLUME/plan.json" --slots "$SLOTS" >"$VOLUME/parts"
+corniche jobs "$VOLUME/plan.json" --slots "$SLOTS" ${LEAST:+--least-work "$LEAST"} >"$VOLUME/parts"
 options=(--threads 1 --memory "${MEMORY:-1792M}" --quiet --store "$store")
 number=0
 while next_round "$VOLUME/parts" "$VOLUME/round.json"; do

@@ -9,6 +9,7 @@
 #   PACKAGE   the package to write
 #   FOLDER    plan, lists of parts and logs; all nodes see it
 #   MEMORY    memory of each part, in MiB [default: 2048]; THREADS: processors of each [default: 1]; HOURS: time limit of each [default: 4]
+#   LEAST     no part is made smaller than this without need, in estimated seconds on one core [default: what corniche jobs chooses]
 #   SBATCH    more options for sbatch, such as "--partition long --account geo"
 #
 # Run it on a login node. All other options are those of `corniche plan`. If a part fails, the rounds after it stay in the queue and never begin:
@@ -23,7 +24,7 @@ memory=${MEMORY:-2048} threads=${THREADS:-1}
 mkdir -p "$FOLDER"
 plan=$FOLDER/plan.json
 corniche plan "$@" -o "$plan" -O
-corniche jobs "$plan" --slots "$SLOTS" >"$FOLDER/parts"
+corniche jobs "$plan" --slots "$SLOTS" ${LEAST:+--least-work "$LEAST"} >"$FOLDER/parts"
 # A sixteenth of the memory is for what Slurm counts beside the process.
 options=(--threads "$threads" --memory "$((memory - memory / 16))M" --quiet --store "$STORE")
 # Arrays have a largest size; a longer round is several arrays.

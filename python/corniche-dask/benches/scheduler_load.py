@@ -17,6 +17,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from distributed import Client, Future
 
@@ -55,7 +56,9 @@ def cluster(workers: int, threads: int) -> Iterator[tuple[str, int]]:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "scheduler.json"
         dask = [sys.executable, "-m", "dask"]
-        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": folder}
+        # As parts are: by name, so that no code goes over the wire.
+        environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent)}
+        quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": folder, "env": environment}
         begun = [subprocess.Popen([*dask, "scheduler", "--scheduler-file", str(file), "--port", "0", "--no-dashboard"], **quiet)]
         try:
             for _ in range(workers):
@@ -89,7 +92,7 @@ def main() -> None:
         flow = Flow(jobs(given.parts))
         made: list[PartResult] = []
 
-        def submit(job: Job) -> Future:
+        def submit(job: Job) -> Future[Any]:
             task = PartTask(key_of(SETTING, job), job, SETTING)
             return client.submit(empty_part, task, key=task.key, pure=True, retries=3, priority=int(flow.rank(job)))
 
@@ -110,4 +113,7 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    # Under the name by which workers know it.
+    import scheduler_load
+
+    scheduler_load.main()

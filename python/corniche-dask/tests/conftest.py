@@ -80,7 +80,7 @@ def local() -> Iterator[Callable[..., Client]]:
 
 
 def processes_of(word: str) -> dict[int, str]:
-    """Command lines of the processes of corniche, real or fake, that name this."""
+    """Command lines of the processes of ``corniche part`` and ``merge``, real or fake, that name this."""
     found = {}
     for folder in Path("/proc").iterdir():
         if folder.name.isdigit() and int(folder.name) != os.getpid():
@@ -88,7 +88,7 @@ def processes_of(word: str) -> dict[int, str]:
                 line = (folder / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
             except OSError:
                 continue
-            if word in line and "--die-with-parent" in line:
+            if word in line and (" part " in line or " merge " in line):
                 found[int(folder.name)] = line
     return found
 

@@ -2,7 +2,8 @@
 """Behaves like ``corniche`` towards its caller, and as its plan says: for tests of failures that the real program does not make on demand.
 
 The plan is JSON: ``generator``; ``jobs``, the lines of ``corniche jobs``; ``acts``, by a part's id: ``exit`` (exit code), ``times`` (only so often),
-``megabytes`` (memory to use), ``sleep`` (seconds, unless standard input ends). Each call is noted in a file named ``calls`` beside the plan's store.
+``megabytes`` (memory to use), ``sleep`` (seconds, unless standard input ends and ``--die-with-parent`` is given). Each call is noted in a file
+named ``calls`` beside the plan's store, with the process id.
 """
 
 import json
@@ -32,13 +33,16 @@ def main() -> int:
     held = bytearray(act.get("megabytes", 0) << 20)
     for page in range(0, len(held), 4096):
         held[page] = 1
-    end = time.monotonic() + act.get("sleep", 0)
+    seen = (store.parent / "calls").read_text().split().count(name)
+    is_act = seen <= act.get("times", 1000)
+    end = time.monotonic() + (act.get("sleep", 0) if is_act else 0)
     while time.monotonic() < end:
-        if select.select([sys.stdin], [], [], 0.05)[0] and not sys.stdin.buffer.read1(1024):
+        if "--die-with-parent" not in options:
+            time.sleep(0.05)
+        elif select.select([sys.stdin], [], [], 0.05)[0] and not sys.stdin.buffer.read1(1024):
             print("corniche: standard input has ended", file=sys.stderr)
             return 1
-    seen = (store.parent / "calls").read_text().split().count(name)
-    if "exit" in act and seen <= act.get("times", 1000):
+    if "exit" in act and is_act:
         print(json.dumps({"stage": "tiles", "state": "running"}), file=sys.stderr)
         print(f"corniche: the fake {name} was told to fail", file=sys.stderr)
         return int(act["exit"])

@@ -63,6 +63,10 @@ class Rig:
         command += ["--slots", str(NANNIES), "--least-work", str(LEAST_WORK), "--store", str(store), "-o", str(package)]
         return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=self._log, stderr=self._log)
 
+    def log(self) -> str:
+        """What all processes have told so far."""
+        return (self._folder / "cluster.log").read_text(errors="replace")
+
     def kill(self, kind: str, client: subprocess.Popen[bytes], store: Path, pick: int) -> bool:
         """Kills one of a kind, without a warning; false if there is none at this moment."""
         if kind == "client":

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import stat
 import sys
+import threading
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -124,6 +127,28 @@ def test_a_killed_child_is_made_again(tmp_path: Path, fake: str, two: Client) ->
     # An exit code below 0 is 247 for the caller: any other than 0, 2 and 3 is worth another try.
     made.build(two)
     assert made.calls().count("top") == 2
+
+
+def test_a_killed_worker_leaves_no_child_and_its_part_is_made_elsewhere(tmp_path: Path, fake: str, local: Local) -> None:
+    made = Made(tmp_path, fake, **{"heights-a": {"sleep": 600, "times": 1}})
+    killed = []
+
+    def kill_worker() -> None:
+        calls = made.store.parent / "calls"
+        while not killed:
+            begun = [call.split() for call in calls.read_text().splitlines()] if calls.exists() else []
+            for child in (int(pid) for name, pid in begun if name == "heights-a"):
+                worker = int(Path(f"/proc/{child}/stat").read_text().rsplit(")", 1)[1].split()[1])
+                os.kill(worker, signal.SIGKILL)
+                killed.append(child)
+            time.sleep(0.05)
+
+    thread = threading.Thread(target=kill_worker)
+    thread.start()
+    made.build(local(2))
+    thread.join()
+    none_left(str(made.store), within=5)
+    assert made.calls().count("heights-a") == 2 and made.package.exists()
 
 
 def test_another_version_on_a_worker_is_told_before_anything_is_made(tmp_path: Path, fake: str, local: Local) -> None:

@@ -76,3 +76,5 @@ def test_a_kill_changes_nothing(seed: int, rig: Rig, parts: int, planned: Planne
     assert package.read_bytes() == planned.bytes
     none_left(str(store), PATIENCE)
     planned.check_store(store, tmp_path)
+    if kind == "scheduler":
+        assert "is gone; what was made is in the store" in rig.log()
