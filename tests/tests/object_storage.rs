@@ -206,7 +206,7 @@ fn stores_and_inputs_that_are_others_are_refused() {
     };
     let refused = command(&other, STORE);
     assert_eq!(refused.code, 2, "{}", refused.err);
-    assert!(refused.err.contains("max_error"), "{}", refused.err);
+    assert!(refused.err.contains("--max-error is 5"), "{}", refused.err);
     let nowhere = command(&planned.plan, "s3://mops/work");
     assert_eq!(nowhere.code, 2, "{}", nowhere.err);
     assert!(

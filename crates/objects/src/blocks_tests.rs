@@ -6,8 +6,8 @@ use std::{
 
 use super::*;
 
-fn block(bytes: u64, with: u8) -> Result<Bytes, ()> {
-    Ok(vec![with; bytes as usize].into())
+fn block(bytes: u64, with: u8) -> Bytes {
+    vec![with; bytes as usize].into()
 }
 
 #[test]
@@ -22,7 +22,7 @@ fn the_blocks_used_last_are_kept_within_the_limit() {
     let cache = BlockCache::new(4 << 20);
     let size = cache.block_bytes();
     for number in 0..100 {
-        cache.get((1, number), || block(size, number as u8)).unwrap();
+        cache.get((1, number), || Ok::<_, ()>(block(size, number as u8))).unwrap();
         // One that is used again and again stays.
         let again = cache.get((1, 0), || Err::<Bytes, _>(number)).unwrap();
         assert_eq!(again, vec![0; size as usize]);
@@ -51,7 +51,7 @@ fn many_threads_fetch_a_block_once_and_a_failure_is_not_kept() {
                 let bytes = cache.get((1, 7), || {
                     fetched.fetch_add(1, Ordering::Relaxed);
                     thread::sleep(Duration::from_millis(20));
-                    block(1000, 7)
+                    Ok::<_, ()>(block(1000, 7))
                 });
                 assert_eq!(bytes.unwrap().len(), 1000);
             });

@@ -49,9 +49,9 @@ impl fmt::Debug for StorageSettings {
 }
 
 /// No object takes as long as this, and no credentials live so short.
-const RETRY_TIMEOUT: Duration = Duration::from_secs(240);
+const RETRY_TIMEOUT: Duration = Duration::from_mins(4);
 /// One request with its answer, of at most some 16 MiB.
-const REQUEST_TIMEOUT: Duration = Duration::from_secs(120);
+const REQUEST_TIMEOUT: Duration = Duration::from_mins(2);
 
 impl StorageSettings {
     /// Those of the process.

@@ -45,7 +45,7 @@ fn open(
     is_needed: &dyn Fn(&str) -> bool,
 ) -> Result<LocalStore, StoreError> {
     let plan = plan();
-    let own = OwnPart { folder, name, plan: &plan, interval: Duration::ZERO };
+    let own = OwnPart { folder, name, plan: &plan, interval: Duration::MAX };
     let sealed = SealedParts { places: &[place], is_needed };
     LocalStore::open_places(Arc::new(SystemDisk), sealed, &plan.hash, Some((own, Hold::Alone)))
 }

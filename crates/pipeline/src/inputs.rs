@@ -127,7 +127,7 @@ impl Inputs {
         package: &Path,
         osm: Option<&Path>,
     ) -> Result<Self, InputError> {
-        reach_servers(osm.into_iter())?;
+        reach_servers(osm)?;
         let mut files = vec![Input::new(InputKind::Terrain, package)?];
         if let Some(path) = osm {
             files.push(Input::new(InputKind::Osm, path)?);

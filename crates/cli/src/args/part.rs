@@ -50,7 +50,7 @@ pub(crate) struct PlannedArgs {
     /// The plan, made with corniche plan -o
     #[arg(value_name = "PLAN.json")]
     pub(crate) plan: PathBuf,
-    /// Folders with parts, or prefixes in object storage (s3://BUCKET/PREFIX). All are read; the first is also written
+    /// Folders with parts, or prefixes in object storage (`s3://BUCKET/PREFIX`). All are read; the first is also written
     #[arg(long, value_name = "FOLDER", num_args = 1.., required = true)]
     pub(crate) store: Vec<PathBuf>,
     /// With object storage: where a part or a package is made before it is sent [default: the system's temporary folder]
@@ -105,7 +105,7 @@ pub(crate) struct JobsArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct MergeArgs {
-    /// The package to write (.pmtiles): a file, or an object (s3://BUCKET/NAME.pmtiles)
+    /// The package to write (.pmtiles): a file, or an object (`s3://BUCKET/NAME.pmtiles`)
     #[arg(short, long, value_name = "PACKAGE")]
     pub(crate) output: PathBuf,
     /// Replace the package if it exists, once the new one is complete; if it is a link, replace the file it leads to

@@ -60,16 +60,9 @@ fn decoded(text: &str) -> String {
     while let Some((&first, after)) = rest.split_first() {
         let code = after.get(..2).and_then(|digits| std::str::from_utf8(digits).ok());
         let code = code.and_then(|digits| u8::from_str_radix(digits, 16).ok());
-        match code.filter(|_| first == b'%') {
-            Some(code) => {
-                bytes.push(code);
-                rest = &after[2..];
-            }
-            None => {
-                bytes.push(first);
-                rest = after;
-            }
-        }
+        let coded = code.filter(|_| first == b'%');
+        bytes.push(coded.unwrap_or(first));
+        rest = if coded.is_some() { &after[2..] } else { after };
     }
     String::from_utf8_lossy(&bytes).into_owned()
 }
@@ -101,14 +94,13 @@ impl Answer {
 
     /// Sends it, at most so many bytes of its body.
     pub(crate) fn send(&self, stream: &mut TcpStream, method: &str, most: usize) -> io::Result<()> {
-        let mut head = format!("HTTP/1.1 {} Answer\r\n", self.status);
+        write!(stream, "HTTP/1.1 {} Answer\r\n", self.status)?;
         for (name, value) in &self.headers {
-            head.push_str(&format!("{name}: {value}\r\n"));
+            write!(stream, "{name}: {value}\r\n")?;
         }
         if !self.headers.iter().any(|(name, _)| name == "Content-Length") {
-            head.push_str(&format!("Content-Length: {}\r\n", self.body.len()));
+            write!(stream, "Content-Length: {}\r\n", self.body.len())?;
         }
-        stream.write_all(head.as_bytes())?;
         stream.write_all(b"\r\n")?;
         if method != "HEAD" {
             stream.write_all(&self.body[..self.body.len().min(most)])?;

@@ -1,7 +1,7 @@
 //! Object storage in memory, behind HTTP on the loopback.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     io::{self, BufReader},
     net::{Shutdown, TcpListener, TcpStream},
     sync::{Arc, Mutex, MutexGuard},
@@ -256,7 +256,7 @@ impl State {
 
     fn list(&self, request: &Request) -> Answer {
         let prefix = request.query.get("prefix").cloned().unwrap_or_default();
-        let (mut found, mut folders) = (String::new(), std::collections::BTreeSet::new());
+        let (mut found, mut folders) = (Vec::new(), BTreeSet::new());
         for (path, object) in &self.objects {
             let key = path.strip_prefix("maps/").unwrap();
             let Some(rest) = key.strip_prefix(&prefix) else { continue };
@@ -264,16 +264,14 @@ impl State {
                 folders.insert(format!("{prefix}{folder}/"));
                 continue;
             }
-            found.push_str(&format!(
-                "<Contents><Key>{key}</Key><LastModified>2026-11-22T10:00:00Z</LastModified><ETag>{}</ETag><Size>{}</Size></Contents>",
-                object.etag.replace('"', "&quot;"),
-                object.bytes.len()
+            let (etag, size) = (object.etag.replace('"', "&quot;"), object.bytes.len());
+            found.push(format!(
+                "<Contents><Key>{key}</Key><LastModified>2026-11-22T10:00:00Z</LastModified><ETag>{etag}</ETag><Size>{size}</Size></Contents>",
             ));
         }
-        for folder in folders {
-            found.push_str(&format!("<CommonPrefixes><Prefix>{folder}</Prefix></CommonPrefixes>"));
-        }
-        Answer::new(200, format!("<ListBucketResult>{found}</ListBucketResult>"))
+        let folder = |folder| format!("<CommonPrefixes><Prefix>{folder}</Prefix></CommonPrefixes>");
+        found.extend(folders.into_iter().map(folder));
+        Answer::new(200, format!("<ListBucketResult>{}</ListBucketResult>", found.concat()))
     }
 }
 

@@ -40,13 +40,11 @@ impl Stamp {
 
     /// Of a name that GDAL's virtual file systems understand.
     pub(crate) fn of_virtual(path: &Path) -> io::Result<Self> {
-        match path.to_str().and_then(container) {
-            Some(container) => Self::of_file(&container),
-            None => {
-                let bytes = VirtualFile::open(path)?.into_size()?;
-                Ok(Self::Remote { path: path.to_path_buf(), bytes, etag: VirtualFile::etag(path) })
-            }
+        if let Some(container) = path.to_str().and_then(container) {
+            return Self::of_file(&container);
         }
+        let bytes = VirtualFile::open(path)?.into_size()?;
+        Ok(Self::Remote { path: path.to_path_buf(), bytes, etag: VirtualFile::etag(path) })
     }
 
     /// Whether the file is still there and what it was; an error where it cannot be looked at.

@@ -38,7 +38,7 @@ pub(crate) struct GivenStores<'a> {
 pub(crate) struct Stores<'a> {
     disk: Arc<dyn Disk>,
     /// Each once; the first is written, too.
-    stores: Vec<OneStore>,
+    all: Vec<OneStore>,
     plan: &'a BuildPlan,
     stored: StoredPlan,
     tmp: PathBuf,
@@ -93,7 +93,7 @@ impl<'a> Stores<'a> {
             return Err(BuildError::Start { what: "no store is given".to_owned() });
         }
         let tmp = given.tmp.map_or_else(env::temp_dir, Path::to_path_buf);
-        Ok(Self { disk, stores, plan, stored: wanted, tmp, access })
+        Ok(Self { disk, all: stores, plan, stored: wanted, tmp, access })
     }
 
     /// Opens those of their parts that `is_needed` asks for by their names, and a part of this name to write: in the first store if that is a
@@ -103,7 +103,7 @@ impl<'a> Stores<'a> {
         name: &str,
         is_needed: &dyn Fn(&str) -> bool,
     ) -> Result<OpenStores<'_>, BuildError> {
-        match self.stores.first() {
+        match self.all.first() {
             None => Err(BuildError::Start { what: "no store is given".to_owned() }),
             Some(OneStore::Folder(folder)) => {
                 let store = self.open_in(folder.name(), name, is_needed, Hold::Shared)?;
@@ -162,7 +162,7 @@ impl<'a> Stores<'a> {
         is_needed: &dyn Fn(&str) -> bool,
         hold: Hold,
     ) -> Result<LocalStore, StoreError> {
-        let places: Vec<&dyn Place> = self.stores.iter().map(OneStore::place).collect();
+        let places: Vec<&dyn Place> = self.all.iter().map(OneStore::place).collect();
         let sealed = SealedParts { places: &places, is_needed };
         let own = OwnPart { folder, name, plan: &self.stored, interval: SYNC_INTERVAL };
         let disk = Arc::clone(&self.disk);

@@ -127,12 +127,11 @@ pub(crate) fn read_list(
     while number < count {
         let offset = from + number * ENTRY_BYTES as u64;
         let end = ended.min(offset + LIST_BYTES_AT_ONCE);
-        match offset.checked_sub(tail_from) {
-            Some(at) => tail[at as usize..].clone_into(&mut bytes),
-            None => {
-                bytes.resize((end - offset) as usize, 0);
-                file.read_alone_at(&mut bytes, offset)?;
-            }
+        if let Some(at) = offset.checked_sub(tail_from) {
+            tail[at as usize..].clone_into(&mut bytes);
+        } else {
+            bytes.resize((end - offset) as usize, 0);
+            file.read_alone_at(&mut bytes, offset)?;
         }
         for entry in bytes.chunks(ENTRY_BYTES) {
             let entry = Entry::decode(number, entry, from)
