@@ -3,7 +3,8 @@
 #
 #   SLOTS=4 STORE=work PACKAGE=out.pmtiles examples/clusters/gnu-parallel.sh --dem dem.tif --osm roads.osm.pbf
 #
-#   SLOTS     parts that are made at once, on all machines together
+#   SLOTS     parts that are made at once, on each machine
+#   MACHINES  how many machines there are [default: 1]
 #   STORE     a folder that all machines see, or s3://BUCKET/PREFIX
 #   PACKAGE   the package to write
 #   MEMORY    memory of each process [default: 1G]; each has one thread
@@ -16,6 +17,8 @@ set -euo pipefail
 . "$(dirname "$0")/rounds.sh"
 : "${SLOTS:?}" "${STORE:?}" "${PACKAGE:?}"
 
+slots=$((SLOTS * ${MACHINES:-1}))
+
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 # A plan that is the same every time, so a second run goes on. It lies beside the package, where other machines see it.
@@ -23,12 +26,13 @@ plan=$(realpath -m "$PACKAGE").plan.json
 corniche plan "$@" -o "$plan" -O >/dev/null
 options=(--threads 1 --memory "${MEMORY:-1G}" --quiet --store "$STORE")
 
-corniche jobs "$plan" --slots "$SLOTS" ${LEAST:+--least-work "$LEAST"} >"$work/jobs"
+corniche jobs "$plan" --slots "$slots" ${LEAST:+--least-work "$LEAST"} >"$work/jobs"
 while next_round "$work/jobs" "$work/round"; do
     # A part that fails is tried three times. What was done of it is kept.
     commands "$work/round" "$plan" "$PACKAGE" "${options[@]}" | parallel --jobs "$SLOTS" --retries 3 --halt soon,fail=1
     end_round "$work/round"
     # Once the roads are in the store, the work of each tile is known better.
-    corniche jobs "$plan" --slots "$SLOTS" ${LEAST:+--least-work "$LEAST"} --store "$STORE" >"$work/jobs"
+    corniche jobs "$plan" --slots "$slots" ${LEAST:+--least-work "$LEAST"} --store "$STORE" >"$work/jobs"
 done
+check_all_made
 rm "$plan"

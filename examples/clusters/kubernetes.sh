@@ -33,7 +33,7 @@ while next_round "$VOLUME/parts" "$VOLUME/round.json"; do
         -e "s|completions: .*|completions: $count|" -e "s|parallelism: .*|parallelism: $SLOTS|" -e "s|backoffLimit: .*|backoffLimit: $((3 * count))|" \
         "$here/kubernetes-round.yaml" | kubectl apply -f -
     while true; do
-        state=$(kubectl get job "corniche-round-$number" -o 'jsonpath={.status.conditions[?(@.status=="True")].type}')
+        state=$(kubectl get job "corniche-round-$number" -o 'jsonpath={.status.conditions[?(@.status=="True")].type}') || state=''
         case " $state " in
         *" Complete "*) break ;;
         *" Failed "*) echo "round $number failed; kubectl logs job/corniche-round-$number tells why" >&2 && exit 1 ;;
@@ -42,3 +42,4 @@ while next_round "$VOLUME/parts" "$VOLUME/round.json"; do
     done
     end_round "$VOLUME/round.json"
 done
+check_all_made

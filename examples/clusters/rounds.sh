@@ -10,8 +10,16 @@ done_steps='[]'
 next_round() {
     jq -c --slurp --argjson done "$done_steps" '
         map(select((.step as $step | $done | index($step) | not) and (.after - $done) == []))
-        | sort_by(-.work) | .[]' "$1" >"$2"
+        | sort_by(-.work) | .[]' "$1" >"$2" || exit 1
     [ -s "$2" ]
+}
+
+# check_all_made: fails unless the last round was the package's.
+check_all_made() {
+    case $done_steps in
+    *'"merge"'*) ;;
+    *) echo "the list of parts ended before the package" >&2 && exit 1 ;;
+    esac
 }
 
 # end_round ROUND: its steps are made.

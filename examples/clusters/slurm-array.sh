@@ -45,4 +45,5 @@ while next_round "$FOLDER/parts" "$FOLDER/round"; do
     before=$(IFS=:; echo "${ids[*]}")
     end_round "$FOLDER/round"
 done
+check_all_made
 echo "the package will be $PACKAGE, when job $before is done"

@@ -57,13 +57,33 @@ fn make(
     items: impl IntoIterator<Item = u64>,
 ) -> Result<Option<String>, StoreError> {
     let folder = tempfile::tempdir().unwrap();
-    let store = open(&folder.path().join("work"), name, place, &|_| true)?;
+    let work = folder.path().join("work");
+    let store = open(&work, name, place, &|_| true)?;
     for item in items {
         store.put(key(item), &artifact(item))?;
     }
     let sent = store.publish(place, &|| false)?;
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "its folder is removed");
+    nothing_is_left(&work);
     Ok(sent.map(|path| path.display().to_string()))
+}
+
+/// Nothing of a part is left where it was made, once it is sent.
+fn nothing_is_left(work: &Path) {
+    let parts = fs::read_dir(work.join("parts"));
+    assert_eq!(parts.map_or(0, Iterator::count), 0, "what is sent is removed");
+    assert!(LocalStore::discard(Arc::new(SystemDisk), work).unwrap().is_empty());
+    assert!(!work.exists());
+}
+
+/// S3 answers 409 to one of two that write an object at the same moment. That says nothing about what is there.
+#[test]
+fn what_is_refused_because_another_writes_at_that_moment_is_written_again() {
+    let server = Server::start();
+    let place = place(&server);
+    let fault = Fault::Error(409, "ConditionalRequestConflict", "try again");
+    server.break_with(first(3, fault, |request| request.method == "PUT"));
+    assert_eq!(place.bind(&plan()).unwrap(), plan());
+    assert!(make(&place, "heights", 0..3).unwrap().is_some());
 }
 
 #[test]
@@ -251,5 +271,5 @@ fn a_part_that_could_not_be_sent_is_sent_by_the_next_try() {
     assert!((0..60).all(|item| store.has(key(item))), "nothing is made again");
     store.publish(&place, &|| false).unwrap().unwrap();
     assert_eq!(place.parts().unwrap().len(), 1);
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    nothing_is_left(&work);
 }
