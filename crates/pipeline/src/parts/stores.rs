@@ -143,7 +143,7 @@ impl<'a> Stores<'a> {
         is_needed: &dyn Fn(&str) -> bool,
     ) -> Result<Option<LocalStore>, BuildError> {
         let mut places: Vec<&dyn Place> = Vec::new();
-        for store in &self.stores {
+        for store in &self.all {
             if store.place().stored_plan()?.is_some() {
                 places.push(store.place());
             }
