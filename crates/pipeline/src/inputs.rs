@@ -97,10 +97,14 @@ pub(crate) enum InputError {
     Interrupted,
 }
 
+fn setting(what: String) -> InputError {
+    InputError::Setting { what }
+}
+
 impl Inputs {
     /// Finds all files and notes what they are, before anything of them is read for use.
     pub(crate) fn find(dem: &[PathBuf], osm: Option<&Path>) -> Result<Self, InputError> {
-        reach_servers(dem.iter().map(PathBuf::as_path).chain(osm))?;
+        reach_servers(dem.iter().map(PathBuf::as_path).chain(osm)).map_err(setting)?;
         let mut files: Vec<Input> = Vec::new();
         for path in dem {
             // The stamp is taken before GDAL reads the file for the names of its parts.
@@ -127,7 +131,7 @@ impl Inputs {
         package: &Path,
         osm: Option<&Path>,
     ) -> Result<Self, InputError> {
-        reach_servers(osm)?;
+        reach_servers(osm).map_err(setting)?;
         let mut files = vec![Input::new(InputKind::Terrain, package)?];
         if let Some(path) = osm {
             files.push(Input::new(InputKind::Osm, path)?);

@@ -5,8 +5,6 @@ use std::path::{Path, PathBuf};
 use corniche_dem::set_unless_set;
 use corniche_objects::{ObjectAddress, StorageSettings};
 
-use super::InputError;
-
 /// The name by which GDAL knows an input: `s3://BUCKET/NAME` is `/vsis3/BUCKET/NAME`, `https://…` is `/vsicurl/https://…`. Other names stay as they are.
 ///
 /// # Errors
@@ -23,10 +21,8 @@ pub fn input_name(path: PathBuf) -> Result<PathBuf, corniche_objects::ObjectErro
 }
 
 /// Tells GDAL how servers are reached, before it is asked for the first of these files, which may be on servers, or name others that are. Its own
-/// settings count for more, and are left alone.
-pub(crate) fn reach_servers<'a>(
-    files: impl IntoIterator<Item = &'a Path>,
-) -> Result<(), InputError> {
+/// settings count for more, and are left alone. Fails with the setting that GDAL refused.
+pub(crate) fn reach_servers<'a>(files: impl IntoIterator<Item = &'a Path>) -> Result<(), String> {
     let settings = StorageSettings::of_environment();
     let mut names = files.into_iter().filter_map(Path::to_str);
     if !names.any(|name| name.contains("/vsi"))
@@ -36,8 +32,7 @@ pub(crate) fn reach_servers<'a>(
         return Ok(());
     }
     for (option, value) in options(&settings) {
-        set_unless_set(option, &value)
-            .map_err(|error| InputError::Setting { what: format!("{option}: {error}") })?;
+        set_unless_set(option, &value).map_err(|error| format!("{option}: {error}"))?;
     }
     Ok(())
 }
