@@ -106,7 +106,7 @@ impl ObjectStorage {
         texts.map(str::to_owned).collect()
     }
 
-    /// The proxy, through which [`Self::corniche`] goes.
+    /// The proxy, through which the program reaches it.
     #[must_use]
     pub fn proxy(&self) -> &Proxy {
         &self.proxy

@@ -15,7 +15,7 @@
 //! and joined within the memory that the caller allows; what does not fit goes to scratch space. There is one way through the
 //! code for extracts of every size and order.
 //!
-//! The two passes can also be split into shares of the blobs and made by several processes: see [`shares`].
+//! The two passes can also be split into shares of the blobs and made by several processes, each a [`Share`].
 //!
 //! This crate never judges which road matters at which level, never guesses a class, and starts no threads.
 
