@@ -1,5 +1,7 @@
 //! From a DEM and what the user says to the grid of a package.
 
+use std::sync::LazyLock;
+
 use corniche_geom::{Frame, NodeIndex};
 use gdal::version::VersionInfo;
 
@@ -181,8 +183,12 @@ fn method(
 /// Releases of GDAL and PROJ that this program runs with, as packages record them.
 #[must_use]
 pub fn libraries() -> String {
-    let proj = VersionInfo::build_info()
-        .remove("PROJ_RUNTIME_VERSION")
-        .unwrap_or_else(|| "unknown".to_owned());
-    format!("GDAL {}, PROJ {proj}", VersionInfo::release_name())
+    // Asked for once: PROJ writes its version anew each time, in one place for all threads, and another thread may find it half written.
+    static LIBRARIES: LazyLock<String> = LazyLock::new(|| {
+        let proj = VersionInfo::build_info()
+            .remove("PROJ_RUNTIME_VERSION")
+            .unwrap_or_else(|| "unknown".to_owned());
+        format!("GDAL {}, PROJ {proj}", VersionInfo::release_name())
+    });
+    LIBRARIES.clone()
 }
