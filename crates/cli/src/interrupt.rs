@@ -74,9 +74,12 @@ pub(crate) fn note(cause: Cause) {
     });
 }
 
-/// A run that was interrupted failed for the reason that was noted; other failures stay what they are.
+/// A run that ended because the process that started it is gone says so; other failures stay what they are.
 pub(crate) fn explain(failure: Failure) -> Failure {
-    if failure.code() == ExitCode::Interrupted { reason() } else { failure }
+    match CAUSE.get() {
+        Some(Cause::ParentGone) if failure.code() == ExitCode::Interrupted => reason(),
+        _ => failure,
+    }
 }
 
 /// Why the program ends early.
