@@ -1,7 +1,7 @@
 """A build by Dask on Slurm: workers are jobs of Slurm, and more of them come while there is work.
 
     corniche plan --dem /data/dem/*.tif --osm /data/roads.osm.pbf -o /scratch/me/plan.json
-    python dask-slurm.py /scratch/me/plan.json /scratch/me/work /scratch/me/out.pmtiles --jobs 50
+    python dask-slurm.py /scratch/me/plan.json /scratch/me/build /scratch/me/out.pmtiles --jobs 50
 
 Needs ``pip install './python/corniche-dask[slurm]'`` in an environment that all nodes see, and ``corniche`` on the ``PATH`` of all nodes.
 """

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # A build on Kubernetes without any other engine: one Indexed Job for each round of parts.
 #
-#   SLOTS=16 VOLUME=/mnt/work examples/clusters/kubernetes.sh --dem /work/dem.tif --osm /work/roads.osm.pbf
+#   SLOTS=16 VOLUME=/mnt/build examples/clusters/kubernetes.sh --dem /build/dem.tif --osm /build/roads.osm.pbf
 #
 #   SLOTS     pods at once
-#   VOLUME    where this machine sees the volume that pods mount at /work (claim corniche-work, ReadWriteMany): plan and lists are written there
-#   STORE     the store, as pods see it [default: /work/store], or s3://BUCKET/PREFIX
-#   PACKAGE   the package, as pods see it [default: /work/out.pmtiles]
+#   VOLUME    where this machine sees the volume that pods mount at /build (claim corniche-work, ReadWriteMany): plan and lists are written there
+#   STORE     the store, as pods see it [default: /build/store], or s3://BUCKET/PREFIX
+#   PACKAGE   the package, as pods see it [default: /build/out.pmtiles]
 #   MEMORY    memory of each process [default: 1792M, for pods of 2Gi]
 #   LEAST     no part is made smaller than this without need, in estimated seconds on one core [default: what corniche jobs chooses]
 #
@@ -18,7 +18,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 # shellcheck source=examples/clusters/rounds.sh
 . "$here/rounds.sh"
 : "${SLOTS:?}" "${VOLUME:?}"
-store=${STORE:-/work/store} package=${PACKAGE:-/work/out.pmtiles}
+store=${STORE:-/build/store} package=${PACKAGE:-/build/out.pmtiles}
 
 corniche plan "$@" -o "$VOLUME/plan.json" -O
 corniche jobs "$VOLUME/plan.json" --slots "$SLOTS" ${LEAST:+--least-work "$LEAST"} >"$VOLUME/parts"
@@ -26,10 +26,10 @@ options=(--threads 1 --memory "${MEMORY:-1792M}" --quiet --store "$store")
 number=0
 while next_round "$VOLUME/parts" "$VOLUME/round.json"; do
     number=$((number + 1))
-    commands "$VOLUME/round.json" /work/plan.json "$package" "${options[@]}" >"$VOLUME/round-$number"
+    commands "$VOLUME/round.json" /build/plan.json "$package" "${options[@]}" >"$VOLUME/round-$number"
     count=$(wc -l <"$VOLUME/round-$number")
     kubectl delete job "corniche-round-$number" --ignore-not-found
-    sed -e "s|name: corniche-round|name: corniche-round-$number|" -e "s|value: /work/round|value: /work/round-$number|" \
+    sed -e "s|name: corniche-round|name: corniche-round-$number|" -e "s|value: /build/round|value: /build/round-$number|" \
         -e "s|completions: .*|completions: $count|" -e "s|parallelism: .*|parallelism: $SLOTS|" -e "s|backoffLimit: .*|backoffLimit: $((3 * count))|" \
         "$here/kubernetes-round.yaml" | kubectl apply -f -
     while true; do

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # A build on Slurm without any other engine: one job array for each round of parts, each waiting for the one before.
 #
-#   SLOTS=200 STORE=/scratch/me/work PACKAGE=/scratch/me/out.pmtiles FOLDER=/scratch/me/jobs \
+#   SLOTS=200 STORE=/scratch/me/build PACKAGE=/scratch/me/out.pmtiles FOLDER=/scratch/me/jobs \
 #       examples/clusters/slurm-array.sh --dem /data/dem/*.tif --osm /data/roads.osm.pbf
 #
 #   SLOTS     parts that are made at once

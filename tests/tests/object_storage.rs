@@ -14,7 +14,7 @@ use std::{
 use e2e::{ObjectStorage, Ran, corniche, ended, sample, text};
 use tempfile::TempDir;
 
-const STORE: &str = "s3://maps/alps/work";
+const STORE: &str = "s3://maps/alps/build";
 /// So that tiles take some seconds.
 const FINE: [&str; 2] = ["--max-error", "0.25"];
 const COARSE: [&str; 2] = ["--max-error", "10"];
@@ -99,15 +99,15 @@ impl Planned {
         assert_eq!(self.storage.uploads(), [""; 0], "uploads are left");
         let keys = self.storage.keys().into_iter();
         let others: Vec<String> = keys
-            .filter(|key| !key.starts_with("alps/work/parts/"))
+            .filter(|key| !key.starts_with("alps/build/parts/"))
             .filter(|key| !key.starts_with("in/") && !key.ends_with(".pmtiles"))
             .collect();
-        assert_eq!(others, ["alps/work/plan.json", "alps/work/store"]);
+        assert_eq!(others, ["alps/build/plan.json", "alps/build/store"]);
     }
 
     /// How many parts of this name are in the store.
     fn count(&self, part: &str) -> usize {
-        let begin = format!("alps/work/parts/{part}.");
+        let begin = format!("alps/build/parts/{part}.");
         self.storage.keys().iter().filter(|key| key.starts_with(&begin)).count()
     }
 
@@ -146,7 +146,7 @@ fn a_build_on_object_storage_makes_the_bytes_of_a_build() {
     let quarters = planned.subtrees();
     assert_eq!(quarters.len(), 4);
     let made = planned.make("hashes", None);
-    assert!(made.out.starts_with("s3://maps/alps/work/parts/hashes."), "{}", made.out);
+    assert!(made.out.starts_with("s3://maps/alps/build/parts/hashes."), "{}", made.out);
     assert!(made.err.contains("object storage:") && made.err.contains("GET"), "{}", made.err);
     let again = planned.make("hashes", None);
     assert_eq!(again.out, "", "it is there already");
@@ -207,7 +207,7 @@ fn stores_and_inputs_that_are_others_are_refused() {
     let refused = command(&other, STORE);
     assert_eq!(refused.code, 2, "{}", refused.err);
     assert!(refused.err.contains("--max-error is 5"), "{}", refused.err);
-    let nowhere = command(&planned.plan, "s3://mops/work");
+    let nowhere = command(&planned.plan, "s3://mops/build");
     assert_eq!(nowhere.code, 2, "{}", nowhere.err);
     assert!(
         nowhere.err.contains("mops") && !nowhere.err.contains("not-to-be-told"),

@@ -40,7 +40,7 @@ print(new)
 """
 SCONTROL = "print('MaxArraySize            = 5')"
 
-#: Runs the pods of an Indexed Job; the volume of this machine is the pods' /work.
+#: Runs the pods of an Indexed Job; the volume of this machine is the pods' /build.
 KUBECTL = """
 import os, pathlib, subprocess, sys, yaml
 folder = pathlib.Path(os.environ["FAKE_FOLDER"])
@@ -48,9 +48,9 @@ if sys.argv[1] == "apply":
     job = yaml.safe_load(sys.stdin)
     spec, (container,) = job["spec"], job["spec"]["template"]["spec"]["containers"]
     (variable,) = container["env"]
-    commands = pathlib.Path(variable["value"].replace("/work", os.environ["VOLUME"], 1))
+    commands = pathlib.Path(variable["value"].replace("/build", os.environ["VOLUME"], 1))
     mounted = folder / "mounted"
-    mounted.write_text(commands.read_text().replace("/work/", os.environ["VOLUME"] + "/"))
+    mounted.write_text(commands.read_text().replace("/build/", os.environ["VOLUME"] + "/"))
     assert spec["completions"] == len(commands.read_text().splitlines()), spec
     environment = {**os.environ, variable["name"]: str(mounted)}
     codes = [
