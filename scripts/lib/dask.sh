@@ -23,18 +23,6 @@ make_dask_environment() {
     return 1
 }
 
-# Prints a Python that can make virtual environments.
-python_for_environments() {
-    local candidate
-    for candidate in python3 /usr/bin/python3; do
-        if command -v "$candidate" >/dev/null && "$candidate" -c 'import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 10))' 2>/dev/null; then
-            echo "$candidate"
-            return 0
-        fi
-    done
-    return 1
-}
-
 missing_for_dask() {
     python_for_environments >/dev/null || echo python3-venv
 }

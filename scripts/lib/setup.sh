@@ -29,7 +29,7 @@ missing_for_check() {
     python_with numpy >/dev/null || echo python3-numpy
     python_with shapely >/dev/null || echo python3-shapely
     # To install moto's server, which stands in for object storage.
-    python_with moto.server >/dev/null || python_with venv ensurepip >/dev/null || echo python3-venv
+    python_with moto.server >/dev/null || python_for_environments >/dev/null || echo python3-venv
 }
 
 # For the tests of the window: a virtual display, a program that moves the mouse there, and the libraries that a window loads.
@@ -81,6 +81,12 @@ python_with() {
     return 1
 }
 
+# Prints a Python interpreter of version 3.10 or newer that can make virtual environments.
+python_for_environments() {
+    local found
+    found=$(python_with venv ensurepip) && "$found" -c 'import sys; sys.exit(sys.version_info < (3, 10))' && echo "$found"
+}
+
 # Prints a Python interpreter that has moto's server, which stands in for object storage in tests. Where there is none, a virtual environment is
 # made in the target folder, once. Fails, and says why, where that cannot be done.
 object_storage_python() {
@@ -90,7 +96,7 @@ object_storage_python() {
         echo "$(cd "$folder" && pwd)/bin/python"
         return 0
     fi
-    base=$(python_with venv ensurepip) || { say "no python3 can make a virtual environment (Debian: python3-venv)"; return 1; }
+    base=$(python_for_environments) || { say "no python3 can make a virtual environment (Debian: python3-venv)"; return 1; }
     say "installing moto's server into $folder"
     "$base" -m venv "$folder" >&2 && "$folder/bin/python" -m pip install -q 'moto[server]==5.2.5' >&2 || return 1
     echo "$(cd "$folder" && pwd)/bin/python"

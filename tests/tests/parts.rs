@@ -169,7 +169,16 @@ fn succeed(ran: Ran) -> Ran {
 
 /// Checks that a run was refused as unusable, and that it says all of `parts`.
 fn refused(ran: &Ran, parts: &[&str]) {
-    assert_eq!(ran.code, 2, "{}", ran.err);
+    ended_with(2, ran, parts);
+}
+
+/// Checks that a run failed for want of an earlier step, which may be there later, and that it says all of `parts`.
+fn lacks(ran: &Ran, parts: &[&str]) {
+    ended_with(1, ran, parts);
+}
+
+fn ended_with(code: i32, ran: &Ran, parts: &[&str]) {
+    assert_eq!(ran.code, code, "{}", ran.err);
     for part in parts {
         assert!(ran.err.contains(part), "{part}: {}", ran.err);
     }
@@ -282,7 +291,7 @@ fn parts_of_several_folders_overlap() {
     planned.check_merged(&[&tiles, &whole, &roads, &again, &split, &more]);
     planned.check_merged(&[&whole, &roads, &more, &one]);
     let ran = planned.merge(&[&tiles, &whole, &roads], &planned.path("out.pmtiles"));
-    refused(&ran, &[&quarters[2], &quarters[3], "--step tiles"]);
+    lacks(&ran, &[&quarters[2], &quarters[3], "--step tiles"]);
 }
 
 /// Whether `tile` lies beneath `above`, of the level above.
@@ -301,34 +310,34 @@ fn a_missing_part_is_named_and_never_taken_for_a_void() {
     let tiles = |id: &str| planned.part(&stores, "tiles", Some(id));
     let quarters = planned.subtrees(1);
     refused(&planned.merge(&stores, &package), &["store", "holds no store"]);
-    refused(&tiles(&quarters[0]), &["--step top"]);
+    lacks(&tiles(&quarters[0]), &["--step top"]);
     for id in &quarters[..3] {
         succeed(planned.part(&stores, "heights", Some(id)));
     }
-    refused(&planned.part(&stores, "top", None), &["heights of", &quarters[3], "--step heights"]);
+    lacks(&planned.part(&stores, "top", None), &["heights of", &quarters[3], "--step heights"]);
     succeed(planned.part(&stores, "heights", Some(&quarters[3])));
     succeed(planned.part(&stores, "top", None));
-    refused(&tiles(&quarters[0]), &["roads", "--step roads"]);
+    lacks(&tiles(&quarters[0]), &["roads", "--step roads"]);
     succeed(planned.part(&stores, "roads", None));
 
     // Heights that are gone by now: of the subtree itself, and of its neighbour.
     let name = format!("heights-{}", quarters[1].replace('/', "-"));
     let (part, away) = (sealed(&store, &name), planned.path("away"));
     fs::rename(&part, &away).unwrap();
-    refused(&tiles(&quarters[1]), &["heights of", &quarters[1]]);
-    refused(&tiles(&quarters[0]), &["heights of"]);
+    lacks(&tiles(&quarters[1]), &["heights of", &quarters[1]]);
+    lacks(&tiles(&quarters[0]), &["heights of"]);
     fs::rename(&away, &part).unwrap();
 
     for id in &quarters[..3] {
         succeed(tiles(id));
     }
-    refused(&planned.merge(&stores, &package), &["hash", "--step hashes"]);
+    lacks(&planned.merge(&stores, &package), &["hash", "--step hashes"]);
     succeed(planned.part(&stores, "hashes", None));
-    refused(&planned.merge(&stores, &package), &["tiles of", &quarters[3], "--step tiles"]);
+    lacks(&planned.merge(&stores, &package), &["tiles of", &quarters[3], "--step tiles"]);
     assert!(!package.exists());
     succeed(tiles(&quarters[3]));
     fs::rename(&part, &away).unwrap();
-    refused(&planned.merge(&stores, &package), &["heights of", &quarters[1], "--step heights"]);
+    lacks(&planned.merge(&stores, &package), &["heights of", &quarters[1], "--step heights"]);
     // It can be made again.
     succeed(planned.part(&stores, "heights", Some(&quarters[1])));
     assert_eq!(sealed(&store, &name), part);

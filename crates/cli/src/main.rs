@@ -65,7 +65,10 @@ fn main() -> process::ExitCode {
 fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
     interrupt::watch()?;
     open_files::allow_many();
-    free_memory::give_back_early();
+    // Those that promise to stay within --memory.
+    if matches!(arguments.command, Command::Build(_) | Command::Part(_) | Command::Merge(_)) {
+        free_memory::give_back_early();
+    }
     match arguments.command {
         Command::Build(args) => build::run(args),
         Command::Plan(args) => plan::run(*args),

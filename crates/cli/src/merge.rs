@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use corniche_pipeline::{Existing, MergeSettings};
+use corniche_pipeline::{Existing, MergeSettings, is_in_object_storage};
 
 use crate::{
     args::MergeArgs,
@@ -20,7 +20,7 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
     if planned.die_with_parent {
         parent::watch()?;
     }
-    if !is_object(&args.output) {
+    if !is_in_object_storage(&args.output) {
         output::writable(&args.output)?;
     }
     let plan = read_plan(&planned.plan)?;
@@ -47,9 +47,4 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
         eprintln!("{}", told(&requests));
     }
     Ok(code)
-}
-
-/// Whether a name is an address in object storage, where no file is.
-fn is_object(output: &Path) -> bool {
-    output.to_str().is_some_and(|text| text.starts_with("s3://"))
 }

@@ -31,6 +31,11 @@ pub enum ObjectError {
     )]
     NoRanges { name: String },
     #[error(
+        "{name}: the server replaces an object also when told not to (it does not obey If-None-Match); use an endpoint that does, and \
+         remove the object"
+    )]
+    NoConditions { name: String },
+    #[error(
         "{name}: the server delivers {got} bytes of {wanted} again and again; run the same command later, or tell who runs the server"
     )]
     Short { name: String, got: u64, wanted: u64 },
@@ -61,6 +66,7 @@ impl ObjectError {
                 | Self::NoBucket { .. }
                 | Self::Missing { .. }
                 | Self::NoRanges { .. }
+                | Self::NoConditions { .. }
         )
     }
 

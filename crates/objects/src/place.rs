@@ -145,7 +145,13 @@ impl Publish for ObjectPlace {
         }
         self.refuse_others()?;
         let key = self.address.beneath(PLAN_NAME);
-        if !self.bucket.create(&key, plan.bytes.clone())? {
+        if self.bucket.create(&key, plan.bytes.clone())? {
+            // A server that ignores the condition would let writers replace each other's parts.
+            if self.bucket.create(&key, plan.bytes.clone())? {
+                let name = self.bucket.address(&key).to_string();
+                return Err(ObjectError::NoConditions { name }.into());
+            }
+        } else {
             // Someone else came first, now or before, and was perhaps killed before the header.
             let missing = || ObjectError::Missing { name: self.bucket.address(&key).to_string() };
             let bytes = self.bucket.get(&key)?.ok_or_else(missing)?;
@@ -171,7 +177,7 @@ impl Publish for ObjectPlace {
         let upload = Upload { file: sealed, key: &key, existing: Existing::Keep, should_stop };
         if self.find_part(name)?.is_some() {
             // Someone else sent it, perhaps after this machine had begun to.
-            self.bucket.end_earlier_upload(sealed)?;
+            self.bucket.end_earlier(sealed)?;
         } else {
             match self.bucket.upload(&upload) {
                 Ok(_) => return Ok(address),

@@ -76,7 +76,7 @@ impl Bucket {
         let object = Self::path(key).map_err(explain)?;
         let writer = format!("{:016x}", RandomState::new().build_hasher().finish());
         let note = Note::of(path);
-        self.end_earlier(&note)?;
+        self.end_earlier(path)?;
         let sent = if length <= PART_BYTES {
             let mut bytes = Vec::with_capacity(length as usize);
             file.read_to_end(&mut bytes).map_err(file_failed("read"))?;
@@ -150,11 +150,8 @@ impl Bucket {
     }
 
     /// Ends the upload of a file by an earlier process that was killed.
-    pub(crate) fn end_earlier_upload(&self, file: &Path) -> Result<(), ObjectError> {
-        self.end_earlier(&Note::of(file))
-    }
-
-    fn end_earlier(&self, note: &Note) -> Result<(), ObjectError> {
+    pub(crate) fn end_earlier(&self, file: &Path) -> Result<(), ObjectError> {
+        let note = Note::of(file);
         let Some((key, id)) = note.read() else { return Ok(()) };
         let explain = |error| self.explain(&key, "end an earlier upload of", error);
         let object = Self::path(&key).map_err(explain)?;

@@ -12,6 +12,7 @@ use corniche_store::{
 };
 use corniche_testing::Random;
 use support::{
+    request::Request,
     server::{Fault, Server, first},
     storage,
 };
@@ -84,6 +85,19 @@ fn what_is_refused_because_another_writes_at_that_moment_is_written_again() {
     server.break_with(first(3, fault, |request| request.method == "PUT"));
     assert_eq!(place.bind(&plan()).unwrap(), plan());
     assert!(make(&place, "heights", 0..3).unwrap().is_some());
+}
+
+/// Else two who make the same part would replace each other's.
+#[test]
+fn a_server_that_writes_over_what_is_to_be_kept_is_refused() {
+    let server = Server::start();
+    let is_put = |request: &Request| request.method == "PUT";
+    server.break_with(move |request| is_put(request).then_some(Fault::Ignore("if-none-match")));
+    let error = place(&server).bind(&plan()).unwrap_err();
+    assert!(error.is_unusable(), "{error}");
+    let message = error.to_string();
+    assert!(message.contains("If-None-Match") && message.contains("utah/plan.json"), "{message}");
+    assert_eq!(server.content("utah/store"), None);
 }
 
 #[test]

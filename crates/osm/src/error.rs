@@ -53,7 +53,7 @@ pub enum ReadOsmError {
          name a folder on another one"
     )]
     Scratch { path: PathBuf, source: io::Error },
-    #[error("what was kept of OSM extract {path:?} in shares cannot be used, or nothing be kept")]
+    #[error("what is kept of OSM extract {path:?} in shares cannot be read or written")]
     Kept { path: PathBuf, source: KeptError },
     #[error("{expected} positions were given to be placed on the lattice, but {got} came back")]
     Place { expected: usize, got: usize },

@@ -7,9 +7,7 @@ mod common;
 use std::{fs, path::Path};
 
 use common::{
-    Extract, POOL, fixture, gather,
-    made::{Order, made_file, made_way},
-    read, request, to_lattice, written,
+    Extract, POOL, fixture, gather, made::made_extract, read, request, to_lattice, written,
 };
 use corniche_osm::{
     Kept, KeptError, KeptKinds, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways,
@@ -342,19 +340,14 @@ fn what_is_lost_or_damaged_is_an_error() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Sorted or not, with places in nodes, in ways or in both, with nodes and ways that are there twice. Where several things make a file
-    /// a history, each way of reading may tell another one first.
+    /// Where several things make a file a history, each way of reading may tell another one first.
     #[test]
     fn a_random_extract_is_the_same_in_shares(
-        ways in prop::collection::vec(made_way(), 0..30),
-        nodes in prop::collection::vec((-20_i64..60, 0_i64..5, 0_i64..5), 0..90),
-        per_block in 1_usize..20,
-        order in prop::sample::select(vec![Order::Sorted, Order::AsMade, Order::BlobsBackwards]),
-        has_places: bool,
+        extract in made_extract(),
         of in 1_u16..30,
         memory_bytes in prop::sample::select(vec![0, 700, 3000, 1 << 30]),
     ) {
-        let (_folder, path) = written("made.osm.pbf", &made_file(&ways, &nodes, per_block, order, has_places));
+        let (_folder, path) = written("made.osm.pbf", &extract.bytes());
         match (read(&path), read_in_shares(&path, of, memory_bytes)) {
             (Ok(expected), Ok(found)) => prop_assert_eq!(found, expected),
             (Err(ReadOsmError::History { .. }), Err(ReadOsmError::History { .. })) => {}

@@ -14,9 +14,7 @@ use std::{
 };
 
 use common::{
-    Extract, POOL, fixture, gather,
-    made::{Order, made_file, made_way},
-    read_bytes_within, request, to_lattice,
+    Extract, POOL, fixture, gather, made::made_extract, read_bytes_within, request, to_lattice,
 };
 use corniche_osm::{ReadOsmError, ReadRequest, read_roads_from};
 use corniche_store::{MemoryScratch, Scratch, Span};
@@ -87,17 +85,10 @@ fn fixtures_are_the_same_with_any_memory() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
-    /// Roads, defects, counts and refusals, sorted or not, with places in nodes, in ways or in both, with nodes and ways that
-    /// are there twice.
+    /// Roads, defects, counts and refusals.
     #[test]
-    fn a_random_extract_is_the_same_with_any_memory(
-        ways in prop::collection::vec(made_way(), 0..30),
-        nodes in prop::collection::vec((-20_i64..60, 0_i64..5, 0_i64..5), 0..90),
-        per_block in 1_usize..20,
-        order in prop::sample::select(vec![Order::Sorted, Order::AsMade, Order::BlobsBackwards]),
-        has_places: bool,
-    ) {
-        let bytes = made_file(&ways, &nodes, per_block, order, has_places);
+    fn a_random_extract_is_the_same_with_any_memory(extract in made_extract()) {
+        let bytes = extract.bytes();
         let expected = read_within(u64::MAX, &bytes);
         for memory_bytes in [0, 700, 3000, 20_000] {
             prop_assert_eq!(&read_within(memory_bytes, &bytes), &expected, "{} bytes", memory_bytes);

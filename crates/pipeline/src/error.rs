@@ -174,7 +174,6 @@ impl BuildError {
                 | Self::NoStore { .. }
                 | Self::Subtree { .. }
                 | Self::Share { .. }
-                | Self::Missing { .. }
                 | Self::Package(_)
                 | Self::OtherTerrain { .. }
                 | Self::DamagedPackage { .. }

@@ -39,6 +39,7 @@ pub use defect::{Defect, Loss};
 pub use error::BuildError;
 pub use inputs::{PlannedInput, input_name};
 pub use machine::{MIN_MEMORY_BYTES, default_memory_bytes, machine_memory_bytes};
+pub use objects::is_in_object_storage;
 pub use observer::{Observer, Silent, Stage, Unit};
 pub use parts::{
     Job, JobSettings, MergeSettings, MergeSummary, PartSettings, PartSummary, Step, jobs,

@@ -16,6 +16,12 @@ pub(crate) fn address(name: &Path) -> Result<Option<ObjectAddress>, ObjectError>
     }
 }
 
+/// Whether a name begins as an address in object storage, where no file is.
+#[must_use]
+pub fn is_in_object_storage(name: &Path) -> bool {
+    !matches!(address(name), Ok(None))
+}
+
 /// Access to object storage, made when it is first needed: without one, no thread is.
 pub(crate) struct ObjectAccess {
     storage: Option<Storage>,

@@ -397,7 +397,7 @@ impl Artifacts for LocalStore {
 
     fn get(&self, key: Key) -> Result<Option<Vec<u8>>, StoreError> {
         let Some(place) = self.index().get(key) else { return Ok(None) };
-        let (is_sealed, file) = match (&self.own, self.sealed.get(usize::from(place.part))) {
+        let (is_sealed, file) = match (&self.own, self.sealed.get(place.part as usize)) {
             (_, Some(file)) => (true, &**file),
             (Some(own), None) => (false, own.part.data() as &dyn PartFile),
             (None, None) => return Ok(None),
@@ -452,7 +452,7 @@ fn check_plans(places: &[&dyn Place], plan: &PlanHash) -> Result<(), StoreError>
 fn add(
     index: &mut Index,
     sealed: &[Box<dyn PartFile>],
-    part: u16,
+    part: u32,
     path: &Path,
     entry: Entry,
 ) -> Result<(), StoreError> {
@@ -462,7 +462,7 @@ fn add(
     }
     match index.get(key) {
         Some(place) if place.part != part && (place.length, place.crc) != (length, crc) => {
-            let first = sealed.get(usize::from(place.part)).map_or(path, |file| file.path());
+            let first = sealed.get(place.part as usize).map_or(path, |file| file.path());
             Err(StoreError::Differs {
                 kind: key.kind,
                 item: key.item,
@@ -475,8 +475,8 @@ fn add(
 }
 
 /// The number of the next sealed part.
-fn part_number(path: &Path, count: usize) -> Result<u16, StoreError> {
-    match u16::try_from(count) {
+fn part_number(path: &Path, count: usize) -> Result<u32, StoreError> {
+    match u32::try_from(count) {
         Ok(number) if number < OPEN_PART => Ok(number),
         _ => Err(StoreError::TooLarge {
             path: path.to_owned(),

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 /// A way of a random extract.
 #[derive(Debug, Clone)]
-pub(crate) struct MadeWay {
+struct MadeWay {
     id: i64,
     tags: Vec<(&'static str, &'static str)>,
     node_ids: Vec<i64>,
@@ -14,7 +14,7 @@ pub(crate) struct MadeWay {
     places: Option<Vec<(i64, i64)>>,
 }
 
-pub(crate) fn made_way() -> impl Strategy<Value = MadeWay> {
+fn made_way() -> impl Strategy<Value = MadeWay> {
     let highways = vec!["track", "residential", "motorway_link", "footway", "goat_trail"];
     let more = prop::sample::subsequence(
         vec![("name", "Bé"), ("area", "yes"), ("layer", "1000"), ("tunnel", "culvert")],
@@ -47,20 +47,55 @@ pub(crate) fn made_way() -> impl Strategy<Value = MadeWay> {
 
 /// The order of a made file.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Order {
+enum Order {
     Sorted,
     AsMade,
     BlobsBackwards,
 }
 
-pub(crate) fn made_file(
-    ways: &[MadeWay],
-    nodes: &[(i64, i64, i64)],
+/// A random extract.
+#[derive(Debug)]
+pub(crate) struct MadeExtract {
+    ways: Vec<MadeWay>,
+    nodes: Vec<(i64, i64, i64)>,
+    per_block: usize,
+    order: Order,
+    has_places: bool,
+}
+
+/// Sorted or not, with places in nodes, in ways or in both, with nodes and ways that are there twice.
+pub(crate) fn made_extract() -> impl Strategy<Value = MadeExtract> {
+    (
+        prop::collection::vec(made_way(), 0..30),
+        prop::collection::vec((-20_i64..60, 0_i64..5, 0_i64..5), 0..90),
+        1_usize..20,
+        prop::sample::select(vec![Order::Sorted, Order::AsMade, Order::BlobsBackwards]),
+        any::<bool>(),
+    )
+        .prop_map(|(ways, nodes, per_block, order, has_places)| MadeExtract {
+            ways,
+            nodes,
+            per_block,
+            order,
+            has_places,
+        })
+}
+
+impl MadeExtract {
+    /// The file.
+    pub(crate) fn bytes(&self) -> Vec<u8> {
+        let Self { ways, nodes, per_block, order, has_places } = self;
+        made_file(ways.clone(), nodes.clone(), *per_block, *order, *has_places)
+    }
+}
+
+fn made_file(
+    mut ways: Vec<MadeWay>,
+    mut nodes: Vec<(i64, i64, i64)>,
     per_block: usize,
     order: Order,
     has_places: bool,
 ) -> Vec<u8> {
-    let (mut ways, mut nodes) = (ways.to_vec(), nodes.to_vec());
     if matches!(order, Order::Sorted) {
         ways.sort_by_key(|way| way.id);
         nodes.sort_by_key(|node| node.0);

@@ -40,18 +40,16 @@ use crate::{
     terrain::ground::GroundSource,
 };
 
-/// Shares of an extract for each slot. They are not all as much work: ways take up to nine times as long as as many bytes of nodes, and nobody
-/// knows where the ways begin.
-const SHARES_PER_SLOT: u64 = 8;
-/// More shares are not worth it: each share of nodes reads the ways of all, and the step *roads* waits for the last of them.
-const MOST_SHARES: u64 = 64;
+/// More shares are not worth it: each share of nodes reads the ways of all, and the step *roads* after them takes longer than one of sixteen. Their
+/// number does not depend on that of slots, so that another number of slots goes on with the shares that are there.
+const MOST_SHARES: u64 = 16;
 
 /// What to split, and for whom.
 #[derive(Debug, Clone)]
 pub struct JobSettings {
     /// What is built.
     pub plan: BuildPlan,
-    /// Stores with parts: where the roads are in them, it is known how many each tile has. Those that are not there yet hold nothing.
+    /// Stores with parts: where the roads are in them, it is known how many each tile has. The first need not be there yet.
     pub stores: Vec<PathBuf>,
     /// How many processes work at once.
     pub slots: NonZeroU32,
@@ -155,8 +153,8 @@ fn costs(
 }
 
 fn extract_costs(extract_bytes: f64, slots: u32) -> ExtractCosts {
-    let most = (extract_bytes / rates::LEAST_SHARE_BYTES) as u64;
-    let shares = most.min(u64::from(slots) * SHARES_PER_SLOT).clamp(1, MOST_SHARES);
+    let most = if slots == 1 { 1 } else { MOST_SHARES };
+    let shares = ((extract_bytes / rates::LEAST_SHARE_BYTES) as u64).clamp(1, most);
     let whole_us = |seconds_per_byte: f64| micros(extract_bytes * seconds_per_byte);
     ExtractCosts {
         shares: shares as u16,

@@ -112,11 +112,11 @@ impl<'a> Stores<'a> {
             Some(OneStore::Objects(place)) => {
                 let bound = place.bind(&self.stored)?;
                 refuse_other(place.name(), self.plan, &self.stored, &bound)?;
-                let folder = self.tmp.join(self.work_name(place.name(), name));
+                let first = self.tmp.join(self.work_name(place.name(), name));
                 // Of two processes that make the same part, each has a folder of its own. After a kill the folder is free again.
-                let mut copies = (2..=MOST_COPIES).map(|copy| numbered(&folder, copy));
+                let mut copies = (2..=MOST_COPIES).map(|copy| numbered(&first, copy));
                 let mut tries_left = MOST_TRIES;
-                let mut folder = folder.clone();
+                let mut folder = first.clone();
                 let store = loop {
                     match self.open_in(&folder, name, is_needed, Hold::Alone) {
                         Err(StoreError::Locked { path, owner }) => match copies.next() {

@@ -7,8 +7,8 @@ use crate::Key;
 /// Where an artifact is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Location {
-    /// Which file it is in.
-    pub(crate) part: u16,
+    /// Which file it is in, below [`PART_LIMIT`].
+    pub(crate) part: u32,
     /// Bytes before it, below [`OFFSET_LIMIT`].
     pub(crate) offset: u64,
     /// Bytes of it.
@@ -17,8 +17,12 @@ pub(crate) struct Location {
     pub(crate) crc: u32,
 }
 
-/// Offsets are below this: 256 TiB.
-pub(crate) const OFFSET_LIMIT: u64 = 1 << 48;
+/// Offsets are below this: 16 TiB.
+pub(crate) const OFFSET_LIMIT: u64 = 1 << OFFSET_BITS;
+/// Numbers of parts are below this, a million.
+pub(crate) const PART_LIMIT: u32 = 1 << (u64::BITS - OFFSET_BITS);
+/// Of the 64 bits of a place; the others are the part's number.
+const OFFSET_BITS: u32 = 44;
 
 /// Where the artifacts of all kinds are.
 ///
@@ -38,7 +42,7 @@ struct OneKind {
 #[derive(Debug, Clone, Copy)]
 struct Entry {
     item: u64,
-    /// Offset in the low 48 bits, part in the high 16.
+    /// Offset in the low [`OFFSET_BITS`], part in the others.
     place: u64,
     length: u32,
     crc: u32,
@@ -56,7 +60,7 @@ impl Index {
         }
         self.kinds[kind].insert(Entry {
             item: key.item,
-            place: place.offset | u64::from(place.part) << 48,
+            place: place.offset | u64::from(place.part) << OFFSET_BITS,
             length: place.length,
             crc: place.crc,
         })
@@ -84,7 +88,7 @@ impl Index {
 impl Entry {
     fn place(self) -> Location {
         Location {
-            part: (self.place >> 48) as u16,
+            part: (self.place >> OFFSET_BITS) as u32,
             offset: self.place & (OFFSET_LIMIT - 1),
             length: self.length,
             crc: self.crc,

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use super::*;
 
 fn place(number: u64) -> Location {
-    let part = if number.is_multiple_of(3) { u16::MAX } else { number as u16 };
+    let part = if number.is_multiple_of(3) { PART_LIMIT - 1 } else { number as u32 };
     Location {
         part,
         offset: number * 977 % OFFSET_LIMIT,
@@ -43,7 +43,7 @@ proptest! {
 #[test]
 fn keeps_the_largest_values() {
     let place =
-        Location { part: u16::MAX, offset: OFFSET_LIMIT - 1, length: u32::MAX, crc: u32::MAX };
+        Location { part: PART_LIMIT - 1, offset: OFFSET_LIMIT - 1, length: u32::MAX, crc: u32::MAX };
     let key = Key { kind: u8::MAX, item: u64::MAX };
     let mut index = Index::default();
     assert!(index.insert(key, place));

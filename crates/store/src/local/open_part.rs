@@ -19,13 +19,13 @@ use crate::{
     local::{
         entry::{ENTRY_BYTES, Entry, Visit},
         header::{self, FileKind, HEADER_BYTES},
-        index::{Index, Location, OFFSET_LIMIT},
+        index::{Index, Location, OFFSET_LIMIT, PART_LIMIT},
         layout, lock, sealed_part,
     },
 };
 
 /// The number of the open part in the index.
-pub(crate) const OPEN_PART: u16 = u16::MAX;
+pub(crate) const OPEN_PART: u32 = PART_LIMIT - 1;
 
 /// A part that artifacts are added to, by any number of threads.
 #[derive(Debug)]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import importlib.util
 import json
-import logging
 import os
 import signal
 import sys
@@ -16,21 +15,16 @@ from pathlib import Path
 from types import FrameType
 from typing import Any, NoReturn
 
-from dask.system import CPU_COUNT
-from distributed import Client, LocalCluster
-from distributed.system import MEMORY_LIMIT
+from distributed import Client
 
 from . import cost
 from .build import build
 from .errors import FAILED, INTERRUPTED, CornicheError, PackageExists, SchedulerLost, UsageError
-from .limits import SLOT, parse_bytes
+from .limits import parse_bytes
+from .local import local_cluster
 from .program import find_program, make_plan
 from .progress import Progress
 from .tasks import absolute, is_object_storage
-
-
-#: The share of this machine's memory that the workers of a local cluster have together.
-_LOCAL_MEMORY = 0.75
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -178,19 +172,7 @@ def _client(given: argparse.Namespace) -> Iterator[Client]:
         with client:
             yield client
         return
-    cluster = LocalCluster(
-        n_workers=given.local,
-        threads_per_worker=given.threads_per_worker or max(1, CPU_COUNT // given.local),
-        # Dask's own choice gives each worker all memory if it has as many threads as there are processors.
-        memory_limit=given.memory_limit or int(MEMORY_LIMIT * _LOCAL_MEMORY) // given.local,
-        resources={SLOT: 1},
-        processes=True,
-        host="127.0.0.1",
-        dashboard_address="127.0.0.1:8787" if importlib.util.find_spec("bokeh") else "127.0.0.1:0",
-        # What fails is told by this command.
-        silence_logs=logging.CRITICAL,
-    )
-    with cluster, Client(cluster) as client:
+    with local_cluster(given.local, given.threads_per_worker, given.memory_limit) as cluster, Client(cluster) as client:
         yield client
 
 

@@ -30,8 +30,6 @@ _lock = threading.Lock()
 _CLOSES_WITHIN = 3.0
 #: What a merge says while another process writes the same package.
 _BEING_BUILT = "is being built by another process"
-#: What a part says whose earlier step is not there.
-_NOT_IN_STORE = "not in the store"
 #: Seconds until it is tried again.
 _TRIES_EVERY = 2.0
 
@@ -222,12 +220,10 @@ def _judged(task: PartTask, worker: Worker, limits: Limits, ended: Ended) -> Par
         how += f" when it used {ended.usage.peak_bytes >> 20} MiB of {limits.memory_bytes >> 20} MiB"
     log = "\n".join(f"    {line}" for line in ended.log)
     message = f"part {job.id} ({job.title()}) failed on {worker.address}: {how}; the last lines of its log:\n{log}"
-    if any(_NOT_IN_STORE in line for line in ended.log):
-        # Network file systems show late what another machine wrote; the step before it has ended.
-        time.sleep(_TRIES_EVERY)
-        raise PartFailed(message)
     if ended.exit_code in (UNUSABLE, EXISTS):
         return _result(task, worker, limits, ended, exit_code=ended.exit_code, error=message)
+    # Network file systems, for example, show late what another machine wrote.
+    time.sleep(_TRIES_EVERY)
     raise PartFailed(message)
 
 

@@ -59,10 +59,10 @@ impl Grounds {
             Some(micros(triangles * rates::SECONDS_PER_RECORDED_TRIANGLE))
         };
         let void_us = micros(rates::VOID_TILE_SECONDS);
-        let voids = DataTiles::of(&opened.grid).within(TileId::ROOT);
-        let voids = voids.into_iter().map(|id| (id, void_us));
+        let all = DataTiles::of(&opened.grid).within(TileId::ROOT);
+        let all = all.into_iter().map(|id| (id, void_us));
         let grounds = with_ground.iter().map(|id| (*id, ground_us(id).unwrap_or_default()));
-        Ok(Self { heights: None, tiles: voids.chain(grounds).collect() })
+        Ok(Self { heights: None, tiles: all.chain(grounds).collect() })
     }
 }
 

@@ -1,5 +1,7 @@
 //! The parts of a build as jobs: which there are, what each costs, and what it waits for.
 
+use std::cmp::Reverse;
+
 use corniche_osm::Share;
 use serde::Serialize;
 
@@ -149,7 +151,7 @@ fn of_subtrees(
     after: &[&'static str],
 ) -> Vec<Job> {
     let mut sorted = subtrees.to_vec();
-    sorted.sort_unstable_by_key(|subtree| (u64::MAX - subtree.cost_us, subtree.id));
+    sorted.sort_unstable_by_key(|subtree| (Reverse(subtree.cost_us), subtree.id));
     let job = |Subtree { id, cost_us }: Subtree| {
         let subtree = id.to_string();
         let name = step.name();

@@ -91,6 +91,8 @@ def _run(name: str, report: dict[str, Any]) -> Run:
 def _part(name: str, part: dict[str, Any], work: float) -> Part:
     if part["cpu_seconds"] is None:
         raise UsageError(f"{name}: part {part['id']} has no processor time; measure on Linux")
+    if part["was_made"] and part["file_bytes"] is None:
+        raise UsageError(f"{name}: it is not known how large part {part['id']} is; measure with a store and a package in folders")
     return Part(
         step=part["step"],
         share=part["work"] / work if work > 0 else 1.0,
