@@ -92,6 +92,12 @@ impl ObjectStorage {
         self.texts("/maps?list-type=2", "Key")
     }
 
+    /// The `ETag`s of the objects beneath a prefix.
+    #[must_use]
+    pub fn etags(&self, prefix: &str) -> Vec<String> {
+        self.texts(&format!("/maps?list-type=2&prefix={prefix}"), "ETag")
+    }
+
     /// The keys of uploads that were begun and neither completed nor ended.
     #[must_use]
     pub fn uploads(&self) -> Vec<String> {

@@ -186,6 +186,20 @@ fn a_build_on_object_storage_makes_the_bytes_of_a_build() {
     planned.check_clean();
 }
 
+/// The heights of the whole sample have 10 MB; what has more than 8 MiB is not sent in one request.
+#[test]
+fn a_large_part_is_sent_in_pieces() {
+    let Some(planned) = Planned::new(COARSE) else { return };
+    planned.make("heights", None);
+    // Of an object that came in pieces, it says how many there were.
+    let tags = planned.storage.etags("alps/build/parts/");
+    assert!(tags.len() == 1 && tags[0].contains("-2"), "{tags:?}");
+    for step in ["hashes", "roads", "top", "tiles"] {
+        planned.make(step, None);
+    }
+    planned.check_merged();
+}
+
 #[test]
 fn stores_and_inputs_that_are_others_are_refused() {
     let Some(planned) = Planned::new(COARSE) else { return };

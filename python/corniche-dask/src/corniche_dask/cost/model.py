@@ -103,21 +103,35 @@ class Model:
         return self.package[0] * size.nodes + self.package[1] * size.extract_bytes
 
 
+#: So much more does the error of a step's total count than that of a part: shares of work are estimates, and their errors cancel in the total.
+_TOTAL = 30.0
+
+
 def fit_model(runs: Sequence[Run]) -> Model:
-    """The factors that fit all parts of these runs best. Errors count in proportion to what was measured, so small builds count, too."""
+    """The factors that fit all parts and all totals of these runs best. Errors count in proportion to what was measured, so small builds count, too."""
     factors: dict[str, dict[str, dict[str, float]]] = {}
     for measure, of_part in MEASURES.items():
         factors[measure] = {}
         for step, terms in STEPS.items():
-            rows, values = [], []
+            rows: list[list[float]] = []
+            values: list[float] = []
+            weights: list[float] = []
+            measured = [(run, part) for run in runs for part in run.of_step(step)]
+            # Below a hundredth of the largest, errors count the same.
+            floor = max((of_part(part) for _, part in measured), default=0.0) / 100 or 1.0
             for run in runs:
-                for part in run.of_step(step):
-                    rows.append([_count(term, run.size, part.share, shape_of(run)) for term in terms])
-                    values.append(of_part(part))
+                parts = run.of_step(step)
+                shape = shape_of(run)
+                of_parts = [[_count(term, run.size, part.share, shape) for term in terms] for part in parts]
+                rows += of_parts
+                values += [of_part(part) for part in parts]
+                weights += [1 / max(of_part(part), floor) for part in parts]
+                if len(parts) > 1:
+                    total = sum(of_part(part) for part in parts)
+                    rows.append([sum(column) for column in zip(*of_parts, strict=True)])
+                    values.append(total)
+                    weights.append(_TOTAL / max(total, floor))
             if rows:
-                # Below a hundredth of the largest, errors count the same.
-                floor = max(values) / 100 or 1.0
-                weights = [1 / max(value, floor) for value in values]
                 factors[measure][step] = dict(zip(terms, fit(rows, values, weights), strict=True))
     rows = [[run.size.nodes, run.size.extract_bytes] for run in runs]
     sizes = [run.package_bytes for run in runs]
