@@ -231,9 +231,20 @@ fn growth_is_told_in_four_ways() {
     assert_eq!(table.code, 0, "{}", table.err);
     assert!(table.out.contains("all levels") && table.out.contains("FRC 0"));
     assert!(fs::read_to_string(&svg).unwrap().contains("<svg"));
-    let rows = json(&["growth", text(&package), "--json"])["rows"].as_array().unwrap().len();
+    let growth = json(&["growth", text(&package), "--json"]);
+    let [rows, levels] = ["rows", "levels"].map(|list| growth[list].as_array().unwrap().len());
     let csv = corniche(["growth", text(&package), "--csv"]).out;
-    assert_eq!(csv.lines().count(), rows + 1);
+    let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    // Levels and classes, then levels, then the whole, beneath the names of columns.
+    assert_eq!(lines.len(), 1 + rows + levels + 1);
+    assert!(lines.iter().all(|line| line.len() == lines[0].len()), "{csv}");
+    let whole = lines.last().unwrap();
+    assert_eq!(whole[..2], ["all", "all"]);
+    for name in ["growth_over_source", "stored_bytes_over_source"] {
+        let column = lines[0].iter().position(|heading| *heading == name).unwrap();
+        let value: f64 = whole[column].parse().unwrap();
+        assert_eq!(value, growth["all_levels"][name].as_f64().unwrap(), "{name}");
+    }
 }
 
 #[test]

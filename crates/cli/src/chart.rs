@@ -2,18 +2,22 @@
 
 use std::ops::Range;
 
-use plotters::prelude::{
-    BLACK, ChartBuilder, Circle, Color as _, IntoDrawingArea as _, LineSeries, PathElement,
-    RGBColor, SVGBackend, SeriesLabelPosition, WHITE,
+use anyhow::Result;
+use plotters::{
+    coord::Shift,
+    element::DashedPathElement,
+    prelude::{
+        BLACK, ChartBuilder, Color as _, DrawingArea, EmptyElement, IntoDrawingArea as _, PathElement,
+        Polygon, RGBColor, SVGBackend, ShapeStyle, Text, TextStyle, WHITE,
+    },
 };
 
-/// Caption, axes and legend around the curves.
+/// Caption and axes around the curves.
 pub(crate) struct Axes {
     pub(crate) size_px: (u32, u32),
     pub(crate) caption: String,
     pub(crate) x: Axis,
     pub(crate) y: Axis,
-    pub(crate) names: SeriesLabelPosition,
 }
 
 /// One of the two directions.
@@ -24,16 +28,16 @@ pub(crate) struct Axis {
     pub(crate) ticks: Ticks,
 }
 
-/// Where an axis has numbers.
+/// Where an axis has numbers and lines.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ticks {
-    /// At round places.
+    /// At round places, with finer lines between them.
     Round,
-    /// At so many whole numbers.
+    /// At so many whole numbers, with nothing between them.
     Whole(usize),
 }
 
-/// A line from point to point.
+/// A line from point to point. It and its marks differ from those of the other curves also without colours.
 pub(crate) struct Curve {
     pub(crate) name: String,
     pub(crate) color: RGBColor,
@@ -45,18 +49,51 @@ pub(crate) struct Curve {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Marks {
     None,
-    Dots,
+    /// With the shape and the dashes of this number.
+    Shape(usize),
 }
 
-/// The curves as SVG. A curve without points is in the legend as well.
-pub(crate) fn draw(axes: &Axes, curves: &[Curve]) -> anyhow::Result<String> {
+/// Outlines of marks, in pixels about the point, and whether they are filled: neighbours in the list differ most.
+const SHAPES: [(&[(i32, i32)], bool); 9] = [
+    (&ROUND, true),
+    (&SQUARE, false),
+    (&UP, true),
+    (&DIAMOND, false),
+    (&SQUARE, true),
+    (&ROUND, false),
+    (&DIAMOND, true),
+    (&UP, false),
+    (&DOWN, true),
+];
+const ROUND: [(i32, i32); 8] =
+    [(4, 2), (2, 4), (-2, 4), (-4, 2), (-4, -2), (-2, -4), (2, -4), (4, -2)];
+const SQUARE: [(i32, i32); 4] = [(-4, -4), (4, -4), (4, 4), (-4, 4)];
+const UP: [(i32, i32); 3] = [(0, -5), (5, 4), (-5, 4)];
+const DOWN: [(i32, i32); 3] = [(0, 5), (5, -4), (-5, -4)];
+const DIAMOND: [(i32, i32); 4] = [(0, -6), (6, 0), (0, 6), (-6, 0)];
+/// Lengths of dashes and of the gaps between them, pixels; 0: an unbroken line.
+const DASHES: [(i32, i32); 3] = [(0, 0), (9, 4), (3, 3)];
+
+/// Height of a row in the list of names, and the width of a character, pixels.
+const ROW_PX: i32 = 24;
+const CHARACTER_PX: i32 = 8;
+/// The line before a name, pixels.
+const SAMPLE_PX: i32 = 34;
+const MARGIN_PX: i32 = 16;
+
+/// The curves as SVG, with their names at the right. A curve without points is in that list as well.
+pub(crate) fn draw(axes: &Axes, curves: &[Curve]) -> Result<String> {
     let mut svg = String::new();
     {
         let area = SVGBackend::with_string(&mut svg, axes.size_px).into_drawing_area();
         area.fill(&WHITE)?;
-        let mut chart = ChartBuilder::on(&area)
+        let longest = curves.iter().map(|curve| curve.name.chars().count()).max().unwrap_or(0);
+        let names_px = SAMPLE_PX + CHARACTER_PX * longest as i32 + 2 * MARGIN_PX;
+        let (width, _) = axes.size_px;
+        let (plot, names) = area.split_horizontally(width as i32 - names_px);
+        let mut chart = ChartBuilder::on(&plot)
             .caption(&axes.caption, ("sans-serif", 20))
-            .margin(16)
+            .margin(MARGIN_PX)
             .x_label_area_size(44)
             .y_label_area_size(80)
             .build_cartesian_2d(axes.x.range.clone(), axes.y.range.clone())?;
@@ -68,33 +105,76 @@ pub(crate) fn draw(axes: &Axes, curves: &[Curve]) -> anyhow::Result<String> {
             .label_style(("sans-serif", 14))
             .max_light_lines(2);
         if let Ticks::Whole(count) = axes.x.ticks {
-            mesh.x_labels(count).x_label_formatter(&whole);
+            mesh.x_labels(count).x_label_formatter(&whole).x_max_light_lines(0);
         }
         if let Ticks::Whole(count) = axes.y.ticks {
-            mesh.y_labels(count).y_label_formatter(&whole);
+            mesh.y_labels(count).y_label_formatter(&whole).y_max_light_lines(0);
         }
         mesh.draw()?;
-        for Curve { name, color, points, marks } in curves {
-            let color = *color;
-            chart
-                .draw_series(LineSeries::new(points.iter().copied(), color.stroke_width(2)))?
-                .label(name)
-                .legend(move |(x, y)| {
-                    PathElement::new([(x, y), (x + 18, y)], color.stroke_width(3))
-                });
-            if *marks == Marks::Dots {
-                let dots = points.iter().map(|&point| Circle::new(point, 3, color.filled()));
-                chart.draw_series(dots)?;
+        for curve in curves {
+            let (dash, gap, style) = curve.line();
+            let points = curve.points.iter().copied();
+            if dash == 0 {
+                chart.draw_series([PathElement::new(points.collect::<Vec<_>>(), style)])?;
+            } else {
+                chart.draw_series([DashedPathElement::new(points, dash, gap, style)])?;
             }
         }
-        chart
-            .configure_series_labels()
-            .position(axes.names.clone())
-            .label_font(("sans-serif", 15))
-            .background_style(WHITE.mix(0.85))
-            .border_style(BLACK.mix(0.3))
-            .draw()?;
+        // Marks lie over all lines.
+        for curve in curves {
+            let Some((outline, fill)) = curve.mark() else { continue };
+            let closed: Vec<(i32, i32)> = outline.iter().chain(outline.first()).copied().collect();
+            chart.draw_series(curve.points.iter().map(|&point| {
+                EmptyElement::at(point)
+                    + Polygon::new(outline.to_vec(), fill)
+                    + PathElement::new(closed.clone(), curve.color.stroke_width(2))
+            }))?;
+        }
+        draw_names(&names, curves)?;
         area.present()?;
     }
     Ok(svg)
+}
+
+/// The list of names, with a piece of each line and its mark before it.
+fn draw_names(area: &DrawingArea<SVGBackend<'_>, Shift>, curves: &[Curve]) -> Result<()> {
+    let font = TextStyle::from(("sans-serif", 15)).color(&BLACK);
+    for (row, curve) in (0..).zip(curves) {
+        let y = 3 * MARGIN_PX + ROW_PX * row;
+        let (dash, gap, style) = curve.line();
+        let ends = [(0, y), (SAMPLE_PX, y)];
+        if dash == 0 {
+            area.draw(&PathElement::new(ends, style))?;
+        } else {
+            area.draw(&DashedPathElement::new(ends, dash, gap, style))?;
+        }
+        if let Some((outline, fill)) = curve.mark() {
+            let at = |&(dx, dy): &(i32, i32)| (SAMPLE_PX / 2 + dx, y + dy);
+            let outline: Vec<(i32, i32)> = outline.iter().map(at).collect();
+            area.draw(&Polygon::new(outline.clone(), fill))?;
+            let closed: Vec<(i32, i32)> = outline.iter().chain(outline.first()).copied().collect();
+            area.draw(&PathElement::new(closed, curve.color.stroke_width(2)))?;
+        }
+        area.draw(&Text::new(curve.name.clone(), (SAMPLE_PX + 8, y - 7), font.clone()))?;
+    }
+    Ok(())
+}
+
+impl Curve {
+    /// Dash, gap and style of its line.
+    fn line(&self) -> (i32, i32, ShapeStyle) {
+        let number = match self.marks {
+            Marks::None => 0,
+            Marks::Shape(number) => number,
+        };
+        let (dash, gap) = DASHES[number % DASHES.len()];
+        (dash, gap, self.color.stroke_width(2))
+    }
+
+    /// Outline and filling of its marks.
+    fn mark(&self) -> Option<(&'static [(i32, i32)], ShapeStyle)> {
+        let Marks::Shape(number) = self.marks else { return None };
+        let (outline, is_filled) = SHAPES[number % SHAPES.len()];
+        Some((outline, if is_filled { self.color.filled() } else { WHITE.filled() }))
+    }
 }

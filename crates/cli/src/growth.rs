@@ -194,15 +194,34 @@ fn to_json(manifest: &Manifest) -> serde_json::Value {
     })
 }
 
+/// A row for each level and class, then for each level, then for the whole; ratios are empty where there is nothing to divide by.
 fn to_csv(manifest: &Manifest) -> String {
-    let mut text =
-        "level,class,source_vertices,simplified_vertices,geo_vertices,sv_vertices,source_bytes,\
-                    simplified_bytes,geo_raw_bytes,geo_stored_bytes,sv_stored_bytes\n"
-            .to_owned();
-    for row in &manifest.growth {
-        let counts = row.counts().map(|count| count.to_string()).join(",");
-        text.push_str(&[row.level.to_string(), row.class.to_string(), counts].join(","));
+    let mut text = "level,class,source_vertices,simplified_vertices,geo_vertices,sv_vertices,source_bytes,simplified_bytes,\
+                    geo_raw_bytes,geo_stored_bytes,sv_stored_bytes,growth_over_simplified,growth_over_source,raw_bytes_over_source,\
+                    stored_bytes_over_source,raw_bytes_over_simplified,stored_bytes_over_simplified\n"
+        .to_owned();
+    let mut line = |level: &str, class: &str, row: &GrowthRow, factors: &Factors| {
+        let counts = row.counts().map(|count| count.to_string());
+        let ratios = [
+            factors.over_simplified,
+            factors.over_source,
+            factors.raw_bytes,
+            factors.stored_bytes,
+            factors.raw_over_simplified,
+            factors.stored_over_simplified,
+        ];
+        let ratios = ratios.map(|ratio| ratio.map_or_else(String::new, |ratio| ratio.to_string()));
+        text.push_str(&[level, class].into_iter().chain(counts.iter().chain(&ratios).map(String::as_str)).collect::<Vec<_>>().join(","));
         text.push('\n');
+    };
+    for row in &manifest.growth {
+        line(&row.level.to_string(), &row.class.to_string(), row, &factors(row));
     }
+    for level in &manifest.levels {
+        let row = sum(manifest.growth.iter().filter(|row| row.level == level.level));
+        line(&level.level.to_string(), "all", &row, &factors(&row));
+    }
+    let (all, all_factors) = whole(manifest);
+    line("all", "all", &all, &all_factors);
     text
 }

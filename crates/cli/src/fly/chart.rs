@@ -1,5 +1,5 @@
 use corniche_viewer::FrameRecord;
-use plotters::prelude::{RGBColor, SeriesLabelPosition};
+use plotters::prelude::RGBColor;
 
 use super::measured_run::{MeasuredRun, gpu_ms};
 use crate::chart::{Axes, Axis, Curve, Marks, Ticks, draw};
@@ -43,11 +43,9 @@ pub(crate) fn frame_times(runs: &[MeasuredRun], adapter: &str) -> anyhow::Result
         },
         y: Axis {
             description: if has_clock { "ms by the graphics card's clock" } else { "ms" },
-            // Room above the curves for their names.
-            range: 0.0..most_ms.max(0.001) * (1.1 + 0.06 * runs.len() as f64),
+            range: 0.0..most_ms.max(0.001) * 1.1,
             ticks: Ticks::Round,
         },
-        names: SeriesLabelPosition::UpperRight,
     };
     let curve = |(run, color): (&MeasuredRun, &RGBColor)| Curve {
         name: run.name(),

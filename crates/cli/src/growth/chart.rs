@@ -1,5 +1,5 @@
 use corniche_tileset::Manifest;
-use plotters::prelude::{RGBColor, SeriesLabelPosition};
+use plotters::prelude::RGBColor;
 
 use crate::chart::{Axes, Axis, Curve, Marks, Ticks, draw};
 
@@ -16,6 +16,15 @@ const CLASS_COLORS: [RGBColor; 9] = [
     RGBColor(160, 120, 160),
 ];
 
+/// How far marks stand beside their level at most, levels.
+const MOST_ASIDE: f64 = 0.3;
+
+/// How far a class's marks stand beside their level, so that those of other classes do not hide them.
+fn aside(class: u8) -> f64 {
+    let last = (CLASS_COLORS.len() - 1) as f64;
+    MOST_ASIDE * (2.0 * f64::from(class) / last - 1.0)
+}
+
 /// Growth of clipped vertices over the level's own simplified line, one curve a class over the levels.
 pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
     let factor = |geo: u64, simplified: u64| geo as f64 / simplified as f64;
@@ -30,25 +39,24 @@ pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
         caption: "Vertices of clipped roads over the level's simplified lines".to_owned(),
         x: Axis {
             description: "level (0 = root)",
-            range: -0.3..f64::from(last) + 1.4,
-            // The axis reaches one level farther, to make room for the names.
-            ticks: Ticks::Whole(usize::from(last) + 3),
+            range: -MOST_ASIDE - 0.1..f64::from(last) + MOST_ASIDE + 0.1,
+            ticks: Ticks::Whole(usize::from(last) + 1),
         },
         y: Axis {
             description: "times the vertices",
             range: 0.0..highest * 1.08,
             ticks: Ticks::Round,
         },
-        names: SeriesLabelPosition::MiddleRight,
     };
     let curve = |(class, color): (u8, RGBColor)| {
         let of_class = rows.iter().filter(|row| row.class == class);
         let point = |row: &&corniche_tileset::GrowthRow| {
-            (f64::from(row.level), factor(row.geo_vertices, row.simplified_vertices))
+            let level = f64::from(row.level) + aside(class);
+            (level, factor(row.geo_vertices, row.simplified_vertices))
         };
         let points: Vec<(f64, f64)> = of_class.map(point).collect();
         let name = format!("FRC {class}");
-        (!points.is_empty()).then_some(Curve { name, color, points, marks: Marks::Dots })
+        (!points.is_empty()).then_some(Curve { name, color, points, marks: Marks::Shape(usize::from(class)) })
     };
     let curves: Vec<Curve> = (0_u8..).zip(CLASS_COLORS).filter_map(curve).collect();
     draw(&axes, &curves)

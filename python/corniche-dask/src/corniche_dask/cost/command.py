@@ -134,7 +134,7 @@ def _forecasts(name: str, size: Size, model: Model, storage: float, price: float
     moved = model.total("read", size, one.shape) + model.total("written", size, one.shape)
     text = (
         f"**{name}**: {size.nodes / 1e9:.1f} billion nodes, {bytes_text(size.extract_bytes)} of extract, {bytes_text(size.dem_bytes)} of DEM; "
-        f"{one.core_seconds / 3600:.0f} core-hours, {bytes_text(moved)} read and written, {bytes_text(model.total('stored', size, one.shape))} "
+        f"{one.core_seconds / 3600:.1f} core-hours, {bytes_text(moved)} read and written, {bytes_text(model.total('stored', size, one.shape))} "
         f"stored, a package of {bytes_text(model.package_bytes(size))}. Storage that moves {bytes_text(storage)}/s."
     )
     rows = []
@@ -144,7 +144,7 @@ def _forecasts(name: str, size: Size, model: Model, storage: float, price: float
             f"{workers}",
             f"{told.shape.parts}",
             duration(told.seconds),
-            f"{workers * told.seconds / 3600:.0f}",
+            f"{workers * told.seconds / 3600:.1f}",
             f"{100 * told.core_seconds / (workers * told.seconds):.0f} %",
             duration(told.serial_seconds),
             f"{bytes_text(told.bytes_per_second)}/s",
