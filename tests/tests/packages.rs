@@ -242,8 +242,7 @@ fn growth_is_told_in_four_ways() {
     assert_eq!(whole[..2], ["all", "all"]);
     for name in ["growth_over_source", "stored_bytes_over_source"] {
         let column = lines[0].iter().position(|heading| *heading == name).unwrap();
-        let value: f64 = whole[column].parse().unwrap();
-        assert_eq!(value, growth["all_levels"][name].as_f64().unwrap(), "{name}");
+        assert_eq!(whole[column], growth["all_levels"][name].to_string(), "{name}");
     }
 }
 

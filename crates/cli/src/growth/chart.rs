@@ -33,14 +33,15 @@ pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
         .iter()
         .map(|row| factor(row.geo_vertices, row.simplified_vertices))
         .fold(1.0_f64, f64::max);
-    let last = manifest.levels.last().map_or(0, |level| level.level);
+    let levels = || rows.iter().map(|row| row.level);
+    let [first, last] = [levels().min(), levels().max()].map(Option::unwrap_or_default);
     let axes = Axes {
         size_px: (900, 520),
         caption: "Vertices of clipped roads over the level's simplified lines".to_owned(),
         x: Axis {
             description: "level (0 = root)",
-            range: -MOST_ASIDE - 0.1..f64::from(last) + MOST_ASIDE + 0.1,
-            ticks: Ticks::Whole(usize::from(last) + 1),
+            range: f64::from(first) - MOST_ASIDE - 0.1..f64::from(last) + MOST_ASIDE + 0.1,
+            ticks: Ticks::Whole(usize::from(last - first) + 1),
         },
         y: Axis {
             description: "times the vertices",
