@@ -87,8 +87,8 @@ fn what_is_no_file_is_never_replaced() {
     let package = text(&package);
     let (dem, osm) = (sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf"));
     let inputs = ["--dem", text(&dem), "--osm", text(&osm)];
-    let free = folder.path().join("free");
-    let free = text(&free);
+    let [free, new_package] = ["free", "free.pmtiles"].map(|name| folder.path().join(name));
+    let [free, new_package] = [text(&free), text(&new_package)];
     let specials = specials(folder.path());
     let before = names(folder.path());
     for special in &specials {
@@ -97,7 +97,7 @@ fn what_is_no_file_is_never_replaced() {
         let lines: Vec<Vec<&str>> = vec![
             [&build(&["-O", "-o"])[..], &[at]].concat(),
             [&build(&["-o"])[..], &[at]].concat(),
-            [&build(&["-O", "-o"])[..], &[free, "--defects", at]].concat(),
+            [&build(&["-O", "-o"])[..], &[new_package, "--defects", at]].concat(),
             vec!["render", package, "-o", at],
             vec!["growth", package, "--svg", at],
             vec!["fly", package, "-O", "-o", at],
@@ -121,20 +121,20 @@ fn what_is_no_file_is_never_replaced() {
 #[test]
 fn a_pipe_as_input_is_refused_with_the_way_out() {
     let folder = tempfile::tempdir().unwrap();
-    let [package, pipe, free] =
-        ["pass.pmtiles", "pipe", "free"].map(|name| folder.path().join(name));
+    let [package, pipe, free, new_package] =
+        ["pass.pmtiles", "pipe", "free", "free.pmtiles"].map(|name| folder.path().join(name));
     build_pass(&package, &["--quiet"]);
     assert!(made("mkfifo", &[text(&pipe)]));
     let (dem, osm) = (sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf"));
-    let [package, pipe, free, dem, osm] =
-        [&package, &pipe, &free, &dem, &osm].map(|path| text(path));
+    let [package, pipe, free, new_package, dem, osm] =
+        [&package, &pipe, &free, &new_package, &dem, &osm].map(|path| text(path));
     let before = names(folder.path());
     let lines: [&[&str]; 16] = [
-        &["build", "--dem", pipe, "-o", free],
-        &["build", "--dem", dem, pipe, "-o", free],
-        &["build", "--dem", dem, "--osm", pipe, "-o", free],
-        &["build", "--dem", dem, "--config", pipe, "-o", free],
-        &["build", "--dem", dem, "--osm", osm, "--frc-table", pipe, "-o", free],
+        &["build", "--dem", pipe, "-o", new_package],
+        &["build", "--dem", dem, pipe, "-o", new_package],
+        &["build", "--dem", dem, "--osm", pipe, "-o", new_package],
+        &["build", "--dem", dem, "--config", pipe, "-o", new_package],
+        &["build", "--dem", dem, "--osm", osm, "--frc-table", pipe, "-o", new_package],
         &["fly", package, "--path", pipe, "-o", free],
         &["fly", package, "--style", pipe, "-o", free],
         &["render", package, "--style", pipe, "-o", free],
@@ -221,13 +221,18 @@ fn a_link_is_followed_and_stays_a_link() {
     let [svg, chart] = [elsewhere.join("real.svg"), here.join("chart.svg")];
     fs::write(&svg, b"<svg old").unwrap();
     symlink(&svg, &chart).unwrap();
-    let ran = run(&["growth", text(&file), "--svg", text(&chart)]);
+    let growth = ["growth", text(&file), "--svg", text(&chart)];
+    let ran = run(&growth);
+    assert_eq!(ran.code, 3, "{}", ran.err);
+    assert_eq!(fs::read(&svg).unwrap(), b"<svg old");
+    let ran = run(&[&growth[..], &["-O"]].concat());
     assert_eq!(ran.code, 0, "{}", ran.err);
     assert!(chart.symlink_metadata().unwrap().is_symlink());
     assert!(fs::read_to_string(&svg).unwrap().ends_with("</svg>\n"), "the file is replaced");
 
     // A link to nothing is refused as a mistake; a link to a folder or to an input is refused like its target.
-    let [dead, to_folder, to_input] = ["dead", "to-folder", "to-input"].map(|name| here.join(name));
+    let [dead, to_folder, to_input] =
+        ["dead", "to-folder", "to-input"].map(|name| here.join(format!("{name}.pmtiles")));
     symlink(elsewhere.join("missing"), &dead).unwrap();
     symlink(&elsewhere, &to_folder).unwrap();
     let copy = elsewhere.join("dem.tif");
@@ -250,12 +255,22 @@ fn a_target_that_ends_in_a_slash_is_refused_before_the_work() {
     let package = folder.path().join("pass.pmtiles");
     build_pass(&package, &["--quiet"]);
     let package = text(&package);
-    let free = folder.path().join("free");
-    let free = text(&free);
+    let [free, new_package] = ["free", "free.pmtiles"].map(|name| folder.path().join(name));
+    let [free, new_package] = [text(&free), text(&new_package)];
     let osm = sample("pass/pass.osm.pbf");
     let lines: [&[&str]; 6] = [
         &["build", "--dem", "/nowhere.tif", "-o", &target],
-        &["build", "--dem", "/nowhere.tif", "--osm", text(&osm), "-o", free, "--defects", &target],
+        &[
+            "build",
+            "--dem",
+            "/nowhere.tif",
+            "--osm",
+            text(&osm),
+            "-o",
+            new_package,
+            "--defects",
+            &target,
+        ],
         &["render", package, "-o", &target],
         &["growth", package, "--svg", &target],
         &["fly", package, "-o", &target],

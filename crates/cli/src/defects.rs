@@ -10,7 +10,6 @@ use std::{
 use corniche_pipeline::{Defect, Observer, Stage};
 
 use crate::{
-    args::ReportArgs,
     failure::Failure,
     output::{self, Existing, Output},
     progress::Progress,
@@ -89,14 +88,13 @@ pub(crate) struct Watch {
 impl Watch {
     /// Begins the list if one is asked for; it must be none of `others`.
     pub(crate) fn new(
-        report: ReportArgs,
         list: Option<&Path>,
         overwrite: bool,
         others: &[&Path],
     ) -> Result<Self, Failure> {
         let existing = Existing::of(overwrite);
         let defects = list.map(|target| DefectList::create(target, existing, others));
-        Ok(Self { progress: Progress::new(report), defects: defects.transpose()? })
+        Ok(Self { progress: Progress::new(), defects: defects.transpose()? })
     }
 }
 

@@ -26,6 +26,17 @@ impl ExitCode {
             Self::Interrupted => 4,
         }
     }
+
+    /// Its name for programs.
+    pub(crate) const fn word(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Failed => "failed",
+            Self::Unusable => "unusable",
+            Self::Exists => "exists",
+            Self::Interrupted => "interrupted",
+        }
+    }
 }
 
 impl From<ExitCode> for process::ExitCode {

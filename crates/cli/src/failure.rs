@@ -1,7 +1,4 @@
-use std::{
-    fmt,
-    io::{self, Write as _},
-};
+use std::{fmt, io};
 
 use corniche_pipeline::{BuildError, VerifyError};
 use corniche_tileset::OpenError;
@@ -31,14 +28,14 @@ impl Failure {
         Self { error: self.error.context(path.display().to_string()), ..self }
     }
 
+    /// The target exists, with a text for the user.
+    pub(crate) fn exists(message: impl fmt::Display) -> Self {
+        Self::new(ExitCode::Exists, anyhow::anyhow!("{message}"))
+    }
+
     /// A signal came.
     pub(crate) fn interrupted() -> Self {
         Self::new(ExitCode::Interrupted, anyhow::anyhow!("interrupted"))
-    }
-
-    /// Prints it on standard error. If nobody reads that any more, the exit code alone must tell.
-    pub(crate) fn tell(&self) {
-        let _ = writeln!(io::stderr(), "corniche: {self}");
     }
 
     pub(crate) fn code(&self) -> ExitCode {

@@ -25,7 +25,8 @@ use crate::{
     args::{FlyArgs, Lod, Roads},
     exit::ExitCode,
     failure::Failure,
-    interrupt, presets, progress, styles,
+    interrupt, messages, presets, progress, styles,
+    table::Digits,
 };
 use corniche_styles::Style;
 use corniche_viewer::{
@@ -53,7 +54,8 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
         if args.window { plan.fly_in_a_window()? } else { plan.fly(None)? };
 
     outputs.finish(&flight, WorkingCrs::of(package.manifest()), &runs, &adapter)?;
-    io::stdout().lock().write_all(summary::to_text(&runs).as_bytes())?;
+    let digits = Digits::on(&io::stdout());
+    io::stdout().lock().write_all(summary::to_text(&runs, digits).as_bytes())?;
     Ok(ExitCode::Done)
 }
 
@@ -149,7 +151,9 @@ impl Plan<'_> {
             let is_closed = match watched {
                 Ok(Watched::Lost(error)) => {
                     let why = Failure::from(error);
-                    eprintln!("note: the window is lost, the flight goes on without it: {why}");
+                    messages::warning(&format!(
+                        "the window is lost, the flight goes on without it: {why}"
+                    ));
                     Ok(false)
                 }
                 Ok(Watched::ToTheEnd) => Ok(false),
@@ -175,7 +179,7 @@ impl Plan<'_> {
 
     fn fly(&self, watcher: Option<&Watcher<'_>>) -> Result<Drawn, Failure> {
         let gpu = Gpu::new()?;
-        eprintln!("drawn by {}", gpu.adapter_name());
+        messages::note(&format!("drawn by {}", gpu.adapter_name()));
         let mut runs = Vec::new();
         for lod in once_each(&self.args.drawing.lod) {
             for roads in once_each(self.methods) {
@@ -201,11 +205,11 @@ impl Plan<'_> {
         let mut replay = Replay::new(gpu, &package, self.flight, &options, &is_stopped)?;
         let Lifted { frames, most_m } = replay.lifted();
         if frames > 0 {
-            eprintln!(
+            messages::note(&format!(
                 "note: {}, roads {}: in {frames} frames the eye was lifted off the ground, by up to {most_m:.1} m",
                 lod.word(),
                 roads.word()
-            );
+            ));
         }
         let mut run = MeasuredRun { lod, roads, frames: Vec::new() };
         // The bar hides itself if standard error is no terminal.
@@ -221,7 +225,7 @@ impl Plan<'_> {
         }
         bar.finish_and_clear();
         if let Some(doubt) = run.doubt() {
-            eprintln!("note: {}: {doubt}", run.name());
+            messages::warning(&format!("{}: {doubt}", run.name()));
         }
         Ok(run)
     }

@@ -11,8 +11,8 @@ use crate::{
     args::GrowthArgs,
     exit::ExitCode,
     failure::Failure,
-    output::{Existing, Kind, Output},
-    table::{Table, bytes, count},
+    output::{Existing, Output},
+    table::{Digits, Table, bytes},
 };
 
 /// "About ten": Vaaraniemi, Treib & Westermann 2011, for whole data sets without class filter.
@@ -29,7 +29,7 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
     }
     // The chart is written first, because the reader of the table may close the pipe before its end.
     if let Some(path) = &args.svg {
-        let output = Output::create(path, Existing::ReplaceLike(Kind::Svg), &[&args.package])?;
+        let output = Output::create(path, Existing::of(args.overwrite), &[&args.package])?;
         let svg = chart::growth(manifest).map_err(|error| Failure::new(ExitCode::Failed, error))?;
         output.write_whole(svg.as_bytes())?;
     }
@@ -39,7 +39,7 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
     } else if args.csv {
         out.write_all(to_csv(manifest).as_bytes())?;
     } else {
-        out.write_all(to_text(manifest).as_bytes())?;
+        out.write_all(to_text(manifest, Digits::on(&io::stdout())).as_bytes())?;
     }
     Ok(ExitCode::Done)
 }
@@ -107,7 +107,8 @@ fn factor(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}"))
 }
 
-fn line(name: String, row: &GrowthRow, factors: &Factors) -> [String; 13] {
+fn line(name: String, row: &GrowthRow, factors: &Factors, digits: Digits) -> [String; 13] {
+    let count = |number| digits.count(number);
     [
         name,
         count(row.source_vertices),
@@ -125,7 +126,7 @@ fn line(name: String, row: &GrowthRow, factors: &Factors) -> [String; 13] {
     ]
 }
 
-fn to_text(manifest: &Manifest) -> String {
+fn to_text(manifest: &Manifest, digits: Digits) -> String {
     let headings = [
         "",
         "source",
@@ -144,14 +145,14 @@ fn to_text(manifest: &Manifest) -> String {
     let mut levels = Table::new(headings);
     for level in &manifest.levels {
         let row = sum(manifest.growth.iter().filter(|row| row.level == level.level));
-        levels.row(line(format!("level {}", level.level), &row, &factors(&row)));
+        levels.row(line(format!("level {}", level.level), &row, &factors(&row), digits));
     }
     let (all, all_factors) = whole(manifest);
-    levels.row(line("all levels".to_owned(), &all, &all_factors));
+    levels.row(line("all levels".to_owned(), &all, &all_factors, digits));
     let mut classes = Table::new(headings);
     for row in &manifest.growth {
         let name = format!("level {} FRC {}", row.level, row.class);
-        classes.row(line(name, row, &factors(row)));
+        classes.row(line(name, row, &factors(row), digits));
     }
     format!(
         "Vertices and bytes of roads, per level (all classes)\n{}\nPer level and class\n{}\n\

@@ -14,7 +14,7 @@ use crate::{
     args::InfoArgs,
     exit::ExitCode,
     failure::Failure,
-    table::{Table, bytes, count, length},
+    table::{Digits, Table, bytes, length},
 };
 
 pub(crate) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
@@ -26,13 +26,13 @@ pub(crate) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
         writeln!(out, "{value}")?;
     } else {
         let size = fs::metadata(&args.package)?.len();
-        out.write_all(to_text(package.manifest(), size).as_bytes())?;
+        out.write_all(to_text(package.manifest(), size, Digits::on(&io::stdout())).as_bytes())?;
     }
     Ok(ExitCode::Done)
 }
 
 /// A manifest for people.
-pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
+pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -> String {
     let mut text = String::new();
     let mut say = |line: String| {
         text.push_str(&line);
@@ -65,10 +65,10 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
     let samples = &manifest.counts.samples;
     say(format!(
         "nodes        {}: {} with data, {} filled, {} void",
-        count(samples.nodes),
-        count(samples.with_data),
-        count(samples.filled),
-        count(samples.void)
+        digits.count(samples.nodes),
+        digits.count(samples.with_data),
+        digits.count(samples.filled),
+        digits.count(samples.void)
     ));
     for input in &manifest.inputs {
         let hash = plain(input.sha256.get(..12).unwrap_or_default());
@@ -82,23 +82,19 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64) -> String {
     for credit in &manifest.attribution {
         say(format!("attribution  {}", plain(credit)));
     }
-    say(format!("\n{}", levels(manifest).to_text()));
-    text.push_str(&sample_errors(manifest));
-    text.push_str(&roads(manifest));
+    say(format!("\n{}", levels(manifest, digits).to_text()));
+    say(format!("Errors of the tiles:\n{}", tile_errors(manifest).to_text()));
+    text.push_str(&sample_errors(manifest, digits));
+    text.push_str(&roads(manifest, digits));
     text
 }
 
-/// One row for each level.
-fn levels(manifest: &Manifest) -> Table {
+/// What each level holds.
+fn levels(manifest: &Manifest, digits: Digits) -> Table {
     let mut levels = Table::new([
         "level",
         "cell m",
         "tolerance m",
-        "error m",
-        "median",
-        "p95",
-        "stored/true p95",
-        "max",
         "tiles",
         "triangles",
         "terrain",
@@ -111,31 +107,43 @@ fn levels(manifest: &Manifest) -> Table {
             level.level.to_string(),
             sides(level.cell_m),
             rounded(level.max_error_m),
-            format!("{:.2}", level.geometric_error_m),
-            or_dash(level.errors_m.map(|errors_m| errors_m.median), 2),
-            or_dash(level.errors_m.map(|errors_m| errors_m.p95), 2),
-            or_dash(level.tightness.map(|tightness| tightness.p95), 3),
-            or_dash(level.tightness.map(|tightness| tightness.max), 3),
-            count(level.tiles),
-            count(level.triangles),
+            digits.count(level.tiles),
+            digits.count(level.triangles),
             bytes(level.terrain_bytes),
             format!("{:.2}", level.terrain_bytes as f64 / level.triangles.max(1) as f64),
             level.least_class.map_or_else(|| "–".to_owned(), |class| class.to_string()),
-            count(level.uncovered_nodes),
+            digits.count(level.uncovered_nodes),
         ]);
     }
     levels
 }
 
+/// What the tiles of each level store as their errors, and how much larger that is than the true ones.
+fn tile_errors(manifest: &Manifest) -> Table {
+    let mut errors =
+        Table::new(["level", "error m", "median", "p95", "stored/true p95", "stored/true max"]);
+    for level in &manifest.levels {
+        errors.row([
+            level.level.to_string(),
+            format!("{:.2}", level.geometric_error_m),
+            or_dash(level.errors_m.map(|errors_m| errors_m.median), 2),
+            or_dash(level.errors_m.map(|errors_m| errors_m.p95), 2),
+            or_dash(level.tightness.map(|tightness| tightness.p95), 3),
+            or_dash(level.tightness.map(|tightness| tightness.max), 3),
+        ]);
+    }
+    errors
+}
+
 /// How far each level is from the DEM's own samples.
-fn sample_errors(manifest: &Manifest) -> String {
+fn sample_errors(manifest: &Manifest, digits: Digits) -> String {
     let mut table = Table::new(["level", "samples on TIN", "off TIN", "max m", "RMS m", "p99 m"]);
     for level in &manifest.levels {
         let SampleErrorRecord { on_tin, off_tin, max_m, rms_m, p99_m } = level.sample_error;
         table.row([
             level.level.to_string(),
-            count(on_tin),
-            count(off_tin),
+            digits.count(on_tin),
+            digits.count(off_tin),
             format!("{max_m:.2}"),
             format!("{rms_m:.3}"),
             format!("{p99_m:.2}"),
@@ -223,55 +231,57 @@ fn odd_heights(manifest: &Manifest) -> Option<String> {
     ))
 }
 
-fn roads(manifest: &Manifest) -> String {
+fn roads(manifest: &Manifest, digits: Digits) -> String {
     let counts = &manifest.counts;
     if counts.roads_in == 0 {
         return "no roads: built without an extract\n".to_owned();
     }
     let mut text = String::new();
     let mut table = Table::new(["roads", "count", "length"]);
-    table.row(["read".into(), count(counts.roads_in), length(counts.roads_in_um)]);
+    table.row(["read".into(), digits.count(counts.roads_in), length(counts.roads_in_um)]);
+    for (class, &(roads, length_um)) in counts.classes.iter().enumerate() {
+        if roads > 0 {
+            table.row([
+                format!("  FRC {class} ({})", plain(&manifest.settings.frc_table)),
+                digits.count(roads),
+                length(length_um),
+            ]);
+        }
+    }
     table.row([
         "kept at the finest level".into(),
-        count(counts.roads_kept),
+        digits.count(counts.roads_kept),
         length(counts.roads_kept_um),
     ]);
     for loss in &counts.roads_lost {
         table.row([
             format!("lost {}", plain(&loss.reason)),
-            count(loss.roads),
+            digits.count(loss.roads),
             length(loss.length_um),
         ]);
     }
-    for (class, &(roads, length_um)) in counts.classes.iter().enumerate() {
-        if roads > 0 {
-            table.row([
-                format!("  FRC {class} ({})", plain(&manifest.settings.frc_table)),
-                count(roads),
-                length(length_um),
-            ]);
-        }
-    }
     text.push_str(&table.to_text());
-    let _ = writeln!(text, "highway ways in the extract: {}", count(counts.highways_in));
+    let _ = writeln!(text, "highway ways in the extract: {}", digits.count(counts.highways_in));
     if counts.blobs_passed_over > 0 {
         let _ = writeln!(
             text,
             "blobs of the extract of an unknown type, passed over: {}",
-            count(counts.blobs_passed_over)
+            digits.count(counts.blobs_passed_over)
         );
     }
     for (reason, number) in &counts.highways_left_out {
-        let _ = writeln!(text, "  not taken, {}: {}", plain(reason), count(*number));
+        let _ = writeln!(text, "  not taken, {}: {}", plain(reason), digits.count(*number));
     }
     for (name, number) in &counts.defects {
-        let _ = writeln!(text, "defect: {}: {}", plain(name), count(*number));
+        let _ = writeln!(text, "defect: {}: {}", plain(name), digits.count(*number));
     }
     for (value, number) in &counts.unknown_highways {
-        let _ = writeln!(text, "highway={} is in no class: {}", plain(value), count(*number));
+        let _ =
+            writeln!(text, "highway={} is in no class: {}", plain(value), digits.count(*number));
     }
     for (tag, number) in &counts.tags_taken_otherwise {
-        let _ = writeln!(text, "{} is taken for another value: {}", plain(tag), count(*number));
+        let _ =
+            writeln!(text, "{} is taken for another value: {}", plain(tag), digits.count(*number));
     }
     text
 }

@@ -20,7 +20,7 @@ use std::{
     time::Duration,
 };
 
-use crate::{exit::ExitCode, failure::Failure};
+use crate::{exit::ExitCode, failure::Failure, messages};
 
 /// What asks the program to end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -130,12 +130,13 @@ fn end() -> ! {
     thread::spawn(move || {
         let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner).clone();
         if let Some(kept) = kept.filter(|kept| kept.exists()) {
-            eprintln!(
-                "corniche: warning: what was done is kept in {}; the same command with --resume goes on from there, with -O it starts again",
+            messages::warning(&format!(
+                "what was done is kept in {}; the same command with --resume goes on from there, with -O it starts again",
                 kept.display()
-            );
+            ));
         }
-        reason().tell();
+        let reason = reason();
+        messages::ended(reason.code(), Some(&reason));
         said.send(())
     });
     let _ = waits.recv_timeout(ASKS_WITHIN);

@@ -2,11 +2,10 @@
 //!
 //! This crate never holds an algorithm.
 
-#![expect(clippy::print_stderr, reason = "the command talks to people on standard error")]
-
 mod args;
 mod build;
 mod chart;
+mod completions;
 mod defects;
 mod exit;
 mod failure;
@@ -16,7 +15,10 @@ mod growth;
 mod info;
 mod interrupt;
 mod jobs;
+mod man;
 mod merge;
+mod messages;
+mod names;
 mod open_files;
 mod output;
 mod parent;
@@ -30,11 +32,12 @@ mod styles;
 mod table;
 mod tile;
 mod verify;
+mod version;
 mod view;
 
 use std::process;
 
-use clap::Parser;
+use clap::{Parser, error::ErrorKind};
 
 use args::{Arguments, Command};
 use exit::ExitCode;
@@ -43,23 +46,35 @@ use failure::Failure;
 fn main() -> process::ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(error) => {
-            // Help and version are answers, not errors; clap knows which stream each belongs on.
-            let code = if error.use_stderr() { ExitCode::Unusable } else { ExitCode::Done };
-            let _ = error.print();
-            return code.into();
-        }
+        Err(error) => return answer(&error).into(),
     };
-    match run(arguments) {
-        Ok(code) => code.into(),
+    messages::begin(arguments.voice());
+    let _span = tracing::info_span!("corniche", command = arguments.command.name()).entered();
+    tracing::debug!(
+        version = env!("CARGO_PKG_VERSION"),
+        libraries = version::libraries(),
+        "begins"
+    );
+    let (code, failure) = match run(arguments) {
+        Ok(code) => (code, None),
         Err(failure) => {
             let failure = interrupt::explain(failure);
-            if !failure.is_closed_pipe() {
-                failure.tell();
-            }
-            failure.code().into()
+            (failure.code(), (!failure.is_closed_pipe()).then_some(failure))
         }
+    };
+    messages::ended(code, failure.as_ref());
+    code.into()
+}
+
+/// Help and version are answers, not errors; clap knows which stream each belongs on.
+fn answer(error: &clap::Error) -> ExitCode {
+    // If nobody reads it any more, the exit code alone must tell.
+    if error.kind() == ErrorKind::DisplayVersion && version::is_long_asked_for() {
+        let _ = version::print_long();
+    } else {
+        let _ = error.print();
     }
+    if error.use_stderr() { ExitCode::Unusable } else { ExitCode::Done }
 }
 
 fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
@@ -82,5 +97,7 @@ fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
         Command::Render(args) => render::run(&args),
         Command::Fly(args) => fly::run(&args),
         Command::View(args) => view::run(&args),
+        Command::Completions(args) => completions::run(&args),
+        Command::Man(args) => man::run(&args),
     }
 }

@@ -10,7 +10,7 @@ use crate::{
     defects::Watch,
     exit::ExitCode,
     failure::Failure,
-    output, parent,
+    messages, names, output, parent,
     part::{read_plan, told},
     settings,
 };
@@ -23,10 +23,11 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
     if !is_in_object_storage(&args.output) {
         output::writable(&args.output)?;
     }
+    names::refuse_other_than_package(&args.output)?;
     let plan = read_plan(&planned.plan)?;
     let mut others: Vec<&Path> = plan.inputs.iter().map(|input| Path::new(&input.path)).collect();
     others.extend([args.output.as_path(), planned.plan.as_path()]);
-    let watch = Watch::new(planned.report, args.defects.as_deref(), args.overwrite, &others)?;
+    let watch = Watch::new(args.defects.as_deref(), args.overwrite, &others)?;
     let merge = MergeSettings {
         plan,
         stores: planned.store.clone(),
@@ -41,10 +42,9 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
         Ok(merged) => (Ok(merged.package), merged.requests),
         Err(error) => (Err(error), None),
     };
-    let code = build::finish(package, watch, planned.report, &args.output)?;
-    let quiet = planned.report.quiet || planned.report.json_progress;
-    if let Some(requests) = requests.filter(|_| !quiet) {
-        eprintln!("{}", told(&requests));
+    let code = build::finish(package, watch, &args.output)?;
+    if let Some(requests) = requests {
+        messages::note(&told(&requests));
     }
     Ok(code)
 }

@@ -2,8 +2,7 @@
 
 use std::{
     fmt::Display,
-    fs::File,
-    io::{self, BufWriter, Cursor, Read as _, Write},
+    io::{self, BufWriter, Cursor, Write},
     path::{Path, PathBuf},
 };
 
@@ -11,49 +10,19 @@ use corniche_pipeline::file_target;
 use image::RgbaImage;
 use tempfile::NamedTempFile;
 
-use crate::{exit::ExitCode, failure::Failure, interrupt};
+use crate::{exit::ExitCode, failure::Failure, interrupt, names};
 
 /// What to do with a file that exists at the target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Existing {
     Keep,
     Replace,
-    /// Replaces a file of the kind that is written, and keeps any other file, so that a typing error does not destroy a package
-    /// or a raster.
-    ReplaceLike(Kind),
 }
 
 impl Existing {
     /// As `-O` says.
     pub(crate) fn of(overwrite: bool) -> Self {
         if overwrite { Self::Replace } else { Self::Keep }
-    }
-}
-
-/// What a file is, by how it begins.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
-    Png,
-    Svg,
-}
-
-impl Kind {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Png => "PNG",
-            Self::Svg => "SVG",
-        }
-    }
-
-    /// Whether the file at a path begins as this kind does, or holds nothing.
-    fn is_of(self, path: &Path) -> io::Result<bool> {
-        let beginnings: &[&[u8]] = match self {
-            Self::Png => &[b"\x89PNG"],
-            Self::Svg => &[b"<svg", b"<?xml"],
-        };
-        let mut first = Vec::new();
-        File::open(path)?.take(5).read_to_end(&mut first)?;
-        Ok(first.is_empty() || beginnings.iter().any(|beginning| first.starts_with(beginning)))
     }
 }
 
@@ -84,14 +53,6 @@ impl Output {
         }
         if existing == Existing::Keep && named.symlink_metadata().is_ok() {
             return Err(exists(named));
-        }
-        if let Existing::ReplaceLike(kind) = existing
-            && target.exists()
-            && !kind.is_of(&target).map_err(|error| unusable(&error))?
-        {
-            let what = format!("{} exists already and is no {}", target.display(), kind.name());
-            let advice = "choose another name, or delete it first";
-            return Err(Failure::new(ExitCode::Exists, anyhow::anyhow!("{what}; {advice}")));
         }
         let file = corniche_pipeline::unfinished_file(&target).map_err(|error| unusable(&error))?;
         interrupt::remove_at_end(file.path());
@@ -136,11 +97,14 @@ impl Complete {
     pub(crate) fn place(self) -> Result<(), Failure> {
         let Self { target, existing, file } = self;
         let placed = match existing {
-            Existing::Replace | Existing::ReplaceLike(_) => file.persist(&target),
+            Existing::Replace => file.persist(&target),
             Existing::Keep => file.persist_noclobber(&target),
         };
         match placed.map_err(|error| error.error) {
-            Ok(_) => Ok(()),
+            Ok(_) => {
+                tracing::debug!(path = %target.display(), "file written");
+                Ok(())
+            }
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(exists(&target)),
             Err(error) => Err(failed(&target, &error)),
         }
@@ -160,7 +124,15 @@ impl Write for Output {
 /// Where a file that is wanted at `target` goes: there, or to the file that a link there leads to. A place that is neither
 /// free nor a regular file's is refused, with `-O` too: devices, pipes and folders are never replaced.
 pub(crate) fn writable(target: &Path) -> Result<PathBuf, Failure> {
+    names::refuse_what_is_no_file(target)?;
     file_target(target).map_err(|error| Failure::new(ExitCode::Unusable, error))
+}
+
+/// Where a package goes: like [`writable`], and its name says what it is, so that no other file is meant.
+pub(crate) fn writable_package(target: &Path) -> Result<PathBuf, Failure> {
+    let place = writable(target)?;
+    names::refuse_other_than_package(target)?;
+    Ok(place)
 }
 
 /// Where a file is or will be, whatever way its path is written: for one that does not exist yet, its folder's place.
@@ -195,10 +167,7 @@ pub(crate) fn failed(target: &Path, error: &io::Error) -> Failure {
 }
 
 fn exists(target: &Path) -> Failure {
-    Failure::new(
-        ExitCode::Exists,
-        anyhow::anyhow!("{} exists already; give -O to replace it", target.display()),
-    )
+    Failure::exists(format!("{} exists already; give -O to replace it", target.display()))
 }
 
 #[cfg(test)]

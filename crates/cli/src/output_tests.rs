@@ -31,19 +31,29 @@ fn what_is_there_is_kept_unless_said_otherwise() {
 }
 
 #[test]
-fn a_picture_takes_the_place_of_a_picture_and_of_nothing_else() {
+fn names_that_mean_no_file_are_refused_with_a_way_out() {
+    for (name, word) in
+        [("-", "./-"), ("s3://bucket/a.svg", "corniche merge"), ("http://a/b", "address")]
+    {
+        let refused = Output::create(Path::new(name), Existing::Replace, &[]).unwrap_err();
+        assert_eq!(refused.code(), ExitCode::Unusable, "{name}");
+        let said = refused.to_string();
+        assert!(said.contains(word) && said.contains(name), "{name}: {said}");
+    }
+}
+
+#[test]
+fn a_package_is_called_so() {
     let folder = tempfile::tempdir().unwrap();
-    let target = folder.path().join("map.png");
-    let create = |kind| Output::create(&target, Existing::ReplaceLike(kind), &[]);
-    create(Kind::Png).unwrap().write_whole(b"\x89PNG old").unwrap();
-    create(Kind::Png).unwrap().write_whole(b"\x89PNG new").unwrap();
-    assert_eq!(fs::read(&target).unwrap(), b"\x89PNG new");
-    let refused = create(Kind::Svg).unwrap_err();
-    assert_eq!(refused.code(), ExitCode::Exists);
-    assert!(refused.to_string().contains("map.png exists already and is no SVG"), "{refused}");
-    assert_eq!(fs::read(&target).unwrap(), b"\x89PNG new");
-    fs::write(&target, b"").unwrap();
-    create(Kind::Svg).unwrap().write_whole(b"<svg").unwrap();
+    for name in ["a.pmtiles", "b.PMTiles", "c.old.pmtiles"] {
+        assert!(writable_package(&folder.path().join(name)).is_ok(), "{name}");
+    }
+    for name in ["a", "a.mbtiles", "pmtiles", "a.pmtiles.bak", ".pmtiles"] {
+        let refused = writable_package(&folder.path().join(name)).unwrap_err();
+        assert_eq!(refused.code(), ExitCode::Unusable, "{name}");
+        let said = refused.to_string();
+        assert!(said.contains(&format!("{name}.pmtiles")), "{name}: {said}");
+    }
 }
 
 #[test]

@@ -9,8 +9,8 @@ use std::{
 use corniche_pipeline::{BuildPlan, PartSettings, Requests};
 
 use crate::{
-    args::PartArgs, exit::ExitCode, failure::Failure, parent, progress::Progress, settings,
-    table::bytes,
+    args::PartArgs, exit::ExitCode, failure::Failure, messages, parent, progress::Progress,
+    settings, table::bytes,
 };
 
 pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
@@ -28,19 +28,17 @@ pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
         resources: settings::resources(planned.threads, planned.memory.as_deref())?,
         generator: settings::generator(),
     };
-    let progress = Progress::new(planned.report);
+    let progress = Progress::new();
     let made = corniche_pipeline::make_part(&part, &progress)?;
-    let quiet = planned.report.quiet || planned.report.json_progress;
     match made.sealed {
         Some(path) => writeln!(io::stdout(), "{}", path.display())?,
-        None if quiet => {}
-        None => eprintln!(
-            "nothing to do: there is no data in this part, or it is in the stores already"
+        None => messages::note(
+            "nothing to do: there is no data in this part, or it is in the stores already",
         ),
     }
     progress.tell_costs();
-    if let Some(requests) = made.requests.filter(|_| !quiet) {
-        eprintln!("{}", told(&requests));
+    if let Some(requests) = made.requests {
+        messages::note(&told(&requests));
     }
     Ok(ExitCode::Done)
 }

@@ -16,7 +16,7 @@ use crate::{
     interrupt, jobs,
     output::{Existing, Output},
     settings,
-    table::{Table, bytes, count},
+    table::{Digits, Table, bytes},
 };
 
 pub(crate) fn run(args: PlanArgs) -> Result<ExitCode, Failure> {
@@ -49,12 +49,13 @@ pub(crate) fn run(args: PlanArgs) -> Result<ExitCode, Failure> {
     if let Some(file) = written {
         write_plan(file, &plan)?;
     }
+    let digits = Digits::on(&io::stdout());
     let mut out = io::stdout().lock();
     if args.json {
         let value = json!({ "plan_sha256": plan.hash(), "estimate": estimate });
         writeln!(out, "{value}")?;
     } else {
-        out.write_all(to_text(&plan, &estimate, work.resources).as_bytes())?;
+        out.write_all(to_text(&plan, &estimate, work.resources, digits).as_bytes())?;
     }
     Ok(ExitCode::Done)
 }
@@ -92,7 +93,7 @@ impl Observer for Signals {
 }
 
 /// Plan and estimates for people.
-fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources) -> String {
+fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources, digits: Digits) -> String {
     let mut text = String::new();
     let mut say = |name: &str, value: &str| {
         // Writing to a String cannot fail.
@@ -108,11 +109,11 @@ fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources) -> Strin
     for input in &plan.inputs {
         say(&input.kind, &format!("{}, {}", input.path, bytes(input.bytes)));
     }
-    say("nodes", &count(estimate.nodes));
+    say("nodes", &digits.count(estimate.nodes));
     let subtrees = |level| format!("{} on level {level}", plan.subtrees(level).len());
     let few: Vec<String> = (0..=grid.frame.max_level().min(3)).map(subtrees).collect();
     say("subtrees", &format!("with data: {}", few.join(", ")));
-    say("tiles", &count(estimate.tiles.iter().sum()));
+    say("tiles", &digits.count(estimate.tiles.iter().sum()));
     let memory = &estimate.memory;
     let least_bytes = memory.least_bytes.max(MIN_MEMORY_BYTES);
     say(
@@ -158,7 +159,7 @@ fn to_text(plan: &BuildPlan, estimate: &Estimate, resources: Resources) -> Strin
             format!("{east_m:.2} × {north_m:.2}"),
             format!("{:.3}", level.max_error_m),
             level.least_class.map_or_else(|| "none".to_owned(), |class| class.to_string()),
-            count(*tiles),
+            digits.count(*tiles),
         ]);
     }
     text + &table.to_text()

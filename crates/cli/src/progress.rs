@@ -1,4 +1,4 @@
-//! Progress: bars on a terminal, plain lines elsewhere, JSON lines on request, or nothing; and what the stages took, at
+//! Progress: bars on a terminal, plain lines elsewhere, records on request, or nothing; and what the stages took, at
 //! the end.
 //!
 //! A thread of its own looks twice a second whether something is to be told, so a stage that counts nothing for minutes is
@@ -11,7 +11,7 @@ mod usage;
 
 use std::{
     borrow::Cow,
-    io::{IsTerminal as _, Write as _, stderr},
+    io::{IsTerminal as _, stderr},
     path::Path,
     sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
     thread::{self, JoinHandle},
@@ -20,7 +20,7 @@ use std::{
 
 use corniche_pipeline::{Observer, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
-use serde_json::json;
+use tracing::Span;
 
 use self::{
     costs::{Cost, Costs},
@@ -28,7 +28,12 @@ use self::{
     texts::Reading,
     usage::Usage,
 };
-use crate::{args::ReportArgs, interrupt};
+use crate::{
+    args::{LogFormat, Voice},
+    interrupt, messages,
+    messages::write_line,
+    table::Digits,
+};
 
 /// How progress is told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,16 +41,31 @@ enum Manner {
     Quiet,
     Bars,
     Lines,
+    /// `--json-progress`.
     Json,
+    /// `--log-format json`.
+    Events,
 }
 
 impl Manner {
+    /// As the voice says.
+    fn of(voice: Voice) -> Self {
+        match voice {
+            Voice { is_quiet: true, .. } => Self::Quiet,
+            Voice { json_progress: true, .. } => Self::Json,
+            Voice { format: LogFormat::Json, .. } => Self::Events,
+            // Lines that come in between would tear a bar.
+            Voice { verbosity: 0, .. } if stderr().is_terminal() => Self::Bars,
+            Voice { .. } => Self::Lines,
+        }
+    }
+
     /// Whether a running stage is to be told, the last time being `since_told` ago and steps having been made since or not.
     fn is_due(self, since_told: Duration, has_moved: bool) -> bool {
         match self {
             Self::Quiet => false,
             Self::Bars => since_told >= TICK / 2,
-            Self::Lines => since_told >= LINE_INTERVAL,
+            Self::Lines | Self::Events => since_told >= LINE_INTERVAL,
             Self::Json => since_told >= if has_moved { TICK } else { IDLE_INTERVAL },
         }
     }
@@ -73,6 +93,7 @@ struct State {
 
 struct Running {
     stage: Stage,
+    span: Span,
     total: Option<u64>,
     done: u64,
     already: u64,
@@ -92,17 +113,8 @@ const LINE_INTERVAL: Duration = Duration::from_secs(9);
 const IDLE_INTERVAL: Duration = Duration::from_secs(5);
 
 impl Progress {
-    pub(crate) fn new(args: ReportArgs) -> Self {
-        let manner = if args.quiet {
-            Manner::Quiet
-        } else if args.json_progress {
-            Manner::Json
-        } else if stderr().is_terminal() {
-            Manner::Bars
-        } else {
-            Manner::Lines
-        };
-        Self::in_manner(manner)
+    pub(crate) fn new() -> Self {
+        Self::in_manner(Manner::of(messages::voice()))
     }
 
     fn in_manner(manner: Manner) -> Self {
@@ -131,10 +143,24 @@ impl Progress {
             Manner::Quiet => {}
             Manner::Json => write_line(&state.costs.to_json(wall, &used).to_string()),
             Manner::Bars | Manner::Lines => {
-                write_line(&format!("\n{}", state.costs.to_text(wall, &used).trim_end()));
+                let table = state.costs.to_text(wall, &used, digits());
+                write_line(&format!("\n{}", table.trim_end()));
             }
+            Manner::Events => tracing::info!(
+                seconds = wall.as_secs_f64(),
+                cpu_seconds = used.cpu.map(|cpu| cpu.as_secs_f64()),
+                peak_memory_bytes = used.peak_memory_bytes,
+                read_bytes = used.read_bytes,
+                written_bytes = used.written_bytes,
+                "all stages"
+            ),
         }
     }
+}
+
+/// How whole numbers are written on standard error.
+fn digits() -> Digits {
+    Digits::on(&stderr())
 }
 
 impl Drop for Progress {
@@ -147,13 +173,11 @@ impl Drop for Progress {
     }
 }
 
-/// Standard error may be closed; the work goes on.
-fn write_line(line: &str) {
-    let _ = writeln!(stderr(), "{line}");
-}
-
-/// A progress bar; a spinner if the total is unknown.
+/// A progress bar; a spinner if the total is unknown; hidden where bars are not wanted.
 pub(crate) fn bar(title: impl Into<Cow<'static, str>>, total: Option<u64>) -> ProgressBar {
+    if Manner::of(messages::voice()) != Manner::Bars {
+        return ProgressBar::hidden();
+    }
     styled_bar(title, total, "{pos}/{len} {eta}")
 }
 
@@ -207,9 +231,20 @@ impl State {
             Manner::Quiet => {}
             Manner::Json => write_line(&reading.to_json("end").to_string()),
             Manner::Bars | Manner::Lines => {
-                write_line(&format!("{:22} {}", reading.stage.title(), reading.ended()));
+                write_line(&format!("{:22} {}", reading.stage.title(), reading.ended(digits())));
             }
+            Manner::Events => tracing::info!(
+                parent: &running.span,
+                done = reading.done,
+                already = reading.already,
+                seconds = reading.elapsed.as_secs_f64(),
+                cpu_seconds = reading.used.cpu.map(|cpu| cpu.as_secs_f64()),
+                "{}: {}", reading.stage.title(), reading.ended(Digits::Plain)
+            ),
         }
+        tracing::debug!(
+            parent: &running.span, done = reading.done, seconds = reading.elapsed.as_secs_f64(), "ended"
+        );
         self.costs.add(Cost {
             stage: reading.stage,
             done: reading.done,
@@ -223,8 +258,11 @@ impl State {
 impl Running {
     fn new(stage: Stage, total: Option<u64>, manner: Manner) -> Self {
         let now = Instant::now();
+        let span = tracing::info_span!("stage", id = stage.id());
+        tracing::debug!(parent: &span, total, unit = ?stage.unit(), "begins");
         Self {
             stage,
+            span,
             total,
             done: 0,
             already: 0,
@@ -240,6 +278,7 @@ impl Running {
     /// The stage has done `done` in all.
     fn reach(&mut self, done: u64) {
         self.done = done;
+        tracing::trace!(parent: &self.span, done, "counted");
         self.pace.record(self.begun.elapsed(), done - self.already);
     }
 
@@ -271,9 +310,18 @@ impl Running {
                     bar.set_length(total);
                 }
                 bar.set_position(self.done);
-                bar.set_message(reading.running());
+                bar.set_message(reading.running(digits()));
             }
-            (_, None) => write_line(&format!("{:22} {}", self.stage.title(), reading.running())),
+            (Manner::Events, _) => tracing::info!(
+                parent: &self.span,
+                done = reading.done,
+                total = reading.total,
+                seconds = reading.elapsed.as_secs_f64(),
+                "{}: {}", self.stage.title(), reading.running(Digits::Plain)
+            ),
+            (_, None) => {
+                write_line(&format!("{:22} {}", self.stage.title(), reading.running(digits())));
+            }
         }
     }
 }
@@ -313,23 +361,20 @@ impl Observer for Progress {
     }
 
     fn temporary(&self, folder: &Path) {
+        tracing::debug!(path = %folder.display(), "temporary files");
         interrupt::remove_at_end(folder);
     }
 
     fn keeps(&self, folder: &Path) {
+        tracing::debug!(path = %folder.display(), "intermediate results");
         interrupt::keep(folder);
     }
 
-    /// Warnings are printed with `--quiet`, too.
     fn warning(&self, text: &str) {
-        let line = match self.shared.manner {
-            Manner::Json => json!({ "warning": text }).to_string(),
-            Manner::Quiet | Manner::Bars | Manner::Lines => format!("corniche: warning: {text}"),
-        };
         let state = self.shared.state();
         match state.running.as_ref().and_then(|running| running.bar.as_ref()) {
-            Some(bar) => bar.suspend(|| write_line(&line)),
-            None => write_line(&line),
+            Some(bar) => bar.suspend(|| messages::warning(text)),
+            None => messages::warning(text),
         }
     }
 

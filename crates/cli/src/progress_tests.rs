@@ -80,7 +80,8 @@ fn each_stage_that_began_is_in_the_table() {
         progress.begin(stage, Some(0));
     }
     progress.end(Stage::Package);
-    let table = progress.shared.state().costs.to_text(Duration::ZERO, &Usage::default());
+    let table =
+        progress.shared.state().costs.to_text(Duration::ZERO, &Usage::default(), Digits::Plain);
     for stage in [Stage::Hash, Stage::Tiles, Stage::Package] {
         assert!(table.contains(stage.title()), "{table}");
     }

@@ -8,8 +8,8 @@ use crate::{
     args::RenderArgs,
     exit::ExitCode,
     failure::Failure,
-    interrupt,
-    output::{Existing, Kind, Output, png},
+    interrupt, messages,
+    output::{Existing, Output, png},
     styles,
 };
 
@@ -30,27 +30,27 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         supersampling: args.supersampling,
         style,
     };
-    let output = Output::create(&args.output, Existing::ReplaceLike(Kind::Png), &used)?;
+    let output = Output::create(&args.output, Existing::of(args.overwrite), &used)?;
     refuse_other_formats(&args.output)?;
     request.check()?;
     let package = PackageSource::open(&args.package)?.for_method(request.roads.method);
     let rendered = render(&request, &package, &interrupt::is_noted)?;
     output.write_whole(&png(&rendered.picture)?)?;
     let report = &rendered.report;
-    eprintln!(
+    messages::note(&format!(
         "{}: {} tiles, {} triangles, {} road segments, drawn by {}",
         args.output.display(),
         report.tiles,
         report.triangles,
         report.road_segments,
         report.adapter
-    );
+    ));
     if report.clamped_tiles > 0 {
-        eprintln!(
+        messages::note(&format!(
             "note: in up to {} tiles roads may be drawn narrower than the style says, because a tile knows of no roads \
              farther away than the package's width margin",
             report.clamped_tiles
-        );
+        ));
     }
     Ok(ExitCode::Done)
 }

@@ -15,7 +15,7 @@ fn a_memory_that_the_command_line_overrides_does_not_matter() {
     let error = resources(None, of_file.memory.as_deref()).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "--memory \"1M\" is not a size of at least 256M; write it like 512M, 4G or 1T"
+        "--memory \"1M\" is not a size of at least 256M; write it like 512M, 800MB, 0.5G or 1T"
     );
     let given = ResourceOptions { memory: Some("512M".to_owned()), ..ResourceOptions::default() };
     let merged = given.or(of_file);

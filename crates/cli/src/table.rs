@@ -1,6 +1,6 @@
 //! Plain text tables.
 
-use std::fmt::Write as _;
+use std::{fmt::Write as _, io::IsTerminal, ops::Range};
 
 /// Rows under headings, columns as wide as they need; the first column left, the others right.
 pub(crate) struct Table {
@@ -26,22 +26,24 @@ impl Table {
         self
     }
 
+    /// Lines of at most [`MAX_WIDTH`] characters: what does not fit beside each other goes below, beside the first column again.
     pub(crate) fn to_text(&self) -> String {
-        let columns = self.rows[0].len();
-        let widths: Vec<usize> = (0..columns)
-            .map(|column| {
-                self.rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0)
-            })
-            .collect();
+        let width = |column: usize| {
+            self.rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..self.rows[0].len()).map(width).collect();
+        let blocks: Vec<String> =
+            folds(&widths).into_iter().map(|columns| self.block(&widths, columns)).collect();
+        blocks.join("\n")
+    }
+
+    /// The first column with these columns beside it.
+    fn block(&self, widths: &[usize], columns: Range<usize>) -> String {
         let mut text = String::new();
         for row in &self.rows {
-            let mut line = String::new();
-            for (column, (cell, width)) in row.iter().zip(&widths).enumerate() {
-                if column == 0 {
-                    let _ = write!(line, "{cell:<width$}");
-                } else {
-                    let _ = write!(line, "  {cell:>width$}");
-                }
+            let mut line = format!("{:<width$}", row[0], width = widths[0]);
+            for column in columns.clone() {
+                let _ = write!(line, "{GAP}{:>width$}", row[column], width = widths[column]);
             }
             text.push_str(line.trim_end());
             text.push('\n');
@@ -50,17 +52,66 @@ impl Table {
     }
 }
 
-/// A whole number with its thousands apart.
-pub(crate) fn count(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push('\u{202f}');
+/// Most characters in a line of a table.
+const MAX_WIDTH: usize = 100;
+/// Between two columns.
+const GAP: &str = "  ";
+
+/// Which columns go beside the first one, block by block: no more blocks than needed, and those as narrow as they can be.
+fn folds(widths: &[usize]) -> Vec<Range<usize>> {
+    let widest = folds_within(widths, MAX_WIDTH);
+    let narrower = (0..MAX_WIDTH).map(|limit| folds_within(widths, limit));
+    narrower.into_iter().find(|blocks| blocks.len() == widest.len()).unwrap_or(widest)
+}
+
+/// As many columns in each block as fit, at least one.
+fn folds_within(widths: &[usize], limit: usize) -> Vec<Range<usize>> {
+    let mut blocks = Vec::new();
+    let mut begin = 1;
+    let mut width = widths[0];
+    for (column, own) in widths.iter().enumerate().skip(1) {
+        let wider = width + GAP.len() + own;
+        if wider > limit && column > begin {
+            blocks.push(begin..column);
+            (begin, width) = (column, widths[0] + GAP.len() + own);
+        } else {
+            width = wider;
         }
-        text.push(digit);
     }
-    text
+    blocks.push(begin..widths.len());
+    blocks
+}
+
+/// How whole numbers are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Digits {
+    /// With thousands apart, for people.
+    Apart,
+    /// Digits alone, for what reads a file or a pipe.
+    Plain,
+}
+
+impl Digits {
+    /// As it suits what is written to.
+    pub(crate) fn on(stream: &impl IsTerminal) -> Self {
+        if stream.is_terminal() { Self::Apart } else { Self::Plain }
+    }
+
+    /// A whole number.
+    pub(crate) fn count(self, number: u64) -> String {
+        let digits = number.to_string();
+        if self == Self::Plain {
+            return digits;
+        }
+        let mut text = String::new();
+        for (index, digit) in digits.chars().enumerate() {
+            if index > 0 && (digits.len() - index).is_multiple_of(3) {
+                text.push('\u{202f}');
+            }
+            text.push(digit);
+        }
+        text
+    }
 }
 
 /// A size for people.

@@ -17,7 +17,37 @@ fn columns_without_content_are_left_out() {
 }
 
 #[test]
-fn thousands_are_separated() {
-    assert_eq!(count(7), "7");
-    assert_eq!(count(1_234_567), "1\u{202f}234\u{202f}567");
+fn a_table_is_folded_where_it_would_be_too_wide() {
+    let headings = ["level", "a", "b", "c", "d"];
+    let cell = |width: usize| "x".repeat(width);
+    for widths in [[5, 20, 30, 30, 2], [5, 93, 1, 1, 1], [5, 40, 40, 40, 40], [60, 50, 50, 1, 1]] {
+        let mut table = Table::new(headings);
+        table.row(widths.map(cell));
+        table.row(["2".into(), "1".into(), "2".into(), "3".into(), "4".into()]);
+        let text = table.to_text();
+        for line in text.lines() {
+            let is_alone = line.split_whitespace().count() <= 2;
+            assert!(line.chars().count() <= MAX_WIDTH || is_alone, "{widths:?}:\n{text}");
+        }
+        // Nothing is lost, and each block has the first column.
+        for heading in headings {
+            let times = text.split_whitespace().filter(|word| *word == heading).count();
+            assert!(times == 1 || heading == "level", "{heading}: {times}\n{text}");
+        }
+        let blocks: Vec<&str> = text.split("\n\n").collect();
+        assert!(
+            blocks.iter().all(|block| block.starts_with("level") && block.lines().count() == 3)
+        );
+    }
+    assert_eq!(folds(&[5, 20, 20, 20, 20, 20]), [1..4, 4..6], "about half on each side");
+    let mut narrow = Table::new(headings);
+    narrow.row([5, 40, 40, 2, 5].map(cell));
+    assert_eq!(narrow.to_text().lines().count(), 2, "exactly as wide as allowed");
+}
+
+#[test]
+fn thousands_are_separated_for_people_only() {
+    assert_eq!(Digits::Apart.count(7), "7");
+    assert_eq!(Digits::Apart.count(1_234_567), "1\u{202f}234\u{202f}567");
+    assert_eq!(Digits::Plain.count(1_234_567), "1234567");
 }

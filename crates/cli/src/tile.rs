@@ -11,7 +11,7 @@ use crate::{
     args::{Coordinates, TileArgs},
     exit::ExitCode,
     failure::Failure,
-    table::{Table, count},
+    table::{Digits, Table},
 };
 
 pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
@@ -28,26 +28,26 @@ pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
     if args.json {
         writeln!(out, "{}", to_json(&package, &payload, args.coordinates)?)?;
     } else {
-        out.write_all(to_text(&payload).as_bytes())?;
+        out.write_all(to_text(&payload, Digits::on(&io::stdout())).as_bytes())?;
     }
     out.flush()?;
     Ok(ExitCode::Done)
 }
 
-fn to_text(payload: &TilePayload) -> String {
+fn to_text(payload: &TilePayload, digits: Digits) -> String {
     let mut table = Table::new(["tile", &payload.id.to_string()]);
     if let Some(terrain) = &payload.terrain {
-        table.row(["vertices".into(), count(terrain.tin.vertices().len() as u64)]);
-        table.row(["triangles".into(), count(terrain.tin.triangles().len() as u64)]);
+        table.row(["vertices".into(), digits.count(terrain.tin.vertices().len() as u64)]);
+        table.row(["triangles".into(), digits.count(terrain.tin.triangles().len() as u64)]);
         table.row(["geometric error".into(), format!("{:.3} m", terrain.geometric_error_m)]);
         let [low, high] = terrain.height_range_m;
         table.row(["heights".into(), format!("{low:.1} to {high:.1} m")]);
     }
-    table.row(["GEO lines".into(), count(payload.roads_geo.len() as u64)]);
+    table.row(["GEO lines".into(), digits.count(payload.roads_geo.len() as u64)]);
     let vertices = payload.roads_geo.iter().map(|road| road.line.vertices.len() as u64).sum();
-    table.row(["GEO vertices".into(), count(vertices)]);
-    table.row(["SV lines".into(), count(payload.roads_sv.len() as u64)]);
-    table.row(["ways".into(), count(payload.attributes.len() as u64)]);
+    table.row(["GEO vertices".into(), digits.count(vertices)]);
+    table.row(["SV lines".into(), digits.count(payload.roads_sv.len() as u64)]);
+    table.row(["ways".into(), digits.count(payload.attributes.len() as u64)]);
     table.to_text()
 }
 

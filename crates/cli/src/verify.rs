@@ -3,6 +3,7 @@
 use std::{
     fmt::Write as _,
     io::{self, Write as _},
+    path::Path,
 };
 
 use corniche_pipeline::{ErrorFigures, VerifyError, VerifyOsm, VerifyReport, VerifySettings};
@@ -18,18 +19,24 @@ use crate::{
     presets,
     progress::Progress,
     settings::{input_name, threads},
-    table::{Table, count},
+    table::{Digits, Table},
 };
 
 pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
+    let (package, dem) = args.files()?;
+    let osm = extract(args, &package)?;
     let settings = VerifySettings {
-        package: args.package.clone(),
-        dem: args.dem.iter().cloned().map(input_name).collect::<Result<_, _>>()?,
-        osm: extract(args)?,
+        package,
+        dem: dem.into_iter().map(input_name).collect::<Result<_, _>>()?,
+        osm,
         threads: threads(args.threads),
     };
-    let report = corniche_pipeline::verify(&settings, &Progress::new(args.report))?;
-    let text = if args.json { format!("{}\n", to_json(&report)) } else { to_text(&report) };
+    let report = corniche_pipeline::verify(&settings, &Progress::new())?;
+    let text = if args.json {
+        format!("{}\n", to_json(&report))
+    } else {
+        to_text(&report, Digits::on(&io::stdout()))
+    };
     let written = io::stdout().lock().write_all(text.as_bytes());
     if report.holds() {
         written?;
@@ -44,13 +51,13 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
 const MEMORY_BYTES: u64 = 256 << 20;
 
 /// The extract to read again, with the FRC table that the package names: given, or the preset of that name.
-fn extract(args: &VerifyArgs) -> Result<Option<VerifyOsm>, Failure> {
+fn extract(args: &VerifyArgs, package: &Path) -> Result<Option<VerifyOsm>, Failure> {
     let Some(path) = args.osm.clone().map(input_name).transpose()? else { return Ok(None) };
     let table = if let Some(table) = &args.frc_table {
         presets::frc_table(table)?
     } else {
-        let package = FilePackage::open(&args.package).map_err(VerifyError::from)?;
-        let manifest = package.manifest();
+        let opened = FilePackage::open(package).map_err(VerifyError::from)?;
+        let manifest = opened.manifest();
         if manifest.inputs.iter().all(|input| input.kind != "osm") {
             return Err(VerifyError::NoExtract.into());
         }
@@ -58,7 +65,7 @@ fn extract(args: &VerifyArgs) -> Result<Option<VerifyOsm>, Failure> {
         if frc_preset(name).is_none() {
             return Err(Failure::unusable(format!(
                 "{} was made with the FRC table {name:?}, which is no preset; give its file with --frc-table",
-                args.package.display()
+                package.display()
             )));
         }
         presets::frc_table(name)?
@@ -66,7 +73,7 @@ fn extract(args: &VerifyArgs) -> Result<Option<VerifyOsm>, Failure> {
     Ok(Some(VerifyOsm { path, table, memory_bytes: MEMORY_BYTES }))
 }
 
-fn to_text(report: &VerifyReport) -> String {
+fn to_text(report: &VerifyReport, digits: Digits) -> String {
     let mut text = String::new();
     for check in &report.checks {
         let verdict = match check.verdict() {
@@ -75,9 +82,10 @@ fn to_text(report: &VerifyReport) -> String {
             None => "not made",
         };
         let (id, promise) = (check.id.id(), check.id.promise());
-        let _ = write!(text, "{verdict}  {id}: {promise} ({} looked at", count(check.checked));
+        let _ =
+            write!(text, "{verdict}  {id}: {promise} ({} looked at", digits.count(check.checked));
         if !check.holds() {
-            let _ = write!(text, ", {} broken", count(check.broken));
+            let _ = write!(text, ", {} broken", digits.count(check.broken));
         }
         text.push_str(")\n");
         for example in &check.examples {
@@ -88,44 +96,48 @@ fn to_text(report: &VerifyReport) -> String {
     let _ = write!(
         text,
         "\n{} tiles, {} borders compared; largest gap of a GEO road to its TIN: {largest_m:.3e} m\n",
-        count(report.tiles),
-        count(report.borders),
+        digits.count(report.tiles),
+        digits.count(report.borders),
     );
     if report.gaps.iter().any(|gap| gap.edges > 0) {
         let mut table = Table::new(["level", "GEO edges", "largest gap m"]);
         for gap in &report.gaps {
-            table.row([gap.level.to_string(), count(gap.edges), format!("{:.2e}", gap.largest_m)]);
+            table.row([
+                gap.level.to_string(),
+                digits.count(gap.edges),
+                format!("{:.2e}", gap.largest_m),
+            ]);
         }
         let _ = write!(text, "\n{}", table.to_text());
     }
     if !report.errors.is_empty() {
-        let _ = write!(text, "\n{}", errors(&report.errors).to_text());
+        let _ = write!(text, "\n{}", errors(&report.errors, digits).to_text());
     }
     if let Some(samples) = report.samples {
         let _ = write!(
             text,
             "\nAt the DEM's own {} samples the finest level is off by {:.3} m at most, {:.3} m RMS, {:.3} m at \
              the 99th percentile; {} off the TIN\n",
-            count(samples.on_tin),
+            digits.count(samples.on_tin),
             samples.max_m,
             samples.rms_m,
             samples.p99_m,
-            lying(samples.off_tin),
+            lying(samples.off_tin, digits),
         );
     }
     text
 }
 
 /// So many samples, with their verb.
-fn lying(samples: u64) -> String {
+fn lying(samples: u64, digits: Digits) -> String {
     match samples {
         1 => "1 sample lies".to_owned(),
-        _ => format!("{} samples lie", count(samples)),
+        _ => format!("{} samples lie", digits.count(samples)),
     }
 }
 
 /// True errors and stored ones, one row for each level.
-fn errors(errors: &[ErrorFigures]) -> Table {
+fn errors(errors: &[ErrorFigures], digits: Digits) -> Table {
     let mut table = Table::new([
         "level",
         "tiles",
@@ -141,14 +153,14 @@ fn errors(errors: &[ErrorFigures]) -> Table {
     for figures in errors {
         table.row([
             figures.level.to_string(),
-            count(figures.tiles),
-            count(figures.nodes),
+            digits.count(figures.tiles),
+            digits.count(figures.nodes),
             format!("{:.3}", figures.largest_true_m),
             ratio(figures.tightness.map(|tightness| tightness.min)),
             ratio(figures.tightness.map(|tightness| tightness.median)),
             ratio(figures.tightness.map(|tightness| tightness.p95)),
             ratio(figures.tightness.map(|tightness| tightness.max)),
-            count(figures.uncovered_nodes),
+            digits.count(figures.uncovered_nodes),
         ]);
     }
     table

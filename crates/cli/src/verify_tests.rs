@@ -17,7 +17,7 @@ fn a_check_of_an_input_that_looked_at_nothing_is_not_made() {
         errors: Vec::new(),
         samples: None,
     };
-    let text = to_text(&report);
+    let text = to_text(&report, Digits::Plain);
     let verdict = |id: &str| text.lines().find(|line| line.contains(id)).map(|line| &line[..8]);
     assert_eq!(verdict(" P3:"), Some("holds   "));
     assert_eq!(verdict(" dem.plan:"), Some("holds   "));

@@ -13,7 +13,7 @@ use crate::{
     args::{Motion, ViewArgs},
     exit::ExitCode,
     failure::Failure,
-    interrupt,
+    interrupt, messages,
     output::{Existing, Output},
     styles::{StyleFile, file_of, style},
 };
@@ -65,10 +65,10 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
     let mut code = ExitCode::Done;
     for saved in last_files {
         match saved {
-            Ok(path) => eprintln!("saved {}", path.display()),
+            Ok(path) => messages::note(&format!("saved {}", path.display())),
             Err(error) => {
                 let lost = Failure::new(ExitCode::Failed, error);
-                lost.tell();
+                messages::error(&lost);
                 code = lost.code();
             }
         }
@@ -84,10 +84,10 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
 fn begin_trace(path: &Path, used: &[&Path]) -> Result<BeginTrace, Failure> {
     drop(Output::create(path, Existing::Replace, used)?);
     if path.symlink_metadata().is_ok() {
-        return Err(Failure::new(
-            ExitCode::Exists,
-            anyhow::anyhow!("--trace {} exists already; choose another name", path.display()),
-        ));
+        return Err(Failure::exists(format!(
+            "--trace {} exists already; choose another name",
+            path.display()
+        )));
     }
     let path = path.to_owned();
     Ok(Box::new(move || {

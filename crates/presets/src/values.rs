@@ -1,21 +1,19 @@
 //! Texts of single values.
 
-/// A number of bytes, with one of the units K, M, G and T (powers of 1024) or none.
+use bytesize::ByteSize;
+
+/// A number of bytes: alone, or with a unit, whole or with a decimal point. As in GNU's tools `K`, `M`, `G`, `T`, like `KiB`, `MiB`,
+/// `GiB`, `TiB`, are powers of 1024; `kB`, `MB`, `GB`, `TB` are powers of 1000. Large and small letters are the same.
 ///
 /// # Errors
-/// When the text is no such number, or 0.
+/// When the text is no such number, or less than a byte, or more than fits in 64 bits.
 pub fn parse_bytes(text: &str) -> Result<u64, String> {
-    let (digits, unit) = match text.char_indices().last() {
-        Some((at, 'K' | 'k')) => (&text[..at], 1 << 10),
-        Some((at, 'M' | 'm')) => (&text[..at], 1 << 20),
-        Some((at, 'G' | 'g')) => (&text[..at], 1 << 30),
-        Some((at, 'T' | 't')) => (&text[..at], 1 << 40),
-        _ => (text, 1),
-    };
-    let number: Option<u64> = digits.parse().ok();
-    match number.and_then(|number| number.checked_mul(unit)) {
-        Some(size_bytes @ 1..) => Ok(size_bytes),
-        _ => Err("write it like 800K, 512M, 4G or 1T".to_owned()),
+    let is_short = text.ends_with(|last: char| "kmgtpe".contains(last.to_ascii_lowercase()));
+    let with_unit = if is_short { format!("{text}iB") } else { text.to_owned() };
+    match with_unit.parse() {
+        // The largest number stands for all that are too large.
+        Ok(ByteSize(size_bytes)) if ![0, u64::MAX].contains(&size_bytes) => Ok(size_bytes),
+        _ => Err("write it like 800K, 512MiB, 64MB, 0.5G or 1T".to_owned()),
     }
 }
 
@@ -29,7 +27,9 @@ const MIN_MEMORY_BYTES: u64 = 256 << 20;
 pub fn parse_memory(text: &str) -> Result<u64, String> {
     match parse_bytes(text) {
         Ok(size_bytes) if size_bytes >= MIN_MEMORY_BYTES => Ok(size_bytes),
-        _ => Err(format!("{text:?} is not a size of at least 256M; write it like 512M, 4G or 1T")),
+        _ => Err(format!(
+            "{text:?} is not a size of at least 256M; write it like 512M, 800MB, 0.5G or 1T"
+        )),
     }
 }
 

@@ -7,8 +7,41 @@ fn sizes_of_memory_are_read_or_refused() {
     assert_eq!(parse_bytes("4G"), Ok(4 << 30));
     assert_eq!(parse_bytes("1T"), Ok(1 << 40));
     assert_eq!(parse_bytes("17"), Ok(17));
-    for bad in ["", "0", "M", "-1M", "4P", "1.5G", "99999999999999G", "99999999T", "ä"] {
+    let bad = [
+        "",
+        "0",
+        "M",
+        "-1M",
+        "4X",
+        "1.5.5G",
+        "1,5G",
+        "0.0001K",
+        "99999999999999G",
+        "99999999T",
+        "ä",
+        "∞G",
+    ];
+    for bad in bad {
         assert!(parse_bytes(bad).is_err(), "{bad}");
+    }
+}
+
+/// As `dd` and GNU's other tools read them, whole or not, in any case, with a blank or without.
+#[test]
+fn sizes_have_binary_and_decimal_units() {
+    for (text, size_bytes) in [
+        ("512MiB", 512 << 20),
+        ("64MB", 64_000_000),
+        ("0.5G", 1 << 29),
+        ("1.5 GiB", 3 << 29),
+        ("0.25gb", 250_000_000),
+        ("10kB", 10_000),
+        ("10k", 10_240),
+        ("3 m", 3 << 20),
+        ("17B", 17),
+        ("2P", 2 << 50),
+    ] {
+        assert_eq!(parse_bytes(text), Ok(size_bytes), "{text}");
     }
 }
 

@@ -89,10 +89,7 @@ pub(crate) struct PlanArgs {
 #[derive(Debug, Clone, Copy, Args)]
 #[command(next_help_heading = "Progress")]
 pub(crate) struct ReportArgs {
-    /// Print only errors and warnings
-    #[arg(short, long, conflicts_with = "json_progress")]
-    pub(crate) quiet: bool,
-    /// Print progress on standard error, as one JSON object per line
-    #[arg(long)]
+    /// Print progress, warnings and the end on standard error, as one JSON object per line
+    #[arg(long, conflicts_with = "quiet")]
     pub(crate) json_progress: bool,
 }

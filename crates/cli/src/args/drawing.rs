@@ -16,9 +16,12 @@ use super::{
 pub(crate) struct RenderArgs {
     /// The package
     pub(crate) package: PathBuf,
-    /// The picture to write (.png); an existing PNG is replaced
+    /// The picture to write (.png)
     #[arg(short, long, value_name = "PNG")]
     pub(crate) output: PathBuf,
+    /// Replace the picture if it exists, once the new one is complete
+    #[arg(short = 'O', long)]
+    pub(crate) overwrite: bool,
     /// How roads are drawn
     #[arg(long, value_enum, default_value_t = Roads::Geo)]
     pub(crate) roads: Roads,

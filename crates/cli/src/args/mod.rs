@@ -7,8 +7,10 @@ mod ground;
 mod look;
 mod part;
 mod reading;
+mod shell;
 mod values;
 mod view;
+mod voice;
 
 use clap::{Parser, Subcommand};
 
@@ -17,7 +19,9 @@ pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use look::Roads;
 pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
 pub(crate) use reading::{Coordinates, GrowthArgs, InfoArgs, TileArgs, VerifyArgs};
+pub(crate) use shell::{CompletionsArgs, ManArgs};
 pub(crate) use view::{Motion, ViewArgs};
+pub(crate) use voice::{LogFormat, Voice, VoiceArgs};
 
 /// Terrain tiles with roads laid exactly on them, from elevation rasters and OpenStreetMap extracts.
 #[derive(Debug, Parser)]
@@ -25,6 +29,15 @@ pub(crate) use view::{Motion, ViewArgs};
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
+    #[command(flatten)]
+    pub(crate) voice: VoiceArgs,
+}
+
+impl Arguments {
+    /// How the program is to talk.
+    pub(crate) fn voice(&self) -> Voice {
+        self.voice.voice(self.command.report().is_some_and(|report| report.json_progress))
+    }
 }
 
 #[derive(Debug, Subcommand)]
@@ -53,6 +66,43 @@ pub(crate) enum Command {
     Fly(FlyArgs),
     /// Open a window on a package
     View(ViewArgs),
+    /// Print a script that completes this command's names and options in a shell
+    Completions(CompletionsArgs),
+    /// Write manual pages, one for the program and one for each command
+    Man(ManArgs),
+}
+
+impl Command {
+    /// Its name on the command line.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::Build(_) => "build",
+            Self::Plan(_) => "plan",
+            Self::Jobs(_) => "jobs",
+            Self::Part(_) => "part",
+            Self::Merge(_) => "merge",
+            Self::Info(_) => "info",
+            Self::Growth(_) => "growth",
+            Self::Verify(_) => "verify",
+            Self::Tile(_) => "tile",
+            Self::Render(_) => "render",
+            Self::Fly(_) => "fly",
+            Self::View(_) => "view",
+            Self::Completions(_) => "completions",
+            Self::Man(_) => "man",
+        }
+    }
+
+    /// How progress is told, by a command that tells it.
+    fn report(&self) -> Option<ReportArgs> {
+        match self {
+            Self::Build(args) => Some(args.report),
+            Self::Part(args) => Some(args.planned.report),
+            Self::Merge(args) => Some(args.planned.report),
+            Self::Verify(args) => Some(args.report),
+            _ => None,
+        }
+    }
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use corniche_geom::TileId;
 use corniche_pipeline::CheckId;
 
 use super::ReportArgs;
+use crate::{failure::Failure, names::is_package_name};
 
 /// What `verify --help` ends with: the checks, by their ids.
 fn checks() -> String {
@@ -38,19 +39,23 @@ pub(crate) struct GrowthArgs {
     /// Print CSV, for programs
     #[arg(long)]
     pub(crate) csv: bool,
-    /// Also draw the growth per level and class; an existing SVG is replaced
+    /// Also draw the growth per level and class (SVG)
     #[arg(long, value_name = "FILE")]
     pub(crate) svg: Option<PathBuf>,
+    /// Replace the SVG if it exists, once the new one is complete
+    #[arg(short = 'O', long, requires = "svg")]
+    pub(crate) overwrite: bool,
 }
 
 #[derive(Debug, Args)]
-#[command(after_long_help = checks())]
+#[command(after_long_help = checks(), override_usage = "corniche verify [OPTIONS] <PACKAGE>")]
 pub(crate) struct VerifyArgs {
     /// The package
-    pub(crate) package: PathBuf,
+    #[arg(required_unless_present = "dem")]
+    package: Option<PathBuf>,
     /// The elevation rasters it was made from, in the same order: checks stored errors against true ones
     #[arg(long, value_name = "FILE", num_args = 1..)]
-    pub(crate) dem: Vec<PathBuf>,
+    dem: Vec<PathBuf>,
     /// The extract it was made from: reads it again and checks roads, attributes and counts against it
     #[arg(long, value_name = "FILE")]
     pub(crate) osm: Option<PathBuf>,
@@ -65,6 +70,30 @@ pub(crate) struct VerifyArgs {
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) report: ReportArgs,
+}
+
+impl VerifyArgs {
+    /// The package and its elevation rasters. `--dem` takes all that follows it, also a package, which is told from rasters by
+    /// its name.
+    ///
+    /// # Errors
+    /// When no package is named, or several may be meant.
+    pub(crate) fn files(&self) -> Result<(PathBuf, Vec<PathBuf>), Failure> {
+        if let Some(package) = &self.package {
+            return Ok((package.clone(), self.dem.clone()));
+        }
+        let (mut packages, dem): (Vec<_>, Vec<_>) =
+            self.dem.iter().cloned().partition(|file| is_package_name(file));
+        match (packages.pop(), packages.is_empty()) {
+            (Some(package), true) => Ok((package, dem)),
+            (Some(_), false) => Err(Failure::unusable(
+                "several files end in .pmtiles; write the package first: corniche verify PACKAGE --dem FILE...",
+            )),
+            (None, _) => Err(Failure::unusable(
+                "no package is named: none of the files ends in .pmtiles; write it first: corniche verify PACKAGE --dem FILE...",
+            )),
+        }
+    }
 }
 
 /// What the coordinates in a dump are.

@@ -9,7 +9,7 @@ use tempfile::TempDir;
 use crate::{
     exit::ExitCode,
     failure::Failure,
-    interrupt,
+    interrupt, names,
     output::{self, png},
 };
 
@@ -24,6 +24,7 @@ impl Pictures {
         let unusable = |reason: &dyn std::fmt::Display| {
             Failure::unusable(format!("cannot write pictures to {}: {reason}", target.display()))
         };
+        names::refuse_what_is_no_file(target)?;
         if used.contains(&target) {
             return Err(unusable(&"the command uses that file itself; choose another name"));
         }

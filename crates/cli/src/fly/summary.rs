@@ -8,11 +8,11 @@ use corniche_viewer::FrameRecord;
 use super::measured_run::{MeasuredRun, gpu_ms};
 use crate::{
     args::Roads,
-    table::{Table, bytes, count},
+    table::{Digits, Table, bytes},
 };
 
-pub(crate) fn to_text(runs: &[MeasuredRun]) -> String {
-    let mut text = drawn(runs);
+pub(crate) fn to_text(runs: &[MeasuredRun], digits: Digits) -> String {
+    let mut text = drawn(runs, digits);
     text.push('\n');
     text.push_str(&times(runs));
     let losses = losses(runs);
@@ -23,7 +23,7 @@ pub(crate) fn to_text(runs: &[MeasuredRun]) -> String {
 }
 
 /// What was drawn.
-fn drawn(runs: &[MeasuredRun]) -> String {
+fn drawn(runs: &[MeasuredRun], digits: Digits) -> String {
     let mut table = Table::new([
         "average, first frame left out",
         "tiles",
@@ -35,7 +35,7 @@ fn drawn(runs: &[MeasuredRun]) -> String {
     for run in runs {
         let mean = |of: &dyn Fn(&FrameRecord) -> f64| mean(run.counted().iter().map(of));
         let whole = |of: &dyn Fn(&FrameRecord) -> f64| {
-            mean(of).map_or_else(dash, |mean| count(mean.round() as u64))
+            mean(of).map_or_else(dash, |mean| digits.count(mean.round() as u64))
         };
         let most_bytes = run.counted().iter().map(|frame| frame.gpu_bytes).max();
         table.row([

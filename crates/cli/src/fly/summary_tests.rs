@@ -29,7 +29,7 @@ fn losses_are_of_frame_rates_and_against_the_same_tiles_without_roads() {
     // On the card 3.5 ms are left of 7, then of 3.5.
     runs[1].frames[1].passes =
         Some(PassTimes { terrain_ms: 1.0, roads_ms: 5.0, composite_ms: 1.0 });
-    let text = to_text(&runs);
+    let text = to_text(&runs, Digits::Plain);
     let geo = cells(&text, "loss %", "lod, roads geo");
     assert_eq!(geo[1..], ["22.5", "25.0", "25.0", "50.0", "26", "30"], "{text}");
     let losses = &text[text.find("loss %").unwrap()..];
@@ -39,7 +39,7 @@ fn losses_are_of_frame_rates_and_against_the_same_tiles_without_roads() {
 
 #[test]
 fn the_first_frame_counts_nowhere() {
-    let text = to_text(&[run(Lod::Adaptive, Roads::Sv, [8.0, 10.0])]);
+    let text = to_text(&[run(Lod::Adaptive, Roads::Sv, [8.0, 10.0])], Digits::Plain);
     let sv = cells(&text, "milliseconds", "lod, roads sv");
     assert_eq!(sv[1..6], ["9.00", "8.00", "10.00", "10.00", "111.1"], "{text}");
     assert!(!text.contains("1000.00") && !text.contains("loss"), "{text}");
@@ -47,7 +47,7 @@ fn the_first_frame_counts_nowhere() {
     // Nothing is left of a single frame.
     let mut single = run(Lod::Adaptive, Roads::Sv, [8.0, 10.0]);
     single.frames.truncate(1);
-    let text = to_text(&[single]);
+    let text = to_text(&[single], Digits::Plain);
     assert!(!text.contains("NaN") && text.contains('–'), "{text}");
 }
 
@@ -58,7 +58,7 @@ fn without_a_clock_on_the_card_there_are_no_times_of_it() {
         run(Lod::Adaptive, Roads::SvNoCaps, [8.0, 10.0]),
     ];
     runs[0].frames[2].passes = None;
-    let text = to_text(&runs);
+    let text = to_text(&runs, Digits::Plain);
     let name = "lod, roads sv-no-caps";
     assert_eq!(cells(&text, "loss %", name)[1..], ["22.5", "25.0", "–", "–", "35", "40"], "{text}");
     assert_eq!(cells(&text, "milliseconds", "lod, roads none")[6..], ["–"; 4], "{text}");

@@ -9,7 +9,7 @@ use super::{
     texts::{amount, rate},
     usage::Usage,
 };
-use crate::table::{Table, bytes};
+use crate::table::{Digits, Table, bytes};
 
 /// What one stage took.
 #[derive(Debug, Clone)]
@@ -60,17 +60,9 @@ impl Costs {
 
     /// A row for each stage and one for the whole run, which took `wall` and used `used`. Columns of which nothing is known
     /// are left out.
-    pub(crate) fn to_text(&self, wall: Duration, used: &Usage) -> String {
+    pub(crate) fn to_text(&self, wall: Duration, used: &Usage, digits: Digits) -> String {
         let mut table = Table::new([
-            "stage",
-            "done",
-            "wall",
-            "CPU",
-            "cores busy",
-            "rate",
-            "peak memory",
-            "read",
-            "written",
+            "stage", "done", "wall", "CPU", "cores", "rate", "memory", "read", "written",
         ]);
         let row = |title: &str, done: String, wall: Duration, rate: String, used: &Usage| {
             let seconds = |time: Duration| format!("{:.2} s", time.as_secs_f64());
@@ -89,8 +81,8 @@ impl Costs {
         };
         for cost in &self.0 {
             let unit = cost.stage.unit();
-            let rate = cost.per_second().map(|per_second| rate(per_second, unit));
-            let done = amount(cost.done, unit);
+            let rate = cost.per_second().map(|per_second| rate(per_second, unit, digits));
+            let done = amount(cost.done, unit, digits);
             table.row(row(
                 cost.stage.title(),
                 done,
@@ -118,6 +110,7 @@ impl Costs {
         let rows = self.0.iter().map(|cost| {
             let mut row = figures(cost.wall, &cost.used);
             row["stage"] = json!(cost.stage.id());
+            row["title"] = json!(cost.stage.title());
             row["done"] = json!(cost.done);
             row["already"] = json!(cost.already);
             row["per_second"] = json!(cost.per_second());

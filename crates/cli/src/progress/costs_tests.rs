@@ -18,9 +18,9 @@ fn the_table_has_a_row_for_each_stage_and_one_for_all() {
     let mut costs = Costs::default();
     costs.add(cost(Stage::Hash, [3_000_000, 0], 2, used(1.0, 20, 30)));
     costs.add(cost(Stage::Tiles, [1366, 1166], 10, used(19.5, 90, 40)));
-    let text = costs.to_text(Duration::from_secs(13), &used(21.0, 90, 75));
+    let text = costs.to_text(Duration::from_secs(13), &used(21.0, 90, 75), Digits::Apart);
     let expected = "\
-stage           done     wall      CPU  cores busy          rate  peak memory     read  written
+stage           done     wall      CPU  cores          rate  memory     read  written
 hashing inputs  3000.0 kB   2.00 s   1.00 s        0.50  1500.0 kB/s      20.0 MB  30.0 MB      0 B
 making tiles    1\u{202f}366 tiles  10.00 s  19.50 s        1.95  20.0 tiles/s      90.0 MB  40.0 MB      0 B
 all                          13.00 s  21.00 s        1.62                    90.0 MB  75.0 MB      0 B
@@ -39,7 +39,7 @@ all                          13.00 s  21.00 s        1.62                    90.
 fn what_the_system_does_not_tell_has_no_column() {
     let mut costs = Costs::default();
     costs.add(cost(Stage::Samples, [0, 0], 0, Usage::default()));
-    let text = costs.to_text(Duration::from_secs(1), &Usage::default());
+    let text = costs.to_text(Duration::from_secs(1), &Usage::default(), Digits::Apart);
     let headings: Vec<&str> = text.lines().next().unwrap().split_ascii_whitespace().collect();
     assert_eq!(headings, ["stage", "done", "wall"], "{text}");
     let json = costs.to_json(Duration::from_secs(1), &Usage::default());

@@ -6,7 +6,7 @@ use corniche_pipeline::{Stage, Unit};
 use serde_json::{Value, json};
 
 use super::usage::Usage;
-use crate::table::{bytes, count};
+use crate::table::{Digits, bytes};
 
 /// What is known of a stage at one moment.
 #[derive(Debug, Clone)]
@@ -27,37 +27,38 @@ pub(crate) struct Reading {
 
 impl Reading {
     /// While the stage runs, without its title: what is done of what, time left, rate, bytes.
-    pub(crate) fn running(&self) -> String {
+    pub(crate) fn running(&self, digits: Digits) -> String {
         let unit = self.stage.unit();
         let mut parts = vec![match self.total {
-            None => amount(self.done, unit),
+            None => amount(self.done, unit, digits),
             Some(0) => "nothing to do".to_owned(),
             Some(total) => {
                 let percent = u128::from(self.done) * 100 / u128::from(total);
-                format!("{} of {} ({percent} %)", number(self.done, unit), amount(total, unit))
+                let (done, total) = (number(self.done, unit, digits), amount(total, unit, digits));
+                format!("{done} of {total} ({percent} %)")
             }
         }];
         if let Some(left) = self.left.filter(|_| self.total != Some(0)) {
             parts.push(format!("{} left", time(left)));
         }
-        parts.extend(self.per_second.map(|per_second| rate(per_second, unit)));
+        parts.extend(self.per_second.map(|per_second| rate(per_second, unit, digits)));
         parts.extend(self.used.read_bytes.map(|read| format!("{} read", bytes(read))));
         parts.extend(self.used.written_bytes.map(|written| format!("{} written", bytes(written))));
         parts.join(", ")
     }
 
     /// When the stage has ended, without its title.
-    pub(crate) fn ended(&self) -> String {
+    pub(crate) fn ended(&self, digits: Digits) -> String {
         let seconds = self.elapsed.as_secs_f64();
         match (self.done, self.already) {
             (0, _) if self.total == Some(0) => "nothing to do".to_owned(),
-            (done, 0) => format!("{} in {seconds:.2} s", amount(done, self.stage.unit())),
+            (done, 0) => format!("{} in {seconds:.2} s", amount(done, self.stage.unit(), digits)),
             (done, already) if done == already => {
-                format!("{}, all by an earlier run", amount(done, self.stage.unit()))
+                format!("{}, all by an earlier run", amount(done, self.stage.unit(), digits))
             }
             (done, already) => {
                 let unit = self.stage.unit();
-                let (done, already) = (amount(done, unit), number(already, unit));
+                let (done, already) = (amount(done, unit, digits), number(already, unit, digits));
                 format!("{done}, {already} of them by an earlier run, in {seconds:.2} s")
             }
         }
@@ -66,7 +67,7 @@ impl Reading {
     /// For programs. What is not known is null.
     pub(crate) fn to_json(&self, state: &str) -> Value {
         json!({
-            "stage": self.stage.id(), "state": state, "unit": plural(self.stage.unit()),
+            "stage": self.stage.id(), "title": self.stage.title(), "state": state, "unit": plural(self.stage.unit()),
             "done": self.done, "already": self.already, "total": self.total,
             "seconds": self.elapsed.as_secs_f64(),
             "cpu_seconds": self.used.cpu.map(|cpu| cpu.as_secs_f64()), "per_second": self.per_second,
@@ -86,21 +87,21 @@ fn plural(unit: Unit) -> &'static str {
 }
 
 /// A number without its unit, except for bytes.
-fn number(number: u64, unit: Unit) -> String {
-    if unit == Unit::Bytes { bytes(number) } else { count(number) }
+fn number(number: u64, unit: Unit, digits: Digits) -> String {
+    if unit == Unit::Bytes { bytes(number) } else { digits.count(number) }
 }
 
 /// A number with its unit.
-pub(crate) fn amount(number: u64, unit: Unit) -> String {
+pub(crate) fn amount(number: u64, unit: Unit, digits: Digits) -> String {
     match (unit, number) {
         (Unit::Bytes, _) => bytes(number),
         (_, 1) => format!("1 {}", plural(unit).trim_end_matches('s')),
-        _ => format!("{} {}", count(number), plural(unit)),
+        _ => format!("{} {}", digits.count(number), plural(unit)),
     }
 }
 
 /// Slow rates per minute or hour, so that no rate is a small fraction.
-pub(crate) fn rate(per_second: f64, unit: Unit) -> String {
+pub(crate) fn rate(per_second: f64, unit: Unit, digits: Digits) -> String {
     if unit == Unit::Bytes {
         return format!("{}/s", bytes(per_second.round() as u64));
     }
@@ -109,7 +110,8 @@ pub(crate) fn rate(per_second: f64, unit: Unit) -> String {
         0.016_666.. => (per_second * 60.0, "min"),
         _ => (per_second * 3600.0, "h"),
     };
-    let number = if number < 100.0 { format!("{number:.1}") } else { count(number.round() as u64) };
+    let number =
+        if number < 100.0 { format!("{number:.1}") } else { digits.count(number.round() as u64) };
     format!("{number} {}/{per}", plural(unit))
 }
 

@@ -22,31 +22,35 @@ fn a_running_stage_tells_what_is_done_of_what_time_left_rate_and_bytes() {
         ..reading(120, Some(1366))
     };
     assert_eq!(
-        told.running(),
+        told.running(Digits::Apart),
         "120 of 1\u{202f}366 tiles (8 %), 29 s left, 43.2 tiles/s, 12.3 MB read, 4500 B written"
     );
-    assert_eq!(Reading { stage: Stage::Hash, ..told.clone() }.running(), {
+    assert_eq!(Reading { stage: Stage::Hash, ..told.clone() }.running(Digits::Apart), {
         "120 B of 1366 B (8 %), 29 s left, 43 B/s, 12.3 MB read, 4500 B written"
     });
     // What is not known is left out.
-    assert_eq!(reading(0, Some(1)).running(), "0 of 1 tile (0 %)");
-    assert_eq!(reading(1, None).running(), "1 tile");
-    assert_eq!(Reading { stage: Stage::Heights, ..reading(2, None) }.running(), "2 areas");
+    assert_eq!(reading(0, Some(1)).running(Digits::Apart), "0 of 1 tile (0 %)");
+    assert_eq!(reading(1, None).running(Digits::Apart), "1 tile");
+    assert_eq!(
+        Reading { stage: Stage::Heights, ..reading(2, None) }.running(Digits::Apart),
+        "2 areas"
+    );
 }
 
 /// Not all is done before all is done, and large numbers do not overflow.
 #[test]
 fn percents_are_rounded_down() {
-    assert!(reading(999, Some(1000)).running().contains("(99 %)"));
-    assert!(reading(u64::MAX - 1, Some(u64::MAX)).running().contains("(99 %)"));
-    assert!(reading(u64::MAX, Some(u64::MAX)).running().contains("(100 %)"));
+    assert!(reading(999, Some(1000)).running(Digits::Apart).contains("(99 %)"));
+    assert!(reading(u64::MAX - 1, Some(u64::MAX)).running(Digits::Apart).contains("(99 %)"));
+    assert!(reading(u64::MAX, Some(u64::MAX)).running(Digits::Apart).contains("(100 %)"));
 }
 
 #[test]
 fn an_ended_stage_tells_what_was_done_and_by_whom() {
-    assert_eq!(reading(1366, Some(1366)).ended(), "1\u{202f}366 tiles in 12.34 s");
-    assert_eq!(reading(0, None).ended(), "0 tiles in 12.34 s");
-    let resumed = |already| Reading { already, ..reading(1366, Some(1366)) }.ended();
+    assert_eq!(reading(1366, Some(1366)).ended(Digits::Apart), "1\u{202f}366 tiles in 12.34 s");
+    assert_eq!(reading(1366, Some(1366)).ended(Digits::Plain), "1366 tiles in 12.34 s");
+    assert_eq!(reading(0, None).ended(Digits::Apart), "0 tiles in 12.34 s");
+    let resumed = |already| Reading { already, ..reading(1366, Some(1366)) }.ended(Digits::Apart);
     assert_eq!(resumed(1366), "1\u{202f}366 tiles, all by an earlier run");
     assert_eq!(
         resumed(1200),
@@ -57,8 +61,8 @@ fn an_ended_stage_tells_what_was_done_and_by_whom() {
 #[test]
 fn a_stage_without_work_says_so() {
     let nothing = Reading { left: Some(Duration::ZERO), ..reading(0, Some(0)) };
-    assert_eq!(nothing.running(), "nothing to do");
-    assert_eq!(nothing.ended(), "nothing to do");
+    assert_eq!(nothing.running(Digits::Apart), "nothing to do");
+    assert_eq!(nothing.ended(Digits::Apart), "nothing to do");
 }
 
 #[test]
@@ -86,9 +90,9 @@ fn slow_rates_are_told_per_minute_or_hour() {
         (0.01, "36.0 tiles/h"),
         (0.0, "0.0 tiles/h"),
     ] {
-        assert_eq!(rate(per_second, Unit::Tiles), expected);
+        assert_eq!(rate(per_second, Unit::Tiles, Digits::Apart), expected);
     }
-    assert_eq!(rate(2.5e6, Unit::Bytes), "2500.0 kB/s");
+    assert_eq!(rate(2.5e6, Unit::Bytes, Digits::Plain), "2500.0 kB/s");
 }
 
 #[test]

@@ -43,6 +43,14 @@ impl Faults {
     }
 }
 
+/// Names of the graphics interfaces that the program was built for, as `WGPU_BACKEND` takes them. Which of them a machine has is found
+/// out when something is drawn.
+#[must_use]
+pub fn backends() -> Vec<String> {
+    let built_in = wgpu::Instance::enabled_backend_features();
+    built_in.iter_names().map(|(name, _)| name.to_ascii_lowercase()).collect()
+}
+
 impl Gpu {
     /// A device of the fastest adapter, or of a software adapter if there is no other; no window is needed.
     ///

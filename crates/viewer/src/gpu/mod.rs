@@ -69,7 +69,7 @@ mod timings;
 mod uniforms;
 
 pub use self::{
-    device::Gpu,
+    device::{Gpu, backends},
     drawables::difference::{DIFFERENCE_COLORS, DifferenceColors},
     error::{GpuError, ReadBackError},
     picture::{MAX_SAMPLES_PER_SIDE, Picture},

@@ -196,6 +196,9 @@ def read_log(text: str) -> tuple[dict[str, Any], list[str]]:
             log.append(line)
         elif "warning" in value:
             log.append(f"warning: {value['warning']}")
+        elif isinstance(value.get("end"), dict):
+            if value["end"].get("error") is not None:
+                log.append(f"corniche: {value['end']['error']}")
         elif isinstance(value.get("all"), dict):
             told = value["all"]
     return told, log[-LAST_LINES:]

@@ -34,7 +34,8 @@ def version_of(program: str) -> str:
         raise ProgramError(f"{program} does not tell its version: {error}") from error
     if told.returncode != 0:
         raise ProgramError(f"{program} does not tell its version: exit code {told.returncode}: {told.stderr.strip()}")
-    return told.stdout.strip()
+    # Further lines name libraries.
+    return told.stdout.partition("\n")[0].strip()
 
 
 def environment_of_child() -> dict[str, str]:

@@ -1,0 +1,52 @@
+//! How the program talks, for all commands.
+
+use clap::{ArgAction, Args, ValueEnum};
+
+/// How messages are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(crate) enum LogFormat {
+    /// Lines for people
+    #[default]
+    Text,
+    /// One JSON object per line: time, level, message and fields
+    Json,
+}
+
+/// How the program talks; decided once, from the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Voice {
+    /// Only errors and warnings.
+    pub(crate) is_quiet: bool,
+    /// How much more is told: 0, 1 (what is done) or more (each step, and what libraries say).
+    pub(crate) verbosity: u8,
+    /// How messages are written.
+    pub(crate) format: LogFormat,
+    /// Progress is records, and with it warnings and how the run ended.
+    pub(crate) json_progress: bool,
+}
+
+#[derive(Debug, Clone, Copy, Args)]
+#[command(next_help_heading = "Messages")]
+pub(crate) struct VoiceArgs {
+    /// Print only errors and warnings on standard error; what a command is asked to print stays
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub(crate) quiet: bool,
+    /// Tell also what is done and with which settings; -vv: each step, and what libraries say
+    #[arg(short, long, global = true, action = ArgAction::Count)]
+    pub(crate) verbose: u8,
+    /// How messages are written on standard error
+    #[arg(long, global = true, value_enum, value_name = "FORMAT", default_value_t)]
+    pub(crate) log_format: LogFormat,
+}
+
+impl VoiceArgs {
+    /// The voice asked for, of a command that tells progress as records or not.
+    pub(crate) fn voice(self, json_progress: bool) -> Voice {
+        Voice {
+            is_quiet: self.quiet,
+            verbosity: self.verbose,
+            format: self.log_format,
+            json_progress,
+        }
+    }
+}

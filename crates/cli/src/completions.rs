@@ -1,0 +1,21 @@
+//! `corniche completions`: a script for a shell.
+
+use std::io::{self, Write as _};
+
+use clap::CommandFactory as _;
+
+use crate::{
+    args::{Arguments, CompletionsArgs},
+    exit::ExitCode,
+    failure::Failure,
+};
+
+pub(crate) fn run(args: &CompletionsArgs) -> Result<ExitCode, Failure> {
+    // The generator panics when it cannot write, so it writes to memory.
+    let mut script = Vec::new();
+    let mut command = Arguments::command();
+    let name = command.get_name().to_owned();
+    clap_complete::generate(args.shell, &mut command, name, &mut script);
+    io::stdout().lock().write_all(&script)?;
+    Ok(ExitCode::Done)
+}

@@ -1,0 +1,53 @@
+//! `corniche man`: manual pages.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use clap::CommandFactory as _;
+use clap_mangen::Man;
+
+use crate::{
+    args::{Arguments, ManArgs},
+    exit::ExitCode,
+    failure::Failure,
+    messages,
+    output::{Complete, Existing, Output},
+};
+
+pub(crate) fn run(args: &ManArgs) -> Result<ExitCode, Failure> {
+    let folder = &args.folder;
+    fs::create_dir_all(folder).map_err(|error| {
+        Failure::unusable(format!("cannot make the folder {}: {error}", folder.display()))
+    })?;
+    let pages = pages()?;
+    // All places are looked at before anything is written, and all pages are written before one takes its place.
+    let existing = Existing::of(args.overwrite);
+    let place = |(name, _): &(PathBuf, Vec<u8>)| Output::create(&folder.join(name), existing, &[]);
+    let places: Vec<Output> = pages.iter().map(place).collect::<Result<_, _>>()?;
+    let written: Vec<Complete> = places
+        .into_iter()
+        .zip(&pages)
+        .map(|(place, (_, page))| place.fill(page))
+        .collect::<Result<_, _>>()?;
+    let count = written.len();
+    written.into_iter().try_for_each(Complete::place)?;
+    messages::note(&format!("wrote {count} pages to {}", folder.display()));
+    Ok(ExitCode::Done)
+}
+
+/// The page of the program and those of its commands, with the names of their files.
+fn pages() -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
+    let mut program = Arguments::command().disable_help_subcommand(true);
+    program.build();
+    let commands = program.get_subcommands().filter(|command| !command.is_hide_set());
+    let all = commands.cloned().chain([program.clone()]);
+    all.map(|command| {
+        let man = Man::new(command).manual("Corniche");
+        let mut page = Vec::new();
+        man.render(&mut page)?;
+        Ok((Path::new(&man.get_filename()).to_owned(), page))
+    })
+    .collect()
+}

@@ -1,0 +1,130 @@
+//! What the program says on standard error: notes, warnings and errors, as lines for people or as records for programs.
+//!
+//! All of them are events of `tracing`; [`begin`] says which are shown and how. Standard error may be closed (`2>&1 | head`): then
+//! nothing is said, and the work goes on.
+
+mod lines;
+
+use std::{
+    io::{self, Write},
+    sync::OnceLock,
+    time::Instant,
+};
+
+use serde_json::json;
+use tracing::level_filters::LevelFilter;
+use tracing_subscriber::{
+    Layer as _, filter::Targets, fmt, layer::SubscriberExt as _, util::SubscriberInitExt as _,
+};
+
+use self::lines::Lines;
+use crate::{
+    args::{LogFormat, Voice},
+    exit::ExitCode,
+    failure::Failure,
+};
+
+static VOICE: OnceLock<Voice> = OnceLock::new();
+static BEGUN: OnceLock<Instant> = OnceLock::new();
+
+/// Targets of our own events: names of crates, which begin so.
+const OWN_TARGETS: &str = "corniche";
+
+/// From now on the program talks like this.
+pub(crate) fn begin(voice: Voice) {
+    let _ = VOICE.set(voice);
+    let _ = BEGUN.set(Instant::now());
+    let (own, libraries) = levels(voice);
+    let shown = Targets::new().with_target(OWN_TARGETS, own).with_default(libraries);
+    let layer = fmt::layer().with_writer(|| Tolerant).with_ansi(false).log_internal_errors(false);
+    // It can fail only if someone else was first, and nobody else is in this program.
+    let _ = match voice.format {
+        LogFormat::Text => tracing_subscriber::registry()
+            .with(layer.event_format(Lines).with_filter(shown))
+            .try_init(),
+        LogFormat::Json => tracing_subscriber::registry()
+            .with(layer.json().flatten_event(true).with_span_list(false).with_filter(shown))
+            .try_init(),
+    };
+}
+
+/// The least important events that are shown: ours, and those of libraries.
+fn levels(voice: Voice) -> (LevelFilter, LevelFilter) {
+    match voice {
+        Voice { is_quiet: true, .. } => (LevelFilter::WARN, LevelFilter::OFF),
+        Voice { verbosity: 0, .. } => (LevelFilter::INFO, LevelFilter::OFF),
+        Voice { verbosity: 1, .. } => (LevelFilter::DEBUG, LevelFilter::WARN),
+        Voice { .. } => (LevelFilter::TRACE, LevelFilter::DEBUG),
+    }
+}
+
+/// How the program talks.
+pub(crate) fn voice() -> Voice {
+    VOICE.get().copied().unwrap_or_default()
+}
+
+/// Whether texts of several lines are for people who read along: neither silence nor records were asked for.
+pub(crate) fn is_for_people() -> bool {
+    let Voice { is_quiet, format, json_progress, .. } = voice();
+    !is_quiet && !json_progress && format == LogFormat::Text
+}
+
+/// Something good to know.
+pub(crate) fn note(text: &str) {
+    if !voice().json_progress {
+        tracing::info!("{text}");
+    }
+}
+
+/// Something that should be seen, also with `--quiet`.
+pub(crate) fn warning(text: &str) {
+    if voice().json_progress {
+        write_line(&json!({ "warning": text }).to_string());
+    } else {
+        tracing::warn!("{text}");
+    }
+}
+
+/// Why something failed.
+pub(crate) fn error(failure: &Failure) {
+    if !voice().json_progress {
+        tracing::error!(exit_code = failure.code().number(), "{failure}");
+    }
+}
+
+/// How the program ends: with `--json-progress` the last record, else the error, if there is one.
+pub(crate) fn ended(code: ExitCode, failure: Option<&Failure>) {
+    if voice().json_progress {
+        let seconds = BEGUN.get().map(|begun| begun.elapsed().as_secs_f64());
+        let text = failure.map(ToString::to_string);
+        let end = json!({
+            "result": code.word(), "exit_code": code.number(), "error": text, "seconds": seconds,
+        });
+        write_line(&json!({ "end": end }).to_string());
+    } else if let Some(failure) = failure {
+        error(failure);
+    }
+}
+
+/// A line that is complete as it is.
+pub(crate) fn write_line(line: &str) {
+    let _ = writeln!(io::stderr(), "{line}");
+}
+
+/// Standard error, where it does not matter if nobody reads any more.
+struct Tolerant;
+
+impl Write for Tolerant {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let _ = io::stderr().write_all(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+#[path = "messages_tests.rs"]
+mod tests;

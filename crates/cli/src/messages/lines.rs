@@ -1,0 +1,66 @@
+//! Events as lines for people.
+
+use std::fmt::{self, Debug, Write as _};
+
+use tracing::{
+    Event, Level, Subscriber,
+    field::{Field, Visit},
+};
+use tracing_subscriber::{
+    fmt::{FmtContext, FormatEvent, FormatFields, format::Writer},
+    registry::LookupSpan,
+};
+
+/// Errors and warnings with the program's name in front, notes as they are. What only `-v` shows has its level, its spans and its
+/// fields.
+pub(crate) struct Lines;
+
+impl<S, N> FormatEvent<S, N> for Lines
+where
+    S: Subscriber + for<'a> LookupSpan<'a>,
+    N: for<'a> FormatFields<'a> + 'static,
+{
+    fn format_event(
+        &self,
+        context: &FmtContext<'_, S, N>,
+        mut writer: Writer<'_>,
+        event: &Event<'_>,
+    ) -> fmt::Result {
+        let mut content = Content::default();
+        event.record(&mut content);
+        let Content { message, fields } = content;
+        match *event.metadata().level() {
+            Level::ERROR => writeln!(writer, "corniche: {message}"),
+            Level::WARN => writeln!(writer, "corniche: warning: {message}"),
+            Level::INFO => writeln!(writer, "{message}"),
+            level => {
+                let level = if level == Level::DEBUG { "debug" } else { "trace" };
+                write!(writer, "{level}: ")?;
+                for span in context.event_scope().into_iter().flat_map(|scope| scope.from_root()) {
+                    write!(writer, "{}: ", span.name())?;
+                }
+                writeln!(writer, "{message}{fields}")
+            }
+        }
+    }
+}
+
+/// What an event says.
+#[derive(Debug, Default)]
+struct Content {
+    message: String,
+    /// Each as ` name=value`.
+    fields: String,
+}
+
+impl Visit for Content {
+    fn record_debug(&mut self, field: &Field, value: &dyn Debug) {
+        // Writing to a String cannot fail.
+        let _ = match field.name() {
+            "message" => write!(self.message, "{value:?}"),
+            // What the bridge from `log` adds: where in a library.
+            name if name.starts_with("log.") => Ok(()),
+            name => write!(self.fields, " {name}={value:?}"),
+        };
+    }
+}

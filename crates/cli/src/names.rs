@@ -1,0 +1,40 @@
+//! Names of files that commands write.
+
+use std::path::Path;
+
+use crate::failure::Failure;
+
+/// Refuses names that mean something else than a file to whoever gives them.
+pub(crate) fn refuse_what_is_no_file(target: &Path) -> Result<(), Failure> {
+    let name = target.as_os_str();
+    if name == "-" {
+        return Err(Failure::unusable(
+            "cannot write -: what is written takes its place when it is complete, so it cannot go to standard output; give the name \
+             of a file (./- if it is really called so)",
+        ));
+    }
+    if name.to_str().is_some_and(|name| name.contains("://")) {
+        return Err(Failure::unusable(format!(
+            "cannot write {}: it is an address, and this is written to files; give the name of a file (corniche merge writes \
+             packages to s3://BUCKET/NAME.pmtiles, too)",
+            target.display()
+        )));
+    }
+    Ok(())
+}
+
+/// Refuses a name of a package that does not end in .pmtiles.
+pub(crate) fn refuse_other_than_package(target: &Path) -> Result<(), Failure> {
+    if is_package_name(target) {
+        return Ok(());
+    }
+    let target = target.display();
+    Err(Failure::unusable(format!(
+        "cannot write {target}: the name of a package ends in .pmtiles; write it like {target}.pmtiles"
+    )))
+}
+
+/// Whether a name ends as those of packages do.
+pub(crate) fn is_package_name(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("pmtiles"))
+}

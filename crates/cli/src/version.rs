@@ -1,0 +1,28 @@
+//! What the program is made of.
+
+use std::{
+    env,
+    io::{self, Write as _},
+};
+
+/// GDAL and PROJ, as they were found when the program was started.
+pub(crate) fn libraries() -> String {
+    corniche_pipeline::libraries()
+}
+
+/// Whether the command line asks for more than the program's own version: `--version`, not `-V`.
+pub(crate) fn is_long_asked_for() -> bool {
+    env::args_os().any(|argument| argument == "--version")
+}
+
+/// Prints the program's version, then what else a report of an error should name.
+pub(crate) fn print_long() -> io::Result<()> {
+    let backends = corniche_viewer::gpu::backends();
+    let text = format!(
+        "corniche {}\n{}\nwgpu backends: {}\n",
+        env!("CARGO_PKG_VERSION"),
+        libraries(),
+        if backends.is_empty() { "none".to_owned() } else { backends.join(", ") },
+    );
+    io::stdout().lock().write_all(text.as_bytes())
+}
