@@ -9,6 +9,7 @@ mod build;
 mod chart;
 mod defects;
 mod exit;
+mod export;
 mod failure;
 mod fly;
 mod free_memory;
@@ -17,6 +18,7 @@ mod info;
 mod interrupt;
 mod jobs;
 mod merge;
+mod named_output;
 mod open_files;
 mod output;
 mod parent;
@@ -76,6 +78,7 @@ fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
         Command::Growth(args) => growth::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Tile(args) => tile::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Fly(args) => fly::run(&args),
         Command::View(args) => view::run(&args),
