@@ -1,5 +1,6 @@
 use std::{fmt, io};
 
+use corniche_export::ExportError;
 use corniche_pipeline::{BuildError, VerifyError};
 use corniche_tileset::OpenError;
 use corniche_viewer::gpu::GpuError;
@@ -83,6 +84,17 @@ impl From<VerifyError> for Failure {
             VerifyError::Changed { .. } | VerifyError::Work(_) => ExitCode::Failed,
             VerifyError::Roads(error) if !error.is_unusable_input() => ExitCode::Failed,
             _ => ExitCode::Unusable,
+        };
+        Self::new(code, error)
+    }
+}
+
+impl From<ExportError> for Failure {
+    fn from(error: ExportError) -> Self {
+        let code = match &error {
+            ExportError::Interrupted => ExitCode::Interrupted,
+            other if other.is_unusable_input() => ExitCode::Unusable,
+            _ => ExitCode::Failed,
         };
         Self::new(code, error)
     }

@@ -8,6 +8,7 @@ mod chart;
 mod completions;
 mod defects;
 mod exit;
+mod export;
 mod failure;
 mod fly;
 mod free_memory;
@@ -18,6 +19,7 @@ mod jobs;
 mod man;
 mod merge;
 mod messages;
+mod named_output;
 mod names;
 mod open_files;
 mod output;
@@ -94,6 +96,7 @@ fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
         Command::Growth(args) => growth::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Tile(args) => tile::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Fly(args) => fly::run(&args),
         Command::View(args) => view::run(&args),

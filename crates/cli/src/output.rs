@@ -47,8 +47,7 @@ impl Output {
         };
         let named = target;
         let target = writable(named)?;
-        let place = place_of(&target);
-        if others.iter().any(|other| place_of(other) == place) {
+        if others.iter().any(|other| is_same_file(other, &target)) {
             return Err(unusable(&"the command uses that file itself; choose another name"));
         }
         if existing == Existing::Keep && named.symlink_metadata().is_ok() {
@@ -135,6 +134,11 @@ pub(crate) fn writable_package(target: &Path) -> Result<PathBuf, Failure> {
     Ok(place)
 }
 
+/// Whether two paths lead to one file, which need not exist yet.
+pub(crate) fn is_same_file(one: &Path, other: &Path) -> bool {
+    place_of(one) == place_of(other)
+}
+
 /// Where a file is or will be, whatever way its path is written: for one that does not exist yet, its folder's place.
 fn place_of(path: &Path) -> PathBuf {
     if let Ok(place) = path.canonicalize() {
@@ -166,7 +170,8 @@ pub(crate) fn failed(target: &Path, error: &io::Error) -> Failure {
     )
 }
 
-fn exists(target: &Path) -> Failure {
+/// The failure of a command whose target exists.
+pub(crate) fn exists(target: &Path) -> Failure {
     Failure::exists(format!("{} exists already; give -O to replace it", target.display()))
 }
 

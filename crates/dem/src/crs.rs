@@ -12,6 +12,7 @@ pub(crate) mod operation;
 pub(crate) mod height_operation;
 pub(crate) mod projection;
 pub(crate) mod recorded;
+pub(crate) mod recorded_heights;
 pub(crate) mod scale;
 
 pub(crate) mod full_turns;

@@ -51,7 +51,7 @@ impl From<GdalError> for Box<LibraryError> {
 }
 
 /// Keeps GDAL and PROJ from writing to standard error: what they say comes back in errors.
-pub(crate) fn quiet() {
+pub fn quiet() {
     static QUIET: Once = Once::new();
     QUIET.call_once(|| gdal::config::set_error_handler(|_, _, words| hear(words)));
 }
@@ -62,6 +62,6 @@ fn hear(words: &str) {
 }
 
 /// Forgets what was said, so that the next failure is not explained by an earlier one.
-pub(crate) fn forget() {
+pub fn forget() {
     LAST_WORDS.with_borrow_mut(String::clear);
 }

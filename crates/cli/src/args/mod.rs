@@ -3,6 +3,7 @@
 mod build;
 mod camera;
 mod drawing;
+mod export;
 mod ground;
 mod look;
 mod part;
@@ -16,6 +17,7 @@ use clap::{Parser, Subcommand};
 
 pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
+pub(crate) use export::{Export, ExportArgs, ExportCrs, ExportRoadsArgs};
 pub(crate) use look::Roads;
 pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
 pub(crate) use reading::{Coordinates, GrowthArgs, InfoArgs, TileArgs, VerifyArgs};
@@ -60,6 +62,8 @@ pub(crate) enum Command {
     Verify(VerifyArgs),
     /// Dump one decoded tile
     Tile(TileArgs),
+    /// Give what a package holds to other programs
+    Export(ExportArgs),
     /// Draw a package to a PNG, without a window
     Render(RenderArgs),
     /// Fly over a package and tell what each frame costs; needs no window
@@ -85,6 +89,7 @@ impl Command {
             Self::Growth(_) => "growth",
             Self::Verify(_) => "verify",
             Self::Tile(_) => "tile",
+            Self::Export(_) => "export",
             Self::Render(_) => "render",
             Self::Fly(_) => "fly",
             Self::View(_) => "view",

@@ -36,6 +36,12 @@ impl RecordedCrs {
         &self.working.crs.label
     }
 
+    /// Its WKT2, without heights.
+    #[must_use]
+    pub fn wkt(&self) -> &str {
+        &self.working.crs.wkt
+    }
+
     /// WGS84 ⇄ working metres over a rectangle in degrees: the same positions, to the last bit, as when the package was
     /// built with the same rectangle.
     ///

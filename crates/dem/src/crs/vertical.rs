@@ -132,6 +132,19 @@ impl VerticalCrs {
         if self.is_down { -self.unit_m } else { self.unit_m }
     }
 
+    /// WKT2 of a system from the same datum that counts metres upwards: of itself, where it does.
+    pub(crate) fn metres_upwards_wkt(&self) -> String {
+        #[expect(clippy::float_cmp, reason = "a metre is exactly one")]
+        let is_plain = self.unit_m == 1.0 && !self.is_down;
+        match &self.datum {
+            Some(datum) if !is_plain => format!(
+                "VERTCRS[\"{datum} height\",VDATUM[\"{datum}\"],CS[vertical,1],\
+                 AXIS[\"gravity-related height (H)\",up],LENGTHUNIT[\"metre\",1]]"
+            ),
+            _ => self.wkt.to_string(),
+        }
+    }
+
     /// The horizontal system and this one, together.
     pub(crate) fn with(&self, horizontal: &Crs) -> Crs {
         if self.is_ellipsoidal {

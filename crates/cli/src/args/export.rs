@@ -1,0 +1,141 @@
+//! Commands that give what a package holds to other programs.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+use corniche_export::{DegreeBounds, VectorFormat};
+use corniche_roads::FunctionalRoadClass;
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportArgs {
+    #[command(subcommand)]
+    pub(crate) what: Export,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Export {
+    /// Write the roads of a package, on its terrain, as lines with lengths and grades for GIS programs
+    Roads(Box<ExportRoadsArgs>),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportRoadsArgs {
+    /// The package
+    pub(crate) package: PathBuf,
+    /// The file to write; its ending is its format: .gpkg, .fgb, .geojson or .csv
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// Replace the file if it exists, once the new one is complete; if it is a link, replace the file it leads to
+    #[arg(short = 'O', long)]
+    pub(crate) overwrite: bool,
+    /// The format of a file with another ending
+    #[arg(short, long, value_enum, value_name = "FORMAT")]
+    pub(crate) format: Option<Format>,
+    /// The level whose roads are taken [default: the finest]
+    #[arg(long, value_name = "Z")]
+    pub(crate) level: Option<u8>,
+    /// One feature for each piece of a road as the tiles have them, in place of one for each way
+    #[arg(long)]
+    pub(crate) pieces: bool,
+    /// Functional road classes that are taken, such as 0-4,7
+    #[arg(long, value_name = "LIST", default_value = "0-8", value_parser = parse_classes)]
+    pub(crate) classes: Classes,
+    /// Cut roads at a rectangle of WGS84 degrees; a west beyond the east crosses 180°
+    #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true, value_parser = parse_bounds)]
+    pub(crate) bounds: Option<DegreeBounds>,
+    /// The coordinates: "package" (its CRS and heights, exactly) or "EPSG:4979" (longitude, latitude and height above the
+    /// ellipsoid of WGS84)
+    #[arg(long, value_name = "CRS", default_value = "package", value_parser = parse_crs)]
+    pub(crate) crs: ExportCrs,
+    /// With --crs EPSG:4979: keep the package's heights as they are (the CRS is then EPSG:4326)
+    #[arg(long, value_enum, value_name = "as-is")]
+    pub(crate) heights: Option<Heights>,
+}
+
+/// Formats by the endings of their files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// `GeoPackage`
+    Gpkg,
+    /// `FlatGeobuf`
+    Fgb,
+    /// GeoJSON (RFC 7946; with --crs EPSG:4979)
+    Geojson,
+    /// Comma-separated values, lines as WKT
+    Csv,
+}
+
+impl From<Format> for VectorFormat {
+    fn from(format: Format) -> Self {
+        match format {
+            Format::Gpkg => Self::GeoPackage,
+            Format::Fgb => Self::FlatGeobuf,
+            Format::Geojson => Self::GeoJson,
+            Format::Csv => Self::Csv,
+        }
+    }
+}
+
+/// What `--crs` names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ExportCrs {
+    /// The package's own.
+    Package,
+    /// WGS84 in three dimensions.
+    Wgs84,
+}
+
+/// What becomes of heights in another CRS.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Heights {
+    /// Nothing
+    AsIs,
+}
+
+/// Functional road classes, ascending, each once.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Classes(pub(crate) Vec<FunctionalRoadClass>);
+
+fn parse_classes(text: &str) -> Result<Classes, String> {
+    let wrong = || "write classes from 0 to 8 like 0-4,7".to_owned();
+    let class =
+        |text: &str| text.trim().parse().ok().and_then(FunctionalRoadClass::new).ok_or_else(wrong);
+    let mut classes = Vec::new();
+    for item in text.split(',') {
+        let (first, last) = item.split_once('-').unwrap_or((item, item));
+        let (first, last) = (class(first)?, class(last)?);
+        if first > last {
+            return Err(wrong());
+        }
+        classes.extend(FunctionalRoadClass::all().filter(|class| (first..=last).contains(class)));
+    }
+    classes.sort_unstable();
+    classes.dedup();
+    Ok(Classes(classes))
+}
+
+fn parse_bounds(text: &str) -> Result<DegreeBounds, String> {
+    let numbers: Option<Vec<f64>> =
+        text.split(',').map(|number| number.trim().parse().ok()).collect();
+    let numbers = numbers.and_then(|numbers| <[f64; 4]>::try_from(numbers).ok());
+    let numbers =
+        numbers.ok_or("write west,south,east,north in degrees, like 9.47,47.04,9.64,47.28")?;
+    DegreeBounds::new(numbers).ok_or_else(|| {
+        "this is no rectangle: south must be below north, west and east must differ, all within ±180 and ±90 degrees".to_owned()
+    })
+}
+
+fn parse_crs(text: &str) -> Result<ExportCrs, String> {
+    if text == "package" {
+        Ok(ExportCrs::Package)
+    } else if text.eq_ignore_ascii_case("EPSG:4979") {
+        Ok(ExportCrs::Wgs84)
+    } else {
+        Err("give \"package\" or EPSG:4979; for other systems use ogr2ogr -t_srs on the result"
+            .to_owned())
+    }
+}
+
+#[cfg(test)]
+#[path = "export_tests.rs"]
+mod tests;

@@ -1,0 +1,88 @@
+/// A rectangle of longitudes and latitudes, degrees (WGS84); it may cross the antimeridian.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DegreeBounds {
+    center: f64,
+    half_width: f64,
+    south: f64,
+    north: f64,
+}
+
+impl DegreeBounds {
+    /// From west, south, east and north. A west beyond the east means that the rectangle crosses 180°. `None` where it is
+    /// empty or beyond ±180 and ±90 degrees.
+    #[must_use]
+    pub fn new([west, south, east, north]: [f64; 4]) -> Option<Self> {
+        let on_earth = [west, east].iter().all(|lon| (-180.0..=180.0).contains(lon))
+            && [south, north].iter().all(|lat| (-90.0..=90.0).contains(lat));
+        let width = if west > east { east + 360.0 - west } else { east - west };
+        (on_earth && south < north && width > 0.0).then(|| Self {
+            center: west + width / 2.0,
+            half_width: width / 2.0,
+            south,
+            north,
+        })
+    }
+
+    /// A position as degrees east of the rectangle's middle, within ±180, and degrees of latitude.
+    pub(crate) fn relative(&self, [lon, lat]: [f64; 2]) -> [f64; 2] {
+        let east = lon - self.center;
+        [east - 360.0 * (east / 360.0).round(), lat]
+    }
+
+    /// The same for a position that follows another one: a line between the two never goes around the earth.
+    pub(crate) fn relative_after(&self, position: [f64; 2], before: [f64; 2]) -> [f64; 2] {
+        let [east, lat] = self.relative(position);
+        [east - 360.0 * ((east - before[0]) / 360.0).round(), lat]
+    }
+
+    /// What of the line between two positions, as [`Self::relative`] gives them, lies inside: from which share of it to which.
+    ///
+    /// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*.
+    pub(crate) fn inside(&self, from: [f64; 2], to: [f64; 2]) -> Option<[f64; 2]> {
+        let (mut first, mut last) = (0.0_f64, 1.0_f64);
+        let limits = [[-self.half_width, self.half_width], [self.south, self.north]];
+        for (axis, [low, high]) in limits.into_iter().enumerate() {
+            let along = to[axis] - from[axis];
+            for (along, room) in [(-along, from[axis] - low), (along, high - from[axis])] {
+                if along > 0.0 {
+                    last = last.min(room / along);
+                } else if along < 0.0 {
+                    first = first.max(room / along);
+                } else if room < 0.0 {
+                    return None;
+                }
+            }
+        }
+        (first <= last).then_some([first, last])
+    }
+
+    /// Whether a line through these positions, with room on all sides, might reach inside: for leaving out what cannot.
+    pub(crate) fn may_meet(&self, positions: &[[f64; 2]]) -> bool {
+        let Some(&first) = positions.first() else { return false };
+        let mut before = self.relative(first);
+        let mut low = before;
+        let mut high = before;
+        for &position in positions {
+            before = self.relative_after(position, before);
+            for axis in 0..2 {
+                low[axis] = low[axis].min(before[axis]);
+                high[axis] = high[axis].max(before[axis]);
+            }
+        }
+        // Around a pole longitudes say nothing.
+        if high[0] - low[0] > 90.0 || low.iter().chain(&high).any(|degrees| !degrees.is_finite()) {
+            return true;
+        }
+        let room = [0, 1].map(|axis| (high[axis] - low[axis]) / 4.0);
+        let meets = |turn: f64| {
+            low[0] + turn - room[0] <= self.half_width
+                && high[0] + turn + room[0] >= -self.half_width
+        };
+        let across = low[1] - room[1] <= self.north && high[1] + room[1] >= self.south;
+        across && [-360.0, 0.0, 360.0].into_iter().any(meets)
+    }
+}
+
+#[cfg(test)]
+#[path = "bounds_tests.rs"]
+mod tests;

@@ -1,0 +1,60 @@
+use super::*;
+
+fn bounds(numbers: [f64; 4]) -> DegreeBounds {
+    DegreeBounds::new(numbers).unwrap()
+}
+
+#[test]
+fn what_is_no_rectangle_on_earth_is_refused() {
+    for wrong in [
+        [9.0, 47.0, 9.0, 48.0],
+        [9.0, 48.0, 10.0, 47.0],
+        [9.0, 47.0, 181.0, 48.0],
+        [9.0, -91.0, 10.0, 48.0],
+        [f64::NAN, 47.0, 10.0, 48.0],
+        [9.0, 47.0, 10.0, f64::INFINITY],
+    ] {
+        assert_eq!(DegreeBounds::new(wrong), None, "{wrong:?}");
+    }
+}
+
+#[test]
+fn a_line_is_cut_where_it_crosses_the_rectangle() {
+    let bounds = bounds([9.0, 47.0, 10.0, 48.0]);
+    let inside = |from: [f64; 2], to: [f64; 2]| {
+        let from = bounds.relative(from);
+        bounds.inside(from, bounds.relative_after(to, from))
+    };
+    assert_eq!(inside([9.2, 47.2], [9.4, 47.6]), Some([0.0, 1.0]));
+    assert_eq!(inside([8.5, 47.5], [9.5, 47.5]), Some([0.5, 1.0]));
+    assert_eq!(inside([8.5, 47.5], [10.5, 47.5]), Some([0.25, 0.75]));
+    assert_eq!(inside([8.0, 47.5], [8.9, 47.5]), None);
+    assert_eq!(inside([9.5, 48.5], [9.5, 46.5]), Some([0.25, 0.75]));
+    assert_eq!(inside([9.5, 48.1], [9.6, 48.1]), None, "parallel to a side, beyond it");
+}
+
+/// West beyond east crosses 180°; the same line is cut at the same shares whichever image of its longitudes it has.
+#[test]
+fn a_rectangle_may_cross_the_antimeridian() {
+    let bounds = bounds([179.0, 51.0, -179.0, 53.0]);
+    for turn in [-360.0, 0.0, 360.0] {
+        let from = bounds.relative([178.0 + turn, 52.0]);
+        let to = bounds.relative_after([-178.0, 52.0], from);
+        let [first, last] = bounds.inside(from, to).unwrap();
+        assert!((first - 0.25).abs() < 1e-12 && (last - 0.75).abs() < 1e-12, "{first} {last}");
+    }
+    let from = bounds.relative([0.0, 52.0]);
+    assert_eq!(bounds.inside(from, bounds.relative_after([1.0, 52.0], from)), None);
+}
+
+#[test]
+fn tiles_that_cannot_meet_the_rectangle_are_left_out() {
+    let bounds = bounds([179.0, 51.0, -179.0, 53.0]);
+    assert!(bounds.may_meet(&[[179.5, 52.0], [180.5, 52.5]]));
+    assert!(bounds.may_meet(&[[-180.5, 52.0], [-179.5, 52.5]]));
+    assert!(bounds.may_meet(&[[170.0, 52.0], [190.0, 52.5]]));
+    assert!(!bounds.may_meet(&[[10.0, 52.0], [11.0, 52.5]]));
+    assert!(!bounds.may_meet(&[[179.5, 10.0], [180.5, 11.0]]));
+    assert!(bounds.may_meet(&[[0.0, 89.0], [120.0, 89.0], [-120.0, 89.0]]), "around a pole");
+    assert!(!bounds.may_meet(&[]));
+}

@@ -1,0 +1,96 @@
+use corniche_roads::{FunctionalRoadClass, RoadAttributes};
+
+use super::*;
+
+/// A piece through longitudes at 0 north; its heights are its longitudes.
+fn piece(longitudes: &[f64]) -> Piece {
+    let vertices =
+        longitudes.iter().map(|&lon| Vertex { at: [lon, 0.0], z_m: lon, is_source: true });
+    Piece {
+        key: PieceKey { way_id: 1, tile: 2, part: 3, cut: 0 },
+        class: FunctionalRoadClass::new(0).unwrap(),
+        attributes: RoadAttributes::default(),
+        vertices: vertices.collect(),
+        goes_on: [true, true],
+    }
+}
+
+fn cut(piece: &Piece, west: f64, east: f64) -> Vec<Piece> {
+    let bounds = DegreeBounds::new([west, -1.0, east, 1.0]).unwrap();
+    cut_at_bounds(piece, &bounds, &|at| at)
+}
+
+fn longitudes(piece: &Piece) -> Vec<f64> {
+    piece.vertices.iter().map(|vertex| vertex.at[0]).collect()
+}
+
+/// A piece inside stays what it is, to the last bit; one outside is gone.
+#[test]
+fn what_is_inside_stays_as_it_is() {
+    let inside = piece(&[1.0, 2.5, 4.0]);
+    assert_eq!(cut(&inside, 0.0, 10.0), [inside.clone()]);
+    assert!(cut(&inside, 5.0, 10.0).is_empty());
+    assert!(cut(&inside, 4.0, 10.0).is_empty(), "one point is no line");
+}
+
+/// New ends are on the sides, with the height of the line there; nothing goes on from them.
+#[test]
+fn ends_lie_on_the_sides() {
+    let [found] = &cut(&piece(&[1.0, 3.0, 5.0]), 2.0, 4.5)[..] else { panic!() };
+    assert_eq!(longitudes(found), [2.0, 3.0, 4.5]);
+    assert!(found.vertices.iter().all(|vertex| (vertex.z_m - vertex.at[0]).abs() < 1e-12));
+    assert_eq!(
+        found.vertices.iter().map(|vertex| vertex.is_source).collect::<Vec<_>>(),
+        [false, true, false]
+    );
+    assert_eq!(found.goes_on, [false, false]);
+    let [found] = &cut(&piece(&[1.0, 3.0, 5.0]), 0.0, 4.0)[..] else { panic!() };
+    assert_eq!(found.goes_on, [true, false]);
+    let [found] = &cut(&piece(&[1.0, 3.0, 5.0]), 2.0, 6.0)[..] else { panic!() };
+    assert_eq!(found.goes_on, [false, true]);
+}
+
+/// A line that leaves and comes back is two pieces with numbers of their own.
+#[test]
+fn a_line_that_comes_back_is_two_pieces() {
+    let found = cut(&piece(&[1.0, 3.0, 6.0, 3.0]), 0.0, 4.0);
+    assert_eq!(
+        found.iter().map(longitudes).collect::<Vec<_>>(),
+        [vec![1.0, 3.0, 4.0], vec![4.0, 3.0]]
+    );
+    assert_eq!(found.iter().map(|piece| piece.key.cut).collect::<Vec<_>>(), [0, 1]);
+    assert_eq!(
+        found.iter().map(|piece| piece.goes_on).collect::<Vec<_>>(),
+        [[true, false], [false, true]]
+    );
+}
+
+/// RFC 7946: a line over the antimeridian is cut there, at the height of the line.
+#[test]
+fn lines_are_cut_at_the_antimeridian() {
+    let line = vec![[179.0, 10.0, 100.0], [-179.0, 12.0, 300.0], [-178.0, 12.0, 300.0]];
+    let found = cut_at_antimeridian(line);
+    let expected = vec![
+        vec![[179.0, 10.0, 100.0], [180.0, 11.0, 200.0]],
+        vec![[-180.0, 11.0, 200.0], [-179.0, 12.0, 300.0], [-178.0, 12.0, 300.0]],
+    ];
+    assert_eq!(found, expected);
+    let back: Vec<_> =
+        expected.iter().rev().map(|part| part.iter().rev().copied().collect::<Vec<_>>()).collect();
+    let line = vec![[-178.0, 12.0, 300.0], [-179.0, 12.0, 300.0], [179.0, 10.0, 100.0]];
+    assert_eq!(cut_at_antimeridian(line), back);
+}
+
+/// Vertices exactly on it are not doubled, and make no line of one point.
+#[test]
+fn a_vertex_on_the_antimeridian_is_there_once() {
+    let line = vec![[179.0, 0.0, 0.0], [180.0, 0.0, 0.0], [-179.0, 0.0, 0.0]];
+    assert_eq!(
+        cut_at_antimeridian(line),
+        [vec![[179.0, 0.0, 0.0], [180.0, 0.0, 0.0]], vec![[-180.0, 0.0, 0.0], [-179.0, 0.0, 0.0]]]
+    );
+    let line = vec![[179.0, 0.0, 0.0], [-180.0, 0.0, 0.0]];
+    assert_eq!(cut_at_antimeridian(line), [vec![[179.0, 0.0, 0.0], [180.0, 0.0, 0.0]]]);
+    let line = vec![[9.0, 47.0, 1.0], [10.0, 47.0, 2.0]];
+    assert_eq!(cut_at_antimeridian(line.clone()), [line]);
+}

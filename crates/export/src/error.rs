@@ -1,0 +1,85 @@
+use std::{io, path::PathBuf};
+
+use corniche_dem::{DemError, LibraryError};
+use corniche_drape::BadLine;
+use corniche_geom::{ProjectError, TileId};
+use corniche_tileset::{OpenError, ReadError};
+
+/// Why roads could not be exported.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum ExportError {
+    #[error(transparent)]
+    Package(#[from] OpenError),
+    #[error(transparent)]
+    Tile(#[from] ReadError),
+    #[error("the roads of tile {tile} do not fit its ground; corniche verify says more")]
+    Line { tile: TileId, source: BadLine },
+    #[error("tile {tile} knows nothing of way {way_id}, which it holds; corniche verify says more")]
+    NoAttributes { tile: TileId, way_id: i64 },
+    #[error("way {way_id} is not the same in all tiles; corniche verify says more")]
+    Differs { way_id: i64 },
+    #[error("{package:?} has no roads: it was built without --osm")]
+    NoRoads { package: PathBuf },
+    #[error("{package:?} has no level {level}; its finest is {finest}")]
+    NoLevel { package: PathBuf, level: u8, finest: u8 },
+    #[error(
+        "GeoJSON has longitudes, latitudes and heights above the ellipsoid of WGS84 (RFC 7946); give --crs EPSG:4979, or choose \
+         another format"
+    )]
+    GeoJsonCrs,
+    #[error(
+        "heights above the ellipsoid cannot be told: what the package's heights are measured from is {datum:?}; build it with \
+         --dem-vertical-crs, or keep the heights as they are with --heights as-is"
+    )]
+    UnknownDatum { datum: String },
+    #[error(
+        "heights of {datum:?} cannot be carried to the ellipsoid of WGS84: a geoid grid may be missing; install it (projsync, or \
+         the package proj-data), or keep the heights as they are with --heights as-is"
+    )]
+    Heights { datum: String, source: Box<DemError> },
+    #[error(
+        "a height of {datum:?} near {lon:.5}, {lat:.5} has no height above the ellipsoid of WGS84: the geoid grid ends before; keep \
+         the heights as they are with --heights as-is"
+    )]
+    NoHeightHere { datum: String, lon: f64, lat: f64 },
+    #[error("the package's CRS cannot be used")]
+    Crs(#[source] Box<DemError>),
+    #[error("positions cannot be carried to WGS84")]
+    Project(#[from] ProjectError),
+    #[error("a position of way {way_id} has no longitude and latitude in WGS84")]
+    NoPosition { way_id: i64 },
+    #[error(
+        "this GDAL has no driver {driver} for writing; install a GDAL with it, or choose another format"
+    )]
+    NoDriver { driver: &'static str },
+    #[error("cannot write {path:?} (disk full?)")]
+    Write { path: PathBuf, source: Box<LibraryError> },
+    #[error(
+        "{path:?} is not whole (disk full?): {written} features were written and {found} can be read"
+    )]
+    NotWhole { path: PathBuf, written: u64, found: u64 },
+    #[error("cannot read {path:?} again")]
+    ReadAgain { path: PathBuf, source: io::Error },
+    #[error("cannot sort in {folder:?} (disk full?)")]
+    Sort { folder: PathBuf, source: io::Error },
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl ExportError {
+    /// Whether the package or the request cannot be used, rather than that something failed.
+    #[must_use]
+    pub fn is_unusable_input(&self) -> bool {
+        !matches!(
+            self,
+            Self::NoDriver { .. }
+                | Self::Write { .. }
+                | Self::NotWhole { .. }
+                | Self::ReadAgain { .. }
+                | Self::Sort { .. }
+                | Self::Interrupted
+        )
+    }
+}

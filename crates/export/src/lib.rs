@@ -1,0 +1,40 @@
+//! Roads of a package as features for other programs: GeoPackage, FlatGeobuf, GeoJSON, CSV.
+//!
+//! ```text
+//!   tiles of a level ──► pieces ──► cut at the bounds ──► sorted by way, on disk
+//!                                                              │
+//!                              one way at a time:              ▼
+//!      GDAL's vector drivers ◄── feature ◄── measures ◄── joined pieces
+//! ```
+//!
+//! A piece is what one tile holds of a way. Pieces that meet on the border of two tiles have the same lattice point there
+//! and are joined; where there is no ground, the line has a gap and stays in parts. Memory holds one tile, one way, and
+//! what the sorting is given.
+//!
+//! Vertices are those of the package: nothing is simplified, smoothed or rounded, except in GeoJSON (nine decimals).
+//!
+//! This crate never reads an extract or an elevation file, never decides which road matters, and writes no file but the one
+//! it is asked for.
+
+mod bounds;
+mod cut;
+mod error;
+mod feature;
+mod join;
+mod measures;
+mod piece;
+mod places;
+mod read;
+mod request;
+mod roads;
+mod scratch;
+mod vector;
+mod watch;
+
+pub use bounds::DegreeBounds;
+pub use error::ExportError;
+pub use feature::road_fields;
+pub use request::{Coordinates, RoadsRequest};
+pub use roads::{ExportSummary, export_roads};
+pub use vector::{Field, FieldKind, VectorFormat};
+pub use watch::{Unwatched, Watch, Work};

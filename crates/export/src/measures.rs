@@ -1,0 +1,128 @@
+//! How long, how steep and how detailed lines are.
+
+use crate::join::Line;
+
+/// A grade is taken over at least this length: shorter ones tell of single triangles and of steps in the heights, not of the
+/// road.
+pub(crate) const LEAST_GRADE_LENGTH_M: f64 = 20.0;
+
+/// What is measured of a feature, over all its lines.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Measures {
+    /// True length in plan, on the ellipsoid of WGS84.
+    pub(crate) length_2d_m: f64,
+    /// True length with heights.
+    pub(crate) length_3d_m: f64,
+    /// Metres upwards in the direction of the way, all of them together.
+    pub(crate) ascent_m: f64,
+    /// The same downwards.
+    pub(crate) descent_m: f64,
+    /// Steepest grade over [`LEAST_GRADE_LENGTH_M`] or more of one line: rise over run, without sign; `None` where no line
+    /// is as long.
+    pub(crate) steepest: Option<f64>,
+    /// Points of the level's lines, before they were laid on the ground.
+    pub(crate) vertices_in: u64,
+    /// Vertices of the lines on the ground.
+    pub(crate) vertices_out: u64,
+}
+
+impl Measures {
+    /// Of some lines. `distance_m` gives the true distance in plan between two places on the lattice.
+    pub(crate) fn of(lines: &[Line], distance_m: &dyn Fn([f64; 2], [f64; 2]) -> f64) -> Self {
+        let mut all = Self::default();
+        for line in lines {
+            let mut profile = Vec::with_capacity(line.vertices.len());
+            let mut along_m = 0.0;
+            profile.extend(line.vertices.first().map(|first| [0.0, first.z_m]));
+            for pair in line.vertices.windows(2) {
+                let run_m = distance_m(pair[0].at, pair[1].at);
+                let rise_m = pair[1].z_m - pair[0].z_m;
+                along_m += run_m;
+                all.length_3d_m += run_m.hypot(rise_m);
+                all.ascent_m += rise_m.max(0.0);
+                all.descent_m += (-rise_m).max(0.0);
+                profile.push([along_m, pair[1].z_m]);
+            }
+            all.length_2d_m += along_m;
+            let grades = [all.steepest, steepest(&profile, LEAST_GRADE_LENGTH_M)];
+            all.steepest = grades.into_iter().flatten().reduce(f64::max);
+            all.vertices_in += source_points(line);
+            all.vertices_out += line.vertices.len() as u64;
+        }
+        all
+    }
+}
+
+/// The steepest grade, without sign, between two places on a profile that are at least so far apart. The profile has
+/// distances along a line, ascending, with heights; heights between are linear.
+///
+/// ```text
+///          ___.-'    Seen from a fixed place a, the grade to b is monotone while b stays on one segment. So the steepest
+///   a .-'''    b     is between two vertices, or over exactly the least length with a vertex at one end. Between vertices,
+///                    twice the least length is enough: a longer stretch has a part, long enough, that is not less steep.
+/// ```
+fn steepest(profile: &[[f64; 2]], least_m: f64) -> Option<f64> {
+    let [last_m, _] = *profile.last()?;
+    if last_m < least_m {
+        return None;
+    }
+    let mut most = 0.0_f64;
+    let mut look = |from: [f64; 2], to: [f64; 2]| {
+        let grade = ((to[1] - from[1]) / (to[0] - from[0])).abs();
+        if grade.is_finite() {
+            most = most.max(grade);
+        }
+    };
+    let mut ahead = 0;
+    let mut behind = 0;
+    for (index, &here) in profile.iter().enumerate() {
+        while ahead + 1 < profile.len() && profile[ahead + 1][0] < here[0] + least_m {
+            ahead += 1;
+        }
+        if here[0] + least_m <= last_m {
+            look(here, at(profile, ahead, here[0] + least_m));
+        }
+        let beyond = profile[(ahead + 1).min(profile.len())..].iter();
+        for &there in beyond.take_while(|there| there[0] < here[0] + 2.0 * least_m) {
+            look(here, there);
+        }
+        while behind + 1 < index && profile[behind + 1][0] <= here[0] - least_m {
+            behind += 1;
+        }
+        if here[0] >= least_m {
+            look(at(profile, behind, here[0] - least_m), here);
+        }
+    }
+    Some(most)
+}
+
+/// The place on a profile so far along, on the segment that begins with vertex `index`.
+fn at(profile: &[[f64; 2]], index: usize, along_m: f64) -> [f64; 2] {
+    let from = profile[index];
+    let to = profile.get(index + 1).copied().unwrap_or(from);
+    let run_m = to[0] - from[0];
+    let share = if run_m > 0.0 { (along_m - from[0]) / run_m } else { 0.0 };
+    [along_m, from[1] + share * (to[1] - from[1])]
+}
+
+/// How many points the line had before it was laid on the ground. Where a border cut a straight segment no point was: a
+/// place where pieces were joined counts only if the line bends there, by more than the step to which a cut is rounded.
+fn source_points(line: &Line) -> u64 {
+    let vertices = &line.vertices;
+    let is_source = |&index: &usize| vertices[index].is_source;
+    let all = (0..vertices.len()).filter(is_source).count();
+    let is_cut = |&&join: &&usize| {
+        let before = (0..join).rev().find(is_source).unwrap_or(0);
+        let after = (join + 1..vertices.len()).find(is_source).unwrap_or(vertices.len() - 1);
+        let [p, q, here] = [before, after, join].map(|index| vertices[index].at);
+        let [along, off] = [[q[0] - p[0], q[1] - p[1]], [here[0] - p[0], here[1] - p[1]]];
+        let area = along[0] * off[1] - along[1] * off[0];
+        let is_between = off[0] * along[0] + off[1] * along[1] >= 0.0;
+        is_between && area.abs() <= along[0].hypot(along[1])
+    };
+    (all - line.joins.iter().filter(is_cut).count()) as u64
+}
+
+#[cfg(test)]
+#[path = "measures_tests.rs"]
+mod tests;

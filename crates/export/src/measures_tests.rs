@@ -1,0 +1,119 @@
+use proptest::prelude::*;
+
+use super::*;
+use crate::piece::Vertex;
+
+fn line(vertices: &[([f64; 2], f64, bool)], joins: &[usize]) -> Line {
+    let vertices = vertices.iter().map(|&(at, z_m, is_source)| Vertex { at, z_m, is_source });
+    Line { vertices: vertices.collect(), joins: joins.to_vec() }
+}
+
+/// Metres are the steps themselves.
+fn flat_m(from: [f64; 2], to: [f64; 2]) -> f64 {
+    (to[0] - from[0]).hypot(to[1] - from[1])
+}
+
+fn near(found: f64, expected: f64) {
+    assert!((found - expected).abs() < 1e-9 * expected.abs().max(1.0), "{found}, not {expected}");
+}
+
+/// A straight road of 300 m on a plane that rises 1 in 10 along it, then 100 m down again on one that falls 1 in 4: every
+/// number is known.
+#[test]
+fn a_road_on_planes_is_measured_in_closed_form() {
+    let up: Vec<_> =
+        (0..=30).map(|k| ([10.0 * f64::from(k), 0.0], f64::from(k), k % 30 == 0)).collect();
+    let down = [([300.0, 60.0], 15.0, false), ([300.0, 100.0], 5.0, true)];
+    let all = line(&[&up[..], &down].concat(), &[]);
+    let found = Measures::of(&[all], &flat_m);
+    near(found.length_2d_m, 400.0);
+    near(found.length_3d_m, 300.0 * 1.01_f64.sqrt() + 100.0 * 1.0625_f64.sqrt());
+    near(found.ascent_m, 30.0);
+    near(found.descent_m, 25.0);
+    near(found.steepest.unwrap(), 0.25);
+    assert_eq!((found.vertices_in, found.vertices_out), (3, 33));
+}
+
+/// Lines are measured each by itself: no grade is taken across a gap.
+#[test]
+fn a_gap_has_no_grade() {
+    let first = line(&[([0.0, 0.0], 0.0, true), ([19.0, 0.0], 10.0, true)], &[]);
+    let second = line(&[([40.0, 0.0], 100.0, true), ([59.0, 0.0], 100.0, true)], &[]);
+    let found = Measures::of(&[first.clone(), second], &flat_m);
+    assert_eq!(found.steepest, None, "no part is 20 m long");
+    near(found.length_2d_m, 38.0);
+    near(found.ascent_m, 10.0);
+    let third = line(&[([100.0, 0.0], 0.0, true), ([120.0, 0.0], 1.0, true)], &[]);
+    near(Measures::of(&[first, third], &flat_m).steepest.unwrap(), 0.05);
+}
+
+/// A step of 5 m within 1 m counts over 20 m.
+#[test]
+fn a_short_step_is_spread_over_the_least_length() {
+    let steps = [
+        ([0.0, 0.0], 0.0, true),
+        ([50.0, 0.0], 0.0, true),
+        ([51.0, 0.0], 5.0, true),
+        ([100.0, 0.0], 5.0, true),
+    ];
+    near(Measures::of(&[line(&steps, &[])], &flat_m).steepest.unwrap(), 0.25);
+}
+
+/// A straight line that a border cut has the points it had before; one that bends on the border has one more.
+#[test]
+fn a_cut_of_a_border_is_no_point_unless_the_line_bends_there() {
+    let straight = [
+        ([0.0, 0.0], 0.0, true),
+        ([500.0, 250.4], 0.0, false),
+        ([1000.0, 500.0], 0.0, true),
+        ([2000.0, 1001.0], 0.0, true),
+    ];
+    assert_eq!(source_points(&line(&straight, &[2])), 2);
+    let bent =
+        [([0.0, 0.0], 0.0, true), ([1000.0, 500.0], 0.0, true), ([2000.0, 900.0], 0.0, true)];
+    assert_eq!(source_points(&line(&bent, &[1])), 3);
+    let back = [([0.0, 0.0], 0.0, true), ([1000.0, 0.0], 0.0, true), ([500.0, 0.0], 0.0, true)];
+    assert_eq!(source_points(&line(&back, &[1])), 3, "the line turns back on the border");
+}
+
+/// The grade between two places of a profile, by looking at very many of them.
+fn steepest_by_force(profile: &[[f64; 2]], least_m: f64) -> f64 {
+    let [last_m, _] = profile[profile.len() - 1];
+    let height = |along_m: f64| {
+        let index =
+            profile.partition_point(|vertex| vertex[0] <= along_m).clamp(1, profile.len() - 1);
+        super::at(profile, index - 1, along_m)[1]
+    };
+    let places: Vec<f64> = (0..=400).map(|k| last_m * f64::from(k) / 400.0).collect();
+    let mut most = 0.0_f64;
+    for &from in &places {
+        for &to in places.iter().filter(|&&to| to >= from + least_m) {
+            most = most.max(((height(to) - height(from)) / (to - from)).abs());
+        }
+    }
+    most
+}
+
+proptest! {
+    /// No grade over the least length is steeper than the one found, and the one found is there.
+    #[test]
+    fn the_steepest_grade_is_the_steepest(
+        steps in prop::collection::vec((0.5_f64..30.0, -5.0_f64..5.0), 2..30),
+    ) {
+        let mut profile = vec![[0.0, 100.0]];
+        for (run_m, rise_m) in steps {
+            let [along_m, z_m] = profile[profile.len() - 1];
+            profile.push([along_m + run_m, z_m + rise_m]);
+        }
+        let found = steepest(&profile, LEAST_GRADE_LENGTH_M);
+        let [length_m, _] = profile[profile.len() - 1];
+        prop_assert_eq!(found.is_some(), length_m >= LEAST_GRADE_LENGTH_M);
+        if let Some(found) = found {
+            let least = steepest_by_force(&profile, LEAST_GRADE_LENGTH_M);
+            prop_assert!(found >= least - 1e-12, "{} is less than {}", found, least);
+            // The finest places that were tried are this far apart; a grade changes little over that.
+            let share = length_m / 400.0 / LEAST_GRADE_LENGTH_M;
+            prop_assert!(found <= least + 22.0 * share, "{} is more than {}", found, least);
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! What one tile holds of a way, and how it is sorted outside memory.
+
+use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
+use corniche_store::SortRecord;
+
+/// A vertex of a road on its tile's ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Vertex {
+    /// Steps of the lattice east and north; whole for a source point.
+    pub(crate) at: [f64; 2],
+    /// Height, metres.
+    pub(crate) z_m: f64,
+    /// A point of the level's line, or of its cut at the tile's border; else where the line crosses an edge of the ground.
+    pub(crate) is_source: bool,
+}
+
+/// Where a piece comes from; pieces sort by it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct PieceKey {
+    pub(crate) way_id: i64,
+    /// The tile's place in the package.
+    pub(crate) tile: u64,
+    /// The number of the piece along the way within the tile.
+    pub(crate) part: u32,
+    /// The number of what the bounds left of the piece.
+    pub(crate) cut: u32,
+}
+
+/// What one tile holds of a way, in the way's direction.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Piece {
+    pub(crate) key: PieceKey,
+    pub(crate) class: FunctionalRoadClass,
+    pub(crate) attributes: RoadAttributes,
+    /// Two at least.
+    pub(crate) vertices: Vec<Vertex>,
+    /// Whether the line may go on from its first vertex, and from its last, in another tile: they are points on the tile's
+    /// border.
+    pub(crate) goes_on: [bool; 2],
+}
+
+impl PartialEq for SortedPiece {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.key == other.0.key
+    }
+}
+
+impl Eq for SortedPiece {}
+
+impl PartialOrd for SortedPiece {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for SortedPiece {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.0.key.cmp(&other.0.key)
+    }
+}
+
+/// A piece as it is sorted: no two have the same key.
+#[derive(Debug, Clone)]
+pub(crate) struct SortedPiece(pub(crate) Piece);
+
+const VERTEX_BYTES: usize = 25;
+
+impl SortRecord for SortedPiece {
+    /// Numbers in little-endian order; a text has its length before it; vertices come last.
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        let Piece { key, class, attributes, vertices, goes_on } = &self.0;
+        let RoadAttributes { form, structure, layer, oneway, name, reference, surface } =
+            attributes;
+        bytes.extend(key.way_id.to_le_bytes());
+        bytes.extend(key.tile.to_le_bytes());
+        bytes.extend(key.part.to_le_bytes());
+        bytes.extend(key.cut.to_le_bytes());
+        bytes.extend([
+            class.number(),
+            *form as u8,
+            *structure as u8,
+            layer.cast_unsigned(),
+            *oneway as u8,
+            u8::from(goes_on[0]),
+            u8::from(goes_on[1]),
+        ]);
+        for text in [name, reference, surface] {
+            bytes.extend((text.len() as u64).to_le_bytes());
+            bytes.extend(text.as_bytes());
+        }
+        bytes.reserve(vertices.len() * VERTEX_BYTES);
+        for vertex in vertices {
+            for number in [vertex.at[0], vertex.at[1], vertex.z_m] {
+                bytes.extend(number.to_le_bytes());
+            }
+            bytes.push(u8::from(vertex.is_source));
+        }
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        let key = PieceKey {
+            way_id: i64::from_le_bytes(array(bytes)?),
+            tile: u64::from_le_bytes(array(bytes)?),
+            part: u32::from_le_bytes(array(bytes)?),
+            cut: u32::from_le_bytes(array(bytes)?),
+        };
+        let [class, form, structure, layer, oneway, first, last] = array(bytes)?;
+        let attributes = RoadAttributes {
+            form: *Form::ALL.get(usize::from(form))?,
+            structure: *Structure::ALL.get(usize::from(structure))?,
+            layer: layer.cast_signed(),
+            oneway: *Oneway::ALL.get(usize::from(oneway))?,
+            name: text(bytes)?,
+            reference: text(bytes)?,
+            surface: text(bytes)?,
+        };
+        let mut vertices = Vec::with_capacity(bytes.len() / VERTEX_BYTES);
+        while !bytes.is_empty() {
+            let [u, v, z_m] = [number(bytes)?, number(bytes)?, number(bytes)?];
+            let [is_source] = array(bytes)?;
+            vertices.push(Vertex { at: [u, v], z_m, is_source: is_source == 1 });
+        }
+        let class = FunctionalRoadClass::new(class)?;
+        Some(Self(Piece { key, class, attributes, vertices, goes_on: [first == 1, last == 1] }))
+    }
+
+    fn extra_bytes(&self) -> usize {
+        let Piece { attributes: RoadAttributes { name, reference, surface, .. }, vertices, .. } =
+            &self.0;
+        vertices.capacity() * size_of::<Vertex>() + name.len() + reference.len() + surface.len()
+    }
+}
+
+fn array<const N: usize>(bytes: &mut &[u8]) -> Option<[u8; N]> {
+    let (head, rest) = bytes.split_first_chunk()?;
+    *bytes = rest;
+    Some(*head)
+}
+
+fn number(bytes: &mut &[u8]) -> Option<f64> {
+    array(bytes).map(f64::from_le_bytes)
+}
+
+fn text(bytes: &mut &[u8]) -> Option<String> {
+    let length = usize::try_from(u64::from_le_bytes(array(bytes)?)).ok()?;
+    let (text, rest) = bytes.split_at_checked(length)?;
+    *bytes = rest;
+    String::from_utf8(text.to_vec()).ok()
+}
+
+#[cfg(test)]
+#[path = "piece_tests.rs"]
+mod tests;

@@ -1,0 +1,136 @@
+//! Where vertices are, in the coordinates that were asked for.
+
+use corniche_dem::{DemError, DemProjection, RecordedCrs, RecordedHeights};
+use corniche_geom::{Projection as _, wgs84};
+use corniche_tileset::Manifest;
+
+use crate::{cut::cut_at_antimeridian, error::ExportError, piece::Vertex, request::Coordinates};
+
+/// Carries places on the lattice to the coordinates of features.
+pub(crate) struct Places<'a> {
+    manifest: &'a Manifest,
+    target: Target,
+    /// WKT2 of the features' CRS.
+    wkt: String,
+    /// What their heights are, in words.
+    heights: String,
+}
+
+enum Target {
+    /// The package's CRS.
+    Package,
+    /// WGS84; heights are carried to the ellipsoid where there is something to carry them.
+    Wgs84 { projection: Box<DemProjection>, heights: Option<Box<RecordedHeights>> },
+}
+
+fn crs_failed(source: DemError) -> ExportError {
+    ExportError::Crs(Box::new(source))
+}
+
+impl<'a> Places<'a> {
+    pub(crate) fn new(
+        manifest: &'a Manifest,
+        coordinates: Coordinates,
+    ) -> Result<Self, ExportError> {
+        let Manifest { crs_wkt, metres_per_unit, data_bounds, vertical, settings, .. } = manifest;
+        let crs = RecordedCrs::new(crs_wkt, *metres_per_unit, *data_bounds).map_err(crs_failed)?;
+        let area = manifest.wgs84_bounds;
+        let datum = &vertical.datum;
+        let given = [&settings.vertical_crs, &settings.dem_vertical_crs];
+        let given: Vec<&str> = given.into_iter().flatten().map(String::as_str).collect();
+        let known = RecordedHeights::find(&crs, datum, &given, area).map_err(crs_failed)?;
+        let of_package = if known.is_some() {
+            format!("{datum}, metres")
+        } else {
+            format!("as in the package, metres (datum: {datum})")
+        };
+        let projection = || crs.projection(area).map(Box::new).map_err(crs_failed);
+        let (target, wkt, heights) = match coordinates {
+            Coordinates::Package => {
+                let both = known.as_ref().and_then(RecordedHeights::wkt);
+                (Target::Package, both.unwrap_or_else(|| crs.wkt().to_owned()), of_package)
+            }
+            Coordinates::Wgs84 => {
+                let heights =
+                    known.ok_or_else(|| ExportError::UnknownDatum { datum: datum.clone() })?;
+                // A missing grid is told before anything is read.
+                let mut height_m = [f64::midpoint(vertical.range_m[0], vertical.range_m[1])];
+                heights.to_wgs84_m(&[data_bounds.center()], &mut height_m).map_err(|source| {
+                    ExportError::Heights { datum: datum.clone(), source: Box::new(source) }
+                })?;
+                let target =
+                    Target::Wgs84 { projection: projection()?, heights: Some(Box::new(heights)) };
+                (target, "EPSG:4979".to_owned(), "above the ellipsoid of WGS84, metres".to_owned())
+            }
+            Coordinates::Wgs84WithPackageHeights => {
+                let target = Target::Wgs84 { projection: projection()?, heights: None };
+                (target, "EPSG:4326".to_owned(), of_package)
+            }
+        };
+        Ok(Self { manifest, target, wkt, heights })
+    }
+
+    /// The CRS of features, as WKT2 or as a code.
+    pub(crate) fn crs(&self) -> &str {
+        &self.wkt
+    }
+
+    /// What heights of features are, in words.
+    pub(crate) fn heights(&self) -> &str {
+        &self.heights
+    }
+
+    /// Longitude and latitude of a place on the lattice, without PROJ: to the centimetre, and smooth.
+    pub(crate) fn wgs84(&self, at: [f64; 2]) -> [f64; 2] {
+        let Manifest { frame, coordinates, .. } = self.manifest;
+        coordinates.wgs84_from_working(frame.position_of_fraction_m(at))
+    }
+
+    /// True distance in plan of two places on the lattice, as the build measures roads.
+    pub(crate) fn distance_m(&self, from: [f64; 2], to: [f64; 2]) -> f64 {
+        wgs84::short_distance_m(self.wgs84(from), self.wgs84(to))
+    }
+
+    /// A line of a way in the features' coordinates: one line, or several where it crosses the antimeridian in degrees.
+    pub(crate) fn carry(
+        &self,
+        way_id: i64,
+        vertices: &[Vertex],
+    ) -> Result<Vec<Vec<[f64; 3]>>, ExportError> {
+        let frame = &self.manifest.frame;
+        let mut plan: Vec<[f64; 2]> =
+            vertices.iter().map(|vertex| frame.position_of_fraction_m(vertex.at)).collect();
+        let mut heights_m: Vec<f64> = vertices.iter().map(|vertex| vertex.z_m).collect();
+        let joined = |plan: &[[f64; 2]], heights_m: &[f64]| -> Vec<[f64; 3]> {
+            plan.iter().zip(heights_m).map(|(&[x, y], &z)| [x, y, z]).collect()
+        };
+        match &self.target {
+            Target::Package => {
+                let [unit_x, unit_y] = self.manifest.metres_per_unit;
+                for [x, y] in &mut plan {
+                    (*x, *y) = (*x / unit_x, *y / unit_y);
+                }
+                Ok(vec![joined(&plan, &heights_m)])
+            }
+            Target::Wgs84 { projection, heights } => {
+                let datum = || self.manifest.vertical.datum.clone();
+                if let Some(heights) = heights {
+                    heights.to_wgs84_m(&plan, &mut heights_m).map_err(|source| {
+                        ExportError::Heights { datum: datum(), source: Box::new(source) }
+                    })?;
+                }
+                projection.wgs84_from_working(&mut plan)?;
+                for ([lon, lat], height_m) in plan.iter().zip(&heights_m) {
+                    if !(lon.is_finite() && lat.is_finite()) {
+                        return Err(ExportError::NoPosition { way_id });
+                    }
+                    if !height_m.is_finite() {
+                        let (lon, lat) = (*lon, *lat);
+                        return Err(ExportError::NoHeightHere { datum: datum(), lon, lat });
+                    }
+                }
+                Ok(cut_at_antimeridian(joined(&plan, &heights_m)))
+            }
+        }
+    }
+}

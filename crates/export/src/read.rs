@@ -1,0 +1,104 @@
+//! Pieces of roads out of tiles.
+
+use corniche_drape::DrapedVertex;
+use corniche_geom::{Frame, LatticePoint, TileId};
+use corniche_roads::FunctionalRoadClass;
+use corniche_tileset::{FilePackage, GeoRoad, Manifest, Sections, pmtiles_order};
+use corniche_tin::{Placement, Surface};
+
+use crate::{
+    bounds::DegreeBounds,
+    error::ExportError,
+    piece::{Piece, PieceKey, Vertex},
+};
+
+/// Positions along each side of a tile that tell where it is: enough for tiles that the CRS bends.
+const SIDE: usize = 9;
+
+/// The tiles of a level that may hold roads of the bounds, in the package's order.
+pub(crate) fn tiles(
+    package: &FilePackage,
+    level: u8,
+    bounds: Option<&DegreeBounds>,
+) -> Result<Vec<TileId>, ExportError> {
+    let manifest = package.manifest();
+    let mut ids = package.tile_ids()?;
+    ids.retain(|&id| {
+        id.z() == level && bounds.is_none_or(|bounds| bounds.may_meet(&places_deg(manifest, id)))
+    });
+    Ok(ids)
+}
+
+/// Longitudes and latitudes over a tile.
+fn places_deg(manifest: &Manifest, id: TileId) -> Vec<[f64; 2]> {
+    let tile = manifest.frame.tile_bounds(id);
+    let share = |k: usize| k as f64 / (SIDE - 1) as f64;
+    (0..SIDE * SIDE)
+        .map(|k| {
+            [
+                tile.min_x + tile.width() * share(k % SIDE),
+                tile.min_y + tile.height() * share(k / SIDE),
+            ]
+        })
+        .map(|position| manifest.coordinates.wgs84_from_working(position))
+        .collect()
+}
+
+/// The pieces of one tile whose class is wanted.
+pub(crate) fn pieces(
+    package: &FilePackage,
+    id: TileId,
+    classes: &[FunctionalRoadClass],
+) -> Result<Vec<Piece>, ExportError> {
+    let wanted = Sections::ROADS_GEO | Sections::ATTRIBUTES;
+    let Some(payload) = package.payload(id, wanted)? else { return Ok(Vec::new()) };
+    let Some(terrain) = &payload.terrain else { return Ok(Vec::new()) };
+    let Manifest { frame, vertical, .. } = package.manifest();
+    let surface = Surface::new(&terrain.tin, Placement::of_tile(frame, id, vertical.quantum_m));
+    let mut pieces = Vec::new();
+    for road in payload.roads_geo.iter().filter(|road| classes.contains(&road.class)) {
+        let known = payload.attributes.binary_search_by_key(&road.way_id, |record| record.way_id);
+        let attributes = known
+            .ok()
+            .and_then(|at| payload.attributes.get(at))
+            .ok_or(ExportError::NoAttributes { tile: id, way_id: road.way_id })?;
+        let vertices =
+            vertices(road, &surface).map_err(|source| ExportError::Line { tile: id, source })?;
+        pieces.push(Piece {
+            key: PieceKey { way_id: road.way_id, tile: pmtiles_order(id), part: road.part, cut: 0 },
+            class: road.class,
+            attributes: attributes.attributes.clone(),
+            goes_on: goes_on(road, frame, id),
+            vertices,
+        });
+    }
+    Ok(pieces)
+}
+
+fn vertices(road: &GeoRoad, surface: &Surface) -> Result<Vec<Vertex>, corniche_drape::BadLine> {
+    let positions = corniche_drape::positions(&road.line, surface)?;
+    let vertices = positions.into_iter().zip(&road.line.vertices);
+    Ok(vertices
+        .map(|([u, v, z_m], vertex)| Vertex {
+            at: [u, v],
+            z_m,
+            is_source: matches!(vertex, DrapedVertex::Source { .. }),
+        })
+        .collect())
+}
+
+/// Whether the ends of a line are points on its tile's border. A line that ends where the ground ends has no such point.
+fn goes_on(road: &GeoRoad, frame: &Frame, id: TileId) -> [bool; 2] {
+    let tile = frame.tile_lattice_bounds(id);
+    let is_on_border = |point: LatticePoint| {
+        point.u == tile.min.u
+            || point.u == tile.max.u
+            || point.v == tile.min.v
+            || point.v == tile.max.v
+    };
+    let vertices = &road.line.vertices;
+    [vertices.first(), vertices.last()].map(|vertex| match vertex {
+        Some(DrapedVertex::Source { point, .. }) => is_on_border(*point),
+        _ => false,
+    })
+}

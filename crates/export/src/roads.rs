@@ -1,0 +1,223 @@
+//! The whole way of roads out of a package.
+
+use std::path::Path;
+
+use corniche_store::{Sorted, Sorter};
+use corniche_tileset::{FilePackage, tile_of_order};
+
+use crate::{
+    cut::cut_at_bounds,
+    error::ExportError,
+    feature::{Road, road_fields, road_values},
+    join::{Line, lines},
+    measures::Measures,
+    piece::{Piece, SortedPiece},
+    places::Places,
+    read,
+    request::{Coordinates, RoadsRequest},
+    scratch::FileScratch,
+    vector::{Layer, Record, VectorFile, VectorFormat},
+    watch::{Watch, Work},
+};
+
+/// What was exported.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExportSummary {
+    /// The level whose roads were taken.
+    pub level: u8,
+    /// Features written.
+    pub features: u64,
+    /// Ways of which there is something.
+    pub ways: u64,
+    /// True length in plan, metres.
+    pub length_2d_m: f64,
+    /// Vertices of all lines on the ground.
+    pub vertices: u64,
+    /// What the heights of the features are, in words.
+    pub heights: String,
+}
+
+/// Writes the roads of a package to a new file at `path`. Beside it, in the same folder, are unnamed files for sorting, and
+/// what GDAL needs while it writes. After an error the file at `path` is of no use.
+///
+/// # Errors
+/// When the package has no roads or no such level, the request cannot be met, the package is damaged, or something cannot be
+/// written.
+pub fn export_roads(
+    package: &FilePackage,
+    request: &RoadsRequest,
+    path: &Path,
+    watch: &dyn Watch,
+) -> Result<ExportSummary, ExportError> {
+    let manifest = package.manifest();
+    if manifest.inputs.iter().all(|input| input.kind != "osm") {
+        return Err(ExportError::NoRoads { package: package.path().to_path_buf() });
+    }
+    let finest = manifest.frame.max_level();
+    let level = request.level.unwrap_or(finest);
+    if level > finest {
+        let package = package.path().to_path_buf();
+        return Err(ExportError::NoLevel { package, level, finest });
+    }
+    if request.format == VectorFormat::GeoJson && request.coordinates == Coordinates::Package {
+        return Err(ExportError::GeoJsonCrs);
+    }
+    let places = Places::new(manifest, request.coordinates)?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
+    let sort = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
+    let scratch = FileScratch::create(folder).map_err(sort)?;
+    let mut sorter = Sorter::new(&scratch, request.memory_bytes);
+    let tiles = read::tiles(package, level, request.bounds.as_ref())?;
+    let mut count = 0;
+    for (done, &id) in tiles.iter().enumerate() {
+        stop_if_asked(watch)?;
+        watch.done(Work::Tiles, done as u64, tiles.len() as u64);
+        for piece in read::pieces(package, id, &request.classes)? {
+            let kept = match &request.bounds {
+                Some(bounds) => cut_at_bounds(&piece, bounds, &|at| places.wgs84(at)),
+                None => vec![piece],
+            };
+            for piece in kept {
+                count += 1;
+                sorter.push(SortedPiece(piece)).map_err(sort)?;
+            }
+        }
+    }
+    let layer = layer(package, level, request, &places);
+    let mut writing = Writing {
+        places: &places,
+        by_piece: request.pieces,
+        file: VectorFile::create(path, request.format, layer)?,
+        summary: ExportSummary {
+            level,
+            features: 0,
+            ways: 0,
+            length_2d_m: 0.0,
+            vertices: 0,
+            heights: places.heights().to_owned(),
+        },
+    };
+    let mut ways = Ways { sorted: sorter.finish().map_err(sort)?, next: None };
+    let mut done = 0;
+    while let Some(pieces) = ways.next_way().map_err(sort)? {
+        stop_if_asked(watch)?;
+        watch.done(Work::Pieces, done, count);
+        done += pieces.len() as u64;
+        writing.way(&pieces)?;
+    }
+    let Writing { file, summary, .. } = writing;
+    file.finish()?;
+    watch.done(Work::Pieces, count, count);
+    Ok(summary)
+}
+
+fn stop_if_asked(watch: &dyn Watch) -> Result<(), ExportError> {
+    if watch.should_stop() { Err(ExportError::Interrupted) } else { Ok(()) }
+}
+
+/// What the file says of itself.
+fn layer(package: &FilePackage, level: u8, request: &RoadsRequest, places: &Places<'_>) -> Layer {
+    let manifest = package.manifest();
+    let [east_m, north_m] = manifest.frame.level_cell(level).to_array();
+    let name = package.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let what = if request.pieces { "Pieces of roads" } else { "Roads" };
+    Layer {
+        name: "roads",
+        fields: road_fields(request.pieces),
+        crs: places.crs().to_owned(),
+        description: format!(
+            "{what} laid on terrain with cells of {east_m:.1} × {north_m:.1} m. Heights: {}.",
+            places.heights()
+        ),
+        attribution: manifest.attribution.join("; "),
+        metadata: vec![
+            ("GENERATOR", manifest.generator.clone()),
+            ("PACKAGE", name),
+            ("PACKAGE_SETTINGS_SHA256", manifest.settings_sha256.clone()),
+            ("LEVEL", level.to_string()),
+            ("HEIGHTS", places.heights().to_owned()),
+            ("VERTICAL_DATUM_OF_PACKAGE", manifest.vertical.datum.clone()),
+        ],
+    }
+}
+
+/// The pieces of one way after the other.
+struct Ways<'a> {
+    sorted: Sorted<'a, SortedPiece>,
+    /// The first piece of the next way.
+    next: Option<Piece>,
+}
+
+impl Ways<'_> {
+    fn next_way(&mut self) -> std::io::Result<Option<Vec<Piece>>> {
+        let first = match self.next.take() {
+            Some(first) => first,
+            None => match self.sorted.next().transpose()? {
+                Some(SortedPiece(first)) => first,
+                None => return Ok(None),
+            },
+        };
+        let way_id = first.key.way_id;
+        let mut pieces = vec![first];
+        while let Some(SortedPiece(piece)) = self.sorted.next().transpose()? {
+            if piece.key.way_id != way_id {
+                self.next = Some(piece);
+                break;
+            }
+            pieces.push(piece);
+        }
+        Ok(Some(pieces))
+    }
+}
+
+/// Makes features of pieces and writes them.
+struct Writing<'a> {
+    places: &'a Places<'a>,
+    by_piece: bool,
+    file: VectorFile,
+    summary: ExportSummary,
+}
+
+impl Writing<'_> {
+    /// Writes the features of a way.
+    fn way(&mut self, pieces: &[Piece]) -> Result<(), ExportError> {
+        let Some(first) = pieces.first() else { return Ok(()) };
+        let is_same =
+            |piece: &Piece| piece.class == first.class && piece.attributes == first.attributes;
+        if !pieces.iter().all(is_same) {
+            return Err(ExportError::Differs { way_id: first.key.way_id });
+        }
+        self.summary.ways += 1;
+        if !self.by_piece {
+            return self.feature(first, &lines(pieces), false);
+        }
+        for piece in pieces {
+            let line = Line { vertices: piece.vertices.clone(), joins: Vec::new() };
+            self.feature(piece, &[line], true)?;
+        }
+        Ok(())
+    }
+
+    fn feature(&mut self, of: &Piece, lines: &[Line], is_piece: bool) -> Result<(), ExportError> {
+        let Piece { key, class, attributes, .. } = of;
+        let measures = Measures::of(lines, &|from, to| self.places.distance_m(from, to));
+        self.summary.features += 1;
+        self.summary.length_2d_m += measures.length_2d_m;
+        self.summary.vertices += measures.vertices_out;
+        let piece = tile_of_order(key.tile).filter(|_| is_piece).map(|tile| (tile, key.part));
+        let road = Road {
+            way_id: key.way_id,
+            class: *class,
+            attributes,
+            parts: lines.len(),
+            measures,
+            piece,
+        };
+        let mut carried = Vec::with_capacity(lines.len());
+        for line in lines {
+            carried.extend(self.places.carry(key.way_id, &line.vertices)?);
+        }
+        self.file.push(Record { values: road_values(&road), lines: carried })
+    }
+}

@@ -1,0 +1,55 @@
+/// What a field holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FieldKind {
+    /// A whole number of 32 bits.
+    Integer,
+    /// A whole number of 64 bits.
+    Integer64,
+    /// A number.
+    Real,
+    /// Text.
+    Text,
+}
+
+impl FieldKind {
+    /// Its name, as GDAL has it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Integer => "Integer",
+            Self::Integer64 => "Integer64",
+            Self::Real => "Real",
+            Self::Text => "String",
+        }
+    }
+}
+
+/// A field of features.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Field {
+    /// Its name in the file.
+    pub name: &'static str,
+    /// What it holds.
+    pub kind: FieldKind,
+    /// The unit of a number; empty where there is none.
+    pub unit: &'static str,
+    /// What it says.
+    pub meaning: &'static str,
+}
+
+/// The value of a field.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Value {
+    Integer(i64),
+    Real(f64),
+    Text(String),
+    /// There is none.
+    Null,
+}
+
+/// One feature: a value for each field, and lines of x, y and height.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Record {
+    pub(crate) values: Vec<Value>,
+    pub(crate) lines: Vec<Vec<[f64; 3]>>,
+}

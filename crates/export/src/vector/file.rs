@@ -1,0 +1,232 @@
+use std::path::{Path, PathBuf};
+
+use gdal::{
+    Dataset, Driver, DriverManager, Metadata as _,
+    config::{clear_thread_local_config_option, set_thread_local_config_option},
+    errors::GdalError,
+    spatial_ref::{AxisMappingStrategy, SpatialRef},
+    vector::{
+        Defn, Feature, FieldDefn, Geometry, Layer as GdalLayer, LayerOptions, OGRFieldType,
+        OGRwkbGeometryType,
+    },
+};
+
+use crate::{
+    error::ExportError,
+    vector::{
+        field::{Field, FieldKind, Record, Value},
+        format::VectorFormat,
+        whole,
+    },
+};
+
+/// Features are handed to GDAL when so many vertices have come together: together they make one transaction.
+const VERTICES_AT_ONCE: usize = 1 << 16;
+/// GDAL's settings while a file is written, of this thread. The file is of no use until it is complete, so the database need
+/// not be safe against a loss of power; and the same roads make the same bytes, whatever the date.
+const SETTINGS: [(&str, &str); 2] =
+    [("OGR_SQLITE_SYNCHRONOUS", "OFF"), ("OGR_CURRENT_DATE", "1970-01-01T00:00:00.000Z")];
+
+/// What a file says of itself and of its features.
+#[derive(Debug, Clone)]
+pub(crate) struct Layer {
+    pub(crate) name: &'static str,
+    pub(crate) fields: Vec<Field>,
+    /// WKT2, or a code such as "EPSG:4979".
+    pub(crate) crs: String,
+    /// For people.
+    pub(crate) description: String,
+    /// Credits to show wherever the features are shown.
+    pub(crate) attribution: String,
+    /// Keys and values about the whole, where the format has a place for them.
+    pub(crate) metadata: Vec<(&'static str, String)>,
+}
+
+/// A file of features that is being written.
+pub(crate) struct VectorFile {
+    path: PathBuf,
+    format: VectorFormat,
+    dataset: Dataset,
+    layer: Layer,
+    waiting: Vec<Record>,
+    waiting_vertices: usize,
+    written: u64,
+    _settings: Settings,
+}
+
+impl VectorFile {
+    /// Begins a file with one layer. Nothing may be at `path`.
+    pub(crate) fn create(
+        path: &Path,
+        format: VectorFormat,
+        layer: Layer,
+    ) -> Result<Self, ExportError> {
+        corniche_dem::quiet();
+        corniche_dem::forget();
+        let settings = Settings::set();
+        let no_driver = |_| ExportError::NoDriver { driver: format.driver() };
+        let driver = DriverManager::get_driver_by_name(format.driver()).map_err(no_driver)?;
+        let dataset = create(path, format, &layer, &driver).map_err(|error| failed(path, error))?;
+        Ok(Self {
+            path: path.to_path_buf(),
+            format,
+            dataset,
+            layer,
+            waiting: Vec::new(),
+            waiting_vertices: 0,
+            written: 0,
+            _settings: settings,
+        })
+    }
+
+    /// Adds a feature.
+    pub(crate) fn push(&mut self, record: Record) -> Result<(), ExportError> {
+        self.waiting_vertices += record.lines.iter().map(Vec::len).sum::<usize>();
+        self.waiting.push(record);
+        if self.waiting_vertices >= VERTICES_AT_ONCE { self.write() } else { Ok(()) }
+    }
+
+    fn write(&mut self) -> Result<(), ExportError> {
+        let records = std::mem::take(&mut self.waiting);
+        self.waiting_vertices = 0;
+        self.written += records.len() as u64;
+        let fields = &self.layer.fields;
+        let written = match self.format {
+            // Without a transaction each feature would be one.
+            VectorFormat::GeoPackage => self.dataset.start_transaction().and_then(|transaction| {
+                write_all(&transaction.layer(0)?, fields, &records)?;
+                transaction.commit()
+            }),
+            _ => self.dataset.layer(0).and_then(|layer| write_all(&layer, fields, &records)),
+        };
+        written.map_err(|error| failed(&self.path, error))
+    }
+
+    /// Ends the file and reads it again: GDAL does not report everything that fails when a file is closed.
+    pub(crate) fn finish(mut self) -> Result<(), ExportError> {
+        self.write()?;
+        let Self { path, format, dataset, written, .. } = self;
+        dataset.close().map_err(|error| failed(&path, error))?;
+        let found = whole::count_features(&path, format)?;
+        if found == written { Ok(()) } else { Err(ExportError::NotWhole { path, written, found }) }
+    }
+}
+
+fn failed(path: &Path, error: GdalError) -> ExportError {
+    ExportError::Write { path: path.to_path_buf(), source: error.into() }
+}
+
+fn create(
+    path: &Path,
+    format: VectorFormat,
+    layer: &Layer,
+    driver: &Driver,
+) -> Result<Dataset, GdalError> {
+    let mut dataset = driver.create_vector_only(path)?;
+    if format == VectorFormat::GeoPackage {
+        dataset.set_metadata_item("ATTRIBUTION", &layer.attribution, "")?;
+        for (key, value) in &layer.metadata {
+            dataset.set_metadata_item(key, value, "")?;
+        }
+    }
+    let mut crs = SpatialRef::from_definition(&layer.crs)?;
+    crs.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
+    let options = options(format, layer, driver);
+    let options: Vec<&str> = options.iter().map(String::as_str).collect();
+    let created = dataset.create_layer(LayerOptions {
+        name: layer.name,
+        // RFC 7946 has one CRS and no place to name it.
+        srs: (format != VectorFormat::GeoJson).then_some(&crs),
+        ty: OGRwkbGeometryType::wkbMultiLineString25D,
+        options: Some(&options),
+    })?;
+    for field in &layer.fields {
+        let kind = match field.kind {
+            FieldKind::Integer => OGRFieldType::OFTInteger,
+            FieldKind::Integer64 => OGRFieldType::OFTInteger64,
+            FieldKind::Real => OGRFieldType::OFTReal,
+            FieldKind::Text => OGRFieldType::OFTString,
+        };
+        FieldDefn::new(field.name, kind)?.add_to_layer(&created)?;
+    }
+    Ok(dataset)
+}
+
+/// What the driver is told beside the layer's name, type and CRS.
+fn options(format: VectorFormat, layer: &Layer, driver: &Driver) -> Vec<String> {
+    let description = format!("{} {}", layer.description, layer.attribution);
+    match format {
+        VectorFormat::GeoPackage => vec![format!("DESCRIPTION={description}")],
+        VectorFormat::FlatGeobuf => {
+            // GDAL has it since 3.9.
+            let known = driver.metadata_item("DS_LAYER_CREATIONOPTIONLIST", "");
+            let has_description = known.is_some_and(|known| known.contains("'DESCRIPTION'"));
+            has_description.then(|| format!("DESCRIPTION={description}")).into_iter().collect()
+        }
+        VectorFormat::GeoJson => {
+            let members = serde_json::json!({ "attribution": layer.attribution });
+            vec![
+                "COORDINATE_PRECISION=9".to_owned(),
+                format!("DESCRIPTION={description}"),
+                format!("NATIVE_DATA={members}"),
+                "NATIVE_MEDIA_TYPE=application/vnd.geo+json".to_owned(),
+            ]
+        }
+        VectorFormat::Csv => vec!["GEOMETRY=AS_WKT".to_owned()],
+    }
+}
+
+fn write_all(layer: &GdalLayer<'_>, fields: &[Field], records: &[Record]) -> Result<(), GdalError> {
+    let defn = Defn::from_layer(layer);
+    for record in records {
+        let mut feature = Feature::new(&defn)?;
+        for (index, (value, field)) in record.values.iter().zip(fields).enumerate() {
+            match value {
+                Value::Null => feature.set_field_null(index)?,
+                Value::Integer(number) if field.kind == FieldKind::Integer => {
+                    feature.set_field_integer(index, i32::try_from(*number)?)?;
+                }
+                Value::Integer(number) => feature.set_field_integer64(index, *number)?,
+                Value::Real(number) => feature.set_field_double(index, *number)?,
+                Value::Text(text) => feature.set_field_string(index, text)?,
+            }
+        }
+        feature.set_geometry(geometry(&record.lines)?)?;
+        feature.create(layer)?;
+    }
+    Ok(())
+}
+
+fn geometry(lines: &[Vec<[f64; 3]>]) -> Result<Geometry, GdalError> {
+    let mut all = Geometry::empty(OGRwkbGeometryType::wkbMultiLineString25D)?;
+    for line in lines {
+        let mut part = Geometry::empty(OGRwkbGeometryType::wkbLineString25D)?;
+        // From the end, so that GDAL takes memory for all vertices at once.
+        for (index, &[x, y, z]) in line.iter().enumerate().rev() {
+            part.set_point(index, (x, y, z));
+        }
+        all.add_geometry(part)?;
+    }
+    Ok(all)
+}
+
+/// [`SETTINGS`] as long as it lives.
+struct Settings;
+
+impl Settings {
+    fn set() -> Self {
+        for (key, value) in SETTINGS {
+            // Both are plain texts: this fails for texts with a zero byte alone.
+            let _ = set_thread_local_config_option(key, value);
+        }
+        Self
+    }
+}
+
+impl Drop for Settings {
+    fn drop(&mut self) {
+        for (key, _) in SETTINGS {
+            let _ = clear_thread_local_config_option(key);
+        }
+    }
+}

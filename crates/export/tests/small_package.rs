@@ -1,0 +1,121 @@
+//! The export on a package of four tiles, and its documentation.
+
+use std::{
+    cell::Cell,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use corniche_export::{
+    Coordinates, ExportError, RoadsRequest, Unwatched, VectorFormat, Watch, Work, export_roads,
+    road_fields,
+};
+use corniche_roads::FunctionalRoadClass;
+use corniche_testing::{package, root};
+use corniche_tileset::{FilePackage, InputRecord};
+
+/// The small package with a CRS that PROJ reads and an extract among its inputs.
+fn small_package(folder: &Path) -> PathBuf {
+    let mut manifest = package::manifest();
+    manifest.crs_wkt = "EPSG:32632".to_owned();
+    manifest.inputs = vec![InputRecord {
+        kind: "osm".to_owned(),
+        name: "roads.osm.pbf".to_owned(),
+        bytes: 1,
+        sha256: String::new(),
+    }];
+    let tiles = package::ids().into_iter().map(|id| (id, package::encoded(id)));
+    let path = folder.join("small.pmtiles");
+    fs::write(&path, package::written_with(&manifest, tiles)).unwrap();
+    path
+}
+
+fn request(memory_bytes: u64) -> RoadsRequest {
+    RoadsRequest {
+        format: VectorFormat::Csv,
+        level: None,
+        classes: FunctionalRoadClass::all().collect(),
+        bounds: None,
+        pieces: true,
+        coordinates: Coordinates::Package,
+        memory_bytes,
+    }
+}
+
+/// However little memory the sorting has, the file is the same.
+#[test]
+fn memory_does_not_change_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = FilePackage::open(&small_package(folder.path())).unwrap();
+    let [one, two] = [500, 1 << 30].map(|memory_bytes| {
+        let path = folder.path().join(format!("{memory_bytes}.csv"));
+        let summary = export_roads(&package, &request(memory_bytes), &path, &Unwatched).unwrap();
+        assert!(summary.features > 2 && summary.ways == 1, "{summary:?}");
+        fs::read(path).unwrap()
+    });
+    assert!(one == two, "other bytes");
+}
+
+/// Asks a number of times whether to stop, then stops.
+struct Impatient {
+    asks: Cell<u32>,
+}
+
+impl Watch for Impatient {
+    fn done(&self, _: Work, _: u64, _: u64) {}
+
+    fn should_stop(&self) -> bool {
+        let left = self.asks.get();
+        self.asks.set(left.saturating_sub(1));
+        left == 0
+    }
+}
+
+/// An export stops wherever it is asked to, while it reads and while it writes.
+#[test]
+fn an_export_stops_when_it_is_asked_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = FilePackage::open(&small_package(folder.path())).unwrap();
+    let mut stopped = 0;
+    for asks in 0..20 {
+        let path = folder.path().join(format!("{asks}.csv"));
+        let impatient = Impatient { asks: Cell::new(asks) };
+        match export_roads(&package, &request(1 << 20), &path, &impatient) {
+            Err(ExportError::Interrupted) => stopped += 1,
+            Ok(_) => break,
+            Err(error) => panic!("{error}"),
+        }
+    }
+    // Two finest tiles and one way.
+    assert_eq!(stopped, 3);
+}
+
+/// A damaged tile is named, and its error says that the package cannot be used.
+#[test]
+fn a_damaged_tile_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = small_package(folder.path());
+    let mut bytes = fs::read(&path).unwrap();
+    let last = bytes.len() - 10;
+    bytes[last] ^= 0x55;
+    fs::write(&path, bytes).unwrap();
+    let package = FilePackage::open(&path).unwrap();
+    let target = folder.path().join("a.csv");
+    let error = export_roads(&package, &request(1 << 20), &target, &Unwatched).unwrap_err();
+    assert!(error.is_unusable_input() && error.to_string().contains("2/"), "{error}");
+}
+
+/// The table of fields in the documentation is that of the program.
+#[test]
+fn the_documentation_has_every_field() {
+    let page = fs::read_to_string(root().join("docs/export-roads.md")).unwrap();
+    let expected: Vec<String> = road_fields(true)
+        .iter()
+        .map(|field| {
+            let unit = if field.unit.is_empty() { "–" } else { field.unit };
+            format!("| `{}` | {} | {unit} | {} |", field.name, field.kind.name(), field.meaning)
+        })
+        .collect();
+    let table = expected.join("\n");
+    assert!(page.contains(&table), "docs/export-roads.md has another table than\n{table}");
+}
