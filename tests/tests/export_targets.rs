@@ -187,7 +187,7 @@ fn what_a_killed_export_leaves_is_removed_by_the_next() {
         thread::sleep(Duration::from_millis(1));
     }
     signal(&child, "KILL");
-    ended(&mut child);
+    let _ = ended(&mut child);
     assert!(unfinished.exists() && !target.exists(), "{:?}", names(folder.path()));
     let ran = export(&package, &target, &[]);
     assert_eq!(ran.code, 0, "{}", ran.err);

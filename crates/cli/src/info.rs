@@ -51,6 +51,9 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
     say(format!(
         "extent       {west:.5} {south:.5} {east:.5} {north:.5} (west south east north, degrees)"
     ));
+    if let Some([west, south, east, north]) = manifest.settings.bounds_deg {
+        say(format!("bounds       {west} {south} {east} {north}, a part of the elevation data"));
+    }
     say(format!("grid         cell {} m, {}", sides(frame.cell()), plain(&manifest.resampling)));
     let vertical = &manifest.vertical;
     let [lowest_m, highest_m] = vertical.range_m;

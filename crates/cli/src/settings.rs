@@ -7,7 +7,8 @@ use corniche_pipeline::{
     OpenOptions, PlanOptions, PlanSettings, Resources, RoadSettings, TerrainRecord, TerrainSettings,
 };
 use corniche_presets::{
-    Config, RoadOptions, TerrainOptions, check_cell, class_filter, is_range, parse_memory,
+    BoundsChoice, Config, RoadOptions, TerrainOptions, check_cell, class_filter, is_range,
+    parse_memory,
 };
 use corniche_roads::ClassFilter;
 
@@ -47,12 +48,14 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     };
     let given = [args.attribution, terrain.attribution.clone()];
     let attribution = given.into_iter().find(|credits| !credits.is_empty());
+    let osm = args.osm.map(input_name).transpose()?;
+    let bounds_deg = bounds_deg(terrain.bounds, osm.as_ref())?.or(base.terrain.plan.bounds_deg);
     let plan = PlanSettings {
         dem: args.dem.into_iter().map(input_name).collect::<Result<_, _>>()?,
         terrain_of: args.terrain_of,
-        osm: args.osm.map(input_name).transpose()?,
+        osm,
         attribution: attribution.unwrap_or(base.attribution),
-        terrain: terrain_settings(terrain, base.terrain, args.force)?,
+        terrain: terrain_settings(terrain, base.terrain, bounds_deg, args.force)?,
         roads: road_settings(roads)?,
         generator: generator(),
     };
@@ -79,10 +82,28 @@ fn usual_terrain() -> TerrainRecord {
     }
 }
 
+/// The bounds in degrees, which an extract may have to tell.
+fn bounds_deg(
+    bounds: Option<BoundsChoice>,
+    osm: Option<&PathBuf>,
+) -> Result<Option<[f64; 4]>, Failure> {
+    match (bounds, osm) {
+        (None, _) => Ok(None),
+        (Some(BoundsChoice::Degrees(bounds_deg)), _) => Ok(Some(bounds_deg)),
+        (Some(BoundsChoice::Osm), Some(osm)) => {
+            Ok(Some(corniche_pipeline::extract_bounds(std::slice::from_ref(osm))?))
+        }
+        (Some(BoundsChoice::Osm), None) => Err(Failure::unusable(
+            "--bounds osm takes the bounds of the extract; give one with --osm",
+        )),
+    }
+}
+
 /// The settings that are given; others are those of `base`.
 fn terrain_settings(
     options: TerrainOptions,
     base: TerrainSettings,
+    bounds_deg: Option<[f64; 4]>,
     force: bool,
 ) -> Result<TerrainSettings, Failure> {
     check_nodata(&options.nodata)?;
@@ -107,6 +128,7 @@ fn terrain_settings(
             cell_every: options.cell_every.or(base.plan.cell_every),
             scale_latitude_deg: options.scale_latitude.or(base.plan.scale_latitude_deg),
             fill_voids: options.fill_voids.unwrap_or(base.plan.fill_voids),
+            bounds_deg,
         },
         height_range_m: options.height_range.or(base.height_range_m),
         allow_fine_cell: force,

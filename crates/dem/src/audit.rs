@@ -16,6 +16,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::file_names::first_names;
 use crate::mosaics::open_files::OpenFiles;
+use crate::mosaics::sample_rect::SampleRect;
+use crate::plan::clip::parts_of_file;
 use crate::{Dem, DemError, GridPlan};
 
 /// What the surface of the earth has: Challenger Deep lies some 10 935 m below the sea, Everest 8 849 m above it.
@@ -94,11 +96,23 @@ pub struct Auditor<'a> {
 }
 
 impl Dem {
-    /// All samples of all files, each in one block, in a fixed order.
-    #[must_use]
-    pub fn audit_blocks(&self) -> Vec<AuditBlock> {
+    /// All samples of all files that the plan's nodes can depend on, each in one block, in a fixed order.
+    ///
+    /// # Errors
+    /// When PROJ fails.
+    pub fn audit_blocks(&self, plan: &GridPlan) -> Result<Vec<AuditBlock>, DemError> {
+        let mut needed: Vec<Vec<SampleRect>> = vec![Vec::new(); self.sources.len()];
+        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
+            let rect = self.needed_samples(plan, mosaic, role)?;
+            for file in &mosaic.files {
+                needed[file.index] = parts_of_file(mosaic, file, &rect);
+            }
+        }
         let mut blocks = Vec::new();
-        for (file, source) in self.sources.iter().enumerate() {
+        for (file, (source, parts)) in self.sources.iter().zip(&needed).enumerate() {
+            if parts.is_empty() {
+                continue;
+            }
             let size = [source.columns as usize, source.rows as usize];
             // With blocks narrower than a row, each row would be decompressed many times.
             let most = if source.is_striped {
@@ -110,11 +124,17 @@ impl Dem {
                 for column in (0..size[0]).step_by(most[0].max(1)) {
                     let start = [column, row];
                     let side = |axis: usize| most[axis].min(size[axis] - start[axis]);
-                    blocks.push(AuditBlock { file, start, size: [side(0), side(1)] });
+                    let size = [side(0), side(1)];
+                    let min = start.map(|at| at as i64);
+                    let own =
+                        SampleRect { min, max: [0, 1].map(|axis| min[axis] + size[axis] as i64) };
+                    if parts.iter().any(|part| !part.intersection(&own).is_empty()) {
+                        blocks.push(AuditBlock { file, start, size });
+                    }
                 }
             }
         }
-        blocks
+        Ok(blocks)
     }
 
     /// Where the middle of a block lies, working metres; not finite where the working CRS does not reach.

@@ -36,6 +36,7 @@ pub use files::open_options::OpenOptions;
 pub use files::raster_files::raster_files;
 pub use files::vsi::VirtualFile;
 pub use library_error::{LibraryError, forget, quiet};
+pub use plan::clip::Clip;
 pub use plan::grid_plan::{GridPlan, PlanOptions, PlanScale, Resampling};
 pub use plan::planning::libraries;
 pub use plan::recorded_grid::RecordedGrid;

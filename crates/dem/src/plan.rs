@@ -4,6 +4,7 @@ pub(crate) mod grid_plan;
 pub(crate) mod planning;
 pub(crate) mod recorded_grid;
 
+pub(crate) mod clip;
 pub(crate) mod layout;
 pub(crate) mod sample_steps;
 pub(crate) mod working_crs;

@@ -33,13 +33,28 @@ pub fn clip_parts(
     bounds: &LatticeBounds,
     owned: OwnedBorders,
 ) -> Vec<ClippedPart> {
+    clip_parts_within(line, bounds, owned, bounds)
+}
+
+/// [`clip_parts`] of what lies in `within`, too; `owned` are the borders of `bounds`.
+///
+/// Where a segment is cut depends on the segment and the border alone, so a tile that lies in `within` as a whole, and its
+/// neighbour that does not, get the same points on their border.
+#[must_use]
+pub fn clip_parts_within(
+    line: &Polyline,
+    bounds: &LatticeBounds,
+    owned: OwnedBorders,
+    within: &LatticeBounds,
+) -> Vec<ClippedPart> {
+    let both = bounds.intersection(within);
     let mut parts = Parts::default();
     for (index, pair) in line.points().windows(2).enumerate() {
         let segment = [pair[0], pair[1]];
         parts.segment = index;
         if let Some(along) = Along::of(segment, bounds) {
-            along.keep_owned(&owned, &mut parts);
-        } else if let Some(inside) = inside(segment, bounds) {
+            along.keep_owned(&owned, &both, &mut parts);
+        } else if let Some(inside) = inside(segment, &both) {
             parts.keep(inside);
         } else {
             parts.goes_on = false;
@@ -122,15 +137,26 @@ impl<'a> Along<'a> {
         Some(Self { segment: [p, q], bounds, border })
     }
 
-    /// Keeps what of the segment is on owned stretches, in its direction.
-    fn keep_owned(&self, owned: &OwnedBorders, parts: &mut Parts) {
+    /// Keeps what of the segment is on owned stretches and `within`, in its direction.
+    fn keep_owned(&self, owned: &OwnedBorders, within: &LatticeBounds, parts: &mut Parts) {
         let [p, q] = self.segment;
         let mut kept = Vec::new();
         let mut from = 0;
+        let (first_within, last_within, is_within) = match self.border {
+            Border::North | Border::South => {
+                (within.min.u, within.max.u, (within.min.v..=within.max.v).contains(&p.v))
+            }
+            Border::East | Border::West => {
+                (within.min.v, within.max.v, (within.min.u..=within.max.u).contains(&p.u))
+            }
+        };
         while let Some([first, end]) = owned.next_run(self.border, from) {
             from = end;
             let [a, b] = [first, end].map(|cell| self.offset(cell));
-            let [low, high] = [a.min(b), a.max(b)];
+            let [low, high] = [a.min(b).max(first_within), a.max(b).min(last_within)];
+            if !is_within || low >= high {
+                continue;
+            }
             let within = |point: LatticePoint| self.along(point).clamp(low, high);
             if within(p) != within(q) {
                 let ends = [self.at(within(p)), self.at(within(q))];

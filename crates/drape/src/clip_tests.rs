@@ -1,3 +1,5 @@
+use std::collections::BTreeMap;
+
 use super::*;
 use crate::Neighbours;
 use corniche_geom::TileId;
@@ -92,6 +94,15 @@ fn any_line() -> impl Strategy<Value = Polyline> {
         })
 }
 
+/// For each segment of the whole line, how far a part follows it along its longer side. Cuts are rounded along the other one, or
+/// to the same point from both sides.
+fn covered(part: &ClippedPart) -> Vec<(usize, i64)> {
+    let pairs = part.line.points().windows(2).zip(&part.segments);
+    pairs
+        .map(|(pair, &segment)| (segment, (pair[1].u - pair[0].u) + 1000 * (pair[1].v - pair[0].v)))
+        .collect()
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
 
@@ -108,6 +119,41 @@ proptest! {
                 }
             }
         }
+    }
+
+    /// What lies in a second rectangle, too, is what clipping to both at once gives: cuts depend on the segment alone.
+    #[test]
+    fn within_bounds_cuts_are_those_of_whole_segments(
+        line in any_line(), west in 0_i64..28, south in 0_i64..28, size in (1_i64..12, 1_i64..12),
+    ) {
+        let min = point(west, south - 30);
+        let within = LatticeBounds { min, max: point(min.u + size.0, min.v + size.1) };
+        let root = LatticeBounds { min: point(0, -TILES * SIDE), max: point(TILES * SIDE, 0) };
+        let mut of_tiles = BTreeMap::new();
+        for column in 0..TILES {
+            for row in 0..TILES {
+                let (bounds, owned) = tile(column, row);
+                let both = bounds.intersection(&within);
+                if both.min.u < both.max.u && both.min.v < both.max.v {
+                    let found = clip_parts_within(&line, &bounds, OwnedBorders::ALL, &within);
+                    prop_assert_eq!(found, clip_parts(&line, &both, OwnedBorders::ALL));
+                }
+                let parts = clip_parts_within(&line, &bounds, owned, &within);
+                for (segment, steps) in parts.iter().flat_map(covered) {
+                    *of_tiles.entry(segment).or_insert(0) += steps;
+                }
+                if within.contains(bounds.min) && within.contains(bounds.max) {
+                    prop_assert_eq!(parts, clip_parts(&line, &bounds, owned));
+                }
+            }
+        }
+        // No piece is lost, and none is in two tiles.
+        let mut whole = BTreeMap::new();
+        let parts = clip_parts(&line, &root.intersection(&within), OwnedBorders::ALL);
+        for (segment, steps) in parts.iter().flat_map(covered) {
+            *whole.entry(segment).or_insert(0) += steps;
+        }
+        prop_assert_eq!(of_tiles, whole);
     }
 
     /// No point of a part is farther than half a step from the segment that it was cut from.

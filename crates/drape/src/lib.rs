@@ -28,7 +28,7 @@ mod height_range;
 mod ray;
 mod segment_rectangle;
 
-pub use clip::{ClippedPart, clip, clip_closed, clip_parts};
+pub use clip::{ClippedPart, clip, clip_closed, clip_parts, clip_parts_within};
 pub use drape::{Drape, Gap, drape};
 pub use draped_line::{DrapedLine, DrapedVertex, SvLine};
 pub use draped_line_check::check;

@@ -113,6 +113,15 @@ impl LatticeBounds {
         }
     }
 
+    /// The rectangle that both have in common. Where they have none, its corners have changed places, and it contains no point.
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Self {
+        Self {
+            min: LatticePoint::new(self.min.u.max(other.min.u), self.min.v.max(other.min.v)),
+            max: LatticePoint::new(self.max.u.min(other.max.u), self.max.v.min(other.max.v)),
+        }
+    }
+
     /// Whether the two rectangles share a point, edges included.
     #[must_use]
     pub fn intersects(&self, other: &Self) -> bool {

@@ -19,6 +19,7 @@
 //!
 //! This crate never judges which road matters at which level, never guesses a class, and starts no threads.
 
+mod header_bounds;
 mod read_request;
 mod read_roads;
 mod reading;
@@ -59,6 +60,7 @@ mod summary;
 
 pub use defect::Defect;
 pub use error::ReadOsmError;
+pub use header_bounds::header_bounds_deg;
 pub use kept_error::KeptError;
 pub use read_request::{OnProgress, Place, ReadRequest};
 pub use read_roads::{read_roads, read_roads_from};

@@ -25,11 +25,13 @@ pub enum Loss {
     OutsideData,
     /// It lies on the elevation data, but where they have no ground.
     NoGround,
+    /// It lies outside the bounds that were asked for. It is counted, but it is no defect.
+    OutsideBounds,
 }
 
 impl Loss {
     /// All of them, in the order of the manifest.
-    pub(crate) const ALL: [Self; 2] = [Self::OutsideData, Self::NoGround];
+    pub(crate) const ALL: [Self; 3] = [Self::OutsideData, Self::NoGround, Self::OutsideBounds];
 
     /// Why, in words: the name under which it is counted.
     #[must_use]
@@ -37,6 +39,7 @@ impl Loss {
         match self {
             Self::OutsideData => "outside the elevation data",
             Self::NoGround => "where the data have no ground (void or edge)",
+            Self::OutsideBounds => "outside the bounds that were asked for",
         }
     }
 }

@@ -7,8 +7,9 @@ fn every_loss_is_listed_once_in_order() {
         let expected = match loss {
             Loss::OutsideData => 0,
             Loss::NoGround => 1,
+            Loss::OutsideBounds => 2,
         };
         assert_eq!(place, expected, "{loss:?}");
     }
-    assert_eq!(Loss::ALL.len(), 2);
+    assert_eq!(Loss::ALL.len(), 3);
 }

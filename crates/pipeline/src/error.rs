@@ -77,6 +77,10 @@ pub enum BuildError {
     PackageTile { path: PathBuf, source: corniche_tileset::ReadError },
     #[error("the run could not be set up: {what}")]
     Start { what: String },
+    #[error(
+        "--bounds osm: the header of {osm:?} does not say where the extract is; give --bounds W,S,E,N (osmium fileinfo -e tells them)"
+    )]
+    NoExtractBounds { osm: PathBuf },
     #[error("--max-error must be from 1e-9 to 1e9 metres, not {max_error_m}")]
     MaxError { max_error_m: f64 },
     #[error(
@@ -169,6 +173,7 @@ impl BuildError {
                 | Self::NoGround { .. }
                 | Self::Coordinates(_)
                 | Self::MaxError { .. }
+                | Self::NoExtractBounds { .. }
                 | Self::Plan(_)
                 | Self::OtherPlan { .. }
                 | Self::NoStore { .. }

@@ -22,7 +22,7 @@ pub(crate) fn of(
     let TerrainSettings { open, plan, height_range_m, allow_fine_cell: _, max_error_m: _ } =
         terrain;
     let OpenOptions { dem_crs, nodata, dem_vertical_crs, vertical_crs, vertical_shift_m } = open;
-    let PlanOptions { crs, cell, cell_every, scale_latitude_deg, fill_voids } = plan;
+    let PlanOptions { crs, cell, cell_every, scale_latitude_deg, fill_voids, bounds_deg } = plan;
     let RoadSettings { table, filter, simplify_cells } = roads;
     SettingsRecord {
         max_error_m,
@@ -37,6 +37,7 @@ pub(crate) fn of(
         cell_m: *cell,
         cell_every: *cell_every,
         scale_latitude_deg: *scale_latitude_deg,
+        bounds_deg: *bounds_deg,
         frc_table: table.name().to_owned(),
         frc_table_sha256: table_sha256(table),
         class_max_cell_m: filter.class_max_cell_m().to_vec(),
@@ -60,6 +61,7 @@ pub(crate) fn terrain(record: &SettingsRecord) -> TerrainSettings {
             cell_every: record.cell_every,
             scale_latitude_deg: record.scale_latitude_deg,
             fill_voids: record.fill_voids,
+            bounds_deg: record.bounds_deg,
         },
         height_range_m: record.height_range_m,
         // The build has begun already.

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::{Deserialize, Deserializer};
 
 use crate::{
-    PresetError,
+    BoundsChoice, PresetError,
     error::bounded,
     values::{parse_cell, parse_range},
 };
@@ -82,6 +82,11 @@ pub struct TerrainOptions {
     /// Fill voids that have data within this many cells in each of eight directions [default: 32]
     #[arg(long, value_name = "CELLS")]
     pub fill_voids: Option<u32>,
+    /// Convert only what lies within these bounds: west, south, east and north in WGS84 degrees, across 180° where the west is larger than
+    /// the east; or osm: where the extract is, by its header, and a hundredth more on every side. Ground and roads end at the bounds,
+    /// rounded outwards to whole cells; the grid is that of the whole DEM
+    #[arg(long, value_name = "W,S,E,N|osm", value_parser = BoundsChoice::parse, allow_hyphen_values = true)]
+    pub bounds: Option<BoundsChoice>,
     /// Credits, which the command line has beside the inputs.
     #[arg(skip)]
     pub attribution: Vec<String>,
@@ -170,6 +175,7 @@ impl TerrainOptions {
             cell_every,
             max_error: self.max_error.or_from(other.max_error),
             fill_voids: self.fill_voids.or_from(other.fill_voids),
+            bounds: self.bounds.or_from(other.bounds),
             attribution: self.attribution.or_from(other.attribution),
         }
     }

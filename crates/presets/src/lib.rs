@@ -3,12 +3,14 @@
 //!
 //! This crate never opens a file, never decides what a setting that is left out means, and never draws.
 
+mod bounds;
 mod class_cells;
 mod config;
 mod error;
 mod frc;
 mod values;
 
+pub use bounds::BoundsChoice;
 pub use class_cells::class_filter;
 pub use config::{Config, ResourceOptions, RoadOptions, TerrainOptions};
 pub use error::PresetError;

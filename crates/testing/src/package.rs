@@ -67,6 +67,7 @@ pub fn manifest_of(frame: Frame) -> Manifest {
         wgs84_bounds: Bounds { min_x: 9.4, min_y: 47.0, max_x: 9.7, max_y: 47.3 },
         resampling: "nodes are the DEM's samples".to_owned(),
         nodes_are_samples: true,
+        clip: None,
         vertical: VerticalRecord {
             quantum_m: QUANTUM_M,
             unit: "metre".to_owned(),
@@ -88,6 +89,7 @@ pub fn manifest_of(frame: Frame) -> Manifest {
             crs: None,
             cell_m: Some(Cell::from(10.0)),
             cell_every: None,
+            bounds_deg: None,
             scale_latitude_deg: None,
             frc_table: "default".to_owned(),
             frc_table_sha256: String::new(),

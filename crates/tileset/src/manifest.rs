@@ -6,6 +6,8 @@ mod levels;
 
 pub(crate) mod check;
 
-pub use contents::{InputRecord, Manifest, ScaleRecord, SettingsRecord, VerticalRecord};
+pub use contents::{
+    ClipRecord, InputRecord, Manifest, ScaleRecord, SettingsRecord, VerticalRecord,
+};
 pub use counts::{Counts, GrowthRow, RoadLoss, SampleCounts};
 pub use levels::{Distribution, LevelRecord, SampleErrorRecord};

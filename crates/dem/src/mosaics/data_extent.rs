@@ -16,8 +16,14 @@ const INNER_POSITIONS: usize = 9;
 
 /// Positions of samples on the rim and inside of a rectangle: the rim first, all the way around.
 pub(crate) fn positions(mosaic: &Mosaic, rect: &SampleRect) -> Vec<[f64; 2]> {
-    let [west, north] = rect.min.map(|index| index as f64);
-    let [east, south] = rect.max.map(|index| (index - 1) as f64);
+    let north_west = rect.min.map(|index| index as f64);
+    let south_east = rect.max.map(|index| (index - 1) as f64);
+    let samples = rim_and_inside(north_west, south_east);
+    samples.iter().map(|&sample| mosaic.crs_from_sample.crs_from_pixel(sample)).collect()
+}
+
+/// Points on the rim and inside of a rectangle between two corners: the rim first, all the way around.
+pub(crate) fn rim_and_inside([west, north]: [f64; 2], [east, south]: [f64; 2]) -> Vec<[f64; 2]> {
     let corners = [[west, north], [east, north], [east, south], [west, south]];
     let between = |from: f64, to: f64, t: f64| from + (to - from) * t;
     let mut samples = Vec::new();
@@ -34,7 +40,7 @@ pub(crate) fn positions(mosaic: &Mosaic, rect: &SampleRect) -> Vec<[f64; 2]> {
             samples.push([between(west, east, part(c)), between(north, south, part(r))]);
         }
     }
-    samples.iter().map(|&sample| mosaic.crs_from_sample.crs_from_pixel(sample)).collect()
+    samples
 }
 
 /// The rectangle around a file's samples in the CRS that `operation` leads to, the bend between rim positions
@@ -46,6 +52,11 @@ pub(crate) fn bounds(
 ) -> Result<Bounds, DemError> {
     let mut points = positions(mosaic, rect);
     operation.apply(&mut points)?;
+    Ok(with_bend(&points))
+}
+
+/// The rectangle around images of [`rim_and_inside`], the bend between rim positions included; empty where there are none.
+pub(crate) fn with_bend(points: &[[f64; 2]]) -> Bounds {
     let mut bounds = Bounds::EMPTY;
     let is_point = |p: &[f64; 2]| p[0].is_finite() && p[1].is_finite();
     for &point in points.iter().filter(|point| is_point(point)) {
@@ -68,7 +79,7 @@ pub(crate) fn bounds(
             max_y: bounds.max_y + bend,
         };
     }
-    Ok(bounds)
+    bounds
 }
 
 /// Positions on the rim and inside of all files in WGS84, and the rectangle around them. Longitudes are continuous:
@@ -90,10 +101,10 @@ pub(crate) fn wgs84(
             operation.apply(&mut points)?;
             if let Some((to_degrees, _)) = degrees {
                 for (point, own) in points.iter_mut().zip(&own) {
-                    point[0] = near_longitude(point[0], own[0] * to_degrees);
+                    point[0] = near_image(point[0], own[0] * to_degrees, 360.0);
                 }
             } else {
-                unwrap(&mut points);
+                unwrap(&mut points, 360.0);
             }
             points.retain(|point| point[0].is_finite() && point[1].is_finite());
             if points.is_empty() {
@@ -112,21 +123,21 @@ pub(crate) fn wgs84(
     Ok((all, bounds))
 }
 
-/// Makes the longitudes of a projected file continuous. Along the rim each longitude is moved next to the one before
-/// it, which is near. Inside, each is moved next to the middle of the rim: neighbours in the list can be as far apart
-/// as the file is wide.
-fn unwrap(points: &mut [[f64; 2]]) {
+/// Makes the longitudes of images of [`rim_and_inside`] continuous; `turn` is a full turn in their unit. Along the rim each
+/// longitude is moved next to the one before it, which is near. Inside, each is moved next to the middle of the rim: neighbours
+/// in the list can be as far apart as the rectangle is wide.
+pub(crate) fn unwrap(points: &mut [[f64; 2]], turn: f64) {
     let (rim, inside) = points.split_at_mut(4 * SIDE_POSITIONS);
     let mut previous: Option<f64> = None;
     for point in rim.iter_mut().filter(|point| point[0].is_finite()) {
-        point[0] = previous.map_or(point[0], |near| near_longitude(point[0], near));
+        point[0] = previous.map_or(point[0], |near| near_image(point[0], near, turn));
         previous = Some(point[0]);
     }
     let middle = if previous.is_some() { Some(around(rim).center()[0]) } else { None };
     // If no position of the rim is on earth, the first inner position is used.
     let mut near = middle;
     for point in inside.iter_mut().filter(|point| point[0].is_finite()) {
-        point[0] = near_longitude(point[0], *near.get_or_insert(point[0]));
+        point[0] = near_image(point[0], *near.get_or_insert(point[0]), turn);
     }
 }
 
@@ -147,7 +158,7 @@ fn turns_beside(lon_deg: f64, bounds: Bounds) -> f64 {
     turns(lon_deg - bounds.center()[0], 360.0)
 }
 
-/// The image of a longitude that is nearest to another one.
-fn near_longitude(lon_deg: f64, near_deg: f64) -> f64 {
-    lon_deg - 360.0 * ((lon_deg - near_deg) / 360.0).round()
+/// The image of a longitude that is nearest to another one; `turn` is a full turn in their unit.
+pub(crate) fn near_image(longitude: f64, near: f64, turn: f64) -> f64 {
+    longitude - turn * ((longitude - near) / turn).round()
 }

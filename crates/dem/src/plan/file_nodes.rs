@@ -8,8 +8,8 @@ use crate::plan::grid_plan::Method;
 use crate::{Dem, DemError, GridPlan};
 
 impl Dem {
-    /// For each file the south-western and the north-eastern node between which it can have data. Files that have no node
-    /// between their samples are left out.
+    /// For each file the south-western and the north-eastern node between which it can have data, within the plan's. Files that
+    /// have no node between their samples there are left out.
     ///
     /// # Errors
     /// When a file's place cannot be transformed.
@@ -41,6 +41,14 @@ impl Dem {
                             corner(cells(bounds.max_x, 0).floor(), cells(bounds.max_y, 1).floor()),
                         ]
                     }
+                };
+                let south_west = NodeIndex {
+                    i: south_west.i.max(plan.south_west.i),
+                    j: south_west.j.max(plan.south_west.j),
+                };
+                let north_east = NodeIndex {
+                    i: north_east.i.min(plan.north_east.i),
+                    j: north_east.j.min(plan.north_east.j),
                 };
                 if south_west.i <= north_east.i && south_west.j <= north_east.j {
                     found.push([south_west, north_east]);

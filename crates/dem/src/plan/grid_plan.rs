@@ -3,6 +3,7 @@ use corniche_geom::{Bounds, Cell, Frame, NodeIndex};
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
 use crate::plan::alignment::Alignment;
+use crate::plan::clip::Clip;
 use crate::plan::kernel::Kernel;
 use crate::plan::node_positions::NodePositions;
 
@@ -20,6 +21,10 @@ pub struct PlanOptions {
     pub scale_latitude_deg: Option<f64>,
     /// A void is filled from data within this many cells; 0 fills nothing.
     pub fill_voids: u32,
+    /// Only the ground within these bounds is made: west, south, east and north in WGS84 degrees, across ±180° where the west is
+    /// larger than the east. `None` makes all. Everything else is chosen as without them, so that the same nodes get the same
+    /// heights.
+    pub bounds_deg: Option<[f64; 4]>,
 }
 
 /// Whether nodes are the DEM's samples.
@@ -64,9 +69,12 @@ pub struct GridPlan {
     pub point_scale: f64,
     /// The same along each axis, at the centre and over the data's rim.
     pub scale: PlanScale,
+    /// The part that is asked for; `None`: all of it.
+    pub clip: Option<Clip>,
     /// Rectangle of the nodes from `south_west` to `north_east`, working metres.
     pub data_bounds: Bounds,
-    /// Rectangle around the files in WGS84 degrees. Past the antimeridian longitudes go on beyond ±180.
+    /// Rectangle around the files, or around the part that is asked for, in WGS84 degrees. Past the antimeridian longitudes go on
+    /// beyond ±180.
     pub wgs84_bounds: Bounds,
     /// Whether nodes are the DEM's samples.
     pub resampling: Resampling,

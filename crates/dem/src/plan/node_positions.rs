@@ -147,6 +147,11 @@ impl NodePositions {
         Ok(positions)
     }
 
+    /// Positions in working metres to samples, in place; NaN where there is none.
+    pub(crate) fn samples_of(&self, points: &mut [[f64; 2]]) -> Result<(), DemError> {
+        self.transform(points)
+    }
+
     /// Working CRS to samples, in place.
     fn transform(&self, points: &mut [[f64; 2]]) -> Result<(), DemError> {
         if points.is_empty() {

@@ -8,6 +8,7 @@ use gdal::version::VersionInfo;
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
 use crate::mosaics::mosaic::Mosaic;
+use crate::plan::clip::{self, Clip};
 use crate::plan::description::{describe, resampled_onto_first};
 use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, Resampling, bounds_of};
 use crate::plan::kernel::Kernel;
@@ -36,11 +37,12 @@ impl Dem {
     ///   alone, whether a projection keeps its unit.
     /// - Cell: `options.cell`; else the spacing of the first file's samples, a rectangle; where that file is in another CRS
     ///   or turned against it, a square with the shorter spacing as side (two significant digits in another CRS).
+    /// - Bounds: `options.bounds_deg` leaves out nodes and nothing else. All of the above is chosen from the whole DEM.
     /// - Where the cell is the spacing of the first file's samples, or a multiple by `options.cell_every`, nodes coincide
     ///   with samples; otherwise node (0, 0) is the CRS's zero. Files on other grids are resampled.
     ///
     /// # Errors
-    /// When the options are not usable, the files lie outside the CRS, or the grid is too large.
+    /// When the options are not usable, the files lie outside the CRS or the bounds, or the grid is too large.
     pub fn plan(&self, options: &PlanOptions) -> Result<GridPlan, DemError> {
         plan(self, options)
     }
@@ -50,7 +52,7 @@ impl Dem {
     /// # Errors
     /// When PROJ knows no operation.
     pub fn projection(&self, plan: &GridPlan) -> Result<DemProjection, DemError> {
-        DemProjection::new(&plan.working, plan.wgs84_bounds)
+        DemProjection::new(&plan.working, plan.area_deg())
     }
 }
 
@@ -84,6 +86,19 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
     if let Some(every) = options.cell_every {
         refuse_line(every, [south_west, north_east])?;
     }
+    let whole = [south_west, north_east];
+    let (cell, area_deg) = (layout.cell, dem.wgs84_bounds);
+    let asked = options.bounds_deg.map(|bounds_deg| {
+        clip::nodes_of(bounds_deg, &layout.working, area_deg, layout.origin_m, cell)
+            .map(|nodes| (bounds_deg, nodes))
+    });
+    let asked = asked.transpose()?;
+    let [south_west, north_east] = match asked {
+        Some((bounds_deg, nodes)) => {
+            clip::cut(bounds_deg, nodes, whole, columns_of_a_turn(&layout), dem)?
+        }
+        None => whole,
+    };
     let frame = Frame::covering(layout.origin_m, layout.cell, south_west, north_east)?;
     let roles: Vec<MosaicRole> = dem
         .mosaics
@@ -97,6 +112,16 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         })
         .collect::<Result<_, DemError>>()?;
     let working = layout.working;
+    let data_bounds = bounds_of(&frame, [south_west, north_east]);
+    let clip = asked.map(|(_, nodes)| Clip {
+        nodes: clip::on_lattice(&frame, nodes),
+        whole_data_bounds: bounds_of(&frame, whole),
+        whole_wgs84_bounds: area_deg,
+    });
+    let wgs84_bounds = match clip {
+        Some(_) => clip::wgs84_bounds(data_bounds, &working, area_deg)?,
+        None => area_deg,
+    };
     Ok(GridPlan {
         frame,
         south_west,
@@ -106,8 +131,9 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         metres_per_unit: working.metres_per_unit,
         point_scale: (scale.center[0] * scale.center[1]).sqrt(),
         scale,
-        data_bounds: bounds_of(&frame, [south_west, north_east]),
-        wgs84_bounds: dem.wgs84_bounds,
+        clip,
+        data_bounds,
+        wgs84_bounds,
         resampling: resampling(&roles),
         resampling_text: describe(dem, &roles),
         resampled_onto_first: resampled_onto_first(dem, &roles),
@@ -128,6 +154,12 @@ fn around(extents: &[[NodeIndex; 2]]) -> Option<[NodeIndex; 2]> {
             NodeIndex { i: ne.i.max(high.i), j: ne.j.max(high.j) },
         ]
     })
+}
+
+/// Columns of nodes all around the earth, rounded; `None` in a projection.
+fn columns_of_a_turn(layout: &Layout) -> Option<i64> {
+    let turn_m = layout.working.crs.turn? * layout.working.metres_per_unit[0].abs();
+    Some((turn_m / layout.cell.east_m).round() as i64)
 }
 
 /// Refuses to take so few samples that a single row or column of nodes is left.

@@ -3,6 +3,7 @@
 use corniche_geom::{Bounds, Frame, NodeIndex};
 
 use crate::RecordedCrs;
+use crate::plan::clip::Clip;
 use crate::plan::grid_plan::{GridPlan, PlanScale, Resampling, bounds_of};
 use crate::plan::planning::libraries;
 
@@ -23,7 +24,9 @@ pub struct RecordedGrid {
     pub point_scale: f64,
     /// The same along each axis.
     pub scale: PlanScale,
-    /// Rectangle around the files in WGS84 degrees.
+    /// The part of the elevation files that was asked for; `None`: all of it.
+    pub clip: Option<Clip>,
+    /// Rectangle around the data in WGS84 degrees.
     pub wgs84_bounds: Bounds,
     /// Whether nodes are the DEM's samples.
     pub nodes_are_samples: bool,
@@ -49,6 +52,7 @@ impl RecordedCrs {
             crs_wkt,
             point_scale,
             scale,
+            clip,
             wgs84_bounds,
             nodes_are_samples,
             resampling_text,
@@ -69,6 +73,7 @@ impl RecordedCrs {
             metres_per_unit: working.metres_per_unit,
             point_scale,
             scale,
+            clip,
             data_bounds: bounds_of(&frame, [south_west, north_east]),
             wgs84_bounds,
             resampling,

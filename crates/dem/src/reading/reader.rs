@@ -48,7 +48,7 @@ impl Dem {
 }
 
 impl Reader<'_> {
-    /// The heights of a window of stride 1, voids filled. Nodes outside the data are gaps.
+    /// The heights of a window of stride 1, voids filled. Nodes outside the data or the plan's bounds are gaps.
     ///
     /// A node has the same bits whichever window it is read through.
     ///
@@ -58,6 +58,37 @@ impl Reader<'_> {
         if window.stride != 1 {
             return Err(DemError::Stride { stride: window.stride });
         }
+        if self.plan.clip.is_none() {
+            return self.filled_window(window);
+        }
+        // Nodes outside the bounds are gaps. Voids inside are filled from data outside, too, so that nodes have the same heights as
+        // without bounds.
+        let mut heights_m = vec![f32::NAN; window.columns * window.rows];
+        let (mut filled, mut is_filled) = (0, Vec::new());
+        let inside = [self.plan.south_west, self.plan.north_east];
+        if let Some(part) = intersection(&window, inside) {
+            let found = self.filled_window(part)?;
+            let target = Target::new(&window, &part);
+            if !found.is_filled.is_empty() {
+                is_filled = vec![false; heights_m.len()];
+            }
+            for row in 0..part.rows {
+                let (from, to) = (row * part.columns, target.at(0, row));
+                heights_m[to..to + part.columns]
+                    .copy_from_slice(&found.heights.raw()[from..from + part.columns]);
+                if !is_filled.is_empty() {
+                    is_filled[to..to + part.columns]
+                        .copy_from_slice(&found.is_filled[from..from + part.columns]);
+                }
+            }
+            filled = found.filled;
+        }
+        let heights = HeightGrid::new(window.columns, window.rows, heights_m);
+        Ok(DemWindow { heights, filled, is_filled })
+    }
+
+    /// The same without regard to bounds.
+    fn filled_window(&mut self, window: NodeWindow) -> Result<DemWindow, DemError> {
         let mut heights_m = self.nodes(window)?;
         let mut is_filled = Vec::new();
         let mut filled = 0;

@@ -1,10 +1,11 @@
 //! The DEM's own samples: all of them, and those that nodes are made from.
 
-use corniche_geom::{NodeIndex, NodeWindow};
+use corniche_geom::{Frame, LatticeBounds, NodeIndex, NodeWindow};
 
 use crate::crs::operation::Operation;
 use crate::mosaics::mosaic::Mosaic;
 use crate::mosaics::sample_rect::SampleRect;
+use crate::plan::clip::Clip;
 use crate::plan::grid_plan::Method;
 use crate::plan::kernel::{Kernel, Samples};
 use crate::reading::reader::{MOST_SAMPLES, Reader, around};
@@ -31,12 +32,36 @@ pub struct SampleBlock {
     pub heights_m: Vec<f32>,
 }
 
+impl SampleBlock {
+    /// Leaves out the samples that do not lie between two nodes, by their places rounded to the lattice.
+    fn keep_within(&mut self, frame: &Frame, nodes: [NodeIndex; 2]) {
+        let [min, max] = nodes.map(|node| frame.lattice_of_node(node));
+        let bounds = LatticeBounds { min, max };
+        let is_inside: Vec<bool> = self
+            .positions_m
+            .iter()
+            .map(|&position_m| frame.snap(position_m).is_some_and(|point| bounds.contains(point)))
+            .collect();
+        let mut inside = is_inside.iter();
+        self.positions_m.retain(|_| inside.next().copied().unwrap_or(false));
+        let mut inside = is_inside.iter();
+        self.heights_m.retain(|_| inside.next().copied().unwrap_or(false));
+    }
+}
+
 impl Dem {
-    /// All blocks of samples, in a fixed order: 256 × 256 samples at most, those of no file left out.
-    #[must_use]
-    pub fn sample_areas(&self) -> Vec<SampleArea> {
-        let mosaics = self.mosaics.iter().enumerate();
-        mosaics.flat_map(|(index, mosaic)| blocks_of(mosaic, index, &mosaic.extent)).collect()
+    /// All blocks of samples that can lie between nodes of the plan, in a fixed order: 256 × 256 samples at most, those of no file
+    /// left out.
+    ///
+    /// # Errors
+    /// When PROJ fails.
+    pub fn sample_areas(&self, plan: &GridPlan) -> Result<Vec<SampleArea>, DemError> {
+        let mut areas = Vec::new();
+        for (index, (mosaic, role)) in self.mosaics.iter().zip(&plan.roles).enumerate() {
+            let needed = self.needed_samples(plan, mosaic, role)?;
+            areas.extend(blocks_of(mosaic, index, &needed.intersection(&mosaic.extent)));
+        }
+        Ok(areas)
     }
 }
 
@@ -103,7 +128,7 @@ fn blocks_of(mosaic: &Mosaic, index: usize, rect: &SampleRect) -> Vec<SampleArea
 
 impl Reader<'_> {
     /// The samples of an area that have a height: after nodata, units and shift; where files of one grid overlap, those of
-    /// the file named first.
+    /// the file named first. Those outside the plan's bounds are left out.
     ///
     /// # Errors
     /// When a file cannot be read.
@@ -122,6 +147,9 @@ impl Reader<'_> {
             block.heights_m.push(*height_m as f32);
         }
         self.plan.roles[area.mosaic].working_from_crs.apply(&mut block.positions_m)?;
+        if let Some(Clip { nodes, .. }) = self.plan.clip {
+            block.keep_within(&self.plan.frame, nodes);
+        }
         Ok(block)
     }
 

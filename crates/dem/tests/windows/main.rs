@@ -8,6 +8,7 @@
 
 mod all_real_data;
 mod blocks;
+mod bounds;
 mod closed_form;
 mod datums;
 mod fill_rule;

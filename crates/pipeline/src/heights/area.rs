@@ -82,7 +82,7 @@ pub(crate) fn audit_blocks_of(
 ) -> Result<Vec<(TileId, AuditBlock)>, BuildError> {
     let data = DataTiles::of(plan);
     let mut blocks = Vec::new();
-    for block in dem.audit_blocks() {
+    for block in dem.audit_blocks(plan)? {
         let middle_m = dem.audit_block_middle_m(&block, plan)?;
         let point = plan.frame.snap(middle_m).unwrap_or_else(|| data.bounds(&plan.frame).min);
         blocks.push((data.owner(&plan.frame, point).ancestor(area_level), block));

@@ -73,6 +73,7 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         cell_m,
         cell_every,
         scale_latitude_deg,
+        bounds_deg,
         frc_table,
         // The table's entries are compared one by one.
         frc_table_sha256: _,
@@ -96,6 +97,10 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         fact("--cell", &given(cell_m.map(|cell| pair(cell.to_array())).as_ref())),
         fact("--cell-every", &given(cell_every.as_ref())),
         fact("--scale-latitude", &given(scale_latitude_deg.as_ref())),
+        fact(
+            "--bounds",
+            &given(bounds_deg.map(|bounds| bounds.map(|deg| deg.to_string()).join(",")).as_ref()),
+        ),
         fact("--frc-table", frc_table),
         fact("class-max-cell (--all-classes)", &list(classes)),
         fact("--simplify", simplify_cells),

@@ -72,6 +72,8 @@ pub(crate) struct TileToLayOn<'a> {
     pub(crate) surface: &'a Surface,
     /// Which of its borders belong to the tile.
     pub(crate) owned: OwnedBorders,
+    /// The bounds that were asked for: at the finest level roads end there.
+    pub(crate) clip: Option<LatticeBounds>,
 }
 
 /// What becomes of a tile's roads if it is a finest tile without ground.
@@ -79,9 +81,11 @@ pub(crate) fn lost_pieces(
     pieces: &TilePieces,
     bounds: &LatticeBounds,
     owned: OwnedBorders,
+    clip: Option<LatticeBounds>,
 ) -> Vec<(u32, RoadFate)> {
+    let within = clip.unwrap_or(*bounds);
     let lost = |run: &Run| -> u64 {
-        corniche_drape::clip_parts(&run.line, bounds, owned)
+        corniche_drape::clip_parts_within(&run.line, bounds, owned, &within)
             .iter()
             .flat_map(|part| pieces_um(&run.line, part, &run.segments_um))
             .map(|[from, to]| to - from)
@@ -138,13 +142,15 @@ impl Laid {
     }
 
     fn lay_geo(&mut self, road: &RoadPiece, on: &TileToLayOn<'_>, levels: &Levels) -> RoadFate {
-        let &TileToLayOn { id, surface, owned } = on;
+        let &TileToLayOn { id, surface, owned, clip } = on;
         let bounds = levels.frame().tile_lattice_bounds(id);
         let is_finest = id.z() == levels.frame().max_level();
+        // On coarser levels ground ends before the bounds, and roads with it.
+        let within = clip.filter(|_| is_finest).unwrap_or(bounds);
         let [next_part, _] = self.parts.entry(road.way_id).or_default();
         let mut fate = RoadFate::default();
         for run in &road.runs {
-            for part in corniche_drape::clip_parts(&run.line, &bounds, owned) {
+            for part in corniche_drape::clip_parts_within(&run.line, &bounds, owned, &within) {
                 let draped = corniche_drape::drape(&part.line, surface);
                 if is_finest {
                     let pieces: Vec<[u64; 2]> =

@@ -6,7 +6,7 @@ use corniche_tileset::RoadLoss;
 use super::{
     lay::RoadFate,
     lengths::UM,
-    totals::{BLOCK_ROADS, RoadTotals, lengths_of_block},
+    totals::{BLOCK_ROADS, RoadLength, RoadTotals, lengths_of_block},
 };
 use crate::{BuildError, Defect, Loss, Observer};
 
@@ -16,6 +16,7 @@ struct Lengths {
     kept_um: u64,
     outside_um: u64,
     void_um: u64,
+    beyond_um: u64,
 }
 
 /// A cut moves a point by less than a lattice step, which is at most a millimetre, so lengths up to 2 mm count as 0.
@@ -28,16 +29,23 @@ impl Lengths {
         is_some(self.kept_um)
     }
 
-    fn losses(&self) -> [(Loss, u64); 2] {
+    fn losses(&self) -> [(Loss, u64); 3] {
         Loss::ALL.map(|loss| match loss {
             Loss::OutsideData => (loss, self.outside_um),
             Loss::NoGround => (loss, self.void_um),
+            Loss::OutsideBounds => (loss, self.beyond_um),
         })
     }
 
-    /// The reason under which a completely lost road is counted: that of the longer lost part.
+    /// The reason under which a completely lost road is counted: that of the longest lost part.
     fn reason(&self) -> Loss {
-        if self.void_um >= self.outside_um { Loss::NoGround } else { Loss::OutsideData }
+        if self.beyond_um > self.void_um.max(self.outside_um) {
+            Loss::OutsideBounds
+        } else if self.void_um >= self.outside_um {
+            Loss::NoGround
+        } else {
+            Loss::OutsideData
+        }
     }
 }
 
@@ -85,7 +93,8 @@ impl<'a> LossFold<'a> {
             let roads = BLOCK_ROADS.min(totals.roads - first);
             for (ordinal, length) in (first..).zip(lengths_of_block(store, block, roads)?) {
                 let RoadFate { kept_um, void_um } = fates.of(ordinal)?;
-                let road = Lengths { kept_um, outside_um: length.outside_um, void_um };
+                let RoadLength { outside_um, beyond_um, .. } = length;
+                let road = Lengths { kept_um, outside_um, void_um, beyond_um };
                 folded.add(&road);
                 road.report(length.way_id, observer);
             }
@@ -176,14 +185,22 @@ impl Folded {
         Sums {
             roads_kept: self.roads_kept,
             roads_kept_um: self.roads_kept_um,
-            lost: Loss::ALL.into_iter().zip(self.lost).map(loss).collect(),
+            // Without bounds nothing is lost by them, and they are not named.
+            lost: Loss::ALL
+                .into_iter()
+                .zip(self.lost)
+                .filter(|&(loss, lost)| loss != Loss::OutsideBounds || lost != (0, 0))
+                .map(loss)
+                .collect(),
         }
     }
 }
 
 impl Lengths {
     fn report(&self, way_id: i64, observer: &dyn Observer) {
-        for (loss, lost_um) in self.losses() {
+        // What the user left out is no defect.
+        let told = self.losses().into_iter().filter(|&(loss, _)| loss != Loss::OutsideBounds);
+        for (loss, lost_um) in told {
             // A road shorter than 2 mm has no length to lose, but it can be lost as a whole.
             let is_counted = !self.is_kept() && self.reason() == loss;
             if is_counted || is_some(lost_um) {

@@ -31,7 +31,7 @@ fn stored(lengths: &[RoadLength]) -> (MemoryStore, RoadTotals) {
 }
 
 fn road(way_id: i64, outside_um: u64) -> RoadLength {
-    RoadLength { way_id, length_um: 1_000_000, outside_um }
+    RoadLength { way_id, length_um: 1_000_000, outside_um, beyond_um: 0 }
 }
 
 fn fate(kept_um: u64, void_um: u64) -> RoadFate {

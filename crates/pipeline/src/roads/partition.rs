@@ -51,6 +51,8 @@ pub(crate) struct RoadInput<'a> {
     pub(crate) lengths: &'a TrueLengths<'a>,
     /// The finest tiles on which the data's rectangle lies, all together.
     pub(crate) data_bounds: LatticeBounds,
+    /// The bounds that were asked for.
+    pub(crate) clip: Option<LatticeBounds>,
     pub(crate) pool: &'a rayon::ThreadPool,
     /// Of the sorting.
     pub(crate) memory_bytes: u64,
@@ -166,6 +168,7 @@ impl<'a> Gathered<'a> {
                 levels: input.levels,
                 lengths: input.lengths,
                 data_bounds: input.data_bounds,
+                clip: input.clip,
             },
             pool: input.pool,
             batch: Vec::new(),

@@ -18,6 +18,8 @@ pub(crate) struct Splitting<'a> {
     pub(crate) lengths: &'a TrueLengths<'a>,
     /// The finest tiles on which the data's rectangle lies, all together. Tiles beside it need no roads.
     pub(crate) data_bounds: LatticeBounds,
+    /// The bounds that were asked for. Tiles on their edge get roads from outside, too: for what is drawn beside their ground.
+    pub(crate) clip: Option<LatticeBounds>,
 }
 
 /// A road, split.
@@ -34,15 +36,23 @@ impl Splitting<'_> {
     pub(crate) fn split(&self, road: &Road) -> SplitRoad {
         let segments_um = self.lengths.segments_um(&road.line);
         let length_um: u64 = segments_um.iter().sum();
-        let all = OwnedBorders::ALL;
-        let inside_um: u64 = corniche_drape::clip_parts(&road.line, &self.data_bounds, all)
-            .iter()
-            .flat_map(|part| pieces_um(&road.line, part, &segments_um))
-            .map(|[from, to]| to - from)
-            .sum();
+        let length_in = |bounds: &LatticeBounds| -> u64 {
+            corniche_drape::clip_parts(&road.line, bounds, OwnedBorders::ALL)
+                .iter()
+                .flat_map(|part| pieces_um(&road.line, part, &segments_um))
+                .map(|[from, to]| to - from)
+                .sum()
+        };
+        let clip = self.clip.as_ref();
+        let asked_um = clip.map_or(length_um, length_in);
+        let inside_um =
+            length_in(&clip.map_or(self.data_bounds, |clip| clip.intersection(&self.data_bounds)));
+        // Cuts are rounded to whole micrometres.
+        let outside_um = asked_um.saturating_sub(inside_um);
+        let bounds = LatticeBounds::of(road.line.points());
         let mut pieces = Vec::new();
         for level in self.levels.numbers() {
-            if self.levels.shows(level, road.class) {
+            if self.levels.shows(level, road.class) && self.is_near(bounds, level) {
                 self.split_level(road, level, &segments_um, &mut pieces);
             }
         }
@@ -50,10 +60,11 @@ impl Splitting<'_> {
             length: RoadLength {
                 way_id: road.way_id,
                 length_um,
-                outside_um: length_um - inside_um,
+                outside_um,
+                beyond_um: length_um - inside_um - outside_um,
             },
             class: road.class,
-            bounds: LatticeBounds::of(road.line.points()),
+            bounds,
             pieces,
         }
     }
@@ -97,6 +108,15 @@ impl Splitting<'_> {
             };
             pieces.push((id, piece));
         }
+    }
+
+    /// Whether a road in this rectangle can meet a tile of a level, margin included. Most roads of an extract that is far larger
+    /// than the data do not.
+    fn is_near(&self, bounds: Option<LatticeBounds>, level: u8) -> bool {
+        // A step of rounding, as where tiles are looked for.
+        let reach = self.levels.margin_steps(level) + 1;
+        let root = self.levels.frame().tile_lattice_bounds(TileId::ROOT).expanded(reach);
+        bounds.is_some_and(|bounds| bounds.intersects(&root))
     }
 
     /// Whether a tile can have ground: it shares more than a border with the data's tiles.

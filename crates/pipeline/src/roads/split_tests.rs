@@ -235,7 +235,7 @@ proptest! {
             (0..).zip(&roads).map(|(ordinal, points)| world.road(ordinal, points)).collect();
         let lengths = world.lengths();
         let splitting =
-            Splitting { levels: &world.levels, lengths: &lengths, data_bounds: world.data_bounds };
+            Splitting { levels: &world.levels, lengths: &lengths, data_bounds: world.data_bounds, clip: None };
         let mut by_tile: BTreeMap<TileId, TilePieces> = BTreeMap::new();
         for (ordinal, road) in (0..).zip(&roads) {
             for (id, piece) in splitting.split(road).pieces {
@@ -253,7 +253,7 @@ proptest! {
                 continue;
             }
             let (surface, owned) = (world.surface(id), world.owned(id));
-            let laid = Laid::of_tile(&pieces, &TileToLayOn { id, surface: &surface, owned }, &world.levels);
+            let laid = Laid::of_tile(&pieces, &TileToLayOn { id, surface: &surface, owned, clip: None }, &world.levels);
             let bounds = world.levels.frame().tile_lattice_bounds(id);
             let is_finest = id.z() == world.levels.frame().max_level();
             let found = OnTile {
@@ -262,7 +262,7 @@ proptest! {
                 attributes: laid.attributes,
                 fates: laid.fates,
                 classes: laid.classes,
-                lost: if is_finest { lost_pieces(&pieces, &bounds, owned) } else { Vec::new() },
+                lost: if is_finest { lost_pieces(&pieces, &bounds, owned, None) } else { Vec::new() },
             };
             let mut wanted = OnTile::default();
             for (ordinal, road) in (0..).zip(&roads) {
@@ -316,7 +316,7 @@ impl Large {
             fixed: vec![0, last],
         };
         let lengths = self.lengths();
-        Splitting { levels: &self.levels, lengths: &lengths, data_bounds }.split(&road)
+        Splitting { levels: &self.levels, lengths: &lengths, data_bounds, clip: None }.split(&road)
     }
 }
 

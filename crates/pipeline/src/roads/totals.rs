@@ -23,6 +23,8 @@ pub(crate) struct RoadLength {
     pub(crate) length_um: u64,
     /// How much of it lies outside the tiles of the data's rectangle, measured by itself.
     pub(crate) outside_um: u64,
+    /// How much of it lies outside the bounds that were asked for; what does is not counted under `outside_um`.
+    pub(crate) beyond_um: u64,
 }
 
 /// What is known of all roads. It is kept last: when it is in the store, so are all pieces, lengths and

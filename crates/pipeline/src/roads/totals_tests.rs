@@ -5,7 +5,12 @@ use super::*;
 #[test]
 fn lengths_come_back_block_by_block() {
     let store = MemoryStore::default();
-    let length = |k: u64| RoadLength { way_id: -(k as i64), length_um: 3 * k, outside_um: k };
+    let length = |k: u64| RoadLength {
+        way_id: -(k as i64),
+        length_um: 3 * k,
+        outside_um: k,
+        beyond_um: k / 2,
+    };
     let mut writer = LengthsWriter::new(&store);
     let count = BLOCK_ROADS + 1;
     for k in 0..count {

@@ -49,6 +49,7 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
         frame,
         data_bounds: plan.data_bounds,
         wgs84_bounds: plan.wgs84_bounds,
+        clip: manifest_texts::clip(plan),
         resampling: plan.resampling_text.clone(),
         nodes_are_samples: plan.nodes_are_samples(),
         vertical: VerticalRecord {

@@ -54,6 +54,7 @@ pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), B
         levels: context.levels,
         lengths: &TrueLengths::new(frame, context.coordinates, &projection),
         data_bounds: context.data().bounds(&frame),
+        clip: context.clip(),
         pool: &pool,
         memory_bytes: context.memory().sorting,
     };

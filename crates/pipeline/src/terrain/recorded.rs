@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_dem::{DemError, DemProjection, GridPlan, PlanScale, RecordedCrs, RecordedGrid};
+use corniche_dem::{Clip, DemError, DemProjection, GridPlan, PlanScale, RecordedCrs, RecordedGrid};
 use corniche_geom::{Frame, TILE_CELLS, TileId};
 use corniche_tileset::{
     FilePackage, InputRecord, Manifest, ReadError, Sections, Terrain, decode, limits::MAX_TILES,
@@ -64,9 +64,12 @@ impl RecordedTerrain {
             return Err(BuildError::OtherTerrain { path: path.to_path_buf(), differences });
         }
         let damaged = |what: &str| damaged(path, what);
-        let crs =
-            RecordedCrs::new(&manifest.crs_wkt, manifest.metres_per_unit, manifest.data_bounds)
-                .map_err(|error| damaged(&format!("its CRS cannot be used ({error})")))?;
+        let crs = RecordedCrs::new(
+            &manifest.crs_wkt,
+            manifest.metres_per_unit,
+            manifest.whole_data_bounds(),
+        )
+        .map_err(|error| damaged(&format!("its CRS cannot be used ({error})")))?;
         if crs.label() != manifest.crs {
             return Err(damaged("its CRS has another name than its WKT"));
         }
@@ -106,6 +109,11 @@ impl RecordedTerrain {
             point_scale: manifest.point_scale,
             scale: PlanScale { center: scale.center, least: scale.least, largest: scale.largest },
             wgs84_bounds: manifest.wgs84_bounds,
+            clip: manifest.clip.as_ref().map(|clip| Clip {
+                nodes: clip.nodes,
+                whole_data_bounds: clip.whole_data_bounds,
+                whole_wgs84_bounds: clip.whole_wgs84_bounds,
+            }),
             nodes_are_samples: manifest.nodes_are_samples,
             resampling_text: manifest.resampling.clone(),
             vertical_datum: Some(manifest.vertical.datum.clone()),
@@ -116,7 +124,7 @@ impl RecordedTerrain {
 
     /// WGS84 ⇄ working CRS.
     pub(crate) fn projection(&self) -> Result<DemProjection, DemError> {
-        self.crs.projection(self.manifest().wgs84_bounds)
+        self.crs.projection(self.manifest().area_deg())
     }
 
     /// The payload of a tile, and its ground decoded; `None` where it has none.

@@ -44,7 +44,9 @@ pub(crate) fn with_ground(
     } else {
         let placement = Placement::of_tile(frame, id, levels.quantum_m());
         let surface = Surface::new(&meshed.tin, placement);
-        Laid::of_tile(&pieces, &TileToLayOn { id, surface: &surface, owned: owned()? }, levels)
+        let clip = context.clip();
+        let on = TileToLayOn { id, surface: &surface, owned: owned()?, clip };
+        Laid::of_tile(&pieces, &on, levels)
     };
     let fates = std::mem::take(&mut laid.fates);
     let laid_classes = std::mem::take(&mut laid.classes);
@@ -87,7 +89,7 @@ pub(crate) fn without_ground(
         return Ok(record);
     }
     let bounds = context.frame().tile_lattice_bounds(id);
-    record.fates = lost_pieces(&pieces, &bounds, owned()?);
+    record.fates = lost_pieces(&pieces, &bounds, owned()?, context.clip());
     Ok(record)
 }
 

@@ -81,6 +81,7 @@ fn check_plan(plan: &GridPlan, manifest: &Manifest) -> Check {
     same("scale", &said, &scale);
     same("data_bounds", &manifest.data_bounds, &plan.data_bounds);
     same("wgs84_bounds", &manifest.wgs84_bounds, &plan.wgs84_bounds);
+    same("clip", &manifest.clip, &manifest_texts::clip(plan));
     same("nodes_are_samples", &manifest.nodes_are_samples, &plan.nodes_are_samples());
     same("resampling", &manifest.resampling, &plan.resampling_text);
     same("vertical.datum", &vertical.datum.as_str(), &manifest_texts::datum(plan));

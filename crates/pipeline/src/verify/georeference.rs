@@ -37,7 +37,7 @@ pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
 
 /// The CRS with the factors of the package.
 pub(crate) fn recorded(manifest: &Manifest) -> Result<RecordedCrs, DemError> {
-    RecordedCrs::new(&manifest.crs_wkt, manifest.metres_per_unit, manifest.data_bounds)
+    RecordedCrs::new(&manifest.crs_wkt, manifest.metres_per_unit, manifest.whole_data_bounds())
 }
 
 fn positions(
@@ -45,8 +45,9 @@ fn positions(
     crs: &RecordedCrs,
     findings: &mut Findings,
 ) -> Result<(), DemError> {
-    let data = manifest.data_bounds;
-    let projection = crs.projection(manifest.wgs84_bounds)?;
+    // Scales are those of all elevation files, also of a package of a part of them.
+    let data = manifest.whole_data_bounds();
+    let projection = crs.projection(manifest.area_deg())?;
     // Scales are recorded at the corners of files, which may lie up to a cell beyond the outermost nodes.
     let [east_m, north_m] = manifest.frame.cell().to_array();
     let files = Bounds {
@@ -55,7 +56,7 @@ fn positions(
         max_x: data.max_x + east_m,
         max_y: data.max_y + north_m,
     };
-    let scales = crs.scales(&grid(files), manifest.wgs84_bounds)?;
+    let scales = crs.scales(&grid(files), manifest.area_deg())?;
     check_scales(manifest, &scales, findings);
     rectangles(manifest, &projection, findings);
     table(manifest, &projection, findings);
@@ -77,7 +78,7 @@ fn check_scales(manifest: &Manifest, scales: &[Option<[f64; 2]>], findings: &mut
         let most = of_axis().fold(f64::NEG_INFINITY, f64::max) + slack;
         let said = [scale.least[axis], scale.center[axis], scale.largest[axis]];
         // The scale of degrees grows without limit towards a pole; there the record holds the largest scale that the format allows.
-        let degrees = manifest.wgs84_bounds;
+        let degrees = manifest.area_deg();
         let is_at_pole = degrees.max_y >= POLAR_DEG || degrees.min_y <= -POLAR_DEG;
         let most = if is_at_pole { most.max(LARGEST_SCALE) } else { most };
         let holds = least <= said[0] && said.is_sorted() && said[2] <= most;

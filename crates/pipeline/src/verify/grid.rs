@@ -1,6 +1,6 @@
 //! The grid of a package and the data's rectangle on it.
 
-use corniche_geom::{Frame, TILE_CELLS, TileId};
+use corniche_geom::{Frame, LatticeBounds, TILE_CELLS, TileId};
 use corniche_tileset::Manifest;
 
 use super::checks::{CheckId, Findings};
@@ -30,6 +30,12 @@ pub(crate) fn verify(manifest: &Manifest, findings: &mut Findings) {
     findings.look(CheckId::SampleSums, said == nodes, || {
         format!("{said} nodes are counted, the data's rectangle has {nodes}")
     });
+}
+
+/// The bounds that were asked for.
+pub(crate) fn clip_of(manifest: &Manifest) -> Option<LatticeBounds> {
+    let [min, max] = manifest.clip.as_ref()?.nodes.map(|node| manifest.frame.lattice_of_node(node));
+    Some(LatticeBounds { min, max })
 }
 
 /// First and last of the finest tiles on which the data's rectangle lies: its north-western and south-eastern one.

@@ -64,7 +64,7 @@ fn compare_all(
         return Ok(());
     };
     let Ok(crs) = georeference::recorded(manifest) else { return Ok(()) };
-    let projection = crs.projection(manifest.wgs84_bounds)?;
+    let projection = crs.projection(manifest.area_deg())?;
     let frame = manifest.frame;
     let widest = most_scale(manifest.scale.largest);
     let levels = Levels::new(frame, manifest.settings.max_error_m, &settings, widest);
@@ -82,6 +82,7 @@ fn compare_all(
         levels: &levels,
         lengths: &lengths,
         data_bounds: frame.tile_lattice_bounds(first).union(&frame.tile_lattice_bounds(last)),
+        clip: grid::clip_of(manifest),
         pool: &pool,
         memory_bytes: osm.memory_bytes,
     };

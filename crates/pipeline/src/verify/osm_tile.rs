@@ -9,6 +9,7 @@ use corniche_tin::{Placement, Surface};
 
 use super::{
     checks::{CheckId, Findings},
+    grid::clip_of,
     triangle_soup::TriangleSoup,
 };
 use crate::{
@@ -50,14 +51,15 @@ pub(crate) fn look_at(
     let (Some(payload), Some(terrain)) = (&payload, terrain) else {
         if id.z() == frame.max_level() {
             let owned = grounds.owned_borders(laying, id, !pieces.roads.is_empty());
-            found.fates = lay::lost_pieces(pieces, &frame.tile_lattice_bounds(id), owned);
+            found.fates =
+                lay::lost_pieces(pieces, &frame.tile_lattice_bounds(id), owned, clip_of(manifest));
         }
         return found;
     };
     let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
     let surface = Surface::new(&terrain.tin, placement);
     let owned = grounds.owned_borders(laying, id, !pieces.roads.is_empty());
-    let on = TileToLayOn { id, surface: &surface, owned };
+    let on = TileToLayOn { id, surface: &surface, owned, clip: clip_of(manifest) };
     let mut laid = Laid::of_tile(pieces, &on, laying.levels);
     laid.sort();
     compare(payload, &laid, &mut found.findings);

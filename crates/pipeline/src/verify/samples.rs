@@ -39,7 +39,7 @@ pub(crate) fn measure(
     observer: &dyn Observer,
 ) -> Result<Vec<SampleSums>, VerifyError> {
     let manifest = package.manifest();
-    let areas = dem.sample_areas();
+    let areas = dem.sample_areas(plan)?;
     let mut sums = none(manifest);
     observer.begin(Stage::Samples, Some(areas.len() as u64));
     workers::in_order_unless_cancelled(

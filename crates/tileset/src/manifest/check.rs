@@ -3,7 +3,7 @@
 //! The numbers in a package can be anything: a count of 2^64 − 1 would overflow the first sum, a coordinate of 1e308
 //! the first product, and comparisons with NaN would give wrong answers.
 
-use corniche_geom::{Bounds, Cell};
+use corniche_geom::{Bounds, Cell, MAX_LATTICE_STEPS, NodeIndex};
 
 use crate::manifest::contents::Manifest;
 use crate::manifest::counts::{Counts, GrowthRow};
@@ -40,6 +40,18 @@ impl Manifest {
         bounds("data_bounds", &self.data_bounds, [MAX_MEASURE_M; 2])?;
         // Longitudes go on beyond 180° where the data crosses the antimeridian, and half a pixel may lie beyond a pole.
         bounds("wgs84_bounds", &self.wgs84_bounds, [720.0, 91.0])?;
+        if let Some(clip) = &self.clip {
+            bounds("clip.whole_data_bounds", &clip.whole_data_bounds, [MAX_MEASURE_M; 2])?;
+            bounds("clip.whole_wgs84_bounds", &clip.whole_wgs84_bounds, [720.0, 91.0])?;
+            let [most_i, most_j] =
+                frame.node_steps(frame.max_level()).map(|steps| MAX_LATTICE_STEPS / steps);
+            let is_node = |node: &NodeIndex| {
+                node.i.unsigned_abs() <= most_i as u64 && node.j.unsigned_abs() <= most_j as u64
+            };
+            let [low, high] = clip.nodes;
+            let are_corners = clip.nodes.iter().all(is_node) && low.i < high.i && low.j < high.j;
+            that(are_corners, "clip.nodes", clip.nodes)?;
+        }
         bounds("coordinates.bounds", &self.coordinates.bounds(), [MAX_MEASURE_M; 2])?;
         that(POINT_SCALES.contains(&self.point_scale), "point_scale", self.point_scale)?;
         let scale = &self.scale;
@@ -100,6 +112,10 @@ impl Manifest {
         if let Some([low_m, high_m]) = settings.height_range_m {
             all_measures("settings.height_range_m", &[low_m, high_m])?;
             that(low_m <= high_m, "settings.height_range_m", [low_m, high_m])?;
+        }
+        if let Some(bounds_deg) = settings.bounds_deg {
+            let are_degrees = bounds_deg.iter().all(|deg| deg.abs() <= 360.0);
+            that(are_degrees, "settings.bounds_deg", bounds_deg)?;
         }
         let cells = &settings.class_max_cell_m;
         that(cells.len() <= CLASSES, "the number of settings.class_max_cell_m", cells.len())?;

@@ -1,4 +1,4 @@
-use corniche_geom::{Bounds, Cell, CoordinateTable, Frame};
+use corniche_geom::{Bounds, Cell, CoordinateTable, Frame, NodeIndex};
 use serde::{Deserialize, Serialize};
 
 use crate::manifest::counts::{Counts, GrowthRow};
@@ -32,6 +32,9 @@ pub struct Manifest {
     pub data_bounds: Bounds,
     /// The same in WGS84 degrees.
     pub wgs84_bounds: Bounds,
+    /// The part of the elevation files that the package is of (`--bounds`); left out where it is of all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clip: Option<ClipRecord>,
     /// How nodes relate to the DEM's samples, in words: "nodes are the DEM's samples", "bilinear from …".
     pub resampling: String,
     /// Whether nodes and the DEM's samples are the same points: the error bounds then hold at every sample.
@@ -54,6 +57,32 @@ pub struct Manifest {
     pub counts: Counts,
     /// What clipping costs, per level and class.
     pub growth: Vec<GrowthRow>,
+}
+
+/// The part of the elevation files that a package is of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ClipRecord {
+    /// The bounds that were asked for, rounded outwards to whole cells: south-western and north-eastern node. They may reach
+    /// beyond the data.
+    pub nodes: [NodeIndex; 2],
+    /// Rectangle of the nodes of all elevation files, working metres.
+    pub whole_data_bounds: Bounds,
+    /// The same in WGS84 degrees. The scales of the package, and PROJ's choice of an operation, are those for it.
+    pub whole_wgs84_bounds: Bounds,
+}
+
+impl Manifest {
+    /// The rectangle in degrees for which PROJ chooses its operations: that of all elevation files.
+    #[must_use]
+    pub fn area_deg(&self) -> Bounds {
+        self.clip.as_ref().map_or(self.wgs84_bounds, |clip| clip.whole_wgs84_bounds)
+    }
+
+    /// Rectangle of the nodes of all elevation files, working metres.
+    #[must_use]
+    pub fn whole_data_bounds(&self) -> Bounds {
+        self.clip.as_ref().map_or(self.data_bounds, |clip| clip.whole_data_bounds)
+    }
 }
 
 /// Working metres to a true metre, along x and along y.
@@ -121,6 +150,9 @@ pub struct SettingsRecord {
     pub cell_every: Option<u32>,
     /// `--scale-latitude`, if given.
     pub scale_latitude_deg: Option<f64>,
+    /// `--bounds`, if given: west, south, east and north in WGS84 degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bounds_deg: Option<[f64; 4]>,
     /// Name of the FRC table.
     pub frc_table: String,
     /// SHA-256 of the FRC table's text.

@@ -1,0 +1,232 @@
+//! The part of a DEM that is asked for: bounds in degrees to a rectangle of nodes, and to the samples that these need.
+//!
+//! Working CRS, cell, phase and scale are chosen from the whole DEM before; bounds only say which of its nodes are made.
+
+use corniche_geom::{Bounds, Cell, Frame, MAX_LATTICE_STEPS, NodeIndex};
+
+use crate::crs::full_turns::turns;
+use crate::crs::horizontal::Crs;
+use crate::crs::operation::Operation;
+use crate::crs::working::Working;
+use crate::mosaics::data_extent::{near_image, rim_and_inside, unwrap, with_bend};
+use crate::mosaics::mosaic::{Mosaic, Placed};
+use crate::mosaics::sample_rect::SampleRect;
+use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, bounds_of};
+use crate::{Dem, DemError};
+
+/// Bounds this close to a node, in cells, end at it: what is left of rounding in transformations.
+const ON_NODE: f64 = 1e-6;
+/// Samples around those under the nodes asked for, against rounding.
+const AROUND_SAMPLES: i64 = 2;
+
+/// The part of a DEM that a plan is for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clip {
+    /// The bounds that were asked for, rounded outwards to whole cells: south-western and north-eastern node. They may reach
+    /// beyond the data.
+    pub nodes: [NodeIndex; 2],
+    /// Rectangle of the nodes of the whole DEM, working metres.
+    pub whole_data_bounds: Bounds,
+    /// Rectangle around all files in WGS84 degrees. PROJ's operations and the scales are those for it.
+    pub whole_wgs84_bounds: Bounds,
+}
+
+/// Bounds in WGS84 degrees as a rectangle of nodes, rounded outwards.
+///
+/// In a projected CRS it is the rectangle around the bounds' image, which is bent.
+pub(crate) fn nodes_of(
+    bounds_deg: [f64; 4],
+    working: &Working,
+    area_deg: Bounds,
+    origin_m: [f64; 2],
+    cell: Cell,
+) -> Result<[NodeIndex; 2], DemError> {
+    let [west, south, east, north] = continuous(bounds_deg);
+    let mut points = rim_and_inside([west, north], [east, south]);
+    let operation = Operation::into_working(&Crs::wgs84()?, working, Some(area_deg));
+    operation.around(None).apply(&mut points)?;
+    if let Some(turn) = working.crs.turn {
+        // The whole rectangle lies where the data's middle is near.
+        let turn_m = turn * working.metres_per_unit[0];
+        unwrap(&mut points, turn_m);
+        let middle_m = working.middle * working.metres_per_unit[0];
+        let away = turns(with_bend(&points).center()[0] - middle_m, turn_m);
+        points.iter_mut().for_each(|point| point[0] -= away * turn_m);
+    }
+    let bounds_m = with_bend(&points);
+    if bounds_m.is_empty() {
+        let crs = working.crs.label.clone();
+        return Err(DemError::BoundsOutsideCrs { bounds: bounds_text(bounds_deg), crs });
+    }
+    // The limit keeps the conversion to integers within what a frame can have.
+    let cells = |metres: f64, axis: usize| {
+        ((metres - origin_m[axis]) / cell.to_array()[axis]).clamp(-1e15, 1e15)
+    };
+    let (low, high) =
+        (|at: f64| (at + ON_NODE).floor() as i64, |at: f64| (at - ON_NODE).ceil() as i64);
+    Ok([
+        NodeIndex { i: low(cells(bounds_m.min_x, 0)), j: low(cells(bounds_m.min_y, 1)) },
+        NodeIndex { i: high(cells(bounds_m.max_x, 0)), j: high(cells(bounds_m.max_y, 1)) },
+    ])
+}
+
+/// The same nodes, as far as they are on the lattice.
+pub(crate) fn on_lattice(frame: &Frame, nodes: [NodeIndex; 2]) -> [NodeIndex; 2] {
+    let [most_i, most_j] =
+        frame.node_steps(frame.max_level()).map(|steps| MAX_LATTICE_STEPS / steps);
+    nodes.map(|NodeIndex { i, j }| NodeIndex {
+        i: i.clamp(-most_i, most_i),
+        j: j.clamp(-most_j, most_j),
+    })
+}
+
+/// West, south, east and north, the east beyond 180° where the bounds cross it.
+fn continuous([west, south, east, north]: [f64; 4]) -> [f64; 4] {
+    [west, south, if west > east { east + 360.0 } else { east }, north]
+}
+
+/// Bounds as they are given on the command line.
+pub(crate) fn bounds_text(bounds_deg: [f64; 4]) -> String {
+    bounds_deg.map(|deg| deg.to_string()).join(",")
+}
+
+/// The nodes of `whole` that are asked for. Fails where that is no cell, or where the bounds lie on both ends of data that go
+/// around the earth.
+pub(crate) fn cut(
+    bounds_deg: [f64; 4],
+    asked: [NodeIndex; 2],
+    whole: [NodeIndex; 2],
+    around_the_earth: Option<i64>,
+    dem: &Dem,
+) -> Result<[NodeIndex; 2], DemError> {
+    let common = common(asked, whole);
+    let has_cell = |[low, high]: [NodeIndex; 2]| low.i < high.i && low.j < high.j;
+    let text = || bounds_text(bounds_deg);
+    if let Some(columns) = around_the_earth {
+        let moved = |by: i64| asked.map(|node| NodeIndex { i: node.i + by, j: node.j });
+        // One column of cells at both ends comes of rounding.
+        let is_at_other_end = |by: i64| {
+            let [low, high] = self::common(moved(by), whole);
+            high.i - low.i > 1 && low.j < high.j
+        };
+        if has_cell(common) && (is_at_other_end(columns) || is_at_other_end(-columns)) {
+            return Err(DemError::BoundsAtBothEnds { bounds: text() });
+        }
+    }
+    if has_cell(common) {
+        return Ok(common);
+    }
+    let [west, south, east, north] = dem.wgs84_bounds.to_array();
+    Err(DemError::BoundsBesideData { bounds: text(), west, south, east, north })
+}
+
+/// The rectangle of nodes that two have in common; its corners change places where there is none.
+fn common(a: [NodeIndex; 2], b: [NodeIndex; 2]) -> [NodeIndex; 2] {
+    [
+        NodeIndex { i: a[0].i.max(b[0].i), j: a[0].j.max(b[0].j) },
+        NodeIndex { i: a[1].i.min(b[1].i), j: a[1].j.min(b[1].j) },
+    ]
+}
+
+/// The rectangle in WGS84 degrees around a rectangle of nodes; past the antimeridian longitudes go on beyond ±180, as those of
+/// the whole DEM do.
+pub(crate) fn wgs84_bounds(
+    data: Bounds,
+    working: &Working,
+    whole_deg: Bounds,
+) -> Result<Bounds, DemError> {
+    let own = rim_and_inside([data.min_x, data.max_y], [data.max_x, data.min_y]);
+    let mut points = own.clone();
+    Operation::out_of_working(working, &Crs::wgs84()?, Some(whole_deg)).apply(&mut points)?;
+    if let Some(turn) = working.crs.turn {
+        let to_degrees = 360.0 / turn / working.metres_per_unit[0];
+        for (point, own) in points.iter_mut().zip(&own) {
+            point[0] = near_image(point[0], own[0] * to_degrees, 360.0);
+        }
+    } else {
+        unwrap(&mut points, 360.0);
+    }
+    let mut bounds = Bounds::EMPTY;
+    for &point in points.iter().filter(|point| point[0].is_finite() && point[1].is_finite()) {
+        bounds.include(point);
+    }
+    if bounds.is_empty() {
+        return Err(DemError::OutsideCrs { crs: working.crs.label.clone() });
+    }
+    let away = 360.0 * turns(bounds.center()[0] - whole_deg.center()[0], 360.0);
+    Ok(Bounds { min_x: bounds.min_x - away, max_x: bounds.max_x - away, ..bounds })
+}
+
+impl GridPlan {
+    /// The rectangle in degrees for which PROJ's operations are chosen: that around all files, also where the plan is for a part
+    /// of them.
+    #[must_use]
+    pub fn area_deg(&self) -> Bounds {
+        self.clip.map_or(self.wgs84_bounds, |clip| clip.whole_wgs84_bounds)
+    }
+}
+
+impl Dem {
+    /// The samples of a mosaic that the plan's nodes depend on, voids to fill included: all of them without bounds.
+    pub(crate) fn needed_samples(
+        &self,
+        plan: &GridPlan,
+        mosaic: &Mosaic,
+        role: &MosaicRole,
+    ) -> Result<SampleRect, DemError> {
+        if plan.clip.is_none() {
+            return Ok(mosaic.reachable());
+        }
+        let reach = i64::from(plan.fill_voids) + 1;
+        let (low, high) = (plan.south_west, plan.north_east);
+        let nodes = [
+            NodeIndex { i: low.i - reach, j: low.j - reach },
+            NodeIndex { i: high.i + reach, j: high.j + reach },
+        ];
+        let (min, max) = match &role.method {
+            Method::Aligned(alignment) => {
+                let (a, b) = (alignment.sample(nodes[0]), alignment.sample(nodes[1]));
+                ([0, 1].map(|axis| a[axis].min(b[axis])), [0, 1].map(|axis| a[axis].max(b[axis])))
+            }
+            Method::Resampled(positions, kernel) => {
+                let Bounds { min_x, min_y, max_x, max_y } = bounds_of(&plan.frame, nodes);
+                let mut points = rim_and_inside([min_x, max_y], [max_x, min_y]);
+                positions.samples_of(&mut points)?;
+                let bounds = with_bend(&points);
+                if bounds.is_empty() {
+                    return Ok(mosaic.reachable());
+                }
+                let at = |value: f64| value.clamp(-1e15, 1e15) as i64;
+                let reach = kernel.reach();
+                (
+                    [at(bounds.min_x.floor()) - reach[0], at(bounds.min_y.floor()) - reach[1]],
+                    [at(bounds.max_x.ceil()) + reach[0], at(bounds.max_y.ceil()) + reach[1]],
+                )
+            }
+        };
+        let rect = SampleRect {
+            min: min.map(|index| index - AROUND_SAMPLES),
+            max: max.map(|index| index + AROUND_SAMPLES + 1),
+        };
+        Ok(rect.intersection(&mosaic.reachable()))
+    }
+}
+
+/// The parts of a file, in its own pixels, that lie in a rectangle of its mosaic's samples.
+pub(crate) fn parts_of_file(
+    mosaic: &Mosaic,
+    file: &Placed,
+    needed: &SampleRect,
+) -> Vec<SampleRect> {
+    mosaic
+        .images(file, needed)
+        .into_iter()
+        .map(|image| {
+            let part = needed.intersection(&image);
+            SampleRect {
+                min: [0, 1].map(|axis| part.min[axis] - image.min[axis]),
+                max: [0, 1].map(|axis| part.max[axis] - image.min[axis]),
+            }
+        })
+        .collect()
+}
