@@ -14,6 +14,14 @@ pub(crate) struct MadeWay {
     places: Option<Vec<(i64, i64)>>,
 }
 
+impl MadeWay {
+    /// A way without nodes.
+    pub(crate) fn bare(id: i64, highway: &'static str, version: i64) -> Self {
+        let tags = vec![("highway", highway)];
+        Self { id, tags, node_ids: Vec::new(), version, places: None }
+    }
+}
+
 pub(crate) fn made_way() -> impl Strategy<Value = MadeWay> {
     let highways = vec!["track", "residential", "motorway_link", "footway", "goat_trail"];
     let more = prop::sample::subsequence(
