@@ -24,7 +24,7 @@ use crate::{
 pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
     let settings = VerifySettings {
         package: args.package.clone(),
-        dem: args.dem.iter().cloned().map(input_name).collect::<Result<_, _>>()?,
+        dem: corniche_pipeline::elevation_names(&args.dem)?,
         osm: extract(args)?,
         threads: threads(args.threads),
     };
