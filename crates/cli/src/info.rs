@@ -273,7 +273,14 @@ fn roads(manifest: &Manifest, digits: Digits) -> String {
         );
     }
     for (reason, number) in &counts.highways_left_out {
-        let _ = writeln!(text, "  not taken, {}: {}", plain(reason), digits.count(*number));
+        let of_reason = || counts.left_out.iter().filter(|left_out| &left_out.reason == reason);
+        let length_um: u64 = of_reason().map(|left_out| left_out.length_um).sum();
+        let whole = if length_um > 0 { format!(", {}", length(length_um)) } else { String::new() };
+        let _ = writeln!(text, "  not taken, {}: {}{whole}", plain(reason), digits.count(*number));
+        for left_out in of_reason() {
+            let (ways, length) = (digits.count(left_out.ways), length(left_out.length_um));
+            let _ = writeln!(text, "    highway={}: {ways}, {length}", plain(&left_out.highway));
+        }
     }
     for (name, number) in &counts.defects {
         let _ = writeln!(text, "defect: {}: {}", plain(name), digits.count(*number));

@@ -51,7 +51,7 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     let osm = args.osm.map(input_name).transpose()?;
     let bounds_deg = bounds_deg(terrain.bounds, osm.as_ref())?.or(base.terrain.plan.bounds_deg);
     let plan = PlanSettings {
-        dem: args.dem.into_iter().map(input_name).collect::<Result<_, _>>()?,
+        dem: corniche_pipeline::elevation_names(&args.dem)?,
         terrain_of: args.terrain_of,
         osm,
         attribution: attribution.unwrap_or(base.attribution),
@@ -149,6 +149,12 @@ fn road_settings(options: RoadOptions) -> Result<RoadSettings, Failure> {
         None => ClassFilter::usual(),
     };
     let table = presets::frc_table(options.frc_table.as_deref().unwrap_or("default"))?;
+    let table = match &options.classes {
+        Some(classes) => table
+            .with_classes(classes.numbers())
+            .map_err(|error| presets::refuse("--classes", &error))?,
+        None => table,
+    };
     Ok(RoadSettings { table, filter, simplify_cells })
 }
 

@@ -27,7 +27,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
     let osm = extract(args, &package)?;
     let settings = VerifySettings {
         package,
-        dem: dem.into_iter().map(input_name).collect::<Result<_, _>>()?,
+        dem: corniche_pipeline::elevation_names(&dem)?,
         osm,
         threads: threads(args.threads),
     };

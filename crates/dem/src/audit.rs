@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use crate::file_names::first_names;
 use crate::mosaics::open_files::OpenFiles;
 use crate::mosaics::sample_rect::SampleRect;
-use crate::plan::clip::parts_of_file;
+use crate::plan::clip::{needed_samples, parts_of_file};
 use crate::{Dem, DemError, GridPlan};
 
 /// What the surface of the earth has: Challenger Deep lies some 10 935 m below the sea, Everest 8 849 m above it.
@@ -103,7 +103,7 @@ impl Dem {
     pub fn audit_blocks(&self, plan: &GridPlan) -> Result<Vec<AuditBlock>, DemError> {
         let mut needed: Vec<Vec<SampleRect>> = vec![Vec::new(); self.sources.len()];
         for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
-            let rect = self.needed_samples(plan, mosaic, role)?;
+            let rect = needed_samples(plan, mosaic, role)?;
             for file in &mosaic.files {
                 needed[file.index] = parts_of_file(mosaic, file, &rect);
             }

@@ -1,5 +1,6 @@
 //! One elevation file: how it is opened, what it says about itself, and its samples as metres.
 
+pub(crate) mod named_files;
 pub(crate) mod open_options;
 pub(crate) mod source;
 

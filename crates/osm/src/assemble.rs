@@ -2,20 +2,19 @@
 
 use std::ops::Range;
 
-use corniche_geom::{LatticePoint, Polyline};
+use corniche_geom::{LatticePoint, Polyline, wgs84};
 use corniche_roads::{FunctionalRoadClass, Road, RoadAttributes};
 
 use crate::{
-    Defect, ReadOsmError, location, read_request::Place, records::Stop,
-    self_crossings::self_crossings,
+    Defect, LeftOutReason, ReadOsmError, location, read_request::Place, records::Stop,
+    self_crossings::self_crossings, way_bytes::WayKind,
 };
 
-/// A way that is a road, without its nodes.
+/// A way without its nodes.
 #[derive(Debug)]
-pub(crate) struct RoadWay {
+pub(crate) struct PlainWay {
     pub(crate) way_id: i64,
-    pub(crate) class: FunctionalRoadClass,
-    pub(crate) attributes: RoadAttributes,
+    pub(crate) kind: WayKind,
     /// Which of the stops that it was read with are its own.
     pub(crate) stops: Range<usize>,
 }
@@ -25,23 +24,52 @@ pub(crate) struct RoadWay {
 pub(crate) struct Assembled {
     pub(crate) roads: Vec<Road>,
     pub(crate) defects: Vec<Defect>,
+    /// Of a way that is left out: why, its `highway` value, its length in micrometres.
+    pub(crate) left_out: Option<(LeftOutReason, String, u64)>,
 }
 
 /// Makes roads of some ways, in their order. All their points are placed in one call.
 pub(crate) fn assemble(
-    some: &[RoadWay],
+    some: &[PlainWay],
     all_stops: &[Stop],
     place: &Place<'_>,
 ) -> Result<Vec<Assembled>, ReadOsmError> {
-    let stops_of = |way: &RoadWay| &all_stops[way.stops.clone()];
-    let stops = some.iter().flat_map(stops_of);
+    let stops_of = |way: &PlainWay| &all_stops[way.stops.clone()];
+    let is_road = |way: &&PlainWay| matches!(way.kind, WayKind::Road(..));
+    let stops = some.iter().filter(is_road).flat_map(stops_of);
     let positions_deg: Vec<_> = stops.filter_map(|stop| location::degrees(stop.location)).collect();
     let points = place(&positions_deg);
     if points.len() != positions_deg.len() {
         return Err(ReadOsmError::Place { expected: positions_deg.len(), got: points.len() });
     }
     let mut points = points.into_iter();
-    Ok(some.iter().map(|way| assemble_way(way, stops_of(way), &mut points)).collect())
+    let assemble = |way: &PlainWay| match &way.kind {
+        WayKind::Road(class, attributes) => {
+            let what = What { way_id: way.way_id, class: *class, attributes };
+            assemble_way(&what, stops_of(way), &mut points)
+        }
+        WayKind::LeftOut(reason, highway) => {
+            let left_out = Some((*reason, highway.clone(), length_um(stops_of(way))));
+            Assembled { left_out, ..Assembled::default() }
+        }
+    };
+    Ok(some.iter().map(assemble).collect())
+}
+
+/// The true length of a way, micrometres, segment by segment as those of roads; without those at a node that has no place.
+fn length_um(stops: &[Stop]) -> u64 {
+    const UM: f64 = 1e6;
+    let places = stops.windows(2).filter_map(|pair| {
+        Some([location::degrees(pair[0].location)?, location::degrees(pair[1].location)?])
+    });
+    places.map(|[from, to]| (wgs84::short_distance_m(from, to) * UM).round() as u64).sum()
+}
+
+/// What the roads of a way are.
+struct What<'a> {
+    way_id: i64,
+    class: FunctionalRoadClass,
+    attributes: &'a RoadAttributes,
 }
 
 /// Cuts the way where points are missing, merges equal neighbours, and makes a road of each piece.
@@ -51,7 +79,7 @@ pub(crate) fn assemble(
 ///  roads   1 ─ 2       4 ─ 5 ───── 6
 /// ```
 fn assemble_way(
-    way: &RoadWay,
+    way: &What<'_>,
     stops: &[Stop],
     points: &mut impl Iterator<Item = Option<LatticePoint>>,
 ) -> Assembled {
@@ -110,7 +138,7 @@ fn assemble_way(
 }
 
 /// One road of a piece of a way; `None` when the piece has less than two points.
-fn road(way: &RoadWay, piece: Vec<(LatticePoint, bool)>) -> Option<Road> {
+fn road(way: &What<'_>, piece: Vec<(LatticePoint, bool)>) -> Option<Road> {
     let last = piece.len().checked_sub(1)?;
     let is_kept = |(index, is_fixed): (usize, bool)| {
         (is_fixed || index == 0 || index == last).then_some(index as u32)

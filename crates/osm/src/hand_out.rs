@@ -5,11 +5,11 @@ use rayon::prelude::*;
 
 use crate::{
     ReadOsmError,
-    assemble::{Assembled, RoadWay, assemble},
+    assemble::{Assembled, PlainWay, assemble},
     reading::{Reading, Step},
     records::Stop,
     spool::{SpoolReader, damaged},
-    way_bytes::take_road,
+    way_bytes::take_way,
     wire::{varint, zigzag},
 };
 
@@ -52,7 +52,7 @@ pub(crate) fn hand_out(
 /// Some ways, and the places of all their nodes.
 #[derive(Default)]
 struct Batch {
-    ways: Vec<RoadWay>,
+    ways: Vec<PlainWay>,
     stops: Vec<Stop>,
 }
 
@@ -71,16 +71,16 @@ impl Batch {
             let way = ways.next(|bytes| {
                 let way_id = zigzag(varint(bytes).ok()?);
                 let nodes = varint(bytes).ok()?;
-                Some((way_id, nodes, take_road(bytes)?))
+                Some((way_id, nodes, take_way(bytes)?))
             });
-            let Some((way_id, nodes, (class, attributes))) = way.map_err(failed)? else { break };
+            let Some((way_id, nodes, kind)) = way.map_err(failed)? else { break };
             let first = batch.stops.len();
             for _ in 0..nodes {
                 let stop = stops.next().ok_or_else(damaged).map_err(failed)?;
                 batch.stops.push(stop.map_err(failed)?);
             }
             let stops = first..batch.stops.len();
-            batch.ways.push(RoadWay { way_id, class, attributes, stops });
+            batch.ways.push(PlainWay { way_id, kind, stops });
         }
         Ok(batch)
     }

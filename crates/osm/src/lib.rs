@@ -66,4 +66,4 @@ pub use read_request::{OnProgress, Place, ReadRequest};
 pub use read_roads::{read_roads, read_roads_from};
 pub use share::{Share, ShareError};
 pub use shares::{Kept, KeptKinds, keep_nodes, keep_ways, read_kept_roads};
-pub use summary::{ATTRIBUTION, ExtractSummary, HighwayCount, LeftOut};
+pub use summary::{ATTRIBUTION, ExtractSummary, HighwayCount, LeftOut, LeftOutReason, LeftOutWays};

@@ -79,9 +79,12 @@ pub(crate) fn locate_nodes<'a>(
         let share = ShareOfNodes { before: done, own: chunk.mentions_count, all: mentions_count };
         source.read(reading, &chunk.ids, &share, &mut places)?;
         chunk.take_located(reading, &mut located, &mut places)?;
-        nodes.needed += chunk.ids.ids().len() as u64;
-        nodes.missing += places.missing() as u64;
-        for number in places.conflicts() {
+        // What only ways name that are left out is needed for their lengths alone.
+        let is_needed = |&number: &usize| chunk.named[number] != Named::Never;
+        let needed = (0..chunk.named.len()).filter(is_needed);
+        nodes.needed += needed.clone().count() as u64;
+        nodes.missing += needed.filter(|&number| places.is_missing(number)).count() as u64;
+        for number in places.conflicts().filter(is_needed) {
             on_defect(Defect::ConflictingNode { node_id: chunk.ids.ids()[number] });
         }
         done += chunk.mentions_count;
@@ -155,11 +158,19 @@ pub(crate) fn read_places<R: Read + Seek>(
     Ok(all_bytes)
 }
 
-/// Some of the nodes that roads name, with neighbouring ids.
+/// How often roads name a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Named {
+    Never,
+    Once,
+    Often,
+}
+
+/// Some of the nodes that ways name, with neighbouring ids.
 struct Chunk<'a> {
     ids: NodeIds,
-    /// Named by two roads, or twice by one: a junction.
-    is_shared: Vec<bool>,
+    /// How often roads name it: not at all, once, or more often, by two roads or twice by one: a junction.
+    named: Vec<Named>,
     /// Numbers of the mentions, node by node.
     ///
     /// ```text
@@ -181,7 +192,7 @@ impl<'a> Chunk<'a> {
         let most_ids = (shares.ids / BYTES_PER_NODE).max(1).min(most) as usize;
         // Of this size at once: lists that grow by doubling would take up to three times as much.
         let mut ids: Vec<i64> = Vec::with_capacity(most_ids);
-        let mut is_shared = Vec::with_capacity(most_ids);
+        let mut named = Vec::with_capacity(most_ids);
         let mut visits = Spool::new(reading.request.scratch, shares.visits);
         let mut mentions_count = 0;
         while let Some(mention) = mentions.peek().map_err(failed)? {
@@ -191,11 +202,16 @@ impl<'a> Chunk<'a> {
                     break;
                 }
                 ids.push(mention.node_id);
-                is_shared.push(false);
-            } else if !mention.is_repeat()
-                && let Some(is_shared) = is_shared.last_mut()
+                named.push(Named::Never);
+            }
+            if !mention.is_left_out()
+                && let Some(named) = named.last_mut()
             {
-                *is_shared = true;
+                *named = match *named {
+                    Named::Never => Named::Once,
+                    Named::Once if mention.is_repeat() => Named::Once,
+                    Named::Once | Named::Often => Named::Often,
+                };
             }
             let visit = (mention.number() << 1) | u64::from(is_first);
             visits.push(|bytes| push_varint(bytes, visit)).map_err(failed)?;
@@ -203,7 +219,7 @@ impl<'a> Chunk<'a> {
             reading.check_stop_at(mentions_count)?;
             mentions_count += 1;
         }
-        let chunk = Self { ids: NodeIds::new(ids), is_shared, visits, mentions_count };
+        let chunk = Self { ids: NodeIds::new(ids), named, visits, mentions_count };
         Ok((mentions_count > 0).then_some(chunk))
     }
 
@@ -245,9 +261,10 @@ impl<'a> Chunk<'a> {
             let visit = visits.next(|bytes| varint(bytes).ok()).map_err(failed)?;
             let visit = visit.ok_or_else(damaged).map_err(failed)?;
             nodes += (visit & 1) as usize;
-            let node = nodes.checked_sub(1).filter(|&node| node < self.is_shared.len());
+            let node = nodes.checked_sub(1).filter(|&node| node < self.named.len());
             let node = node.ok_or_else(damaged).map_err(failed)?;
-            let stop = Stop::new(visit >> 1, self.is_shared[node], places.location(node));
+            let stop =
+                Stop::new(visit >> 1, self.named[node] == Named::Often, places.location(node));
             stops.push(stop).map_err(failed)?;
         }
         Ok(())

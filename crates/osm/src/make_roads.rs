@@ -43,6 +43,12 @@ pub(crate) fn make_roads(
     summary.nodes_missing = nodes.missing;
     let stops = nodes.stops.finish().map_err(failed)?;
     hand_out(reading, ways.read(), ways_count, stops, &mut |assembled| {
+        if let Some((reason, highway, length_um)) = assembled.left_out {
+            let own = summary.left_out_ways.entry((reason, highway)).or_default();
+            own.ways += 1;
+            own.length_um += length_um;
+            return;
+        }
         let roads = assembled.roads.len() as u64;
         summary.roads += roads;
         *(if roads > 0 { &mut summary.road_ways } else { &mut summary.left_out.without_line }) += 1;

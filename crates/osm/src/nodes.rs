@@ -95,9 +95,9 @@ impl NodePlaces {
         self.locations[number]
     }
 
-    /// How many nodes have no place.
-    pub(crate) fn missing(&self) -> usize {
-        self.locations.iter().filter(|&&location| location == MISSING).count()
+    /// Whether a node has no place.
+    pub(crate) fn is_missing(&self, number: usize) -> bool {
+        self.locations[number] == MISSING
     }
 
     /// Numbers of nodes with several places.

@@ -1,4 +1,4 @@
-//! Puts the road ways in order of id and numbers their nodes through.
+//! Puts the ways in order of id and numbers their nodes through.
 
 use std::io;
 
@@ -10,7 +10,7 @@ use crate::{
     records::{Mention, WayRecord},
     spool::Spool,
     versions::{known_version, two_versions},
-    way_bytes::take_node_ids,
+    way_bytes::{is_left_out, take_node_ids},
     wire::{push_varint, to_zigzag},
 };
 
@@ -25,7 +25,7 @@ pub(crate) struct NumberedNodes<'a> {
     pub(crate) duplicates: u64,
 }
 
-/// Of ways with one id the first in the file stays.
+/// Of roads with one id the first in the file stays. Ways that are left out stay all.
 ///
 /// Fails if a way is there in two versions.
 pub(crate) fn number_nodes<'a>(
@@ -46,6 +46,10 @@ pub(crate) fn number_nodes<'a>(
     for (count, way) in (0..).zip(ways) {
         reading.check_stop_at(count)?;
         let way = way.map_err(failed)?;
+        if way.is_left_out().map_err(failed)? {
+            numbered.add(&way).map_err(failed)?;
+            continue;
+        }
         let version = known_version(way.version);
         match &mut last {
             Some((way_id, first)) if *way_id == way.way_id => {
@@ -68,14 +72,23 @@ pub(crate) fn number_nodes<'a>(
     Ok(numbered)
 }
 
+impl WayRecord {
+    fn is_left_out(&self) -> io::Result<bool> {
+        let mut bytes = &*self.bytes;
+        take_node_ids(&mut bytes, |_| Ok(()))?;
+        Ok(is_left_out(bytes))
+    }
+}
+
 impl NumberedNodes<'_> {
     fn add(&mut self, way: &WayRecord) -> io::Result<()> {
         let Self { ways, mentions, ways_count, mentions_count, .. } = self;
         let mut road = &*way.bytes;
         let mut previous = None;
+        let is_left_out = way.is_left_out()?;
         let nodes = take_node_ids(&mut road, |id| {
             let is_repeat = previous.replace(id) == Some(id);
-            mentions.push(Mention::new(id, *mentions_count, is_repeat))?;
+            mentions.push(Mention::new(id, *mentions_count, is_left_out, is_repeat))?;
             *mentions_count += 1;
             Ok(())
         })?;

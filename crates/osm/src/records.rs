@@ -55,19 +55,25 @@ impl SortRecord for WayRecord {
 pub(crate) struct Mention {
     pub(crate) node_id: i64,
     /// ```text
-    ///  │ number: 63 bits │ 1 if the node before it in the way is the same │
+    ///  │ number: 62 bits │ 1 if the way is left out │ 1 if the node before it in the way is the same │
     /// ```
     visit: u64,
 }
 
 impl Mention {
     /// `is_repeat`: the way names the same node directly before.
-    pub(crate) fn new(node_id: i64, number: u64, is_repeat: bool) -> Self {
-        Self { node_id, visit: (number << 1) | u64::from(is_repeat) }
+    pub(crate) fn new(node_id: i64, number: u64, is_left_out: bool, is_repeat: bool) -> Self {
+        let marks = (u64::from(is_left_out) << 1) | u64::from(is_repeat);
+        Self { node_id, visit: (number << 2) | marks }
     }
 
     pub(crate) fn number(&self) -> u64 {
-        self.visit >> 1
+        self.visit >> 2
+    }
+
+    /// A way that is left out makes no junction.
+    pub(crate) fn is_left_out(&self) -> bool {
+        self.visit & 2 == 2
     }
 
     /// A node that is repeated directly counts as one visit, not two.

@@ -29,15 +29,15 @@ proptest! {
         mark: bool,
     ) {
         check(&WayRecord { way_id: id, order, version, bytes: bytes.into() });
-        check(&Mention::new(id, order >> 1, mark));
+        check(&Mention::new(id, order >> 2, !mark, mark));
         check(&Located { node_id: id, order, location });
         check(&Stop::new(order >> 1, mark, location));
     }
 
     #[test]
-    fn a_mark_does_not_change_the_number(number in 0..1_u64 << 63, mark: bool) {
-        let mention = Mention::new(5, number, mark);
-        prop_assert_eq!((mention.number(), mention.is_repeat()), (number, mark));
+    fn a_mark_does_not_change_the_number(number in 0..1_u64 << 62, mark: bool, other: bool) {
+        let mention = Mention::new(5, number, other, mark);
+        prop_assert_eq!((mention.number(), mention.is_left_out(), mention.is_repeat()), (number, other, mark));
         let stop = Stop::new(number, mark, [0; 2]);
         prop_assert_eq!((stop.visit >> 1, stop.is_shared()), (number, mark));
     }

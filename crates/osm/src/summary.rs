@@ -32,6 +32,8 @@ pub struct ExtractSummary {
     pub roads: u64,
     /// Why the other ways with a `highway` tag did not become roads.
     pub left_out: LeftOut,
+    /// Ways that the table leaves out: how many, and how long they are, by reason and `highway` value.
+    pub left_out_ways: BTreeMap<(LeftOutReason, String), LeftOutWays>,
     /// Per `highway` value that the table lists: its class and how many ways have it.
     pub highways: BTreeMap<String, HighwayCount>,
     /// Per `highway` value that the table does not list: how many ways have it.
@@ -73,6 +75,44 @@ pub struct LeftOut {
     pub without_line: u64,
 }
 
+/// Why a table leaves a way out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum LeftOutReason {
+    /// Its class is off.
+    ClassOff,
+    /// The table lists its value as no road.
+    Listed,
+    /// The table does not know its value.
+    Unknown,
+    /// It is the outline of an area.
+    Area,
+}
+
+impl LeftOutReason {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::ClassOff, Self::Listed, Self::Unknown, Self::Area];
+
+    /// Why, in words.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::ClassOff => "class is off",
+            Self::Listed => "listed as no road",
+            Self::Unknown => "value in no class",
+            Self::Area => "an area",
+        }
+    }
+}
+
+/// Ways that are left out for one reason, with one `highway` value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LeftOutWays {
+    /// How many ways.
+    pub ways: u64,
+    /// Their true length in plan, micrometres; of areas that of the outline. Stretches beside missing nodes have none.
+    pub length_um: u64,
+}
+
 impl LeftOut {
     /// All reasons together.
     #[must_use]
@@ -92,6 +132,17 @@ impl ExtractSummary {
         assert!(self.road_ways <= self.roads);
         assert!(self.nodes_missing <= self.nodes_needed);
         assert_eq!(self.left_out.unknown, self.unknown_highways.values().sum::<u64>());
+        let of_reason = |reason| {
+            let ways = self.left_out_ways.iter().filter(|((own, _), _)| *own == reason);
+            ways.map(|(_, found)| found.ways).sum::<u64>()
+        };
+        let LeftOut { listed, class_off, unknown, area, .. } = self.left_out;
+        let wanted = [class_off, listed, unknown, area];
+        assert_eq!(
+            LeftOutReason::ALL.map(of_reason),
+            wanted,
+            "a way was left out without a length"
+        );
         let known: u64 = self.highways.values().map(|highway| highway.ways).sum();
         assert_eq!(self.highway_ways, known + self.left_out.unknown);
     }

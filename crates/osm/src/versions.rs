@@ -78,9 +78,11 @@ impl Versions {
     /// Adds a later block.
     pub(crate) fn append(&mut self, later: Self) {
         for (kind, run) in later.runs.into_iter().enumerate() {
-            for object in [run.first, run.last].into_iter().flatten() {
-                self.follow(kind, object);
+            if let Some(first) = run.first {
+                self.follow(kind, first);
             }
+            // What lies between its first and its last object was compared when it was looked through.
+            self.runs[kind].last = run.last.or(self.runs[kind].last);
         }
         if self.history.is_none() {
             self.history = later.history;

@@ -3,6 +3,11 @@
 //! ```text
 //!  │ how many nodes │ their ids, as differences │ class form structure oneway layer │ name │ ref │ surface │
 //! ```
+//! A way that is left out has a mark in place of the class, the reason, and its `highway` value:
+//!
+//! ```text
+//!  │ how many nodes │ their ids, as differences │ 255 reason │ highway value │
+//! ```
 //! Counts and lengths are varints, differences zigzag varints, the five others a byte each.
 
 use std::io;
@@ -10,6 +15,7 @@ use std::io;
 use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
 
 use crate::{
+    LeftOutReason,
     spool::damaged,
     wire::{push_varint, to_zigzag, varint, zigzag},
 };
@@ -24,12 +30,7 @@ pub(crate) fn way_bytes(
     let texts = [name, reference, surface];
     let text_bytes: usize = texts.iter().map(|text| text.len() + 2).sum();
     let mut bytes = Vec::with_capacity(2 * node_ids.len() + text_bytes + 16);
-    push_varint(&mut bytes, node_ids.len() as u64);
-    let mut last = 0_i64;
-    for &id in node_ids {
-        push_varint(&mut bytes, to_zigzag(id.wrapping_sub(last)));
-        last = id;
-    }
+    push_node_ids(&mut bytes, node_ids);
     bytes.extend([class.number(), *form as u8, *structure as u8, *oneway as u8]);
     bytes.push(layer.cast_unsigned());
     for text in texts {
@@ -37,6 +38,41 @@ pub(crate) fn way_bytes(
         bytes.extend(text.as_bytes());
     }
     bytes.into()
+}
+
+/// In place of a class: the way is left out.
+const LEFT_OUT: u8 = u8::MAX;
+
+/// What a way is.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum WayKind {
+    Road(FunctionalRoadClass, RoadAttributes),
+    /// Why, and its `highway` value.
+    LeftOut(LeftOutReason, String),
+}
+
+/// Writes the nodes of a way that is left out, and why.
+pub(crate) fn left_out_bytes(node_ids: &[i64], reason: LeftOutReason, highway: &str) -> Box<[u8]> {
+    let mut bytes = Vec::with_capacity(2 * node_ids.len() + highway.len() + 16);
+    push_node_ids(&mut bytes, node_ids);
+    bytes.extend([LEFT_OUT, reason as u8]);
+    push_varint(&mut bytes, highway.len() as u64);
+    bytes.extend(highway.as_bytes());
+    bytes.into()
+}
+
+fn push_node_ids(bytes: &mut Vec<u8>, node_ids: &[i64]) {
+    push_varint(bytes, node_ids.len() as u64);
+    let mut last = 0_i64;
+    for &id in node_ids {
+        push_varint(bytes, to_zigzag(id.wrapping_sub(last)));
+        last = id;
+    }
+}
+
+/// Whether what follows the nodes is that of a way that is left out.
+pub(crate) fn is_left_out(after_nodes: &[u8]) -> bool {
+    after_nodes.first() == Some(&LEFT_OUT)
 }
 
 /// Takes the ids of a road's nodes from the front of its bytes and hands each to `take`; returns how many there are.
@@ -55,7 +91,13 @@ pub(crate) fn take_node_ids(
 }
 
 /// Takes what follows the nodes. `None` if the bytes are damaged.
-pub(crate) fn take_road(bytes: &mut &[u8]) -> Option<(FunctionalRoadClass, RoadAttributes)> {
+pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
+    if is_left_out(bytes) {
+        let (&[_, reason], rest) = bytes.split_first_chunk::<2>()?;
+        *bytes = rest;
+        let reason = *LeftOutReason::ALL.get(usize::from(reason))?;
+        return Some(WayKind::LeftOut(reason, take_text(bytes)?));
+    }
     let (&[class, form, structure, oneway, layer], rest) = bytes.split_first_chunk::<5>()?;
     *bytes = rest;
     let road = RoadAttributes {
@@ -67,7 +109,7 @@ pub(crate) fn take_road(bytes: &mut &[u8]) -> Option<(FunctionalRoadClass, RoadA
         reference: take_text(bytes)?,
         surface: take_text(bytes)?,
     };
-    Some((FunctionalRoadClass::new(class)?, road))
+    Some(WayKind::Road(FunctionalRoadClass::new(class)?, road))
 }
 
 fn take_text(bytes: &mut &[u8]) -> Option<String> {

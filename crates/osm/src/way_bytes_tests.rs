@@ -2,7 +2,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-fn take_all(bytes: &mut &[u8]) -> Option<(Vec<i64>, FunctionalRoadClass, RoadAttributes)> {
+fn take_all(bytes: &mut &[u8]) -> Option<(Vec<i64>, WayKind)> {
     let mut ids = Vec::new();
     let count = take_node_ids(bytes, |id| {
         ids.push(id);
@@ -10,8 +10,7 @@ fn take_all(bytes: &mut &[u8]) -> Option<(Vec<i64>, FunctionalRoadClass, RoadAtt
     });
     let count = count.ok()?;
     assert_eq!(count, ids.len() as u64);
-    let (class, attributes) = take_road(bytes)?;
-    Some((ids, class, attributes))
+    Some((ids, take_way(bytes)?))
 }
 
 proptest! {
@@ -31,7 +30,20 @@ proptest! {
         let attributes = RoadAttributes { form, structure, layer, oneway, name, reference, surface };
         let bytes = way_bytes(&ids, class, &attributes);
         let mut rest = &*bytes;
-        prop_assert_eq!(take_all(&mut rest), Some((ids, class, attributes)));
+        prop_assert_eq!(take_all(&mut rest), Some((ids, WayKind::Road(class, attributes))));
+        prop_assert_eq!(rest, b"");
+        for len in 0..bytes.len() {
+            prop_assert_eq!(take_all(&mut &bytes[..len]), None);
+        }
+    }
+
+    #[test]
+    fn a_way_that_is_left_out_comes_back_from_its_bytes(
+        ids: Vec<i64>, reason in prop::sample::select(&LeftOutReason::ALL[..]), highway in ".*",
+    ) {
+        let bytes = left_out_bytes(&ids, reason, &highway);
+        let mut rest = &*bytes;
+        prop_assert_eq!(take_all(&mut rest), Some((ids, WayKind::LeftOut(reason, highway))));
         prop_assert_eq!(rest, b"");
         for len in 0..bytes.len() {
             prop_assert_eq!(take_all(&mut &bytes[..len]), None);

@@ -9,17 +9,17 @@ use corniche_roads::{
 use osmpbf::{PrimitiveBlock, Way};
 
 use crate::{
-    Defect, ExtractSummary, HighwayCount,
+    Defect, ExtractSummary, HighwayCount, LeftOutReason,
     location::{Location, location_from_nano},
     records::WayRecord,
     versions::known_version,
-    way_bytes::way_bytes,
+    way_bytes::{left_out_bytes, way_bytes},
 };
 
 /// The road ways of a block, with what is known of its other ways.
 #[derive(Debug, Default)]
 pub(crate) struct Ways {
-    /// In the order of the block, which is counted from 0.
+    /// Roads, and ways that are left out, in the order of the block, which is counted from 0.
     pub(crate) roads: Vec<WayRecord>,
     /// Where nodes lie, in files that say so in their ways (`LocationsOnWays`).
     pub(crate) located: Vec<(i64, Location)>,
@@ -97,14 +97,22 @@ impl Ways {
                 self.take(way, class, &attributes(tags));
                 self.count_tags_taken_otherwise(way_id, tags);
             }
-            Classified::NotShown(_) => left_out.class_off += 1,
+            Classified::NotShown(_) => {
+                left_out.class_off += 1;
+                self.leave_out(way, LeftOutReason::ClassOff, highway);
+            }
             Classified::NotARoad(NotARoad::Area) => {
                 left_out.area += 1;
+                self.leave_out(way, LeftOutReason::Area, highway);
                 self.push_defect(Defect::Area { way_id });
             }
-            Classified::NotARoad(NotARoad::Listed | NotARoad::NoHighway) => left_out.listed += 1,
+            Classified::NotARoad(NotARoad::Listed | NotARoad::NoHighway) => {
+                left_out.listed += 1;
+                self.leave_out(way, LeftOutReason::Listed, highway);
+            }
             Classified::Unknown(value) => {
                 left_out.unknown += 1;
+                self.leave_out(way, LeftOutReason::Unknown, value);
                 *self.summary.unknown_highways.entry(value.to_owned()).or_default() += 1;
                 self.push_defect(Defect::UnknownHighway { way_id, value: value.to_owned() });
                 return;
@@ -132,6 +140,22 @@ impl Ways {
     }
 
     fn take(&mut self, way: &Way<'_>, class: FunctionalRoadClass, attributes: &RoadAttributes) {
+        let RoadAttributes { name, reference, surface, .. } = attributes;
+        let text_bytes = name.len() + reference.len() + surface.len();
+        self.keep(way, text_bytes, |ids| way_bytes(ids, class, attributes));
+    }
+
+    /// Keeps a way that is no road here, for its length.
+    fn leave_out(&mut self, way: &Way<'_>, reason: LeftOutReason, highway: &str) {
+        self.keep(way, highway.len(), |ids| left_out_bytes(ids, reason, highway));
+    }
+
+    fn keep(
+        &mut self,
+        way: &Way<'_>,
+        text_bytes: usize,
+        to_bytes: impl FnOnce(&[i64]) -> Box<[u8]>,
+    ) {
         self.node_ids.clear();
         self.node_ids.extend(way.refs());
         let locations = way.node_locations();
@@ -142,8 +166,6 @@ impl Ways {
                 .map(|location| location_from_nano(location.nano_lon(), location.nano_lat()));
             self.located.extend(self.node_ids.iter().copied().zip(locations));
         }
-        let RoadAttributes { name, reference, surface, .. } = attributes;
-        let text_bytes = name.len() + reference.len() + surface.len();
         let location_bytes = if has_locations { size_of::<(i64, Location)>() } else { 0 };
         let node_bytes = size_of::<i64>() + location_bytes;
         // Lists grow by doubling; each node is sorted twice.
@@ -152,7 +174,7 @@ impl Ways {
             way_id: way.id(),
             order: self.roads.len() as u64,
             version: way.info().version().and_then(known_version).unwrap_or_default(),
-            bytes: way_bytes(&self.node_ids, class, attributes),
+            bytes: to_bytes(&self.node_ids),
         });
     }
 }

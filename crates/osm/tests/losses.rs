@@ -7,7 +7,7 @@ mod common;
 use std::collections::{BTreeMap, BTreeSet};
 
 use common::{Extract, read_bytes};
-use corniche_osm::Defect;
+use corniche_osm::{Defect, LeftOutReason};
 use corniche_testing::pbf::{Block, deltas, field, file, number, packed_blob, plain_header, raw};
 use proptest::prelude::*;
 
@@ -67,6 +67,43 @@ fn tags_taken_for_another_value_are_counted_by_value() {
         (5, "layer=1;2"),
     ];
     assert_eq!(listed, expected);
+}
+
+/// What the table leaves out is counted by reason and value, with its length; and makes no junction in roads.
+#[test]
+fn ways_that_are_left_out_are_counted_with_their_lengths() {
+    let mut block = Block::with_row_of_nodes(9);
+    block.track(1, &[1, 2, 3, 4]);
+    block.way(2, &[("highway", "footway")], &[2, 3]);
+    block.way(3, &[("highway", "footway")], &[3, 4, 5, 6]);
+    block.way(4, &[("highway", "proposed")], &[1, 9]);
+    block.way(5, &[("highway", "moat")], &[7, 8]);
+    block.way(6, &[("highway", "track"), ("area", "yes")], &[7, 8, 9, 7]);
+    // Without a place there is no length, and it is no defect of roads.
+    block.way(7, &[("highway", "path")], &[1, 99, 5, 6]);
+    block.way(8, &[("highway", "path")], &[4]);
+    // An id twice: both count, as ways do.
+    block.way(8, &[("highway", "path")], &[4, 5]);
+    let extract = read_bytes(&file(&block)).unwrap();
+    extract.summary.check_invariants();
+    assert_eq!(extract.roads[0].fixed, [0, 3], "a footway is no junction");
+    let (needed, missing) = (extract.summary.nodes_needed, extract.summary.nodes_missing);
+    assert_eq!((needed, missing), (4, 0), "nodes of roads");
+    // 1e-5 degrees at 47 degrees north are 0.760559 m, by the series for a degree of longitude.
+    let step_um = 760_559_u64;
+    let expected = [
+        (LeftOutReason::ClassOff, "footway", 2, 4),
+        (LeftOutReason::ClassOff, "path", 3, 2),
+        (LeftOutReason::Listed, "proposed", 1, 8),
+        (LeftOutReason::Unknown, "moat", 1, 1),
+        (LeftOutReason::Area, "track", 1, 4),
+    ];
+    assert_eq!(extract.summary.left_out_ways.len(), expected.len());
+    for (reason, highway, ways, steps) in expected {
+        let found = extract.summary.left_out_ways[&(reason, highway.to_owned())];
+        assert_eq!(found.ways, ways, "{highway}");
+        assert!(found.length_um.abs_diff(steps * step_um) < 20 * steps, "{highway}: {found:?}");
+    }
 }
 
 #[test]

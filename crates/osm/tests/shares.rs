@@ -7,7 +7,9 @@ mod common;
 use std::{fs, path::Path};
 
 use common::{
-    Extract, POOL, fixture, gather, made::made_extract, read, request, to_lattice, written,
+    Extract, POOL, fixture, gather,
+    made::{MadeExtract, made_extract},
+    read, request, to_lattice, written,
 };
 use corniche_osm::{
     Kept, KeptError, KeptKinds, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways,
@@ -334,6 +336,19 @@ fn what_is_lost_or_damaged_is_an_error() {
             let error = read_kept(&path, 2, 1 << 30, &store).unwrap_err();
             assert!(matches!(error, ReadOsmError::Kept { .. }), "{broken:?}: {error}");
         }
+    }
+}
+
+/// Two versions make a history where one follows the other, whatever the blobs and shares are; else only those of roads do.
+#[test]
+fn versions_with_another_way_between_them_are_no_history_in_any_blob_or_share() {
+    let ways = [(18, "track", 8), (5, "track", 7), (18, "footway", 7)];
+    for per_block in 1..=3 {
+        let bytes = MadeExtract::of_bare_ways(&ways, per_block).bytes();
+        let (_folder, path) = written("made.osm.pbf", &bytes);
+        let whole = read(&path).unwrap();
+        assert_eq!(whole.summary.highway_ways, 3, "{per_block} a block");
+        check_same(&path, &COUNTS);
     }
 }
 

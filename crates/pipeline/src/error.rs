@@ -53,7 +53,7 @@ pub enum BuildError {
     )]
     NoOverlap { osm: PathBuf, roads_deg: [f64; 4], heights_deg: [f64; 4] },
     #[error(
-        "no road of {osm:?} lies on ground: all are beside the elevation data or over its voids"
+        "no road of {osm:?} lies on ground: all are beside the elevation data, over its voids, or outside --bounds; without --osm the package is terrain alone"
     )]
     NoGround { osm: PathBuf },
     #[error("the roads could not be projected into the working CRS")]

@@ -22,7 +22,10 @@ use corniche_dem::{DemError, VirtualFile, raster_files};
 use corniche_tileset::InputRecord;
 use sha2::{Digest, Sha256};
 
-pub use self::{planned_input::PlannedInput, servers::input_name};
+pub use self::{
+    planned_input::PlannedInput,
+    servers::{elevation_names, input_name},
+};
 use self::{servers::reach_servers, stamp::Stamp};
 use crate::{BuildError, Observer, Stage, hex::hex};
 

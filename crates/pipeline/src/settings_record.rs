@@ -40,6 +40,7 @@ pub(crate) fn of(
         bounds_deg: *bounds_deg,
         frc_table: table.name().to_owned(),
         frc_table_sha256: table_sha256(table),
+        classes: table.chosen_classes(),
         class_max_cell_m: filter.class_max_cell_m().to_vec(),
         simplify_cells: *simplify_cells,
     }

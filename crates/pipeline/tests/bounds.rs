@@ -15,10 +15,10 @@ use std::{
 use corniche_drape::DrapedVertex;
 use corniche_geom::{LatticeBounds, TileId};
 use corniche_pipeline::{
-    BuildPlan, BuildSettings, Defect, Loss, Observer, Silent, Stage, VerifyOsm, VerifySettings,
-    build, plan, verify,
+    BuildPlan, BuildSettings, CheckId, Defect, Loss, Observer, Silent, Stage, VerifyOsm,
+    VerifySettings, build, plan, verify,
 };
-use corniche_tileset::{FilePackage, Sections};
+use corniche_tileset::{FilePackage, Manifest, Sections};
 use support::{
     Options, Raster,
     extract::{self, StraightRoad, utm_to_degrees},
@@ -253,4 +253,39 @@ fn bounds_are_part_of_the_plan_and_of_terrain_that_is_taken() {
     again.output = files.at("refused.pmtiles");
     let error = build(&again, &Silent).unwrap_err().to_string();
     assert!(error.contains("--bounds"), "{error}");
+}
+
+#[test]
+fn verify_sees_every_change_of_what_a_package_says_of_its_part() {
+    let files = Files::new();
+    let bounds_deg = files.bounds_deg([[300.0, 300.0], [700.0, 800.0]]);
+    let settings = files.settings("part.pmtiles", Options::plain(60.0), Some(bounds_deg));
+    build(&settings, &Silent).unwrap();
+    let package = FilePackage::open(&settings.output).unwrap();
+    let tiles: Vec<_> = package
+        .tile_ids()
+        .unwrap()
+        .into_iter()
+        .map(|id| (id, package.tile(id).unwrap().unwrap()))
+        .collect();
+    let changes: [fn(&mut Manifest); 6] = [
+        |manifest| manifest.clip.as_mut().unwrap().nodes[0].i -= 1,
+        |manifest| manifest.clip.as_mut().unwrap().nodes[1].j += 1,
+        |manifest| manifest.clip.as_mut().unwrap().whole_data_bounds.min_x += 1.0,
+        |manifest| manifest.clip.as_mut().unwrap().whole_wgs84_bounds.max_y += 1e-9,
+        |manifest| manifest.clip = None,
+        |_| {},
+    ];
+    for (number, change) in changes.into_iter().enumerate() {
+        let mut manifest = package.manifest().clone();
+        change(&mut manifest);
+        let path = files.at(&format!("changed-{number}.pmtiles"));
+        support::parts::write(&path, &manifest, &tiles).unwrap();
+        let request =
+            VerifySettings { package: path, dem: vec![files.at("dem.tif")], osm: None, threads: 2 };
+        let report = verify(&request, &Silent).unwrap();
+        let is_broken =
+            report.checks.iter().any(|check| check.id == CheckId::DemPlan && !check.holds());
+        assert_eq!(is_broken, number < 5, "change {number}");
+    }
 }

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::{Deserialize, Deserializer};
 
 use crate::{
-    BoundsChoice, PresetError,
+    BoundsChoice, Classes, PresetError,
     error::bounded,
     values::{parse_cell, parse_range},
 };
@@ -101,7 +101,11 @@ pub struct RoadOptions {
     /// FRC table: a preset (default, valhalla, fraunhofer, itinero, here5) or a TOML file [default: default]
     #[arg(long, value_name = "PRESET|FILE")]
     pub frc_table: Option<String>,
-    /// Show every class on every level
+    /// Functional road classes that become roads, such as 0-8 or 0,1,2: 0 is motorways, 7 service roads and tracks, 8 ways for people on
+    /// foot, on horses or on bicycles; others are left out, and counted with their lengths [default: what the FRC table has on, 0-7 in the default one]
+    #[arg(long, value_name = "LIST", value_parser = Classes::parse)]
+    pub classes: Option<Classes>,
+    /// Show every class that is on (see --classes) on every level; without it, coarse levels show important classes alone
     #[arg(long)]
     pub all_classes: bool,
     /// Tolerance of the simplification of roads on coarser levels, in cells of the level; 0 keeps every point
@@ -187,6 +191,7 @@ impl RoadOptions {
     pub fn or(self, other: Self) -> Self {
         Self {
             frc_table: self.frc_table.or_from(other.frc_table),
+            classes: self.classes.or_from(other.classes),
             all_classes: self.all_classes.or_from(other.all_classes),
             simplify: self.simplify.or_from(other.simplify),
             class_max_cell: self.class_max_cell.or_from(other.class_max_cell),

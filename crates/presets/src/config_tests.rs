@@ -95,6 +95,7 @@ fn all_options(n: u8) -> (TerrainOptions, RoadOptions, ResourceOptions) {
     };
     let roads = RoadOptions {
         frc_table: Some(text("table")),
+        classes: Some(Classes::parse(&n.to_string()).unwrap()),
         all_classes: true,
         simplify: Some(number),
         class_max_cell: Some(BTreeMap::from([(text("class"), number)])),

@@ -5,6 +5,7 @@
 
 mod bounds;
 mod class_cells;
+mod classes;
 mod config;
 mod error;
 mod frc;
@@ -12,6 +13,7 @@ mod values;
 
 pub use bounds::BoundsChoice;
 pub use class_cells::class_filter;
+pub use classes::Classes;
 pub use config::{Config, ResourceOptions, RoadOptions, TerrainOptions};
 pub use error::PresetError;
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};

@@ -15,6 +15,8 @@ pub struct FrcTable {
     /// `None`: known, and not a road.
     values: BTreeMap<String, Option<FunctionalRoadClass>>,
     least_class: FunctionalRoadClass,
+    /// Which classes are on, where that is not what `least_class` says.
+    chosen: Option<[bool; FunctionalRoadClass::COUNT]>,
 }
 
 /// Why entries do not make an [`FrcTable`].
@@ -32,6 +34,8 @@ pub enum FrcTableError {
     Class { name: String, value: String, class: u8 },
     #[error("FRC table {name:?} has least class {class}; classes are 0 to 8")]
     LeastClass { name: String, class: u8 },
+    #[error("no class is chosen, or one that does not exist; classes are 0 to 8")]
+    Choice,
     #[error("FRC table {name:?} lists highway={value} twice; keep one of the entries")]
     Twice { name: String, value: String },
     #[error(
@@ -106,7 +110,7 @@ impl FrcTable {
             }
             values.insert(value, class);
         }
-        Ok(Self { name, values, least_class: least })
+        Ok(Self { name, values, least_class: least, chosen: None })
     }
 
     /// Its name, as packages record it.
@@ -117,14 +121,56 @@ impl FrcTable {
 
     /// The least important class that is on.
     #[must_use]
-    pub const fn least_class(&self) -> FunctionalRoadClass {
+    pub fn least_class(&self) -> FunctionalRoadClass {
+        let least = FunctionalRoadClass::all().rev().find(|&class| self.shows(class));
+        least.unwrap_or(self.least_class)
+    }
+
+    /// The least important class that the table itself has on, without a choice of classes.
+    #[must_use]
+    pub const fn own_least_class(&self) -> FunctionalRoadClass {
         self.least_class
+    }
+
+    /// Whether a class is on.
+    #[must_use]
+    pub fn shows(&self, class: FunctionalRoadClass) -> bool {
+        match &self.chosen {
+            Some(chosen) => chosen[usize::from(class.number())],
+            None => class <= self.least_class,
+        }
+    }
+
+    /// The same table with these classes on, and no others.
+    ///
+    /// # Errors
+    /// When there is none, or one above 8.
+    pub fn with_classes(self, classes: &[u8]) -> Result<Self, FrcTableError> {
+        let mut on = [false; FunctionalRoadClass::COUNT];
+        for &class in classes {
+            *on.get_mut(usize::from(class)).ok_or(FrcTableError::Choice)? = true;
+        }
+        if !on.contains(&true) {
+            return Err(FrcTableError::Choice);
+        }
+        let plain = Self { chosen: None, ..self };
+        let is_own = FunctionalRoadClass::all()
+            .all(|class| plain.shows(class) == on[usize::from(class.number())]);
+        Ok(Self { chosen: (!is_own).then_some(on), ..plain })
+    }
+
+    /// The classes that are on, ascending, where that is not what the table itself has on.
+    #[must_use]
+    pub fn chosen_classes(&self) -> Option<Vec<u8>> {
+        self.chosen?;
+        let on = FunctionalRoadClass::all().filter(|&class| self.shows(class));
+        Some(on.map(FunctionalRoadClass::number).collect())
     }
 
     /// The same table with another least class.
     #[must_use]
     pub fn with_least_class(self, least_class: FunctionalRoadClass) -> Self {
-        Self { least_class, ..self }
+        Self { least_class, chosen: None, ..self }
     }
 
     /// All listed values with their class, by value; `None` for those that are no roads.
@@ -137,6 +183,10 @@ impl FrcTable {
     #[must_use]
     pub fn canonical_text(&self) -> String {
         let mut text = format!("name={}\nleast_class={}\n", self.name, self.least_class.number());
+        if let Some(chosen) = self.chosen_classes() {
+            let chosen: Vec<String> = chosen.iter().map(ToString::to_string).collect();
+            let _ = writeln!(text, "classes={}", chosen.join(","));
+        }
         for (value, class) in self.values() {
             // Writing to a String cannot fail.
             let _ = match class {
@@ -159,7 +209,7 @@ impl FrcTable {
             Some(Some(_)) if tag(tags, "area").is_some_and(is_yes) => {
                 Classified::NotARoad(NotARoad::Area)
             }
-            Some(&Some(class)) if class > self.least_class => Classified::NotShown(class),
+            Some(&Some(class)) if !self.shows(class) => Classified::NotShown(class),
             Some(&Some(class)) => Classified::Road(class),
         }
     }

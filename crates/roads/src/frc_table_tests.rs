@@ -72,6 +72,24 @@ fn refuses_entries_that_make_no_table() {
 }
 
 #[test]
+fn any_classes_can_be_on() {
+    let class = |n| FunctionalRoadClass::new(n).unwrap();
+    let some = small().with_classes(&[5, 0, 8, 5]).unwrap();
+    assert_eq!(some.chosen_classes(), Some(vec![0, 5, 8]));
+    assert_eq!((some.least_class(), some.own_least_class()), (class(8), class(7)));
+    assert_eq!(some.classify(&[("highway", "motorway")]), Classified::Road(class(0)));
+    assert_eq!(some.classify(&[("highway", "trunk")]), Classified::NotShown(class(1)));
+    assert_eq!(some.classify(&[("highway", "footway")]), Classified::Road(class(8)));
+    assert!(some.canonical_text().starts_with("name=test\nleast_class=7\nclasses=0,5,8\n"));
+    // The table's own classes are no choice.
+    let own = some.with_classes(&[0, 1, 2, 3, 4, 5, 6, 7]).unwrap();
+    assert_eq!((&own, own.chosen_classes()), (&small(), None));
+    for none in [&[][..], &[9], &[0, 200]] {
+        assert_eq!(small().with_classes(none), Err(FrcTableError::Choice));
+    }
+}
+
+#[test]
 fn canonical_text_does_not_depend_on_the_order_of_entries() {
     let a = table(&[("motorway", 0), ("trunk", 1)], &["x", "y"], 7).unwrap();
     let b = table(&[("trunk", 1), ("motorway", 0)], &["y", "x"], 7).unwrap();

@@ -92,6 +92,7 @@ pub fn manifest_of(frame: Frame) -> Manifest {
             bounds_deg: None,
             scale_latitude_deg: None,
             frc_table: "default".to_owned(),
+            classes: None,
             frc_table_sha256: String::new(),
             class_max_cell_m: vec![None; 9],
             simplify_cells: 0.5,

@@ -16,8 +16,8 @@ mod package;
 mod payload;
 
 pub use manifest::{
-    ClipRecord, Counts, Distribution, GrowthRow, InputRecord, LevelRecord, Manifest, RoadLoss,
-    SampleCounts, SampleErrorRecord, ScaleRecord, SettingsRecord, VerticalRecord,
+    ClipRecord, Counts, Distribution, GrowthRow, InputRecord, LeftOutRecord, LevelRecord, Manifest,
+    RoadLoss, SampleCounts, SampleErrorRecord, ScaleRecord, SettingsRecord, VerticalRecord,
 };
 pub use package::{
     ByteSource, FORMAT_VERSION, MemorySource, OpenError, Package, ReadError, SourceError,

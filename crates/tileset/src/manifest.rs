@@ -9,5 +9,5 @@ pub(crate) mod check;
 pub use contents::{
     ClipRecord, InputRecord, Manifest, ScaleRecord, SettingsRecord, VerticalRecord,
 };
-pub use counts::{Counts, GrowthRow, RoadLoss, SampleCounts};
+pub use counts::{Counts, GrowthRow, LeftOutRecord, RoadLoss, SampleCounts};
 pub use levels::{Distribution, LevelRecord, SampleErrorRecord};

@@ -9,7 +9,8 @@ use corniche_presets::{ResourceOptions, RoadOptions, TerrainOptions};
 // What to make and with what: the same for `build` and `plan`.
 #[derive(Debug, Args)]
 pub(crate) struct WorkArgs {
-    /// Elevation rasters, any format GDAL reads; where they overlap, the first has precedence
+    /// Elevation rasters, any format GDAL reads; where they overlap, the first has precedence. Also folders, patterns such as 'a/*.tif', @LIST (a
+    /// text file with a name on each line), .gz, .zip, and https:// and s3:// addresses
     #[arg(long, value_name = "FILE", num_args = 1.., required_unless_present = "terrain_of")]
     pub(crate) dem: Vec<PathBuf>,
     /// Take the terrain of this package, made by the same program with the same terrain settings, in place of elevation rasters:

@@ -51,7 +51,9 @@ pub(crate) fn nodes_of(
         unwrap(&mut points, turn_m);
         let middle_m = working.middle * working.metres_per_unit[0];
         let away = turns(with_bend(&points).center()[0] - middle_m, turn_m);
-        points.iter_mut().for_each(|point| point[0] -= away * turn_m);
+        for point in &mut points {
+            point[0] -= away * turn_m;
+        }
     }
     let bounds_m = with_bend(&points);
     if bounds_m.is_empty() {
@@ -166,50 +168,47 @@ impl GridPlan {
     }
 }
 
-impl Dem {
-    /// The samples of a mosaic that the plan's nodes depend on, voids to fill included: all of them without bounds.
-    pub(crate) fn needed_samples(
-        &self,
-        plan: &GridPlan,
-        mosaic: &Mosaic,
-        role: &MosaicRole,
-    ) -> Result<SampleRect, DemError> {
-        if plan.clip.is_none() {
-            return Ok(mosaic.reachable());
-        }
-        let reach = i64::from(plan.fill_voids) + 1;
-        let (low, high) = (plan.south_west, plan.north_east);
-        let nodes = [
-            NodeIndex { i: low.i - reach, j: low.j - reach },
-            NodeIndex { i: high.i + reach, j: high.j + reach },
-        ];
-        let (min, max) = match &role.method {
-            Method::Aligned(alignment) => {
-                let (a, b) = (alignment.sample(nodes[0]), alignment.sample(nodes[1]));
-                ([0, 1].map(|axis| a[axis].min(b[axis])), [0, 1].map(|axis| a[axis].max(b[axis])))
-            }
-            Method::Resampled(positions, kernel) => {
-                let Bounds { min_x, min_y, max_x, max_y } = bounds_of(&plan.frame, nodes);
-                let mut points = rim_and_inside([min_x, max_y], [max_x, min_y]);
-                positions.samples_of(&mut points)?;
-                let bounds = with_bend(&points);
-                if bounds.is_empty() {
-                    return Ok(mosaic.reachable());
-                }
-                let at = |value: f64| value.clamp(-1e15, 1e15) as i64;
-                let reach = kernel.reach();
-                (
-                    [at(bounds.min_x.floor()) - reach[0], at(bounds.min_y.floor()) - reach[1]],
-                    [at(bounds.max_x.ceil()) + reach[0], at(bounds.max_y.ceil()) + reach[1]],
-                )
-            }
-        };
-        let rect = SampleRect {
-            min: min.map(|index| index - AROUND_SAMPLES),
-            max: max.map(|index| index + AROUND_SAMPLES + 1),
-        };
-        Ok(rect.intersection(&mosaic.reachable()))
+/// The samples of a mosaic that the plan's nodes depend on, voids to fill included: all of them without bounds.
+pub(crate) fn needed_samples(
+    plan: &GridPlan,
+    mosaic: &Mosaic,
+    role: &MosaicRole,
+) -> Result<SampleRect, DemError> {
+    if plan.clip.is_none() {
+        return Ok(mosaic.reachable());
     }
+    let reach = i64::from(plan.fill_voids) + 1;
+    let (low, high) = (plan.south_west, plan.north_east);
+    let nodes = [
+        NodeIndex { i: low.i - reach, j: low.j - reach },
+        NodeIndex { i: high.i + reach, j: high.j + reach },
+    ];
+    let (min, max) = match &role.method {
+        Method::Aligned(alignment) => {
+            let (a, b) = (alignment.sample(nodes[0]), alignment.sample(nodes[1]));
+            ([0, 1].map(|axis| a[axis].min(b[axis])), [0, 1].map(|axis| a[axis].max(b[axis])))
+        }
+        Method::Resampled(positions, kernel) => {
+            let Bounds { min_x, min_y, max_x, max_y } = bounds_of(&plan.frame, nodes);
+            let mut points = rim_and_inside([min_x, max_y], [max_x, min_y]);
+            positions.samples_of(&mut points)?;
+            let bounds = with_bend(&points);
+            if bounds.is_empty() {
+                return Ok(mosaic.reachable());
+            }
+            let at = |value: f64| value.clamp(-1e15, 1e15) as i64;
+            let reach = kernel.reach();
+            (
+                [at(bounds.min_x.floor()) - reach[0], at(bounds.min_y.floor()) - reach[1]],
+                [at(bounds.max_x.ceil()) + reach[0], at(bounds.max_y.ceil()) + reach[1]],
+            )
+        }
+    };
+    let rect = SampleRect {
+        min: min.map(|index| index - AROUND_SAMPLES),
+        max: max.map(|index| index + AROUND_SAMPLES + 1),
+    };
+    Ok(rect.intersection(&mosaic.reachable()))
 }
 
 /// The parts of a file, in its own pixels, that lie in a rectangle of its mosaic's samples.

@@ -5,7 +5,7 @@ use corniche_geom::{Frame, LatticeBounds, NodeIndex, NodeWindow};
 use crate::crs::operation::Operation;
 use crate::mosaics::mosaic::Mosaic;
 use crate::mosaics::sample_rect::SampleRect;
-use crate::plan::clip::Clip;
+use crate::plan::clip::{Clip, needed_samples};
 use crate::plan::grid_plan::Method;
 use crate::plan::kernel::{Kernel, Samples};
 use crate::reading::reader::{MOST_SAMPLES, Reader, around};
@@ -58,7 +58,7 @@ impl Dem {
     pub fn sample_areas(&self, plan: &GridPlan) -> Result<Vec<SampleArea>, DemError> {
         let mut areas = Vec::new();
         for (index, (mosaic, role)) in self.mosaics.iter().zip(&plan.roles).enumerate() {
-            let needed = self.needed_samples(plan, mosaic, role)?;
+            let needed = needed_samples(plan, mosaic, role)?;
             areas.extend(blocks_of(mosaic, index, &needed.intersection(&mosaic.extent)));
         }
         Ok(areas)

@@ -15,6 +15,7 @@ mod fill_rule;
 mod fixture;
 mod formats;
 mod georeference;
+mod names;
 mod own_crs;
 mod own_grid;
 mod real_data;

@@ -14,6 +14,18 @@ struct MadeWay {
     places: Option<Vec<(i64, i64)>>,
 }
 
+impl MadeExtract {
+    /// Ways without nodes, in this order: id, `highway` value and version of each.
+    pub(crate) fn of_bare_ways(ways: &[(i64, &'static str, i64)], per_block: usize) -> Self {
+        let bare = |&(id, highway, version): &(i64, &'static str, i64)| {
+            let tags = vec![("highway", highway)];
+            MadeWay { id, tags, node_ids: Vec::new(), version, places: None }
+        };
+        let ways = ways.iter().map(bare).collect();
+        Self { ways, nodes: Vec::new(), per_block, order: Order::AsMade, has_places: false }
+    }
+}
+
 fn made_way() -> impl Strategy<Value = MadeWay> {
     let highways = vec!["track", "residential", "motorway_link", "footway", "goat_trail"];
     let more = prop::sample::subsequence(

@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_dem::set_unless_set;
+use corniche_dem::{expand_name, set_unless_set, unpack_name};
 use corniche_objects::{ObjectAddress, StorageSettings};
+
+use crate::BuildError;
 
 /// The name by which GDAL knows an input: `s3://BUCKET/NAME` is `/vsis3/BUCKET/NAME`, `https://…` is `/vsicurl/https://…`. Other names stay as they are.
 ///
@@ -18,6 +20,28 @@ pub fn input_name(path: PathBuf) -> Result<PathBuf, corniche_objects::ObjectErro
         return Ok(format!("/vsicurl/{text}").into());
     }
     Ok(path)
+}
+
+/// The elevation files that names stand for, as GDAL knows them, in the order in which they have precedence: folders, patterns, `@LIST`, archives
+/// and addresses included; see [`expand_name`] and [`unpack_name`].
+///
+/// # Errors
+/// When a name stands for no file, or is no address.
+pub fn elevation_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, BuildError> {
+    let mut plain = Vec::new();
+    for name in names {
+        for name in expand_name(name)? {
+            plain.push(input_name(name)?);
+        }
+    }
+    // An archive on a server is looked into.
+    let reached = reach_servers(plain.iter().map(PathBuf::as_path));
+    reached.map_err(|what| BuildError::Start { what })?;
+    let mut files = Vec::new();
+    for name in plain {
+        files.extend(unpack_name(name)?);
+    }
+    Ok(files)
 }
 
 /// Tells GDAL how servers are reached, before it is asked for the first of these files, which may be on servers, or name others that are. Its own

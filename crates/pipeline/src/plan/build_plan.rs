@@ -174,6 +174,10 @@ impl BuildPlan {
             of_kind.map(|input| PathBuf::from(&input.path))
         };
         let table = self.frc_table.table()?;
+        let table = match &self.settings.classes {
+            Some(classes) => table.with_classes(classes)?,
+            None => table,
+        };
         Ok(PlanSettings {
             dem: paths("dem").collect(),
             terrain_of: paths("terrain").next(),
@@ -240,7 +244,7 @@ impl FrcTableRecord {
     fn of(table: &FrcTable) -> Self {
         Self {
             name: table.name().to_owned(),
-            least_class: table.least_class().number(),
+            least_class: table.own_least_class().number(),
             values: table
                 .values()
                 .map(|(value, class)| {

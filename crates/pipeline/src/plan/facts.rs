@@ -29,6 +29,7 @@ pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecor
     let theirs = SettingsRecord {
         frc_table: ours.frc_table.clone(),
         frc_table_sha256: ours.frc_table_sha256.clone(),
+        classes: ours.classes.clone(),
         class_max_cell_m: ours.class_max_cell_m.clone(),
         simplify_cells: ours.simplify_cells,
         ..package.clone()
@@ -77,6 +78,7 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         frc_table,
         // The table's entries are compared one by one.
         frc_table_sha256: _,
+        classes: chosen_classes,
         class_max_cell_m,
         simplify_cells,
     } = record;
@@ -102,6 +104,15 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
             &given(bounds_deg.map(|bounds| bounds.map(|deg| deg.to_string()).join(",")).as_ref()),
         ),
         fact("--frc-table", frc_table),
+        fact(
+            "--classes",
+            &given(
+                chosen_classes
+                    .as_ref()
+                    .map(|chosen| list(chosen.iter().map(ToString::to_string)))
+                    .as_ref(),
+            ),
+        ),
         fact("class-max-cell (--all-classes)", &list(classes)),
         fact("--simplify", simplify_cells),
     ]

@@ -1,9 +1,9 @@
 //! What is known of all roads together, and of each road alone: its true lengths.
 
-use std::collections::BTreeMap;
+use std::{cmp::Reverse, collections::BTreeMap};
 
 use corniche_geom::LatticePoint;
-use corniche_osm::ExtractSummary;
+use corniche_osm::{ExtractSummary, LeftOutReason, LeftOutWays};
 use corniche_store::Artifacts;
 use serde::{Deserialize, Serialize};
 
@@ -54,6 +54,18 @@ pub(crate) struct ExtractCounts {
     pub(crate) highways_in: u64,
     /// Ways with a `highway` tag that are no roads here, by reason.
     pub(crate) highways_left_out: Vec<(String, u64)>,
+    /// Those that the FRC table leaves out, by reason and `highway` value.
+    pub(crate) left_out: Vec<LeftOutCount>,
+}
+
+/// Ways that the FRC table leaves out for one reason, with one `highway` value.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct LeftOutCount {
+    pub(crate) reason: String,
+    pub(crate) highway: String,
+    pub(crate) ways: u64,
+    /// True length in plan, micrometres.
+    pub(crate) length_um: u64,
 }
 
 impl From<&ExtractSummary> for ExtractCounts {
@@ -67,17 +79,33 @@ impl From<&ExtractSummary> for ExtractCounts {
             blobs_passed_over: extract.blobs_passed_over,
             highways_in: extract.highway_ways,
             highways_left_out: left_out(extract),
+            left_out: left_out_ways(extract),
         }
     }
+}
+
+/// By reason, and within one the longest first.
+fn left_out_ways(extract: &ExtractSummary) -> Vec<LeftOutCount> {
+    let ways = extract.left_out_ways.iter();
+    let mut counts: Vec<(LeftOutReason, LeftOutCount)> = ways
+        .map(|((reason, highway), found)| {
+            let (text, highway) = (reason.text().to_owned(), highway.clone());
+            let LeftOutWays { ways, length_um } = *found;
+            (*reason, LeftOutCount { reason: text, highway, ways, length_um })
+        })
+        .collect();
+    // The sort keeps the order of values where lengths are the same.
+    counts.sort_by_key(|(reason, count)| (*reason, Reverse(count.length_um)));
+    counts.into_iter().map(|(_, count)| count).collect()
 }
 
 fn left_out(extract: &ExtractSummary) -> Vec<(String, u64)> {
     let left_out = &extract.left_out;
     [
-        ("listed as no road", left_out.listed),
-        ("class is off", left_out.class_off),
-        ("value in no class", left_out.unknown),
-        ("an area", left_out.area),
+        (LeftOutReason::Listed.text(), left_out.listed),
+        (LeftOutReason::ClassOff.text(), left_out.class_off),
+        (LeftOutReason::Unknown.text(), left_out.unknown),
+        (LeftOutReason::Area.text(), left_out.area),
         ("id occurs twice", left_out.duplicate),
         ("no line is left", left_out.without_line),
     ]

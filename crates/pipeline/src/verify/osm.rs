@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::TileId;
+use corniche_roads::FrcTable;
 use corniche_store::Artifacts;
 use corniche_tileset::{FilePackage, Manifest, pmtiles_order};
 
@@ -58,9 +59,10 @@ fn compare_all(
     let manifest = package.manifest();
     check_inputs(manifest, osm, inputs, findings, observer)?;
     // If one of them is missing, the check `levels.derived` or `manifest.crs` is broken, and roads cannot be laid.
-    let (Some(settings), Some([first, last])) =
-        (settings_record::roads(&manifest.settings, osm.table.clone()), grid::data_tiles(manifest))
-    else {
+    let (Some(settings), Some([first, last])) = (
+        settings_record::roads(&manifest.settings, chosen(&osm.table, manifest)),
+        grid::data_tiles(manifest),
+    ) else {
         return Ok(());
     };
     let Ok(crs) = georeference::recorded(manifest) else { return Ok(()) };
@@ -96,6 +98,14 @@ fn compare_all(
     Ok(())
 }
 
+/// The table with the classes on that the package has chosen.
+fn chosen(table: &FrcTable, manifest: &Manifest) -> FrcTable {
+    let classes = manifest.settings.classes.as_deref();
+    // Classes that make no choice are not those of the table's hash either.
+    let chosen = classes.and_then(|classes| table.clone().with_classes(classes).ok());
+    chosen.unwrap_or_else(|| table.clone())
+}
+
 /// Checks that the extract and the table of classes are those of the build.
 fn check_inputs(
     manifest: &Manifest,
@@ -120,7 +130,7 @@ fn check_inputs(
         format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
     });
     let settings = &manifest.settings;
-    if settings_record::table_sha256(&osm.table) != settings.frc_table_sha256 {
+    if settings_record::table_sha256(&chosen(&osm.table, manifest)) != settings.frc_table_sha256 {
         let (given, expected) = (osm.table.name().to_owned(), settings.frc_table.clone());
         return Err(if given == expected {
             VerifyError::OtherTableOfThatName { name: expected }
@@ -196,6 +206,7 @@ fn check_counts(manifest: &Manifest, roads: &RoadTotals, losses: &Sums, findings
     same("tags_taken_otherwise", &said.tags_taken_otherwise, &wanted.tags_taken_otherwise);
     same("highways_in", &said.highways_in, &wanted.highways_in);
     same("highways_left_out", &said.highways_left_out, &wanted.highways_left_out);
+    same("left_out", &said.left_out, &wanted.left_out);
     same("roads_in_um", &said.roads_in_um, &wanted.roads_in_um);
     same("roads_kept_um", &said.roads_kept_um, &wanted.roads_kept_um);
     same("roads_lost", &said.roads_lost, &wanted.roads_lost);

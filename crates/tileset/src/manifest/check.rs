@@ -168,6 +168,8 @@ fn check_counts(counts: &Counts) -> Result<(), String> {
     check_sum("counts", [counts.roads_kept_um])?;
     check_sum("counts.roads_lost", counts.roads_lost.iter().map(|loss| loss.roads))?;
     check_sum("counts.roads_lost", counts.roads_lost.iter().map(|loss| loss.length_um))?;
+    check_sum("counts.left_out", counts.left_out.iter().map(|left_out| left_out.ways))?;
+    check_sum("counts.left_out", counts.left_out.iter().map(|left_out| left_out.length_um))?;
     let names = [
         &counts.defects,
         &counts.unknown_highways,

@@ -157,6 +157,9 @@ pub struct SettingsRecord {
     pub frc_table: String,
     /// SHA-256 of the FRC table's text.
     pub frc_table_sha256: String,
+    /// Classes that are on, where `--classes` says other ones than the table.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub classes: Option<Vec<u8>>,
     /// Coarsest cell, metres, at which each class is still shown; by class, 0 first; `None`: on every level.
     pub class_max_cell_m: Vec<Option<f64>>,
     /// Simplification tolerance in cells of the level; 0 is off.

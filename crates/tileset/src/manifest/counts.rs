@@ -29,6 +29,9 @@ pub struct Counts {
     pub highways_in: u64,
     /// How many of them did not become roads, by reason. Together with the ways that became roads they give all.
     pub highways_left_out: Vec<(String, u64)>,
+    /// Those that the FRC table leaves out, with their lengths; by reason, the longest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<LeftOutRecord>,
     /// Roads per class, 0 first: count and true micrometres in.
     pub classes: Vec<(u64, u64)>,
 }
@@ -54,6 +57,19 @@ pub struct RoadLoss {
     /// Roads lost altogether for this reason.
     pub roads: u64,
     /// True length in plan lost for this reason, micrometres.
+    pub length_um: u64,
+}
+
+/// Ways that the FRC table leaves out for one reason, with one `highway` value.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LeftOutRecord {
+    /// Why, in words.
+    pub reason: String,
+    /// Value of `highway`.
+    pub highway: String,
+    /// How many ways.
+    pub ways: u64,
+    /// Their true length in plan, micrometres; of areas that of the outline.
     pub length_um: u64,
 }
 

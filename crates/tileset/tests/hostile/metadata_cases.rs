@@ -21,6 +21,18 @@ fn with_value(pointer: &str, value: Value) -> Vec<u8> {
     with_metadata(metadata.to_string().as_bytes())
 }
 
+/// The good manifest as that of a part of its data, with these corners.
+fn with_clip(nodes: [[i64; 2]; 2], north: f64) -> Vec<u8> {
+    let mut metadata = metadata();
+    let degrees = json!({ "min_x": 9, "min_y": 47, "max_x": 10, "max_y": north });
+    metadata["corniche"]["clip"] = json!({
+        "nodes": nodes.map(|[i, j]| json!({ "i": i, "j": j })),
+        "whole_data_bounds": metadata["corniche"]["data_bounds"],
+        "whole_wgs84_bounds": degrees,
+    });
+    with_metadata(metadata.to_string().as_bytes())
+}
+
 /// The good metadata with raw text in place of the value of `attribution`.
 fn with_attribution(text: &str) -> Vec<u8> {
     let mut metadata = metadata();
@@ -94,6 +106,14 @@ pub(crate) fn all() -> Vec<Case> {
         .map(|(name, pointer, value, reason)| refused(name, with_value(pointer, value), reason))
         .collect();
     cases.extend([
+        refused("a part at 2^63", with_clip([[0, 0], [i64::MAX, 9]], 48.0), "clip.nodes"),
+        refused("a part at -2^63", with_clip([[0, i64::MIN], [9, 9]], 48.0), "clip.nodes"),
+        refused("a part inside out", with_clip([[9, 0], [0, 9]], 48.0), "clip.nodes"),
+        refused(
+            "a part of a latitude of 95",
+            with_clip([[0, 0], [9, 9]], 95.0),
+            "clip.whole_wgs84",
+        ),
         refused("no JSON", with_metadata(b"terrain"), "manifest is damaged"),
         refused("JSON that ends early", with_metadata(b"{\"corniche\":{"), "manifest is damaged"),
         refused("an ordinary file's", with_metadata(b"{\"name\":\"x\"}"), "ordinary PMTiles"),

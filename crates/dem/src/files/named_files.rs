@@ -1,0 +1,127 @@
+//! Which files a name on the command line means: those of a folder, a pattern, a list or an archive.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use gdal::Dataset;
+
+use crate::{DemError, library_error};
+
+/// Files of a folder or an archive with one of these endings are taken for elevation files. A VRT is not: it names files that may lie in the
+/// same folder.
+const ENDINGS: [&str; 13] =
+    ["tif", "tiff", "hgt", "asc", "img", "dem", "dt0", "dt1", "dt2", "bil", "flt", "grd", "jp2"];
+/// Those of packed files, of which GDAL reads the content.
+const PACKED: [&str; 2] = ["gz", "zip"];
+
+/// The files that a name stands for, in the order in which they have precedence. A name of one file stands for itself, whether it is there or not.
+///
+/// - `@LIST`: a text file with a name on each line, counted from the folder of the list; lines that are empty or begin with # do not count.
+///   Its names may be folders and patterns, but not lists.
+/// - A folder: its files with the endings of elevation files, sorted by name; not those of folders in it. A folder that is itself a raster stays one.
+/// - A pattern with `*`, `?` or `[…]`: the files that it fits, sorted by name.
+///
+/// # Errors
+/// When a list cannot be read, a pattern cannot be understood, or a folder or a pattern has no file.
+pub fn expand_name(name: &Path) -> Result<Vec<PathBuf>, DemError> {
+    let text = name.to_str().ok_or_else(|| DemError::NotUtf8 { path: name.to_path_buf() })?;
+    match text.strip_prefix('@').filter(|_| !name.exists()) {
+        Some(list) => expand_list(Path::new(list)),
+        None => expand_plain(name, text),
+    }
+}
+
+fn expand_list(list: &Path) -> Result<Vec<PathBuf>, DemError> {
+    let unreadable = |source| DemError::List { path: list.to_path_buf(), source };
+    let text = fs::read_to_string(list).map_err(unreadable)?;
+    let folder = list.parent().unwrap_or(Path::new(""));
+    let lines =
+        text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
+    let mut files = Vec::new();
+    for line in lines {
+        let is_elsewhere = line.contains("://") || line.starts_with("/vsi");
+        let name = if is_elsewhere { PathBuf::from(line) } else { folder.join(line) };
+        let text = name.to_str().ok_or_else(|| DemError::NotUtf8 { path: name.clone() })?;
+        files.extend(expand_plain(&name, text)?);
+    }
+    if files.is_empty() {
+        return Err(DemError::EmptyList { path: list.to_path_buf() });
+    }
+    Ok(files)
+}
+
+fn expand_plain(name: &Path, text: &str) -> Result<Vec<PathBuf>, DemError> {
+    let is_remote = text.contains("://") || text.starts_with("/vsi");
+    if !is_remote && name.is_dir() {
+        return expand_folder(name);
+    }
+    if is_remote || name.exists() || !text.contains(['*', '?', '[']) {
+        return Ok(vec![name.to_path_buf()]);
+    }
+    let refused = |reason: String| DemError::Pattern { pattern: text.to_owned(), reason };
+    let found = glob::glob(text).map_err(|error| refused(error.to_string()))?;
+    let mut files: Vec<PathBuf> =
+        found.collect::<Result<_, _>>().map_err(|error| refused(error.to_string()))?;
+    files.retain(|file| file.is_file());
+    files.sort();
+    if files.is_empty() {
+        return Err(refused("no file fits it".to_owned()));
+    }
+    Ok(files)
+}
+
+fn expand_folder(folder: &Path) -> Result<Vec<PathBuf>, DemError> {
+    library_error::quiet();
+    if Dataset::open(folder).is_ok() {
+        return Ok(vec![folder.to_path_buf()]);
+    }
+    let unreadable = |source| DemError::List { path: folder.to_path_buf(), source };
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
+        if path.is_file() && (has_ending(&path, &ENDINGS) || has_ending(&path, &PACKED)) {
+            files.push(path);
+        }
+    }
+    files.sort();
+    if files.is_empty() {
+        let endings = ENDINGS.join(", ");
+        return Err(DemError::EmptyFolder { path: folder.to_path_buf(), endings });
+    }
+    Ok(files)
+}
+
+/// GDAL's names for the content of a packed file: of `FILE.gz` what it holds, of `FILE.zip` the elevation files in it, sorted by name. Other
+/// names stay as they are.
+///
+/// # Errors
+/// When an archive cannot be read or holds no elevation file.
+pub fn unpack_name(name: PathBuf) -> Result<Vec<PathBuf>, DemError> {
+    let text = name.to_str().ok_or_else(|| DemError::NotUtf8 { path: name.clone() })?;
+    let is_inside = ["/vsigzip/", "/vsizip/", "/vsitar/"].iter().any(|at| text.starts_with(at));
+    if is_inside {
+        return Ok(vec![name]);
+    }
+    if has_ending(&name, &["gz"]) {
+        return Ok(vec![PathBuf::from(format!("/vsigzip/{text}"))]);
+    }
+    if !has_ending(&name, &["zip"]) {
+        return Ok(vec![name]);
+    }
+    library_error::quiet();
+    let archive = format!("/vsizip/{text}");
+    let refused = || DemError::Archive { path: name.clone(), endings: ENDINGS.join(", ") };
+    let entries = gdal::vsi::read_dir(&archive, true).map_err(|_| refused())?;
+    let mut files: Vec<PathBuf> = entries
+        .into_iter()
+        .filter(|entry| has_ending(entry, &ENDINGS))
+        .map(|entry| Path::new(&archive).join(entry))
+        .collect();
+    files.sort();
+    if files.is_empty() { Err(refused()) } else { Ok(files) }
+}
+
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|own| endings.iter().any(|ending| own.eq_ignore_ascii_case(ending)))
+}
