@@ -169,6 +169,7 @@ fn is_the_package(package: &Path, roads: &[Road]) {
     let vertices: usize = roads.iter().map(Road::vertices).sum();
     let in_pieces: usize = pieces.iter().map(|piece| piece.line.len()).sum();
     assert_eq!(vertices, in_pieces - (pieces.len() - lines));
+    points_add_up(package, &manifest, roads);
     for road in roads {
         assert_eq!(road.integer("vertices_out") as usize, road.vertices());
         assert_eq!(road.integer("parts") as usize, road.lines.len());
@@ -178,6 +179,21 @@ fn is_the_package(package: &Path, roads: &[Road]) {
         let rise_m: f64 = road.lines.iter().map(|line| line[line.len() - 1][2] - line[0][2]).sum();
         let climbed_m = road.real("ascent_m") - road.real("descent_m");
         assert!((climbed_m - rise_m).abs() < 1e-4, "way {}: {climbed_m} {rise_m}", road.way_id());
+    }
+}
+
+/// Points before draping are those that the build counted for the level; where roads were lost, some of them.
+fn points_add_up(package: &Path, manifest: &Value, roads: &[Road]) {
+    let growth = json(&["growth", text(package), "--json"]);
+    let counted =
+        growth["levels"].as_array().unwrap().last().unwrap()["simplified_vertices"].clone();
+    let points: i64 = roads.iter().map(|road| road.integer("vertices_in")).sum();
+    let losses = manifest["counts"]["roads_lost"].as_array().unwrap();
+    if losses.iter().all(|loss| loss["length_um"] == 0) {
+        assert_eq!(points, counted.as_i64().unwrap());
+    } else {
+        let share = points as f64 / counted.as_f64().unwrap();
+        assert!((0.95..=1.0).contains(&share), "{points} of {counted}");
     }
 }
 
@@ -340,7 +356,7 @@ fn pieces_are_the_lines_of_tiles() {
         for (road, piece) in roads.iter().zip(&pieces) {
             let key = (road.way_id(), road.text("tile").unwrap(), road.integer("part"));
             assert_eq!(key, (piece.way_id, piece.tile.clone(), piece.part));
-            assert_eq!(road.lines, [piece.line.clone()]);
+            assert_eq!(road.lines, std::slice::from_ref(&piece.line));
         }
     }
 }

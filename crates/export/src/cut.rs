@@ -62,9 +62,12 @@ fn between(from: Vertex, to: Vertex, share: f64) -> Vertex {
     }
 }
 
-/// Positions of longitude, latitude and height, as lines that do not cross the antimeridian (RFC 7946, 3.1.9). Neighbours
-/// are less than half the earth apart.
-pub(crate) fn cut_at_antimeridian(line: Vec<[f64; 3]>) -> Vec<Vec<[f64; 3]>> {
+/// Positions of longitude, latitude and height, as lines that do not cross the antimeridian (RFC 7946, 3.1.9), with longitudes
+/// within ±180. Neighbours are less than half the earth apart; longitudes may have run on past 180.
+pub(crate) fn cut_at_antimeridian(mut line: Vec<[f64; 3]>) -> Vec<Vec<[f64; 3]>> {
+    for [lon, ..] in line.iter_mut().filter(|[lon, ..]| lon.abs() > 180.0) {
+        *lon -= 360.0 * (*lon / 360.0).round();
+    }
     let crosses = |pair: &[[f64; 3]]| (pair[1][0] - pair[0][0]).abs() > 180.0;
     if !line.windows(2).any(crosses) {
         return vec![line];

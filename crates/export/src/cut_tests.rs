@@ -28,7 +28,7 @@ fn longitudes(piece: &Piece) -> Vec<f64> {
 #[test]
 fn what_is_inside_stays_as_it_is() {
     let inside = piece(&[1.0, 2.5, 4.0]);
-    assert_eq!(cut(&inside, 0.0, 10.0), [inside.clone()]);
+    assert_eq!(cut(&inside, 0.0, 10.0), std::slice::from_ref(&inside));
     assert!(cut(&inside, 5.0, 10.0).is_empty());
     assert!(cut(&inside, 4.0, 10.0).is_empty(), "one point is no line");
 }
@@ -79,6 +79,19 @@ fn lines_are_cut_at_the_antimeridian() {
         expected.iter().rev().map(|part| part.iter().rev().copied().collect::<Vec<_>>()).collect();
     let line = vec![[-178.0, 12.0, 300.0], [-179.0, 12.0, 300.0], [179.0, 10.0, 100.0]];
     assert_eq!(cut_at_antimeridian(line), back);
+}
+
+/// In a CRS in degrees longitudes run on past 180; they come back, and the line is cut as well.
+#[test]
+fn longitudes_that_ran_on_come_back() {
+    let line = vec![[179.0, 10.0, 100.0], [181.0, 12.0, 300.0], [182.0, 12.0, 300.0]];
+    let expected = vec![
+        vec![[179.0, 10.0, 100.0], [180.0, 11.0, 200.0]],
+        vec![[-180.0, 11.0, 200.0], [-179.0, 12.0, 300.0], [-178.0, 12.0, 300.0]],
+    ];
+    assert_eq!(cut_at_antimeridian(line), expected);
+    let line = vec![[-181.0, 1.0, 1.0], [-182.0, 2.0, 2.0]];
+    assert_eq!(cut_at_antimeridian(line), [vec![[179.0, 1.0, 1.0], [178.0, 2.0, 2.0]]]);
 }
 
 /// Vertices exactly on it are not doubled, and make no line of one point.

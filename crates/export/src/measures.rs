@@ -117,7 +117,8 @@ fn source_points(line: &Line) -> u64 {
         let [p, q, here] = [before, after, join].map(|index| vertices[index].at);
         let [along, off] = [[q[0] - p[0], q[1] - p[1]], [here[0] - p[0], here[1] - p[1]]];
         let area = along[0] * off[1] - along[1] * off[0];
-        let is_between = off[0] * along[0] + off[1] * along[1] >= 0.0;
+        let share = (off[0] * along[0] + off[1] * along[1]) / (along[0].powi(2) + along[1].powi(2));
+        let is_between = (0.0..=1.0).contains(&share);
         is_between && area.abs() <= along[0].hypot(along[1])
     };
     (all - line.joins.iter().filter(is_cut).count()) as u64

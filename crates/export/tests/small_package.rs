@@ -1,5 +1,7 @@
 //! The export on a package of four tiles, and its documentation.
 
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
 use std::{
     cell::Cell,
     fs,
@@ -17,7 +19,7 @@ use corniche_tileset::{FilePackage, InputRecord};
 /// The small package with a CRS that PROJ reads and an extract among its inputs.
 fn small_package(folder: &Path) -> PathBuf {
     let mut manifest = package::manifest();
-    manifest.crs_wkt = "EPSG:32632".to_owned();
+    manifest.crs_wkt = String::from("EPSG:32632");
     manifest.inputs = vec![InputRecord {
         kind: "osm".to_owned(),
         name: "roads.osm.pbf".to_owned(),

@@ -55,9 +55,9 @@ pub(crate) struct ExportRoadsArgs {
 /// Formats by the endings of their files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
-    /// `GeoPackage`
+    /// GeoPackage
     Gpkg,
-    /// `FlatGeobuf`
+    /// FlatGeobuf
     Fgb,
     /// GeoJSON (RFC 7946; with --crs EPSG:4979)
     Geojson,
@@ -88,7 +88,7 @@ pub(crate) enum ExportCrs {
 /// What becomes of heights in another CRS.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Heights {
-    /// Nothing
+    /// The package's heights
     AsIs,
 }
 

@@ -3,11 +3,11 @@ use std::path::Path;
 /// A file format of features.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VectorFormat {
-    /// `GeoPackage`: an `SQLite` database with a spatial index.
+    /// GeoPackage: an `SQLite` database with a spatial index.
     GeoPackage,
-    /// `FlatGeobuf`: one layer with a spatial index, to be read by ranges.
+    /// FlatGeobuf: one layer with a spatial index, to be read by ranges.
     FlatGeobuf,
-    /// `GeoJSON`, RFC 7946.
+    /// GeoJSON, RFC 7946.
     GeoJson,
     /// Comma-separated values, lines as WKT.
     Csv,
