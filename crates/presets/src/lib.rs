@@ -6,11 +6,14 @@
 mod class_cells;
 mod config;
 mod error;
+mod files;
+mod folder;
 mod frc;
 mod values;
 
 pub use class_cells::class_filter;
 pub use config::{Config, ResourceOptions, RoadOptions, TerrainOptions};
 pub use error::PresetError;
+pub use files::{InputFiles, OutputFiles};
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};
 pub use values::{check_cell, is_range, parse_bytes, parse_memory};

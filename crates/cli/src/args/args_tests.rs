@@ -15,7 +15,7 @@ fn options_of_later_issues_are_rejected() {
 #[test]
 fn the_options_of_resumed_builds_and_plans_are_understood() {
     let parse = |line: &str| Arguments::try_parse_from(line.split(' '));
-    let Ok(Arguments { command: Command::Build(args) }) =
+    let Ok(Arguments { command: Command::Build(args), .. }) =
         parse("corniche build --dem a.tif -o b --resume --tmp c --force")
     else {
         panic!("it is no build");
