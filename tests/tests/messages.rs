@@ -87,7 +87,7 @@ fn silence_leaves_the_answer_and_nothing_else() {
     let package = folder.path().join("pass.pmtiles");
     build_pass(&package, &["-q", "--max-error", "10"]);
     let [dem, plan] = [sample("pass/pass-dem.tif"), folder.path().join("plan.json")];
-    let [png, csv] = ["a.png", "a.csv"].map(|name| folder.path().join(name));
+    let [png, csv, store] = ["a.png", "a.csv", "store"].map(|name| folder.path().join(name));
     let package = text(&package);
     let lines: [&[&str]; 9] = [
         &["info", package, "-q"],
@@ -96,7 +96,7 @@ fn silence_leaves_the_answer_and_nothing_else() {
         &["verify", package, "-q"],
         &["plan", "--dem", text(&dem), "-q", "-o", text(&plan)],
         &["jobs", text(&plan), "--slots", "2", "-q"],
-        &["part", text(&plan), "--store", text(folder.path()), "--step", "hashes", "-q"],
+        &["part", text(&plan), "--store", text(&store), "--step", "hashes", "-q"],
         &["render", package, "-o", text(&png), "--size", "64x48", "-q"],
         &["fly", package, "-o", text(&csv), "--size", "64x48", "--frames", "2", "-q"],
     ];
@@ -261,7 +261,8 @@ fn names_that_no_file_should_have_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("pass.pmtiles");
     build_pass(&package, &["-q", "--max-error", "10"]);
-    let [dem, plan] = [sample("pass/pass-dem.tif"), folder.path().join("plan.json")];
+    let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
+    let plan = folder.path().join("plan.json");
     assert_eq!(corniche(["plan", "--dem", text(&dem), "-o", text(&plan)]).code, 0);
     let (package, plan) = (text(&package), text(&plan));
     let build = ["build", "--dem", text(&dem), "-o"];
@@ -270,7 +271,7 @@ fn names_that_no_file_should_have_are_refused() {
         (&build, &["-"], "standard output"),
         (&build, &["out.tif"], "out.tif.pmtiles"),
         (&build, &["s3://bucket/out.pmtiles"], "corniche merge"),
-        (&build, &["ok.pmtiles", "--defects", "-"], "standard output"),
+        (&build, &["ok.pmtiles", "--osm", text(&osm), "--defects", "-"], "standard output"),
         (&merge, &["-"], "standard output"),
         (&merge, &["out"], "out.pmtiles"),
         (&merge, &["s3://bucket/out"], "s3://bucket/out.pmtiles"),

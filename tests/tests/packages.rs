@@ -115,9 +115,9 @@ fn the_list_of_defects_is_what_the_summary_counts() {
     let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
     let of = |reason: &str| rows.iter().filter(|row| row[0] == reason).count() as u64;
     for defect in counts["defects"].as_array().unwrap() {
-        let reason = defect[0].as_str().unwrap();
+        let reason = defect["name"].as_str().unwrap();
         assert!(of(reason) > 0, "{reason}");
-        assert_eq!(of(reason), defect[1].as_u64().unwrap(), "{reason}");
+        assert_eq!(of(reason), defect["count"].as_u64().unwrap(), "{reason}");
     }
     let void = "where the data have no ground (void or edge)";
     let listed_m: f64 =
@@ -171,7 +171,8 @@ fn pass_accounts_for_every_road() {
     for (class, values) in values.iter().enumerate() {
         let sum =
             |of: &str| values.iter().map(|value| number(&truth["osm"][of][value])).sum::<f64>();
-        let [roads, micrometres] = [0, 1].map(|part| number(&counts["classes"][class][part]));
+        let [roads, micrometres] =
+            ["roads", "length_um"].map(|part| number(&counts["classes"][class][part]));
         let metres = micrometres / 1e6;
         assert!((roads - sum("ways_per_highway")).abs() < 0.5, "class {class}");
         // Coordinates were rounded to 1e-7 degrees, a centimetre a point.
@@ -192,7 +193,7 @@ fn pass_accounts_for_every_road() {
         .unwrap();
     assert!(number(&over_void["length_um"]) > 100e6, "way 158 ends in the large void");
     for class in 0..8 {
-        assert!(number(&counts["classes"][class][0]) > 0.0, "class {class} is missing");
+        assert!(number(&counts["classes"][class]["roads"]) > 0.0, "class {class} is missing");
     }
 }
 

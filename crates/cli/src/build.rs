@@ -1,6 +1,9 @@
 //! `corniche build`: runs the pipeline.
 
-use std::{io, path::Path};
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
 
 use corniche_pipeline::{BuildError, BuildSettings, BuildSummary, Existing, Leftovers};
 
@@ -14,12 +17,24 @@ use crate::{
     table::Digits,
 };
 
-pub(crate) fn run(args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
-    output::writable_package(&args.output)?;
+pub(crate) fn run(mut args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
+    let written = settings::complete(&mut args.work)?;
+    let Some(output) = args.output.take().or(written.package) else {
+        return Err(Failure::unusable(
+            "no package to write is named; give -o PACKAGE.pmtiles, or package under [output] in the settings file",
+        ));
+    };
+    output::writable_package(&output)?;
+    let defects = args.defects.take().or(written.defects);
+    if defects.is_some() && args.work.osm.is_none() {
+        return Err(Failure::unusable(
+            "--defects lists what is wrong with an extract; give it with --osm",
+        ));
+    }
     let mut others: Vec<&Path> = args.work.files().collect();
-    others.push(&args.output);
-    let watch = Watch::new(args.defects.as_deref(), args.overwrite, &others)?;
-    let settings = settings(*args)?;
+    others.push(&output);
+    let watch = Watch::new(defects.as_deref(), args.overwrite, &others)?;
+    let settings = settings(*args, output)?;
     let built = corniche_pipeline::build(&settings, &watch);
     finish(built, watch, &settings.output)
 }
@@ -53,11 +68,11 @@ pub(crate) fn finish(
 }
 
 /// The settings of a build.
-fn settings(args: BuildArgs) -> Result<BuildSettings, Failure> {
+fn settings(args: BuildArgs, output: PathBuf) -> Result<BuildSettings, Failure> {
     let Work { plan, resources, tmp, force } = settings::of(args.work)?;
     Ok(BuildSettings {
         plan,
-        output: args.output,
+        output,
         existing: if args.overwrite { Existing::Replace } else { Existing::Keep },
         tmp,
         leftovers: match (args.resume, args.overwrite) {

@@ -7,8 +7,8 @@ use plotters::{
     coord::Shift,
     element::DashedPathElement,
     prelude::{
-        BLACK, ChartBuilder, Color as _, DrawingArea, EmptyElement, IntoDrawingArea as _, PathElement,
-        Polygon, RGBColor, SVGBackend, ShapeStyle, Text, TextStyle, WHITE,
+        BLACK, ChartBuilder, Color as _, DrawingArea, EmptyElement, IntoDrawingArea as _,
+        PathElement, Polygon, RGBColor, SVGBackend, ShapeStyle, Text, TextStyle, WHITE,
     },
 };
 

@@ -5,10 +5,13 @@ mod chart;
 use std::io::{self, Write as _};
 
 use corniche_tileset::{FilePackage, GrowthRow, Manifest};
-use serde_json::json;
 
 use crate::{
     args::GrowthArgs,
+    documents::{
+        growth::{GrowthDocument, LevelGrowthDocument, WholeGrowthDocument},
+        to_line,
+    },
     exit::ExitCode,
     failure::Failure,
     output::{Existing, Output},
@@ -35,7 +38,7 @@ pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
     }
     let mut out = io::stdout().lock();
     if args.json {
-        writeln!(out, "{}", to_json(manifest))?;
+        writeln!(out, "{}", to_line(&document(manifest)))?;
     } else if args.csv {
         out.write_all(to_csv(manifest).as_bytes())?;
     } else {
@@ -167,32 +170,40 @@ fn to_text(manifest: &Manifest, digits: Digits) -> String {
     )
 }
 
-fn to_json(manifest: &Manifest) -> serde_json::Value {
+fn document(manifest: &Manifest) -> GrowthDocument {
     let (all, all_factors) = whole(manifest);
-    let level = |number: u8| {
-        let row = sum(manifest.growth.iter().filter(|row| row.level == number));
+    let level = |level: u8| {
+        let row = sum(manifest.growth.iter().filter(|row| row.level == level));
         let factors = factors(&row);
-        json!({
-            "level": number, "source_vertices": row.source_vertices,
-            "simplified_vertices": row.simplified_vertices, "geo_vertices": row.geo_vertices,
-            "sv_vertices": row.sv_vertices, "geo_raw_bytes": row.geo_raw_bytes,
-            "geo_stored_bytes": row.geo_stored_bytes, "sv_stored_bytes": row.sv_stored_bytes,
-            "growth_over_simplified": factors.over_simplified, "growth_over_source": factors.over_source,
-            "raw_bytes_over_simplified": factors.raw_over_simplified,
-            "stored_bytes_over_simplified": factors.stored_over_simplified,
-            "raw_bytes_over_source": factors.raw_bytes, "stored_bytes_over_source": factors.stored_bytes,
-        })
+        LevelGrowthDocument {
+            level,
+            source_vertices: row.source_vertices,
+            simplified_vertices: row.simplified_vertices,
+            geo_vertices: row.geo_vertices,
+            sv_vertices: row.sv_vertices,
+            geo_raw_bytes: row.geo_raw_bytes,
+            geo_stored_bytes: row.geo_stored_bytes,
+            sv_stored_bytes: row.sv_stored_bytes,
+            growth_over_simplified: factors.over_simplified,
+            growth_over_source: factors.over_source,
+            raw_bytes_over_simplified: factors.raw_over_simplified,
+            stored_bytes_over_simplified: factors.stored_over_simplified,
+            raw_bytes_over_source: factors.raw_bytes,
+            stored_bytes_over_source: factors.stored_bytes,
+        }
     };
-    json!({
-        "rows": manifest.growth,
-        "levels": manifest.levels.iter().map(|record| level(record.level)).collect::<Vec<_>>(),
-        "all_levels": {
-            "source_vertices": all.source_vertices, "geo_vertices": all.geo_vertices,
-            "growth_over_source": all_factors.over_source, "raw_bytes_over_source": all_factors.raw_bytes,
-            "stored_bytes_over_source": all_factors.stored_bytes,
+    GrowthDocument {
+        rows: manifest.growth.iter().map(Into::into).collect(),
+        levels: manifest.levels.iter().map(|record| level(record.level)).collect(),
+        all_levels: WholeGrowthDocument {
+            source_vertices: all.source_vertices,
+            geo_vertices: all.geo_vertices,
+            growth_over_source: all_factors.over_source,
+            raw_bytes_over_source: all_factors.raw_bytes,
+            stored_bytes_over_source: all_factors.stored_bytes,
         },
-        "paper": PAPER_GROWTH,
-    })
+        paper: PAPER_GROWTH,
+    }
 }
 
 /// A row for each level and class, then for each level, then for the whole; ratios are empty where there is nothing to divide by.
@@ -212,7 +223,13 @@ fn to_csv(manifest: &Manifest) -> String {
             factors.stored_over_simplified,
         ];
         let ratios = ratios.map(|ratio| ratio.map_or_else(String::new, |ratio| ratio.to_string()));
-        text.push_str(&[level, class].into_iter().chain(counts.iter().chain(&ratios).map(String::as_str)).collect::<Vec<_>>().join(","));
+        text.push_str(
+            &[level, class]
+                .into_iter()
+                .chain(counts.iter().chain(&ratios).map(String::as_str))
+                .collect::<Vec<_>>()
+                .join(","),
+        );
         text.push('\n');
     };
     for row in &manifest.growth {

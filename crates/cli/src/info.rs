@@ -8,10 +8,10 @@ use std::{
 
 use corniche_geom::Cell;
 use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, ScaleRecord};
-use serde_json::json;
 
 use crate::{
     args::InfoArgs,
+    documents::{info::InfoDocument, to_line},
     exit::ExitCode,
     failure::Failure,
     table::{Digits, Table, bytes, length},
@@ -22,8 +22,8 @@ pub(crate) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
     let mut out = io::stdout().lock();
     if args.json {
         let tiles: Vec<String> = package.tile_ids()?.iter().map(ToString::to_string).collect();
-        let value = json!({ "manifest": package.manifest(), "tiles": tiles });
-        writeln!(out, "{value}")?;
+        let document = InfoDocument { manifest: package.manifest().into(), tiles };
+        writeln!(out, "{}", to_line(&document))?;
     } else {
         let size = fs::metadata(&args.package)?.len();
         out.write_all(to_text(package.manifest(), size, Digits::on(&io::stdout())).as_bytes())?;

@@ -4,7 +4,14 @@ use std::io::{self, Write as _};
 
 use corniche_pipeline::{Job, JobSettings};
 
-use crate::{args::JobsArgs, exit::ExitCode, failure::Failure, part::read_plan, settings};
+use crate::{
+    args::JobsArgs,
+    documents::{plan::JobDocument, to_line},
+    exit::ExitCode,
+    failure::Failure,
+    part::read_plan,
+    settings,
+};
 
 pub(crate) fn run(args: &JobsArgs) -> Result<ExitCode, Failure> {
     if let Some(seconds) = args.least_work.filter(|&seconds| !(0.0..=1e9).contains(&seconds)) {
@@ -26,9 +33,7 @@ pub(crate) fn run(args: &JobsArgs) -> Result<ExitCode, Failure> {
 pub(crate) fn print(jobs: &[Job]) -> Result<ExitCode, Failure> {
     let mut out = io::stdout().lock();
     for job in jobs {
-        let line =
-            serde_json::to_string(job).map_err(|error| Failure::new(ExitCode::Failed, error))?;
-        writeln!(out, "{line}")?;
+        writeln!(out, "{}", to_line(&JobDocument::from(job)))?;
     }
     Ok(ExitCode::Done)
 }

@@ -7,6 +7,7 @@ mod build;
 mod chart;
 mod completions;
 mod defects;
+mod documents;
 mod exit;
 mod export;
 mod failure;

@@ -11,7 +11,6 @@ use std::{
     time::Instant,
 };
 
-use serde_json::json;
 use tracing::level_filters::LevelFilter;
 use tracing_subscriber::{
     Layer as _, filter::Targets, fmt, layer::SubscriberExt as _, util::SubscriberInitExt as _,
@@ -20,6 +19,10 @@ use tracing_subscriber::{
 use self::lines::Lines;
 use crate::{
     args::{LogFormat, Voice},
+    documents::{
+        progress::{EndRecord, ProgressRecord},
+        to_line,
+    },
     exit::ExitCode,
     failure::Failure,
 };
@@ -79,7 +82,7 @@ pub(crate) fn note(text: &str) {
 /// Something that should be seen, also with `--quiet`.
 pub(crate) fn warning(text: &str) {
     if voice().json_progress {
-        write_line(&json!({ "warning": text }).to_string());
+        write_line(&to_line(&ProgressRecord::Warning { warning: text }));
     } else {
         tracing::warn!("{text}");
     }
@@ -95,12 +98,13 @@ pub(crate) fn error(failure: &Failure) {
 /// How the program ends: with `--json-progress` the last record, else the error, if there is one.
 pub(crate) fn ended(code: ExitCode, failure: Option<&Failure>) {
     if voice().json_progress {
-        let seconds = BEGUN.get().map(|begun| begun.elapsed().as_secs_f64());
-        let text = failure.map(ToString::to_string);
-        let end = json!({
-            "result": code.word(), "exit_code": code.number(), "error": text, "seconds": seconds,
-        });
-        write_line(&json!({ "end": end }).to_string());
+        let end = EndRecord {
+            result: code.word(),
+            exit_code: code.number(),
+            error: failure.map(ToString::to_string),
+            seconds: BEGUN.get().map_or(0.0, |begun| begun.elapsed().as_secs_f64()),
+        };
+        write_line(&to_line(&ProgressRecord::End { end }));
     } else if let Some(failure) = failure {
         error(failure);
     }

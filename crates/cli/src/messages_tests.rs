@@ -35,7 +35,8 @@ fn talk() {
     tracing::warn!("odd");
     tracing::info!("good to know");
     tracing::debug!(tiles = 3, name = "a b", "done");
-    tracing::trace!("step");
+    let stage = tracing::info_span!("stage", id = "tiles");
+    tracing::trace!(parent: &stage, "step");
     tracing::warn!(target: "wgpu_core", "from a library");
     tracing::debug!(target: "wgpu_core", "a detail of a library");
 }
@@ -51,7 +52,7 @@ fn lines_are_for_people_and_details_have_spans_and_fields() {
             "corniche: warning: odd",
             "good to know",
             "debug: build: done tiles=3 name=\"a b\"",
-            "trace: build: step",
+            "trace: build: stage(id=\"tiles\"): step",
             "corniche: warning: from a library",
             "debug: build: a detail of a library",
         ]

@@ -7,10 +7,10 @@ use std::{
 };
 
 use corniche_pipeline::{BuildPlan, Estimate, MIN_MEMORY_BYTES, Observer, Resources, Stage};
-use serde_json::json;
 
 use crate::{
     args::PlanArgs,
+    documents::{plan::PlanDocument, to_line},
     exit::ExitCode,
     failure::Failure,
     interrupt, jobs,
@@ -19,7 +19,8 @@ use crate::{
     table::{Digits, Table, bytes},
 };
 
-pub(crate) fn run(args: PlanArgs) -> Result<ExitCode, Failure> {
+pub(crate) fn run(mut args: PlanArgs) -> Result<ExitCode, Failure> {
+    settings::complete(&mut args.work)?;
     // An unusable place is reported before the files are looked at.
     let written = match &args.output {
         Some(path) => {
@@ -52,8 +53,7 @@ pub(crate) fn run(args: PlanArgs) -> Result<ExitCode, Failure> {
     let digits = Digits::on(&io::stdout());
     let mut out = io::stdout().lock();
     if args.json {
-        let value = json!({ "plan_sha256": plan.hash(), "estimate": estimate });
-        writeln!(out, "{value}")?;
+        writeln!(out, "{}", to_line(&PlanDocument::new(&plan, estimate)))?;
     } else {
         out.write_all(to_text(&plan, &estimate, work.resources, digits).as_bytes())?;
     }

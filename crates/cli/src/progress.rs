@@ -30,6 +30,7 @@ use self::{
 };
 use crate::{
     args::{LogFormat, Voice},
+    documents::to_line,
     interrupt, messages,
     messages::write_line,
     table::Digits,
@@ -141,7 +142,7 @@ impl Progress {
         let used = Usage::now().since(&state.used_before);
         match self.shared.manner {
             Manner::Quiet => {}
-            Manner::Json => write_line(&state.costs.to_json(wall, &used).to_string()),
+            Manner::Json => write_line(&to_line(&state.costs.record(wall, &used))),
             Manner::Bars | Manner::Lines => {
                 let table = state.costs.to_text(wall, &used, digits());
                 write_line(&format!("\n{}", table.trim_end()));
@@ -229,7 +230,7 @@ impl State {
         }
         match manner {
             Manner::Quiet => {}
-            Manner::Json => write_line(&reading.to_json("end").to_string()),
+            Manner::Json => write_line(&to_line(&reading.record("end"))),
             Manner::Bars | Manner::Lines => {
                 write_line(&format!("{:22} {}", reading.stage.title(), reading.ended(digits())));
             }
@@ -304,7 +305,7 @@ impl Running {
         (self.told, self.told_done) = (Instant::now(), self.done);
         let reading = self.read();
         match (manner, &self.bar) {
-            (Manner::Json, _) => write_line(&reading.to_json("running").to_string()),
+            (Manner::Json, _) => write_line(&to_line(&reading.record("running"))),
             (_, Some(bar)) => {
                 if let Some(total) = self.total {
                     bar.set_length(total);
@@ -333,7 +334,7 @@ impl Observer for Progress {
         state.end_running(manner);
         let running = Running::new(stage, total, manner);
         if manner == Manner::Json {
-            write_line(&running.read().to_json("begin").to_string());
+            write_line(&to_line(&running.read().record("begin")));
         }
         state.running = Some(running);
     }

@@ -1,14 +1,19 @@
 //! Turns arguments and settings files into checked settings.
 
-use std::{num::NonZeroUsize, path::PathBuf, thread};
+use std::{
+    mem,
+    num::NonZeroUsize,
+    path::{Path, PathBuf},
+    thread,
+};
 
 use corniche_geom::Cell;
 use corniche_pipeline::{
     OpenOptions, PlanOptions, PlanSettings, Resources, RoadSettings, TerrainRecord, TerrainSettings,
 };
 use corniche_presets::{
-    BoundsChoice, Config, RoadOptions, TerrainOptions, check_cell, class_filter, is_range,
-    parse_memory,
+    BoundsChoice, InputFiles, OutputFiles, RoadOptions, TerrainOptions, check_cell, class_filter,
+    is_range, parse_memory,
 };
 use corniche_roads::ClassFilter;
 
@@ -31,16 +36,39 @@ pub(crate) struct Work {
     pub(crate) force: bool,
 }
 
-/// The only place where text becomes settings. The command line has precedence over the settings file, which has precedence
-/// over the defaults.
-pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
-    let config = match &args.config {
-        Some(path) => presets::read_config(path)?,
-        None => Config::default(),
+/// Puts what the settings file says where the command line says nothing, and gives what it says of outputs.
+pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles, Failure> {
+    let Some(path) = &args.config else { return Ok(OutputFiles::default()) };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let config = presets::read_config(path)?.in_folder(folder);
+    let given = InputFiles {
+        dem: mem::take(&mut args.dem),
+        terrain: args.terrain_of.take(),
+        osm: args.osm.take(),
     };
-    let terrain = args.terrain.or(config.terrain);
-    let roads = args.roads.or(config.roads);
-    let resources = args.resources.or(config.resources);
+    let InputFiles { dem, terrain, osm } = given.or(config.inputs);
+    let place = path.display();
+    if dem.is_empty() && terrain.is_none() {
+        return Err(Failure::unusable(format!(
+            "no elevation is named; give --dem FILE, or dem under [inputs] in {place}"
+        )));
+    }
+    if !dem.is_empty() && terrain.is_some() {
+        return Err(Failure::unusable(format!(
+            "{place} has dem and terrain under [inputs]; terrain comes from one of them, so leave the other out"
+        )));
+    }
+    (args.dem, args.terrain_of, args.osm) = (dem, terrain, osm);
+    args.terrain = mem::take(&mut args.terrain).or(config.terrain);
+    args.roads = mem::take(&mut args.roads).or(config.roads);
+    args.resources = mem::take(&mut args.resources).or(config.resources);
+    Ok(config.output)
+}
+
+/// The only place where text becomes settings. The command line has precedence over the settings file, which has precedence
+/// over the defaults; [`complete`] has put both together.
+pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
+    let WorkArgs { terrain, roads, resources, .. } = args;
     // What is not given is as it was when the package was made whose terrain is taken, else the usual.
     let base = match &args.terrain_of {
         Some(package) => TerrainRecord::of_package(package)?,
@@ -59,13 +87,19 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
         roads: road_settings(roads)?,
         generator: generator(),
     };
-    let force = args.force;
-    Ok(Work {
-        plan,
-        resources: self::resources(resources.threads, resources.memory.as_deref())?,
-        tmp: resources.tmp,
-        force,
-    })
+    let (tmp, force) = (resources.tmp, args.force);
+    let resources = self::resources(resources.threads, resources.memory.as_deref())?;
+    tracing::debug!(
+        dem = ?plan.dem,
+        terrain_of = ?plan.terrain_of,
+        osm = ?plan.osm,
+        terrain = ?plan.terrain,
+        simplify_cells = plan.roads.simplify_cells,
+        threads = resources.threads,
+        memory_bytes = resources.memory_bytes,
+        "settings"
+    );
+    Ok(Work { plan, resources, tmp, force })
 }
 
 /// The name of an input for GDAL and for plans.

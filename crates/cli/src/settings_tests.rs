@@ -1,4 +1,4 @@
-use corniche_presets::ResourceOptions;
+use corniche_presets::{Config, ResourceOptions};
 
 use super::*;
 

@@ -2,13 +2,15 @@
 
 use std::io::{self, BufWriter, Write as _};
 
-use corniche_geom::Bounds;
-use corniche_tileset::{FilePackage, Sections, TilePayload};
+use corniche_geom::{Bounds, TileId};
+use corniche_tileset::{FilePackage, Manifest, Sections, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
-use serde_json::{Value, json};
 
 use crate::{
     args::{Coordinates, TileArgs},
+    documents::tile::{
+        GeoRoadDocument, SvRoadDocument, TileDocument, TinDocument, WayDocument, normal,
+    },
     exit::ExitCode,
     failure::Failure,
     table::{Digits, Table},
@@ -16,17 +18,17 @@ use crate::{
 
 pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
     let package = FilePackage::open(&args.package)?;
-    let unusable = |error| Failure::new(ExitCode::Unusable, error);
-    let Some(payload) = package.payload(args.id, Sections::ALL).map_err(unusable)? else {
-        return Err(Failure::unusable(format!(
-            "{} has no tile {}; corniche info --json lists its tiles",
-            args.package.display(),
-            args.id
-        )));
+    let payload = match (args.id, args.at) {
+        (Some(id), _) => payload(&package, id)?.ok_or_else(|| no_tile(args, id))?,
+        (None, Some(at)) => payload_at(args, &package, at)?,
+        // The command line has one of them.
+        (None, None) => return Err(Failure::unusable("name a tile: Z/X/Y, or --at LON,LAT")),
     };
     let mut out = BufWriter::new(io::stdout().lock());
     if args.json {
-        writeln!(out, "{}", to_json(&package, &payload, args.coordinates)?)?;
+        let document = document(package.manifest(), &payload, args.coordinates)?;
+        serde_json::to_writer(&mut out, &document).map_err(io::Error::from)?;
+        writeln!(out)?;
     } else {
         out.write_all(to_text(&payload, Digits::on(&io::stdout())).as_bytes())?;
     }
@@ -34,97 +36,177 @@ pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::Done)
 }
 
+fn payload(package: &FilePackage, id: TileId) -> Result<Option<TilePayload>, Failure> {
+    package.payload(id, Sections::ALL).map_err(|error| Failure::new(ExitCode::Unusable, error))
+}
+
+fn no_tile(args: &TileArgs, id: TileId) -> Failure {
+    let package = args.package.display();
+    Failure::unusable(format!("{package} has no tile {id}; corniche info --json lists its tiles"))
+}
+
+/// The tile of the level asked for that holds a place, else the finest one there.
+fn payload_at(
+    args: &TileArgs,
+    package: &FilePackage,
+    [lon_deg, lat_deg]: [f64; 2],
+) -> Result<TilePayload, Failure> {
+    let manifest = package.manifest();
+    let finest = manifest.frame.max_level();
+    if let Some(level) = args.level.filter(|&level| level > finest) {
+        return Err(Failure::unusable(format!("--level {level}: the finest level is {finest}")));
+    }
+    let levels = args.level.map_or(0..=finest, |level| level..=level);
+    for level in levels.rev() {
+        if let Some(id) = tile_at(manifest, level, [lon_deg, lat_deg])
+            && let Some(payload) = payload(package, id)?
+        {
+            return Ok(payload);
+        }
+    }
+    let on = args.level.map_or_else(String::new, |level| format!(" on level {level}"));
+    Err(Failure::unusable(format!(
+        "{} has no tile{on} at longitude {lon_deg}, latitude {lat_deg}; it covers {:?} (west, south, east, north in degrees)",
+        args.package.display(),
+        manifest.wgs84_bounds.to_array()
+    )))
+}
+
+/// The tile of a level that holds a place; `None` outside the root tile.
+fn tile_at(manifest: &Manifest, level: u8, [lon_deg, lat_deg]: [f64; 2]) -> Option<TileId> {
+    // Longitudes of a package may run on past 180.
+    [0.0, 360.0, -360.0].into_iter().find_map(|turn| {
+        let position = manifest.coordinates.working_from_wgs84([lon_deg + turn, lat_deg])?;
+        let point = manifest.frame.snap(position)?;
+        let [column, row] = manifest.frame.tile_column_row(level, point);
+        TileId::new(level, u32::try_from(column).ok()?, u32::try_from(row).ok()?).ok()
+    })
+}
+
 fn to_text(payload: &TilePayload, digits: Digits) -> String {
     let mut table = Table::new(["tile", &payload.id.to_string()]);
+    let count = |number: usize| digits.count(number as u64);
     if let Some(terrain) = &payload.terrain {
-        table.row(["vertices".into(), digits.count(terrain.tin.vertices().len() as u64)]);
-        table.row(["triangles".into(), digits.count(terrain.tin.triangles().len() as u64)]);
+        table.row(["vertices".into(), count(terrain.tin.vertices().len())]);
+        table.row(["triangles".into(), count(terrain.tin.triangles().len())]);
         table.row(["geometric error".into(), format!("{:.3} m", terrain.geometric_error_m)]);
         let [low, high] = terrain.height_range_m;
         table.row(["heights".into(), format!("{low:.1} to {high:.1} m")]);
     }
-    table.row(["GEO lines".into(), digits.count(payload.roads_geo.len() as u64)]);
-    let vertices = payload.roads_geo.iter().map(|road| road.line.vertices.len() as u64).sum();
-    table.row(["GEO vertices".into(), digits.count(vertices)]);
-    table.row(["SV lines".into(), digits.count(payload.roads_sv.len() as u64)]);
-    table.row(["ways".into(), digits.count(payload.attributes.len() as u64)]);
+    table.row(["GEO lines".into(), count(payload.roads_geo.len())]);
+    let vertices = payload.roads_geo.iter().map(|road| road.line.vertices.len()).sum();
+    table.row(["GEO vertices".into(), count(vertices)]);
+    table.row(["SV lines".into(), count(payload.roads_sv.len())]);
+    table.row(["ways".into(), count(payload.attributes.len())]);
     table.to_text()
 }
 
-/// Programs rely on this schema: keys may be added, but not changed.
-fn to_json(
-    package: &FilePackage,
+/// Makes coordinates of one kind from working metres.
+struct Places {
+    /// What working metres are divided by.
+    unit: [f64; 2],
+}
+
+impl Places {
+    fn of(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [x / self.unit[0], y / self.unit[1]]
+    }
+
+    fn with_height(&self, position: [f64; 2], height_m: f64) -> [f64; 3] {
+        let [x, y] = self.of(position);
+        [x, y, height_m]
+    }
+}
+
+fn document(
+    manifest: &Manifest,
     payload: &TilePayload,
     coordinates: Coordinates,
-) -> Result<Value, Failure> {
-    let manifest = package.manifest();
+) -> Result<TileDocument, Failure> {
     let frame = &manifest.frame;
     let id = payload.id;
-    // What working metres are divided by.
-    let [unit_x, unit_y] = match coordinates {
-        Coordinates::Working => [1.0; 2],
-        Coordinates::Crs => manifest.metres_per_unit,
+    let (word, unit) = match coordinates {
+        Coordinates::Working => ("working", [1.0; 2]),
+        Coordinates::Crs => ("crs", manifest.metres_per_unit),
     };
-    let place = |[x, y]: [f64; 2]| [x / unit_x, y / unit_y];
+    let places = Places { unit };
     let Bounds { min_x, min_y, max_x, max_y } = frame.tile_bounds(id);
     // Where an axis counts back, its smallest coordinate is that of the other end.
     let mut bounds = Bounds::EMPTY;
-    bounds.include(place([min_x, min_y]));
-    bounds.include(place([max_x, max_y]));
-    let level = manifest.levels.get(usize::from(id.z()));
-    let mut value = json!({
-        "id": id.to_string(),
-        "crs": manifest.crs,
-        "coordinates": match coordinates {
-            Coordinates::Working => "working",
-            Coordinates::Crs => "crs",
-        },
-        "metres_per_unit": manifest.metres_per_unit,
-        "bounds": bounds.to_array(),
-        "cell_m": frame.level_cell(id.z()).to_array(),
-        "max_error_m": level.map(|level| level.max_error_m),
-        "geometric_error_m": null,
-        "height_range_m": null,
-        "tin": { "vertices": [], "triangles": [] },
-        "roads_geo": [],
-        "roads_sv": payload.roads_sv.iter().map(|road| json!({
-            "way_id": road.way_id, "part": road.part, "frc": road.class.number(),
-            "line": road.line.points.iter().map(|&point| place(frame.position_m(point))).collect::<Vec<_>>(),
-            "ground_range_m": road.line.ground_range_m,
-        })).collect::<Vec<_>>(),
-    });
-    let Some(terrain) = &payload.terrain else { return Ok(value) };
+    bounds.include(places.of([min_x, min_y]));
+    bounds.include(places.of([max_x, max_y]));
+    let terrain = payload.terrain.as_ref();
+    let roads_geo = match terrain {
+        Some(terrain) => roads_geo(manifest, payload, terrain, &places)?,
+        None => Vec::new(),
+    };
+    Ok(TileDocument {
+        id: id.to_string(),
+        crs: manifest.crs.clone(),
+        coordinates: word,
+        metres_per_unit: manifest.metres_per_unit,
+        bounds: bounds.to_array(),
+        cell_m: frame.level_cell(id.z()).to_array(),
+        max_error_m: manifest.levels.get(usize::from(id.z())).map(|level| level.max_error_m),
+        geometric_error_m: terrain.map(|terrain| terrain.geometric_error_m),
+        height_range_m: terrain.map(|terrain| terrain.height_range_m),
+        uncovered_nodes: terrain.map(|terrain| terrain.uncovered_nodes),
+        tin: terrain.map(|terrain| tin(manifest, id, terrain, &places)).unwrap_or_default(),
+        roads_geo,
+        roads_sv: roads_sv(manifest, payload, &places),
+        attributes: payload.attributes.iter().map(WayDocument::from).collect(),
+    })
+}
+
+fn tin(manifest: &Manifest, id: TileId, terrain: &Terrain, places: &Places) -> TinDocument {
+    let frame = &manifest.frame;
     let corner = frame.tile_corner(id);
     let stride = frame.stride(id.z());
-    let vertices: Vec<[f64; 3]> = terrain
-        .tin
-        .vertices()
-        .iter()
-        .map(|vertex| {
-            let [x, y] = place([
-                frame.x_m(corner.i + i64::from(vertex.column) * stride),
-                frame.y_m(corner.j - i64::from(vertex.row) * stride),
-            ]);
-            [x, y, f64::from(vertex.height_q) * manifest.vertical.quantum_m]
-        })
-        .collect();
-    let placement = Placement::of_tile(frame, id, manifest.vertical.quantum_m);
-    let surface = Surface::new(&terrain.tin, placement);
-    let mut roads = Vec::new();
-    for road in &payload.roads_geo {
-        let line = corniche_drape::positions(&road.line, &surface)
-            .map_err(|error| Failure::new(ExitCode::Unusable, error))?
-            .into_iter()
-            .map(|[u, v, z]| {
-                let [x, y] = place(frame.position_of_fraction_m([u, v]));
-                [x, y, z]
-            })
-            .collect::<Vec<_>>();
-        roads.push(json!({ "way_id": road.way_id, "part": road.part, "frc": road.class.number(), "line": line }));
+    let vertices = terrain.tin.vertices().iter().map(|vertex| {
+        let x = frame.x_m(corner.i + i64::from(vertex.column) * stride);
+        let y = frame.y_m(corner.j - i64::from(vertex.row) * stride);
+        places.with_height([x, y], f64::from(vertex.height_q) * manifest.vertical.quantum_m)
+    });
+    TinDocument {
+        vertices: vertices.collect(),
+        normals: terrain.normals.iter().map(|&code| normal(code)).collect(),
+        triangles: terrain.tin.triangles().to_vec(),
     }
-    value["geometric_error_m"] = json!(terrain.geometric_error_m);
-    value["height_range_m"] = json!(terrain.height_range_m);
-    value["tin"] = json!({ "vertices": vertices, "triangles": terrain.tin.triangles() });
-    value["roads_geo"] = Value::Array(roads);
-    Ok(value)
+}
+
+fn roads_geo(
+    manifest: &Manifest,
+    payload: &TilePayload,
+    terrain: &Terrain,
+    places: &Places,
+) -> Result<Vec<GeoRoadDocument>, Failure> {
+    let frame = &manifest.frame;
+    let placement = Placement::of_tile(frame, payload.id, manifest.vertical.quantum_m);
+    let surface = Surface::new(&terrain.tin, placement);
+    let road = |road: &corniche_tileset::GeoRoad| {
+        let positions = corniche_drape::positions(&road.line, &surface)
+            .map_err(|error| Failure::new(ExitCode::Unusable, error))?;
+        let place = |[u, v, height_m]: [f64; 3]| {
+            places.with_height(frame.position_of_fraction_m([u, v]), height_m)
+        };
+        Ok(GeoRoadDocument {
+            way_id: road.way_id,
+            part: road.part,
+            frc: road.class.number(),
+            line: positions.into_iter().map(place).collect(),
+        })
+    };
+    payload.roads_geo.iter().map(road).collect()
+}
+
+fn roads_sv(manifest: &Manifest, payload: &TilePayload, places: &Places) -> Vec<SvRoadDocument> {
+    let place = |&point: &_| places.of(manifest.frame.position_m(point));
+    let road = |road: &corniche_tileset::SvRoad| SvRoadDocument {
+        way_id: road.way_id,
+        part: road.part,
+        frc: road.class.number(),
+        line: road.line.points.iter().map(place).collect(),
+        ground_range_m: road.line.ground_range_m.clone(),
+    };
+    payload.roads_sv.iter().map(road).collect()
 }

@@ -9,10 +9,10 @@ use std::{
 use corniche_pipeline::{ErrorFigures, VerifyError, VerifyOsm, VerifyReport, VerifySettings};
 use corniche_presets::frc_preset;
 use corniche_tileset::FilePackage;
-use serde_json::json;
 
 use crate::{
     args::VerifyArgs,
+    documents::{to_line, verify::VerifyDocument},
     exit::ExitCode,
     failure::Failure,
     info::or_dash,
@@ -33,7 +33,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
     };
     let report = corniche_pipeline::verify(&settings, &Progress::new())?;
     let text = if args.json {
-        format!("{}\n", to_json(&report))
+        format!("{}\n", to_line(&VerifyDocument::from(&report)))
     } else {
         to_text(&report, Digits::on(&io::stdout()))
     };
@@ -164,27 +164,6 @@ fn errors(errors: &[ErrorFigures], digits: Digits) -> Table {
         ]);
     }
     table
-}
-
-fn to_json(report: &VerifyReport) -> serde_json::Value {
-    json!({
-        "holds": report.holds(),
-        "tiles": report.tiles,
-        "borders": report.borders,
-        "checks": report.checks.iter().map(|check| json!({
-            "id": check.id.id(), "promise": check.id.promise(), "holds": check.verdict(), "checked": check.checked, "broken": check.broken,
-            "examples": check.examples,
-        })).collect::<Vec<_>>(),
-        "gaps": report.gaps.iter().map(|gap| json!({
-            "level": gap.level, "edges": gap.edges, "largest_m": gap.largest_m,
-        })).collect::<Vec<_>>(),
-        "errors": report.errors.iter().map(|figures| json!({
-            "level": figures.level, "tiles": figures.tiles, "nodes": figures.nodes,
-            "largest_true_m": figures.largest_true_m, "tightness": figures.tightness,
-            "uncovered_nodes": figures.uncovered_nodes,
-        })).collect::<Vec<_>>(),
-        "samples": report.samples,
-    })
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use serde::{Deserialize, Deserializer};
 use crate::{
     BoundsChoice, Classes, PresetError,
     error::bounded,
+    files::{InputFiles, OutputFiles},
     values::{parse_cell, parse_range},
 };
 
@@ -16,6 +17,10 @@ use crate::{
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Config {
+    /// `[inputs]`
+    pub inputs: InputFiles,
+    /// `[output]`
+    pub output: OutputFiles,
     /// `[terrain]`
     pub terrain: TerrainOptions,
     /// `[roads]`

@@ -8,6 +8,8 @@ mod class_cells;
 mod classes;
 mod config;
 mod error;
+mod files;
+mod folder;
 mod frc;
 mod values;
 
@@ -16,5 +18,6 @@ pub use class_cells::class_filter;
 pub use classes::Classes;
 pub use config::{Config, ResourceOptions, RoadOptions, TerrainOptions};
 pub use error::PresetError;
+pub use files::{InputFiles, OutputFiles};
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};
 pub use values::{check_cell, is_range, parse_bytes, parse_memory};

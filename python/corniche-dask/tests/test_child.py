@@ -123,10 +123,13 @@ def test_the_log_is_what_is_for_people() -> None:
         json.dumps({"warning": "a warning"}),
         json.dumps({"summary": [], "all": {"cpu_seconds": 1.5, "peak_memory_bytes": 7, "read_bytes": None, "written_bytes": 2}}),
         "5",
+        json.dumps({"end": {"result": "done", "exit_code": 0, "error": None, "seconds": 1.0}}),
     ]
     told, log = read_log("\n".join(lines))
     assert log == ["corniche: an error", "warning: a warning", "5"]
     assert told == {"cpu_seconds": 1.5, "peak_memory_bytes": 7, "read_bytes": None, "written_bytes": 2}
+    end = json.dumps({"end": {"result": "unusable", "exit_code": 2, "error": "no such file", "seconds": 0.1}})
+    assert read_log(end) == ({}, ["corniche: no such file"])
     assert len(read_log("\n".join(str(number) for number in range(100)))[1]) == children.LAST_LINES
 
 

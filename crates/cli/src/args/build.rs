@@ -11,7 +11,7 @@ use corniche_presets::{ResourceOptions, RoadOptions, TerrainOptions};
 pub(crate) struct WorkArgs {
     /// Elevation rasters, any format GDAL reads; where they overlap, the first has precedence. Also folders, patterns such as 'a/*.tif', @LIST (a
     /// text file with a name on each line), .gz, .zip, and https:// and s3:// addresses
-    #[arg(long, value_name = "FILE", num_args = 1.., required_unless_present = "terrain_of")]
+    #[arg(long, value_name = "FILE", num_args = 1.., required_unless_present_any = ["terrain_of", "config"])]
     pub(crate) dem: Vec<PathBuf>,
     /// Take the terrain of this package, made by the same program with the same terrain settings, in place of elevation rasters:
     /// the result is the same, sooner; terrain settings and credits that are not given are the package's
@@ -23,7 +23,8 @@ pub(crate) struct WorkArgs {
     /// Credit to show wherever the package is shown, such as that of a DEM; may be given several times
     #[arg(long, value_name = "TEXT")]
     pub(crate) attribution: Vec<String>,
-    /// Settings file; options on the command line have precedence over it
+    /// Settings file, which can name inputs and outputs, too; options on the command line have precedence over it. Paths in it begin at
+    /// the folder that it is in
     #[arg(long, value_name = "TOML")]
     pub(crate) config: Option<PathBuf>,
     /// Begin although memory or disk space are not expected to suffice, or there are more than 16 nodes per DEM sample
@@ -48,8 +49,8 @@ impl WorkArgs {
 #[derive(Debug, Args)]
 pub(crate) struct BuildArgs {
     /// The package to write (.pmtiles)
-    #[arg(short, long, value_name = "PACKAGE")]
-    pub(crate) output: PathBuf,
+    #[arg(short, long, value_name = "PACKAGE", required_unless_present = "config")]
+    pub(crate) output: Option<PathBuf>,
     /// Replace the package if it exists, once the new one is complete; if it is a link, replace the file it leads to
     #[arg(short = 'O', long)]
     pub(crate) overwrite: bool,
@@ -58,7 +59,7 @@ pub(crate) struct BuildArgs {
     pub(crate) resume: bool,
     /// Also list every defect of the extract and every road lost, one per line (CSV); an existing list is kept
     /// unless -O is given
-    #[arg(long, value_name = "CSV", requires = "osm")]
+    #[arg(long, value_name = "CSV")]
     pub(crate) defects: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) work: WorkArgs,

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use corniche_geom::TileId;
 use corniche_pipeline::CheckId;
 
-use super::ReportArgs;
+use super::{ReportArgs, values::parse_position};
 use crate::{failure::Failure, names::is_package_name};
 
 /// What `verify --help` ends with: the checks, by their ids.
@@ -111,9 +111,15 @@ pub(crate) struct TileArgs {
     /// The package
     pub(crate) package: PathBuf,
     /// The tile: level, column from the west, row from the north
-    #[arg(value_name = "Z/X/Y")]
-    pub(crate) id: TileId,
-    /// Print everything as JSON, for programs; in working metres
+    #[arg(value_name = "Z/X/Y", required_unless_present = "at")]
+    pub(crate) id: Option<TileId>,
+    /// The finest tile at this longitude and latitude (degrees, WGS84), in place of Z/X/Y
+    #[arg(long, value_name = "LON,LAT", value_parser = parse_position, allow_hyphen_values = true, conflicts_with = "id")]
+    pub(crate) at: Option<[f64; 2]>,
+    /// With --at: the tile of this level
+    #[arg(long, value_name = "Z", requires = "at")]
+    pub(crate) level: Option<u8>,
+    /// Print all that the tile holds as JSON, for programs: ground with normals, roads, attributes; in working metres
     #[arg(long)]
     pub(crate) json: bool,
     /// What x and y in the JSON are: working metres, or coordinates of the package's CRS

@@ -57,7 +57,12 @@ pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
         };
         let points: Vec<(f64, f64)> = of_class.map(point).collect();
         let name = format!("FRC {class}");
-        (!points.is_empty()).then_some(Curve { name, color, points, marks: Marks::Shape(usize::from(class)) })
+        (!points.is_empty()).then_some(Curve {
+            name,
+            color,
+            points,
+            marks: Marks::Shape(usize::from(class)),
+        })
     };
     let curves: Vec<Curve> = (0_u8..).zip(CLASS_COLORS).filter_map(curve).collect();
     draw(&axes, &curves)

@@ -7,7 +7,7 @@ use tracing::{
     field::{Field, Visit},
 };
 use tracing_subscriber::{
-    fmt::{FmtContext, FormatEvent, FormatFields, format::Writer},
+    fmt::{FmtContext, FormatEvent, FormatFields, FormattedFields, format::Writer},
     registry::LookupSpan,
 };
 
@@ -37,7 +37,13 @@ where
                 let level = if level == Level::DEBUG { "debug" } else { "trace" };
                 write!(writer, "{level}: ")?;
                 for span in context.event_scope().into_iter().flat_map(|scope| scope.from_root()) {
-                    write!(writer, "{}: ", span.name())?;
+                    write!(writer, "{}", span.name())?;
+                    let extensions = span.extensions();
+                    let fields = extensions.get::<FormattedFields<N>>();
+                    if let Some(fields) = fields.filter(|fields| !fields.is_empty()) {
+                        write!(writer, "({fields})")?;
+                    }
+                    writer.write_str(": ")?;
                 }
                 writeln!(writer, "{message}{fields}")
             }

@@ -3,13 +3,15 @@
 use std::time::Duration;
 
 use corniche_pipeline::Stage;
-use serde_json::{Value, json};
 
 use super::{
     texts::{amount, rate},
     usage::Usage,
 };
-use crate::table::{Digits, Table, bytes};
+use crate::{
+    documents::progress::{CostRecord, ProgressRecord, StageCostRecord, seconds},
+    table::{Digits, Table, bytes},
+};
 
 /// What one stage took.
 #[derive(Debug, Clone)]
@@ -65,13 +67,13 @@ impl Costs {
             "stage", "done", "wall", "CPU", "cores", "rate", "memory", "read", "written",
         ]);
         let row = |title: &str, done: String, wall: Duration, rate: String, used: &Usage| {
-            let seconds = |time: Duration| format!("{:.2} s", time.as_secs_f64());
+            let in_seconds = |time: Duration| format!("{:.2} s", time.as_secs_f64());
             let or_empty = |text: Option<String>| text.unwrap_or_default();
             [
                 title.to_owned(),
                 done,
-                seconds(wall),
-                or_empty(used.cpu.map(seconds)),
+                in_seconds(wall),
+                or_empty(used.cpu.map(in_seconds)),
                 or_empty(cores_busy(wall, used).map(|cores| format!("{cores:.2}"))),
                 rate,
                 or_empty(used.peak_memory_bytes.map(bytes)),
@@ -95,28 +97,31 @@ impl Costs {
         table.without_empty_columns().to_text()
     }
 
-    /// The same for programs. What is not known is null.
-    pub(crate) fn to_json(&self, wall: Duration, used: &Usage) -> Value {
-        let figures = |wall: Duration, used: &Usage| {
-            json!({
-                "seconds": wall.as_secs_f64(),
-                "cpu_seconds": used.cpu.map(|cpu| cpu.as_secs_f64()),
-                "cores_busy": cores_busy(wall, used),
-                "peak_memory_bytes": used.peak_memory_bytes,
-                "read_bytes": used.read_bytes,
-                "written_bytes": used.written_bytes,
-            })
+    /// The same for programs.
+    pub(crate) fn record(&self, wall: Duration, used: &Usage) -> ProgressRecord<'static> {
+        let stage = |cost: &Cost| StageCostRecord {
+            stage: cost.stage.id(),
+            title: cost.stage.title(),
+            done: cost.done,
+            already: cost.already,
+            per_second: cost.per_second(),
+            cost: figures(cost.wall, &cost.used),
         };
-        let rows = self.0.iter().map(|cost| {
-            let mut row = figures(cost.wall, &cost.used);
-            row["stage"] = json!(cost.stage.id());
-            row["title"] = json!(cost.stage.title());
-            row["done"] = json!(cost.done);
-            row["already"] = json!(cost.already);
-            row["per_second"] = json!(cost.per_second());
-            row
-        });
-        json!({ "summary": rows.collect::<Vec<_>>(), "all": figures(wall, used) })
+        ProgressRecord::Costs {
+            summary: self.0.iter().map(stage).collect(),
+            all: figures(wall, used),
+        }
+    }
+}
+
+fn figures(wall: Duration, used: &Usage) -> CostRecord {
+    CostRecord {
+        seconds: wall.as_secs_f64(),
+        cpu_seconds: seconds(used.cpu),
+        cores_busy: cores_busy(wall, used),
+        peak_memory_bytes: used.peak_memory_bytes,
+        read_bytes: used.read_bytes,
+        written_bytes: used.written_bytes,
     }
 }
 

@@ -1,3 +1,5 @@
+use serde_json::json;
+
 use super::*;
 
 fn used(cpu_s: f64, peak_mb: u64, read_mb: u64) -> Usage {
@@ -42,7 +44,7 @@ fn what_the_system_does_not_tell_has_no_column() {
     let text = costs.to_text(Duration::from_secs(1), &Usage::default(), Digits::Apart);
     let headings: Vec<&str> = text.lines().next().unwrap().split_ascii_whitespace().collect();
     assert_eq!(headings, ["stage", "done", "wall"], "{text}");
-    let json = costs.to_json(Duration::from_secs(1), &Usage::default());
+    let json = value(costs.record(Duration::from_secs(1), &Usage::default()));
     for figure in ["cpu_seconds", "cores_busy", "peak_memory_bytes", "read_bytes", "per_second"] {
         assert!(json["summary"][0][figure].is_null(), "{json}");
     }
@@ -65,7 +67,7 @@ fn a_stage_that_comes_twice_has_one_row() {
     costs.add(cost(Stage::Tiles, [10, 4], 3, used(2.0, 50, 1)));
     costs.add(cost(Stage::Verify, [1, 0], 1, used(1.0, 60, 1)));
     costs.add(cost(Stage::Tiles, [20, 2], 5, used(4.0, 70, 2)));
-    let json = costs.to_json(Duration::from_secs(9), &used(7.0, 70, 4));
+    let json = value(costs.record(Duration::from_secs(9), &used(7.0, 70, 4)));
     let rows = json["summary"].as_array().unwrap();
     assert_eq!(rows.len(), 2);
     let tiles = &rows[0];
@@ -77,4 +79,8 @@ fn a_stage_that_comes_twice_has_one_row() {
     assert_eq!((&tiles["cores_busy"], &tiles["per_second"]), (&json!(0.75), &json!(3.0)));
     assert_eq!(tiles["peak_memory_bytes"], json!(70_000_000));
     assert_eq!(json["all"]["seconds"], json!(9.0));
+}
+
+fn value(record: ProgressRecord<'_>) -> serde_json::Value {
+    serde_json::to_value(record).unwrap()
 }

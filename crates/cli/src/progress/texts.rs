@@ -3,10 +3,12 @@
 use std::time::Duration;
 
 use corniche_pipeline::{Stage, Unit};
-use serde_json::{Value, json};
 
 use super::usage::Usage;
-use crate::table::{Digits, bytes};
+use crate::{
+    documents::progress::{ProgressRecord, StageRecord, seconds},
+    table::{Digits, bytes},
+};
 
 /// What is known of a stage at one moment.
 #[derive(Debug, Clone)]
@@ -64,15 +66,22 @@ impl Reading {
         }
     }
 
-    /// For programs. What is not known is null.
-    pub(crate) fn to_json(&self, state: &str) -> Value {
-        json!({
-            "stage": self.stage.id(), "title": self.stage.title(), "state": state, "unit": plural(self.stage.unit()),
-            "done": self.done, "already": self.already, "total": self.total,
-            "seconds": self.elapsed.as_secs_f64(),
-            "cpu_seconds": self.used.cpu.map(|cpu| cpu.as_secs_f64()), "per_second": self.per_second,
-            "seconds_left": self.left.map(|left| left.as_secs_f64()),
-            "read_bytes": self.used.read_bytes, "written_bytes": self.used.written_bytes,
+    /// For programs.
+    pub(crate) fn record(&self, state: &'static str) -> ProgressRecord<'static> {
+        ProgressRecord::Stage(StageRecord {
+            stage: self.stage.id(),
+            title: self.stage.title(),
+            state,
+            unit: plural(self.stage.unit()),
+            done: self.done,
+            already: self.already,
+            total: self.total,
+            seconds: self.elapsed.as_secs_f64(),
+            cpu_seconds: seconds(self.used.cpu),
+            per_second: self.per_second,
+            seconds_left: seconds(self.left),
+            read_bytes: self.used.read_bytes,
+            written_bytes: self.used.written_bytes,
         })
     }
 }

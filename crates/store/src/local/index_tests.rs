@@ -42,8 +42,12 @@ proptest! {
 /// The largest values that an entry has room for come back.
 #[test]
 fn keeps_the_largest_values() {
-    let place =
-        Location { part: PART_LIMIT - 1, offset: OFFSET_LIMIT - 1, length: u32::MAX, crc: u32::MAX };
+    let place = Location {
+        part: PART_LIMIT - 1,
+        offset: OFFSET_LIMIT - 1,
+        length: u32::MAX,
+        crc: u32::MAX,
+    };
     let key = Key { kind: u8::MAX, item: u64::MAX };
     let mut index = Index::default();
     assert!(index.insert(key, place));

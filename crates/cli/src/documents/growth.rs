@@ -1,0 +1,114 @@
+//! `corniche growth --json`.
+
+use corniche_tileset::GrowthRow;
+use serde::Serialize;
+
+/// What laying roads on the terrain costs.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct GrowthDocument {
+    /// One for each level and class.
+    pub(crate) rows: Vec<RowDocument>,
+    /// One for each level.
+    pub(crate) levels: Vec<LevelGrowthDocument>,
+    /// All levels, against one copy of the source.
+    pub(crate) all_levels: WholeGrowthDocument,
+    /// What the paper reports for whole data sets: times the source's.
+    pub(crate) paper: f64,
+}
+
+/// What one class costs on one level.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct RowDocument {
+    /// Level.
+    pub(crate) level: u8,
+    /// Functional road class.
+    pub(crate) class: u8,
+    /// Points of the source lines that lie in tiles with ground.
+    pub(crate) source_vertices: u64,
+    /// Points of the level's simplified lines that lie in tiles with ground.
+    pub(crate) simplified_vertices: u64,
+    /// Vertices of the clipped lines.
+    pub(crate) geo_vertices: u64,
+    /// Points of the plan lines for shadow volumes.
+    pub(crate) sv_vertices: u64,
+    /// Bytes of the source lines as plain f64 pairs.
+    pub(crate) source_bytes: u64,
+    /// Bytes of the simplified lines as plain f64 pairs.
+    pub(crate) simplified_bytes: u64,
+    /// Bytes of the clipped lines as plain f64 triples.
+    pub(crate) geo_raw_bytes: u64,
+    /// Bytes of the clipped lines as stored.
+    pub(crate) geo_stored_bytes: u64,
+    /// Bytes of the plan lines as stored.
+    pub(crate) sv_stored_bytes: u64,
+}
+
+impl From<&GrowthRow> for RowDocument {
+    fn from(row: &GrowthRow) -> Self {
+        Self {
+            level: row.level,
+            class: row.class,
+            source_vertices: row.source_vertices,
+            simplified_vertices: row.simplified_vertices,
+            geo_vertices: row.geo_vertices,
+            sv_vertices: row.sv_vertices,
+            source_bytes: row.source_bytes,
+            simplified_bytes: row.simplified_bytes,
+            geo_raw_bytes: row.geo_raw_bytes,
+            geo_stored_bytes: row.geo_stored_bytes,
+            sv_stored_bytes: row.sv_stored_bytes,
+        }
+    }
+}
+
+/// What a level costs, all classes. Ratios are null where there is nothing to divide by.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct LevelGrowthDocument {
+    /// Level.
+    pub(crate) level: u8,
+    /// Points of the source lines that lie in tiles with ground.
+    pub(crate) source_vertices: u64,
+    /// Points of the level's simplified lines that lie in tiles with ground.
+    pub(crate) simplified_vertices: u64,
+    /// Vertices of the clipped lines.
+    pub(crate) geo_vertices: u64,
+    /// Points of the plan lines for shadow volumes.
+    pub(crate) sv_vertices: u64,
+    /// Bytes of the clipped lines as plain f64 triples.
+    pub(crate) geo_raw_bytes: u64,
+    /// Bytes of the clipped lines as stored.
+    pub(crate) geo_stored_bytes: u64,
+    /// Bytes of the plan lines as stored.
+    pub(crate) sv_stored_bytes: u64,
+    /// Clipped vertices over simplified ones.
+    pub(crate) growth_over_simplified: Option<f64>,
+    /// Clipped vertices over the source's.
+    pub(crate) growth_over_source: Option<f64>,
+    /// Clipped bytes, raw, over those of the simplified lines.
+    pub(crate) raw_bytes_over_simplified: Option<f64>,
+    /// Clipped bytes, stored, over those of the simplified lines.
+    pub(crate) stored_bytes_over_simplified: Option<f64>,
+    /// Clipped bytes, raw, over the source's.
+    pub(crate) raw_bytes_over_source: Option<f64>,
+    /// Clipped bytes, stored, over the source's.
+    pub(crate) stored_bytes_over_source: Option<f64>,
+}
+
+/// What all levels cost together. Ratios are null where there is nothing to divide by.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct WholeGrowthDocument {
+    /// Points of the source lines, once.
+    pub(crate) source_vertices: u64,
+    /// Vertices of the clipped lines of all levels.
+    pub(crate) geo_vertices: u64,
+    /// Clipped vertices over the source's.
+    pub(crate) growth_over_source: Option<f64>,
+    /// Clipped bytes, raw, over the source's.
+    pub(crate) raw_bytes_over_source: Option<f64>,
+    /// Clipped bytes, stored, over the source's.
+    pub(crate) stored_bytes_over_source: Option<f64>,
+}

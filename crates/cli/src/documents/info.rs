@@ -1,0 +1,214 @@
+//! `corniche info --json`: the manifest, with objects where the file has pairs.
+
+mod counts;
+mod frame;
+mod levels;
+
+use corniche_geom::CoordinateTable;
+use corniche_tileset::{InputRecord, Manifest, ScaleRecord, SettingsRecord, VerticalRecord};
+use serde::Serialize;
+
+use self::{
+    counts::CountsDocument,
+    frame::{BoundsDocument, FrameDocument},
+    levels::LevelDocument,
+};
+use super::growth::RowDocument;
+
+/// What a package holds.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct InfoDocument {
+    /// Its table of contents.
+    pub(crate) manifest: ManifestDocument,
+    /// Its tiles, "z/x/y".
+    pub(crate) tiles: Vec<String>,
+}
+
+/// The table of contents of a package.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct ManifestDocument {
+    /// Version of the encodings.
+    format_version: u32,
+    /// Program and version that wrote the package, with its GDAL and PROJ.
+    generator: String,
+    /// Says that z/x/y is a local quadtree in the working CRS.
+    tiling: String,
+    /// CRS: "EPSG:…" where it has a code, else its name. Its coordinates times `metres_per_unit` are working metres.
+    crs: String,
+    /// CRS as WKT2.
+    crs_wkt: String,
+    /// Working metres to a unit of the CRS's coordinates, east and north.
+    metres_per_unit: [f64; 2],
+    /// Working metres to a true metre, at the centre.
+    point_scale: f64,
+    /// The same along each axis, at the centre and over the data's rim.
+    scale: ScaleDocument,
+    /// The grid.
+    frame: FrameDocument,
+    /// Rectangle of the DEM's nodes, working metres.
+    data_bounds: BoundsDocument,
+    /// The same in WGS84 degrees.
+    wgs84_bounds: BoundsDocument,
+    /// How nodes relate to the DEM's samples, in words.
+    resampling: String,
+    /// Whether nodes and the DEM's samples are the same points.
+    nodes_are_samples: bool,
+    /// Heights.
+    vertical: VerticalDocument,
+    /// WGS84 ⇄ working CRS without PROJ.
+    #[cfg_attr(test, schemars(with = "frame::CoordinatesSchema"))]
+    coordinates: CoordinateTable,
+    /// One for each level, root first.
+    levels: Vec<LevelDocument>,
+    /// Settings that determine the bytes.
+    settings: SettingsDocument,
+    /// SHA-256 of the settings.
+    settings_sha256: String,
+    /// What was read.
+    inputs: Vec<InputDocument>,
+    /// Credits to show wherever the package is shown.
+    attribution: Vec<String>,
+    /// What came in, what was kept, what was lost and why.
+    counts: CountsDocument,
+    /// What clipping costs, per level and class.
+    growth: Vec<RowDocument>,
+}
+
+/// Working metres to a true metre, along x and along y.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct ScaleDocument {
+    /// In the middle of the data.
+    center: [f64; 2],
+    /// The smallest over corners, middles of sides and centre of every file.
+    least: [f64; 2],
+    /// The largest.
+    largest: [f64; 2],
+}
+
+/// Heights: step, unit, datum.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct VerticalDocument {
+    /// One step of heights, metres.
+    quantum_m: f64,
+    /// Always "metre".
+    unit: String,
+    /// Vertical datum as far as the inputs name one, else "unknown".
+    datum: String,
+    /// What was done to the inputs' heights, in words.
+    treatment: String,
+    /// Lowest and highest node, metres.
+    range_m: [f64; 2],
+}
+
+/// Settings that determine the bytes of a package.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct SettingsDocument {
+    /// `--max-error`.
+    max_error_m: f64,
+    /// `--fill-voids`.
+    fill_voids: u32,
+    /// Each `--nodata`, in their order.
+    nodata: Vec<f64>,
+    /// `--height-range`, if given.
+    height_range_m: Option<[f64; 2]>,
+    /// `--dem-crs`, if given.
+    dem_crs: Option<String>,
+    /// `--dem-vertical-crs`, if given.
+    dem_vertical_crs: Option<String>,
+    /// `--vertical-crs`, if given.
+    vertical_crs: Option<String>,
+    /// `--vertical-shift`; 0 when not given.
+    vertical_shift_m: f64,
+    /// `--crs`, if given.
+    crs: Option<String>,
+    /// `--cell`, if given, east and north.
+    cell_m: Option<[f64; 2]>,
+    /// `--cell-every`, if given.
+    cell_every: Option<u32>,
+    /// `--scale-latitude`, if given.
+    scale_latitude_deg: Option<f64>,
+    /// Name of the FRC table.
+    frc_table: String,
+    /// SHA-256 of the FRC table's text.
+    frc_table_sha256: String,
+    /// Coarsest cell, metres, at which each class is still shown, class 0 first; null: on every level.
+    class_max_cell_m: Vec<Option<f64>>,
+    /// Simplification tolerance in cells of the level; 0 is off.
+    simplify_cells: f64,
+}
+
+/// An input file.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct InputDocument {
+    /// "dem"; "dem-part", a file that the one before it refers to or that belongs to it; or "osm".
+    kind: String,
+    /// File name without folders.
+    name: String,
+    /// Its size.
+    bytes: u64,
+    /// SHA-256 of its bytes.
+    sha256: String,
+}
+
+impl From<&Manifest> for ManifestDocument {
+    fn from(manifest: &Manifest) -> Self {
+        let manifest = manifest.clone();
+        let ScaleRecord { center, least, largest } = manifest.scale;
+        let VerticalRecord { quantum_m, unit, datum, treatment, range_m } = manifest.vertical;
+        let input =
+            |InputRecord { kind, name, bytes, sha256 }| InputDocument { kind, name, bytes, sha256 };
+        Self {
+            format_version: manifest.format_version,
+            generator: manifest.generator,
+            tiling: manifest.tiling,
+            crs: manifest.crs,
+            crs_wkt: manifest.crs_wkt,
+            metres_per_unit: manifest.metres_per_unit,
+            point_scale: manifest.point_scale,
+            scale: ScaleDocument { center, least, largest },
+            frame: FrameDocument::from(&manifest.frame),
+            data_bounds: manifest.data_bounds.into(),
+            wgs84_bounds: manifest.wgs84_bounds.into(),
+            resampling: manifest.resampling,
+            nodes_are_samples: manifest.nodes_are_samples,
+            vertical: VerticalDocument { quantum_m, unit, datum, treatment, range_m },
+            coordinates: manifest.coordinates,
+            levels: manifest.levels.iter().map(Into::into).collect(),
+            settings: manifest.settings.into(),
+            settings_sha256: manifest.settings_sha256,
+            inputs: manifest.inputs.into_iter().map(input).collect(),
+            attribution: manifest.attribution,
+            counts: manifest.counts.into(),
+            growth: manifest.growth.iter().map(Into::into).collect(),
+        }
+    }
+}
+
+impl From<SettingsRecord> for SettingsDocument {
+    fn from(settings: SettingsRecord) -> Self {
+        Self {
+            max_error_m: settings.max_error_m,
+            fill_voids: settings.fill_voids,
+            nodata: settings.nodata,
+            height_range_m: settings.height_range_m,
+            dem_crs: settings.dem_crs,
+            dem_vertical_crs: settings.dem_vertical_crs,
+            vertical_crs: settings.vertical_crs,
+            vertical_shift_m: settings.vertical_shift_m,
+            crs: settings.crs,
+            cell_m: settings.cell_m.map(corniche_geom::Cell::to_array),
+            cell_every: settings.cell_every,
+            scale_latitude_deg: settings.scale_latitude_deg,
+            frc_table: settings.frc_table,
+            frc_table_sha256: settings.frc_table_sha256,
+            class_max_cell_m: settings.class_max_cell_m,
+            simplify_cells: settings.simplify_cells,
+        }
+    }
+}

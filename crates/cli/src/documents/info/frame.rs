@@ -1,0 +1,74 @@
+//! Where a package lies.
+
+use corniche_geom::{Bounds, Frame, NodeIndex};
+use serde::Serialize;
+
+/// The grid of a package.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct FrameDocument {
+    /// Position of node 0, 0: x and y in working metres.
+    origin_m: [f64; 2],
+    /// Spacing of the finest nodes, east and north, working metres.
+    cell_m: [f64; 2],
+    /// North-west corner of the root tile.
+    root_corner: NodeDocument,
+    /// The finest level.
+    max_level: u8,
+}
+
+/// A node of the grid.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct NodeDocument {
+    /// Nodes east of the origin.
+    i: i64,
+    /// Nodes north of the origin.
+    j: i64,
+}
+
+/// A rectangle.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct BoundsDocument {
+    /// West edge.
+    min_x: f64,
+    /// South edge.
+    min_y: f64,
+    /// East edge.
+    max_x: f64,
+    /// North edge.
+    max_y: f64,
+}
+
+/// A table of longitudes and latitudes over the working CRS, to be interpolated by Lagrange's cubic along both axes. It writes itself;
+/// this is its schema.
+#[cfg(test)]
+#[derive(schemars::JsonSchema)]
+#[expect(dead_code, reason = "only its schema is wanted")]
+pub(crate) struct CoordinatesSchema {
+    /// What it covers, working metres.
+    bounds: BoundsDocument,
+    /// Samples along each side.
+    size: usize,
+    /// Longitude and latitude of each sample, degrees, row by row from the south. Longitudes may run on past 180.
+    samples_deg: Vec<[f64; 2]>,
+}
+
+impl From<&Frame> for FrameDocument {
+    fn from(frame: &Frame) -> Self {
+        let NodeIndex { i, j } = frame.root_corner();
+        Self {
+            origin_m: frame.origin_m(),
+            cell_m: frame.cell().to_array(),
+            root_corner: NodeDocument { i, j },
+            max_level: frame.max_level(),
+        }
+    }
+}
+
+impl From<Bounds> for BoundsDocument {
+    fn from(Bounds { min_x, min_y, max_x, max_y }: Bounds) -> Self {
+        Self { min_x, min_y, max_x, max_y }
+    }
+}

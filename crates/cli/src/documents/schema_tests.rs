@@ -1,0 +1,83 @@
+//! The schemas under `docs/schema` are those of the types. `CORNICHE_BLESS=1` writes them.
+
+use std::{fs, path::PathBuf};
+
+use schemars::{Schema, schema_for};
+use serde_json::{Value, json};
+
+use super::{
+    growth::GrowthDocument,
+    info::InfoDocument,
+    plan::{JobDocument, PlanDocument},
+    progress::ProgressRecord,
+    tile::TileDocument,
+    verify::VerifyDocument,
+};
+
+fn schemas() -> [(&'static str, &'static str, Schema); 7] {
+    [
+        ("growth", "corniche growth --json", schema_for!(GrowthDocument)),
+        ("info", "corniche info --json", schema_for!(InfoDocument)),
+        ("job", "a line of corniche jobs", schema_for!(JobDocument)),
+        ("plan", "corniche plan --json", schema_for!(PlanDocument)),
+        ("progress", "a line of --json-progress", schema_for!(ProgressRecord)),
+        ("tile", "corniche tile --json", schema_for!(TileDocument)),
+        ("verify", "corniche verify --json", schema_for!(VerifyDocument)),
+    ]
+}
+
+#[test]
+fn the_schemas_in_the_docs_are_those_of_the_program() {
+    let folder: PathBuf =
+        [env!("CARGO_MANIFEST_DIR"), "..", "..", "docs", "schema"].iter().collect();
+    for (name, title, schema) in schemas() {
+        let mut value = serde_json::to_value(schema).unwrap();
+        value["title"] = json!(title);
+        let text = format!("{}\n", serde_json::to_string_pretty(&value).unwrap());
+        let path = folder.join(format!("{name}.schema.json"));
+        if std::env::var_os("CORNICHE_BLESS").is_some() {
+            fs::create_dir_all(&folder).unwrap();
+            fs::write(&path, &text).unwrap();
+        }
+        let stored = fs::read_to_string(&path).unwrap_or_default();
+        assert!(
+            stored == text,
+            "{} is not up to date; write it with CORNICHE_BLESS=1",
+            path.display()
+        );
+    }
+}
+
+/// A field that the manifest gets must be in the document, too.
+#[test]
+fn the_document_has_all_fields_of_the_manifest() {
+    fn check(manifest: &Value, document: &Value, place: &str) {
+        match (manifest, document) {
+            (Value::Object(fields), Value::Object(ours)) => {
+                let names = |fields: &serde_json::Map<String, Value>| -> Vec<String> {
+                    fields.keys().cloned().collect()
+                };
+                assert_eq!(names(fields), names(ours), "{place}");
+                for (name, value) in fields {
+                    check(value, &ours[name], &format!("{place}.{name}"));
+                }
+            }
+            (Value::Array(values), Value::Array(ours)) => {
+                assert_eq!(values.len(), ours.len(), "{place}");
+                for (value, our) in values.iter().zip(ours) {
+                    check(value, our, place);
+                }
+            }
+            // A pair in the file is an object here.
+            (Value::Array(pair), Value::Object(_)) => assert_eq!(pair.len(), 2, "{place}"),
+            _ => assert_eq!(manifest, document, "{place}"),
+        }
+    }
+    let manifest = corniche_testing::package::manifest();
+    let document = super::info::ManifestDocument::from(&manifest);
+    check(
+        &serde_json::to_value(&manifest).unwrap(),
+        &serde_json::to_value(document).unwrap(),
+        "manifest",
+    );
+}

@@ -1,0 +1,148 @@
+//! `corniche tile --json`.
+
+use corniche_tileset::RoadRecord;
+use serde::Serialize;
+
+/// A tile, decoded.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct TileDocument {
+    /// Level, column from the west, row from the north: "z/x/y".
+    pub(crate) id: String,
+    /// CRS of the package.
+    pub(crate) crs: String,
+    /// What x and y are: "working" metres, or coordinates of the package's "crs".
+    pub(crate) coordinates: &'static str,
+    /// Working metres to a unit of the CRS's coordinates, east and north.
+    pub(crate) metres_per_unit: [f64; 2],
+    /// Smallest x and y, largest x and y.
+    pub(crate) bounds: [f64; 4],
+    /// Spacing of the level's nodes, east and north, working metres.
+    pub(crate) cell_m: [f64; 2],
+    /// Meshing tolerance of the level.
+    pub(crate) max_error_m: Option<f64>,
+    /// Error of drawing this tile instead of the full-resolution DEM; null without ground.
+    pub(crate) geometric_error_m: Option<f64>,
+    /// Heights of the lowest and the highest full-resolution node beneath the tile; null without ground.
+    pub(crate) height_range_m: Option<[f64; 2]>,
+    /// Full-resolution nodes with data beneath that the triangles do not cover; null without ground.
+    pub(crate) uncovered_nodes: Option<u64>,
+    /// The ground.
+    pub(crate) tin: TinDocument,
+    /// Roads as geometry, on the triangles.
+    pub(crate) roads_geo: Vec<GeoRoadDocument>,
+    /// Roads as plan lines, for shadow volumes.
+    pub(crate) roads_sv: Vec<SvRoadDocument>,
+    /// What is known of each way that occurs in the tile, sorted by way id.
+    pub(crate) attributes: Vec<WayDocument>,
+}
+
+/// Triangles of the ground.
+#[derive(Debug, Default, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct TinDocument {
+    /// x, y and height in metres of each vertex.
+    pub(crate) vertices: Vec<[f64; 3]>,
+    /// Unit normal of the DEM at each vertex, in working axes: east, north, up. Stored in steps of 1/127.
+    pub(crate) normals: Vec<[f64; 3]>,
+    /// Three vertices of each triangle, counter-clockwise seen from above in working metres.
+    pub(crate) triangles: Vec<[u32; 3]>,
+}
+
+/// A piece of a road on the triangles.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct GeoRoadDocument {
+    /// OSM's id of the way.
+    pub(crate) way_id: i64,
+    /// Number of this piece along the way within the tile, from 0.
+    pub(crate) part: u32,
+    /// Functional road class.
+    pub(crate) frc: u8,
+    /// x, y and height in metres of each point.
+    pub(crate) line: Vec<[f64; 3]>,
+}
+
+/// A piece of a road in plan.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct SvRoadDocument {
+    /// OSM's id of the way.
+    pub(crate) way_id: i64,
+    /// Number of this piece along the way within the tile, from 0.
+    pub(crate) part: u32,
+    /// Functional road class.
+    pub(crate) frc: u8,
+    /// x and y of each point.
+    pub(crate) line: Vec<[f64; 2]>,
+    /// Lowest and highest ground near each segment.
+    pub(crate) ground_range_m: Vec<[f64; 2]>,
+}
+
+/// What is known of a way.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct WayDocument {
+    /// OSM's id of the way.
+    pub(crate) way_id: i64,
+    /// How it is built: "ordinary", "dual_carriageway", "link" or "roundabout".
+    pub(crate) form: &'static str,
+    /// What carries it: "ground", "bridge" or "tunnel".
+    pub(crate) structure: &'static str,
+    /// OSM's `layer`.
+    pub(crate) layer: i8,
+    /// Permitted direction along the way: "no" (both), "forward" or "backward".
+    pub(crate) oneway: &'static str,
+    /// `name`; null without.
+    pub(crate) name: Option<String>,
+    /// `ref`; null without.
+    #[serde(rename = "ref")]
+    pub(crate) reference: Option<String>,
+    /// `surface`; null without.
+    pub(crate) surface: Option<String>,
+}
+
+impl From<&RoadRecord> for WayDocument {
+    fn from(record: &RoadRecord) -> Self {
+        use corniche_roads::{Form, Oneway, Structure};
+        let attributes = &record.attributes;
+        let text = |text: &str| (!text.is_empty()).then(|| text.to_owned());
+        Self {
+            way_id: record.way_id,
+            form: match attributes.form {
+                Form::Ordinary => "ordinary",
+                Form::DualCarriageway => "dual_carriageway",
+                Form::Link => "link",
+                Form::Roundabout => "roundabout",
+            },
+            structure: match attributes.structure {
+                Structure::Ground => "ground",
+                Structure::Bridge => "bridge",
+                Structure::Tunnel => "tunnel",
+            },
+            layer: attributes.layer,
+            oneway: match attributes.oneway {
+                Oneway::No => "no",
+                Oneway::Forward => "forward",
+                Oneway::Backward => "backward",
+            },
+            name: text(&attributes.name),
+            reference: text(&attributes.reference),
+            surface: text(&attributes.surface),
+        }
+    }
+}
+
+/// A unit vector from its octahedron code, in steps of 1/127; it points upwards.
+///
+/// Source: Meyer et al. 2010, *On Floating-Point Normal Vectors*, section 3.
+pub(crate) fn normal([u, v]: [i8; 2]) -> [f64; 3] {
+    let [x, y] = [u, v].map(|step| f64::from(step) / 127.0);
+    let z = (1.0 - x.abs() - y.abs()).max(0.0);
+    let length = (x * x + y * y + z * z).sqrt();
+    [x, y, z].map(|side| side / length)
+}
+
+#[cfg(test)]
+#[path = "tile_tests.rs"]
+mod tests;

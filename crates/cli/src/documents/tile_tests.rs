@@ -1,0 +1,18 @@
+use super::*;
+
+#[test]
+fn normals_are_unit_vectors_that_point_up() {
+    assert_eq!(normal([0, 0]), [0.0, 0.0, 1.0]);
+    let [x, y, z] = normal([127, 0]);
+    assert_eq!((x, y, z), (1.0, 0.0, 0.0));
+    for u in -127..=127_i8 {
+        for v in -127..=127_i8 {
+            let [x, y, z] = normal([u, v]);
+            assert!((x.hypot(y).hypot(z) - 1.0).abs() < 1e-12 && z >= 0.0, "{u} {v}");
+            assert!(x * f64::from(u) >= 0.0 && y * f64::from(v) >= 0.0, "{u} {v}");
+        }
+    }
+    // A slope of 45° to the east: (−1, 0, 1)/√2 has half of the octahedron's length along x.
+    let [x, _, z] = normal([-64, 0]);
+    assert!((x + z).abs() < 0.02, "{x} {z}");
+}

@@ -1,0 +1,55 @@
+//! Files that a settings file names.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Deserializer};
+
+/// What is read: the section `[inputs]`.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct InputFiles {
+    /// `--dem`: a list, or one alone.
+    #[serde(deserialize_with = "one_or_many")]
+    pub dem: Vec<PathBuf>,
+    /// `--terrain`.
+    pub terrain: Option<PathBuf>,
+    /// `--osm`.
+    pub osm: Option<PathBuf>,
+}
+
+impl InputFiles {
+    /// These files; those that are not given are taken from `other`. Rasters and a package with terrain are two ways to give one thing:
+    /// if one of them is given here, neither is taken from `other`.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        let (dem, terrain) = if self.dem.is_empty() && self.terrain.is_none() {
+            (other.dem, other.terrain)
+        } else {
+            (self.dem, self.terrain)
+        };
+        Self { dem, terrain, osm: self.osm.or(other.osm) }
+    }
+}
+
+/// What is written: the section `[output]`.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct OutputFiles {
+    /// `--output`.
+    pub package: Option<PathBuf>,
+    /// `--defects`.
+    pub defects: Option<PathBuf>,
+}
+
+fn one_or_many<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<PathBuf>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "expected the name of a file or a list of names")]
+    enum OneOrMany {
+        One(PathBuf),
+        Many(Vec<PathBuf>),
+    }
+    Ok(match OneOrMany::deserialize(deserializer)? {
+        OneOrMany::One(path) => vec![path],
+        OneOrMany::Many(paths) => paths,
+    })
+}

@@ -1,0 +1,55 @@
+use super::*;
+use crate::InputFiles;
+
+fn paths(names: &[&str]) -> Vec<PathBuf> {
+    names.iter().map(PathBuf::from).collect()
+}
+
+#[test]
+fn files_are_named_one_by_one_or_in_a_list() {
+    let dem = |text: &str| {
+        Config::parse(&format!("[inputs]\ndem = {text}\n")).map(|config| config.inputs.dem)
+    };
+    assert_eq!(dem("\"a.tif\"").unwrap(), paths(&["a.tif"]));
+    assert_eq!(dem("[\"a.tif\", \"b.tif\"]").unwrap(), paths(&["a.tif", "b.tif"]));
+    assert!(dem("3").unwrap_err().to_string().contains("list of names"));
+    assert!(Config::parse("[inputs]\npbf = \"a\"\n").is_err());
+    assert!(Config::parse("[output]\noverwrite = true\n").is_err());
+}
+
+#[test]
+fn paths_begin_at_the_settings_file() {
+    let text = "[inputs]\ndem = [\"a.tif\", \"/data/b.tif\", \"s3://bucket/c.tif\", \"../d.tif\"]\nosm = \"e.osm.pbf\"\n\
+                [output]\npackage = \"out/f.pmtiles\"\ndefects = \"g.csv\"\n[roads]\nfrc-table = \"mine.toml\"\n\
+                [resources]\ntmp = \"work\"\n";
+    let config = Config::parse(text).unwrap().in_folder(Path::new("/maps"));
+    let expected = ["/maps/a.tif", "/data/b.tif", "s3://bucket/c.tif", "/maps/../d.tif"];
+    assert_eq!(config.inputs.dem, paths(&expected));
+    assert_eq!(config.inputs.osm, Some("/maps/e.osm.pbf".into()));
+    assert_eq!(config.output.package, Some("/maps/out/f.pmtiles".into()));
+    assert_eq!(config.output.defects, Some("/maps/g.csv".into()));
+    assert_eq!(config.roads.frc_table.as_deref(), Some("/maps/mine.toml"));
+    assert_eq!(config.resources.tmp, Some("/maps/work".into()));
+    let preset =
+        Config::parse("[inputs]\nterrain = \"old.pmtiles\"\n[roads]\nfrc-table = \"valhalla\"\n")
+            .unwrap();
+    let preset = preset.in_folder(Path::new("/maps"));
+    assert_eq!(preset.roads.frc_table.as_deref(), Some("valhalla"));
+    assert_eq!(preset.inputs.terrain, Some("/maps/old.pmtiles".into()));
+}
+
+#[test]
+fn terrain_comes_from_one_place() {
+    let of = |dem: &[&str], terrain: Option<&str>| InputFiles {
+        dem: paths(dem),
+        terrain: terrain.map(Into::into),
+        osm: None,
+    };
+    let rasters = of(&["a.tif"], None);
+    let package = of(&[], Some("old.pmtiles"));
+    assert_eq!(rasters.clone().or(package.clone()), rasters);
+    assert_eq!(package.clone().or(rasters.clone()), package);
+    let with_roads = InputFiles { osm: Some("a.osm.pbf".into()), ..InputFiles::default() };
+    let merged = with_roads.clone().or(rasters.clone());
+    assert_eq!((merged.dem, merged.osm), (rasters.dem, with_roads.osm));
+}
