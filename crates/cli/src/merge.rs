@@ -11,7 +11,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages, names, output, parent,
-    part::{read_plan, told},
+    part::{make_tmp, read_plan, told},
     settings,
 };
 
@@ -24,6 +24,7 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
         output::writable(&args.output)?;
     }
     names::refuse_other_than_package(&args.output)?;
+    make_tmp(planned.tmp.as_deref())?;
     let plan = read_plan(&planned.plan)?;
     let mut others: Vec<&Path> = plan.inputs.iter().map(|input| Path::new(&input.path)).collect();
     others.extend([args.output.as_path(), planned.plan.as_path()]);

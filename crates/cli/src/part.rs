@@ -18,6 +18,7 @@ pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
     if planned.die_with_parent {
         parent::watch()?;
     }
+    make_tmp(planned.tmp.as_deref())?;
     let part = PartSettings {
         plan: read_plan(&planned.plan)?,
         stores: planned.store.clone(),
@@ -41,6 +42,17 @@ pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
         messages::note(&told(&requests));
     }
     Ok(ExitCode::Done)
+}
+
+/// Makes the folder that `--tmp` names, so that a new machine needs no preparation.
+pub(crate) fn make_tmp(tmp: Option<&Path>) -> Result<(), Failure> {
+    let Some(tmp) = tmp else { return Ok(()) };
+    fs::create_dir_all(tmp).map_err(|error| {
+        Failure::unusable(format!(
+            "the folder {} of --tmp cannot be made: {error}; name another one",
+            tmp.display()
+        ))
+    })
 }
 
 /// What was asked of object storage, which may cost money.

@@ -162,3 +162,20 @@ def test_a_store_on_object_storage_is_not_taken_for_one_without_bytes(tmp_path: 
     path.write_text(json.dumps(value))
     assert main(["cost", str(path)]) == 2
     assert "a store and a package in folders" in capsys.readouterr().err
+
+
+def test_two_sizes_are_not_enough(reports: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cost", reports[0], reports[1], reports[1]]) == 2
+    assert "reports of 2 sizes" in capsys.readouterr().err
+
+
+def test_a_model_that_does_not_fit_is_not_to_be_trusted(tmp_path: Path, reports: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cost", *reports]) == 0
+    assert "Do not trust" not in capsys.readouterr().out
+    value = json.loads(Path(reports[-1]).read_text())
+    for part in value["parts"]:
+        part["cpu_seconds"] *= 5
+    odd = tmp_path / "odd.json"
+    odd.write_text(json.dumps(value))
+    assert main(["cost", *reports[:-1], str(odd)]) == 0
+    assert "Do not trust" in capsys.readouterr().out

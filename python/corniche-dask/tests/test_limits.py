@@ -45,12 +45,15 @@ def test_slots_are_declared_or_threads() -> None:
     assert slots_of({}) == (0, False)
 
 
-@pytest.mark.parametrize(("text", "size"), [("512M", 512 << 20), ("4g", 4 * GIB), ("1.5G", 3 * GIB // 2), ("1T", 1 << 40), ("1000", 1000)])
+@pytest.mark.parametrize(
+    ("text", "size"),
+    [("512M", 512 << 20), ("4g", 4 * GIB), ("1.5G", 3 * GIB // 2), ("1T", 1 << 40), ("1000", 1000), ("8GB", 8 * 10**9), ("448MiB", 448 << 20)],
+)
 def test_sizes(text: str, size: int) -> None:
     assert parse_bytes(text) == size
 
 
-@pytest.mark.parametrize("text", ["", "G", "-1G", "0", "4GB", "inf", "nan"])
+@pytest.mark.parametrize("text", ["", "G", "-1G", "0", "4GX", "4MGB", "iB", "inf", "nan"])
 def test_what_is_no_size(text: str) -> None:
     with pytest.raises(UsageError):
         parse_bytes(text)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import importlib.util
 import json
+import logging
 import os
 import signal
 import sys
@@ -163,6 +164,8 @@ def _end(_: int, __: FrameType | None) -> NoReturn:
 @contextmanager
 def _client(given: argparse.Namespace) -> Iterator[Client]:
     if given.local is None:
+        # A scheduler that is lost is told by this command, in one line instead of Dask's tracebacks.
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)
         if given.scheduler_file and not os.path.exists(given.scheduler_file):
             print(f"waiting for a scheduler to write {given.scheduler_file}", file=sys.stderr)
         try:

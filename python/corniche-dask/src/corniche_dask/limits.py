@@ -56,13 +56,21 @@ def slots_of(workers: Mapping[str, Mapping[str, Any]]) -> tuple[int, bool]:
 
 
 def parse_bytes(text: str) -> int:
-    """Bytes from text as ``corniche --memory`` takes it, such as 512M, 4G or 1T."""
-    units = {"K": 10, "M": 20, "G": 30, "T": 40}
-    number, unit = (text[:-1], text[-1].upper()) if text[-1:].upper() in units else (text, "")
+    """Bytes from text as ``corniche --memory`` takes it: 512M, 4G and 4GiB are powers of 1024, 8GB is one of 1000."""
+    written = text.strip().upper()
+    digits = written.rstrip("KMGTIB")
+    unit = written[len(digits) :]
+    powers = {"K": 1, "M": 2, "G": 3, "T": 4}
     try:
-        parsed = int(float(number) * (1 << units.get(unit, 0)))
-    except (ValueError, OverflowError) as error:
-        raise UsageError(f"{text!r} is no size; write it as 512M, 4G or 1T") from error
+        if unit in ("", "B"):
+            factor = 1
+        elif unit[1:] in ("", "IB"):
+            factor = 1024 ** powers[unit[0]]
+        else:
+            factor = {"B": 1000}[unit[1:]] ** powers[unit[0]]
+        parsed = int(float(digits) * factor)
+    except (KeyError, ValueError, OverflowError) as error:
+        raise UsageError(f"{text!r} is no size; write it as 512M, 4GiB or 8GB") from error
     if parsed <= 0:
         raise UsageError(f"{text!r} is no size above 0")
     return parsed

@@ -13,6 +13,10 @@ from .runs import Run, Size, read_runs
 
 #: Numbers of workers in the tables.
 WORKERS = (1, 4, 16, 64, 256, 1024, 4096)
+#: With fewer, a build cannot be predicted from the others.
+_FEWEST_SIZES = 3
+#: A model whose builds are off by more than this share is told to be of no use.
+_TRUSTED = 0.3
 #: Areas of countries divided by those of a cell; bytes of extracts are of the order of those that Geofabrik offers in 2025.
 TARGETS = ("Utah at 5 m,11.0e9,0.15e9", "Switzerland at 1 m,41.3e9,0.5e9")
 
@@ -41,6 +45,9 @@ def run(reports: Sequence[str], targets: Sequence[str] | None, storage: float, p
     if storage <= 0:
         raise UsageError("--storage must be above 0")
     runs = read_runs(reports)
+    sizes = len({run.size for run in runs})
+    if sizes < _FEWEST_SIZES:
+        raise UsageError(f"these are reports of {sizes} sizes; the model needs builds of {_FEWEST_SIZES} sizes, so that it can be checked")
     model = fit_model(runs)
     sections = [_measured(runs), _factors(model), _checks(runs)]
     for text in targets or TARGETS:
@@ -106,10 +113,9 @@ def _factors(model: Model) -> str:
 
 
 def _checks(runs: Sequence[Run]) -> str:
-    if len(runs) < 2:
-        return "Not checked: that takes at least two builds."
-    rows = []
+    rows, most = [], 0.0
     for seconds, stored in zip(check(runs, "seconds"), check(runs, "stored"), strict=True):
+        most = max(most, abs(seconds.predicted / seconds.measured - 1)) if seconds.measured > 0 else most
         rows.append(
             [
                 seconds.run.name,
@@ -122,7 +128,13 @@ def _checks(runs: Sequence[Run]) -> str:
             ]
         )
     heading = ["from the other builds alone", "core seconds measured", "predicted", "off by", "stored, measured", "predicted", "off by"]
-    return _markdown(heading, rows)
+    table = _markdown(heading, rows)
+    if most > _TRUSTED:
+        table += (
+            f"\n\n**Do not trust what follows**: a build is off by {100 * most:.0f} % from what the others predict. Measure larger builds, with the same "
+            "settings, on a quiet machine."
+        )
+    return table
 
 
 def _difference(measured: float, predicted: float) -> str:
