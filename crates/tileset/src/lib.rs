@@ -9,6 +9,24 @@
 //!
 //! This crate never computes geometry: its guesses of triangles, heights and roads serve compression only, and a
 //! wrong guess costs bytes but changes no value. Its reading side has no C dependency and builds for wasm32.
+//!
+//! A package's tiles, and the ground and the roads of each (`examples/read_package.rs` also gives positions and heights):
+//!
+//! ```no_run
+//! use std::path::Path;
+//!
+//! use corniche_tileset::{FilePackage, Sections};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let package = FilePackage::open(Path::new("out.pmtiles"))?;
+//! for id in package.tile_ids()? {
+//!     let Some(tile) = package.payload(id, Sections::ALL)? else { continue };
+//!     let triangles = tile.terrain.map_or(0, |terrain| terrain.tin.triangles().len());
+//!     println!("{id}: {triangles} triangles, {} roads", tile.roads_geo.len());
+//! }
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod limits;
 mod manifest;
