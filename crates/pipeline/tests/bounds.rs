@@ -322,7 +322,7 @@ fn files_outside_the_bounds_are_not_read() {
         verify(&VerifySettings { package: part.clone(), dem, osm: None, threads: 2 }, &Silent)
     };
     let report = checked(vec![files.at("east.tif"), files.at("west.tif")]).unwrap();
-    assert!(report.checks.iter().all(|check| check.holds()), "{:#?}", report.checks);
+    assert!(report.checks.iter().all(corniche_pipeline::Check::holds), "{:#?}", report.checks);
     // The grid needs all files, and what is used must be the same.
     assert!(checked(vec![files.at("east.tif")]).is_err());
     assert!(checked(vec![files.at("west.tif"), files.at("dem.tif")]).is_err());
