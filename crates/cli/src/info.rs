@@ -74,9 +74,12 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
         digits.count(samples.void)
     ));
     for input in &manifest.inputs {
-        let hash = plain(input.sha256.get(..12).unwrap_or_default());
+        let hash = match input.sha256.get(..12) {
+            Some(hash) => format!("sha256 {}…", plain(hash)),
+            None => "outside the bounds, not used".to_owned(),
+        };
         say(format!(
-            "input        {} {}, {}, sha256 {hash}…",
+            "input        {} {}, {}, {hash}",
             plain(&input.kind),
             plain(&input.name),
             bytes(input.bytes)

@@ -76,6 +76,8 @@ struct Input {
     name: String,
     content: Content,
     stamp: Stamp,
+    /// False for an elevation file outside the bounds that were asked for: no sample of it is used, so it is not hashed.
+    is_used: bool,
 }
 
 /// What is hashed of an input.
@@ -142,6 +144,20 @@ impl Inputs {
         Ok(Self { files })
     }
 
+    /// Says which elevation files are used, in their order; the parts of each go with it.
+    pub(crate) fn use_only(&mut self, is_used: &[bool]) {
+        let mut is_used = is_used.iter();
+        let mut last = true;
+        for input in &mut self.files {
+            match input.kind {
+                InputKind::Dem => last = is_used.next().copied().unwrap_or(true),
+                InputKind::DemPart => {}
+                InputKind::Terrain | InputKind::Osm => continue,
+            }
+            input.is_used = last;
+        }
+    }
+
     /// How many files there are.
     pub(crate) fn len(&self) -> usize {
         self.files.len()
@@ -179,10 +195,12 @@ impl Inputs {
         observer: &dyn Observer,
         mut take: impl FnMut(usize, InputRecord) -> Result<(), E>,
     ) -> Result<(), E> {
-        observer.begin(Stage::Hash, self.files.iter().map(Input::content_bytes).sum());
+        let used = self.files.iter().filter(|input| input.is_used);
+        observer.begin(Stage::Hash, used.map(Input::content_bytes).sum());
         for (index, input) in self.files.iter().enumerate() {
             if is_done(index) {
-                observer.already(Stage::Hash, input.content_bytes().unwrap_or_default());
+                let bytes = if input.is_used { input.content_bytes() } else { None };
+                observer.already(Stage::Hash, bytes.unwrap_or_default());
             } else {
                 take(index, input.hash(observer)?)?;
             }
@@ -235,7 +253,7 @@ impl Input {
             Content::Virtual(name) => Stamp::of_virtual(name),
         };
         let stamp = stamp.map_err(failed)?;
-        Ok(Self { kind, path: path.to_path_buf(), name, content, stamp })
+        Ok(Self { kind, path: path.to_path_buf(), name, content, stamp, is_used: true })
     }
 
     fn planned(&self) -> Result<PlannedInput, InputError> {
@@ -271,6 +289,14 @@ impl Input {
 
     fn hash(&self, observer: &dyn Observer) -> Result<InputRecord, InputError> {
         let failed = |source: io::Error| InputError::Read { path: self.path.clone(), source };
+        if !self.is_used {
+            return Ok(InputRecord {
+                kind: self.kind.name().to_owned(),
+                name: self.name.clone(),
+                bytes: self.content_bytes().unwrap_or_default(),
+                sha256: String::new(),
+            });
+        }
         let mut hasher = Sha256::new();
         let bytes = match &self.content {
             Content::Folder => Some(0),

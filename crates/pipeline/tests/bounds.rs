@@ -289,3 +289,41 @@ fn verify_sees_every_change_of_what_a_package_says_of_its_part() {
         assert_eq!(is_broken, number < 5, "change {number}");
     }
 }
+
+#[test]
+fn files_outside_the_bounds_are_not_read() {
+    let files = Files::new();
+    // The same samples in two files, the east half and a file far in the west of it.
+    let height = |column: i64, row: i64| 200.0 * waves(column, row);
+    let west = Raster::new([300, 600], [0, 0], height);
+    let east = Raster::new([900, 600], [300, 0], |column, row| height(column + 300, row));
+    west.write(&files.at("west.tif"));
+    east.write(&files.at("east.tif"));
+    let corners = [[500.0, 100.0], [850.0, 500.0]].map(|at| east.position_m(at));
+    let [low, high] = [utm_to_degrees(&corners)[0], utm_to_degrees(&corners)[1]];
+    let bounds_deg = [low[0], high[1], high[0], low[1]];
+    let made = |name: &str, bounds_deg| {
+        let mut settings =
+            files.settings(name, Options { fill_voids: 8, ..Options::plain(30.0) }, bounds_deg);
+        settings.plan.dem = vec![files.at("east.tif"), files.at("west.tif")];
+        settings.plan.osm = None;
+        build(&settings, &Silent).unwrap();
+        settings.output
+    };
+    let (whole, part) = (made("whole.pmtiles", None), made("part.pmtiles", Some(bounds_deg)));
+    let inputs = |path: &Path| FilePackage::open(path).unwrap().manifest().inputs.clone();
+    let (all, some) = (inputs(&whole), inputs(&part));
+    assert_eq!(some[0], all[0]);
+    assert_eq!(
+        (some[1].sha256.as_str(), some[1].bytes, &some[1].name),
+        ("", all[1].bytes, &all[1].name)
+    );
+    let checked = |dem: Vec<PathBuf>| {
+        verify(&VerifySettings { package: part.clone(), dem, osm: None, threads: 2 }, &Silent)
+    };
+    let report = checked(vec![files.at("east.tif"), files.at("west.tif")]).unwrap();
+    assert!(report.checks.iter().all(corniche_pipeline::Check::holds), "{:#?}", report.checks);
+    // The grid needs all files, and what is used must be the same.
+    assert!(checked(vec![files.at("east.tif")]).is_err());
+    assert!(checked(vec![files.at("west.tif"), files.at("dem.tif")]).is_err());
+}

@@ -211,6 +211,24 @@ pub(crate) fn needed_samples(
     Ok(rect.intersection(&mosaic.reachable()))
 }
 
+impl Dem {
+    /// For each file, in the order in which they were given, whether the plan's nodes can depend on its samples. Files outside the
+    /// plan's bounds were looked into for the grid alone.
+    ///
+    /// # Errors
+    /// When PROJ fails.
+    pub fn needed_files(&self, plan: &GridPlan) -> Result<Vec<bool>, DemError> {
+        let mut is_needed = vec![false; self.sources.len()];
+        for (mosaic, role) in self.mosaics.iter().zip(&plan.roles) {
+            let rect = needed_samples(plan, mosaic, role)?;
+            for file in &mosaic.files {
+                is_needed[file.index] = !parts_of_file(mosaic, file, &rect).is_empty();
+            }
+        }
+        Ok(is_needed)
+    }
+}
+
 /// The parts of a file, in its own pixels, that lie in a rectangle of its mosaic's samples.
 pub(crate) fn parts_of_file(
     mosaic: &Mosaic,

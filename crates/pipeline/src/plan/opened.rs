@@ -36,7 +36,7 @@ impl Opened {
     pub(crate) fn new(settings: &PlanSettings) -> Result<Self, BuildError> {
         // The state of the files is noted before anything of them is read.
         let osm = settings.osm.as_deref();
-        let inputs = match &settings.terrain_of {
+        let mut inputs = match &settings.terrain_of {
             Some(package) => Inputs::find_with_package(package, osm)?,
             None => Inputs::find(&settings.dem, osm)?,
         };
@@ -46,6 +46,9 @@ impl Opened {
         };
         match planned {
             Ok(Planned { source, grid, levels, max_error_m, coordinates }) => {
+                if let GroundSource::Dem(dem) = &source {
+                    inputs.use_only(&dem.needed_files(&grid)?);
+                }
                 Ok(Self { inputs, source, grid, levels, max_error_m, coordinates })
             }
             // A changed input may be the cause of any other error, so it is reported instead.

@@ -46,11 +46,11 @@ pub(crate) fn open(
             found
         };
         let (said, found) = (of_kind(&mut expected.iter().copied()), of_kind(&mut given.iter()));
-        let hash = |record: &InputRecord| record.sha256.clone();
-        if !said.iter().map(hash).eq(found.iter().map(hash)) {
+        if !are_same(&said, &found) {
             return Err(other());
         }
-        for (said, found) in said.iter().zip(&found) {
+        let pairs = said.iter().zip(&found).filter(|(said, found)| said.sha256 == found.sha256);
+        for (said, found) in pairs {
             sizes.look(said.bytes == found.bytes, || {
                 format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
             });
@@ -60,6 +60,20 @@ pub(crate) fn open(
     let plan = dem.plan(&terrain.plan)?;
     report.checks.push(check_plan(&plan, manifest));
     Ok((plan.frame == manifest.frame).then_some((dem, plan)))
+}
+
+/// Whether files are those that are recorded, by their content. Of files that were not used, outside the bounds of the package, there is no
+/// hash; then the others must be there, as many as are recorded.
+fn are_same(said: &[InputRecord], found: &[InputRecord]) -> bool {
+    let hashes = |records: &[InputRecord]| -> Vec<String> {
+        records.iter().map(|record| record.sha256.clone()).collect()
+    };
+    let (said, found) = (hashes(said), hashes(found));
+    if said.iter().all(|hash| !hash.is_empty()) {
+        return said == found;
+    }
+    said.len() == found.len()
+        && said.iter().filter(|hash| !hash.is_empty()).all(|hash| found.contains(hash))
 }
 
 /// Compares the plan with what the build recorded of it in the manifest.

@@ -175,6 +175,6 @@ pub struct InputRecord {
     pub name: String,
     /// Size of the file; of a file inside an archive or on a server, of what GDAL delivers.
     pub bytes: u64,
-    /// SHA-256 of as many bytes.
+    /// SHA-256 of as many bytes; empty for an elevation file outside the bounds of the package, of which no sample is used.
     pub sha256: String,
 }
