@@ -193,3 +193,25 @@ fn what_a_killed_export_leaves_is_removed_by_the_next() {
     assert_eq!(ran.code, 0, "{}", ran.err);
     assert_eq!(names(folder.path()), ["pass.pmtiles", "roads.gpkg"]);
 }
+
+/// A disk that is full, or a limit on the size of files: every format ends with exit code 1 and leaves nothing.
+#[test]
+#[cfg(unix)]
+fn a_file_that_cannot_be_written_to_its_end_is_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = pass(folder.path());
+    for ending in ["gpkg", "fgb", "geojson", "csv"] {
+        let target = folder.path().join(format!("roads.{ending}"));
+        let program = e2e::binary();
+        let command = format!(
+            "ulimit -f 100; exec {} export roads {} -o {} --crs EPSG:4979 --heights as-is",
+            text(&program),
+            text(&package),
+            text(&target)
+        );
+        let ran = Ran::from(Command::new("sh").args(["-c", &command]).output().unwrap());
+        assert_eq!(ran.code, 1, "{ending}: {}{}", ran.out, ran.err);
+        assert!(ran.err.contains("disk full?"), "{ending}: {}", ran.err);
+        assert_eq!(names(folder.path()), ["pass.pmtiles"], "{ending}");
+    }
+}

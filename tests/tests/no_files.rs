@@ -100,6 +100,7 @@ fn what_is_no_file_is_never_replaced() {
             [&build(&["-O", "-o"])[..], &[new_package, "--defects", at]].concat(),
             vec!["render", package, "-o", at],
             vec!["growth", package, "--svg", at],
+            vec!["export", "roads", package, "-O", "-f", "csv", "-o", at],
             vec!["fly", package, "-O", "-o", at],
             vec!["fly", package, "-o", at],
             vec!["fly", package, "-O", "-o", free, "--svg", at],
