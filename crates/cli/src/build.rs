@@ -60,7 +60,9 @@ pub(crate) fn finish(
         messages::write_line(&format!("\n{text}"));
     } else {
         // The text has them, too.
-        info::warnings(&summary.manifest).iter().for_each(|warning| messages::warning(warning));
+        for warning in info::warnings(&summary.manifest) {
+            messages::warning(&warning);
+        }
     }
     messages::note(&format!("wrote {}", output.display()));
     watch.progress.tell_costs();
