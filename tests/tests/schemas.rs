@@ -148,7 +148,7 @@ fn a_tile_is_found_by_its_place() {
         let share = |k: usize| k as f64 / (size - 1) as f64;
         let (x, y) =
             (min_x + (max_x - min_x) * share(column), min_y + (max_y - min_y) * share(row));
-        for level in 0..=4 {
+        for level in 0..=3 {
             let tile = at(&place, &["--level", &level.to_string()]);
             assert!(
                 tile["id"].as_str().unwrap().starts_with(&format!("{level}/")),
@@ -163,11 +163,11 @@ fn a_tile_is_found_by_its_place() {
                 "{bounds:?} {x} {y}"
             );
         }
-        assert_eq!(at(&place, &[])["id"], at(&place, &["--level", "4"])["id"]);
+        assert_eq!(at(&place, &[])["id"], at(&place, &["--level", "3"])["id"]);
     }
     for (arguments, word) in [
         (&["--at", "100,10"][..], "covers"),
-        (&["--at", "9.54,46.9", "--level", "9"], "finest level is 4"),
+        (&["--at", "9.54,46.9", "--level", "9"], "finest level is 3"),
         (&["--at", "9.54"], "longitude,latitude"),
         (&["--at", "9.54,46.9", "0/0/0"], "cannot be used with"),
         (&["0/0/0", "--level", "1"], "--at"),

@@ -4,9 +4,9 @@ use std::{fs, path::Path};
 
 use e2e::{Ran, build_pass, corniche, draw, root, text};
 
-/// `render` in a small size; `None` where there is no adapter.
+/// `render` in a small size, over an earlier picture; `None` where there is no adapter.
 fn render(package: &Path, png: &Path, options: &[&str]) -> Option<Ran> {
-    draw("render", package, png, &[&["--size", "200x150"], options].concat())
+    draw("render", package, png, &[&["-O", "--size", "200x150"], options].concat())
 }
 
 #[test]

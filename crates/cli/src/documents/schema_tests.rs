@@ -2,7 +2,7 @@
 
 use std::{fs, path::PathBuf};
 
-use schemars::{Schema, schema_for};
+use schemars::{JsonSchema, Schema, generate::SchemaSettings};
 use serde_json::{Value, json};
 
 use super::{
@@ -14,15 +14,20 @@ use super::{
     verify::VerifyDocument,
 };
 
+/// Of what is written: a field that may be null is there all the same.
+fn schema<T: JsonSchema>() -> Schema {
+    SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<T>()
+}
+
 fn schemas() -> [(&'static str, &'static str, Schema); 7] {
     [
-        ("growth", "corniche growth --json", schema_for!(GrowthDocument)),
-        ("info", "corniche info --json", schema_for!(InfoDocument)),
-        ("job", "a line of corniche jobs", schema_for!(JobDocument)),
-        ("plan", "corniche plan --json", schema_for!(PlanDocument)),
-        ("progress", "a line of --json-progress", schema_for!(ProgressRecord)),
-        ("tile", "corniche tile --json", schema_for!(TileDocument)),
-        ("verify", "corniche verify --json", schema_for!(VerifyDocument)),
+        ("growth", "corniche growth --json", schema::<GrowthDocument>()),
+        ("info", "corniche info --json", schema::<InfoDocument>()),
+        ("job", "a line of corniche jobs", schema::<JobDocument>()),
+        ("plan", "corniche plan --json", schema::<PlanDocument>()),
+        ("progress", "a line of --json-progress", schema::<ProgressRecord<'_>>()),
+        ("tile", "corniche tile --json", schema::<TileDocument>()),
+        ("verify", "corniche verify --json", schema::<VerifyDocument>()),
     ]
 }
 

@@ -85,7 +85,7 @@ pub(crate) struct SvRoadDocument {
 pub(crate) struct WayDocument {
     /// OSM's id of the way.
     pub(crate) way_id: i64,
-    /// How it is built: "ordinary", "dual_carriageway", "link" or "roundabout".
+    /// How it is built: `ordinary`, `dual_carriageway`, `link` or `roundabout`.
     pub(crate) form: &'static str,
     /// What carries it: "ground", "bridge" or "tunnel".
     pub(crate) structure: &'static str,

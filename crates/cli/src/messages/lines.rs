@@ -8,7 +8,7 @@ use tracing::{
 };
 use tracing_subscriber::{
     fmt::{FmtContext, FormatEvent, FormatFields, FormattedFields, format::Writer},
-    registry::LookupSpan,
+    registry::{LookupSpan, Scope},
 };
 
 /// Errors and warnings with the program's name in front, notes as they are. What only `-v` shows has its level, its spans and its
@@ -36,7 +36,7 @@ where
             level => {
                 let level = if level == Level::DEBUG { "debug" } else { "trace" };
                 write!(writer, "{level}: ")?;
-                for span in context.event_scope().into_iter().flat_map(|scope| scope.from_root()) {
+                for span in context.event_scope().into_iter().flat_map(Scope::from_root) {
                     write!(writer, "{}", span.name())?;
                     let extensions = span.extensions();
                     let fields = extensions.get::<FormattedFields<N>>();
