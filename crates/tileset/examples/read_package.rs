@@ -32,7 +32,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let Some((_, id)) = largest else { return Ok(()) };
     let Some(tile) = package.payload(id, Sections::ALL)? else { return Ok(()) };
     let Some(terrain) = &tile.terrain else { return Ok(()) };
-    println!("tile {id}: {} triangles, {} lines", terrain.tin.triangles().len(), tile.roads_geo.len());
+    println!(
+        "tile {id}: {} triangles, {} lines",
+        terrain.tin.triangles().len(),
+        tile.roads_geo.len()
+    );
 
     // The tile's triangles on the lattice, on which ground and roads have whole coordinates.
     let quantum_m = manifest.vertical.quantum_m;

@@ -19,18 +19,6 @@ const ON_NODE: f64 = 1e-6;
 /// Samples around those under the nodes asked for, against rounding.
 const AROUND_SAMPLES: i64 = 2;
 
-/// The part of a DEM that a plan is for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Clip {
-    /// The bounds that were asked for, rounded outwards to whole cells: south-western and north-eastern node. They may reach
-    /// beyond the data.
-    pub nodes: [NodeIndex; 2],
-    /// Rectangle of the nodes of the whole DEM, working metres.
-    pub whole_data_bounds: Bounds,
-    /// Rectangle around all files in WGS84 degrees. PROJ's operations and the scales are those for it.
-    pub whole_wgs84_bounds: Bounds,
-}
-
 /// Bounds in WGS84 degrees as a rectangle of nodes, rounded outwards.
 ///
 /// In a projected CRS it is the rectangle around the bounds' image, which is bent.
@@ -157,15 +145,6 @@ pub(crate) fn wgs84_bounds(
     }
     let away = 360.0 * turns(bounds.center()[0] - whole_deg.center()[0], 360.0);
     Ok(Bounds { min_x: bounds.min_x - away, max_x: bounds.max_x - away, ..bounds })
-}
-
-impl GridPlan {
-    /// The rectangle in degrees for which PROJ's operations are chosen: that around all files, also where the plan is for a part
-    /// of them.
-    #[must_use]
-    pub fn area_deg(&self) -> Bounds {
-        self.clip.map_or(self.wgs84_bounds, |clip| clip.whole_wgs84_bounds)
-    }
 }
 
 /// The samples of a mosaic that the plan's nodes depend on, voids to fill included: all of them without bounds.

@@ -3,7 +3,6 @@ use corniche_geom::{Bounds, Cell, Frame, NodeIndex};
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
 use crate::plan::alignment::Alignment;
-use crate::plan::clip::Clip;
 use crate::plan::kernel::Kernel;
 use crate::plan::node_positions::NodePositions;
 
@@ -47,6 +46,18 @@ pub struct PlanScale {
     pub least: [f64; 2],
     /// The largest.
     pub largest: [f64; 2],
+}
+
+/// The part of a DEM that a plan is for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clip {
+    /// The bounds that were asked for, rounded outwards to whole cells: south-western and north-eastern node. They may reach
+    /// beyond the data.
+    pub nodes: [NodeIndex; 2],
+    /// Rectangle of the nodes of the whole DEM, working metres.
+    pub whole_data_bounds: Bounds,
+    /// Rectangle around all files in WGS84 degrees. PROJ's operations and the scales are those for it.
+    pub whole_wgs84_bounds: Bounds,
 }
 
 /// The grid of a package and how its heights come about.
@@ -122,6 +133,13 @@ pub(crate) fn bounds_of(frame: &Frame, [south_west, north_east]: [NodeIndex; 2])
 }
 
 impl GridPlan {
+    /// The rectangle in degrees for which PROJ's operations are chosen: that around all files, also where the plan is for a part
+    /// of them.
+    #[must_use]
+    pub fn area_deg(&self) -> Bounds {
+        self.clip.map_or(self.wgs84_bounds, |clip| clip.whole_wgs84_bounds)
+    }
+
     /// Whether the DEM's samples and the package's nodes are the same points.
     #[must_use]
     pub fn nodes_are_samples(&self) -> bool {

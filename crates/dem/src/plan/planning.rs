@@ -8,9 +8,11 @@ use gdal::version::VersionInfo;
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
 use crate::mosaics::mosaic::Mosaic;
-use crate::plan::clip::{self, Clip};
+use crate::plan::clip;
 use crate::plan::description::{describe, resampled_onto_first};
-use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, Resampling, bounds_of};
+use crate::plan::grid_plan::{
+    Clip, GridPlan, Method, MosaicRole, PlanOptions, Resampling, bounds_of,
+};
 use crate::plan::kernel::Kernel;
 use crate::plan::layout::{self, Layout};
 use crate::plan::node_positions::NodePositions;

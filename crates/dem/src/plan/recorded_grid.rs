@@ -3,8 +3,7 @@
 use corniche_geom::{Bounds, Frame, NodeIndex};
 
 use crate::RecordedCrs;
-use crate::plan::clip::Clip;
-use crate::plan::grid_plan::{GridPlan, PlanScale, Resampling, bounds_of};
+use crate::plan::grid_plan::{Clip, GridPlan, PlanScale, Resampling, bounds_of};
 use crate::plan::planning::libraries;
 
 /// What a package records of its grid, beside its CRS.

@@ -96,6 +96,9 @@ impl HasId for Located {
     }
 }
 
+/// More than any defect takes: its text is a key and a value of 255 characters each at most.
+const MOST_DEFECT_BYTES: usize = 1 << 16;
+
 impl BlockRecord for Defect {
     type Before = ();
 
@@ -107,8 +110,9 @@ impl BlockRecord for Defect {
     }
 
     fn take((): &mut (), bytes: &mut &[u8]) -> Option<Self> {
-        let (defect, used) =
-            bincode::serde::decode_from_slice(bytes, bincode::config::standard()).ok()?;
+        // Damaged bytes may claim a text of any length; a defect names one value of a tag at most.
+        let limited = bincode::config::standard().with_limit::<MOST_DEFECT_BYTES>();
+        let (defect, used) = bincode::serde::decode_from_slice(bytes, limited).ok()?;
         *bytes = bytes.get(used..)?;
         Some(defect)
     }

@@ -39,3 +39,16 @@ proptest! {
         while !rest.is_empty() && Defect::take(&mut (), &mut rest).is_some() {}
     }
 }
+
+/// A length that no memory holds is refused before it is taken.
+#[test]
+fn a_defect_that_claims_an_endless_text_is_refused() {
+    let value = "moat".to_owned();
+    let mut bytes = Vec::new();
+    Defect::UnknownHighway { way_id: 1, value }.write(&mut (), &mut bytes);
+    assert!(Defect::take(&mut (), &mut bytes.as_slice()).is_some());
+    // The length stands before the text: bincode's mark of 64 bits, and a number.
+    let at = bytes.windows(4).position(|four| four == b"moat").unwrap() - 1;
+    bytes.splice(at..=at, [[253].as_slice(), &(1_u64 << 61).to_le_bytes()].concat());
+    assert_eq!(Defect::take(&mut (), &mut bytes.as_slice()), None);
+}
