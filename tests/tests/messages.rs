@@ -98,7 +98,19 @@ fn silence_leaves_the_answer_and_nothing_else() {
         &["jobs", text(&plan), "--slots", "2", "-q"],
         &["part", text(&plan), "--store", text(&store), "--step", "hashes", "-q"],
         &["render", package, "-o", text(&png), "--size", "64x48", "-q"],
-        &["fly", package, "-o", text(&csv), "--size", "64x48", "--frames", "2", "-q"],
+        &[
+            "fly",
+            package,
+            "-o",
+            text(&csv),
+            "--size",
+            "64x48",
+            "--frames",
+            "2",
+            "--lod",
+            "culled",
+            "-q",
+        ],
     ];
     for line in lines {
         let ran = corniche(line);

@@ -117,7 +117,7 @@ pub(crate) struct TileArgs {
     #[arg(long, value_name = "LON,LAT", value_parser = parse_position, allow_hyphen_values = true, conflicts_with = "id")]
     pub(crate) at: Option<[f64; 2]>,
     /// With --at: the tile of this level
-    #[arg(long, value_name = "Z", requires = "at")]
+    #[arg(long, value_name = "Z", requires = "at", conflicts_with = "id")]
     pub(crate) level: Option<u8>,
     /// Print all that the tile holds as JSON, for programs: ground with normals, roads, attributes; in working metres
     #[arg(long)]
