@@ -48,6 +48,7 @@ fn every_command_takes_the_options_of_messages() {
         "part" => "p.json --store s --step top",
         "merge" => "p.json --store s -o b.pmtiles",
         "tile" => "a.pmtiles 0/0/0",
+        "export" => "roads a.pmtiles -o a.gpkg",
         "render" => "a.pmtiles -o a.png",
         "fly" => "a.pmtiles -o a.csv",
         "completions" => "bash",

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use self::{
     counts::CountsDocument,
-    frame::{BoundsDocument, FrameDocument},
+    frame::{BoundsDocument, ClipDocument, FrameDocument},
     levels::LevelDocument,
 };
 use super::growth::RowDocument;
@@ -51,6 +51,9 @@ pub(crate) struct ManifestDocument {
     data_bounds: BoundsDocument,
     /// The same in WGS84 degrees.
     wgs84_bounds: BoundsDocument,
+    /// The part of the elevation files that the package is of (`--bounds`); left out where it is of all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clip: Option<ClipDocument>,
     /// How nodes relate to the DEM's samples, in words.
     resampling: String,
     /// Whether nodes and the DEM's samples are the same points.
@@ -132,10 +135,16 @@ struct SettingsDocument {
     cell_every: Option<u32>,
     /// `--scale-latitude`, if given.
     scale_latitude_deg: Option<f64>,
+    /// `--bounds`: west, south, east and north in WGS84 degrees; left out where not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bounds_deg: Option<[f64; 4]>,
     /// Name of the FRC table.
     frc_table: String,
     /// SHA-256 of the FRC table's text.
     frc_table_sha256: String,
+    /// `--classes`: the classes that become roads; left out where the table decides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    classes: Option<Vec<u8>>,
     /// Coarsest cell, metres, at which each class is still shown, class 0 first; null: on every level.
     class_max_cell_m: Vec<Option<f64>>,
     /// Simplification tolerance in cells of the level; 0 is off.
@@ -175,6 +184,7 @@ impl From<&Manifest> for ManifestDocument {
             frame: FrameDocument::from(&manifest.frame),
             data_bounds: manifest.data_bounds.into(),
             wgs84_bounds: manifest.wgs84_bounds.into(),
+            clip: manifest.clip.map(Into::into),
             resampling: manifest.resampling,
             nodes_are_samples: manifest.nodes_are_samples,
             vertical: VerticalDocument { quantum_m, unit, datum, treatment, range_m },
@@ -205,8 +215,10 @@ impl From<SettingsRecord> for SettingsDocument {
             cell_m: settings.cell_m.map(corniche_geom::Cell::to_array),
             cell_every: settings.cell_every,
             scale_latitude_deg: settings.scale_latitude_deg,
+            bounds_deg: settings.bounds_deg,
             frc_table: settings.frc_table,
             frc_table_sha256: settings.frc_table_sha256,
+            classes: settings.classes,
             class_max_cell_m: settings.class_max_cell_m,
             simplify_cells: settings.simplify_cells,
         }

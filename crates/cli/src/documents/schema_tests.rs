@@ -2,6 +2,8 @@
 
 use std::{fs, path::PathBuf};
 
+use corniche_geom::NodeIndex;
+use corniche_tileset::{ClipRecord, LeftOutRecord};
 use schemars::{JsonSchema, Schema, generate::SchemaSettings};
 use serde_json::{Value, json};
 
@@ -78,7 +80,21 @@ fn the_document_has_all_fields_of_the_manifest() {
             _ => assert_eq!(manifest, document, "{place}"),
         }
     }
-    let manifest = corniche_testing::package::manifest();
+    let mut manifest = corniche_testing::package::manifest();
+    // What is left out where it is not asked for is there, too.
+    manifest.clip = Some(ClipRecord {
+        nodes: [NodeIndex { i: -1, j: 0 }, NodeIndex { i: 2, j: 3 }],
+        whole_data_bounds: manifest.data_bounds,
+        whole_wgs84_bounds: manifest.wgs84_bounds,
+    });
+    manifest.settings.bounds_deg = Some([9.0, 47.0, 10.0, 48.0]);
+    manifest.settings.classes = Some(vec![0, 8]);
+    manifest.counts.left_out = vec![LeftOutRecord {
+        reason: "class is off".to_owned(),
+        highway: "path".to_owned(),
+        ways: 2,
+        length_um: 7,
+    }];
     let document = super::info::ManifestDocument::from(&manifest);
     check(
         &serde_json::to_value(&manifest).unwrap(),

@@ -1,6 +1,6 @@
 //! What came into a package and what became of it. Where the file has pairs, there are objects.
 
-use corniche_tileset::Counts;
+use corniche_tileset::{Counts, LeftOutRecord};
 use serde::Serialize;
 
 /// What came in, what was kept, what was lost and why.
@@ -31,6 +31,9 @@ pub(crate) struct CountsDocument {
     highways_in: u64,
     /// How many of them did not become roads, by reason.
     highways_left_out: Vec<NamedCount>,
+    /// Those that the FRC table leaves out, with their lengths; by reason, the longest first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    left_out: Vec<LeftOutDocument>,
     /// Roads read, by class.
     classes: Vec<ClassCount>,
 }
@@ -58,6 +61,20 @@ struct LossDocument {
     /// Roads lost altogether for this reason.
     roads: u64,
     /// True length in plan lost for this reason, micrometres.
+    length_um: u64,
+}
+
+/// Ways that the FRC table leaves out for one reason, with one `highway` value.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct LeftOutDocument {
+    /// Why, in words.
+    reason: String,
+    /// Value of `highway`.
+    highway: String,
+    /// How many ways.
+    ways: u64,
+    /// Their true length in plan, micrometres; of areas that of the outline.
     length_um: u64,
 }
 
@@ -120,6 +137,16 @@ impl From<Counts> for CountsDocument {
             blobs_passed_over: counts.blobs_passed_over,
             highways_in: counts.highways_in,
             highways_left_out: named(counts.highways_left_out),
+            left_out: counts
+                .left_out
+                .into_iter()
+                .map(|LeftOutRecord { reason, highway, ways, length_um }| LeftOutDocument {
+                    reason,
+                    highway,
+                    ways,
+                    length_um,
+                })
+                .collect(),
             classes: classes
                 .map(|(class, &(roads, length_um))| ClassCount { class, roads, length_um })
                 .collect(),

@@ -1,6 +1,7 @@
 //! Where a package lies.
 
 use corniche_geom::{Bounds, Frame, NodeIndex};
+use corniche_tileset::ClipRecord;
 use serde::Serialize;
 
 /// The grid of a package.
@@ -39,6 +40,29 @@ pub(crate) struct BoundsDocument {
     max_x: f64,
     /// North edge.
     max_y: f64,
+}
+
+/// The part of the elevation files that a package is of.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct ClipDocument {
+    /// The bounds that were asked for, rounded outwards to whole cells: south-western and north-eastern node. They may reach
+    /// beyond the data.
+    nodes: [NodeDocument; 2],
+    /// Rectangle of the nodes of all elevation files, working metres.
+    whole_data_bounds: BoundsDocument,
+    /// The same in WGS84 degrees.
+    whole_wgs84_bounds: BoundsDocument,
+}
+
+impl From<ClipRecord> for ClipDocument {
+    fn from(ClipRecord { nodes, whole_data_bounds, whole_wgs84_bounds }: ClipRecord) -> Self {
+        Self {
+            nodes: nodes.map(|NodeIndex { i, j }| NodeDocument { i, j }),
+            whole_data_bounds: whole_data_bounds.into(),
+            whole_wgs84_bounds: whole_wgs84_bounds.into(),
+        }
+    }
 }
 
 /// A table of longitudes and latitudes over the working CRS, to be interpolated by Lagrange's cubic along both axes. It writes itself;
