@@ -56,7 +56,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 
     let bounds = frame.tile_bounds(id);
-    let middle_m = [(bounds.min_x + bounds.max_x) / 2.0, (bounds.min_y + bounds.max_y) / 2.0];
+    let middle_m =
+        [f64::midpoint(bounds.min_x, bounds.max_x), f64::midpoint(bounds.min_y, bounds.max_y)];
     let ground = frame.snap(middle_m).and_then(|point| Some((surface.locate(point)?, point)));
     match ground {
         Some((triangle, point)) => {
