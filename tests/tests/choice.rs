@@ -164,7 +164,7 @@ fn classes_that_are_chosen_become_roads_and_the_others_have_a_length() {
         build("some.pmtiles", &["--classes", "2,8"]),
     );
     let counts = [&usual, &all, &some].map(|package| manifest(package)["counts"].clone());
-    let roads = |counts: &Value, class: usize| counts["classes"][class][0].as_u64().unwrap();
+    let roads = |counts: &Value, class: usize| counts["classes"][class]["roads"].as_u64().unwrap();
     let left_out = |counts: &Value, reason: &str| -> [u64; 2] {
         let all = counts["left_out"].as_array().unwrap().iter();
         let found = all.filter(|left_out| left_out["reason"] == reason);
@@ -179,7 +179,8 @@ fn classes_that_are_chosen_become_roads_and_the_others_have_a_length() {
     assert_eq!((roads(&counts[0], 8), left_out(&counts[1], "class is off")), (0, [0, 0]));
     // What the usual classes leave out is what becomes a road with all of them: as many ways, as long (by two ways of measuring).
     let [ways, length_um] = left_out(&counts[0], "class is off");
-    let length_of = |counts: &Value, class: usize| counts["classes"][class][1].as_u64().unwrap();
+    let length_of =
+        |counts: &Value, class: usize| counts["classes"][class]["length_um"].as_u64().unwrap();
     assert!(ways > 500 && roads(&counts[1], 8).abs_diff(ways) <= ways / 100, "{ways}");
     let off = length_of(&counts[1], 8).abs_diff(length_um) as f64 / length_um as f64;
     assert!(off < 1e-4, "{off}");

@@ -49,7 +49,11 @@ fn succeed(ran: &Ran) {
 }
 
 fn refused(ran: &Ran, parts: &[&str]) {
-    assert_eq!(ran.code, 2, "{}", ran.err);
+    ended_with(2, ran, parts);
+}
+
+fn ended_with(code: i32, ran: &Ran, parts: &[&str]) {
+    assert_eq!(ran.code, code, "{}", ran.err);
     for part in parts {
         assert!(ran.err.contains(part), "{part}: {}", ran.err);
     }
@@ -92,7 +96,9 @@ fn shares_that_are_missing_are_named_and_the_extract_is_read_in_their_place() {
     for number in [1, 3] {
         succeed(&planned.part(&store, &["--step", "ways", "--share", &format!("{number}/3")]));
     }
-    refused(
+    // It may be there later.
+    ended_with(
+        1,
         &planned.part(&store, &["--step", "nodes", "--share", "1/3"]),
         &["share 2/3 of the ways", "--step ways"],
     );
