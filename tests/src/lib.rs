@@ -106,6 +106,19 @@ pub fn without_times(csv: &Path) -> Vec<Vec<String>> {
     text.lines().map(|line| line.split(',').take(kept).map(str::to_owned).collect()).collect()
 }
 
+/// The names of what is in a folder, sorted.
+///
+/// # Panics
+/// When the folder cannot be read.
+#[must_use]
+pub fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap_or_else(|error| panic!("no folder: {error}"));
+    let mut names: Vec<String> =
+        entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
 /// Says that a test was skipped, and why.
 #[expect(clippy::print_stderr, reason = "a test that is skipped says so")]
 pub fn skipped(why: &str) {

@@ -10,7 +10,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use e2e::{Ran, build_pass, corniche, ended, sample, text};
+use e2e::{Ran, build_pass, corniche, ended, names, sample, text};
 use gdal::{Dataset, vector::LayerAccess as _};
 
 fn pass(folder: &Path) -> PathBuf {
@@ -23,15 +23,6 @@ fn export(package: &Path, target: &Path, options: &[&str]) -> Ran {
     let mut arguments = vec!["export", "roads", text(package), "-o", text(target)];
     arguments.extend(options);
     corniche(arguments)
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
 }
 
 /// Each refusal has its exit code, says what to do, and leaves nothing.

@@ -16,7 +16,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use e2e::{Ran, build_pass, sample, skipped, text};
+use e2e::{Ran, build_pass, names, sample, skipped, text};
 
 /// One path for each kind of entry that is neither a file nor a folder.
 fn specials(folder: &Path) -> Vec<PathBuf> {
@@ -68,15 +68,6 @@ fn run(arguments: &[&str]) -> Ran {
         std::thread::sleep(Duration::from_millis(10));
     }
     e2e::ended(&mut child)
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
 }
 
 #[test]

@@ -43,7 +43,7 @@ fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
     let request = RoadsRequest {
         format,
         level: args.level,
-        classes: args.classes.0.clone(),
+        classes: args.classes.classes(),
         bounds: args.bounds,
         pieces: args.pieces,
         coordinates,

@@ -14,6 +14,14 @@ pub enum BoundsChoice {
 /// What to write.
 const ADVICE: &str = "write west,south,east,north in degrees, like 9.4,47.0,9.7,47.3, or osm";
 
+/// Reads the four numbers of `W,S,E,N`; `None` where they are not four numbers.
+#[must_use]
+pub fn parse_degrees(text: &str) -> Option<[f64; 4]> {
+    let numbers: Option<Vec<f64>> =
+        text.split(',').map(|number| number.trim().parse().ok()).collect();
+    numbers?.try_into().ok()
+}
+
 impl BoundsChoice {
     /// Reads `W,S,E,N` or `osm`.
     ///
@@ -23,12 +31,7 @@ impl BoundsChoice {
         if text.trim() == "osm" {
             return Ok(Self::Osm);
         }
-        let numbers: Option<Vec<f64>> =
-            text.split(',').map(|number| number.trim().parse().ok()).collect();
-        match numbers.map(<[f64; 4]>::try_from) {
-            Some(Ok(bounds_deg)) => Self::of(bounds_deg),
-            _ => Err(ADVICE.to_owned()),
-        }
+        parse_degrees(text).map_or_else(|| Err(ADVICE.to_owned()), Self::of)
     }
 
     fn of(bounds_deg: [f64; 4]) -> Result<Self, String> {

@@ -36,6 +36,12 @@ impl Classes {
     pub fn numbers(&self) -> &[u8] {
         &self.0
     }
+
+    /// The classes of these numbers.
+    #[must_use]
+    pub fn classes(&self) -> Vec<FunctionalRoadClass> {
+        self.0.iter().copied().filter_map(FunctionalRoadClass::new).collect()
+    }
 }
 
 fn is_class(number: u8) -> bool {

@@ -19,6 +19,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from corniche_dask.limits import parse_bytes
 from corniche_dask.program import find_program
 
 
@@ -41,8 +42,8 @@ def main() -> None:
     program = find_program(None)
     given.work.mkdir(parents=True, exist_ok=True)
     one, spread, store = (given.work / name for name in ["one.pmtiles", "spread.pmtiles", "store"])
-    number, unit = given.memory[:-1], given.memory[-1]
-    build = [program, "build", "-q", "-O", "--threads", str(given.workers), "--memory", f"{given.workers * int(number)}{unit}"]
+    memory_bytes = str(given.workers * parse_bytes(given.memory))
+    build = [program, "build", "-q", "-O", "--threads", str(given.workers), "--memory", memory_bytes]
     build += [*inputs, "--tmp", str(given.work), "-o", str(one)]
     cluster = [sys.executable, "-m", "corniche_dask", "build", "-q", "-O", "--local", str(given.workers), "--threads-per-worker", "1"]
     cluster += ["--memory", given.memory, *inputs, "--report", str(given.work / "report.json"), "--store", str(store), "-o", str(spread)]

@@ -146,22 +146,19 @@ def test_reports_that_cannot_be_used(change: dict[str, Any], told: str, tmp_path
     assert told in capsys.readouterr().err
 
 
-def test_a_store_that_was_not_empty_cannot_be_used(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [({"was_made": False}, "a store that is empty"), ({"file_bytes": None}, "a store and a package in folders")],
+)
+def test_parts_that_say_too_little_cannot_be_used(
+    change: dict[str, Any], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = Path(report(tmp_path, "one", 1e6, 1e6, 3))
     value = json.loads(path.read_text())
-    value["parts"][2]["was_made"] = False
+    value["parts"][2].update(change)
     path.write_text(json.dumps(value))
     assert main(["cost", str(path)]) == 2
-    assert "a store that is empty" in capsys.readouterr().err
-
-
-def test_a_store_on_object_storage_is_not_taken_for_one_without_bytes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = Path(report(tmp_path, "one", 1e6, 1e6, 3))
-    value = json.loads(path.read_text())
-    value["parts"][2]["file_bytes"] = None
-    path.write_text(json.dumps(value))
-    assert main(["cost", str(path)]) == 2
-    assert "a store and a package in folders" in capsys.readouterr().err
+    assert told in capsys.readouterr().err
 
 
 def test_two_sizes_are_not_enough(reports: list[str], capsys: pytest.CaptureFixture[str]) -> None:

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 use corniche_export::{DegreeBounds, VectorFormat};
-use corniche_roads::FunctionalRoadClass;
+use corniche_presets::{Classes, parse_degrees};
 
 #[derive(Debug, Args)]
 pub(crate) struct ExportArgs {
@@ -92,34 +92,13 @@ pub(crate) enum Heights {
     AsIs,
 }
 
-/// Functional road classes, ascending, each once.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Classes(pub(crate) Vec<FunctionalRoadClass>);
-
 fn parse_classes(text: &str) -> Result<Classes, String> {
-    let wrong = || "write classes from 0 to 8 like 0-4,7".to_owned();
-    let class =
-        |text: &str| text.trim().parse().ok().and_then(FunctionalRoadClass::new).ok_or_else(wrong);
-    let mut classes = Vec::new();
-    for item in text.split(',') {
-        let (first, last) = item.split_once('-').unwrap_or((item, item));
-        let (first, last) = (class(first)?, class(last)?);
-        if first > last {
-            return Err(wrong());
-        }
-        classes.extend(FunctionalRoadClass::all().filter(|class| (first..=last).contains(class)));
-    }
-    classes.sort_unstable();
-    classes.dedup();
-    Ok(Classes(classes))
+    Classes::parse(text).map_err(|_| "write classes from 0 to 8 like 0-4,7".to_owned())
 }
 
 fn parse_bounds(text: &str) -> Result<DegreeBounds, String> {
-    let numbers: Option<Vec<f64>> =
-        text.split(',').map(|number| number.trim().parse().ok()).collect();
-    let numbers = numbers.and_then(|numbers| <[f64; 4]>::try_from(numbers).ok());
-    let numbers =
-        numbers.ok_or("write west,south,east,north in degrees, like 9.47,47.04,9.64,47.28")?;
+    let numbers = parse_degrees(text)
+        .ok_or("write west,south,east,north in degrees, like 9.47,47.04,9.64,47.28")?;
     DegreeBounds::new(numbers).ok_or_else(|| {
         "this is no rectangle: south must be below north, west and east must differ, all within ±180 and ±90 degrees".to_owned()
     })

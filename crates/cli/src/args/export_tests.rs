@@ -4,7 +4,7 @@ use super::*;
 fn classes_are_numbers_and_ranges() {
     let numbers = |text: &str| {
         let classes = parse_classes(text).ok()?;
-        Some(classes.0.iter().map(|class| class.number()).collect::<Vec<_>>())
+        Some(classes.numbers().to_vec())
     };
     assert_eq!(numbers("0-8"), Some((0..9).collect()));
     assert_eq!(numbers("7, 0-2 ,1"), Some(vec![0, 1, 2, 7]));
