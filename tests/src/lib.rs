@@ -210,16 +210,15 @@ pub fn write_ascii_grid(
 /// When the build fails.
 pub fn build_pass(package: &Path, options: &[&str]) {
     let [dem, osm] = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
-    let mut arguments = vec![
-        "build".into(),
-        "--dem".into(),
-        dem.into_os_string(),
-        "--osm".into(),
-        osm.into_os_string(),
-        "-o".into(),
-        package.as_os_str().to_owned(),
-    ];
-    arguments.extend(options.iter().map(Into::into));
-    let ran = corniche(arguments);
+    build_from([&dem, &osm], package, options);
+}
+
+/// Builds `package` from elevation and an extract, with more `options`.
+///
+/// # Panics
+/// When the build fails.
+pub fn build_from([dem, osm]: [&Path; 2], package: &Path, options: &[&str]) {
+    let inputs = ["build", "--dem", text(dem), "--osm", text(osm), "-o", text(package)];
+    let ran = corniche(inputs.iter().chain(options));
     assert_eq!(ran.code, 0, "{}", ran.err);
 }

@@ -9,7 +9,9 @@ use std::{
 };
 
 use corniche_testing::pbf;
-use e2e::{Ran, build_pass, corniche, json, manifest, real_data, text, write_ascii_grid};
+use e2e::{
+    Ran, build_from, build_pass, corniche, json, manifest, real_data, text, write_ascii_grid,
+};
 use gdal::{
     Dataset, Metadata as _,
     spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef},
@@ -456,19 +458,7 @@ fn a_road_on_a_plane_is_measured_in_closed_form() {
     let points_deg = (0..=60).map(|k| [8.98 + 0.04 * f64::from(k) / 60.0, 46.945]).collect();
     let tags = vec![("highway", "primary"), ("name", "Rampe"), ("tunnel", "yes"), ("oneway", "-1")];
     fs::write(&osm, pbf::extract(&[], &[pbf::Line { tags, points_deg }])).unwrap();
-    let ran = corniche([
-        "build",
-        "--dem",
-        text(&dem),
-        "--osm",
-        text(&osm),
-        "-o",
-        text(&package),
-        "-q",
-        "--dem-crs",
-        "EPSG:32632",
-    ]);
-    assert_eq!(ran.code, 0, "{}", ran.err);
+    build_from([&dem, &osm], &package, &["-q", "--dem-crs", "EPSG:32632"]);
     let roads = exported(&package, &folder.path().join("plane.gpkg"), &[]);
     let [road] = &roads[..] else { panic!("{} roads", roads.len()) };
     // 0.04 degrees of the parallel at 46.945° on WGS84: N cos φ.
@@ -509,19 +499,7 @@ fn roads_cross_the_antimeridian() {
     let points_deg = vec![[179.95, -16.5], [179.99, -16.51], [-179.96, -16.49]];
     let line = pbf::Line { tags: vec![("highway", "primary")], points_deg };
     fs::write(&osm, pbf::extract(&[], &[line])).unwrap();
-    let ran = corniche([
-        "build",
-        "--dem",
-        text(&dem),
-        "--osm",
-        text(&osm),
-        "-o",
-        text(&package),
-        "-q",
-        "--dem-crs",
-        "EPSG:4326",
-    ]);
-    assert_eq!(ran.code, 0, "{}", ran.err);
+    build_from([&dem, &osm], &package, &["-q", "--dem-crs", "EPSG:4326"]);
     let own = exported(&package, &folder.path().join("own.gpkg"), &[]);
     let [line] = &own[0].lines[..] else { panic!("{} lines", own[0].lines.len()) };
     assert!(line.windows(2).all(|pair| (pair[1][0] - pair[0][0]).abs() < 1.0));
