@@ -127,7 +127,10 @@ pub(crate) fn draw(axes: &Axes, curves: &[Curve]) -> Result<String> {
             mesh.y_labels(count).y_label_formatter(&tick_y).y_max_light_lines(0);
         }
         mesh.draw()?;
-        for curve in curves {
+        // Wide lines lie below narrow ones, which they would hide.
+        let mut by_width: Vec<&Curve> = curves.iter().collect();
+        by_width.sort_by_key(|curve| std::cmp::Reverse(curve.line().2.stroke_width));
+        for curve in by_width {
             let (dash, gap, style) = curve.line();
             let points = curve.points.iter().copied();
             if dash == 0 {
