@@ -13,6 +13,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     info, messages, output,
+    part::make_tmp,
     settings::{self, Work},
     table::Digits,
 };
@@ -35,6 +36,7 @@ pub(crate) fn run(mut args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
     others.push(&output);
     let watch = Watch::new(defects.as_deref(), args.overwrite, &others)?;
     let settings = settings(*args, output)?;
+    make_tmp(settings.tmp.as_deref())?;
     let built = corniche_pipeline::build(&settings, &watch);
     finish(built, watch, &settings.output)
 }
