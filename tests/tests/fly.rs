@@ -77,7 +77,7 @@ fn full_resolution_culling_and_level_of_detail_draw_ever_less() {
     assert!(triangles[0] > triangles[1] && triangles[1] > triangles[2], "{triangles:?}");
     let drawing = fs::read_to_string(&svg).unwrap();
     assert!(
-        ["full", "culled", "lod"].iter().all(|lod| drawing.contains(&format!("{lod}, roads geo")))
+        ["full", "culled", "lod"].iter().all(|lod| drawing.contains(&format!("{lod}, roads sv")))
     );
 
     // An existing file is kept, and the message comes before anything is drawn; a list never replaces a package.
@@ -198,7 +198,7 @@ fn a_flight_that_dives_to_the_ground_is_flown_at_any_exaggeration() {
     assert!(ran.err.contains("lifted off the ground, by up to 1."), "{}", ran.err);
     assert!((lowest_in_list() - ground_m - 2.0).abs() < 0.11, "{} {ground_m}", lowest_in_list());
     let [high, low] = [0, 3].map(|frame: u32| {
-        image::open(png.join(format!("lod-geo-{frame:05}.png"))).unwrap().to_rgb8()
+        image::open(png.join(format!("lod-sv-{frame:05}.png"))).unwrap().to_rgb8()
     });
     assert!(high != low);
     // At a height of two metres the haze and the near plane are near: the ground just below fills the lower half.

@@ -143,6 +143,9 @@ fn numbers_are_plain_in_pipes_and_tables_are_narrow() {
     let manifest = json(&["info", text(&package), "--json"])["manifest"].take();
     let triangles = manifest["levels"].as_array().unwrap().last().unwrap()["triangles"].to_string();
     assert!(triangles.len() > 5 && info.contains(&format!(" {triangles} ")), "{triangles}: {info}");
+    // Texts are folded, too, but for words that are longer.
+    let wide = info.lines().filter(|line| line.chars().count() > 100);
+    assert_eq!(wide.collect::<Vec<_>>(), Vec::<&str>::new(), "{info}");
     for said in [&built.err, &info, &growth, &verify, &plan] {
         // Tables come after the first empty line.
         let tables = said.lines().skip_while(|line| !line.is_empty());
@@ -185,6 +188,47 @@ fn classes_stand_under_what_they_break_down() {
 fn records(said: &str) -> Vec<Value> {
     let parse = |line| serde_json::from_str(line).unwrap_or_else(|error| panic!("{error}: {line}"));
     said.lines().map(parse).collect()
+}
+
+/// A command line that is not understood: whoever asked for records gets one, with the same exit code.
+#[test]
+fn refused_command_lines_are_records_on_request() {
+    let lines: [(&[&str], &str); 5] = [
+        (&["info", "a.pmtiles", "--odd"], "--odd"),
+        (&["build"], "--dem"),
+        (&["nothing"], "nothing"),
+        (&["build", "--dem", "a.tif", "-o", "b.pmtiles", "--max-error"], "--max-error"),
+        (&["info", "a.pmtiles", "-q", "-v"], "cannot be used with"),
+    ];
+    for (line, word) in lines {
+        let plain = corniche(line);
+        assert!(plain.code == 2 && plain.err.starts_with("error: "), "{line:?}: {}", plain.err);
+        for format in [&["--log-format", "json"][..], &["--log-format=json"]] {
+            let ran = corniche([format, line].concat());
+            let [record] = &records(&ran.err)[..] else { panic!("{line:?}: {}", ran.err) };
+            let message = record["message"].as_str().unwrap();
+            assert!(ran.code == 2 && ran.out.is_empty(), "{line:?}: {}", ran.code);
+            assert_eq!((&record["level"], &record["exit_code"]), (&"ERROR".into(), &2.into()));
+            assert!(message.contains(word) && !message.contains("Usage"), "{message}");
+        }
+        let ran = corniche([line, &["--json-progress"]].concat());
+        let [record] = &records(&ran.err)[..] else { panic!("{line:?}: {}", ran.err) };
+        let end = &record["end"];
+        assert_eq!((&end["result"], &end["exit_code"]), (&"unusable".into(), &2.into()), "{end}");
+        assert!(ran.code == 2 && end["error"].is_string(), "{end}");
+    }
+    // Silence and records exclude each other, wherever they stand.
+    let dem = sample("pass/pass-dem.tif");
+    let build = ["build", "--dem", text(&dem), "-o", "/nowhere/a.pmtiles", "--json-progress"];
+    for line in [[&["-q"], &build[..]].concat(), [&build[..], &["-q"]].concat()] {
+        let ran = corniche(&line);
+        let [record] = &records(&ran.err)[..] else { panic!("{line:?}: {}", ran.err) };
+        let error = record["end"]["error"].as_str().unwrap();
+        assert!(ran.code == 2 && error.contains("--quiet"), "{line:?}: {error}");
+    }
+    // Help is an answer.
+    let help = corniche(["build", "--help", "--log-format", "json"]);
+    assert!(help.code == 0 && help.err.is_empty() && help.out.contains("--dem"));
 }
 
 #[test]

@@ -84,6 +84,11 @@ fn what_is_printed_fits_its_schema() {
     }
     check("info", std::slice::from_ref(&info));
     check("growth", &[json(&["growth", package, "--json"])]);
+    let coarse = folder.path().join("coarse.pmtiles");
+    build_pass(&coarse, &["-q", "--max-error", "20", "--simplify", "0"]);
+    let comparison = json(&["growth", package, text(&coarse), "--json"]);
+    assert_eq!(comparison["differences"][0]["what"], "simplification");
+    check("growth-comparison", &[comparison]);
     check(
         "verify",
         &[json(&["verify", package, "--json", "-q", "--dem", text(&dem), "--osm", text(&osm)])],

@@ -12,6 +12,8 @@ use plotters::{
     },
 };
 
+use crate::info::rounded;
+
 /// Caption and axes around the curves.
 pub(crate) struct Axes {
     pub(crate) size_px: (u32, u32),
@@ -29,12 +31,14 @@ pub(crate) struct Axis {
 }
 
 /// Where an axis has numbers and lines.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Ticks {
     /// At round places, with finer lines between them.
     Round,
     /// At so many whole numbers, with nothing between them.
     Whole(usize),
+    /// The same, where each step doubles what is counted; at 0 it is `unit`, and that is what the numbers say.
+    Doubled { count: usize, unit: f64 },
 }
 
 /// A line from point to point. It and its marks differ from those of the other curves also without colours.
@@ -74,6 +78,9 @@ const DIAMOND: [(i32, i32); 4] = [(0, -6), (6, 0), (0, 6), (-6, 0)];
 /// Lengths of dashes and of the gaps between them, pixels; 0: an unbroken line.
 const DASHES: [(i32, i32); 3] = [(0, 0), (9, 4), (3, 3)];
 
+/// So many curves with marks can be told apart without colours: after all shapes come the same ones with other dashes.
+pub(crate) const MOST_SHAPES: usize = SHAPES.len() * DASHES.len();
+
 /// Height of a row in the list of names, and the width of a character, pixels.
 const ROW_PX: i32 = 24;
 const CHARACTER_PX: i32 = 8;
@@ -97,18 +104,24 @@ pub(crate) fn draw(axes: &Axes, curves: &[Curve]) -> Result<String> {
             .x_label_area_size(44)
             .y_label_area_size(80)
             .build_cartesian_2d(axes.x.range.clone(), axes.y.range.clone())?;
-        let whole = |number: &f64| format!("{number:.0}");
+        let tick = |ticks: Ticks| {
+            move |number: &f64| match ticks {
+                Ticks::Doubled { unit, .. } => rounded(unit * number.exp2()),
+                Ticks::Round | Ticks::Whole(_) => format!("{number:.0}"),
+            }
+        };
+        let (tick_x, tick_y) = (tick(axes.x.ticks), tick(axes.y.ticks));
         let mut mesh = chart.configure_mesh();
         mesh.x_desc(axes.x.description)
             .y_desc(axes.y.description)
             .axis_desc_style(("sans-serif", 16))
             .label_style(("sans-serif", 14))
             .max_light_lines(2);
-        if let Ticks::Whole(count) = axes.x.ticks {
-            mesh.x_labels(count).x_label_formatter(&whole).x_max_light_lines(0);
+        if let Ticks::Whole(count) | Ticks::Doubled { count, .. } = axes.x.ticks {
+            mesh.x_labels(count).x_label_formatter(&tick_x).x_max_light_lines(0);
         }
-        if let Ticks::Whole(count) = axes.y.ticks {
-            mesh.y_labels(count).y_label_formatter(&whole).y_max_light_lines(0);
+        if let Ticks::Whole(count) | Ticks::Doubled { count, .. } = axes.y.ticks {
+            mesh.y_labels(count).y_label_formatter(&tick_y).y_max_light_lines(0);
         }
         mesh.draw()?;
         for curve in curves {
@@ -167,7 +180,7 @@ impl Curve {
             Marks::None => 0,
             Marks::Shape(number) => number,
         };
-        let (dash, gap) = DASHES[number % DASHES.len()];
+        let (dash, gap) = DASHES[(number + number / SHAPES.len()) % DASHES.len()];
         (dash, gap, self.color.stroke_width(2))
     }
 

@@ -71,7 +71,7 @@ fn line(defect: &Defect) -> String {
 }
 
 /// A field as CSV wants it (RFC 4180, section 2): quoted where it holds a comma, a quote or a line break.
-fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {

@@ -97,13 +97,13 @@ fn to_text(
 }
 
 /// A bar on a terminal, and whether the program is asked to end.
-struct Bar {
+pub(crate) struct Bar {
     bar: ProgressBar,
     work: RefCell<Option<Work>>,
 }
 
 impl Bar {
-    fn new(is_shown: bool) -> Self {
+    pub(crate) fn new(is_shown: bool) -> Self {
         // Elsewhere than on a terminal it is not drawn.
         let bar = if is_shown { ProgressBar::new(0) } else { ProgressBar::hidden() };
         let style = ProgressStyle::with_template("{msg:22} {bar:40} {pos}/{len}  {elapsed}");
@@ -114,7 +114,7 @@ impl Bar {
         Self { bar, work: RefCell::new(None) }
     }
 
-    fn end(&self) {
+    pub(crate) fn end(&self) {
         self.bar.finish_and_clear();
     }
 }

@@ -14,8 +14,11 @@ use crate::{
     documents::{info::InfoDocument, to_line},
     exit::ExitCode,
     failure::Failure,
-    table::{Digits, Table, bytes, length},
+    table::{Digits, Table, bytes, length, wrapped},
 };
+
+/// Width of the names before the first lines' texts.
+const NAMES: usize = 13;
 
 pub(crate) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
     let package = FilePackage::open(&args.package)?;
@@ -92,7 +95,18 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
     say(format!("Errors of the tiles:\n{}", tile_errors(manifest).to_text()));
     text.push_str(&sample_errors(manifest, digits));
     text.push_str(&roads(manifest, digits));
-    text
+    narrow(&text)
+}
+
+/// Lines that are too wide are texts: they go on below the place where they began, beside their name.
+fn narrow(text: &str) -> String {
+    let line = |line: &str| {
+        let is_named = !line.starts_with(' ') && line.get(NAMES - 2..NAMES) == Some("  ");
+        let begin = line.len() - line.trim_start().len();
+        let below = if is_named { NAMES } else { begin + 2 };
+        format!("{}\n", wrapped(line, "", &" ".repeat(below)))
+    };
+    text.lines().map(line).collect()
 }
 
 /// What each level holds.
@@ -183,13 +197,13 @@ fn scales(scale: &ScaleRecord) -> String {
 }
 
 /// A cell's sides: "30", "63.1 × 92.7".
-fn sides(cell: Cell) -> String {
+pub(crate) fn sides(cell: Cell) -> String {
     let [east, north] = cell.to_array().map(rounded);
     if east == north { north } else { format!("{east} × {north}") }
 }
 
 /// A length to three digits at least, without zeros at its end.
-fn rounded(metres: f64) -> String {
+pub(crate) fn rounded(metres: f64) -> String {
     let digits = (2.0 - metres.abs().log10().floor()).clamp(0.0, 9.0) as usize;
     let text = format!("{metres:.digits$}");
     if digits == 0 {
@@ -199,7 +213,7 @@ fn rounded(metres: f64) -> String {
 }
 
 /// Text from a file, made safe for a terminal: without control characters that could set colours or imitate other lines.
-fn plain(text: &str) -> String {
+pub(crate) fn plain(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }
 

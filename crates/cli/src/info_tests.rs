@@ -22,3 +22,26 @@ fn factors_are_told_where_there_are_any() {
     let told = factors([-1.0, 111_180.5]);
     assert!(told.ends_with("times -1 (east) and 111180.5 (north)"), "{told}");
 }
+
+#[test]
+fn long_texts_go_on_beside_their_names() {
+    let words = "word ".repeat(30);
+    let text = format!("datum        {words}\nwarning: {words}\n  not taken, {words}\n");
+    let narrow = narrow(&text);
+    assert!(narrow.lines().all(|line| line.chars().count() <= 100), "{narrow}");
+    let begins: Vec<&str> = narrow.lines().map(|line| &line[..14]).collect();
+    assert_eq!(
+        begins,
+        [
+            "datum        w",
+            "             w",
+            "warning: word ",
+            "  word word wor",
+            "  not taken, w",
+            "    word word "
+        ]
+        .map(|begin| &begin[..14])
+    );
+    let table = format!("a  b{}\n\n  c\n", " ".repeat(20));
+    assert_eq!(super::narrow(&table), table);
+}

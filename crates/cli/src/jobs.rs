@@ -18,9 +18,10 @@ pub(crate) fn run(args: &JobsArgs) -> Result<ExitCode, Failure> {
         let message = format!("--least-work must be from 0 to 1e9 seconds, not {seconds}");
         return Err(Failure::unusable(message));
     }
+    let (plan, stores) = args.files()?;
     let jobs = corniche_pipeline::jobs(&JobSettings {
-        plan: read_plan(&args.plan)?,
-        stores: args.store.clone(),
+        plan: read_plan(&plan)?,
+        stores,
         slots: args.slots,
         least_seconds: args.least_work,
         resources: settings::resources(None, None)?,

@@ -38,16 +38,16 @@ mod verify;
 mod version;
 mod view;
 
-use std::process;
+use std::{env, process};
 
-use clap::{Parser, error::ErrorKind};
+use clap::error::ErrorKind;
 
-use args::{Arguments, Command};
+use args::{Arguments, Command, LogFormat, Voice};
 use exit::ExitCode;
 use failure::Failure;
 
 fn main() -> process::ExitCode {
-    let arguments = match Arguments::try_parse() {
+    let arguments = match Arguments::checked_from(env::args_os()) {
         Ok(arguments) => arguments,
         Err(error) => return answer(&error).into(),
     };
@@ -71,6 +71,12 @@ fn main() -> process::ExitCode {
 
 /// Help and version are answers, not errors; clap knows which stream each belongs on.
 fn answer(error: &clap::Error) -> ExitCode {
+    let voice = Voice::of_unparsed(env::args_os().skip(1));
+    if error.use_stderr() && (voice.json_progress || voice.format == LogFormat::Json) {
+        messages::begin(voice);
+        messages::ended(ExitCode::Unusable, Some(&Failure::unusable(refusal(error))));
+        return ExitCode::Unusable;
+    }
     // If nobody reads it any more, the exit code alone must tell.
     if error.kind() == ErrorKind::DisplayVersion && version::is_long_asked_for() {
         let _ = version::print_long();
@@ -78,6 +84,16 @@ fn answer(error: &clap::Error) -> ExitCode {
         let _ = error.print();
     }
     if error.use_stderr() { ExitCode::Unusable } else { ExitCode::Done }
+}
+
+/// What the parser says of a command line, in one line, without its usage.
+fn refusal(error: &clap::Error) -> String {
+    let said = error.render().to_string();
+    let paragraphs = said.split("\n\n").take_while(|paragraph| {
+        !["Usage:", "For more information"].iter().any(|begin| paragraph.trim().starts_with(begin))
+    });
+    let words = paragraphs.flat_map(str::split_whitespace).collect::<Vec<_>>().join(" ");
+    words.strip_prefix("error: ").unwrap_or(&words).to_owned()
 }
 
 fn run(arguments: Arguments) -> Result<ExitCode, Failure> {

@@ -24,14 +24,15 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
         output::writable(&args.output)?;
     }
     names::refuse_other_than_package(&args.output)?;
+    let (plan_file, stores) = planned.files()?;
     make_tmp(planned.tmp.as_deref())?;
-    let plan = read_plan(&planned.plan)?;
+    let plan = read_plan(&plan_file)?;
     let mut others: Vec<&Path> = plan.inputs.iter().map(|input| Path::new(&input.path)).collect();
-    others.extend([args.output.as_path(), planned.plan.as_path()]);
+    others.extend([args.output.as_path(), plan_file.as_path()]);
     let watch = Watch::new(args.defects.as_deref(), args.overwrite, &others)?;
     let merge = MergeSettings {
         plan,
-        stores: planned.store.clone(),
+        stores,
         tmp: planned.tmp.clone(),
         output: args.output.clone(),
         existing: if args.overwrite { Existing::Replace } else { Existing::Keep },

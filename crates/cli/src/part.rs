@@ -18,10 +18,11 @@ pub(crate) fn run(args: &PartArgs) -> Result<ExitCode, Failure> {
     if planned.die_with_parent {
         parent::watch()?;
     }
+    let (plan, stores) = planned.files()?;
     make_tmp(planned.tmp.as_deref())?;
     let part = PartSettings {
-        plan: read_plan(&planned.plan)?,
-        stores: planned.store.clone(),
+        plan: read_plan(&plan)?,
+        stores,
         tmp: planned.tmp.clone(),
         step: args.step.into(),
         subtree: args.subtree,

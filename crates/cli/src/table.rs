@@ -82,6 +82,29 @@ fn folds_within(widths: &[usize], limit: usize) -> Vec<Range<usize>> {
     blocks
 }
 
+/// A text in lines of at most [`MAX_WIDTH`] characters, broken at spaces; a longer word stays whole. The first line begins with `first`, the
+/// others with `rest`.
+pub(crate) fn wrapped(text: &str, first: &str, rest: &str) -> String {
+    let mut lines = String::from(first);
+    let mut width = first.chars().count();
+    let mut is_begun = false;
+    for word in text.split(' ') {
+        let own = word.chars().count();
+        if is_begun && width + 1 + own > MAX_WIDTH {
+            lines.truncate(lines.trim_end().len());
+            let _ = write!(lines, "\n{rest}");
+            width = rest.chars().count();
+        } else if is_begun {
+            lines.push(' ');
+            width += 1;
+        }
+        lines.push_str(word);
+        width += own;
+        is_begun = true;
+    }
+    lines
+}
+
 /// How whole numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Digits {

@@ -51,3 +51,23 @@ fn thousands_are_separated_for_people_only() {
     assert_eq!(Digits::Apart.count(1_234_567), "1\u{202f}234\u{202f}567");
     assert_eq!(Digits::Plain.count(1_234_567), "1234567");
 }
+
+#[test]
+fn texts_are_broken_at_spaces_and_go_on_below() {
+    let words: Vec<String> = (1..40).map(|length| "x".repeat(length % 17 + 1)).collect();
+    let text = words.join(" ");
+    let folded = wrapped(&text, "- ", "    ");
+    let lines: Vec<&str> = folded.lines().collect();
+    assert!(lines.len() > 3 && lines[0].starts_with("- x"), "{folded}");
+    for (line, next) in lines.iter().zip(&lines[1..]) {
+        let first = next.trim_start().split(' ').next().unwrap();
+        let width = line.chars().count();
+        assert!(width <= MAX_WIDTH && width + 1 + first.len() > MAX_WIDTH, "{folded}");
+        assert!(next.starts_with("    x"), "{folded}");
+    }
+    assert_eq!(folded.split_whitespace().skip(1).collect::<Vec<_>>(), words);
+    // What fits stays as it is, spaces included; a long word stays whole.
+    assert_eq!(wrapped("a  b   c", "", "  "), "a  b   c");
+    let long = "x".repeat(150);
+    assert_eq!(wrapped(&format!("a {long} b"), "", "  "), format!("a\n  {long}\n  b"));
+}

@@ -11,6 +11,8 @@
 //! and are joined; where there is no ground, the line has a gap and stays in parts. Memory holds one tile, one way, and
 //! what the sorting is given.
 //!
+//! The same pieces, of all levels, tell what laying each way on the terrain costs ([`growth_by_way`]).
+//!
 //! Vertices are those of the package: nothing is simplified, smoothed or rounded, except in GeoJSON (nine decimals).
 //!
 //! This crate never reads an extract or an elevation file, never decides which road matters, and writes no file but the one
@@ -20,6 +22,7 @@ mod bounds;
 mod cut;
 mod error;
 mod feature;
+mod growth;
 mod join;
 mod measures;
 mod piece;
@@ -30,10 +33,12 @@ mod roads;
 mod scratch;
 mod vector;
 mod watch;
+mod ways;
 
 pub use bounds::DegreeBounds;
 pub use error::ExportError;
 pub use feature::road_fields;
+pub use growth::{WayGrowth, growth_by_way};
 pub use request::{Coordinates, RoadsRequest};
 pub use roads::{ExportSummary, export_roads};
 pub use vector::{Field, FieldKind, VectorFormat};

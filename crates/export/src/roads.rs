@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use corniche_store::{Sorted, Sorter};
+use corniche_store::Sorter;
 use corniche_tileset::{FilePackage, tile_of_order};
 
 use crate::{
@@ -17,7 +17,8 @@ use crate::{
     request::{Coordinates, RoadsRequest},
     scratch::FileScratch,
     vector::{Layer, Record, VectorFile, VectorFormat},
-    watch::{Watch, Work},
+    watch::{Watch, Work, stop_if_asked},
+    ways::Ways,
 };
 
 /// What was exported.
@@ -98,7 +99,7 @@ pub fn export_roads(
             heights: places.heights().to_owned(),
         },
     };
-    let mut ways = Ways { sorted: sorter.finish().map_err(sort)?, next: None };
+    let mut ways = Ways::new(sorter.finish().map_err(sort)?);
     let mut done = 0;
     while let Some(pieces) = ways.next_way().map_err(sort)? {
         stop_if_asked(watch)?;
@@ -110,10 +111,6 @@ pub fn export_roads(
     file.finish()?;
     watch.done(Work::Pieces, count, count);
     Ok(summary)
-}
-
-fn stop_if_asked(watch: &dyn Watch) -> Result<(), ExportError> {
-    if watch.should_stop() { Err(ExportError::Interrupted) } else { Ok(()) }
 }
 
 /// What the file says of itself.
@@ -139,35 +136,6 @@ fn layer(package: &FilePackage, level: u8, request: &RoadsRequest, places: &Plac
             ("HEIGHTS", places.heights().to_owned()),
             ("VERTICAL_DATUM_OF_PACKAGE", manifest.vertical.datum.clone()),
         ],
-    }
-}
-
-/// The pieces of one way after the other.
-struct Ways<'a> {
-    sorted: Sorted<'a, SortedPiece>,
-    /// The first piece of the next way.
-    next: Option<Piece>,
-}
-
-impl Ways<'_> {
-    fn next_way(&mut self) -> std::io::Result<Option<Vec<Piece>>> {
-        let first = match self.next.take() {
-            Some(first) => first,
-            None => match self.sorted.next().transpose()? {
-                Some(SortedPiece(first)) => first,
-                None => return Ok(None),
-            },
-        };
-        let way_id = first.key.way_id;
-        let mut pieces = vec![first];
-        while let Some(SortedPiece(piece)) = self.sorted.next().transpose()? {
-            if piece.key.way_id != way_id {
-                self.next = Some(piece);
-                break;
-            }
-            pieces.push(piece);
-        }
-        Ok(Some(pieces))
     }
 }
 

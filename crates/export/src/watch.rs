@@ -1,3 +1,5 @@
+use crate::error::ExportError;
+
 /// What an export is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Work {
@@ -14,6 +16,11 @@ pub trait Watch {
 
     /// Whether the export is to end. It is asked for each tile and for each way.
     fn should_stop(&self) -> bool;
+}
+
+/// Ends the work if that is wanted.
+pub(crate) fn stop_if_asked(watch: &dyn Watch) -> Result<(), ExportError> {
+    if watch.should_stop() { Err(ExportError::Interrupted) } else { Ok(()) }
 }
 
 /// Nobody waits.

@@ -9,8 +9,8 @@ use std::{
 };
 
 use corniche_export::{
-    Coordinates, ExportError, RoadsRequest, Unwatched, VectorFormat, Watch, Work, export_roads,
-    road_fields,
+    Coordinates, ExportError, RoadsRequest, Unwatched, VectorFormat, Watch, WayGrowth, Work,
+    export_roads, growth_by_way, road_fields,
 };
 use corniche_roads::FunctionalRoadClass;
 use corniche_testing::{package, root};
@@ -56,6 +56,39 @@ fn memory_does_not_change_the_file() {
         fs::read(path).unwrap()
     });
     assert!(one == two, "other bytes");
+}
+
+/// What laying each way on the terrain costs: of all levels, in the order of the ways, however little memory the sorting has.
+#[test]
+fn each_way_is_told_of_once_with_all_levels() {
+    let folder = tempfile::tempdir().unwrap();
+    let package = FilePackage::open(&small_package(folder.path())).unwrap();
+    let [one, two] = [500, 1 << 30].map(|memory_bytes| {
+        let mut ways: Vec<WayGrowth> = Vec::new();
+        growth_by_way(&package, folder.path(), memory_bytes, &Unwatched, |way| {
+            ways.push(way.clone());
+            Ok::<(), ExportError>(())
+        })
+        .unwrap();
+        ways
+    });
+    assert_eq!(one, two);
+    assert!(!one.is_empty() && one.is_sorted_by(|one, other| one.way_id < other.way_id), "{one:?}");
+    let mut by_level = vec![0; usize::from(package::MAX_LEVEL) + 1];
+    for id in package::ids() {
+        for road in package::payload(id).roads_geo {
+            by_level[usize::from(id.z())] += road.line.vertices.len() as u64;
+        }
+    }
+    let told = |level: usize| one.iter().map(|way| way.geo_vertices[level]).sum::<u64>();
+    assert_eq!((0..by_level.len()).map(told).collect::<Vec<u64>>(), by_level);
+    assert!(by_level.iter().all(|&vertices| vertices > 0), "{by_level:?}");
+    let refused =
+        growth_by_way(&package, folder.path(), 500, &Unwatched, |_| Err(ExportError::Interrupted));
+    assert!(matches!(refused, Err(ExportError::Interrupted)), "what the receiver says ends it");
+    let nowhere = folder.path().join("nowhere");
+    let refused = growth_by_way(&package, &nowhere, 500, &Unwatched, |_| Ok::<(), ExportError>(()));
+    assert!(matches!(refused, Err(ExportError::Sort { .. })), "{refused:?}");
 }
 
 /// Asks a number of times whether to stop, then stops.

@@ -2,7 +2,6 @@ use super::*;
 
 #[test]
 fn the_command_line_is_consistent() {
-    use clap::CommandFactory as _;
     Arguments::command().debug_assert();
 }
 
@@ -34,7 +33,6 @@ fn the_options_of_resumed_builds_and_plans_are_understood() {
 /// `-q`, `-v` and `--log-format` are options of every command, before its name and behind it.
 #[test]
 fn every_command_takes_the_options_of_messages() {
-    use clap::CommandFactory as _;
     let parse = |line: String| Arguments::try_parse_from(line.split_whitespace());
     let names: Vec<String> = Arguments::command()
         .get_subcommands()
@@ -74,6 +72,132 @@ fn every_command_takes_the_options_of_messages() {
     let told = parse("corniche verify a.pmtiles --json-progress".into()).unwrap().voice();
     assert!(told.json_progress);
     assert!(parse("corniche verify a.pmtiles --json-progress -q".into()).is_err());
+}
+
+/// `-q` with `-v` or `--json-progress` is refused wherever they stand; the parser alone sees only those of one side.
+#[test]
+fn silence_and_talk_exclude_each_other_on_both_sides_of_the_command() {
+    let parse = |line: &str| Arguments::checked_from(line.split(' ').map(Into::into));
+    let package = "verify a.pmtiles";
+    for line in [
+        format!("corniche -q {package} --json-progress"),
+        format!("corniche {package} -q --json-progress"),
+        format!("corniche -q {package} -v"),
+        format!("corniche -v {package} -q"),
+        format!("corniche -q -v {package}"),
+        "corniche -q build --dem a.tif -o b.pmtiles --json-progress".to_owned(),
+    ] {
+        let refused = parse(&line).expect_err(&line);
+        assert_eq!(refused.kind(), ErrorKind::ArgumentConflict, "{line}");
+        let said = refused.to_string();
+        assert!(said.contains("--quiet") && said.contains("cannot be used with"), "{line}: {said}");
+    }
+    for line in [format!("corniche -q {package}"), format!("corniche -v {package} --json-progress")]
+    {
+        assert!(parse(&line).is_ok(), "{line}");
+    }
+}
+
+/// Whoever reads records gets the refusal of a command line as one, although it was not understood.
+#[test]
+fn the_voice_of_a_line_that_is_not_understood_is_found() {
+    let voice = |line: &str| Voice::of_unparsed(line.split(' ').map(Into::into));
+    let json = Voice { format: LogFormat::Json, ..Voice::default() };
+    let progress = Voice { json_progress: true, ..Voice::default() };
+    for (line, expected) in [
+        ("info --odd", Voice::default()),
+        ("info --odd --log-format json", json),
+        ("--log-format=json info --odd", json),
+        ("build --json-progress --odd", progress),
+        ("info --log-format text json", Voice::default()),
+        ("info json --log-format", Voice::default()),
+        ("info -- --log-format json --json-progress", Voice::default()),
+    ] {
+        assert_eq!(voice(line), expected, "{line}");
+    }
+}
+
+/// An option with several values takes all that follows it, also a positional argument. Each command that has both finds its
+/// own among them by its name.
+#[test]
+fn options_with_several_values_leave_positional_arguments_alone() {
+    let mut found = Vec::new();
+    for (path, command) in all_commands() {
+        let has_positional = command.get_positionals().next().is_some();
+        let takes_several = |arg: &&clap::Arg| {
+            !arg.is_positional() && arg.get_num_args().is_some_and(|range| range.max_values() > 1)
+        };
+        for option in command.get_arguments().filter(takes_several).filter(|_| has_positional) {
+            found.push(format!("{path} --{}", option.get_long().unwrap()));
+        }
+    }
+    found.sort();
+    let files = |arguments: &Arguments| match &arguments.command {
+        Command::Jobs(args) => args.files().unwrap(),
+        Command::Part(args) => args.planned.files().unwrap(),
+        Command::Merge(args) => args.planned.files().unwrap(),
+        Command::Verify(args) => args.files().unwrap(),
+        _ => panic!("{arguments:?} has no files to tell apart"),
+    };
+    // What follows the option, what is meant by the positional argument, and what else the command needs.
+    let known = [
+        ("jobs --store", "p.json", "--slots 2"),
+        ("merge --store", "p.json", "-o c.pmtiles"),
+        ("part --store", "p.json", "--step top"),
+        ("verify --dem", "p.pmtiles", "--threads 1"),
+    ];
+    let names: Vec<&str> = known.iter().map(|(name, _, _)| *name).collect();
+    assert_eq!(found, names, "a new option with several values needs a line here");
+    for (name, positional, rest) in known {
+        let (command, option) = name.split_once(' ').unwrap();
+        for line in [
+            format!("corniche {command} {option} a b {positional} {rest}"),
+            format!("corniche {command} {rest} {option} a {positional} {option} b"),
+            format!("corniche {command} {positional} {option} a b {rest}"),
+            format!("corniche {command} {option} a b {rest} {positional}"),
+        ] {
+            let arguments = Arguments::try_parse_from(line.split(' '));
+            let arguments = arguments.unwrap_or_else(|error| panic!("{line}: {error}"));
+            assert_eq!(
+                files(&arguments),
+                (positional.into(), vec!["a".into(), "b".into()]),
+                "{line}"
+            );
+        }
+    }
+}
+
+/// All commands and what is below them, by their words.
+fn all_commands() -> Vec<(String, clap::Command)> {
+    let mut all = vec![(String::new(), Arguments::command())];
+    let mut next = 0;
+    while let Some((path, command)) = all.get(next).cloned() {
+        let below = command
+            .get_subcommands()
+            .map(|below| (format!("{path} {}", below.get_name()).trim().to_owned(), below.clone()));
+        all.extend(below.collect::<Vec<_>>());
+        next += 1;
+    }
+    all
+}
+
+/// Where it cannot be told which name is the plan, or there is none, that is said.
+#[test]
+fn a_plan_that_is_not_named_is_missed() {
+    let refusal = |line: &str| {
+        let arguments = Arguments::try_parse_from(line.split(' ')).unwrap();
+        let Command::Part(args) = arguments.command else { panic!("{line}") };
+        args.planned.files().unwrap_err().to_string()
+    };
+    for (names, word) in [
+        ("a b", "no plan is named"),
+        ("p.json q.json a", "several names"),
+        ("p.json", "--store needs a folder"),
+    ] {
+        let said = refusal(&format!("corniche part --step top --store {names}"));
+        assert!(said.contains(word), "{names}: {said}");
+    }
+    assert!(Arguments::try_parse_from(["corniche", "jobs", "--slots", "2"]).is_err());
 }
 
 /// `--dem` takes every name up to the next option; a package among them is told by its ending.

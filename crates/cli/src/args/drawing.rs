@@ -23,7 +23,7 @@ pub(crate) struct RenderArgs {
     #[arg(short = 'O', long)]
     pub(crate) overwrite: bool,
     /// How roads are drawn
-    #[arg(long, value_enum, default_value_t = Roads::Geo)]
+    #[arg(long, value_enum, default_value_t = Roads::DEFAULT)]
     pub(crate) roads: Roads,
     #[command(flatten)]
     pub(crate) look: LookArgs,
@@ -110,7 +110,7 @@ pub(crate) struct FlightArgs {
 #[command(next_help_heading = "Drawing")]
 pub(crate) struct DrawingArgs {
     /// How roads are drawn; with several, separated by commas, the flight is taken with each
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "geo")]
+    #[arg(long, value_enum, value_delimiter = ',', default_value = Roads::DEFAULT.word())]
     pub(crate) roads: Vec<Roads>,
     /// How much of the ground is drawn; with several, the flight is taken with each
     #[arg(long, value_enum, value_delimiter = ',', default_value = "lod")]
@@ -120,7 +120,8 @@ pub(crate) struct DrawingArgs {
     pub(crate) size: [u32; 2],
     #[command(flatten)]
     pub(crate) ground: GroundArgs,
-    /// Samples per pixel along each side, averaged
+    /// Samples per pixel along each side, averaged. One by default, other than for pictures: what a frame costs is compared with published
+    /// figures, which have one
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4))]
     pub(crate) supersampling: u32,
     /// Memory for tiles on the graphics card, such as 512M or 4G

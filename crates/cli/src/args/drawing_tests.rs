@@ -24,3 +24,67 @@ fn samples_are_one_to_four_along_each_side() {
         }
     }
 }
+
+/// What `render`, `fly` and `view` have in common has one default; where a reason speaks against that, the help text says it.
+#[test]
+fn commands_that_draw_have_the_same_defaults_or_say_why_not() {
+    use clap::CommandFactory as _;
+    use std::collections::BTreeMap;
+
+    // Option, command, its default, and a word of the reason.
+    let others = [
+        ("size", "view", "1280x800", "fits on a screen"),
+        ("supersampling", "fly", "1", "compared with published figures"),
+        // Decided when the window knows its adapter.
+        ("supersampling", "view", "", "without a graphics card"),
+    ];
+    let program = Arguments::command();
+    let mut shared: BTreeMap<String, Vec<(&str, String, String)>> = BTreeMap::new();
+    for command in ["render", "fly", "view"] {
+        let options = program.find_subcommand(command).unwrap().get_arguments();
+        for option in options.filter(|option| option.get_long().is_some()) {
+            let values = option.get_default_values().iter().map(|value| value.to_string_lossy());
+            let default = values.collect::<Vec<_>>().join(",");
+            let help = option.get_help().map(ToString::to_string).unwrap_or_default();
+            let name = option.get_long().unwrap().to_owned();
+            shared.entry(name).or_default().push((command, default, help));
+        }
+    }
+    shared.retain(|_, commands| commands.len() > 1);
+    for name in [
+        "roads",
+        "style",
+        "caps",
+        "width-growth",
+        "outline",
+        "cap-test",
+        "size",
+        "look-at",
+        "distance",
+        "heading",
+        "pitch",
+        "screen-space-error",
+        "exaggeration",
+        "supersampling",
+        "gpu-memory",
+        "upload-per-frame",
+    ] {
+        assert!(shared.contains_key(name), "{name}: {:?}", shared.keys());
+    }
+    let mut explained = 0;
+    for (name, commands) in &shared {
+        let (_, usual, _) = &commands[0];
+        for (command, default, help) in &commands[1..] {
+            let other = others.iter().find(|(option, of, ..)| option == name && of == command);
+            match other {
+                Some((_, _, expected, reason)) => {
+                    assert_eq!(default, expected, "{command} --{name}");
+                    assert!(help.contains(reason), "{command} --{name}: {help}");
+                    explained += 1;
+                }
+                None => assert_eq!(default, usual, "{command} --{name}"),
+            }
+        }
+    }
+    assert_eq!(explained, others.len());
+}

@@ -21,6 +21,9 @@ pub(crate) enum Roads {
 }
 
 impl Roads {
+    /// What all commands draw where nothing is said: exact to the pixel on every ground.
+    pub(crate) const DEFAULT: Self = Self::Sv;
+
     /// Its name on the command line.
     pub(crate) fn word(self) -> &'static str {
         match self {

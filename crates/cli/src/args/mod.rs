@@ -5,6 +5,7 @@ mod camera;
 mod drawing;
 mod export;
 mod ground;
+mod growth;
 mod look;
 mod part;
 mod reading;
@@ -13,14 +14,17 @@ mod values;
 mod view;
 mod voice;
 
-use clap::{Parser, Subcommand};
+use std::ffi::OsString;
+
+use clap::{CommandFactory as _, Parser, Subcommand, error::ErrorKind};
 
 pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use export::{Export, ExportArgs, ExportCrs, ExportRoadsArgs};
+pub(crate) use growth::GrowthArgs;
 pub(crate) use look::Roads;
 pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
-pub(crate) use reading::{Coordinates, GrowthArgs, InfoArgs, TileArgs, VerifyArgs};
+pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs};
 pub(crate) use shell::{CompletionsArgs, ManArgs};
 pub(crate) use view::{Motion, ViewArgs};
 pub(crate) use voice::{LogFormat, Voice, VoiceArgs};
@@ -36,6 +40,24 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
+    /// The command line, checked.
+    ///
+    /// # Errors
+    /// When it cannot be used; also when what is asked for is help or the version.
+    pub(crate) fn checked_from(words: impl Iterator<Item = OsString>) -> Result<Self, clap::Error> {
+        let arguments = Self::try_parse_from(words)?;
+        // Conflicts of options before the command's name with those behind it are not the parser's.
+        let Voice { is_quiet, verbosity, json_progress, .. } = arguments.voice();
+        let other = match (json_progress, verbosity) {
+            _ if !is_quiet => return Ok(arguments),
+            (true, _) => "--json-progress",
+            (false, 0) => return Ok(arguments),
+            (false, _) => "--verbose",
+        };
+        let text = format!("the argument '{other}' cannot be used with '--quiet'");
+        Err(Self::command().error(ErrorKind::ArgumentConflict, text))
+    }
+
     /// How the program is to talk.
     pub(crate) fn voice(&self) -> Voice {
         self.voice.voice(self.command.report().is_some_and(|report| report.json_progress))

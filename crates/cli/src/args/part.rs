@@ -10,6 +10,7 @@ use corniche_geom::TileId;
 use corniche_pipeline::{Share, Step};
 
 use super::ReportArgs;
+use crate::failure::Failure;
 
 /// A step of a build that a process can do alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -49,10 +50,10 @@ impl From<StepName> for Step {
 pub(crate) struct PlannedArgs {
     /// The plan, made with corniche plan -o
     #[arg(value_name = "PLAN.json")]
-    pub(crate) plan: PathBuf,
+    plan: Option<PathBuf>,
     /// Folders with parts, or prefixes in object storage (`s3://BUCKET/PREFIX`). All are read; the first is also written
     #[arg(long, value_name = "FOLDER", num_args = 1.., required = true)]
-    pub(crate) store: Vec<PathBuf>,
+    store: Vec<PathBuf>,
     /// With object storage: where a part or a package is made before it is sent [default: the system's temporary folder]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) tmp: Option<PathBuf>,
@@ -70,7 +71,42 @@ pub(crate) struct PlannedArgs {
     pub(crate) report: ReportArgs,
 }
 
+impl PlannedArgs {
+    /// The plan and the stores.
+    ///
+    /// # Errors
+    /// When no plan is named, or several may be meant.
+    pub(crate) fn files(&self) -> Result<(PathBuf, Vec<PathBuf>), Failure> {
+        plan_and_stores(self.plan.as_ref(), &self.store)
+    }
+}
+
+/// The plan and the stores. `--store` takes all that follows it, also a plan, which is told from stores by its name.
+fn plan_and_stores(
+    plan: Option<&PathBuf>,
+    store: &[PathBuf],
+) -> Result<(PathBuf, Vec<PathBuf>), Failure> {
+    if let Some(plan) = plan {
+        return Ok((plan.clone(), store.to_vec()));
+    }
+    let is_plan = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "json");
+    let (mut plans, stores): (Vec<_>, Vec<_>) = store.iter().cloned().partition(is_plan);
+    match (plans.pop(), plans.is_empty()) {
+        (Some(_), true) if stores.is_empty() && store.len() == 1 => Err(Failure::unusable(
+            "--store needs a folder; what is named there is a plan: give the plan first, then --store FOLDER...",
+        )),
+        (Some(plan), true) => Ok((plan, stores)),
+        (Some(_), false) => Err(Failure::unusable(
+            "several names behind --store end in .json; write the plan first: PLAN.json --store FOLDER...",
+        )),
+        (None, _) => Err(Failure::unusable(
+            "no plan is named: none of the names ends in .json; write it first: PLAN.json --store FOLDER...",
+        )),
+    }
+}
+
 #[derive(Debug, Args)]
+#[command(override_usage = "corniche part [OPTIONS] --step <STEP> --store <FOLDER>... <PLAN.json>")]
 pub(crate) struct PartArgs {
     /// The step to do
     #[arg(long, value_enum, value_name = "STEP")]
@@ -87,23 +123,35 @@ pub(crate) struct PartArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(override_usage = "corniche jobs [OPTIONS] --slots <N> <PLAN.json>")]
 pub(crate) struct JobsArgs {
     /// The plan, made with corniche plan -o
-    #[arg(value_name = "PLAN.json")]
-    pub(crate) plan: PathBuf,
+    #[arg(value_name = "PLAN.json", required_unless_present = "store")]
+    plan: Option<PathBuf>,
     /// How many processes will work at once
     #[arg(long, value_name = "N")]
     pub(crate) slots: NonZeroU32,
     /// Stores with parts. Once the roads are in them, the parts of the step tiles are sized by the roads of each tile, too
     #[arg(long, value_name = "STORE", num_args = 1..)]
-    pub(crate) store: Vec<PathBuf>,
+    store: Vec<PathBuf>,
     /// Make no part smaller than this without need, in estimated seconds on one core [default: 20 times what the start of a part
     /// takes]
     #[arg(long, value_name = "SECONDS")]
     pub(crate) least_work: Option<f64>,
 }
 
+impl JobsArgs {
+    /// The plan and the stores.
+    ///
+    /// # Errors
+    /// When no plan is named, or several may be meant.
+    pub(crate) fn files(&self) -> Result<(PathBuf, Vec<PathBuf>), Failure> {
+        plan_and_stores(self.plan.as_ref(), &self.store)
+    }
+}
+
 #[derive(Debug, Args)]
+#[command(override_usage = "corniche merge [OPTIONS] --store <FOLDER>... -o <PACKAGE> <PLAN.json>")]
 pub(crate) struct MergeArgs {
     /// The package to write (.pmtiles): a file, or an object (`s3://BUCKET/NAME.pmtiles`)
     #[arg(short, long, value_name = "PACKAGE")]

@@ -30,24 +30,6 @@ pub(crate) struct InfoArgs {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct GrowthArgs {
-    /// The package
-    pub(crate) package: PathBuf,
-    /// Print JSON, for programs
-    #[arg(long, conflicts_with = "csv")]
-    pub(crate) json: bool,
-    /// Print CSV, for programs
-    #[arg(long)]
-    pub(crate) csv: bool,
-    /// Also draw the growth per level and class (SVG)
-    #[arg(long, value_name = "FILE")]
-    pub(crate) svg: Option<PathBuf>,
-    /// Replace the SVG if it exists, once the new one is complete
-    #[arg(short = 'O', long, requires = "svg")]
-    pub(crate) overwrite: bool,
-}
-
-#[derive(Debug, Args)]
 #[command(after_long_help = checks(), override_usage = "corniche verify [OPTIONS] <PACKAGE>")]
 pub(crate) struct VerifyArgs {
     /// The package

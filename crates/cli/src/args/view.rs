@@ -26,18 +26,18 @@ pub(crate) struct ViewArgs {
     /// The package
     pub(crate) package: PathBuf,
     /// How roads are drawn at first
-    #[arg(long, value_enum, default_value_t = Roads::Sv)]
+    #[arg(long, value_enum, default_value_t = Roads::DEFAULT)]
     pub(crate) roads: Roads,
     #[command(flatten)]
     pub(crate) look: LookArgs,
-    /// Width and height of the window at first, in pixels
+    /// Width and height of the window at first, in pixels. Less by default than for pictures, so that it fits on a screen
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x800", value_parser = parse_size)]
     pub(crate) size: [u32; 2],
     #[command(flatten)]
     pub(crate) camera: CameraArgs,
     #[command(flatten)]
     pub(crate) ground: GroundArgs,
-    /// Samples per pixel along each side, averaged [default: 2, and 1 without a graphics card]
+    /// Samples per pixel along each side, averaged [default: 2, and 1 without a graphics card, where more is too slow to move about]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4))]
     pub(crate) supersampling: Option<u32>,
     /// Memory for tiles on the graphics card, such as 512M or 4G

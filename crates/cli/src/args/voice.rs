@@ -1,5 +1,7 @@
 //! How the program talks, for all commands.
 
+use std::ffi::OsString;
+
 use clap::{ArgAction, Args, ValueEnum};
 
 /// How messages are written.
@@ -23,6 +25,27 @@ pub(crate) struct Voice {
     pub(crate) format: LogFormat,
     /// Progress is records, and with it warnings and how the run ended.
     pub(crate) json_progress: bool,
+}
+
+impl Voice {
+    /// The voice that a command line asks for which cannot be parsed: whoever reads records gets the refusal as a record.
+    pub(crate) fn of_unparsed(words: impl IntoIterator<Item = OsString>) -> Self {
+        let mut voice = Self::default();
+        let mut is_format = false;
+        for word in words {
+            let word = word.to_string_lossy();
+            match &*word {
+                // Names of files follow.
+                "--" => break,
+                "json" if is_format => voice.format = LogFormat::Json,
+                "--log-format=json" => voice.format = LogFormat::Json,
+                "--json-progress" => voice.json_progress = true,
+                _ => {}
+            }
+            is_format = word == "--log-format";
+        }
+        voice
+    }
 }
 
 #[derive(Debug, Clone, Copy, Args)]

@@ -13,7 +13,7 @@ pub(crate) struct GrowthDocument {
     pub(crate) levels: Vec<LevelGrowthDocument>,
     /// All levels, against one copy of the source.
     pub(crate) all_levels: WholeGrowthDocument,
-    /// What the paper reports for whole data sets: times the source's.
+    /// What Vaaraniemi, Treib & Westermann 2011 report (section 7, "about"): times the size of the road data.
     pub(crate) paper: f64,
 }
 
@@ -111,4 +111,48 @@ pub(crate) struct WholeGrowthDocument {
     pub(crate) raw_bytes_over_source: Option<f64>,
     /// Clipped bytes, stored, over the source's.
     pub(crate) stored_bytes_over_source: Option<f64>,
+}
+
+/// Several packages beside each other.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct ComparisonDocument {
+    /// The packages, in the order in which they were named.
+    pub(crate) packages: Vec<ComparedDocument>,
+    /// In what they differ beside cell and error bound. Where there is something, their growth tells of that, too.
+    pub(crate) differences: Vec<DifferenceDocument>,
+}
+
+/// One of several packages.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct ComparedDocument {
+    /// Its path, as it was given.
+    pub(crate) package: String,
+    /// Cell of its finest level, east and north, working metres.
+    pub(crate) cell_m: [f64; 2],
+    /// Its `--max-error`, metres.
+    pub(crate) max_error_m: f64,
+    /// What `corniche growth --json` tells of it alone.
+    pub(crate) growth: GrowthDocument,
+}
+
+/// Something in which packages differ.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct DifferenceDocument {
+    /// "extract", "elevation data", "classes", "classes by level", "simplification", "CRS" or "bounds".
+    pub(crate) what: String,
+    /// The values, two at least.
+    pub(crate) values: Vec<DifferentValueDocument>,
+}
+
+/// A value, and who has it.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct DifferentValueDocument {
+    /// The packages that have it, by their paths.
+    pub(crate) packages: Vec<String>,
+    /// In words.
+    pub(crate) value: String,
 }

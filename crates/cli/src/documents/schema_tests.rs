@@ -8,7 +8,7 @@ use schemars::{JsonSchema, Schema, generate::SchemaSettings};
 use serde_json::{Value, json};
 
 use super::{
-    growth::GrowthDocument,
+    growth::{ComparisonDocument, GrowthDocument},
     info::InfoDocument,
     plan::{JobDocument, PlanDocument},
     progress::ProgressRecord,
@@ -21,9 +21,14 @@ fn schema<T: JsonSchema>() -> Schema {
     SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<T>()
 }
 
-fn schemas() -> [(&'static str, &'static str, Schema); 7] {
+fn schemas() -> [(&'static str, &'static str, Schema); 8] {
     [
         ("growth", "corniche growth --json", schema::<GrowthDocument>()),
+        (
+            "growth-comparison",
+            "corniche growth --json of several packages",
+            schema::<ComparisonDocument>(),
+        ),
         ("info", "corniche info --json", schema::<InfoDocument>()),
         ("job", "a line of corniche jobs", schema::<JobDocument>()),
         ("plan", "corniche plan --json", schema::<PlanDocument>()),

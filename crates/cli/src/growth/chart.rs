@@ -1,7 +1,8 @@
 use corniche_tileset::Manifest;
 use plotters::prelude::RGBColor;
 
-use crate::chart::{Axes, Axis, Curve, Marks, Ticks, draw};
+use super::{compare::Compared, factors::of_level};
+use crate::chart::{Axes, Axis, Curve, MOST_SHAPES, Marks, Ticks, draw};
 
 /// One colour a class, as on a road atlas: red for motorways down to grey for tracks.
 const CLASS_COLORS: [RGBColor; 9] = [
@@ -67,3 +68,75 @@ pub(crate) fn growth(manifest: &Manifest) -> anyhow::Result<String> {
     let curves: Vec<Curve> = (0_u8..).zip(CLASS_COLORS).filter_map(curve).collect();
     draw(&axes, &curves)
 }
+
+/// How far the marks of packages stand beside their level at most, levels.
+const PACKAGES_ASIDE: f64 = 0.15;
+/// Longer names of packages are cut.
+const LONGEST_NAME: usize = 24;
+
+/// Growth of clipped vertices over the level's own simplified line, all classes, one curve a package over the levels' cells.
+pub(crate) fn comparison(packages: &[Compared<'_>]) -> anyhow::Result<String> {
+    anyhow::ensure!(
+        packages.len() <= MOST_SHAPES,
+        "a chart tells at most {MOST_SHAPES} packages apart; name fewer, or leave out --svg"
+    );
+    // Numbers stand at the levels of the first package.
+    let unit_m = packages.first().map_or(1.0, |first| first.manifest.frame.cell().shorter_m());
+    let points = |package: &Compared<'_>| -> Vec<(f64, f64)> {
+        let levels = package.manifest.levels.iter();
+        let point = |level: &corniche_tileset::LevelRecord| {
+            let growth = of_level(package.manifest, level.level).1.over_simplified?;
+            Some(((level.cell_m.shorter_m() / unit_m).log2(), growth))
+        };
+        levels.filter_map(point).collect()
+    };
+    let last = packages.len().saturating_sub(1).max(1) as f64;
+    let curve = |(index, package): (usize, &Compared<'_>)| {
+        let aside = PACKAGES_ASIDE * (2.0 * index as f64 / last - 1.0);
+        Curve {
+            name: format!("{} {}", package.label, short_name(&package.name)),
+            color: CLASS_COLORS[index % CLASS_COLORS.len()],
+            points: points(package).iter().map(|&(x, y)| (x + aside, y)).collect(),
+            marks: Marks::Shape(index),
+        }
+    };
+    let curves: Vec<Curve> = packages.iter().enumerate().map(curve).collect();
+    let all = || packages.iter().flat_map(points);
+    let highest = all().map(|(_, growth)| growth).fold(1.0_f64, f64::max);
+    let (least, most) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), (x, _)| {
+        (least.min(x), most.max(x))
+    });
+    let (least, most) = if least <= most { (least, most) } else { (0.0, 0.0) };
+    let axes = Axes {
+        size_px: (900, 520),
+        caption: "Vertices of clipped roads over the level's simplified lines".to_owned(),
+        x: Axis {
+            description: "cell of the level, m",
+            range: least - PACKAGES_ASIDE - 0.1..most + PACKAGES_ASIDE + 0.1,
+            ticks: Ticks::Doubled {
+                count: (most.floor() - least.ceil()).max(0.0) as usize + 1,
+                unit: unit_m,
+            },
+        },
+        y: Axis {
+            description: "times the vertices",
+            range: 0.0..highest * 1.08,
+            ticks: Ticks::Round,
+        },
+    };
+    draw(&axes, &curves)
+}
+
+/// The file's name without folders and ending, cut if it is long.
+fn short_name(path: &str) -> String {
+    let stem = std::path::Path::new(path).file_stem().unwrap_or_default().to_string_lossy();
+    let stem = crate::info::plain(&stem);
+    if stem.chars().count() <= LONGEST_NAME {
+        return stem;
+    }
+    stem.chars().take(LONGEST_NAME - 1).chain(['…']).collect()
+}
+
+#[cfg(test)]
+#[path = "chart_tests.rs"]
+mod tests;

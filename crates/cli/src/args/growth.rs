@@ -1,0 +1,26 @@
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Args};
+
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("files").args(["svg", "per_way"]).multiple(true))]
+pub(crate) struct GrowthArgs {
+    /// The package; several are compared
+    #[arg(value_name = "PACKAGE", required = true)]
+    pub(crate) packages: Vec<PathBuf>,
+    /// Print JSON, for programs
+    #[arg(long, conflicts_with = "csv")]
+    pub(crate) json: bool,
+    /// Print CSV, for programs; of several packages with a column that names the package
+    #[arg(long)]
+    pub(crate) csv: bool,
+    /// Also draw the growth over the levels (SVG): a line for each class, or for each of several packages
+    #[arg(long, value_name = "FILE")]
+    pub(crate) svg: Option<PathBuf>,
+    /// Also write a line for each way (CSV): its length, and its vertices before and after on each level. Of one package
+    #[arg(long, value_name = "CSV")]
+    pub(crate) per_way: Option<PathBuf>,
+    /// Replace files that exist, once the new ones are complete
+    #[arg(short = 'O', long, requires = "files")]
+    pub(crate) overwrite: bool,
+}

@@ -1,0 +1,258 @@
+//! Several packages beside each other.
+
+use std::{fmt::Write as _, path::Path};
+
+use corniche_tileset::{FilePackage, InputRecord, Manifest};
+
+use super::{
+    document::document,
+    factors::{PAPER_GROWTH, of_level, whole},
+    text::factor,
+};
+use crate::{
+    documents::growth::{
+        ComparedDocument, ComparisonDocument, DifferenceDocument, DifferentValueDocument,
+    },
+    info::{plain, rounded, sides},
+    table::{Digits, Table, wrapped},
+};
+
+/// A package among others.
+pub(crate) struct Compared<'a> {
+    /// A letter for tables and charts.
+    pub(crate) label: String,
+    /// Its path, as it was given.
+    pub(crate) name: String,
+    pub(crate) manifest: &'a Manifest,
+}
+
+impl<'a> Compared<'a> {
+    /// The packages in their order: A, B, C and so on.
+    pub(crate) fn all(packages: &'a [FilePackage], paths: &[impl AsRef<Path>]) -> Vec<Self> {
+        let compared = |(index, (package, path)): (usize, (&'a FilePackage, _))| Self {
+            label: letters(index),
+            name: AsRef::<Path>::as_ref(path).display().to_string(),
+            manifest: package.manifest(),
+        };
+        packages.iter().zip(paths).enumerate().map(compared).collect()
+    }
+}
+
+/// A to Z, then AA, AB and so on.
+fn letters(index: usize) -> String {
+    const LETTERS: usize = 26;
+    let last = char::from(b'A' + (index % LETTERS) as u8);
+    match index / LETTERS {
+        0 => last.to_string(),
+        more => format!("{}{last}", letters(more - 1)),
+    }
+}
+
+/// Something other than cell and error bound in which packages differ, so that their growth tells of that, too.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Difference {
+    pub(crate) what: &'static str,
+    /// Each value, with the numbers of the packages that have it.
+    pub(crate) values: Vec<(Vec<usize>, String)>,
+}
+
+/// What is not alike in some packages.
+pub(crate) fn differences(packages: &[Compared<'_>]) -> Vec<Difference> {
+    let kinds: [(&'static str, fn(&Manifest) -> String); 7] = [
+        ("extract", |manifest| inputs(manifest, &["osm"])),
+        ("elevation data", |manifest| inputs(manifest, &["dem", "dem-part"])),
+        ("classes", classes),
+        ("classes by level", classes_by_level),
+        ("simplification", |manifest| {
+            let cells = manifest.settings.simplify_cells;
+            if cells > 0.0 { format!("{cells} cells of the level") } else { "none".to_owned() }
+        }),
+        ("CRS", |manifest| plain(&manifest.crs)),
+        ("bounds", |manifest| {
+            let bounds = manifest.settings.bounds_deg;
+            bounds.map_or_else(|| "all of the elevation data".to_owned(), |b| format!("{b:?}"))
+        }),
+    ];
+    let difference = |(what, value): (&'static str, fn(&Manifest) -> String)| {
+        let mut values: Vec<(Vec<usize>, String)> = Vec::new();
+        for (index, package) in packages.iter().enumerate() {
+            let value = value(package.manifest);
+            match values.iter_mut().find(|(_, known)| *known == value) {
+                Some((of, _)) => of.push(index),
+                None => values.push((vec![index], value)),
+            }
+        }
+        (values.len() > 1).then_some(Difference { what, values })
+    };
+    kinds.into_iter().filter_map(difference).collect()
+}
+
+/// The inputs of some kinds by name and hash.
+fn inputs(manifest: &Manifest, kinds: &[&str]) -> String {
+    let of_kind = |input: &&InputRecord| kinds.contains(&input.kind.as_str());
+    let name = |input: &InputRecord| {
+        let hash = input.sha256.get(..12).map_or("not used".to_owned(), |hash| format!("{hash}…"));
+        format!("{} ({})", plain(&input.name), plain(&hash))
+    };
+    manifest.inputs.iter().filter(of_kind).map(name).collect::<Vec<_>>().join(", ")
+}
+
+/// Which classes are roads at all.
+fn classes(manifest: &Manifest) -> String {
+    let settings = &manifest.settings;
+    let hash = settings.frc_table_sha256.get(..12).unwrap_or_default();
+    let chosen = settings.classes.as_ref().map_or_else(
+        || "its classes".to_owned(),
+        |classes| format!("classes {}", list(classes.iter())),
+    );
+    format!("table {} ({}…), {chosen}", plain(&settings.frc_table), plain(hash))
+}
+
+/// Which classes coarse levels show.
+fn classes_by_level(manifest: &Manifest) -> String {
+    let limits = &manifest.settings.class_max_cell_m;
+    if limits.iter().all(Option::is_none) {
+        return "every class on every level".to_owned();
+    }
+    let limit = |(class, limit): (usize, &Option<f64>)| {
+        limit.map(|cell_m| format!("FRC {class} up to cells of {} m", rounded(cell_m)))
+    };
+    limits.iter().enumerate().filter_map(limit).collect::<Vec<_>>().join(", ")
+}
+
+fn list(values: impl Iterator<Item = impl ToString>) -> String {
+    values.map(|value| value.to_string()).collect::<Vec<_>>().join(", ")
+}
+
+impl Difference {
+    /// In one line.
+    pub(crate) fn text(&self, packages: &[Compared<'_>]) -> String {
+        let labels = |of: &[usize]| list(of.iter().map(|&index| &packages[index].label));
+        let value = |(of, value): &(Vec<usize>, String)| format!("{}: {value}", labels(of));
+        format!("{}: {}", self.what, list_of(self.values.iter().map(value)))
+    }
+}
+
+fn list_of(parts: impl Iterator<Item = String>) -> String {
+    parts.collect::<Vec<_>>().join("; ")
+}
+
+/// The comparison for people.
+pub(crate) fn to_text(packages: &[Compared<'_>], digits: Digits) -> String {
+    let mut text = String::new();
+    for Compared { label, name, .. } in packages {
+        let _ = writeln!(text, "{label}  {}", plain(name));
+    }
+    let differences = differences(packages);
+    if !differences.is_empty() {
+        let _ = writeln!(text, "\nNot like with like. Beside cell and error bound, these differ:");
+        for difference in &differences {
+            let _ = writeln!(text, "{}", wrapped(&difference.text(packages), "  ", "    "));
+        }
+    }
+    let _ = write!(
+        text,
+        "\nVertices of clipped roads; stored: bytes of all levels; error: --max-error\n{}\n\
+         Per level\n{}\n\
+         Vaaraniemi, Treib & Westermann 2011, section 7, report about {PAPER_GROWTH} times the size of the data.\n",
+        wholes(packages, digits).to_text(),
+        levels(packages, digits).to_text(),
+    );
+    text
+}
+
+/// A row for each package.
+fn wholes(packages: &[Compared<'_>], digits: Digits) -> Table {
+    let mut table = Table::new([
+        "",
+        "cell m",
+        "error m",
+        "levels",
+        "source",
+        "finest",
+        "all",
+        "finest/source",
+        "all/source",
+        "stored/source",
+    ]);
+    for Compared { label, manifest, .. } in packages {
+        let (finest, finest_factors) = of_level(manifest, manifest.frame.max_level());
+        let (all, factors) = whole(manifest);
+        table.row([
+            label.clone(),
+            sides(manifest.frame.cell()),
+            rounded(manifest.settings.max_error_m),
+            manifest.levels.len().to_string(),
+            digits.count(all.source_vertices),
+            digits.count(finest.geo_vertices),
+            digits.count(all.geo_vertices),
+            factor(finest_factors.over_source),
+            factor(factors.over_source),
+            factor(factors.stored_bytes),
+        ]);
+    }
+    table
+}
+
+/// A row for each level of each package.
+fn levels(packages: &[Compared<'_>], digits: Digits) -> Table {
+    let mut table = Table::new([
+        "",
+        "cell m",
+        "tolerance m",
+        "source",
+        "simplified",
+        "clipped",
+        "/simplified",
+        "/source",
+        "raw/source",
+        "stored/source",
+    ]);
+    for Compared { label, manifest, .. } in packages {
+        for level in &manifest.levels {
+            let (row, factors) = of_level(manifest, level.level);
+            table.row([
+                format!("{label} level {}", level.level),
+                sides(level.cell_m),
+                rounded(level.max_error_m),
+                digits.count(row.source_vertices),
+                digits.count(row.simplified_vertices),
+                digits.count(row.geo_vertices),
+                factor(factors.over_simplified),
+                factor(factors.over_source),
+                factor(factors.raw_bytes),
+                factor(factors.stored_bytes),
+            ]);
+        }
+    }
+    table
+}
+
+/// The comparison for programs.
+pub(crate) fn to_document(packages: &[Compared<'_>]) -> ComparisonDocument {
+    let names = |of: &[usize]| of.iter().map(|&index| packages[index].name.clone()).collect();
+    let difference = |difference: Difference| DifferenceDocument {
+        what: difference.what.to_owned(),
+        values: difference
+            .values
+            .into_iter()
+            .map(|(of, value)| DifferentValueDocument { packages: names(&of), value })
+            .collect(),
+    };
+    ComparisonDocument {
+        packages: packages
+            .iter()
+            .map(|Compared { name, manifest, .. }| ComparedDocument {
+                package: name.clone(),
+                cell_m: manifest.frame.cell().to_array(),
+                max_error_m: manifest.settings.max_error_m,
+                growth: document(manifest),
+            })
+            .collect(),
+        differences: differences(packages).into_iter().map(difference).collect(),
+    }
+}
+
+#[cfg(test)]
+#[path = "compare_tests.rs"]
+mod tests;

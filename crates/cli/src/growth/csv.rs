@@ -1,0 +1,68 @@
+use corniche_tileset::{GrowthRow, Manifest};
+
+use super::factors::{Factors, factors, of_level, whole};
+use crate::defects::quoted;
+
+const HEADINGS: &str = "level,class,source_vertices,simplified_vertices,geo_vertices,sv_vertices,source_bytes,simplified_bytes,\
+                        geo_raw_bytes,geo_stored_bytes,sv_stored_bytes,growth_over_simplified,growth_over_source,\
+                        raw_bytes_over_source,stored_bytes_over_source,raw_bytes_over_simplified,stored_bytes_over_simplified";
+
+/// The rows of one package, under headings.
+pub(crate) fn to_csv(manifest: &Manifest) -> String {
+    let mut text = format!("{HEADINGS}\n");
+    for line in lines(manifest) {
+        text.push_str(&line);
+        text.push('\n');
+    }
+    text
+}
+
+/// The rows of several packages, with their names in front.
+pub(crate) fn to_csv_of_several<'a>(
+    packages: impl IntoIterator<Item = (&'a str, &'a Manifest)>,
+) -> String {
+    let mut text = format!("package,{HEADINGS}\n");
+    for (name, manifest) in packages {
+        for line in lines(manifest) {
+            text.push_str(&quoted(name));
+            text.push(',');
+            text.push_str(&line);
+            text.push('\n');
+        }
+    }
+    text
+}
+
+/// A row for each level and class, then for each level, then for the whole; ratios are empty where there is nothing to divide by.
+fn lines(manifest: &Manifest) -> Vec<String> {
+    let mut lines = Vec::new();
+    for row in &manifest.growth {
+        lines.push(line(&row.level.to_string(), &row.class.to_string(), row, &factors(row)));
+    }
+    for level in &manifest.levels {
+        let (row, factors) = of_level(manifest, level.level);
+        lines.push(line(&level.level.to_string(), "all", &row, &factors));
+    }
+    let (all, factors) = whole(manifest);
+    lines.push(line("all", "all", &all, &factors));
+    lines
+}
+
+fn line(level: &str, class: &str, row: &GrowthRow, factors: &Factors) -> String {
+    let counts = row.counts().map(|count| count.to_string());
+    let ratios = [
+        factors.over_simplified,
+        factors.over_source,
+        factors.raw_bytes,
+        factors.stored_bytes,
+        factors.raw_over_simplified,
+        factors.stored_over_simplified,
+    ];
+    let ratios = ratios.map(|ratio| ratio.map_or_else(String::new, |ratio| ratio.to_string()));
+    let cells = [level, class].into_iter().chain(counts.iter().chain(&ratios).map(String::as_str));
+    cells.collect::<Vec<_>>().join(",")
+}
+
+#[cfg(test)]
+#[path = "csv_tests.rs"]
+mod tests;

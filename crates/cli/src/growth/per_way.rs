@@ -1,0 +1,149 @@
+//! A line for each way.
+
+use std::{
+    fmt::Write as _,
+    io::Write as _,
+    path::{Path, PathBuf},
+};
+
+use corniche_export::{WayGrowth, growth_by_way};
+use corniche_tileset::{FilePackage, Manifest};
+
+use crate::{
+    exit::ExitCode,
+    export::Bar,
+    failure::Failure,
+    messages,
+    output::{Output, failed},
+    table::Digits,
+};
+
+/// Memory for sorting pieces of roads by way.
+const MEMORY_BYTES: u64 = 128 << 20;
+/// Functional road classes: 0 to 8.
+const CLASSES: usize = 9;
+
+/// Writes the file that was begun at `path`: a line for each way by its id, then for each class what of the growth table belongs to no
+/// way, if there is such. So the columns add up to that table.
+pub(crate) fn write(package: &FilePackage, path: &Path, mut output: Output) -> Result<(), Failure> {
+    let manifest = package.manifest();
+    let cannot = |error: std::io::Error| failed(path, &error);
+    output.write_all(headings(manifest).as_bytes()).map_err(cannot)?;
+    let mut sums = Sums::new(manifest);
+    let mut ways = 0_u64;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.map_or_else(|| PathBuf::from("."), Path::to_path_buf);
+    let bar = Bar::new(messages::is_for_people());
+    growth_by_way(package, &folder, MEMORY_BYTES, &bar, |way| {
+        ways += 1;
+        sums.add(way);
+        output.write_all(line(way).as_bytes()).map_err(cannot)
+    })?;
+    bar.end();
+    sums.fit(manifest, package.path())?;
+    let mut off_ground = 0;
+    for (class, points) in sums.left(manifest) {
+        off_ground += points;
+        // As many cells as in the other lines.
+        let empty = ",".repeat(manifest.levels.len() + 3);
+        output.write_all(format!(",{class},,{points}{empty}\n").as_bytes()).map_err(cannot)?;
+    }
+    output.finish()?;
+    messages::note(&note(path, ways, off_ground, Digits::on(&std::io::stderr())));
+    Ok(())
+}
+
+fn note(path: &Path, ways: u64, off_ground: i64, digits: Digits) -> String {
+    let mut text = format!("{}: {} ways", path.display(), digits.count(ways));
+    if off_ground != 0 {
+        let _ = write!(
+            text,
+            "; {off_ground} points of the source lie in tiles with ground, but on no ground (void, edge, outside the bounds): they \
+             are in lines without a way"
+        );
+    }
+    text
+}
+
+fn headings(manifest: &Manifest) -> String {
+    let levels = manifest.levels.iter().map(|level| format!("geo_vertices_level_{}", level.level));
+    let columns = ["way_id", "class", "length_m", "source_vertices"].map(str::to_owned);
+    let ratios = ["geo_vertices_all_levels", "growth_over_source", "growth_over_source_all_levels"];
+    let columns = columns.into_iter().chain(levels).chain(ratios.map(str::to_owned));
+    format!("{}\n", columns.collect::<Vec<_>>().join(","))
+}
+
+/// Ratios are empty where there is nothing to divide by.
+fn line(way: &WayGrowth) -> String {
+    let WayGrowth { way_id, class, length_m, source_vertices, geo_vertices } = way;
+    let all: u64 = geo_vertices.iter().sum();
+    let finest = geo_vertices.last().copied().unwrap_or_default();
+    let ratio = |above: u64| match source_vertices {
+        0 => String::new(),
+        below => format!("{:.6}", above as f64 / *below as f64),
+    };
+    let mut text = format!("{way_id},{},{length_m:.6},{source_vertices}", class.number());
+    for vertices in geo_vertices {
+        let _ = write!(text, ",{vertices}");
+    }
+    let _ = writeln!(text, ",{all},{},{}", ratio(finest), ratio(all));
+    text
+}
+
+/// Sums over the lines, by class.
+struct Sums {
+    source: [u64; CLASSES],
+    /// By level, then by class.
+    geo: Vec<[u64; CLASSES]>,
+}
+
+impl Sums {
+    fn new(manifest: &Manifest) -> Self {
+        Self { source: [0; CLASSES], geo: vec![[0; CLASSES]; manifest.levels.len()] }
+    }
+
+    fn add(&mut self, way: &WayGrowth) {
+        let class = usize::from(way.class.number());
+        self.source[class] += way.source_vertices;
+        for (sums, vertices) in self.geo.iter_mut().zip(&way.geo_vertices) {
+            sums[class] += vertices;
+        }
+    }
+
+    /// Whether the vertices of the lines are those of the growth table.
+    fn fit(&self, manifest: &Manifest, package: &Path) -> Result<(), Failure> {
+        for row in &manifest.growth {
+            let sums = self.geo.get(usize::from(row.level));
+            let found = sums.and_then(|sums| sums.get(usize::from(row.class))).copied();
+            if found != Some(row.geo_vertices) {
+                return Err(Failure::new(
+                    ExitCode::Unusable,
+                    anyhow::anyhow!(
+                        "{}: FRC {} has {} vertices on level {} in the growth table, and {} in the tiles; corniche verify says more",
+                        package.display(),
+                        row.class,
+                        row.geo_vertices,
+                        row.level,
+                        found.unwrap_or_default()
+                    ),
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// The classes of which the growth table has another number of source points on the finest level, and by how much.
+    fn left(&self, manifest: &Manifest) -> Vec<(u8, i64)> {
+        let finest = manifest.frame.max_level();
+        let rows = manifest.growth.iter().filter(|row| row.level == finest);
+        let left = rows.map(|row| {
+            let found = self.source.get(usize::from(row.class)).copied().unwrap_or_default();
+            (row.class, row.source_vertices.cast_signed() - found.cast_signed())
+        });
+        left.filter(|&(_, points)| points != 0).collect()
+    }
+}
+
+#[cfg(test)]
+#[path = "per_way_tests.rs"]
+mod tests;

@@ -1,0 +1,149 @@
+//! What laying each way on the terrain costs.
+
+use std::path::Path;
+
+use corniche_geom::LatticeBounds;
+use corniche_roads::FunctionalRoadClass;
+use corniche_store::Sorter;
+use corniche_tileset::{FilePackage, Manifest, tile_of_order};
+
+use crate::{
+    error::ExportError,
+    join::lines,
+    measures::Measures,
+    piece::{Piece, SortedPiece, Vertex},
+    places::Places,
+    read,
+    request::Coordinates,
+    scratch::FileScratch,
+    watch::{Watch, Work, stop_if_asked},
+    ways::Ways,
+};
+
+/// What laying one way on the terrain costs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WayGrowth {
+    /// Id of the way in OpenStreetMap.
+    pub way_id: i64,
+    /// Its functional road class.
+    pub class: FunctionalRoadClass,
+    /// True length in plan of what lies on the finest level's ground, metres.
+    pub length_m: f64,
+    /// Points of the way that lie on the finest level's ground. Cuts at tile borders and at the package's bounds are none.
+    pub source_vertices: u64,
+    /// Vertices of the clipped lines of each level, root first, as the tiles hold them: one on a border is in both tiles.
+    pub geo_vertices: Vec<u64>,
+}
+
+/// Tells of each way of a package, in ascending order of their ids. Beside one tile and one way, memory holds `memory_bytes` for
+/// sorting; the rest of what is sorted is in an unnamed file in `folder`.
+///
+/// # Errors
+/// When the package has no roads or is damaged, when `folder` cannot be written, or what `each` returns.
+pub fn growth_by_way<E: From<ExportError>>(
+    package: &FilePackage,
+    folder: &Path,
+    memory_bytes: u64,
+    watch: &dyn Watch,
+    mut each: impl FnMut(&WayGrowth) -> Result<(), E>,
+) -> Result<(), E> {
+    let manifest = package.manifest();
+    if manifest.inputs.iter().all(|input| input.kind != "osm") {
+        return Err(ExportError::NoRoads { package: package.path().to_path_buf() }.into());
+    }
+    let sort = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
+    let scratch = FileScratch::create(folder).map_err(sort)?;
+    let mut sorter = Sorter::new(&scratch, memory_bytes);
+    let classes: Vec<FunctionalRoadClass> = FunctionalRoadClass::all().collect();
+    let tiles = package.tile_ids().map_err(ExportError::from)?;
+    let mut count = 0;
+    for (done, &id) in tiles.iter().enumerate() {
+        stop_if_asked(watch)?;
+        watch.done(Work::Tiles, done as u64, tiles.len() as u64);
+        for piece in read::pieces(package, id, &classes)? {
+            count += 1;
+            sorter.push(SortedPiece(piece)).map_err(sort)?;
+        }
+    }
+    let places = Places::new(manifest, Coordinates::Package)?;
+    let mut ways = Ways::new(sorter.finish().map_err(sort)?);
+    let mut done = 0;
+    while let Some(pieces) = ways.next_way().map_err(sort)? {
+        stop_if_asked(watch)?;
+        watch.done(Work::Pieces, done, count);
+        done += pieces.len() as u64;
+        if let Some(way) = growth_of(pieces, manifest, &places)? {
+            each(&way)?;
+        }
+    }
+    watch.done(Work::Pieces, count, count);
+    Ok(())
+}
+
+/// Of all pieces of a way, on all levels; `None` of none.
+fn growth_of(
+    pieces: Vec<Piece>,
+    manifest: &Manifest,
+    places: &Places<'_>,
+) -> Result<Option<WayGrowth>, ExportError> {
+    let Some((way_id, class)) = pieces.first().map(|first| (first.key.way_id, first.class)) else {
+        return Ok(None);
+    };
+    let finest = manifest.frame.max_level();
+    let mut geo_vertices = vec![0; usize::from(finest) + 1];
+    let mut of_finest = Vec::new();
+    for piece in pieces {
+        if piece.class != class {
+            return Err(ExportError::Differs { way_id });
+        }
+        // Keys were made of tiles that the package has.
+        let Some(tile) = tile_of_order(piece.key.tile) else { continue };
+        if let Some(vertices) = geo_vertices.get_mut(usize::from(tile.z())) {
+            *vertices += piece.vertices.len() as u64;
+        }
+        if tile.z() == finest {
+            of_finest.push(piece);
+        }
+    }
+    let joined = lines(&of_finest);
+    let measures = Measures::of(&joined, &|from, to| places.distance_m(from, to));
+    let joins: usize = joined.iter().map(|line| line.joins.len()).sum();
+    let cuts = cut_ends(&of_finest, clip(manifest)).saturating_sub(2 * joins as u64);
+    Ok(Some(WayGrowth {
+        way_id,
+        class,
+        length_m: measures.length_2d_m,
+        source_vertices: measures.vertices_in.saturating_sub(cuts),
+        geo_vertices,
+    }))
+}
+
+/// How many ends of pieces were made by cutting, at the border of a tile or at the bounds of the package.
+fn cut_ends(pieces: &[Piece], clip: Option<LatticeBounds>) -> u64 {
+    let is_at_bounds = |vertex: &Vertex| {
+        let [u, v] = vertex.at;
+        clip.is_some_and(|LatticeBounds { min, max }| {
+            [min.u, max.u].iter().any(|&side| u == side as f64)
+                || [min.v, max.v].iter().any(|&side| v == side as f64)
+        })
+    };
+    let is_cut = |end: Option<&Vertex>, goes_on: bool| {
+        end.is_some_and(|vertex| vertex.is_source && (goes_on || is_at_bounds(vertex)))
+    };
+    let ends = |piece: &Piece| {
+        let [first, last] = piece.goes_on;
+        u64::from(is_cut(piece.vertices.first(), first))
+            + u64::from(is_cut(piece.vertices.last(), last))
+    };
+    pieces.iter().map(ends).sum()
+}
+
+/// The bounds that were asked for, on the lattice: roads of the finest level end there.
+fn clip(manifest: &Manifest) -> Option<LatticeBounds> {
+    let [min, max] = manifest.clip.as_ref()?.nodes.map(|node| manifest.frame.lattice_of_node(node));
+    Some(LatticeBounds { min, max })
+}
+
+#[cfg(test)]
+#[path = "growth_tests.rs"]
+mod tests;
