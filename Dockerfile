@@ -11,7 +11,7 @@ COPY . .
 RUN cargo build --release --locked -p corniche-cli && strip target/release/corniche
 
 FROM docker.io/library/debian:bookworm-slim AS convert
-# proj-data has no geoid grids: mount a folder with them and name it in PROJ_DATA for --vertical-crs.
+# Of geoid grids it has EGM96's alone. For others mount a folder: -v GRIDS:/grids -e PROJ_DATA=/usr/share/proj:/grids
 RUN apt-get update \
     && apt-get install -y --no-install-recommends ca-certificates libgdal32 \
     && rm -rf /var/lib/apt/lists/*

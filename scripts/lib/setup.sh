@@ -65,7 +65,7 @@ has_library() {
 has_vulkan_driver() {
     [ "$(uname -s)" != Linux ] && return 0 # macOS draws with Metal
     local folder file
-    for folder in /usr/share/vulkan/icd.d /etc/vulkan/icd.d /usr/local/share/vulkan/icd.d; do
+    for folder in ${VULKAN_DRIVERS:-/usr/share/vulkan/icd.d /etc/vulkan/icd.d /usr/local/share/vulkan/icd.d}; do
         for file in "$folder"/*.json; do
             [ -e "$file" ] && return 0
         done
@@ -156,8 +156,8 @@ install_missing() {
     [ ${#packages[@]} -eq 0 ] && return 0
     if ! command -v apt-get >/dev/null; then
         say "missing, by Debian's names: ${packages[*]}"
-        say "install their like by hand: macOS: brew install gdal pkg-config; pip install numpy shapely"
-        say "                            Fedora: dnf install gcc gdal-devel pkgconf mesa-vulkan-drivers vulkan-loader python3-numpy python3-shapely"
+        say "install the packages of your system that have the same: macOS: brew install gdal pkg-config"
+        say "  Fedora: dnf install gcc gdal-devel pkgconf mesa-vulkan-drivers vulkan-loader; for scripts/test also numpy and shapely for Python"
         exit 2
     fi
     if [ "$(id -u)" -ne 0 ]; then

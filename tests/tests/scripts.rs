@@ -7,7 +7,10 @@ fn demo(stand_ins: &[(&str, &str)]) -> (Option<i32>, String) {
     let folder = tempfile::tempdir().unwrap();
     // What the script needs before it builds; the machine's own cargo stays out.
     for tool in ["bash", "env", "dirname", "sed", "awk", "uname", "grep"] {
-        let found = ["/bin", "/usr/bin"].map(|path| Path::new(path).join(tool)).into_iter().find(|path| path.exists());
+        let found = ["/bin", "/usr/bin"]
+            .map(|path| Path::new(path).join(tool))
+            .into_iter()
+            .find(|path| path.exists());
         std::os::unix::fs::symlink(found.unwrap(), folder.path().join(tool)).unwrap();
     }
     for (name, text) in stand_ins {
@@ -18,6 +21,9 @@ fn demo(stand_ins: &[(&str, &str)]) -> (Option<i32>, String) {
     let mut demo = Command::new(e2e::root().join("scripts/demo"));
     // A target folder that exists would show that there is room.
     demo.env("PATH", folder.path()).env("CARGO_TARGET_DIR", folder.path().join("target"));
+    // A driver, whether this machine has one or not.
+    fs::write(folder.path().join("driver.json"), "{}").unwrap();
+    demo.env("VULKAN_DRIVERS", folder.path());
     let done = demo.output().unwrap();
     (done.status.code(), String::from_utf8(done.stderr).unwrap())
 }
@@ -34,7 +40,10 @@ fn without_cargo_the_way_to_it_is_told() {
 fn an_old_cargo_is_named_with_the_way_to_a_newer_one() {
     let (code, said) = demo(&[("cargo", "echo cargo 1.63.0")]);
     assert_eq!(code, Some(2), "{said}");
-    assert!(said.contains("cargo 1.63.0, 1.95 is needed") && said.contains("https://rustup.rs"), "{said}");
+    assert!(
+        said.contains("cargo 1.63.0, 1.95 is needed") && said.contains("https://rustup.rs"),
+        "{said}"
+    );
     let (code, said) = demo(&[("cargo", "echo cargo 1.94.1"), ("rustup", "exit 1")]);
     assert_eq!(code, Some(2), "{said}");
     assert!(said.contains("rustup update stable"), "{said}");
@@ -52,5 +61,8 @@ fn too_little_disk_space_is_said_first() {
         ("ldconfig", libraries),
     ]);
     assert_eq!(code, Some(2), "{said}");
-    assert!(said.contains("GB of disk space, 1 GB are free") && !said.contains("compiled"), "{said}");
+    assert!(
+        said.contains("GB of disk space, 1 GB are free") && !said.contains("compiled"),
+        "{said}"
+    );
 }

@@ -55,7 +55,8 @@ fn included_files_lie_in_the_crate_that_includes_them() {
             continue;
         }
         let text = fs::read_to_string(&file).unwrap();
-        for included in text.split("include_str!(\"").chain(text.split("include_bytes!(\"")).skip(1) {
+        for included in text.split("include_str!(\"").chain(text.split("include_bytes!(\"")).skip(1)
+        {
             let Some((name, _)) = included.split_once('"') else { continue };
             let path = file.parent().unwrap().join(name);
             let Ok(path) = path.canonicalize() else { continue };

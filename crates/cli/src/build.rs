@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_pipeline::{BuildError, BuildSettings, BuildSummary, Existing, Leftovers};
+use corniche_pipeline::{BuildError, BuildSettings, BuildSummary, Leftovers};
 
 use crate::{
     args::BuildArgs,
@@ -77,7 +77,7 @@ fn settings(args: BuildArgs, output: PathBuf) -> Result<BuildSettings, Failure> 
     Ok(BuildSettings {
         plan,
         output,
-        existing: if args.overwrite { Existing::Replace } else { Existing::Keep },
+        existing: output::existing_of(args.overwrite),
         tmp,
         leftovers: match (args.resume, args.overwrite) {
             (true, _) => Leftovers::Resume,

@@ -61,6 +61,11 @@ fn hear(words: &str) {
     LAST_WORDS.with_borrow_mut(|last| words.clone_into(last));
 }
 
+/// What was said last on this thread; empty if nothing was.
+pub(crate) fn last_words() -> String {
+    LAST_WORDS.with_borrow(|words| words.trim().to_owned())
+}
+
 /// Forgets what was said, so that the next failure is not explained by an earlier one.
 pub fn forget() {
     LAST_WORDS.with_borrow_mut(String::clear);
