@@ -278,7 +278,7 @@ fn the_study_goes_on_where_it_was_stopped() {
             (levels.iter().sum::<f64>() - number("growth_all_levels")).abs() < 1e-3,
             "{line:?}"
         );
-        assert!(levels.len() as f64 == number("levels"), "{line:?}");
+        assert_eq!(levels.len().to_string(), line["levels"], "{line:?}");
     }
     // All at once, the table is the same.
     let bytes = fs::read(&table).unwrap();

@@ -4,7 +4,7 @@
 
 use std::{collections::BTreeSet, fs};
 
-use e2e::{build_pass, corniche, json, root, sample, text};
+use e2e::{build_pass, corniche, json, manifest, root, sample, text, write_ascii_grid};
 use serde_json::{Value, json as value};
 
 fn schema(name: &str) -> Value {
@@ -171,7 +171,9 @@ fn a_tile_is_found_by_its_place() {
         assert_eq!(at(&place, &[])["id"], at(&place, &["--level", "3"])["id"]);
     }
     for (arguments, word) in [
-        (&["--at", "100,10"][..], "covers"),
+        (&["--at", "100,10"][..], "choose a place there"),
+        (&["--at", "46.9,9.5"], "longitude comes first: --at 9.5,46.9"),
+        (&["--at", "95.4,46.9", "--level", "1"], "no tile on level 1"),
         (&["--at", "9.54,46.9", "--level", "9"], "finest level is 3"),
         (&["--at", "9.54"], "longitude,latitude"),
         (&["--at", "9.54,46.9", "0/0/0"], "cannot be used with"),
@@ -181,4 +183,48 @@ fn a_tile_is_found_by_its_place() {
         let ran = corniche([&["tile", package], arguments].concat());
         assert!(ran.code == 2 && ran.err.contains(word), "{arguments:?}: {}", ran.err);
     }
+}
+
+/// A place in a void: the tile around it, and a word of it; where not even a tile is, what to do.
+#[test]
+fn a_place_without_ground_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let (dem, package) = (folder.path().join("a.asc"), folder.path().join("a.pmtiles"));
+    // Ground with a hole in the west, ground in the east, and a void as wide as four tiles between them.
+    let place = "xllcorner 500000\nyllcorner 5200000\ncellsize 10\nNODATA_value -9999";
+    write_ascii_grid(&dem, [1537, 257], place, |column, row| {
+        let is_hole = (60..200).contains(&column) && (60..200).contains(&row);
+        let is_between = (256..1280).contains(&column);
+        if is_hole || is_between { -9999.0 } else { 100.0 }
+    });
+    let built = corniche([
+        "build",
+        "-q",
+        "--dem",
+        text(&dem),
+        "--dem-crs",
+        "EPSG:32632",
+        "--max-error",
+        "5",
+        "-o",
+        text(&package),
+    ]);
+    assert_eq!(built.code, 0, "{}", built.err);
+    let manifest = manifest(&package);
+    let (bounds, finest) = (&manifest["wgs84_bounds"], manifest["frame"]["max_level"].to_string());
+    let side = |name: &str| bounds[name].as_f64().unwrap();
+    let at = |east: f64, north: f64, more: &[&str]| {
+        let lon = side("min_x") + east * (side("max_x") - side("min_x"));
+        let lat = side("min_y") + north * (side("max_y") - side("min_y"));
+        let place = format!("{lon},{lat}");
+        corniche([&["tile", text(&package), "--at", &place], more].concat())
+    };
+    let ground = at(0.02, 0.5, &[]);
+    assert!(ground.code == 0 && ground.err.is_empty(), "{}", ground.err);
+    let hole = at(0.085, 0.5, &[]);
+    assert!(hole.code == 0 && hole.err.contains("no ground at this place"), "{}", hole.err);
+    let void = at(0.5, 0.5, &[]);
+    assert!(void.code == 0 && void.err.contains("is the finest one"), "{}", void.err);
+    let void = at(0.5, 0.5, &["--level", &finest]);
+    assert!(void.code == 2 && void.err.contains("leave --level out"), "{}", void.err);
 }

@@ -52,7 +52,8 @@ pub(crate) struct Curve {
 /// Whether the points of a curve show.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Marks {
-    None,
+    /// No; the line has the dashes and the width of this number.
+    None(usize),
     /// With the shape and the dashes of this number.
     Shape(usize),
 }
@@ -81,6 +82,8 @@ const DASHES: [(i32, i32); 3] = [(0, 0), (9, 4), (3, 3)];
 /// So many curves with marks can be told apart without colours: after all shapes come the same ones with other dashes.
 pub(crate) const MOST_SHAPES: usize = SHAPES.len() * DASHES.len();
 
+/// Width of a line, pixels.
+const LINE_PX: u32 = 2;
 /// Height of a row in the list of names, and the width of a character, pixels.
 const ROW_PX: i32 = 24;
 const CHARACTER_PX: i32 = 8;
@@ -124,7 +127,10 @@ pub(crate) fn draw(axes: &Axes, curves: &[Curve]) -> Result<String> {
             mesh.y_labels(count).y_label_formatter(&tick_y).y_max_light_lines(0);
         }
         mesh.draw()?;
-        for curve in curves {
+        // Wide lines lie below narrow ones, which they would hide.
+        let mut by_width: Vec<&Curve> = curves.iter().collect();
+        by_width.sort_by_key(|curve| std::cmp::Reverse(curve.line().2.stroke_width));
+        for curve in by_width {
             let (dash, gap, style) = curve.line();
             let points = curve.points.iter().copied();
             if dash == 0 {
@@ -176,12 +182,12 @@ fn draw_names(area: &DrawingArea<SVGBackend<'_>, Shift>, curves: &[Curve]) -> Re
 impl Curve {
     /// Dash, gap and style of its line.
     fn line(&self) -> (i32, i32, ShapeStyle) {
-        let number = match self.marks {
-            Marks::None => 0,
-            Marks::Shape(number) => number,
+        let (number, width_px) = match self.marks {
+            Marks::None(number) => (number, LINE_PX * (1 + number / DASHES.len()) as u32),
+            Marks::Shape(number) => (number + number / SHAPES.len(), LINE_PX),
         };
-        let (dash, gap) = DASHES[(number + number / SHAPES.len()) % DASHES.len()];
-        (dash, gap, self.color.stroke_width(2))
+        let (dash, gap) = DASHES[number % DASHES.len()];
+        (dash, gap, self.color.stroke_width(width_px))
     }
 
     /// Outline and filling of its marks.

@@ -2,7 +2,7 @@
 
 use std::io::{self, BufWriter, Write as _};
 
-use corniche_geom::{Bounds, TileId};
+use corniche_geom::{Bounds, LatticePoint, TileId};
 use corniche_tileset::{FilePackage, Manifest, Sections, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 
@@ -13,6 +13,7 @@ use crate::{
     },
     exit::ExitCode,
     failure::Failure,
+    messages,
     table::{Digits, Table},
 };
 
@@ -58,28 +59,74 @@ fn payload_at(
     }
     let levels = args.level.map_or(0..=finest, |level| level..=level);
     for level in levels.rev() {
-        if let Some(id) = tile_at(manifest, level, [lon_deg, lat_deg])
-            && let Some(payload) = payload(package, id)?
-        {
-            return Ok(payload);
+        let Some((id, point)) = tile_at(manifest, level, [lon_deg, lat_deg]) else { continue };
+        let Some(payload) = payload(package, id)? else { continue };
+        if args.level.is_none() && level < finest {
+            messages::note(&format!(
+                "there is no tile of level {finest} at this place; tile {id} is the finest one"
+            ));
         }
+        if !has_ground(manifest, &payload, point) {
+            messages::note(&format!(
+                "tile {id} has no ground at this place: it is in a void or beyond the edge of the data"
+            ));
+        }
+        return Ok(payload);
     }
-    let on = args.level.map_or_else(String::new, |level| format!(" on level {level}"));
-    Err(Failure::unusable(format!(
-        "{} has no tile{on} at longitude {lon_deg}, latitude {lat_deg}; it covers {:?} (west, south, east, north in degrees)",
-        args.package.display(),
-        manifest.wgs84_bounds.to_array()
-    )))
+    Err(Failure::unusable(no_tile_at(args, manifest, [lon_deg, lat_deg])))
 }
 
-/// The tile of a level that holds a place; `None` outside the root tile.
-fn tile_at(manifest: &Manifest, level: u8, [lon_deg, lat_deg]: [f64; 2]) -> Option<TileId> {
+/// Why there is no tile at a place, and what to do.
+fn no_tile_at(args: &TileArgs, manifest: &Manifest, [lon_deg, lat_deg]: [f64; 2]) -> String {
+    let package = args.package.display();
+    let on = args.level.map_or_else(String::new, |level| format!(" on level {level}"));
+    let place = format!("longitude {lon_deg}, latitude {lat_deg}");
+    let [west, south, east, north] = manifest.wgs84_bounds.to_array();
+    let covers = |lon: f64, lat: f64| {
+        let is_between = |lon: f64| (west..=east).contains(&lon);
+        [lon, lon + 360.0, lon - 360.0].into_iter().any(is_between)
+            && (south..=north).contains(&lat)
+    };
+    if covers(lon_deg, lat_deg) {
+        let coarser = if args.level.is_some() { "leave --level out, or " } else { "" };
+        return format!(
+            "{package} has no tile{on} at {place}: the data have a void there; {coarser}choose another place \
+             (corniche info --json lists the tiles)"
+        );
+    }
+    let swapped = if covers(lat_deg, lon_deg) {
+        format!("; longitude comes first: --at {lat_deg},{lon_deg} lies inside")
+    } else {
+        String::new()
+    };
+    format!(
+        "{package} has no tile{on} at {place}; it covers longitudes {west:.5} to {east:.5} and latitudes {south:.5} to {north:.5}: choose \
+         a place there{swapped}"
+    )
+}
+
+/// Whether a tile's triangles cover a place.
+fn has_ground(manifest: &Manifest, payload: &TilePayload, point: LatticePoint) -> bool {
+    payload.terrain.as_ref().is_some_and(|terrain| {
+        let placement =
+            Placement::of_tile(&manifest.frame, payload.id, manifest.vertical.quantum_m);
+        Surface::new(&terrain.tin, placement).locate(point).is_some()
+    })
+}
+
+/// The tile of a level that holds a place, and where that is; `None` outside the root tile.
+fn tile_at(
+    manifest: &Manifest,
+    level: u8,
+    [lon_deg, lat_deg]: [f64; 2],
+) -> Option<(TileId, LatticePoint)> {
     // Longitudes of a package may run on past 180.
     [0.0, 360.0, -360.0].into_iter().find_map(|turn| {
         let position = manifest.coordinates.working_from_wgs84([lon_deg + turn, lat_deg])?;
         let point = manifest.frame.snap(position)?;
         let [column, row] = manifest.frame.tile_column_row(level, point);
-        TileId::new(level, u32::try_from(column).ok()?, u32::try_from(row).ok()?).ok()
+        let id = TileId::new(level, u32::try_from(column).ok()?, u32::try_from(row).ok()?).ok()?;
+        Some((id, point))
     })
 }
 

@@ -121,10 +121,13 @@ fn growth_of(
 /// How many ends of pieces were made by cutting, at the border of a tile or at the bounds of the package.
 fn cut_ends(pieces: &[Piece], clip: Option<LatticeBounds>) -> u64 {
     let is_at_bounds = |vertex: &Vertex| {
+        // Points are whole steps, so they lie on a side exactly or not at all.
+        let is_at = |along: f64, sides: [i64; 2]| {
+            sides.iter().any(|&side| along.to_bits() == (side as f64).to_bits())
+        };
         let [u, v] = vertex.at;
         clip.is_some_and(|LatticeBounds { min, max }| {
-            [min.u, max.u].iter().any(|&side| u == side as f64)
-                || [min.v, max.v].iter().any(|&side| v == side as f64)
+            is_at(u, [min.u, max.u]) || is_at(v, [min.v, max.v])
         })
     };
     let is_cut = |end: Option<&Vertex>, goes_on: bool| {

@@ -47,13 +47,13 @@ pub(crate) fn frame_times(runs: &[MeasuredRun], adapter: &str) -> anyhow::Result
             ticks: Ticks::Round,
         },
     };
-    let curve = |(run, color): (&MeasuredRun, &RGBColor)| Curve {
+    let curve = |(number, run): (usize, &MeasuredRun)| Curve {
         name: run.name(),
-        color: *color,
+        color: COLORS[number % COLORS.len()],
         points: points(run),
-        marks: Marks::None,
+        marks: Marks::None(number),
     };
-    let curves: Vec<Curve> = runs.iter().zip(COLORS.iter().cycle()).map(curve).collect();
+    let curves: Vec<Curve> = runs.iter().enumerate().map(curve).collect();
     draw(&axes, &curves)
 }
 

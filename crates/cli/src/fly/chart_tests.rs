@@ -1,3 +1,8 @@
+use std::{fs, path::PathBuf};
+
+use clap::ValueEnum as _;
+use corniche_viewer::gpu::PassTimes;
+
 use super::*;
 use crate::{
     args::{Lod, Roads},
@@ -22,4 +27,74 @@ fn a_chart_says_which_clock_its_times_are_of() {
     assert!(frame_times(&run(timed.clone()), "an adapter").unwrap().contains("clock"));
     timed[2].passes = None;
     assert!(!frame_times(&run(timed), "an adapter").unwrap().contains("clock"));
+}
+
+/// Runs out of a list that `fly` wrote.
+fn runs_of(list: &str) -> Vec<MeasuredRun> {
+    let mut lines = list.lines();
+    let headings: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let mut runs: Vec<MeasuredRun> = Vec::new();
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        let cell =
+            |name: &str| cells[headings.iter().position(|heading| *heading == name).expect(name)];
+        let number = |name: &str| cell(name).parse::<f64>().unwrap();
+        let passes = PassTimes {
+            terrain_ms: number("terrain_ms"),
+            roads_ms: number("roads_ms"),
+            composite_ms: number("composite_ms"),
+        };
+        let record = FrameRecord {
+            time_s: number("time_s"),
+            draw_ms: number("draw_ms"),
+            passes: Some(passes),
+            ..frame(0.0)
+        };
+        let lod = Lod::from_str(cell("lod"), false).unwrap();
+        let roads = Roads::from_str(cell("roads"), false).unwrap();
+        match runs.last_mut().filter(|run| (run.lod, run.roads) == (lod, roads)) {
+            Some(run) => run.frames.push(record),
+            None => runs.push(MeasuredRun { lod, roads, frames: vec![record] }),
+        }
+    }
+    runs
+}
+
+/// The chart in the documentation is that of the list beside it, as `fly` draws it. `CORNICHE_BLESS=1` draws it again.
+#[test]
+fn the_chart_in_the_docs_is_that_of_its_list() {
+    let docs: PathBuf = [env!("CARGO_MANIFEST_DIR"), "..", "..", "docs"].iter().collect();
+    let list = fs::read_to_string(docs.join("flight-liechtenstein.csv")).unwrap();
+    let runs = runs_of(&list);
+    assert_eq!(runs.iter().map(|run| run.frames.len()).collect::<Vec<_>>(), [60; 4]);
+    let drawn = frame_times(&runs, "llvmpipe (LLVM 15.0.6, 256 bits) (vulkan)").unwrap();
+    let path = docs.join("flight-liechtenstein.svg");
+    if std::env::var_os("CORNICHE_BLESS").is_some() {
+        fs::write(&path, &drawn).unwrap();
+    }
+    let stored = fs::read_to_string(&path).unwrap_or_default();
+    assert!(stored == drawn, "the chart is not that of its list; draw it with CORNICHE_BLESS=1");
+}
+
+/// Runs can be told apart without colours: their lines differ in dashes or in width.
+#[test]
+fn runs_differ_without_colours() {
+    let look = |number: usize| {
+        let curve = Curve {
+            name: String::new(),
+            color: RGBColor(0, 0, 0),
+            points: vec![(0.0, 1.0), (1.0, 2.0)],
+            marks: Marks::None(number),
+        };
+        let axis = |ticks| Axis { description: "", range: 0.0..3.0, ticks };
+        let axes = Axes {
+            size_px: (400, 300),
+            caption: String::new(),
+            x: axis(Ticks::Round),
+            y: axis(Ticks::Round),
+        };
+        draw(&axes, &[curve]).unwrap()
+    };
+    let looks: std::collections::BTreeSet<String> = (0..COLORS.len()).map(look).collect();
+    assert_eq!(looks.len(), COLORS.len());
 }

@@ -56,9 +56,12 @@ pub(crate) struct Difference {
     pub(crate) values: Vec<(Vec<usize>, String)>,
 }
 
+/// Something of a package in words, under its name.
+type Kind = (&'static str, fn(&Manifest) -> String);
+
 /// What is not alike in some packages.
 pub(crate) fn differences(packages: &[Compared<'_>]) -> Vec<Difference> {
-    let kinds: [(&'static str, fn(&Manifest) -> String); 7] = [
+    let kinds: [Kind; 7] = [
         ("extract", |manifest| inputs(manifest, &["osm"])),
         ("elevation data", |manifest| inputs(manifest, &["dem", "dem-part"])),
         ("classes", classes),
@@ -73,7 +76,7 @@ pub(crate) fn differences(packages: &[Compared<'_>]) -> Vec<Difference> {
             bounds.map_or_else(|| "all of the elevation data".to_owned(), |b| format!("{b:?}"))
         }),
     ];
-    let difference = |(what, value): (&'static str, fn(&Manifest) -> String)| {
+    let difference = |(what, value): Kind| {
         let mut values: Vec<(Vec<usize>, String)> = Vec::new();
         for (index, package) in packages.iter().enumerate() {
             let value = value(package.manifest);
