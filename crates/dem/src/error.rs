@@ -157,16 +157,18 @@ pub enum DemError {
     Transform { from: String, to: String, source: Box<LibraryError> },
     #[error("the DEM's centre has no position in {crs}; choose another --crs")]
     OutsideCrs { crs: String },
+    #[error(transparent)]
+    Polygon(#[from] crate::PolygonError),
     #[error("--bounds {bounds} has no position in {crs}; choose another --crs or other bounds")]
     BoundsOutsideCrs { bounds: String, crs: String },
     #[error(
-        "--bounds {bounds} holds no cell of the elevation data, which reach from {west:.4} to {east:.4} degrees east and from {south:.4} to {north:.4} degrees north; give west,south,east,north in degrees"
+        "{asked} holds no cell of the elevation data, which reach from {west:.4} to {east:.4} degrees east and from {south:.4} to {north:.4} degrees north; give a part of these data (--bounds takes west,south,east,north in degrees)"
     )]
-    BoundsBesideData { bounds: String, west: f64, south: f64, east: f64, north: f64 },
+    BoundsBesideData { asked: String, west: f64, south: f64, east: f64, north: f64 },
     #[error(
-        "--bounds {bounds} lies at both ends of elevation data that go around the earth, and a package holds one region; make two packages, or give files that are continuous there"
+        "{asked} lies at both ends of elevation data that go around the earth, and a package holds one region; make two packages, or give files that are continuous there"
     )]
-    BoundsAtBothEnds { bounds: String },
+    BoundsAtBothEnds { asked: String },
     #[error("{path:?} has no position in {crs}; choose another --crs, or leave the file out")]
     FileOutsideCrs { path: PathBuf, crs: String },
     #[error(

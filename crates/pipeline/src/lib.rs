@@ -33,7 +33,7 @@ mod verify;
 mod workers;
 
 pub use build::{BuildSummary, build, build_on};
-pub use corniche_dem::{OpenOptions, PlanOptions, libraries};
+pub use corniche_dem::{OpenOptions, PlanOptions, Polygon, PolygonError, libraries};
 pub use corniche_objects::Requests;
 pub use corniche_osm::{Defect as OsmDefect, Share};
 pub use defect::{Defect, Loss};

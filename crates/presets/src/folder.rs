@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::{config::Config, frc::frc_preset};
+use crate::{config::Config, files::InputFiles, frc::frc_preset};
 
 impl Config {
     /// The same settings, with paths that begin at `folder`, which the settings file is in, instead of the working folder. Absolute
@@ -10,7 +10,8 @@ impl Config {
     #[must_use]
     pub fn in_folder(mut self, folder: &Path) -> Self {
         let Self { inputs, output, roads, resources, .. } = &mut self;
-        let files = inputs.dem.iter_mut().chain(&mut inputs.terrain).chain(&mut inputs.osm);
+        let InputFiles { dem, terrain, osm, polygon } = inputs;
+        let files = dem.iter_mut().chain(terrain).chain(osm).chain(polygon);
         let written =
             output.package.iter_mut().chain(&mut output.defects).chain(&mut resources.tmp);
         for path in files.chain(written) {

@@ -57,6 +57,7 @@ fn terrain_comes_from_one_place() {
     let of = |dem: &[&str], terrain: Option<&str>| InputFiles {
         dem: paths(dem),
         terrain: terrain.map(Into::into),
+        polygon: None,
         osm: None,
     };
     let rasters = of(&["a.tif"], None);
