@@ -66,11 +66,6 @@ fn hear(kind: CplErrType, words: &str) {
     }
 }
 
-/// What was said last on this thread; empty if nothing was.
-pub(crate) fn last_words() -> String {
-    LAST_WORDS.with_borrow(|words| words.trim().to_owned())
-}
-
 /// Forgets what was said, so that the next failure is not explained by an earlier one.
 pub fn forget() {
     LAST_WORDS.with_borrow_mut(String::clear);

@@ -52,8 +52,7 @@ impl VirtualFile {
         // SAFETY: both are C strings that outlive the call; the handle is checked for null.
         let handle = unsafe { gdal_sys::VSIFOpenL(name.as_ptr(), c"rb".as_ptr()) };
         let not_found = || {
-            let said = last_words();
-            let reason = if said.is_empty() { String::new() } else { format!(": {said}") };
+            let reason = last_words().map(|words| format!(": {words}")).unwrap_or_default();
             io::Error::new(io::ErrorKind::NotFound, format!("GDAL finds no such file{reason}"))
         };
         Ok(Self { handle: NonNull::new(handle).ok_or_else(not_found)? })
