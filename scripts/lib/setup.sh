@@ -32,11 +32,17 @@ missing_for_check() {
     python_with moto.server >/dev/null || python_for_environments >/dev/null || echo python3-venv
 }
 
-# For the tests of the window: a virtual display, a program that moves the mouse there, and the libraries that a window loads.
+# For the tests of the window: a virtual display, and a program that moves the mouse there.
 missing_for_window() {
     [ "$(uname -s)" != Linux ] && return 0
     command -v Xvfb >/dev/null || echo xvfb
     command -v xdotool >/dev/null || echo xdotool
+    missing_for_view
+}
+
+# The libraries that a window loads while it opens; desktops with X11 or Wayland have them.
+missing_for_view() {
+    [ "$(uname -s)" != Linux ] && return 0
     has_library libX11-xcb.so.1 || echo libx11-xcb1
     has_library libXcursor.so.1 || echo libxcursor1
     has_library libXi.so.6 || echo libxi6
@@ -59,7 +65,7 @@ has_library() {
 has_vulkan_driver() {
     [ "$(uname -s)" != Linux ] && return 0 # macOS draws with Metal
     local folder file
-    for folder in /usr/share/vulkan/icd.d /etc/vulkan/icd.d /usr/local/share/vulkan/icd.d; do
+    for folder in ${VULKAN_DRIVERS:-/usr/share/vulkan/icd.d /etc/vulkan/icd.d /usr/local/share/vulkan/icd.d}; do
         for file in "$folder"/*.json; do
             [ -e "$file" ] && return 0
         done
@@ -102,18 +108,56 @@ object_storage_python() {
     echo "$(cd "$folder" && pwd)/bin/python"
 }
 
+# The oldest cargo that can build this workspace: `rust-version` of the manifest.
+oldest_cargo() { sed -n 's/^rust-version = "\(.*\)"$/\1/p' Cargo.toml; }
+
+# Whether version $1 is at least version $2, number by number.
+is_at_least() {
+    awk -v have="$1" -v need="$2" 'BEGIN {
+        split(have, h, "[.-]"); split(need, n, ".")
+        for (i = 1; i <= 3; i++) if (h[i] + 0 != n[i] + 0) exit h[i] + 0 < n[i] + 0
+    }'
+}
+
+# An older cargo would fail with a message about the manifest that tells nobody what to do.
+require_cargo() {
+    local need have
+    need=$(oldest_cargo)
+    [ -n "$need" ] || fail 1 "Cargo.toml names no rust-version"
+    command -v cargo >/dev/null ||
+        fail 2 "cargo is missing. Install Rust as https://rustup.rs says, open a new shell, and run this again"
+    have=$(cargo --version | awk '{ print $2 }')
+    is_at_least "$have" "$need" && return 0
+    if command -v rustup >/dev/null; then fail 2 "cargo $have is too old, $need is needed: run \`rustup update stable\`"; fi
+    fail 2 "$(command -v cargo) is cargo $have, $need is needed. The packages of Debian and Ubuntu are too old:" \
+        "install Rust as https://rustup.rs says, open a new shell, and run this again"
+}
+
+# Compiling takes about this much in the target folder.
+BUILD_DISK_GB=5
+
+# Says so before a build that cannot fit; a target folder that exists has most of it already.
+require_disk() {
+    local folder=${CARGO_TARGET_DIR:-target} free_kb
+    [ -d "$folder/debug/deps" ] && return 0
+    while [ ! -d "$folder" ]; do folder=$(dirname "$folder"); done
+    free_kb=$(df -Pk "$folder" | awk 'NR == 2 { print $4 }')
+    [ "$free_kb" -ge $((BUILD_DISK_GB * 1000000)) ] ||
+        fail 2 "compiling needs $BUILD_DISK_GB GB of disk space, $((free_kb / 1000000)) GB are free; name a folder elsewhere: CARGO_TARGET_DIR=FOLDER"
+}
+
 # Installs the packages that the named functions print. If none is missing, it does nothing, not even `apt-get update`.
 install_missing() {
     local packages=() probe line as_root=()
-    command -v cargo >/dev/null || fail 2 "cargo is missing; install Rust (https://rustup.rs)"
+    require_cargo
     for probe in "$@"; do
         while IFS= read -r line; do packages+=("$line"); done < <("$probe")
     done
     [ ${#packages[@]} -eq 0 ] && return 0
     if ! command -v apt-get >/dev/null; then
         say "missing, by Debian's names: ${packages[*]}"
-        say "install their like by hand: macOS: brew install gdal pkg-config; pip install numpy shapely"
-        say "                            Fedora: dnf install gcc gdal-devel pkgconf mesa-vulkan-drivers vulkan-loader python3-numpy python3-shapely"
+        say "install the packages of your system that have the same: macOS: brew install gdal pkg-config"
+        say "  Fedora: dnf install gcc gdal-devel pkgconf mesa-vulkan-drivers vulkan-loader; for scripts/test also numpy and shapely for Python"
         exit 2
     fi
     if [ "$(id -u)" -ne 0 ]; then

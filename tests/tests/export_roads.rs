@@ -47,6 +47,18 @@ impl Road {
         self.fields[name].clone().and_then(FieldValue::into_string).filter(|text| !text.is_empty())
     }
 
+    /// A number of any kind as text; empty without. 0 counts as none: FlatGeobuf leaves out what is null, and `gdal` gives 0.
+    fn number(&self, name: &str) -> String {
+        match self.fields[name].clone() {
+            None | Some(FieldValue::IntegerValue(0)) => String::new(),
+            Some(FieldValue::RealValue(value)) if value.abs() < f64::EPSILON => String::new(),
+            Some(FieldValue::IntegerValue(value)) => value.to_string(),
+            Some(FieldValue::RealValue(value)) => value.to_string(),
+            Some(FieldValue::StringValue(value)) => value,
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+
     fn way_id(&self) -> i64 {
         self.integer("way_id")
     }
@@ -286,8 +298,21 @@ fn same(expected: &[Road], found: &[Road], largest: [f64; 3]) {
         for name in ["class", "bridge", "tunnel", "layer", "vertices_in", "vertices_out", "parts"] {
             assert_eq!(expected.integer(name), found.integer(name), "{name}");
         }
-        for name in ["name", "ref", "surface", "oneway", "form"] {
+        for name in [
+            "name",
+            "ref",
+            "surface",
+            "oneway",
+            "form",
+            "highway",
+            "maxspeed",
+            "sac_scale",
+            "tracktype",
+        ] {
             assert_eq!(expected.text(name), found.text(name), "{name}");
+        }
+        for name in ["lanes", "width"] {
+            assert_eq!(expected.number(name), found.number(name), "{name}");
         }
         for name in ["length_2d_m", "length_3d_m", "ascent_m", "descent_m"] {
             assert!((expected.real(name) - found.real(name)).abs() < 1e-6, "{name}");

@@ -86,7 +86,7 @@ fn pass_is_what_its_extract_says_and_checks_have_ids() {
 fn verify_asks_for_a_table_that_is_called_like_a_preset() {
     let folder = tempfile::tempdir().unwrap();
     let (package, table) = (folder.path().join("pass.pmtiles"), folder.path().join("own.toml"));
-    let preset = concat!(env!("CARGO_MANIFEST_DIR"), "/../config/frc/valhalla.toml");
+    let preset = concat!(env!("CARGO_MANIFEST_DIR"), "/../crates/presets/frc/valhalla.toml");
     let own = fs::read_to_string(preset).unwrap().replace("\"bus_stop\", ", "");
     assert!(own.contains("name = \"valhalla\"") && !own.contains("bus_stop"), "{own}");
     fs::write(&table, own).unwrap();

@@ -16,7 +16,7 @@ fn a_settings_file_alone_makes_the_same_package() {
     for name in ["pass-dem.tif", "pass.osm.pbf"] {
         fs::copy(sample(&format!("pass/{name}")), maps.join("in").join(name)).unwrap();
     }
-    let table = root().join("config/frc/valhalla.toml");
+    let table = root().join("crates/presets/frc/valhalla.toml");
     fs::copy(table, maps.join("mine.toml")).unwrap();
     let settings = maps.join("build.toml");
     fs::write(

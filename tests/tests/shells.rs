@@ -6,9 +6,9 @@ use std::{collections::BTreeSet, fs, path::Path, process::Command};
 
 use e2e::{corniche, skipped, text};
 
-/// Commands as `--help` lists them.
-fn commands() -> BTreeSet<String> {
-    let help = corniche(["--help"]).out;
+/// Commands as `--help` lists them, of the program or of a command.
+fn commands_of(command: &[&str]) -> BTreeSet<String> {
+    let help = corniche(command.iter().chain(&["--help"])).out;
     let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1);
     let names = listed
         .take_while(|line| !line.is_empty())
@@ -16,9 +16,13 @@ fn commands() -> BTreeSet<String> {
     names.map(str::to_owned).filter(|name| name != "help").collect()
 }
 
+fn commands() -> BTreeSet<String> {
+    commands_of(&[])
+}
+
 /// Options of a command as its `--help` lists them, long ones.
 fn options(command: &str) -> BTreeSet<String> {
-    let help = corniche([command, "--help"]).out;
+    let help = corniche(command.split(' ').chain(["--help"])).out;
     let lines = help.lines().map(str::trim_start).filter(|line| line.starts_with('-'));
     let words = lines.flat_map(|line| {
         line.split([' ', ',', '=']).take(4).map(str::to_owned).collect::<Vec<_>>()
@@ -86,13 +90,21 @@ fn each_command_has_a_manual_page_with_its_options() {
     let page = |name: &str| fs::read_to_string(pages.join(name)).unwrap().replace("\\-", "-");
     let whole = page("corniche.1");
     let mut names = BTreeSet::from(["corniche.1".to_owned()]);
-    for command in commands() {
-        let name = format!("corniche-{command}.1");
+    let parts = commands().into_iter().flat_map(|command| {
+        let parts = commands_of(&[&command]);
+        let parts = parts.into_iter().map(|part| format!("{command} {part}")).collect::<Vec<_>>();
+        [vec![command], parts].concat()
+    });
+    let all: Vec<String> = parts.collect();
+    assert!(all.iter().any(|command| command == "export roads"), "{all:?}");
+    for command in all {
+        let name = format!("corniche-{}.1", command.replace(' ', "-"));
         let text = page(&name);
         for option in options(&command) {
             assert!(text.contains(&option), "{name} has no {option}");
         }
-        assert!(whole.contains(&format!("corniche-{command}(1)")), "{command}");
+        let is_listed = whole.contains(&format!("corniche-{command}(1)"));
+        assert!(is_listed || command.contains(' '), "{command}");
         names.insert(name);
     }
     let written = |folder: &Path| -> BTreeSet<String> {

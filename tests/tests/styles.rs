@@ -54,7 +54,7 @@ fn a_style_of_ones_own_is_drawn_with_or_refused_by_what_is_wrong_in_it() {
     let package = folder.path().join("pass.pmtiles");
     build_pass(&package, &["--quiet"]);
     let (style, png) = (folder.path().join("mine.toml"), folder.path().join("a.png"));
-    let dark = fs::read_to_string(root().join("config/styles/dark.toml")).unwrap();
+    let dark = fs::read_to_string(root().join("crates/styles/sheets/dark.toml")).unwrap();
     fs::write(&style, &dark).unwrap();
     let Some(ran) = render(&package, &png, &["--style", text(&style)]) else { return };
     assert_eq!(ran.code, 0, "{}", ran.err);

@@ -32,7 +32,7 @@ fn refused(package: &Path, options: &[&str]) -> Ran {
 fn a_trace_replaces_neither_the_package_nor_the_style_nor_another_file() {
     let (folder, package) = package();
     let style = folder.path().join("mine.toml");
-    fs::copy(e2e::root().join("config/styles/dark.toml"), &style).unwrap();
+    fs::copy(e2e::root().join("crates/styles/sheets/dark.toml"), &style).unwrap();
     let precious = folder.path().join("precious.csv");
     fs::write(&precious, b"precious").unwrap();
     let before = [&package, &style, &precious].map(|path| fs::read(path).unwrap());

@@ -44,3 +44,25 @@ fn files_stay_short() {
         assert!(lines <= MAX_FILE_LINES, "{} has {lines} lines", file.display());
     }
 }
+
+/// What a crate includes lies in its own folder, so that `cargo package` takes it along.
+#[test]
+fn included_files_lie_in_the_crate_that_includes_them() {
+    let mut checked = 0;
+    for file in all_rust_files() {
+        let Some((package, _)) = file.to_str().unwrap().split_once("/src/") else { continue };
+        if !package.starts_with(root().join("crates").to_str().unwrap()) {
+            continue;
+        }
+        let text = fs::read_to_string(&file).unwrap();
+        for included in text.split("include_str!(\"").chain(text.split("include_bytes!(\"")).skip(1)
+        {
+            let Some((name, _)) = included.split_once('"') else { continue };
+            let path = file.parent().unwrap().join(name);
+            let Ok(path) = path.canonicalize() else { continue };
+            checked += 1;
+            assert!(path.starts_with(package), "{} includes {}", file.display(), path.display());
+        }
+    }
+    assert!(checked > 5, "only {checked} files are included");
+}

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_pipeline::{BuildError, BuildSettings, BuildSummary, Existing, Leftovers};
+use corniche_pipeline::{BuildError, BuildSettings, BuildSummary, Leftovers};
 
 use crate::{
     args::BuildArgs,
@@ -13,6 +13,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     info, messages, output,
+    part::make_tmp,
     settings::{self, Work},
     table::Digits,
 };
@@ -35,6 +36,7 @@ pub(crate) fn run(mut args: Box<BuildArgs>) -> Result<ExitCode, Failure> {
     others.push(&output);
     let watch = Watch::new(defects.as_deref(), args.overwrite, &others)?;
     let settings = settings(*args, output)?;
+    make_tmp(settings.tmp.as_deref())?;
     let built = corniche_pipeline::build(&settings, &watch);
     finish(built, watch, &settings.output)
 }
@@ -75,7 +77,7 @@ fn settings(args: BuildArgs, output: PathBuf) -> Result<BuildSettings, Failure> 
     Ok(BuildSettings {
         plan,
         output,
-        existing: if args.overwrite { Existing::Replace } else { Existing::Keep },
+        existing: output::existing_of(args.overwrite),
         tmp,
         leftovers: match (args.resume, args.overwrite) {
             (true, _) => Leftovers::Resume,

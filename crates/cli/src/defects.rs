@@ -11,7 +11,7 @@ use corniche_pipeline::{Defect, Observer, Stage};
 
 use crate::{
     failure::Failure,
-    output::{self, Existing, Output},
+    output::{self, Existing, Output, existing_of},
     progress::Progress,
 };
 
@@ -92,7 +92,7 @@ impl Watch {
         overwrite: bool,
         others: &[&Path],
     ) -> Result<Self, Failure> {
-        let existing = Existing::of(overwrite);
+        let existing = existing_of(overwrite);
         let defects = list.map(|target| DefectList::create(target, existing, others));
         Ok(Self { progress: Progress::new(), defects: defects.transpose()? })
     }

@@ -1,12 +1,13 @@
 //! `corniche export`: what a package holds, for other programs.
 
-use std::{cell::RefCell, io::stderr, time::Duration};
+use std::{cell::RefCell, io::stderr, path::Path};
 
 use corniche_export::{
-    Coordinates, ExportSummary, RoadsRequest, VectorFormat, Watch, Work, export_roads,
+    Coordinates, ExportError, ExportSummary, Observer, RoadsRequest, Stage, VectorFormat,
+    export_roads,
 };
-use corniche_tileset::FilePackage;
-use indicatif::{ProgressBar, ProgressStyle};
+use corniche_tileset::{FilePackage, Manifest};
+use indicatif::ProgressBar;
 
 use crate::{
     args::{Export, ExportArgs, ExportCrs, ExportRoadsArgs},
@@ -14,7 +15,8 @@ use crate::{
     failure::Failure,
     interrupt, messages,
     named_output::NamedOutput,
-    output::Existing,
+    output::existing_of,
+    progress,
     table::{Digits, bytes, length},
 };
 
@@ -50,15 +52,22 @@ fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
         memory_bytes: MEMORY_BYTES,
     };
     let name = format!("roads.{}", format.ending());
-    let existing = Existing::of(args.overwrite);
+    let existing = existing_of(args.overwrite);
     let output = NamedOutput::create(&args.output, existing, name, &[&args.package])?;
-    let bar = Bar::new(messages::is_for_people());
-    let exported = export_roads(&package, &request, &output.path(), &bar);
-    bar.end();
-    let summary = exported?;
+    let bars = Bars::default();
+    let exported = export_roads(&package, &request, &output.path(), &bars);
+    bars.end();
+    let summary = exported.map_err(|error| named(error, &args.output))?;
     let size = output.place()?;
-    messages::note(&to_text(args, &summary, &package.manifest().attribution.join("; "), size));
+    messages::note(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
+}
+
+/// What could not be written is known to people by the name of the target, not of the file that becomes it.
+fn named(error: ExportError, target: &Path) -> Failure {
+    let is_unwritten = !error.is_unusable_input();
+    let failure = Failure::from(error);
+    if is_unwritten && failure.code() == ExitCode::Failed { failure.about(target) } else { failure }
 }
 
 /// The format that is named, or that of the ending.
@@ -76,60 +85,60 @@ fn format(args: &ExportRoadsArgs) -> Result<VectorFormat, Failure> {
 fn to_text(
     args: &ExportRoadsArgs,
     summary: &ExportSummary,
-    attribution: &str,
+    manifest: &Manifest,
     size: u64,
 ) -> String {
     let count = |number| Digits::on(&stderr()).count(number);
+    let coordinates = match (args.crs, args.heights) {
+        (ExportCrs::Package, _) => &manifest.crs,
+        (ExportCrs::Wgs84, None) => "EPSG:4979",
+        (ExportCrs::Wgs84, Some(_)) => "EPSG:4326",
+    };
     let what = if args.pieces {
         format!("{} pieces of {} ways", count(summary.features), count(summary.ways))
     } else {
         format!("{} ways", count(summary.features))
     };
     format!(
-        "{}: {what} of level {}, {}, {} vertices, {}\nheights: {}\nto be shown with it: {attribution}",
+        "{}: {what} of level {}, {}, {} vertices, {}\ncoordinates: {}\nheights: {}\nto be shown with it: {}",
         args.output.display(),
         summary.level,
         length((summary.length_2d_m * 1e6).round() as u64),
         count(summary.vertices),
         bytes(size),
+        coordinates,
         summary.heights,
+        manifest.attribution.join("; "),
     )
 }
 
-/// A bar on a terminal, and whether the program is asked to end.
-pub(crate) struct Bar {
-    bar: ProgressBar,
-    work: RefCell<Option<Work>>,
+/// A bar for each stage, where bars are drawn; and whether the program is asked to end.
+#[derive(Default)]
+pub(crate) struct Bars {
+    running: RefCell<Option<(Stage, ProgressBar)>>,
 }
 
-impl Bar {
-    pub(crate) fn new(is_shown: bool) -> Self {
-        // Elsewhere than on a terminal it is not drawn.
-        let bar = if is_shown { ProgressBar::new(0) } else { ProgressBar::hidden() };
-        let style = ProgressStyle::with_template("{msg:22} {bar:40} {pos}/{len}  {elapsed}");
-        if let Ok(style) = style {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(Duration::from_millis(200));
-        Self { bar, work: RefCell::new(None) }
-    }
-
+impl Bars {
     pub(crate) fn end(&self) {
-        self.bar.finish_and_clear();
+        if let Some((_, bar)) = self.running.take() {
+            bar.finish_and_clear();
+        }
     }
 }
 
-impl Watch for Bar {
-    fn done(&self, work: Work, done: u64, total: u64) {
-        if self.work.replace(Some(work)) != Some(work) {
-            self.bar.reset();
-            self.bar.set_message(match work {
-                Work::Tiles => "reading tiles",
-                Work::Pieces => "writing roads",
-            });
+impl Observer for Bars {
+    fn done(&self, stage: Stage, done: u64, total: u64) {
+        if self.running.borrow().as_ref().is_none_or(|(running, _)| *running != stage) {
+            self.end();
+            let title = match stage {
+                Stage::Tiles => "reading tiles",
+                Stage::Pieces => "writing roads",
+            };
+            self.running.replace(Some((stage, progress::bar(title, Some(total)))));
         }
-        self.bar.set_length(total);
-        self.bar.set_position(done);
+        if let Some((_, bar)) = &*self.running.borrow() {
+            bar.set_position(done);
+        }
     }
 
     fn should_stop(&self) -> bool {

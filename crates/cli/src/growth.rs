@@ -22,7 +22,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages,
-    output::{Existing, Output},
+    output::{Output, existing_of},
     table::Digits,
 };
 
@@ -65,7 +65,7 @@ fn write_files(
     packages: &[FilePackage],
     compared: &[Compared<'_>],
 ) -> Result<(), Failure> {
-    let existing = Existing::of(args.overwrite);
+    let existing = existing_of(args.overwrite);
     let others = |own: &Path| -> Vec<&Path> {
         let targets = args.svg.iter().chain(&args.per_way).filter(|&target| *target != *own);
         args.packages.iter().chain(targets).map(AsRef::as_ref).collect()

@@ -57,6 +57,9 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
     if let Some([west, south, east, north]) = manifest.settings.bounds_deg {
         say(format!("bounds       {west} {south} {east} {north}, a part of the elevation data"));
     }
+    if let Some(polygon) = &manifest.settings.polygon {
+        say(format!("polygon      {}, a part of the elevation data", plain(&polygon.name)));
+    }
     say(format!("grid         cell {} m, {}", sides(frame.cell()), plain(&manifest.resampling)));
     let vertical = &manifest.vertical;
     let [lowest_m, highest_m] = vertical.range_m;

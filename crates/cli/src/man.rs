@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use clap::CommandFactory as _;
+use clap::{Command, CommandFactory as _};
 use clap_mangen::Man;
 
 use crate::{
@@ -13,7 +13,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages,
-    output::{Complete, Existing, Output},
+    output::{Complete, Output, existing_of},
 };
 
 pub(crate) fn run(args: &ManArgs) -> Result<ExitCode, Failure> {
@@ -23,7 +23,7 @@ pub(crate) fn run(args: &ManArgs) -> Result<ExitCode, Failure> {
     })?;
     let pages = pages()?;
     // All places are looked at before anything is written, and all pages are written before one takes its place.
-    let existing = Existing::of(args.overwrite);
+    let existing = existing_of(args.overwrite);
     let place = |(name, _): &(PathBuf, Vec<u8>)| Output::create(&folder.join(name), existing, &[]);
     let places: Vec<Output> = pages.iter().map(place).collect::<Result<_, _>>()?;
     let written: Vec<Complete> = places
@@ -37,17 +37,27 @@ pub(crate) fn run(args: &ManArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::Done)
 }
 
-/// The page of the program and those of its commands, with the names of their files.
+/// The page of the program and those of its commands and theirs, with the names of their files.
 fn pages() -> Result<Vec<(PathBuf, Vec<u8>)>, Failure> {
     let mut program = Arguments::command().disable_help_subcommand(true);
     program.build();
-    let commands = program.get_subcommands().filter(|command| !command.is_hide_set());
-    let all = commands.cloned().chain([program.clone()]);
-    all.map(|command| {
-        let man = Man::new(command).manual("Corniche");
-        let mut page = Vec::new();
-        man.render(&mut page)?;
-        Ok((Path::new(&man.get_filename()).to_owned(), page))
-    })
-    .collect()
+    let mut commands = vec![program];
+    let mut next = 0;
+    while let Some(command) = commands.get(next) {
+        let parts = command
+            .get_subcommands()
+            .filter(|part| !part.is_hide_set() && part.get_name() != "help");
+        let parts: Vec<Command> = parts.cloned().collect();
+        commands.extend(parts);
+        next += 1;
+    }
+    commands
+        .into_iter()
+        .map(|command| {
+            let man = Man::new(command).manual("Corniche");
+            let mut page = Vec::new();
+            man.render(&mut page)?;
+            Ok((Path::new(&man.get_filename()).to_owned(), page))
+        })
+        .collect()
 }

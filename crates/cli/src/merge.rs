@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use corniche_pipeline::{Existing, MergeSettings, is_in_object_storage};
+use corniche_pipeline::{MergeSettings, is_in_object_storage};
 
 use crate::{
     args::MergeArgs,
@@ -35,7 +35,7 @@ pub(crate) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
         stores,
         tmp: planned.tmp.clone(),
         output: args.output.clone(),
-        existing: if args.overwrite { Existing::Replace } else { Existing::Keep },
+        existing: output::existing_of(args.overwrite),
         resources: settings::resources(planned.threads, planned.memory.as_deref())?,
         generator: settings::generator(),
     };

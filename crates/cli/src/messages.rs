@@ -33,7 +33,7 @@ static BEGUN: OnceLock<Instant> = OnceLock::new();
 /// Targets of our own events: names of crates, which begin so.
 const OWN_TARGETS: &str = "corniche";
 
-/// From now on the program talks like this.
+/// Sets how messages are written, once, before the first one.
 pub(crate) fn begin(voice: Voice) {
     let _ = VOICE.set(voice);
     let _ = BEGUN.set(Instant::now());
@@ -54,6 +54,8 @@ pub(crate) fn begin(voice: Voice) {
 /// The least important events that are shown: ours, and those of libraries.
 fn levels(voice: Voice) -> (LevelFilter, LevelFilter) {
     match voice {
+        // Records of progress have their own form, and nothing comes between them.
+        Voice { json_progress: true, .. } => (LevelFilter::OFF, LevelFilter::OFF),
         Voice { is_quiet: true, .. } => (LevelFilter::WARN, LevelFilter::OFF),
         Voice { verbosity: 0, .. } => (LevelFilter::INFO, LevelFilter::OFF),
         Voice { verbosity: 1, .. } => (LevelFilter::DEBUG, LevelFilter::WARN),
@@ -61,7 +63,7 @@ fn levels(voice: Voice) -> (LevelFilter, LevelFilter) {
     }
 }
 
-/// How the program talks.
+/// How messages are written.
 pub(crate) fn voice() -> Voice {
     VOICE.get().copied().unwrap_or_default()
 }

@@ -6,24 +6,46 @@ use std::{
     path::{Path, PathBuf},
 };
 
+pub(crate) use corniche_pipeline::Existing;
 use corniche_pipeline::file_target;
 use image::RgbaImage;
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, TempPath};
 
 use crate::{exit::ExitCode, failure::Failure, interrupt, names};
 
-/// What to do with a file that exists at the target.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Existing {
-    Keep,
-    Replace,
+/// What to do with a file that exists, as `-O` says.
+pub(crate) fn existing_of(overwrite: bool) -> Existing {
+    if overwrite { Existing::Replace } else { Existing::Keep }
 }
 
-impl Existing {
-    /// As `-O` says.
-    pub(crate) fn of(overwrite: bool) -> Self {
-        if overwrite { Self::Replace } else { Self::Keep }
+/// A place for a file, with the file beside it that is locked while it is written.
+pub(crate) fn claim(
+    named: &Path,
+    existing: Existing,
+    others: &[&Path],
+) -> Result<(PathBuf, NamedTempFile), Failure> {
+    let unusable = |reason: &dyn Display| {
+        Failure::unusable(format!("cannot write {}: {reason}", named.display()))
+    };
+    let target = writable(named)?;
+    if others.iter().any(|other| is_same_file(other, &target)) {
+        return Err(unusable(&"the command uses that file itself; choose another name"));
     }
+    if existing == Existing::Keep && named.symlink_metadata().is_ok() {
+        return Err(exists(named));
+    }
+    let file = corniche_pipeline::unfinished_file(&target).map_err(|error| unusable(&error))?;
+    interrupt::remove_at_end(file.path());
+    Ok((target, file))
+}
+
+/// Puts a finished file in its place, durably; returns its size in bytes.
+pub(crate) fn place(path: TempPath, target: &Path, existing: Existing) -> Result<u64, Failure> {
+    let placed = corniche_pipeline::place_finished(path, target, existing);
+    placed.map_err(|error| match error.kind() {
+        io::ErrorKind::AlreadyExists => exists(target),
+        _ => failed(target, &error),
+    })
 }
 
 /// A file that is written beside its target and takes its place when it is complete.
@@ -42,19 +64,7 @@ impl Output {
         existing: Existing,
         others: &[&Path],
     ) -> Result<Self, Failure> {
-        let unusable = |reason: &dyn Display| {
-            Failure::unusable(format!("cannot write {}: {reason}", target.display()))
-        };
-        let named = target;
-        let target = writable(named)?;
-        if others.iter().any(|other| is_same_file(other, &target)) {
-            return Err(unusable(&"the command uses that file itself; choose another name"));
-        }
-        if existing == Existing::Keep && named.symlink_metadata().is_ok() {
-            return Err(exists(named));
-        }
-        let file = corniche_pipeline::unfinished_file(&target).map_err(|error| unusable(&error))?;
-        interrupt::remove_at_end(file.path());
+        let (target, file) = claim(target, existing, others)?;
         Ok(Self { target, existing, file: BufWriter::new(file) })
     }
 
@@ -95,18 +105,11 @@ impl Complete {
     /// Puts it in its place.
     pub(crate) fn place(self) -> Result<(), Failure> {
         let Self { target, existing, file } = self;
-        let placed = match existing {
-            Existing::Replace => file.persist(&target),
-            Existing::Keep => file.persist_noclobber(&target),
-        };
-        match placed.map_err(|error| error.error) {
-            Ok(_) => {
-                tracing::debug!(path = %target.display(), "file written");
-                Ok(())
-            }
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(exists(&target)),
-            Err(error) => Err(failed(&target, &error)),
-        }
+        // The file is held, and with it its lock, until it is in its place.
+        let (_held, path) = file.into_parts();
+        place(path, &target, existing)?;
+        tracing::debug!(path = %target.display(), "file written");
+        Ok(())
     }
 }
 

@@ -14,7 +14,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     interrupt, jobs,
-    output::{Existing, Output},
+    output::{Output, existing_of},
     settings,
     table::{Digits, Table, bytes},
 };
@@ -25,7 +25,7 @@ pub(crate) fn run(mut args: PlanArgs) -> Result<ExitCode, Failure> {
     let written = match &args.output {
         Some(path) => {
             let inputs: Vec<&Path> = args.work.files().collect();
-            Some(Output::create(path, Existing::of(args.overwrite), &inputs)?)
+            Some(Output::create(path, existing_of(args.overwrite), &inputs)?)
         }
         None => None,
     };

@@ -9,7 +9,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     interrupt, messages,
-    output::{Existing, Output, png},
+    output::{Output, existing_of, png},
     styles,
 };
 
@@ -30,7 +30,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         supersampling: args.supersampling,
         style,
     };
-    let output = Output::create(&args.output, Existing::of(args.overwrite), &used)?;
+    let output = Output::create(&args.output, existing_of(args.overwrite), &used)?;
     refuse_other_formats(&args.output)?;
     request.check()?;
     let package = PackageSource::open(&args.package)?.for_method(request.roads.method);
@@ -58,13 +58,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
 /// Pictures are PNG files. A name with the extension of another format is refused.
 fn refuse_other_formats(path: &Path) -> Result<(), Failure> {
     match path.extension() {
-        Some(extension) if !extension.eq_ignore_ascii_case("png") => {
-            Err(Failure::unusable(format!(
-                "cannot write {}: pictures are PNG; give a name that ends in .png",
-                path.display()
-            )))
-        }
-        _ => Ok(()),
+        Some(extension) if extension.eq_ignore_ascii_case("png") => Ok(()),
+        _ => Err(Failure::unusable(format!(
+            "cannot write {}: pictures are PNG; give a name that ends in .png",
+            path.display()
+        ))),
     }
 }
 

@@ -9,7 +9,8 @@ use std::{
 
 use corniche_geom::Cell;
 use corniche_pipeline::{
-    OpenOptions, PlanOptions, PlanSettings, Resources, RoadSettings, TerrainRecord, TerrainSettings,
+    OpenOptions, PlanOptions, PlanSettings, Polygon, Resources, RoadSettings, TerrainRecord,
+    TerrainSettings,
 };
 use corniche_presets::{
     BoundsChoice, InputFiles, OutputFiles, RoadOptions, TerrainOptions, check_cell, class_filter,
@@ -17,7 +18,7 @@ use corniche_presets::{
 };
 use corniche_roads::ClassFilter;
 
-use crate::{args::WorkArgs, failure::Failure, presets};
+use crate::{args::WorkArgs, exit::ExitCode, failure::Failure, presets};
 
 /// Default tolerance of the simplification of roads, in cells of the level. It equals the default vertical tolerance, a
 /// quarter of the cell, because an error that is too small to be seen in height is too small in plan as well.
@@ -45,8 +46,9 @@ pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles, Failure> {
         dem: mem::take(&mut args.dem),
         terrain: args.terrain_of.take(),
         osm: args.osm.take(),
+        polygon: args.polygon.take(),
     };
-    let InputFiles { dem, terrain, osm } = given.or(config.inputs);
+    let InputFiles { dem, terrain, osm, polygon } = given.or(config.inputs);
     let place = path.display();
     if dem.is_empty() && terrain.is_none() {
         return Err(Failure::unusable(format!(
@@ -58,7 +60,7 @@ pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles, Failure> {
             "{place} has dem and terrain under [inputs]; terrain comes from one of them, so leave the other out"
         )));
     }
-    (args.dem, args.terrain_of, args.osm) = (dem, terrain, osm);
+    (args.dem, args.terrain_of, args.osm, args.polygon) = (dem, terrain, osm, polygon);
     args.terrain = mem::take(&mut args.terrain).or(config.terrain);
     args.roads = mem::take(&mut args.roads).or(config.roads);
     args.resources = mem::take(&mut args.resources).or(config.resources);
@@ -77,13 +79,16 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     let given = [args.attribution, terrain.attribution.clone()];
     let attribution = given.into_iter().find(|credits| !credits.is_empty());
     let osm = args.osm.map(input_name).transpose()?;
-    let bounds_deg = bounds_deg(terrain.bounds, osm.as_ref())?.or(base.terrain.plan.bounds_deg);
+    let cut = Cut {
+        bounds_deg: bounds_deg(terrain.bounds, osm.as_ref())?.or(base.terrain.plan.bounds_deg),
+        polygon: args.polygon.map(polygon).transpose()?,
+    };
     let plan = PlanSettings {
         dem: corniche_pipeline::elevation_names(&args.dem)?,
         terrain_of: args.terrain_of,
         osm,
         attribution: attribution.unwrap_or(base.attribution),
-        terrain: terrain_settings(terrain, base.terrain, bounds_deg, args.force)?,
+        terrain: terrain_settings(terrain, base.terrain, cut, args.force)?,
         roads: road_settings(roads)?,
         generator: generator(),
     };
@@ -105,6 +110,18 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
 /// The name of an input for GDAL and for plans.
 pub(crate) fn input_name(path: PathBuf) -> Result<PathBuf, Failure> {
     corniche_pipeline::input_name(path).map_err(Failure::unusable)
+}
+
+/// Reads a polygon.
+pub(crate) fn polygon(path: PathBuf) -> Result<Polygon, Failure> {
+    let read = Polygon::read(&input_name(path)?);
+    read.map_err(|error| Failure::new(ExitCode::Unusable, error))
+}
+
+/// Which part of the data is wanted.
+struct Cut {
+    bounds_deg: Option<[f64; 4]>,
+    polygon: Option<Polygon>,
 }
 
 /// Terrain settings where none is given.
@@ -137,7 +154,7 @@ fn bounds_deg(
 fn terrain_settings(
     options: TerrainOptions,
     base: TerrainSettings,
-    bounds_deg: Option<[f64; 4]>,
+    cut: Cut,
     force: bool,
 ) -> Result<TerrainSettings, Failure> {
     check_nodata(&options.nodata)?;
@@ -162,7 +179,8 @@ fn terrain_settings(
             cell_every: options.cell_every.or(base.plan.cell_every),
             scale_latitude_deg: options.scale_latitude.or(base.plan.scale_latitude_deg),
             fill_voids: options.fill_voids.unwrap_or(base.plan.fill_voids),
-            bounds_deg,
+            bounds_deg: cut.bounds_deg,
+            polygon: cut.polygon,
         },
         height_range_m: options.height_range.or(base.height_range_m),
         allow_fine_cell: force,

@@ -18,7 +18,7 @@ use crate::{
     info::or_dash,
     presets,
     progress::Progress,
-    settings::{input_name, threads},
+    settings::{input_name, polygon, threads},
     table::{Digits, Table},
 };
 
@@ -29,6 +29,7 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
         package,
         dem: corniche_pipeline::elevation_names(&dem)?,
         osm,
+        polygon: args.polygon.clone().map(polygon).transpose()?,
         threads: threads(args.threads),
     };
     let report = corniche_pipeline::verify(&settings, &Progress::new())?;

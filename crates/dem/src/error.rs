@@ -124,11 +124,11 @@ pub enum DemError {
     )]
     MixedVertical { first: PathBuf, first_says: String, other: PathBuf, other_says: String },
     #[error(
-        "heights of {path:?} cannot be carried from {from} to {to}: there is no geoid grid {grids}; put it there, or install one that PROJ knows (projsync, or the package proj-data) and name its vertical CRS, or leave out --vertical-crs and give --vertical-shift"
+        "heights of {path:?} cannot be carried from {from} to {to}: there is no geoid grid {grids}; put it there, or get one that PROJ knows with projsync (Debian: package proj-bin) and name its vertical CRS, or leave out --vertical-crs and give --vertical-shift"
     )]
     NoGeoidGrid { path: PathBuf, from: String, to: String, grids: String },
     #[error(
-        "heights of {path:?} cannot be carried from {from} to {to}: PROJ has no exact operation from the one to the other here; a geoid grid may be missing ({grids}): install it (projsync, or the package proj-data), or leave out --vertical-crs and give --vertical-shift"
+        "heights of {path:?} cannot be carried from {from} to {to}: PROJ has no exact operation from the one to the other here; a geoid grid may be missing ({grids}): get it with projsync (Debian: package proj-bin), or leave out --vertical-crs and give --vertical-shift"
     )]
     VerticalOperation {
         path: PathBuf,
@@ -157,16 +157,18 @@ pub enum DemError {
     Transform { from: String, to: String, source: Box<LibraryError> },
     #[error("the DEM's centre has no position in {crs}; choose another --crs")]
     OutsideCrs { crs: String },
+    #[error(transparent)]
+    Polygon(#[from] crate::PolygonError),
     #[error("--bounds {bounds} has no position in {crs}; choose another --crs or other bounds")]
     BoundsOutsideCrs { bounds: String, crs: String },
     #[error(
-        "--bounds {bounds} holds no cell of the elevation data, which reach from {west:.4} to {east:.4} degrees east and from {south:.4} to {north:.4} degrees north; give west,south,east,north in degrees"
+        "{asked} holds no cell of the elevation data, which reach from {west:.4} to {east:.4} degrees east and from {south:.4} to {north:.4} degrees north; give a part of these data (--bounds takes west,south,east,north in degrees)"
     )]
-    BoundsBesideData { bounds: String, west: f64, south: f64, east: f64, north: f64 },
+    BoundsBesideData { asked: String, west: f64, south: f64, east: f64, north: f64 },
     #[error(
-        "--bounds {bounds} lies at both ends of elevation data that go around the earth, and a package holds one region; make two packages, or give files that are continuous there"
+        "{asked} lies at both ends of elevation data that go around the earth, and a package holds one region; make two packages, or give files that are continuous there"
     )]
-    BoundsAtBothEnds { bounds: String },
+    BoundsAtBothEnds { asked: String },
     #[error("{path:?} has no position in {crs}; choose another --crs, or leave the file out")]
     FileOutsideCrs { path: PathBuf, crs: String },
     #[error(

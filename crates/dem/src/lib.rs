@@ -19,11 +19,13 @@ mod crs;
 mod files;
 mod mosaics;
 mod plan;
+mod polygons;
 mod reading;
 
 mod error;
 mod file_names;
 mod library_error;
+mod polygon_error;
 
 pub use audit::{Audit, AuditBlock, AuditPart, Auditor, SURFACE_RANGE_M};
 pub use crs::projection::DemProjection;
@@ -40,5 +42,7 @@ pub use library_error::{LibraryError, forget, quiet};
 pub use plan::grid_plan::{Clip, GridPlan, PlanOptions, PlanScale, Resampling};
 pub use plan::planning::libraries;
 pub use plan::recorded_grid::RecordedGrid;
+pub use polygon_error::PolygonError;
+pub use polygons::polygon::Polygon;
 pub use reading::reader::{DemWindow, Reader};
 pub use reading::samples::{SampleArea, SampleBlock};

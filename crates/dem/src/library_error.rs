@@ -1,12 +1,14 @@
 //! What GDAL and PROJ say when something fails, as a text for users.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::sync::Once;
 
-use gdal::errors::GdalError;
+use gdal::errors::{CplErrType, GdalError};
 
 thread_local! {
     static LAST_WORDS: RefCell<String> = const { RefCell::new(String::new()) };
+    /// Whether it was more than a warning.
+    static HAS_FAILED: Cell<bool> = const { Cell::new(false) };
 }
 
 /// The reason that GDAL or PROJ gave for a failure, in its own words.
@@ -53,15 +55,31 @@ impl From<GdalError> for Box<LibraryError> {
 /// Keeps GDAL and PROJ from writing to standard error: what they say comes back in errors.
 pub fn quiet() {
     static QUIET: Once = Once::new();
-    QUIET.call_once(|| gdal::config::set_error_handler(|_, _, words| hear(words)));
+    QUIET.call_once(|| gdal::config::set_error_handler(|kind, _, words| hear(kind, words)));
 }
 
 /// Remembers what was said on this thread, in the place of GDAL's printing it.
-fn hear(words: &str) {
+fn hear(kind: CplErrType, words: &str) {
     LAST_WORDS.with_borrow_mut(|last| words.clone_into(last));
+    if matches!(kind, CplErrType::Failure | CplErrType::Fatal) {
+        HAS_FAILED.set(true);
+    }
 }
 
 /// Forgets what was said, so that the next failure is not explained by an earlier one.
 pub fn forget() {
     LAST_WORDS.with_borrow_mut(String::clear);
+    HAS_FAILED.set(false);
+}
+
+/// What was said last on this thread, if anything was.
+pub(crate) fn last_words() -> Option<String> {
+    let words = LAST_WORDS.with_borrow(|words| LibraryError::shortened(words).words);
+    (!words.is_empty()).then_some(words)
+}
+
+/// The failure that was told on this thread, for calls that return none.
+pub(crate) fn failure() -> Option<Box<LibraryError>> {
+    let said = || LAST_WORDS.with_borrow(|words| LibraryError::shortened(words));
+    HAS_FAILED.get().then(|| Box::new(said()))
 }

@@ -72,19 +72,19 @@ pub fn clip_closed(line: &Polyline, bounds: &LatticeBounds) -> Vec<Polyline> {
 
 /// The parts that are being made.
 #[derive(Default)]
-struct Parts {
-    ended: Vec<ClippedPart>,
+pub(crate) struct Parts {
+    pub(crate) ended: Vec<ClippedPart>,
     current: Vec<LatticePoint>,
     /// For each segment of `current`, the segment of the line that it is a piece of.
     segments: Vec<usize>,
     /// The segment of the line that is being clipped.
-    segment: usize,
+    pub(crate) segment: usize,
     /// Whether the last segment's end was kept, so that the next one goes on from it.
-    goes_on: bool,
+    pub(crate) goes_on: bool,
 }
 
 impl Parts {
-    fn keep(&mut self, inside: Inside) {
+    pub(crate) fn keep(&mut self, inside: Inside) {
         if !(self.goes_on && inside.whole_start) {
             self.end();
         }
@@ -100,7 +100,7 @@ impl Parts {
         self.goes_on = inside.whole_end;
     }
 
-    fn end(&mut self) {
+    pub(crate) fn end(&mut self) {
         let segments = std::mem::take(&mut self.segments);
         let line = Polyline::new(std::mem::take(&mut self.current)).ok();
         self.ended.extend(line.map(|line| ClippedPart { line, segments }));
@@ -109,12 +109,12 @@ impl Parts {
 
 /// What of a segment lies inside.
 #[derive(Clone, Copy)]
-struct Inside {
-    ends: [LatticePoint; 2],
+pub(crate) struct Inside {
+    pub(crate) ends: [LatticePoint; 2],
     /// The first end is the segment's own.
-    whole_start: bool,
+    pub(crate) whole_start: bool,
     /// The second end is the segment's own.
-    whole_end: bool,
+    pub(crate) whole_end: bool,
 }
 
 /// A segment on the line of a border.

@@ -35,25 +35,26 @@ impl DegreeBounds {
         [east - 360.0 * ((east - before[0]) / 360.0).round(), lat]
     }
 
-    /// What of the line between two positions, as [`Self::relative`] gives them, lies inside: from which share of it to which.
-    ///
-    /// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*.
-    pub(crate) fn inside(&self, from: [f64; 2], to: [f64; 2]) -> Option<[f64; 2]> {
-        let (mut first, mut last) = (0.0_f64, 1.0_f64);
-        let limits = [[-self.half_width, self.half_width], [self.south, self.north]];
-        for (axis, [low, high]) in limits.into_iter().enumerate() {
-            let along = to[axis] - from[axis];
-            for (along, room) in [(-along, from[axis] - low), (along, high - from[axis])] {
-                if along > 0.0 {
-                    last = last.min(room / along);
-                } else if along < 0.0 {
-                    first = first.max(room / along);
-                } else if room < 0.0 {
-                    return None;
-                }
-            }
+    /// What of the line between two positions (longitude and latitude) lies inside: from which share of it to which, in its order. There
+    /// are two parts where the line leaves at one side and comes in at the other one, behind which the rectangle begins again.
+    pub(crate) fn inside(&self, from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
+        let from = self.relative(from);
+        let to = self.relative_after(to, from);
+        let across = [self.south, self.north];
+        // All around the earth there is no side in the west and none in the east.
+        if self.half_width >= 180.0 {
+            let lengthwise = [f64::NEG_INFINITY, f64::INFINITY];
+            return clip(from, to, [lengthwise, across]).into_iter().collect();
         }
-        (first <= last).then_some([first, last])
+        let mut parts: Vec<[f64; 2]> = [-360.0, 0.0, 360.0]
+            .into_iter()
+            .filter_map(|turn| {
+                let lengthwise = [turn - self.half_width, turn + self.half_width];
+                clip(from, to, [lengthwise, across])
+            })
+            .collect();
+        parts.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+        parts
     }
 
     /// Whether a line through these positions, with room on all sides, might reach inside: for leaving out what cannot.
@@ -81,6 +82,26 @@ impl DegreeBounds {
         let across = low[1] - room[1] <= self.north && high[1] + room[1] >= self.south;
         across && [-360.0, 0.0, 360.0].into_iter().any(meets)
     }
+}
+
+/// What of a line lies between limits, low and high along both axes, as shares of it; nothing where that is one point.
+///
+/// Source: Liang & Barsky 1984, *A New Concept and Method for Line Clipping*.
+fn clip(from: [f64; 2], to: [f64; 2], limits: [[f64; 2]; 2]) -> Option<[f64; 2]> {
+    let (mut first, mut last) = (0.0_f64, 1.0_f64);
+    for (axis, [low, high]) in limits.into_iter().enumerate() {
+        let along = to[axis] - from[axis];
+        for (along, room) in [(-along, from[axis] - low), (along, high - from[axis])] {
+            if along > 0.0 {
+                last = last.min(room / along);
+            } else if along < 0.0 {
+                first = first.max(room / along);
+            } else if room < 0.0 {
+                return None;
+            }
+        }
+    }
+    (first < last).then_some([first, last])
 }
 
 #[cfg(test)]

@@ -21,16 +21,12 @@ fn what_is_no_rectangle_on_earth_is_refused() {
 #[test]
 fn a_line_is_cut_where_it_crosses_the_rectangle() {
     let bounds = bounds([9.0, 47.0, 10.0, 48.0]);
-    let inside = |from: [f64; 2], to: [f64; 2]| {
-        let from = bounds.relative(from);
-        bounds.inside(from, bounds.relative_after(to, from))
-    };
-    assert_eq!(inside([9.2, 47.2], [9.4, 47.6]), Some([0.0, 1.0]));
-    assert_eq!(inside([8.5, 47.5], [9.5, 47.5]), Some([0.5, 1.0]));
-    assert_eq!(inside([8.5, 47.5], [10.5, 47.5]), Some([0.25, 0.75]));
-    assert_eq!(inside([8.0, 47.5], [8.9, 47.5]), None);
-    assert_eq!(inside([9.5, 48.5], [9.5, 46.5]), Some([0.25, 0.75]));
-    assert_eq!(inside([9.5, 48.1], [9.6, 48.1]), None, "parallel to a side, beyond it");
+    assert_eq!(bounds.inside([9.2, 47.2], [9.4, 47.6]), [[0.0, 1.0]]);
+    assert_eq!(bounds.inside([8.5, 47.5], [9.5, 47.5]), [[0.5, 1.0]]);
+    assert_eq!(bounds.inside([8.5, 47.5], [10.5, 47.5]), [[0.25, 0.75]]);
+    assert!(bounds.inside([8.0, 47.5], [8.9, 47.5]).is_empty());
+    assert_eq!(bounds.inside([9.5, 48.5], [9.5, 46.5]), [[0.25, 0.75]]);
+    assert!(bounds.inside([9.5, 48.1], [9.6, 48.1]).is_empty(), "parallel to a side, beyond it");
 }
 
 /// West beyond east crosses 180°; the same line is cut at the same shares whichever image of its longitudes it has.
@@ -38,13 +34,31 @@ fn a_line_is_cut_where_it_crosses_the_rectangle() {
 fn a_rectangle_may_cross_the_antimeridian() {
     let bounds = bounds([179.0, 51.0, -179.0, 53.0]);
     for turn in [-360.0, 0.0, 360.0] {
-        let from = bounds.relative([178.0 + turn, 52.0]);
-        let to = bounds.relative_after([-178.0, 52.0], from);
-        let [first, last] = bounds.inside(from, to).unwrap();
+        let [[first, last]] = bounds.inside([178.0 + turn, 52.0], [-178.0, 52.0])[..] else {
+            panic!()
+        };
         assert!((first - 0.25).abs() < 1e-12 && (last - 0.75).abs() < 1e-12, "{first} {last}");
     }
-    let from = bounds.relative([0.0, 52.0]);
-    assert_eq!(bounds.inside(from, bounds.relative_after([1.0, 52.0], from)), None);
+    assert!(bounds.inside([0.0, 52.0], [1.0, 52.0]).is_empty());
+}
+
+/// A rectangle all around the earth has no sides in the west and east, wherever it begins; in one that is nearly so a line across the
+/// gap has two parts.
+#[test]
+fn a_rectangle_may_go_around_the_earth() {
+    for around in [[-180.0, -90.0, 180.0, 90.0], [-180.0, 0.0, 180.0, 80.0]] {
+        let bounds = bounds(around);
+        for turn in [-360.0, 0.0, 360.0] {
+            assert_eq!(
+                bounds.inside([179.5 + turn, 52.0], [-179.5, 52.5]),
+                [[0.0, 1.0]],
+                "{around:?}"
+            );
+        }
+    }
+    let nearly = bounds([-179.0, 51.0, 179.0, 53.0]);
+    assert_eq!(nearly.inside([178.0, 52.0], [-178.0, 52.0]), [[0.0, 0.25], [0.75, 1.0]]);
+    assert_eq!(nearly.inside([-178.0, 52.0], [178.0, 52.0]), [[0.0, 0.25], [0.75, 1.0]]);
 }
 
 #[test]

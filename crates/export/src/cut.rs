@@ -20,28 +20,27 @@ pub(crate) fn cut_at_bounds(
     let mut goes_on = false;
     let mut before: Option<[f64; 2]> = None;
     for (at, pair) in piece.vertices.windows(2).enumerate() {
-        let from = before.unwrap_or_else(|| bounds.relative(wgs84(pair[0].at)));
-        let to = bounds.relative_after(wgs84(pair[1].at), from);
+        let from = before.unwrap_or_else(|| wgs84(pair[0].at));
+        let to = wgs84(pair[1].at);
         before = Some(to);
-        let Some([first, last]) = bounds.inside(from, to).filter(|[first, last]| first < last)
-        else {
-            goes_on = false;
-            continue;
-        };
-        let [start, end] = [first, last].map(|share| between(pair[0], pair[1], share));
-        match cuts.last_mut().filter(|_| goes_on && first <= 0.0) {
-            Some(cut) => cut.vertices.push(end),
-            None => cuts.push(Piece {
-                key: PieceKey { cut: cuts.len() as u32, ..piece.key },
-                vertices: vec![start, end],
-                goes_on: [at == 0 && first <= 0.0 && first_end, false],
-                ..piece.clone()
-            }),
+        let parts = bounds.inside(from, to);
+        for &[first, last] in &parts {
+            let [start, end] = [first, last].map(|share| between(pair[0], pair[1], share));
+            match cuts.last_mut().filter(|_| goes_on && first <= 0.0) {
+                Some(cut) => cut.vertices.push(end),
+                None => cuts.push(Piece {
+                    key: PieceKey { cut: cuts.len() as u32, ..piece.key },
+                    vertices: vec![start, end],
+                    goes_on: [at == 0 && first <= 0.0 && first_end, false],
+                    ..piece.clone()
+                }),
+            }
+            goes_on = last >= 1.0;
+            if let Some(cut) = cuts.last_mut() {
+                cut.goes_on[1] = at + 1 == last_vertex && goes_on && last_end;
+            }
         }
-        goes_on = last >= 1.0;
-        if let Some(cut) = cuts.last_mut() {
-            cut.goes_on[1] = at + 1 == last_vertex && goes_on && last_end;
-        }
+        goes_on &= !parts.is_empty();
     }
     cuts
 }

@@ -107,3 +107,20 @@ fn a_vertex_on_the_antimeridian_is_there_once() {
     let line = vec![[9.0, 47.0, 1.0], [10.0, 47.0, 2.0]];
     assert_eq!(cut_at_antimeridian(line.clone()), [line]);
 }
+
+/// A line that runs on across 180° and goes around the earth stays whole in a rectangle all around it.
+#[test]
+fn all_around_the_earth_nothing_is_cut() {
+    for around in [
+        vec![178.0, 179.5, -179.5, -178.0, -177.0],
+        vec![178.0, 181.0, 300.0, 365.0],
+        vec![0.0, 100.0, 200.0, 300.0, 400.0],
+    ] {
+        let line = piece(&around);
+        assert_eq!(cut(&line, -180.0, 180.0), std::slice::from_ref(&line), "{around:?}");
+    }
+    // Nearly: what lies in the gap of two degrees is left out.
+    let found = cut(&piece(&[178.0, 182.0, 183.0]), -179.0, 179.0);
+    let ends: Vec<_> = found.iter().map(longitudes).collect();
+    assert_eq!(ends, [vec![178.0, 179.0], vec![181.0, 182.0, 183.0]]);
+}

@@ -35,8 +35,8 @@ pub enum ExportError {
     )]
     UnknownDatum { datum: String },
     #[error(
-        "heights of {datum:?} cannot be carried to the ellipsoid of WGS84: a geoid grid may be missing; install it (projsync, or \
-         the package proj-data), or keep the heights as they are with --heights as-is"
+        "heights of {datum:?} cannot be carried to the ellipsoid of WGS84: a geoid grid may be missing; get it with projsync \
+         (Debian: package proj-bin), or keep the heights as they are with --heights as-is"
     )]
     Heights { datum: String, source: Box<DemError> },
     #[error(
@@ -57,7 +57,7 @@ pub enum ExportError {
     #[error("cannot write {path:?} (disk full?)")]
     Write { path: PathBuf, source: Box<LibraryError> },
     #[error(
-        "{path:?} is not whole (disk full?): {written} features were written and {found} can be read"
+        "{path:?} is not whole (disk full?): {written} features were written, {found} can be read"
     )]
     NotWhole { path: PathBuf, written: u64, found: u64 },
     #[error("cannot read {path:?} again")]

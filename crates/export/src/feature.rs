@@ -36,6 +36,7 @@ fields! { road:
     "way_id", Integer64, "", "id of the way in OpenStreetMap", Value::Integer(road.way_id);
     "class", Integer, "", "functional road class, 0 (motorway) to 8 (other road)",
         Value::Integer(road.class.number().into());
+    "highway", Text, "", "OSM's `highway`", text(&road.attributes.highway);
     "form", Text, "", "`ordinary`, `dual_carriageway`, `link` or `roundabout`",
         Value::Text(form(road.attributes.form).to_owned());
     "name", Text, "", "OSM's `name`; null without", text(&road.attributes.name);
@@ -46,6 +47,13 @@ fields! { road:
     "oneway", Text, "", "`yes` (along the line), `-1` (against it) or `no`",
         Value::Text(oneway(road.attributes.oneway).to_owned());
     "surface", Text, "", "OSM's `surface`; null without", text(&road.attributes.surface);
+    "lanes", Integer, "", "OSM's `lanes`, in both directions together; null without",
+        road.attributes.lanes.map_or(Value::Null, |lanes| Value::Integer(lanes.get().into()));
+    "width", Real, "m", "OSM's `width`; null without", road.attributes.width_m().map_or(Value::Null, Value::Real);
+    "maxspeed", Text, "", "OSM's `maxspeed`: a number is km/h, `30 mph` miles an hour, else as tagged; null without",
+        text(&road.attributes.max_speed);
+    "sac_scale", Text, "", "OSM's `sac_scale`; null without", text(&road.attributes.sac_scale);
+    "tracktype", Text, "", "OSM's `tracktype`; null without", text(&road.attributes.tracktype);
     "length_2d_m", Real, "m", "true length in plan, on the ellipsoid of WGS84",
         Value::Real(to_micro(road.measures.length_2d_m));
     "length_3d_m", Real, "m", "true length with the ground's ups and downs",

@@ -11,12 +11,12 @@ use crate::{
     error::ExportError,
     join::lines,
     measures::Measures,
+    observer::{Observer, Stage, stop_if_asked},
     piece::{Piece, SortedPiece, Vertex},
     places::Places,
     read,
     request::Coordinates,
     scratch::FileScratch,
-    watch::{Watch, Work, stop_if_asked},
     ways::Ways,
 };
 
@@ -44,7 +44,7 @@ pub fn growth_by_way<E: From<ExportError>>(
     package: &FilePackage,
     folder: &Path,
     memory_bytes: u64,
-    watch: &dyn Watch,
+    observer: &dyn Observer,
     mut each: impl FnMut(&WayGrowth) -> Result<(), E>,
 ) -> Result<(), E> {
     let manifest = package.manifest();
@@ -58,8 +58,8 @@ pub fn growth_by_way<E: From<ExportError>>(
     let tiles = package.tile_ids().map_err(ExportError::from)?;
     let mut count = 0;
     for (done, &id) in tiles.iter().enumerate() {
-        stop_if_asked(watch)?;
-        watch.done(Work::Tiles, done as u64, tiles.len() as u64);
+        stop_if_asked(observer)?;
+        observer.done(Stage::Tiles, done as u64, tiles.len() as u64);
         for piece in read::pieces(package, id, &classes)? {
             count += 1;
             sorter.push(SortedPiece(piece)).map_err(sort)?;
@@ -69,14 +69,14 @@ pub fn growth_by_way<E: From<ExportError>>(
     let mut ways = Ways::new(sorter.finish().map_err(sort)?);
     let mut done = 0;
     while let Some(pieces) = ways.next_way().map_err(sort)? {
-        stop_if_asked(watch)?;
-        watch.done(Work::Pieces, done, count);
+        stop_if_asked(observer)?;
+        observer.done(Stage::Pieces, done, count);
         done += pieces.len() as u64;
         if let Some(way) = growth_of(pieces, manifest, &places)? {
             each(&way)?;
         }
     }
-    watch.done(Work::Pieces, count, count);
+    observer.done(Stage::Pieces, count, count);
     Ok(())
 }
 

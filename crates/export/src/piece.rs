@@ -1,5 +1,7 @@
 //! What one tile holds of a way, and how it is sorted outside memory.
 
+use std::num::{NonZeroU8, NonZeroU32};
+
 use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
 use corniche_store::SortRecord;
 
@@ -69,8 +71,21 @@ impl SortRecord for SortedPiece {
     /// Numbers in little-endian order; a text has its length before it; vertices come last.
     fn encode(&self, bytes: &mut Vec<u8>) {
         let Piece { key, class, attributes, vertices, goes_on } = &self.0;
-        let RoadAttributes { form, structure, layer, oneway, name, reference, surface } =
-            attributes;
+        let RoadAttributes {
+            form,
+            structure,
+            layer,
+            oneway,
+            name,
+            reference,
+            surface,
+            highway,
+            lanes,
+            width_mm,
+            max_speed,
+            sac_scale,
+            tracktype,
+        } = attributes;
         bytes.extend(key.way_id.to_le_bytes());
         bytes.extend(key.tile.to_le_bytes());
         bytes.extend(key.part.to_le_bytes());
@@ -83,8 +98,10 @@ impl SortRecord for SortedPiece {
             *oneway as u8,
             u8::from(goes_on[0]),
             u8::from(goes_on[1]),
+            lanes.map_or(0, NonZeroU8::get),
         ]);
-        for text in [name, reference, surface] {
+        bytes.extend(width_mm.map_or(0, NonZeroU32::get).to_le_bytes());
+        for text in [name, reference, surface, highway, max_speed, sac_scale, tracktype] {
             bytes.extend((text.len() as u64).to_le_bytes());
             bytes.extend(text.as_bytes());
         }
@@ -104,7 +121,8 @@ impl SortRecord for SortedPiece {
             part: u32::from_le_bytes(array(bytes)?),
             cut: u32::from_le_bytes(array(bytes)?),
         };
-        let [class, form, structure, layer, oneway, first, last] = array(bytes)?;
+        let [class, form, structure, layer, oneway, first, last, lanes] = array(bytes)?;
+        let width_mm = u32::from_le_bytes(array(bytes)?);
         let attributes = RoadAttributes {
             form: *Form::ALL.get(usize::from(form))?,
             structure: *Structure::ALL.get(usize::from(structure))?,
@@ -113,6 +131,12 @@ impl SortRecord for SortedPiece {
             name: text(bytes)?,
             reference: text(bytes)?,
             surface: text(bytes)?,
+            highway: text(bytes)?,
+            lanes: NonZeroU8::new(lanes),
+            width_mm: NonZeroU32::new(width_mm),
+            max_speed: text(bytes)?,
+            sac_scale: text(bytes)?,
+            tracktype: text(bytes)?,
         };
         let mut vertices = Vec::with_capacity(bytes.len() / VERTEX_BYTES);
         while !bytes.is_empty() {
@@ -125,9 +149,8 @@ impl SortRecord for SortedPiece {
     }
 
     fn extra_bytes(&self) -> usize {
-        let Piece { attributes: RoadAttributes { name, reference, surface, .. }, vertices, .. } =
-            &self.0;
-        vertices.capacity() * size_of::<Vertex>() + name.len() + reference.len() + surface.len()
+        let Piece { attributes, vertices, .. } = &self.0;
+        vertices.capacity() * size_of::<Vertex>() + attributes.text_bytes()
     }
 }
 

@@ -14,6 +14,12 @@ fn piece(way_id: i64, tile: u64, part: u32) -> Piece {
             name: "Große Straße".to_owned(),
             reference: String::new(),
             surface: "asphalt".to_owned(),
+            highway: "track".to_owned(),
+            lanes: NonZeroU8::new(2),
+            width_mm: NonZeroU32::new(3500),
+            max_speed: "30 mph".to_owned(),
+            sac_scale: "hiking".to_owned(),
+            tracktype: "grade2".to_owned(),
         },
         vertices: vec![
             Vertex { at: [-1.0, 2.5], z_m: 1e3, is_source: false },

@@ -11,13 +11,13 @@ use crate::{
     feature::{Road, road_fields, road_values},
     join::{Line, lines},
     measures::Measures,
+    observer::{Observer, Stage, stop_if_asked},
     piece::{Piece, SortedPiece},
     places::Places,
     read,
     request::{Coordinates, RoadsRequest},
     scratch::FileScratch,
     vector::{Layer, Record, VectorFile, VectorFormat},
-    watch::{Watch, Work, stop_if_asked},
     ways::Ways,
 };
 
@@ -48,7 +48,7 @@ pub fn export_roads(
     package: &FilePackage,
     request: &RoadsRequest,
     path: &Path,
-    watch: &dyn Watch,
+    observer: &dyn Observer,
 ) -> Result<ExportSummary, ExportError> {
     let manifest = package.manifest();
     if manifest.inputs.iter().all(|input| input.kind != "osm") {
@@ -72,8 +72,8 @@ pub fn export_roads(
     let tiles = read::tiles(package, level, request.bounds.as_ref())?;
     let mut count = 0;
     for (done, &id) in tiles.iter().enumerate() {
-        stop_if_asked(watch)?;
-        watch.done(Work::Tiles, done as u64, tiles.len() as u64);
+        stop_if_asked(observer)?;
+        observer.done(Stage::Tiles, done as u64, tiles.len() as u64);
         for piece in read::pieces(package, id, &request.classes)? {
             let kept = match &request.bounds {
                 Some(bounds) => cut_at_bounds(&piece, bounds, &|at| places.wgs84(at)),
@@ -102,14 +102,14 @@ pub fn export_roads(
     let mut ways = Ways::new(sorter.finish().map_err(sort)?);
     let mut done = 0;
     while let Some(pieces) = ways.next_way().map_err(sort)? {
-        stop_if_asked(watch)?;
-        watch.done(Work::Pieces, done, count);
+        stop_if_asked(observer)?;
+        observer.done(Stage::Pieces, done, count);
         done += pieces.len() as u64;
         writing.way(&pieces)?;
     }
     let Writing { file, summary, .. } = writing;
     file.finish()?;
-    watch.done(Work::Pieces, count, count);
+    observer.done(Stage::Pieces, count, count);
     Ok(summary)
 }
 

@@ -9,7 +9,7 @@ use std::{
 };
 
 use corniche_export::{
-    Coordinates, ExportError, RoadsRequest, Unwatched, VectorFormat, Watch, WayGrowth, Work,
+    Coordinates, ExportError, Observer, RoadsRequest, Silent, Stage, VectorFormat, WayGrowth,
     export_roads, growth_by_way, road_fields,
 };
 use corniche_roads::FunctionalRoadClass;
@@ -51,7 +51,7 @@ fn memory_does_not_change_the_file() {
     let package = FilePackage::open(&small_package(folder.path())).unwrap();
     let [one, two] = [500, 1 << 30].map(|memory_bytes| {
         let path = folder.path().join(format!("{memory_bytes}.csv"));
-        let summary = export_roads(&package, &request(memory_bytes), &path, &Unwatched).unwrap();
+        let summary = export_roads(&package, &request(memory_bytes), &path, &Silent).unwrap();
         assert!(summary.features > 2 && summary.ways == 1, "{summary:?}");
         fs::read(path).unwrap()
     });
@@ -65,7 +65,7 @@ fn each_way_is_told_of_once_with_all_levels() {
     let package = FilePackage::open(&small_package(folder.path())).unwrap();
     let [one, two] = [500, 1 << 30].map(|memory_bytes| {
         let mut ways: Vec<WayGrowth> = Vec::new();
-        growth_by_way(&package, folder.path(), memory_bytes, &Unwatched, |way| {
+        growth_by_way(&package, folder.path(), memory_bytes, &Silent, |way| {
             ways.push(way.clone());
             Ok::<(), ExportError>(())
         })
@@ -84,10 +84,10 @@ fn each_way_is_told_of_once_with_all_levels() {
     assert_eq!((0..by_level.len()).map(told).collect::<Vec<u64>>(), by_level);
     assert!(by_level.iter().all(|&vertices| vertices > 0), "{by_level:?}");
     let refused =
-        growth_by_way(&package, folder.path(), 500, &Unwatched, |_| Err(ExportError::Interrupted));
+        growth_by_way(&package, folder.path(), 500, &Silent, |_| Err(ExportError::Interrupted));
     assert!(matches!(refused, Err(ExportError::Interrupted)), "what the receiver says ends it");
     let nowhere = folder.path().join("nowhere");
-    let refused = growth_by_way(&package, &nowhere, 500, &Unwatched, |_| Ok::<(), ExportError>(()));
+    let refused = growth_by_way(&package, &nowhere, 500, &Silent, |_| Ok::<(), ExportError>(()));
     assert!(matches!(refused, Err(ExportError::Sort { .. })), "{refused:?}");
 }
 
@@ -96,8 +96,8 @@ struct Impatient {
     asks: Cell<u32>,
 }
 
-impl Watch for Impatient {
-    fn done(&self, _: Work, _: u64, _: u64) {}
+impl Observer for Impatient {
+    fn done(&self, _: Stage, _: u64, _: u64) {}
 
     fn should_stop(&self) -> bool {
         let left = self.asks.get();
@@ -136,7 +136,7 @@ fn a_damaged_tile_is_named() {
     fs::write(&path, bytes).unwrap();
     let package = FilePackage::open(&path).unwrap();
     let target = folder.path().join("a.csv");
-    let error = export_roads(&package, &request(1 << 20), &target, &Unwatched).unwrap_err();
+    let error = export_roads(&package, &request(1 << 20), &target, &Silent).unwrap_err();
     assert!(error.is_unusable_input() && error.to_string().contains("2/"), "{error}");
 }
 

@@ -1,16 +1,21 @@
 //! A road's nodes and what it is, as bytes: a fifth of what the same takes as lists and texts.
 //!
 //! ```text
-//!  │ how many nodes │ their ids, as differences │ class form structure oneway layer │ name │ ref │ surface │
+//!  │ how many nodes │ their ids, as differences │ class form structure oneway layer │ width │ lanes │ texts │
 //! ```
+//! The texts are name, ref, surface, highway, maxspeed, `sac_scale`, tracktype.
 //! A way that is left out has a mark in place of the class, the reason, and its `highway` value:
 //!
 //! ```text
 //!  │ how many nodes │ their ids, as differences │ 255 reason │ highway value │
 //! ```
-//! Counts and lengths are varints, differences zigzag varints, the five others a byte each.
+//! Counts and lengths are varints, differences zigzag varints; the width is a varint of millimetres, 0 for none; the six
+//! others are a byte each.
 
-use std::io;
+use std::{
+    io,
+    num::{NonZeroU8, NonZeroU32},
+};
 
 use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
 
@@ -26,13 +31,28 @@ pub(crate) fn way_bytes(
     class: FunctionalRoadClass,
     attributes: &RoadAttributes,
 ) -> Box<[u8]> {
-    let RoadAttributes { form, structure, layer, oneway, name, reference, surface } = attributes;
-    let texts = [name, reference, surface];
-    let text_bytes: usize = texts.iter().map(|text| text.len() + 2).sum();
-    let mut bytes = Vec::with_capacity(2 * node_ids.len() + text_bytes + 16);
+    let RoadAttributes {
+        form,
+        structure,
+        layer,
+        oneway,
+        name,
+        reference,
+        surface,
+        highway,
+        lanes,
+        width_mm,
+        max_speed,
+        sac_scale,
+        tracktype,
+    } = attributes;
+    let texts = [name, reference, surface, highway, max_speed, sac_scale, tracktype];
+    let mut bytes = Vec::with_capacity(2 * node_ids.len() + attributes.text_bytes() + 32);
     push_node_ids(&mut bytes, node_ids);
     bytes.extend([class.number(), *form as u8, *structure as u8, *oneway as u8]);
     bytes.push(layer.cast_unsigned());
+    push_varint(&mut bytes, width_mm.map_or(0, NonZeroU32::get).into());
+    bytes.push(lanes.map_or(0, NonZeroU8::get));
     for text in texts {
         push_varint(&mut bytes, text.len() as u64);
         bytes.extend(text.as_bytes());
@@ -100,6 +120,9 @@ pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
     }
     let (&[class, form, structure, oneway, layer], rest) = bytes.split_first_chunk::<5>()?;
     *bytes = rest;
+    let width_mm = u32::try_from(varint(bytes).ok()?).ok()?;
+    let (&lanes, rest) = bytes.split_first()?;
+    *bytes = rest;
     let road = RoadAttributes {
         form: *Form::ALL.get(usize::from(form))?,
         structure: *Structure::ALL.get(usize::from(structure))?,
@@ -108,6 +131,12 @@ pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
         name: take_text(bytes)?,
         reference: take_text(bytes)?,
         surface: take_text(bytes)?,
+        highway: take_text(bytes)?,
+        lanes: NonZeroU8::new(lanes),
+        width_mm: NonZeroU32::new(width_mm),
+        max_speed: take_text(bytes)?,
+        sac_scale: take_text(bytes)?,
+        tracktype: take_text(bytes)?,
     };
     Some(WayKind::Road(FunctionalRoadClass::new(class)?, road))
 }

@@ -23,11 +23,17 @@ proptest! {
         structure in prop::sample::select(Structure::ALL),
         oneway in prop::sample::select(Oneway::ALL),
         layer: i8,
-        [name, reference, surface] in prop::array::uniform3(".*"),
+        texts in prop::array::uniform7(".{0,20}"),
+        lanes: u8,
+        width_mm: u32,
     ) {
         let ids: Vec<i64> = near.into_iter().map(i64::from).chain(far).collect();
         let class = FunctionalRoadClass::new(class).unwrap();
-        let attributes = RoadAttributes { form, structure, layer, oneway, name, reference, surface };
+        let [name, reference, surface, highway, max_speed, sac_scale, tracktype] = texts;
+        let (lanes, width_mm) = (NonZeroU8::new(lanes), NonZeroU32::new(width_mm));
+        let attributes = RoadAttributes {
+            form, structure, layer, oneway, name, reference, surface, highway, lanes, width_mm, max_speed, sac_scale, tracktype,
+        };
         let bytes = way_bytes(&ids, class, &attributes);
         let mut rest = &*bytes;
         prop_assert_eq!(take_all(&mut rest), Some((ids, WayKind::Road(class, attributes))));

@@ -140,9 +140,7 @@ impl Ways {
     }
 
     fn take(&mut self, way: &Way<'_>, class: FunctionalRoadClass, attributes: &RoadAttributes) {
-        let RoadAttributes { name, reference, surface, .. } = attributes;
-        let text_bytes = name.len() + reference.len() + surface.len();
-        self.keep(way, text_bytes, |ids| way_bytes(ids, class, attributes));
+        self.keep(way, attributes.text_bytes(), |ids| way_bytes(ids, class, attributes));
     }
 
     /// Keeps a way that is no road here, for its length.

@@ -27,16 +27,17 @@ fn check(block: &Block, roads: &[(i64, &[i64])], defects: &[Defect]) {
     assert_eq!(extract.defects, defects);
 }
 
-/// A layer that does not fit, a tunnel beside the road: the road stays, and each value is counted and listed.
+/// A layer that does not fit, a tunnel beside the road, no lanes, no width: the road stays, and each value is counted and listed.
 #[test]
 fn tags_taken_for_another_value_are_counted_by_value() {
     let mut block = Block::with_row_of_nodes(3);
-    let tags: [&[(&str, &str)]; 6] = [
+    let tags: [&[(&str, &str)]; 7] = [
         &[("highway", "track"), ("layer", "1000")],
         &[("highway", "track"), ("layer", "-5"), ("tunnel", "yes")],
         &[("highway", "track"), ("tunnel", "culvert"), ("layer", "1000")],
         &[("highway", "track"), ("tunnel", "building_passage")],
         &[("highway", "track"), ("layer", "1;2")],
+        &[("highway", "track"), ("lanes", "0"), ("width", "narrow"), ("maxspeed", "slow")],
         // It is no road, so its tags do not matter.
         &[("highway", "proposed"), ("layer", "5000")],
     ];
@@ -44,12 +45,14 @@ fn tags_taken_for_another_value_are_counted_by_value() {
         block.way(id, tags, &[1, 2]);
     }
     let extract = read_bytes(&file(&block)).unwrap();
-    assert_eq!(extract.roads.len(), 5);
+    assert_eq!(extract.roads.len(), 6);
     let counted = [
+        ("lanes=0", 1),
         ("layer=1000", 2),
         ("layer=1;2", 1),
         ("tunnel=building_passage", 1),
         ("tunnel=culvert", 1),
+        ("width=narrow", 1),
     ];
     let counted = counted.map(|(tag, ways)| (tag.to_owned(), ways));
     assert_eq!(extract.summary.tags_taken_otherwise, BTreeMap::from(counted));
@@ -65,6 +68,8 @@ fn tags_taken_for_another_value_are_counted_by_value() {
         (3, "tunnel=culvert"),
         (4, "tunnel=building_passage"),
         (5, "layer=1;2"),
+        (6, "lanes=0"),
+        (6, "width=narrow"),
     ];
     assert_eq!(listed, expected);
 }

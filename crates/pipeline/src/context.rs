@@ -1,7 +1,7 @@
 //! What every step of a build needs: the elevation files as opened, the grid, the levels, and the store.
 
 use corniche_dem::{Dem, GridPlan};
-use corniche_geom::{CoordinateTable, Frame, LatticeBounds};
+use corniche_geom::{CoordinateTable, Frame, LatticeArea, LatticeBounds};
 use corniche_store::Artifacts;
 
 use crate::{
@@ -66,6 +66,11 @@ impl<'a> Context<'a> {
     pub(crate) fn clip(&self) -> Option<LatticeBounds> {
         let [min, max] = self.grid.clip?.nodes.map(|node| self.frame().lattice_of_node(node));
         Some(LatticeBounds { min, max })
+    }
+
+    /// The polygon that was asked for.
+    pub(crate) fn polygon(&self) -> Option<&LatticeArea> {
+        self.grid.polygon.as_deref()
     }
 
     /// The heights of the DEM; `None` where the terrain comes from a package.

@@ -36,7 +36,7 @@ pub enum BuildError {
     Dem(#[from] corniche_dem::DemError),
     #[error(transparent)]
     Osm(#[from] corniche_osm::ReadOsmError),
-    #[error("{dem:?} have no height at any node: every node is void")]
+    #[error("{dem:?} have no height at any node: every node is void, or outside --polygon")]
     NoHeights { dem: Vec<PathBuf> },
     #[error(
         "{dem:?} hold heights at {nodes} nodes, but no cell has one at each of its four corners, so there is no \
@@ -53,7 +53,7 @@ pub enum BuildError {
     )]
     NoOverlap { osm: PathBuf, roads_deg: [f64; 4], heights_deg: [f64; 4] },
     #[error(
-        "no road of {osm:?} lies on ground: all are beside the elevation data, over its voids, or outside --bounds; without --osm the package is terrain alone"
+        "no road of {osm:?} lies on ground: all are beside the elevation data, over its voids, or outside --bounds or --polygon; without --osm the package is terrain alone"
     )]
     NoGround { osm: PathBuf },
     #[error("the roads could not be projected into the working CRS")]

@@ -1,4 +1,4 @@
-//! Where an extract is, by its own words.
+//! The box in the header of an extract.
 
 use std::path::PathBuf;
 

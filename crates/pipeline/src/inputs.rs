@@ -38,13 +38,15 @@ pub(crate) enum InputKind {
     DemPart,
     /// A package whose terrain is taken. It is no input of the package that is made: that has the files of this one.
     Terrain,
+    /// The polygon that says which part is wanted.
+    Polygon,
     /// The extract.
     Osm,
 }
 
 impl InputKind {
     /// Those that a manifest has.
-    pub(crate) const RECORDED: [Self; 3] = [Self::Dem, Self::DemPart, Self::Osm];
+    pub(crate) const RECORDED: [Self; 4] = [Self::Dem, Self::DemPart, Self::Polygon, Self::Osm];
 
     /// The word for it in the manifest.
     pub(crate) const fn name(self) -> &'static str {
@@ -52,6 +54,7 @@ impl InputKind {
             Self::Dem => "dem",
             Self::DemPart => "dem-part",
             Self::Terrain => "terrain",
+            Self::Polygon => "polygon",
             Self::Osm => "osm",
         }
     }
@@ -108,8 +111,9 @@ fn setting(what: String) -> InputError {
 
 impl Inputs {
     /// Finds all files and notes what they are, before anything of them is read for use.
-    pub(crate) fn find(dem: &[PathBuf], osm: Option<&Path>) -> Result<Self, InputError> {
-        reach_servers(dem.iter().map(PathBuf::as_path).chain(osm)).map_err(setting)?;
+    pub(crate) fn find(dem: &[PathBuf], others: OtherInputs<'_>) -> Result<Self, InputError> {
+        let named = dem.iter().map(PathBuf::as_path).chain(others.polygon).chain(others.osm);
+        reach_servers(named).map_err(setting)?;
         let mut files: Vec<Input> = Vec::new();
         for path in dem {
             // The stamp is taken before GDAL reads the file for the names of its parts.
@@ -125,22 +129,18 @@ impl Inputs {
                 files.push(Input::new(InputKind::DemPart, &part)?);
             }
         }
-        if let Some(path) = osm {
-            files.push(Input::new(InputKind::Osm, path)?);
-        }
+        others.add_to(&mut files)?;
         Ok(Self { files })
     }
 
     /// The same where the terrain comes from a package.
     pub(crate) fn find_with_package(
         package: &Path,
-        osm: Option<&Path>,
+        others: OtherInputs<'_>,
     ) -> Result<Self, InputError> {
-        reach_servers(osm).map_err(setting)?;
+        reach_servers(others.polygon.into_iter().chain(others.osm)).map_err(setting)?;
         let mut files = vec![Input::new(InputKind::Terrain, package)?];
-        if let Some(path) = osm {
-            files.push(Input::new(InputKind::Osm, path)?);
-        }
+        others.add_to(&mut files)?;
         Ok(Self { files })
     }
 
@@ -152,7 +152,7 @@ impl Inputs {
             match input.kind {
                 InputKind::Dem => last = is_used.next().copied().unwrap_or(true),
                 InputKind::DemPart => {}
-                InputKind::Terrain | InputKind::Osm => continue,
+                InputKind::Terrain | InputKind::Polygon | InputKind::Osm => continue,
             }
             input.is_used = last;
         }
@@ -234,6 +234,25 @@ impl Inputs {
                 Ok(false) => return Err(InputError::Changed { path: input.path.clone() }),
                 Err(source) => return Err(InputError::Read { path: input.path.clone(), source }),
             }
+        }
+        Ok(())
+    }
+}
+
+/// What is read beside the terrain.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct OtherInputs<'a> {
+    pub(crate) polygon: Option<&'a Path>,
+    pub(crate) osm: Option<&'a Path>,
+}
+
+impl OtherInputs<'_> {
+    fn add_to(self, files: &mut Vec<Input>) -> Result<(), InputError> {
+        if let Some(path) = self.polygon {
+            files.push(Input::new(InputKind::Polygon, path)?);
+        }
+        if let Some(path) = self.osm {
+            files.push(Input::new(InputKind::Osm, path)?);
         }
         Ok(())
     }

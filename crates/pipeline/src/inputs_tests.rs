@@ -9,12 +9,13 @@ fn every_kind_of_input_of_a_manifest_is_listed_once() {
         let expected = match kind {
             InputKind::Dem => 0,
             InputKind::DemPart => 1,
-            InputKind::Osm => 2,
+            InputKind::Polygon => 2,
+            InputKind::Osm => 3,
             InputKind::Terrain => panic!("a manifest has its files"),
         };
         assert_eq!(place, expected, "{kind:?}");
     }
-    assert_eq!(InputKind::RECORDED.len(), 3);
+    assert_eq!(InputKind::RECORDED.len(), 4);
 }
 
 /// Keeps what `begin` was told, and the steps.
@@ -44,7 +45,10 @@ fn hashing_counts_the_bytes_of_the_files() {
     let inside = PathBuf::from(format!("/vsisubfile/3_100,{}", file.display()));
     for (path, total, bytes) in [(&file, Some(BYTES), BYTES), (&inside, None, 100)] {
         let counted = Counted::default();
-        let records = Inputs::find(&[], Some(path)).unwrap().hash(&counted).unwrap();
+        let records = Inputs::find(&[], OtherInputs { osm: Some(path), polygon: None })
+            .unwrap()
+            .hash(&counted)
+            .unwrap();
         assert_eq!(records[0].bytes, bytes);
         assert_eq!(*counted.0.lock().unwrap(), (total, bytes), "{}", path.display());
     }

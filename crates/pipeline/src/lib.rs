@@ -33,7 +33,7 @@ mod verify;
 mod workers;
 
 pub use build::{BuildSummary, build, build_on};
-pub use corniche_dem::{OpenOptions, PlanOptions, libraries};
+pub use corniche_dem::{OpenOptions, PlanOptions, Polygon, PolygonError, libraries};
 pub use corniche_objects::Requests;
 pub use corniche_osm::{Defect as OsmDefect, Share};
 pub use defect::{Defect, Loss};
@@ -56,7 +56,7 @@ pub use settings::{
 };
 pub use target::{TargetError, file_target};
 pub use terrain::recorded::TerrainRecord;
-pub use unfinished::unfinished_file;
+pub use unfinished::{place_finished, unfinished_file};
 pub use verify::{
     Check, CheckId, ErrorFigures, GapFigures, Needs, VerifyError, VerifyOsm, VerifyReport,
     VerifySettings, verify,

@@ -20,6 +20,8 @@ pub enum PlanError {
         "the plan says on which levels classes of roads are shown, and this makes no sense; make the plan again"
     )]
     Filter,
+    #[error(transparent)]
+    Polygon(#[from] corniche_dem::PolygonError),
     #[error(
         "the plan does not fit this machine or its files any more: {}; make the plan again, or use the files and the program that it was made with",
         differences.join("; ")

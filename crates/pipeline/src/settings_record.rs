@@ -5,9 +5,9 @@
 //! The build records them with [`of`]; `verify` takes them back with [`terrain`] and [`roads`] to open the elevation files
 //! and the extract as the build did.
 
-use corniche_dem::{OpenOptions, PlanOptions};
+use corniche_dem::{OpenOptions, PlanOptions, Polygon};
 use corniche_roads::{ClassFilter, FrcTable};
-use corniche_tileset::SettingsRecord;
+use corniche_tileset::{PolygonRecord, SettingsRecord};
 use sha2::{Digest, Sha256};
 
 use crate::{RoadSettings, TerrainSettings, hex::hex};
@@ -22,7 +22,8 @@ pub(crate) fn of(
     let TerrainSettings { open, plan, height_range_m, allow_fine_cell: _, max_error_m: _ } =
         terrain;
     let OpenOptions { dem_crs, nodata, dem_vertical_crs, vertical_crs, vertical_shift_m } = open;
-    let PlanOptions { crs, cell, cell_every, scale_latitude_deg, fill_voids, bounds_deg } = plan;
+    let PlanOptions { crs, cell, cell_every, scale_latitude_deg, fill_voids, bounds_deg, polygon } =
+        plan;
     let RoadSettings { table, filter, simplify_cells } = roads;
     SettingsRecord {
         max_error_m,
@@ -38,6 +39,7 @@ pub(crate) fn of(
         cell_every: *cell_every,
         scale_latitude_deg: *scale_latitude_deg,
         bounds_deg: *bounds_deg,
+        polygon: polygon.as_ref().map(polygon_record),
         frc_table: table.name().to_owned(),
         frc_table_sha256: table_sha256(table),
         classes: table.chosen_classes(),
@@ -46,7 +48,19 @@ pub(crate) fn of(
     }
 }
 
-/// The settings for the ground that a package records.
+/// What is recorded of a polygon: the name of its file, and the hash of what it encloses.
+fn polygon_record(polygon: &Polygon) -> PolygonRecord {
+    let name = polygon.path().file_name().unwrap_or(polygon.path().as_os_str());
+    PolygonRecord { name: name.to_string_lossy().into_owned(), sha256: polygon_sha256(polygon) }
+}
+
+/// SHA-256 of a polygon's coordinate system and corners, whatever the format of its file.
+pub(crate) fn polygon_sha256(polygon: &Polygon) -> String {
+    hex(&Sha256::digest(polygon.canonical_bytes()))
+}
+
+/// The settings for the ground that a package records. Of a polygon only the hash is recorded, so it is left out here: it comes from its
+/// file.
 pub(crate) fn terrain(record: &SettingsRecord) -> TerrainSettings {
     TerrainSettings {
         open: OpenOptions {
@@ -63,6 +77,7 @@ pub(crate) fn terrain(record: &SettingsRecord) -> TerrainSettings {
             scale_latitude_deg: record.scale_latitude_deg,
             fill_voids: record.fill_voids,
             bounds_deg: record.bounds_deg,
+            polygon: None,
         },
         height_range_m: record.height_range_m,
         // The build has begun already.

@@ -11,6 +11,8 @@ use std::{
 
 use tempfile::{NamedTempFile, TempPath};
 
+use crate::Existing;
+
 /// How often it is tried again when another program removes what was just made, because it took it for a leftover.
 const TRIES: usize = 5;
 
@@ -34,6 +36,42 @@ pub fn unfinished_file(target: &Path) -> io::Result<NamedTempFile> {
         }
     }
     Err(busy())
+}
+
+/// Writes the bytes of a finished file to the disk, moves it to its target, and makes its name durable. Returns its size.
+///
+/// # Errors
+/// Of kind `AlreadyExists` if there is something at the target that is to be kept; else when the disk does not take it.
+pub fn place_finished(path: TempPath, target: &Path, existing: Existing) -> io::Result<u64> {
+    let file = File::open(&path)?;
+    file.sync_all()?;
+    let bytes = file.metadata()?.len();
+    let placed = match existing {
+        Existing::Replace => path.persist(target),
+        // This fails where the other would replace what someone put there in the meantime.
+        Existing::Keep => match path.persist_noclobber(target) {
+            // Not every file system can do that. Without it only the check at the start protects an existing file.
+            Err(refused) if refused.error.kind() != io::ErrorKind::AlreadyExists => {
+                refused.path.persist(target)
+            }
+            placed => placed,
+        },
+    };
+    placed.map_err(|refused| refused.error)?;
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
+    sync_folder(folder.unwrap_or(Path::new(".")))?;
+    Ok(bytes)
+}
+
+/// Makes the names in a folder durable.
+#[cfg(unix)]
+fn sync_folder(folder: &Path) -> io::Result<()> {
+    File::open(folder)?.sync_all()
+}
+
+#[cfg(not(unix))]
+fn sync_folder(_: &Path) -> io::Result<()> {
+    Ok(())
 }
 
 fn busy() -> io::Error {

@@ -33,6 +33,7 @@ fn checked(dem: &Path, options: Options) -> Manifest {
         dem: vec![dem.to_path_buf()],
         osm: None,
         threads: 2,
+        polygon: None,
     };
     let report = verify(&asked, &Silent).unwrap();
     let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();

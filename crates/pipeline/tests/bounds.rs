@@ -165,8 +165,13 @@ fn compare(whole: &Path, part: &Path) -> usize {
 /// Verifies a package against both inputs.
 fn check_verify(files: &Files, package: PathBuf) {
     let osm = VerifyOsm { path: files.at("roads.osm.pbf"), table: table(), memory_bytes: 64 << 20 };
-    let settings =
-        VerifySettings { package, dem: vec![files.at("dem.tif")], osm: Some(osm), threads: 2 };
+    let settings = VerifySettings {
+        package,
+        dem: vec![files.at("dem.tif")],
+        osm: Some(osm),
+        threads: 2,
+        polygon: None,
+    };
     let report = verify(&settings, &Silent).unwrap();
     let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
     assert!(broken.is_empty(), "{broken:#?}");
@@ -281,8 +286,13 @@ fn verify_sees_every_change_of_what_a_package_says_of_its_part() {
         change(&mut manifest);
         let path = files.at(&format!("changed-{number}.pmtiles"));
         support::parts::write(&path, &manifest, &tiles).unwrap();
-        let request =
-            VerifySettings { package: path, dem: vec![files.at("dem.tif")], osm: None, threads: 2 };
+        let request = VerifySettings {
+            package: path,
+            dem: vec![files.at("dem.tif")],
+            osm: None,
+            threads: 2,
+            polygon: None,
+        };
         let report = verify(&request, &Silent).unwrap();
         let is_broken =
             report.checks.iter().any(|check| check.id == CheckId::DemPlan && !check.holds());
@@ -319,7 +329,10 @@ fn files_outside_the_bounds_are_not_read() {
         ("", all[1].bytes, &all[1].name)
     );
     let checked = |dem: Vec<PathBuf>| {
-        verify(&VerifySettings { package: part.clone(), dem, osm: None, threads: 2 }, &Silent)
+        verify(
+            &VerifySettings { package: part.clone(), dem, osm: None, threads: 2, polygon: None },
+            &Silent,
+        )
     };
     let report = checked(vec![files.at("east.tif"), files.at("west.tif")]).unwrap();
     assert!(report.checks.iter().all(corniche_pipeline::Check::holds), "{:#?}", report.checks);

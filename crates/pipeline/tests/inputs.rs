@@ -159,7 +159,13 @@ fn a_raster_exchanged_while_it_is_verified_is_told() {
     let [dem, output] = ["dem.tif", "out.pmtiles"].map(|name| folder.path().join(name));
     hills().write(&dem);
     build(&settings(dem.clone(), None, output.clone(), Options::plain(5.0)), &Silent).unwrap();
-    let request = VerifySettings { package: output, dem: vec![dem.clone()], osm: None, threads: 2 };
+    let request = VerifySettings {
+        package: output,
+        dem: vec![dem.clone()],
+        osm: None,
+        threads: 2,
+        polygon: None,
+    };
     assert!(verify(&request, &Silent).unwrap().holds());
     for stage in [Stage::Hash, Stage::Deviations] {
         let change = At { stage, act: Mutex::new(Some(Box::new(|| exchange(&dem)))) };

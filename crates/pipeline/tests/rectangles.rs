@@ -41,6 +41,7 @@ fn report(package: &std::path::Path, dem: &std::path::Path) -> VerifyReport {
         dem: vec![dem.to_path_buf()],
         osm: None,
         threads: 2,
+        polygon: None,
     };
     verify(&settings, &Silent).unwrap()
 }

@@ -6,7 +6,10 @@
 
 mod support;
 
-use std::collections::BTreeMap;
+use std::{
+    collections::BTreeMap,
+    num::{NonZeroU8, NonZeroU32},
+};
 
 use corniche_drape::{DrapedLine, DrapedVertex, SvLine};
 use corniche_geom::LatticePoint;
@@ -40,7 +43,10 @@ fields! {
     SvLine { points, ground_range_m }
     LatticePoint { u, v }
     RoadRecord { way_id, attributes }
-    RoadAttributes { form, structure, layer, oneway, name, reference, surface }
+    RoadAttributes {
+        form, structure, layer, oneway, name, reference, surface,
+        highway, lanes, width_mm, max_speed, sac_scale, tracktype,
+    }
 }
 
 /// The same of the variants of a vertex, and of what has no open fields.
@@ -133,6 +139,40 @@ const CHANGES: &[PayloadChange] = &[
     (
         "RoadAttributes.surface",
         |parts| everywhere(parts, |a| a.surface.push('x')),
+        By(C::OsmAttributes),
+    ),
+    (
+        "RoadAttributes.highway",
+        |parts| everywhere(parts, |a| a.highway.push('x')),
+        By(C::OsmAttributes),
+    ),
+    (
+        "RoadAttributes.lanes",
+        |parts| everywhere(parts, |a| a.lanes = NonZeroU8::new(a.lanes.map_or(7, |n| n.get() + 1))),
+        By(C::OsmAttributes),
+    ),
+    (
+        "RoadAttributes.width_mm",
+        |parts| {
+            everywhere(parts, |a| {
+                a.width_mm = NonZeroU32::new(a.width_mm.map_or(7, |mm| mm.get() + 1));
+            });
+        },
+        By(C::OsmAttributes),
+    ),
+    (
+        "RoadAttributes.max_speed",
+        |parts| everywhere(parts, |a| a.max_speed.push('x')),
+        By(C::OsmAttributes),
+    ),
+    (
+        "RoadAttributes.sac_scale",
+        |parts| everywhere(parts, |a| a.sac_scale.push('x')),
+        By(C::OsmAttributes),
+    ),
+    (
+        "RoadAttributes.tracktype",
+        |parts| everywhere(parts, |a| a.tracktype.push('x')),
         By(C::OsmAttributes),
     ),
 ];

@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer};
 pub enum BoundsChoice {
     /// What lies between west, south, east and north, WGS84 degrees; across ±180° where the west is larger than the east.
     Degrees([f64; 4]),
-    /// Where the extract is, by its own words.
+    /// The box in the extract's header, with a margin.
     Osm,
 }
 

@@ -15,6 +15,8 @@ pub struct InputFiles {
     pub terrain: Option<PathBuf>,
     /// `--osm`.
     pub osm: Option<PathBuf>,
+    /// `--polygon`.
+    pub polygon: Option<PathBuf>,
 }
 
 impl InputFiles {
@@ -27,7 +29,8 @@ impl InputFiles {
         } else {
             (self.dem, self.terrain)
         };
-        Self { dem, terrain, osm: self.osm.or(other.osm) }
+        let polygon = self.polygon.or(other.polygon);
+        Self { dem, terrain, osm: self.osm.or(other.osm), polygon }
     }
 }
 

@@ -2,15 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::{config::Config, frc::frc_preset};
+use crate::{config::Config, files::InputFiles, frc::frc_preset};
 
 impl Config {
     /// The same settings, with paths that begin at `folder`, which the settings file is in, instead of the working folder. Absolute
-    /// paths and addresses (`s3://…`) stay, and so do names of presets.
+    /// paths, addresses (`s3://…`) and names with a driver of GDAL (`GPKG:…`) stay, and so do names of presets.
     #[must_use]
     pub fn in_folder(mut self, folder: &Path) -> Self {
         let Self { inputs, output, roads, resources, .. } = &mut self;
-        let files = inputs.dem.iter_mut().chain(&mut inputs.terrain).chain(&mut inputs.osm);
+        let InputFiles { dem, terrain, osm, polygon } = inputs;
+        let files = dem.iter_mut().chain(terrain).chain(osm).chain(polygon);
         let written =
             output.package.iter_mut().chain(&mut output.defects).chain(&mut resources.tmp);
         for path in files.chain(written) {
@@ -25,9 +26,21 @@ impl Config {
     }
 }
 
+/// A path where it begins. A list (`@list.txt`) stays one, and names that GDAL alone understands (`GTIFF_DIR:1:dem.tif`, capitals before
+/// the first colon) stay as they are.
 fn within(folder: &Path, path: &Path) -> PathBuf {
-    let is_address = path.to_str().is_some_and(|text| text.contains("://"));
-    if is_address { path.to_owned() } else { folder.join(path) }
+    let text = path.to_str().unwrap_or_default();
+    if let Some(list) = text.strip_prefix('@') {
+        let list = folder.join(list);
+        return list.to_str().map_or_else(|| path.to_owned(), |list| format!("@{list}").into());
+    }
+    let is_driver_prefix = text.split_once(':').is_some_and(|(prefix, _)| {
+        prefix.len() > 1
+            && prefix
+                .bytes()
+                .all(|byte| byte.is_ascii_uppercase() || byte.is_ascii_digit() || byte == b'_')
+    });
+    if text.contains("://") || is_driver_prefix { path.to_owned() } else { folder.join(path) }
 }
 
 #[cfg(test)]

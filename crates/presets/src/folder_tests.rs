@@ -39,10 +39,25 @@ fn paths_begin_at_the_settings_file() {
 }
 
 #[test]
+fn lists_stay_lists_and_names_of_drivers_stay_as_they_are() {
+    let text = "[inputs]\ndem = [\"@list.txt\", \"@/all/list.txt\", \"GTIFF_DIR:1:a.tif\", \"/vsizip/a.zip/b.tif\", \"c:d.tif\"]\n";
+    let config = Config::parse(text).unwrap().in_folder(Path::new("/maps"));
+    let expected = [
+        "@/maps/list.txt",
+        "@/all/list.txt",
+        "GTIFF_DIR:1:a.tif",
+        "/vsizip/a.zip/b.tif",
+        "/maps/c:d.tif",
+    ];
+    assert_eq!(config.inputs.dem, paths(&expected));
+}
+
+#[test]
 fn terrain_comes_from_one_place() {
     let of = |dem: &[&str], terrain: Option<&str>| InputFiles {
         dem: paths(dem),
         terrain: terrain.map(Into::into),
+        polygon: None,
         osm: None,
     };
     let rasters = of(&["a.tif"], None);

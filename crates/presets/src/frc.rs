@@ -7,11 +7,11 @@ use crate::{PresetError, error::bounded};
 
 /// FRC tables that come with the program.
 const PRESETS: [(&str, &str); 5] = [
-    ("default", include_str!("../../../config/frc/default.toml")),
-    ("valhalla", include_str!("../../../config/frc/valhalla.toml")),
-    ("fraunhofer", include_str!("../../../config/frc/fraunhofer.toml")),
-    ("itinero", include_str!("../../../config/frc/itinero.toml")),
-    ("here5", include_str!("../../../config/frc/here5.toml")),
+    ("default", include_str!("../frc/default.toml")),
+    ("valhalla", include_str!("../frc/valhalla.toml")),
+    ("fraunhofer", include_str!("../frc/fraunhofer.toml")),
+    ("itinero", include_str!("../frc/itinero.toml")),
+    ("here5", include_str!("../frc/here5.toml")),
 ];
 
 /// An FRC table as TOML.

@@ -1,4 +1,4 @@
-//! The presets in `config/frc` against the published tables.
+//! The presets in `crates/presets/frc` against the published tables.
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 

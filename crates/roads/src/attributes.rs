@@ -1,6 +1,7 @@
 use crate::{
     Form, Oneway, RoadAttributes, Structure,
     frc_table::{is_yes, tag},
+    quantities::{lanes, max_speed, width_mm},
 };
 
 /// What is kept of a way's `(key, value)` tags, besides its class. Of a key that occurs twice the first counts.
@@ -12,8 +13,12 @@ use crate::{
 ///   a tunnel if its layer is below 0, else a bridge.
 /// - **Oneway**: as tagged; motorways and roundabouts are one-way unless tagged otherwise. Roads open to one direction
 ///   at a time (`reversible`, `alternating`) are open to both.
+/// - **Lanes**: a whole number from 1 to 255.
+/// - **Width**: metres without a unit, else its unit; above 0 and at most 1 km.
+/// - **Speed limit**: whole numbers of km/h or miles an hour in one spelling; all else stays as tagged.
 ///
-/// Source: OSM wiki, *Key:oneway*, *Key:junction*, *Key:bridge*, *Key:tunnel*, *Key:layer*.
+/// Source: OSM wiki, *Key:oneway*, *Key:junction*, *Key:bridge*, *Key:tunnel*, *Key:layer*, *Key:lanes*, *Key:width*,
+/// *Key:maxspeed*.
 #[must_use]
 pub fn attributes(tags: &[(&str, &str)]) -> RoadAttributes {
     let value = |key| tag(tags, key).map(str::trim).unwrap_or_default();
@@ -39,22 +44,37 @@ pub fn attributes(tags: &[(&str, &str)]) -> RoadAttributes {
         name: value("name").to_owned(),
         reference: value("ref").to_owned(),
         surface: value("surface").to_owned(),
+        highway: highway.to_owned(),
+        lanes: lanes(value("lanes")),
+        width_mm: width_mm(value("width")),
+        max_speed: max_speed(value("maxspeed")),
+        sac_scale: value("sac_scale").to_owned(),
+        tracktype: value("tracktype").to_owned(),
     }
 }
 
 /// The tags that [`attributes`] reads as another value, as `(key, value)`: a `layer` that is no whole number or too
-/// large, which is taken for 0 or the largest; a `tunnel` that the road does not lie in, which is taken for none.
+/// large, which is taken for 0 or the largest; a `tunnel` that the road does not lie in, `lanes` that are no count and a
+/// `width` that is none (0, for example), which are taken for none.
 pub fn tags_taken_otherwise<'t>(
     tags: &[(&'t str, &'t str)],
 ) -> impl Iterator<Item = (&'static str, &'t str)> + use<'t> {
     let value = |key| tag(tags, key).map(str::trim).unwrap_or_default();
-    let (layer, tunnel) = (value("layer"), value("tunnel"));
-    let is_layer = layer.is_empty() || layer.parse::<i8>().is_ok();
-    [("layer", layer, !is_layer), ("tunnel", tunnel, BESIDE_TUNNELS.contains(&tunnel))]
+    let known: [(&'static str, IsRead); 4] = [
+        ("layer", |layer| layer.parse::<i8>().is_ok()),
+        ("tunnel", |tunnel| !BESIDE_TUNNELS.contains(&tunnel)),
+        ("lanes", |text| lanes(text).is_some()),
+        ("width", |text| width_mm(text).is_some()),
+    ];
+    known
+        .map(|(key, is_read)| (key, value(key), is_read))
         .into_iter()
-        .filter(|(.., is_otherwise)| *is_otherwise)
+        .filter(|(_, value, is_read)| !value.is_empty() && !is_read(value))
         .map(|(key, value, _)| (key, value))
 }
+
+/// Whether the value of a tag is read as it stands.
+type IsRead = fn(&str) -> bool;
 
 /// Values of `tunnel` that do not put the road underground: the water is in a culvert, a building passage is at ground level.
 const BESIDE_TUNNELS: [&str; 2] = ["culvert", "building_passage"];

@@ -1,3 +1,5 @@
+use std::num::{NonZeroU8, NonZeroU32};
+
 use super::*;
 
 fn of(text: &str) -> RoadAttributes {
@@ -91,6 +93,27 @@ fn tags_that_are_taken_for_something_else_are_named() {
     for value in ["yes", "no", "avalanche_protector", ""] {
         assert_eq!(told(&[("tunnel", value)]), [], "{value:?}");
     }
+    let odd = [("lanes", "1.5"), ("width", "0"), ("maxspeed", "fast"), ("tracktype", "grade9")];
+    assert_eq!(told(&odd), [("lanes", "1.5"), ("width", "0")]);
+    assert_eq!(told(&[("width", "-2"), ("layer", "x")]), [("layer", "x"), ("width", "-2")]);
+    assert_eq!(told(&[("lanes", "2"), ("width", "3.5 m")]), []);
+}
+
+#[test]
+fn what_a_road_is_like_is_kept() {
+    let road = attributes(&[
+        ("highway", "track"),
+        ("lanes", "2"),
+        ("width", " 3.5 m "),
+        ("maxspeed", "20 km/h"),
+        ("sac_scale", "mountain_hiking"),
+        ("tracktype", "grade3"),
+    ]);
+    assert_eq!(road.lanes.map(NonZeroU8::get), Some(2));
+    assert_eq!((road.width_mm.map(NonZeroU32::get), road.width_m()), (Some(3500), Some(3.5)));
+    let texts = [&road.highway, &road.max_speed, &road.sac_scale, &road.tracktype];
+    assert_eq!(texts, ["track", "20", "mountain_hiking", "grade3"]);
+    assert_eq!(road.text_bytes(), 5 + 2 + 15 + 6);
 }
 
 #[test]

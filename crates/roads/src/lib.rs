@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  tags ──► FrcTable::classify ──► class, or why it is no road
-//!       └─► attributes         ──► form, bridge/tunnel, oneway, names
+//!       └─► attributes         ──► form, bridge/tunnel, oneway, names, widths
 //!  Road ──► ClassFilter ──► shown on this level?  ──► simplify ──► Polyline
 //! ```
 //!
@@ -11,6 +11,7 @@
 mod attributes;
 mod class_filter;
 mod frc_table;
+mod quantities;
 mod road;
 mod simplify;
 

@@ -1,4 +1,7 @@
-use std::fmt;
+use std::{
+    fmt,
+    num::{NonZeroU8, NonZeroU32},
+};
 
 use corniche_geom::Polyline;
 
@@ -117,6 +120,34 @@ pub struct RoadAttributes {
     pub reference: String,
     /// `surface`, empty without.
     pub surface: String,
+    /// `highway`; empty only where a package does not say it.
+    pub highway: String,
+    /// `lanes`: how many, in both directions together.
+    pub lanes: Option<NonZeroU8>,
+    /// `width`, whole millimetres.
+    pub width_mm: Option<NonZeroU32>,
+    /// `maxspeed`: a number is km/h, `30 mph` miles an hour; else as tagged, such as `none` or `walk`. Empty without.
+    pub max_speed: String,
+    /// `sac_scale`, empty without.
+    pub sac_scale: String,
+    /// `tracktype`, empty without.
+    pub tracktype: String,
+}
+
+impl RoadAttributes {
+    /// `width` in metres.
+    #[must_use]
+    pub fn width_m(&self) -> Option<f64> {
+        self.width_mm.map(|mm| f64::from(mm.get()) / 1e3)
+    }
+
+    /// Bytes of all texts together.
+    #[must_use]
+    pub fn text_bytes(&self) -> usize {
+        let Self { name, reference, surface, highway, max_speed, sac_scale, tracktype, .. } = self;
+        let texts = [name, reference, surface, highway, max_speed, sac_scale, tracktype];
+        texts.map(String::len).iter().sum()
+    }
 }
 
 /// One OSM way as a road.

@@ -1,7 +1,7 @@
 /// Styles that come with the program, the default one first.
 const PRESETS: [(&str, &str); 2] = [
-    ("road-atlas", include_str!("../../../config/styles/road-atlas.toml")),
-    ("dark", include_str!("../../../config/styles/dark.toml")),
+    ("road-atlas", include_str!("../sheets/road-atlas.toml")),
+    ("dark", include_str!("../sheets/dark.toml")),
 ];
 
 /// Names of the styles that come with the program, the default one first.

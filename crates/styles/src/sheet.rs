@@ -18,7 +18,7 @@ const LEAST_STEP: f64 = 0.001;
 #[serde(try_from = "String")]
 pub(crate) struct Rgb8(pub(crate) [u8; 3]);
 
-/// A style in the units and types of its text, checked. `config/styles/road-atlas.toml` tells what each entry means.
+/// A style in the units and types of its text, checked. `sheets/road-atlas.toml` tells what each entry means.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct StyleSheet {
     /// Width of the edge of roads, 0 to 4 pixels.

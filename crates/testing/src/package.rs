@@ -90,6 +90,7 @@ pub fn manifest_of(frame: Frame) -> Manifest {
             cell_m: Some(Cell::from(10.0)),
             cell_every: None,
             bounds_deg: None,
+            polygon: None,
             scale_latitude_deg: None,
             frc_table: "default".to_owned(),
             classes: None,

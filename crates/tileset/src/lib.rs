@@ -35,7 +35,8 @@ mod payload;
 
 pub use manifest::{
     ClipRecord, Counts, Distribution, GrowthRow, InputRecord, LeftOutRecord, LevelRecord, Manifest,
-    RoadLoss, SampleCounts, SampleErrorRecord, ScaleRecord, SettingsRecord, VerticalRecord,
+    PolygonRecord, RoadLoss, SampleCounts, SampleErrorRecord, ScaleRecord, SettingsRecord,
+    VerticalRecord,
 };
 pub use package::{
     ByteSource, FORMAT_VERSION, MemorySource, OpenError, Package, ReadError, SourceError,

@@ -12,6 +12,7 @@ mod context;
 mod envelope;
 
 mod attributes;
+mod road_tags;
 mod roads_geo;
 mod roads_sv;
 mod terrain;

@@ -1,3 +1,5 @@
+use std::num::{NonZeroU8, NonZeroU32};
+
 use corniche_drape::{DrapedLine, DrapedVertex, SvLine, drape};
 use corniche_geom::{Frame, LatticePoint, NodeIndex, Polyline, TileId};
 use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
@@ -145,6 +147,12 @@ fn sample() -> TilePayload {
                 name: "Großglockner-Hochalpenstraße".to_owned(),
                 reference: "B 107".to_owned(),
                 surface: "asphalt".to_owned(),
+                highway: "secondary".to_owned(),
+                lanes: NonZeroU8::new(3),
+                width_mm: NonZeroU32::new(70_000),
+                max_speed: "100".to_owned(),
+                sac_scale: "hiking".to_owned(),
+                tracktype: "grade1".to_owned(),
             },
         },
     ];
@@ -170,9 +178,10 @@ fn a_tile_comes_back_whole() {
         encoded.sizes.roads_geo,
         encoded.sizes.roads_sv,
         encoded.sizes.attributes,
+        encoded.sizes.road_tags,
     ];
     let stored: u64 = sections.iter().map(|size| size.stored).sum();
-    assert_eq!(encoded.bytes.len() as u64, 16 + 4 * 20 + 4 + stored);
+    assert_eq!(encoded.bytes.len() as u64, 16 + 5 * 20 + 4 + stored);
     assert_eq!(encode(&payload, &context()).unwrap(), encoded, "equal payloads make equal bytes");
 }
 
@@ -278,8 +287,8 @@ fn bombs_and_foreign_bytes_are_refused() {
     let resealed = |at: usize, value: &[u8]| {
         let mut bytes = bytes.clone();
         bytes[at..at + value.len()].copy_from_slice(value);
-        let sum = crc32fast::hash(&bytes[..96]);
-        bytes[96..100].copy_from_slice(&sum.to_le_bytes());
+        let sum = crc32fast::hash(&bytes[..116]);
+        bytes[116..120].copy_from_slice(&sum.to_le_bytes());
         bytes
     };
     assert!(matches!(part(b"PNG", Sections::ALL), Err(("header", Damage::TooShort))));

@@ -20,6 +20,10 @@ pub(crate) struct WorkArgs {
     /// OpenStreetMap extract (.osm.pbf); without it the package is terrain alone
     #[arg(long, value_name = "FILE")]
     pub(crate) osm: Option<PathBuf>,
+    /// Convert only what lies under the polygons of this vector file (any format GDAL reads; all of its polygons together). Ground reaches
+    /// less than a cell beyond them, roads end at them; the grid is that of the whole DEM. With --bounds, both hold
+    #[arg(long, value_name = "FILE")]
+    pub(crate) polygon: Option<PathBuf>,
     /// Credit to show wherever the package is shown, such as that of a DEM; may be given several times
     #[arg(long, value_name = "TEXT")]
     pub(crate) attribution: Vec<String>,
@@ -41,8 +45,8 @@ pub(crate) struct WorkArgs {
 impl WorkArgs {
     /// All files that are read.
     pub(crate) fn files(&self) -> impl Iterator<Item = &Path> {
-        let files = self.dem.iter().chain(&self.terrain_of).chain(&self.osm).chain(&self.config);
-        files.map(PathBuf::as_path)
+        let files = self.dem.iter().chain(&self.terrain_of).chain(&self.osm);
+        files.chain(&self.polygon).chain(&self.config).map(PathBuf::as_path)
     }
 }
 

@@ -48,13 +48,15 @@ impl Arguments {
         let arguments = Self::try_parse_from(words)?;
         // Conflicts of options before the command's name with those behind it are not the parser's.
         let Voice { is_quiet, verbosity, json_progress, .. } = arguments.voice();
-        let other = match (json_progress, verbosity) {
-            _ if !is_quiet => return Ok(arguments),
-            (true, _) => "--json-progress",
-            (false, 0) => return Ok(arguments),
-            (false, _) => "--verbose",
-        };
-        let text = format!("the argument '{other}' cannot be used with '--quiet'");
+        let given = [
+            (is_quiet, "--quiet"),
+            (verbosity > 0, "--verbose"),
+            (json_progress, "--json-progress"),
+        ];
+        let given: Vec<&str> =
+            given.into_iter().filter_map(|(is_given, name)| is_given.then_some(name)).collect();
+        let [first, second, ..] = given[..] else { return Ok(arguments) };
+        let text = format!("the argument '{second}' cannot be used with '{first}'");
         Err(Self::command().error(ErrorKind::ArgumentConflict, text))
     }
 

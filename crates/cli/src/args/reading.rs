@@ -41,6 +41,9 @@ pub(crate) struct VerifyArgs {
     /// The extract it was made from: reads it again and checks roads, attributes and counts against it
     #[arg(long, value_name = "FILE")]
     pub(crate) osm: Option<PathBuf>,
+    /// With --dem or --osm: the polygon that it was cut with
+    #[arg(long, value_name = "FILE")]
+    pub(crate) polygon: Option<PathBuf>,
     /// With --osm: the FRC table it was made with [default: the preset of the recorded name]
     #[arg(long, value_name = "NAME|FILE", requires = "osm")]
     pub(crate) frc_table: Option<String>,

@@ -1,4 +1,4 @@
-//! How the program talks, for all commands.
+//! How messages are written, for all commands.
 
 use std::ffi::OsString;
 
@@ -14,7 +14,7 @@ pub(crate) enum LogFormat {
     Json,
 }
 
-/// How the program talks; decided once, from the command line.
+/// What messages are written on standard error, and how; decided once, from the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Voice {
     /// Only errors and warnings.

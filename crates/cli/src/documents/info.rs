@@ -5,7 +5,9 @@ mod frame;
 mod levels;
 
 use corniche_geom::CoordinateTable;
-use corniche_tileset::{InputRecord, Manifest, ScaleRecord, SettingsRecord, VerticalRecord};
+use corniche_tileset::{
+    InputRecord, Manifest, PolygonRecord, ScaleRecord, SettingsRecord, VerticalRecord,
+};
 use serde::Serialize;
 
 use self::{
@@ -51,7 +53,7 @@ pub(crate) struct ManifestDocument {
     data_bounds: BoundsDocument,
     /// The same in WGS84 degrees.
     wgs84_bounds: BoundsDocument,
-    /// The part of the elevation files that the package is of (`--bounds`); left out where it is of all.
+    /// The part of the elevation files that the package is of (`--bounds`, `--polygon`); left out where it is of all.
     #[serde(skip_serializing_if = "Option::is_none")]
     clip: Option<ClipDocument>,
     /// How nodes relate to the DEM's samples, in words.
@@ -138,6 +140,9 @@ struct SettingsDocument {
     /// `--bounds`: west, south, east and north in WGS84 degrees; left out where not given.
     #[serde(skip_serializing_if = "Option::is_none")]
     bounds_deg: Option<[f64; 4]>,
+    /// `--polygon`; left out where not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    polygon: Option<PolygonDocument>,
     /// Name of the FRC table.
     frc_table: String,
     /// SHA-256 of the FRC table's text.
@@ -151,11 +156,21 @@ struct SettingsDocument {
     simplify_cells: f64,
 }
 
+/// The polygon that the package was cut with.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct PolygonDocument {
+    /// File name without folders.
+    name: String,
+    /// SHA-256 of its coordinate system and corners, whatever the format of the file.
+    sha256: String,
+}
+
 /// An input file.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct InputDocument {
-    /// "dem"; "dem-part", a file that the one before it refers to or that belongs to it; or "osm".
+    /// "dem"; "dem-part", a file that the one before it refers to or that belongs to it; "polygon"; or "osm".
     kind: String,
     /// File name without folders.
     name: String,
@@ -200,6 +215,12 @@ impl From<&Manifest> for ManifestDocument {
     }
 }
 
+impl From<PolygonRecord> for PolygonDocument {
+    fn from(PolygonRecord { name, sha256 }: PolygonRecord) -> Self {
+        Self { name, sha256 }
+    }
+}
+
 impl From<SettingsRecord> for SettingsDocument {
     fn from(settings: SettingsRecord) -> Self {
         Self {
@@ -216,6 +237,7 @@ impl From<SettingsRecord> for SettingsDocument {
             cell_every: settings.cell_every,
             scale_latitude_deg: settings.scale_latitude_deg,
             bounds_deg: settings.bounds_deg,
+            polygon: settings.polygon.map(PolygonDocument::from),
             frc_table: settings.frc_table,
             frc_table_sha256: settings.frc_table_sha256,
             classes: settings.classes,

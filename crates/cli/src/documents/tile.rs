@@ -100,6 +100,18 @@ pub(crate) struct WayDocument {
     pub(crate) reference: Option<String>,
     /// `surface`; null without.
     pub(crate) surface: Option<String>,
+    /// `highway`; null in packages that do not hold it.
+    pub(crate) highway: Option<String>,
+    /// `lanes`, in both directions together; null without.
+    pub(crate) lanes: Option<u8>,
+    /// `width`, metres; null without.
+    pub(crate) width_m: Option<f64>,
+    /// `maxspeed`: a number is km/h, "30 mph" miles an hour, else as tagged; null without.
+    pub(crate) maxspeed: Option<String>,
+    /// `sac_scale`; null without.
+    pub(crate) sac_scale: Option<String>,
+    /// `tracktype`; null without.
+    pub(crate) tracktype: Option<String>,
 }
 
 impl From<&RoadRecord> for WayDocument {
@@ -129,6 +141,12 @@ impl From<&RoadRecord> for WayDocument {
             name: text(&attributes.name),
             reference: text(&attributes.reference),
             surface: text(&attributes.surface),
+            highway: text(&attributes.highway),
+            lanes: attributes.lanes.map(std::num::NonZeroU8::get),
+            width_m: attributes.width_m(),
+            maxspeed: text(&attributes.max_speed),
+            sac_scale: text(&attributes.sac_scale),
+            tracktype: text(&attributes.tracktype),
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::{
     args::FlyArgs,
     exit::ExitCode,
     failure::Failure,
-    output::{Complete, Existing, Output},
+    output::{Complete, Existing, Output, existing_of},
     styles,
 };
 
@@ -27,7 +27,7 @@ pub(crate) struct Outputs {
 impl Outputs {
     /// Begins the files that are asked for. None of them may be an input of the command, and no two may be the same.
     pub(crate) fn create(args: &FlyArgs) -> Result<Self, Failure> {
-        let existing = Existing::of(args.overwrite);
+        let existing = existing_of(args.overwrite);
         let mut used: Vec<&Path> = vec![&args.package];
         used.extend(args.flight.path.as_deref());
         used.extend(styles::file_of(&args.look.style));

@@ -11,7 +11,7 @@ use corniche_tileset::{FilePackage, Manifest};
 
 use crate::{
     exit::ExitCode,
-    export::Bar,
+    export::Bars,
     failure::Failure,
     messages,
     output::{Output, failed},
@@ -33,13 +33,13 @@ pub(crate) fn write(package: &FilePackage, path: &Path, mut output: Output) -> R
     let mut ways = 0_u64;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.map_or_else(|| PathBuf::from("."), Path::to_path_buf);
-    let bar = Bar::new(messages::is_for_people());
-    growth_by_way(package, &folder, MEMORY_BYTES, &bar, |way| {
+    let bars = Bars::default();
+    growth_by_way(package, &folder, MEMORY_BYTES, &bars, |way| {
         ways += 1;
         sums.add(way);
         output.write_all(line(way).as_bytes()).map_err(cannot)
     })?;
-    bar.end();
+    bars.end();
     sums.fit(manifest, package.path())?;
     let mut off_ground = 0;
     for (class, points) in sums.left(manifest) {

@@ -107,6 +107,11 @@ impl Operation {
         Ok(())
     }
 
+    /// Whether positions only get another unit: straight lines stay straight.
+    pub(crate) fn is_identity(&self) -> bool {
+        self.from.wkt == self.to.wkt
+    }
+
     fn failed(&self, source: GdalError) -> DemError {
         DemError::Transform {
             from: self.from.label.clone(),
@@ -120,7 +125,7 @@ impl Operation {
         let mut xs: Vec<f64> = points.iter().map(|point| point[0] / self.divide[0]).collect();
         let mut ys: Vec<f64> = points.iter().map(|point| point[1] / self.divide[1]).collect();
         // Between equal systems PROJ is not called: it would only wrap or round the coordinates.
-        if self.from.wkt != self.to.wkt {
+        if !self.is_identity() {
             let transform = self.transform().map_err(|source| self.failed(source))?;
             // An error here means that some positions have no image; those come out as infinite.
             let _some_failed = transform.transform_coords(&mut xs, &mut ys, &mut []);

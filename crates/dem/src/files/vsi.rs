@@ -12,6 +12,8 @@ use std::{
 
 use gdal::Dataset;
 
+use crate::library_error::{forget, last_words, quiet};
+
 /// The files that GDAL names for a raster: its own, those beside it, and of a virtual raster the files it refers to.
 pub(crate) fn file_list(dataset: &Dataset) -> Vec<PathBuf> {
     let mut files = Vec::new();
@@ -42,12 +44,17 @@ impl VirtualFile {
     /// Opens a file for reading.
     ///
     /// # Errors
-    /// When the name holds a zero byte, or GDAL finds no such file.
+    /// When the name holds a zero byte, or GDAL finds no such file; with what it says of the reason.
     pub fn open(path: &Path) -> io::Result<Self> {
+        quiet();
+        forget();
         let name = c_name(path)?;
         // SAFETY: both are C strings that outlive the call; the handle is checked for null.
         let handle = unsafe { gdal_sys::VSIFOpenL(name.as_ptr(), c"rb".as_ptr()) };
-        let not_found = || io::Error::new(io::ErrorKind::NotFound, "GDAL finds no such file");
+        let not_found = || {
+            let reason = last_words().map(|words| format!(": {words}")).unwrap_or_default();
+            io::Error::new(io::ErrorKind::NotFound, format!("GDAL finds no such file{reason}"))
+        };
         Ok(Self { handle: NonNull::new(handle).ok_or_else(not_found)? })
     }
 

@@ -2,6 +2,8 @@
 //!
 //! Working CRS, cell, phase and scale are chosen from the whole DEM before; bounds only say which of its nodes are made.
 
+use std::sync::Arc;
+
 use corniche_geom::{Bounds, Cell, Frame, MAX_LATTICE_STEPS, NodeIndex};
 
 use crate::crs::full_turns::turns;
@@ -11,7 +13,10 @@ use crate::crs::working::Working;
 use crate::mosaics::data_extent::{near_image, rim_and_inside, unwrap, with_bend};
 use crate::mosaics::mosaic::{Mosaic, Placed};
 use crate::mosaics::sample_rect::SampleRect;
-use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, bounds_of};
+use crate::plan::grid_plan::{GridPlan, Method, MosaicRole, PlanOptions, bounds_of};
+use crate::plan::layout::Layout;
+use crate::polygons::image::{Image, area};
+use crate::polygons::polygon::Polygon;
 use crate::{Dem, DemError};
 
 /// Bounds this close to a node, in cells, end at it: what is left of rounding in transformations.
@@ -22,7 +27,7 @@ const AROUND_SAMPLES: i64 = 2;
 /// Bounds in WGS84 degrees as a rectangle of nodes, rounded outwards.
 ///
 /// In a projected CRS it is the rectangle around the bounds' image, which is bent.
-pub(crate) fn nodes_of(
+fn nodes_of(
     bounds_deg: [f64; 4],
     working: &Working,
     area_deg: Bounds,
@@ -48,16 +53,56 @@ pub(crate) fn nodes_of(
         let crs = working.crs.label.clone();
         return Err(DemError::BoundsOutsideCrs { bounds: bounds_text(bounds_deg), crs });
     }
+    Ok(nodes_around(bounds_m, origin_m, cell))
+}
+
+/// A rectangle in working metres as a rectangle of nodes, rounded outwards.
+fn nodes_around(bounds_m: Bounds, origin_m: [f64; 2], cell: Cell) -> [NodeIndex; 2] {
     // The limit keeps the conversion to integers within what a frame can have.
     let cells = |metres: f64, axis: usize| {
         ((metres - origin_m[axis]) / cell.to_array()[axis]).clamp(-1e15, 1e15)
     };
     let (low, high) =
         (|at: f64| (at + ON_NODE).floor() as i64, |at: f64| (at - ON_NODE).ceil() as i64);
-    Ok([
+    [
         NodeIndex { i: low(cells(bounds_m.min_x, 0)), j: low(cells(bounds_m.min_y, 1)) },
         NodeIndex { i: high(cells(bounds_m.max_x, 0)), j: high(cells(bounds_m.max_y, 1)) },
-    ])
+    ]
+}
+
+/// What of a DEM is asked for: the nodes, and how the user asked.
+pub(crate) struct Asked {
+    pub(crate) nodes: [NodeIndex; 2],
+    text: String,
+}
+
+impl Asked {
+    /// What bounds and polygon have in common; `None` where neither is given.
+    pub(crate) fn of(
+        options: &PlanOptions,
+        layout: &Layout,
+        area_deg: Bounds,
+    ) -> Result<Option<Self>, DemError> {
+        let Layout { working, origin_m, cell, .. } = layout;
+        let mut asked: Option<Self> = None;
+        if let Some(bounds_deg) = options.bounds_deg {
+            let nodes = nodes_of(bounds_deg, working, area_deg, *origin_m, *cell)?;
+            asked = Some(Self { nodes, text: format!("--bounds {}", bounds_text(bounds_deg)) });
+        }
+        if let Some(polygon) = &options.polygon {
+            let image = Image::new(polygon, working, area_deg, cell.shorter_m())?;
+            let own = nodes_around(image.bounds, *origin_m, *cell);
+            let text = format!("--polygon {}", polygon.path().display());
+            asked = Some(match asked {
+                Some(bounds) => Self {
+                    nodes: common(bounds.nodes, own),
+                    text: format!("what {} and {text} have in common", bounds.text),
+                },
+                None => Self { nodes: own, text },
+            });
+        }
+        Ok(asked)
+    }
 }
 
 /// The same nodes, as far as they are on the lattice.
@@ -76,22 +121,21 @@ fn continuous([west, south, east, north]: [f64; 4]) -> [f64; 4] {
 }
 
 /// Bounds as they are given on the command line.
-pub(crate) fn bounds_text(bounds_deg: [f64; 4]) -> String {
+fn bounds_text(bounds_deg: [f64; 4]) -> String {
     bounds_deg.map(|deg| deg.to_string()).join(",")
 }
 
 /// The nodes of `whole` that are asked for. Fails where that is no cell, or where the bounds lie on both ends of data that go
 /// around the earth.
 pub(crate) fn cut(
-    bounds_deg: [f64; 4],
-    asked: [NodeIndex; 2],
+    asked: &Asked,
     whole: [NodeIndex; 2],
     around_the_earth: Option<i64>,
     dem: &Dem,
 ) -> Result<[NodeIndex; 2], DemError> {
-    let common = common(asked, whole);
+    let Asked { nodes: asked, text } = asked;
+    let common = common(*asked, whole);
     let has_cell = |[low, high]: [NodeIndex; 2]| low.i < high.i && low.j < high.j;
-    let text = || bounds_text(bounds_deg);
     if let Some(columns) = around_the_earth {
         let moved = |by: i64| asked.map(|node| NodeIndex { i: node.i + by, j: node.j });
         // One column of cells at both ends comes of rounding.
@@ -100,14 +144,14 @@ pub(crate) fn cut(
             high.i - low.i > 1 && low.j < high.j
         };
         if has_cell(common) && (is_at_other_end(columns) || is_at_other_end(-columns)) {
-            return Err(DemError::BoundsAtBothEnds { bounds: text() });
+            return Err(DemError::BoundsAtBothEnds { asked: text.clone() });
         }
     }
     if has_cell(common) {
         return Ok(common);
     }
     let [west, south, east, north] = dem.wgs84_bounds.to_array();
-    Err(DemError::BoundsBesideData { bounds: text(), west, south, east, north })
+    Err(DemError::BoundsBesideData { asked: text.clone(), west, south, east, north })
 }
 
 /// The rectangle of nodes that two have in common; its corners change places where there is none.
@@ -225,4 +269,16 @@ pub(crate) fn parts_of_file(
             }
         })
         .collect()
+}
+
+impl GridPlan {
+    /// This plan, without the nodes that are not corners of cells which the polygon enters. Its bounds stay.
+    ///
+    /// # Errors
+    /// When the polygon has no place in the working CRS, or encloses nothing.
+    pub fn within(mut self, polygon: &Polygon) -> Result<Self, DemError> {
+        let area = area(polygon, &self.working, self.area_deg(), &self.frame)?;
+        self.polygon = Some(Arc::new(area));
+        Ok(self)
+    }
 }

@@ -1,10 +1,13 @@
-use corniche_geom::{Bounds, Cell, Frame, NodeIndex};
+use std::sync::Arc;
+
+use corniche_geom::{Bounds, Cell, Frame, LatticeArea, NodeIndex};
 
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
 use crate::plan::alignment::Alignment;
 use crate::plan::kernel::Kernel;
 use crate::plan::node_positions::NodePositions;
+use crate::polygons::polygon::Polygon;
 
 /// What the user can choose about the grid. The default chooses nothing, and fills no voids.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -24,6 +27,8 @@ pub struct PlanOptions {
     /// larger than the east. `None` makes all. Everything else is chosen as without them, so that the same nodes get the same
     /// heights.
     pub bounds_deg: Option<[f64; 4]>,
+    /// Only the ground under this polygon is made: nodes that are corners of cells which it enters. With `bounds_deg`, both hold.
+    pub polygon: Option<Polygon>,
 }
 
 /// Whether nodes are the DEM's samples.
@@ -51,8 +56,8 @@ pub struct PlanScale {
 /// The part of a DEM that a plan is for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clip {
-    /// The bounds that were asked for, rounded outwards to whole cells: south-western and north-eastern node. They may reach
-    /// beyond the data.
+    /// The bounds that were asked for, those of a polygon included, rounded outwards to whole cells: south-western and north-eastern
+    /// node. They may reach beyond the data.
     pub nodes: [NodeIndex; 2],
     /// Rectangle of the nodes of the whole DEM, working metres.
     pub whole_data_bounds: Bounds,
@@ -82,6 +87,8 @@ pub struct GridPlan {
     pub scale: PlanScale,
     /// The part that is asked for; `None`: all of it.
     pub clip: Option<Clip>,
+    /// The polygon that was asked for, on the lattice.
+    pub polygon: Option<Arc<LatticeArea>>,
     /// Rectangle of the nodes from `south_west` to `north_east`, working metres.
     pub data_bounds: Bounds,
     /// Rectangle around the files, or around the part that is asked for, in WGS84 degrees. Past the antimeridian longitudes go on

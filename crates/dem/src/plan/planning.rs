@@ -8,7 +8,7 @@ use gdal::version::VersionInfo;
 use crate::crs::operation::Operation;
 use crate::crs::working::Working;
 use crate::mosaics::mosaic::Mosaic;
-use crate::plan::clip;
+use crate::plan::clip::{self, Asked};
 use crate::plan::description::{describe, resampled_onto_first};
 use crate::plan::grid_plan::{
     Clip, GridPlan, Method, MosaicRole, PlanOptions, Resampling, bounds_of,
@@ -39,7 +39,8 @@ impl Dem {
     ///   alone, whether a projection keeps its unit.
     /// - Cell: `options.cell`; else the spacing of the first file's samples, a rectangle; where that file is in another CRS
     ///   or turned against it, a square with the shorter spacing as side (two significant digits in another CRS).
-    /// - Bounds: `options.bounds_deg` leaves out nodes and nothing else. All of the above is chosen from the whole DEM.
+    /// - Bounds: `options.bounds_deg` and `options.polygon` leave out nodes and nothing else. All of the above is chosen from the
+    ///   whole DEM.
     /// - Where the cell is the spacing of the first file's samples, or a multiple by `options.cell_every`, nodes coincide
     ///   with samples; otherwise node (0, 0) is the CRS's zero. Files on other grids are resampled.
     ///
@@ -89,16 +90,10 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         refuse_line(every, [south_west, north_east])?;
     }
     let whole = [south_west, north_east];
-    let (cell, area_deg) = (layout.cell, dem.wgs84_bounds);
-    let asked = options.bounds_deg.map(|bounds_deg| {
-        clip::nodes_of(bounds_deg, &layout.working, area_deg, layout.origin_m, cell)
-            .map(|nodes| (bounds_deg, nodes))
-    });
-    let asked = asked.transpose()?;
-    let [south_west, north_east] = match asked {
-        Some((bounds_deg, nodes)) => {
-            clip::cut(bounds_deg, nodes, whole, columns_of_a_turn(&layout), dem)?
-        }
+    let area_deg = dem.wgs84_bounds;
+    let asked = Asked::of(options, &layout, dem.wgs84_bounds)?;
+    let [south_west, north_east] = match &asked {
+        Some(asked) => clip::cut(asked, whole, columns_of_a_turn(&layout), dem)?,
         None => whole,
     };
     let frame = Frame::covering(layout.origin_m, layout.cell, south_west, north_east)?;
@@ -115,8 +110,8 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         .collect::<Result<_, DemError>>()?;
     let working = layout.working;
     let data_bounds = bounds_of(&frame, [south_west, north_east]);
-    let clip = asked.map(|(_, nodes)| Clip {
-        nodes: clip::on_lattice(&frame, nodes),
+    let clip = asked.map(|asked| Clip {
+        nodes: clip::on_lattice(&frame, asked.nodes),
         whole_data_bounds: bounds_of(&frame, whole),
         whole_wgs84_bounds: area_deg,
     });
@@ -124,7 +119,7 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         Some(_) => clip::wgs84_bounds(data_bounds, &working, area_deg)?,
         None => area_deg,
     };
-    Ok(GridPlan {
+    let plan = GridPlan {
         frame,
         south_west,
         north_east,
@@ -134,6 +129,7 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         point_scale: (scale.center[0] * scale.center[1]).sqrt(),
         scale,
         clip,
+        polygon: None,
         data_bounds,
         wgs84_bounds,
         resampling: resampling(&roles),
@@ -145,7 +141,11 @@ fn plan(dem: &Dem, options: &PlanOptions) -> Result<GridPlan, DemError> {
         fill_voids: options.fill_voids,
         roles,
         working,
-    })
+    };
+    match &options.polygon {
+        Some(polygon) => plan.within(polygon),
+        None => Ok(plan),
+    }
 }
 
 /// The south-western and north-eastern node around those of all mosaics.

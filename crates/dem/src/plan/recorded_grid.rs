@@ -73,6 +73,7 @@ impl RecordedCrs {
             point_scale,
             scale,
             clip,
+            polygon: None,
             data_bounds: bounds_of(&frame, [south_west, north_east]),
             wgs84_bounds,
             resampling,

@@ -24,6 +24,12 @@ pub struct DemWindow {
     pub is_filled: Vec<bool>,
 }
 
+/// A window of nodes, of which some are wanted; all of them where the list is empty.
+struct Wanted {
+    part: NodeWindow,
+    is_wanted: Vec<bool>,
+}
+
 /// Reads windows of heights. Each thread has its own, because it keeps files open and reuses its buffers.
 pub struct Reader<'a> {
     pub(crate) dem: &'a Dem,
@@ -48,7 +54,7 @@ impl Dem {
 }
 
 impl Reader<'_> {
-    /// The heights of a window of stride 1, voids filled. Nodes outside the data or the plan's bounds are gaps.
+    /// The heights of a window of stride 1, voids filled. Nodes outside the data, the plan's bounds or its polygon are gaps.
     ///
     /// A node has the same bits whichever window it is read through.
     ///
@@ -65,26 +71,52 @@ impl Reader<'_> {
         // without bounds.
         let mut heights_m = vec![f32::NAN; window.columns * window.rows];
         let (mut filled, mut is_filled) = (0, Vec::new());
-        let inside = [self.plan.south_west, self.plan.north_east];
-        if let Some(part) = intersection(&window, inside) {
+        let within = intersection(&window, [self.plan.south_west, self.plan.north_east]);
+        if let Some(Wanted { part, is_wanted }) = within.and_then(|part| self.wanted(part)) {
             let found = self.filled_window(part)?;
             let target = Target::new(&window, &part);
             if !found.is_filled.is_empty() {
                 is_filled = vec![false; heights_m.len()];
             }
             for row in 0..part.rows {
-                let (from, to) = (row * part.columns, target.at(0, row));
-                heights_m[to..to + part.columns]
-                    .copy_from_slice(&found.heights.raw()[from..from + part.columns]);
-                if !is_filled.is_empty() {
-                    is_filled[to..to + part.columns]
-                        .copy_from_slice(&found.is_filled[from..from + part.columns]);
+                for column in 0..part.columns {
+                    let from = row * part.columns + column;
+                    if !is_wanted.is_empty() && !is_wanted[from] {
+                        continue;
+                    }
+                    let to = target.at(column, row);
+                    heights_m[to] = found.heights.raw()[from];
+                    if !is_filled.is_empty() && found.is_filled[from] {
+                        is_filled[to] = true;
+                        filled += 1;
+                    }
                 }
             }
-            filled = found.filled;
         }
         let heights = HeightGrid::new(window.columns, window.rows, heights_m);
         Ok(DemWindow { heights, filled, is_filled })
+    }
+
+    /// The nodes of a window that the plan's polygon leaves, and the smallest window around them; `None` where it leaves none.
+    fn wanted(&self, window: NodeWindow) -> Option<Wanted> {
+        let Some(area) = &self.plan.polygon else {
+            return Some(Wanted { part: window, is_wanted: Vec::new() });
+        };
+        let frame = &self.plan.frame;
+        let is_wanted = area.nodes(frame.node_steps(frame.max_level()), &window);
+        let places = || (0..is_wanted.len()).filter(|&at| is_wanted[at]);
+        let (top, bottom) = (places().min()? / window.columns, places().max()? / window.columns);
+        let columns = || places().map(|at| at % window.columns);
+        let (left, right) = (columns().min()?, columns().max()?);
+        let part = NodeWindow {
+            corner: window.node(left, top),
+            stride: window.stride,
+            columns: right - left + 1,
+            rows: bottom - top + 1,
+        };
+        let rows = is_wanted.chunks(window.columns).skip(top).take(part.rows);
+        let is_wanted = rows.flat_map(|row| row[left..=right].iter().copied()).collect();
+        Some(Wanted { part, is_wanted })
     }
 
     /// The same without regard to bounds.

@@ -18,6 +18,7 @@ mod georeference;
 mod names;
 mod own_crs;
 mod own_grid;
+mod polygon;
 mod real_data;
 mod refusals;
 mod samples;

@@ -43,7 +43,7 @@ pub(crate) enum Value {
     Integer(i64),
     Real(f64),
     Text(String),
-    /// There is none.
+    /// The feature has no value in this field.
     Null,
 }
 

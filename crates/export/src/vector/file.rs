@@ -16,7 +16,7 @@ use crate::{
     vector::{
         field::{Field, FieldKind, Record, Value},
         format::VectorFormat,
-        whole,
+        whole::{self, Contents},
     },
 };
 
@@ -50,7 +50,7 @@ pub(crate) struct VectorFile {
     layer: Layer,
     waiting: Vec<Record>,
     waiting_vertices: usize,
-    written: u64,
+    written: Contents,
     _settings: Settings,
 }
 
@@ -74,7 +74,7 @@ impl VectorFile {
             layer,
             waiting: Vec::new(),
             waiting_vertices: 0,
-            written: 0,
+            written: Contents::default(),
             _settings: settings,
         })
     }
@@ -88,8 +88,8 @@ impl VectorFile {
 
     fn write(&mut self) -> Result<(), ExportError> {
         let records = std::mem::take(&mut self.waiting);
-        self.waiting_vertices = 0;
-        self.written += records.len() as u64;
+        self.written.features += records.len() as u64;
+        self.written.vertices += std::mem::take(&mut self.waiting_vertices) as u64;
         let fields = &self.layer.fields;
         let written = match self.format {
             // Without a transaction each feature would be one.
@@ -107,8 +107,7 @@ impl VectorFile {
         self.write()?;
         let Self { path, format, dataset, written, .. } = self;
         dataset.close().map_err(|error| failed(&path, error))?;
-        let found = whole::count_features(&path, format)?;
-        if found == written { Ok(()) } else { Err(ExportError::NotWhole { path, written, found }) }
+        whole::check(&path, format, written)
     }
 }
 
@@ -210,7 +209,7 @@ fn geometry(lines: &[Vec<[f64; 3]>]) -> Result<Geometry, GdalError> {
     Ok(all)
 }
 
-/// [`SETTINGS`] as long as it lives.
+/// Sets [`SETTINGS`], until it is dropped.
 struct Settings;
 
 impl Settings {

@@ -22,9 +22,9 @@ use corniche_roads::{FrcTable, Road};
 use corniche_store::{MemoryScratch, Scratch};
 use rayon::ThreadPool;
 
-/// The preset `config/frc/default.toml`.
+/// The preset `crates/presets/frc/default.toml`.
 pub(crate) fn default_table() -> FrcTable {
-    parse_frc_table(include_str!("../../../../config/frc/default.toml")).unwrap()
+    parse_frc_table(include_str!("../../../presets/frc/default.toml")).unwrap()
 }
 
 /// A lattice of 1e-7 degrees, so that every point shows the coordinates of its node.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use corniche_dem::Polygon;
 use corniche_geom::{Bounds, Cell, Frame, NodeIndex, TileId};
 use corniche_roads::{FrcTable, FrcTableError};
 use corniche_tileset::SettingsRecord;
@@ -167,7 +168,7 @@ impl BuildPlan {
     /// The settings to plan it again with, with the paths of the plan.
     ///
     /// # Errors
-    /// When the plan was changed by hand so that it makes no sense.
+    /// When the plan was changed by hand so that it makes no sense, or its polygon cannot be read.
     pub fn settings(&self) -> Result<PlanSettings, PlanError> {
         let paths = |kind: &'static str| {
             let of_kind = self.inputs.iter().filter(move |input| input.kind == kind);
@@ -178,11 +179,14 @@ impl BuildPlan {
             Some(classes) => table.with_classes(classes)?,
             None => table,
         };
+        let mut terrain = settings_record::terrain(&self.settings);
+        terrain.plan.polygon =
+            paths("polygon").next().map(|path| Polygon::read(&path)).transpose()?;
         Ok(PlanSettings {
             dem: paths("dem").collect(),
             terrain_of: paths("terrain").next(),
             osm: paths("osm").next(),
-            terrain: settings_record::terrain(&self.settings),
+            terrain,
             roads: settings_record::roads(&self.settings, table).ok_or(PlanError::Filter)?,
             attribution: self.attribution.clone(),
             generator: self.generator.clone(),

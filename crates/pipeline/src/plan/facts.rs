@@ -26,7 +26,7 @@ pub(crate) fn different_facts(ours: &[Fact], theirs: &[Fact]) -> Vec<String> {
 /// In what the settings for the ground differ from those that a package records, in words; those for roads do not count.
 pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecord) -> Vec<String> {
     // The package's roads are not used.
-    let theirs = SettingsRecord {
+    let mut theirs = SettingsRecord {
         frc_table: ours.frc_table.clone(),
         frc_table_sha256: ours.frc_table_sha256.clone(),
         classes: ours.classes.clone(),
@@ -34,6 +34,12 @@ pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecor
         simplify_cells: ours.simplify_cells,
         ..package.clone()
     };
+    // A polygon is the same under another name.
+    if let (Some(own), Some(recorded)) = (&ours.polygon, &mut theirs.polygon)
+        && own.sha256 == recorded.sha256
+    {
+        recorded.name.clone_from(&own.name);
+    }
     setting_facts(ours)
         .into_iter()
         .zip(setting_facts(&theirs))
@@ -75,6 +81,7 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         cell_every,
         scale_latitude_deg,
         bounds_deg,
+        polygon,
         frc_table,
         // The table's entries are compared one by one.
         frc_table_sha256: _,
@@ -102,6 +109,10 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         fact(
             "--bounds",
             &given(bounds_deg.map(|bounds| bounds.map(|deg| deg.to_string()).join(",")).as_ref()),
+        ),
+        fact(
+            "--polygon",
+            &given(polygon.as_ref().map(|own| format!("{} ({})", own.name, own.sha256)).as_ref()),
         ),
         fact("--frc-table", frc_table),
         fact(

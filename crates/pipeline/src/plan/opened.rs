@@ -1,12 +1,12 @@
 use std::path::Path;
 
-use corniche_dem::{Dem, GridPlan};
+use corniche_dem::{Dem, GridPlan, Polygon};
 use corniche_geom::CoordinateTable;
 
 use super::{coordinates::coordinates, facts::terrain_differences};
 use crate::{
     BuildError, PlanSettings, PlannedInput, TerrainSettings,
-    inputs::{InputKind, Inputs},
+    inputs::{InputKind, Inputs, OtherInputs},
     levels::{Levels, most_scale},
     settings_record,
     terrain::{ground::GroundSource, recorded::RecordedTerrain},
@@ -35,10 +35,11 @@ impl Opened {
     /// When a file cannot be used, the files make no grid, or a setting does not fit them.
     pub(crate) fn new(settings: &PlanSettings) -> Result<Self, BuildError> {
         // The state of the files is noted before anything of them is read.
-        let osm = settings.osm.as_deref();
+        let polygon = settings.terrain.plan.polygon.as_ref().map(Polygon::path);
+        let others = OtherInputs { polygon, osm: settings.osm.as_deref() };
         let mut inputs = match &settings.terrain_of {
-            Some(package) => Inputs::find_with_package(package, osm)?,
-            None => Inputs::find(&settings.dem, osm)?,
+            Some(package) => Inputs::find_with_package(package, others)?,
+            None => Inputs::find(&settings.dem, others)?,
         };
         let planned = match &settings.terrain_of {
             Some(package) => Self::recorded(settings, package),
@@ -97,7 +98,10 @@ impl Opened {
             return Err(terrain.damaged("its step of heights does not fit its settings"));
         }
         let coordinates = manifest.coordinates.clone();
-        let grid = terrain.grid();
+        let mut grid = terrain.grid();
+        if let Some(polygon) = &settings.terrain.plan.polygon {
+            grid = grid.within(polygon)?;
+        }
         let source = GroundSource::Package(Box::new(terrain));
         Ok(Planned { source, grid, levels, max_error_m, coordinates })
     }

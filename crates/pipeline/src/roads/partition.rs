@@ -13,7 +13,9 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
-use corniche_geom::{Frame, LatticeBounds, LatticePoint, ProjectError, Projection, TileId};
+use corniche_geom::{
+    Frame, LatticeArea, LatticeBounds, LatticePoint, ProjectError, Projection, TileId,
+};
 use corniche_osm::{ExtractSummary, ReadRequest, read_kept_roads, read_roads};
 use corniche_roads::{FunctionalRoadClass, Road};
 use corniche_store::{Artifacts, Scratch, SortRecord, Sorter};
@@ -53,6 +55,8 @@ pub(crate) struct RoadInput<'a> {
     pub(crate) data_bounds: LatticeBounds,
     /// The bounds that were asked for.
     pub(crate) clip: Option<LatticeBounds>,
+    /// The polygon that was asked for.
+    pub(crate) polygon: Option<&'a LatticeArea>,
     pub(crate) pool: &'a rayon::ThreadPool,
     /// Of the sorting.
     pub(crate) memory_bytes: u64,
@@ -169,6 +173,7 @@ impl<'a> Gathered<'a> {
                 lengths: input.lengths,
                 data_bounds: input.data_bounds,
                 clip: input.clip,
+                polygon: input.polygon,
             },
             pool: input.pool,
             batch: Vec::new(),

@@ -1,5 +1,7 @@
 //! What a tile needs of its roads: pieces of their lines as its level shows them.
 
+use std::num::{NonZeroU8, NonZeroU32};
+
 use corniche_geom::{LatticePoint, Polyline, TileId};
 use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
 use corniche_store::Artifacts;
@@ -101,16 +103,8 @@ impl RoadPiece {
         let points: usize = runs.iter().map(|run| run.line.points().len()).sum();
         let mut bytes = Vec::with_capacity(64 + points * 12);
         put_signed(&mut bytes, *way_id);
-        bytes.extend([
-            class.number(),
-            attributes.form as u8,
-            attributes.structure as u8,
-            attributes.layer.cast_unsigned(),
-            attributes.oneway as u8,
-        ]);
-        for text in [&attributes.name, &attributes.reference, &attributes.surface] {
-            put_text(&mut bytes, text);
-        }
+        bytes.push(class.number());
+        put_attributes(&mut bytes, attributes);
         put_unsigned(&mut bytes, *source_points);
         put_unsigned(&mut bytes, *simplified_points);
         put_unsigned(&mut bytes, runs.len() as u64);
@@ -133,16 +127,8 @@ impl RoadPiece {
 
     fn take(rest: &mut Take<'_>) -> Option<Self> {
         let way_id = rest.signed()?;
-        let &[class, form, structure, layer, oneway] = rest.bytes(5)? else { return None };
-        let attributes = RoadAttributes {
-            form: *Form::ALL.get(usize::from(form))?,
-            structure: *Structure::ALL.get(usize::from(structure))?,
-            layer: layer.cast_signed(),
-            oneway: *Oneway::ALL.get(usize::from(oneway))?,
-            name: rest.text()?,
-            reference: rest.text()?,
-            surface: rest.text()?,
-        };
+        let &[class] = rest.bytes(1)? else { return None };
+        let attributes = take_attributes(rest)?;
         let [source_points, simplified_points] = [rest.unsigned()?, rest.unsigned()?];
         let count = rest.count()?;
         let mut before = LatticePoint::new(0, 0);
@@ -153,6 +139,50 @@ impl RoadPiece {
         let class = FunctionalRoadClass::new(class)?;
         Some(Self { way_id, class, attributes, source_points, simplified_points, runs })
     }
+}
+
+fn put_attributes(bytes: &mut Vec<u8>, attributes: &RoadAttributes) {
+    let RoadAttributes {
+        form,
+        structure,
+        layer,
+        oneway,
+        name,
+        reference,
+        surface,
+        highway,
+        lanes,
+        width_mm,
+        max_speed,
+        sac_scale,
+        tracktype,
+    } = attributes;
+    bytes.extend([*form as u8, *structure as u8, layer.cast_unsigned(), *oneway as u8]);
+    bytes.push(lanes.map_or(0, NonZeroU8::get));
+    put_unsigned(bytes, width_mm.map_or(0, NonZeroU32::get).into());
+    for text in [name, reference, surface, highway, max_speed, sac_scale, tracktype] {
+        put_text(bytes, text);
+    }
+}
+
+fn take_attributes(rest: &mut Take<'_>) -> Option<RoadAttributes> {
+    let &[form, structure, layer, oneway, lanes] = rest.bytes(5)? else { return None };
+    let width_mm = u32::try_from(rest.unsigned()?).ok()?;
+    Some(RoadAttributes {
+        form: *Form::ALL.get(usize::from(form))?,
+        structure: *Structure::ALL.get(usize::from(structure))?,
+        layer: layer.cast_signed(),
+        oneway: *Oneway::ALL.get(usize::from(oneway))?,
+        name: rest.text()?,
+        reference: rest.text()?,
+        surface: rest.text()?,
+        highway: rest.text()?,
+        lanes: NonZeroU8::new(lanes),
+        width_mm: NonZeroU32::new(width_mm),
+        max_speed: rest.text()?,
+        sac_scale: rest.text()?,
+        tracktype: rest.text()?,
+    })
 }
 
 impl Run {

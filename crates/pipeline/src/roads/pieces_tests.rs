@@ -24,6 +24,12 @@ fn pieces() -> impl Strategy<Value = RoadPiece> {
             oneway: Oneway::ALL[oneway],
             reference: name.chars().rev().collect(),
             surface: "asphalt".into(),
+            highway: "track".into(),
+            lanes: NonZeroU8::new(layer.cast_unsigned()),
+            width_mm: NonZeroU32::new(form as u32 * 1700),
+            max_speed: format!("{structure}0 mph"),
+            sac_scale: format!("T{form}"),
+            tracktype: format!("grade{oneway}"),
             name,
         },
     );

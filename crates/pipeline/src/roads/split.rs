@@ -1,7 +1,9 @@
 //! Splits a road into the pieces that the tiles of all levels need.
 
-use corniche_drape::OwnedBorders;
-use corniche_geom::{LatticeBounds, LatticePoint, Polyline, TileId};
+use std::borrow::Cow;
+
+use corniche_drape::{ClippedPart, OwnedBorders};
+use corniche_geom::{LatticeArea, LatticeBounds, LatticePoint, Polyline, TileId};
 use corniche_roads::{FunctionalRoadClass, Road};
 
 use super::{
@@ -20,6 +22,8 @@ pub(crate) struct Splitting<'a> {
     pub(crate) data_bounds: LatticeBounds,
     /// The bounds that were asked for. Tiles on their edge get roads from outside, too: for what is drawn beside their ground.
     pub(crate) clip: Option<LatticeBounds>,
+    /// The polygon that was asked for: roads end at its outline.
+    pub(crate) polygon: Option<&'a LatticeArea>,
 }
 
 /// A road, split.
@@ -36,24 +40,21 @@ impl Splitting<'_> {
     pub(crate) fn split(&self, road: &Road) -> SplitRoad {
         let segments_um = self.lengths.segments_um(&road.line);
         let length_um: u64 = segments_um.iter().sum();
+        let parts = self.parts(road, segments_um);
         let length_in = |bounds: &LatticeBounds| -> u64 {
-            corniche_drape::clip_parts(&road.line, bounds, OwnedBorders::ALL)
-                .iter()
-                .flat_map(|part| pieces_um(&road.line, part, &segments_um))
-                .map(|[from, to]| to - from)
-                .sum()
+            parts.iter().map(|part| part.length_in_um(bounds)).sum()
         };
         let clip = self.clip.as_ref();
-        let asked_um = clip.map_or(length_um, length_in);
+        let all_um = || parts.iter().flat_map(|part| &part.segments_um).sum();
+        let asked_um: u64 = clip.map_or_else(all_um, length_in);
         let inside_um =
             length_in(&clip.map_or(self.data_bounds, |clip| clip.intersection(&self.data_bounds)));
         // Cuts are rounded to whole micrometres.
         let outside_um = asked_um.saturating_sub(inside_um);
-        let bounds = LatticeBounds::of(road.line.points());
         let mut pieces = Vec::new();
         for level in self.levels.numbers() {
-            if self.levels.shows(level, road.class) && self.is_near(bounds, level) {
-                self.split_level(road, level, &segments_um, &mut pieces);
+            if self.levels.shows(level, road.class) {
+                self.split_level(&parts, level, &mut pieces);
             }
         }
         SplitRoad {
@@ -64,49 +65,60 @@ impl Splitting<'_> {
                 beyond_um: length_um - inside_um - outside_um,
             },
             class: road.class,
-            bounds,
+            bounds: LatticeBounds::of(road.line.points()),
             pieces,
         }
     }
 
-    /// The pieces of one level. `segments_um` are the true lengths of the source line's segments.
-    fn split_level(
-        &self,
-        road: &Road,
-        level: u8,
-        segments_um: &[u64],
-        pieces: &mut Vec<(TileId, RoadPiece)>,
-    ) {
+    /// The parts of a road in the polygon; without one, the road. `segments_um` are the true lengths of the road's segments.
+    fn parts<'r>(&self, road: &'r Road, segments_um: Vec<u64>) -> Vec<Part<'r>> {
+        let Some(area) = self.polygon else {
+            return vec![Part { road: Cow::Borrowed(road), segments_um }];
+        };
+        let parts = corniche_drape::clip_area(&road.line, area);
+        if parts.first().is_some_and(|part| part.line == road.line) {
+            return vec![Part { road: Cow::Borrowed(road), segments_um }];
+        }
+        parts.into_iter().map(|part| Part::cut(road, part, &segments_um)).collect()
+    }
+
+    /// The pieces of one level.
+    fn split_level(&self, parts: &[Part<'_>], level: u8, pieces: &mut Vec<(TileId, RoadPiece)>) {
         let levels = self.levels;
-        let line = corniche_roads::simplify(road, levels.simplify_tolerance_steps(level));
-        // On the finest level the line is the source line, not simplified.
-        let is_finest = level == levels.frame().max_level();
-        let segments_um = if is_finest { segments_um } else { &[] };
+        let lines: Vec<LevelLine<'_>> = parts
+            .iter()
+            .filter(|part| self.is_near(LatticeBounds::of(part.road.line.points()), level))
+            .map(|part| LevelLine::new(part, level, levels))
+            .collect();
         let mut near = Vec::new();
-        for (index, pair) in line.points().windows(2).enumerate() {
-            for_each_tile_near([pair[0], pair[1]], level, levels, |id| {
-                if self.is_data(id) {
-                    near.push((id, index));
-                }
-            });
+        for (of, line) in lines.iter().enumerate() {
+            for (index, pair) in line.line.points().windows(2).enumerate() {
+                for_each_tile_near([pair[0], pair[1]], level, levels, |id| {
+                    if self.is_data(id) {
+                        near.push((id, of, index));
+                    }
+                });
+            }
         }
         near.sort_unstable();
-        let source = PointsByTile::of(&road.line, level, levels);
-        let simplified = PointsByTile::of(&line, level, levels);
-        for of_tile in near.chunk_by(|(one, _), (other, _)| one == other) {
+        for of_tile in near.chunk_by(|(one, ..), (other, ..)| one == other) {
             let id = of_tile[0].0;
-            let runs = of_tile.chunk_by(|(_, one), (_, other)| one + 1 == *other);
-            let piece = RoadPiece {
-                way_id: road.way_id,
-                class: road.class,
-                attributes: road.attributes.clone(),
-                source_points: source.count(id),
-                simplified_points: simplified.count(id),
-                runs: runs
-                    .filter_map(|run| run_of(&line, [run[0].1, run[run.len() - 1].1], segments_um))
-                    .collect(),
-            };
-            pieces.push((id, piece));
+            let runs = of_tile
+                .chunk_by(|(_, line, one), (_, other, next)| line == other && one + 1 == *next);
+            let road = &parts[0].road;
+            pieces.push((
+                id,
+                RoadPiece {
+                    way_id: road.way_id,
+                    class: road.class,
+                    attributes: road.attributes.clone(),
+                    source_points: lines.iter().map(|line| line.source.count(id)).sum(),
+                    simplified_points: lines.iter().map(|line| line.simplified.count(id)).sum(),
+                    runs: runs
+                        .filter_map(|run| lines[run[0].1].run([run[0].2, run[run.len() - 1].2]))
+                        .collect(),
+                },
+            ));
         }
     }
 
@@ -129,11 +141,78 @@ impl Splitting<'_> {
     }
 }
 
-/// The run from segment `first` to segment `last`, both included.
-fn run_of(line: &Polyline, [first, last]: [usize; 2], segments_um: &[u64]) -> Option<Run> {
-    let line = Polyline::new(line.points()[first..=last + 1].to_vec()).ok()?;
-    let segments_um = segments_um.get(first..=last).unwrap_or_default().to_vec();
-    Some(Run { line, segments_um })
+/// A part of a road in the polygon that was asked for, or the whole road.
+struct Part<'r> {
+    road: Cow<'r, Road>,
+    /// True lengths of its segments.
+    segments_um: Vec<u64>,
+}
+
+impl Part<'_> {
+    /// What was cut out of a road, whose segments have these lengths.
+    fn cut(road: &Road, part: ClippedPart, segments_um: &[u64]) -> Self {
+        let own_um = pieces_um(&road.line, &part, segments_um).map(|[from, to]| to - from);
+        let own_um = own_um.collect();
+        let ClippedPart { line, segments } = part;
+        // The points that are the road's own keep their role in simplification; cuts are ends, which stay anyway.
+        let source = |index: usize| match segments.get(index) {
+            Some(&segment) => segment,
+            None => segments.last().map_or(0, |&segment| segment + 1),
+        };
+        let is_fixed = |&index: &usize| {
+            let of_road = source(index);
+            road.line.points().get(of_road) == Some(&line.points()[index])
+                && road.fixed.binary_search(&(of_road as u32)).is_ok()
+        };
+        let fixed = (0..line.points().len()).filter(is_fixed).map(|index| index as u32).collect();
+        let own = Road {
+            way_id: road.way_id,
+            class: road.class,
+            attributes: road.attributes.clone(),
+            line,
+            fixed,
+        };
+        Self { road: Cow::Owned(own), segments_um: own_um }
+    }
+
+    fn length_in_um(&self, bounds: &LatticeBounds) -> u64 {
+        let line = &self.road.line;
+        corniche_drape::clip_parts(line, bounds, OwnedBorders::ALL)
+            .iter()
+            .flat_map(|part| pieces_um(line, part, &self.segments_um))
+            .map(|[from, to]| to - from)
+            .sum()
+    }
+}
+
+/// A part as a level shows it.
+struct LevelLine<'p> {
+    line: Polyline,
+    /// True lengths of its segments, on the finest level alone.
+    segments_um: &'p [u64],
+    source: PointsByTile,
+    simplified: PointsByTile,
+}
+
+impl<'p> LevelLine<'p> {
+    fn new(part: &'p Part<'_>, level: u8, levels: &Levels) -> Self {
+        let line = corniche_roads::simplify(&part.road, levels.simplify_tolerance_steps(level));
+        // On the finest level the line is the source line, not simplified.
+        let is_finest = level == levels.frame().max_level();
+        Self {
+            segments_um: if is_finest { &part.segments_um } else { &[] },
+            source: PointsByTile::of(&part.road.line, level, levels),
+            simplified: PointsByTile::of(&line, level, levels),
+            line,
+        }
+    }
+
+    /// The run from segment `first` to segment `last`, both included.
+    fn run(&self, [first, last]: [usize; 2]) -> Option<Run> {
+        let line = Polyline::new(self.line.points()[first..=last + 1].to_vec()).ok()?;
+        let segments_um = self.segments_um.get(first..=last).unwrap_or_default().to_vec();
+        Some(Run { line, segments_um })
+    }
 }
 
 /// How many of a line's points belong to each tile of a level: each point belongs to one tile at most.

@@ -55,6 +55,7 @@ pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), B
         lengths: &TrueLengths::new(frame, context.coordinates, &projection),
         data_bounds: context.data().bounds(&frame),
         clip: context.clip(),
+        polygon: context.polygon(),
         pool: &pool,
         memory_bytes: context.memory().sorting,
     };

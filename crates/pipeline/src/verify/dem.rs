@@ -6,7 +6,11 @@ use super::{
     checks::Findings, dem_inputs, deviation_checks, deviations, error::VerifyError,
     report::VerifyReport, request::VerifySettings, samples, vertices_against_dem,
 };
-use crate::{Observer, inputs::Inputs, sample_deviation::SampleSums};
+use crate::{
+    Observer,
+    inputs::{Inputs, OtherInputs},
+    sample_deviation::SampleSums,
+};
 
 pub(crate) fn verify(
     package: &FilePackage,
@@ -14,7 +18,7 @@ pub(crate) fn verify(
     report: &mut VerifyReport,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let inputs = Inputs::find(&settings.dem, None)?;
+    let inputs = Inputs::find(&settings.dem, OtherInputs::default())?;
     let compared = compare_all(package, settings, &inputs, report, observer);
     match &compared {
         Err(VerifyError::Interrupted) => compared,

@@ -30,7 +30,8 @@ pub(crate) fn open(
     let other = || VerifyError::OtherDem {
         expected: expected.iter().map(|input| input.name.clone()).collect(),
     };
-    let terrain = settings_record::terrain(&manifest.settings);
+    let mut terrain = settings_record::terrain(&manifest.settings);
+    terrain.plan.polygon.clone_from(&settings.polygon);
     let dem = Dem::open(&settings.dem, &terrain.open)?;
     let given = inputs.hash(observer)?;
     // Files are compared by content, not by name: a file may have been moved or renamed. Parts are sorted by their hash,

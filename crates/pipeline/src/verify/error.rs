@@ -38,6 +38,16 @@ pub enum VerifyError {
         "the FRC table {given:?} is not the one that the package was made with; give {expected:?} with --frc-table"
     )]
     OtherTable { given: String, expected: String },
+    #[error(
+        "the package was cut with the polygon {expected:?}; give the same polygon with --polygon"
+    )]
+    PolygonMissing { expected: String },
+    #[error(
+        "{path:?} is not the polygon that the package was cut with; give {expected:?}, the same coordinate system and corners"
+    )]
+    OtherPolygon { path: PathBuf, expected: String },
+    #[error("the package was made without a polygon; leave --polygon out")]
+    NoPolygon,
     #[error("the package was made without an extract; leave --osm out")]
     NoExtract,
     #[error(

@@ -16,6 +16,7 @@ mod manifest_sums;
 mod one_tile;
 mod osm;
 mod osm_tile;
+mod polygon;
 mod report;
 mod request;
 mod roads_of_parent;
@@ -59,13 +60,16 @@ pub fn verify(
     header::verify(&package, &mut findings)?;
     grid::verify(package.manifest(), &mut findings);
     georeference::verify(package.manifest(), &mut findings);
+    if !settings.dem.is_empty() || settings.osm.is_some() {
+        polygon::check(package.manifest(), settings.polygon.as_ref())?;
+    }
     if !settings.dem.is_empty() {
         given.push(Needs::Dem);
         dem::verify(&package, settings, &mut report, observer)?;
     }
     if let Some(osm) = &settings.osm {
         given.push(Needs::Osm);
-        osm::verify(&package, osm, settings.threads, &mut findings, observer)?;
+        osm::verify(&package, osm, settings, &mut findings, observer)?;
     }
     findings.merge(std::mem::take(&mut report.checks));
     report.checks = findings.into_checks(&given);

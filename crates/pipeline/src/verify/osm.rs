@@ -13,12 +13,12 @@ use super::{
     error::VerifyError,
     georeference, grid,
     osm_tile::{Found, Laying, SoupCache, look_at},
-    request::VerifyOsm,
+    request::{VerifyOsm, VerifySettings},
     temporary_store::TemporaryStore,
 };
 use crate::{
     BuildError, Observer, Silent, Stage,
-    inputs::{InputKind, Inputs},
+    inputs::{InputKind, Inputs, OtherInputs},
     levels::{Levels, most_scale},
     roads::{
         counts::road_counts,
@@ -35,12 +35,13 @@ use crate::{
 pub(crate) fn verify(
     package: &FilePackage,
     osm: &VerifyOsm,
-    threads: usize,
+    settings: &VerifySettings,
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let inputs = Inputs::find(&[], Some(&osm.path))?;
-    let compared = compare_all(package, osm, threads, &inputs, findings, observer);
+    let others = OtherInputs { osm: Some(&osm.path), polygon: None };
+    let inputs = Inputs::find(&[], others)?;
+    let compared = compare_all(package, osm, settings, &inputs, findings, observer);
     match &compared {
         Err(VerifyError::Interrupted) => compared,
         // A changed input may be the cause of any other error, so it is reported instead.
@@ -51,7 +52,7 @@ pub(crate) fn verify(
 fn compare_all(
     package: &FilePackage,
     osm: &VerifyOsm,
-    threads: usize,
+    request: &VerifySettings,
     inputs: &Inputs,
     findings: &mut Findings,
     observer: &dyn Observer,
@@ -68,13 +69,17 @@ fn compare_all(
     let Ok(crs) = georeference::recorded(manifest) else { return Ok(()) };
     let projection = crs.projection(manifest.area_deg())?;
     let frame = manifest.frame;
+    let polygon = request.polygon.as_ref();
+    let polygon = polygon
+        .map(|polygon| crs.polygon_on_lattice(polygon, manifest.area_deg(), &frame))
+        .transpose()?;
     let widest = most_scale(manifest.scale.largest);
     let levels = Levels::new(frame, manifest.settings.max_error_m, &settings, widest);
     let lengths = TrueLengths::new(frame, &manifest.coordinates, &projection);
     let work = TemporaryStore::new(observer)?;
     let (store, scratch) = (&work.store, work.scratch()?);
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
+        .num_threads(request.threads)
         .build()
         .map_err(|error| BuildError::Start { what: error.to_string() })?;
     let input = RoadInput {
@@ -85,13 +90,14 @@ fn compare_all(
         lengths: &lengths,
         data_bounds: frame.tile_lattice_bounds(first).union(&frame.tile_lattice_bounds(last)),
         clip: grid::clip_of(manifest),
+        polygon: polygon.as_ref(),
         pool: &pool,
         memory_bytes: osm.memory_bytes,
     };
     let roads = partition(&input, store, &scratch, observer)?;
     let mut fates = LossFold::new(&scratch, osm.memory_bytes);
     let laying = Laying { package, levels: &levels, data: [first, last] };
-    let classes = lay(&laying, store, &mut fates, threads, findings, observer)?;
+    let classes = lay(&laying, store, &mut fates, request.threads, findings, observer)?;
     let losses = fates.finish(&roads, store, &Silent)?;
     check_counts(manifest, &roads, &losses, findings);
     check_growth(manifest, &classes, findings);

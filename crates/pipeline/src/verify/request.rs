@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use corniche_dem::Polygon;
 use corniche_roads::FrcTable;
 
 /// What to verify.
@@ -13,6 +14,8 @@ pub struct VerifySettings {
     pub dem: Vec<PathBuf>,
     /// The extract it was made from, to check roads against; `None` leaves that out.
     pub osm: Option<VerifyOsm>,
+    /// The polygon that it was cut with, if it was: needed with elevation files and with an extract.
+    pub polygon: Option<Polygon>,
     /// Worker threads, at least 1.
     pub threads: usize,
 }

@@ -110,7 +110,10 @@ pub(crate) fn verify_against(path: &Path, against: Against) -> Result<VerifyRepo
             memory_bytes: 64 << 20,
         }),
     };
-    verify(&VerifySettings { package: path.to_path_buf(), dem, osm, threads: 2 }, &Silent)
+    verify(
+        &VerifySettings { package: path.to_path_buf(), dem, osm, threads: 2, polygon: None },
+        &Silent,
+    )
 }
 
 /// Asserts that exactly these checks are broken, in any order, and returns the report.

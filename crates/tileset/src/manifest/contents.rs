@@ -32,7 +32,7 @@ pub struct Manifest {
     pub data_bounds: Bounds,
     /// The same in WGS84 degrees.
     pub wgs84_bounds: Bounds,
-    /// The part of the elevation files that the package is of (`--bounds`); left out where it is of all.
+    /// The part of the elevation files that the package is of (`--bounds`, `--polygon`); left out where it is of all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub clip: Option<ClipRecord>,
     /// How nodes relate to the DEM's samples, in words: "nodes are the DEM's samples", "bilinear from …".
@@ -62,7 +62,7 @@ pub struct Manifest {
 /// The part of the elevation files that a package is of.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClipRecord {
-    /// The bounds that were asked for, rounded outwards to whole cells: south-western and north-eastern node. They may reach
+    /// The bounds that were asked for, those of a polygon included, rounded outwards to whole cells: south-western and north-eastern node. They may reach
     /// beyond the data.
     pub nodes: [NodeIndex; 2],
     /// Rectangle of the nodes of all elevation files, working metres.
@@ -153,6 +153,9 @@ pub struct SettingsRecord {
     /// `--bounds`, if given: west, south, east and north in WGS84 degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bounds_deg: Option<[f64; 4]>,
+    /// `--polygon`, if given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub polygon: Option<PolygonRecord>,
     /// Name of the FRC table.
     pub frc_table: String,
     /// SHA-256 of the FRC table's text.
@@ -166,10 +169,19 @@ pub struct SettingsRecord {
     pub simplify_cells: f64,
 }
 
+/// The polygon that a package was cut with.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PolygonRecord {
+    /// File name without folders.
+    pub name: String,
+    /// SHA-256 of its coordinate system and corners, whatever the format of the file.
+    pub sha256: String,
+}
+
 /// An input file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct InputRecord {
-    /// "dem"; "dem-part", a file that the one before it refers to or that belongs to it; or "osm".
+    /// "dem"; "dem-part", a file that the one before it refers to or that belongs to it; "polygon"; or "osm".
     pub kind: String,
     /// File name without folders.
     pub name: String,

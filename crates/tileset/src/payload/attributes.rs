@@ -1,4 +1,4 @@
-//! The road attributes section: records by way, with each text stored once.
+//! The road attributes section: records by way, with each text stored once. What came later is in the road tags section.
 
 use corniche_roads::{Form, Oneway, RoadAttributes, Structure};
 use serde::de::DeserializeOwned;
@@ -95,6 +95,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<RoadRecord>, Damage> {
             name: text(record.names[k])?,
             reference: text(record.references[k])?,
             surface: text(record.surfaces[k])?,
+            ..RoadAttributes::default()
         };
         roads.push(RoadRecord { way_id, attributes });
     }
@@ -125,11 +126,7 @@ pub(crate) fn encode(roads: &[RoadRecord]) -> Result<Vec<u8>, &'static str> {
     if roads.len() > MAX_WAYS {
         return Err("more than a million ways");
     }
-    let texts_of = |road: &RoadRecord| {
-        let RoadAttributes { name, reference, surface, .. } = &road.attributes;
-        name.len() + reference.len() + surface.len()
-    };
-    if roads.iter().map(texts_of).sum::<usize>() > MAX_TEXT_BYTES {
+    if roads.iter().map(|road| road.attributes.text_bytes()).sum::<usize>() > MAX_TEXT_BYTES {
         return Err("more than 64 MiB of texts");
     }
     let mut texts: Vec<&str> = roads

@@ -5,7 +5,7 @@ use crate::payload::context::Context;
 use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::section_kind::{Kind, Sections};
 use crate::payload::tile_payload::{GeoRoad, Terrain, TilePayload};
-use crate::payload::{attributes, envelope, roads_geo, roads_sv, terrain};
+use crate::payload::{attributes, envelope, road_tags, roads_geo, roads_sv, terrain};
 
 /// Reads the wanted sections of a payload; sections that are absent or not wanted are empty or `None`.
 ///
@@ -58,16 +58,20 @@ pub fn decode(
         .map(|bytes| roads_sv::decode(&bytes, context.corner, quantum_m))
         .transpose()
         .map_err(inside(Kind::RoadsSv))?;
-    let records = read(Kind::Attributes, Sections::ATTRIBUTES)?
+    let mut records = read(Kind::Attributes, Sections::ATTRIBUTES)?
         .map(|bytes| attributes::decode(&bytes))
         .transpose()
-        .map_err(inside(Kind::Attributes))?;
+        .map_err(inside(Kind::Attributes))?
+        .unwrap_or_default();
+    if let Some(bytes) = read(Kind::RoadTags, Sections::ATTRIBUTES)? {
+        road_tags::decode(&bytes, &mut records).map_err(inside(Kind::RoadTags))?;
+    }
     Ok(TilePayload {
         id,
         terrain: ground,
         roads_geo: roads_geo.unwrap_or_default(),
         roads_sv: roads_sv.unwrap_or_default(),
-        attributes: records.unwrap_or_default(),
+        attributes: records,
     })
 }
 

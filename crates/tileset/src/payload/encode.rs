@@ -8,7 +8,7 @@ use crate::payload::envelope::{Content, SectionSize, StoredSection};
 use crate::payload::section_kind::Kind;
 use crate::payload::sizes::PayloadSizes;
 use crate::payload::tile_payload::TilePayload;
-use crate::payload::{attributes, envelope, roads_geo, roads_sv, terrain};
+use crate::payload::{attributes, envelope, road_tags, roads_geo, roads_sv, terrain};
 
 /// The grid and the height step that give positions and heights their meaning; the package's manifest records them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,6 +104,9 @@ fn encode_sections(
     if !payload.attributes.is_empty() {
         let bytes = attributes::encode(&payload.attributes).map_err(inside(Kind::Attributes))?;
         sections.push((Kind::Attributes, Content::Raw(bytes)));
+        if let Some(bytes) = road_tags::encode(&payload.attributes) {
+            sections.push((Kind::RoadTags, Content::Raw(bytes)));
+        }
     }
 
     let (bytes, sealed) = envelope::seal(tile, &sections)?;
@@ -119,6 +122,7 @@ fn encode_sections(
         roads_geo: size(Kind::RoadsGeo),
         roads_sv: size(Kind::RoadsSv),
         attributes: size(Kind::Attributes),
+        road_tags: size(Kind::RoadTags),
         geo_class_bytes,
         sv_class_bytes,
     };

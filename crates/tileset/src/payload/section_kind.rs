@@ -31,6 +31,7 @@ kinds! {
     RoadsGeo = 2, "GEO roads section";
     RoadsSv = 3, "SV roads section";
     Attributes = 4, "road attributes section";
+    RoadTags = 5, "road tags section";
 }
 
 /// Which sections of a payload to decode; combine them with `|`.
@@ -46,8 +47,8 @@ impl Sections {
     pub const ROADS_GEO: Self = Self::of(Kind::RoadsGeo);
     /// Plan lines for shadow volumes.
     pub const ROADS_SV: Self = Self::of(Kind::RoadsSv);
-    /// The attributes of each way.
-    pub const ATTRIBUTES: Self = Self::of(Kind::Attributes);
+    /// The attributes of each way, of both sections that have some.
+    pub const ATTRIBUTES: Self = Self(Self::of(Kind::Attributes).0 | Self::of(Kind::RoadTags).0);
     /// Everything, checksums of sections of unknown kinds included.
     pub const ALL: Self = Self::all();
 

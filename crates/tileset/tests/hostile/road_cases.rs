@@ -20,6 +20,7 @@ use crate::{
 const GEO: u16 = 2;
 const SV: u16 = 3;
 const ATTRIBUTES: u16 = 4;
+const TAGS: u16 = 5;
 /// Bytes of the table of classes.
 const TABLE: usize = 72;
 
@@ -71,6 +72,100 @@ fn attributes(texts: &[&[u8]], ways: usize, name: u32) -> Vec<u8> {
     (0..4).for_each(|_| list(&[0]));
     (0..3).for_each(|_| list(&name.to_le_bytes()));
     raw
+}
+
+/// A road tags section: texts, and six columns of planes, each with one byte for all ways.
+fn tags(texts: &[&[u8]], ways: usize, column: [(u8, u8); 6]) -> Vec<u8> {
+    let mut raw = Vec::new();
+    put_varint(&mut raw, texts.len() as u64);
+    for text in texts {
+        put_varint(&mut raw, text.len() as u64);
+        raw.extend(*text);
+    }
+    for (count, byte) in column {
+        planes(&mut raw, count, ways, byte);
+    }
+    raw
+}
+
+/// Cases of the road tags section, each over ways without names.
+fn tag_cases() -> Vec<Case> {
+    let over = |ways: usize, raw: &[u8]| {
+        with_sections(&[
+            zstd_section(ATTRIBUTES, &attributes(&[b""], ways, 0)),
+            zstd_section(TAGS, raw),
+        ])
+    };
+    let refusal = |name, raw: &[u8], words| {
+        let ways = attributes(&[b""], 3, 0);
+        let sections = [Section::plain(ATTRIBUTES, ways), Section::plain(TAGS, raw.to_vec())];
+        refused(name, with_sections(&sections), words)
+    };
+    let none = [(0, 0); 6];
+    let with = |at: usize, column: (u8, u8)| {
+        let mut columns = none;
+        columns[at] = column;
+        columns
+    };
+    let mut many = Vec::new();
+    put_varint(&mut many, 1 << 22);
+    let mut long = Vec::new();
+    (0..2).for_each(|_| put_varint(&mut long, u64::from(u32::MAX) << 31 | 1));
+    let long_text = vec![b'x'; 1 << 20];
+    let all: [&[u8]; 2] = [b"path", b"track"];
+    vec![
+        Case {
+            name: "a million ways with all tags",
+            bytes: over(
+                1 << 20,
+                &tags(&all, 1 << 20, [(1, 2), (1, 1), (1, 2), (1, 1), (1, 2), (4, 1)]),
+            ),
+            outcome: Outcome::Read,
+            limit_mib: 480,
+        },
+        refused(
+            "tags without ways",
+            with_sections(&[Section::plain(TAGS, tags(&all, 3, none))]),
+            "number of texts",
+        ),
+        refusal(
+            "a text of a tag that is not",
+            &tags(&all, 3, with(0, (1, 3))),
+            "a text that does not exist",
+        ),
+        refusal("texts of tags in disorder", &tags(&[b"b", b"a"], 3, none), "texts are not sorted"),
+        refusal("a text of a tag twice", &tags(&[b"a", b"a"], 3, none), "texts are not sorted"),
+        refusal("an empty text of a tag", &tags(&[b""], 3, none), "texts are not sorted"),
+        refusal("a tag that is no UTF-8", &tags(&[&[0xff]], 3, none), "no UTF-8"),
+        refusal("256 lanes", &tags(&[], 3, with(4, (2, 1))), "a number of lanes"),
+        refusal("a width of 5 bytes", &tags(&[], 3, with(5, (5, 1))), "a width"),
+        refusal(
+            "a column too many",
+            &tags(&[], 4, none).into_iter().chain([0]).collect::<Vec<_>>(),
+            "left over",
+        ),
+        refusal("four million texts, no bytes", &many, "number of texts"),
+        refusal("texts longer than memory", &long, "number of texts"),
+        Case {
+            limit_mib: 250,
+            ..refused(
+                "a million ways, four million texts, no bytes",
+                with_sections(&[
+                    zstd_section(ATTRIBUTES, &attributes(&[b""], 1 << 20, 0)),
+                    Section::plain(TAGS, many.clone()),
+                ]),
+                "end too early",
+            )
+        },
+        Case {
+            limit_mib: 110,
+            ..refused(
+                "a tag of 1 MiB for each of 100 ways",
+                over(100, &tags(&[&long_text], 100, with(1, (1, 1)))),
+                "texts of all ways",
+            )
+        },
+    ]
 }
 
 /// A fan of 512 triangles around the tile's corner, and a line that is said to cross one edge of it after another.
@@ -193,7 +288,7 @@ pub(crate) fn all() -> Vec<Case> {
         over_ground(&road_section(1, &blob))
     };
     let long_text = vec![b'x'; 1 << 20];
-    vec![
+    let mut cases = vec![
         refused("4 billion lines", table(u32::MAX, 64), "lines of a section"),
         refused("a line too many", table((1 << 20) + 1, 64), "lines of a section"),
         refused("a million lines, 64 bytes", table(1 << 20, 64), "end too early"),
@@ -276,5 +371,7 @@ pub(crate) fn all() -> Vec<Case> {
                 "texts of all ways",
             ),
         ),
-    ]
+    ];
+    cases.extend(tag_cases());
+    cases
 }

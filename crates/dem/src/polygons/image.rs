@@ -1,0 +1,208 @@
+//! A polygon in the working CRS, and on the lattice of a package.
+
+use corniche_geom::{Bounds, Frame, LatticeArea, LatticePoint};
+
+use crate::crs::full_turns::turns;
+use crate::crs::operation::Operation;
+use crate::crs::working::Working;
+use crate::mosaics::data_extent::near_image;
+use crate::polygons::polygon::{Part, Polygon, Ring};
+use crate::{DemError, PolygonError, RecordedCrs};
+
+/// Edges that are bent in the working CRS are followed this closely, in cells.
+const TOLERANCE_CELLS: f64 = 0.01;
+/// An edge is halved so often at most: one that still bends then crosses a place where the CRS is torn.
+const MOST_HALVINGS: u32 = 24;
+
+/// A polygon in working metres: of each of its parts the outer ring, then the holes.
+pub(crate) struct Image {
+    parts: Vec<Vec<Ring>>,
+    pub(crate) bounds: Bounds,
+}
+
+impl Image {
+    /// Carries a polygon to the working CRS of data that lie in `area_deg`. Where edges are bent there, corners are added.
+    pub(crate) fn new(
+        polygon: &Polygon,
+        working: &Working,
+        area_deg: Bounds,
+        cell_m: f64,
+    ) -> Result<Self, DemError> {
+        let tolerance_m = cell_m * TOLERANCE_CELLS;
+        let mut parts = Vec::with_capacity(polygon.parts().len());
+        for part in polygon.parts() {
+            let carried = of_part(part, working, area_deg, tolerance_m)?;
+            parts.push(carried.ok_or_else(|| outside(polygon, working))?);
+        }
+        let mut bounds = Bounds::EMPTY;
+        parts.iter().flatten().flatten().for_each(|&corner| bounds.include(corner));
+        Ok(Self { parts, bounds })
+    }
+
+    fn on_lattice(
+        &self,
+        frame: &Frame,
+        polygon: &Polygon,
+        working: &Working,
+    ) -> Result<LatticeArea, DemError> {
+        let ring = |ring: &Ring| -> Option<Vec<LatticePoint>> {
+            ring.iter().map(|&corner| frame.snap(corner)).collect()
+        };
+        let parts: Option<Vec<Vec<Vec<LatticePoint>>>> =
+            self.parts.iter().map(|rings| rings.iter().map(ring).collect()).collect();
+        let parts = parts.ok_or_else(|| outside(polygon, working))?;
+        let no_area = || PolygonError::NoArea { path: polygon.path().to_path_buf() };
+        Ok(LatticeArea::new(&parts).ok_or_else(no_area)?)
+    }
+}
+
+impl RecordedCrs {
+    /// A polygon on the lattice of a package over data that lie in `area_deg`: the same, to the last step, as when the package was built.
+    ///
+    /// # Errors
+    /// When the polygon has no place in the CRS, or encloses nothing.
+    pub fn polygon_on_lattice(
+        &self,
+        polygon: &Polygon,
+        area_deg: Bounds,
+        frame: &Frame,
+    ) -> Result<LatticeArea, DemError> {
+        area(polygon, self.working(), area_deg, frame)
+    }
+}
+
+/// A polygon on the lattice of `frame`.
+pub(crate) fn area(
+    polygon: &Polygon,
+    working: &Working,
+    area_deg: Bounds,
+    frame: &Frame,
+) -> Result<LatticeArea, DemError> {
+    let image = Image::new(polygon, working, area_deg, frame.cell().shorter_m())?;
+    image.on_lattice(frame, polygon, working)
+}
+
+fn outside(polygon: &Polygon, working: &Working) -> DemError {
+    let (path, crs) = (polygon.path().to_path_buf(), working.crs.label.clone());
+    PolygonError::OutsideCrs { path, crs }.into()
+}
+
+/// The rings of a part in working metres, next to the middle of the data; `None` where the CRS does not reach or is torn.
+fn of_part(
+    part: &Part,
+    working: &Working,
+    area_deg: Bounds,
+    tolerance_m: f64,
+) -> Result<Option<Vec<Ring>>, DemError> {
+    let operation = Operation::into_working(&part.crs, working, Some(area_deg)).around(None);
+    let turn_m = working.crs.turn.map(|turn| turn * working.metres_per_unit[0]);
+    let mut rings: Vec<Ring> = Vec::with_capacity(part.rings.len());
+    let mut center_m = None;
+    for ring in &part.rings {
+        let Some(mut ring) = of_ring(ring, &operation, turn_m, tolerance_m)? else {
+            return Ok(None);
+        };
+        if let Some(turn_m) = turn_m {
+            // The outer ring goes where the data's middle is near, and holes go with it.
+            let own = center_x(&ring);
+            let middle_m = working.middle * working.metres_per_unit[0];
+            let near = *center_m.get_or_insert(own - turn_m * turns(own - middle_m, turn_m));
+            let away = turn_m * ((own - near) / turn_m).round();
+            for corner in &mut ring {
+                corner[0] -= away;
+            }
+        }
+        rings.push(ring);
+    }
+    Ok(Some(rings))
+}
+
+fn center_x(ring: &Ring) -> f64 {
+    let mut bounds = Bounds::EMPTY;
+    for &corner in ring {
+        bounds.include(corner);
+    }
+    bounds.center()[0]
+}
+
+/// A corner, where it comes out, and whether the edge to the next corner needs no more corners.
+#[derive(Clone, Copy)]
+struct Corner {
+    own: [f64; 2],
+    image: [f64; 2],
+    is_done: bool,
+}
+
+/// A ring in working metres. Longitudes are continuous along it.
+fn of_ring(
+    ring: &Ring,
+    operation: &Operation,
+    turn_m: Option<f64>,
+    tolerance_m: f64,
+) -> Result<Option<Ring>, DemError> {
+    let carry = |own: &[[f64; 2]]| -> Result<Option<Vec<[f64; 2]>>, DemError> {
+        let mut images = own.to_vec();
+        operation.apply(&mut images)?;
+        Ok(images.iter().flatten().all(|value| value.is_finite()).then_some(images))
+    };
+    let beside = |image: [f64; 2], near: [f64; 2]| match turn_m {
+        Some(turn_m) => [near_image(image[0], near[0], turn_m), image[1]],
+        None => image,
+    };
+    let Some(mut images) = carry(ring)? else { return Ok(None) };
+    for index in 1..images.len() {
+        images[index] = beside(images[index], images[index - 1]);
+    }
+    if let (Some(&first), Some(&last), Some(turn_m)) = (images.first(), images.last(), turn_m)
+        && (beside(first, last)[0] - first[0]).abs() > turn_m.abs() / 2.0
+    {
+        // It goes around a pole.
+        return Ok(None);
+    }
+    if operation.is_identity() {
+        return Ok(Some(images));
+    }
+    let mut corners: Vec<Corner> = ring
+        .iter()
+        .zip(images)
+        .map(|(&own, image)| Corner { own, image, is_done: false })
+        .collect();
+    for _ in 0..MOST_HALVINGS {
+        let next = |index: usize| corners[(index + 1) % corners.len()];
+        let open: Vec<usize> =
+            (0..corners.len()).filter(|&index| !corners[index].is_done).collect();
+        // A quarter and half along each edge: an edge with the shape of an S is straight at its middle.
+        let probes: Vec<[f64; 2]> = open
+            .iter()
+            .flat_map(|&index| [0.25, 0.5].map(|t| between(corners[index].own, next(index).own, t)))
+            .collect();
+        let Some(found) = carry(&probes)? else { return Ok(None) };
+        let mut middles = vec![None; corners.len()];
+        for (&index, (found, own)) in open.iter().zip(found.chunks(2).zip(probes.chunks(2))) {
+            let (from, to) = (corners[index].image, next(index).image);
+            let to = beside(to, from);
+            let found = [beside(found[0], from), beside(found[1], from)];
+            let off = |image: [f64; 2], t: f64| {
+                let straight = between(from, to, t);
+                (image[0] - straight[0]).hypot(image[1] - straight[1])
+            };
+            if off(found[0], 0.25) > tolerance_m || off(found[1], 0.5) > tolerance_m {
+                middles[index] = Some(Corner { own: own[1], image: found[1], is_done: false });
+            }
+        }
+        let all_done = middles.iter().all(Option::is_none);
+        let refined = corners.iter().zip(&middles).flat_map(|(corner, middle)| {
+            let is_done = corner.is_done || middle.is_none();
+            [Some(Corner { is_done, ..*corner }), *middle].into_iter().flatten()
+        });
+        corners = refined.collect();
+        if all_done {
+            return Ok(Some(corners.iter().map(|corner| corner.image).collect()));
+        }
+    }
+    Ok(None)
+}
+
+fn between(from: [f64; 2], to: [f64; 2], t: f64) -> [f64; 2] {
+    [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * t)
+}

@@ -1,0 +1,68 @@
+//! What the scripts say on machines that cannot build.
+
+use std::{fs, os::unix::fs::PermissionsExt, path::Path, process::Command};
+
+/// Runs `scripts/demo` with nothing on the path but the system's tools and these stand-ins.
+fn demo(stand_ins: &[(&str, &str)]) -> (Option<i32>, String) {
+    let folder = tempfile::tempdir().unwrap();
+    // What the script needs before it builds; the machine's own cargo stays out.
+    for tool in ["bash", "env", "dirname", "sed", "awk", "uname", "grep"] {
+        let found = ["/bin", "/usr/bin"]
+            .map(|path| Path::new(path).join(tool))
+            .into_iter()
+            .find(|path| path.exists());
+        std::os::unix::fs::symlink(found.unwrap(), folder.path().join(tool)).unwrap();
+    }
+    for (name, text) in stand_ins {
+        let path = folder.path().join(name);
+        fs::write(&path, format!("#!/bin/sh\n{text}\n")).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    let mut demo = Command::new(e2e::root().join("scripts/demo"));
+    // A target folder that exists would show that there is room.
+    demo.env("PATH", folder.path()).env("CARGO_TARGET_DIR", folder.path().join("target"));
+    // A driver, whether this machine has one or not.
+    fs::write(folder.path().join("driver.json"), "{}").unwrap();
+    demo.env("VULKAN_DRIVERS", folder.path());
+    let done = demo.output().unwrap();
+    (done.status.code(), String::from_utf8(done.stderr).unwrap())
+}
+
+#[test]
+fn without_cargo_the_way_to_it_is_told() {
+    let (code, said) = demo(&[]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("cargo is missing") && said.contains("https://rustup.rs"), "{said}");
+}
+
+/// Debian 12 has cargo 0.66, which does not know the edition of the manifests.
+#[test]
+fn an_old_cargo_is_named_with_the_way_to_a_newer_one() {
+    let (code, said) = demo(&[("cargo", "echo cargo 1.63.0")]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("cargo 1.63.0, 1.95 is needed") && said.contains("https://rustup.rs"),
+        "{said}"
+    );
+    let (code, said) = demo(&[("cargo", "echo cargo 1.94.1"), ("rustup", "exit 1")]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("rustup update stable"), "{said}");
+}
+
+/// Before anything is compiled.
+#[test]
+fn too_little_disk_space_is_said_first() {
+    let libraries = "echo libvulkan.so.1 libX11-xcb.so.1 libXcursor.so.1 libXi.so.6 libXrandr.so.2 libxkbcommon-x11.so.0";
+    let (code, said) = demo(&[
+        ("cargo", "[ \"$1\" = --version ] && echo cargo 99.0.0 || { echo compiled >&2; exit 1; }"),
+        ("df", "echo header; echo disk 100 50 1048576 50% /"),
+        ("cc", "exit 0"),
+        ("pkg-config", "exit 0"),
+        ("ldconfig", libraries),
+    ]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("GB of disk space, 1 GB are free") && !said.contains("compiled"),
+        "{said}"
+    );
+}
