@@ -32,6 +32,9 @@ pub fn config(data: &[u8]) {
             // The shaders divide by these values.
             assert!(style.width_scaling.threshold_m >= 1.0 && style.haze_reach > 0.0);
             assert!(style.tint.is_sorted_by(|(a, _), (b, _)| a < b), "{:?}", style.tint);
+            if let Some(lane_m) = style.own_widths.and_then(|widths| widths.lane_m) {
+                assert!((1.0..=10.0).contains(&lane_m), "{lane_m}");
+            }
             for road in style.roads {
                 assert!(road.width_m > 0.0 && road.min_width_px > 0.0, "{road:?}");
                 assert!(road.width_m.is_finite() && road.min_width_px.is_finite(), "{road:?}");

@@ -2,7 +2,8 @@
 
 use std::{fs, path::Path};
 
-use e2e::{Ran, build_pass, corniche, draw, root, text};
+use corniche_testing::pbf;
+use e2e::{Ran, build_from, build_pass, corniche, draw, root, text, write_ascii_grid};
 
 /// `render` in a small size, over an earlier picture; `None` where there is no adapter.
 fn render(package: &Path, png: &Path, options: &[&str]) -> Option<Ran> {
@@ -111,4 +112,57 @@ fn a_picture_may_be_as_large_as_the_adapter_can_draw_it() {
     let ran = draw("render", &package, &png, &["--size", &size, "--supersampling", "1"]).unwrap();
     assert_eq!(ran.code, 0, "{}", ran.err);
     assert_eq!(image::image_dimensions(&png).unwrap(), (most, 24));
+}
+
+/// A style that looks at the roads' own widths draws them so, by both methods, tells how many it caps, and says nothing and
+/// draws as before where it does not look.
+#[test]
+fn a_style_draws_roads_by_their_own_width_and_tells_which_it_caps() {
+    let folder = tempfile::tempdir().unwrap();
+    let [dem, osm, package, png, style] =
+        ["plane.asc", "plane.osm.pbf", "plane.pmtiles", "a.png", "own.toml"]
+            .map(|name| folder.path().join(name));
+    let place = "xllcenter 497000\nyllcenter 5197000\ncellsize 10\nNODATA_value -9999";
+    write_ascii_grid(&dem, [601, 601], place, |_, _| 500.0);
+    let ways: [&[(&str, &str)]; 4] = [
+        &[("highway", "primary"), ("width", "100")],
+        &[("highway", "primary"), ("width", "45"), ("lanes", "200")],
+        &[("highway", "primary"), ("lanes", "12")],
+        &[("highway", "primary"), ("width", "0")],
+    ];
+    let lines: Vec<pbf::Line<'_>> = (0..)
+        .zip(ways)
+        .map(|(k, tags)| {
+            let lat = 46.93 + 0.008 * f64::from(k);
+            pbf::Line { tags: tags.to_vec(), points_deg: vec![[8.98, lat], [9.02, lat]] }
+        })
+        .collect();
+    fs::write(&osm, pbf::extract(&[], &lines)).unwrap();
+    build_from([&dem, &osm], &package, &["-q", "--dem-crs", "EPSG:32632"]);
+    let atlas = fs::read_to_string(root().join("config/styles/road-atlas.toml")).unwrap();
+    // The picture, and what was told of it.
+    let drawn = |entries: &str, method: &str| {
+        fs::write(&style, atlas.replacen("own_width = false", entries, 1)).unwrap();
+        let options = ["--style", text(&style), "--roads", method, "--width-growth", "none"];
+        let from_above = ["--look-at", "9.0,46.942", "--distance", "1500", "--pitch", "0"];
+        let ran = render(&package, &png, &[&options[..], &from_above].concat())?;
+        assert_eq!(ran.code, 0, "{}", ran.err);
+        let note = ran.err.lines().find(|line| line.contains("ask for more")).map(str::to_owned);
+        Some((fs::read(&png).unwrap(), note))
+    };
+    for method in ["geo", "sv"] {
+        let Some(by_class) = drawn("own_width = false", method) else { return };
+        let by_width = drawn("own_width = true", method).unwrap();
+        let by_lanes = drawn("own_width = true\nlane_width_m = 3.25", method).unwrap();
+        let wide_lanes = drawn("own_width = true\nlane_width_m = 6", method).unwrap();
+        let told = |count| {
+            Some(format!("note: roads drawn 60 m wide although their tags ask for more: {count}"))
+        };
+        assert_eq!([by_class.1, by_width.1], [None, told(1)]);
+        assert_eq!([by_lanes.1, wide_lanes.1], [told(1), told(2)]);
+        let pictures = [by_class.0, by_width.0, by_lanes.0, wide_lanes.0];
+        for (k, pair) in pictures.windows(2).enumerate() {
+            assert!(pair[0] != pair[1], "{method}: pictures {k} and {}", k + 1);
+        }
+    }
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use corniche_styles::OwnWidths;
 use corniche_viewer::{RenderError, RenderRequest, render, tiles::PackageSource};
 
 use crate::{
@@ -50,6 +51,13 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
             "note: in up to {} tiles roads may be drawn narrower than the style says, because a tile knows of no roads \
              farther away than the package's width margin",
             report.clamped_tiles
+        ));
+    }
+    if report.capped_ways > 0 {
+        messages::note(&format!(
+            "note: roads drawn {} m wide although their tags ask for more: {}",
+            OwnWidths::WIDEST_M,
+            report.capped_ways
         ));
     }
     Ok(ExitCode::Done)

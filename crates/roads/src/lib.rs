@@ -18,5 +18,5 @@ mod simplify;
 pub use attributes::{attributes, tags_taken_otherwise};
 pub use class_filter::{ClassFilter, ClassFilterError};
 pub use frc_table::{Classified, FrcTable, FrcTableError, NotARoad};
-pub use road::{Form, FunctionalRoadClass, Oneway, Road, RoadAttributes, Structure};
+pub use road::{Form, FunctionalRoadClass, Oneway, OwnWidth, Road, RoadAttributes, Structure};
 pub use simplify::simplify;

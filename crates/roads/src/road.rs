@@ -103,6 +103,18 @@ listed! {
     }
 }
 
+/// What the tags of a road say of its width.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub enum OwnWidth {
+    /// Nothing.
+    #[default]
+    Unknown,
+    /// So many millimetres.
+    Millimetres(NonZeroU32),
+    /// So many lanes.
+    Lanes(NonZeroU8),
+}
+
 /// What is kept of a way's tags.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RoadAttributes {
@@ -139,6 +151,16 @@ impl RoadAttributes {
     #[must_use]
     pub fn width_m(&self) -> Option<f64> {
         self.width_mm.map(|mm| f64::from(mm.get()) / 1e3)
+    }
+
+    /// What the tags say of the road's width: `width`, or else `lanes`.
+    #[must_use]
+    pub fn own_width(&self) -> OwnWidth {
+        match (self.width_mm, self.lanes) {
+            (Some(mm), _) => OwnWidth::Millimetres(mm),
+            (None, Some(lanes)) => OwnWidth::Lanes(lanes),
+            (None, None) => OwnWidth::Unknown,
+        }
     }
 
     /// Bytes of all texts together.

@@ -15,6 +15,8 @@ pub enum StyleError {
     MissingClass { class: String },
     #[error("a style has {needed} [[tint]] entries, not {count}")]
     TintCount { count: usize, needed: usize },
+    #[error("lane_width_m has no effect without own_width = true")]
+    LaneWidth,
     #[error("the shares of [[tint]] must ascend from 0 to 1, both included, by 0.001 or more")]
     TintOrder,
 }

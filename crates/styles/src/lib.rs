@@ -17,4 +17,4 @@ mod style;
 pub use error::StyleError;
 pub use presets::{style_preset, style_preset_names};
 pub use sheet::parse_style;
-pub use style::{CenterLine, Rgb, RoadStyle, Style, TINT_STOPS, TintStop, WidthScaling};
+pub use style::{CenterLine, OwnWidths, Rgb, RoadStyle, Style, TINT_STOPS, TintStop, WidthScaling};

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, ops::RangeInclusive};
 use corniche_roads::FunctionalRoadClass;
 use serde::Deserialize;
 
-use crate::{CenterLine, Rgb, RoadStyle, Style, StyleError, TINT_STOPS, WidthScaling};
+use crate::{CenterLine, OwnWidths, Rgb, RoadStyle, Style, StyleError, TINT_STOPS, WidthScaling};
 
 /// Longest text that is read. The longest preset has some 3 kB.
 const MAX_TEXT_BYTES: usize = 1 << 20;
@@ -23,6 +23,10 @@ pub(crate) struct Rgb8(pub(crate) [u8; 3]);
 pub(crate) struct StyleSheet {
     /// Width of the edge of roads, 0 to 4 pixels.
     pub(crate) outline_px: u32,
+    /// Whether roads are drawn by their own `width` where it is tagged.
+    pub(crate) own_width: bool,
+    /// Width of a lane, 1 to 10 m, for roads with `lanes` and without `width`.
+    pub(crate) lane_width_m: Option<f64>,
     /// How roads widen with distance.
     pub(crate) width_scaling: WidthScalingSheet,
     /// Light and shade.
@@ -114,6 +118,9 @@ pub(crate) struct CenterSheet {
 #[serde(deny_unknown_fields)]
 struct StyleFile {
     outline_px: u32,
+    #[serde(default)]
+    own_width: bool,
+    lane_width_m: Option<f64>,
     width_scaling: WidthScalingSheet,
     light: LightSheet,
     background: BackgroundSheet,
@@ -135,9 +142,23 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
         return Err(StyleError::TooLong { bytes: text.len(), limit: MAX_TEXT_BYTES });
     }
     let file: StyleFile = toml::from_str(text)?;
-    let StyleFile { outline_px, width_scaling, light, background, tint, roads } = file;
+    let StyleFile {
+        outline_px,
+        own_width,
+        lane_width_m,
+        width_scaling,
+        light,
+        background,
+        tint,
+        roads,
+    } = file;
+    if lane_width_m.is_some() && !own_width {
+        return Err(StyleError::LaneWidth);
+    }
     let sheet = StyleSheet {
         outline_px,
+        own_width,
+        lane_width_m,
         width_scaling,
         light,
         background,
@@ -181,9 +202,13 @@ fn all_classes(
 impl StyleSheet {
     /// Checks every number against its range.
     fn check(&self) -> Result<(), StyleError> {
-        let Self { outline_px, width_scaling: scaling, light, background, roads, .. } = self;
+        let Self { outline_px, lane_width_m, width_scaling: scaling, .. } = self;
+        let Self { light, background, roads, .. } = self;
         // The kernel looks at (2 r + 1)² places for every pixel.
         within("outline_px", f64::from(*outline_px), 0.0..=4.0)?;
+        if let Some(lane_width_m) = lane_width_m {
+            within("lane_width_m", *lane_width_m, 1.0..=f64::from(OwnWidths::WIDEST_LANE_M))?;
+        }
         within("width_scaling.threshold_m", scaling.threshold_m, 1.0..=1e7)?;
         within("width_scaling.exponent", scaling.exponent, 0.0..=1.0)?;
         within("width_scaling.constant", scaling.constant, 0.1..=100.0)?;
@@ -235,9 +260,12 @@ impl TryFrom<String> for Rgb8 {
 
 impl From<&StyleSheet> for Style {
     fn from(sheet: &StyleSheet) -> Self {
-        let StyleSheet { outline_px, width_scaling, light, background, tint, roads } = sheet;
+        let StyleSheet { outline_px, own_width, lane_width_m, width_scaling, .. } = sheet;
+        let StyleSheet { light, background, tint, roads, .. } = sheet;
+        let lane_m = lane_width_m.map(|lane_m| lane_m as f32);
         Self {
             roads: roads.map(RoadStyle::from),
+            own_widths: own_width.then_some(OwnWidths { lane_m }),
             width_scaling: WidthScaling {
                 threshold_m: width_scaling.threshold_m as f32,
                 exponent: width_scaling.exponent as f32,

@@ -119,3 +119,35 @@ fn tints_ascend_from_the_lowest_ground_to_the_highest() {
     refuses("share = 1\n", "share = 0.9\n", &[order]);
     refuses("[[tint]]\nshare = 0.15\ncolor = \"#DDE6BF\"\n", "", &["6 [[tint]] entries, not 5"]);
 }
+
+/// Without a word about it, and with `own_width = false`, classes alone decide.
+#[test]
+fn own_widths_are_off_unless_the_style_turns_them_on() {
+    let with = |lines: &str| {
+        let text: String = atlas()
+            .lines()
+            .filter(|line| !line.starts_with("own_width"))
+            .fold(String::new(), |text, line| text + line + "\n");
+        parse_style(&format!("{lines}\n{text}")).map(|style| style.own_widths)
+    };
+    assert_eq!(parse_style(atlas()).unwrap().own_widths, None);
+    assert_eq!(with("").unwrap(), None);
+    assert_eq!(with("own_width = false").unwrap(), None);
+    assert_eq!(with("own_width = true").unwrap(), Some(OwnWidths { lane_m: None }));
+    let lanes = "own_width = true\nlane_width_m = 3.25";
+    assert_eq!(with(lanes).unwrap(), Some(OwnWidths { lane_m: Some(3.25) }));
+    for (lines, words) in [
+        ("lane_width_m = 3.25", "no effect without own_width"),
+        ("own_width = false\nlane_width_m = 3.25", "no effect without own_width"),
+        (
+            "own_width = true\nlane_width_m = 0.5",
+            "lane_width_m of 0.5 is out of range; it must be 1 to 10",
+        ),
+        ("own_width = true\nlane_width_m = 10.5", "1 to 10"),
+        ("own_width = true\nlane_width_m = nan", "1 to 10"),
+        ("own_width = 3.5", "expected a boolean"),
+    ] {
+        let error = with(lines).unwrap_err().to_string();
+        assert!(error.contains(words), "{lines:?}: {error}");
+    }
+}

@@ -1,6 +1,6 @@
 //! How the map looks: plain values, no GPU.
 
-use corniche_roads::FunctionalRoadClass;
+use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 /// A colour as red, green, blue in sRGB, 0 to 1.
 pub type Rgb = [f32; 3];
@@ -54,6 +54,31 @@ impl WidthScaling {
     }
 }
 
+/// Roads are drawn by their own tags, where they have some.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OwnWidths {
+    /// Width of one lane: roads with `lanes` and without `width` are so many times as wide. `None`: `lanes` are not looked at.
+    pub lane_m: Option<f32>,
+}
+
+impl OwnWidths {
+    /// Tags make no road wider than this: what is tagged beyond it is rather an error, or the width of a square.
+    pub const WIDEST_M: f32 = 60.0;
+
+    /// The widest lane that a style may have.
+    pub const WIDEST_LANE_M: f32 = 10.0;
+
+    /// The width that a road's tags ask for, metres, before it is capped; `None` if they do not say.
+    #[must_use]
+    pub fn asked_m(self, own: OwnWidth) -> Option<f32> {
+        match own {
+            OwnWidth::Unknown => None,
+            OwnWidth::Millimetres(mm) => Some((f64::from(mm.get()) / 1e3) as f32),
+            OwnWidth::Lanes(lanes) => self.lane_m.map(|lane_m| f32::from(lanes.get()) * lane_m),
+        }
+    }
+}
+
 /// A stop of the height tint: a share of the package's range of heights, and the colour there.
 pub type TintStop = (f32, Rgb);
 
@@ -65,6 +90,8 @@ pub const TINT_STOPS: usize = 6;
 pub struct Style {
     /// By class, 0 first.
     pub roads: [RoadStyle; FunctionalRoadClass::COUNT],
+    /// Whether roads are drawn by their own tags; `None`: all roads of a class are equally wide.
+    pub own_widths: Option<OwnWidths>,
     /// How roads widen with distance.
     pub width_scaling: WidthScaling,
     /// Width of the edge of roads; the kernel has this radius.
@@ -88,6 +115,22 @@ pub struct Style {
 }
 
 impl Style {
+    /// Width on the ground near the eye of a road of this class whose tags say `own`.
+    #[must_use]
+    pub fn width_m(&self, class: FunctionalRoadClass, own: OwnWidth) -> f32 {
+        match self.own_widths.and_then(|widths| widths.asked_m(own)) {
+            Some(asked_m) => asked_m.min(OwnWidths::WIDEST_M),
+            None => self.roads[usize::from(class.number())].width_m,
+        }
+    }
+
+    /// Whether a road's tags ask for more than [`OwnWidths::WIDEST_M`].
+    #[must_use]
+    pub fn is_capped(&self, own: OwnWidth) -> bool {
+        let asked_m = self.own_widths.and_then(|widths| widths.asked_m(own));
+        asked_m.is_some_and(|asked_m| asked_m > OwnWidths::WIDEST_M)
+    }
+
     /// The default style, like a road atlas: warm roads with dark edges, pale ground. It is equal to the preset
     /// `road-atlas`.
     #[must_use]
@@ -112,6 +155,7 @@ impl Style {
                 road(5.0, 1.0, 0xF3_EC_E0, 0x8C_85_79),
                 road(3.5, 1.0, 0xE4_D8_C6, 0x97_8D_7F),
             ],
+            own_widths: None,
             width_scaling: WidthScaling { threshold_m: 1500.0, exponent: 0.75, constant: 4.0 },
             outline_px: 1,
             tint: [

@@ -22,3 +22,30 @@ fn widths_are_true_up_to_the_threshold_and_grow_beyond() {
 fn hex_is_red_green_blue() {
     assert_eq!(rgb(0xFF_00_33), [1.0, 0.0, 0.2]);
 }
+
+/// A road's width: by its tag, by its lanes, by its class; at most 60 m from tags, and whatever the style says from classes.
+#[test]
+fn tags_decide_the_width_where_the_style_looks_at_them() {
+    let class = FunctionalRoadClass::new(4).unwrap();
+    let tagged = |mm| OwnWidth::Millimetres(std::num::NonZeroU32::new(mm).unwrap());
+    let lanes = |count| OwnWidth::Lanes(std::num::NonZeroU8::new(count).unwrap());
+    let mut style = Style::road_atlas();
+    assert_eq!(style.width_m(class, tagged(6500)), 11.0);
+    assert!(!style.is_capped(tagged(70_000)));
+    style.own_widths = Some(OwnWidths { lane_m: Some(3.0) });
+    for (own, width_m, is_capped) in [
+        (OwnWidth::Unknown, 11.0, false),
+        (tagged(6500), 6.5, false),
+        (tagged(60_000), 60.0, false),
+        (tagged(60_001), 60.0, true),
+        (lanes(2), 6.0, false),
+        (lanes(20), 60.0, false),
+        (lanes(21), 60.0, true),
+    ] {
+        assert_eq!((style.width_m(class, own), style.is_capped(own)), (width_m, is_capped));
+    }
+    style.own_widths = Some(OwnWidths { lane_m: None });
+    assert_eq!((style.width_m(class, lanes(21)), style.is_capped(lanes(21))), (11.0, false));
+    style.roads[4].width_m = 200.0;
+    assert_eq!(style.width_m(class, OwnWidth::Unknown), 200.0);
+}

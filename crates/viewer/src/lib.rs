@@ -42,7 +42,7 @@ mod viewpoint;
 pub mod for_tests {
     pub use crate::{
         gpu::inspection::Owner,
-        scene::{SettleError, draw_list, may_be_clamped, settle},
+        scene::{SettleError, capped_ways, draw_list, may_be_clamped, settle},
         tiles::{
             plan_scale::PlanScale,
             roads::{BadRoad, GroundLine, PlanLine},

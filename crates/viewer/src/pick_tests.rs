@@ -37,6 +37,7 @@ fn tile(x: f64, y: f64, height_m: impl Fn(f64, f64) -> f64) -> TileGeometry {
         width_margin_m: 0.0,
         size_m: [100.0; 2],
         most_width_factor: 1.0,
+        wide_ways: Vec::new(),
     }
 }
 

@@ -73,6 +73,8 @@ pub struct RenderReport {
     /// Tiles in which some road may have been drawn narrower than its style says, because half its width is more than
     /// the level's width margin.
     pub clamped_tiles: u64,
+    /// Ways that are drawn [`OwnWidths::WIDEST_M`](corniche_styles::OwnWidths::WIDEST_M) wide because their tags ask for more.
+    pub capped_ways: u64,
     /// Tiles drawn per level, coarse levels first.
     pub levels: Vec<(u8, u64)>,
     /// Tiles read from the package to get there, drawn or not.
@@ -179,6 +181,10 @@ pub fn render(
         clamped_tiles: scene::draw_list(&store, &drawn)
             .filter(|(tile, _)| scene::may_be_clamped(tile, &view))
             .count() as u64,
+        capped_ways: scene::capped_ways(
+            scene::draw_list(&store, &drawn).map(|(tile, _)| tile),
+            &view,
+        ),
         levels: tiles_by_level(&drawn),
         tiles_loaded: store.len() as u64,
         eye_m: [eye.x, eye.y, eye.z / quality.vertical_scale],

@@ -2,16 +2,16 @@
 
 mod level_connectors;
 
-use std::slice;
+use std::{collections::BTreeSet, slice};
 
-use corniche_roads::FunctionalRoadClass;
+use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use crate::{
     camera::{Camera, WorldBox},
     frame_view::FrameView,
     lod::{self, Drawn, Quality},
     options::RoadMethod,
-    tiles::{LoadTileError, TileGeometry, TileStore},
+    tiles::{LoadTileError, TileGeometry, TileStore, WideWay},
 };
 
 pub(crate) use self::level_connectors::{BorderTile, LevelConnector, level_connectors};
@@ -72,18 +72,41 @@ pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
     let scaling = view.roads.width_scaling(view.style);
     FunctionalRoadClass::all()
         .filter(|class| view.roads.classes.contains(*class))
-        .filter(|class| match view.roads.method {
-            RoadMethod::Geometry => !tile.roads.range_of(*class).is_empty(),
-            RoadMethod::ShadowVolumes => !tile.volumes.range_of(*class).is_empty(),
-            RoadMethod::None => false,
-        })
-        .any(|class| {
+        .filter_map(|class| Some((class, widest_m(tile, view, class)?)))
+        .any(|(class, widest_m)| {
             let road = &view.style.roads[usize::from(class.number())];
-            let width_m = f64::from(road.width_m)
+            let width_m = f64::from(widest_m)
                 * tile.most_width_factor
                 * scaling.factor(far_m / view.point_scale);
             let pixel_m = view.camera.pixel_at_unit_depth_m() * far_m;
             let least_m = f64::from(road.min_width_px) * pixel_m;
             width_m.max(least_m) / 2.0 > tile.width_margin_m
         })
+}
+
+/// The largest width near the eye that a road of a class in a tile is drawn with; `None` without such a road.
+fn widest_m(tile: &TileGeometry, view: &FrameView<'_>, class: FunctionalRoadClass) -> Option<f32> {
+    let width_m = |own| view.style.width_m(class, own);
+    let widest = |widths: &mut dyn Iterator<Item = OwnWidth>| widths.map(width_m).reduce(f32::max);
+    match view.roads.method {
+        RoadMethod::Geometry => {
+            widest(&mut tile.roads.of_class(class).iter().map(|piece| piece.own_width))
+        }
+        RoadMethod::ShadowVolumes => {
+            widest(&mut tile.volumes.of_class(class).iter().map(|piece| piece.own_width))
+        }
+        RoadMethod::None => None,
+    }
+}
+
+/// How many ways of some tiles the style draws narrower than their tags ask for, because these ask for more than
+/// [`OwnWidths::WIDEST_M`](corniche_styles::OwnWidths::WIDEST_M).
+#[must_use]
+pub fn capped_ways<'a>(tiles: impl Iterator<Item = &'a TileGeometry>, view: &FrameView<'_>) -> u64 {
+    let is_capped = |way: &&WideWay| {
+        view.roads.classes.contains(way.class) && view.style.is_capped(way.own_width)
+    };
+    let ways = tiles.flat_map(|tile| tile.wide_ways.iter().filter(is_capped));
+    let ids: BTreeSet<i64> = ways.map(|way| way.way_id).collect();
+    if view.roads.method == RoadMethod::None { 0 } else { ids.len() as u64 }
 }

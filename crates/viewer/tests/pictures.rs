@@ -6,6 +6,7 @@ mod support;
 use std::time::{Duration, Instant};
 
 use corniche_geom::TileId;
+use corniche_roads::OwnWidth;
 use corniche_styles::Style;
 use corniche_viewer::{
     FrameView, RoadMethod, RoadOptions, Wireframe,
@@ -36,6 +37,7 @@ fn geometry(from: [f64; 2], to: [f64; 2]) -> TileGeometry {
     let plan = PlanLine {
         way_id: 1,
         class: class(2),
+        own_width: OwnWidth::Unknown,
         points_m: vec![from.to_array(), to.to_array()],
         ground_range_m: vec![ground.height_range_m],
     };

@@ -116,3 +116,7 @@ pub(crate) fn encode(roads: &[RoadRecord]) -> Option<Vec<u8>> {
     put_planes(&mut bytes, &widths);
     Some(bytes)
 }
+
+#[cfg(all(test, feature = "write"))]
+#[path = "road_tags_tests.rs"]
+mod tests;

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use corniche_roads::FunctionalRoadClass;
+use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use wgpu::{
     BlendComponent, BlendFactor, BlendOperation, BlendState, Buffer, BufferUsages, ColorWrites,
     Device, PrimitiveTopology, RenderPass, RenderPipeline, VertexAttribute, VertexBufferLayout,
@@ -27,6 +27,15 @@ const LARGEST: BlendComponent = BlendComponent {
     dst_factor: BlendFactor::One,
     operation: BlendOperation::Max,
 };
+
+/// A road's own width as an instance has it: metres above 0, lanes below it, 0 for neither.
+pub(crate) fn own_width_value(own: OwnWidth) -> f32 {
+    match own {
+        OwnWidth::Unknown => 0.0,
+        OwnWidth::Millimetres(mm) => (f64::from(mm.get()) / 1e3) as f32,
+        OwnWidth::Lanes(lanes) => -f32::from(lanes.get()),
+    }
+}
 
 /// In what the pipelines of the two methods differ.
 pub(crate) struct RoadRecipe<'a> {

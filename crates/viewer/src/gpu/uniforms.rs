@@ -5,6 +5,8 @@
 
 use glam::{DVec3, DVec4};
 
+use corniche_styles::OwnWidths;
+
 use crate::{
     frame_view::FrameView,
     options::{CapTest, Caps, RoadMethod},
@@ -43,7 +45,15 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
         ]
         .map(row),
     );
-    rows.push([camera.pixel_at_unit_depth_m() as f32, view.vertical_scale() as f32, 0.0, 0.0]);
+    // Half of what is drawn for each metre of a road's own width: 0 if own widths do not count.
+    let half_of_own = if style.own_widths.is_some() { 0.5 * scaling.constant } else { 0.0 };
+    let lane_m = style.own_widths.and_then(|widths| widths.lane_m).unwrap_or_default();
+    rows.push([
+        camera.pixel_at_unit_depth_m() as f32,
+        view.vertical_scale() as f32,
+        half_of_own,
+        lane_m,
+    ]);
     rows.push([
         scaling.threshold_m * view.point_scale as f32,
         scaling.exponent,
@@ -54,7 +64,7 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
         if view.roads.caps == Caps::Round { 1.0 } else { 0.0 },
         if view.roads.cap_test == CapTest::PaperQuadratic { 1.0 } else { 0.0 },
         view.point_scale as f32,
-        0.0,
+        OwnWidths::WIDEST_M,
     ]);
     rows.extend(style.roads.iter().map(|road| {
         let center_share = road.center.map_or(-1.0, |center| center.width_share);

@@ -3,7 +3,15 @@ use crate::tiles::roads::ends::Side;
 
 fn end(way_id: i64, side: Side, at_m: [f64; 2], height_m: f64) -> RoadEnd {
     let class = FunctionalRoadClass::new(3).expect("a class");
-    RoadEnd { way_id, class, side, at_m, height_range_m: [height_m; 2], width_factor: 1.0 }
+    RoadEnd {
+        way_id,
+        class,
+        own_width: OwnWidth::Unknown,
+        side,
+        at_m,
+        height_range_m: [height_m; 2],
+        width_factor: 1.0,
+    }
 }
 
 /// Compares the connectors between a coarse tile of 200 m (1/0/0) and the finer tile of 100 m to its east (2/2/0).

@@ -13,13 +13,14 @@ struct Frame {
     up: vec4<f32>,
     // xyz: the direction of view; w: depth of the near plane.
     forward: vec4<f32>,
-    // x: side of a pixel at depth 1, metres; y: world height of one metre of true height.
+    // x: side of a pixel at depth 1, metres; y: world height of one metre of true height; z: half of what is drawn for each
+    // metre of a road's own width, 0 if own widths do not count; w: width of a lane, 0 if lanes do not count.
     scale: vec4<f32>,
     // x: distance up to which road widths are true; y: exponent beyond; z: radius of the outline kernel in
     // pixels of this target; w: how many of these pixels make one pixel of the final picture.
     road_scale: vec4<f32>,
     // x: 1 with caps, 0 without; y: 1 for the paper's test in the fragment shader of volumes; z: world metres to a true
-    // metre, one value for the whole package.
+    // metre, one value for the whole package; w: roads are not drawn by their own width beyond this one, true metres.
     road_options: vec4<f32>,
     // x: half width in true metres near the eye; y: least half width in pixels of this target; z: share of the width that
     // the centre line takes, -1 without one.
@@ -39,16 +40,26 @@ fn view_depth_of(depth_buffer: f32) -> f32 {
     return frame.forward.w / depth_buffer;
 }
 
-// How a road is drawn: its class, and how many world metres there are across it for each true metre.
+// How a road is drawn: its class, and half its width near the eye, world metres.
 struct Road {
     class_number: u32,
-    width_factor: f32,
+    half_width_m: f32,
+}
+
+// `own_width` is metres above 0, lanes below it, 0 for neither; `width_factor` is world metres across the road for each true one.
+fn road_with(class_number: u32, own_width: f32, width_factor: f32) -> Road {
+    let own_m = select(own_width, -own_width * frame.scale.w, own_width < 0.0);
+    var half_width_m = frame.road_widths[class_number].x;
+    if own_m > 0.0 && frame.scale.z > 0.0 {
+        half_width_m = min(own_m, frame.road_options.w) * frame.scale.z;
+    }
+    return Road(class_number, half_width_m * width_factor);
 }
 
 // Half width of a road in world metres, before the least width in pixels is applied.
 fn scaled_half_width_m(road: Road, distance_m: f32) -> f32 {
     let growth = pow(max(distance_m / frame.road_scale.x, 1.0), frame.road_scale.y);
-    return frame.road_widths[road.class_number].x * road.width_factor * growth;
+    return road.half_width_m * growth;
 }
 
 // Least half width in world metres at a depth.

@@ -67,8 +67,9 @@ fn background_at(ray: vec3<f32>) -> vec3<f32> {
 
 // Width of a road at a place in pixels of the final picture, before the least width is applied.
 fn width_px(road_class: u32, distance_m: f32, depth: f32) -> f32 {
-    // The tile and the direction of the road are not known here. So its width factor is that of the whole package.
-    let road = Road(road_class, frame.road_options.z);
+    // The tile, the direction of the road and its own width are not known here. So its width factor is that of the whole
+    // package, and its width that of its class.
+    let road = road_with(road_class, 0.0, frame.road_options.z);
     return 2.0 * scaled_half_width_m(road, distance_m) / (frame.scale.x * depth * frame.road_scale.w);
 }
 

@@ -33,11 +33,12 @@ struct RoadFragment {
     @location(1) @interpolate(flat) start_to_end: vec2<f32>,
     // Lowest four bits: class. Above, for a connector, the number of the other tile it belongs to, else 0.
     @location(2) @interpolate(flat) class_and_other: u32,
-    @location(3) @interpolate(flat) width_factor: f32,
+    // Half the road's width near the eye, world metres.
+    @location(3) @interpolate(flat) half_width_m: f32,
 }
 
 fn road_of(in: RoadFragment) -> Road {
-    return Road(in.class_and_other & 15u, in.width_factor);
+    return Road(in.class_and_other & 15u, in.half_width_m);
 }
 
 const MAX_STRETCH = 8.0;

@@ -36,6 +36,8 @@ struct SegmentIn {
     @location(4) rises_near: vec4<f32>,
     // At most how far, anywhere within the second reach (xy) and within the third (zw).
     @location(5) farther: vec4<f32>,
+    // The road's own width, as `road_with` takes it.
+    @location(6) own_width: f32,
 }
 
 const AT_START = 0x10u;
@@ -146,7 +148,7 @@ fn least_of(values: vec4<f32>) -> f32 {
 @vertex
 fn vertex(in: SegmentIn) -> RoadFragment {
     let vertical_scale = frame.scale.y;
-    let road = Road(in.class_and_flags & 15u, in.height_width_factor.y);
+    let road = road_with(in.class_and_flags & 15u, in.own_width, in.height_width_factor.y);
     let start = tile.offset.xy + in.segment_in_tile.xy;
     let start_to_end = in.segment_in_tile.zw - in.segment_in_tile.xy;
     let segment_m = length(start_to_end);
@@ -202,7 +204,7 @@ fn vertex(in: SegmentIn) -> RoadFragment {
     out.start = start;
     out.start_to_end = start_to_end;
     out.class_and_other = road.class_number;
-    out.width_factor = road.width_factor;
+    out.half_width_m = road.half_width_m;
     return out;
 }
 

@@ -29,6 +29,8 @@ struct VolumeIn {
     @location(4) near_rise_width_factor: vec2<f32>,
     // Lowest four bits: class. Above, for a connector, the number of the other tile it belongs to, else 0.
     @location(5) class_and_other: u32,
+    // The road's own width, as `road_with` takes it.
+    @location(6) own_width: f32,
 }
 
 // The corners of a box as one strip of twelve triangles, all counter-clockwise seen from outside:
@@ -67,7 +69,7 @@ fn reach_of(in: VolumeIn, road: Road, plan_m: f32) -> Reach {
 @vertex
 fn vertex(in: VolumeIn) -> RoadFragment {
     let vertical_scale = frame.scale.y;
-    let road = Road(in.class_and_other & 15u, in.near_rise_width_factor.y);
+    let road = road_with(in.class_and_other & 15u, in.own_width, in.near_rise_width_factor.y);
     let is_connector = in.class_and_other > 15u;
     let a = tile.offset.xy + in.start_in_tile;
     let ab = in.end_in_tile - in.start_in_tile;
@@ -97,7 +99,7 @@ fn vertex(in: VolumeIn) -> RoadFragment {
     out.start = a;
     out.start_to_end = ab;
     out.class_and_other = in.class_and_other;
-    out.width_factor = road.width_factor;
+    out.half_width_m = road.half_width_m;
     return out;
 }
 

@@ -1,4 +1,6 @@
 use corniche_geom::{Bounds, Frame, TileId, barycentric};
+use corniche_roads::{FunctionalRoadClass, OwnWidth};
+use corniche_styles::OwnWidths;
 use corniche_tileset::{Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 
@@ -26,6 +28,37 @@ pub struct TileGeometry {
     pub(crate) most_width_factor: f64,
     /// Its sides, east and north.
     pub size_m: [f64; 2],
+    /// Ways whose own width some style may cap.
+    pub(crate) wide_ways: Vec<WideWay>,
+}
+
+/// A way with a width of its own that some style may cap.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct WideWay {
+    /// OSM's id of the way.
+    pub(crate) way_id: i64,
+    /// Functional road class.
+    pub(crate) class: FunctionalRoadClass,
+    /// What its tags say.
+    pub(crate) own_width: OwnWidth,
+}
+
+/// The wide ways of some lines, each once.
+fn wide_ways(lines: &TileLines) -> Vec<WideWay> {
+    // No style has wider lanes.
+    let widest = OwnWidths { lane_m: Some(OwnWidths::WIDEST_LANE_M) };
+    let of_ground = lines.ground.iter().map(|line| (line.way_id, line.class, line.own_width));
+    let in_plan = lines.plan.iter().map(|line| (line.way_id, line.class, line.own_width));
+    let mut ways: Vec<WideWay> = of_ground
+        .chain(in_plan)
+        .filter(|(.., own)| {
+            widest.asked_m(*own).is_some_and(|asked_m| asked_m > OwnWidths::WIDEST_M)
+        })
+        .map(|(way_id, class, own_width)| WideWay { way_id, class, own_width })
+        .collect();
+    ways.sort_by_key(|way| (way.way_id, way.class));
+    ways.dedup();
+    ways
 }
 
 impl TileGeometry {
@@ -88,6 +121,7 @@ impl TileGeometry {
             }),
             width_margin_m: lines.width_margin_m,
             size_m: [bounds.width(), bounds.height()],
+            wide_ways: wide_ways(lines),
         }
     }
 

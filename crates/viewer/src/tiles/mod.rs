@@ -28,6 +28,7 @@ pub use self::{
     store::TileStore,
 };
 pub(crate) use self::{
+    geometry::WideWay,
     ground_mesh::{GroundMesh, GroundVertex},
     plan_scale::PlanScale,
     roads::{BadRoad, Bed, GroundLine, NearHeights, RoadEnd},

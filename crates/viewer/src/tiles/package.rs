@@ -29,16 +29,17 @@ impl<S: ByteSource> PackageTiles<S> {
                 next = id.parent();
             }
         }
-        let sections = Sections::TERRAIN | Sections::ROADS_GEO | Sections::ROADS_SV;
+        let sections =
+            Sections::TERRAIN | Sections::ROADS_GEO | Sections::ROADS_SV | Sections::ATTRIBUTES;
         Ok(Self { package, tiles, sections })
     }
 
-    /// Reads, beside the ground, only the roads that one method needs; without this, the roads that both need.
+    /// Reads, beside the ground, only the roads that one method needs, with their attributes; without this, the roads that both need.
     #[must_use]
     pub fn for_method(self, method: RoadMethod) -> Self {
         let roads = match method {
-            RoadMethod::Geometry => Sections::ROADS_GEO,
-            RoadMethod::ShadowVolumes => Sections::ROADS_SV,
+            RoadMethod::Geometry => Sections::ROADS_GEO | Sections::ATTRIBUTES,
+            RoadMethod::ShadowVolumes => Sections::ROADS_SV | Sections::ATTRIBUTES,
             RoadMethod::None => Sections::NONE,
         };
         Self { sections: Sections::TERRAIN | roads, ..self }

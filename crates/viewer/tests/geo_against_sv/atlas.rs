@@ -21,6 +21,7 @@ use crate::{
     support::{
         Drawing,
         scene::{Scene, Tile},
+        scenes::by_own_widths,
     },
     views::{Place, Seen, View},
 };
@@ -100,7 +101,7 @@ impl<'a> Atlas<'a> {
             let upload = || TileBuffers::new(self.gpu, self.store.get(drawn.id).unwrap());
             self.buffers.entry(drawn.id).or_insert_with(upload);
         }
-        let style = Style::road_atlas();
+        let style = by_own_widths(&Style::road_atlas());
         let draw = |options| {
             let tiles: Vec<DrawTile<'_>> = drawn
                 .iter()

@@ -153,6 +153,11 @@ fn volumes_agree_with_the_reference_at_junctions() {
 }
 
 #[test]
+fn both_methods_agree_with_the_reference_on_roads_of_their_own_width() {
+    check_named(&["junction of own widths", "own widths, atlas style, far"]);
+}
+
+#[test]
 fn volumes_agree_with_both_references_at_bends_edges_and_vertices() {
     check_named(&["hairpin and points", "along an edge, through vertices"]);
 }
@@ -197,10 +202,14 @@ fn volumes_agree_with_the_reference_where_levels_meet() {
         [(6000.0, 10.0, 55.0, 1.5), (9000.0, 90.0, 70.0, 6.0)]
     {
         let camera = country_camera(&country, distance_m, heading_deg, pitch_deg);
-        let scene = country_scene(&country, &camera, error_px, Style::road_atlas());
-        assert!(levels(&scene) > 1);
-        let name = "mountains, several levels";
-        check(&Named { name, scene, cameras: vec![camera] });
+        let by_class = country_scene(&country, &camera, error_px, Style::road_atlas());
+        assert!(levels(&by_class) > 1);
+        let own = Scene { style: scenes::by_own_widths(&by_class.style), ..by_class.clone() };
+        for (name, scene) in
+            [("mountains, several levels", by_class), ("the same with own widths", own)]
+        {
+            check(&Named { name, scene, cameras: vec![camera] });
+        }
     }
 }
 

@@ -95,8 +95,8 @@ pub(crate) fn compare(
         let class = scene.tiles[hit.tile]
             .segments
             .iter()
-            .filter(|(class, ends, factor)| {
-                let (half_m, _) = half_width(&scene.style, options, *class, distance_m);
+            .filter(|(class, ends, factor, own)| {
+                let (half_m, _) = half_width(&scene.style, options, (*class, *own), distance_m);
                 distance(hit.at.truncate(), *ends, options.caps) <= half_m * factor
             })
             .map(|(class, ..)| *class)

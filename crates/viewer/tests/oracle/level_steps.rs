@@ -1,6 +1,7 @@
 //! Roads over the step between tiles of different levels.
 
 use corniche_geom::TileId;
+use corniche_roads::OwnWidth;
 use corniche_styles::Style;
 use corniche_viewer::{
     RoadOptions,
@@ -40,7 +41,7 @@ fn steps(scene: &Scene) -> Vec<Line> {
     for (k, a) in ends.iter().enumerate() {
         for b in &ends[k + 1..] {
             if a.0 != b.0 && a.1 == b.1 && a.2.truncate().distance(b.2.truncate()) < 0.01 {
-                steps.push((a.3, vec![a.2, b.2]));
+                steps.push(((a.3, OwnWidth::Unknown), vec![a.2, b.2]));
             }
         }
     }
@@ -71,7 +72,7 @@ fn connectors_close_the_step_between_levels_and_without_them_it_gapes() {
         *tile = tile.with_ways_renumbered(k * 1000);
     }
     let steps = steps(&with);
-    for (class, step) in &steps {
+    for ((class, _), step) in &steps {
         println!("a step of {:.1} m under a road of class {class}", step[0].distance(step[1]));
     }
     let mut sums = [[CenterLines::default(); 2]; 2];

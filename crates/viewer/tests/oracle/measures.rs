@@ -1,5 +1,6 @@
 //! Figures about a drawing: how much of the centre-lines is missing.
 
+use corniche_roads::OwnWidth;
 use corniche_viewer::{RoadMethod, RoadOptions, camera::Camera};
 use glam::{DVec2, DVec3};
 
@@ -12,8 +13,8 @@ use crate::{
 /// Length of the steps along a centre-line.
 const STEP_PX: f64 = 0.25;
 
-/// Class and points of a centre-line.
-pub(crate) type Line = (u8, Vec<DVec3>);
+/// Class, what the tags say of the width, and points of a centre-line.
+pub(crate) type Line = ((u8, OwnWidth), Vec<DVec3>);
 
 /// Lengths in the picture.
 #[derive(Debug, Clone, Copy, Default)]
@@ -35,7 +36,7 @@ pub(crate) fn center_lines(scene: &Scene, camera: &Camera, drawing: &Drawing) ->
         .flat_map(|tile| &tile.centers)
         .map(|line| {
             let points = line.points_m.iter().map(|point| DVec3::from_array(*point)).collect();
-            (line.class.number(), points)
+            ((line.class.number(), line.own_width), points)
         })
         .collect();
     walk(&lines, scene, &Caster::new(scene, camera), camera, drawing)
@@ -50,8 +51,8 @@ pub(crate) fn walk(
     drawing: &Drawing,
 ) -> CenterLines {
     let options = RoadOptions::of(RoadMethod::ShadowVolumes);
-    let half_px = |class: u8, depth_m: f64| {
-        let (half_m, least_px) = half_width(&scene.style, options, class, depth_m);
+    let half_px = |road: (u8, OwnWidth), depth_m: f64| {
+        let (half_m, least_px) = half_width(&scene.style, options, road, depth_m);
         (half_m / (camera.pixel_at_unit_depth_m() * depth_m)).max(least_px)
     };
     let mut sum = CenterLines::default();

@@ -9,7 +9,7 @@ use crate::{
     support::{
         Drawing, gpu,
         scene::Scene,
-        scenes::{Road, camera, hills, one_tile, style},
+        scenes::{Road, camera, hills, lanes, one_tile, style, tagged, with_own_widths},
     },
 };
 
@@ -75,6 +75,16 @@ fn roads_with_classes_swapped_fail() {
     let mut swapped = roads();
     (swapped[0].0, swapped[1].0) = (5, 2);
     check(&one_tile(8, hills, &swapped, style(40.0)), RoadOptions::of(SV), "classes swapped");
+}
+
+#[test]
+fn roads_of_their_own_width_fail_where_classes_decide() {
+    let own = with_own_widths(&true_scene(), &[tagged(38_000), lanes(12)]);
+    check(&own, RoadOptions::of(SV), "5 % narrower by a tag");
+    let not_looked_at = Scene { style: style(40.0), ..own };
+    let Some(gpu) = gpu() else { return };
+    let drawing = not_looked_at.draw(&gpu, &view(), RoadOptions::of(SV));
+    assert_eq!(disagreements(&drawing), [0, 0], "tags that the style does not look at");
 }
 
 #[test]

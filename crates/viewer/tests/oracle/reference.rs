@@ -1,12 +1,13 @@
 //! O1: the label of each pixel from the card's own depth and owner, in f64.
 
-use corniche_styles::Style;
+use corniche_roads::OwnWidth;
+use corniche_styles::{OwnWidths, Style};
 use corniche_viewer::{Caps, RoadOptions, camera::Camera, for_tests::Owner};
 use glam::{DMat2, DVec2, DVec3};
 
 use crate::support::{
     Drawing,
-    scene::{Scene, Tile},
+    scene::{PlanSegment, Scene, Tile},
 };
 
 /// Ground may be painted so many least half widths away in plan, at most.
@@ -131,8 +132,8 @@ impl PixelOracle<'_> {
                     continue;
                 };
                 let mut covered = Tri::No;
-                for (_, ends, factor) in segments.iter().filter(|(number, ..)| *number == class) {
-                    covered = covered.or(self.is_road(index, class, share, (*ends, *factor), tile));
+                for segment in segments.iter().filter(|(number, ..)| *number == class) {
+                    covered = covered.or(self.is_road(index, share, segment, tile));
                     if covered == Tri::Yes {
                         break;
                     }
@@ -150,9 +151,8 @@ impl PixelOracle<'_> {
     fn is_road(
         &self,
         index: usize,
-        class: u8,
         share: f64,
-        (ends, factor): ([DVec2; 2], f64),
+        &(class, ends, factor, own): &PlanSegment,
         tile: &Tile,
     ) -> Tri {
         let widest_m = tile.geometry.width_margin_m;
@@ -163,7 +163,8 @@ impl PixelOracle<'_> {
         let band_m = self.band_px * pixel_m;
         let caps = self.options.caps;
         let plan_m = distance(ground.truncate(), ends, caps);
-        let (half_m, least_px) = half_width(self.style, self.options, class, from_eye.length());
+        let (half_m, least_px) =
+            half_width(self.style, self.options, (class, own), from_eye.length());
         let wide = Tri::at_most(plan_m, share * half_m * factor, band_m);
         let stretch = (1.5 * from_eye.length() / from_eye.z.abs()).clamp(1.0, MAX_STRETCH);
         let near = Tri::at_most(plan_m, stretch * share * least_px * pixel_m, band_m);
@@ -259,16 +260,23 @@ fn near_end(at: DVec2, [a, b]: [DVec2; 2], band_m: f64) -> Tri {
     Tri::at_most(-along_m, 0.0, band_m).and(Tri::at_most(along_m, a.distance(b), band_m))
 }
 
-/// Half width of a class in metres at a distance from the eye, and the least one in pixels.
+/// Half width of a road, by its class and what its tags say of its width, in metres at a distance from the eye, and the least one in pixels.
 pub(crate) fn half_width(
     style: &Style,
     options: RoadOptions,
-    class: u8,
+    (class, own): (u8, OwnWidth),
     distance_m: f64,
 ) -> (f64, f64) {
     let road = &style.roads[usize::from(class)];
     let growth = options.width_scaling(style).factor(distance_m);
-    (f64::from(road.width_m) / 2.0 * growth, f64::from(road.min_width_px) / 2.0)
+    let width_m = match (style.own_widths, own) {
+        (Some(_), OwnWidth::Millimetres(mm)) => (f64::from(mm.get()) / 1000.0).min(60.0),
+        (Some(OwnWidths { lane_m: Some(lane_m) }), OwnWidth::Lanes(lanes)) => {
+            (f64::from(lanes.get()) * f64::from(lane_m)).min(60.0)
+        }
+        _ => f64::from(road.width_m),
+    };
+    (width_m / 2.0 * growth, f64::from(road.min_width_px) / 2.0)
 }
 
 /// Distance from a point to a segment; infinite beyond the ends of one without caps.

@@ -1,8 +1,15 @@
-//! Mountains of three wavelengths with roads, triangulated and draped when a tile is asked for.
+//! Mountains of three wavelengths with roads, triangulated and draped when a tile is asked for. Some roads have widths of their
+//! own, which most styles do not look at.
+
+use std::{
+    collections::BTreeSet,
+    num::{NonZeroU8, NonZeroU32},
+};
 
 use corniche_drape::{OwnedBorders, clip, clip_closed, drape, extrude};
 use corniche_geom::{Frame, HeightGrid, NodeIndex, Polyline, TILE_NODES, TileId};
-use corniche_tileset::{GeoRoad, SvRoad, Terrain, TilePayload};
+use corniche_roads::RoadAttributes;
+use corniche_tileset::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface, TinSpec, normals, triangulate};
 use corniche_viewer::{
     for_tests::PlanScale,
@@ -128,8 +135,26 @@ impl Country {
             height_range_m: [90.0, 1910.0],
             uncovered_nodes: 0,
         };
-        TilePayload { id, terrain: Some(terrain), roads_geo, roads_sv, attributes: Vec::new() }
+        let geo = roads_geo.iter().map(|road| road.way_id);
+        let ways: BTreeSet<i64> = geo.chain(roads_sv.iter().map(|road| road.way_id)).collect();
+        let attributes = ways.into_iter().map(record).collect();
+        TilePayload { id, terrain: Some(terrain), roads_geo, roads_sv, attributes }
     }
+}
+
+/// Of three ways one has a width, one has lanes, one has neither.
+fn record(way_id: i64) -> RoadRecord {
+    let (widths_mm, lanes) = ([2500, 14_000, 33_000, 80_000], [1, 2, 6, 30]);
+    let turn = (way_id / 3) as usize % 4;
+    let attributes = match way_id % 3 {
+        0 => RoadAttributes {
+            width_mm: NonZeroU32::new(widths_mm[turn]),
+            ..RoadAttributes::default()
+        },
+        1 => RoadAttributes { lanes: NonZeroU8::new(lanes[turn]), ..RoadAttributes::default() },
+        _ => RoadAttributes::default(),
+    };
+    RoadRecord { way_id, attributes }
 }
 
 impl TileCatalog for Country {

@@ -175,7 +175,7 @@ pub(crate) fn ground_line(number: u8, points_m: Vec<[f64; 3]>) -> GroundLine {
     let plan = |[x, y, _]: [f64; 3]| [x, y];
     let source = [plan(points_m[0]), plan(points_m[points_m.len() - 1])];
     let sources_m = vec![source; points_m.len() - 1];
-    GroundLine { way_id: 1, class: class(number), points_m, sources_m }
+    GroundLine { sources_m, ..GroundLine::of_source(1, class(number), points_m) }
 }
 
 /// Depth at which a ray (of depth 1) first meets a triangle.

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use corniche_geom::{Bounds, Frame, TileId};
+use corniche_roads::OwnWidth;
 use corniche_styles::Style;
 use corniche_tileset::{FilePackage, Sections, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
@@ -18,8 +19,8 @@ use glam::{DVec2, DVec3};
 use super::Drawing;
 use crate::support;
 
-/// A segment of a road in plan: class, ends and working metres across it for each true metre.
-pub(crate) type PlanSegment = (u8, [DVec2; 2], f64);
+/// A segment of a road in plan: class, ends, working metres across it for each true metre, what its tags say of its width.
+pub(crate) type PlanSegment = (u8, [DVec2; 2], f64, OwnWidth);
 
 /// A tile of a scene.
 #[derive(Clone)]
@@ -75,6 +76,7 @@ impl Tile {
                     lines.plan.push(PlanLine {
                         way_id: *way_id,
                         class,
+                        own_width: OwnWidth::Unknown,
                         points_m: vec![a.to_array(), b.to_array()],
                         // As low and high as the tile: never too narrow.
                         ground_range_m: vec![ground.height_range_m],
@@ -125,6 +127,7 @@ impl Tile {
             .map(|road| GroundLine {
                 way_id: road.way_id,
                 class: road.class,
+                own_width: own_width(payload, road.way_id),
                 points_m: corniche_drape::positions(&road.line, &surface)
                     .unwrap()
                     .into_iter()
@@ -145,6 +148,7 @@ impl Tile {
             .map(|road| PlanLine {
                 way_id: road.way_id,
                 class: road.class,
+                own_width: own_width(payload, road.way_id),
                 points_m: road.line.points.iter().map(|point| frame.position_m(*point)).collect(),
                 ground_range_m: road.line.ground_range_m.clone(),
             })
@@ -164,6 +168,18 @@ impl Tile {
         let mut lines = self.lines.clone();
         lines.ground.iter_mut().for_each(|line| line.way_id += by);
         lines.plan.iter_mut().for_each(|line| line.way_id += by);
+        self.with_lines(lines)
+    }
+
+    /// The same tile with widths of their own for its ways; its GEO and SV lines alike.
+    pub(crate) fn with_own_widths(&self, of_way: impl Fn(i64) -> OwnWidth) -> Self {
+        let mut lines = self.lines.clone();
+        lines.ground.iter_mut().for_each(|line| line.own_width = of_way(line.way_id));
+        lines.plan.iter_mut().for_each(|line| line.own_width = of_way(line.way_id));
+        self.with_lines(lines)
+    }
+
+    fn with_lines(&self, lines: TileLines) -> Self {
         let (id, triangles) = (self.geometry.id, self.triangles.clone());
         let Self { terrain, frame, quantum_m, skirt_depth_m, .. } = self;
         Self::of_lines(id, terrain, frame, *quantum_m, lines, triangles, *skirt_depth_m)
@@ -184,7 +200,12 @@ impl Tile {
             .flat_map(|line| {
                 line.points_m.windows(2).map(|pair| {
                     let ends = [pair[0], pair[1]].map(DVec2::from_array);
-                    (line.class.number(), ends, lines.scale.across([pair[0], pair[1]]))
+                    (
+                        line.class.number(),
+                        ends,
+                        lines.scale.across([pair[0], pair[1]]),
+                        line.own_width,
+                    )
                 })
             })
             .collect();
@@ -252,6 +273,12 @@ impl Scene {
         Renderer::new(gpu).draw(gpu, view, &tiles, &targets);
         targets
     }
+}
+
+/// What the tags of a way say of its width, by the payload's list.
+fn own_width(payload: &TilePayload, way_id: i64) -> OwnWidth {
+    let found = payload.attributes.iter().find(|record| record.way_id == way_id);
+    found.map_or(OwnWidth::Unknown, |record| record.attributes.own_width())
 }
 
 /// The square of a grid that holds a position.

@@ -1,7 +1,10 @@
 //! Grounds of closed form with roads on them.
 
+use std::num::{NonZeroU8, NonZeroU32};
+
 use corniche_geom::TileId;
-use corniche_styles::{CenterLine, Style, WidthScaling};
+use corniche_roads::OwnWidth;
+use corniche_styles::{CenterLine, OwnWidths, Style, WidthScaling};
 use corniche_viewer::camera::{Camera, Orientation};
 use glam::DVec2;
 
@@ -105,6 +108,60 @@ pub(crate) fn junction() -> Vec<Road> {
     ]
 }
 
+/// The same style, which looks at the widths and lanes that roads have themselves.
+pub(crate) fn by_own_widths(style: &Style) -> Style {
+    Style { own_widths: Some(OwnWidths { lane_m: Some(3.25) }), ..style.clone() }
+}
+
+/// The same scene with these widths for its ways 1, 2 …, in turn.
+pub(crate) fn with_own_widths(scene: &Scene, widths: &[OwnWidth]) -> Scene {
+    let of_way = |way_id: i64| widths[(way_id - 1) as usize % widths.len()];
+    Scene {
+        tiles: scene.tiles.iter().map(|tile| tile.with_own_widths(of_way)).collect(),
+        style: by_own_widths(&scene.style),
+    }
+}
+
+/// So many millimetres.
+pub(crate) fn tagged(mm: u32) -> OwnWidth {
+    NonZeroU32::new(mm).map_or(OwnWidth::Unknown, OwnWidth::Millimetres)
+}
+
+/// So many lanes.
+pub(crate) fn lanes(count: u8) -> OwnWidth {
+    NonZeroU8::new(count).map_or(OwnWidth::Unknown, OwnWidth::Lanes)
+}
+
+/// The road atlas, with roads that widen from nearer on.
+fn far_atlas() -> Style {
+    Style {
+        width_scaling: WidthScaling { threshold_m: 800.0, exponent: 0.75, constant: 1.0 },
+        ..Style::road_atlas()
+    }
+}
+
+/// Scenes with roads of their own width.
+fn of_own_widths() -> Vec<Named> {
+    vec![
+        Named {
+            name: "junction of own widths",
+            scene: with_own_widths(
+                &one_tile(16, hills, &junction(), style(26.0)),
+                &[tagged(12_000), lanes(6), tagged(90_000), OwnWidth::Unknown],
+            ),
+            cameras: vec![camera(400.0, 1200.0, 0.0, 20.0), camera(400.0, 1800.0, 100.0, 55.0)],
+        },
+        Named {
+            name: "own widths, atlas style, far",
+            scene: with_own_widths(
+                &one_tile(16, hills, &junction(), far_atlas()),
+                &[lanes(3), tagged(2_500), OwnWidth::Unknown, tagged(45_000)],
+            ),
+            cameras: vec![camera(400.0, 6000.0, 0.0, 35.0), camera(400.0, 9000.0, 60.0, 78.0)],
+        },
+    ]
+}
+
 /// All scenes but those with several levels.
 pub(crate) fn all() -> Vec<Named> {
     let two_colours = {
@@ -112,14 +169,11 @@ pub(crate) fn all() -> Vec<Named> {
         style.roads[0].center = Some(CenterLine { width_share: 0.3, color: [1.0, 1.0, 0.0] });
         style
     };
-    let atlas = Style {
-        width_scaling: WidthScaling { threshold_m: 800.0, exponent: 0.75, constant: 1.0 },
-        ..Style::road_atlas()
-    };
     let ridge = |_: f64, y: f64| (400.0 - y.abs() * 0.5).max(0.0);
     let cliff = |x: f64, y: f64| 200.0 + 40.0 * ((x + 0.3 * y) / 120.0).floor();
     let straight = vec![(3, vec![[-700.0, -310.0], [650.0, 420.0]])];
-    vec![
+    let mut all = of_own_widths();
+    all.extend([
         Named {
             name: "plane",
             scene: one_tile(256, |_, _| 512.0, &straight, style(40.0)),
@@ -165,7 +219,7 @@ pub(crate) fn all() -> Vec<Named> {
         },
         Named {
             name: "junction, atlas style, far",
-            scene: one_tile(16, hills, &junction(), atlas),
+            scene: one_tile(16, hills, &junction(), far_atlas()),
             cameras: vec![camera(400.0, 6000.0, 0.0, 35.0), camera(400.0, 9000.0, 60.0, 78.0)],
         },
         Named {
@@ -207,5 +261,6 @@ pub(crate) fn all() -> Vec<Named> {
             scene: four_tiles([64; 4], |_, _| 300.0, &straight, style(159.0)),
             cameras: vec![camera(300.0, 5500.0, 15.0, 30.0)],
         },
-    ]
+    ]);
+    all
 }

@@ -7,7 +7,7 @@ use wgpu::{Device, vertex_attr_array};
 use super::super::{
     Gpu,
     pipeline::{Shader, shader},
-    road_instances::{RoadBuffers, RoadPipeline, RoadRecipe},
+    road_instances::{RoadBuffers, RoadPipeline, RoadRecipe, own_width_value},
     shared_bindings::SharedLayouts,
 };
 use crate::tiles::{Bed, RoadSegment, RoadSegments};
@@ -15,8 +15,8 @@ use crate::tiles::{Bed, RoadSegment, RoadSegments};
 pub(crate) const SHADER: Shader = shader!("roads": "common", "coverage", "roads");
 
 /// Bytes of an instance: two plan positions as two f32 each, two shares, two slopes, a height and a width factor as f32,
-/// class and flags as u32, eight bounds as f16.
-const INSTANCE_BYTES: u64 = 60;
+/// class and flags as u32, eight bounds as f16, own width as f32.
+const INSTANCE_BYTES: u64 = 64;
 /// Corners of a quad, as `shaders/roads.wgsl` counts them.
 const CORNERS: Range<u32> = 0..4;
 
@@ -26,7 +26,8 @@ pub(crate) fn pipeline(device: &Device, layouts: &SharedLayouts) -> RoadPipeline
         shader: SHADER,
         instance_bytes: INSTANCE_BYTES,
         attributes: &vertex_attr_array![
-            0 => Float32x4, 1 => Float32x4, 2 => Float32x2, 3 => Uint32, 4 => Float16x4, 5 => Float16x4
+            0 => Float32x4, 1 => Float32x4, 2 => Float32x2, 3 => Uint32, 4 => Float16x4, 5 => Float16x4,
+            6 => Float32
         ],
         // A quad may face any direction, so none is culled.
         cull: None,
@@ -61,6 +62,7 @@ fn instance_bytes(segments: &[RoadSegment]) -> Vec<u8> {
         for bound in [rises].iter().chain(&most_m).flatten() {
             bytes.extend_from_slice(&f16_above(*bound).to_ne_bytes());
         }
+        bytes.extend_from_slice(&own_width_value(segment.own_width).to_ne_bytes());
     }
     bytes
 }

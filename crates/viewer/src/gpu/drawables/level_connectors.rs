@@ -77,5 +77,6 @@ fn volume(connector: &LevelConnector, reference_m: [f64; 3]) -> RoadVolume {
         near: NearHeights { range_in_tile: height_range_in_tile, rise: 0.0 },
         width_factor: connector.width_factor,
         class: connector.class,
+        own_width: connector.own_width,
     }
 }

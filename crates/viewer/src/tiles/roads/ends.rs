@@ -1,5 +1,5 @@
 use corniche_geom::Bounds;
-use corniche_roads::FunctionalRoadClass;
+use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use super::{super::PlanScale, GroundLine, PlanLine};
 
@@ -19,6 +19,8 @@ pub(crate) struct RoadEnd {
     pub(crate) way_id: i64,
     /// Functional road class.
     pub(crate) class: FunctionalRoadClass,
+    /// What the road's tags say of its width.
+    pub(crate) own_width: OwnWidth,
     /// The side of the tile.
     pub(crate) side: Side,
     /// The position, in the working CRS.
@@ -80,6 +82,7 @@ pub(crate) fn ground_ends(lines: &[GroundLine], tile: Bounds, scale: &PlanScale)
                 ends.push(RoadEnd {
                     way_id: line.way_id,
                     class: line.class,
+                    own_width: line.own_width,
                     side,
                     at_m: [x, y],
                     height_range_m: [height_m; 2],
@@ -100,6 +103,7 @@ pub(crate) fn plan_ends(lines: &[PlanLine], tile: Bounds, scale: &PlanScale) -> 
                 ends.push(RoadEnd {
                     way_id: line.way_id,
                     class: line.class,
+                    own_width: line.own_width,
                     side,
                     at_m,
                     height_range_m: *height_range_m,

@@ -1,6 +1,6 @@
 use corniche_drape::BadLine;
 use corniche_geom::Frame;
-use corniche_roads::FunctionalRoadClass;
+use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_tileset::TilePayload;
 use corniche_tin::Surface;
 
@@ -13,6 +13,8 @@ pub struct GroundLine {
     pub way_id: i64,
     /// Functional road class.
     pub class: FunctionalRoadClass,
+    /// What its tags say of its width.
+    pub own_width: OwnWidth,
     /// x, y in the working CRS and true height of each vertex.
     pub points_m: Vec<[f64; 3]>,
     /// For each piece between two vertices, both ends in plan of the segment of the source line that it is a piece of.
@@ -21,12 +23,12 @@ pub struct GroundLine {
 }
 
 impl GroundLine {
-    /// A line of which every vertex is a point of the source line.
+    /// A line of which every vertex is a point of the source line, without a width of its own.
     #[must_use]
     pub fn of_source(way_id: i64, class: FunctionalRoadClass, points_m: Vec<[f64; 3]>) -> Self {
         let plan = |[x, y, _]: [f64; 3]| [x, y];
         let sources_m = points_m.windows(2).map(|pair| [plan(pair[0]), plan(pair[1])]).collect();
-        Self { way_id, class, points_m, sources_m }
+        Self { way_id, class, own_width: OwnWidth::Unknown, points_m, sources_m }
     }
 }
 
@@ -37,6 +39,8 @@ pub struct PlanLine {
     pub way_id: i64,
     /// Functional road class.
     pub class: FunctionalRoadClass,
+    /// What its tags say of its width.
+    pub own_width: OwnWidth,
     /// x, y in the working CRS.
     pub points_m: Vec<[f64; 2]>,
     /// For each segment, the lowest and highest true height of the tile's ground within the width margin.
@@ -101,6 +105,7 @@ fn ground_lines(
         lines.push(GroundLine {
             way_id: road.way_id,
             class: road.class,
+            own_width: own_width(payload, road.way_id),
             points_m: positions.into_iter().map(place).collect(),
             sources_m: corniche_drape::source_segments(&road.line)
                 .into_iter()
@@ -111,10 +116,18 @@ fn ground_lines(
     Ok(lines)
 }
 
+/// What the tags of a way say of its width; nothing if the attributes were not read.
+fn own_width(payload: &TilePayload, way_id: i64) -> OwnWidth {
+    let found = payload.attributes.binary_search_by_key(&way_id, |record| record.way_id);
+    let record = found.ok().and_then(|at| payload.attributes.get(at));
+    record.map(|record| record.attributes.own_width()).unwrap_or_default()
+}
+
 fn plan_lines(payload: &TilePayload, frame: &Frame) -> Vec<PlanLine> {
     let place = |road: &corniche_tileset::SvRoad| PlanLine {
         way_id: road.way_id,
         class: road.class,
+        own_width: own_width(payload, road.way_id),
         points_m: road.line.points.iter().map(|point| frame.position_m(*point)).collect(),
         ground_range_m: road.line.ground_range_m.clone(),
     };

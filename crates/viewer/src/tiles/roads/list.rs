@@ -40,6 +40,12 @@ impl<T> RoadList<T> {
         self.ranges[usize::from(class.number())].clone()
     }
 
+    /// The pieces of a class.
+    pub(crate) fn of_class(&self, class: FunctionalRoadClass) -> &[T] {
+        let range = self.range_of(class);
+        &self.pieces[range.start as usize..range.end as usize]
+    }
+
     /// Where the roads meet the tile's border.
     pub(crate) fn ends(&self) -> &[RoadEnd] {
         &self.ends

@@ -1,5 +1,5 @@
 use corniche_geom::Bounds;
-use corniche_roads::FunctionalRoadClass;
+use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use super::{
     super::{PlanScale, ground_mesh::relative},
@@ -27,6 +27,8 @@ pub struct RoadSegment {
     pub bed: Bed,
     /// Functional road class.
     pub class: FunctionalRoadClass,
+    /// What the road's tags say of its width.
+    pub own_width: OwnWidth,
 }
 
 /// All segments of a tile.
@@ -107,6 +109,7 @@ impl RoadList<RoadSegment> {
                     width_factor: scale.across(piece.source_m) as f32,
                     bed: bed(&piece),
                     class: line.class,
+                    own_width: line.own_width,
                 }
             })
         });

@@ -1,5 +1,5 @@
 use corniche_geom::Bounds;
-use corniche_roads::FunctionalRoadClass;
+use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use super::{
     super::{PlanScale, ground_mesh::relative},
@@ -22,6 +22,8 @@ pub struct RoadVolume {
     pub width_factor: f32,
     /// Functional road class.
     pub class: FunctionalRoadClass,
+    /// What the road's tags say of its width.
+    pub own_width: OwnWidth,
 }
 
 /// All volumes of a tile.
@@ -62,6 +64,7 @@ impl RoadList<RoadVolume> {
                     },
                     width_factor: scale.across([pair[0], pair[1]]) as f32,
                     class: line.class,
+                    own_width: line.own_width,
                 }
             })
         });
