@@ -38,7 +38,7 @@ pub use files::named_files::{expand_name, unpack_name};
 pub use files::open_options::OpenOptions;
 pub use files::raster_files::raster_files;
 pub use files::vsi::VirtualFile;
-pub use library_error::{LibraryError, forget, quiet};
+pub use library_error::{LibraryError, failure, forget, quiet};
 pub use plan::grid_plan::{Clip, GridPlan, PlanOptions, PlanScale, Resampling};
 pub use plan::planning::libraries;
 pub use plan::recorded_grid::RecordedGrid;

@@ -79,7 +79,8 @@ pub(crate) fn last_words() -> Option<String> {
 }
 
 /// The failure that was told on this thread, for calls that return none.
-pub(crate) fn failure() -> Option<Box<LibraryError>> {
+#[must_use]
+pub fn failure() -> Option<Box<LibraryError>> {
     let said = || LAST_WORDS.with_borrow(|words| LibraryError::shortened(words));
     HAS_FAILED.get().then(|| Box::new(said()))
 }

@@ -106,7 +106,12 @@ impl VectorFile {
     pub(crate) fn finish(mut self) -> Result<(), ExportError> {
         self.write()?;
         let Self { path, format, dataset, written, .. } = self;
+        // What fails while a file is closed comes back from no call before GDAL 3.7.
+        corniche_dem::forget();
         dataset.close().map_err(|error| failed(&path, error))?;
+        if let Some(source) = corniche_dem::failure() {
+            return Err(ExportError::Write { path, source });
+        }
         whole::check(&path, format, written)
     }
 }
