@@ -76,16 +76,17 @@ fn every_command_takes_the_options_of_messages() {
     assert!(parse("corniche verify a.pmtiles --json-progress -q".into()).is_err());
 }
 
-/// `--dem` takes every name up to the next option; a package among them is told by its ending.
+/// `--dem` and `--osm` take every name up to the next option; a package among them is told by its ending.
 #[test]
 fn verify_finds_its_package_wherever_it_is_named() {
     let files = |line: &str| {
         let arguments =
             Arguments::try_parse_from(line.split(' ')).map_err(|error| error.to_string())?;
         let Command::Verify(args) = arguments.command else { panic!("{line}") };
-        args.files().map_err(|failure| failure.to_string())
+        let files = args.files().map_err(|failure| failure.to_string())?;
+        Ok::<_, String>((files.package, files.dem, files.osm))
     };
-    let expected = Ok(("p.pmtiles".into(), vec!["a.tif".into(), "b.tif".into()]));
+    let expected = Ok(("p.pmtiles".into(), vec!["a.tif".into(), "b.tif".into()], Vec::new()));
     for line in [
         "corniche verify p.pmtiles --dem a.tif b.tif",
         "corniche verify --dem a.tif b.tif p.pmtiles",
@@ -95,8 +96,16 @@ fn verify_finds_its_package_wherever_it_is_named() {
     ] {
         assert_eq!(files(line), expected, "{line}");
     }
+    let expected = Ok(("p.pmtiles".into(), Vec::new(), vec!["a.pbf".into(), "b.pbf".into()]));
+    for line in [
+        "corniche verify p.pmtiles --osm a.pbf b.pbf",
+        "corniche verify --osm a.pbf b.pbf p.pmtiles",
+        "corniche verify --osm a.pbf --osm b.pbf --json p.pmtiles",
+    ] {
+        assert_eq!(files(line), expected, "{line}");
+    }
     // A package of another name is found where nothing swallows it.
-    assert!(files("corniche verify old --dem a.tif").is_ok_and(|(package, _)| package == *"old"));
+    assert!(files("corniche verify old --dem a.tif").is_ok_and(|(package, ..)| package == *"old"));
     assert!(
         files("corniche verify --dem a.tif b.tif").unwrap_err().contains("no package is named")
     );
