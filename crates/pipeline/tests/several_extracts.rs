@@ -75,18 +75,19 @@ impl Files {
         settings.plan.osm = extract_names(osm).unwrap();
         settings
     }
+}
 
-    fn verify(&self, package: &Path, osm: &[PathBuf]) -> Result<VerifyReport, VerifyError> {
-        let paths = extract_names(osm).unwrap();
-        let settings = VerifySettings {
-            package: package.to_path_buf(),
-            dem: Vec::new(),
-            osm: Some(VerifyOsm { paths, table: table(), memory_bytes: 64 << 20 }),
-            threads: 2,
-            polygon: None,
-        };
-        verify(&settings, &Silent)
-    }
+/// Reads the extracts of a package again.
+fn verified(package: &Path, osm: &[PathBuf]) -> Result<VerifyReport, VerifyError> {
+    let paths = extract_names(osm).unwrap();
+    let settings = VerifySettings {
+        package: package.to_path_buf(),
+        dem: Vec::new(),
+        osm: Some(VerifyOsm { paths, table: table(), memory_bytes: 64 << 20 }),
+        threads: 2,
+        polygon: None,
+    };
+    verify(&settings, &Silent)
 }
 
 /// All tiles and counts of a package.
@@ -124,12 +125,12 @@ fn overlapping_parts_make_the_tiles_and_counts_of_the_whole() {
     assert_eq!(names, ["dem.tif", "east.osm.pbf", "west.osm.pbf"]);
 
     // verify reads them again, and needs all of them.
-    let report = files.verify(&parts, &second).unwrap();
+    let report = verified(&parts, &second).unwrap();
     let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
     assert!(broken.is_empty(), "{broken:#?}");
     for some in [&second[1..2], &[second[0].clone(), second[1].clone(), files.at("whole.osm.pbf")]]
     {
-        let error = files.verify(&parts, some).unwrap_err();
+        let error = verified(&parts, some).unwrap_err();
         assert!(matches!(error, VerifyError::OtherOsm { .. }), "{error}");
     }
 }
