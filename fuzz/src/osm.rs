@@ -66,6 +66,7 @@ fn read(file: &[u8], memory_bytes: u64) -> Found {
             let path = Path::new("made.osm.pbf");
             let request = ReadRequest {
                 path,
+                others: &[],
                 table,
                 place: &place,
                 pool,

@@ -45,7 +45,7 @@ pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles, Failure> {
     let given = InputFiles {
         dem: mem::take(&mut args.dem),
         terrain: args.terrain_of.take(),
-        osm: args.osm.take(),
+        osm: mem::take(&mut args.osm),
         polygon: args.polygon.take(),
     };
     let InputFiles { dem, terrain, osm, polygon } = given.or(config.inputs);
@@ -78,9 +78,9 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     };
     let given = [args.attribution, terrain.attribution.clone()];
     let attribution = given.into_iter().find(|credits| !credits.is_empty());
-    let osm = args.osm.map(input_name).transpose()?;
+    let osm = corniche_pipeline::extract_names(&args.osm)?;
     let cut = Cut {
-        bounds_deg: bounds_deg(terrain.bounds, osm.as_ref())?.or(base.terrain.plan.bounds_deg),
+        bounds_deg: bounds_deg(terrain.bounds, &osm)?.or(base.terrain.plan.bounds_deg),
         polygon: args.polygon.map(polygon).transpose()?,
     };
     let plan = PlanSettings {
@@ -108,7 +108,7 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
 }
 
 /// The name of an input for GDAL and for plans.
-pub(crate) fn input_name(path: PathBuf) -> Result<PathBuf, Failure> {
+fn input_name(path: PathBuf) -> Result<PathBuf, Failure> {
     corniche_pipeline::input_name(path).map_err(Failure::unusable)
 }
 
@@ -134,17 +134,14 @@ fn usual_terrain() -> TerrainRecord {
 }
 
 /// The bounds in degrees, which an extract may have to tell.
-fn bounds_deg(
-    bounds: Option<BoundsChoice>,
-    osm: Option<&PathBuf>,
-) -> Result<Option<[f64; 4]>, Failure> {
-    match (bounds, osm) {
-        (None, _) => Ok(None),
-        (Some(BoundsChoice::Degrees(bounds_deg)), _) => Ok(Some(bounds_deg)),
-        (Some(BoundsChoice::Osm), Some(osm)) => {
-            Ok(Some(corniche_pipeline::extract_bounds(std::slice::from_ref(osm))?))
+fn bounds_deg(bounds: Option<BoundsChoice>, osm: &[PathBuf]) -> Result<Option<[f64; 4]>, Failure> {
+    match bounds {
+        None => Ok(None),
+        Some(BoundsChoice::Degrees(bounds_deg)) => Ok(Some(bounds_deg)),
+        Some(BoundsChoice::Osm) if !osm.is_empty() => {
+            Ok(Some(corniche_pipeline::extract_bounds(osm)?))
         }
-        (Some(BoundsChoice::Osm), None) => Err(Failure::unusable(
+        Some(BoundsChoice::Osm) => Err(Failure::unusable(
             "--bounds osm takes the bounds of the extract; give one with --osm",
         )),
     }

@@ -3,7 +3,7 @@
 use std::{
     fmt::Write as _,
     io::{self, Write as _},
-    path::Path,
+    path::{Path, PathBuf},
 };
 
 use corniche_pipeline::{ErrorFigures, VerifyError, VerifyOsm, VerifyReport, VerifySettings};
@@ -11,20 +11,20 @@ use corniche_presets::frc_preset;
 use corniche_tileset::FilePackage;
 
 use crate::{
-    args::VerifyArgs,
+    args::{VerifyArgs, VerifyFiles},
     documents::{to_line, verify::VerifyDocument},
     exit::ExitCode,
     failure::Failure,
     info::or_dash,
     presets,
     progress::Progress,
-    settings::{input_name, polygon, threads},
+    settings::{polygon, threads},
     table::{Digits, Table},
 };
 
 pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
-    let (package, dem) = args.files()?;
-    let osm = extract(args, &package)?;
+    let VerifyFiles { package, dem, osm } = args.files()?;
+    let osm = extract(args, &osm, &package)?;
     let settings = VerifySettings {
         package,
         dem: corniche_pipeline::elevation_names(&dem)?,
@@ -51,9 +51,16 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
 /// Memory for sorting roads by tile.
 const MEMORY_BYTES: u64 = 256 << 20;
 
-/// The extract to read again, with the FRC table that the package names: given, or the preset of that name.
-fn extract(args: &VerifyArgs, package: &Path) -> Result<Option<VerifyOsm>, Failure> {
-    let Some(path) = args.osm.clone().map(input_name).transpose()? else { return Ok(None) };
+/// The extracts to read again, with the FRC table that the package names: given, or the preset of that name.
+fn extract(
+    args: &VerifyArgs,
+    osm: &[PathBuf],
+    package: &Path,
+) -> Result<Option<VerifyOsm>, Failure> {
+    if osm.is_empty() {
+        return Ok(None);
+    }
+    let paths = corniche_pipeline::extract_names(osm)?;
     let table = if let Some(table) = &args.frc_table {
         presets::frc_table(table)?
     } else {
@@ -71,7 +78,7 @@ fn extract(args: &VerifyArgs, package: &Path) -> Result<Option<VerifyOsm>, Failu
         }
         presets::frc_table(name)?
     };
-    Ok(Some(VerifyOsm { path, table, memory_bytes: MEMORY_BYTES }))
+    Ok(Some(VerifyOsm { paths, table, memory_bytes: MEMORY_BYTES }))
 }
 
 fn to_text(report: &VerifyReport, digits: Digits) -> String {

@@ -11,15 +11,19 @@ use crate::LibraryError;
 pub enum DemError {
     #[error("no DEM file is given")]
     NoFiles,
-    #[error("cannot read {path:?}, which was to name elevation files")]
+    #[error("cannot read {path:?}, which was to name files")]
     List { path: PathBuf, source: std::io::Error },
-    #[error("the list {path:?} names no file; write the name of an elevation file on each line")]
+    #[error("the list {path:?} names no file; write the name of a file on each line")]
     EmptyList { path: PathBuf },
     #[error(
         "the folder {path:?} holds no elevation file (names ending in {endings}, or these in .gz or .zip); folders in it are not looked into, so name the files or the right folder"
     )]
     EmptyFolder { path: PathBuf, endings: String },
-    #[error("the pattern {pattern:?} names no elevation file: {reason}")]
+    #[error(
+        "the folder {path:?} holds no extract (names ending in .pbf); folders in it are not looked into, so name the files or the right folder"
+    )]
+    NoExtracts { path: PathBuf },
+    #[error("the pattern {pattern:?} names no file: {reason}")]
     Pattern { pattern: String, reason: String },
     #[error(
         "{path:?} is no archive with an elevation file (names ending in {endings}) that GDAL can read; unpack it, or name the file in it as /vsizip/ARCHIVE/FILE"

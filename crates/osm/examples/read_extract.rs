@@ -33,6 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scratch = FileScratch::new()?;
     let request = ReadRequest {
         path: file.as_ref(),
+        others: &[],
         table: &table,
         place: &to_lattice,
         pool: &pool,

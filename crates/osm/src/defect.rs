@@ -99,7 +99,13 @@ pub enum Defect {
         /// How many pairs of its segments cross; for a way of more than 2000 nodes not all of them may be found.
         crossings: u32,
     },
-    /// The file gives a node several different places; the first stays.
+    /// Two extracts have the way in different versions, of which the newer one stays, or with different content, of which that of the first
+    /// stays.
+    ConflictingWay {
+        /// The way.
+        way_id: i64,
+    },
+    /// A node has several different places; the first stays, or of several extracts that of the newest version.
     ConflictingNode {
         /// The node.
         node_id: i64,
@@ -126,6 +132,7 @@ impl Defect {
             Self::NoLine { .. } => "no line left",
             Self::DuplicatePoints { .. } => "duplicate points",
             Self::SelfCrossing { .. } => "self-crossing",
+            Self::ConflictingWay { .. } => "conflicting way",
             Self::ConflictingNode { .. } => "conflicting node",
         }
     }
@@ -148,6 +155,7 @@ impl Defect {
             | Self::StrayPoints { way_id, .. }
             | Self::NoLine { way_id }
             | Self::DuplicatePoints { way_id, .. }
+            | Self::ConflictingWay { way_id }
             | Self::SelfCrossing { way_id, .. } => ("way", way_id),
             Self::ConflictingNode { node_id } => ("node", node_id),
         }
@@ -172,6 +180,7 @@ impl Defect {
             | Self::DamagedText { .. }
             | Self::LongText { .. }
             | Self::NoLine { .. }
+            | Self::ConflictingWay { .. }
             | Self::ConflictingNode { .. } => None,
         }
     }

@@ -7,12 +7,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
-    blobs::{BlobFile, Decoding},
+    blobs::Decoding,
+    extracts::Extracts,
     id_range::IdRange,
     reading::{Reading, Step},
-    records::{Located, WayRecord},
+    records::{Located, WayRecord, age},
     versions::Versions,
-    ways::{Ways, add_summary},
+    ways::{Counted, Ways, add_summary},
 };
 
 /// What may be kept of any file, in memory or in scratch space, …
@@ -41,7 +42,7 @@ pub(crate) struct NodeBlob {
 /// Reads the blobs with these numbers. What is wrong with tags goes to `on_defect`, in the order of the file.
 pub(crate) fn find_ways<'a, R: Read + Seek>(
     reading: &Reading<'a>,
-    file: &mut BlobFile<R>,
+    file: &mut Extracts<R>,
     numbers: &[usize],
     on_defect: &mut dyn FnMut(Defect),
 ) -> Result<FoundWays<'a>, ReadOsmError> {
@@ -56,7 +57,10 @@ pub(crate) fn find_ways<'a, R: Read + Seek>(
     };
     let (mut roads, mut locations) = (0, 0);
     let data_bytes = file.bytes_of(numbers);
-    let table = request.table;
+    let (table, is_of_several) = (request.table, reading.is_of_several());
+    let counted = if is_of_several { Counted::ByWay } else { Counted::ByBlock };
+    let file_of: Vec<usize> = numbers.iter().map(|&number| file.file_of(number)).collect();
+    let mut file_of = file_of.into_iter();
     let decoding = Decoding {
         pool: request.pool,
         should_stop: reading.should_stop,
@@ -66,9 +70,11 @@ pub(crate) fn find_ways<'a, R: Read + Seek>(
         numbers,
         &decoding,
         |block| (Versions::scan(block), IdRange::scan(block)),
-        |block, most_bytes| Ways::scan(block, table, most_bytes),
+        |block, most_bytes| Ways::scan(block, table, counted, most_bytes),
         |number, (versions_of_block, ids), of_block| {
-            append_versions(reading, &mut found.versions, versions_of_block)?;
+            // Blobs come in the order of their numbers.
+            let file = file_of.next().unwrap_or_default() as u32;
+            append_versions(reading, &mut found.versions, versions_of_block.of_file(file))?;
             found.held_bytes += of_block.held_bytes;
             check_held(reading, found.held_bytes)?;
             found.node_blobs.extend(ids.map(|ids| NodeBlob { number, ids }));
@@ -76,6 +82,8 @@ pub(crate) fn find_ways<'a, R: Read + Seek>(
             add_summary(&mut found.summary, of_block.summary);
             for mut way in of_block.roads {
                 way.order = roads;
+                way.file = file;
+                way.age = if is_of_several { age(way.version) } else { 0 };
                 roads += 1;
                 found.ways.push(way).map_err(|error| reading.scratch_failed(error))?;
             }

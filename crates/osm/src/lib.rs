@@ -15,6 +15,8 @@
 //! and joined within the memory that the caller allows; what does not fit goes to scratch space. There is one way through the
 //! code for extracts of every size and order.
 //!
+//! Several extracts are read as one list of blobs. Of an object that is in two of them the newer version counts.
+//!
 //! The two passes can also be split into shares of the blobs and made by several processes, each a [`Share`].
 //!
 //! This crate never judges which road matters at which level, never guesses a class, and starts no threads.
@@ -36,6 +38,7 @@ mod number_nodes;
 mod audit;
 mod blob;
 mod blobs;
+mod extracts;
 mod formats;
 mod open_file;
 mod wire;
@@ -49,9 +52,11 @@ mod versions;
 mod ways;
 
 mod ahead;
+mod counts;
 mod records;
 mod spool;
 mod way_bytes;
+mod way_facts;
 
 mod defect;
 mod error;

@@ -12,19 +12,24 @@ use osmpbf::PrimitiveBlock;
 use crate::{
     Defect, ReadOsmError,
     ahead::Ahead,
-    blobs::{BlobFile, Decoding},
+    blobs::Decoding,
+    extracts::Extracts,
     find_ways::NodeBlob,
     id_range::IdRange,
-    location::Location,
-    nodes::{NodeIds, NodePlaces},
+    nodes::{FoundNode, NodeIds, NodePlaces, Precedence},
     reading::{Reading, Step},
     records::{Located, Mention, Stop},
     spool::{Spool, damaged},
     wire::{push_varint, varint},
 };
 
-/// What a node of a chunk takes: its id, its place, two marks.
-pub(crate) const BYTES_PER_NODE: u64 = 8 + 8 + 1 + 1;
+/// What a node of a chunk takes at most: its id, its place, two marks, and of several extracts its version.
+pub(crate) fn bytes_per_node(precedence: Precedence) -> u64 {
+    match precedence {
+        Precedence::First => 8 + 8 + 1 + 1,
+        Precedence::Newest => 8 + 8 + 1 + 1 + 4,
+    }
+}
 
 /// The nodes of all roads, in the order of ways.
 pub(crate) struct LocatedNodes<'a> {
@@ -57,7 +62,7 @@ pub(crate) trait NodeSource {
 
 /// Places of nodes from an extract.
 pub(crate) struct FileNodes<'a, R> {
-    pub(crate) file: &'a mut BlobFile<R>,
+    pub(crate) file: &'a mut Extracts<R>,
     pub(crate) node_blobs: &'a [NodeBlob],
 }
 
@@ -75,7 +80,7 @@ pub(crate) fn locate_nodes<'a>(
     let mut located = Ahead::new(located);
     let mut done = 0;
     while let Some(chunk) = Chunk::gather(reading, &mut mentions, mentions_count - done)? {
-        let mut places = NodePlaces::new(chunk.ids.ids().len());
+        let mut places = NodePlaces::new(chunk.ids.ids().len(), reading.precedence());
         let share = ShareOfNodes { before: done, own: chunk.mentions_count, all: mentions_count };
         source.read(reading, &chunk.ids, &share, &mut places)?;
         chunk.take_located(reading, &mut located, &mut places)?;
@@ -121,7 +126,7 @@ impl<R: Read + Seek> NodeSource for FileNodes<'_, R> {
             let done = u128::from(share.own) * u128::from(bytes) / u128::from(all_bytes.max(1));
             reading.tell(Step::Nodes, share.before + done as u64, share.all);
         };
-        let take = &mut |number, location| places.set(number, location);
+        let take = &mut |(number, location, version)| places.set(number, location, version);
         read_places(reading, self.file, self.node_blobs, ids, &on_bytes, take)?;
         Ok(())
     }
@@ -131,11 +136,11 @@ impl<R: Read + Seek> NodeSource for FileNodes<'_, R> {
 /// many of how many bytes were read. Returns how many bytes these blobs have.
 pub(crate) fn read_places<R: Read + Seek>(
     reading: &Reading<'_>,
-    file: &mut BlobFile<R>,
+    file: &mut Extracts<R>,
     node_blobs: &[NodeBlob],
     ids: &NodeIds,
     on_bytes: &dyn Fn(u64, u64),
-    take: &mut dyn FnMut(usize, Location),
+    take: &mut dyn FnMut(FoundNode),
 ) -> Result<u64, ReadOsmError> {
     let (Some(&least), Some(&most)) = (ids.ids().first(), ids.ids().last()) else { return Ok(0) };
     let own = IdRange { least, most };
@@ -147,10 +152,8 @@ pub(crate) fn read_places<R: Read + Seek>(
         should_stop: reading.should_stop,
         on_bytes: &|bytes| on_bytes(bytes, all_bytes),
     };
-    let take = |_, (), found: Vec<(usize, Location)>| {
-        for (number, location) in found {
-            take(number, location);
-        }
+    let take = |_, (), found: Vec<FoundNode>| {
+        found.into_iter().for_each(&mut *take);
         Ok(())
     };
     let scan = |block: &PrimitiveBlock, most_bytes| ids.scan(block, most_bytes);
@@ -189,7 +192,8 @@ impl<'a> Chunk<'a> {
     ) -> Result<Option<Self>, ReadOsmError> {
         let shares = reading.shares();
         let failed = |error| reading.scratch_failed(error);
-        let most_ids = (shares.ids / BYTES_PER_NODE).max(1).min(most) as usize;
+        let most_ids =
+            (shares.ids / bytes_per_node(reading.precedence())).max(1).min(most) as usize;
         // Of this size at once: lists that grow by doubling would take up to three times as much.
         let mut ids: Vec<i64> = Vec::with_capacity(most_ids);
         let mut named = Vec::with_capacity(most_ids);
@@ -237,7 +241,7 @@ impl<'a> Chunk<'a> {
             }
             // Not there: a duplicate named the node, and was left out.
             if let Some(number) = self.ids.number(next.node_id) {
-                places.set(number, next.location);
+                places.set(number, next.location, 0);
             }
             located.take();
             reading.check_stop_at(count)?;

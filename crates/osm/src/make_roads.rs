@@ -33,7 +33,7 @@ pub(crate) fn make_roads(
     on_defect: &mut dyn FnMut(Defect),
 ) -> Result<(), ReadOsmError> {
     let failed = |error| reading.scratch_failed(error);
-    let numbered = number_nodes(reading, found.ways, on_defect)?;
+    let numbered = number_nodes(reading, found.ways, summary, on_defect)?;
     let NumberedNodes { ways, mentions, ways_count, mentions_count, duplicates } = numbered;
     let mentions = mentions.finish().map_err(failed)?;
     let questions = NodeQuestions { mentions, mentions_count, located: found.located };

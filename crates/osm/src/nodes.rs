@@ -17,7 +17,21 @@ pub(crate) struct NodePlaces {
     locations: Vec<Location>,
     /// Of nodes to which the file gives different places.
     is_conflicting: Vec<bool>,
+    /// With [`Precedence::Newest`] the versions of the places; else empty.
+    versions: Vec<i32>,
 }
+
+/// Which of several places of a node counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Precedence {
+    /// The first.
+    First,
+    /// That of the newest version, or the first of these.
+    Newest,
+}
+
+/// A node that was found: its number, its place, its version or 0.
+pub(crate) type FoundNode = (usize, Location, i32);
 
 impl NodeIds {
     /// `ids` ascend, each of them once.
@@ -26,21 +40,22 @@ impl NodeIds {
     }
 
     /// The listed nodes of a block, by number, with their places; `None` if they take more than `most_bytes`.
-    pub(crate) fn scan(
-        &self,
-        block: &PrimitiveBlock,
-        most_bytes: u64,
-    ) -> Option<Vec<(usize, Location)>> {
+    pub(crate) fn scan(&self, block: &PrimitiveBlock, most_bytes: u64) -> Option<Vec<FoundNode>> {
         let mut found = Vec::new();
         for group in block.groups() {
             let dense = group.dense_nodes();
-            let dense = dense.map(|node| (node.id(), node.nano_lon(), node.nano_lat()));
-            let plain = group.nodes();
-            let plain = plain.map(|node| (node.id(), node.nano_lon(), node.nano_lat()));
+            let dense = dense.map(|node| {
+                let version = node.info().map_or(0, osmpbf::DenseNodeInfo::version);
+                (node.id(), node.nano_lon(), node.nano_lat(), version)
+            });
+            let plain = group.nodes().map(|node| {
+                let version = node.info().version().unwrap_or_default();
+                (node.id(), node.nano_lon(), node.nano_lat(), version)
+            });
             let mut search = self.search();
-            for (id, lon_nano_deg, lat_nano_deg) in dense.chain(plain) {
+            for (id, lon_nano_deg, lat_nano_deg, version) in dense.chain(plain) {
                 if let Some(number) = search.find(id) {
-                    found.push((number, location_from_nano(lon_nano_deg, lat_nano_deg)));
+                    found.push((number, location_from_nano(lon_nano_deg, lat_nano_deg), version));
                 }
                 if size_of_val(found.as_slice()) as u64 > most_bytes {
                     return None;
@@ -67,24 +82,48 @@ impl NodeIds {
 
 impl NodePlaces {
     /// Of `count` nodes, none known.
-    pub(crate) fn new(count: usize) -> Self {
-        Self { locations: vec![MISSING; count], is_conflicting: vec![false; count] }
+    pub(crate) fn new(count: usize, precedence: Precedence) -> Self {
+        let versions = match precedence {
+            Precedence::First => Vec::new(),
+            Precedence::Newest => vec![0; count],
+        };
+        Self { locations: vec![MISSING; count], is_conflicting: vec![false; count], versions }
     }
 
-    /// Takes the place of a node; the first that is on Earth stays.
-    pub(crate) fn set(&mut self, number: usize, location: Location) {
+    /// Takes the place of a node; the first that is on Earth stays, or of these that of the newest version. A version of 0 is not known.
+    pub(crate) fn set(&mut self, number: usize, location: Location, version: i32) {
         let own = &mut self.locations[number];
+        let is_newer = match self.versions.get_mut(number) {
+            Some(own) if version > *own && degrees(location).is_some() => {
+                *own = version;
+                true
+            }
+            _ => false,
+        };
         if degrees(*own).is_none() {
             *own = location;
         } else if degrees(location).is_some() && *own != location {
             self.is_conflicting[number] = true;
+            if is_newer {
+                *own = location;
+            }
         }
     }
 
     /// Takes what is known of later places of a node: the first on Earth, or the last if none is, and whether there are several.
-    pub(crate) fn add(&mut self, number: usize, location: Location, is_conflicting: bool) {
-        self.set(number, location);
+    pub(crate) fn add(
+        &mut self,
+        number: usize,
+        (location, version): (Location, i32),
+        is_conflicting: bool,
+    ) {
+        self.set(number, location, version);
         self.is_conflicting[number] |= is_conflicting;
+    }
+
+    /// The version of a node's place; 0 if it is not known or does not matter.
+    pub(crate) fn version(&self, number: usize) -> i32 {
+        self.versions.get(number).copied().unwrap_or_default()
     }
 
     pub(crate) fn is_conflicting(&self, number: usize) -> bool {

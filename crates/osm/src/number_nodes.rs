@@ -5,12 +5,14 @@ use std::io;
 use corniche_store::Sorter;
 
 use crate::{
-    Defect, ReadOsmError,
+    Defect, ExtractSummary, ReadOsmError,
     reading::Reading,
     records::{Mention, WayRecord},
     spool::Spool,
     versions::{known_version, two_versions},
     way_bytes::{is_left_out, take_node_ids},
+    way_facts::WayFacts,
+    ways::add_summary,
     wire::{push_varint, to_zigzag},
 };
 
@@ -25,12 +27,14 @@ pub(crate) struct NumberedNodes<'a> {
     pub(crate) duplicates: u64,
 }
 
-/// Of roads with one id the first in the file stays. Ways that are left out stay all.
+/// Of roads with one id the first in the file stays. Ways that are left out stay all. Of several extracts that have a way, those of the one
+/// with the newest version count, or of the first; what they count for goes to `summary`.
 ///
 /// Fails if a way is there in two versions.
 pub(crate) fn number_nodes<'a>(
     reading: &Reading<'a>,
     ways: impl Iterator<Item = io::Result<WayRecord>>,
+    summary: &mut ExtractSummary,
     on_defect: &mut dyn FnMut(Defect),
 ) -> Result<NumberedNodes<'a>, ReadOsmError> {
     let (request, shares) = (reading.request, reading.shares());
@@ -43,9 +47,23 @@ pub(crate) fn number_nodes<'a>(
         duplicates: 0,
     };
     let mut last: Option<(i64, Option<i32>)> = None;
+    let mut newest: Option<Newest> = None;
     for (count, way) in (0..).zip(ways) {
         reading.check_stop_at(count)?;
         let way = way.map_err(failed)?;
+        // Without several extracts nothing is counted by way.
+        if !way.facts.is_empty() {
+            if let Some(newest) = newest.as_mut().filter(|newest| newest.way.way_id == way.way_id) {
+                if newest.is_instead_of(&way, on_defect) {
+                    continue;
+                }
+            } else {
+                newest = Some(Newest::of(&way));
+            }
+            let facts = WayFacts::of_bytes(&way.facts).map_err(failed)?;
+            add_summary(summary, facts.counts.into());
+            facts.defects.into_iter().for_each(&mut *on_defect);
+        }
         if way.is_left_out().map_err(failed)? {
             numbered.add(&way).map_err(failed)?;
             continue;
@@ -70,6 +88,33 @@ pub(crate) fn number_nodes<'a>(
         }
     }
     Ok(numbered)
+}
+
+/// The newest version of a way that is in several extracts: that with which its records begin.
+struct Newest {
+    way: WayRecord,
+    is_told: bool,
+}
+
+impl Newest {
+    fn of(way: &WayRecord) -> Self {
+        let &WayRecord { way_id, age, order, version, file, .. } = way;
+        let bytes = way.bytes.clone();
+        let way = WayRecord { way_id, age, order, version, file, bytes, facts: Box::default() };
+        Self { way, is_told: false }
+    }
+
+    /// Whether another record of the way is that of another extract, and so does not count. Tells once if it differs.
+    fn is_instead_of(&mut self, other: &WayRecord, on_defect: &mut dyn FnMut(Defect)) -> bool {
+        let Self { way, is_told } = self;
+        let is_of_other = other.file != way.file;
+        let differs = (other.version, &other.bytes) != (way.version, &way.bytes);
+        if is_of_other && differs && !*is_told {
+            *is_told = true;
+            on_defect(Defect::ConflictingWay { way_id: way.way_id });
+        }
+        is_of_other
+    }
 }
 
 impl WayRecord {

@@ -1,4 +1,7 @@
-use std::{fmt, path::Path};
+use std::{
+    fmt,
+    path::{Path, PathBuf},
+};
 
 use corniche_geom::LatticePoint;
 use corniche_roads::FrcTable;
@@ -9,7 +12,7 @@ use corniche_store::Scratch;
 /// Called from several threads.
 pub type Place<'a> = dyn Fn(&[[f64; 2]]) -> Vec<Option<LatticePoint>> + Sync + 'a;
 
-/// Is told how much of the reading is done, of how much. Both are counted in bytes of the file, each of them three times:
+/// Is told how much of the reading is done, of how much. Both are counted in bytes of the files, each of them three times:
 /// read for its ways, read for its nodes, handed out as roads. What is done never shrinks and ends at the whole, which does
 /// not change.
 pub type OnProgress<'a> = dyn Fn(u64, u64) + 'a;
@@ -19,6 +22,8 @@ pub type OnProgress<'a> = dyn Fn(u64, u64) + 'a;
 pub struct ReadRequest<'a> {
     /// The extract, `.osm.pbf`.
     pub path: &'a Path,
+    /// Further extracts, read with the first as if they were one: see [`read_roads`](crate::read_roads).
+    pub others: &'a [PathBuf],
     /// Which ways are roads.
     pub table: &'a FrcTable,
     /// Where positions lie on the lattice.
@@ -36,9 +41,10 @@ pub struct ReadRequest<'a> {
 
 impl fmt::Debug for ReadRequest<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { path, memory_bytes, .. } = self;
+        let Self { path, others, memory_bytes, .. } = self;
         f.debug_struct("ReadRequest")
             .field("path", path)
+            .field("others", others)
             .field("memory_bytes", memory_bytes)
             .finish_non_exhaustive()
     }

@@ -5,10 +5,10 @@ use corniche_roads::Road;
 use crate::{
     Defect, ExtractSummary, ReadOsmError,
     blobs::BlobFile,
+    extracts::Extracts,
     find_ways::{FoundWays, find_ways},
     locate_nodes::FileNodes,
     make_roads::{WaysAndNodes, make_roads},
-    open_file::open_file,
     read_request::ReadRequest,
     reading::Reading,
 };
@@ -21,6 +21,13 @@ use crate::{
 /// - [`Road::fixed`] holds the ends and every node that two of the roads share or one visits twice.
 /// - What is wrong with the data goes to `on_defect`, in an order that depends on the file alone, as the roads do.
 /// - An extract without roads is no error: the summary says 0.
+///
+/// With [`ReadRequest::others`], several extracts are read as one:
+/// - A node, or a way with a `highway` tag, that is in two of them counts once. Of two versions the newer one counts, else that of
+///   the extract named first. Ways that differ are a [`Defect::ConflictingWay`], nodes with different places a
+///   [`Defect::ConflictingNode`].
+/// - A way without a `highway` tag is not looked at, so it does not replace an older version that has one.
+/// - Each extract for itself must be none with several versions.
 ///
 /// The file may be in any order, with nodes dense or plain, ids negative, blobs raw or zlib, locations in nodes or in ways
 /// (`LocationsOnWays`). It is read twice: ways, then nodes. Blobs whose nodes no road needs are read once. Of an extract that
@@ -67,12 +74,11 @@ pub fn read_roads(
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<ExtractSummary, ReadOsmError> {
-    let file = open_file(request.path)?;
-    read_roads_from(file, request, sink, on_defect, should_stop)
+    read_all(Extracts::open(request)?, request, sink, on_defect, should_stop)
 }
 
-/// Reads the roads of an extract from any source of bytes, as [`read_roads`] does from a file. `request.path` only names it in
-/// messages.
+/// Reads the roads of one extract from any source of bytes, as [`read_roads`] does from a file. `request.path` only names it in
+/// messages, and `request.others` are not read.
 ///
 /// # Errors
 /// As for [`read_roads`].
@@ -83,17 +89,29 @@ pub fn read_roads_from<R: Read + Seek>(
     on_defect: &mut dyn FnMut(Defect),
     should_stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<ExtractSummary, ReadOsmError> {
-    let mut file = BlobFile::open(request.path, source)?;
+    let request = ReadRequest { others: &[], ..*request };
+    let file = BlobFile::open(request.path, source)?;
+    read_all(Extracts::of(vec![file]), &request, sink, on_defect, should_stop)
+}
+
+fn read_all<R: Read + Seek>(
+    mut file: Extracts<R>,
+    request: &ReadRequest<'_>,
+    sink: &mut dyn FnMut(Road),
+    on_defect: &mut dyn FnMut(Defect),
+    should_stop: &(dyn Fn() -> bool + Sync),
+) -> Result<ExtractSummary, ReadOsmError> {
     let reading = Reading { request, should_stop, len_bytes: file.len_bytes() };
     let failed = |error| reading.scratch_failed(error);
 
     let all: Vec<usize> = (0..file.len()).collect();
     let FoundWays { ways, located, node_blobs, mut summary, .. } =
         find_ways(&reading, &mut file, &all, on_defect)?;
-    summary.blobs_passed_over = file.blobs_passed_over;
-    summary.header_bounds_deg = file.header.bounds_deg;
-    summary.generator = file.header.generator.take();
-    summary.timestamp_s = file.header.timestamp_s;
+    summary.blobs_passed_over = file.blobs_passed_over();
+    let header = file.take_header();
+    summary.header_bounds_deg = header.bounds_deg;
+    summary.generator = header.generator;
+    summary.timestamp_s = header.timestamp_s;
     let found = WaysAndNodes {
         ways: ways.finish().map_err(failed)?,
         located: located.finish().map_err(failed)?,

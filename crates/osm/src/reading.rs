@@ -2,7 +2,7 @@
 
 use std::io;
 
-use crate::{ReadOsmError, kept_error::KeptError, read_request::ReadRequest};
+use crate::{ReadOsmError, kept_error::KeptError, nodes::Precedence, read_request::ReadRequest};
 
 /// What takes of the memory, as a part of the whole. At no time is there more than the whole, in sixteenths:
 ///
@@ -60,6 +60,16 @@ impl Reading<'_> {
             visits: 2 * sixteenth,
             stops: 4 * sixteenth,
         }
+    }
+
+    /// Whether an object may be in two extracts.
+    pub(crate) fn is_of_several(&self) -> bool {
+        !self.request.others.is_empty()
+    }
+
+    /// Which of several places of a node counts.
+    pub(crate) fn precedence(&self) -> Precedence {
+        if self.is_of_several() { Precedence::Newest } else { Precedence::First }
     }
 
     /// Fails if the caller wants no more.

@@ -12,41 +12,64 @@ use crate::{
     wire::{push_varint, to_zigzag, varint, zigzag},
 };
 
-/// A way that is a road, as it stands in the file.
+/// A way with a `highway` tag, as it stands in the file.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct WayRecord {
     pub(crate) way_id: i64,
-    /// How many roads come before it in the file.
+    /// Where an object may be in several extracts: [`age`]. Else 0.
+    pub(crate) age: u32,
+    /// How many of these come before it in the extracts.
     pub(crate) order: u64,
     /// 0 if it is not known.
     pub(crate) version: i32,
+    /// Which extract it is from.
+    pub(crate) file: u32,
     /// Its nodes, then what it is: see [`crate::way_bytes`].
     pub(crate) bytes: Box<[u8]>,
+    /// What is counted of it, where it may be in several extracts; see [`crate::way_facts`]. Else empty.
+    pub(crate) facts: Box<[u8]>,
+}
+
+/// The smaller, the newer.
+pub(crate) fn age(version: i32) -> u32 {
+    i32::MAX.abs_diff(version)
 }
 
 impl SortRecord for WayRecord {
     fn encode(&self, bytes: &mut Vec<u8>) {
         push_varint(bytes, to_zigzag(self.way_id));
+        push_varint(bytes, self.age.into());
         push_varint(bytes, self.order);
         push_varint(bytes, to_zigzag(self.version.into()));
-        push_varint(bytes, self.bytes.len() as u64);
-        bytes.extend(&self.bytes);
+        push_varint(bytes, self.file.into());
+        for part in [&self.bytes, &self.facts] {
+            push_varint(bytes, part.len() as u64);
+            bytes.extend(part);
+        }
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
         let way_id = zigzag(varint(bytes).ok()?);
+        let age = varint(bytes).ok()?.try_into().ok()?;
         let order = varint(bytes).ok()?;
         let version = zigzag(varint(bytes).ok()?).try_into().ok()?;
-        let length = varint(bytes).ok()?.try_into().ok()?;
-        let (own, rest) = bytes.split_at_checked(length)?;
-        *bytes = rest;
-        Some(Self { way_id, order, version, bytes: own.into() })
+        let file = varint(bytes).ok()?.try_into().ok()?;
+        let mut part = || -> Option<Box<[u8]>> {
+            let length = varint(bytes).ok()?.try_into().ok()?;
+            let (own, rest) = bytes.split_at_checked(length)?;
+            *bytes = rest;
+            Some(own.into())
+        };
+        let (own, facts) = (part()?, part()?);
+        Some(Self { way_id, age, order, version, file, bytes: own, facts })
     }
 
     fn extra_bytes(&self) -> usize {
         /// What the allocator keeps of each list, and rounds up to.
         const OF_ALLOCATOR_BYTES: usize = 16;
-        self.bytes.len() + OF_ALLOCATOR_BYTES
+        let of_facts =
+            if self.facts.is_empty() { 0 } else { self.facts.len() + OF_ALLOCATOR_BYTES };
+        self.bytes.len() + OF_ALLOCATOR_BYTES + of_facts
     }
 }
 

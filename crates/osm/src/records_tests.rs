@@ -28,7 +28,9 @@ proptest! {
         location: [i32; 2],
         mark: bool,
     ) {
-        check(&WayRecord { way_id: id, order, version, bytes: bytes.into() });
+        let (file, age, facts) = (order as u32, version.unsigned_abs(), bytes.iter().rev().copied());
+        let facts = facts.collect();
+        check(&WayRecord { way_id: id, age, order, version, file, bytes: bytes.into(), facts });
         check(&Mention::new(id, order >> 2, !mark, mark));
         check(&Located { node_id: id, order, location });
         check(&Stop::new(order >> 1, mark, location));

@@ -38,6 +38,8 @@ struct Run {
 struct Versioned {
     id: i64,
     version: i32,
+    /// Of several extracts: which.
+    file: u32,
 }
 
 /// What is known of an object.
@@ -73,6 +75,13 @@ impl Versions {
             }
         }
         versions
+    }
+
+    /// The same, found in this one of several extracts.
+    pub(crate) fn of_file(mut self, file: u32) -> Self {
+        let ends = self.runs.iter_mut().flat_map(|run| [&mut run.first, &mut run.last]);
+        ends.flatten().for_each(|object| object.file = file);
+        self
     }
 
     /// Adds a later block.
@@ -122,7 +131,7 @@ impl Versions {
             self.history = Some(format!("it marks {} {id} as deleted", KINDS[kind]));
         }
         if let Some(version) = known_version(info.version) {
-            self.follow(kind, Versioned { id, version });
+            self.follow(kind, Versioned { id, version, file: 0 });
         }
     }
 
@@ -130,7 +139,7 @@ impl Versions {
         let Run { first, last } = &mut self.runs[kind];
         first.get_or_insert(object);
         if let Some(last) = last.replace(object)
-            && last.id == object.id
+            && (last.id, last.file) == (object.id, object.file)
             && last.version != object.version
             && self.history.is_none()
         {

@@ -14,7 +14,17 @@ use crate::{
     records::WayRecord,
     versions::known_version,
     way_bytes::{left_out_bytes, way_bytes},
+    way_facts::WayFacts,
 };
+
+/// Where counts and defects of ways go.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Counted {
+    /// To those of the block: each way counts.
+    ByBlock,
+    /// To each way's record: a way may be in another extract, too.
+    ByWay,
+}
 
 /// The road ways of a block, with what is known of its other ways.
 #[derive(Debug, Default)]
@@ -39,19 +49,43 @@ const MAX_TEXT_CHARS: usize = 255;
 
 impl Ways {
     /// Finds the roads of a block; `None` if they take more than `most_bytes`.
-    pub(crate) fn scan(block: &PrimitiveBlock, table: &FrcTable, most_bytes: u64) -> Option<Self> {
+    pub(crate) fn scan(
+        block: &PrimitiveBlock,
+        table: &FrcTable,
+        counted: Counted,
+        most_bytes: u64,
+    ) -> Option<Self> {
         let mut ways = Self::default();
         for group in block.groups() {
             ways.summary.nodes_seen += (group.nodes().len() + group.dense_nodes().len()) as u64;
             for way in group.ways() {
                 ways.summary.ways_seen += 1;
-                ways.look_at(&way, table);
+                match counted {
+                    Counted::ByBlock => ways.look_at(&way, table),
+                    Counted::ByWay => ways.look_at_alone(&way, table),
+                }
                 if ways.held_bytes > most_bytes {
                     return None;
                 }
             }
         }
         Some(ways)
+    }
+
+    /// The same, with counts and defects in the way's record: it counts only if no other extract has it, too.
+    fn look_at_alone(&mut self, way: &Way<'_>, table: &FrcTable) {
+        let mut own = Self { node_ids: std::mem::take(&mut self.node_ids), ..Self::default() };
+        own.look_at(way, table);
+        let Self { roads, located, defects, summary, held_bytes, node_ids } = own;
+        self.node_ids = node_ids;
+        self.located.extend(located);
+        self.held_bytes += held_bytes;
+        for mut road in roads {
+            road.order = self.roads.len() as u64;
+            road.facts = WayFacts::of(summary.clone(), defects.clone()).to_bytes();
+            self.held_bytes += road.facts.len() as u64;
+            self.roads.push(road);
+        }
     }
 
     fn look_at(&mut self, way: &Way<'_>, table: &FrcTable) {
@@ -170,6 +204,9 @@ impl Ways {
         self.held_bytes += (text_bytes + WAY_BYTES + 2 * self.node_ids.len() * node_bytes) as u64;
         self.roads.push(WayRecord {
             way_id: way.id(),
+            age: 0,
+            file: 0,
+            facts: Box::default(),
             order: self.roads.len() as u64,
             version: way.info().version().and_then(known_version).unwrap_or_default(),
             bytes: to_bytes(&self.node_ids),

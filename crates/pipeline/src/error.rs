@@ -46,16 +46,16 @@ pub enum BuildError {
     #[error(
         "{osm:?} has no road; is it the right extract, and does its FRC table know its highway values?"
     )]
-    NoRoads { osm: PathBuf },
+    NoRoads { osm: Vec<PathBuf> },
     #[error(
         "{osm:?} and the elevation data do not overlap: roads lie within {roads_deg:.4?}, heights within \
          {heights_deg:.4?} (west, south, east, north in degrees)"
     )]
-    NoOverlap { osm: PathBuf, roads_deg: [f64; 4], heights_deg: [f64; 4] },
+    NoOverlap { osm: Vec<PathBuf>, roads_deg: [f64; 4], heights_deg: [f64; 4] },
     #[error(
         "no road of {osm:?} lies on ground: all are beside the elevation data, over its voids, or outside --bounds or --polygon; without --osm the package is terrain alone"
     )]
-    NoGround { osm: PathBuf },
+    NoGround { osm: Vec<PathBuf> },
     #[error("the roads could not be projected into the working CRS")]
     Project(#[source] corniche_geom::ProjectError),
     #[error("{why}")]

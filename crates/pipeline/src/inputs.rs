@@ -24,7 +24,7 @@ use sha2::{Digest, Sha256};
 
 pub use self::{
     planned_input::PlannedInput,
-    servers::{elevation_names, input_name},
+    servers::{elevation_names, extract_names, input_name},
 };
 use self::{servers::reach_servers, stamp::Stamp};
 use crate::{BuildError, Observer, Stage, hex::hex};
@@ -112,7 +112,8 @@ fn setting(what: String) -> InputError {
 impl Inputs {
     /// Finds all files and notes what they are, before anything of them is read for use.
     pub(crate) fn find(dem: &[PathBuf], others: OtherInputs<'_>) -> Result<Self, InputError> {
-        let named = dem.iter().map(PathBuf::as_path).chain(others.polygon).chain(others.osm);
+        let named = dem.iter().map(PathBuf::as_path).chain(others.polygon);
+        let named = named.chain(others.osm.iter().map(PathBuf::as_path));
         reach_servers(named).map_err(setting)?;
         let mut files: Vec<Input> = Vec::new();
         for path in dem {
@@ -138,7 +139,8 @@ impl Inputs {
         package: &Path,
         others: OtherInputs<'_>,
     ) -> Result<Self, InputError> {
-        reach_servers(others.polygon.into_iter().chain(others.osm)).map_err(setting)?;
+        let named = others.polygon.into_iter().chain(others.osm.iter().map(PathBuf::as_path));
+        reach_servers(named).map_err(setting)?;
         let mut files = vec![Input::new(InputKind::Terrain, package)?];
         others.add_to(&mut files)?;
         Ok(Self { files })
@@ -243,7 +245,7 @@ impl Inputs {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct OtherInputs<'a> {
     pub(crate) polygon: Option<&'a Path>,
-    pub(crate) osm: Option<&'a Path>,
+    pub(crate) osm: &'a [PathBuf],
 }
 
 impl OtherInputs<'_> {
@@ -251,7 +253,7 @@ impl OtherInputs<'_> {
         if let Some(path) = self.polygon {
             files.push(Input::new(InputKind::Polygon, path)?);
         }
-        if let Some(path) = self.osm {
+        for path in self.osm {
             files.push(Input::new(InputKind::Osm, path)?);
         }
         Ok(())

@@ -45,10 +45,11 @@ fn hashing_counts_the_bytes_of_the_files() {
     let inside = PathBuf::from(format!("/vsisubfile/3_100,{}", file.display()));
     for (path, total, bytes) in [(&file, Some(BYTES), BYTES), (&inside, None, 100)] {
         let counted = Counted::default();
-        let records = Inputs::find(&[], OtherInputs { osm: Some(path), polygon: None })
-            .unwrap()
-            .hash(&counted)
-            .unwrap();
+        let records =
+            Inputs::find(&[], OtherInputs { osm: std::slice::from_ref(path), polygon: None })
+                .unwrap()
+                .hash(&counted)
+                .unwrap();
         assert_eq!(records[0].bytes, bytes);
         assert_eq!(*counted.0.lock().unwrap(), (total, bytes), "{}", path.display());
     }

@@ -39,7 +39,7 @@ pub use corniche_osm::{Defect as OsmDefect, Share};
 pub use defect::{Defect, Loss};
 pub use error::BuildError;
 pub use extract_bounds::extract_bounds;
-pub use inputs::{PlannedInput, elevation_names, input_name};
+pub use inputs::{PlannedInput, elevation_names, extract_names, input_name};
 pub use machine::{MIN_MEMORY_BYTES, default_memory_bytes, machine_memory_bytes};
 pub use objects::is_in_object_storage;
 pub use observer::{Observer, Silent, Stage, Unit};

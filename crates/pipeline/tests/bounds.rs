@@ -164,7 +164,11 @@ fn compare(whole: &Path, part: &Path) -> usize {
 
 /// Verifies a package against both inputs.
 fn check_verify(files: &Files, package: PathBuf) {
-    let osm = VerifyOsm { path: files.at("roads.osm.pbf"), table: table(), memory_bytes: 64 << 20 };
+    let osm = VerifyOsm {
+        paths: vec![files.at("roads.osm.pbf")],
+        table: table(),
+        memory_bytes: 64 << 20,
+    };
     let settings = VerifySettings {
         package,
         dem: vec![files.at("dem.tif")],
@@ -316,7 +320,7 @@ fn files_outside_the_bounds_are_not_read() {
         let mut settings =
             files.settings(name, Options { fill_voids: 8, ..Options::plain(30.0) }, bounds_deg);
         settings.plan.dem = vec![files.at("east.tif"), files.at("west.tif")];
-        settings.plan.osm = None;
+        settings.plan.osm.clear();
         build(&settings, &Silent).unwrap();
         settings.output
     };

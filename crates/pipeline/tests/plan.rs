@@ -16,7 +16,7 @@ fn settings() -> PlanSettings {
     PlanSettings {
         dem: vec![sample("pass/pass-dem.tif")],
         terrain_of: None,
-        osm: Some(sample("pass/pass.osm.pbf")),
+        osm: vec![sample("pass/pass.osm.pbf")],
         terrain: TerrainSettings {
             plan: PlanOptions { fill_voids: 32, ..PlanOptions::default() },
             ..TerrainSettings::default()
@@ -137,7 +137,7 @@ fn a_changed_file_is_named_with_what_changed() {
     let folder = tempfile::tempdir().unwrap();
     let dem = folder.path().join("dem.tif");
     fs::copy(sample("pass/pass-dem.tif"), &dem).unwrap();
-    let own = PlanSettings { dem: vec![dem.clone()], osm: None, ..settings() };
+    let own = PlanSettings { dem: vec![dem.clone()], osm: Vec::new(), ..settings() };
     let plan = BuildPlan::make(&own).unwrap();
     assert_eq!(plan.inputs.len(), 1);
 
@@ -180,10 +180,10 @@ fn a_worker_that_derives_another_grid_says_so() {
 #[test]
 fn what_is_no_plan_is_refused() {
     let text = BuildPlan::make(&settings()).unwrap().to_json().unwrap();
-    let later = text.replace("\"plan_version\": 1", "\"plan_version\": 2");
+    let later = text.replace("\"plan_version\": 2", "\"plan_version\": 3");
     let error = BuildPlan::from_json(&later).unwrap_err().to_string();
-    assert!(error.contains("version 2") && error.contains("version 1"), "{error}");
-    for bad in ["", "{}", "[1]", &text[..text.len() / 2], "\"plan\""] {
+    assert!(error.contains("version 3") && error.contains("version 2"), "{error}");
+    for bad in ["", "{}", "[2]", &text[..text.len() / 2], "\"plan\""] {
         let error = BuildPlan::from_json(bad).unwrap_err().to_string();
         assert!(error.contains("corniche plan -o"), "{bad}: {error}");
     }

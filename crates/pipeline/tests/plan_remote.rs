@@ -63,7 +63,7 @@ fn a_file_on_a_server_is_known_by_its_size_and_etag() {
     let settings = PlanSettings {
         dem: vec![dem.clone().into()],
         terrain_of: None,
-        osm: None,
+        osm: Vec::new(),
         terrain: TerrainSettings::default(),
         roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25 },
         attribution: Vec::new(),

@@ -99,8 +99,11 @@ impl Files {
         package: &Path,
         polygon: Option<&Polygon>,
     ) -> Result<VerifyReport, VerifyError> {
-        let osm =
-            VerifyOsm { path: self.at("roads.osm.pbf"), table: table(), memory_bytes: 64 << 20 };
+        let osm = VerifyOsm {
+            paths: vec![self.at("roads.osm.pbf")],
+            table: table(),
+            memory_bytes: 64 << 20,
+        };
         let settings = VerifySettings {
             package: package.to_path_buf(),
             dem: vec![self.at("dem.tif")],

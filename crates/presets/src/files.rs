@@ -13,8 +13,9 @@ pub struct InputFiles {
     pub dem: Vec<PathBuf>,
     /// `--terrain`.
     pub terrain: Option<PathBuf>,
-    /// `--osm`.
-    pub osm: Option<PathBuf>,
+    /// `--osm`: a list, or one alone.
+    #[serde(deserialize_with = "one_or_many")]
+    pub osm: Vec<PathBuf>,
     /// `--polygon`.
     pub polygon: Option<PathBuf>,
 }
@@ -30,7 +31,8 @@ impl InputFiles {
             (self.dem, self.terrain)
         };
         let polygon = self.polygon.or(other.polygon);
-        Self { dem, terrain, osm: self.osm.or(other.osm), polygon }
+        let osm = if self.osm.is_empty() { other.osm } else { self.osm };
+        Self { dem, terrain, osm, polygon }
     }
 }
 

@@ -11,7 +11,7 @@ impl Config {
     pub fn in_folder(mut self, folder: &Path) -> Self {
         let Self { inputs, output, roads, resources, .. } = &mut self;
         let InputFiles { dem, terrain, osm, polygon } = inputs;
-        let files = dem.iter_mut().chain(terrain).chain(osm).chain(polygon);
+        let files = dem.iter_mut().chain(terrain).chain(osm.iter_mut()).chain(polygon);
         let written =
             output.package.iter_mut().chain(&mut output.defects).chain(&mut resources.tmp);
         for path in files.chain(written) {

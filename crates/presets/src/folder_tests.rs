@@ -25,7 +25,7 @@ fn paths_begin_at_the_settings_file() {
     let config = Config::parse(text).unwrap().in_folder(Path::new("/maps"));
     let expected = ["/maps/a.tif", "/data/b.tif", "s3://bucket/c.tif", "/maps/../d.tif"];
     assert_eq!(config.inputs.dem, paths(&expected));
-    assert_eq!(config.inputs.osm, Some("/maps/e.osm.pbf".into()));
+    assert_eq!(config.inputs.osm, paths(&["/maps/e.osm.pbf"]));
     assert_eq!(config.output.package, Some("/maps/out/f.pmtiles".into()));
     assert_eq!(config.output.defects, Some("/maps/g.csv".into()));
     assert_eq!(config.roads.frc_table.as_deref(), Some("/maps/mine.toml"));
@@ -58,13 +58,13 @@ fn terrain_comes_from_one_place() {
         dem: paths(dem),
         terrain: terrain.map(Into::into),
         polygon: None,
-        osm: None,
+        osm: Vec::new(),
     };
     let rasters = of(&["a.tif"], None);
     let package = of(&[], Some("old.pmtiles"));
     assert_eq!(rasters.clone().or(package.clone()), rasters);
     assert_eq!(package.clone().or(rasters.clone()), package);
-    let with_roads = InputFiles { osm: Some("a.osm.pbf".into()), ..InputFiles::default() };
+    let with_roads = InputFiles { osm: paths(&["a.osm.pbf"]), ..InputFiles::default() };
     let merged = with_roads.clone().or(rasters.clone());
     assert_eq!((merged.dem, merged.osm), (rasters.dem, with_roads.osm));
 }

@@ -92,8 +92,9 @@ fn silence_and_talk_exclude_each_other_on_both_sides_of_the_command() {
         let said = refused.to_string();
         assert!(said.contains("--quiet") && said.contains("cannot be used with"), "{line}: {said}");
     }
-    for line in [format!("corniche -q {package}"), format!("corniche -v {package} --json-progress")]
-    {
+    let refused = parse(&format!("corniche -v {package} --json-progress")).unwrap_err();
+    assert!(refused.to_string().contains("--verbose"), "{refused}");
+    for line in [format!("corniche -q {package}"), format!("corniche {package} --json-progress")] {
         assert!(parse(&line).is_ok(), "{line}");
     }
 }
@@ -136,7 +137,10 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         Command::Jobs(args) => args.files().unwrap(),
         Command::Part(args) => args.planned.files().unwrap(),
         Command::Merge(args) => args.planned.files().unwrap(),
-        Command::Verify(args) => args.files().unwrap(),
+        Command::Verify(args) => {
+            let files = args.files().unwrap();
+            (files.package, [files.dem, files.osm].concat())
+        }
         _ => panic!("{arguments:?} has no files to tell apart"),
     };
     // What follows the option, what is meant by the positional argument, and what else the command needs.
@@ -145,6 +149,7 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         ("merge --store", "p.json", "-o c.pmtiles"),
         ("part --store", "p.json", "--step top"),
         ("verify --dem", "p.pmtiles", "--threads 1"),
+        ("verify --osm", "p.pmtiles", "--threads 1"),
     ];
     let names: Vec<&str> = known.iter().map(|(name, _, _)| *name).collect();
     assert_eq!(found, names, "a new option with several values needs a line here");
@@ -200,16 +205,17 @@ fn a_plan_that_is_not_named_is_missed() {
     assert!(Arguments::try_parse_from(["corniche", "jobs", "--slots", "2"]).is_err());
 }
 
-/// `--dem` takes every name up to the next option; a package among them is told by its ending.
+/// `--dem` and `--osm` take every name up to the next option; a package among them is told by its ending.
 #[test]
 fn verify_finds_its_package_wherever_it_is_named() {
     let files = |line: &str| {
         let arguments =
             Arguments::try_parse_from(line.split(' ')).map_err(|error| error.to_string())?;
         let Command::Verify(args) = arguments.command else { panic!("{line}") };
-        args.files().map_err(|failure| failure.to_string())
+        let files = args.files().map_err(|failure| failure.to_string())?;
+        Ok::<_, String>((files.package, files.dem, files.osm))
     };
-    let expected = Ok(("p.pmtiles".into(), vec!["a.tif".into(), "b.tif".into()]));
+    let expected = Ok(("p.pmtiles".into(), vec!["a.tif".into(), "b.tif".into()], Vec::new()));
     for line in [
         "corniche verify p.pmtiles --dem a.tif b.tif",
         "corniche verify --dem a.tif b.tif p.pmtiles",
@@ -219,8 +225,16 @@ fn verify_finds_its_package_wherever_it_is_named() {
     ] {
         assert_eq!(files(line), expected, "{line}");
     }
+    let expected = Ok(("p.pmtiles".into(), Vec::new(), vec!["a.pbf".into(), "b.pbf".into()]));
+    for line in [
+        "corniche verify p.pmtiles --osm a.pbf b.pbf",
+        "corniche verify --osm a.pbf b.pbf p.pmtiles",
+        "corniche verify --osm a.pbf --osm b.pbf --json p.pmtiles",
+    ] {
+        assert_eq!(files(line), expected, "{line}");
+    }
     // A package of another name is found where nothing swallows it.
-    assert!(files("corniche verify old --dem a.tif").is_ok_and(|(package, _)| package == *"old"));
+    assert!(files("corniche verify old --dem a.tif").is_ok_and(|(package, ..)| package == *"old"));
     assert!(
         files("corniche verify --dem a.tif b.tif").unwrap_err().contains("no package is named")
     );

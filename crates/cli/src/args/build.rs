@@ -17,9 +17,10 @@ pub(crate) struct WorkArgs {
     /// the result is the same, sooner; terrain settings and credits that are not given are the package's
     #[arg(long = "terrain", value_name = "PACKAGE", conflicts_with = "dem")]
     pub(crate) terrain_of: Option<PathBuf>,
-    /// OpenStreetMap extract (.osm.pbf); without it the package is terrain alone
-    #[arg(long, value_name = "FILE")]
-    pub(crate) osm: Option<PathBuf>,
+    /// OpenStreetMap extract (.osm.pbf), or several: what is in two of them counts once. Also folders, patterns and @LIST. Without it the package
+    /// is terrain alone
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    pub(crate) osm: Vec<PathBuf>,
     /// Convert only what lies under the polygons of this vector file (any format GDAL reads; all of its polygons together). Ground reaches
     /// less than a cell beyond them, roads end at them; the grid is that of the whole DEM. With --bounds, both hold
     #[arg(long, value_name = "FILE")]

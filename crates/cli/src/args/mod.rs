@@ -24,7 +24,7 @@ pub(crate) use export::{Export, ExportArgs, ExportCrs, ExportRoadsArgs};
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::Roads;
 pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
-pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs};
+pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFiles};
 pub(crate) use shell::{CompletionsArgs, ManArgs};
 pub(crate) use view::{Motion, ViewArgs};
 pub(crate) use voice::{LogFormat, Voice, VoiceArgs};

@@ -33,14 +33,14 @@ pub(crate) struct InfoArgs {
 #[command(after_long_help = checks(), override_usage = "corniche verify [OPTIONS] <PACKAGE>")]
 pub(crate) struct VerifyArgs {
     /// The package
-    #[arg(required_unless_present = "dem")]
+    #[arg(required_unless_present_any = ["dem", "osm"])]
     package: Option<PathBuf>,
     /// The elevation rasters it was made from, in the same order: checks stored errors against true ones
     #[arg(long, value_name = "FILE", num_args = 1..)]
     dem: Vec<PathBuf>,
-    /// The extract it was made from: reads it again and checks roads, attributes and counts against it
-    #[arg(long, value_name = "FILE")]
-    pub(crate) osm: Option<PathBuf>,
+    /// The extracts it was made from: reads them again and checks roads, attributes and counts against them
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    osm: Vec<PathBuf>,
     /// With --dem or --osm: the polygon that it was cut with
     #[arg(long, value_name = "FILE")]
     pub(crate) polygon: Option<PathBuf>,
@@ -58,19 +58,23 @@ pub(crate) struct VerifyArgs {
 }
 
 impl VerifyArgs {
-    /// The package and its elevation rasters. `--dem` takes all that follows it, also a package, which is told from rasters by
-    /// its name.
+    /// The package, its elevation rasters and its extracts. `--dem` and `--osm` take all that follows them, also a package, which is told from
+    /// other files by its name.
     ///
     /// # Errors
     /// When no package is named, or several may be meant.
-    pub(crate) fn files(&self) -> Result<(PathBuf, Vec<PathBuf>), Failure> {
+    pub(crate) fn files(&self) -> Result<VerifyFiles, Failure> {
         if let Some(package) = &self.package {
-            return Ok((package.clone(), self.dem.clone()));
+            let (package, dem, osm) = (package.clone(), self.dem.clone(), self.osm.clone());
+            return Ok(VerifyFiles { package, dem, osm });
         }
-        let (mut packages, dem): (Vec<_>, Vec<_>) =
-            self.dem.iter().cloned().partition(|file| is_package_name(file));
+        let split = |files: &[PathBuf]| -> (Vec<PathBuf>, Vec<PathBuf>) {
+            files.iter().cloned().partition(|file| is_package_name(file))
+        };
+        let ((mut packages, dem), (of_osm, osm)) = (split(&self.dem), split(&self.osm));
+        packages.extend(of_osm);
         match (packages.pop(), packages.is_empty()) {
-            (Some(package), true) => Ok((package, dem)),
+            (Some(package), true) => Ok(VerifyFiles { package, dem, osm }),
             (Some(_), false) => Err(Failure::unusable(
                 "several files end in .pmtiles; write the package first: corniche verify PACKAGE --dem FILE...",
             )),
@@ -79,6 +83,14 @@ impl VerifyArgs {
             )),
         }
     }
+}
+
+/// The files of a verification.
+#[derive(Debug)]
+pub(crate) struct VerifyFiles {
+    pub(crate) package: PathBuf,
+    pub(crate) dem: Vec<PathBuf>,
+    pub(crate) osm: Vec<PathBuf>,
 }
 
 /// What the coordinates in a dump are.

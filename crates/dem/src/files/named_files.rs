@@ -14,6 +14,34 @@ const ENDINGS: [&str; 13] =
 /// Those of packed files, of which GDAL reads the content.
 const PACKED: [&str; 2] = ["gz", "zip"];
 
+/// Files of a folder with this ending are taken for extracts.
+const EXTRACT_ENDINGS: [&str; 1] = ["pbf"];
+
+/// Files of which a folder is searched.
+#[derive(Clone, Copy)]
+enum Sought {
+    Elevation,
+    Extracts,
+}
+
+impl Sought {
+    /// Whether a file of a folder is one of them.
+    fn has(self, path: &Path) -> bool {
+        match self {
+            Self::Elevation => has_ending(path, &ENDINGS) || has_ending(path, &PACKED),
+            Self::Extracts => has_ending(path, &EXTRACT_ENDINGS),
+        }
+    }
+}
+
+/// The extracts that a name stands for, as [`expand_name`] does it for elevation files; of a folder those that end in pbf.
+///
+/// # Errors
+/// As [`expand_name`].
+pub fn expand_extract_name(name: &Path) -> Result<Vec<PathBuf>, DemError> {
+    expand(name, Sought::Extracts)
+}
+
 /// The files that a name stands for, in the order in which they have precedence. A name of one file stands for itself, whether it is there or not.
 ///
 /// - `@LIST`: a text file with a name on each line, counted from the folder of the list; lines that are empty or begin with # do not count.
@@ -24,14 +52,18 @@ const PACKED: [&str; 2] = ["gz", "zip"];
 /// # Errors
 /// When a list cannot be read, a pattern cannot be understood, or a folder or a pattern has no file.
 pub fn expand_name(name: &Path) -> Result<Vec<PathBuf>, DemError> {
+    expand(name, Sought::Elevation)
+}
+
+fn expand(name: &Path, sought: Sought) -> Result<Vec<PathBuf>, DemError> {
     let text = name.to_str().ok_or_else(|| DemError::NotUtf8 { path: name.to_path_buf() })?;
     match text.strip_prefix('@').filter(|_| !name.exists()) {
-        Some(list) => expand_list(Path::new(list)),
-        None => expand_plain(name, text),
+        Some(list) => expand_list(Path::new(list), sought),
+        None => expand_plain(name, text, sought),
     }
 }
 
-fn expand_list(list: &Path) -> Result<Vec<PathBuf>, DemError> {
+fn expand_list(list: &Path, sought: Sought) -> Result<Vec<PathBuf>, DemError> {
     let unreadable = |source| DemError::List { path: list.to_path_buf(), source };
     let text = fs::read_to_string(list).map_err(unreadable)?;
     let folder = list.parent().unwrap_or(Path::new(""));
@@ -42,7 +74,7 @@ fn expand_list(list: &Path) -> Result<Vec<PathBuf>, DemError> {
         let is_elsewhere = line.contains("://") || line.starts_with("/vsi");
         let name = if is_elsewhere { PathBuf::from(line) } else { folder.join(line) };
         let text = name.to_str().ok_or_else(|| DemError::NotUtf8 { path: name.clone() })?;
-        files.extend(expand_plain(&name, text)?);
+        files.extend(expand_plain(&name, text, sought)?);
     }
     if files.is_empty() {
         return Err(DemError::EmptyList { path: list.to_path_buf() });
@@ -50,10 +82,10 @@ fn expand_list(list: &Path) -> Result<Vec<PathBuf>, DemError> {
     Ok(files)
 }
 
-fn expand_plain(name: &Path, text: &str) -> Result<Vec<PathBuf>, DemError> {
+fn expand_plain(name: &Path, text: &str, sought: Sought) -> Result<Vec<PathBuf>, DemError> {
     let is_remote = text.contains("://") || text.starts_with("/vsi");
     if !is_remote && name.is_dir() {
-        return expand_folder(name);
+        return expand_folder(name, sought);
     }
     if is_remote || name.exists() || !text.contains(['*', '?', '[']) {
         return Ok(vec![name.to_path_buf()]);
@@ -70,23 +102,26 @@ fn expand_plain(name: &Path, text: &str) -> Result<Vec<PathBuf>, DemError> {
     Ok(files)
 }
 
-fn expand_folder(folder: &Path) -> Result<Vec<PathBuf>, DemError> {
+fn expand_folder(folder: &Path, sought: Sought) -> Result<Vec<PathBuf>, DemError> {
     library_error::quiet();
-    if Dataset::open(folder).is_ok() {
+    if matches!(sought, Sought::Elevation) && Dataset::open(folder).is_ok() {
         return Ok(vec![folder.to_path_buf()]);
     }
     let unreadable = |source| DemError::List { path: folder.to_path_buf(), source };
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {
         let path = entry.map_err(unreadable)?.path();
-        if path.is_file() && (has_ending(&path, &ENDINGS) || has_ending(&path, &PACKED)) {
+        if path.is_file() && sought.has(&path) {
             files.push(path);
         }
     }
     files.sort();
     if files.is_empty() {
-        let endings = ENDINGS.join(", ");
-        return Err(DemError::EmptyFolder { path: folder.to_path_buf(), endings });
+        let path = folder.to_path_buf();
+        return Err(match sought {
+            Sought::Elevation => DemError::EmptyFolder { path, endings: ENDINGS.join(", ") },
+            Sought::Extracts => DemError::NoExtracts { path },
+        });
     }
     Ok(files)
 }

@@ -36,7 +36,9 @@ pub(crate) fn check(
     let failed = |source| ExportError::ReadAgain { path: path.to_path_buf(), source };
     let found = match format {
         // A row that is cut off is a row for GDAL; and GDAL ends both with a line.
-        VectorFormat::Csv | VectorFormat::GeoJson if !ends_a_line(path).map_err(failed)? => Contents::default(),
+        VectorFormat::Csv | VectorFormat::GeoJson if !ends_a_line(path).map_err(failed)? => {
+            Contents::default()
+        }
         VectorFormat::GeoPackage if !has_all_pages(path).map_err(failed)? => Contents::default(),
         // GDAL would read all of a GeoJSON file into memory.
         VectorFormat::GeoJson => {

@@ -18,6 +18,8 @@ pub(crate) struct PlaceRecord {
     pub(crate) location: Location,
     /// Whether they give several on Earth.
     pub(crate) is_conflicting: bool,
+    /// The version of the place, of several extracts; else 0.
+    pub(crate) version: i32,
 }
 
 impl BlockRecord for PlaceRecord {
@@ -27,7 +29,7 @@ impl BlockRecord for PlaceRecord {
     /// ```text
     ///  │ id − the one before │ longitude − the one before │ latitude − the one before │ 1 if conflicting │
     /// ```
-    /// Three zigzag varints; the mark is the lowest bit of the last.
+    /// Three zigzag varints; the mark is the lowest bit of the last. Then the version, a zigzag varint.
     fn write(&self, before: &mut Self::Before, bytes: &mut Vec<u8>) {
         let (id, [lon, lat]) = *before;
         let difference = |own: i32, before: i32| to_zigzag(i64::from(own) - i64::from(before));
@@ -35,12 +37,13 @@ impl BlockRecord for PlaceRecord {
         push_varint(bytes, difference(self.location[0], lon));
         let lat = difference(self.location[1], lat);
         push_varint(bytes, lat << 1 | u64::from(self.is_conflicting));
+        push_varint(bytes, to_zigzag(self.version.into()));
         *before = (self.node_id, self.location);
     }
 
     fn take(before: &mut Self::Before, bytes: &mut &[u8]) -> Option<Self> {
         let mut number = || varint(bytes).ok();
-        let (id, lon, lat) = (number()?, number()?, number()?);
+        let (id, lon, lat, version) = (number()?, number()?, number()?, number()?);
         let sum = |before: i32, difference: u64| {
             i32::try_from(i64::from(before).checked_add(zigzag(difference))?).ok()
         };
@@ -48,6 +51,7 @@ impl BlockRecord for PlaceRecord {
             node_id: before.0.wrapping_add(zigzag(id)),
             location: [sum(before.1[0], lon)?, sum(before.1[1], lat >> 1)?],
             is_conflicting: lat & 1 == 1,
+            version: zigzag(version).try_into().ok()?,
         };
         *before = (own.node_id, own.location);
         Some(own)
@@ -75,6 +79,10 @@ impl BlockRecord for WayRecord {
 impl HasId for WayRecord {
     fn id(&self) -> i64 {
         self.way_id
+    }
+
+    fn age(&self) -> u32 {
+        self.age
     }
 }
 

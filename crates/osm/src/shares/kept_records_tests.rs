@@ -10,9 +10,14 @@ fn place() -> impl Strategy<Value = PlaceRecord> {
         1 => Just(MISSING),
         1 => Just(OUT_OF_RANGE),
     ];
-    (any::<i64>(), location, any::<bool>()).prop_map(|(node_id, location, is_conflicting)| {
-        PlaceRecord { node_id, location, is_conflicting }
-    })
+    (any::<i64>(), location, any::<bool>(), any::<i32>()).prop_map(
+        |(node_id, location, is_conflicting, version)| PlaceRecord {
+            node_id,
+            location,
+            is_conflicting,
+            version,
+        },
+    )
 }
 
 proptest! {

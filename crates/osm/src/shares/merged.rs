@@ -11,9 +11,14 @@ use super::blocks::{BlockReader, BlockRecord};
 /// What is sorted by the id of a way or a node.
 pub(crate) trait HasId {
     fn id(&self) -> i64;
+
+    /// Of those with the same id, the smaller ones come first.
+    fn age(&self) -> u32 {
+        0
+    }
 }
 
-/// The records of all shares in ascending order of id; those with the same id in the order of the shares, which is that of the file.
+/// The records of all shares in ascending order of id; those with the same id by age, then in the order of the shares, which is that of the file.
 pub(crate) struct Merged<'a, T: BlockRecord> {
     readers: Vec<BlockReader<'a, T>>,
     heads: BinaryHeap<Reverse<Head<T>>>,
@@ -33,7 +38,10 @@ impl<'a, T: BlockRecord + HasId> Merged<'a, T> {
     /// Reads the next record of a share.
     fn refill(&mut self, share: usize) {
         match self.readers[share].next() {
-            Some(Ok(record)) => self.heads.push(Reverse(Head { id: record.id(), share, record })),
+            Some(Ok(record)) => {
+                let place = (record.id(), record.age(), share);
+                self.heads.push(Reverse(Head { place, record }));
+            }
             Some(Err(error)) => self.failed = Some(error),
             None => {}
         }
@@ -48,7 +56,7 @@ impl<T: BlockRecord + HasId> Iterator for Merged<'_, T> {
             self.heads.clear();
             return Some(Err(error));
         }
-        let Reverse(Head { share, record, .. }) = self.heads.pop()?;
+        let Reverse(Head { place: (_, _, share), record }) = self.heads.pop()?;
         self.refill(share);
         Some(Ok(record))
     }
@@ -56,20 +64,14 @@ impl<T: BlockRecord + HasId> Iterator for Merged<'_, T> {
 
 /// The next record of a share.
 struct Head<T> {
-    id: i64,
-    share: usize,
+    /// Id, age and share.
+    place: (i64, u32, usize),
     record: T,
-}
-
-impl<T> Head<T> {
-    fn place(&self) -> (i64, usize) {
-        (self.id, self.share)
-    }
 }
 
 impl<T> PartialEq for Head<T> {
     fn eq(&self, other: &Self) -> bool {
-        self.place() == other.place()
+        self.place == other.place
     }
 }
 
@@ -83,6 +85,6 @@ impl<T> PartialOrd for Head<T> {
 
 impl<T> Ord for Head<T> {
     fn cmp(&self, other: &Self) -> Ordering {
-        self.place().cmp(&other.place())
+        self.place.cmp(&other.place)
     }
 }

@@ -11,13 +11,12 @@ use super::{
 use crate::{
     ReadOsmError,
     ahead::Ahead,
-    blobs::BlobFile,
+    extracts::Extracts,
     find_ways::NodeBlob,
     id_range::IdRange,
     kept_error::KeptError,
-    locate_nodes::{BYTES_PER_NODE, read_places},
-    nodes::{NodeIds, NodePlaces},
-    open_file::open_file,
+    locate_nodes::{bytes_per_node, read_places},
+    nodes::{FoundNode, NodeIds, NodePlaces},
     read_request::ReadRequest,
     reading::{Reading, Step},
     records::WayRecord,
@@ -40,8 +39,7 @@ pub fn keep_nodes(
     if kept.has_nodes(share) {
         return Ok(());
     }
-    let file = open_file(request.path)?;
-    let mut file = BlobFile::open(request.path, file)?;
+    let mut file = Extracts::open(request)?;
     let len_bytes = file.len_bytes();
     let told = |done: u64, _| {
         if let Some(on_progress) = request.on_progress {
@@ -115,13 +113,13 @@ fn needed_nodes<'a>(
 /// Finds the places of needed nodes in the blobs, as many nodes at a time as fit in memory, and writes them in order of id.
 fn keep_places<R: std::io::Read + std::io::Seek>(
     reading: &Reading<'_>,
-    file: &mut BlobFile<R>,
+    file: &mut Extracts<R>,
     own: &[NodeBlob],
     needed: Sorter<'_, NeededNode>,
     blocks: &mut BlockWriter<'_, PlaceRecord>,
 ) -> Result<(), ReadOsmError> {
     let failed = |error| reading.scratch_failed(error);
-    let most = (reading.shares().ids / (BYTES_PER_NODE + 1)).max(1) as usize;
+    let most = (reading.shares().ids / (bytes_per_node(reading.precedence()) + 1)).max(1) as usize;
     let all_bytes: u64 = own.iter().map(|blob| file.size(blob.number)).sum();
     let mut needed = Ahead::new(needed.finish().map_err(failed)?);
     let mut done_bytes = 0;
@@ -146,14 +144,14 @@ fn keep_places<R: std::io::Read + std::io::Seek>(
         if ids.is_empty() {
             return Ok(());
         }
-        let mut places = NodePlaces::new(ids.len());
+        let mut places = NodePlaces::new(ids.len(), reading.precedence());
         let mut is_seen = vec![false; ids.len()];
         let ids = NodeIds::new(ids);
         // A file that is not sorted is read anew for each chunk: then it is done when the last one begins.
         let on_bytes = |bytes: u64, _| reading.tell(Step::Nodes, done_bytes + bytes, all_bytes);
-        let take = &mut |number: usize, location| {
+        let take = &mut |(number, location, version): FoundNode| {
             is_seen[number] = true;
-            places.set(number, location);
+            places.set(number, location, version);
         };
         done_bytes += read_places(reading, file, own, &ids, &on_bytes, take)?;
         for (number, &node_id) in
@@ -161,7 +159,8 @@ fn keep_places<R: std::io::Read + std::io::Seek>(
         {
             let (location, is_conflicting) =
                 (places.location(number), places.is_conflicting(number));
-            let record = PlaceRecord { node_id, location, is_conflicting };
+            let version = places.version(number);
+            let record = PlaceRecord { node_id, location, is_conflicting, version };
             blocks.push(&record).map_err(|source| reading.kept_failed(source))?;
         }
     }

@@ -116,7 +116,8 @@ impl NodeSource for KeptNodes<'_> {
             }
             // Not there: only a way that was left out as a duplicate names the node.
             if let Some(number) = search.find(place.node_id) {
-                places.add(number, place.location, place.is_conflicting);
+                let own = (place.location, place.version);
+                places.add(number, own, place.is_conflicting);
             }
             self.places.take();
             reading.check_stop_at(count)?;

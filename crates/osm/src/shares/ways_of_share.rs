@@ -3,9 +3,8 @@
 use super::{blocks::BlockWriter, kept::Kept, ways_record::WaysRecord};
 use crate::{
     Defect, ReadOsmError,
-    blobs::BlobFile,
+    extracts::Extracts,
     find_ways::{FoundWays, find_ways},
-    open_file::open_file,
     read_request::ReadRequest,
     reading::Reading,
     records::{Located, WayRecord},
@@ -28,8 +27,7 @@ pub fn keep_ways(
     if kept.has_ways(share) {
         return Ok(());
     }
-    let file = open_file(request.path)?;
-    let mut file = BlobFile::open(request.path, file)?;
+    let mut file = Extracts::open(request)?;
     let len_bytes = file.len_bytes();
     let told = |done: u64, _| {
         if let Some(on_progress) = request.on_progress {
@@ -66,8 +64,8 @@ pub fn keep_ways(
     }
     let record = WaysRecord {
         counts: summary.into(),
-        header: file.header,
-        blobs_passed_over: file.blobs_passed_over,
+        header: file.take_header(),
+        blobs_passed_over: file.blobs_passed_over(),
         len_bytes,
         node_blobs,
         versions,

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_dem::{expand_name, set_unless_set, unpack_name};
+use corniche_dem::{expand_extract_name, expand_name, set_unless_set, unpack_name};
 use corniche_objects::{ObjectAddress, StorageSettings};
 
 use crate::BuildError;
@@ -41,6 +41,24 @@ pub fn elevation_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, BuildError> {
     for name in plain {
         files.extend(unpack_name(name)?);
     }
+    Ok(files)
+}
+
+/// The extracts that names stand for, sorted by file name and then by path, each once: folders, patterns and `@LIST` included. What is made of
+/// them does not depend on the order in which they were named.
+///
+/// # Errors
+/// When a name stands for no file, or is no address.
+pub fn extract_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, BuildError> {
+    let mut files = Vec::new();
+    for name in names {
+        for name in expand_extract_name(name)? {
+            files.push(input_name(name)?);
+        }
+    }
+    let key = |path: &PathBuf| (path.file_name().map(ToOwned::to_owned), path.clone());
+    files.sort_by_key(key);
+    files.dedup();
     Ok(files)
 }
 

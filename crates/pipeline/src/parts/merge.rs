@@ -102,7 +102,7 @@ fn run(
         // Those above the subtrees.
         recorded_tiles::make(context, terrain, TileId::ROOT)?;
     }
-    if context.settings.osm.is_some() {
+    if !context.settings.osm.is_empty() {
         replay_defects(context.store, context.observer)?;
     }
     coarse_tiles::make(context, TileId::ROOT)?;

@@ -185,7 +185,7 @@ impl BuildPlan {
         Ok(PlanSettings {
             dem: paths("dem").collect(),
             terrain_of: paths("terrain").next(),
-            osm: paths("osm").next(),
+            osm: paths("osm").collect(),
             terrain,
             roads: settings_record::roads(&self.settings, table).ok_or(PlanError::Filter)?,
             attribution: self.attribution.clone(),

@@ -89,7 +89,7 @@ fn some_tiles_tell_how_the_ground_is() {
     let settings = PlanSettings {
         dem: vec![corniche_testing::sample("pass/pass-dem.tif")],
         terrain_of: None,
-        osm: None,
+        osm: Vec::new(),
         terrain: TerrainSettings {
             plan: PlanOptions { fill_voids: 32, ..PlanOptions::default() },
             max_error_m: Some(2.5),

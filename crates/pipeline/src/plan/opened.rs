@@ -36,7 +36,7 @@ impl Opened {
     pub(crate) fn new(settings: &PlanSettings) -> Result<Self, BuildError> {
         // The state of the files is noted before anything of them is read.
         let polygon = settings.terrain.plan.polygon.as_ref().map(Polygon::path);
-        let others = OtherInputs { polygon, osm: settings.osm.as_deref() };
+        let others = OtherInputs { polygon, osm: &settings.osm };
         let mut inputs = match &settings.terrain_of {
             Some(package) => Inputs::find_with_package(package, others)?,
             None => Inputs::find(&settings.dem, others)?,

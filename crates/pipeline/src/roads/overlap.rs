@@ -1,6 +1,6 @@
 //! Whether the roads and the elevation data lie on each other at all.
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use corniche_dem::GridPlan;
 use corniche_geom::{Bounds, Frame, ProjectError, Projection};
@@ -11,7 +11,7 @@ use crate::BuildError;
 /// Fails when no road of the extract `osm` lies on the elevation data's rectangle.
 pub(crate) fn check_overlap(
     roads: &RoadTotals,
-    osm: &Path,
+    osm: &[PathBuf],
     frame: &Frame,
     projection: &dyn Projection,
     plan: &GridPlan,
@@ -25,7 +25,7 @@ pub(crate) fn check_overlap(
     }
     let roads_deg = bounds_deg(roads_m, projection).map_err(BuildError::Project)?;
     Err(BuildError::NoOverlap {
-        osm: osm.to_path_buf(),
+        osm: osm.to_vec(),
         roads_deg: roads_deg.to_array(),
         heights_deg: data_deg.to_array(),
     })

@@ -9,7 +9,7 @@
 //! Nothing that grows with the number of roads stays in memory.
 
 use std::{
-    path::Path,
+    path::PathBuf,
     sync::{Mutex, PoisonError},
 };
 
@@ -46,7 +46,8 @@ const SOME_SHARES: &str = "not all shares of the steps ways and nodes are in the
 
 /// What the partition needs.
 pub(crate) struct RoadInput<'a> {
-    pub(crate) osm: &'a Path,
+    /// Never empty.
+    pub(crate) osm: &'a [PathBuf],
     pub(crate) settings: &'a RoadSettings,
     pub(crate) projection: &'a (dyn Projection + Sync),
     pub(crate) levels: &'a Levels,
@@ -83,7 +84,7 @@ pub(crate) fn partition(
         return Err(error);
     }
     if gathered.totals.roads == 0 {
-        return Err(BuildError::NoRoads { osm: input.osm.to_path_buf() });
+        return Err(BuildError::NoRoads { osm: input.osm.to_vec() });
     }
     gathered.lengths.finish()?;
     put_pieces(gathered.pieces, store, observer)?;
@@ -110,8 +111,12 @@ fn read(
             vec![None; positions_deg.len()]
         })
     };
+    let Some((path, others)) = input.osm.split_first() else {
+        return Ok(ExtractSummary::default());
+    };
     let request = ReadRequest {
-        path: input.osm,
+        path,
+        others,
         table: &input.settings.table,
         place: &place,
         pool: input.pool,

@@ -1,6 +1,6 @@
 use std::{
     fs,
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::atomic::{AtomicU64, Ordering},
 };
 
@@ -97,7 +97,7 @@ impl World {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let frame = *self.levels.frame();
         let input = RoadInput {
-            osm,
+            osm: &[osm.to_path_buf()],
             settings: &self.settings,
             projection: &self.projection,
             levels: &self.levels,

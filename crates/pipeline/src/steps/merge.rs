@@ -89,7 +89,8 @@ pub(crate) fn make(
     if let Some(terrain) = context.source.package() {
         check_levels(terrain, &manifest.levels)?;
     }
-    if let (Some(osm), 0) = (&context.settings.osm, manifest.counts.roads_kept) {
+    let osm = &context.settings.osm;
+    if !osm.is_empty() && manifest.counts.roads_kept == 0 {
         return Err(BuildError::NoGround { osm: osm.clone() });
     }
     // All inputs have been read. If none has changed, the recorded hashes are those of the bytes that were used.

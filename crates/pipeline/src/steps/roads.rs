@@ -22,7 +22,7 @@ pub(crate) fn totals(context: &Context<'_>) -> Result<Option<RoadTotals>, BuildE
 
 /// Fails if there is an extract and its roads were not partitioned.
 pub(crate) fn check_done(context: &Context<'_>) -> Result<(), BuildError> {
-    if context.settings.osm.is_none() || are_done(context.store) {
+    if context.settings.osm.is_empty() || are_done(context.store) {
         return Ok(());
     }
     Err(BuildError::Missing { what: "the list of the extract's roads".to_owned(), step: "roads" })
@@ -43,7 +43,10 @@ pub(crate) fn pool(context: &Context<'_>) -> Result<rayon::ThreadPool, BuildErro
 
 /// Reads the extract, if there is one and it was not read yet; fails if none of its roads lies on the elevation data.
 pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), BuildError> {
-    let Some(osm) = &context.settings.osm else { return Ok(()) };
+    let osm = context.settings.osm.as_slice();
+    if osm.is_empty() {
+        return Ok(());
+    }
     let pool = pool(context)?;
     let projection = context.source.projection(context.grid)?;
     let frame = *context.frame();

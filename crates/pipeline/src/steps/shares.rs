@@ -45,14 +45,15 @@ fn read(
     scratch: &dyn Scratch,
     step: &dyn Fn(&ReadRequest<'_>) -> Result<(), ReadOsmError>,
 ) -> Result<(), BuildError> {
-    let Some(osm) = &context.settings.osm else { return Ok(()) };
+    let Some((path, others)) = context.settings.osm.split_first() else { return Ok(()) };
     if are_done(context.store) {
         return Ok(());
     }
     let observer = context.observer;
     observer.begin(Stage::Roads, None);
     let read = step(&ReadRequest {
-        path: osm,
+        path,
+        others,
         table: &context.settings.roads.table,
         // Places on the lattice are the business of the step that makes roads.
         place: &|positions_deg| vec![None; positions_deg.len()],

@@ -30,10 +30,8 @@ pub enum VerifyError {
         "{path:?} changed while it was read; run the same command again when no program writes to the file"
     )]
     Changed { path: PathBuf },
-    #[error(
-        "{path:?} is not the extract that the package was made from; give {expected:?}, the same file"
-    )]
-    OtherOsm { path: PathBuf, expected: Vec<String> },
+    #[error("{paths:?} is not what the package was made from; give {expected:?}, the same files")]
+    OtherOsm { paths: Vec<PathBuf>, expected: Vec<String> },
     #[error(
         "the FRC table {given:?} is not the one that the package was made with; give {expected:?} with --frc-table"
     )]

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use corniche_geom::TileId;
 use corniche_roads::FrcTable;
 use corniche_store::Artifacts;
-use corniche_tileset::{FilePackage, Manifest, pmtiles_order};
+use corniche_tileset::{FilePackage, InputRecord, Manifest, pmtiles_order};
 
 use super::{
     checks::{CheckId, Findings},
@@ -39,7 +39,7 @@ pub(crate) fn verify(
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let others = OtherInputs { osm: Some(&osm.path), polygon: None };
+    let others = OtherInputs { osm: &osm.paths, polygon: None };
     let inputs = Inputs::find(&[], others)?;
     let compared = compare_all(package, osm, settings, &inputs, findings, observer);
     match &compared {
@@ -83,7 +83,7 @@ fn compare_all(
         .build()
         .map_err(|error| BuildError::Start { what: error.to_string() })?;
     let input = RoadInput {
-        osm: &osm.path,
+        osm: &osm.paths,
         settings: &settings,
         projection: &projection,
         levels: &levels,
@@ -125,16 +125,25 @@ fn check_inputs(
     }
     let given = inputs.hash(observer)?;
     let extracts = || manifest.inputs.iter().filter(|input| InputKind::Osm.is_of(input));
-    let pair = given
-        .iter()
-        .find_map(|found| Some((extracts().find(|input| input.sha256 == found.sha256)?, found)));
-    let Some((said, found)) = pair else {
-        let expected = extracts().map(|input| input.name.clone()).collect();
-        return Err(VerifyError::OtherOsm { path: osm.path.clone(), expected });
+    // By content, not by name or order: files may have been renamed.
+    let in_order = |records: &mut dyn Iterator<Item = &InputRecord>| {
+        let mut records: Vec<InputRecord> = records.cloned().collect();
+        records.sort_by(|a, b| a.sha256.cmp(&b.sha256));
+        records
     };
-    findings.look(CheckId::OsmInputs, said.bytes == found.bytes, || {
-        format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
-    });
+    let (said, found) = (in_order(&mut extracts()), in_order(&mut given.iter()));
+    let hashes = |records: &[InputRecord]| -> Vec<String> {
+        records.iter().map(|record| record.sha256.clone()).collect()
+    };
+    if hashes(&said) != hashes(&found) {
+        let expected = extracts().map(|input| input.name.clone()).collect();
+        return Err(VerifyError::OtherOsm { paths: osm.paths.clone(), expected });
+    }
+    for (said, found) in said.iter().zip(&found) {
+        findings.look(CheckId::OsmInputs, said.bytes == found.bytes, || {
+            format!("{:?} has {} bytes, {} are recorded", said.name, found.bytes, said.bytes)
+        });
+    }
     let settings = &manifest.settings;
     if settings_record::table_sha256(&chosen(&osm.table, manifest)) != settings.frc_table_sha256 {
         let (given, expected) = (osm.table.name().to_owned(), settings.frc_table.clone());

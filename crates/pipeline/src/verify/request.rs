@@ -20,11 +20,11 @@ pub struct VerifySettings {
     pub threads: usize,
 }
 
-/// The extract that a package was made from, and how it was read.
+/// The extracts that a package was made from, and how they were read.
 #[derive(Debug, Clone)]
 pub struct VerifyOsm {
-    /// The extract.
-    pub path: PathBuf,
+    /// The extracts.
+    pub paths: Vec<PathBuf>,
     /// The FRC table that the manifest names.
     pub table: FrcTable,
     /// Memory for sorting roads by tile, bytes.

@@ -165,7 +165,7 @@ pub(crate) fn settings(
         plan: PlanSettings {
             dem: vec![dem],
             terrain_of: None,
-            osm,
+            osm: osm.into_iter().collect(),
             terrain: TerrainSettings {
                 plan: PlanOptions {
                     crs: options.crs.map(str::to_owned),

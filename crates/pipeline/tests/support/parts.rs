@@ -105,7 +105,7 @@ pub(crate) fn verify_against(path: &Path, against: Against) -> Result<VerifyRepo
     let osm = match against {
         Against::Itself | Against::Dem => None,
         Against::Osm => Some(VerifyOsm {
-            path: sample("pass.osm.pbf"),
+            paths: vec![sample("pass.osm.pbf")],
             table: super::table(),
             memory_bytes: 64 << 20,
         }),

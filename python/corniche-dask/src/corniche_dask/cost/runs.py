@@ -72,7 +72,7 @@ def _run(name: str, report: dict[str, Any]) -> Run:
     size = Size(
         nodes=float(report["estimate"]["nodes"]),
         extract_bytes=float(inputs.get("osm", 0)),
-        dem_bytes=float(sum(value for kind, value in inputs.items() if kind != "osm")),
+        dem_bytes=float(sum(value for kind, value in inputs.items() if kind not in ("osm", "polygon"))),
     )
     parts = report["parts"]
     # A build that is one subtree has nothing above it, so top may make nothing.

@@ -1,0 +1,124 @@
+//! Several extracts as one list of blobs: their numbers go on from file to file.
+
+use std::{
+    io::{Read, Seek},
+    path::{Path, PathBuf},
+};
+
+use osmpbf::PrimitiveBlock;
+
+use crate::{
+    ReadOsmError,
+    blobs::{BlobFile, Decoding, Header},
+    open_file::{Extract, open_file},
+    read_request::ReadRequest,
+};
+
+/// One extract or several, whose framing and headers have been checked.
+pub(crate) struct Extracts<R> {
+    /// Never empty.
+    files: Vec<BlobFile<R>>,
+    /// The number of each file's first blob.
+    starts: Vec<usize>,
+}
+
+impl Extracts<Extract> {
+    /// Opens all files of a request.
+    pub(crate) fn open(request: &ReadRequest<'_>) -> Result<Self, ReadOsmError> {
+        let paths =
+            std::iter::once(request.path).chain(request.others.iter().map(PathBuf::as_path));
+        let open = |path: &Path| BlobFile::open(path, open_file(path)?);
+        Ok(Self::of(paths.map(open).collect::<Result<_, _>>()?))
+    }
+}
+
+impl<R: Read + Seek> Extracts<R> {
+    pub(crate) fn of(files: Vec<BlobFile<R>>) -> Self {
+        let mut next = 0;
+        let start = |file: &BlobFile<R>| {
+            let start = next;
+            next += file.len();
+            start
+        };
+        let starts = files.iter().map(start).collect();
+        Self { files, starts }
+    }
+
+    /// How many data blobs there are.
+    pub(crate) fn len(&self) -> usize {
+        self.files.iter().map(BlobFile::len).sum()
+    }
+
+    /// Size of all files.
+    pub(crate) fn len_bytes(&self) -> u64 {
+        self.files.iter().map(BlobFile::len_bytes).sum()
+    }
+
+    /// Which file a data blob is in.
+    pub(crate) fn file_of(&self, number: usize) -> usize {
+        self.starts.partition_point(|&start| start <= number).saturating_sub(1)
+    }
+
+    /// Size of each data blob, packed.
+    pub(crate) fn sizes(&self) -> impl Iterator<Item = u64> + Clone {
+        self.files.iter().flat_map(BlobFile::sizes)
+    }
+
+    /// Size of the data blob with this number, packed.
+    pub(crate) fn size(&self, number: usize) -> u64 {
+        let file = self.file_of(number);
+        self.files.get(file).map_or(0, |own| own.size(number - self.starts[file]))
+    }
+
+    /// Size of the data blobs with these numbers, packed.
+    pub(crate) fn bytes_of(&self, numbers: &[usize]) -> u64 {
+        numbers.iter().map(|&number| self.size(number)).sum()
+    }
+
+    /// What the file's header says; of several files nothing, because each describes only its own part.
+    pub(crate) fn take_header(&mut self) -> Header {
+        match self.files.as_mut_slice() {
+            [file] => std::mem::take(&mut file.header),
+            _ => Header::default(),
+        }
+    }
+
+    pub(crate) fn blobs_passed_over(&self) -> u64 {
+        self.files.iter().map(|file| file.blobs_passed_over).sum()
+    }
+
+    /// As [`BlobFile::for_each`], over all files. The numbers of a file come one after another.
+    pub(crate) fn for_each<L: Send, T: Send>(
+        &mut self,
+        numbers: &[usize],
+        decoding: &Decoding<'_>,
+        look: impl Fn(&[u8]) -> L + Sync,
+        scan: impl Fn(&PrimitiveBlock, u64) -> Option<T> + Sync,
+        mut take: impl FnMut(usize, L, T) -> Result<(), ReadOsmError>,
+    ) -> Result<(), ReadOsmError> {
+        let mut rest = numbers;
+        let mut done_bytes = 0;
+        while let Some(&first) = rest.first() {
+            let file = self.file_of(first);
+            let start = self.starts[file];
+            let end = start + self.files[file].len();
+            let is_own = |&&number: &&usize| (start..end).contains(&number);
+            let count = rest.iter().take_while(is_own).count().max(1);
+            let (own, later) = rest.split_at(count);
+            let own: Vec<usize> = own.iter().map(|number| number - start).collect();
+            let before = done_bytes;
+            let of_file =
+                Decoding { on_bytes: &|bytes| (decoding.on_bytes)(before + bytes), ..*decoding };
+            self.files[file].for_each(
+                &own,
+                &of_file,
+                &look,
+                &scan,
+                |number, looked, scanned| take(start + number, looked, scanned),
+            )?;
+            done_bytes += self.files[file].bytes_of(&own);
+            rest = later;
+        }
+        Ok(())
+    }
+}
