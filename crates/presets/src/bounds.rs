@@ -15,8 +15,7 @@ pub enum BoundsChoice {
 const ADVICE: &str = "write west,south,east,north in degrees, like 9.4,47.0,9.7,47.3, or osm";
 
 /// Reads the four numbers of `W,S,E,N`; `None` where they are not four numbers.
-#[must_use]
-pub fn parse_degrees(text: &str) -> Option<[f64; 4]> {
+fn parse_degrees(text: &str) -> Option<[f64; 4]> {
     let numbers: Option<Vec<f64>> =
         text.split(',').map(|number| number.trim().parse().ok()).collect();
     numbers?.try_into().ok()

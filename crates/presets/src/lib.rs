@@ -13,7 +13,7 @@ mod folder;
 mod frc;
 mod values;
 
-pub use bounds::{BoundsChoice, parse_degrees};
+pub use bounds::BoundsChoice;
 pub use class_cells::class_filter;
 pub use classes::Classes;
 pub use config::{Config, ResourceOptions, RoadOptions, TerrainOptions};

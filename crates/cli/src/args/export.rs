@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 use corniche_export::{DegreeBounds, VectorFormat};
-use corniche_presets::{Classes, parse_degrees};
+use corniche_presets::{BoundsChoice, Classes};
 
 #[derive(Debug, Args)]
 pub(crate) struct ExportArgs {
@@ -97,11 +97,13 @@ fn parse_classes(text: &str) -> Result<Classes, String> {
 }
 
 fn parse_bounds(text: &str) -> Result<DegreeBounds, String> {
-    let numbers = parse_degrees(text)
-        .ok_or("write west,south,east,north in degrees, like 9.47,47.04,9.64,47.28")?;
-    DegreeBounds::new(numbers).ok_or_else(|| {
-        "this is no rectangle: south must be below north, west and east must differ, all within ±180 and ±90 degrees".to_owned()
-    })
+    let advice = "write west,south,east,north in degrees, like 9.47,47.04,9.64,47.28";
+    match BoundsChoice::parse(text)? {
+        BoundsChoice::Degrees(degrees) => {
+            DegreeBounds::new(degrees).ok_or_else(|| advice.to_owned())
+        }
+        BoundsChoice::Osm => Err(format!("a package does not know the extract's box; {advice}")),
+    }
 }
 
 fn parse_crs(text: &str) -> Result<ExportCrs, String> {
