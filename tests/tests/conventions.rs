@@ -1,5 +1,7 @@
 //! Every command in the tables of `docs/conventions.md` ends as its row says.
 
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
 use std::{fs, io::Write, path::Path, process::Command};
 
 use flate2::{Compression, write::GzEncoder};

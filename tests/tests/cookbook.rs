@@ -1,5 +1,7 @@
 //! The commands of `docs/cookbook.md` run as they stand, on the bundled sample in place of what they download.
 
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
 use std::{fs, path::Path, process::Command};
 
 /// The blocks of `sh` of a page, with what the comment in their first line says that they need.

@@ -1,5 +1,7 @@
 //! What the scripts say on machines that cannot build.
 
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
 use std::{fs, os::unix::fs::PermissionsExt, path::Path, process::Command};
 
 /// Runs `scripts/demo` with nothing on the path but the system's tools and these stand-ins.
