@@ -139,8 +139,11 @@ fn apart_from_repeats(mut extract: Extract) -> Extract {
     extract
 }
 
+/// Ways and nodes with the files that they are in, as bits, and how many of them a block holds.
+type Parts = (Vec<(Way, u8)>, Vec<(Node, u8)>, usize);
+
 /// Ways of all kinds with different ids, for each whether it is in the first file, the second or both, and nodes likewise.
-fn parts() -> impl Strategy<Value = (Vec<(Way, u8)>, Vec<(Node, u8)>, usize)> {
+fn parts() -> impl Strategy<Value = Parts> {
     let highways = vec!["track", "residential", "footway", "goat_trail", "proposed", ""];
     let more = prop::sample::subsequence(
         vec![("name", "Bé"), ("area", "yes"), ("layer", "1000"), ("tunnel", "culvert")],
