@@ -44,7 +44,7 @@ fn what_cannot_be_exported_is_refused() {
         (&package, "a.gpkg", &["--level", "9"], "its finest is 3"),
         (&package, "a.gpkg", &["--classes", "9"], "0-4,7"),
         (&package, "a.gpkg", &["--bounds", "1,2,3"], "west,south,east,north"),
-        (&package, "a.gpkg", &["--bounds", "9,48,10,47"], "no rectangle"),
+        (&package, "a.gpkg", &["--bounds", "9,48,10,47"], "south must be less"),
         (&package, "a.geojson", &[], "--crs EPSG:4979"),
         (&package, "a.gpkg", &["--crs", "EPSG:4979"], "--heights as-is"),
         (&package, "a.gpkg", &["--crs", "EPSG:2056"], "ogr2ogr"),
