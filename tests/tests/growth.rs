@@ -163,7 +163,11 @@ fn lists_of_ways_are_refused_where_they_would_destroy_or_mean_nothing() {
     assert_eq!(corniche(["growth", package_name, "--per-way", csv_name]).code, 0);
     let first = fs::read(&csv).unwrap();
     let missing = folder.path().join("nowhere/ways.csv");
-    let refusals: [(&[&str], i32, &str); 6] = [
+    let png = folder.path().join("growth.png");
+    let many = [&[package_name; 28][..], &["--svg", "many.svg"]].concat();
+    let refusals: [(&[&str], i32, &str); 8] = [
+        (&[package_name, "--svg", text(&png)], 2, "a name that ends in .svg"),
+        (&many, 2, "at most 27"),
         (&[package_name, "--per-way", csv_name], 3, "exists already"),
         (&[package_name, package_name, "--per-way", csv_name, "-O"], 2, "one package"),
         (&[package_name, "--per-way", package_name, "-O"], 2, "uses that file itself"),

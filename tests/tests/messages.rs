@@ -135,7 +135,7 @@ fn numbers_are_plain_in_pipes_and_tables_are_narrow() {
     let built = corniche(["build", "--dem", text(&dem), "--osm", text(&osm), "-o", text(&package)]);
     assert_eq!(built.code, 0, "{}", built.err);
     let [info, growth] = ["info", "growth"].map(|command| corniche([command, text(&package)]).out);
-    let verify = corniche(["verify", text(&package), "--dem", text(&dem), "-q"]).out;
+    let verify = corniche(["verify", text(&package), "--dem", text(&dem)]).out;
     let plan = corniche(["plan", "--dem", text(&dem), "--osm", text(&osm)]).out;
     for said in [&built.err, &info, &growth, &verify, &plan] {
         assert!(!said.contains('\u{202f}'), "{said}");

@@ -187,4 +187,9 @@ fn contradictions_are_counted_and_listed() {
     assert_eq!(conflicts, 20, "{listed}");
     let found = counts(&package)["defects"].to_string();
     assert!(found.contains("conflicting node") && found.contains("20"), "{found}");
+    // Which file came first decides; it does so under another name, too.
+    let renamed = files.at("parts/z.osm.pbf");
+    fs::rename(&a, &renamed).unwrap();
+    let ran = corniche(["verify", text(&package), "-q", "--osm", text(&b), text(&renamed)]);
+    assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
 }

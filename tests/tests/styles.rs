@@ -139,7 +139,7 @@ fn a_style_draws_roads_by_their_own_width_and_tells_which_it_caps() {
         .collect();
     fs::write(&osm, pbf::extract(&[], &lines)).unwrap();
     build_from([&dem, &osm], &package, &["-q", "--dem-crs", "EPSG:32632"]);
-    let atlas = fs::read_to_string(root().join("config/styles/road-atlas.toml")).unwrap();
+    let atlas = fs::read_to_string(root().join("crates/styles/sheets/road-atlas.toml")).unwrap();
     // The picture, and what was told of it.
     let drawn = |entries: &str, method: &str| {
         fs::write(&style, atlas.replacen("own_width = false", entries, 1)).unwrap();

@@ -73,6 +73,15 @@ fn the_sample_on_its_own_terrain_with_other_roads_settings_and_credits() {
     let take = ["--terrain", text(&old)];
     // Credits are kept; those that are given take their place.
     assert!(built(&take, &osm, &at("a.pmtiles"), &roads) == full);
+    // An option that was forgotten is told.
+    let ran = build(&take, &osm, &at("d.pmtiles"), &roads);
+    assert!(
+        ran.code == 0 && ran.err.contains("--simplify is 0, it was made with 0.25"),
+        "{}",
+        ran.err
+    );
+    let ran = build(&take, &osm, &at("e.pmtiles"), &[]);
+    assert!(ran.code == 0 && !ran.err.contains("it was made with"), "{}", ran.err);
     let own = [&roads[..], &["--attribution", "Another one"]].concat();
     built(&take, &osm, &at("b.pmtiles"), &own);
     let credits = manifest(&at("b.pmtiles"))["attribution"].clone();

@@ -22,11 +22,15 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     messages,
+    names::Format,
     output::{Output, existing_of},
     table::Digits,
 };
 
 pub(crate) fn run(args: &GrowthArgs) -> Result<ExitCode, Failure> {
+    if args.svg.is_some() {
+        chart::refuse_too_many(args.packages.len())?;
+    }
     let mut packages = Vec::with_capacity(args.packages.len());
     for path in &args.packages {
         let package = FilePackage::open(path)?;
@@ -76,6 +80,7 @@ fn write_files(
     let begin = |path: &Path| Output::create(path, existing, &others(path));
     // Both places are looked at before any work is done.
     let svg = args.svg.as_deref().map(begin).transpose()?;
+    args.svg.as_deref().map_or(Ok(()), |path| Format::Chart.refuse_others(path))?;
     let per_way = match (&args.per_way, packages) {
         (Some(path), [package]) => Some((package, path, begin(path)?)),
         (Some(_), _) => {

@@ -276,6 +276,10 @@ fn roads(manifest: &Manifest, digits: Digits) -> String {
         digits.count(counts.roads_kept),
         length(counts.roads_kept_um),
     ]);
+    if !counts.roads_lost.is_empty() {
+        // What is lost of a road that is kept in part is in the lengths alone.
+        table.row(["lost, by reason", "whole roads", "length"].map(str::to_owned));
+    }
     for loss in &counts.roads_lost {
         table.row([
             format!("lost {}", plain(&loss.reason)),

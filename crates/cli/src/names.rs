@@ -38,3 +38,29 @@ pub(crate) fn refuse_other_than_package(target: &Path) -> Result<(), Failure> {
 pub(crate) fn is_package_name(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("pmtiles"))
 }
+
+/// What has one format, so that a name with the ending of another one is a mistake.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Format {
+    /// PNG.
+    Picture,
+    /// SVG.
+    Chart,
+}
+
+impl Format {
+    /// Refuses a name that ends as that of another format.
+    pub(crate) fn refuse_others(self, path: &Path) -> Result<(), Failure> {
+        let (what, ending) = match self {
+            Self::Picture => ("pictures are PNG", "png"),
+            Self::Chart => ("charts are SVG", "svg"),
+        };
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(ending)) {
+            return Ok(());
+        }
+        Err(Failure::unusable(format!(
+            "cannot write {}: {what}; give a name that ends in .{ending}",
+            path.display()
+        )))
+    }
+}

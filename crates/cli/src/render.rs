@@ -10,6 +10,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     interrupt, messages,
+    names::Format,
     output::{Output, existing_of, png},
     styles,
 };
@@ -32,7 +33,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         style,
     };
     let output = Output::create(&args.output, existing_of(args.overwrite), &used)?;
-    refuse_other_formats(&args.output)?;
+    Format::Picture.refuse_others(&args.output)?;
     request.check()?;
     let package = PackageSource::open(&args.package)?.for_method(request.roads.method);
     let rendered = render(&request, &package, &interrupt::is_noted)?;
@@ -61,17 +62,6 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         ));
     }
     Ok(ExitCode::Done)
-}
-
-/// Pictures are PNG files. A name with the extension of another format is refused.
-fn refuse_other_formats(path: &Path) -> Result<(), Failure> {
-    match path.extension() {
-        Some(extension) if extension.eq_ignore_ascii_case("png") => Ok(()),
-        _ => Err(Failure::unusable(format!(
-            "cannot write {}: pictures are PNG; give a name that ends in .png",
-            path.display()
-        ))),
-    }
 }
 
 impl From<RenderError> for Failure {

@@ -6,9 +6,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_pipeline::{ErrorFigures, VerifyError, VerifyOsm, VerifyReport, VerifySettings};
+use corniche_pipeline::{
+    Check, CheckId, ErrorFigures, Needs, VerifyError, VerifyOsm, VerifyReport, VerifySettings,
+};
 use corniche_presets::frc_preset;
-use corniche_tileset::FilePackage;
+use corniche_tileset::{FilePackage, Manifest};
 
 use crate::{
     args::{VerifyArgs, VerifyFiles},
@@ -16,7 +18,7 @@ use crate::{
     exit::ExitCode,
     failure::Failure,
     info::or_dash,
-    presets,
+    messages, presets,
     progress::Progress,
     settings::{polygon, threads},
     table::{Digits, Table},
@@ -36,7 +38,13 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
     let text = if args.json {
         format!("{}\n", to_line(&VerifyDocument::from(&report)))
     } else {
-        to_text(&report, Digits::on(&io::stdout()))
+        let missing = Missing::of(&report, has_extract(&settings.package));
+        let digits = Digits::on(&io::stdout());
+        if messages::voice().is_quiet {
+            to_short_text(&report, missing, digits)
+        } else {
+            to_text(&report, missing, digits)
+        }
     };
     let written = io::stdout().lock().write_all(text.as_bytes());
     if report.holds() {
@@ -66,7 +74,7 @@ fn extract(
     } else {
         let opened = FilePackage::open(package).map_err(VerifyError::from)?;
         let manifest = opened.manifest();
-        if manifest.inputs.iter().all(|input| input.kind != "osm") {
+        if !names_extract(manifest) {
             return Err(VerifyError::NoExtract.into());
         }
         let name = &manifest.settings.frc_table;
@@ -81,25 +89,98 @@ fn extract(
     Ok(Some(VerifyOsm { paths, table, memory_bytes: MEMORY_BYTES }))
 }
 
-fn to_text(report: &VerifyReport, digits: Digits) -> String {
-    let mut text = String::new();
-    for check in &report.checks {
-        let verdict = match check.verdict() {
-            Some(true) => "holds   ",
-            Some(false) => "BROKEN  ",
-            None => "not made",
-        };
-        let (id, promise) = (check.id.id(), check.id.promise());
-        let _ =
-            write!(text, "{verdict}  {id}: {promise} ({} looked at", digits.count(check.checked));
-        if !check.holds() {
-            let _ = write!(text, ", {} broken", digits.count(check.broken));
-        }
-        text.push_str(")\n");
-        for example in &check.examples {
-            let _ = writeln!(text, "            {example}");
-        }
+/// Whether a package was made with an extract.
+fn names_extract(manifest: &Manifest) -> bool {
+    manifest.inputs.iter().any(|input| input.kind == "osm")
+}
+
+/// The same of a package that was opened before; one that cannot be opened any more has none.
+fn has_extract(package: &Path) -> bool {
+    FilePackage::open(package).is_ok_and(|package| names_extract(package.manifest()))
+}
+
+/// Inputs that were not given, though checks of the package need them.
+#[derive(Debug, Clone, Copy, Default)]
+struct Missing {
+    dem: bool,
+    osm: bool,
+}
+
+impl Missing {
+    /// What is missing for the checks that a report does not have. A package without an extract has no checks of one.
+    fn of(report: &VerifyReport, has_extract: bool) -> Self {
+        let is_given = |needs| report.checks.iter().any(|check| check.id.needs() == needs);
+        Self { dem: !is_given(Needs::Dem), osm: has_extract && !is_given(Needs::Osm) }
     }
+
+    /// How many more checks they allow, and their options: "20 more need --dem and --osm".
+    fn text(self) -> Option<String> {
+        let Self { dem, osm } = self;
+        let options = match (dem, osm) {
+            (true, true) => "--dem and --osm",
+            (true, false) => "--dem",
+            (false, true) => "--osm",
+            (false, false) => return None,
+        };
+        let is_missing = |id: &&CheckId| match id.needs() {
+            Needs::Package => false,
+            Needs::Dem => dem,
+            Needs::Osm => osm,
+        };
+        let more = CheckId::ALL.iter().filter(is_missing).count();
+        Some(format!("{more} more need {options}"))
+    }
+}
+
+/// The report in one line: whether the checks hold, and which were not made.
+fn verdict(report: &VerifyReport, missing: Missing) -> String {
+    let number = |verdict| report.checks.iter().filter(|check| check.verdict() == verdict).count();
+    let (broken, not_made) = (number(Some(false)), number(None));
+    let made = report.checks.len() - not_made;
+    let mut text = match broken {
+        0 => format!("all {made} checks hold"),
+        1 => format!("1 of {made} checks is broken"),
+        _ => format!("{broken} of {made} checks are broken"),
+    };
+    if not_made > 0 {
+        let _ = write!(text, "; {not_made} could not be made");
+    }
+    if let Some(more) = missing.text() {
+        let _ = write!(text, "; {more}");
+    }
+    text
+}
+
+/// A check with what breaks it.
+fn check_text(check: &Check, digits: Digits) -> String {
+    let verdict = match check.verdict() {
+        Some(true) => "holds   ",
+        Some(false) => "BROKEN  ",
+        None => "not made",
+    };
+    let (id, promise) = (check.id.id(), check.id.promise());
+    let mut text = format!("{verdict}  {id}: {promise} ({} looked at", digits.count(check.checked));
+    if !check.holds() {
+        let _ = write!(text, ", {} broken", digits.count(check.broken));
+    }
+    text.push_str(")\n");
+    for example in &check.examples {
+        let _ = writeln!(text, "            {example}");
+    }
+    text
+}
+
+/// What is broken, and the verdict.
+fn to_short_text(report: &VerifyReport, missing: Missing, digits: Digits) -> String {
+    let broken = report.checks.iter().filter(|check| !check.holds());
+    let broken: String = broken.map(|check| check_text(check, digits)).collect();
+    format!("{broken}{}\n", verdict(report, missing))
+}
+
+/// Every check, the figures, and the verdict.
+fn to_text(report: &VerifyReport, missing: Missing, digits: Digits) -> String {
+    let checks = report.checks.iter().map(|check| check_text(check, digits));
+    let mut text: String = checks.collect();
     let largest_m = report.gaps.iter().map(|gap| gap.largest_m).fold(0.0, f64::max);
     let _ = write!(
         text,
@@ -133,6 +214,7 @@ fn to_text(report: &VerifyReport, digits: Digits) -> String {
             lying(samples.off_tin, digits),
         );
     }
+    let _ = writeln!(text, "\n{}", verdict(report, missing));
     text
 }
 

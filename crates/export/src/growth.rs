@@ -29,7 +29,8 @@ pub struct WayGrowth {
     pub class: FunctionalRoadClass,
     /// True length in plan of what lies on the finest level's ground, metres.
     pub length_m: f64,
-    /// Points of the way that lie on the finest level's ground. Cuts at tile borders and at the package's bounds are none.
+    /// Points of the way that lie on the finest level's ground. Cuts at tile borders and at the package's bounds are none; cuts at a
+    /// polygon are, because roads are cut there before anything is counted.
     pub source_vertices: u64,
     /// Vertices of the clipped lines of each level, root first, as the tiles hold them: one on a border is in both tiles.
     pub geo_vertices: Vec<u64>,

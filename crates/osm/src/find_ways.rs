@@ -12,7 +12,7 @@ use crate::{
     id_range::IdRange,
     reading::{Reading, Step},
     records::{Located, WayRecord, age},
-    versions::Versions,
+    versions::{History, Versions},
     ways::{Counted, Ways, add_summary},
 };
 
@@ -105,9 +105,9 @@ pub(crate) fn append_versions(
     later: Versions,
 ) -> Result<(), ReadOsmError> {
     versions.append(later);
-    let path = || reading.request.path.to_path_buf();
-    let history = versions.history.take();
-    history.map_or(Ok(()), |reason| Err(ReadOsmError::History { path: path(), reason }))
+    versions.history.take().map_or(Ok(()), |History { file, reason }| {
+        Err(ReadOsmError::History { path: reading.request.extract(file), reason })
+    })
 }
 
 /// Fails if what is found takes more than a file of this size can plausibly hold.

@@ -75,7 +75,7 @@ pub(crate) fn number_nodes<'a>(
                     && first != second
                 {
                     let reason = two_versions("way", way.way_id, [first, second]);
-                    return Err(ReadOsmError::History { path: request.path.to_path_buf(), reason });
+                    return Err(ReadOsmError::History { path: request.extract(way.file), reason });
                 }
                 *first = first.or(version);
                 numbered.duplicates += 1;

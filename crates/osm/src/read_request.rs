@@ -39,6 +39,14 @@ pub struct ReadRequest<'a> {
     pub on_progress: Option<&'a OnProgress<'a>>,
 }
 
+impl ReadRequest<'_> {
+    /// One of the extracts, by its number: 0 is the first.
+    pub(crate) fn extract(&self, number: u32) -> PathBuf {
+        let further = (number as usize).checked_sub(1).and_then(|number| self.others.get(number));
+        further.map_or(self.path, PathBuf::as_path).to_path_buf()
+    }
+}
+
 impl fmt::Debug for ReadRequest<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { path, others, memory_bytes, .. } = self;

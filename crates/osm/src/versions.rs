@@ -24,7 +24,14 @@ pub(crate) struct Versions {
     /// Nodes, ways, relations.
     runs: [Run; 3],
     /// Why this is no extract: the first thing found.
-    pub(crate) history: Option<String>,
+    pub(crate) history: Option<History>,
+}
+
+/// Why a file is no extract, and of several files: which.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct History {
+    pub(crate) file: u32,
+    pub(crate) reason: String,
 }
 
 /// The objects of one kind, in the order of the file; those without a version are skipped.
@@ -81,6 +88,7 @@ impl Versions {
     pub(crate) fn of_file(mut self, file: u32) -> Self {
         let ends = self.runs.iter_mut().flat_map(|run| [&mut run.first, &mut run.last]);
         ends.flatten().for_each(|object| object.file = file);
+        self.history.iter_mut().for_each(|history| history.file = file);
         self
     }
 
@@ -128,7 +136,8 @@ impl Versions {
 
     fn take(&mut self, kind: usize, id: i64, info: Info) {
         if info.is_deleted && self.history.is_none() {
-            self.history = Some(format!("it marks {} {id} as deleted", KINDS[kind]));
+            let reason = format!("it marks {} {id} as deleted", KINDS[kind]);
+            self.history = Some(History { file: 0, reason });
         }
         if let Some(version) = known_version(info.version) {
             self.follow(kind, Versioned { id, version, file: 0 });
@@ -144,7 +153,8 @@ impl Versions {
             && self.history.is_none()
         {
             let versions = [last.version, object.version];
-            self.history = Some(two_versions(KINDS[kind], object.id, versions));
+            let reason = two_versions(KINDS[kind], object.id, versions);
+            self.history = Some(History { file: object.file, reason });
         }
     }
 }

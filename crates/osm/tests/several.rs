@@ -273,9 +273,10 @@ fn each_extract_for_itself_must_be_of_one_point_in_time() {
     assert_eq!(read(&[&old, &new]).unwrap().roads.len(), 1);
     // Within one they may not.
     let history = file(&row(1), &[road(5, 1, "track", &[1, 2]), road(5, 2, "track", &[1, 2])], 20);
-    for files in [[&history[..], &old], [&old[..], &history]] {
-        let said = read(&files).unwrap_err();
+    for (number, files) in [[&history[..], &old], [&old[..], &history]].iter().enumerate() {
+        let said = read(files).unwrap_err();
         assert!(said.contains("it holds way 5 in versions"), "{said}");
+        assert!(said.contains(&format!("{number}.osm.pbf")), "{said}");
     }
 }
 

@@ -22,11 +22,14 @@ use corniche_tileset::Manifest;
 
 use self::{destination::Destination, unfinished::Unfinished};
 use crate::{
-    BuildError, BuildPlan, BuildSettings, Observer, TerrainSettings,
+    BuildError, BuildPlan, BuildSettings, Observer, PlanSettings, TerrainSettings,
     context::Context,
+    inputs::InputKind,
     memory_shares::MemoryShares,
-    plan::{Opened, check_room},
+    plan::{Opened, check_room, road_differences},
+    settings_record,
     steps::{hashes, heights, merge, roads, tiles, top},
+    terrain::ground::GroundSource,
 };
 
 /// The result of a build.
@@ -105,6 +108,27 @@ pub fn build_on(
 pub(crate) fn warn(context: &Context<'_>) {
     warn_of_other_grids(context.grid, context.observer);
     warn_of_unused_latitude(&context.settings.terrain, context.grid, context.observer);
+    warn_of_other_roads(context);
+}
+
+/// Warns if the package that gives the terrain has roads that were made with other settings: who brings new roads onto it each week
+/// may have forgotten an option.
+fn warn_of_other_roads(context: &Context<'_>) {
+    let GroundSource::Package(terrain) = context.source else { return };
+    let PlanSettings { terrain: of_terrain, roads, osm, .. } = context.settings;
+    let manifest = terrain.manifest();
+    if osm.is_empty() || !manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input)) {
+        return;
+    }
+    let ours = settings_record::of(of_terrain, roads, context.max_error_m);
+    let differences = road_differences(&ours, &manifest.settings);
+    if !differences.is_empty() {
+        context.observer.warning(&format!(
+            "roads are made with other settings than those of {:?}: {}",
+            terrain.path(),
+            differences.join("; ")
+        ));
+    }
 }
 
 /// Warns of files that are resampled onto the grid of the first one.

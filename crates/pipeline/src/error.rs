@@ -68,7 +68,7 @@ pub enum BuildError {
     #[error(transparent)]
     Package(#[from] corniche_tileset::OpenError),
     #[error(
-        "the terrain of {path:?} cannot be taken: {differences}; build from the elevation files with --dem"
+        "the terrain of {path:?} cannot be taken: {differences}; give the same settings, or build from the elevation files with --dem"
     )]
     OtherTerrain { path: PathBuf, differences: String },
     #[error("{path:?} is damaged: {what}; build from the elevation files with --dem")]

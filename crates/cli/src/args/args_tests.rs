@@ -245,3 +245,26 @@ fn verify_finds_its_package_wherever_it_is_named() {
     );
     assert!(files("corniche verify").is_err());
 }
+
+/// Whoever looks for a part of the data by another program's option is told ours; of a command without parts nothing is said.
+#[test]
+fn options_of_other_programs_for_a_part_get_a_tip() {
+    let refusal = |line: &str| {
+        let refused = Arguments::checked_from(line.split(' ').map(Into::into));
+        let refused = refused.expect_err(line);
+        assert_eq!(refused.kind(), ErrorKind::UnknownArgument, "{line}");
+        refused.to_string()
+    };
+    let tip = "tip: use --bounds W,S,E,N or --polygon FILE";
+    for line in [
+        "corniche build --dem a.tif -o b.pmtiles --clip c.geojson",
+        "corniche build --dem a.tif -o b.pmtiles --cutline=c.geojson",
+        "corniche plan --dem a.tif --bbox 9,47,10,48",
+    ] {
+        let said = refusal(line);
+        assert!(said.contains(tip) && said.matches("tip:").count() == 1, "{line}: {said}");
+    }
+    for line in ["corniche info a.pmtiles --bbox 1", "corniche plan --dem a.tif --odd 1"] {
+        assert!(!refusal(line).contains(tip), "{line}");
+    }
+}

@@ -16,7 +16,10 @@ mod voice;
 
 use std::ffi::OsString;
 
-use clap::{CommandFactory as _, Parser, Subcommand, error::ErrorKind};
+use clap::{
+    CommandFactory as _, Parser, Subcommand,
+    error::{ContextKind, ContextValue, ErrorKind},
+};
 
 pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
@@ -45,7 +48,7 @@ impl Arguments {
     /// # Errors
     /// When it cannot be used; also when what is asked for is help or the version.
     pub(crate) fn checked_from(words: impl Iterator<Item = OsString>) -> Result<Self, clap::Error> {
-        let arguments = Self::try_parse_from(words)?;
+        let arguments = Self::try_parse_from(words).map_err(with_tip)?;
         // Conflicts of options before the command's name with those behind it are not the parser's.
         let Voice { is_quiet, verbosity, json_progress, .. } = arguments.voice();
         let given = [
@@ -64,6 +67,30 @@ impl Arguments {
     pub(crate) fn voice(&self) -> Voice {
         self.voice.voice(self.command.report().is_some_and(|report| report.json_progress))
     }
+}
+
+/// What other programs call a part of the data.
+const NAMES_OF_PARTS: [&str; 3] = ["--bbox", "--clip", "--cutline"];
+
+/// The refusal of an option for a part of the data, as other programs have it, with the names of ours. Its value is written in another way,
+/// so ours have no such names themselves.
+fn with_tip(mut error: clap::Error) -> clap::Error {
+    if error.kind() == ErrorKind::UnknownArgument && is_part_of_build(&error) {
+        let tip = "use --bounds W,S,E,N or --polygon FILE".to_owned().into();
+        error.remove(ContextKind::SuggestedArg);
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
+    }
+    error
+}
+
+/// Whether an unknown option is one for a part of the data, of a command that can convert a part.
+fn is_part_of_build(error: &clap::Error) -> bool {
+    let text = |kind| error.get(kind).map(ToString::to_string).unwrap_or_default();
+    let option = text(ContextKind::InvalidArg);
+    let usage = text(ContextKind::Usage);
+    let name = option.split('=').next().unwrap_or_default();
+    NAMES_OF_PARTS.contains(&name)
+        && ["corniche build ", "corniche plan "].iter().any(|command| usage.contains(command))
 }
 
 #[derive(Debug, Subcommand)]

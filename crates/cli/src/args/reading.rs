@@ -12,7 +12,9 @@ use crate::{failure::Failure, names::is_package_name};
 /// What `verify --help` ends with: the checks, by their ids.
 fn checks() -> String {
     let mut text =
-        "Checks (docs/promises.md explains them); a broken one makes exit code 1:\n".to_owned();
+        "The last line is the verdict; with --quiet only it and broken checks are printed.\n\n\
+                    Checks (docs/promises.md explains them); a broken one makes exit code 1:\n"
+            .to_owned();
     for check in CheckId::ALL {
         let needs = check.needs().text().replace('`', "");
         let _ = writeln!(text, "  {:<21} {} [{needs}]", check.id(), check.promise());

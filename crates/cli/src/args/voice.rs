@@ -51,7 +51,8 @@ impl Voice {
 #[derive(Debug, Clone, Copy, Args)]
 #[command(next_help_heading = "Messages")]
 pub(crate) struct VoiceArgs {
-    /// Print only errors and warnings on standard error; what a command is asked to print stays
+    /// Print only errors and warnings on standard error; what a command is asked to print stays (of verify: what is broken, and the
+    /// verdict)
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub(crate) quiet: bool,
     /// Tell also what is done and with which settings; -vv: each step, and what libraries say

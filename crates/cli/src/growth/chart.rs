@@ -2,7 +2,10 @@ use corniche_tileset::Manifest;
 use plotters::prelude::RGBColor;
 
 use super::{compare::Compared, factors::of_level};
-use crate::chart::{Axes, Axis, Curve, MOST_SHAPES, Marks, Ticks, draw};
+use crate::{
+    chart::{Axes, Axis, Curve, MOST_SHAPES, Marks, Ticks, draw},
+    failure::Failure,
+};
 
 /// One colour a class, as on a road atlas: red for motorways down to grey for tracks.
 const CLASS_COLORS: [RGBColor; 9] = [
@@ -74,12 +77,19 @@ const PACKAGES_ASIDE: f64 = 0.15;
 /// Longer names of packages are cut.
 const LONGEST_NAME: usize = 24;
 
-/// Growth of clipped vertices over the level's own simplified line, all classes, one curve a package over the levels' cells.
+/// Refuses more packages than a chart tells apart.
+pub(crate) fn refuse_too_many(packages: usize) -> Result<(), Failure> {
+    if packages <= MOST_SHAPES {
+        return Ok(());
+    }
+    Err(Failure::unusable(format!(
+        "a chart tells at most {MOST_SHAPES} packages apart, and these are {packages}; name fewer, or leave out --svg"
+    )))
+}
+
+/// Growth of clipped vertices over the level's own simplified line, all classes, one curve a package over the levels' cells. Of more
+/// packages than [`refuse_too_many`] lets pass, some look alike.
 pub(crate) fn comparison(packages: &[Compared<'_>]) -> anyhow::Result<String> {
-    anyhow::ensure!(
-        packages.len() <= MOST_SHAPES,
-        "a chart tells at most {MOST_SHAPES} packages apart; name fewer, or leave out --svg"
-    );
     // Numbers stand at the levels of the first package.
     let unit_m = packages.first().map_or(1.0, |first| first.manifest.frame.cell().shorter_m());
     let points = |package: &Compared<'_>| -> Vec<(f64, f64)> {

@@ -67,8 +67,12 @@ fn a_chart_of_packages_has_their_names_and_cells_and_nothing_between() {
     }
     // Cells between those of levels have no number.
     assert!(!texts.contains(&"14.1") && !texts.contains(&"28.3"), "{texts:?}");
-    let many: Vec<Compared<'_>> = (0..=MOST_SHAPES)
-        .map(|_| Compared { label: String::new(), name: String::new(), manifest: &manifests[0] })
-        .collect();
-    assert!(comparison(&many).unwrap_err().to_string().contains("at most 27"));
+}
+
+#[test]
+fn more_packages_than_a_chart_tells_apart_are_refused() {
+    assert!(refuse_too_many(MOST_SHAPES).is_ok());
+    let refused = refuse_too_many(MOST_SHAPES + 1).unwrap_err();
+    assert_eq!(refused.code(), crate::exit::ExitCode::Unusable);
+    assert!(refused.to_string().contains("at most 27"), "{refused}");
 }

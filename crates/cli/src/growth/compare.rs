@@ -2,7 +2,7 @@
 
 use std::{fmt::Write as _, path::Path};
 
-use corniche_tileset::{FilePackage, InputRecord, Manifest};
+use corniche_tileset::{FilePackage, InputRecord, Manifest, PolygonRecord, SettingsRecord};
 
 use super::{
     document::document,
@@ -56,38 +56,109 @@ pub(crate) struct Difference {
     pub(crate) values: Vec<(Vec<usize>, String)>,
 }
 
-/// Something of a package in words, under its name.
-type Kind = (&'static str, fn(&Manifest) -> String);
+/// A property of a package: its name, and its value in words.
+type Property = (&'static str, String);
 
 /// What is not alike in some packages.
 pub(crate) fn differences(packages: &[Compared<'_>]) -> Vec<Difference> {
-    let kinds: [Kind; 7] = [
-        ("extract", |manifest| inputs(manifest, &["osm"])),
-        ("elevation data", |manifest| inputs(manifest, &["dem", "dem-part"])),
-        ("classes", classes),
-        ("classes by level", classes_by_level),
-        ("simplification", |manifest| {
-            let cells = manifest.settings.simplify_cells;
-            if cells > 0.0 { format!("{cells} cells of the level") } else { "none".to_owned() }
-        }),
-        ("CRS", |manifest| plain(&manifest.crs)),
-        ("bounds", |manifest| {
-            let bounds = manifest.settings.bounds_deg;
-            bounds.map_or_else(|| "all of the elevation data".to_owned(), |b| format!("{b:?}"))
-        }),
-    ];
-    let difference = |(what, value): Kind| {
+    let of_each: Vec<_> = packages.iter().map(|package| properties(package.manifest)).collect();
+    let Some(first) = of_each.first() else { return Vec::new() };
+    let difference = |(property, &(what, _)): (usize, &Property)| {
         let mut values: Vec<(Vec<usize>, String)> = Vec::new();
-        for (index, package) in packages.iter().enumerate() {
-            let value = value(package.manifest);
-            match values.iter_mut().find(|(_, known)| *known == value) {
+        for (index, properties) in of_each.iter().enumerate() {
+            let value = &properties[property].1;
+            match values.iter_mut().find(|(_, known)| known == value) {
                 Some((of, _)) => of.push(index),
-                None => values.push((vec![index], value)),
+                None => values.push((vec![index], value.clone())),
             }
         }
         (values.len() > 1).then_some(Difference { what, values })
     };
-    kinds.into_iter().filter_map(difference).collect()
+    first.iter().enumerate().filter_map(difference).collect()
+}
+
+/// Everything that growth depends on, but for cell and error bound, which are what is studied.
+fn properties(manifest: &Manifest) -> [Property; 16] {
+    // All fields by name, so that a new setting cannot be forgotten here.
+    let SettingsRecord {
+        max_error_m: _,
+        cell_m: _,
+        cell_every: _,
+        // What was made of it is the package's CRS.
+        crs: _,
+        fill_voids,
+        nodata,
+        height_range_m,
+        dem_crs,
+        dem_vertical_crs,
+        vertical_crs,
+        vertical_shift_m,
+        scale_latitude_deg,
+        bounds_deg,
+        polygon,
+        frc_table,
+        frc_table_sha256,
+        classes: chosen,
+        class_max_cell_m,
+        simplify_cells,
+    } = &manifest.settings;
+    [
+        ("extract", inputs(manifest, &["osm"])),
+        ("elevation data", inputs(manifest, &["dem", "dem-part"])),
+        ("CRS of the elevation data", given(dem_crs.as_deref(), "as in its files")),
+        ("its vertical CRS", given(dem_vertical_crs.as_deref(), "as in its files")),
+        ("vertical CRS", given(vertical_crs.as_deref(), "that of the elevation data")),
+        ("vertical shift", format!("{vertical_shift_m} m")),
+        ("values without data", no_data(nodata)),
+        ("height range", height_range(*height_range_m)),
+        ("voids filled", format!("with data within {fill_voids} cells")),
+        ("classes", classes([frc_table, frc_table_sha256], chosen.as_deref())),
+        ("classes by level", classes_by_level(class_max_cell_m)),
+        ("simplification", simplification(*simplify_cells)),
+        ("CRS", plain(&manifest.crs)),
+        ("scale latitude", scale_latitude(*scale_latitude_deg)),
+        ("bounds", bounds(*bounds_deg)),
+        ("polygon", polygon.as_ref().map_or_else(|| "none".to_owned(), polygon_text)),
+    ]
+}
+
+/// What was given, else what holds without it.
+fn given(value: Option<&str>, without: &str) -> String {
+    value.map_or_else(|| without.to_owned(), plain)
+}
+
+/// Values that mean "no data".
+fn no_data(values: &[f64]) -> String {
+    if values.is_empty() { "as in the files".to_owned() } else { list(values.iter()) }
+}
+
+/// Heights that samples may have.
+fn height_range(range_m: Option<[f64; 2]>) -> String {
+    range_m.map_or_else(|| "the default".to_owned(), |[low, high]| format!("{low} to {high} m"))
+}
+
+/// How much roads are simplified.
+fn simplification(cells: f64) -> String {
+    if cells > 0.0 { format!("{cells} cells of the level") } else { "none".to_owned() }
+}
+
+/// The latitude at which lengths are true.
+fn scale_latitude(latitude_deg: Option<f64>) -> String {
+    latitude_deg.map_or_else(|| "the default".to_owned(), |latitude| format!("{latitude}°"))
+}
+
+/// The rectangle that was asked for, as `--bounds` takes it.
+fn bounds(bounds_deg: Option<[f64; 4]>) -> String {
+    bounds_deg.map_or_else(
+        || "all of the elevation data".to_owned(),
+        |[west, south, east, north]| format!("{west},{south},{east},{north}"),
+    )
+}
+
+/// A polygon by name and hash.
+fn polygon_text(polygon: &PolygonRecord) -> String {
+    let hash = polygon.sha256.get(..12).unwrap_or_default();
+    format!("{} ({}…)", plain(&polygon.name), plain(hash))
 }
 
 /// The inputs of some kinds by name and hash.
@@ -100,20 +171,18 @@ fn inputs(manifest: &Manifest, kinds: &[&str]) -> String {
     manifest.inputs.iter().filter(of_kind).map(name).collect::<Vec<_>>().join(", ")
 }
 
-/// Which classes are roads at all.
-fn classes(manifest: &Manifest) -> String {
-    let settings = &manifest.settings;
-    let hash = settings.frc_table_sha256.get(..12).unwrap_or_default();
-    let chosen = settings.classes.as_ref().map_or_else(
+/// Which classes are roads at all: the table by name and hash, and the classes that were chosen.
+fn classes([table, sha256]: [&str; 2], chosen: Option<&[u8]>) -> String {
+    let hash = sha256.get(..12).unwrap_or_default();
+    let chosen = chosen.map_or_else(
         || "its classes".to_owned(),
         |classes| format!("classes {}", list(classes.iter())),
     );
-    format!("table {} ({}…), {chosen}", plain(&settings.frc_table), plain(hash))
+    format!("table {} ({}…), {chosen}", plain(table), plain(hash))
 }
 
 /// Which classes coarse levels show.
-fn classes_by_level(manifest: &Manifest) -> String {
-    let limits = &manifest.settings.class_max_cell_m;
+fn classes_by_level(limits: &[Option<f64>]) -> String {
     if limits.iter().all(Option::is_none) {
         return "every class on every level".to_owned();
     }

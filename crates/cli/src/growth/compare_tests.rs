@@ -15,6 +15,10 @@ fn of(manifests: &[Manifest]) -> Vec<Compared<'_>> {
     manifests.iter().enumerate().map(compared).collect()
 }
 
+fn polygon(digit: &str) -> PolygonRecord {
+    PolygonRecord { name: "a.geojson".to_owned(), sha256: digit.repeat(64) }
+}
+
 /// Each thing that makes growth tell of something else is named with who has it; cell and error bound are what is studied.
 #[test]
 fn what_is_not_alike_is_said() {
@@ -27,7 +31,7 @@ fn what_is_not_alike_is_said() {
     };
     let mut base = corniche_testing::package::manifest();
     base.inputs = vec![input("dem", &"1".repeat(64)), input("osm", &"2".repeat(64))];
-    let changes: [(&str, Change); 9] = [
+    let changes: [(&str, Change); 19] = [
         ("", |manifest| manifest.settings.max_error_m = 1.0),
         ("extract", |manifest| manifest.inputs[1].sha256 = "3".repeat(64)),
         ("elevation data", |manifest| manifest.inputs[0].sha256 = "3".repeat(64)),
@@ -37,6 +41,26 @@ fn what_is_not_alike_is_said() {
         ("simplification", |manifest| manifest.settings.simplify_cells = 0.0),
         ("CRS", |manifest| manifest.crs = "EPSG:2056".to_owned()),
         ("bounds", |manifest| manifest.settings.bounds_deg = Some([9.0, 47.0, 10.0, 48.0])),
+        ("polygon", |manifest| manifest.settings.polygon = Some(polygon("5"))),
+        ("voids filled", |manifest| manifest.settings.fill_voids = 0),
+        ("values without data", |manifest| manifest.settings.nodata = vec![-32767.0, 0.0]),
+        ("height range", |manifest| manifest.settings.height_range_m = Some([-500.0, 9000.0])),
+        ("CRS of the elevation data", |manifest| {
+            manifest.settings.dem_crs = Some("EPSG:2056".to_owned());
+        }),
+        ("its vertical CRS", |manifest| {
+            manifest.settings.dem_vertical_crs = Some("EPSG:5773".to_owned());
+        }),
+        ("vertical CRS", |manifest| {
+            manifest.settings.vertical_crs = Some("EPSG:5773".to_owned());
+        }),
+        ("vertical shift", |manifest| manifest.settings.vertical_shift_m = 0.5),
+        ("scale latitude", |manifest| manifest.settings.scale_latitude_deg = Some(47.5)),
+        ("", |manifest| {
+            manifest.settings.cell_m = None;
+            manifest.settings.cell_every = Some(3);
+            manifest.settings.crs = Some("EPSG:32632".to_owned());
+        }),
     ];
     for (what, change) in changes {
         let mut manifests = vec![base.clone(); 3];
@@ -61,4 +85,18 @@ fn what_is_not_alike_is_said() {
         let document = serde_json::to_value(to_document(&packages)).unwrap();
         assert_eq!(document["differences"].as_array().unwrap().len(), found.len());
     }
+}
+
+/// Polygons of one name are told apart by their corners.
+#[test]
+fn polygons_are_told_by_name_and_hash() {
+    let mut manifests = vec![corniche_testing::package::manifest(); 2];
+    for (manifest, digit) in manifests.iter_mut().zip(["5", "6"]) {
+        manifest.settings.polygon = Some(polygon(digit));
+    }
+    let packages = of(&manifests);
+    let lines: Vec<String> =
+        differences(&packages).iter().map(|difference| difference.text(&packages)).collect();
+    assert_eq!(lines, ["polygon: A: a.geojson (555555555555…); B: a.geojson (666666666666…)"]);
+    assert!(differences(&[]).is_empty());
 }

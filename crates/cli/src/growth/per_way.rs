@@ -7,6 +7,7 @@ use std::{
 };
 
 use corniche_export::{WayGrowth, growth_by_way};
+use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{FilePackage, Manifest};
 
 use crate::{
@@ -20,8 +21,8 @@ use crate::{
 
 /// Memory for sorting pieces of roads by way.
 const MEMORY_BYTES: u64 = 128 << 20;
-/// Functional road classes: 0 to 8.
-const CLASSES: usize = 9;
+/// Functional road classes.
+const CLASSES: usize = FunctionalRoadClass::COUNT;
 
 /// Writes the file that was begun at `path`: a line for each way by its id, then for each class what of the growth table belongs to no
 /// way, if there is such. So the columns add up to that table.

@@ -203,8 +203,9 @@ impl Reading<'_> {
                 return Err(PolygonError::Invalid { path: path(), feature, reason });
             }
             let is_wide = |turn: f64, a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() > turn / 2.0;
+            let next = ring.iter().cycle().skip(1);
             if let Some(turn) = crs.turn
-                && ring.windows(2).any(|pair| is_wide(turn, pair[0], pair[1]))
+                && ring.iter().zip(next).any(|(&from, &to)| is_wide(turn, from, to))
             {
                 return Err(PolygonError::HalfTheEarth { path: path(), feature });
             }
@@ -231,15 +232,27 @@ fn in_normal_order(mut ring: Ring) -> Ring {
     ring
 }
 
+/// What tells a coordinate system from all others: its code (`EPSG:2056`); where it has none, its definition, because names such as
+/// "unknown" are common.
+fn identity(crs: &Crs) -> &str {
+    let is_code = crs.label.split_once(':').is_some_and(|(authority, code)| {
+        !authority.is_empty()
+            && authority.bytes().all(|byte| byte.is_ascii_uppercase())
+            && code.bytes().all(|byte| byte.is_ascii_digit())
+    });
+    if is_code { &crs.label } else { &crs.wkt }
+}
+
 /// The parts, sorted by their bytes.
 fn canonical_bytes(parts: &[Part]) -> Vec<u8> {
     let of_part = |part: &Part| {
         let mut bytes = Vec::new();
         let mut push = |number: usize| bytes.extend((number as u64).to_le_bytes());
-        push(part.crs.label.len());
+        let crs = identity(&part.crs);
+        push(crs.len());
         push(part.rings.len());
         part.rings.iter().for_each(|ring| push(ring.len()));
-        bytes.extend(part.crs.label.as_bytes());
+        bytes.extend(crs.as_bytes());
         let coordinates = part.rings.iter().flatten().flatten();
         bytes.extend(coordinates.flat_map(|value| value.to_le_bytes()));
         bytes

@@ -299,6 +299,10 @@ fn files_without_a_usable_polygon_are_refused_with_what_to_do() {
         &json("Polygon", "[[[179,-16],[-179,-16],[-179,-17],[179,-17],[179,-16]]]"),
         &["180", "-wrapdateline"],
     );
+    // The edge from the last corner to the first counts like any other.
+    for ring in ["[-100,10],[9.5,60],[100,10],[-100,10]", "[9.5,60],[100,10],[-100,10],[9.5,60]"] {
+        refuse(&json("Polygon", &format!("[[{ring}]]")), &["180", "-wrapdateline"]);
+    }
     let path = folder.path().join("empty.geojson");
     fs::write(&path, r#"{"type":"FeatureCollection","features":[]}"#).unwrap();
     refuse(&path, &["empty.geojson", "no polygon"]);

@@ -1,6 +1,9 @@
 //! Inputs on servers: what users call them, what GDAL calls them, and how GDAL reaches them.
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::HashSet,
+    path::{Path, PathBuf},
+};
 
 use corniche_dem::{expand_extract_name, expand_name, set_unless_set, unpack_name};
 use corniche_objects::{ObjectAddress, StorageSettings};
@@ -56,9 +59,12 @@ pub fn extract_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, BuildError> {
             files.push(input_name(name)?);
         }
     }
-    let key = |path: &PathBuf| (path.file_name().map(ToOwned::to_owned), path.clone());
-    files.sort_by_key(key);
-    files.dedup();
+    // One file may be written in several ways.
+    let place = |path: &PathBuf| path.canonicalize().unwrap_or_else(|_| path.clone());
+    let key = |path: &PathBuf| (path.file_name().map(ToOwned::to_owned), place(path));
+    files.sort_by_cached_key(key);
+    let mut known = HashSet::new();
+    files.retain(|path| known.insert(place(path)));
     Ok(files)
 }
 

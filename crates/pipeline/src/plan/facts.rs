@@ -1,6 +1,6 @@
 //! What is compared of two plans, as pairs of a name that users know and a value in words.
 
-use corniche_tileset::SettingsRecord;
+use corniche_tileset::{PolygonRecord, SettingsRecord};
 
 /// A setting's name, and its value in words.
 pub(crate) type Fact = (String, String);
@@ -40,12 +40,34 @@ pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecor
     {
         recorded.name.clone_from(&own.name);
     }
+    differences_from(ours, &theirs)
+}
+
+/// In what the settings for roads differ from those that a package records, in words; those for the ground do not count.
+pub(crate) fn road_differences(ours: &SettingsRecord, package: &SettingsRecord) -> Vec<String> {
+    let theirs = SettingsRecord {
+        frc_table: package.frc_table.clone(),
+        classes: package.classes.clone(),
+        class_max_cell_m: package.class_max_cell_m.clone(),
+        simplify_cells: package.simplify_cells,
+        ..ours.clone()
+    };
+    differences_from(ours, &theirs)
+}
+
+fn differences_from(ours: &SettingsRecord, theirs: &SettingsRecord) -> Vec<String> {
     setting_facts(ours)
         .into_iter()
-        .zip(setting_facts(&theirs))
+        .zip(setting_facts(theirs))
         .filter(|(ours, theirs)| ours != theirs)
         .map(|((name, ours), (_, theirs))| format!("{name} is {ours}, it was made with {theirs}"))
         .collect()
+}
+
+/// A polygon by the name of its file and the beginning of its hash, which tells it from others.
+fn polygon_text(polygon: &PolygonRecord) -> String {
+    let digits = polygon.sha256.get(..12).unwrap_or(&polygon.sha256);
+    format!("{} ({digits}…)", polygon.name)
 }
 
 pub(crate) fn list<T: AsRef<str>>(texts: impl IntoIterator<Item = T>) -> String {
@@ -110,10 +132,7 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
             "--bounds",
             &given(bounds_deg.map(|bounds| bounds.map(|deg| deg.to_string()).join(",")).as_ref()),
         ),
-        fact(
-            "--polygon",
-            &given(polygon.as_ref().map(|own| format!("{} ({})", own.name, own.sha256)).as_ref()),
-        ),
+        fact("--polygon", &given(polygon.as_ref().map(polygon_text).as_ref())),
         fact("--frc-table", frc_table),
         fact(
             "--classes",

@@ -19,6 +19,7 @@ use std::path::Path;
 
 pub use build_plan::{BuildPlan, FrcTableRecord, PlannedGrid, PlannedLevel};
 pub use estimate::{Estimate, MemoryEstimate, Rates};
+pub(crate) use facts::road_differences;
 pub(crate) use opened::Opened;
 
 use crate::{BuildError, Observer, PlanSettings, Resources, memory_shares::MemoryShares};

@@ -53,6 +53,10 @@ pub fn verify(
     observer: &dyn Observer,
 ) -> Result<VerifyReport, VerifyError> {
     let package = FilePackage::open(&settings.package)?;
+    // Before the long work.
+    if !settings.dem.is_empty() || settings.osm.is_some() || settings.polygon.is_some() {
+        polygon::check(package.manifest(), settings.polygon.as_ref())?;
+    }
     let mut given = vec![Needs::Package];
     let (mut report, mut findings) = tiles::verify(&package, settings.threads, observer)?;
     manifest_sums::verify(package.manifest(), &mut findings);
@@ -60,9 +64,6 @@ pub fn verify(
     header::verify(&package, &mut findings)?;
     grid::verify(package.manifest(), &mut findings);
     georeference::verify(package.manifest(), &mut findings);
-    if !settings.dem.is_empty() || settings.osm.is_some() {
-        polygon::check(package.manifest(), settings.polygon.as_ref())?;
-    }
     if !settings.dem.is_empty() {
         given.push(Needs::Dem);
         dem::verify(&package, settings, &mut report, observer)?;

@@ -1,7 +1,7 @@
 //! Reads the extract again, clips its roads and lays them on the package's own ground, and compares the result with the
 //! package, tile by tile. Whether roads lie on the ground is checked elsewhere, without the extract and with other geometry.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, path::PathBuf};
 
 use corniche_geom::TileId;
 use corniche_roads::FrcTable;
@@ -58,7 +58,7 @@ fn compare_all(
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
     let manifest = package.manifest();
-    check_inputs(manifest, osm, inputs, findings, observer)?;
+    let paths = check_inputs(manifest, osm, inputs, findings, observer)?;
     // If one of them is missing, the check `levels.derived` or `manifest.crs` is broken, and roads cannot be laid.
     let (Some(settings), Some([first, last])) = (
         settings_record::roads(&manifest.settings, chosen(&osm.table, manifest)),
@@ -83,7 +83,7 @@ fn compare_all(
         .build()
         .map_err(|error| BuildError::Start { what: error.to_string() })?;
     let input = RoadInput {
-        osm: &osm.paths,
+        osm: &paths,
         settings: &settings,
         projection: &projection,
         levels: &levels,
@@ -112,14 +112,15 @@ fn chosen(table: &FrcTable, manifest: &Manifest) -> FrcTable {
     chosen.unwrap_or_else(|| table.clone())
 }
 
-/// Checks that the extract and the table of classes are those of the build.
+/// Checks that the extracts and the table of classes are those of the build. Returns the extracts in the order in which they were
+/// read: where versions are the same, the first one counts, and files may have other names now.
 fn check_inputs(
     manifest: &Manifest,
     osm: &VerifyOsm,
     inputs: &Inputs,
     findings: &mut Findings,
     observer: &dyn Observer,
-) -> Result<(), VerifyError> {
+) -> Result<Vec<PathBuf>, VerifyError> {
     if !manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input)) {
         return Err(VerifyError::NoExtract);
     }
@@ -156,7 +157,12 @@ fn check_inputs(
     findings.look(CheckId::OsmInputs, osm.table.name() == settings.frc_table, || {
         format!("the FRC table is {:?}, {:?} is recorded", osm.table.name(), settings.frc_table)
     });
-    Ok(())
+    let mut hashed: Vec<(&InputRecord, &PathBuf)> = given.iter().zip(&osm.paths).collect();
+    let in_order = extracts().filter_map(|said| {
+        let at = hashed.iter().position(|(found, _)| found.sha256 == said.sha256)?;
+        Some(hashed.remove(at).1.clone())
+    });
+    Ok(in_order.collect())
 }
 
 /// Lays all roads again and compares each tile with the package. What becomes of the roads goes to `fates`; the sums by level
