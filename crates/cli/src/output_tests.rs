@@ -43,6 +43,33 @@ fn names_that_mean_no_file_are_refused_with_a_way_out() {
 }
 
 #[test]
+fn pictures_and_charts_are_called_so() {
+    use names::Format;
+
+    let known = |format: Format, name: &str| format.refuse_others(Path::new(name));
+    for (format, name) in [
+        (Format::Picture, "a.png"),
+        (Format::Picture, "a.PNG"),
+        (Format::Chart, "a.svg"),
+        (Format::Chart, "old.png.SVG"),
+    ] {
+        assert!(known(format, name).is_ok(), "{name}");
+    }
+    for (format, name, ending) in [
+        (Format::Picture, "a.jpg", ".png"),
+        (Format::Picture, "a.svg", ".png"),
+        (Format::Chart, "a.png", ".svg"),
+        (Format::Chart, "a", ".svg"),
+    ] {
+        let refused = known(format, name).unwrap_err();
+        assert_eq!(refused.code(), ExitCode::Unusable, "{name}");
+        let said = refused.to_string();
+        assert!(said.contains(&format!("cannot write {name}: ")), "{said}");
+        assert!(said.ends_with(&format!("a name that ends in {ending}")), "{said}");
+    }
+}
+
+#[test]
 fn a_package_is_called_so() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["a.pmtiles", "b.PMTiles", "c.old.pmtiles"] {

@@ -128,11 +128,11 @@ pub enum DemError {
     )]
     MixedVertical { first: PathBuf, first_says: String, other: PathBuf, other_says: String },
     #[error(
-        "heights of {path:?} cannot be carried from {from} to {to}: there is no geoid grid {grids}; put it there, or get one that PROJ knows with projsync (Debian: package proj-bin) and name its vertical CRS, or leave out --vertical-crs and give --vertical-shift"
+        "heights of {path:?} cannot be carried from {from} to {to}: there is no geoid grid {grids}; put it there, or install one that PROJ knows (projsync, in Debian in the package proj-bin) and name its vertical CRS, or leave out --vertical-crs and give --vertical-shift"
     )]
     NoGeoidGrid { path: PathBuf, from: String, to: String, grids: String },
     #[error(
-        "heights of {path:?} cannot be carried from {from} to {to}: PROJ has no exact operation from the one to the other here; a geoid grid may be missing ({grids}): get it with projsync (Debian: package proj-bin), or leave out --vertical-crs and give --vertical-shift"
+        "heights of {path:?} cannot be carried from {from} to {to}: PROJ has no exact operation from the one to the other here; a geoid grid may be missing ({grids}): install it (projsync, in Debian in the package proj-bin), or leave out --vertical-crs and give --vertical-shift"
     )]
     VerticalOperation {
         path: PathBuf,

@@ -13,7 +13,7 @@ use crate::{failure::Failure, names::is_package_name};
 fn checks() -> String {
     let mut text =
         "The last line is the verdict; with --quiet only it and broken checks are printed.\n\n\
-                    Checks (docs/promises.md explains them); a broken one makes exit code 1:\n"
+         Checks (docs/promises.md explains them); a broken one makes exit code 1:\n"
             .to_owned();
     for check in CheckId::ALL {
         let needs = check.needs().text().replace('`', "");
