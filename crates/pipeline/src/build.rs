@@ -124,8 +124,8 @@ fn warn_of_other_roads(context: &Context<'_>) {
     let differences = road_differences(&ours, &manifest.settings);
     if !differences.is_empty() {
         context.observer.warning(&format!(
-            "roads are made with other settings than those of {:?}: {}",
-            terrain.path(),
+            "roads are made with other settings than those of {}: {}",
+            terrain.path().display(),
             differences.join("; ")
         ));
     }
