@@ -113,13 +113,14 @@ fn what_is_no_file_is_never_replaced() {
 #[test]
 fn a_pipe_as_input_is_refused_with_the_way_out() {
     let folder = tempfile::tempdir().unwrap();
-    let [package, pipe, free, new_package] =
-        ["pass.pmtiles", "pipe", "free", "free.pmtiles"].map(|name| folder.path().join(name));
+    let [package, pipe, free, picture, new_package] =
+        ["pass.pmtiles", "pipe", "free", "free.png", "free.pmtiles"]
+            .map(|name| folder.path().join(name));
     build_pass(&package, &["--quiet"]);
     assert!(made("mkfifo", &[text(&pipe)]));
     let (dem, osm) = (sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf"));
-    let [package, pipe, free, new_package, dem, osm] =
-        [&package, &pipe, &free, &new_package, &dem, &osm].map(|path| text(path));
+    let [package, pipe, free, picture, new_package, dem, osm] =
+        [&package, &pipe, &free, &picture, &new_package, &dem, &osm].map(|path| text(path));
     let before = names(folder.path());
     let lines: [&[&str]; 16] = [
         &["build", "--dem", pipe, "-o", new_package],
@@ -129,14 +130,14 @@ fn a_pipe_as_input_is_refused_with_the_way_out() {
         &["build", "--dem", dem, "--osm", osm, "--frc-table", pipe, "-o", new_package],
         &["fly", package, "--path", pipe, "-o", free],
         &["fly", package, "--style", pipe, "-o", free],
-        &["render", package, "--style", pipe, "-o", free],
+        &["render", package, "--style", pipe, "-o", picture],
         &["view", package, "--style", pipe],
         &["verify", package, "--dem", pipe],
         &["verify", pipe],
         &["info", pipe],
         &["growth", pipe],
         &["tile", pipe, "0/0/0"],
-        &["render", pipe, "-o", free],
+        &["render", pipe, "-o", picture],
         &["fly", pipe, "-o", free],
     ];
     for line in lines {
