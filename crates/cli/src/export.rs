@@ -21,7 +21,7 @@ use crate::{
 };
 
 /// Memory for sorting pieces of roads by way.
-const MEMORY_BYTES: u64 = 128 << 20;
+pub(crate) const MEMORY_BYTES: u64 = 128 << 20;
 
 pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
     match &args.what {

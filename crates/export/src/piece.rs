@@ -1,8 +1,6 @@
 //! What one tile holds of a way, and how it is sorted outside memory.
 
-use std::num::{NonZeroU8, NonZeroU32};
-
-use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
+use corniche_roads::{AttributeParts, FunctionalRoadClass, RoadAttributes};
 use corniche_store::SortRecord;
 
 /// A vertex of a road on its tile's ground.
@@ -71,37 +69,15 @@ impl SortRecord for SortedPiece {
     /// Numbers in little-endian order; a text has its length before it; vertices come last.
     fn encode(&self, bytes: &mut Vec<u8>) {
         let Piece { key, class, attributes, vertices, goes_on } = &self.0;
-        let RoadAttributes {
-            form,
-            structure,
-            layer,
-            oneway,
-            name,
-            reference,
-            surface,
-            highway,
-            lanes,
-            width_mm,
-            max_speed,
-            sac_scale,
-            tracktype,
-        } = attributes;
+        let AttributeParts { codes, width_mm, texts } = attributes.parts();
         bytes.extend(key.way_id.to_le_bytes());
         bytes.extend(key.tile.to_le_bytes());
         bytes.extend(key.part.to_le_bytes());
         bytes.extend(key.cut.to_le_bytes());
-        bytes.extend([
-            class.number(),
-            *form as u8,
-            *structure as u8,
-            layer.cast_unsigned(),
-            *oneway as u8,
-            u8::from(goes_on[0]),
-            u8::from(goes_on[1]),
-            lanes.map_or(0, NonZeroU8::get),
-        ]);
-        bytes.extend(width_mm.map_or(0, NonZeroU32::get).to_le_bytes());
-        for text in [name, reference, surface, highway, max_speed, sac_scale, tracktype] {
+        bytes.extend([class.number(), u8::from(goes_on[0]), u8::from(goes_on[1])]);
+        bytes.extend(codes);
+        bytes.extend(width_mm.to_le_bytes());
+        for text in texts {
             bytes.extend((text.len() as u64).to_le_bytes());
             bytes.extend(text.as_bytes());
         }
@@ -121,23 +97,9 @@ impl SortRecord for SortedPiece {
             part: u32::from_le_bytes(array(bytes)?),
             cut: u32::from_le_bytes(array(bytes)?),
         };
-        let [class, form, structure, layer, oneway, first, last, lanes] = array(bytes)?;
-        let width_mm = u32::from_le_bytes(array(bytes)?);
-        let attributes = RoadAttributes {
-            form: *Form::ALL.get(usize::from(form))?,
-            structure: *Structure::ALL.get(usize::from(structure))?,
-            layer: layer.cast_signed(),
-            oneway: *Oneway::ALL.get(usize::from(oneway))?,
-            name: text(bytes)?,
-            reference: text(bytes)?,
-            surface: text(bytes)?,
-            highway: text(bytes)?,
-            lanes: NonZeroU8::new(lanes),
-            width_mm: NonZeroU32::new(width_mm),
-            max_speed: text(bytes)?,
-            sac_scale: text(bytes)?,
-            tracktype: text(bytes)?,
-        };
+        let [class, first, last] = array(bytes)?;
+        let (codes, width_mm) = (array(bytes)?, u32::from_le_bytes(array(bytes)?));
+        let attributes = RoadAttributes::from_parts(codes, width_mm, || text(bytes))?;
         let mut vertices = Vec::with_capacity(bytes.len() / VERTEX_BYTES);
         while !bytes.is_empty() {
             let [u, v, z_m] = [number(bytes)?, number(bytes)?, number(bytes)?];

@@ -1,3 +1,6 @@
+use std::num::{NonZeroU8, NonZeroU32};
+
+use corniche_roads::{Form, Oneway, Structure};
 use corniche_store::{MemoryScratch, Sorter};
 
 use super::*;

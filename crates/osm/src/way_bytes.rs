@@ -1,7 +1,7 @@
 //! A road's nodes and what it is, as bytes: a fifth of what the same takes as lists and texts.
 //!
 //! ```text
-//!  │ how many nodes │ their ids, as differences │ class form structure oneway layer │ width │ lanes │ texts │
+//!  │ how many nodes │ their ids, as differences │ class form structure layer oneway lanes │ width │ texts │
 //! ```
 //! The texts are name, ref, surface, highway, maxspeed, `sac_scale`, tracktype.
 //! A way that is left out has a mark in place of the class, the reason, and its `highway` value:
@@ -12,12 +12,9 @@
 //! Counts and lengths are varints, differences zigzag varints; the width is a varint of millimetres, 0 for none; the six
 //! others are a byte each.
 
-use std::{
-    io,
-    num::{NonZeroU8, NonZeroU32},
-};
+use std::io;
 
-use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
+use corniche_roads::{AttributeParts, FunctionalRoadClass, RoadAttributes};
 
 use crate::{
     LeftOutReason,
@@ -31,28 +28,12 @@ pub(crate) fn way_bytes(
     class: FunctionalRoadClass,
     attributes: &RoadAttributes,
 ) -> Box<[u8]> {
-    let RoadAttributes {
-        form,
-        structure,
-        layer,
-        oneway,
-        name,
-        reference,
-        surface,
-        highway,
-        lanes,
-        width_mm,
-        max_speed,
-        sac_scale,
-        tracktype,
-    } = attributes;
-    let texts = [name, reference, surface, highway, max_speed, sac_scale, tracktype];
+    let AttributeParts { codes, width_mm, texts } = attributes.parts();
     let mut bytes = Vec::with_capacity(2 * node_ids.len() + attributes.text_bytes() + 32);
     push_node_ids(&mut bytes, node_ids);
-    bytes.extend([class.number(), *form as u8, *structure as u8, *oneway as u8]);
-    bytes.push(layer.cast_unsigned());
-    push_varint(&mut bytes, width_mm.map_or(0, NonZeroU32::get).into());
-    bytes.push(lanes.map_or(0, NonZeroU8::get));
+    bytes.push(class.number());
+    bytes.extend(codes);
+    push_varint(&mut bytes, width_mm.into());
     for text in texts {
         push_varint(&mut bytes, text.len() as u64);
         bytes.extend(text.as_bytes());
@@ -118,26 +99,10 @@ pub(crate) fn take_way(bytes: &mut &[u8]) -> Option<WayKind> {
         let reason = *LeftOutReason::ALL.get(usize::from(reason))?;
         return Some(WayKind::LeftOut(reason, take_text(bytes)?));
     }
-    let (&[class, form, structure, oneway, layer], rest) = bytes.split_first_chunk::<5>()?;
+    let (&[class, ref codes @ ..], rest) = bytes.split_first_chunk::<6>()?;
     *bytes = rest;
     let width_mm = u32::try_from(varint(bytes).ok()?).ok()?;
-    let (&lanes, rest) = bytes.split_first()?;
-    *bytes = rest;
-    let road = RoadAttributes {
-        form: *Form::ALL.get(usize::from(form))?,
-        structure: *Structure::ALL.get(usize::from(structure))?,
-        layer: layer.cast_signed(),
-        oneway: *Oneway::ALL.get(usize::from(oneway))?,
-        name: take_text(bytes)?,
-        reference: take_text(bytes)?,
-        surface: take_text(bytes)?,
-        highway: take_text(bytes)?,
-        lanes: NonZeroU8::new(lanes),
-        width_mm: NonZeroU32::new(width_mm),
-        max_speed: take_text(bytes)?,
-        sac_scale: take_text(bytes)?,
-        tracktype: take_text(bytes)?,
-    };
+    let road = RoadAttributes::from_parts(*codes, width_mm, || take_text(bytes))?;
     Some(WayKind::Road(FunctionalRoadClass::new(class)?, road))
 }
 

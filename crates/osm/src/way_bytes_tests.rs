@@ -1,6 +1,9 @@
 use proptest::prelude::*;
 
+use std::num::{NonZeroU8, NonZeroU32};
+
 use super::*;
+use corniche_roads::{Form, Oneway, Structure};
 
 fn take_all(bytes: &mut &[u8]) -> Option<(Vec<i64>, WayKind)> {
     let mut ids = Vec::new();

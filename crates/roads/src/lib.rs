@@ -8,6 +8,7 @@
 //!
 //! This crate never sees terrain or a file, and never joins ways.
 
+mod attribute_parts;
 mod attributes;
 mod class_filter;
 mod frc_table;
@@ -15,6 +16,7 @@ mod quantities;
 mod road;
 mod simplify;
 
+pub use attribute_parts::AttributeParts;
 pub use attributes::{attributes, tags_taken_otherwise};
 pub use class_filter::{ClassFilter, ClassFilterError};
 pub use frc_table::{Classified, FrcTable, FrcTableError, NotARoad};

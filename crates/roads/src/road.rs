@@ -116,7 +116,7 @@ pub enum OwnWidth {
 }
 
 /// What is kept of a way's tags.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Hash)]
 pub struct RoadAttributes {
     /// How it is built.
     pub form: Form,
@@ -161,14 +161,6 @@ impl RoadAttributes {
             (None, Some(lanes)) => OwnWidth::Lanes(lanes),
             (None, None) => OwnWidth::Unknown,
         }
-    }
-
-    /// Bytes of all texts together.
-    #[must_use]
-    pub fn text_bytes(&self) -> usize {
-        let Self { name, reference, surface, highway, max_speed, sac_scale, tracktype, .. } = self;
-        let texts = [name, reference, surface, highway, max_speed, sac_scale, tracktype];
-        texts.map(String::len).iter().sum()
     }
 }
 

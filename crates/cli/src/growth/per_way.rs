@@ -12,17 +12,12 @@ use corniche_tileset::{FilePackage, Manifest};
 
 use crate::{
     exit::ExitCode,
-    export::Bars,
+    export::{Bars, MEMORY_BYTES},
     failure::Failure,
     messages,
     output::{Output, failed},
     table::Digits,
 };
-
-/// Memory for sorting pieces of roads by way.
-const MEMORY_BYTES: u64 = 128 << 20;
-/// Functional road classes.
-const CLASSES: usize = FunctionalRoadClass::COUNT;
 
 /// Writes the file that was begun at `path`: a line for each way by its id, then for each class what of the growth table belongs to no
 /// way, if there is such. So the columns add up to that table.
@@ -93,14 +88,17 @@ fn line(way: &WayGrowth) -> String {
 
 /// Sums over the lines, by class.
 struct Sums {
-    source: [u64; CLASSES],
+    source: [u64; FunctionalRoadClass::COUNT],
     /// By level, then by class.
-    geo: Vec<[u64; CLASSES]>,
+    geo: Vec<[u64; FunctionalRoadClass::COUNT]>,
 }
 
 impl Sums {
     fn new(manifest: &Manifest) -> Self {
-        Self { source: [0; CLASSES], geo: vec![[0; CLASSES]; manifest.levels.len()] }
+        Self {
+            source: [0; FunctionalRoadClass::COUNT],
+            geo: vec![[0; FunctionalRoadClass::COUNT]; manifest.levels.len()],
+        }
     }
 
     fn add(&mut self, way: &WayGrowth) {

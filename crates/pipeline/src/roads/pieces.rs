@@ -1,9 +1,7 @@
 //! What a tile needs of its roads: pieces of their lines as its level shows them.
 
-use std::num::{NonZeroU8, NonZeroU32};
-
 use corniche_geom::{LatticePoint, Polyline, TileId};
-use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
+use corniche_roads::{AttributeParts, FunctionalRoadClass, RoadAttributes};
 use corniche_store::Artifacts;
 
 use super::varints::{Take, put_signed, put_text, put_unsigned};
@@ -142,47 +140,18 @@ impl RoadPiece {
 }
 
 fn put_attributes(bytes: &mut Vec<u8>, attributes: &RoadAttributes) {
-    let RoadAttributes {
-        form,
-        structure,
-        layer,
-        oneway,
-        name,
-        reference,
-        surface,
-        highway,
-        lanes,
-        width_mm,
-        max_speed,
-        sac_scale,
-        tracktype,
-    } = attributes;
-    bytes.extend([*form as u8, *structure as u8, layer.cast_unsigned(), *oneway as u8]);
-    bytes.push(lanes.map_or(0, NonZeroU8::get));
-    put_unsigned(bytes, width_mm.map_or(0, NonZeroU32::get).into());
-    for text in [name, reference, surface, highway, max_speed, sac_scale, tracktype] {
+    let AttributeParts { codes, width_mm, texts } = attributes.parts();
+    bytes.extend(codes);
+    put_unsigned(bytes, width_mm.into());
+    for text in texts {
         put_text(bytes, text);
     }
 }
 
 fn take_attributes(rest: &mut Take<'_>) -> Option<RoadAttributes> {
-    let &[form, structure, layer, oneway, lanes] = rest.bytes(5)? else { return None };
+    let codes = rest.bytes(5)?.try_into().ok()?;
     let width_mm = u32::try_from(rest.unsigned()?).ok()?;
-    Some(RoadAttributes {
-        form: *Form::ALL.get(usize::from(form))?,
-        structure: *Structure::ALL.get(usize::from(structure))?,
-        layer: layer.cast_signed(),
-        oneway: *Oneway::ALL.get(usize::from(oneway))?,
-        name: rest.text()?,
-        reference: rest.text()?,
-        surface: rest.text()?,
-        highway: rest.text()?,
-        lanes: NonZeroU8::new(lanes),
-        width_mm: NonZeroU32::new(width_mm),
-        max_speed: rest.text()?,
-        sac_scale: rest.text()?,
-        tracktype: rest.text()?,
-    })
+    RoadAttributes::from_parts(codes, width_mm, || rest.text())
 }
 
 impl Run {

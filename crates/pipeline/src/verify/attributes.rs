@@ -54,26 +54,10 @@ pub(crate) fn of_tile(
         .collect()
 }
 
-/// A hash of all fields. Every field is named, so that a new one does not compile until it is added here.
+/// A hash of all fields.
 fn hash(attributes: &RoadAttributes) -> u64 {
-    let RoadAttributes {
-        form,
-        structure,
-        layer,
-        oneway,
-        name,
-        reference,
-        surface,
-        highway,
-        lanes,
-        width_mm,
-        max_speed,
-        sac_scale,
-        tracktype,
-    } = attributes;
     let mut hasher = DefaultHasher::new();
-    (form, structure, layer, oneway, name, reference, surface).hash(&mut hasher);
-    (highway, lanes, width_mm, max_speed, sac_scale, tracktype).hash(&mut hasher);
+    attributes.hash(&mut hasher);
     hasher.finish()
 }
 
