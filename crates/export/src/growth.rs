@@ -11,10 +11,9 @@ use crate::{
     error::ExportError,
     join::lines,
     measures::Measures,
-    observer::{Observer, Stage, stop_if_asked},
-    piece::{Piece, SortedPiece, Vertex},
+    observer::{Observer, Stage},
+    piece::{Piece, Vertex},
     places::Places,
-    read,
     request::Coordinates,
     scratch::FileScratch,
     ways::Ways,
@@ -54,29 +53,15 @@ pub fn growth_by_way<E: From<ExportError>>(
     }
     let sort = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
     let scratch = FileScratch::create(folder).map_err(sort)?;
-    let mut sorter = Sorter::new(&scratch, memory_bytes);
     let classes: Vec<FunctionalRoadClass> = FunctionalRoadClass::all().collect();
     let tiles = package.tile_ids().map_err(ExportError::from)?;
-    let mut count = 0;
-    for (done, &id) in tiles.iter().enumerate() {
-        stop_if_asked(observer)?;
-        observer.done(Stage::Tiles, done as u64, tiles.len() as u64);
-        for piece in read::pieces(package, id, &classes)? {
-            count += 1;
-            sorter.push(SortedPiece(piece)).map_err(sort)?;
-        }
-    }
+    let sorter = (Sorter::new(&scratch, memory_bytes), folder);
+    let ways = Ways::read(package, &tiles, &classes, sorter, observer, |piece| vec![piece])?;
     let places = Places::new(manifest, Coordinates::Package)?;
-    let mut ways = Ways::new(sorter.finish().map_err(sort)?);
-    let mut done = 0;
-    while let Some(pieces) = ways.next_way().map_err(sort)? {
-        stop_if_asked(observer)?;
-        observer.done(Stage::Pieces, done, count);
-        done += pieces.len() as u64;
-        if let Some(way) = growth_of(pieces, manifest, &places)? {
-            each(&way)?;
-        }
-    }
+    let count = ways.count();
+    ways.for_each(observer, |pieces| {
+        growth_of(pieces, manifest, &places)?.map_or(Ok(()), |way| each(&way))
+    })?;
     observer.done(Stage::Pieces, count, count);
     Ok(())
 }

@@ -11,8 +11,8 @@ use crate::{
     feature::{Road, road_fields, road_values},
     join::{Line, lines},
     measures::Measures,
-    observer::{Observer, Stage, stop_if_asked},
-    piece::{Piece, SortedPiece},
+    observer::{Observer, Stage},
+    piece::Piece,
     places::Places,
     read,
     request::{Coordinates, RoadsRequest},
@@ -68,23 +68,13 @@ pub fn export_roads(
     let folder = folder.unwrap_or(Path::new("."));
     let sort = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
     let scratch = FileScratch::create(folder).map_err(sort)?;
-    let mut sorter = Sorter::new(&scratch, request.memory_bytes);
     let tiles = read::tiles(package, level, request.bounds.as_ref())?;
-    let mut count = 0;
-    for (done, &id) in tiles.iter().enumerate() {
-        stop_if_asked(observer)?;
-        observer.done(Stage::Tiles, done as u64, tiles.len() as u64);
-        for piece in read::pieces(package, id, &request.classes)? {
-            let kept = match &request.bounds {
-                Some(bounds) => cut_at_bounds(&piece, bounds, &|at| places.wgs84(at)),
-                None => vec![piece],
-            };
-            for piece in kept {
-                count += 1;
-                sorter.push(SortedPiece(piece)).map_err(sort)?;
-            }
-        }
-    }
+    let sorter = (Sorter::new(&scratch, request.memory_bytes), folder);
+    let keep = |piece: Piece| match &request.bounds {
+        Some(bounds) => cut_at_bounds(&piece, bounds, &|at| places.wgs84(at)),
+        None => vec![piece],
+    };
+    let ways = Ways::read(package, &tiles, &request.classes, sorter, observer, keep)?;
     let layer = layer(package, level, request, &places);
     let mut writing = Writing {
         places: &places,
@@ -99,14 +89,8 @@ pub fn export_roads(
             heights: places.heights().to_owned(),
         },
     };
-    let mut ways = Ways::new(sorter.finish().map_err(sort)?);
-    let mut done = 0;
-    while let Some(pieces) = ways.next_way().map_err(sort)? {
-        stop_if_asked(observer)?;
-        observer.done(Stage::Pieces, done, count);
-        done += pieces.len() as u64;
-        writing.way(&pieces)?;
-    }
+    let count = ways.count();
+    ways.for_each(observer, |pieces| writing.way(&pieces))?;
     let Writing { file, summary, .. } = writing;
     file.finish()?;
     observer.done(Stage::Pieces, count, count);

@@ -1,23 +1,78 @@
-use std::io;
+//! The pieces of all tiles, sorted by way.
 
-use corniche_store::Sorted;
+use std::{io, path::Path};
 
-use crate::piece::{Piece, SortedPiece};
+use corniche_geom::TileId;
+use corniche_roads::FunctionalRoadClass;
+use corniche_store::{Sorted, Sorter};
+use corniche_tileset::FilePackage;
+
+use crate::{
+    error::ExportError,
+    observer::{Observer, Stage, stop_if_asked},
+    piece::{Piece, SortedPiece},
+    read,
+};
 
 /// The pieces of one way after the other.
 pub(crate) struct Ways<'a> {
     sorted: Sorted<'a, SortedPiece>,
     /// The first piece of the next way.
     next: Option<Piece>,
+    /// How many pieces there are.
+    count: u64,
+    /// Where they were sorted.
+    folder: &'a Path,
 }
 
 impl<'a> Ways<'a> {
-    pub(crate) fn new(sorted: Sorted<'a, SortedPiece>) -> Self {
-        Self { sorted, next: None }
+    /// Reads tiles and sorts what `keep` leaves of each piece of a road of these classes. `sorter` sorts in `folder`.
+    pub(crate) fn read(
+        package: &FilePackage,
+        tiles: &[TileId],
+        classes: &[FunctionalRoadClass],
+        (mut sorter, folder): (Sorter<'a, SortedPiece>, &'a Path),
+        observer: &dyn Observer,
+        keep: impl Fn(Piece) -> Vec<Piece>,
+    ) -> Result<Self, ExportError> {
+        let failed = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
+        let mut count = 0;
+        for (done, &id) in tiles.iter().enumerate() {
+            stop_if_asked(observer)?;
+            observer.done(Stage::Tiles, done as u64, tiles.len() as u64);
+            for piece in read::pieces(package, id, classes)?.into_iter().flat_map(&keep) {
+                count += 1;
+                sorter.push(SortedPiece(piece)).map_err(failed)?;
+            }
+        }
+        Ok(Self { sorted: sorter.finish().map_err(failed)?, next: None, count, folder })
+    }
+
+    /// How many pieces there are.
+    pub(crate) fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// Hands all pieces of each way to `each`, in ascending order of ids.
+    pub(crate) fn for_each<E: From<ExportError>>(
+        mut self,
+        observer: &dyn Observer,
+        mut each: impl FnMut(Vec<Piece>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let folder = self.folder;
+        let failed = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
+        let mut done = 0;
+        while let Some(pieces) = self.next_way().map_err(failed)? {
+            stop_if_asked(observer)?;
+            observer.done(Stage::Pieces, done, self.count);
+            done += pieces.len() as u64;
+            each(pieces)?;
+        }
+        Ok(())
     }
 
     /// All pieces of the next way, in the order of their keys; `None` after the last way.
-    pub(crate) fn next_way(&mut self) -> io::Result<Option<Vec<Piece>>> {
+    fn next_way(&mut self) -> io::Result<Option<Vec<Piece>>> {
         let first = match self.next.take() {
             Some(first) => first,
             None => match self.sorted.next().transpose()? {
