@@ -72,6 +72,24 @@ pub fn corniche<I: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = I
     }
 }
 
+/// Runs commands in a shell in `folder`, as a page has them: `corniche` is on the path, and the first failure ends them.
+///
+/// # Panics
+/// When there is no shell.
+#[must_use]
+pub fn shell(commands: &str, folder: &Path) -> Ran {
+    let program = binary();
+    let folders = program.parent().map(Path::to_path_buf).into_iter();
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::env::join_paths(folders.chain(std::env::split_paths(&path)));
+    let mut shell = Command::new("bash");
+    shell.args(["-e", "-o", "pipefail", "-c", commands]).current_dir(folder);
+    match shell.env("PATH", path.expect("the path was one before")).output() {
+        Ok(output) => output.into(),
+        Err(error) => panic!("bash does not start: {error}"),
+    }
+}
+
 /// Waits for the end of a program whose standard output is not read.
 ///
 /// # Panics

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-use std::{fs, io::Write, path::Path, process::Command};
+use std::{fs, io::Write, path::Path};
 
 use flate2::{Compression, write::GzEncoder};
 
@@ -49,16 +49,8 @@ fn the_commands_of_the_conventions_end_as_their_rows_say() {
     let page = fs::read_to_string(e2e::root().join("docs/conventions.md")).unwrap();
     let rows = rows(&page);
     assert!(rows.len() > 40, "only {} commands were found", rows.len());
-    let program = e2e::binary();
-    let path =
-        format!("{}:{}", program.parent().unwrap().display(), std::env::var("PATH").unwrap());
     for (command, code) in rows {
-        let done = Command::new("bash")
-            .args(["-c", &command])
-            .current_dir(folder.path())
-            .env("PATH", &path)
-            .output();
-        let ran = e2e::Ran::from(done.unwrap());
+        let ran = e2e::shell(&command, folder.path());
         if e2e::lacks_adapter(&ran) {
             fs::write(folder.path().join("map.png"), "in the place of a picture").unwrap();
             continue;

@@ -44,9 +44,6 @@ fn the_commands_of_the_cookbook_run_as_they_stand() {
     let page = fs::read_to_string(e2e::root().join("docs/cookbook.md")).unwrap();
     let blocks = blocks(&page);
     assert!(blocks.iter().filter(|(need, _)| need.is_none()).count() >= 8, "{blocks:?}");
-    let program = e2e::binary();
-    let path =
-        format!("{}:{}", program.parent().unwrap().display(), std::env::var("PATH").unwrap());
     for (need, block) in blocks {
         if let Some(need) = need.filter(|need| !has(need)) {
             e2e::skipped(&format!("a block of the cookbook needs {need}"));
@@ -58,14 +55,8 @@ fn the_commands_of_the_cookbook_run_as_they_stand() {
             .filter(|line| !line.starts_with("corniche render"))
             .collect::<Vec<_>>()
             .join("\n");
-        let mut shell = Command::new("bash");
-        shell
-            .args(["-e", "-o", "pipefail", "-c", &drawn])
-            .current_dir(folder.path())
-            .env("PATH", &path);
-        let done = shell.output().unwrap();
-        let said = String::from_utf8_lossy(&done.stderr);
-        assert!(done.status.success(), "{block}\n{said}");
+        let ran = e2e::shell(&drawn, folder.path());
+        assert_eq!(ran.code, 0, "{block}\n{}", ran.err);
     }
     for made in [
         "grisons.pmtiles",

@@ -7,7 +7,7 @@ use std::{
 };
 
 pub(crate) use corniche_pipeline::Existing;
-use corniche_pipeline::file_target;
+use corniche_pipeline::{file_target, folder_of};
 use image::RgbaImage;
 use tempfile::{NamedTempFile, TempPath};
 
@@ -147,11 +147,7 @@ fn place_of(path: &Path) -> PathBuf {
     if let Ok(place) = path.canonicalize() {
         return place;
     }
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    match (folder.canonicalize(), path.file_name()) {
+    match (folder_of(path).canonicalize(), path.file_name()) {
         (Ok(folder), Some(name)) => folder.join(name),
         _ => path.to_path_buf(),
     }

@@ -56,7 +56,7 @@ pub use settings::{
 };
 pub use target::{TargetError, file_target};
 pub use terrain::recorded::TerrainRecord;
-pub use unfinished::{place_finished, unfinished_file};
+pub use unfinished::{folder_of, place_finished, unfinished_file};
 pub use verify::{
     Check, CheckId, ErrorFigures, GapFigures, Needs, VerifyError, VerifyOsm, VerifyReport,
     VerifySettings, verify,

@@ -58,9 +58,14 @@ pub fn place_finished(path: TempPath, target: &Path, existing: Existing) -> io::
         },
     };
     placed.map_err(|refused| refused.error)?;
-    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
-    sync_folder(folder.unwrap_or(Path::new(".")))?;
+    sync_folder(folder_of(target))?;
     Ok(bytes)
+}
+
+/// The folder that a file is in, or will be: the working folder where its name says none.
+#[must_use]
+pub fn folder_of(file: &Path) -> &Path {
+    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Makes the names in a folder durable.

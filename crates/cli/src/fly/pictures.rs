@@ -3,6 +3,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use corniche_pipeline::folder_of;
 use corniche_viewer::Replay;
 use tempfile::TempDir;
 
@@ -40,15 +41,11 @@ impl Pictures {
                 ),
             ));
         }
-        let parent = match target.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
         let mut builder = tempfile::Builder::new();
         // Temporary folders are their owner's alone; this one is to become an ordinary folder.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-        let folder = builder.tempdir_in(parent).map_err(|error| unusable(&error))?;
+        let folder = builder.tempdir_in(folder_of(target)).map_err(|error| unusable(&error))?;
         interrupt::remove_at_end(folder.path());
         Ok(Self { target: target.to_path_buf(), folder })
     }

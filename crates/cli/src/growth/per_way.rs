@@ -1,12 +1,9 @@
 //! A line for each way.
 
-use std::{
-    fmt::Write as _,
-    io::Write as _,
-    path::{Path, PathBuf},
-};
+use std::{fmt::Write as _, io::Write as _, path::Path};
 
 use corniche_export::{WayGrowth, growth_by_way};
+use corniche_pipeline::folder_of;
 use corniche_roads::FunctionalRoadClass;
 use corniche_tileset::{FilePackage, Manifest};
 
@@ -27,10 +24,8 @@ pub(crate) fn write(package: &FilePackage, path: &Path, mut output: Output) -> R
     output.write_all(headings(manifest).as_bytes()).map_err(cannot)?;
     let mut sums = Sums::new(manifest);
     let mut ways = 0_u64;
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let folder = folder.map_or_else(|| PathBuf::from("."), Path::to_path_buf);
     let bars = Bars::default();
-    growth_by_way(package, &folder, MEMORY_BYTES, &bars, |way| {
+    growth_by_way(package, folder_of(path), MEMORY_BYTES, &bars, |way| {
         ways += 1;
         sums.add(way);
         output.write_all(line(way).as_bytes()).map_err(cannot)

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{BuildError, Existing, PlanSettings, file_target};
+use crate::{BuildError, Existing, PlanSettings, file_target, folder_of};
 
 /// The place of a package: looked at before any work is done.
 pub(crate) struct Destination {
@@ -20,10 +20,7 @@ impl Destination {
     /// Fails where no file may be written, or where one is that is to be kept.
     pub(crate) fn of(output: &Path, existing: Existing) -> Result<Self, BuildError> {
         let target = file_target(output)?;
-        let folder = match target.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
-            _ => PathBuf::from("."),
-        };
+        let folder = folder_of(&target).to_path_buf();
         if existing == Existing::Keep && fs::symlink_metadata(&target).is_ok() {
             return Err(BuildError::Exists { path: target });
         }
@@ -33,7 +30,10 @@ impl Destination {
     /// Fails if it is one of the inputs.
     pub(crate) fn refuse_inputs(&self, settings: &PlanSettings) -> Result<(), BuildError> {
         let Ok(target) = fs::canonicalize(&self.target) else { return Ok(()) };
-        for input in settings.terrain_files().into_iter().chain(settings.osm.clone()) {
+        let polygon =
+            settings.terrain.plan.polygon.as_ref().map(|polygon| polygon.path().to_owned());
+        for input in settings.terrain_files().into_iter().chain(settings.osm.clone()).chain(polygon)
+        {
             if fs::canonicalize(&input).is_ok_and(|input| input == target) {
                 return Err(BuildError::TargetIsInput { path: input });
             }
