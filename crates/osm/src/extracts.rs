@@ -87,14 +87,14 @@ impl<R: Read + Seek> Extracts<R> {
         self.files.iter().map(|file| file.blobs_passed_over).sum()
     }
 
-    /// As [`BlobFile::for_each`], over all files. The numbers of a file come one after another.
+    /// As [`BlobFile::for_each`], over all files; `take` is told the number of the file, too. The numbers of a file come one after another.
     pub(crate) fn for_each<L: Send, T: Send>(
         &mut self,
         numbers: &[usize],
         decoding: &Decoding<'_>,
         look: impl Fn(&[u8]) -> L + Sync,
         scan: impl Fn(&PrimitiveBlock, u64) -> Option<T> + Sync,
-        mut take: impl FnMut(usize, L, T) -> Result<(), ReadOsmError>,
+        mut take: impl FnMut([usize; 2], L, T) -> Result<(), ReadOsmError>,
     ) -> Result<(), ReadOsmError> {
         let mut rest = numbers;
         let mut done_bytes = 0;
@@ -114,7 +114,7 @@ impl<R: Read + Seek> Extracts<R> {
                 &of_file,
                 &look,
                 &scan,
-                |number, looked, scanned| take(start + number, looked, scanned),
+                |number, looked, scanned| take([file, start + number], looked, scanned),
             )?;
             done_bytes += self.files[file].bytes_of(&own);
             rest = later;

@@ -59,8 +59,6 @@ pub(crate) fn find_ways<'a, R: Read + Seek>(
     let data_bytes = file.bytes_of(numbers);
     let (table, is_of_several) = (request.table, reading.is_of_several());
     let counted = if is_of_several { Counted::ByWay } else { Counted::ByBlock };
-    let file_of: Vec<usize> = numbers.iter().map(|&number| file.file_of(number)).collect();
-    let mut file_of = file_of.into_iter();
     let decoding = Decoding {
         pool: request.pool,
         should_stop: reading.should_stop,
@@ -71,9 +69,8 @@ pub(crate) fn find_ways<'a, R: Read + Seek>(
         &decoding,
         |block| (Versions::scan(block), IdRange::scan(block)),
         |block, most_bytes| Ways::scan(block, table, counted, most_bytes),
-        |number, (versions_of_block, ids), of_block| {
-            // Blobs come in the order of their numbers.
-            let file = file_of.next().unwrap_or_default() as u32;
+        |[file, number], (versions_of_block, ids), of_block| {
+            let file = file as u32;
             append_versions(reading, &mut found.versions, versions_of_block.of_file(file))?;
             found.held_bytes += of_block.held_bytes;
             check_held(reading, found.held_bytes)?;

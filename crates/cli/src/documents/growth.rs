@@ -141,7 +141,7 @@ pub(crate) struct ComparedDocument {
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct DifferenceDocument {
-    /// "extract", "elevation data", "classes", "classes by level", "simplification", "CRS" or "bounds".
+    /// Its name in words, such as "extract", "classes by level", "voids filled" or "polygon".
     pub(crate) what: String,
     /// The values, two at least.
     pub(crate) values: Vec<DifferentValueDocument>,

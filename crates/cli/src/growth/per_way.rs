@@ -25,12 +25,13 @@ pub(crate) fn write(package: &FilePackage, path: &Path, mut output: Output) -> R
     let mut sums = Sums::new(manifest);
     let mut ways = 0_u64;
     let bars = Bars::default();
-    growth_by_way(package, folder_of(path), MEMORY_BYTES, &bars, |way| {
+    let told = growth_by_way(package, folder_of(path), MEMORY_BYTES, &bars, |way| {
         ways += 1;
         sums.add(way);
         output.write_all(line(way).as_bytes()).map_err(cannot)
-    })?;
+    });
     bars.end();
+    told?;
     sums.fit(manifest, package.path())?;
     let mut off_ground = 0;
     for (class, points) in sums.left(manifest) {

@@ -14,6 +14,8 @@ pub(crate) struct Crs {
     pub(crate) wkt: Arc<str>,
     /// "EPSG:…" where it has a code, else its name.
     pub(crate) label: String,
+    /// Whether the label is a code.
+    has_code: bool,
     /// Period of the first coordinate: a full turn in the system's angular unit, `None` when projected.
     pub(crate) turn: Option<f64>,
     /// Metres to a unit of the coordinates; 1 for a geographic system.
@@ -26,9 +28,11 @@ impl Crs {
         let wkt = wkt2(reference)
             .map_err(|source| DemError::Wkt { name: name.clone(), source: source.into() })?;
         let projected = reference.is_projected();
+        let code = reference.authority();
         Ok(Self {
             wkt: wkt.into(),
-            label: reference.authority().unwrap_or(name),
+            has_code: code.is_ok(),
+            label: code.unwrap_or(name),
             turn: (!projected).then(|| std::f64::consts::TAU / reference.angular_units()),
             unit_m: if projected { reference.linear_units() } else { 1.0 },
         })
@@ -41,6 +45,16 @@ impl Crs {
             source: source.into(),
         })?;
         Self::from_spatial_ref(&reference)
+    }
+
+    /// The same with another definition and a name of its own, as of the system with heights.
+    pub(crate) fn renamed(&self, wkt: Arc<str>, label: String) -> Self {
+        Self { wkt, label, has_code: false, ..self.clone() }
+    }
+
+    /// What tells it from all other systems: its code; where it has none, its definition, because names such as "unknown" are common.
+    pub(crate) fn identity(&self) -> &str {
+        if self.has_code { &self.label } else { &self.wkt }
     }
 
     /// PROJ's object for this thread, in traditional axis order: x or longitude first.

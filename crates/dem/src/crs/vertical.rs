@@ -147,15 +147,12 @@ impl VerticalCrs {
 
     /// The horizontal system and this one, together.
     pub(crate) fn with(&self, horizontal: &Crs) -> Crs {
-        if self.is_ellipsoidal {
-            return Crs {
-                wkt: Arc::clone(&self.wkt),
-                label: self.name.clone(),
-                ..horizontal.clone()
-            };
-        }
-        let wkt = format!("COMPOUNDCRS[\"DEM\",{},{}]", horizontal.wkt, self.wkt);
-        Crs { wkt: wkt.into(), label: self.name.clone(), ..horizontal.clone() }
+        let wkt = if self.is_ellipsoidal {
+            Arc::clone(&self.wkt)
+        } else {
+            format!("COMPOUNDCRS[\"DEM\",{},{}]", horizontal.wkt, self.wkt).into()
+        };
+        horizontal.renamed(wkt, self.name.clone())
     }
 
     /// Geoid grids that PROJ would use for it, if it says so.

@@ -232,23 +232,12 @@ fn in_normal_order(mut ring: Ring) -> Ring {
     ring
 }
 
-/// What tells a coordinate system from all others: its code (`EPSG:2056`); where it has none, its definition, because names such as
-/// "unknown" are common.
-fn identity(crs: &Crs) -> &str {
-    let is_code = crs.label.split_once(':').is_some_and(|(authority, code)| {
-        !authority.is_empty()
-            && authority.bytes().all(|byte| byte.is_ascii_uppercase())
-            && code.bytes().all(|byte| byte.is_ascii_digit())
-    });
-    if is_code { &crs.label } else { &crs.wkt }
-}
-
 /// The parts, sorted by their bytes.
 fn canonical_bytes(parts: &[Part]) -> Vec<u8> {
     let of_part = |part: &Part| {
         let mut bytes = Vec::new();
         let mut push = |number: usize| bytes.extend((number as u64).to_le_bytes());
-        let crs = identity(&part.crs);
+        let crs = part.crs.identity();
         push(crs.len());
         push(part.rings.len());
         part.rings.iter().for_each(|ring| push(ring.len()));

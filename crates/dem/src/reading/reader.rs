@@ -79,17 +79,20 @@ impl Reader<'_> {
                 is_filled = vec![false; heights_m.len()];
             }
             for row in 0..part.rows {
-                for column in 0..part.columns {
-                    let from = row * part.columns + column;
-                    if !is_wanted.is_empty() && !is_wanted[from] {
-                        continue;
-                    }
-                    let to = target.at(column, row);
-                    heights_m[to] = found.heights.raw()[from];
-                    if !is_filled.is_empty() && found.is_filled[from] {
-                        is_filled[to] = true;
-                        filled += 1;
-                    }
+                let (from, to) = (row * part.columns, target.at(0, row));
+                heights_m[to..to + part.columns]
+                    .copy_from_slice(&found.heights.raw()[from..from + part.columns]);
+                if !is_filled.is_empty() {
+                    is_filled[to..to + part.columns]
+                        .copy_from_slice(&found.is_filled[from..from + part.columns]);
+                }
+            }
+            filled = found.filled;
+            for (from, _) in is_wanted.iter().enumerate().filter(|(_, is_wanted)| !**is_wanted) {
+                let to = target.at(from % part.columns, from / part.columns);
+                heights_m[to] = f32::NAN;
+                if is_filled.get_mut(to).is_some_and(std::mem::take) {
+                    filled -= 1;
                 }
             }
         }

@@ -27,9 +27,9 @@ impl BlockRecord for PlaceRecord {
     type Before = (i64, Location);
 
     /// ```text
-    ///  │ id − the one before │ longitude − the one before │ latitude − the one before │ 1 if conflicting │
+    ///  │ id − the one before │ longitude − the one before │ latitude − the one before │ 1 if conflicting │ version │
     /// ```
-    /// Three zigzag varints; the mark is the lowest bit of the last. Then the version, a zigzag varint.
+    /// Zigzag varints; the mark is the lowest bit of the latitude's.
     fn write(&self, before: &mut Self::Before, bytes: &mut Vec<u8>) {
         let (id, [lon, lat]) = *before;
         let difference = |own: i32, before: i32| to_zigzag(i64::from(own) - i64::from(before));
