@@ -9,23 +9,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use common::{Extract, POOL, gather, read_bytes, request, to_lattice};
+use common::{Extract, POOL, gather, kept, read_bytes, request, to_lattice};
 use corniche_osm::{
-    Defect, ExtractSummary, Kept, KeptKinds, ReadOsmError, ReadRequest, Share, keep_nodes,
-    keep_ways, read_kept_roads, read_roads,
+    Defect, ExtractSummary, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways,
+    read_kept_roads, read_roads,
 };
 use corniche_store::{MemoryScratch, MemoryStore};
 use corniche_testing::pbf::{Block, field, number, plain_header, raw, zigzag};
 use proptest::prelude::*;
-
-const KINDS: KeptKinds = KeptKinds {
-    ways: 10,
-    located: 11,
-    defects: 12,
-    ways_records: 13,
-    places: 14,
-    nodes_records: 15,
-};
 
 /// An object's id and version; 0: none.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,7 +95,7 @@ fn read_files(paths: &[PathBuf], memory_bytes: u64) -> Result<Extract, ReadOsmEr
 /// The same through shares, the last first.
 fn read_shares(paths: &[PathBuf], of: u16, memory_bytes: u64) -> Result<Extract, ReadOsmError> {
     let store = MemoryStore::default();
-    let kept = Kept { store: &store, kinds: KINDS };
+    let kept = kept(&store);
     with(paths, memory_bytes, |request| {
         let shares: Vec<Share> = Share::all(of).collect();
         for &share in shares.iter().rev() {

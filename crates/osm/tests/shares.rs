@@ -7,13 +7,12 @@ mod common;
 use std::{fs, path::Path};
 
 use common::{
-    Extract, POOL, fixture, gather,
+    Extract, POOL, fixture, gather, kept,
     made::{MadeExtract, made_extract},
     read, request, to_lattice, written,
 };
 use corniche_osm::{
-    Kept, KeptError, KeptKinds, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways,
-    read_kept_roads,
+    KeptError, ReadOsmError, ReadRequest, Share, keep_nodes, keep_ways, read_kept_roads,
 };
 use corniche_store::{Artifacts, Key, MemoryScratch, MemoryStore, Scratch};
 use corniche_testing::{
@@ -21,19 +20,6 @@ use corniche_testing::{
     real_data, sample,
 };
 use proptest::prelude::*;
-
-const KINDS: KeptKinds = KeptKinds {
-    ways: 10,
-    located: 11,
-    defects: 12,
-    ways_records: 13,
-    places: 14,
-    nodes_records: 15,
-};
-
-fn kept(store: &MemoryStore) -> Kept<'_> {
-    Kept { store, kinds: KINDS }
-}
 
 fn request_within<'a>(
     path: &'a Path,

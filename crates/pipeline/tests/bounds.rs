@@ -23,7 +23,7 @@ use support::{
     Options, Raster,
     extract::{self, StraightRoad, utm_to_degrees},
     settings, table,
-    terrain::{noise, scattered_void, waves},
+    terrain::{rough_with_voids, waves},
 };
 
 /// What a build told of roads.
@@ -49,13 +49,7 @@ struct Files {
 
 impl Files {
     fn new() -> Self {
-        let raster = Raster::new([1100, 1000], [37, 90], |column, row| {
-            if scattered_void(column, row) {
-                f32::NAN
-            } else {
-                300.0 * waves(column, row) + 3.0 * noise(column, row)
-            }
-        });
+        let raster = Raster::new([1100, 1000], [37, 90], rough_with_voids);
         let folder = tempfile::tempdir().unwrap();
         raster.write(&folder.path().join("dem.tif"));
         let mut roads = Vec::new();

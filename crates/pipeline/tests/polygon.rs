@@ -20,7 +20,7 @@ use support::{
     Options, Raster,
     extract::{self, StraightRoad, utm_to_degrees},
     settings, table,
-    terrain::{noise, scattered_void, waves},
+    terrain::rough_with_voids,
 };
 
 /// A raster of four by three tiles with voids, and roads all over it and beyond.
@@ -44,13 +44,7 @@ fn roads() -> Vec<StraightRoad> {
 
 impl Files {
     fn new() -> Self {
-        let raster = Raster::new([900, 700], [37, 90], |column, row| {
-            if scattered_void(column, row) {
-                f32::NAN
-            } else {
-                300.0 * waves(column, row) + 3.0 * noise(column, row)
-            }
-        });
+        let raster = Raster::new([900, 700], [37, 90], rough_with_voids);
         let folder = tempfile::tempdir().unwrap();
         raster.write(&folder.path().join("dem.tif"));
         extract::write(&folder.path().join("roads.osm.pbf"), &raster, &roads());

@@ -15,16 +15,30 @@ use std::{
 
 use corniche_geom::LatticePoint;
 use corniche_osm::{
-    Defect, ExtractSummary, Place, ReadOsmError, ReadRequest, read_roads, read_roads_from,
+    Defect, ExtractSummary, Kept, KeptKinds, Place, ReadOsmError, ReadRequest, read_roads,
+    read_roads_from,
 };
 use corniche_presets::parse_frc_table;
 use corniche_roads::{FrcTable, Road};
-use corniche_store::{MemoryScratch, Scratch};
+use corniche_store::{MemoryScratch, MemoryStore, Scratch};
 use rayon::ThreadPool;
 
 /// The preset `crates/presets/frc/default.toml`.
 pub(crate) fn default_table() -> FrcTable {
     parse_frc_table(include_str!("../../../presets/frc/default.toml")).unwrap()
+}
+
+/// A store for what shares keep.
+pub(crate) fn kept(store: &MemoryStore) -> Kept<'_> {
+    let kinds = KeptKinds {
+        ways: 10,
+        located: 11,
+        defects: 12,
+        ways_records: 13,
+        places: 14,
+        nodes_records: 15,
+    };
+    Kept { store, kinds }
 }
 
 /// A lattice of 1e-7 degrees, so that every point shows the coordinates of its node.

@@ -35,3 +35,12 @@ pub(crate) fn scattered_void(column: i64, row: i64) -> bool {
     let block = |side: i64, seed| bits(column.div_euclid(side), row.div_euclid(side), seed) % 100;
     bits(column, row, 2).is_multiple_of(500) || block(5, 3) < 2 || block(37, 4) < 6
 }
+
+/// Hills, noise and random voids.
+pub(crate) fn rough_with_voids(column: i64, row: i64) -> f32 {
+    if scattered_void(column, row) {
+        f32::NAN
+    } else {
+        300.0 * waves(column, row) + 3.0 * noise(column, row)
+    }
+}
