@@ -63,6 +63,8 @@ fn view<'a>(camera: &'a Camera, style: &'a Style) -> FrameView<'a> {
         exaggeration: 1.0,
         point_scale: 1.0,
         height_range_m: [200.0, 400.0],
+        wall_m: 0.0,
+        latitude_deg: 47.0,
         wireframe: Wireframe::Hidden,
     }
 }

@@ -17,6 +17,9 @@ struct PictureColors {
     haze: vec4<f32>,
     sky: vec4<f32>,
     background: vec4<f32>,
+    // Where there is no ground, a plane beneath all ground is seen: xy: the eye's place on it, modulo w; z: the eye's height
+    // above it; w: the widest spacing of its lines. World metres.
+    void_plane: vec4<f32>,
     road_fills: array<vec4<f32>, CLASSES>,
     road_outlines: array<vec4<f32>, CLASSES>,
     road_centers: array<vec4<f32>, CLASSES>,
@@ -59,10 +62,48 @@ fn largest_around(pixel: vec2<i32>, own: f32, least_depth: f32) -> f32 {
     return largest;
 }
 
-fn background_at(ray: vec3<f32>) -> vec3<f32> {
+// Distance between the lines on the plane of voids, pixels of the final picture.
+const HATCH_PX = 9.0;
+
+// How dark the lines at a place of the plane of voids are, 0 to 1, with this spacing between them. `footprint` is the side of
+// a pixel of the final picture there.
+fn hatch(along: f32, spacing: f32, footprint: f32) -> f32 {
+    let from_line = abs(fract(along / spacing) - 0.5) * spacing;
+    return 1.0 - smoothstep(0.4, 1.4, from_line / footprint);
+}
+
+// The plane of voids: neutral, with oblique lines that keep their place on the ground. From far away there are fewer lines.
+fn void_at(ray: vec3<f32>) -> vec3<f32> {
+    let plane = colors.void_plane;
+    let down = max(-ray.z, 1e-4);
+    let distance = max(plane.z, 0.0) / down;
+    let place = plane.xy + distance * ray.xy;
+    // As long as it is on the plane in the direction of view.
+    let footprint = frame.scale.x * frame.road_scale.w * distance * inverseSqrt(down) + 1e-9;
+    let octave = log2(HATCH_PX * footprint);
+    let spacing = exp2(ceil(octave));
+    let along = place.x + place.y;
+    // Every second line fades away before the spacing doubles.
+    let every = hatch(along, spacing, footprint);
+    let second = hatch(along + 0.5 * spacing, 2.0 * spacing, footprint);
+    let shown = select(mix(every, second, fract(octave)), 0.0, plane.z <= 0.0);
+    return colors.background.rgb * (1.0 - 0.045 * shown);
+}
+
+// Between 0 and 1, different for each pixel, without a pattern (Jimenez, Next Generation Post Processing in Call of Duty:
+// Advanced Warfare, SIGGRAPH 2014: interleaved gradient noise).
+fn noise_at(position: vec2<f32>) -> f32 {
+    return fract(52.9829189 * fract(dot(position, vec2(0.06711056, 0.00583715))));
+}
+
+fn background_at(ray: vec3<f32>, position: vec2<f32>) -> vec3<f32> {
     let elevation = ray.z / length(ray);
     let above = mix(colors.haze.rgb, colors.sky.rgb, smoothstep(0.0, 0.35, elevation));
-    return mix(colors.background.rgb, above, smoothstep(-0.25, 0.0, elevation));
+    let color = mix(void_at(ray), above, smoothstep(-0.2, 0.0, elevation));
+    // Steps between the 256 values of a channel would be seen as bands. Averaging samples makes the noise weaker, so it is
+    // wider than one step.
+    let grain = (noise_at(position) - 0.5) * 1.5 / 255.0;
+    return color + grain;
 }
 
 // Width of a road at a place in pixels of the final picture, before the least width is applied.
@@ -90,7 +131,7 @@ fn sight_at(position: vec2<f32>) -> Sight {
     var sight: Sight;
     sight.depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
     if sight.depth_buffer == 0.0 {
-        sight.color = background_at(ray);
+        sight.color = background_at(ray, position);
         return sight;
     }
     sight.depth = view_depth_of(sight.depth_buffer);

@@ -7,6 +7,7 @@
 
 mod geometry;
 mod ground_mesh;
+mod map_extent;
 #[cfg(not(target_arch = "wasm32"))]
 mod on_disk;
 mod package;
@@ -22,6 +23,7 @@ mod triangle_grid;
 pub use self::on_disk::PackageSource;
 pub use self::{
     geometry::TileGeometry,
+    map_extent::MapExtent,
     package::PackageTiles,
     roads::{RoadList, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, TileLines},
     source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},

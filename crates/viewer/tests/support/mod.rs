@@ -311,6 +311,8 @@ pub(crate) fn draw_exaggerated(
         exaggeration,
         point_scale: 1.0,
         height_range_m: [0.0, 1000.0],
+        wall_m: 0.0,
+        latitude_deg: 47.0,
         wireframe: Wireframe::Hidden,
     };
     Renderer::new(gpu).draw(gpu, &view, &tiles, &targets);
