@@ -11,10 +11,12 @@
 
 mod error;
 mod presets;
+mod road_scale;
 mod sheet;
 mod style;
 
 pub use error::StyleError;
 pub use presets::{style_preset, style_preset_names};
+pub use road_scale::FADE_FACTOR;
 pub use sheet::parse_style;
 pub use style::{CenterLine, OwnWidths, Rgb, RoadStyle, Style, TINT_STOPS, TintStop, WidthScaling};

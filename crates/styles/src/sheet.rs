@@ -101,6 +101,8 @@ pub(crate) struct RoadSheet {
     pub(crate) outline: Rgb8,
     /// A line along the middle.
     pub(crate) center: Option<CenterSheet>,
+    /// Drawn in full up to this many metres of ground in a pixel, 0.01 to 1e6; left out: always.
+    pub(crate) max_pixel_m: Option<f64>,
 }
 
 /// The line along the middle of a road of two colours.
@@ -220,6 +222,9 @@ impl StyleSheet {
             let entry = |name| format!("roads.{class}.{name}");
             within(&entry("width_m"), road.width_m, 0.1..=500.0)?;
             within(&entry("min_width_px"), road.min_width_px, 0.1..=50.0)?;
+            if let Some(max_pixel_m) = road.max_pixel_m {
+                within(&entry("max_pixel_m"), max_pixel_m, 0.01..=1e6)?;
+            }
             if let Some(center) = road.center {
                 within(&entry("center.width_share"), center.width_share, 0.01..=0.99)?;
             }
@@ -295,6 +300,7 @@ impl From<RoadSheet> for RoadStyle {
                 width_share: width_share as f32,
                 color: color.into(),
             }),
+            max_pixel_m: sheet.max_pixel_m.map(|max_pixel_m| max_pixel_m as f32),
         }
     }
 }

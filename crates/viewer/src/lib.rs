@@ -20,6 +20,7 @@
 
 mod attribution;
 pub mod camera;
+mod class_scale;
 pub mod eye_height;
 pub mod flight;
 mod frame_view;
@@ -51,6 +52,7 @@ pub mod for_tests {
 }
 
 pub use attribution::draw_attribution;
+pub use class_scale::LevelScales;
 pub use frame_view::{FrameView, Wireframe};
 pub use options::{CapTest, Caps, ClassSet, Outline, RoadMethod, RoadOptions, WidthGrowth};
 pub use range::OutOfRange;

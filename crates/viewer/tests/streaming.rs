@@ -36,7 +36,7 @@ fn picture(
 ) -> Option<(Drawing, [u32; 5])> {
     let gpu = gpu()?;
     let mut store = TileStore::new(country);
-    let quality = Quality { screen_space_error_px: error_px, vertical_scale: 1.0 };
+    let quality = Quality::by_error(error_px, 1.0);
     let drawn = for_tests::settle(&mut store, camera, quality, &|| false).unwrap();
     let mut levels = [0; 5];
     for tile in &drawn {

@@ -23,7 +23,7 @@ struct Frame {
     // metre, one value for the whole package; w: roads are not drawn by their own width beyond this one, true metres.
     road_options: vec4<f32>,
     // x: half width in true metres near the eye; y: least half width in pixels of this target; z: share of the width that
-    // the centre line takes, -1 without one.
+    // the centre line takes, -1 without one; w: distance from the eye up to which the class is shown in full.
     road_widths: array<vec4<f32>, CLASSES>,
 }
 
@@ -65,4 +65,18 @@ fn scaled_half_width_m(road: Road, distance_m: f32) -> f32 {
 // Least half width in world metres at a depth.
 fn least_half_width_m(road: Road, view_depth: f32) -> f32 {
     return frame.road_widths[road.class_number].y * frame.scale.x * view_depth;
+}
+
+// A class has faded away at this many times the distance up to which it is shown in full: half a zoom step.
+const FADE_FACTOR = 1.41421356;
+
+// Whether anything of a class is shown at a distance from the eye. Both methods and the connectors of levels ask this.
+fn is_shown(class_number: u32, distance_m: f32) -> bool {
+    return distance_m < frame.road_widths[class_number].w * FADE_FACTOR;
+}
+
+// Share of a road's colour that is shown at a distance from the eye: linear in the zoom.
+fn shown_share(class_number: u32, distance_m: f32) -> f32 {
+    let steps = log2(max(distance_m, 1e-3) / frame.road_widths[class_number].w) / log2(FADE_FACTOR);
+    return clamp(1.0 - steps, 0.0, 1.0);
 }

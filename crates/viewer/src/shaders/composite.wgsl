@@ -140,7 +140,8 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
         let fill = select(colors.road_fills[road_class].rgb, colors.road_centers[road_class].rgb, (label & 1u) == 1u);
         // A road that is drawn wider than it is, because of its least width, is made paler.
         let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
-        let presence = clamp(width_px(road_class, sight.distance_m, sight.depth) / least_px, 0.35, 1.0);
+        let presence = clamp(width_px(road_class, sight.distance_m, sight.depth) / least_px, 0.35, 1.0)
+            * shown_share(road_class, sight.distance_m);
         color = mix(color, mix(fill, colors.haze.rgb, 0.5 * sight.haze), presence);
     }
 
@@ -148,7 +149,8 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
     if most / 2u > label / 2u {
         let road_class = class_of(most);
         // Around a very thin road there is no edge, because it would hide the road.
-        let presence = smoothstep(1.5, 5.0, width_px(road_class, sight.distance_m, sight.depth));
+        let presence = smoothstep(1.5, 5.0, width_px(road_class, sight.distance_m, sight.depth))
+            * shown_share(road_class, sight.distance_m);
         color = mix(color, mix(colors.road_outlines[road_class].rgb, colors.haze.rgb, 0.5 * sight.haze), presence);
     }
     return vec4(color, 1.0);

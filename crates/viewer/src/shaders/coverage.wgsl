@@ -136,6 +136,9 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, start: vec2<
     road: Road, widest_m: f32) -> u32 {
     let position = position_at(center, depth_buffer);
     let distance_m = length(position);
+    if !is_shown(road.class_number, distance_m) {
+        return NOTHING;
+    }
     let plan_m = length(from_segment(position.xy - start, start_to_end));
     if plan_m > widest_m {
         return NOTHING;

@@ -153,6 +153,9 @@ fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, 
 
 fn label_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
     road: Road) -> u32 {
+    if !is_shown(road.class_number, length(position_at(center, depth_buffer))) {
+        return NOTHING;
+    }
     let share = center_share(road.class_number);
     if share > 0.0 && is_road_by_the_paper(center, depth_buffer, start, start_to_end, road, share) {
         return center_label(road.class_number);

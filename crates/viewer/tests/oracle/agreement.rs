@@ -170,7 +170,7 @@ pub(crate) fn country_scene(
     style: Style,
 ) -> Scene {
     let mut store = TileStore::new(country);
-    let quality = Quality { screen_space_error_px: error_px, vertical_scale: 1.0 };
+    let quality = Quality::by_error(error_px, 1.0);
     let drawn = settle(&mut store, camera, quality, &|| false).unwrap();
     let tiles = drawn
         .iter()

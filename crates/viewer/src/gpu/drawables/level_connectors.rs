@@ -22,15 +22,17 @@ pub(crate) struct LevelConnectors {
 
 impl LevelConnectors {
     /// Finds the connectors between `tiles` and uploads their volumes, each relative to the reference point of its finer
-    /// tile. `reference_of` gives that point for an index of `tiles`.
+    /// tile. `reference_of` gives that point for an index of `tiles`; `shown` says which classes are shown on each of them.
     pub(crate) fn new(
         gpu: &Gpu,
         tiles: &[BorderTile<'_>],
         reference_of: impl Fn(usize) -> [f64; 3],
-        classes: ClassSet,
+        shown: &[ClassSet],
     ) -> Self {
         let mut list = level_connectors(tiles);
-        list.retain(|connector| classes.contains(connector.class));
+        list.retain(|connector| {
+            shown[connector.fine].or(shown[connector.coarse]).contains(connector.class)
+        });
         let volumes = list.iter().map(|connector| {
             let reference_m = reference_of(connector.fine);
             (volume(connector, reference_m), connector.coarse as u32 + 1)
