@@ -13,10 +13,10 @@ use corniche_tileset::LevelRecord;
 use crate::{
     camera::Camera,
     frame_view::FrameView,
-    options::{ClassSet, RoadMethod, RoadOptions},
+    options::{ClassSet, RoadMethod, RoadOptions, WidthGrowth},
 };
 
-/// Distances are passed to shaders as f32. A class that is always shown is shown up to this many metres.
+/// Distances and widths are passed to shaders as f32. This one stands for a limit that is never reached.
 const EVERYWHERE_M: f64 = 1e30;
 
 /// The distance from the eye, world metres, up to which roads are shown in full.
@@ -24,6 +24,16 @@ pub(crate) fn full_distance_m(road: &RoadStyle, camera: &Camera, point_scale: f6
     road.max_pixel_m.map_or(EVERYWHERE_M, |max_pixel_m| {
         f64::from(max_pixel_m) * point_scale / camera.pixel_at_unit_depth_m()
     })
+}
+
+/// The half width, as a share of the distance from the eye, beyond which roads do not grow with distance.
+pub(crate) fn half_width_limit(road: &RoadStyle, growth: WidthGrowth, camera: &Camera) -> f64 {
+    match (road.max_width_px, growth) {
+        (Some(max_width_px), WidthGrowth::ByDistance) => {
+            f64::from(max_width_px) / 2.0 * camera.pixel_at_unit_depth_m()
+        }
+        _ => EVERYWHERE_M,
+    }
 }
 
 /// The classes of which something is shown `nearest_m` world metres from the eye or farther away.

@@ -42,7 +42,7 @@ mod viewpoint;
 #[doc(hidden)]
 pub mod for_tests {
     pub use crate::{
-        gpu::inspection::Owner,
+        gpu::inspection::{Owner, TUNNEL_BIT},
         scene::{SettleError, capped_ways, draw_list, may_be_clamped, settle},
         tiles::{
             plan_scale::PlanScale,

@@ -23,7 +23,7 @@ pub use self::on_disk::PackageSource;
 pub use self::{
     geometry::TileGeometry,
     package::PackageTiles,
-    roads::{RoadList, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, TileLines},
+    roads::{RoadList, RoadLook, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, TileLines},
     source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},
     store::TileStore,
 };
@@ -31,5 +31,5 @@ pub(crate) use self::{
     geometry::WideWay,
     ground_mesh::{GroundMesh, GroundVertex},
     plan_scale::PlanScale,
-    roads::{BadRoad, Bed, GroundLine, NearHeights, RoadEnd},
+    roads::{BadRoad, Bed, GroundLine, NearHeights, RoadEnd, dash_m},
 };

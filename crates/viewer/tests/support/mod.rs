@@ -212,6 +212,8 @@ pub(crate) fn plain_style(width_m: f32) -> Style {
         outline: [0.0; 3],
         center: None,
         max_pixel_m: None,
+        max_width_px: None,
+        thin: None,
     };
     Style {
         roads: [road; 9],

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     options::ClassSet,
     scene::{BorderTile, LevelConnector, level_connectors},
-    tiles::{NearHeights, RoadVolume},
+    tiles::{NearHeights, RoadVolume, dash_m},
 };
 
 /// The connectors of a frame, in order of the finer tile.
@@ -80,5 +80,7 @@ fn volume(connector: &LevelConnector, reference_m: [f64; 3]) -> RoadVolume {
         width_factor: connector.width_factor,
         class: connector.class,
         own_width: connector.own_width,
+        look: connector.look,
+        dash_m: dash_m(connector.ends_m),
     }
 }
