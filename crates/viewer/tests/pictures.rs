@@ -16,7 +16,7 @@ use corniche_viewer::{
         DIFFERENCE_COLORS, DrawTile, Gpu, GpuError, PassTimer, Picture, Renderer, Targets,
         TileBuffers,
     },
-    tiles::{TileGeometry, TileLines},
+    tiles::{RoadLook, TileGeometry, TileLines},
 };
 use glam::DVec2;
 use support::{class, frame, gpu, ground_line, lay, plain_style, terrain, triangles};

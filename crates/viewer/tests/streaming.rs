@@ -71,7 +71,7 @@ fn levels_meet_without_holes_and_within_the_error_asked_for() {
         let camera =
             Camera::look_at(target(&country), 6000.0, Orientation { heading_deg, pitch_deg }, SIZE);
         let error_px = 1.5;
-        let Some((drawing, levels)) = picture(&country, &camera, error_px, &style)
+        let Some((drawing, levels)) = picture(&country, &camera, error_px, &Style::road_atlas())
         else {
             return;
         };
@@ -109,8 +109,7 @@ fn draped_roads_show_on_every_level() {
     for (error_px, distance_m) in [(2.0, 9000.0), (16.0, 9000.0), (4.0, 40_000.0)] {
         let orientation = Orientation { heading_deg: 0.0, pitch_deg: 40.0 };
         let camera = Camera::look_at(target(&country), distance_m, orientation, SIZE);
-        let Some((drawing, levels)) = picture(&country, &camera, error_px, &style)
-        else {
+        let Some((drawing, levels)) = picture(&country, &camera, error_px, &style) else {
             return;
         };
         // The roads meet at the target; the least important one goes north from there.

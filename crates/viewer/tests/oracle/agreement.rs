@@ -58,7 +58,7 @@ fn print_row(
 }
 
 /// Draws a scene from its cameras in both methods, prints the figures and holds both to their gates.
-fn check(named: &Named) {
+pub(crate) fn check(named: &Named) {
     let Some(gpu) = gpu() else { return };
     let Named { name, scene, cameras } = named;
     let is_plain = scene.style.roads.iter().all(|road| road.min_width_px == 0.0);

@@ -182,6 +182,14 @@ impl Tile {
         self.with_lines(lines)
     }
 
+    /// The same tile with its ways being what is said; its GEO and SV lines alike.
+    pub(crate) fn with_looks(&self, of_way: impl Fn(i64) -> RoadLook) -> Self {
+        let mut lines = self.lines.clone();
+        lines.ground.iter_mut().for_each(|line| line.look = of_way(line.way_id));
+        lines.plan.iter_mut().for_each(|line| line.look = of_way(line.way_id));
+        self.with_lines(lines)
+    }
+
     fn with_lines(&self, lines: TileLines) -> Self {
         let (id, triangles) = (self.geometry.id, self.triangles.clone());
         let Self { terrain, frame, quantum_m, skirt_depth_m, .. } = self;
