@@ -95,6 +95,12 @@ pub(crate) struct RoadSheet {
     pub(crate) outline: Rgb8,
     /// A line along the middle.
     pub(crate) center: Option<CenterSheet>,
+    /// Drawn in full up to this many metres of ground in a pixel, 0.01 to 1e6; left out: always.
+    pub(crate) max_pixel_m: Option<f64>,
+    /// Roads grow no wider with distance than this, 0.1 to 500 pixels; left out: without end.
+    pub(crate) max_width_px: Option<f64>,
+    /// The colour of a road too thin for an edge; left out: that of its surface.
+    pub(crate) thin: Option<Rgb8>,
 }
 
 /// The line along the middle of a road of two colours.
@@ -202,6 +208,12 @@ impl StyleSheet {
             let entry = |name| format!("roads.{class}.{name}");
             within(&entry("width_m"), road.width_m, 0.1..=500.0)?;
             within(&entry("min_width_px"), road.min_width_px, 0.1..=50.0)?;
+            if let Some(max_pixel_m) = road.max_pixel_m {
+                within(&entry("max_pixel_m"), max_pixel_m, 0.01..=1e6)?;
+            }
+            if let Some(max_width_px) = road.max_width_px {
+                within(&entry("max_width_px"), max_width_px, 0.1..=500.0)?;
+            }
             if let Some(center) = road.center {
                 within(&entry("center.width_share"), center.width_share, 0.01..=0.99)?;
             }
@@ -281,6 +293,9 @@ impl From<RoadSheet> for RoadStyle {
                 width_share: width_share as f32,
                 color: color.into(),
             }),
+            max_pixel_m: sheet.max_pixel_m.map(|max_pixel_m| max_pixel_m as f32),
+            max_width_px: sheet.max_width_px.map(|max_width_px| max_width_px as f32),
+            thin: sheet.thin.map(Rgb::from),
         }
     }
 }

@@ -21,6 +21,13 @@ pub struct RoadStyle {
     /// A line along the middle, for roads of two colours; drawn as a second, narrower road of the same class
     /// (the paper, section 6.2).
     pub center: Option<CenterLine>,
+    /// The most true metres of ground in a pixel at which roads are drawn in full; see [`RoadStyle::shown_share`]. `None`:
+    /// they always are.
+    pub max_pixel_m: Option<f32>,
+    /// Where widths grow with distance, roads grow no wider than this; `None`: without end. What is wider near the eye stays so.
+    pub max_width_px: Option<f32>,
+    /// Colour where a road is too thin for an edge; [`RoadStyle::color`] where it is `None`.
+    pub thin: Option<Rgb>,
 }
 
 /// The line along the middle of a road of two colours.
@@ -131,25 +138,38 @@ impl Style {
     /// `road-atlas`.
     #[must_use]
     pub fn road_atlas() -> Self {
-        let road = |width_m, min_width_px, color, outline| RoadStyle {
-            width_m,
-            min_width_px,
-            color: rgb(color),
-            outline: rgb(outline),
-            center: None,
-        };
+        let road =
+            |width_m, [min_width_px, max_width_px]: [f32; 2], color, outline, max_pixel_m| {
+                RoadStyle {
+                    width_m,
+                    min_width_px,
+                    color: rgb(color),
+                    outline: rgb(outline),
+                    center: None,
+                    max_pixel_m,
+                    max_width_px: Some(max_width_px),
+                    thin: None,
+                }
+            };
+        let thin = |color, road| RoadStyle { thin: Some(rgb(color)), ..road };
         let yellow = CenterLine { width_share: 0.3, color: rgb(0xFF_E8_8A) };
         Self {
             roads: [
-                RoadStyle { center: Some(yellow), ..road(24.0, 3.0, 0xD9_3A_2B, 0x5E_14_10) },
-                RoadStyle { center: Some(yellow), ..road(20.0, 2.6, 0xE8_6A_33, 0x6B_2A_0F) },
-                road(17.0, 2.2, 0xF4_9B_36, 0x77_42_0C),
-                road(14.0, 1.9, 0xFB_D3_4C, 0x7A_5C_12),
-                road(11.0, 1.5, 0xFF_F0_9C, 0x7D_6C_33),
-                road(8.5, 1.2, 0xFF_FF_FF, 0x74_6F_66),
-                road(7.0, 1.0, 0xFF_FF_FF, 0x80_7B_72),
-                road(5.0, 1.0, 0xF3_EC_E0, 0x8C_85_79),
-                road(3.5, 1.0, 0xE4_D8_C6, 0x97_8D_7F),
+                RoadStyle {
+                    center: Some(yellow),
+                    ..road(24.0, [3.0, 5.5], 0xD9_3A_2B, 0x5E_14_10, None)
+                },
+                RoadStyle {
+                    center: Some(yellow),
+                    ..road(20.0, [2.6, 5.0], 0xE8_6A_33, 0x6B_2A_0F, Some(600.0))
+                },
+                road(17.0, [2.2, 4.5], 0xF4_9B_36, 0x77_42_0C, Some(300.0)),
+                road(14.0, [1.9, 4.0], 0xFB_D3_4C, 0x7A_5C_12, Some(140.0)),
+                thin(0xC9_A2_27, road(11.0, [1.5, 3.4], 0xFF_F0_9C, 0x7D_6C_33, Some(60.0))),
+                thin(0x8E_86_78, road(8.5, [1.2, 3.2], 0xFF_FF_FF, 0x74_6F_66, Some(22.0))),
+                thin(0x93_8B_7E, road(7.0, [1.0, 2.8], 0xFF_FF_FF, 0x80_7B_72, Some(14.0))),
+                thin(0x8F_7A_58, road(5.0, [1.0, 2.0], 0xF0_E6_D4, 0x8C_85_79, Some(6.0))),
+                thin(0x8A_66_48, road(3.5, [1.0, 1.5], 0xE2_D2_BA, 0x97_8D_7F, Some(4.0))),
             ],
             own_widths: None,
             width_scaling: WidthScaling { threshold_m: 1500.0, exponent: 0.75, constant: 4.0 },

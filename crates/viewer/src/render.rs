@@ -5,6 +5,7 @@ use corniche_styles::Style;
 use crate::{
     attribution::draw_attribution,
     camera::Camera,
+    class_scale::LevelScales,
     eye_height::{clearance_m, rounded_up_m},
     frame_view::{FrameView, Wireframe},
     gpu::{DrawTile, Gpu, GpuError, ReadBackError, Renderer, Targets, TileBuffers},
@@ -29,6 +30,8 @@ pub struct RenderRequest {
     pub camera: CameraRequest,
     /// A tile is refined while its error looks larger than this.
     pub screen_space_error_px: f64,
+    /// A tile is refined while one of its cells looks larger than this, pixels.
+    pub cell_px: f64,
     /// Factor on heights; 1 is true.
     pub exaggeration: f64,
     /// Samples per pixel along each side, averaged; 1 takes the pixel's centre alone.
@@ -44,7 +47,7 @@ impl RenderRequest {
     /// # Errors
     /// When a number is out of its range.
     pub fn check(&self) -> Result<(), RenderError> {
-        range::check_ground(self.screen_space_error_px, self.exaggeration)?;
+        range::check_ground(self.screen_space_error_px, self.cell_px, self.exaggeration)?;
         range::check_supersampling(self.supersampling)?;
         Ok(range::check_camera(self.camera)?)
     }
@@ -137,6 +140,9 @@ pub fn render(
     let point_scale = package.manifest().point_scale;
     let quality = Quality {
         screen_space_error_px: request.screen_space_error_px,
+        cell_px: request.cell_px,
+        scales: LevelScales::of_roads(&package.manifest().levels, &request.style, request.roads),
+        point_scale,
         vertical_scale: request.exaggeration * point_scale,
     };
     let height_range_m = store
@@ -179,7 +185,7 @@ pub fn render(
         adapter: gpu.adapter_name().to_owned(),
         tiles: drawn.len() as u64,
         triangles: uploaded.iter().map(|(buffers, _)| buffers.triangles()).sum(),
-        road_segments: uploaded.iter().map(|(tile, _)| tile.road_segments(request.roads)).sum(),
+        road_segments: tiles.iter().map(|tile| tile.road_segments(&view)).sum(),
         clamped_tiles: scene::draw_list(&store, &drawn)
             .filter(|(tile, _)| scene::may_be_clamped(tile, &view))
             .count() as u64,

@@ -136,7 +136,7 @@ fn settled(
 ) -> (Vec<Drawn>, BTreeMap<TileId, TileGeometry>) {
     let budget =
         StreamBudget { tiles_in_flight: 4, upload_bytes_per_frame: 1 << 30, gpu_bytes: 1 << 30 };
-    let quality = Quality { screen_space_error_px: 0.1, vertical_scale: 1.0 };
+    let quality = Quality::by_error(0.1, 1.0);
     let mut streamer = Streamer::new(budget);
     let (mut decoded, mut resident) = (BTreeMap::new(), BTreeMap::new());
     for _ in 0..200 {

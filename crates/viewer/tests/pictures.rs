@@ -16,7 +16,7 @@ use corniche_viewer::{
         DIFFERENCE_COLORS, DrawTile, Gpu, GpuError, PassTimer, Picture, Renderer, Targets,
         TileBuffers,
     },
-    tiles::{TileGeometry, TileLines},
+    tiles::{RoadLook, TileGeometry, TileLines},
 };
 use glam::DVec2;
 use support::{class, frame, gpu, ground_line, lay, plain_style, terrain, triangles};
@@ -38,6 +38,7 @@ fn geometry(from: [f64; 2], to: [f64; 2]) -> TileGeometry {
         way_id: 1,
         class: class(2),
         own_width: OwnWidth::Unknown,
+        look: RoadLook::Plain,
         points_m: vec![from.to_array(), to.to_array()],
         ground_range_m: vec![ground.height_range_m],
     };

@@ -23,6 +23,7 @@ fn request(package: &Path) -> RenderRequest {
         roads: RoadOptions::of(RoadMethod::Geometry),
         camera: CameraRequest::Overview,
         screen_space_error_px: 2.0,
+        cell_px: f64::INFINITY,
         exaggeration: 1.0,
         supersampling: 2,
         style: Style::road_atlas(),

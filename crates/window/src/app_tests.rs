@@ -33,6 +33,7 @@ fn request() -> WindowRequest {
         styles: vec![NamedStyle { name: "atlas".to_owned(), style: Style::road_atlas() }],
         reload: None,
         screen_space_error_px: 0.01,
+        cell_px: f64::INFINITY,
         exaggeration: 1.0,
         samples_per_side: Some(1),
         budget: StreamBudget {

@@ -156,7 +156,7 @@ impl Canvas {
             .collect();
         for tile in &tiles {
             self.counts.triangles += tile.buffers.triangles();
-            self.counts.segments += tile.buffers.road_segments(roads);
+            self.counts.segments += tile.road_segments(&view);
         }
         // Times of another method do not count for this one.
         map.times = map.times.filter(|(method, _)| *method == roads.method);

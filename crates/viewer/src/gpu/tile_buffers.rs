@@ -1,4 +1,4 @@
-use corniche_geom::TileId;
+use corniche_geom::{Bounds, TileId};
 
 use super::{
     Gpu,
@@ -8,7 +8,10 @@ use super::{
     uniforms::TileUniforms,
 };
 use crate::{
-    options::{RoadMethod, RoadOptions},
+    camera::WorldBox,
+    class_scale,
+    frame_view::FrameView,
+    options::{ClassSet, RoadMethod},
     scene::BorderTile,
     tiles::TileGeometry,
 };
@@ -23,6 +26,8 @@ pub struct TileBuffers {
     segments: RoadBuffers,
     volumes: RoadBuffers,
     width_margin_m: f64,
+    /// Lowest and highest true height of its ground; `None` without ground.
+    height_range_m: Option<[f64; 2]>,
     triangles: u64,
 }
 
@@ -55,6 +60,7 @@ impl TileBuffers {
             segments: geo_roads::upload(gpu, &tile.roads),
             volumes: sv_roads::upload(gpu, &tile.volumes),
             width_margin_m: tile.width_margin_m,
+            height_range_m: tile.summary.map(|ground| ground.height_range_m),
             triangles: (tile.ground.surface_indices / 3) as u64,
         }
     }
@@ -63,14 +69,6 @@ impl TileBuffers {
     #[must_use]
     pub fn triangles(&self) -> u64 {
         self.triangles
-    }
-
-    /// How many segments or volumes of its roads are drawn with these options.
-    #[must_use]
-    pub fn road_segments(&self, roads: RoadOptions) -> u64 {
-        let drawn =
-            self.roads(roads.method).into_iter().flat_map(|drawn| drawn.runs(roads.classes));
-        drawn.map(|range| u64::from(range.end - range.start)).sum()
     }
 
     /// Bytes of its buffers on the graphics card; its wireframe counts once it has been shown.
@@ -100,6 +98,33 @@ impl DrawTile<'_> {
             skirt_depth_m: self.skirt_depth_m,
             ends: self.buffers.roads(method).map_or(&[], |roads| &roads.ends),
         }
+    }
+
+    /// How many segments or volumes of its roads are drawn in a view.
+    #[must_use]
+    pub fn road_segments(&self, view: &FrameView<'_>) -> u64 {
+        let roads = self.buffers.roads(view.roads.method);
+        let drawn = roads.into_iter().flat_map(|roads| roads.runs(self.shown_classes(view)));
+        drawn.map(|range| u64::from(range.end - range.start)).sum()
+    }
+
+    /// The classes of its roads that are shown somewhere.
+    pub(crate) fn shown_classes(&self, view: &FrameView<'_>) -> ClassSet {
+        class_scale::shown_classes(view, self.nearest_m(view))
+    }
+
+    /// No ground that its roads paint is nearer to the eye, world metres.
+    fn nearest_m(&self, view: &FrameView<'_>) -> f64 {
+        let TileBuffers { reference_m: [x, y, _], size_m, width_margin_m, .. } = *self.buffers;
+        let Some(height_range_m) = self.buffers.height_range_m else { return 0.0 };
+        let [east_m, north_m] = size_m.map(|side_m| side_m / 2.0);
+        let plan =
+            Bounds { min_x: x - east_m, min_y: y - north_m, max_x: x + east_m, max_y: y + north_m };
+        let ground =
+            WorldBox::new(plan, height_range_m.map(|height_m| height_m * view.vertical_scale()));
+        // GEO also paints the neighbours' ground, within the margin. Twice the margin allows for slopes of 60 degrees there.
+        let around_m = 2.0 * width_margin_m + self.skirt_depth_m * view.vertical_scale();
+        (ground.distance_m(view.camera.eye_in_world()) - around_m).max(0.0)
     }
 
     /// What shaders are told of it.

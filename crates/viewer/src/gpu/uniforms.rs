@@ -8,10 +8,14 @@ use glam::{DVec3, DVec4};
 use corniche_styles::OwnWidths;
 
 use crate::{
+    class_scale,
     frame_view::FrameView,
     options::{CapTest, Caps, RoadMethod},
     tiles::NearHeights,
 };
+
+/// Width of a slip road as a share of that of its class.
+const LINK_WIDTH_SHARE: f32 = 0.6;
 
 /// Bytes of a tile's block.
 pub(crate) const TILE_BYTES: u64 = 32;
@@ -69,7 +73,13 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
     rows.extend(style.roads.iter().map(|road| {
         let center_share = road.center.map_or(-1.0, |center| center.width_share);
         let half_width_m = road.width_m / 2.0 * scaling.constant;
-        [half_width_m, road.min_width_px / 2.0 * samples, center_share, 0.0]
+        // In pixels of the picture: how many samples a pixel has changes nothing.
+        let full_m = class_scale::full_distance_m(road, view.camera, view.point_scale) as f32;
+        [half_width_m, road.min_width_px / 2.0 * samples, center_share, full_m]
+    }));
+    rows.extend(style.roads.iter().map(|road| {
+        let limit = class_scale::half_width_limit(road, view.roads.width_growth, view.camera);
+        [limit as f32, LINK_WIDTH_SHARE, 0.0, 0.0]
     }));
     rows
 }

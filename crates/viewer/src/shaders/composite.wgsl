@@ -23,6 +23,8 @@ struct PictureColors {
     road_fills: array<vec4<f32>, CLASSES>,
     road_outlines: array<vec4<f32>, CLASSES>,
     road_centers: array<vec4<f32>, CLASSES>,
+    // Roads that are too thin for an edge.
+    road_thins: array<vec4<f32>, CLASSES>,
 }
 
 @group(1) @binding(4) var<uniform> colors: PictureColors;
@@ -38,8 +40,12 @@ fn label_of(stored: f32) -> u32 {
     return u32(round(stored * 255.0));
 }
 
+fn is_tunnel(label: u32) -> bool {
+    return label < TUNNEL_LABELS;
+}
+
 fn class_of(label: u32) -> u32 {
-    return CLASSES - label / 2u;
+    return CLASSES - select(label - TUNNEL_LABELS, label, is_tunnel(label)) / 2u;
 }
 
 // The largest label around a pixel, of roads on ground of at least this depth in the buffer.
@@ -110,7 +116,7 @@ fn background_at(ray: vec3<f32>, position: vec2<f32>) -> vec3<f32> {
 fn width_px(road_class: u32, distance_m: f32, depth: f32) -> f32 {
     // The tile, the direction of the road and its own width are not known here. So its width factor is that of the whole
     // package, and its width that of its class.
-    let road = road_with(road_class, 0.0, frame.road_options.z);
+    let road = road_with(road_class, PLAIN, 0.0, frame.road_options.z);
     return 2.0 * scaled_half_width_m(road, distance_m) / (frame.scale.x * depth * frame.road_scale.w);
 }
 
@@ -142,6 +148,20 @@ fn sight_at(position: vec2<f32>) -> Sight {
     return sight;
 }
 
+// What is left of the colours of a tunnel's surface and of its edge.
+const TUNNEL_FILL = 0.35;
+const TUNNEL_EDGE = 0.75;
+
+// How much of the width of a road is seen, if the road runs across the view: 1, and less where the ground at a pixel is
+// seen at less than 19 degrees. It must be asked for every pixel, in the sky too.
+fn facing_of(position: vec2<f32>, sight: Sight) -> f32 {
+    let ray = ray_at(position);
+    let ground = ray * sight.depth;
+    let normal = cross(dpdx(ground), dpdy(ground));
+    let sine = abs(dot(normal, ray)) / max(length(normal) * length(ray), 1e-30);
+    return clamp(3.0 * sine, 0.0, 1.0);
+}
+
 @fragment
 fn ground_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     return vec4(sight_at(position.xy).color, 1.0);
@@ -169,6 +189,7 @@ fn block_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f3
 fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = vec2<i32>(position.xy);
     let sight = sight_at(position.xy);
+    let facing = facing_of(position.xy, sight);
     if sight.depth_buffer == 0.0 {
         return vec4(sight.color, 1.0);
     }
@@ -178,18 +199,26 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
     let label = label_of(own);
     if label != 0u {
         let road_class = class_of(label);
-        let fill = select(colors.road_fills[road_class].rgb, colors.road_centers[road_class].rgb, (label & 1u) == 1u);
+        let seen_px = width_px(road_class, sight.distance_m, sight.depth);
+        let wide = select(colors.road_fills[road_class].rgb, colors.road_centers[road_class].rgb,
+            (label & 1u) == 1u && !is_tunnel(label));
+        let fill = mix(colors.road_thins[road_class].rgb, wide, smoothstep(1.0, 2.4, seen_px));
         // A road that is drawn wider than it is, because of its least width, is made paler.
         let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
-        let presence = clamp(width_px(road_class, sight.distance_m, sight.depth) / least_px, 0.35, 1.0);
+        let presence = clamp(seen_px / least_px, 0.5, 1.0) * shown_share(road_class, sight.distance_m)
+            * select(1.0, TUNNEL_FILL, is_tunnel(label));
         color = mix(color, mix(fill, colors.haze.rgb, 0.5 * sight.haze), presence);
     }
 
     let most = label_of(largest_around(pixel, own, sight.depth_buffer / FARTHER));
-    if most / 2u > label / 2u {
+    // The edge of a tunnel is dashed.
+    if most / 2u > label / 2u && (!is_tunnel(most) || (most & 1u) == 1u) {
         let road_class = class_of(most);
-        // Around a very thin road there is no edge, because it would hide the road.
-        let presence = smoothstep(1.5, 5.0, width_px(road_class, sight.distance_m, sight.depth));
+        // Around a very thin road there is no edge, because it would hide the road; nor around one that is seen so flat that
+        // the edge would break into dashes.
+        let seen_px = width_px(road_class, sight.distance_m, sight.depth) * facing;
+        let presence = smoothstep(1.2, 4.0, seen_px) * shown_share(road_class, sight.distance_m)
+            * select(1.0, TUNNEL_EDGE, is_tunnel(most));
         color = mix(color, mix(colors.road_outlines[road_class].rgb, colors.haze.rgb, 0.5 * sight.haze), presence);
     }
     return vec4(color, 1.0);

@@ -25,7 +25,7 @@ pub use self::{
     geometry::TileGeometry,
     map_extent::MapExtent,
     package::PackageTiles,
-    roads::{RoadList, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, TileLines},
+    roads::{RoadList, RoadLook, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, TileLines},
     source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},
     store::TileStore,
 };
@@ -33,5 +33,5 @@ pub(crate) use self::{
     geometry::WideWay,
     ground_mesh::{GroundMesh, GroundVertex},
     plan_scale::PlanScale,
-    roads::{BadRoad, Bed, GroundLine, NearHeights, RoadEnd},
+    roads::{BadRoad, Bed, GroundLine, NearHeights, RoadEnd, dash_m},
 };

@@ -64,7 +64,7 @@ impl<'a> TileStore<'a> {
         if !self.exists(TileId::ROOT) {
             return Ok(None);
         }
-        self.load(&[Request { id: TileId::ROOT, priority_px: f64::INFINITY }])?;
+        self.load(&[Request { id: TileId::ROOT, coarseness: f64::INFINITY }])?;
         Ok(self.get(TileId::ROOT).and_then(|root| root.summary))
     }
 
@@ -87,7 +87,7 @@ impl<'a> TileStore<'a> {
         let mut found = None;
         let mut next = self.source.exists(TileId::ROOT).then_some(TileId::ROOT);
         while let Some(id) = next {
-            self.load(&[Request { id, priority_px: f64::INFINITY }])?;
+            self.load(&[Request { id, coarseness: f64::INFINITY }])?;
             found = self.get(id).and_then(|tile| tile.ground_height_m(at)).or(found);
             next = (id.z() < self.max_level())
                 .then(|| id.children().find(|child| holds(&self.plan_bounds(*child), at)))

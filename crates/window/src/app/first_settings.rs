@@ -16,6 +16,7 @@ pub(crate) fn first_settings(request: &WindowRequest, is_software: bool) -> Sett
         style: 0,
         exaggeration: request.exaggeration,
         screen_space_error_px: request.screen_space_error_px,
+        cell_px: request.cell_px,
         samples_per_side: request.samples_per_side.unwrap_or(usual_samples),
         is_wireframe: false,
         refinement: Refinement::Live,

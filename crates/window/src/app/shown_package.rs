@@ -81,7 +81,7 @@ fn check_numbers(request: &WindowRequest) -> Result<(), WindowError> {
     if request.styles.is_empty() {
         return Err(WindowError::NoStyle);
     }
-    range::check_ground(request.screen_space_error_px, request.exaggeration)?;
+    range::check_ground(request.screen_space_error_px, request.cell_px, request.exaggeration)?;
     if let Some(samples) = request.samples_per_side {
         range::check_supersampling(samples)?;
     }

@@ -134,5 +134,6 @@ pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
         let center = road.center.map_or(road.color, |center| center.color);
         color(center, 1.0)
     }));
+    rows.extend(roads.iter().map(|road| color(road.thin.unwrap_or(road.color), 1.0)));
     rows
 }
