@@ -34,7 +34,7 @@ macro_rules! fields {
 }
 
 fields! {
-    TilePayload { id, terrain, roads_geo, roads_sv, attributes }
+    TilePayload { id, terrain, relief, roads_geo, roads_sv, attributes }
     Terrain { tin, normals, geometric_error_m, height_range_m, uncovered_nodes }
     TinVertex { row, column, height_q }
     GeoRoad { way_id, part, class, line }
@@ -69,6 +69,9 @@ type PayloadChange = (&'static str, fn(&mut Parts), Seen);
 
 const CHANGES: &[PayloadChange] = &[
     ("TilePayload.terrain", |parts| bare(parts).terrain = None, By(C::LevelSums)),
+    ("TilePayload.relief", |parts| bare(parts).relief = None, By(C::ReliefThere)),
+    ("TilePayload.relief", other_relief, By(C::Relief)),
+    ("TilePayload.relief", other_border, By(C::ReliefSeams)),
     ("TilePayload.roads_geo", |parts| drop(busy(parts).roads_geo.remove(0)), By(C::Methods)),
     ("TilePayload.roads_sv", without_sv, By(C::Methods)),
     ("TilePayload.attributes", |parts| drop(busy(parts).attributes.pop()), By(C::Attributes)),

@@ -1,13 +1,13 @@
 use std::num::{NonZeroU8, NonZeroU32};
 
 use corniche_drape::{DrapedLine, DrapedVertex, SvLine, drape};
-use corniche_geom::{Frame, LatticePoint, NodeIndex, Polyline, TileId};
+use corniche_geom::{Frame, HeightGrid, LatticePoint, NodeIndex, Polyline, TileId};
 use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
 use corniche_tin::{Surface, Tin, TinVertex};
 use proptest::prelude::*;
 
 use super::{
-    Damage, EncodeError, GeoRoad, PayloadContext, RoadRecord, Sections, SvRoad, Terrain,
+    Damage, EncodeError, GeoRoad, PayloadContext, Relief, RoadRecord, Sections, SvRoad, Terrain,
     TilePayload, context::Context, decode, encode,
 };
 
@@ -106,6 +106,15 @@ fn geo_roads(tin: &Tin, lines: &[Vec<[i64; 2]>]) -> Vec<GeoRoad> {
     roads
 }
 
+/// Ground with a void and a step, for shading.
+fn relief() -> Relief {
+    let heights = HeightGrid::from_fn(259, 259, |column, row| match (column / 100, row / 100) {
+        (1, 1) => f32::NAN,
+        (east, _) => east as f32 * 30.0,
+    });
+    Relief::of_heights(&heights, frame().level_cell(1), QUANTUM_M).unwrap()
+}
+
 /// One tile with all sections, small enough to try every damage.
 fn sample() -> TilePayload {
     let tin = grid_tin(
@@ -156,7 +165,14 @@ fn sample() -> TilePayload {
             },
         },
     ];
-    TilePayload { id: id(), terrain: Some(terrain(tin)), roads_geo, roads_sv, attributes }
+    TilePayload {
+        id: id(),
+        terrain: Some(terrain(tin)),
+        relief: Some(relief()),
+        roads_geo,
+        roads_sv,
+        attributes,
+    }
 }
 
 fn read(bytes: &[u8], wanted: Sections) -> Result<TilePayload, super::DecodeError> {
@@ -201,6 +217,7 @@ fn an_empty_tile_is_a_header() {
     let payload = TilePayload {
         id: id(),
         terrain: None,
+        relief: None,
         roads_geo: vec![],
         roads_sv: vec![],
         attributes: vec![],
@@ -416,7 +433,14 @@ proptest! {
         let lines: Vec<Vec<[i64; 2]>> = coarse.chain(fine).collect();
         let roads_geo = geo_roads(&tin, &lines);
         let terrain = Some(terrain(tin));
-        let payload = TilePayload { id: id(), terrain, roads_geo, roads_sv: vec![], attributes: vec![] };
+        let payload = TilePayload {
+            id: id(),
+            terrain,
+            relief: None,
+            roads_geo,
+            roads_sv: vec![],
+            attributes: vec![],
+        };
         let bytes = encode(&payload, &context()).unwrap().bytes;
         prop_assert_eq!(read(&bytes, Sections::ALL), Ok(payload));
     }
@@ -441,7 +465,14 @@ proptest! {
             })
             .collect();
         let payload =
-            TilePayload { id: id(), terrain: None, roads_geo: vec![], roads_sv: roads_sv.clone(), attributes: vec![] };
+            TilePayload {
+                id: id(),
+                terrain: None,
+                relief: None,
+                roads_geo: vec![],
+                roads_sv: roads_sv.clone(),
+                attributes: vec![],
+            };
         let decoded = read(&encode(&payload, &context()).unwrap().bytes, Sections::ALL).unwrap();
         prop_assert_eq!(decoded.roads_sv.len(), roads_sv.len());
         for (read, written) in decoded.roads_sv.iter().zip(&roads_sv) {
@@ -483,6 +514,7 @@ fn the_smallest_tile_has_these_bytes() {
     let payload = TilePayload {
         id: id(),
         terrain: Some(terrain),
+        relief: None,
         roads_geo,
         roads_sv: vec![],
         attributes: vec![],

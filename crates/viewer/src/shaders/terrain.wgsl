@@ -45,6 +45,8 @@ struct VertexOut {
     @builtin(position) clip: vec4<f32>,
     @location(0) normal: vec3<f32>,
     @location(1) height_m: f32,
+    // Metres from the tile's middle, east and north.
+    @location(2) plan_in_tile: vec2<f32>,
 }
 
 struct Pixel {
@@ -64,6 +66,7 @@ fn vertex(in: VertexIn) -> VertexOut {
     // Stretching the ground upwards flattens its normals' vertical part.
     out.normal = vec3(in.normal_skirt.xy * vertical_scale, in.normal_skirt.z);
     out.height_m = tile.base.x + in.position_in_tile.z;
+    out.plan_in_tile = in.position_in_tile.xy;
     return out;
 }
 
@@ -81,7 +84,7 @@ fn tint_at(height_m: f32) -> vec3<f32> {
 @fragment
 fn fragment(in: VertexOut) -> Pixel {
     // 1 on level ground, below on slopes turned away from the light, above on slopes turned towards it.
-    let lit = max(dot(normalize(in.normal), colors.light.xyz), 0.0) / colors.light.z;
+    let lit = max(dot(ground_normal(in.normal, in.plan_in_tile), colors.light.xyz), 0.0) / colors.light.z;
     let color = tint_at(in.height_m);
     // As on printed maps, shadows are blue rather than black.
     let shaded = color * vec3(0.36, 0.40, 0.52);
