@@ -195,9 +195,10 @@ fn a_tile_comes_back_whole() {
         encoded.sizes.roads_sv,
         encoded.sizes.attributes,
         encoded.sizes.road_tags,
+        encoded.sizes.relief,
     ];
     let stored: u64 = sections.iter().map(|size| size.stored).sum();
-    assert_eq!(encoded.bytes.len() as u64, 16 + 5 * 20 + 4 + stored);
+    assert_eq!(encoded.bytes.len() as u64, 16 + 6 * 20 + 4 + stored);
     assert_eq!(encode(&payload, &context()).unwrap(), encoded, "equal payloads make equal bytes");
 }
 
@@ -210,6 +211,8 @@ fn a_reader_takes_only_what_it_wants() {
     assert_eq!((sv.roads_sv, sv.attributes), (payload.roads_sv, payload.attributes));
     let geo = read(&bytes, Sections::ROADS_GEO).unwrap();
     assert_eq!((geo.terrain, geo.roads_geo), (payload.terrain, payload.roads_geo));
+    assert_eq!(geo.relief, None);
+    assert_eq!(read(&bytes, Sections::RELIEF).unwrap().relief, payload.relief);
 }
 
 #[test]
@@ -304,8 +307,9 @@ fn bombs_and_foreign_bytes_are_refused() {
     let resealed = |at: usize, value: &[u8]| {
         let mut bytes = bytes.clone();
         bytes[at..at + value.len()].copy_from_slice(value);
-        let sum = crc32fast::hash(&bytes[..116]);
-        bytes[116..120].copy_from_slice(&sum.to_le_bytes());
+        // Behind a table of six sections.
+        let sum = crc32fast::hash(&bytes[..136]);
+        bytes[136..140].copy_from_slice(&sum.to_le_bytes());
         bytes
     };
     assert!(matches!(part(b"PNG", Sections::ALL), Err(("header", Damage::TooShort))));

@@ -67,3 +67,7 @@ pub(crate) fn verify(
         }
     }
 }
+
+#[cfg(test)]
+#[path = "relief_tests.rs"]
+mod tests;
