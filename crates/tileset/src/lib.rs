@@ -35,7 +35,7 @@ mod payload;
 
 pub use manifest::{
     ClipRecord, Counts, Distribution, GrowthRow, InputRecord, LeftOutRecord, LevelRecord, Manifest,
-    PolygonRecord, RoadLoss, SampleCounts, SampleErrorRecord, ScaleRecord, SettingsRecord,
+    PolygonRecord, ReliefLevels, RoadLoss, SampleCounts, SampleErrorRecord, ScaleRecord, SettingsRecord,
     VerticalRecord,
 };
 pub use package::{
@@ -47,7 +47,7 @@ pub use package::{FilePackage, FileSource};
 #[cfg(feature = "write")]
 pub use package::{WriteError, Writer};
 pub use payload::{
-    Damage, DecodeError, EncodeError, GeoRoad, PayloadSizes, RoadRecord, SectionSize, Sections,
+    Damage, DecodeError, EncodeError, GeoRoad, PayloadSizes, Relief, RoadRecord, SectionSize, Sections,
     SvRoad, Terrain, TilePayload, decode, payload_sizes,
 };
 #[cfg(feature = "write")]

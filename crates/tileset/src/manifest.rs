@@ -3,6 +3,7 @@
 mod contents;
 mod counts;
 mod levels;
+mod relief_levels;
 
 pub(crate) mod check;
 
@@ -10,4 +11,5 @@ pub use contents::{
     ClipRecord, InputRecord, Manifest, PolygonRecord, ScaleRecord, SettingsRecord, VerticalRecord,
 };
 pub use counts::{Counts, GrowthRow, LeftOutRecord, RoadLoss, SampleCounts};
+pub use relief_levels::ReliefLevels;
 pub use levels::{Distribution, LevelRecord, SampleErrorRecord};

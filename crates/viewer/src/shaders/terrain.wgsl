@@ -33,6 +33,8 @@ struct VertexOut {
     @location(1) height_m: f32,
     // Relative to the eye, world metres.
     @location(2) position: vec3<f32>,
+    // Metres from the tile's middle, east and north.
+    @location(3) plan_in_tile: vec2<f32>,
 }
 
 struct Pixel {
@@ -55,6 +57,7 @@ fn vertex(in: VertexIn) -> VertexOut {
     // Stretching the ground upwards flattens its normals' vertical part.
     out.normal = vec3(in.normal_skirt.xy * vertical_scale, in.normal_skirt.z);
     out.height_m = tile.base.x + in.position_in_tile.z;
+    out.plan_in_tile = in.position_in_tile.xy;
     return out;
 }
 
@@ -64,7 +67,7 @@ fn owner_of_pixel() -> u32 {
 
 @fragment
 fn fragment(in: VertexOut) -> Pixel {
-    let normal = normalize(in.normal);
+    let normal = ground_normal(in.normal, in.plan_in_tile);
     var color = colors.water.rgb;
     if !is_water(normal, in.height_m) {
         color = shaded(tint_at(in.height_m), normal);

@@ -13,6 +13,7 @@ mod on_disk;
 mod package;
 pub(crate) mod plan_scale;
 mod relief;
+mod shading_slopes;
 pub(crate) mod roads;
 mod slopes;
 mod source;
@@ -29,6 +30,7 @@ pub use self::{
     source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},
     store::TileStore,
 };
+pub(crate) use self::shading_slopes::ShadingSlopes;
 pub(crate) use self::{
     geometry::WideWay,
     ground_mesh::{GroundMesh, GroundVertex},

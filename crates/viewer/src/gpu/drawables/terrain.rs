@@ -13,13 +13,14 @@ use super::super::{
     ground_buffers::{GROUND_VERTICES, GroundBuffers},
     pipeline::{ENTRIES, PipelineRecipe, Shader, depth_test, shader},
     shared_bindings::{SharedBindings, SharedLayouts},
+    tile_textures::{self, TileTextures},
     uniforms::{color, row},
 };
 use corniche_styles::{Light, MOST_TINT_STOPS, Style};
 
 use crate::frame_view::{FrameView, Wireframe};
 
-pub(crate) const SHADER: Shader = shader!("terrain": "common", "ground_look", "terrain");
+pub(crate) const SHADER: Shader = shader!("terrain": "common", "ground_look", "relief", "terrain");
 
 /// By how much the direction of the second light is turned, clockwise.
 const SECOND_LIGHT_DEG: f64 = -60.0;
@@ -36,7 +37,9 @@ pub(crate) struct Terrain {
 impl Terrain {
     pub(crate) fn new(device: &Device, layouts: &SharedLayouts) -> Self {
         let layout = layout(device, "ground colors", &[uniform(0, None)]);
-        let groups = [Some(&layouts.frame), Some(&layouts.tile), Some(&layout)];
+        let textures = tile_textures::layout_of(device);
+        let groups =
+            [Some(&layouts.frame), Some(&layouts.tile), Some(&layout), Some(&textures)];
         let ground = |constants| PipelineRecipe {
             shader: SHADER,
             entries: ENTRIES,
@@ -73,7 +76,7 @@ impl Terrain {
         gpu: &Gpu,
         pass: &mut RenderPass<'_>,
         shared: &SharedBindings,
-        tiles: &[(usize, &GroundBuffers)],
+        tiles: &[(usize, &GroundBuffers, &TileTextures)],
         view: &FrameView<'_>,
     ) {
         let rows = rows(view);
@@ -82,26 +85,30 @@ impl Terrain {
         shared.set_frame(pass);
         pass.set_bind_group(2, &group(gpu, &self.layout, &[colors.as_entire_binding()]), &[]);
         pass.set_pipeline(&self.surface);
-        for (index, ground) in tiles {
+        for (index, ground, textures) in tiles {
             shared.set_tile(pass, *index);
+            textures.set(pass);
             ground.draw_surface(pass);
         }
         pass.set_pipeline(&self.skirts);
-        for (index, ground) in tiles {
+        for (index, ground, textures) in tiles {
             shared.set_tile(pass, *index);
+            textures.set(pass);
             ground.draw_skirts(pass);
         }
         if view.wall_m > 0.0 {
             pass.set_pipeline(&self.walls);
-            for (index, ground) in tiles {
+            for (index, ground, textures) in tiles {
                 shared.set_tile(pass, *index);
+                textures.set(pass);
                 ground.draw_walls(pass);
             }
         }
         if view.wireframe == Wireframe::Shown {
             pass.set_pipeline(&self.wires);
-            for (index, ground) in tiles {
+            for (index, ground, textures) in tiles {
                 shared.set_tile(pass, *index);
+                textures.set(pass);
                 ground.draw_edges(gpu, pass);
             }
         }
