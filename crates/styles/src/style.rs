@@ -104,6 +104,8 @@ pub struct Style {
     pub light_altitude_deg: f64,
     /// How strongly slopes are shaded, 0 to 1.
     pub hillshade: f32,
+    /// How strongly photos are seen where a package has some, 0 (not) to 1 (instead of the height tint).
+    pub photo: f32,
     /// Colour of far ground and of the sky at the horizon.
     pub haze: Rgb,
     /// Colour of the sky far above the horizon.
@@ -169,6 +171,7 @@ impl Style {
             light_azimuth_deg: 315.0,
             light_altitude_deg: 45.0,
             hillshade: 0.75,
+            photo: 1.0,
             haze: rgb(0xDC_E6_EE),
             sky: rgb(0x9F_C1_E0),
             void: rgb(0xC9_D8_E4),

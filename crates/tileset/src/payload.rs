@@ -12,6 +12,7 @@ mod context;
 mod envelope;
 
 mod attributes;
+mod photo;
 mod road_tags;
 mod roads_geo;
 mod roads_sv;
@@ -32,6 +33,9 @@ pub use decode::decode;
 #[cfg(feature = "write")]
 pub use encode::{EncodedTile, PayloadContext, encode, encode_with_ground_of};
 pub use envelope::SectionSize;
+pub use photo::{MAX_PHOTO_LEVELS, PHOTO_BORDER, Photo, decode_photo};
+#[cfg(feature = "write")]
+pub use photo::{PhotoSection, encode_photo, photo_section, with_photo};
 pub use section_kind::Sections;
 pub use sizes::{PayloadSizes, payload_sizes};
 pub use tile_payload::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};

@@ -123,6 +123,7 @@ fn encode_sections(
         roads_sv: size(Kind::RoadsSv),
         attributes: size(Kind::Attributes),
         road_tags: size(Kind::RoadTags),
+        photo: SectionSize::default(),
         geo_class_bytes,
         sv_class_bytes,
     };

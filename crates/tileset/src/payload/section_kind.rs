@@ -32,6 +32,7 @@ kinds! {
     RoadsSv = 3, "SV roads section";
     Attributes = 4, "road attributes section";
     RoadTags = 5, "road tags section";
+    Photo = 7, "photo section";
 }
 
 /// Which sections of a payload to decode; combine them with `|`.
@@ -49,6 +50,8 @@ impl Sections {
     pub const ROADS_SV: Self = Self::of(Kind::RoadsSv);
     /// The attributes of each way, of both sections that have some.
     pub const ATTRIBUTES: Self = Self(Self::of(Kind::Attributes).0 | Self::of(Kind::RoadTags).0);
+    /// The photo. [`decode`](crate::decode) checks it; [`decode_photo`](crate::decode_photo) gives it.
+    pub const PHOTO: Self = Self::of(Kind::Photo);
     /// Everything, checksums of sections of unknown kinds included.
     pub const ALL: Self = Self::all();
 

@@ -3,7 +3,7 @@ use corniche_geom::TileId;
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_tin::Tin;
 
-/// All that a tile holds, decoded. A section that is absent from the bytes is empty or `None` here.
+/// All that a tile holds, decoded, but for its photo ([`decode_photo`](crate::decode_photo)). A section that is absent from the bytes is empty or `None` here.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TilePayload {
     /// The tile.

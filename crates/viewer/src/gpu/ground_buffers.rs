@@ -7,8 +7,8 @@ use wgpu::{
     VertexStepMode, vertex_attr_array,
 };
 
-use super::Gpu;
-use crate::tiles::{GroundMesh, GroundVertex};
+use super::{Gpu, photo_texture::PhotoTexture};
+use crate::tiles::{GroundMesh, GroundVertex, PhotoImage};
 
 /// Bytes of a vertex: position as three f32, normal and skirt flag as four i8.
 const VERTEX_BYTES: u64 = 16;
@@ -31,11 +31,13 @@ pub(crate) struct GroundBuffers {
     /// Three indices for each triangle of the ground, from which the edges are made.
     triangles: Vec<u32>,
     edges: OnceLock<Buffer>,
+    /// Its photo, if it has one.
+    photo: Option<PhotoTexture>,
 }
 
 impl GroundBuffers {
     /// Uploads the ground of a tile; `None` if there is none.
-    pub(crate) fn new(gpu: &Gpu, mesh: &GroundMesh) -> Option<Self> {
+    pub(crate) fn new(gpu: &Gpu, mesh: &GroundMesh, photo: Option<&PhotoImage>) -> Option<Self> {
         let buffer = |contents: &[u8], usage| gpu.buffer("tile", contents, usage);
         let all = mesh.indices.len() as u32;
         let surface = mesh.surface_indices as u32;
@@ -46,19 +48,26 @@ impl GroundBuffers {
             skirts: surface..all,
             triangles: mesh.indices[..mesh.surface_indices].to_vec(),
             edges: OnceLock::new(),
+            photo: photo.map(|photo| PhotoTexture::new(gpu, photo)),
         })
     }
 
-    /// Bytes of the buffers that [`GroundBuffers::new`] makes of a mesh.
-    pub(crate) fn bytes_of(mesh: &GroundMesh) -> u64 {
-        mesh.vertices.len() as u64 * VERTEX_BYTES
+    /// Bytes of the buffers and the texture that [`GroundBuffers::new`] makes of a mesh and a photo.
+    pub(crate) fn bytes_of(mesh: &GroundMesh, photo: Option<&PhotoImage>) -> u64 {
+        photo.map_or(0, PhotoImage::bytes)
+            + mesh.vertices.len() as u64 * VERTEX_BYTES
             + mesh.indices.len() as u64 * size_of::<u32>() as u64
     }
 
-    /// Bytes of its buffers; the edges count once they have been drawn.
+    /// Its photo, if it has one.
+    pub(crate) fn photo(&self) -> Option<&PhotoTexture> {
+        self.photo.as_ref()
+    }
+
+    /// Bytes of its buffers and its photo; the edges count once they have been drawn.
     pub(crate) fn gpu_bytes(&self) -> u64 {
         let buffers = [&self.vertices, &self.indices].into_iter().chain(self.edges.get());
-        buffers.map(Buffer::size).sum()
+        buffers.map(Buffer::size).sum::<u64>() + self.photo().map_or(0, PhotoTexture::bytes)
     }
 
     /// Two indices for each edge of the ground. The buffer is made when the edges are first drawn, because few pictures

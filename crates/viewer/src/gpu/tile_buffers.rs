@@ -38,7 +38,7 @@ pub struct DrawTile<'a> {
 /// when it is first shown.
 #[must_use]
 pub fn tile_bytes(tile: &TileGeometry) -> u64 {
-    GroundBuffers::bytes_of(&tile.ground)
+    GroundBuffers::bytes_of(&tile.ground, tile.photo.as_ref())
         + geo_roads::bytes_of(&tile.roads)
         + sv_roads::bytes_of(&tile.volumes)
 }
@@ -51,7 +51,7 @@ impl TileBuffers {
             id: tile.id,
             reference_m: tile.reference_m,
             size_m: tile.size_m,
-            ground: GroundBuffers::new(gpu, &tile.ground),
+            ground: GroundBuffers::new(gpu, &tile.ground, tile.photo.as_ref()),
             segments: geo_roads::upload(gpu, &tile.roads),
             volumes: sv_roads::upload(gpu, &tile.volumes),
             width_margin_m: tile.width_margin_m,

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Bytes of a tile's block.
-pub(crate) const TILE_BYTES: u64 = 32;
+pub(crate) const TILE_BYTES: u64 = 48;
 
 /// The frame's block, as `struct Frame` of `shaders/common.wgsl` declares it.
 pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f32; 4]> {
@@ -90,7 +90,7 @@ pub(crate) struct TileUniforms {
 
 /// A tile's block, as `struct Tile` of `shaders/coverage.wgsl` and `shaders/terrain.wgsl` declares it. `number` is the tile's
 /// number in the frame, from 1; numbers below 2^24 are exact in f32.
-pub(crate) fn tile_rows(view: &FrameView<'_>, tile: &TileUniforms, number: u32) -> [[f32; 4]; 2] {
+pub(crate) fn tile_rows(view: &FrameView<'_>, tile: &TileUniforms, number: u32) -> [[f32; 4]; 3] {
     let [x, y, height_m] = tile.reference_m;
     let reference_in_world = DVec3::new(x, y, height_m * view.vertical_scale());
     let offset = reference_in_world - view.camera.eye_in_world();
@@ -102,6 +102,7 @@ pub(crate) fn tile_rows(view: &FrameView<'_>, tile: &TileUniforms, number: u32) 
             f64::from(number),
             NearHeights::reach_m(tile.size_m),
         )),
+        row(DVec4::new(tile.size_m[0], tile.size_m[1], 0.0, 0.0)),
     ]
 }
 

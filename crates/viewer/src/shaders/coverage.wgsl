@@ -20,6 +20,8 @@ struct Tile {
     // x: true height of the reference point; y: widest half width that may be drawn, world metres; z: the tile's
     // number in this frame, from 1; w: within how many world metres near heights hold.
     base: vec4<f32>,
+    // xy: the tile's sides, metres.
+    sides: vec4<f32>,
 }
 
 @group(1) @binding(0) var<uniform> tile: Tile;

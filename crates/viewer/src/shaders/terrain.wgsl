@@ -10,6 +10,8 @@ struct Tile {
     offset: vec4<f32>,
     // x: true height of the reference point; z: the tile's number in this frame, from 1.
     base: vec4<f32>,
+    // xy: the tile's sides, metres.
+    sides: vec4<f32>,
 }
 
 @group(1) @binding(0) var<uniform> tile: Tile;
@@ -20,7 +22,7 @@ const TINT_STOPS = 6u;
 struct GroundColors {
     // xyz: towards the light; w: strength of the hillshade.
     light: vec4<f32>,
-    // x: lowest ground; y: 1 / height range.
+    // x: lowest ground; y: 1 / height range; z: strength of photos.
     heights: vec4<f32>,
     // rgb; w: share of the height range.
     tint: array<vec4<f32>, TINT_STOPS>,
@@ -45,6 +47,8 @@ struct VertexOut {
     @builtin(position) clip: vec4<f32>,
     @location(0) normal: vec3<f32>,
     @location(1) height_m: f32,
+    // From the tile's middle.
+    @location(2) in_tile: vec2<f32>,
 }
 
 struct Pixel {
@@ -64,6 +68,7 @@ fn vertex(in: VertexIn) -> VertexOut {
     // Stretching the ground upwards flattens its normals' vertical part.
     out.normal = vec3(in.normal_skirt.xy * vertical_scale, in.normal_skirt.z);
     out.height_m = tile.base.x + in.position_in_tile.z;
+    out.in_tile = in.position_in_tile.xy;
     return out;
 }
 
@@ -82,11 +87,15 @@ fn tint_at(height_m: f32) -> vec3<f32> {
 fn fragment(in: VertexOut) -> Pixel {
     // 1 on level ground, below on slopes turned away from the light, above on slopes turned towards it.
     let lit = max(dot(normalize(in.normal), colors.light.xyz), 0.0) / colors.light.z;
-    let color = tint_at(in.height_m);
+    let photo = photo_at(in.in_tile, tile.sides.xy);
+    let photo_share = photo.a * colors.heights.z;
+    let color = mix(tint_at(in.height_m), photo.rgb, photo_share);
+    // A photo has shadows of its own.
+    let hillshade = colors.light.w * (1.0 - 0.5 * photo_share);
     // As on printed maps, shadows are blue rather than black.
     let shaded = color * vec3(0.36, 0.40, 0.52);
-    let dark = mix(color, shaded, colors.light.w * clamp(1.0 - lit, 0.0, 1.0));
-    let bright = mix(dark, vec3(1.0), colors.light.w * clamp(lit - 1.0, 0.0, 1.0) * 0.9);
+    let dark = mix(color, shaded, hillshade * clamp(1.0 - lit, 0.0, 1.0));
+    let bright = mix(dark, vec3(1.0), hillshade * clamp(lit - 1.0, 0.0, 1.0) * 0.9);
     let owner = u32(tile.base.z) | (SKIRT << 31u);
     return Pixel(vec4(bright, select(1.0, 0.5, SKIRT == 1u)), owner);
 }

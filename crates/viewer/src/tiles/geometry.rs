@@ -4,7 +4,10 @@ use corniche_styles::OwnWidths;
 use corniche_tileset::{Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 
-use super::{BadRoad, GroundMesh, PlanScale, RoadSegments, RoadVolumes, TileLines, relief::Relief};
+use super::{
+    BadRoad, GroundMesh, PhotoImage, PlanScale, RoadSegments, RoadVolumes, TileLines,
+    relief::Relief,
+};
 use crate::lod::GroundSummary;
 
 /// A decoded tile, ready to be uploaded: positions are f32 and relative to the tile's reference point.
@@ -18,6 +21,8 @@ pub struct TileGeometry {
     pub summary: Option<GroundSummary>,
     /// The ground and its skirts.
     pub(crate) ground: GroundMesh,
+    /// The photo of the ground; `None` if there is none, or it was not read.
+    pub photo: Option<PhotoImage>,
     /// The roads on it as geometry (GEO); empty if that section was not read.
     pub roads: RoadSegments,
     /// The roads on it as volumes (SV); empty if that section was not read.
@@ -112,6 +117,7 @@ impl TileGeometry {
             reference_m,
             summary,
             ground,
+            photo: None,
             most_width_factor,
             roads: RoadSegments::of_lines(&lines.ground, bounds, reference_m, scale, |piece| {
                 relief.bed(piece, wide.as_ref())
@@ -145,10 +151,15 @@ impl TileGeometry {
         Ok(Self::on_surface(id, terrain, surface.as_ref(), &lines, frame, quantum_m))
     }
 
-    /// The same tile without its roads: enough for rays and heights.
+    /// The same tile without its roads and its photo: enough for rays and heights.
     #[must_use]
     pub fn without_roads(self) -> Self {
-        Self { roads: RoadSegments::default(), volumes: RoadVolumes::default(), ..self }
+        Self {
+            roads: RoadSegments::default(),
+            volumes: RoadVolumes::default(),
+            photo: None,
+            ..self
+        }
     }
 
     /// The rectangle that it covers in the working CRS.

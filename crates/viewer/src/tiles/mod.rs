@@ -10,6 +10,7 @@ mod ground_mesh;
 #[cfg(not(target_arch = "wasm32"))]
 mod on_disk;
 mod package;
+mod photo;
 pub(crate) mod plan_scale;
 mod relief;
 pub(crate) mod roads;
@@ -23,6 +24,7 @@ pub use self::on_disk::PackageSource;
 pub use self::{
     geometry::TileGeometry,
     package::PackageTiles,
+    photo::PhotoImage,
     roads::{RoadList, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, TileLines},
     source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},
     store::TileStore,

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use wgpu::{
-    BindGroupLayout, BufferUsages, ColorWrites, CompareFunction, Device, PrimitiveTopology,
-    RenderPass, RenderPipeline,
+    BindGroup, BindGroupLayout, BufferUsages, ColorWrites, CompareFunction, Device,
+    PrimitiveTopology, RenderPass, RenderPipeline,
 };
 
 use super::super::{
@@ -11,6 +11,7 @@ use super::super::{
     bindings::{group, layout, uniform},
     formats::{COLOR, OWNER},
     ground_buffers::{GROUND_VERTICES, GroundBuffers},
+    photo_texture::PhotoBindings,
     pipeline::{ENTRIES, PipelineRecipe, Shader, depth_test, shader},
     shared_bindings::{SharedBindings, SharedLayouts},
     uniforms::{color, row},
@@ -19,7 +20,7 @@ use corniche_styles::Style;
 
 use crate::frame_view::{FrameView, Wireframe};
 
-pub(crate) const SHADER: Shader = shader!("terrain": "common", "terrain");
+pub(crate) const SHADER: Shader = shader!("terrain": "common", "photo", "terrain");
 
 /// Draws the ground of tiles.
 pub(crate) struct Terrain {
@@ -27,12 +28,15 @@ pub(crate) struct Terrain {
     surface: RenderPipeline,
     skirts: RenderPipeline,
     wires: RenderPipeline,
+    photos: PhotoBindings,
 }
 
 impl Terrain {
     pub(crate) fn new(device: &Device, layouts: &SharedLayouts) -> Self {
         let layout = layout(device, "ground colors", &[uniform(0, None)]);
-        let groups = [Some(&layouts.frame), Some(&layouts.tile), Some(&layout)];
+        let photos = PhotoBindings::new(device);
+        let groups =
+            [Some(&layouts.frame), Some(&layouts.tile), Some(&layout), Some(&photos.layout)];
         let ground = |constants| PipelineRecipe {
             shader: SHADER,
             entries: ENTRIES,
@@ -57,7 +61,7 @@ impl Terrain {
         let surface = ground(&[("SKIRT", 0.0)]).build(device);
         let skirts = ground(&[("SKIRT", 1.0)]).build(device);
         let wires = wires.build(device);
-        Self { layout, surface, skirts, wires }
+        Self { layout, surface, skirts, wires, photos }
     }
 
     /// Draws the ground of some tiles, each given with its index in the list of tiles of the frame, into the targets of the
@@ -75,20 +79,26 @@ impl Terrain {
             gpu.buffer("ground colors", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
         shared.set_frame(pass);
         pass.set_bind_group(2, &group(gpu, &self.layout, &[colors.as_entire_binding()]), &[]);
+        let photos: Vec<BindGroup> =
+            tiles.iter().map(|(_, ground)| self.photos.group(gpu, ground.photo())).collect();
+        let set_tile = |pass: &mut RenderPass<'_>, index: usize, photo: &BindGroup| {
+            shared.set_tile(pass, index);
+            pass.set_bind_group(3, photo, &[]);
+        };
         pass.set_pipeline(&self.surface);
-        for (index, ground) in tiles {
-            shared.set_tile(pass, *index);
+        for ((index, ground), photo) in tiles.iter().zip(&photos) {
+            set_tile(pass, *index, photo);
             ground.draw_surface(pass);
         }
         pass.set_pipeline(&self.skirts);
-        for (index, ground) in tiles {
-            shared.set_tile(pass, *index);
+        for ((index, ground), photo) in tiles.iter().zip(&photos) {
+            set_tile(pass, *index, photo);
             ground.draw_skirts(pass);
         }
         if view.wireframe == Wireframe::Shown {
             pass.set_pipeline(&self.wires);
-            for (index, ground) in tiles {
-                shared.set_tile(pass, *index);
+            for ((index, ground), photo) in tiles.iter().zip(&photos) {
+                set_tile(pass, *index, photo);
                 ground.draw_edges(gpu, pass);
             }
         }
@@ -101,7 +111,7 @@ pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
     let [lowest_m, highest_m] = view.height_range_m;
     let mut rows = vec![
         row(direction_to_light(style).extend(f64::from(style.hillshade))),
-        [lowest_m as f32, (1.0 / (highest_m - lowest_m).max(1.0)) as f32, 0.0, 0.0],
+        [lowest_m as f32, (1.0 / (highest_m - lowest_m).max(1.0)) as f32, style.photo, 0.0],
     ];
     rows.extend(style.tint.iter().map(|(share, rgb)| color(*rgb, *share)));
     rows
