@@ -64,6 +64,9 @@ impl Filter {
         let allowed = [0, 1].map(|k| pixels.start[k]..pixels.start[k] + end[k] as i64);
         self.columns.set(position[0], radius[0], &allowed[0]);
         self.rows.set(position[1], radius[1], &allowed[1]);
+        if self.columns.weights.is_empty() || self.rows.weights.is_empty() {
+            return Light::default();
+        }
         let mut sums = [0.0; 4];
         for (row, row_weight) in self.rows.weights.iter().enumerate() {
             let line = (self.rows.first - pixels.start[1]) as usize + row;
