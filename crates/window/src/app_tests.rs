@@ -32,6 +32,7 @@ fn request() -> WindowRequest {
         roads: RoadOptions::of(RoadMethod::ShadowVolumes),
         styles: vec![NamedStyle { name: "atlas".to_owned(), style: Style::road_atlas() }],
         reload: None,
+        photo: None,
         screen_space_error_px: 0.01,
         cell_px: f64::INFINITY,
         exaggeration: 1.0,

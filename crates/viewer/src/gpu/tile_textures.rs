@@ -9,28 +9,30 @@ use wgpu::{
 use super::{
     Gpu,
     bindings::{group, layout, texture, uniform},
+    photo_texture::{self, PhotoTexture},
 };
-use crate::tiles::{ShadingSlopes, TileGeometry};
+use crate::tiles::{PhotoImage, ShadingSlopes, TileGeometry};
 
 /// The number of the bind group.
 const GROUP: u32 = 3;
 
-/// The textures of a tile's ground, as `shaders/relief.wgsl` declares them.
+/// The textures of a tile's ground, as `shaders/relief.wgsl` and `shaders/photo.wgsl` declare them.
 pub(crate) struct TileTextures {
     group: BindGroup,
     bytes: u64,
 }
 
-/// The layout of the bind group: the block `struct TileTextures`, a sampler, the slopes.
+/// The layout of the bind group: the block `struct TileTextures`, a sampler, the slopes; the photo, its sampler.
 pub(crate) fn layout_of(device: &Device) -> BindGroupLayout {
-    let sampler = BindGroupLayoutEntry {
-        binding: 1,
+    let sampler = |binding| BindGroupLayoutEntry {
+        binding,
         visibility: ShaderStages::FRAGMENT,
         ty: BindingType::Sampler(SamplerBindingType::Filtering),
         count: None,
     };
-    let slopes = texture(2, TextureSampleType::Float { filterable: true });
-    layout(device, "tile textures", &[uniform(0, None), sampler, slopes])
+    let [slopes, photo] =
+        [2, 3].map(|binding| texture(binding, TextureSampleType::Float { filterable: true }));
+    layout(device, "tile textures", &[uniform(0, None), sampler(1), slopes, photo, sampler(4)])
 }
 
 /// The block `struct TileTextures`.
@@ -71,10 +73,15 @@ impl TileTextures {
         });
         let block =
             gpu.buffer("tile textures", bytemuck::cast_slice(&rows(tile)), BufferUsages::UNIFORM);
+        let photo = tile.photo.as_ref();
+        let photo = photo.map_or_else(|| PhotoTexture::none(gpu), |photo| PhotoTexture::new(gpu, photo));
+        let photo_sampler = photo_texture::sampler(&gpu.device);
         let resources = [
             block.as_entire_binding(),
             BindingResource::Sampler(&sampler),
             BindingResource::TextureView(&view),
+            BindingResource::TextureView(photo.view()),
+            BindingResource::Sampler(&photo_sampler),
         ];
         Self {
             group: group(gpu, &layout_of(&gpu.device), &resources),
@@ -85,7 +92,8 @@ impl TileTextures {
     /// Bytes of the textures that [`TileTextures::new`] makes.
     pub(crate) fn bytes_of(tile: &TileGeometry) -> u64 {
         let slopes = tile.shading.as_ref().map_or(4, |slopes| size_of_val(slopes.texels()));
-        (slopes + size_of_val(&rows(tile))) as u64
+        let photo = tile.photo.as_ref().map_or(4, PhotoImage::bytes);
+        (slopes + size_of_val(&rows(tile))) as u64 + photo
     }
 
     /// Bytes on the graphics card.
