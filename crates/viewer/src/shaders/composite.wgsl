@@ -132,7 +132,8 @@ struct Sight {
 }
 
 fn sight_at(position: vec2<f32>) -> Sight {
-    let pixel = vec2<i32>(position);
+    // Derivatives also ask for places beyond the last row and column.
+    let pixel = min(vec2<i32>(position), vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1);
     let ray = ray_at(position);
     var sight: Sight;
     sight.depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
@@ -152,14 +153,17 @@ fn sight_at(position: vec2<f32>) -> Sight {
 const TUNNEL_FILL = 0.35;
 const TUNNEL_EDGE = 0.75;
 
+const LEAST_FACING = 0.3;
+
 // How much of the width of a road is seen, if the road runs across the view: 1, and less where the ground at a pixel is
-// seen at less than 19 degrees. It must be asked for every pixel, in the sky too.
+// seen at less than 19 degrees. At a silhouette, where this cannot be told, it is at least LEAST_FACING, so that a wide road
+// keeps its edge there. It must be asked for every pixel, in the sky too.
 fn facing_of(position: vec2<f32>, sight: Sight) -> f32 {
     let ray = ray_at(position);
     let ground = ray * sight.depth;
     let normal = cross(dpdx(ground), dpdy(ground));
     let sine = abs(dot(normal, ray)) / max(length(normal) * length(ray), 1e-30);
-    return clamp(3.0 * sine, 0.0, 1.0);
+    return clamp(3.0 * sine, LEAST_FACING, 1.0);
 }
 
 @fragment
@@ -202,7 +206,7 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
         let seen_px = width_px(road_class, sight.distance_m, sight.depth);
         let wide = select(colors.road_fills[road_class].rgb, colors.road_centers[road_class].rgb,
             (label & 1u) == 1u && !is_tunnel(label));
-        let fill = mix(colors.road_thins[road_class].rgb, wide, smoothstep(1.0, 2.4, seen_px));
+        let fill = mix(colors.road_thins[road_class].rgb, wide, smoothstep(1.4, 3.2, seen_px));
         // A road that is drawn wider than it is, because of its least width, is made paler.
         let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
         let presence = clamp(seen_px / least_px, 0.5, 1.0) * shown_share(road_class, sight.distance_m)
