@@ -63,9 +63,11 @@ fn terrain_of_a_package_comes_with_its_relief_or_without_but_not_with_another() 
         assert!(new == fs::read(at(wanted)).unwrap(), "{from} {options:?}");
         fs::remove_file(at("new.pmtiles")).unwrap();
     }
-    for (from, asked, has) in
-        [("off.pmtiles", "full", "off"), ("off.pmtiles", "finest", "off"), ("full.pmtiles", "finest", "full")]
-    {
+    for (from, asked, has) in [
+        ("off.pmtiles", "full", "off"),
+        ("off.pmtiles", "finest", "off"),
+        ("full.pmtiles", "finest", "full"),
+    ] {
         let ran = build(from, "new.pmtiles", &["--relief", asked]);
         assert_eq!(ran.code, 2, "{}", ran.err);
         let said = format!("--relief is {asked}, it was made with {has}");

@@ -13,8 +13,8 @@ use corniche_pipeline::{
     TerrainRecord, TerrainSettings,
 };
 use corniche_presets::{
-    BoundsChoice, InputFiles, OutputFiles, PhotoOptions, ReliefChoice, RoadOptions, TerrainOptions, check_cell,
-    class_filter, is_range, parse_memory,
+    BoundsChoice, InputFiles, OutputFiles, PhotoOptions, ReliefChoice, RoadOptions, TerrainOptions,
+    check_cell, class_filter, is_range, parse_memory,
 };
 use corniche_roads::ClassFilter;
 use corniche_tileset::ReliefLevels;
@@ -139,11 +139,7 @@ struct Cut {
 fn usual_terrain() -> TerrainRecord {
     let plan = PlanOptions { fill_voids: FILL_VOIDS, ..PlanOptions::default() };
     TerrainRecord {
-        terrain: TerrainSettings {
-            plan,
-            relief: ReliefLevels::Full,
-            ..TerrainSettings::default()
-        },
+        terrain: TerrainSettings { plan, relief: ReliefLevels::Full, ..TerrainSettings::default() },
         attribution: Vec::new(),
     }
 }

@@ -54,7 +54,10 @@ fn run(path: &std::path::Path, files: &[PathBuf]) -> Result<(), Box<dyn Error>> 
     let manifest = package.manifest();
     let frame = &manifest.frame;
     let settings = &manifest.settings;
-    let dem = Dem::open(files, &OpenOptions { nodata: settings.nodata.clone(), ..OpenOptions::default() })?;
+    let dem = Dem::open(
+        files,
+        &OpenOptions { nodata: settings.nodata.clone(), ..OpenOptions::default() },
+    )?;
     let plan = dem.plan(&PlanOptions {
         crs: settings.crs.clone(),
         cell: settings.cell_m,
@@ -67,8 +70,7 @@ fn run(path: &std::path::Path, files: &[PathBuf]) -> Result<(), Box<dyn Error>> 
         return Err("the elevation files make another grid than the package has".into());
     }
     let mut reader = dem.reader(&plan);
-    let mut levels: Vec<Level> =
-        (0..=frame.max_level()).map(|_| Level::default()).collect();
+    let mut levels: Vec<Level> = (0..=frame.max_level()).map(|_| Level::default()).collect();
     for id in package.tile_ids()? {
         let Some(bytes) = package.tile(id)? else { continue };
         let quantum_m = manifest.vertical.quantum_m;
@@ -121,7 +123,9 @@ fn run(path: &std::path::Path, files: &[PathBuf]) -> Result<(), Box<dyn Error>> 
             contrasts.extend(block_contrasts(greys));
         }
     }
-    println!("| level | tiles | bytes a tile | most | decode ms | RMS relief | RMS triangles | contrast raster | relief | triangles |");
+    println!(
+        "| level | tiles | bytes a tile | most | decode ms | RMS relief | RMS triangles | contrast raster | relief | triangles |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|---|");
     for (number, level) in levels.iter_mut().enumerate().filter(|(_, level)| level.tiles > 0) {
         let [relief, triangles] =
@@ -188,8 +192,8 @@ fn block_contrasts(greys: &Greys) -> Vec<f64> {
     (0..blocks * blocks)
         .filter_map(|block| {
             let (left, top) = (block % blocks * BLOCK, block / blocks * BLOCK);
-            let inside = (0..BLOCK * BLOCK)
-                .map(|k| greys[(top + k / BLOCK) * side + left + k % BLOCK]);
+            let inside =
+                (0..BLOCK * BLOCK).map(|k| greys[(top + k / BLOCK) * side + left + k % BLOCK]);
             let count = (BLOCK * BLOCK) as f64;
             let mean = inside.clone().sum::<f64>() / count;
             let variance = inside.map(|grey| (grey - mean).powi(2)).sum::<f64>() / count;

@@ -11,8 +11,8 @@ mod error;
 mod files;
 mod folder;
 mod frc;
-mod relief;
 mod photo;
+mod relief;
 mod values;
 
 pub use bounds::BoundsChoice;
@@ -22,6 +22,6 @@ pub use config::{Config, ResourceOptions, RoadOptions, TerrainOptions};
 pub use error::PresetError;
 pub use files::{InputFiles, OutputFiles};
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};
-pub use relief::ReliefChoice;
 pub use photo::PhotoOptions;
+pub use relief::ReliefChoice;
 pub use values::{check_cell, is_range, parse_bytes, parse_memory};

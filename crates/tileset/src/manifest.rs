@@ -12,5 +12,5 @@ pub use contents::{
     SettingsRecord, VerticalRecord,
 };
 pub use counts::{Counts, GrowthRow, LeftOutRecord, RoadLoss, SampleCounts};
-pub use relief_levels::ReliefLevels;
 pub use levels::{Distribution, LevelRecord, SampleErrorRecord};
+pub use relief_levels::ReliefLevels;

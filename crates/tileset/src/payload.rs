@@ -12,8 +12,8 @@ mod context;
 mod envelope;
 
 mod attributes;
-mod relief;
 mod photo;
+mod relief;
 mod road_tags;
 mod roads_geo;
 mod roads_sv;
@@ -34,10 +34,10 @@ pub use decode::decode;
 #[cfg(feature = "write")]
 pub use encode::{EncodedTile, PayloadContext, encode, encode_with_ground_of};
 pub use envelope::SectionSize;
-pub use relief::Relief;
 pub use photo::{MAX_PHOTO_LEVELS, PHOTO_BORDER, Photo, decode_photo};
 #[cfg(feature = "write")]
 pub use photo::{PhotoSection, encode_photo, photo_section, with_photo};
+pub use relief::Relief;
 pub use section_kind::Sections;
 pub use sizes::{PayloadSizes, payload_sizes};
 pub use tile_payload::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use corniche_dem::{Clip, DemError, DemProjection, GridPlan, PlanScale, RecordedCrs, RecordedGrid};
 use corniche_geom::{Frame, TILE_CELLS, TileId};
 use corniche_tileset::{
-    FilePackage, InputRecord, Manifest, ReadError, Relief, Sections, Terrain, decode, limits::MAX_TILES,
+    FilePackage, InputRecord, Manifest, ReadError, Relief, Sections, Terrain, decode,
+    limits::MAX_TILES,
 };
 
 use super::data_nodes::data_nodes;

@@ -79,10 +79,16 @@ pub(crate) fn with_ground(
         }
         None => context.store.put(Kind::Payload.of_tile(id), &encoded.bytes)?,
     }
-    let (terrain_bytes, relief_bytes) =
-        (encoded.sizes.terrain.stored, encoded.sizes.relief.stored);
+    let (terrain_bytes, relief_bytes) = (encoded.sizes.terrain.stored, encoded.sizes.relief.stored);
     Ok(TileRecord {
-        ground: Some(GroundRecord { vertices, triangles, terrain_bytes, relief_bytes, photo_bytes, deviation }),
+        ground: Some(GroundRecord {
+            vertices,
+            triangles,
+            terrain_bytes,
+            relief_bytes,
+            photo_bytes,
+            deviation,
+        }),
         classes,
         fates,
         levels: Vec::new(),

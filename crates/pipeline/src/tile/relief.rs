@@ -16,8 +16,7 @@ pub(crate) fn of_tile(
     }
     let levels = context.levels;
     let cell = levels.frame().level_cell(id.z());
-    let relief = Relief::of_heights(with_halo, cell, levels.quantum_m()).map_err(|what| {
-        EncodeError::Unencodable { tile: id, section: "relief section", what }
-    })?;
+    let relief = Relief::of_heights(with_halo, cell, levels.quantum_m())
+        .map_err(|what| EncodeError::Unencodable { tile: id, section: "relief section", what })?;
     Ok(Some(relief))
 }

@@ -40,7 +40,8 @@ fn another_height_gap_or_slope_is_found() {
 #[test]
 fn borders_are_the_same_on_both_sides_and_only_there() {
     let last = (TILE_NODES - 1) as f64;
-    let of = |left: f64| Relief::of_heights(&raster(|e, s| hills(e + left, s)), CELL, 0.125).unwrap();
+    let of =
+        |left: f64| Relief::of_heights(&raster(|e, s| hills(e + left, s)), CELL, 0.125).unwrap();
     let ([_, _, west, east], [_, _, next_west, next_east]) =
         (borders(&of(0.0)), borders(&of(last)));
     assert_eq!(east, next_west);

@@ -24,7 +24,7 @@ use corniche_pipeline::{
     TerrainSettings, build,
 };
 use corniche_roads::{ClassFilter, FrcTable};
-use corniche_tileset::{ReliefLevels, FilePackage, Manifest, Sections, Terrain, TilePayload};
+use corniche_tileset::{FilePackage, Manifest, ReliefLevels, Sections, Terrain, TilePayload};
 use corniche_tin::Tin;
 
 /// Spacing of the tests' rasters.

@@ -22,7 +22,8 @@ fn check(with_halo: &HeightGrid) -> Relief {
     let read = Relief::decode(relief.coded()).unwrap();
     assert_eq!(read.coded, relief.coded);
     assert_eq!(read.border, relief.border);
-    let bits = |relief: &Relief| relief.heights.raw().iter().map(|h| h.to_bits()).collect::<Vec<_>>();
+    let bits =
+        |relief: &Relief| relief.heights.raw().iter().map(|h| h.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&read), bits(&relief));
     for row in 0..SIDE {
         for column in 0..SIDE {
@@ -92,15 +93,12 @@ fn voids_of_every_shape_come_back() {
         ("half", &|east, south| east > south),
         ("all but one node", &|east, south| [east, south] != single),
         ("a hole", &|east, south| (east - 90.0).hypot(south - 40.0) < 25.0),
-        ("the halo", &|east, south| {
-            [east, south].iter().any(|at| !(0.0..=256.0).contains(at))
-        }),
+        ("the halo", &|east, south| [east, south].iter().any(|at| !(0.0..=256.0).contains(at))),
         ("a chessboard", &|east, south| (east + south) as i64 % 2 == 0),
     ];
     for (name, is_void) in cases {
-        let with_halo = raster(|east, south| {
-            if is_void(east, south) { f64::NAN } else { hills(east, south) }
-        });
+        let with_halo =
+            raster(|east, south| if is_void(east, south) { f64::NAN } else { hills(east, south) });
         eprintln!("{name}: {} bytes", check(&with_halo).coded().len());
     }
     let nothing = raster(|_, _| f64::NAN);
@@ -180,7 +178,10 @@ fn weights_are_those_of_the_transform() {
             }
         }
         for axis in 0..2 {
-            assert!((sums[axis] / weight[axis] - 1.0).abs() < 0.02, "{band:?}: {sums:?} {weight:?}");
+            assert!(
+                (sums[axis] / weight[axis] - 1.0).abs() < 0.02,
+                "{band:?}: {sums:?} {weight:?}"
+            );
         }
     }
 }

@@ -81,7 +81,8 @@ impl TileBuffers {
         let ground_bytes = self.ground.as_ref().map_or(0, GroundBuffers::gpu_bytes);
         ground_bytes
             + self.textures.gpu_bytes()
-            + self.segments.gpu_bytes() + self.volumes.gpu_bytes()
+            + self.segments.gpu_bytes()
+            + self.volumes.gpu_bytes()
     }
 
     /// Its roads as a method draws them.

@@ -74,7 +74,8 @@ impl TileTextures {
         let block =
             gpu.buffer("tile textures", bytemuck::cast_slice(&rows(tile)), BufferUsages::UNIFORM);
         let photo = tile.photo.as_ref();
-        let photo = photo.map_or_else(|| PhotoTexture::none(gpu), |photo| PhotoTexture::new(gpu, photo));
+        let photo =
+            photo.map_or_else(|| PhotoTexture::none(gpu), |photo| PhotoTexture::new(gpu, photo));
         let photo_sampler = photo_texture::sampler(&gpu.device);
         let resources = [
             block.as_entire_binding(),
@@ -83,10 +84,7 @@ impl TileTextures {
             BindingResource::TextureView(photo.view()),
             BindingResource::Sampler(&photo_sampler),
         ];
-        Self {
-            group: group(gpu, &layout_of(&gpu.device), &resources),
-            bytes: Self::bytes_of(tile),
-        }
+        Self { group: group(gpu, &layout_of(&gpu.device), &resources), bytes: Self::bytes_of(tile) }
     }
 
     /// Bytes of the textures that [`TileTextures::new`] makes.

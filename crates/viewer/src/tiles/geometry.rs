@@ -5,8 +5,8 @@ use corniche_tileset::{Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 
 use super::{
-    BadRoad, GroundMesh, PhotoImage, PlanScale, RoadSegments, RoadVolumes, ShadingSlopes, TileLines,
-    relief::Relief,
+    BadRoad, GroundMesh, PhotoImage, PlanScale, RoadSegments, RoadVolumes, ShadingSlopes,
+    TileLines, relief::Relief,
 };
 use crate::lod::GroundSummary;
 

@@ -14,8 +14,8 @@ mod package;
 mod photo;
 pub(crate) mod plan_scale;
 mod relief;
-mod shading_slopes;
 pub(crate) mod roads;
+mod shading_slopes;
 mod slopes;
 mod source;
 mod store;
@@ -23,6 +23,7 @@ mod triangle_grid;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use self::on_disk::PackageSource;
+pub(crate) use self::shading_slopes::ShadingSlopes;
 pub use self::{
     geometry::TileGeometry,
     map_extent::MapExtent,
@@ -32,7 +33,6 @@ pub use self::{
     source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},
     store::TileStore,
 };
-pub(crate) use self::shading_slopes::ShadingSlopes;
 pub(crate) use self::{
     geometry::WideWay,
     ground_mesh::{GroundMesh, GroundVertex},

@@ -42,8 +42,7 @@ impl<S: ByteSource> PackageTiles<S> {
                 next = id.parent();
             }
         }
-        let sections =
-            GROUND | Sections::ROADS_GEO | Sections::ROADS_SV | Sections::ATTRIBUTES;
+        let sections = GROUND | Sections::ROADS_GEO | Sections::ROADS_SV | Sections::ATTRIBUTES;
         Ok(Self { package, tiles, sections, photos: Photos::Read })
     }
 

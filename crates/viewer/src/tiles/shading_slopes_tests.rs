@@ -21,7 +21,8 @@ fn texels_are_the_slopes_of_the_ground() {
     let slopes = ShadingSlopes::new(&relief(), CELL);
     for row in 0..257 {
         for column in 0..257 {
-            let [east, north] = slopes.texels()[row * 257 + column].map(|bits| f16::from_bits(bits).to_f64());
+            let [east, north] =
+                slopes.texels()[row * 257 + column].map(|bits| f16::from_bits(bits).to_f64());
             let in_hole = (98..110).contains(&column) && (98..110).contains(&row);
             if in_hole {
                 continue;

@@ -59,7 +59,8 @@ fn without_relief(tiles: Vec<TilePayload>) -> Vec<TilePayload> {
 /// Draws tiles straight from above. All ground has one tint, so colours tell of slopes alone.
 fn draw(gpu: &Gpu, payloads: &[TilePayload], exaggeration: f64) -> Drawing {
     let mut style = Style::road_atlas();
-    style.tint.iter_mut().for_each(|(_, rgb)| *rgb = [0.8; 3]);
+    style.tint.stops.iter_mut().for_each(|(_, rgb)| *rgb = [0.8; 3]);
+    style.light.valley_haze = 0.0;
     let scale = PlanScale::uniform([1.0; 2]);
     let buffers: Vec<TileBuffers> = payloads
         .iter()
@@ -85,6 +86,8 @@ fn draw(gpu: &Gpu, payloads: &[TilePayload], exaggeration: f64) -> Drawing {
         exaggeration,
         point_scale: 1.0,
         height_range_m: [0.0, 1000.0],
+        wall_m: 0.0,
+        latitude_deg: 47.0,
         wireframe: Wireframe::Hidden,
     };
     Renderer::new(gpu).draw(gpu, &view, &tiles, &targets);
@@ -100,7 +103,8 @@ fn greys(drawing: &Drawing) -> Vec<Option<i32>> {
 /// The largest difference of two drawings over the pixels that both have.
 fn largest_difference(one: &Drawing, other: &Drawing) -> i32 {
     let (one, other) = (greys(one), greys(other));
-    let both = one.iter().zip(&other).filter_map(|(one, other)| Some((((*one)?) - ((*other)?)).abs()));
+    let both =
+        one.iter().zip(&other).filter_map(|(one, other)| Some((((*one)?) - ((*other)?)).abs()));
     assert!(both.clone().count() > 100_000, "the ground fills the picture");
     both.max().unwrap()
 }

@@ -21,10 +21,7 @@ pub(crate) struct Numbers {
 
 impl Numbers {
     pub(crate) const fn new() -> Self {
-        Self {
-            steps: [[Model::NEW; STEPS]; CLASSES],
-            exponents: [Model::NEW; EXPONENTS],
-        }
+        Self { steps: [[Model::NEW; STEPS]; CLASSES], exponents: [Model::NEW; EXPONENTS] }
     }
 
     /// Codes a number; `around` is a weighted sum of the magnitudes of those near it. Magnitudes stay below 2^41.
@@ -89,11 +86,8 @@ pub(crate) fn code_band<B: Bits>(
                 magnitude(square, band, column.wrapping_sub(left), row.wrapping_sub(up))
             };
             let north_east = magnitude(square, band, column + 1, row.wrapping_sub(1));
-            let mut around = 2 * (near(1, 0) + near(0, 1))
-                + near(1, 1)
-                + north_east
-                + near(2, 0)
-                + near(0, 2);
+            let mut around =
+                2 * (near(1, 0) + near(0, 1)) + near(1, 1) + north_east + near(2, 0) + near(0, 2);
             if let Some(parent) = parent {
                 around += 2 * magnitude(square, parent, column / 2, row / 2);
             }

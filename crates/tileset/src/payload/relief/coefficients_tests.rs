@@ -7,8 +7,7 @@ use crate::payload::relief::wavelet::{SMOOTH, rough_bands};
 #[test]
 fn numbers_of_every_size_come_back() {
     let mut random = Random::new(3);
-    let mut numbers: Vec<i64> =
-        (0..5000).map(|k| random.around(1 << (k % 40))).collect();
+    let mut numbers: Vec<i64> = (0..5000).map(|k| random.around(1 << (k % 40))).collect();
     numbers.extend([0, 1, -1, 13, 14, 15, -14, (1 << 40) - 1, 1 - (1 << 40)]);
     let mut writer = Writer::new(Vec::new());
     let mut coder = Numbers::new();

@@ -47,8 +47,7 @@ fn fill(units: &mut [i64], mask: &[bool]) {
             let (mut sum, mut count) = (0, 0);
             for (c, r) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
                 let inside = column + c < *side && row + r < *side;
-                if let Some(height) =
-                    inside.then(|| below[(row + r) * side + column + c]).flatten()
+                if let Some(height) = inside.then(|| below[(row + r) * side + column + c]).flatten()
                 {
                     sum += height;
                     count += 1;

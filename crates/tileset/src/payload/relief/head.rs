@@ -1,9 +1,9 @@
 //! The fixed part of the section.
 
-#[cfg(feature = "write")]
-use crate::payload::number_codes::{put_varint, zigzag};
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::{Cursor, unzigzag};
+#[cfg(feature = "write")]
+use crate::payload::number_codes::{put_varint, zigzag};
 
 /// Steps of the bands: the smooth band's, then three for each division, the coarsest first.
 pub(crate) const BANDS: usize = 1 + 3 * super::wavelet::LEVELS;

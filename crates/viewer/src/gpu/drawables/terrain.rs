@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use wgpu::{
-    BindGroup, BindGroupLayout, BufferUsages, ColorWrites, CompareFunction, Device,
-    PrimitiveTopology, RenderPass, RenderPipeline,
+    BindGroupLayout, BufferUsages, ColorWrites, CompareFunction, Device, PrimitiveTopology,
+    RenderPass, RenderPipeline,
 };
 
 use super::super::{
@@ -39,8 +39,7 @@ impl Terrain {
     pub(crate) fn new(device: &Device, layouts: &SharedLayouts) -> Self {
         let layout = layout(device, "ground colors", &[uniform(0, None)]);
         let textures = tile_textures::layout_of(device);
-        let groups =
-            [Some(&layouts.frame), Some(&layouts.tile), Some(&layout), Some(&textures)];
+        let groups = [Some(&layouts.frame), Some(&layouts.tile), Some(&layout), Some(&textures)];
         let ground = |constants| PipelineRecipe {
             shader: SHADER,
             entries: ENTRIES,
