@@ -38,7 +38,7 @@ impl<'a> Context<'a> {
         store: &'a dyn Artifacts,
         observer: &'a dyn Observer,
     ) -> Self {
-        let Opened { inputs, source, grid, levels, max_error_m, coordinates } = opened;
+        let Opened { inputs, source, grid, levels, max_error_m, coordinates, relief: _ } = opened;
         let max_error_m = *max_error_m;
         Self {
             settings,

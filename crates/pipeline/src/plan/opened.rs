@@ -2,6 +2,7 @@ use std::path::Path;
 
 use corniche_dem::{Dem, GridPlan, Polygon};
 use corniche_geom::CoordinateTable;
+use corniche_tileset::ReliefLevels;
 
 use super::{coordinates::coordinates, facts::terrain_differences};
 use crate::{
@@ -26,6 +27,8 @@ pub(crate) struct Opened {
     pub(crate) max_error_m: f64,
     /// Longitudes and latitudes over the data.
     pub(crate) coordinates: CoordinateTable,
+    /// Which levels have relief sections.
+    pub(crate) relief: ReliefLevels,
 }
 
 impl Opened {
@@ -50,7 +53,8 @@ impl Opened {
                 if let GroundSource::Dem(dem) = &source {
                     inputs.use_only(&dem.needed_files(&grid)?);
                 }
-                Ok(Self { inputs, source, grid, levels, max_error_m, coordinates })
+                let relief = settings.terrain.relief;
+                Ok(Self { inputs, source, grid, levels, max_error_m, coordinates, relief })
             }
             // A changed input may be the cause of any other error, so it is reported instead.
             Err(error) => Err(inputs.changed_instead_of(error)),
