@@ -80,7 +80,7 @@ fn level_ground_and_planes_take_few_bytes() {
         ("plane", raster(|east, south| 100.0 + 4.0 * east - 2.5 * south)),
     ] {
         let bytes = check(&with_halo).coded().len();
-        assert!(bytes < 700, "{name}: {bytes} bytes");
+        assert!(bytes < 1500, "{name}: {bytes} bytes");
     }
 }
 
