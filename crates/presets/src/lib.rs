@@ -11,6 +11,7 @@ mod error;
 mod files;
 mod folder;
 mod frc;
+mod relief;
 mod values;
 
 pub use bounds::BoundsChoice;
@@ -20,4 +21,5 @@ pub use config::{Config, ResourceOptions, RoadOptions, TerrainOptions};
 pub use error::PresetError;
 pub use files::{InputFiles, OutputFiles};
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};
+pub use relief::ReliefChoice;
 pub use values::{check_cell, is_range, parse_bytes, parse_memory};

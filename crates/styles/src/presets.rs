@@ -1,7 +1,8 @@
 /// Styles that come with the program, the default one first.
-const PRESETS: [(&str, &str); 2] = [
+const PRESETS: [(&str, &str); 3] = [
     ("road-atlas", include_str!("../sheets/road-atlas.toml")),
     ("dark", include_str!("../sheets/dark.toml")),
+    ("relief", include_str!("../sheets/relief.toml")),
 ];
 
 /// Names of the styles that come with the program, the default one first.

@@ -2,6 +2,8 @@
 
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
+use crate::{Light, Tint, TintHeights};
+
 /// A colour as red, green, blue in sRGB, 0 to 1.
 pub type Rgb = [f32; 3];
 
@@ -26,6 +28,8 @@ pub struct RoadStyle {
     pub max_width_px: Option<f32>,
     /// Colour where a road is too thin for an edge; [`RoadStyle::color`] where it is `None`.
     pub thin: Option<Rgb>,
+    /// How much of the ground a road hides, edge included: 1 hides it.
+    pub opacity: f32,
 }
 
 /// The line along the middle of a road of two colours.
@@ -86,12 +90,6 @@ impl OwnWidths {
     }
 }
 
-/// A stop of the height tint: a share of the package's range of heights, and the colour there.
-pub type TintStop = (f32, Rgb);
-
-/// How many stops a height tint has.
-pub const TINT_STOPS: usize = 6;
-
 /// How the map looks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Style {
@@ -103,20 +101,20 @@ pub struct Style {
     pub width_scaling: WidthScaling,
     /// Width of the edge of roads; the kernel has this radius.
     pub outline_px: u32,
-    /// Height tint, lowest first, shares ascending from 0 to 1.
-    pub tint: [TintStop; TINT_STOPS],
-    /// Compass direction the light comes from.
-    pub light_azimuth_deg: f64,
-    /// Height of the light above the horizon.
-    pub light_altitude_deg: f64,
-    /// How strongly slopes are shaded, 0 to 1.
-    pub hillshade: f32,
+    /// Colours of the ground by its height.
+    pub tint: Tint,
+    /// The light on the ground.
+    pub light: Light,
     /// Colour of far ground and of the sky at the horizon.
     pub haze: Rgb,
     /// Colour of the sky far above the horizon.
     pub sky: Rgb,
     /// Colour where there is no ground, below the horizon.
     pub void: Rgb,
+    /// Colour of level ground at or below 0 m.
+    pub water: Rgb,
+    /// Colour of the wall along the edge of the data.
+    pub wall: Rgb,
     /// Ground at this many times the distance of what is looked at has lost two thirds of its colour.
     pub haze_reach: f32,
 }
@@ -153,6 +151,7 @@ impl Style {
                     max_pixel_m,
                     max_width_px: Some(max_width_px),
                     thin: None,
+                    opacity: 1.0,
                 }
             };
         let thin = |color, road| RoadStyle { thin: Some(rgb(color)), ..road };
@@ -178,20 +177,35 @@ impl Style {
             own_widths: None,
             width_scaling: WidthScaling { threshold_m: 1500.0, exponent: 0.75, constant: 4.0 },
             outline_px: 1,
-            tint: [
-                (0.0, rgb(0xCB_DD_B4)),
-                (0.15, rgb(0xDD_E6_BF)),
-                (0.35, rgb(0xEE_E8_C6)),
-                (0.6, rgb(0xE2_D0_AE)),
-                (0.8, rgb(0xD3_C3_B4)),
-                (1.0, rgb(0xF4_F3_F1)),
-            ],
-            light_azimuth_deg: 315.0,
-            light_altitude_deg: 45.0,
-            hillshade: 0.75,
+            tint: Tint {
+                heights: TintHeights::MetresByClimate,
+                stops: vec![
+                    (-100.0, rgb(0xB5_CF_A6)),
+                    (0.0, rgb(0xC6_DB_B2)),
+                    (250.0, rgb(0xD5_E3_BC)),
+                    (600.0, rgb(0xE6_E7_C4)),
+                    (1100.0, rgb(0xED_E2_C0)),
+                    (1700.0, rgb(0xE2_D1_B0)),
+                    (2300.0, rgb(0xD5_C6_B2)),
+                    (2800.0, rgb(0xDB_D6_D0)),
+                    (3400.0, rgb(0xF1_F3_F6)),
+                ],
+            },
+            light: Light {
+                azimuth_deg: 315.0,
+                altitude_deg: 45.0,
+                hillshade: 0.75,
+                sky: 0.3,
+                gentle: 2.5,
+                valley_haze: 0.2,
+                shadow: rgb(0x5A_62_86),
+                sunlit: rgb(0xFF_F8_DC),
+            },
             haze: rgb(0xDC_E6_EE),
             sky: rgb(0x9F_C1_E0),
-            void: rgb(0xC9_D8_E4),
+            void: rgb(0xE2_E0_DB),
+            water: rgb(0xA9_C9_DD),
+            wall: rgb(0x8E_84_78),
             haze_reach: 6.0,
         }
     }

@@ -12,6 +12,7 @@ mod context;
 mod envelope;
 
 mod attributes;
+mod relief;
 mod road_tags;
 mod roads_geo;
 mod roads_sv;
@@ -32,6 +33,7 @@ pub use decode::decode;
 #[cfg(feature = "write")]
 pub use encode::{EncodedTile, PayloadContext, encode, encode_with_ground_of};
 pub use envelope::SectionSize;
+pub use relief::Relief;
 pub use section_kind::Sections;
 pub use sizes::{PayloadSizes, payload_sizes};
 pub use tile_payload::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};

@@ -60,4 +60,4 @@ pub use range::OutOfRange;
 pub use render::{RenderError, RenderReport, RenderRequest, Rendered, render};
 #[cfg(not(target_arch = "wasm32"))]
 pub use replay::{Detail, FrameRecord, Lifted, Replay, ReplayError, ReplayOptions, default_flight};
-pub use viewpoint::{CameraRequest, GroundHeights, OffGround};
+pub use viewpoint::{CameraRequest, OffGround, SightedGround};

@@ -14,7 +14,7 @@ use crate::{
     range::{self, OutOfRange},
     scene::{self, SettleError},
     tiles::{BlockingPackage, LoadTileError, TileStore},
-    viewpoint::{CameraRequest, GroundHeights, OffGround},
+    viewpoint::{CameraRequest, OffGround, SightedGround},
 };
 
 /// What to render.
@@ -149,7 +149,7 @@ pub fn render(
         .coarsest_ground()?
         .ok_or_else(|| RenderError::NoGround { name: request.name.clone() })?
         .height_range_m;
-    let camera = camera(request, package, &mut store, height_range_m)?;
+    let camera = camera(request, package, &mut store)?;
     let drawn = scene::settle(&mut store, &camera, quality, is_stopped)?;
 
     let gpu = Gpu::new()?;
@@ -161,6 +161,8 @@ pub fn render(
         exaggeration: request.exaggeration,
         point_scale,
         height_range_m,
+        wall_m: FrameView::wall_beside_m(height_range_m),
+        latitude_deg: package.manifest().wgs84_bounds.center()[1],
         wireframe: Wireframe::Hidden,
     };
     let uploaded: Vec<(TileBuffers, f64)> = scene::draw_list(&store, &drawn)
@@ -206,7 +208,6 @@ fn camera(
     request: &RenderRequest,
     package: &dyn BlockingPackage,
     store: &mut TileStore<'_>,
-    height_range_m: [f64; 2],
 ) -> Result<Camera, RenderError> {
     let point_scale = package.manifest().point_scale;
     let vertical_scale = request.exaggeration * point_scale;
@@ -216,10 +217,12 @@ fn camera(
         Some(at) => TileStore::new(package).ground_height_m(at)?,
         None => None,
     };
-    let ground = GroundHeights { range_m: height_range_m, at_place_m };
+    let no_ground = || RenderError::NoGround { name: request.name.clone() };
+    let extent = store.map_extent(package.manifest().data_bounds)?.ok_or_else(no_ground)?;
+    let ground = SightedGround { extent, at_place_m };
     let camera =
         request.camera.camera(package.manifest(), ground, vertical_scale, request.size_px)?;
-    if request.camera != CameraRequest::FrameAll {
+    if request.camera != CameraRequest::Overview {
         check_above_ground(&camera, store, vertical_scale, point_scale)?;
     }
     Ok(camera)

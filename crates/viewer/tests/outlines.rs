@@ -68,6 +68,8 @@ impl<'a> Edges<'a> {
             exaggeration: 1.0,
             point_scale: 1.0,
             height_range_m: [0.0, 1000.0],
+            wall_m: 0.0,
+            latitude_deg: 47.0,
             wireframe: Wireframe::Hidden,
         };
         let tiles = [DrawTile { buffers: &buffers, skirt_depth_m: 0.0 }];

@@ -14,7 +14,7 @@ use std::{
 use corniche_geom::TileId;
 use corniche_tileset::{ByteSource, MemorySource, Package, SourceError};
 use corniche_viewer::{
-    CameraRequest, GroundHeights, RoadMethod,
+    CameraRequest, RoadMethod, SightedGround,
     camera::Camera,
     gpu::tile_bytes,
     lod::{Drawn, Quality},
@@ -163,9 +163,9 @@ fn a_streamer_chooses_the_same_from_tiles_that_come_later() {
     let path = package(folder.path());
     let on_disk = PackageSource::open(&path).unwrap();
     let manifest = on_disk.manifest();
-    let heights_m = on_disk.load(TileId::ROOT).unwrap().summary.unwrap().height_range_m;
-    let ground = GroundHeights { range_m: heights_m, at_place_m: None };
-    let camera = CameraRequest::FrameAll.camera(manifest, ground, 1.0, [640, 480]).unwrap();
+    let extent = on_disk.load(TileId::ROOT).unwrap().map_extent(manifest.data_bounds);
+    let ground = SightedGround { extent, at_place_m: None };
+    let camera = CameraRequest::Overview.camera(manifest, ground, 1.0, [640, 480]).unwrap();
     let expected =
         settled(&on_disk, &camera, |ids| ids.iter().map(|id| on_disk.load(*id).unwrap()).collect());
 

@@ -21,7 +21,7 @@ fn request(package: &Path) -> RenderRequest {
         name: package.display().to_string(),
         size_px: [480, 320],
         roads: RoadOptions::of(RoadMethod::Geometry),
-        camera: CameraRequest::FrameAll,
+        camera: CameraRequest::Overview,
         screen_space_error_px: 2.0,
         cell_px: f64::INFINITY,
         exaggeration: 1.0,

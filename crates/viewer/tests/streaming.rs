@@ -57,6 +57,8 @@ fn picture(
         exaggeration: 1.0,
         point_scale: 1.0,
         height_range_m: [90.0, 1910.0],
+        wall_m: 0.0,
+        latitude_deg: 47.0,
         wireframe: Wireframe::Hidden,
     };
     Renderer::new(&gpu).draw(&gpu, &view, &tiles, &targets);

@@ -28,7 +28,7 @@ fn request() -> WindowRequest {
     WindowRequest {
         name: "small".to_owned(),
         size_px: SIZE_PX,
-        camera: CameraRequest::FrameAll,
+        camera: CameraRequest::Overview,
         roads: RoadOptions::of(RoadMethod::ShadowVolumes),
         styles: vec![NamedStyle { name: "atlas".to_owned(), style: Style::road_atlas() }],
         reload: None,

@@ -142,6 +142,8 @@ impl Canvas {
             exaggeration: scene.exaggeration,
             point_scale: scene.point_scale,
             height_range_m: scene.height_range_m,
+            wall_m: FrameView::wall_beside_m(scene.height_range_m),
+            latitude_deg: scene.latitude_deg,
             wireframe: scene.wireframe,
         };
         let tiles: Vec<DrawTile<'_>> = scene

@@ -30,6 +30,7 @@ pub(crate) struct LevelSums {
     pub(crate) vertices: u64,
     pub(crate) triangles: u64,
     pub(crate) terrain_bytes: u64,
+    pub(crate) relief_bytes: u64,
     /// Geometric errors of its tiles.
     pub(crate) geometric_errors_m: Vec<f64>,
     /// Geometric errors of its tiles over their deviations, where those can be measured.
@@ -66,6 +67,7 @@ impl TileSums {
         sums.vertices += ground.vertices;
         sums.triangles += ground.triangles;
         sums.terrain_bytes += ground.terrain_bytes;
+        sums.relief_bytes += ground.relief_bytes;
         sums.geometric_errors_m.push(deviation.geometric_error_m);
         if deviation.deviation_m >= self.least_measured_m {
             sums.tightness.push(deviation.geometric_error_m / deviation.deviation_m);

@@ -17,6 +17,7 @@ mod one_tile;
 mod osm;
 mod osm_tile;
 mod polygon;
+mod relief;
 mod report;
 mod request;
 mod roads_of_parent;

@@ -22,6 +22,8 @@ pub struct PayloadSizes {
     pub attributes: SectionSize,
     /// The road tags section.
     pub road_tags: SectionSize,
+    /// The relief section.
+    pub relief: SectionSize,
     /// Bytes of each class in the GEO section before compression: they determine the class's share of the stored bytes.
     pub geo_class_bytes: [u64; FunctionalRoadClass::COUNT],
     /// The same for the SV section.
@@ -52,6 +54,7 @@ pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeErr
         roads_sv: size(Kind::RoadsSv),
         attributes: size(Kind::Attributes),
         road_tags: size(Kind::RoadTags),
+        relief: size(Kind::Relief),
         geo_class_bytes: of_classes(Kind::RoadsGeo)?,
         sv_class_bytes: of_classes(Kind::RoadsSv)?,
     })

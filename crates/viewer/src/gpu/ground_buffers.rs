@@ -25,9 +25,11 @@ pub(crate) const GROUND_VERTICES: VertexBufferLayout<'static> = VertexBufferLayo
 pub(crate) struct GroundBuffers {
     vertices: Buffer,
     indices: Buffer,
-    /// The indices of the ground, then those of the skirts.
+    /// The indices of the ground, then those of the skirts, then those of edges of the ground inside the tile.
     surface: Range<u32>,
     skirts: Range<u32>,
+    /// The skirts and what comes behind them: wherever the ground may end.
+    walls: Range<u32>,
     /// Three indices for each triangle of the ground, from which the edges are made.
     triangles: Vec<u32>,
     edges: OnceLock<Buffer>,
@@ -43,7 +45,8 @@ impl GroundBuffers {
             vertices: buffer(&vertex_bytes(&mesh.vertices), BufferUsages::VERTEX),
             indices: buffer(bytemuck::cast_slice(&mesh.indices), BufferUsages::INDEX),
             surface: 0..surface,
-            skirts: surface..all,
+            skirts: surface..mesh.skirt_indices as u32,
+            walls: surface..all,
             triangles: mesh.indices[..mesh.surface_indices].to_vec(),
             edges: OnceLock::new(),
         })
@@ -77,6 +80,11 @@ impl GroundBuffers {
     /// Draws the triangles of the skirts. Pipeline and bind groups are set.
     pub(crate) fn draw_skirts(&self, pass: &mut RenderPass<'_>) {
         self.draw(pass, &self.indices, self.skirts.clone());
+    }
+
+    /// Draws the walls: wherever the ground may end. Pipeline and bind groups are set.
+    pub(crate) fn draw_walls(&self, pass: &mut RenderPass<'_>) {
+        self.draw(pass, &self.indices, self.walls.clone());
     }
 
     /// Draws the edges of the ground's triangles as lines. Pipeline and bind groups are set.

@@ -66,6 +66,7 @@ mod shared_bindings;
 mod target_texture;
 mod targets;
 mod tile_buffers;
+mod tile_textures;
 mod timings;
 mod uniforms;
 

@@ -127,7 +127,9 @@ impl Renderer {
         let grounds: Vec<_> = tiles
             .iter()
             .enumerate()
-            .filter_map(|(index, tile)| Some((index, tile.buffers.ground.as_ref()?)))
+            .filter_map(|(index, tile)| {
+                Some((index, tile.buffers.ground.as_ref()?, &tile.buffers.textures))
+            })
             .collect();
         self.terrain.draw(gpu, &mut pass, shared, &grounds, view);
     }

@@ -5,6 +5,7 @@ use super::{
     drawables::{geo_roads, sv_roads},
     ground_buffers::GroundBuffers,
     road_instances::RoadBuffers,
+    tile_textures::TileTextures,
     uniforms::TileUniforms,
 };
 use crate::{
@@ -23,6 +24,7 @@ pub struct TileBuffers {
     size_m: [f64; 2],
     /// `None` without ground.
     pub(crate) ground: Option<GroundBuffers>,
+    pub(crate) textures: TileTextures,
     segments: RoadBuffers,
     volumes: RoadBuffers,
     width_margin_m: f64,
@@ -44,6 +46,7 @@ pub struct DrawTile<'a> {
 #[must_use]
 pub fn tile_bytes(tile: &TileGeometry) -> u64 {
     GroundBuffers::bytes_of(&tile.ground)
+        + TileTextures::bytes_of(tile)
         + geo_roads::bytes_of(&tile.roads)
         + sv_roads::bytes_of(&tile.volumes)
 }
@@ -57,6 +60,7 @@ impl TileBuffers {
             reference_m: tile.reference_m,
             size_m: tile.size_m,
             ground: GroundBuffers::new(gpu, &tile.ground),
+            textures: TileTextures::new(gpu, tile),
             segments: geo_roads::upload(gpu, &tile.roads),
             volumes: sv_roads::upload(gpu, &tile.volumes),
             width_margin_m: tile.width_margin_m,
@@ -75,7 +79,10 @@ impl TileBuffers {
     #[must_use]
     pub fn gpu_bytes(&self) -> u64 {
         let ground_bytes = self.ground.as_ref().map_or(0, GroundBuffers::gpu_bytes);
-        ground_bytes + self.segments.gpu_bytes() + self.volumes.gpu_bytes()
+        ground_bytes
+            + self.textures.gpu_bytes()
+            + self.segments.gpu_bytes()
+            + self.volumes.gpu_bytes()
     }
 
     /// Its roads as a method draws them.

@@ -192,6 +192,8 @@ impl<'a> Replay<'a> {
             exaggeration: self.options.exaggeration,
             point_scale: self.package.manifest().point_scale,
             height_range_m: self.height_range_m,
+            wall_m: FrameView::wall_beside_m(self.height_range_m),
+            latitude_deg: self.package.manifest().wgs84_bounds.center()[1],
             wireframe: Wireframe::Hidden,
         };
         self.renderer.draw_timed(self.gpu, &view, &tiles, &self.targets, self.timer.as_mut());

@@ -17,6 +17,9 @@ struct PictureColors {
     haze: vec4<f32>,
     sky: vec4<f32>,
     background: vec4<f32>,
+    // Where there is no ground, a plane beneath all ground is seen: xy: the eye's place on it, modulo w; z: the eye's height
+    // above it; w: the widest spacing of its lines. World metres.
+    void_plane: vec4<f32>,
     road_fills: array<vec4<f32>, CLASSES>,
     road_outlines: array<vec4<f32>, CLASSES>,
     road_centers: array<vec4<f32>, CLASSES>,
@@ -65,10 +68,48 @@ fn largest_around(pixel: vec2<i32>, own: f32, least_depth: f32) -> f32 {
     return largest;
 }
 
-fn background_at(ray: vec3<f32>) -> vec3<f32> {
+// Distance between the lines on the plane of voids, pixels of the final picture.
+const HATCH_PX = 9.0;
+
+// How dark the lines at a place of the plane of voids are, 0 to 1, with this spacing between them. `footprint` is the side of
+// a pixel of the final picture there.
+fn hatch(along: f32, spacing: f32, footprint: f32) -> f32 {
+    let from_line = abs(fract(along / spacing) - 0.5) * spacing;
+    return 1.0 - smoothstep(0.4, 1.4, from_line / footprint);
+}
+
+// The plane of voids: neutral, with oblique lines that keep their place on the ground. From far away there are fewer lines.
+fn void_at(ray: vec3<f32>) -> vec3<f32> {
+    let plane = colors.void_plane;
+    let down = max(-ray.z, 1e-4);
+    let distance = max(plane.z, 0.0) / down;
+    let place = plane.xy + distance * ray.xy;
+    // As long as it is on the plane in the direction of view.
+    let footprint = frame.scale.x * frame.road_scale.w * distance * inverseSqrt(down) + 1e-9;
+    let octave = log2(HATCH_PX * footprint);
+    let spacing = exp2(ceil(octave));
+    let along = place.x + place.y;
+    // Every second line fades away before the spacing doubles.
+    let every = hatch(along, spacing, footprint);
+    let second = hatch(along + 0.5 * spacing, 2.0 * spacing, footprint);
+    let shown = select(mix(every, second, fract(octave)), 0.0, plane.z <= 0.0);
+    return colors.background.rgb * (1.0 - 0.045 * shown);
+}
+
+// Between 0 and 1, different for each pixel, without a pattern (Jimenez, Next Generation Post Processing in Call of Duty:
+// Advanced Warfare, SIGGRAPH 2014: interleaved gradient noise).
+fn noise_at(position: vec2<f32>) -> f32 {
+    return fract(52.9829189 * fract(dot(position, vec2(0.06711056, 0.00583715))));
+}
+
+fn background_at(ray: vec3<f32>, position: vec2<f32>) -> vec3<f32> {
     let elevation = ray.z / length(ray);
     let above = mix(colors.haze.rgb, colors.sky.rgb, smoothstep(0.0, 0.35, elevation));
-    return mix(colors.background.rgb, above, smoothstep(-0.25, 0.0, elevation));
+    let color = mix(void_at(ray), above, smoothstep(-0.2, 0.0, elevation));
+    // Steps between the 256 values of a channel would be seen as bands. Averaging samples makes the noise weaker, so it is
+    // wider than one step.
+    let grain = (noise_at(position) - 0.5) * 1.5 / 255.0;
+    return color + grain;
 }
 
 // Width of a road at a place in pixels of the final picture, before the least width is applied.
@@ -97,7 +138,7 @@ fn sight_at(position: vec2<f32>) -> Sight {
     var sight: Sight;
     sight.depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
     if sight.depth_buffer == 0.0 {
-        sight.color = background_at(ray);
+        sight.color = background_at(ray, position);
         return sight;
     }
     sight.depth = view_depth_of(sight.depth_buffer);
@@ -106,6 +147,11 @@ fn sight_at(position: vec2<f32>) -> Sight {
     sight.haze = 1.0 - exp(-reach * reach);
     sight.color = mix(textureLoad(ground_color, pixel, 0).rgb, colors.haze.rgb, sight.haze);
     return sight;
+}
+
+// How much of the ground roads of a class hide at a distance from the eye.
+fn opacity_at(road_class: u32, distance_m: f32) -> f32 {
+    return frame.road_limits[road_class].z * shown_share(road_class, distance_m);
 }
 
 // What is left of the colours of a tunnel's surface and of its edge.
@@ -168,7 +214,7 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
         let fill = mix(colors.road_thins[road_class].rgb, wide, smoothstep(1.4, 3.2, seen_px));
         // A road that is drawn wider than it is, because of its least width, is made paler.
         let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
-        let presence = clamp(seen_px / least_px, 0.5, 1.0) * shown_share(road_class, sight.distance_m)
+        let presence = clamp(seen_px / least_px, 0.5, 1.0) * opacity_at(road_class, sight.distance_m)
             * select(1.0, TUNNEL_FILL, is_tunnel(label));
         color = mix(color, mix(fill, colors.haze.rgb, 0.5 * sight.haze), presence);
     }
@@ -180,7 +226,7 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
         // Around a very thin road there is no edge, because it would hide the road; nor around one that is seen so flat that
         // the edge would break into dashes.
         let seen_px = width_px(road_class, sight.distance_m, sight.depth) * facing;
-        let presence = smoothstep(1.2, 4.0, seen_px) * shown_share(road_class, sight.distance_m)
+        let presence = smoothstep(1.2, 4.0, seen_px) * opacity_at(road_class, sight.distance_m)
             * select(1.0, TUNNEL_EDGE, is_tunnel(most));
         color = mix(color, mix(colors.road_outlines[road_class].rgb, colors.haze.rgb, 0.5 * sight.haze), presence);
     }

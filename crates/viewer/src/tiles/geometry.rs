@@ -4,7 +4,10 @@ use corniche_styles::OwnWidths;
 use corniche_tileset::{Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 
-use super::{BadRoad, GroundMesh, PlanScale, RoadSegments, RoadVolumes, TileLines, relief::Relief};
+use super::{
+    BadRoad, GroundMesh, PlanScale, RoadSegments, RoadVolumes, ShadingSlopes, TileLines,
+    relief::Relief,
+};
 use crate::lod::GroundSummary;
 
 /// A decoded tile, ready to be uploaded: positions are f32 and relative to the tile's reference point.
@@ -18,6 +21,8 @@ pub struct TileGeometry {
     pub summary: Option<GroundSummary>,
     /// The ground and its skirts.
     pub(crate) ground: GroundMesh,
+    /// Slopes at all nodes, for shading; `None` where the package has none.
+    pub(crate) shading: Option<ShadingSlopes>,
     /// The roads on it as geometry (GEO); empty if that section was not read.
     pub roads: RoadSegments,
     /// The roads on it as volumes (SV); empty if that section was not read.
@@ -112,6 +117,7 @@ impl TileGeometry {
             reference_m,
             summary,
             ground,
+            shading: None,
             most_width_factor,
             roads: RoadSegments::of_lines(&lines.ground, bounds, reference_m, scale, |piece| {
                 relief.bed(piece, wide.as_ref())
@@ -142,13 +148,21 @@ impl TileGeometry {
         let surface = surface(id, terrain.filter(|_| has_roads), frame, quantum_m);
         let lines = TileLines::of_payload(payload, surface.as_ref(), frame, width_margin_m)?;
         let lines = TileLines { scale, ..lines };
-        Ok(Self::on_surface(id, terrain, surface.as_ref(), &lines, frame, quantum_m))
+        let shading = payload.relief.as_ref().filter(|_| terrain.is_some());
+        let shading = shading.map(|relief| ShadingSlopes::new(relief, frame.level_cell(id.z())));
+        let tile = Self::on_surface(id, terrain, surface.as_ref(), &lines, frame, quantum_m);
+        Ok(Self { shading, ..tile })
     }
 
-    /// The same tile without its roads: enough for rays and heights.
+    /// The same tile without its roads and slopes: enough for rays and heights.
     #[must_use]
     pub fn without_roads(self) -> Self {
-        Self { roads: RoadSegments::default(), volumes: RoadVolumes::default(), ..self }
+        Self {
+            shading: None,
+            roads: RoadSegments::default(),
+            volumes: RoadVolumes::default(),
+            ..self
+        }
     }
 
     /// The rectangle that it covers in the working CRS.

@@ -7,12 +7,14 @@
 
 mod geometry;
 mod ground_mesh;
+mod map_extent;
 #[cfg(not(target_arch = "wasm32"))]
 mod on_disk;
 mod package;
 pub(crate) mod plan_scale;
 mod relief;
 pub(crate) mod roads;
+mod shading_slopes;
 mod slopes;
 mod source;
 mod store;
@@ -20,8 +22,10 @@ mod triangle_grid;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use self::on_disk::PackageSource;
+pub(crate) use self::shading_slopes::ShadingSlopes;
 pub use self::{
     geometry::TileGeometry,
+    map_extent::MapExtent,
     package::PackageTiles,
     roads::{RoadList, RoadLook, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, TileLines},
     source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},

@@ -6,6 +6,9 @@ use corniche_tileset::{ByteSource, Manifest, OpenError, Package, Sections};
 use super::{LoadTileError, MapPackage, PlanScale, TileCatalog, TileGeometry, TileLines};
 use crate::options::RoadMethod;
 
+/// What every picture needs of a tile.
+const GROUND: Sections = Sections::TERRAIN.and(Sections::RELIEF);
+
 /// The tiles of a package, from any source of bytes. Loading a tile is asynchronous and blocks no thread.
 /// [`PackageSource`](super::PackageSource) is a package in a file, for threads that may wait.
 #[derive(Debug)]
@@ -29,8 +32,7 @@ impl<S: ByteSource> PackageTiles<S> {
                 next = id.parent();
             }
         }
-        let sections =
-            Sections::TERRAIN | Sections::ROADS_GEO | Sections::ROADS_SV | Sections::ATTRIBUTES;
+        let sections = GROUND | Sections::ROADS_GEO | Sections::ROADS_SV | Sections::ATTRIBUTES;
         Ok(Self { package, tiles, sections })
     }
 
@@ -42,7 +44,7 @@ impl<S: ByteSource> PackageTiles<S> {
             RoadMethod::ShadowVolumes => Sections::ROADS_SV | Sections::ATTRIBUTES,
             RoadMethod::None => Sections::NONE,
         };
-        Self { sections: Sections::TERRAIN | roads, ..self }
+        Self { sections: GROUND | roads, ..self }
     }
 
     /// Reads and decodes a tile that exists.

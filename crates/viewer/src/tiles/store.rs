@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 
 use corniche_geom::{Bounds, TileId};
 
-use super::{LoadTileError, TileGeometry, TileSource};
+use super::{LoadTileError, MapExtent, TileGeometry, TileSource};
 use crate::lod::{GroundSummary, Node, Request, TileTree};
 
 /// The tiles loaded so far.
@@ -66,6 +66,17 @@ impl<'a> TileStore<'a> {
         }
         self.load(&[Request { id: TileId::ROOT, coarseness: f64::INFINITY }])?;
         Ok(self.get(TileId::ROOT).and_then(|root| root.summary))
+    }
+
+    /// What a first view shows, told by the root tile, which it loads; `data` is the rectangle of the data. `None` without any
+    /// ground.
+    ///
+    /// # Errors
+    /// When the root cannot be read.
+    pub fn map_extent(&mut self, data: Bounds) -> Result<Option<MapExtent>, LoadTileError> {
+        let has_ground = self.coarsest_ground()?.is_some();
+        let root = self.get(TileId::ROOT).filter(|_| has_ground);
+        Ok(root.map(|root| root.map_extent(data)))
     }
 
     /// True height of the ground at a position, from the finest tile there; loads the tiles down to it.

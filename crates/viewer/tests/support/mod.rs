@@ -214,6 +214,7 @@ pub(crate) fn plain_style(width_m: f32) -> Style {
         max_pixel_m: None,
         max_width_px: None,
         thin: None,
+        opacity: 1.0,
     };
     Style {
         roads: [road; 9],
@@ -319,6 +320,8 @@ pub(crate) fn draw_exaggerated(
         exaggeration,
         point_scale: 1.0,
         height_range_m: [0.0, 1000.0],
+        wall_m: 0.0,
+        latitude_deg: 47.0,
         wireframe: Wireframe::Hidden,
     };
     Renderer::new(gpu).draw(gpu, &view, &tiles, &targets);

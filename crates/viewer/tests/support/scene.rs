@@ -258,6 +258,8 @@ impl Scene {
             exaggeration: 1.0,
             point_scale: 1.0,
             height_range_m: [0.0, 2000.0],
+            wall_m: 0.0,
+            latitude_deg: 47.0,
             wireframe: Wireframe::Hidden,
         }
     }

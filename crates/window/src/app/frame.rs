@@ -213,6 +213,7 @@ impl App {
             exaggeration: settings.exaggeration,
             point_scale: self.package.manifest().point_scale,
             height_range_m: self.package.height_range_m(),
+            latitude_deg: self.package.manifest().wgs84_bounds.center()[1],
             wireframe: if settings.is_wireframe { Wireframe::Shown } else { Wireframe::Hidden },
             drawn: self.tiles.drawn().to_vec(),
             samples_per_side,

@@ -5,7 +5,7 @@ use corniche_tileset::Manifest;
 use corniche_viewer::{
     gpu::tile_bytes,
     range,
-    tiles::{MapPackage, TileCatalog, TileGeometry},
+    tiles::{MapExtent, MapPackage, TileCatalog, TileGeometry},
 };
 
 use super::camera_limits::MAX_PITCH_DEG;
@@ -27,6 +27,7 @@ pub(crate) fn check(request: &WindowRequest, catalog: &dyn TileCatalog) -> Resul
 pub(crate) struct ShownPackage {
     package: Arc<dyn MapPackage>,
     height_range_m: [f64; 2],
+    extent: MapExtent,
 }
 
 impl ShownPackage {
@@ -45,7 +46,8 @@ impl ShownPackage {
         if wanted_bytes > budget_bytes {
             return Err(WindowError::OverBudget { wanted_bytes, budget_bytes });
         }
-        Ok(Self { package, height_range_m: ground.height_range_m })
+        let extent = root.map_extent(package.manifest().data_bounds);
+        Ok(Self { package, height_range_m: ground.height_range_m, extent })
     }
 
     /// The package's table of contents.
@@ -61,6 +63,11 @@ impl ShownPackage {
     /// The true heights between which all ground lies.
     pub(crate) fn height_range_m(&self) -> [f64; 2] {
         self.height_range_m
+    }
+
+    /// What the first view shows.
+    pub(crate) fn extent(&self) -> MapExtent {
+        self.extent
     }
 
     /// World height of one metre of true height.
