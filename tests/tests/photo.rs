@@ -8,12 +8,12 @@ use std::{
 };
 
 use corniche_testing::ColourImage;
-use e2e::{Job, Ran, When, corniche, draw, json, manifest, real_data, sample, skipped, text};
+use e2e::{Job, Ran, When, corniche, draw, manifest, real_data, sample, skipped, text};
 
 /// A photo over the middle of the sample `pass`, in degrees; the sample is in UTM zone 32. Its colours change over some cells.
 fn photo(folder: &Path, west: f64, name: &str) -> PathBuf {
-    let info = json(&["info", "--json", text(&pass(folder))]);
-    let bounds = &info["wgs84_bounds"];
+    let plain = manifest(&pass(folder));
+    let bounds = &plain["wgs84_bounds"];
     let at = |key: &str| bounds[key].as_f64().unwrap();
     let (min_x, max_x, min_y, max_y) = (at("min_x"), at("max_x"), at("min_y"), at("max_y"));
     let (width, height) = (max_x - min_x, max_y - min_y);
@@ -140,7 +140,7 @@ fn a_package_with_photos_keeps_its_promises_and_is_the_same_however_it_is_made()
     succeed(corniche(words));
     assert!(fs::read(&from).unwrap() == whole, "terrain of a package makes another one");
     let ran = corniche([&words[..], &["-O", "--photo", text(&west)]].concat());
-    assert_eq!(ran.code, 1);
+    assert_eq!(ran.code, 2, "{}", ran.err);
     assert!(ran.err.contains("--photo cannot be laid on the terrain of"), "{}", ran.err);
 
     // A part of the data has photos in that part alone.
@@ -175,13 +175,15 @@ fn a_build_that_was_stopped_goes_on_to_the_same_bytes() {
     whole.succeed(&["--quiet"]);
     for signal in ["TERM", "KILL"] {
         let job = Job::new(&options);
-        job.stop(&[], signal, When::Worked);
+        let stopped = job.stop(&[], signal, When::Worked);
+        assert_ne!(stopped.code, 0, "{signal}: it ended by itself");
         job.succeed(&["--quiet", "--resume"]);
         assert!(job.result() == whole.result(), "{signal}");
     }
     // Another quality is another build.
     let job = Job::new(&options);
-    job.stop(&[], "TERM", When::Worked);
+    let stopped = job.stop(&[], "TERM", When::Worked);
+    assert_eq!(stopped.code, 4, "{}", stopped.err);
     let ran = job.run(&["--quiet", "--resume", "--photo-quality", "50"]);
     assert_eq!(ran.code, 1);
     assert!(ran.err.contains("--photo-quality is 50"), "{}", ran.err);
@@ -195,7 +197,7 @@ fn options_without_photos_and_photos_elsewhere_are_refused() {
     let refused = |options: &[&str]| {
         let words = ["build", "-q", "--dem", text(&dem), "-o", text(&package)];
         let ran = corniche([&words[..], options].concat());
-        assert_eq!(ran.code, 1, "{options:?}: {}", ran.err);
+        assert_eq!(ran.code, 2, "{options:?}: {}", ran.err);
         assert!(!package.exists());
         ran.err
     };

@@ -42,7 +42,9 @@ impl ColourImage<'_> {
         }
         for (index, interpretation) in self.interpretations.iter().enumerate() {
             let mut band = dataset.rasterband(index + 1).unwrap();
-            band.set_color_interpretation(*interpretation).unwrap();
+            let number = interpretation.c_int();
+            let own = ColorInterpretation::from_c_int(number).unwrap();
+            band.set_color_interpretation(own).unwrap();
         }
         tag(&mut dataset);
         let g = self.transform;
