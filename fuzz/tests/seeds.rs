@@ -1,14 +1,17 @@
-//! The seeds of the fuzz target `package` (`corpus/package`) are made here and are what the target reads to its end.
+//! The seeds of the fuzz target `package` (`corpus/package`), and one of `payload`, are made here and are what the target reads to its end.
 //! `CORNICHE_WRITE_SEEDS=1` writes them anew. Those of `osm` are made by `crates/osm/tests/seeds.rs`.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
 use std::{collections::BTreeMap, fs, path::Path};
 
+use corniche_geom::TileId;
 use corniche_testing::{
     package::{encoded, ids, manifest, metadata},
     pmtiles::{Entry, directory, file, gzip},
 };
-use corniche_tileset::{MemorySource, Package, Sections, pmtiles_order};
+use corniche_tileset::{
+    MemorySource, PHOTO_BORDER, Package, Photo, Sections, encode_photo, pmtiles_order,
+};
 
 /// A root directory, a leaf directory and tiles, as the target takes them apart.
 fn parts(root: &[u8], leaf: &[u8], tiles: &[Vec<u8>]) -> Vec<u8> {
@@ -45,10 +48,25 @@ fn seeds() -> BTreeMap<&'static str, Vec<u8>> {
     ])
 }
 
+/// A photo of one colour with a hole, as the target `payload` takes it: a list of sections, of which it is the only one.
+fn photo() -> Vec<u8> {
+    let side = 256 + 2 * PHOTO_BORDER;
+    let texel = |at: usize| if at % side < 24 { [0; 4] } else { [90, 120, 60, 255] };
+    let rgba = (0..side * side).flat_map(texel).collect();
+    let section = encode_photo(TileId::ROOT, &Photo { levels: 0, rgba }, 5).unwrap().unwrap();
+    let length = (section.bytes().len() as u16).to_le_bytes();
+    [&[0, 7], &length[..], section.bytes()].concat()
+}
+
 #[test]
-fn the_seeds_of_the_fuzz_target_are_as_they_are_made_here() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus/package");
-    for (name, bytes) in seeds() {
+fn the_seeds_of_the_fuzz_targets_are_as_they_are_made_here() {
+    let all = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus");
+    check(&all.join("package"), seeds());
+    check(&all.join("payload"), BTreeMap::from([("photo", photo())]));
+}
+
+fn check(folder: &Path, seeds: BTreeMap<&'static str, Vec<u8>>) {
+    for (name, bytes) in seeds {
         assert!(bytes.len() <= 4096, "{name}: {} bytes", bytes.len());
         let path = folder.join(name);
         if std::env::var_os("CORNICHE_WRITE_SEEDS").is_some() {

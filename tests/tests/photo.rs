@@ -246,6 +246,64 @@ fn photos_are_drawn_as_strongly_as_is_asked() {
     assert!(ran.code != 0 && ran.err.contains("from 0 to 1"), "{}", ran.err);
 }
 
+/// Over tile borders, and from one level to the next, a smooth photo stays smooth: neighbouring pixels never jump. Without the border
+/// that tiles share, or with a shift of half a texel, they do.
+#[test]
+fn no_border_of_tiles_is_seen_in_a_smooth_photo() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let (west, east) =
+        (photo(folder.path(), 0.05, "west.tif"), photo(folder.path(), 0.45, "east.tif"));
+    build(&inputs(&[&west, &east]), &at("photo.pmtiles"), &["--photo-quality", "95"]);
+    let sheet = fs::read_to_string(e2e::root().join("crates/styles/sheets/photo.toml")).unwrap();
+    let flat = sheet
+        .replace("hillshade = 0.4", "hillshade = 0")
+        .replace("haze_reach = 6", "haze_reach = 1000");
+    assert_ne!(flat, sheet);
+    fs::write(at("flat.toml"), flat).unwrap();
+    let found = manifest(&at("photo.pmtiles"));
+    let middle = |low: &str, high: &str| {
+        let bounds = &found["wgs84_bounds"];
+        f64::midpoint(bounds[low].as_f64().unwrap(), bounds[high].as_f64().unwrap())
+    };
+    let place = format!("{},{}", middle("min_x", "max_x"), middle("min_y", "max_y"));
+    for distance in ["2500", "5000", "9000"] {
+        let options = [
+            "--size",
+            "500x400",
+            "--supersampling",
+            "1",
+            "--roads",
+            "none",
+            "--pitch",
+            "0",
+            "--look-at",
+            &place,
+            "--distance",
+            distance,
+            "--style",
+            text(&at("flat.toml")),
+            "-O",
+        ];
+        if draw("render", &at("photo.pmtiles"), &at("smooth.png"), &options).is_none() {
+            return;
+        }
+        let picture = image::open(at("smooth.png")).unwrap().to_rgb8();
+        let mut worst = 0;
+        for y in 61..340 {
+            for x in 61..440 {
+                for [dx, dy] in [[1, 0], [0, 1]] {
+                    let [a, b, c] = [(x - dx, y - dy), (x, y), (x + dx, y + dy)]
+                        .map(|(x, y)| picture.get_pixel(x, y).0.map(i32::from));
+                    let bend = (0..3).map(|k| (a[k] - 2 * b[k] + c[k]).abs()).max().unwrap();
+                    worst = worst.max(bend);
+                }
+            }
+        }
+        assert!(worst <= 12, "{distance} m: a jump of {worst} grey levels");
+    }
+}
+
 /// Real photos: one far finer than its DEM, and one on the grid of a DEM that says `PixelIsPoint`.
 #[test]
 fn real_photos_are_built_and_verified() {
