@@ -31,7 +31,8 @@ pub fn config(data: &[u8]) {
         Ok(style) => {
             // The shaders divide by these values.
             assert!(style.width_scaling.threshold_m >= 1.0 && style.haze_reach > 0.0);
-            assert!(style.tint.is_sorted_by(|(a, _), (b, _)| a < b), "{:?}", style.tint);
+            let stops = style.tint.stops_m([0.0, 100.0], 47.0);
+            assert!(stops.is_sorted_by(|(a, _), (b, _)| a < b), "{stops:?}");
             if let Some(lane_m) = style.own_widths.and_then(|widths| widths.lane_m) {
                 assert!((1.0..=10.0).contains(&lane_m), "{lane_m}");
             }

@@ -4,13 +4,14 @@
 
 use std::{collections::BTreeMap, fs, path::Path};
 
-use corniche_geom::TileId;
+use corniche_geom::{HeightGrid, TileId};
 use corniche_testing::{
-    package::{encoded, ids, manifest, metadata},
+    package::{context, encoded, ids, manifest, metadata},
     pmtiles::{Entry, directory, file, gzip},
 };
 use corniche_tileset::{
-    MemorySource, PHOTO_BORDER, Package, Photo, Sections, encode_photo, pmtiles_order,
+    MemorySource, PHOTO_BORDER, Package, Photo, Relief, Sections, TilePayload, decode, encode,
+    encode_photo, pmtiles_order,
 };
 
 /// A root directory, a leaf directory and tiles, as the target takes them apart.
@@ -56,6 +57,50 @@ fn photo() -> Vec<u8> {
     let section = encode_photo(TileId::ROOT, &Photo { levels: 0, rgba }, 5).unwrap().unwrap();
     let length = (section.bytes().len() as u16).to_le_bytes();
     [&[0, 7], &length[..], section.bytes()].concat()
+}
+
+/// A payload with a relief alone, as the target `payload` takes it: hills and a void, on two thirds of which there are few bits.
+fn relief_seed() -> Vec<u8> {
+    let heights = HeightGrid::from_fn(259, 259, |column, row| {
+        if column > 200 && row > 180 {
+            return f32::NAN;
+        }
+        300.0 + if column < 80 { (column * row % 97) as f32 } else { row as f32 }
+    });
+    let context = context();
+    let id = TileId::ROOT.children().nth(1).unwrap();
+    let cell = context.frame.level_cell(id.z());
+    let relief = Some(Relief::of_heights(&heights, cell, context.quantum_m).unwrap());
+    let tile = TilePayload {
+        id,
+        terrain: None,
+        relief,
+        roads_geo: vec![],
+        roads_sv: vec![],
+        attributes: vec![],
+    };
+    [&[1], &encode(&tile, &context).unwrap().bytes[..]].concat()
+}
+
+#[test]
+fn the_seed_with_a_relief_is_as_it_is_made_here_and_is_read() {
+    let bytes = relief_seed();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus/payload/relief");
+    if std::env::var_os("CORNICHE_WRITE_SEEDS").is_some() {
+        fs::write(&path, &bytes).unwrap();
+    }
+    assert!(fs::read(&path).unwrap() == bytes, "CORNICHE_WRITE_SEEDS=1 writes it anew");
+    assert!(bytes.len() <= 16_384, "{} bytes", bytes.len());
+    let id = TileId::ROOT.children().nth(1).unwrap();
+    let context = context();
+    let read = decode(&bytes[1..], id, &context.frame, context.quantum_m, Sections::ALL);
+    assert!(read.unwrap().relief.is_some());
+    // Not the last byte, which is no information: zeros are read beyond the end.
+    for at in (1..bytes.len()).step_by(bytes.len() / 12) {
+        let mut changed = bytes.clone();
+        changed[at] ^= 0x10;
+        corniche_fuzz::payload(&changed);
+    }
 }
 
 #[test]

@@ -267,6 +267,7 @@ fn no_border_of_tiles_is_seen_in_a_smooth_photo() {
         f64::midpoint(bounds[low].as_f64().unwrap(), bounds[high].as_f64().unwrap())
     };
     let place = format!("{},{}", middle("min_x", "max_x"), middle("min_y", "max_y"));
+    let style = at("flat.toml");
     for distance in ["2500", "5000", "9000"] {
         let options = [
             "--size",
@@ -282,7 +283,7 @@ fn no_border_of_tiles_is_seen_in_a_smooth_photo() {
             "--distance",
             distance,
             "--style",
-            text(&at("flat.toml")),
+            text(&style),
             "-O",
         ];
         if draw("render", &at("photo.pmtiles"), &at("smooth.png"), &options).is_none() {

@@ -93,6 +93,7 @@ fn options(
             Lod::Adaptive => Detail::Adaptive,
         },
         screen_space_error_px: args.drawing.ground.screen_space_error,
+        cell_px: args.drawing.ground.cell_px,
         exaggeration: args.drawing.ground.exaggeration,
         supersampling: args.drawing.supersampling,
         style: style.clone(),

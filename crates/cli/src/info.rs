@@ -148,6 +148,7 @@ fn levels(manifest: &Manifest, digits: Digits) -> Table {
         "triangles",
         "terrain",
         "B/triangle",
+        "relief",
         "roads to FRC",
         "uncovered",
     ]);
@@ -160,6 +161,7 @@ fn levels(manifest: &Manifest, digits: Digits) -> Table {
             digits.count(level.triangles),
             bytes(level.terrain_bytes),
             format!("{:.2}", level.terrain_bytes as f64 / level.triangles.max(1) as f64),
+            if level.relief_bytes == 0 { "–".to_owned() } else { bytes(level.relief_bytes) },
             level.least_class.map_or_else(|| "–".to_owned(), |class| class.to_string()),
             digits.count(level.uncovered_nodes),
         ]);

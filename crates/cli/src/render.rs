@@ -28,6 +28,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         roads: args.look.road_options(roads),
         camera: args.camera.request(),
         screen_space_error_px: args.ground.screen_space_error,
+        cell_px: args.ground.cell_px,
         exaggeration: args.ground.exaggeration,
         supersampling: args.supersampling,
         style,

@@ -13,10 +13,11 @@ use corniche_pipeline::{
     TerrainRecord, TerrainSettings,
 };
 use corniche_presets::{
-    BoundsChoice, InputFiles, OutputFiles, PhotoOptions, RoadOptions, TerrainOptions, check_cell,
-    class_filter, is_range, parse_memory,
+    BoundsChoice, InputFiles, OutputFiles, PhotoOptions, ReliefChoice, RoadOptions, TerrainOptions,
+    check_cell, class_filter, is_range, parse_memory,
 };
 use corniche_roads::ClassFilter;
+use corniche_tileset::ReliefLevels;
 
 use crate::{args::WorkArgs, exit::ExitCode, failure::Failure, presets};
 
@@ -138,7 +139,7 @@ struct Cut {
 fn usual_terrain() -> TerrainRecord {
     let plan = PlanOptions { fill_voids: FILL_VOIDS, ..PlanOptions::default() };
     TerrainRecord {
-        terrain: TerrainSettings { plan, ..TerrainSettings::default() },
+        terrain: TerrainSettings { plan, relief: ReliefLevels::Full, ..TerrainSettings::default() },
         attribution: Vec::new(),
     }
 }
@@ -192,7 +193,17 @@ fn terrain_settings(
         height_range_m: options.height_range.or(base.height_range_m),
         allow_fine_cell: force,
         max_error_m: positive("--max-error", options.max_error)?.or(base.max_error_m),
+        relief: options.relief.map_or(base.relief, relief_levels),
     })
+}
+
+/// What `--relief` asks for.
+fn relief_levels(choice: ReliefChoice) -> ReliefLevels {
+    match choice {
+        ReliefChoice::Off => ReliefLevels::Off,
+        ReliefChoice::Finest => ReliefLevels::Finest,
+        ReliefChoice::Full => ReliefLevels::Full,
+    }
 }
 
 /// How photos are made; `None` where there are none.

@@ -47,6 +47,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         photo: args.look.photo,
         reload: reload(chosen),
         screen_space_error_px: args.ground.screen_space_error,
+        cell_px: args.ground.cell_px,
         exaggeration: args.ground.exaggeration,
         samples_per_side: args.supersampling,
         budget: StreamBudget {

@@ -1,7 +1,7 @@
 //! What every step of a build needs: the elevation files as opened, the grid, the levels, and the store.
 
 use corniche_dem::{Dem, GridPlan};
-use corniche_geom::{CoordinateTable, Frame, LatticeArea, LatticeBounds};
+use corniche_geom::{CoordinateTable, Frame, LatticeArea, LatticeBounds, TileId};
 use corniche_store::Artifacts;
 use corniche_tileset::PhotoRecord;
 
@@ -66,6 +66,11 @@ impl<'a> Context<'a> {
 
     pub(crate) fn frame(&self) -> &Frame {
         self.levels.frame()
+    }
+
+    /// Whether a tile has a relief section if it has ground.
+    pub(crate) fn has_relief(&self, id: TileId) -> bool {
+        self.settings.terrain.relief.has(id.z(), self.frame().max_level())
     }
 
     pub(crate) fn data(&self) -> DataTiles {

@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use corniche_dem::{OpenOptions, PlanOptions};
 use corniche_roads::{ClassFilter, FrcTable};
+use corniche_tileset::ReliefLevels;
 
 /// What to build, from what, and how: checked, ready to run.
 #[derive(Debug, Clone)]
@@ -96,6 +97,8 @@ pub struct TerrainSettings {
     pub allow_fine_cell: bool,
     /// Largest vertical error of the finest level; `None` takes a quarter of the cell.
     pub max_error_m: Option<f64>,
+    /// Which levels store their rasters for shading.
+    pub relief: ReliefLevels,
 }
 
 /// How roads are made.

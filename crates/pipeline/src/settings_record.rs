@@ -21,7 +21,7 @@ pub(crate) fn of(
     photo: Option<PhotoRecord>,
 ) -> SettingsRecord {
     // Every field is named, so that a new one cannot be forgotten here.
-    let TerrainSettings { open, plan, height_range_m, allow_fine_cell: _, max_error_m: _ } =
+    let TerrainSettings { open, plan, height_range_m, allow_fine_cell: _, max_error_m: _, relief } =
         terrain;
     let OpenOptions { dem_crs, nodata, dem_vertical_crs, vertical_crs, vertical_shift_m } = open;
     let PlanOptions { crs, cell, cell_every, scale_latitude_deg, fill_voids, bounds_deg, polygon } =
@@ -42,6 +42,7 @@ pub(crate) fn of(
         scale_latitude_deg: *scale_latitude_deg,
         bounds_deg: *bounds_deg,
         polygon: polygon.as_ref().map(polygon_record),
+        relief: *relief,
         frc_table: table.name().to_owned(),
         frc_table_sha256: table_sha256(table),
         classes: table.chosen_classes(),
@@ -86,6 +87,7 @@ pub(crate) fn terrain(record: &SettingsRecord) -> TerrainSettings {
         // The build has begun already.
         allow_fine_cell: true,
         max_error_m: Some(record.max_error_m),
+        relief: record.relief,
     }
 }
 

@@ -1,4 +1,5 @@
 use corniche_geom::Cell;
+use corniche_tileset::ReliefLevels;
 
 use super::*;
 
@@ -30,7 +31,7 @@ fn record((terrain, roads): &Settings) -> SettingsRecord {
 }
 
 /// Every setting that determines bytes, and another value of it.
-const CHANGES: [Change; 15] = [
+const CHANGES: [Change; 16] = [
     ("dem_crs", |(terrain, _)| terrain.open.dem_crs = Some("EPSG:4326".to_owned())),
     ("nodata", |(terrain, _)| terrain.open.nodata = vec![-9999.0]),
     ("dem_vertical_crs", |(terrain, _)| {
@@ -44,6 +45,7 @@ const CHANGES: [Change; 15] = [
     ("scale_latitude_deg", |(terrain, _)| terrain.plan.scale_latitude_deg = Some(47.0)),
     ("fill_voids", |(terrain, _)| terrain.plan.fill_voids = 0),
     ("height_range_m", |(terrain, _)| terrain.height_range_m = Some([-500.0, 9000.0])),
+    ("relief", |(terrain, _)| terrain.relief = ReliefLevels::Full),
     ("max_error_m", |(terrain, _)| terrain.max_error_m = Some(7.5)),
     ("table", |(_, roads)| roads.table = table("two")),
     ("filter", |(_, roads)| roads.filter = ClassFilter::all()),

@@ -55,7 +55,7 @@ fn skirt_depths_m(built: &Built, cut: &BTreeSet<TileId>) -> BTreeMap<TileId, f64
     let all = WorldBox::new(tree.plan_bounds(TileId::ROOT), root.height_range_m);
     let above = Orientation { heading_deg: 0.0, pitch_deg: 0.0 };
     let camera = Camera::framing(all, above, [800, 600]);
-    let quality = Quality { screen_space_error_px: 1e-12, vertical_scale: 1.0 };
+    let quality = Quality::by_error(1e-12, 1.0);
     let drawn = select(&tree, &camera, quality).drawn;
     let depths: BTreeMap<_, _> = drawn.iter().map(|tile| (tile.id, tile.skirt_depth_m)).collect();
     assert!(depths.keys().eq(cut), "drawn is what was cut");

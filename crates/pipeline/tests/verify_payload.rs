@@ -12,10 +12,10 @@ use std::{
 };
 
 use corniche_drape::{DrapedLine, DrapedVertex, SvLine};
-use corniche_geom::LatticePoint;
+use corniche_geom::{HeightGrid, LatticePoint};
 use corniche_pipeline::CheckId as C;
 use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
-use corniche_tileset::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};
+use corniche_tileset::{GeoRoad, Relief, RoadRecord, SvRoad, Terrain, TilePayload};
 use corniche_tin::{Tin, TinVertex};
 use support::{
     parts::{Parts, SOUND},
@@ -34,7 +34,7 @@ macro_rules! fields {
 }
 
 fields! {
-    TilePayload { id, terrain, roads_geo, roads_sv, attributes }
+    TilePayload { id, terrain, relief, roads_geo, roads_sv, attributes }
     Terrain { tin, normals, geometric_error_m, height_range_m, uncovered_nodes }
     TinVertex { row, column, height_q }
     GeoRoad { way_id, part, class, line }
@@ -69,6 +69,9 @@ type PayloadChange = (&'static str, fn(&mut Parts), Seen);
 
 const CHANGES: &[PayloadChange] = &[
     ("TilePayload.terrain", |parts| bare(parts).terrain = None, By(C::LevelSums)),
+    ("TilePayload.relief", |parts| bare(parts).relief = None, By(C::ReliefThere)),
+    ("TilePayload.relief", other_relief, By(C::Relief)),
+    ("TilePayload.relief", other_relief, By(C::ReliefSeams)),
     ("TilePayload.roads_geo", |parts| drop(busy(parts).roads_geo.remove(0)), By(C::Methods)),
     ("TilePayload.roads_sv", without_sv, By(C::Methods)),
     ("TilePayload.attributes", |parts| drop(busy(parts).attributes.pop()), By(C::Attributes)),
@@ -176,6 +179,19 @@ const CHANGES: &[PayloadChange] = &[
         By(C::OsmAttributes),
     ),
 ];
+
+/// The relief of other ground: a finest tile's, turned upside down.
+fn other_relief(parts: &mut Parts) {
+    let cell = parts.manifest.levels.last().unwrap().cell_m;
+    let quantum_m = parts.manifest.vertical.quantum_m;
+    let relief = &mut bare(parts).relief;
+    let heights = relief.as_ref().unwrap().heights();
+    let nearest = |at: usize| at.clamp(1, 257) - 1;
+    let with_halo = HeightGrid::from_fn(259, 259, |column, row| {
+        heights.height(nearest(column), nearest(row)).map_or(f32::NAN, |height_m| -height_m)
+    });
+    *relief = Some(Relief::of_heights(&with_halo, cell, quantum_m).unwrap());
+}
 
 /// The finest tile with the most roads.
 fn busy(parts: &mut Parts) -> &mut TilePayload {

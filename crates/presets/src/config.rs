@@ -6,7 +6,7 @@ use clap::Args;
 use serde::{Deserialize, Deserializer};
 
 use crate::{
-    BoundsChoice, Classes, PhotoOptions, PresetError,
+    BoundsChoice, Classes, PhotoOptions, PresetError, ReliefChoice,
     error::bounded,
     files::{InputFiles, OutputFiles},
     values::{parse_cell, parse_range},
@@ -89,6 +89,10 @@ pub struct TerrainOptions {
     /// Fill voids that have data within this many cells in each of eight directions [default: 32]
     #[arg(long, value_name = "CELLS")]
     pub fill_voids: Option<u32>,
+    /// Levels that store their rasters, compressed for shading: off, finest or full, which is all of them. The triangles stay within
+    /// --max-error of heights; the relief shows what lies between them [default: full]
+    #[arg(long, value_enum, value_name = "off|finest|full", hide_possible_values = true)]
+    pub relief: Option<ReliefChoice>,
     /// Convert only what lies within these bounds: west, south, east and north in WGS84 degrees, across 180° where the west is larger than
     /// the east; or osm: where the extract is, by its header, and a hundredth more on every side. Ground and roads end at the bounds,
     /// rounded outwards to whole cells; the grid is that of the whole DEM
@@ -186,6 +190,7 @@ impl TerrainOptions {
             cell_every,
             max_error: self.max_error.or_from(other.max_error),
             fill_voids: self.fill_voids.or_from(other.fill_voids),
+            relief: self.relief.or_from(other.relief),
             bounds: self.bounds.or_from(other.bounds),
             attribution: self.attribution.or_from(other.attribution),
         }

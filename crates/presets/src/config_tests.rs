@@ -90,6 +90,7 @@ fn all_options(n: u8) -> (TerrainOptions, RoadOptions, ResourceOptions) {
         cell_every: Some(n.into()),
         max_error: Some(number),
         fill_voids: Some(n.into()),
+        relief: Some(if n == 1 { ReliefChoice::Off } else { ReliefChoice::Full }),
         bounds: Some(BoundsChoice::Osm),
         attribution: vec![text("attribution")],
     };

@@ -12,6 +12,7 @@ mod files;
 mod folder;
 mod frc;
 mod photo;
+mod relief;
 mod values;
 
 pub use bounds::BoundsChoice;
@@ -22,4 +23,5 @@ pub use error::PresetError;
 pub use files::{InputFiles, OutputFiles};
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};
 pub use photo::PhotoOptions;
+pub use relief::ReliefChoice;
 pub use values::{check_cell, is_range, parse_bytes, parse_memory};

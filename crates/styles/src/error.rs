@@ -13,8 +13,18 @@ pub enum StyleError {
     Class { text: String },
     #[error("[roads.{class}] is missing; a style says of every class, 0 to 8, how it looks")]
     MissingClass { class: String },
-    #[error("a style has {needed} [[tint]] entries, not {count}")]
-    TintCount { count: usize, needed: usize },
+    #[error("a style has 2 to {most} [[tint]] entries, not {count}")]
+    TintCount { count: usize, most: usize },
+    #[error(
+        "every [[tint]] entry needs a height: either share in all of them, or height_m in all of them"
+    )]
+    TintUnit,
+    #[error(
+        "tint_by_climate = true needs height_m in the [[tint]] entries; shares follow the package's own heights"
+    )]
+    TintClimate,
+    #[error("the heights of [[tint]] must ascend, by 1 m or more")]
+    TintHeightOrder,
     #[error("lane_width_m has no effect without own_width = true")]
     LaneWidth,
     #[error("the shares of [[tint]] must ascend from 0 to 1, both included, by 0.001 or more")]

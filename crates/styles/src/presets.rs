@@ -1,7 +1,8 @@
 /// Styles that come with the program, the default one first.
-const PRESETS: [(&str, &str); 3] = [
+const PRESETS: [(&str, &str); 4] = [
     ("road-atlas", include_str!("../sheets/road-atlas.toml")),
     ("dark", include_str!("../sheets/dark.toml")),
+    ("relief", include_str!("../sheets/relief.toml")),
     ("photo", include_str!("../sheets/photo.toml")),
 ];
 

@@ -5,13 +5,13 @@ use std::{collections::BTreeMap, ops::RangeInclusive};
 use corniche_roads::FunctionalRoadClass;
 use serde::Deserialize;
 
-use crate::{CenterLine, OwnWidths, Rgb, RoadStyle, Style, StyleError, TINT_STOPS, WidthScaling};
+use crate::{
+    CenterLine, OwnWidths, Rgb, RoadStyle, Style, StyleError, Tint, WidthScaling,
+    ground_sheet::{LightSheet, TintSheet, tint},
+};
 
 /// Longest text that is read. The longest preset has some 3 kB.
 const MAX_TEXT_BYTES: usize = 1 << 20;
-
-/// Least difference between one share of the tint and the next. The shaders divide by it, in f32.
-const LEAST_STEP: f64 = 0.001;
 
 /// A colour as red, green, blue in sRGB.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -33,10 +33,10 @@ pub(crate) struct StyleSheet {
     pub(crate) width_scaling: WidthScalingSheet,
     /// Light and shade.
     pub(crate) light: LightSheet,
-    /// Sky, haze and void.
+    /// Sky, haze, void, water, and the wall along the edge of the data.
     pub(crate) background: BackgroundSheet,
-    /// Height tint, lowest first; shares ascend from 0 to 1.
-    pub(crate) tint: [TintSheet; TINT_STOPS],
+    /// Height tint.
+    pub(crate) tint: Tint,
     /// By class, 0 first.
     pub(crate) roads: [RoadSheet; FunctionalRoadClass::COUNT],
 }
@@ -53,18 +53,6 @@ pub(crate) struct WidthScalingSheet {
     pub(crate) constant: f64,
 }
 
-/// Where the light comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct LightSheet {
-    /// Clockwise from north, 0 to 360.
-    pub(crate) azimuth_deg: f64,
-    /// Above the horizon, 0 to 90.
-    pub(crate) altitude_deg: f64,
-    /// How strongly slopes are shaded, 0 to 1.
-    pub(crate) hillshade: f64,
-}
-
 /// Colours where there is no near ground.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -75,18 +63,24 @@ pub(crate) struct BackgroundSheet {
     pub(crate) sky: Rgb8,
     /// Where there is no ground, below the horizon.
     pub(crate) void: Rgb8,
+    /// Level ground at or below 0 m.
+    #[serde(default = "BackgroundSheet::water")]
+    pub(crate) water: Rgb8,
+    /// The wall along the edge of the data.
+    #[serde(default = "BackgroundSheet::wall")]
+    pub(crate) wall: Rgb8,
     /// Ground at this many times the distance of what is looked at has lost two thirds of its colour; 0.1 to 1000.
     pub(crate) haze_reach: f64,
 }
 
-/// One colour of the tint.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct TintSheet {
-    /// Share of the range of heights, 0 to 1.
-    pub(crate) share: f64,
-    /// The colour there.
-    pub(crate) color: Rgb8,
+impl BackgroundSheet {
+    fn water() -> Rgb8 {
+        Rgb8([0xA9, 0xC9, 0xDD])
+    }
+
+    fn wall() -> Rgb8 {
+        Rgb8([0x8E, 0x84, 0x78])
+    }
 }
 
 /// How the roads of one class are drawn.
@@ -103,6 +97,12 @@ pub(crate) struct RoadSheet {
     pub(crate) outline: Rgb8,
     /// A line along the middle.
     pub(crate) center: Option<CenterSheet>,
+    /// Drawn in full up to this many metres of ground in a pixel, 0.01 to 1e6; left out: always.
+    pub(crate) max_pixel_m: Option<f64>,
+    /// Roads grow no wider with distance than this, 0.1 to 500 pixels; left out: without end.
+    pub(crate) max_width_px: Option<f64>,
+    /// The colour of a road too thin for an edge; left out: that of its surface.
+    pub(crate) thin: Option<Rgb8>,
 }
 
 /// The line along the middle of a road of two colours.
@@ -128,6 +128,8 @@ struct StyleFile {
     width_scaling: WidthScalingSheet,
     light: LightSheet,
     background: BackgroundSheet,
+    #[serde(default)]
+    tint_by_climate: bool,
     tint: Vec<TintSheet>,
     roads: BTreeMap<String, RoadSheet>,
 }
@@ -159,7 +161,8 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
         width_scaling,
         light,
         background,
-        tint,
+        tint_by_climate,
+        tint: stops,
         roads,
     } = file;
     if lane_width_m.is_some() && !own_width {
@@ -173,24 +176,11 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
         width_scaling,
         light,
         background,
-        tint: ascending(tint)?,
+        tint: tint(&stops, tint_by_climate)?,
         roads: all_classes(&roads)?,
     };
     sheet.check()?;
     Ok(sheet)
-}
-
-/// The tint, if it has as many colours as are needed, lowest first, from 0 to 1.
-#[expect(clippy::float_cmp, reason = "the ends of the tint are given exactly or not at all")]
-fn ascending(tint: Vec<TintSheet>) -> Result<[TintSheet; TINT_STOPS], StyleError> {
-    let count = tint.len();
-    let tint: [TintSheet; TINT_STOPS] =
-        tint.try_into().map_err(|_| StyleError::TintCount { count, needed: TINT_STOPS })?;
-    let ends = [tint[0].share, tint[TINT_STOPS - 1].share];
-    if ends != [0.0, 1.0] || !tint.is_sorted_by(|a, b| a.share + LEAST_STEP <= b.share) {
-        return Err(StyleError::TintOrder);
-    }
-    Ok(tint)
 }
 
 /// The roads by class, if there are all of them and no others.
@@ -224,14 +214,18 @@ impl StyleSheet {
         within("width_scaling.threshold_m", scaling.threshold_m, 1.0..=1e7)?;
         within("width_scaling.exponent", scaling.exponent, 0.0..=1.0)?;
         within("width_scaling.constant", scaling.constant, 0.1..=100.0)?;
-        within("light.azimuth_deg", light.azimuth_deg, 0.0..=360.0)?;
-        within("light.altitude_deg", light.altitude_deg, 0.0..=90.0)?;
-        within("light.hillshade", light.hillshade, 0.0..=1.0)?;
+        light.check()?;
         within("background.haze_reach", background.haze_reach, 0.1..=1000.0)?;
         for (class, road) in roads.iter().enumerate() {
             let entry = |name| format!("roads.{class}.{name}");
             within(&entry("width_m"), road.width_m, 0.1..=500.0)?;
             within(&entry("min_width_px"), road.min_width_px, 0.1..=50.0)?;
+            if let Some(max_pixel_m) = road.max_pixel_m {
+                within(&entry("max_pixel_m"), max_pixel_m, 0.01..=1e6)?;
+            }
+            if let Some(max_width_px) = road.max_width_px {
+                within(&entry("max_width_px"), max_width_px, 0.1..=500.0)?;
+            }
             if let Some(center) = road.center {
                 within(&entry("center.width_share"), center.width_share, 0.01..=0.99)?;
             }
@@ -240,7 +234,11 @@ impl StyleSheet {
     }
 }
 
-fn within(entry: &str, value: f64, range: RangeInclusive<f64>) -> Result<(), StyleError> {
+pub(crate) fn within(
+    entry: &str,
+    value: f64,
+    range: RangeInclusive<f64>,
+) -> Result<(), StyleError> {
     // NaN is in no range.
     if range.contains(&value) {
         return Ok(());
@@ -284,14 +282,14 @@ impl From<&StyleSheet> for Style {
                 constant: width_scaling.constant as f32,
             },
             outline_px: *outline_px,
-            tint: tint.map(|stop| (stop.share as f32, Rgb::from(stop.color))),
-            light_azimuth_deg: light.azimuth_deg,
-            light_altitude_deg: light.altitude_deg,
-            hillshade: light.hillshade as f32,
+            tint: tint.clone(),
+            light: (*light).into(),
             photo: sheet.photo as f32,
             haze: background.haze.into(),
             sky: background.sky.into(),
             void: background.void.into(),
+            water: background.water.into(),
+            wall: background.wall.into(),
             haze_reach: background.haze_reach as f32,
         }
     }
@@ -308,6 +306,9 @@ impl From<RoadSheet> for RoadStyle {
                 width_share: width_share as f32,
                 color: color.into(),
             }),
+            max_pixel_m: sheet.max_pixel_m.map(|max_pixel_m| max_pixel_m as f32),
+            max_width_px: sheet.max_width_px.map(|max_width_px| max_width_px as f32),
+            thin: sheet.thin.map(Rgb::from),
         }
     }
 }

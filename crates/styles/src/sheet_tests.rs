@@ -1,5 +1,5 @@
 use super::*;
-use crate::{style_preset, style_preset_names};
+use crate::{TintHeights, style_preset, style_preset_names};
 
 fn atlas() -> &'static str {
     style_preset("road-atlas").expect("the default style is there")
@@ -17,7 +17,7 @@ fn refuses(from: &str, to: &str, words: &[&str]) {
 
 #[test]
 fn the_styles_that_come_along_are_styles_of_ordered_roads() {
-    assert_eq!(style_preset_names().collect::<Vec<_>>(), ["road-atlas", "dark"]);
+    assert_eq!(style_preset_names().collect::<Vec<_>>(), ["road-atlas", "dark", "relief"]);
     for name in style_preset_names() {
         let style = parse_sheet(style_preset(name).unwrap()).unwrap();
         assert!(
@@ -26,15 +26,15 @@ fn the_styles_that_come_along_are_styles_of_ordered_roads() {
                 .is_sorted_by(|a, b| a.width_m > b.width_m && a.min_width_px >= b.min_width_px),
             "{name}: more important roads are wider"
         );
-        assert!(style.roads[0].center.is_some() && style.roads[8].center.is_none(), "{name}");
+        assert!(style.roads[8].center.is_none(), "{name}");
     }
     assert!(style_preset("road atlas").is_none());
 }
 
 /// Relative luminance as WCAG 2.2 defines it.
-fn luminance(Rgb8(rgb): Rgb8) -> f64 {
-    let [r, g, b] = rgb.map(|channel| {
-        let share = f64::from(channel) / 255.0;
+fn luminance(color: Rgb) -> f64 {
+    let [r, g, b] = color.map(|channel| {
+        let share = f64::from(channel);
         if share <= 0.04045 { share / 12.92 } else { ((share + 0.055) / 1.055).powf(2.4) }
     });
     0.2126 * r + 0.7152 * g + 0.0722 * b
@@ -43,20 +43,20 @@ fn luminance(Rgb8(rgb): Rgb8) -> f64 {
 /// The contrast of main roads, tracks and edges with ground that lies flat in the light.
 #[test]
 fn dark_roads_glow_and_their_edges_are_darker_than_any_ground() {
-    let style = parse_sheet(style_preset("dark").unwrap()).unwrap();
-    let contrast = |a: Rgb8, b: Rgb8| {
+    let style = parse_style(style_preset("dark").unwrap()).unwrap();
+    let contrast = |a: Rgb, b: Rgb| {
         let [a, b] = [a, b].map(luminance);
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
     };
     // The two highest tints are rock and snow; roads there are few and low classes fade into them.
-    let ground = &style.tint[..4];
+    let ground = &style.tint.stops[..style.tint.stops.len() - 2];
     for (class, road) in style.roads.iter().enumerate() {
-        for tint in ground {
+        for (height_m, tint) in ground {
             let least = if class <= 4 { 4.5 } else { 1.7 };
-            let reached = contrast(road.color, tint.color);
-            assert!(reached >= least, "class {class} on {:?}: {reached:.2}", tint.color);
-            assert!(luminance(road.color) > luminance(tint.color), "class {class} glows");
-            assert!(luminance(road.outline) < luminance(tint.color), "class {class} has an edge");
+            let reached = contrast(road.color, *tint);
+            assert!(reached >= least, "class {class} at {height_m} m: {reached:.2}");
+            assert!(luminance(road.color) > luminance(*tint), "class {class} glows");
+            assert!(luminance(road.outline) < luminance(*tint), "class {class} has an edge");
         }
     }
 }
@@ -87,12 +87,17 @@ fn numbers_out_of_their_range_are_named_with_it() {
         "width_share = 1",
         &["roads.0.center.width_share", "0.01 to 0.99"],
     );
+    refuses("max_pixel_m = 300", "max_pixel_m = 0", &["roads.2.max_pixel_m", "0.01 to 1000000"]);
+    refuses("max_width_px = 5.5", "max_width_px = 0", &["roads.0.max_width_px", "0.1 to 500"]);
     refuses("threshold_m = 1500", "threshold_m = inf", &["threshold_m", "1 to 10000000"]);
     refuses("exponent = 0.75", "exponent = -0.1", &["width_scaling.exponent", "0 to 1"]);
     refuses("constant = 4", "constant = 0", &["width_scaling.constant", "0.1 to 100"]);
     refuses("outline_px = 1", "outline_px = 5", &["outline_px", "0 to 4"]);
     refuses("azimuth_deg = 315", "azimuth_deg = 361", &["light.azimuth_deg", "0 to 360"]);
     refuses("altitude_deg = 45", "altitude_deg = 91", &["light.altitude_deg", "0 to 90"]);
+    refuses("sky = 0.3", "sky = -1", &["light.sky", "0 to 1"]);
+    refuses("gentle = 2.5", "gentle = 0", &["light.gentle", "1 to 10"]);
+    refuses("valley_haze = 0.2", "valley_haze = nan", &["light.valley_haze", "0 to 1"]);
     refuses("hillshade = 0.75", "hillshade = 1.1", &["light.hillshade", "0 to 1"]);
     refuses("haze_reach = 6", "haze_reach = 0", &["background.haze_reach", "0.1 to 1000"]);
 }
@@ -109,15 +114,68 @@ fn what_is_unknown_or_left_out_is_named() {
     assert!(matches!(parse_style(&"#".repeat(2 << 20)), Err(StyleError::TooLong { .. })));
 }
 
+/// The atlas with this tint in place of its own.
+fn with_tint(entries: &[&str], by_climate: bool) -> Result<Style, StyleError> {
+    let mut text = String::new();
+    let mut is_tint = false;
+    for line in atlas().lines().filter(|line| !line.starts_with("tint_by_climate")) {
+        if line.starts_with('[') {
+            is_tint = line == "[[tint]]";
+        }
+        if !is_tint {
+            text += line;
+            text += "\n";
+        }
+    }
+    for entry in entries {
+        text += &format!("[[tint]]\n{entry}\ncolor = \"#808080\"\n");
+    }
+    parse_style(&format!("tint_by_climate = {by_climate}\n{text}"))
+}
+
 #[test]
-fn tints_ascend_from_the_lowest_ground_to_the_highest() {
+fn tints_ascend_by_shares_or_by_metres() {
+    let shares = with_tint(&["share = 0", "share = 0.4", "share = 1"], false).unwrap();
+    assert_eq!(shares.tint.heights, TintHeights::Shares);
+    assert_eq!(shares.tint.stops.len(), 3);
+    let metres = with_tint(&["height_m = -20", "height_m = 8848"], false).unwrap();
+    assert_eq!(metres.tint.heights, TintHeights::Metres);
+    let climate = with_tint(&["height_m = 0", "height_m = 3000"], true).unwrap();
+    assert_eq!(climate.tint.heights, TintHeights::MetresByClimate);
     let order = "ascend from 0 to 1";
-    refuses("share = 0.15", "share = 0.35", &[order]);
-    refuses("share = 0.15", "share = nan", &[order]);
-    refuses("share = 0.15", "share = 1e-320", &[order]);
-    refuses("share = 0\n", "share = 0.1\n", &[order]);
-    refuses("share = 1\n", "share = 0.9\n", &[order]);
-    refuses("[[tint]]\nshare = 0.15\ncolor = \"#DDE6BF\"\n", "", &["6 [[tint]] entries, not 5"]);
+    let many: Vec<String> = (0..13).map(|k| format!("height_m = {}", k * 100)).collect();
+    let many: Vec<&str> = many.iter().map(String::as_str).collect();
+    for (entries, by_climate, words) in [
+        (&["share = 0", "share = 0", "share = 1"][..], false, order),
+        (&["share = 0", "share = nan", "share = 1"], false, order),
+        (&["share = 0", "share = 1e-320", "share = 1"], false, order),
+        (&["share = 0.1", "share = 1"], false, order),
+        (&["share = 0", "share = 0.9"], false, order),
+        (&["share = 0"], false, "2 to 12 [[tint]] entries, not 1"),
+        (&many, false, "2 to 12 [[tint]] entries, not 13"),
+        (&["share = 0", "height_m = 100"], false, "either share in all of them"),
+        (&["share = 0\nheight_m = 0", "share = 1\nheight_m = 9"], false, "either share"),
+        (&["share = 0", "share = 1"], true, "tint_by_climate"),
+        (&["height_m = 100", "height_m = 100.5"], false, "ascend, by 1 m"),
+        (&["height_m = 100", "height_m = nan"], false, "tint.height_m"),
+        (&["height_m = 0", "height_m = 9001"], false, "-12000 to 9000"),
+    ] {
+        let error = with_tint(entries, by_climate).unwrap_err().to_string();
+        assert!(error.contains(words), "{entries:?}: {error}");
+    }
+}
+
+/// Styles of before these entries came keep working.
+#[test]
+fn new_entries_of_light_and_background_may_be_left_out() {
+    let added =
+        ["sky = 0", "gentle = ", "valley_haze = ", "shadow = ", "sunlit = ", "water = ", "wall = "];
+    let text: String = atlas()
+        .lines()
+        .filter(|line| !added.iter().any(|entry| line.starts_with(entry)))
+        .fold(String::new(), |text, line| text + line + "\n");
+    assert_eq!(atlas().lines().count() - text.lines().count(), added.len());
+    assert_eq!(parse_style(&text).unwrap(), Style::road_atlas());
 }
 
 /// Without a word about it, and with `own_width = false`, classes alone decide.

@@ -2,6 +2,8 @@
 
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
+use crate::{Light, Tint, TintHeights};
+
 /// A colour as red, green, blue in sRGB, 0 to 1.
 pub type Rgb = [f32; 3];
 
@@ -19,6 +21,13 @@ pub struct RoadStyle {
     /// A line along the middle, for roads of two colours; drawn as a second, narrower road of the same class
     /// (the paper, section 6.2).
     pub center: Option<CenterLine>,
+    /// The most true metres of ground in a pixel at which roads are drawn in full; see [`RoadStyle::shown_share`]. `None`:
+    /// they always are.
+    pub max_pixel_m: Option<f32>,
+    /// Where widths grow with distance, roads grow no wider than this; `None`: without end. What is wider near the eye stays so.
+    pub max_width_px: Option<f32>,
+    /// Colour where a road is too thin for an edge; [`RoadStyle::color`] where it is `None`.
+    pub thin: Option<Rgb>,
 }
 
 /// The line along the middle of a road of two colours.
@@ -79,12 +88,6 @@ impl OwnWidths {
     }
 }
 
-/// A stop of the height tint: a share of the package's range of heights, and the colour there.
-pub type TintStop = (f32, Rgb);
-
-/// How many stops a height tint has.
-pub const TINT_STOPS: usize = 6;
-
 /// How the map looks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Style {
@@ -96,14 +99,10 @@ pub struct Style {
     pub width_scaling: WidthScaling,
     /// Width of the edge of roads; the kernel has this radius.
     pub outline_px: u32,
-    /// Height tint, lowest first, shares ascending from 0 to 1.
-    pub tint: [TintStop; TINT_STOPS],
-    /// Compass direction the light comes from.
-    pub light_azimuth_deg: f64,
-    /// Height of the light above the horizon.
-    pub light_altitude_deg: f64,
-    /// How strongly slopes are shaded, 0 to 1.
-    pub hillshade: f32,
+    /// Colours of the ground by its height.
+    pub tint: Tint,
+    /// The light on the ground.
+    pub light: Light,
     /// How strongly photos are seen where a package has some, 0 (not) to 1 (instead of the height tint).
     pub photo: f32,
     /// Colour of far ground and of the sky at the horizon.
@@ -112,6 +111,10 @@ pub struct Style {
     pub sky: Rgb,
     /// Colour where there is no ground, below the horizon.
     pub void: Rgb,
+    /// Colour of level ground at or below 0 m.
+    pub water: Rgb,
+    /// Colour of the wall along the edge of the data.
+    pub wall: Rgb,
     /// Ground at this many times the distance of what is looked at has lost two thirds of its colour.
     pub haze_reach: f32,
 }
@@ -137,44 +140,72 @@ impl Style {
     /// `road-atlas`.
     #[must_use]
     pub fn road_atlas() -> Self {
-        let road = |width_m, min_width_px, color, outline| RoadStyle {
-            width_m,
-            min_width_px,
-            color: rgb(color),
-            outline: rgb(outline),
-            center: None,
-        };
+        let road =
+            |width_m, [min_width_px, max_width_px]: [f32; 2], color, outline, max_pixel_m| {
+                RoadStyle {
+                    width_m,
+                    min_width_px,
+                    color: rgb(color),
+                    outline: rgb(outline),
+                    center: None,
+                    max_pixel_m,
+                    max_width_px: Some(max_width_px),
+                    thin: None,
+                }
+            };
+        let thin = |color, road| RoadStyle { thin: Some(rgb(color)), ..road };
         let yellow = CenterLine { width_share: 0.3, color: rgb(0xFF_E8_8A) };
         Self {
             roads: [
-                RoadStyle { center: Some(yellow), ..road(24.0, 3.0, 0xD9_3A_2B, 0x5E_14_10) },
-                RoadStyle { center: Some(yellow), ..road(20.0, 2.6, 0xE8_6A_33, 0x6B_2A_0F) },
-                road(17.0, 2.2, 0xF4_9B_36, 0x77_42_0C),
-                road(14.0, 1.9, 0xFB_D3_4C, 0x7A_5C_12),
-                road(11.0, 1.5, 0xFF_F0_9C, 0x7D_6C_33),
-                road(8.5, 1.2, 0xFF_FF_FF, 0x74_6F_66),
-                road(7.0, 1.0, 0xFF_FF_FF, 0x80_7B_72),
-                road(5.0, 1.0, 0xF3_EC_E0, 0x8C_85_79),
-                road(3.5, 1.0, 0xE4_D8_C6, 0x97_8D_7F),
+                RoadStyle {
+                    center: Some(yellow),
+                    ..road(24.0, [3.0, 5.5], 0xD9_3A_2B, 0x5E_14_10, None)
+                },
+                RoadStyle {
+                    center: Some(yellow),
+                    ..road(20.0, [2.6, 5.0], 0xE8_6A_33, 0x6B_2A_0F, Some(600.0))
+                },
+                road(17.0, [2.2, 4.5], 0xF4_9B_36, 0x77_42_0C, Some(300.0)),
+                road(14.0, [1.9, 4.0], 0xFB_D3_4C, 0x7A_5C_12, Some(140.0)),
+                thin(0xC9_A2_27, road(11.0, [1.5, 3.4], 0xFF_F0_9C, 0x7D_6C_33, Some(60.0))),
+                thin(0x8E_86_78, road(8.5, [1.2, 3.2], 0xFF_FF_FF, 0x74_6F_66, Some(22.0))),
+                thin(0x93_8B_7E, road(7.0, [1.0, 2.8], 0xFF_FF_FF, 0x80_7B_72, Some(14.0))),
+                thin(0x7E_68_45, road(5.0, [1.0, 2.0], 0xF0_E6_D4, 0x8C_85_79, Some(6.0))),
+                thin(0x86_5F_3E, road(3.5, [1.0, 1.5], 0xE2_D2_BA, 0x97_8D_7F, Some(4.0))),
             ],
             own_widths: None,
             width_scaling: WidthScaling { threshold_m: 1500.0, exponent: 0.75, constant: 4.0 },
             outline_px: 1,
-            tint: [
-                (0.0, rgb(0xCB_DD_B4)),
-                (0.15, rgb(0xDD_E6_BF)),
-                (0.35, rgb(0xEE_E8_C6)),
-                (0.6, rgb(0xE2_D0_AE)),
-                (0.8, rgb(0xD3_C3_B4)),
-                (1.0, rgb(0xF4_F3_F1)),
-            ],
-            light_azimuth_deg: 315.0,
-            light_altitude_deg: 45.0,
-            hillshade: 0.75,
+            tint: Tint {
+                heights: TintHeights::MetresByClimate,
+                stops: vec![
+                    (-100.0, rgb(0xB5_CF_A6)),
+                    (0.0, rgb(0xC6_DB_B2)),
+                    (250.0, rgb(0xD5_E3_BC)),
+                    (600.0, rgb(0xE6_E7_C4)),
+                    (1100.0, rgb(0xED_E2_C0)),
+                    (1700.0, rgb(0xE2_D1_B0)),
+                    (2300.0, rgb(0xD5_C6_B2)),
+                    (2800.0, rgb(0xDB_D6_D0)),
+                    (3400.0, rgb(0xF1_F3_F6)),
+                ],
+            },
+            light: Light {
+                azimuth_deg: 315.0,
+                altitude_deg: 45.0,
+                hillshade: 0.75,
+                sky: 0.3,
+                gentle: 2.5,
+                valley_haze: 0.2,
+                shadow: rgb(0x5A_62_86),
+                sunlit: rgb(0xFF_F8_DC),
+            },
             photo: 1.0,
             haze: rgb(0xDC_E6_EE),
             sky: rgb(0x9F_C1_E0),
-            void: rgb(0xC9_D8_E4),
+            void: rgb(0xE2_E0_DB),
+            water: rgb(0xA9_C9_DD),
+            wall: rgb(0x8E_84_78),
             haze_reach: 6.0,
         }
     }

@@ -6,8 +6,7 @@ fn the_atlas_gives_more_important_roads_more_width() {
     assert!(
         style.roads.is_sorted_by(|a, b| a.width_m > b.width_m && a.min_width_px >= b.min_width_px)
     );
-    assert!(style.tint.is_sorted_by(|a, b| a.0 < b.0));
-    assert!(style.tint[0].0.abs() < 1e-9 && (style.tint[TINT_STOPS - 1].0 - 1.0).abs() < 1e-9);
+    assert!(style.tint.stops.is_sorted_by(|a, b| a.0 < b.0));
 }
 
 #[test]
@@ -48,4 +47,18 @@ fn tags_decide_the_width_where_the_style_looks_at_them() {
     assert_eq!((style.width_m(class, lanes(21)), style.is_capped(lanes(21))), (11.0, false));
     style.roads[4].width_m = 200.0;
     assert_eq!(style.width_m(class, OwnWidth::Unknown), 200.0);
+}
+
+/// A share is a place in the package's range; metres are metres; by climate, they move with the snow line, but not at sea.
+#[test]
+fn heights_of_a_tint_are_what_its_unit_says() {
+    let colors = [[0.0; 3], [1.0; 3]];
+    let stops = |heights, at: [f32; 2], latitude_deg| {
+        let tint = Tint { heights, stops: at.into_iter().zip(colors).collect() };
+        tint.stops_m([100.0, 300.0], latitude_deg).iter().map(|stop| stop.0).collect::<Vec<_>>()
+    };
+    assert_eq!(stops(TintHeights::Shares, [0.0, 0.5], 0.0), [100.0, 200.0]);
+    assert_eq!(stops(TintHeights::Metres, [-10.0, 2900.0], 0.0), [-10.0, 2900.0]);
+    assert_eq!(stops(TintHeights::MetresByClimate, [-10.0, 2900.0], 47.0), [-10.0, 2900.0]);
+    assert_eq!(stops(TintHeights::MetresByClimate, [-10.0, 2900.0], -67.0), [-10.0, 1200.0]);
 }

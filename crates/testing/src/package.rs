@@ -91,6 +91,7 @@ pub fn manifest_of(frame: Frame) -> Manifest {
             cell_every: None,
             bounds_deg: None,
             polygon: None,
+            relief: corniche_tileset::ReliefLevels::Off,
             scale_latitude_deg: None,
             frc_table: "default".to_owned(),
             classes: None,
@@ -126,6 +127,7 @@ pub fn level(frame: &Frame, level: u8) -> LevelRecord {
         triangles: 24,
         vertices: 25,
         terrain_bytes: 300,
+        relief_bytes: 0,
         uncovered_nodes: 0,
     }
 }
@@ -137,7 +139,7 @@ pub fn metadata(manifest: &Manifest) -> serde_json::Value {
     serde_json::json!({ "name": "test", "corniche": manifest })
 }
 
-/// A tile of the small package, with all sections.
+/// A tile of the small package, with all sections but the relief, which would make most of its bytes.
 #[must_use]
 pub fn payload(id: TileId) -> TilePayload {
     let mut vertices = Vec::new();
@@ -168,6 +170,7 @@ pub fn payload(id: TileId) -> TilePayload {
     let attributes = RoadAttributes { name: "Corniche".to_owned(), ..RoadAttributes::default() };
     TilePayload {
         id,
+        relief: None,
         roads_geo: roads_geo.collect(),
         roads_sv: vec![SvRoad { way_id: 7, part: 0, class, line }],
         attributes: vec![RoadRecord { way_id: 7, attributes }],

@@ -35,8 +35,8 @@ mod payload;
 
 pub use manifest::{
     ClipRecord, Counts, Distribution, GrowthRow, InputRecord, LeftOutRecord, LevelRecord, Manifest,
-    PhotoLevelRecord, PhotoRecord, PolygonRecord, RoadLoss, SampleCounts, SampleErrorRecord,
-    ScaleRecord, SettingsRecord, VerticalRecord,
+    PhotoLevelRecord, PhotoRecord, PolygonRecord, ReliefLevels, RoadLoss, SampleCounts,
+    SampleErrorRecord, ScaleRecord, SettingsRecord, VerticalRecord,
 };
 pub use package::{
     ByteSource, FORMAT_VERSION, MemorySource, OpenError, Package, ReadError, SourceError,
@@ -48,7 +48,7 @@ pub use package::{FilePackage, FileSource};
 pub use package::{WriteError, Writer};
 pub use payload::{
     Damage, DecodeError, EncodeError, GeoRoad, MAX_PHOTO_LEVELS, PHOTO_BORDER, PayloadSizes, Photo,
-    RoadRecord, SectionSize, Sections, SvRoad, Terrain, TilePayload, decode, decode_photo,
+    Relief, RoadRecord, SectionSize, Sections, SvRoad, Terrain, TilePayload, decode, decode_photo,
     payload_sizes,
 };
 #[cfg(feature = "write")]

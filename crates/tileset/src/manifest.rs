@@ -3,6 +3,7 @@
 mod contents;
 mod counts;
 mod levels;
+mod relief_levels;
 
 pub(crate) mod check;
 
@@ -12,3 +13,4 @@ pub use contents::{
 };
 pub use counts::{Counts, GrowthRow, LeftOutRecord, RoadLoss, SampleCounts};
 pub use levels::{Distribution, LevelRecord, SampleErrorRecord};
+pub use relief_levels::ReliefLevels;

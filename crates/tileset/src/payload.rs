@@ -13,6 +13,7 @@ mod envelope;
 
 mod attributes;
 mod photo;
+mod relief;
 mod road_tags;
 mod roads_geo;
 mod roads_sv;
@@ -36,6 +37,7 @@ pub use envelope::SectionSize;
 pub use photo::{MAX_PHOTO_LEVELS, PHOTO_BORDER, Photo, decode_photo};
 #[cfg(feature = "write")]
 pub use photo::{PhotoSection, encode_photo, photo_section, with_photo};
+pub use relief::Relief;
 pub use section_kind::Sections;
 pub use sizes::{PayloadSizes, payload_sizes};
 pub use tile_payload::{GeoRoad, RoadRecord, SvRoad, Terrain, TilePayload};

@@ -1,13 +1,13 @@
 use std::num::{NonZeroU8, NonZeroU32};
 
 use corniche_drape::{DrapedLine, DrapedVertex, SvLine, drape};
-use corniche_geom::{Frame, LatticePoint, NodeIndex, Polyline, TileId};
+use corniche_geom::{Frame, HeightGrid, LatticePoint, NodeIndex, Polyline, TileId};
 use corniche_roads::{Form, FunctionalRoadClass, Oneway, RoadAttributes, Structure};
 use corniche_tin::{Surface, Tin, TinVertex};
 use proptest::prelude::*;
 
 use super::{
-    Damage, EncodeError, GeoRoad, PayloadContext, RoadRecord, Sections, SvRoad, Terrain,
+    Damage, EncodeError, GeoRoad, PayloadContext, Relief, RoadRecord, Sections, SvRoad, Terrain,
     TilePayload, context::Context, decode, encode,
 };
 
@@ -106,6 +106,15 @@ fn geo_roads(tin: &Tin, lines: &[Vec<[i64; 2]>]) -> Vec<GeoRoad> {
     roads
 }
 
+/// Ground with a void and a step, for shading.
+fn relief() -> Relief {
+    let heights = HeightGrid::from_fn(259, 259, |column, row| match (column / 100, row / 100) {
+        (1, 1) => f32::NAN,
+        (east, _) => east as f32 * 30.0,
+    });
+    Relief::of_heights(&heights, frame().level_cell(1), QUANTUM_M).unwrap()
+}
+
 /// One tile with all sections, small enough to try every damage.
 fn sample() -> TilePayload {
     let tin = grid_tin(
@@ -156,7 +165,14 @@ fn sample() -> TilePayload {
             },
         },
     ];
-    TilePayload { id: id(), terrain: Some(terrain(tin)), roads_geo, roads_sv, attributes }
+    TilePayload {
+        id: id(),
+        terrain: Some(terrain(tin)),
+        relief: Some(relief()),
+        roads_geo,
+        roads_sv,
+        attributes,
+    }
 }
 
 fn read(bytes: &[u8], wanted: Sections) -> Result<TilePayload, super::DecodeError> {
@@ -179,9 +195,10 @@ fn a_tile_comes_back_whole() {
         encoded.sizes.roads_sv,
         encoded.sizes.attributes,
         encoded.sizes.road_tags,
+        encoded.sizes.relief,
     ];
     let stored: u64 = sections.iter().map(|size| size.stored).sum();
-    assert_eq!(encoded.bytes.len() as u64, 16 + 5 * 20 + 4 + stored);
+    assert_eq!(encoded.bytes.len() as u64, 16 + 6 * 20 + 4 + stored);
     assert_eq!(encode(&payload, &context()).unwrap(), encoded, "equal payloads make equal bytes");
 }
 
@@ -194,6 +211,8 @@ fn a_reader_takes_only_what_it_wants() {
     assert_eq!((sv.roads_sv, sv.attributes), (payload.roads_sv, payload.attributes));
     let geo = read(&bytes, Sections::ROADS_GEO).unwrap();
     assert_eq!((geo.terrain, geo.roads_geo), (payload.terrain, payload.roads_geo));
+    assert_eq!(geo.relief, None);
+    assert_eq!(read(&bytes, Sections::RELIEF).unwrap().relief, payload.relief);
 }
 
 #[test]
@@ -201,6 +220,7 @@ fn an_empty_tile_is_a_header() {
     let payload = TilePayload {
         id: id(),
         terrain: None,
+        relief: None,
         roads_geo: vec![],
         roads_sv: vec![],
         attributes: vec![],
@@ -287,8 +307,9 @@ fn bombs_and_foreign_bytes_are_refused() {
     let resealed = |at: usize, value: &[u8]| {
         let mut bytes = bytes.clone();
         bytes[at..at + value.len()].copy_from_slice(value);
-        let sum = crc32fast::hash(&bytes[..116]);
-        bytes[116..120].copy_from_slice(&sum.to_le_bytes());
+        // Behind a table of six sections.
+        let sum = crc32fast::hash(&bytes[..136]);
+        bytes[136..140].copy_from_slice(&sum.to_le_bytes());
         bytes
     };
     assert!(matches!(part(b"PNG", Sections::ALL), Err(("header", Damage::TooShort))));
@@ -416,7 +437,14 @@ proptest! {
         let lines: Vec<Vec<[i64; 2]>> = coarse.chain(fine).collect();
         let roads_geo = geo_roads(&tin, &lines);
         let terrain = Some(terrain(tin));
-        let payload = TilePayload { id: id(), terrain, roads_geo, roads_sv: vec![], attributes: vec![] };
+        let payload = TilePayload {
+            id: id(),
+            terrain,
+            relief: None,
+            roads_geo,
+            roads_sv: vec![],
+            attributes: vec![],
+        };
         let bytes = encode(&payload, &context()).unwrap().bytes;
         prop_assert_eq!(read(&bytes, Sections::ALL), Ok(payload));
     }
@@ -441,7 +469,14 @@ proptest! {
             })
             .collect();
         let payload =
-            TilePayload { id: id(), terrain: None, roads_geo: vec![], roads_sv: roads_sv.clone(), attributes: vec![] };
+            TilePayload {
+                id: id(),
+                terrain: None,
+                relief: None,
+                roads_geo: vec![],
+                roads_sv: roads_sv.clone(),
+                attributes: vec![],
+            };
         let decoded = read(&encode(&payload, &context()).unwrap().bytes, Sections::ALL).unwrap();
         prop_assert_eq!(decoded.roads_sv.len(), roads_sv.len());
         for (read, written) in decoded.roads_sv.iter().zip(&roads_sv) {
@@ -483,6 +518,7 @@ fn the_smallest_tile_has_these_bytes() {
     let payload = TilePayload {
         id: id(),
         terrain: Some(terrain),
+        relief: None,
         roads_geo,
         roads_sv: vec![],
         attributes: vec![],

@@ -55,6 +55,7 @@ fn payload(id: TileId) -> TilePayload {
     TilePayload {
         id,
         terrain: Some(terrain),
+        relief: None,
         roads_geo: vec![],
         roads_sv: vec![],
         attributes: vec![],

@@ -71,6 +71,7 @@ fn real_ground_and_roads_come_out_small_and_whole() {
         let payload = TilePayload {
             id,
             terrain: Some(terrain),
+            relief: None,
             roads_geo: roads,
             roads_sv: vec![],
             attributes: vec![],

@@ -22,7 +22,7 @@ mod surface;
 
 pub use deviation::{Deviation, TriangleBuckets, WindowPlacement, measure};
 pub use invariants::check_covers_ground;
-pub use normals::{decode_normal, normals};
+pub use normals::{decode_normal, gradient, normals};
 pub use surface::{NO_TWIN, Placement, Surface};
 pub use tin::{Tin, TinError, TinVertex};
 pub use triangulate::{TinSpec, TriangulateError, height_quantum_m, triangulate};

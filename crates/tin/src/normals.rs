@@ -13,19 +13,29 @@ use crate::Tin;
 /// When a vertex lies outside the grid: `tin` was not made from these heights.
 #[must_use]
 pub fn normals(heights: &HeightGrid, tin: &Tin, cell: Cell) -> Vec<[i8; 2]> {
-    let height_m = |column: usize, row: usize| heights.height(column, row).map(f64::from);
     tin.vertices()
         .iter()
         .map(|vertex| {
-            let (column, row) = (usize::from(vertex.column) + 1, usize::from(vertex.row) + 1);
-            let here = height_m(column, row);
-            let east =
-                slope(height_m(column - 1, row), here, height_m(column + 1, row), cell.east_m);
-            let north =
-                slope(height_m(column, row + 1), here, height_m(column, row - 1), cell.north_m);
+            let node = [usize::from(vertex.column) + 1, usize::from(vertex.row) + 1];
+            let [east, north] = gradient(heights, node, cell);
             encode_normal([-east, -north, 1.0])
         })
         .collect()
+}
+
+/// The rise of the ground at a node, metres per metre east and per metre north: central differences, one-sided next to a gap, level
+/// where both neighbours are gaps. `cell` is the distance of neighbouring nodes.
+///
+/// # Panics
+/// When the node lies on the grid's border: it needs a neighbour on each side.
+#[must_use]
+pub fn gradient(heights: &HeightGrid, [column, row]: [usize; 2], cell: Cell) -> [f64; 2] {
+    let height_m = |column: usize, row: usize| heights.height(column, row).map(f64::from);
+    let here = height_m(column, row);
+    [
+        slope(height_m(column - 1, row), here, height_m(column + 1, row), cell.east_m),
+        slope(height_m(column, row + 1), here, height_m(column, row - 1), cell.north_m),
+    ]
 }
 
 /// Metres up per metre from `before` to `after`, nodes on both sides of `here`.

@@ -15,8 +15,12 @@ pub struct FrameView<'a> {
     pub exaggeration: f64,
     /// Length in the working CRS divided by true length; heights and widths are multiplied by it.
     pub point_scale: f64,
-    /// The true heights at the two ends of the height tint.
+    /// All ground lies between these true heights.
     pub height_range_m: [f64; 2],
+    /// Height of the wall along the edge of the data, true metres; 0 for none. [`FrameView::wall_beside_m`] is what looks well.
+    pub wall_m: f64,
+    /// Latitude of the middle of the package; colours of the ground may depend on it.
+    pub latitude_deg: f64,
     /// Whether the edges of the ground's triangles are drawn.
     pub wireframe: Wireframe,
 }
@@ -30,6 +34,13 @@ pub enum Wireframe {
 }
 
 impl FrameView<'_> {
+    /// Height of a wall along the edge of data with this range of heights: a part of it, so that the wall is seen beside
+    /// mountains and does not hide gentle ground. Metres.
+    #[must_use]
+    pub fn wall_beside_m([lowest_m, highest_m]: [f64; 2]) -> f64 {
+        0.15 * (highest_m - lowest_m).max(1.0)
+    }
+
     /// World height of one metre of true height.
     #[must_use]
     pub fn vertical_scale(&self) -> f64 {

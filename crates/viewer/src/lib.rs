@@ -20,6 +20,7 @@
 
 mod attribution;
 pub mod camera;
+mod class_scale;
 pub mod eye_height;
 pub mod flight;
 mod frame_view;
@@ -41,7 +42,7 @@ mod viewpoint;
 #[doc(hidden)]
 pub mod for_tests {
     pub use crate::{
-        gpu::inspection::Owner,
+        gpu::inspection::{Owner, TUNNEL_BIT},
         scene::{SettleError, capped_ways, draw_list, may_be_clamped, settle},
         tiles::{
             plan_scale::PlanScale,
@@ -51,6 +52,7 @@ pub mod for_tests {
 }
 
 pub use attribution::draw_attribution;
+pub use class_scale::LevelScales;
 pub use frame_view::{FrameView, Wireframe};
 pub use options::{CapTest, Caps, ClassSet, Outline, RoadMethod, RoadOptions, WidthGrowth};
 pub use range::OutOfRange;
@@ -58,4 +60,4 @@ pub use range::OutOfRange;
 pub use render::{RenderError, RenderReport, RenderRequest, Rendered, render};
 #[cfg(not(target_arch = "wasm32"))]
 pub use replay::{Detail, FrameRecord, Lifted, Replay, ReplayError, ReplayOptions, default_flight};
-pub use viewpoint::{CameraRequest, GroundHeights, OffGround};
+pub use viewpoint::{CameraRequest, OffGround, SightedGround};

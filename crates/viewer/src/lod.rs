@@ -3,13 +3,21 @@
 //! Refinement by replacement: a tile is drawn, or its children are, never both. A parent stays until every
 //! child that can be in view is loaded, so there is never a hole.
 //!
+//! Three rules refine a tile. Its *error* must look small, or the ground's shape is wrong. And its *cell*, a 256th of its
+//! side, must look small, however flat the ground is: what a tile stores by cells (relief, photo) and by level (which
+//! classes of roads) is as fine as its cells, and would be blurred, or missing. And it must have all roads that the picture
+//! shows there ([`LevelScales`]); with the usual settings a tile with small cells has.
+//!
 //! Source: Cozzi & Ring, *3D Engine Design for Virtual Globes* (2011), ch. 12.
 
 use std::collections::BTreeMap;
 
-use corniche_geom::{Bounds, TileId};
+use corniche_geom::{Bounds, TILE_CELLS, TileId};
 
-use crate::camera::{Camera, WorldBox};
+use crate::{
+    camera::{Camera, WorldBox},
+    class_scale::LevelScales,
+};
 
 /// What is known of a tile's ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,8 +54,29 @@ pub trait TileTree {
 pub struct Quality {
     /// A tile is refined while its error looks larger than this, in pixels.
     pub screen_space_error_px: f64,
+    /// A tile is refined while its cell looks larger than this, in pixels, where it is nearest. With infinity cells do not
+    /// count.
+    pub cell_px: f64,
+    /// How fine the pixels may be for tiles of each level to have all roads that are shown there.
+    pub scales: LevelScales,
+    /// World metres to a true metre in plan.
+    pub point_scale: f64,
     /// World height of one metre of true height: point scale times exaggeration.
     pub vertical_scale: f64,
+}
+
+impl Quality {
+    /// Tiles are refined by their errors alone.
+    #[must_use]
+    pub const fn by_error(screen_space_error_px: f64, vertical_scale: f64) -> Self {
+        Self {
+            screen_space_error_px,
+            cell_px: f64::INFINITY,
+            scales: LevelScales::ANY,
+            point_scale: 1.0,
+            vertical_scale,
+        }
+    }
 }
 
 /// A tile to draw.
@@ -64,8 +93,8 @@ pub struct Drawn {
 pub struct Request {
     /// The tile.
     pub id: TileId,
-    /// The screen-space error of what is drawn in its place, in pixels; infinite for the root.
-    pub priority_px: f64,
+    /// How many times coarser than allowed is what is drawn in its place; infinite for the root.
+    pub coarseness: f64,
 }
 
 /// What to do for the next picture.
@@ -92,6 +121,17 @@ pub fn screen_space_error_px(geometric_error_m: f64, distance_m: f64, camera: &C
     }
 }
 
+/// Side in pixels that the cell of a tile looks to have, at most: the longer side of the cell of a tile that covers `plan`,
+/// `distance_m` from the eye and seen from straight above.
+///
+/// Both lengths are world metres, `distance_m` that from the eye to the nearest point of the tile. At 0 the result is
+/// infinite. A cell that is seen at a slant looks shorter along the line of view, but not across it.
+#[must_use]
+pub fn cell_side_px(plan: Bounds, distance_m: f64, camera: &Camera) -> f64 {
+    let cell_m = plan.width().max(plan.height()) / TILE_CELLS as f64;
+    cell_m / (distance_m * camera.pixel_at_unit_depth_m())
+}
+
 /// Chooses tiles for `camera`.
 #[must_use]
 pub fn select(tree: &dyn TileTree, camera: &Camera, quality: Quality) -> Selection {
@@ -112,7 +152,7 @@ pub fn select(tree: &dyn TileTree, camera: &Camera, quality: Quality) -> Selecti
             walk.visit(TileId::ROOT, ground, range_m);
         }
     }
-    walk.requests.sort_by(|a, b| b.priority_px.total_cmp(&a.priority_px).then(a.id.cmp(&b.id)));
+    walk.requests.sort_by(|a, b| b.coarseness.total_cmp(&a.coarseness).then(a.id.cmp(&b.id)));
     let skirts = skirt_depths_m(&walk.errors_m);
     let drawn = skirts.into_iter().map(|(id, skirt_depth_m)| Drawn { id, skirt_depth_m }).collect();
     Selection { drawn, requests: walk.requests }
@@ -135,16 +175,9 @@ impl Walk<'_> {
         if !self.may_see(id, range_m) {
             return;
         }
-        let error_px = ground.map_or(f64::INFINITY, |ground| {
-            let distance_m = self.world_box(id, range_m).distance_m(self.camera.eye_in_world());
-            screen_space_error_px(
-                ground.geometric_error_m * self.quality.vertical_scale,
-                distance_m,
-                self.camera,
-            )
-        });
-        let too_coarse =
-            error_px > self.quality.screen_space_error_px && id.z() < self.tree.max_level();
+        let coarseness =
+            ground.map_or(f64::INFINITY, |ground| self.coarseness(id, ground, range_m));
+        let too_coarse = coarseness > 1.0 && id.z() < self.tree.max_level();
         let mut children: Vec<(TileId, Node)> = Vec::new();
         if too_coarse {
             children.extend(id.children().map(|child| (child, self.tree.node(child))));
@@ -159,7 +192,7 @@ impl Walk<'_> {
             .map(|(child, _)| *child)
             .collect();
         for id in &missing {
-            self.request(*id, error_px);
+            self.request(*id, coarseness);
         }
         if let Some(ground) = ground
             && (is_leaf || !missing.is_empty())
@@ -174,8 +207,24 @@ impl Walk<'_> {
         }
     }
 
-    fn request(&mut self, id: TileId, priority_px: f64) {
-        self.requests.push(Request { id, priority_px });
+    /// How many times coarser than allowed a tile looks: by its error or its cell, whichever looks worse.
+    fn coarseness(&self, id: TileId, ground: GroundSummary, range_m: [f64; 2]) -> f64 {
+        let Quality { screen_space_error_px: most_error_px, cell_px, vertical_scale, .. } =
+            self.quality;
+        let world_box = self.world_box(id, range_m);
+        let distance_m = world_box.distance_m(self.camera.eye_in_world());
+        let error_m = ground.geometric_error_m * vertical_scale;
+        let by_error = screen_space_error_px(error_m, distance_m, self.camera) / most_error_px;
+        // An infinite cell over an infinite limit is no number, and `max` passes over it.
+        let by_cell = cell_side_px(self.tree.plan_bounds(id), distance_m, self.camera) / cell_px;
+        let pixel_m = distance_m * self.camera.pixel_at_unit_depth_m() / self.quality.point_scale;
+        // No roads lack: 0 over 0 is no number either.
+        let by_roads = self.quality.scales.least_pixel_m(id.z()) / pixel_m;
+        by_error.max(by_cell).max(by_roads)
+    }
+
+    fn request(&mut self, id: TileId, coarseness: f64) {
+        self.requests.push(Request { id, coarseness });
     }
 
     fn world_box(&self, id: TileId, range_m: [f64; 2]) -> WorldBox {

@@ -8,7 +8,7 @@ use crate::camera::Orientation;
 
 const SIDE_M: f64 = 64_000.0;
 const MAX_LEVEL: u8 = 5;
-const QUALITY: Quality = Quality { screen_space_error_px: 2.0, vertical_scale: 1.0 };
+const QUALITY: Quality = Quality::by_error(2.0, 1.0);
 
 /// A complete quadtree over a square, of which some tiles are loaded.
 struct Square {
@@ -87,6 +87,50 @@ fn screen_space_error_follows_its_closed_form() {
     assert!(screen_space_error_px(3.0, 0.0, &camera).is_infinite());
 }
 
+#[test]
+fn the_cell_of_a_tile_follows_its_closed_form() {
+    let camera = camera(0.0, 0.0, 100.0, 0.0, 0.0);
+    let plan = Bounds { min_x: 0.0, min_y: 0.0, max_x: 2560.0, max_y: 5120.0 };
+    // The longer side: 20 m, 500 m away.
+    let expected = 20.0 * 600.0 / (2.0 * 500.0 * (crate::camera::FOV_Y_RAD / 2.0).tan());
+    assert!((cell_side_px(plan, 500.0, &camera) - expected).abs() < 1e-9);
+    assert!(cell_side_px(plan, 0.0, &camera).is_infinite());
+}
+
+/// A square of which no tile has any error, as on a lake.
+struct Flat(Square);
+
+impl TileTree for Flat {
+    fn node(&self, id: TileId) -> Node {
+        match self.0.node(id) {
+            Node::Loaded(Some(ground)) => {
+                Node::Loaded(Some(GroundSummary { geometric_error_m: 0.0, ..ground }))
+            }
+            other => other,
+        }
+    }
+
+    fn plan_bounds(&self, id: TileId) -> Bounds {
+        self.0.plan_bounds(id)
+    }
+
+    fn max_level(&self) -> u8 {
+        self.0.max_level()
+    }
+}
+
+#[test]
+fn flat_ground_is_refined_by_its_cells_alone() {
+    let (tree, camera) = (Flat(Square { loaded: None }), camera(3.1e4, 3.1e4, 2e4, 0.0, 0.0));
+    let finest = |cell_px| {
+        let selection = select(&tree, &camera, Quality { cell_px, ..QUALITY });
+        selection.drawn.iter().map(|drawn| drawn.id.z()).max()
+    };
+    assert_eq!(finest(f64::INFINITY), Some(0));
+    // A pixel shows 27 m of the nearest ground, and a cell of level z has 250 / 2^z m.
+    assert_eq!([16.0, 8.0, 4.0, 2.0, 1.0].map(finest), [0, 1, 2, 3, 4].map(Some));
+}
+
 fn any_camera() -> impl Strategy<Value = Camera> {
     (0.0..SIDE_M, 0.0..SIDE_M, 500.0..80_000.0_f64, 0.0..360.0_f64, 0.0..80.0_f64).prop_map(
         |(x, y, distance_m, heading_deg, pitch_deg)| {
@@ -160,6 +204,27 @@ proptest! {
             prop_assert!(id.z() == MAX_LEVEL || error_px(id) <= 2.0);
             for z in 0..id.z() {
                 prop_assert!(error_px(id.ancestor(z)) > 2.0);
+            }
+        }
+    }
+
+    /// A tile is refined exactly if its error or its cell looks too large.
+    #[test]
+    fn errors_and_cells_decide(camera in any_camera(), cell_px in 0.5..16.0_f64) {
+        let tree = Square { loaded: None };
+        let selection = select(&tree, &camera, Quality { cell_px, ..QUALITY });
+        let is_fine = |id: TileId| {
+            let Node::Loaded(Some(ground)) = tree.node(id) else { unreachable!() };
+            let plan = tree.plan_bounds(id);
+            let distance_m =
+                WorldBox::new(plan, ground.height_range_m).distance_m(camera.eye_in_world());
+            screen_space_error_px(ground.geometric_error_m, distance_m, &camera) <= 2.0
+                && cell_side_px(plan, distance_m, &camera) <= cell_px
+        };
+        for id in ids(&selection) {
+            prop_assert!(id.z() == MAX_LEVEL || is_fine(id));
+            for z in 0..id.z() {
+                prop_assert!(!is_fine(id.ancestor(z)));
             }
         }
     }

@@ -66,6 +66,9 @@ impl ClassSet {
     /// All of them.
     pub const ALL: Self = Self((1 << FunctionalRoadClass::COUNT) - 1);
 
+    /// None of them.
+    pub const NONE: Self = Self(0);
+
     /// Whether a class is among them.
     #[must_use]
     pub fn contains(self, class: FunctionalRoadClass) -> bool {
@@ -76,6 +79,18 @@ impl ClassSet {
     #[must_use]
     pub fn with(self, class: FunctionalRoadClass) -> Self {
         Self(self.0 | 1 << class.number())
+    }
+
+    /// The classes that are in both.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+
+    /// The classes that are in one of them or in both.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self(self.0 | other.0)
     }
 
     /// These classes except one.

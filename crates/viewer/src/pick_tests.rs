@@ -32,6 +32,7 @@ fn tile(x: f64, y: f64, height_m: impl Fn(f64, f64) -> f64) -> TileGeometry {
         reference_m: [x, y, 500.0],
         summary: Some(summary),
         ground: GroundMesh::of_surface(vertices, indices.into_iter()),
+        shading: None,
         roads: RoadSegments::default(),
         volumes: RoadVolumes::default(),
         width_margin_m: 0.0,

@@ -29,13 +29,19 @@ pub fn within(
     if fits.contains(&value) { Ok(()) } else { Err(OutOfRange { name, value, range }) }
 }
 
-/// Checks the two numbers that say how finely the ground is drawn and how much its heights are exaggerated.
+/// Checks the numbers that say how finely the ground is drawn and how much its heights are exaggerated. `cell_px` may be
+/// infinite.
 ///
 /// # Errors
 /// When one of them is out of range.
-pub fn check_ground(screen_space_error_px: f64, exaggeration: f64) -> Result<(), OutOfRange> {
+pub fn check_ground(
+    screen_space_error_px: f64,
+    cell_px: f64,
+    exaggeration: f64,
+) -> Result<(), OutOfRange> {
     let any_above_0 = f64::MIN_POSITIVE..=f64::MAX;
     within("a screen-space error", screen_space_error_px, any_above_0, "above 0 pixels")?;
+    within("a cell", cell_px, f64::MIN_POSITIVE..=f64::INFINITY, "above 0 pixels")?;
     within("an exaggeration", exaggeration, 0.01..=100.0, "0.01 to 100")
 }
 

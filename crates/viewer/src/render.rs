@@ -5,6 +5,7 @@ use corniche_styles::Style;
 use crate::{
     attribution::draw_attribution,
     camera::Camera,
+    class_scale::LevelScales,
     eye_height::{clearance_m, rounded_up_m},
     frame_view::{FrameView, Wireframe},
     gpu::{DrawTile, Gpu, GpuError, ReadBackError, Renderer, Targets, TileBuffers},
@@ -13,7 +14,7 @@ use crate::{
     range::{self, OutOfRange},
     scene::{self, SettleError},
     tiles::{BlockingPackage, LoadTileError, TileStore},
-    viewpoint::{CameraRequest, GroundHeights, OffGround},
+    viewpoint::{CameraRequest, OffGround, SightedGround},
 };
 
 /// What to render.
@@ -29,6 +30,8 @@ pub struct RenderRequest {
     pub camera: CameraRequest,
     /// A tile is refined while its error looks larger than this.
     pub screen_space_error_px: f64,
+    /// A tile is refined while one of its cells looks larger than this, pixels.
+    pub cell_px: f64,
     /// Factor on heights; 1 is true.
     pub exaggeration: f64,
     /// Samples per pixel along each side, averaged; 1 takes the pixel's centre alone.
@@ -44,7 +47,7 @@ impl RenderRequest {
     /// # Errors
     /// When a number is out of its range.
     pub fn check(&self) -> Result<(), RenderError> {
-        range::check_ground(self.screen_space_error_px, self.exaggeration)?;
+        range::check_ground(self.screen_space_error_px, self.cell_px, self.exaggeration)?;
         range::check_supersampling(self.supersampling)?;
         Ok(range::check_camera(self.camera)?)
     }
@@ -137,13 +140,16 @@ pub fn render(
     let point_scale = package.manifest().point_scale;
     let quality = Quality {
         screen_space_error_px: request.screen_space_error_px,
+        cell_px: request.cell_px,
+        scales: LevelScales::of_roads(&package.manifest().levels, &request.style, request.roads),
+        point_scale,
         vertical_scale: request.exaggeration * point_scale,
     };
     let height_range_m = store
         .coarsest_ground()?
         .ok_or_else(|| RenderError::NoGround { name: request.name.clone() })?
         .height_range_m;
-    let camera = camera(request, package, &mut store, height_range_m)?;
+    let camera = camera(request, package, &mut store)?;
     let drawn = scene::settle(&mut store, &camera, quality, is_stopped)?;
 
     let gpu = Gpu::new()?;
@@ -155,6 +161,8 @@ pub fn render(
         exaggeration: request.exaggeration,
         point_scale,
         height_range_m,
+        wall_m: FrameView::wall_beside_m(height_range_m),
+        latitude_deg: package.manifest().wgs84_bounds.center()[1],
         wireframe: Wireframe::Hidden,
     };
     let uploaded: Vec<(TileBuffers, f64)> = scene::draw_list(&store, &drawn)
@@ -177,7 +185,7 @@ pub fn render(
         adapter: gpu.adapter_name().to_owned(),
         tiles: drawn.len() as u64,
         triangles: uploaded.iter().map(|(buffers, _)| buffers.triangles()).sum(),
-        road_segments: uploaded.iter().map(|(tile, _)| tile.road_segments(request.roads)).sum(),
+        road_segments: tiles.iter().map(|tile| tile.road_segments(&view)).sum(),
         clamped_tiles: scene::draw_list(&store, &drawn)
             .filter(|(tile, _)| scene::may_be_clamped(tile, &view))
             .count() as u64,
@@ -200,7 +208,6 @@ fn camera(
     request: &RenderRequest,
     package: &dyn BlockingPackage,
     store: &mut TileStore<'_>,
-    height_range_m: [f64; 2],
 ) -> Result<Camera, RenderError> {
     let point_scale = package.manifest().point_scale;
     let vertical_scale = request.exaggeration * point_scale;
@@ -210,10 +217,12 @@ fn camera(
         Some(at) => TileStore::new(package).ground_height_m(at)?,
         None => None,
     };
-    let ground = GroundHeights { range_m: height_range_m, at_place_m };
+    let no_ground = || RenderError::NoGround { name: request.name.clone() };
+    let extent = store.map_extent(package.manifest().data_bounds)?.ok_or_else(no_ground)?;
+    let ground = SightedGround { extent, at_place_m };
     let camera =
         request.camera.camera(package.manifest(), ground, vertical_scale, request.size_px)?;
-    if request.camera != CameraRequest::FrameAll {
+    if request.camera != CameraRequest::Overview {
         check_above_ground(&camera, store, vertical_scale, point_scale)?;
     }
     Ok(camera)

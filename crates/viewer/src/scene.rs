@@ -8,6 +8,7 @@ use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use crate::{
     camera::{Camera, WorldBox},
+    class_scale,
     frame_view::FrameView,
     lod::{self, Drawn, Quality},
     options::RoadMethod,
@@ -75,9 +76,12 @@ pub fn may_be_clamped(tile: &TileGeometry, view: &FrameView<'_>) -> bool {
         .filter_map(|class| Some((class, widest_m(tile, view, class)?)))
         .any(|(class, widest_m)| {
             let road = &view.style.roads[usize::from(class.number())];
-            let width_m = f64::from(widest_m)
-                * tile.most_width_factor
-                * scaling.factor(far_m / view.point_scale);
+            let near_m = f64::from(widest_m) * tile.most_width_factor;
+            let grown_m = near_m * scaling.factor(far_m / view.point_scale);
+            let limit_m = 2.0
+                * far_m
+                * class_scale::half_width_limit(road, view.roads.width_growth, view.camera);
+            let width_m = grown_m.min(limit_m.max(near_m));
             let pixel_m = view.camera.pixel_at_unit_depth_m() * far_m;
             let least_m = f64::from(road.min_width_px) * pixel_m;
             width_m.max(least_m) / 2.0 > tile.width_margin_m

@@ -7,7 +7,7 @@ use crate::camera::{Orientation, WorldBox};
 
 const MAX_LEVEL: u8 = 5;
 const HEIGHT_RANGE_M: [f64; 2] = [0.0, 900.0];
-const QUALITY: Quality = Quality { screen_space_error_px: 2.0, vertical_scale: 1.0 };
+const QUALITY: Quality = Quality::by_error(2.0, 1.0);
 /// More than any of these tests needs.
 const PLENTY: StreamBudget =
     StreamBudget { tiles_in_flight: 64, upload_bytes_per_frame: 1 << 40, gpu_bytes: 1 << 40 };

@@ -3,13 +3,16 @@
 use corniche_tileset::Manifest;
 use glam::DVec3;
 
-use crate::camera::{Camera, Orientation, WorldBox};
+use crate::{
+    camera::{Camera, Orientation, WorldBox},
+    tiles::MapExtent,
+};
 
 /// Where to look from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CameraRequest {
-    /// The whole package, obliquely from the south.
-    FrameAll,
+    /// Where the roads are, or the whole package if it has none, obliquely from the south.
+    Overview,
     /// A place on the ground from a distance.
     LookAt {
         /// Longitude of the place, WGS84.
@@ -38,12 +41,12 @@ pub struct OffGround {
     pub covered_deg: [f64; 4],
 }
 
-/// True heights of the ground that a camera is set up by.
+/// The ground that a camera is set up by.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GroundHeights {
-    /// All ground lies between these heights.
-    pub range_m: [f64; 2],
-    /// Height of the ground at [`CameraRequest::place`]; `None` if there is no ground or no place.
+pub struct SightedGround {
+    /// What [`CameraRequest::Overview`] shows.
+    pub extent: MapExtent,
+    /// True height of the ground at [`CameraRequest::place`]; `None` if there is no ground or no place.
     pub at_place_m: Option<f64>,
 }
 
@@ -52,13 +55,13 @@ impl CameraRequest {
     #[must_use]
     pub fn orientation(self) -> Orientation {
         match self {
-            Self::FrameAll => Orientation { heading_deg: 0.0, pitch_deg: 45.0 },
+            Self::Overview => Orientation { heading_deg: 0.0, pitch_deg: 45.0 },
             Self::LookAt { orientation, .. } => orientation,
         }
     }
 
     /// The place to look at, in the working CRS: [`CameraRequest::camera`] needs the height of the ground there. `None` for
-    /// the whole package.
+    /// the overview.
     ///
     /// # Errors
     /// When it lies too far away from the package to have a position in the working CRS.
@@ -68,21 +71,22 @@ impl CameraRequest {
         at.map(Some).ok_or(off_ground(lon_deg, lat_deg, manifest))
     }
 
-    /// The camera for a package with this manifest and these heights. World heights are `vertical_scale` times true ones.
+    /// The camera for a package with this manifest and this ground. World heights are `vertical_scale` times true ones.
     ///
     /// # Errors
     /// When the place has no ground.
     pub fn camera(
         self,
         manifest: &Manifest,
-        ground: GroundHeights,
+        ground: SightedGround,
         vertical_scale: f64,
         size_px: [u32; 2],
     ) -> Result<Camera, OffGround> {
         match self {
-            Self::FrameAll => {
-                let range_m = ground.range_m.map(|height_m| height_m * vertical_scale);
-                let subject = WorldBox::new(manifest.data_bounds, range_m);
+            Self::Overview => {
+                let MapExtent { plan, heights_m } = ground.extent;
+                let subject =
+                    WorldBox::new(plan, heights_m.map(|height_m| height_m * vertical_scale));
                 Ok(Camera::framing(subject, self.orientation(), size_px))
             }
             Self::LookAt { lon_deg, lat_deg, distance_m, orientation } => {

@@ -56,6 +56,8 @@ fn passes_take_some_time_and_no_more_than_the_frame() {
             exaggeration: 1.0,
             point_scale: 1.0,
             height_range_m: [90.0, 1910.0],
+            wall_m: 0.0,
+            latitude_deg: 47.0,
             wireframe: Wireframe::Hidden,
         };
         let started = Instant::now();

@@ -68,6 +68,8 @@ impl<'a> Edges<'a> {
             exaggeration: 1.0,
             point_scale: 1.0,
             height_range_m: [0.0, 1000.0],
+            wall_m: 0.0,
+            latitude_deg: 47.0,
             wireframe: Wireframe::Hidden,
         };
         let tiles = [DrawTile { buffers: &buffers, skirt_depth_m: 0.0 }];
@@ -189,8 +191,9 @@ fn edges_are_where_the_plain_filter_finds_them() {
     ] {
         let orientation = Orientation { heading_deg: 25.0, pitch_deg: 70.0 };
         let camera = Camera::look_at(center().extend(300.0), 1500.0, orientation, size_px);
-        // Edges fade around roads thinner than five pixels; these are that wide at the far end of the ground.
-        let width_m = 12.0 * 1500.0 * camera.pixel_at_unit_depth_m();
+        // Edges fade around roads thinner than four pixels, or thirteen where the ground is seen flat; these are about that wide
+        // at the far end of the ground.
+        let width_m = 26.0 * 1500.0 * camera.pixel_at_unit_depth_m();
         let edges = Edges::new(&gpu, &camera, style(width_m as f32), samples);
         let count = edges.check(&tile, &format!("{size_px:?} with {samples}"));
         assert!(count > 0 || size_px[0] < 16, "no edge in {size_px:?}");

@@ -14,7 +14,7 @@ use std::{
 use corniche_geom::TileId;
 use corniche_tileset::{ByteSource, MemorySource, Package, SourceError};
 use corniche_viewer::{
-    CameraRequest, GroundHeights, RoadMethod,
+    CameraRequest, RoadMethod, SightedGround,
     camera::Camera,
     gpu::tile_bytes,
     lod::{Drawn, Quality},
@@ -136,7 +136,7 @@ fn settled(
 ) -> (Vec<Drawn>, BTreeMap<TileId, TileGeometry>) {
     let budget =
         StreamBudget { tiles_in_flight: 4, upload_bytes_per_frame: 1 << 30, gpu_bytes: 1 << 30 };
-    let quality = Quality { screen_space_error_px: 0.1, vertical_scale: 1.0 };
+    let quality = Quality::by_error(0.1, 1.0);
     let mut streamer = Streamer::new(budget);
     let (mut decoded, mut resident) = (BTreeMap::new(), BTreeMap::new());
     for _ in 0..200 {
@@ -163,9 +163,9 @@ fn a_streamer_chooses_the_same_from_tiles_that_come_later() {
     let path = package(folder.path());
     let on_disk = PackageSource::open(&path).unwrap();
     let manifest = on_disk.manifest();
-    let heights_m = on_disk.load(TileId::ROOT).unwrap().summary.unwrap().height_range_m;
-    let ground = GroundHeights { range_m: heights_m, at_place_m: None };
-    let camera = CameraRequest::FrameAll.camera(manifest, ground, 1.0, [640, 480]).unwrap();
+    let extent = on_disk.load(TileId::ROOT).unwrap().map_extent(manifest.data_bounds);
+    let ground = SightedGround { extent, at_place_m: None };
+    let camera = CameraRequest::Overview.camera(manifest, ground, 1.0, [640, 480]).unwrap();
     let expected =
         settled(&on_disk, &camera, |ids| ids.iter().map(|id| on_disk.load(*id).unwrap()).collect());
 

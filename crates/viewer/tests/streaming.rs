@@ -36,7 +36,7 @@ fn picture(
 ) -> Option<(Drawing, [u32; 5])> {
     let gpu = gpu()?;
     let mut store = TileStore::new(country);
-    let quality = Quality { screen_space_error_px: error_px, vertical_scale: 1.0 };
+    let quality = Quality::by_error(error_px, 1.0);
     let drawn = for_tests::settle(&mut store, camera, quality, &|| false).unwrap();
     let mut levels = [0; 5];
     for tile in &drawn {
@@ -57,6 +57,8 @@ fn picture(
         exaggeration: 1.0,
         point_scale: 1.0,
         height_range_m: [90.0, 1910.0],
+        wall_m: 0.0,
+        latitude_deg: 47.0,
         wireframe: Wireframe::Hidden,
     };
     Renderer::new(&gpu).draw(&gpu, &view, &tiles, &targets);
@@ -105,11 +107,11 @@ fn levels_meet_without_holes_and_within_the_error_asked_for() {
 #[test]
 fn draped_roads_show_on_every_level() {
     let country = Country::new();
+    let style = Style::road_atlas().at_every_scale();
     for (error_px, distance_m) in [(2.0, 9000.0), (16.0, 9000.0), (4.0, 40_000.0)] {
         let orientation = Orientation { heading_deg: 0.0, pitch_deg: 40.0 };
         let camera = Camera::look_at(target(&country), distance_m, orientation, SIZE);
-        let Some((drawing, levels)) = picture(&country, &camera, error_px, &Style::road_atlas())
-        else {
+        let Some((drawing, levels)) = picture(&country, &camera, error_px, &style) else {
             return;
         };
         // The roads meet at the target; the least important one goes north from there.

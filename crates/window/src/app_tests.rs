@@ -28,12 +28,13 @@ fn request() -> WindowRequest {
     WindowRequest {
         name: "small".to_owned(),
         size_px: SIZE_PX,
-        camera: CameraRequest::FrameAll,
+        camera: CameraRequest::Overview,
         roads: RoadOptions::of(RoadMethod::ShadowVolumes),
         styles: vec![NamedStyle { name: "atlas".to_owned(), style: Style::road_atlas() }],
         reload: None,
         photo: None,
         screen_space_error_px: 0.01,
+        cell_px: f64::INFINITY,
         exaggeration: 1.0,
         samples_per_side: Some(1),
         budget: StreamBudget {

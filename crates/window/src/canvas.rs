@@ -142,6 +142,8 @@ impl Canvas {
             exaggeration: scene.exaggeration,
             point_scale: scene.point_scale,
             height_range_m: scene.height_range_m,
+            wall_m: FrameView::wall_beside_m(scene.height_range_m),
+            latitude_deg: scene.latitude_deg,
             wireframe: scene.wireframe,
         };
         let tiles: Vec<DrawTile<'_>> = scene
@@ -154,7 +156,7 @@ impl Canvas {
             .collect();
         for tile in &tiles {
             self.counts.triangles += tile.buffers.triangles();
-            self.counts.segments += tile.buffers.road_segments(roads);
+            self.counts.segments += tile.road_segments(&view);
         }
         // Times of another method do not count for this one.
         map.times = map.times.filter(|(method, _)| *method == roads.method);

@@ -40,6 +40,8 @@ pub struct WindowRequest {
     pub photo: Option<f32>,
     /// A tile is refined while its error looks larger than this, pixels.
     pub screen_space_error_px: f64,
+    /// A tile is refined while one of its cells looks larger than this, pixels.
+    pub cell_px: f64,
     /// Factor on heights; 1 is true.
     pub exaggeration: f64,
     /// Samples per pixel along each side; without it 2, and 1 where the processor draws.

@@ -55,6 +55,8 @@ pub(crate) struct Settings {
     pub(crate) exaggeration: f64,
     /// A tile is refined while its error looks larger than this.
     pub(crate) screen_space_error_px: f64,
+    /// A tile is refined while one of its cells looks larger than this.
+    pub(crate) cell_px: f64,
     /// Samples per pixel along each side.
     pub(crate) samples_per_side: u32,
     /// Whether the edges of triangles are drawn.
@@ -101,6 +103,7 @@ pub(crate) fn usual() -> Settings {
         photo: None,
         exaggeration: 1.0,
         screen_space_error_px: 2.0,
+        cell_px: f64::INFINITY,
         samples_per_side: 2,
         is_wireframe: false,
         refinement: Refinement::Live,

@@ -80,7 +80,7 @@ fn camera() -> Camera {
 
 /// Frames until nothing more happens; returns what went wrong.
 fn settle(tiles: &mut Tiles, screen_space_error_px: f64) -> Vec<String> {
-    let quality = Quality { screen_space_error_px, vertical_scale: 1.0 };
+    let quality = Quality::by_error(screen_space_error_px, 1.0);
     let begun = Instant::now();
     let mut defects = Vec::new();
     loop {
@@ -137,7 +137,7 @@ fn a_view_that_wants_more_than_may_be_held_is_full_and_another_is_not() {
     let mut tiles = tiles_within(root_bytes + root_bytes / 2);
     settle(&mut tiles, 1e6);
     assert!(!tiles.is_full(), "the root alone fits");
-    let quality = Quality { screen_space_error_px: 0.01, vertical_scale: 1.0 };
+    let quality = Quality::by_error(0.01, 1.0);
     let begun = Instant::now();
     while !tiles.is_full() {
         tiles.take_arrivals();
@@ -166,7 +166,7 @@ fn after_a_loss_everything_is_asked_for_again() {
 #[test]
 fn what_arrives_from_before_a_loss_does_not_count_twice() {
     let mut tiles = tiles();
-    let quality = Quality { screen_space_error_px: 0.01, vertical_scale: 1.0 };
+    let quality = Quality::by_error(0.01, 1.0);
     // The root is asked for, forgotten, and asked for again while it may be under way.
     tiles.choose(&camera(), None, quality);
     tiles.begin_again();
@@ -181,7 +181,7 @@ fn shown(catalog: Arc<dyn TileCatalog>, loader: Box<dyn TileLoader>) -> (Vec<Dra
     let middle = DVec3::from((DVec2::from(bounds.center()), 0.0));
     let down = Orientation { heading_deg: 0.0, pitch_deg: 0.0 };
     let camera = Camera::look_at(middle, 2.0 * bounds.width(), down, [400, 400]);
-    let quality = Quality { screen_space_error_px: 0.01, vertical_scale: 1.0 };
+    let quality = Quality::by_error(0.01, 1.0);
     let budget =
         StreamBudget { tiles_in_flight: 8, upload_bytes_per_frame: 1 << 20, gpu_bytes: 1 << 24 };
     let mut tiles = Tiles::new(catalog, QUANTUM_M, loader, budget);

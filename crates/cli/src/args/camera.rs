@@ -7,7 +7,7 @@ use super::values::parse_position;
 
 #[derive(Debug, Args)]
 pub(crate) struct CameraArgs {
-    /// Look at this longitude and latitude (degrees, WGS84) instead of the whole package
+    /// Look at this longitude and latitude (degrees, WGS84) instead of where the roads are
     #[arg(long, value_name = "LON,LAT", value_parser = parse_position, allow_hyphen_values = true)]
     look_at: Option<[f64; 2]>,
     /// With --look-at: distance from the eye to the point looked at, in metres
@@ -30,7 +30,7 @@ pub(crate) struct CameraArgs {
 impl CameraArgs {
     /// What is asked of the viewer, which checks it.
     pub(crate) fn request(&self) -> CameraRequest {
-        let Some([lon_deg, lat_deg]) = self.look_at else { return CameraRequest::FrameAll };
+        let Some([lon_deg, lat_deg]) = self.look_at else { return CameraRequest::Overview };
         CameraRequest::LookAt {
             lon_deg,
             lat_deg,

@@ -20,7 +20,7 @@ fn a_place_is_looked_at_from_where_the_options_say() {
         distance_m,
         orientation: Orientation { heading_deg, pitch_deg },
     };
-    check("corniche", Some(CameraRequest::FrameAll));
+    check("corniche", Some(CameraRequest::Overview));
     check("corniche --look-at -9.5,47", Some(place(5000.0, 0.0, 60.0)));
     let all = "corniche --look-at -9.5,47 --distance 20 --heading -30 --pitch 5";
     check(all, Some(place(20.0, -30.0, 5.0)));

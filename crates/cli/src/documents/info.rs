@@ -147,6 +147,8 @@ struct SettingsDocument {
     /// `--polygon`; left out where not given.
     #[serde(skip_serializing_if = "Option::is_none")]
     polygon: Option<PolygonDocument>,
+    /// `--relief`: off, finest or full.
+    relief: &'static str,
     /// Name of the FRC table.
     frc_table: String,
     /// SHA-256 of the FRC table's text.
@@ -274,6 +276,7 @@ impl From<SettingsRecord> for SettingsDocument {
             scale_latitude_deg: settings.scale_latitude_deg,
             bounds_deg: settings.bounds_deg,
             polygon: settings.polygon.map(PolygonDocument::from),
+            relief: settings.relief.name(),
             frc_table: settings.frc_table,
             frc_table_sha256: settings.frc_table_sha256,
             classes: settings.classes,

@@ -3,7 +3,7 @@
 use std::{fs, path::PathBuf};
 
 use corniche_geom::NodeIndex;
-use corniche_tileset::{ClipRecord, LeftOutRecord, PolygonRecord};
+use corniche_tileset::{ClipRecord, LeftOutRecord, PolygonRecord, ReliefLevels};
 use schemars::{JsonSchema, Schema, generate::SchemaSettings};
 use serde_json::{Value, json};
 
@@ -95,6 +95,8 @@ fn the_document_has_all_fields_of_the_manifest() {
     manifest.settings.bounds_deg = Some([9.0, 47.0, 10.0, 48.0]);
     manifest.settings.polygon =
         Some(PolygonRecord { name: "a.gpkg".to_owned(), sha256: "12".to_owned() });
+    manifest.settings.relief = ReliefLevels::Full;
+    manifest.levels.iter_mut().for_each(|level| level.relief_bytes = 7);
     manifest.settings.classes = Some(vec![0, 8]);
     manifest.counts.left_out = vec![LeftOutRecord {
         reason: "class is off".to_owned(),

@@ -96,6 +96,8 @@ fn properties(manifest: &Manifest) -> [Property; 16] {
         scale_latitude_deg,
         bounds_deg,
         polygon,
+        // Roads do not depend on it.
+        relief: _,
         frc_table,
         frc_table_sha256,
         classes: chosen,

@@ -1,6 +1,6 @@
 //! What is compared of two plans, as pairs of a name that users know and a value in words.
 
-use corniche_tileset::{PolygonRecord, SettingsRecord};
+use corniche_tileset::{PolygonRecord, ReliefLevels, SettingsRecord};
 
 /// A setting's name, and its value in words.
 pub(crate) type Fact = (String, String);
@@ -41,6 +41,10 @@ pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecor
         && own.sha256 == recorded.sha256
     {
         recorded.name.clone_from(&own.name);
+    }
+    // Relief that a package has may be left out.
+    if ours.relief == ReliefLevels::Off {
+        theirs.relief = ReliefLevels::Off;
     }
     differences_from(ours, &theirs)
 }
@@ -106,6 +110,7 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         scale_latitude_deg,
         bounds_deg,
         polygon,
+        relief,
         frc_table,
         // The table's entries are compared one by one.
         frc_table_sha256: _,
@@ -136,6 +141,7 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
             &given(bounds_deg.map(|bounds| bounds.map(|deg| deg.to_string()).join(",")).as_ref()),
         ),
         fact("--polygon", &given(polygon.as_ref().map(polygon_text).as_ref())),
+        fact("--relief", &relief.name()),
         fact("--frc-table", frc_table),
         fact(
             "--classes",

@@ -195,6 +195,7 @@ impl Laid {
         TilePayload {
             id,
             terrain: Some(terrain),
+            relief: None,
             roads_geo: self.geo,
             roads_sv: self.sv,
             attributes: self.attributes.into_values().collect(),

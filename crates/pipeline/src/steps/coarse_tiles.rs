@@ -14,6 +14,7 @@ use crate::{
         encode,
         mesh::Meshed,
         record::{Seen, TileDeviation, TileRecord},
+        relief,
     },
     workers,
 };
@@ -42,11 +43,18 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
             let empty = || damaged(Kind::Tin.of_tile(id), &"it has no ground");
             let meshed = Meshed::get(store, id)?.ok_or_else(empty)?;
             let deviation = deviations.get(&id).copied().unwrap_or_default();
+            let relief = if context.has_relief(id) {
+                let heights = rasters::with_halo(store, &data, id)?.ok_or_else(empty)?;
+                relief::of_tile(context, id, &heights)?
+            } else {
+                None
+            };
             let owned = || {
                 let heights = rasters::with_halo(store, &data, id)?;
                 encode::owned_by_heights(context, id, heights.as_ref())
             };
-            encode::with_ground(context, id, meshed, deviation, None, owned)?.put(store, id)
+            let tile = (meshed, relief);
+            encode::with_ground(context, id, tile, deviation, None, owned)?.put(store, id)
         },
     )
 }

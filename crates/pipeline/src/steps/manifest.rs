@@ -113,6 +113,7 @@ fn level_records(outcome: &Outcome<'_>) -> Vec<LevelRecord> {
                 triangles: sums.triangles,
                 vertices: sums.vertices,
                 terrain_bytes: sums.terrain_bytes,
+                relief_bytes: sums.relief_bytes,
                 uncovered_nodes: measured.uncovered_nodes,
             }
         })

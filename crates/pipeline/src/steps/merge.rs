@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use corniche_store::Scratch;
-use corniche_tileset::{LevelRecord, Manifest, Writer};
+use corniche_tileset::{LevelRecord, Manifest, ReliefLevels, Writer};
 
 use super::{
     hashes,
@@ -87,7 +87,7 @@ pub(crate) fn make(
         tiles: &tiles,
     });
     if let Some(terrain) = context.source.package() {
-        check_levels(terrain, &manifest.levels)?;
+        check_levels(context, terrain, &manifest.levels)?;
     }
     let osm = &context.settings.osm;
     if !osm.is_empty() && manifest.counts.roads_kept == 0 {
@@ -100,12 +100,18 @@ pub(crate) fn make(
 }
 
 /// Fails if the levels of a package whose terrain was taken are others than what was found in its tiles.
-fn check_levels(terrain: &RecordedTerrain, found: &[LevelRecord]) -> Result<(), BuildError> {
+fn check_levels(
+    context: &Context<'_>,
+    terrain: &RecordedTerrain,
+    found: &[LevelRecord],
+) -> Result<(), BuildError> {
+    let drops_relief = context.settings.terrain.relief == ReliefLevels::Off;
     for (said, found) in terrain.manifest().levels.iter().zip(found) {
         // What depends on the settings for roads may differ.
         let wanted = LevelRecord {
             least_class: found.least_class,
             simplify_tolerance_m: found.simplify_tolerance_m,
+            relief_bytes: if drops_relief { 0 } else { said.relief_bytes },
             ..said.clone()
         };
         if wanted != *found {

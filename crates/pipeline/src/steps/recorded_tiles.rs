@@ -62,6 +62,8 @@ fn make_tile(context: &Context<'_>, borders: &Borders<'_>, id: TileId) -> Result
     let owned = || borders.owned(id);
     let record = match borders.ground(id)? {
         Some((bytes, terrain)) => {
+            let relief =
+                context.has_relief(id).then(|| borders.terrain.relief(id, &bytes)).transpose()?;
             let deviation = TileDeviation {
                 geometric_error_m: terrain.geometric_error_m,
                 // The package does not say it: the manifest takes the figures that are made of it from the package's own.
@@ -70,7 +72,8 @@ fn make_tile(context: &Context<'_>, borders: &Borders<'_>, id: TileId) -> Result
                 uncovered_nodes: terrain.uncovered_nodes,
             };
             let meshed = Meshed { tin: terrain.tin, normals: terrain.normals };
-            encode::with_ground(context, id, meshed, deviation, Some(&bytes), owned)?
+            let tile = (meshed, relief);
+            encode::with_ground(context, id, tile, deviation, Some(&bytes), owned)?
         }
         None => encode::without_ground(context, id, owned)?,
     };

@@ -30,6 +30,7 @@ pub(crate) struct LevelSums {
     pub(crate) vertices: u64,
     pub(crate) triangles: u64,
     pub(crate) terrain_bytes: u64,
+    pub(crate) relief_bytes: u64,
     /// Tiles with a photo.
     pub(crate) photo_tiles: u64,
     pub(crate) photo_bytes: u64,
@@ -69,6 +70,7 @@ impl TileSums {
         sums.vertices += ground.vertices;
         sums.triangles += ground.triangles;
         sums.terrain_bytes += ground.terrain_bytes;
+        sums.relief_bytes += ground.relief_bytes;
         sums.photo_tiles += u64::from(ground.photo_bytes > 0);
         sums.photo_bytes += ground.photo_bytes;
         sums.geometric_errors_m.push(deviation.geometric_error_m);

@@ -17,6 +17,7 @@ use crate::{
         measure::Column,
         mesh::mesh_tile,
         record::{Seen, TileDeviation, TileRecord},
+        relief,
     },
     workers,
 };
@@ -72,10 +73,11 @@ fn make_tile(
     drop(column);
     let own = levels.last().map_or(Seen::default(), |share| share.seen);
     let owned = || encode::owned_by_heights(context, id, with_halo);
-    let record = match meshed {
-        Some(meshed) => {
+    let record = match meshed.zip(with_halo) {
+        Some((meshed, heights)) => {
             let deviation = TileDeviation::of(own, 0.0, 0.0);
-            encode::with_ground(context, id, meshed, deviation, None, owned)?
+            let relief = relief::of_tile(context, id, heights)?;
+            encode::with_ground(context, id, (meshed, relief), deviation, None, owned)?
         }
         None => encode::without_ground(context, id, owned)?,
     };

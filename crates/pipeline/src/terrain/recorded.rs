@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use corniche_dem::{Clip, DemError, DemProjection, GridPlan, PlanScale, RecordedCrs, RecordedGrid};
 use corniche_geom::{Frame, TILE_CELLS, TileId};
 use corniche_tileset::{
-    FilePackage, InputRecord, Manifest, ReadError, Sections, Terrain, decode, limits::MAX_TILES,
+    FilePackage, InputRecord, Manifest, ReadError, Relief, Sections, Terrain, decode,
+    limits::MAX_TILES,
 };
 
 use super::data_nodes::data_nodes;
@@ -139,6 +140,20 @@ impl RecordedTerrain {
             Some(terrain) => Ok(Some((bytes, terrain))),
             None => Err(self.damaged(&format!("tile {id} has no ground"))),
         }
+    }
+
+    /// The relief in the payload of a tile with ground, which must have one.
+    pub(crate) fn relief(&self, id: TileId, payload: &[u8]) -> Result<Relief, BuildError> {
+        let manifest = self.manifest();
+        let quantum_m = manifest.vertical.quantum_m;
+        let found = decode(payload, id, &manifest.frame, quantum_m, Sections::RELIEF);
+        let found = found.map_err(|error| BuildError::PackageTile {
+            path: self.path().to_path_buf(),
+            source: ReadError::from(error),
+        })?;
+        found.relief.ok_or_else(|| {
+            self.damaged(&format!("tile {id} has no relief, which its settings promise"))
+        })
     }
 
     /// The elevation files and the photos of the package.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use corniche_drape::{Neighbours, OwnedBorders};
 use corniche_geom::{HeightGrid, TileId};
 use corniche_roads::FunctionalRoadClass;
-use corniche_tileset::{EncodedTile, PayloadContext, Terrain, TilePayload};
+use corniche_tileset::{EncodedTile, PayloadContext, Relief, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 
 use super::{
@@ -32,7 +32,7 @@ use crate::{
 pub(crate) fn with_ground(
     context: &Context<'_>,
     id: TileId,
-    meshed: Meshed,
+    (meshed, relief): (Meshed, Option<Relief>),
     deviation: TileDeviation,
     earlier: Option<&[u8]>,
     owned: impl FnOnce() -> Result<OwnedBorders, BuildError>,
@@ -60,7 +60,7 @@ pub(crate) fn with_ground(
         height_range_m: deviation.height_range_m,
         uncovered_nodes: deviation.uncovered_nodes,
     };
-    let payload = laid.into_payload(id, terrain);
+    let payload = TilePayload { relief, ..laid.into_payload(id, terrain) };
     let encoding = PayloadContext { frame: *frame, quantum_m: levels.quantum_m() };
     let encoded = match earlier {
         Some(earlier) => corniche_tileset::encode_with_ground_of(earlier, &payload, &encoding)?,
@@ -79,9 +79,16 @@ pub(crate) fn with_ground(
         }
         None => context.store.put(Kind::Payload.of_tile(id), &encoded.bytes)?,
     }
-    let terrain_bytes = encoded.sizes.terrain.stored;
+    let (terrain_bytes, relief_bytes) = (encoded.sizes.terrain.stored, encoded.sizes.relief.stored);
     Ok(TileRecord {
-        ground: Some(GroundRecord { vertices, triangles, terrain_bytes, photo_bytes, deviation }),
+        ground: Some(GroundRecord {
+            vertices,
+            triangles,
+            terrain_bytes,
+            relief_bytes,
+            photo_bytes,
+            deviation,
+        }),
         classes,
         fates,
         levels: Vec::new(),

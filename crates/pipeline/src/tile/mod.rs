@@ -5,3 +5,4 @@ pub(crate) mod grounds;
 pub(crate) mod measure;
 pub(crate) mod mesh;
 pub(crate) mod record;
+pub(crate) mod relief;

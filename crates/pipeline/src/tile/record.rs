@@ -35,6 +35,7 @@ pub(crate) struct GroundRecord {
     pub(crate) vertices: u64,
     pub(crate) triangles: u64,
     pub(crate) terrain_bytes: u64,
+    pub(crate) relief_bytes: u64,
     /// 0 without a photo.
     pub(crate) photo_bytes: u64,
     pub(crate) deviation: TileDeviation,

@@ -18,6 +18,7 @@ mod osm;
 mod osm_tile;
 mod photos;
 mod polygon;
+mod relief;
 mod report;
 mod request;
 mod roads_of_parent;

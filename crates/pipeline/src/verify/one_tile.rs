@@ -8,7 +8,7 @@ use corniche_tileset::{FilePackage, Sections, Terrain, TilePayload, decode, payl
 use super::{
     attributes::{self, WayFacts},
     checks::{CheckId, Findings},
-    geo_against_sv,
+    geo_against_sv, relief,
     report::GapFigures,
     roads_of_parent, roads_on_tin, seams,
     tile_place::TilePlace,
@@ -100,6 +100,13 @@ pub(crate) fn look_at(
         roads_on_tin::verify_on_tin(&payload, &terrain.tin, &ground, manifest, &mut findings);
     (found.gaps, found.length_m) = (on_tin.gaps, on_tin.length_m);
     check_vertices(id, terrain, quantum_m, &mut findings);
+    let has_relief = payload.relief.is_some();
+    let settings = &manifest.settings;
+    let wants_relief = settings.relief.has(id.z(), manifest.frame.max_level());
+    findings.look(CheckId::ReliefThere, has_relief == wants_relief, || {
+        let found = if has_relief { "a" } else { "no" };
+        format!("tile {id} has {found} relief; the settings say {}", settings.relief.name())
+    });
     if let Some(levels) = levels {
         let margin_steps = levels.margin_steps(id.z());
         let view = geo_against_sv::View {
@@ -128,6 +135,7 @@ pub(crate) fn look_at(
         geometric_error_m: terrain.geometric_error_m,
         height_range_m: terrain.height_range_m,
         borders: seams::borders(&terrain.tin),
+        relief_borders: payload.relief.as_ref().map(relief::borders),
     });
     Found { findings, ..found }
 }

@@ -20,12 +20,15 @@ pub(crate) struct Kept {
     pub(crate) geometric_error_m: f64,
     pub(crate) height_range_m: [f64; 2],
     pub(crate) borders: Borders,
+    /// `None` without a relief.
+    pub(crate) relief_borders: Option<[u64; 4]>,
 }
 
 /// What of a tile goes into the manifest's sums.
 #[derive(Default)]
 pub(crate) struct TileSums {
     terrain_bytes: u64,
+    relief_bytes: u64,
     uncovered_nodes: u64,
     classes: BTreeMap<u8, Row>,
 }
@@ -46,6 +49,7 @@ impl TileSums {
         let terrain = payload.terrain.as_ref();
         let mut sums = Self {
             terrain_bytes: sizes.terrain.stored,
+            relief_bytes: sizes.relief.stored,
             uncovered_nodes: terrain.map_or(0, |terrain| terrain.uncovered_nodes),
             classes: BTreeMap::new(),
         };
@@ -75,6 +79,7 @@ impl TileSums {
 
     pub(crate) fn add(&mut self, other: Self) {
         self.terrain_bytes += other.terrain_bytes;
+        self.relief_bytes += other.relief_bytes;
         self.uncovered_nodes += other.uncovered_nodes;
         for (class, row) in other.classes {
             let sum = self.classes.entry(class).or_default();
@@ -107,16 +112,18 @@ pub(crate) fn check_levels(
         let errors_m = Distribution::of(tiles().map(|tile| tile.geometric_error_m).collect());
         let largest_m = errors_m.map_or(0.0, |errors_m| errors_m.max);
         let sums = sums.get(&level.level).unwrap_or(&nothing);
-        let said = (level.triangles, level.vertices, level.terrain_bytes, level.errors_m);
-        let agrees = (triangles, vertices, sums.terrain_bytes, errors_m) == said
+        let stored = [sums.terrain_bytes, sums.relief_bytes];
+        let said_stored = [level.terrain_bytes, level.relief_bytes];
+        let said = (level.triangles, level.vertices, said_stored, level.errors_m);
+        let agrees = (triangles, vertices, stored, errors_m) == said
             && largest_m.to_bits() == level.geometric_error_m.to_bits()
             // Nodes where there is no tile count for the level alone.
             && sums.uncovered_nodes <= level.uncovered_nodes;
         findings.look(CheckId::LevelSums, agrees, || {
             format!(
-                "level {} has {triangles} triangles, {vertices} vertices, {} bytes of ground, error {largest_m} m, \
+                "level {} has {triangles} triangles, {vertices} vertices, {} bytes of ground, {} of relief, error {largest_m} m, \
                  {} uncovered nodes",
-                level.level, sums.terrain_bytes, sums.uncovered_nodes
+                level.level, sums.terrain_bytes, sums.relief_bytes, sums.uncovered_nodes
             )
         });
     }

@@ -100,6 +100,12 @@ fn check_seams(kept: &BTreeMap<TileId, Kept>, findings: &mut Findings) -> u64 {
                 &tile.borders[own_edge as usize],
                 &neighbour.borders[other_edge as usize],
             );
+            if let (Some(own), Some(theirs)) = (tile.relief_borders, neighbour.relief_borders) {
+                let same = own[own_edge as usize] == theirs[other_edge as usize];
+                findings.look(CheckId::ReliefSeams, same, || {
+                    format!("the reliefs of tiles {id} and {other} differ on their border")
+                });
+            }
             findings.look(CheckId::Seams, differences.is_empty(), || {
                 format!("tiles {id} and {other} differ at border nodes {differences:?}")
             });

@@ -7,6 +7,7 @@ use corniche_tileset::{FilePackage, Sections, Terrain};
 use super::{
     checks::{CheckId, Findings},
     error::VerifyError,
+    relief,
     report::VerifyReport,
     temporary_store::TemporaryStore,
 };
@@ -89,10 +90,10 @@ fn look_at(
 ) -> Result<Findings, VerifyError> {
     let mut findings = Findings::default();
     let manifest = package.manifest();
-    let payload = package.payload(id, Sections::TERRAIN).ok().flatten();
-    let Some(Terrain { tin, normals, .. }) = payload.and_then(|payload| payload.terrain) else {
-        return Ok(findings);
-    };
+    let wanted = Sections::TERRAIN | Sections::RELIEF;
+    let Some(payload) = package.payload(id, wanted).ok().flatten() else { return Ok(findings) };
+    let relief = payload.relief;
+    let Some(Terrain { tin, normals, .. }) = payload.terrain else { return Ok(findings) };
     let Some(heights) = pyramid.tile(id)? else {
         findings.look(CheckId::Nodes, false, || {
             format!("tile {id} has ground, the DEM no height there")
@@ -100,6 +101,9 @@ fn look_at(
         return Ok(findings);
     };
     let cell_m = manifest.frame.level_cell(id.z()).to_array();
+    if let Some(relief) = &relief {
+        relief::verify(id, relief, &heights, |at| gradient(&heights, at, cell_m), &mut findings);
+    }
     for (vertex, normal) in tin.vertices().iter().zip(&normals) {
         // The raster has the tile's own nodes and one row or column of nodes of its neighbours on each side.
         let at = [usize::from(vertex.column) + 1, usize::from(vertex.row) + 1];

@@ -24,7 +24,7 @@ use corniche_pipeline::{
     TerrainSettings, build,
 };
 use corniche_roads::{ClassFilter, FrcTable};
-use corniche_tileset::{FilePackage, Manifest, Sections, Terrain, TilePayload};
+use corniche_tileset::{FilePackage, Manifest, ReliefLevels, Sections, Terrain, TilePayload};
 use corniche_tin::Tin;
 
 /// Spacing of the tests' rasters.
@@ -175,6 +175,7 @@ pub(crate) fn settings(
                 },
                 height_range_m: options.height_range_m,
                 max_error_m: Some(options.max_error_m),
+                relief: ReliefLevels::Full,
                 ..TerrainSettings::default()
             },
             roads: RoadSettings {

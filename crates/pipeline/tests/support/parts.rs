@@ -234,6 +234,7 @@ fn add_sizes(manifest: &mut Manifest, id: TileId, bytes: &[u8], sign: i64) {
     let add = |sum: &mut u64, bytes: u64| *sum = sum.wrapping_add_signed(sign * bytes as i64);
     if let Some(level) = manifest.levels.iter_mut().find(|level| level.level == id.z()) {
         add(&mut level.terrain_bytes, sizes.terrain.stored);
+        add(&mut level.relief_bytes, sizes.relief.stored);
     }
     for row in manifest.growth.iter_mut().filter(|row| row.level == id.z()) {
         let class = usize::from(row.class);

@@ -167,10 +167,18 @@ fn check_distribution(distribution: &Distribution) -> Result<(), String> {
     that(is_sorted, "a distribution", distribution)
 }
 
-fn level_counts(record: &LevelRecord) -> [u64; 7] {
-    let LevelRecord { tiles, triangles, vertices, terrain_bytes, uncovered_nodes, .. } = *record;
+fn level_counts(record: &LevelRecord) -> [u64; 8] {
+    let LevelRecord {
+        tiles,
+        triangles,
+        vertices,
+        terrain_bytes,
+        relief_bytes,
+        uncovered_nodes,
+        ..
+    } = *record;
     let SampleErrorRecord { on_tin, off_tin, .. } = record.sample_error;
-    [tiles, triangles, vertices, terrain_bytes, uncovered_nodes, on_tin, off_tin]
+    [tiles, triangles, vertices, terrain_bytes, relief_bytes, uncovered_nodes, on_tin, off_tin]
 }
 
 fn check_counts(counts: &Counts) -> Result<(), String> {

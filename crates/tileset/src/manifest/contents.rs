@@ -3,6 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::manifest::counts::{Counts, GrowthRow};
 use crate::manifest::levels::LevelRecord;
+use crate::manifest::relief_levels::ReliefLevels;
 
 /// The table of contents of a package: its JSON metadata.
 ///
@@ -159,6 +160,9 @@ pub struct SettingsRecord {
     /// `--polygon`, if given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub polygon: Option<PolygonRecord>,
+    /// `--relief`, given or by default.
+    #[serde(default, skip_serializing_if = "ReliefLevels::is_off")]
+    pub relief: ReliefLevels,
     /// Name of the FRC table.
     pub frc_table: String,
     /// SHA-256 of the FRC table's text.

@@ -33,8 +33,17 @@ pub struct LevelRecord {
     pub vertices: u64,
     /// Stored bytes of their terrain sections.
     pub terrain_bytes: u64,
+    /// Stored bytes of their relief sections.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub relief_bytes: u64,
     /// Full-resolution nodes with data that the level's TINs do not cover, next to voids and data edges.
     pub uncovered_nodes: u64,
+}
+
+/// For serde: packages without relief say nothing of it.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
+fn is_zero(count: &u64) -> bool {
+    *count == 0
 }
 
 /// How far a level's TINs are from the DEM's own samples: those that nodes are made from, each once, after nodata, units

@@ -3,6 +3,7 @@ use corniche_tin::Surface;
 
 use crate::payload::context::Context;
 use crate::payload::damage::{Damage, DecodeError};
+use crate::payload::relief::Relief;
 use crate::payload::section_kind::{Kind, Sections};
 use crate::payload::tile_payload::{GeoRoad, Terrain, TilePayload};
 use crate::payload::{attributes, envelope, road_tags, roads_geo, roads_sv, terrain};
@@ -50,6 +51,10 @@ pub fn decode(
     } else {
         None
     };
+    let relief = read(Kind::Relief, Sections::RELIEF)?
+        .map(|bytes| Relief::decode(&bytes))
+        .transpose()
+        .map_err(inside(Kind::Relief))?;
     let roads_geo = roads_geo
         .map(|bytes| decode_geo(&bytes, ground.as_ref(), &context))
         .transpose()
@@ -71,6 +76,7 @@ pub fn decode(
     Ok(TilePayload {
         id,
         terrain: ground,
+        relief,
         roads_geo: roads_geo.unwrap_or_default(),
         roads_sv: roads_sv.unwrap_or_default(),
         attributes: records,

@@ -109,6 +109,10 @@ fn encode_sections(
         }
     }
 
+    if let Some(relief) = &payload.relief {
+        sections.push((Kind::Relief, Content::Raw(relief.coded().to_vec())));
+    }
+
     let (bytes, sealed) = envelope::seal(tile, &sections)?;
     let size = |kind: Kind| {
         sections
@@ -123,6 +127,7 @@ fn encode_sections(
         roads_sv: size(Kind::RoadsSv),
         attributes: size(Kind::Attributes),
         road_tags: size(Kind::RoadTags),
+        relief: size(Kind::Relief),
         photo: SectionSize::default(),
         geo_class_bytes,
         sv_class_bytes,

@@ -32,6 +32,7 @@ kinds! {
     RoadsSv = 3, "SV roads section";
     Attributes = 4, "road attributes section";
     RoadTags = 5, "road tags section";
+    Relief = 6, "relief section";
     Photo = 7, "photo section";
 }
 
@@ -50,6 +51,8 @@ impl Sections {
     pub const ROADS_SV: Self = Self::of(Kind::RoadsSv);
     /// The attributes of each way, of both sections that have some.
     pub const ATTRIBUTES: Self = Self(Self::of(Kind::Attributes).0 | Self::of(Kind::RoadTags).0);
+    /// The raster of the level, for shading.
+    pub const RELIEF: Self = Self::of(Kind::Relief);
     /// The photo. [`decode`](crate::decode) checks it; [`decode_photo`](crate::decode_photo) gives it.
     pub const PHOTO: Self = Self::of(Kind::Photo);
     /// Everything, checksums of sections of unknown kinds included.
@@ -67,6 +70,12 @@ impl Sections {
             k += 1;
         }
         all
+    }
+
+    /// These and `other`; as `|`, for constants.
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
     }
 
     /// Whether all of `other` are among these.

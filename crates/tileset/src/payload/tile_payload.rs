@@ -3,6 +3,8 @@ use corniche_geom::TileId;
 use corniche_roads::{FunctionalRoadClass, RoadAttributes};
 use corniche_tin::Tin;
 
+use crate::payload::relief::Relief;
+
 /// All that a tile holds, decoded, but for its photo ([`decode_photo`](crate::decode_photo)). A section that is absent from the bytes is empty or `None` here.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TilePayload {
@@ -10,6 +12,8 @@ pub struct TilePayload {
     pub id: TileId,
     /// Its ground; `None` for a tile without any.
     pub terrain: Option<Terrain>,
+    /// The raster of its level, for shading; `None` in packages without.
+    pub relief: Option<Relief>,
     /// Centre-lines on the TIN, sorted by class, way id, part.
     pub roads_geo: Vec<GeoRoad>,
     /// Plan lines for shadow volumes, sorted by class, way id, part.

@@ -209,6 +209,7 @@ fn around_a_hub(crossings: usize) -> Vec<u8> {
     let tile = TilePayload {
         id,
         terrain: Some(terrain),
+        relief: None,
         roads_geo: vec![GeoRoad { way_id: 1, part: 0, class, line }],
         roads_sv: vec![],
         attributes: vec![],

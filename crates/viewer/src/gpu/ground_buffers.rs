@@ -7,8 +7,8 @@ use wgpu::{
     VertexStepMode, vertex_attr_array,
 };
 
-use super::{Gpu, photo_texture::PhotoTexture};
-use crate::tiles::{GroundMesh, GroundVertex, PhotoImage};
+use super::Gpu;
+use crate::tiles::{GroundMesh, GroundVertex};
 
 /// Bytes of a vertex: position as three f32, normal and skirt flag as four i8.
 const VERTEX_BYTES: u64 = 16;
@@ -25,19 +25,19 @@ pub(crate) const GROUND_VERTICES: VertexBufferLayout<'static> = VertexBufferLayo
 pub(crate) struct GroundBuffers {
     vertices: Buffer,
     indices: Buffer,
-    /// The indices of the ground, then those of the skirts.
+    /// The indices of the ground, then those of the skirts, then those of edges of the ground inside the tile.
     surface: Range<u32>,
     skirts: Range<u32>,
+    /// The skirts and what comes behind them: wherever the ground may end.
+    walls: Range<u32>,
     /// Three indices for each triangle of the ground, from which the edges are made.
     triangles: Vec<u32>,
     edges: OnceLock<Buffer>,
-    /// Its photo, if it has one.
-    photo: Option<PhotoTexture>,
 }
 
 impl GroundBuffers {
     /// Uploads the ground of a tile; `None` if there is none.
-    pub(crate) fn new(gpu: &Gpu, mesh: &GroundMesh, photo: Option<&PhotoImage>) -> Option<Self> {
+    pub(crate) fn new(gpu: &Gpu, mesh: &GroundMesh) -> Option<Self> {
         let buffer = |contents: &[u8], usage| gpu.buffer("tile", contents, usage);
         let all = mesh.indices.len() as u32;
         let surface = mesh.surface_indices as u32;
@@ -45,29 +45,23 @@ impl GroundBuffers {
             vertices: buffer(&vertex_bytes(&mesh.vertices), BufferUsages::VERTEX),
             indices: buffer(bytemuck::cast_slice(&mesh.indices), BufferUsages::INDEX),
             surface: 0..surface,
-            skirts: surface..all,
+            skirts: surface..mesh.skirt_indices as u32,
+            walls: surface..all,
             triangles: mesh.indices[..mesh.surface_indices].to_vec(),
             edges: OnceLock::new(),
-            photo: photo.map(|photo| PhotoTexture::new(gpu, photo)),
         })
     }
 
-    /// Bytes of the buffers and the texture that [`GroundBuffers::new`] makes of a mesh and a photo.
-    pub(crate) fn bytes_of(mesh: &GroundMesh, photo: Option<&PhotoImage>) -> u64 {
-        photo.map_or(0, PhotoImage::bytes)
-            + mesh.vertices.len() as u64 * VERTEX_BYTES
+    /// Bytes of the buffers that [`GroundBuffers::new`] makes of a mesh.
+    pub(crate) fn bytes_of(mesh: &GroundMesh) -> u64 {
+        mesh.vertices.len() as u64 * VERTEX_BYTES
             + mesh.indices.len() as u64 * size_of::<u32>() as u64
     }
 
-    /// Its photo, if it has one.
-    pub(crate) fn photo(&self) -> Option<&PhotoTexture> {
-        self.photo.as_ref()
-    }
-
-    /// Bytes of its buffers and its photo; the edges count once they have been drawn.
+    /// Bytes of its buffers; the edges count once they have been drawn.
     pub(crate) fn gpu_bytes(&self) -> u64 {
         let buffers = [&self.vertices, &self.indices].into_iter().chain(self.edges.get());
-        buffers.map(Buffer::size).sum::<u64>() + self.photo().map_or(0, PhotoTexture::bytes)
+        buffers.map(Buffer::size).sum()
     }
 
     /// Two indices for each edge of the ground. The buffer is made when the edges are first drawn, because few pictures
@@ -86,6 +80,11 @@ impl GroundBuffers {
     /// Draws the triangles of the skirts. Pipeline and bind groups are set.
     pub(crate) fn draw_skirts(&self, pass: &mut RenderPass<'_>) {
         self.draw(pass, &self.indices, self.skirts.clone());
+    }
+
+    /// Draws the walls: wherever the ground may end. Pipeline and bind groups are set.
+    pub(crate) fn draw_walls(&self, pass: &mut RenderPass<'_>) {
+        self.draw(pass, &self.indices, self.walls.clone());
     }
 
     /// Draws the edges of the ground's triangles as lines. Pipeline and bind groups are set.

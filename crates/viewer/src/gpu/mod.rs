@@ -10,8 +10,9 @@
 //!
 //! # Labels
 //!
-//! The label of a sample says which class of road it shows: 0 without a road, else `2 · (9 − class)`, plus 1 on a centre
-//! line. More important roads have larger labels. There are labels instead of colours for two reasons. The composite pass
+//! The label of a sample says which class of road it shows: 0 without a road, else `20 + 2 · (9 − class)`, plus 1 on a centre
+//! line. More important roads have larger labels. A tunnel has `2 · (9 − class)`, plus 1 on a dash of its edge: every road
+//! above the ground hides it. There are labels instead of colours for two reasons. The composite pass
 //! can find the edges between classes, and tests can compare the class of every sample with a reference.
 //!
 //! The paper draws roads without blending, one class after another over all tiles, the least important class first. Here
@@ -66,6 +67,7 @@ mod shared_bindings;
 mod target_texture;
 mod targets;
 mod tile_buffers;
+mod tile_textures;
 mod timings;
 mod uniforms;
 

@@ -1,16 +1,11 @@
 //! Photos of tiles on the graphics card.
 
 use wgpu::{
-    BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingResource, BindingType, Device,
-    Extent3d, FilterMode, Sampler, SamplerBindingType, SamplerDescriptor, ShaderStages,
-    TextureDescriptor, TextureDimension, TextureFormat, TextureSampleType, TextureUsages,
-    TextureView,
+    Device, Extent3d, FilterMode, Sampler, SamplerDescriptor, TextureDescriptor, TextureDimension,
+    TextureFormat, TextureUsages, TextureView,
 };
 
-use super::{
-    Gpu,
-    bindings::{group, layout, texture},
-};
+use super::Gpu;
 use crate::tiles::PhotoImage;
 
 /// Along a grazing view so many samples are averaged.
@@ -23,6 +18,12 @@ pub(crate) struct PhotoTexture {
 }
 
 impl PhotoTexture {
+    /// For tiles without a photo: one texel, transparent, because textures begin with zeros.
+    pub(crate) fn none(gpu: &Gpu) -> Self {
+        let texture = new_texture(&gpu.device, 1, 1);
+        Self { view: texture.create_view(&wgpu::TextureViewDescriptor::default()), bytes: 4 }
+    }
+
     /// Uploads a photo.
     pub(crate) fn new(gpu: &Gpu, photo: &PhotoImage) -> Self {
         let texture = new_texture(&gpu.device, photo.side, PhotoImage::SIZES as u32);
@@ -50,52 +51,27 @@ impl PhotoTexture {
         }
     }
 
+    /// What a bind group has of it.
+    pub(crate) fn view(&self) -> &TextureView {
+        &self.view
+    }
+
     /// Bytes on the graphics card.
     pub(crate) fn bytes(&self) -> u64 {
         self.bytes
     }
 }
 
-/// How shaders get the photo of a tile: `photo` and `photo_sampler` of `shaders/photo.wgsl`.
-pub(crate) struct PhotoBindings {
-    pub(crate) layout: BindGroupLayout,
-    sampler: Sampler,
-    /// For tiles without a photo: one texel, transparent.
-    none: TextureView,
-}
-
-impl PhotoBindings {
-    pub(crate) fn new(device: &Device) -> Self {
-        let sampler = BindGroupLayoutEntry {
-            binding: 1,
-            visibility: ShaderStages::FRAGMENT,
-            ty: BindingType::Sampler(SamplerBindingType::Filtering),
-            count: None,
-        };
-        let photo = texture(0, TextureSampleType::Float { filterable: true });
-        // Textures begin with zeros.
-        let none = new_texture(device, 1, 1);
-        Self {
-            layout: layout(device, "photo", &[photo, sampler]),
-            sampler: device.create_sampler(&SamplerDescriptor {
-                label: Some("photo"),
-                mag_filter: FilterMode::Linear,
-                min_filter: FilterMode::Linear,
-                mipmap_filter: wgpu::MipmapFilterMode::Linear,
-                anisotropy_clamp: ANISOTROPY,
-                ..Default::default()
-            }),
-            none: none.create_view(&wgpu::TextureViewDescriptor::default()),
-        }
-    }
-
-    /// Binds the photo of a tile, or none.
-    pub(crate) fn group(&self, gpu: &Gpu, photo: Option<&PhotoTexture>) -> BindGroup {
-        let view = photo.map_or(&self.none, |photo| &photo.view);
-        let resources =
-            [BindingResource::TextureView(view), BindingResource::Sampler(&self.sampler)];
-        group(gpu, &self.layout, &resources)
-    }
+/// The sampler of photos.
+pub(crate) fn sampler(device: &Device) -> Sampler {
+    device.create_sampler(&SamplerDescriptor {
+        label: Some("photo"),
+        mag_filter: FilterMode::Linear,
+        min_filter: FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        anisotropy_clamp: ANISOTROPY,
+        ..Default::default()
+    })
 }
 
 fn new_texture(device: &Device, side: u32, sizes: u32) -> wgpu::Texture {

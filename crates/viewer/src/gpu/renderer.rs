@@ -14,7 +14,10 @@ use super::{
     tile_buffers::DrawTile,
     timings::PassTimer,
 };
-use crate::{frame_view::FrameView, options::RoadMethod};
+use crate::{
+    frame_view::FrameView,
+    options::{ClassSet, RoadMethod},
+};
 
 /// Knows how to draw tiles; holds nothing of any frame.
 pub struct Renderer {
@@ -62,7 +65,8 @@ impl Renderer {
         let shared = SharedBindings::new(gpu, &self.layouts, view, tile_uniforms, targets);
         let borders: Vec<_> = tiles.iter().map(|tile| tile.border(view.roads.method)).collect();
         let reference_of = |index: usize| tiles[index].buffers.reference_m;
-        let connectors = LevelConnectors::new(gpu, &borders, reference_of, view.roads.classes);
+        let shown: Vec<_> = tiles.iter().map(|tile| tile.shown_classes(view)).collect();
+        let connectors = LevelConnectors::new(gpu, &borders, reference_of, &shown);
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
         let mut mark = |encoder: &mut CommandEncoder, number| {
@@ -73,7 +77,7 @@ impl Renderer {
         mark(&mut encoder, 0);
         self.terrain_pass(gpu, &mut encoder, &shared, tiles, view, targets);
         mark(&mut encoder, 1);
-        self.roads_pass(&mut encoder, &shared, tiles, &connectors, view, targets);
+        self.roads_pass(&mut encoder, &shared, (tiles, &shown), &connectors, view, targets);
         mark(&mut encoder, 2);
         self.composite_pass(gpu, &mut encoder, &shared, view, targets);
         self.average.draw(gpu, &mut encoder, targets.picture());
@@ -123,34 +127,31 @@ impl Renderer {
         let grounds: Vec<_> = tiles
             .iter()
             .enumerate()
-            .filter_map(|(index, tile)| Some((index, tile.buffers.ground.as_ref()?)))
+            .filter_map(|(index, tile)| {
+                Some((index, tile.buffers.ground.as_ref()?, &tile.buffers.textures))
+            })
             .collect();
         self.terrain.draw(gpu, &mut pass, shared, &grounds, view);
     }
 
-    /// Labels of roads.
+    /// Labels of roads: of each tile those of the classes that are shown there.
     fn roads_pass(
         &self,
         encoder: &mut CommandEncoder,
         shared: &SharedBindings,
-        tiles: &[DrawTile<'_>],
+        (tiles, shown): (&[DrawTile<'_>], &[ClassSet]),
         connectors: &LevelConnectors,
         view: &FrameView<'_>,
         targets: &Targets,
     ) {
         // The pass clears the labels even when it draws no road.
         let mut pass = begin(encoder, "roads", &[&targets.labels.view], None, LoadOp::Clear(()));
-        let roads = tiles
-            .iter()
-            .enumerate()
-            .filter_map(|(index, tile)| Some((index, tile.buffers.roads(view.roads.method)?)));
+        let roads = tiles.iter().zip(shown).enumerate().filter_map(|(index, (tile, classes))| {
+            Some((index, tile.buffers.roads(view.roads.method)?, *classes))
+        });
         match view.roads.method {
-            RoadMethod::Geometry => {
-                self.geo_roads.draw(&mut pass, shared, roads, view.roads.classes);
-            }
-            RoadMethod::ShadowVolumes => {
-                self.sv_roads.draw(&mut pass, shared, roads, view.roads.classes);
-            }
+            RoadMethod::Geometry => self.geo_roads.draw(&mut pass, shared, roads),
+            RoadMethod::ShadowVolumes => self.sv_roads.draw(&mut pass, shared, roads),
             RoadMethod::None => return,
         }
         connectors.draw(&mut pass, shared, &self.sv_roads);

@@ -75,17 +75,16 @@ impl RoadPipeline {
         Self { pipeline: pipeline.build(device), corners: recipe.corners.clone() }
     }
 
-    /// Draws the roads of some tiles, each given with its index in the list of tiles of the frame. One draw per tile is
-    /// enough, because the target keeps the largest label: neither the order of classes nor that of tiles matters.
+    /// Draws roads of some tiles, each given with its index in the list of tiles of the frame and the classes to draw. One
+    /// draw per tile is enough, because the target keeps the largest label: neither the order of classes nor that of tiles matters.
     pub(crate) fn draw<'a>(
         &self,
         pass: &mut RenderPass<'_>,
         shared: &SharedBindings,
-        tiles: impl Iterator<Item = (usize, &'a RoadBuffers)>,
-        classes: ClassSet,
+        tiles: impl Iterator<Item = (usize, &'a RoadBuffers, ClassSet)>,
     ) {
         self.begin(pass, shared);
-        for (index, roads) in tiles {
+        for (index, roads, classes) in tiles {
             shared.set_tile(pass, index);
             roads.draw(pass, classes, &self.corners);
         }

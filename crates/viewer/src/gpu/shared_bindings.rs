@@ -5,6 +5,8 @@
 //! | 0 | the frame's uniform block | with each frame |
 //! | 1 | a tile's uniform block | with each tile, by an offset |
 //! | 2 | depth and owner of each sample of the ground | with each frame |
+//!
+//! The terrain has others: 2 for its colours, 3 for a tile's textures ([`tile_textures`](super::tile_textures)).
 
 use std::num::NonZeroU64;
 

@@ -1,14 +1,18 @@
-use corniche_geom::TileId;
+use corniche_geom::{Bounds, TileId};
 
 use super::{
     Gpu,
     drawables::{geo_roads, sv_roads},
     ground_buffers::GroundBuffers,
     road_instances::RoadBuffers,
+    tile_textures::TileTextures,
     uniforms::TileUniforms,
 };
 use crate::{
-    options::{RoadMethod, RoadOptions},
+    camera::WorldBox,
+    class_scale,
+    frame_view::FrameView,
+    options::{ClassSet, RoadMethod},
     scene::BorderTile,
     tiles::TileGeometry,
 };
@@ -20,9 +24,12 @@ pub struct TileBuffers {
     size_m: [f64; 2],
     /// `None` without ground.
     pub(crate) ground: Option<GroundBuffers>,
+    pub(crate) textures: TileTextures,
     segments: RoadBuffers,
     volumes: RoadBuffers,
     width_margin_m: f64,
+    /// Lowest and highest true height of its ground; `None` without ground.
+    height_range_m: Option<[f64; 2]>,
     triangles: u64,
 }
 
@@ -38,7 +45,8 @@ pub struct DrawTile<'a> {
 /// when it is first shown.
 #[must_use]
 pub fn tile_bytes(tile: &TileGeometry) -> u64 {
-    GroundBuffers::bytes_of(&tile.ground, tile.photo.as_ref())
+    GroundBuffers::bytes_of(&tile.ground)
+        + TileTextures::bytes_of(tile)
         + geo_roads::bytes_of(&tile.roads)
         + sv_roads::bytes_of(&tile.volumes)
 }
@@ -51,10 +59,12 @@ impl TileBuffers {
             id: tile.id,
             reference_m: tile.reference_m,
             size_m: tile.size_m,
-            ground: GroundBuffers::new(gpu, &tile.ground, tile.photo.as_ref()),
+            ground: GroundBuffers::new(gpu, &tile.ground),
+            textures: TileTextures::new(gpu, tile),
             segments: geo_roads::upload(gpu, &tile.roads),
             volumes: sv_roads::upload(gpu, &tile.volumes),
             width_margin_m: tile.width_margin_m,
+            height_range_m: tile.summary.map(|ground| ground.height_range_m),
             triangles: (tile.ground.surface_indices / 3) as u64,
         }
     }
@@ -65,19 +75,14 @@ impl TileBuffers {
         self.triangles
     }
 
-    /// How many segments or volumes of its roads are drawn with these options.
-    #[must_use]
-    pub fn road_segments(&self, roads: RoadOptions) -> u64 {
-        let drawn =
-            self.roads(roads.method).into_iter().flat_map(|drawn| drawn.runs(roads.classes));
-        drawn.map(|range| u64::from(range.end - range.start)).sum()
-    }
-
     /// Bytes of its buffers on the graphics card; its wireframe counts once it has been shown.
     #[must_use]
     pub fn gpu_bytes(&self) -> u64 {
         let ground_bytes = self.ground.as_ref().map_or(0, GroundBuffers::gpu_bytes);
-        ground_bytes + self.segments.gpu_bytes() + self.volumes.gpu_bytes()
+        ground_bytes
+            + self.textures.gpu_bytes()
+            + self.segments.gpu_bytes()
+            + self.volumes.gpu_bytes()
     }
 
     /// Its roads as a method draws them.
@@ -100,6 +105,33 @@ impl DrawTile<'_> {
             skirt_depth_m: self.skirt_depth_m,
             ends: self.buffers.roads(method).map_or(&[], |roads| &roads.ends),
         }
+    }
+
+    /// How many segments or volumes of its roads are drawn in a view.
+    #[must_use]
+    pub fn road_segments(&self, view: &FrameView<'_>) -> u64 {
+        let roads = self.buffers.roads(view.roads.method);
+        let drawn = roads.into_iter().flat_map(|roads| roads.runs(self.shown_classes(view)));
+        drawn.map(|range| u64::from(range.end - range.start)).sum()
+    }
+
+    /// The classes of its roads that are shown somewhere.
+    pub(crate) fn shown_classes(&self, view: &FrameView<'_>) -> ClassSet {
+        class_scale::shown_classes(view, self.nearest_m(view))
+    }
+
+    /// No ground that its roads paint is nearer to the eye, world metres.
+    fn nearest_m(&self, view: &FrameView<'_>) -> f64 {
+        let TileBuffers { reference_m: [x, y, _], size_m, width_margin_m, .. } = *self.buffers;
+        let Some(height_range_m) = self.buffers.height_range_m else { return 0.0 };
+        let [east_m, north_m] = size_m.map(|side_m| side_m / 2.0);
+        let plan =
+            Bounds { min_x: x - east_m, min_y: y - north_m, max_x: x + east_m, max_y: y + north_m };
+        let ground =
+            WorldBox::new(plan, height_range_m.map(|height_m| height_m * view.vertical_scale()));
+        // GEO also paints the neighbours' ground, within the margin. Twice the margin allows for slopes of 60 degrees there.
+        let around_m = 2.0 * width_margin_m + self.skirt_depth_m * view.vertical_scale();
+        (ground.distance_m(view.camera.eye_in_world()) - around_m).max(0.0)
     }
 
     /// What shaders are told of it.

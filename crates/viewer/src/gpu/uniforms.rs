@@ -8,13 +8,17 @@ use glam::{DVec3, DVec4};
 use corniche_styles::OwnWidths;
 
 use crate::{
+    class_scale,
     frame_view::FrameView,
     options::{CapTest, Caps, RoadMethod},
     tiles::NearHeights,
 };
 
+/// Width of a slip road as a share of that of its class.
+const LINK_WIDTH_SHARE: f32 = 0.6;
+
 /// Bytes of a tile's block.
-pub(crate) const TILE_BYTES: u64 = 48;
+pub(crate) const TILE_BYTES: u64 = 32;
 
 /// The frame's block, as `struct Frame` of `shaders/common.wgsl` declares it.
 pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f32; 4]> {
@@ -69,7 +73,13 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
     rows.extend(style.roads.iter().map(|road| {
         let center_share = road.center.map_or(-1.0, |center| center.width_share);
         let half_width_m = road.width_m / 2.0 * scaling.constant;
-        [half_width_m, road.min_width_px / 2.0 * samples, center_share, 0.0]
+        // In pixels of the picture: how many samples a pixel has changes nothing.
+        let full_m = class_scale::full_distance_m(road, view.camera, view.point_scale) as f32;
+        [half_width_m, road.min_width_px / 2.0 * samples, center_share, full_m]
+    }));
+    rows.extend(style.roads.iter().map(|road| {
+        let limit = class_scale::half_width_limit(road, view.roads.width_growth, view.camera);
+        [limit as f32, LINK_WIDTH_SHARE, 0.0, 0.0]
     }));
     rows
 }
@@ -90,7 +100,7 @@ pub(crate) struct TileUniforms {
 
 /// A tile's block, as `struct Tile` of `shaders/coverage.wgsl` and `shaders/terrain.wgsl` declares it. `number` is the tile's
 /// number in the frame, from 1; numbers below 2^24 are exact in f32.
-pub(crate) fn tile_rows(view: &FrameView<'_>, tile: &TileUniforms, number: u32) -> [[f32; 4]; 3] {
+pub(crate) fn tile_rows(view: &FrameView<'_>, tile: &TileUniforms, number: u32) -> [[f32; 4]; 2] {
     let [x, y, height_m] = tile.reference_m;
     let reference_in_world = DVec3::new(x, y, height_m * view.vertical_scale());
     let offset = reference_in_world - view.camera.eye_in_world();
@@ -102,7 +112,6 @@ pub(crate) fn tile_rows(view: &FrameView<'_>, tile: &TileUniforms, number: u32) 
             f64::from(number),
             NearHeights::reach_m(tile.size_m),
         )),
-        row(DVec4::new(tile.size_m[0], tile.size_m[1], 0.0, 0.0)),
     ]
 }
 

@@ -11,7 +11,7 @@ use crate::{
 /// At most about this many tiles are kept while heights are looked up.
 const LOOK_UP_TILES: usize = 256;
 
-/// The flight over a package that is drawn when the user gives none. `is_stopped` is called often; once it returns true,
+/// The flight that is drawn when the user gives none: over the roads, or over the whole package if it has none. `is_stopped` is called often; once it returns true,
 /// the result is [`ReplayError::Stopped`].
 ///
 /// # Errors
@@ -20,9 +20,10 @@ pub fn default_flight(
     package: &dyn BlockingPackage,
     is_stopped: &dyn Fn() -> bool,
 ) -> Result<Flight, ReplayError> {
+    let extent = TileStore::new(package).map_extent(package.manifest().data_bounds)?;
+    let extent = extent.ok_or(ReplayError::NoGround)?;
     let mut ground = GroundLookUp::new(package, is_stopped);
-    Flight::over(package.manifest().data_bounds, &mut |at| ground.height_m(at))?
-        .ok_or(ReplayError::NoGround)
+    Flight::over(extent.plan, &mut |at| ground.height_m(at))?.ok_or(ReplayError::NoGround)
 }
 
 /// The frames in which the flight comes too near to the ground.

@@ -31,6 +31,7 @@ use self::{
 use crate::{
     attribution::draw_attribution,
     camera::Camera,
+    class_scale::LevelScales,
     flight::{Flight, Pose},
     frame_view::{FrameView, Wireframe},
     gpu::{DrawTile, Gpu, PassTimer, PassTimes, Renderer, Targets, TileBuffers},
@@ -191,6 +192,8 @@ impl<'a> Replay<'a> {
             exaggeration: self.options.exaggeration,
             point_scale: self.package.manifest().point_scale,
             height_range_m: self.height_range_m,
+            wall_m: FrameView::wall_beside_m(self.height_range_m),
+            latitude_deg: self.package.manifest().wgs84_bounds.center()[1],
             wireframe: Wireframe::Hidden,
         };
         self.renderer.draw_timed(self.gpu, &view, &tiles, &self.targets, self.timer.as_mut());
@@ -199,7 +202,7 @@ impl<'a> Replay<'a> {
         Ok(DrawnFrame {
             tiles: tiles.len(),
             triangles: tiles.iter().map(|tile| tile.buffers.triangles()).sum(),
-            road_segments: tiles.iter().map(|tile| tile.buffers.road_segments(roads)).sum(),
+            road_segments: tiles.iter().map(|tile| tile.road_segments(&view)).sum(),
             draw_ms,
             passes: self.timer.as_mut().map(|timer| timer.read(self.gpu)).transpose()?,
         })
@@ -252,6 +255,13 @@ impl<'a> Replay<'a> {
             TileSupply::Streamed(streamed) => {
                 let quality = Quality {
                     screen_space_error_px: self.options.screen_space_error_px,
+                    cell_px: self.options.cell_px,
+                    scales: LevelScales::of_roads(
+                        &self.package.manifest().levels,
+                        &self.options.style,
+                        self.options.roads,
+                    ),
+                    point_scale: self.package.manifest().point_scale,
                     vertical_scale,
                 };
                 // The first frame waits until nothing is missing; the others do not wait.

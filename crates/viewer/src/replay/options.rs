@@ -28,6 +28,8 @@ pub struct ReplayOptions {
     pub detail: Detail,
     /// A tile is refined while its error looks larger than this.
     pub screen_space_error_px: f64,
+    /// A tile is refined while one of its cells looks larger than this, pixels.
+    pub cell_px: f64,
     /// Factor on heights; 1 is true.
     pub exaggeration: f64,
     /// Samples per pixel along each side, averaged; 1 takes the pixel's centre alone.
@@ -44,7 +46,7 @@ pub struct ReplayOptions {
 
 /// Checks the numbers among the options.
 pub(crate) fn check(options: &ReplayOptions) -> Result<(), OutOfRange> {
-    range::check_ground(options.screen_space_error_px, options.exaggeration)?;
+    range::check_ground(options.screen_space_error_px, options.cell_px, options.exaggeration)?;
     range::check_supersampling(options.supersampling)?;
     range::within("a look ahead", options.ahead_s, 0.0..=3600.0, "0 to 3600 seconds")?;
     let frames = f64::from(options.frames);

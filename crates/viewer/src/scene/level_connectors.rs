@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use corniche_geom::TileId;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
-use crate::tiles::RoadEnd;
+use crate::tiles::{RoadEnd, RoadLook};
 
 /// Ends of one way in two tiles belong together if they are at most this share of the coarser tile apart: two of
 /// its cells, far more than simplification moves a line.
@@ -44,6 +44,8 @@ pub(crate) struct LevelConnector {
     pub(crate) class: FunctionalRoadClass,
     /// What the road's tags say of its width.
     pub(crate) own_width: OwnWidth,
+    /// What the road is.
+    pub(crate) look: RoadLook,
     /// Its two ends in plan, working CRS: that in the finer tile, then that in the coarser one.
     pub(crate) ends_m: [[f64; 2]; 2],
     /// The lowest and the highest true height at which there may be ground or a skirt to paint.
@@ -73,6 +75,7 @@ pub(crate) fn level_connectors(tiles: &[BorderTile<'_>]) -> Vec<LevelConnector> 
                 coarse,
                 class: end.class,
                 own_width: end.own_width,
+                look: end.look,
                 ends_m: [end.at_m, partner.at_m],
                 width_factor: end.width_factor,
                 height_range_m: [low[0].min(high[0]) - skirt_m, low[1].max(high[1]) + skirt_m],

@@ -7,6 +7,7 @@ fn end(way_id: i64, side: Side, at_m: [f64; 2], height_m: f64) -> RoadEnd {
         way_id,
         class,
         own_width: OwnWidth::Unknown,
+        look: RoadLook::Plain,
         side,
         at_m,
         height_range_m: [height_m; 2],

@@ -23,8 +23,11 @@ struct Frame {
     // metre, one value for the whole package; w: roads are not drawn by their own width beyond this one, true metres.
     road_options: vec4<f32>,
     // x: half width in true metres near the eye; y: least half width in pixels of this target; z: share of the width that
-    // the centre line takes, -1 without one.
+    // the centre line takes, -1 without one; w: distance from the eye up to which the class is shown in full.
     road_widths: array<vec4<f32>, CLASSES>,
+    // x: half width, as a share of the distance from the eye, beyond which roads do not grow; y: width of a slip road as a share
+    // of that of its class.
+    road_limits: array<vec4<f32>, CLASSES>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -40,29 +43,60 @@ fn view_depth_of(depth_buffer: f32) -> f32 {
     return frame.forward.w / depth_buffer;
 }
 
-// How a road is drawn: its class, and half its width near the eye, world metres.
+// How a road is drawn: its class, what it is (PLAIN, LINK or TUNNEL), and half its width near the eye, world metres.
 struct Road {
     class_number: u32,
+    look: u32,
     half_width_m: f32,
 }
 
+const PLAIN = 0u;
+const LINK = 1u;
+const TUNNEL = 2u;
+
 // `own_width` is metres above 0, lanes below it, 0 for neither; `width_factor` is world metres across the road for each true one.
-fn road_with(class_number: u32, own_width: f32, width_factor: f32) -> Road {
+fn road_with(class_number: u32, look: u32, own_width: f32, width_factor: f32) -> Road {
     let own_m = select(own_width, -own_width * frame.scale.w, own_width < 0.0);
     var half_width_m = frame.road_widths[class_number].x;
     if own_m > 0.0 && frame.scale.z > 0.0 {
         half_width_m = min(own_m, frame.road_options.w) * frame.scale.z;
     }
-    return Road(class_number, half_width_m * width_factor);
+    if look == LINK {
+        half_width_m *= frame.road_limits[class_number].y;
+    }
+    return Road(class_number, look, half_width_m * width_factor);
 }
 
 // Half width of a road in world metres, before the least width in pixels is applied.
 fn scaled_half_width_m(road: Road, distance_m: f32) -> f32 {
     let growth = pow(max(distance_m / frame.road_scale.x, 1.0), frame.road_scale.y);
-    return road.half_width_m * growth;
+    let limit_m = max(road.half_width_m, frame.road_limits[road.class_number].x * distance_m);
+    return min(road.half_width_m * growth, limit_m);
 }
 
 // Least half width in world metres at a depth.
 fn least_half_width_m(road: Road, view_depth: f32) -> f32 {
     return frame.road_widths[road.class_number].y * frame.scale.x * view_depth;
+}
+
+// A class has faded away at this many times the distance up to which it is shown in full: half a zoom step.
+const FADE_FACTOR = 1.41421356;
+
+// Whether anything of a class is shown at a distance from the eye. Both methods and the connectors of levels ask this.
+fn is_shown(class_number: u32, distance_m: f32) -> bool {
+    return distance_m < frame.road_widths[class_number].w * FADE_FACTOR;
+}
+
+// Share of a road's colour that is shown at a distance from the eye: linear in the zoom.
+fn shown_share(class_number: u32, distance_m: f32) -> f32 {
+    let steps = log2(max(distance_m, 1e-3) / frame.road_widths[class_number].w) / log2(FADE_FACTOR);
+    return clamp(1.0 - steps, 0.0, 1.0);
+}
+
+// Labels of tunnels are below those of all other roads: what is on the ground hides what is beneath it.
+const TUNNEL_LABELS = 20u;
+
+// Side of a pixel of the final picture at a distance from the eye, metres.
+fn pixel_m_at(distance_m: f32) -> f32 {
+    return frame.scale.x * frame.road_scale.w * distance_m;
 }

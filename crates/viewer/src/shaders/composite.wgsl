@@ -17,9 +17,14 @@ struct PictureColors {
     haze: vec4<f32>,
     sky: vec4<f32>,
     background: vec4<f32>,
+    // Where there is no ground, a plane beneath all ground is seen: xy: the eye's place on it, modulo w; z: the eye's height
+    // above it; w: the widest spacing of its lines. World metres.
+    void_plane: vec4<f32>,
     road_fills: array<vec4<f32>, CLASSES>,
     road_outlines: array<vec4<f32>, CLASSES>,
     road_centers: array<vec4<f32>, CLASSES>,
+    // Roads that are too thin for an edge.
+    road_thins: array<vec4<f32>, CLASSES>,
 }
 
 @group(1) @binding(4) var<uniform> colors: PictureColors;
@@ -35,8 +40,12 @@ fn label_of(stored: f32) -> u32 {
     return u32(round(stored * 255.0));
 }
 
+fn is_tunnel(label: u32) -> bool {
+    return label < TUNNEL_LABELS;
+}
+
 fn class_of(label: u32) -> u32 {
-    return CLASSES - label / 2u;
+    return CLASSES - select(label - TUNNEL_LABELS, label, is_tunnel(label)) / 2u;
 }
 
 // The largest label around a pixel, of roads on ground of at least this depth in the buffer.
@@ -59,17 +68,55 @@ fn largest_around(pixel: vec2<i32>, own: f32, least_depth: f32) -> f32 {
     return largest;
 }
 
-fn background_at(ray: vec3<f32>) -> vec3<f32> {
+// Distance between the lines on the plane of voids, pixels of the final picture.
+const HATCH_PX = 9.0;
+
+// How dark the lines at a place of the plane of voids are, 0 to 1, with this spacing between them. `footprint` is the side of
+// a pixel of the final picture there.
+fn hatch(along: f32, spacing: f32, footprint: f32) -> f32 {
+    let from_line = abs(fract(along / spacing) - 0.5) * spacing;
+    return 1.0 - smoothstep(0.4, 1.4, from_line / footprint);
+}
+
+// The plane of voids: neutral, with oblique lines that keep their place on the ground. From far away there are fewer lines.
+fn void_at(ray: vec3<f32>) -> vec3<f32> {
+    let plane = colors.void_plane;
+    let down = max(-ray.z, 1e-4);
+    let distance = max(plane.z, 0.0) / down;
+    let place = plane.xy + distance * ray.xy;
+    // As long as it is on the plane in the direction of view.
+    let footprint = frame.scale.x * frame.road_scale.w * distance * inverseSqrt(down) + 1e-9;
+    let octave = log2(HATCH_PX * footprint);
+    let spacing = exp2(ceil(octave));
+    let along = place.x + place.y;
+    // Every second line fades away before the spacing doubles.
+    let every = hatch(along, spacing, footprint);
+    let second = hatch(along + 0.5 * spacing, 2.0 * spacing, footprint);
+    let shown = select(mix(every, second, fract(octave)), 0.0, plane.z <= 0.0);
+    return colors.background.rgb * (1.0 - 0.045 * shown);
+}
+
+// Between 0 and 1, different for each pixel, without a pattern (Jimenez, Next Generation Post Processing in Call of Duty:
+// Advanced Warfare, SIGGRAPH 2014: interleaved gradient noise).
+fn noise_at(position: vec2<f32>) -> f32 {
+    return fract(52.9829189 * fract(dot(position, vec2(0.06711056, 0.00583715))));
+}
+
+fn background_at(ray: vec3<f32>, position: vec2<f32>) -> vec3<f32> {
     let elevation = ray.z / length(ray);
     let above = mix(colors.haze.rgb, colors.sky.rgb, smoothstep(0.0, 0.35, elevation));
-    return mix(colors.background.rgb, above, smoothstep(-0.25, 0.0, elevation));
+    let color = mix(void_at(ray), above, smoothstep(-0.2, 0.0, elevation));
+    // Steps between the 256 values of a channel would be seen as bands. Averaging samples makes the noise weaker, so it is
+    // wider than one step.
+    let grain = (noise_at(position) - 0.5) * 1.5 / 255.0;
+    return color + grain;
 }
 
 // Width of a road at a place in pixels of the final picture, before the least width is applied.
 fn width_px(road_class: u32, distance_m: f32, depth: f32) -> f32 {
     // The tile, the direction of the road and its own width are not known here. So its width factor is that of the whole
     // package, and its width that of its class.
-    let road = road_with(road_class, 0.0, frame.road_options.z);
+    let road = road_with(road_class, PLAIN, 0.0, frame.road_options.z);
     return 2.0 * scaled_half_width_m(road, distance_m) / (frame.scale.x * depth * frame.road_scale.w);
 }
 
@@ -85,12 +132,13 @@ struct Sight {
 }
 
 fn sight_at(position: vec2<f32>) -> Sight {
-    let pixel = vec2<i32>(position);
+    // Derivatives also ask for places beyond the last row and column.
+    let pixel = min(vec2<i32>(position), vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1);
     let ray = ray_at(position);
     var sight: Sight;
     sight.depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
     if sight.depth_buffer == 0.0 {
-        sight.color = background_at(ray);
+        sight.color = background_at(ray, position);
         return sight;
     }
     sight.depth = view_depth_of(sight.depth_buffer);
@@ -99,6 +147,23 @@ fn sight_at(position: vec2<f32>) -> Sight {
     sight.haze = 1.0 - exp(-reach * reach);
     sight.color = mix(textureLoad(ground_color, pixel, 0).rgb, colors.haze.rgb, sight.haze);
     return sight;
+}
+
+// What is left of the colours of a tunnel's surface and of its edge.
+const TUNNEL_FILL = 0.35;
+const TUNNEL_EDGE = 0.75;
+
+const LEAST_FACING = 0.3;
+
+// How much of the width of a road is seen, if the road runs across the view: 1, and less where the ground at a pixel is
+// seen at less than 19 degrees. At a silhouette, where this cannot be told, it is at least LEAST_FACING, so that a wide road
+// keeps its edge there. It must be asked for every pixel, in the sky too.
+fn facing_of(position: vec2<f32>, sight: Sight) -> f32 {
+    let ray = ray_at(position);
+    let ground = ray * sight.depth;
+    let normal = cross(dpdx(ground), dpdy(ground));
+    let sine = abs(dot(normal, ray)) / max(length(normal) * length(ray), 1e-30);
+    return clamp(3.0 * sine, LEAST_FACING, 1.0);
 }
 
 @fragment
@@ -128,6 +193,7 @@ fn block_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f3
 fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = vec2<i32>(position.xy);
     let sight = sight_at(position.xy);
+    let facing = facing_of(position.xy, sight);
     if sight.depth_buffer == 0.0 {
         return vec4(sight.color, 1.0);
     }
@@ -137,18 +203,26 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
     let label = label_of(own);
     if label != 0u {
         let road_class = class_of(label);
-        let fill = select(colors.road_fills[road_class].rgb, colors.road_centers[road_class].rgb, (label & 1u) == 1u);
+        let seen_px = width_px(road_class, sight.distance_m, sight.depth);
+        let wide = select(colors.road_fills[road_class].rgb, colors.road_centers[road_class].rgb,
+            (label & 1u) == 1u && !is_tunnel(label));
+        let fill = mix(colors.road_thins[road_class].rgb, wide, smoothstep(1.4, 3.2, seen_px));
         // A road that is drawn wider than it is, because of its least width, is made paler.
         let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
-        let presence = clamp(width_px(road_class, sight.distance_m, sight.depth) / least_px, 0.35, 1.0);
+        let presence = clamp(seen_px / least_px, 0.5, 1.0) * shown_share(road_class, sight.distance_m)
+            * select(1.0, TUNNEL_FILL, is_tunnel(label));
         color = mix(color, mix(fill, colors.haze.rgb, 0.5 * sight.haze), presence);
     }
 
     let most = label_of(largest_around(pixel, own, sight.depth_buffer / FARTHER));
-    if most / 2u > label / 2u {
+    // The edge of a tunnel is dashed.
+    if most / 2u > label / 2u && (!is_tunnel(most) || (most & 1u) == 1u) {
         let road_class = class_of(most);
-        // Around a very thin road there is no edge, because it would hide the road.
-        let presence = smoothstep(1.5, 5.0, width_px(road_class, sight.distance_m, sight.depth));
+        // Around a very thin road there is no edge, because it would hide the road; nor around one that is seen so flat that
+        // the edge would break into dashes.
+        let seen_px = width_px(road_class, sight.distance_m, sight.depth) * facing;
+        let presence = smoothstep(1.2, 4.0, seen_px) * shown_share(road_class, sight.distance_m)
+            * select(1.0, TUNNEL_EDGE, is_tunnel(most));
         color = mix(color, mix(colors.road_outlines[road_class].rgb, colors.haze.rgb, 0.5 * sight.haze), presence);
     }
     return vec4(color, 1.0);

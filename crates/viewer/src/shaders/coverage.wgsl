@@ -20,8 +20,6 @@ struct Tile {
     // x: true height of the reference point; y: widest half width that may be drawn, world metres; z: the tile's
     // number in this frame, from 1; w: within how many world metres near heights hold.
     base: vec4<f32>,
-    // xy: the tile's sides, metres.
-    sides: vec4<f32>,
 }
 
 @group(1) @binding(0) var<uniform> tile: Tile;
@@ -33,14 +31,16 @@ struct RoadFragment {
     @builtin(position) clip: vec4<f32>,
     @location(0) @interpolate(flat) start: vec2<f32>,
     @location(1) @interpolate(flat) start_to_end: vec2<f32>,
-    // Lowest four bits: class. Above, for a connector, the number of the other tile it belongs to, else 0.
+    // Lowest four bits: class; two bits: look. Above, for a connector, the number of the other tile it belongs to, else 0.
     @location(2) @interpolate(flat) class_and_other: u32,
     // Half the road's width near the eye, world metres.
     @location(3) @interpolate(flat) half_width_m: f32,
+    // Where the dashes of a tunnel are: how far the segment's start is from a fixed place, along the segment, world metres.
+    @location(4) @interpolate(flat) dash_m: f32,
 }
 
 fn road_of(in: RoadFragment) -> Road {
-    return Road(in.class_and_other & 15u, in.half_width_m);
+    return Road(in.class_and_other & 15u, (in.class_and_other >> 4u) & 3u, in.half_width_m);
 }
 
 const MAX_STRETCH = 8.0;
@@ -58,9 +58,10 @@ fn stretch_of(distance_m: f32, height_m: f32) -> f32 {
     return clamp(1.5 * distance_m / max(abs(height_m), 1e-3), 1.0, MAX_STRETCH);
 }
 
-// Share of the width that the centre line takes; negative without one, so that no distance is below it.
-fn center_share(road_class: u32) -> f32 {
-    return frame.road_widths[road_class].z;
+// Share of the width that the centre line takes; negative without one, so that no distance is below it. Slip roads and
+// tunnels have none.
+fn center_share(road: Road) -> f32 {
+    return select(-1.0, frame.road_widths[road.class_number].z, road.look == PLAIN);
 }
 
 fn has_caps() -> bool {
@@ -138,12 +139,15 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, start: vec2<
     road: Road, widest_m: f32) -> u32 {
     let position = position_at(center, depth_buffer);
     let distance_m = length(position);
+    if !is_shown(road.class_number, distance_m) {
+        return NOTHING;
+    }
     let plan_m = length(from_segment(position.xy - start, start_to_end));
     if plan_m > widest_m {
         return NOTHING;
     }
     // The centre line is treated as a road of its own, of which every width is smaller.
-    let share = center_share(road.class_number);
+    let share = center_share(road);
     let half_m = scaled_half_width_m(road, distance_m);
     if share > 0.0 && plan_m <= share * half_m {
         return center_label(road.class_number);
@@ -175,11 +179,27 @@ fn bounding_radius_m(road: Road, far_m: f32, near_height_m: f32) -> f32 {
 
 // More important classes have larger labels; the centre line of a class lies above its fill.
 fn fill_label(road_class: u32) -> u32 {
-    return (CLASSES - road_class) * 2u;
+    return TUNNEL_LABELS + (CLASSES - road_class) * 2u;
 }
 
 fn center_label(road_class: u32) -> u32 {
     return fill_label(road_class) + 1u;
+}
+
+// The smallest number of pixels that a dash and the gap after it may have together. They have fewer than twice as many.
+const DASH_PX = 12.0;
+
+// The label of a road at a place; the label of a tunnel is odd on a dash.
+fn label_on(label: u32, in: RoadFragment, position: vec3<f32>) -> u32 {
+    let road = road_of(in);
+    if label == NOTHING || road.look != TUNNEL {
+        return label;
+    }
+    let segment_m = max(length(in.start_to_end), 1e-6);
+    let along_m = in.dash_m + dot(position.xy - in.start, in.start_to_end) / segment_m;
+    let period_m = exp2(ceil(log2(DASH_PX * pixel_m_at(length(position)))));
+    let is_dash = fract(along_m / period_m) < 0.5;
+    return (CLASSES - road.class_number) * 2u + select(0u, 1u, is_dash);
 }
 
 // A label as the target stores it; blending keeps the largest.

@@ -29,7 +29,7 @@ struct SegmentIn {
     // Height of the piece's start; world metres across the road for each true metre.
     @location(2) height_width_factor: vec2<f32>,
     // Lowest four bits: class. Then one bit for a cap at the start, one for a cap at the end, and one for each of the three
-    // reaches, if ground of other tiles may be within it.
+    // reaches, if ground of other tiles may be within it. Then two bits for the look.
     @location(3) class_and_flags: u32,
     // At most how far the ground lies below and above the plane. xy: for each metre of distance, within the first reach;
     // zw: anywhere within the first reach.
@@ -38,11 +38,14 @@ struct SegmentIn {
     @location(5) farther: vec4<f32>,
     // The road's own width, as `road_with` takes it.
     @location(6) own_width: f32,
+    // As in RoadFragment.
+    @location(7) dash_m: f32,
 }
 
 const AT_START = 0x10u;
 const AT_END = 0x20u;
 const LEAVES_TILE = 0x40u;
+const LOOK_SHIFT = 9u;
 // The quad is drawn this many times farther away and larger: it looks the same, and the near plane does not cut it.
 const AWAY = 1024.0;
 // A quad can stand for a bed only if no point of the bed is nearer than this share of the distance to its plane.
@@ -148,7 +151,8 @@ fn least_of(values: vec4<f32>) -> f32 {
 @vertex
 fn vertex(in: SegmentIn) -> RoadFragment {
     let vertical_scale = frame.scale.y;
-    let road = road_with(in.class_and_flags & 15u, in.own_width, in.height_width_factor.y);
+    let look = (in.class_and_flags >> LOOK_SHIFT) & 3u;
+    let road = road_with(in.class_and_flags & 15u, look, in.own_width, in.height_width_factor.y);
     let start = tile.offset.xy + in.segment_in_tile.xy;
     let start_to_end = in.segment_in_tile.zw - in.segment_in_tile.xy;
     let segment_m = length(start_to_end);
@@ -203,8 +207,9 @@ fn vertex(in: SegmentIn) -> RoadFragment {
     out.clip = frame.clip_from_relative * vec4(position * AWAY, 1.0);
     out.start = start;
     out.start_to_end = start_to_end;
-    out.class_and_other = road.class_number;
+    out.class_and_other = road.class_number | (look << 4u);
     out.half_width_m = road.half_width_m;
+    out.dash_m = in.dash_m;
     return out;
 }
 
@@ -223,5 +228,5 @@ fn fragment(in: RoadFragment) -> @location(0) f32 {
     if label == NOTHING {
         discard;
     }
-    return stored(label);
+    return stored(label_on(label, in, position_at(in.clip.xy, depth_buffer)));
 }

@@ -10,27 +10,11 @@ struct Tile {
     offset: vec4<f32>,
     // x: true height of the reference point; z: the tile's number in this frame, from 1.
     base: vec4<f32>,
-    // xy: the tile's sides, metres.
-    sides: vec4<f32>,
 }
 
 @group(1) @binding(0) var<uniform> tile: Tile;
 
-const TINT_STOPS = 6u;
-
-// The same fields as in gpu/drawables/terrain.rs, in the same order.
-struct GroundColors {
-    // xyz: towards the light; w: strength of the hillshade.
-    light: vec4<f32>,
-    // x: lowest ground; y: 1 / height range; z: strength of photos.
-    heights: vec4<f32>,
-    // rgb; w: share of the height range.
-    tint: array<vec4<f32>, TINT_STOPS>,
-}
-
-@group(2) @binding(0) var<uniform> colors: GroundColors;
-
-// 0 draws ground, 1 skirts.
+// 0 draws ground, 1 skirts, 2 the walls along the edge of the data, which hang beneath the skirts.
 override SKIRT: u32 = 0u;
 // Lines of the wireframe are moved towards the eye by this many sides of a pixel. The edges of triangles lie in the
 // ground, but a line is drawn at pixel centres beside the edge, where sloping ground may be nearer. With this move a line
@@ -47,8 +31,10 @@ struct VertexOut {
     @builtin(position) clip: vec4<f32>,
     @location(0) normal: vec3<f32>,
     @location(1) height_m: f32,
-    // From the tile's middle.
-    @location(2) in_tile: vec2<f32>,
+    // Relative to the eye, world metres.
+    @location(2) position: vec3<f32>,
+    // Metres from the tile's middle, east and north.
+    @location(3) plan_in_tile: vec2<f32>,
 }
 
 struct Pixel {
@@ -59,45 +45,47 @@ struct Pixel {
 @vertex
 fn vertex(in: VertexIn) -> VertexOut {
     let vertical_scale = frame.scale.y;
-    let down = in.normal_skirt.w * tile.offset.w;
+    let lower = in.normal_skirt.w;
+    // Walls begin where skirts end.
+    let down = select(lower * tile.offset.w, tile.offset.w + lower * colors.sunlit.w, SKIRT == 2u);
     let in_tile = vec3(in.position_in_tile.xy, in.position_in_tile.z * vertical_scale - down);
     var out: VertexOut;
-    out.clip = frame.clip_from_relative * vec4(tile.offset.xyz + in_tile, 1.0);
+    out.position = tile.offset.xyz + in_tile;
+    out.clip = frame.clip_from_relative * vec4(out.position, 1.0);
     // depth_buffer = z / w, greater is nearer.
     out.clip.z *= 1.0 + PULL_PX * frame.scale.x;
     // Stretching the ground upwards flattens its normals' vertical part.
     out.normal = vec3(in.normal_skirt.xy * vertical_scale, in.normal_skirt.z);
     out.height_m = tile.base.x + in.position_in_tile.z;
-    out.in_tile = in.position_in_tile.xy;
+    out.plan_in_tile = in.position_in_tile.xy;
     return out;
 }
 
-fn tint_at(height_m: f32) -> vec3<f32> {
-    let share = clamp((height_m - colors.heights.x) * colors.heights.y, 0.0, 1.0);
-    var color = colors.tint[0].rgb;
-    for (var k = 1u; k < TINT_STOPS; k++) {
-        let low = colors.tint[k - 1u].w;
-        let t = clamp((share - low) / (colors.tint[k].w - low), 0.0, 1.0);
-        color = mix(color, colors.tint[k].rgb, t);
-    }
-    return color;
+fn owner_of_pixel() -> u32 {
+    return u32(tile.base.z) | (min(SKIRT, 1u) << 31u);
 }
 
 @fragment
 fn fragment(in: VertexOut) -> Pixel {
-    // 1 on level ground, below on slopes turned away from the light, above on slopes turned towards it.
-    let lit = max(dot(normalize(in.normal), colors.light.xyz), 0.0) / colors.light.z;
-    let photo = photo_at(in.in_tile, tile.sides.xy);
-    let photo_share = photo.a * colors.heights.z;
-    let color = mix(tint_at(in.height_m), photo.rgb, photo_share);
-    // A photo has shadows of its own.
-    let hillshade = colors.light.w * (1.0 - 0.5 * photo_share);
-    // As on printed maps, shadows are blue rather than black.
-    let shaded = color * vec3(0.36, 0.40, 0.52);
-    let dark = mix(color, shaded, hillshade * clamp(1.0 - lit, 0.0, 1.0));
-    let bright = mix(dark, vec3(1.0), hillshade * clamp(lit - 1.0, 0.0, 1.0) * 0.9);
-    let owner = u32(tile.base.z) | (SKIRT << 31u);
-    return Pixel(vec4(bright, select(1.0, 0.5, SKIRT == 1u)), owner);
+    let normal = ground_normal(in.normal, in.plan_in_tile);
+    let photo = photo_at(in.plan_in_tile);
+    let photo_share = photo.a * colors.water.w;
+    var color = mix(colors.water.rgb, photo.rgb, photo_share);
+    if !is_water(normal, in.height_m) {
+        // A photo has shadows of its own.
+        color = shaded(mix(tint_at(in.height_m), photo.rgb, photo_share), normal, 1.0 - 0.5 * photo_share);
+    }
+    color = hazy(color, in.height_m, length(in.position));
+    return Pixel(vec4(color, select(1.0, 0.5, SKIRT == 1u)), owner_of_pixel());
+}
+
+@fragment
+fn wall_fragment(in: VertexOut) -> Pixel {
+    // The wall's own direction, from how its position changes in the picture.
+    let across = cross(dpdx(in.position), dpdy(in.position));
+    let facing = abs(dot(normalize(across.xy + vec2(1e-20, 0.0)), normalize(colors.light.xy + vec2(0.0, 1e-20))));
+    let color = colors.wall.rgb * (0.85 + 0.2 * facing);
+    return Pixel(vec4(hazy(color, in.height_m, length(in.position)), 0.5), owner_of_pixel());
 }
 
 @fragment

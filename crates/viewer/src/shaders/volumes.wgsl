@@ -27,10 +27,12 @@ struct VolumeIn {
     // x: how much lower or higher the ground may be for each metre away from the segment, up to `tile.base.w` away;
     // y: world metres across the road for each true metre.
     @location(4) near_rise_width_factor: vec2<f32>,
-    // Lowest four bits: class. Above, for a connector, the number of the other tile it belongs to, else 0.
+    // Lowest four bits: class; two bits: look. Above, for a connector, the number of the other tile it belongs to, else 0.
     @location(5) class_and_other: u32,
     // The road's own width, as `road_with` takes it.
     @location(6) own_width: f32,
+    // As in RoadFragment.
+    @location(7) dash_m: f32,
 }
 
 // The corners of a box as one strip of twelve triangles, all counter-clockwise seen from outside:
@@ -69,8 +71,9 @@ fn reach_of(in: VolumeIn, road: Road, plan_m: f32) -> Reach {
 @vertex
 fn vertex(in: VolumeIn) -> RoadFragment {
     let vertical_scale = frame.scale.y;
-    let road = road_with(in.class_and_other & 15u, in.own_width, in.near_rise_width_factor.y);
-    let is_connector = in.class_and_other > 15u;
+    let look = (in.class_and_other >> 4u) & 3u;
+    let road = road_with(in.class_and_other & 15u, look, in.own_width, in.near_rise_width_factor.y);
+    let is_connector = in.class_and_other > 63u;
     let a = tile.offset.xy + in.start_in_tile;
     let ab = in.end_in_tile - in.start_in_tile;
     let length_m = length(ab);
@@ -100,6 +103,7 @@ fn vertex(in: VolumeIn) -> RoadFragment {
     out.start_to_end = ab;
     out.class_and_other = in.class_and_other;
     out.half_width_m = road.half_width_m;
+    out.dash_m = in.dash_m;
     return out;
 }
 
@@ -153,7 +157,10 @@ fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, 
 
 fn label_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
     road: Road) -> u32 {
-    let share = center_share(road.class_number);
+    if !is_shown(road.class_number, length(position_at(center, depth_buffer))) {
+        return NOTHING;
+    }
+    let share = center_share(road);
     if share > 0.0 && is_road_by_the_paper(center, depth_buffer, start, start_to_end, road, share) {
         return center_label(road.class_number);
     }
@@ -166,7 +173,7 @@ fn fragment(in: RoadFragment) -> @location(0) f32 {
     let pixel = vec2<i32>(in.clip.xy);
     let owner = textureLoad(owners, pixel, 0).r;
     let own = u32(tile.base.z);
-    let other = in.class_and_other >> 4u;
+    let other = in.class_and_other >> 6u;
     let is_mine = owner == own;
     let is_connected = other != 0u && ((owner & ~SKIRT) == own || (owner & ~SKIRT) == other);
     if !is_mine && !is_connected {
@@ -183,5 +190,5 @@ fn fragment(in: RoadFragment) -> @location(0) f32 {
     if label == NOTHING {
         discard;
     }
-    return stored(label);
+    return stored(label_on(label, in, position_at(in.clip.xy, depth_buffer)));
 }

@@ -5,8 +5,8 @@ use corniche_tileset::{Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 
 use super::{
-    BadRoad, GroundMesh, PhotoImage, PlanScale, RoadSegments, RoadVolumes, TileLines,
-    relief::Relief,
+    BadRoad, GroundMesh, PhotoImage, PlanScale, RoadSegments, RoadVolumes, ShadingSlopes,
+    TileLines, relief::Relief,
 };
 use crate::lod::GroundSummary;
 
@@ -21,6 +21,8 @@ pub struct TileGeometry {
     pub summary: Option<GroundSummary>,
     /// The ground and its skirts.
     pub(crate) ground: GroundMesh,
+    /// Slopes at all nodes, for shading; `None` where the package has none.
+    pub(crate) shading: Option<ShadingSlopes>,
     /// The photo of the ground; `None` if there is none, or it was not read.
     pub photo: Option<PhotoImage>,
     /// The roads on it as geometry (GEO); empty if that section was not read.
@@ -117,6 +119,7 @@ impl TileGeometry {
             reference_m,
             summary,
             ground,
+            shading: None,
             photo: None,
             most_width_factor,
             roads: RoadSegments::of_lines(&lines.ground, bounds, reference_m, scale, |piece| {
@@ -148,13 +151,17 @@ impl TileGeometry {
         let surface = surface(id, terrain.filter(|_| has_roads), frame, quantum_m);
         let lines = TileLines::of_payload(payload, surface.as_ref(), frame, width_margin_m)?;
         let lines = TileLines { scale, ..lines };
-        Ok(Self::on_surface(id, terrain, surface.as_ref(), &lines, frame, quantum_m))
+        let shading = payload.relief.as_ref().filter(|_| terrain.is_some());
+        let shading = shading.map(|relief| ShadingSlopes::new(relief, frame.level_cell(id.z())));
+        let tile = Self::on_surface(id, terrain, surface.as_ref(), &lines, frame, quantum_m);
+        Ok(Self { shading, ..tile })
     }
 
-    /// The same tile without its roads and its photo: enough for rays and heights.
+    /// The same tile without its roads, slopes and photo: enough for rays and heights.
     #[must_use]
     pub fn without_roads(self) -> Self {
         Self {
+            shading: None,
             roads: RoadSegments::default(),
             volumes: RoadVolumes::default(),
             photo: None,

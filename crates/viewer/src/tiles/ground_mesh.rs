@@ -12,10 +12,11 @@ pub(crate) struct GroundVertex {
     pub(crate) normal_skirt: [i8; 4],
 }
 
-/// Triangles of a tile's ground, then those of its skirts.
+/// Triangles of a tile's ground, then those of its skirts, then those beneath edges of voids.
 ///
 /// A skirt hangs from every edge on the tile's border. Its lower vertices have the position and normal of the upper ones
-/// and a flag; the vertex shader lowers them as far as the drawn neighbours make necessary.
+/// and a flag; the vertex shader lowers them as far as the drawn neighbours make necessary. Edges of the ground inside the tile
+/// get the same curtain, as a wall: no crack is there, but the data ends.
 ///
 /// What is near a place is looked up in a grid made from the triangles: once made, a mesh must not be changed.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -26,6 +27,8 @@ pub(crate) struct GroundMesh {
     pub(crate) indices: Vec<u32>,
     /// How many of the indices are ground.
     pub(crate) surface_indices: usize,
+    /// How many of the indices are ground or skirts.
+    pub(crate) skirt_indices: usize,
     triangle_grid: TriangleGrid,
 }
 
@@ -53,6 +56,8 @@ impl GroundMesh {
         let vertices = tin.vertices().iter().zip(normals).map(place).collect();
         let mut mesh = Self::of_surface(vertices, tin.triangles().iter().flatten().copied());
         mesh.add_skirts(tin);
+        mesh.skirt_indices = mesh.indices.len();
+        mesh.add_walls(tin);
         mesh
     }
 
@@ -69,7 +74,9 @@ impl GroundMesh {
             })
         });
         let triangle_grid = TriangleGrid::new(corners_in_plan);
-        Self { surface_indices: indices.len(), vertices, indices, triangle_grid }
+        let surface_indices = indices.len();
+        let skirt_indices = surface_indices;
+        Self { surface_indices, skirt_indices, vertices, indices, triangle_grid }
     }
 
     /// The grid that says which triangles of the ground are near a place.
@@ -91,6 +98,21 @@ impl GroundMesh {
             for k in 0..3 {
                 let (from, to) = (corners[k], corners[(k + 1) % 3]);
                 if on_border(tin, from, to) {
+                    self.hang(from, to);
+                }
+            }
+        }
+    }
+
+    /// Curtains beneath the edges of the ground inside the tile: those that one triangle alone has.
+    fn add_walls(&mut self, tin: &Tin) {
+        let sides = |corners: &[u32; 3]| [0, 1, 2].map(|k| (corners[k], corners[(k + 1) % 3]));
+        let mut all: Vec<(u32, u32)> = tin.triangles().iter().flat_map(sides).collect();
+        all.sort_unstable();
+        for corners in tin.triangles() {
+            for (from, to) in sides(corners) {
+                // The triangle beyond has the same edge the other way round.
+                if all.binary_search(&(to, from)).is_err() && !on_border(tin, from, to) {
                     self.hang(from, to);
                 }
             }

@@ -7,6 +7,7 @@
 
 mod geometry;
 mod ground_mesh;
+mod map_extent;
 #[cfg(not(target_arch = "wasm32"))]
 mod on_disk;
 mod package;
@@ -14,6 +15,7 @@ mod photo;
 pub(crate) mod plan_scale;
 mod relief;
 pub(crate) mod roads;
+mod shading_slopes;
 mod slopes;
 mod source;
 mod store;
@@ -21,11 +23,13 @@ mod triangle_grid;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use self::on_disk::PackageSource;
+pub(crate) use self::shading_slopes::ShadingSlopes;
 pub use self::{
     geometry::TileGeometry,
+    map_extent::MapExtent,
     package::PackageTiles,
     photo::PhotoImage,
-    roads::{RoadList, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, TileLines},
+    roads::{RoadList, RoadLook, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, TileLines},
     source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},
     store::TileStore,
 };
@@ -33,5 +37,5 @@ pub(crate) use self::{
     geometry::WideWay,
     ground_mesh::{GroundMesh, GroundVertex},
     plan_scale::PlanScale,
-    roads::{BadRoad, Bed, GroundLine, NearHeights, RoadEnd},
+    roads::{BadRoad, Bed, GroundLine, NearHeights, RoadEnd, dash_m},
 };

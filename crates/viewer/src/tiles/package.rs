@@ -8,6 +8,9 @@ use super::{
 };
 use crate::options::RoadMethod;
 
+/// What every picture needs of a tile.
+const GROUND: Sections = Sections::TERRAIN.and(Sections::RELIEF);
+
 /// The tiles of a package, from any source of bytes. Loading a tile is asynchronous and blocks no thread.
 /// [`PackageSource`](super::PackageSource) is a package in a file, for threads that may wait.
 #[derive(Debug)]
@@ -39,8 +42,7 @@ impl<S: ByteSource> PackageTiles<S> {
                 next = id.parent();
             }
         }
-        let sections =
-            Sections::TERRAIN | Sections::ROADS_GEO | Sections::ROADS_SV | Sections::ATTRIBUTES;
+        let sections = GROUND | Sections::ROADS_GEO | Sections::ROADS_SV | Sections::ATTRIBUTES;
         Ok(Self { package, tiles, sections, photos: Photos::Read })
     }
 
@@ -52,7 +54,7 @@ impl<S: ByteSource> PackageTiles<S> {
             RoadMethod::ShadowVolumes => Sections::ROADS_SV | Sections::ATTRIBUTES,
             RoadMethod::None => Sections::NONE,
         };
-        Self { sections: Sections::TERRAIN | roads, ..self }
+        Self { sections: GROUND | roads, ..self }
     }
 
     /// Reads no photos, which take most of the time and the memory where there are some.

@@ -4,17 +4,20 @@ pub(crate) mod ends;
 mod ground_beside;
 mod lines;
 mod list;
+mod look;
 mod segments;
 mod volumes;
 
 pub(crate) use self::{
     ends::RoadEnd,
     ground_beside::{Bed, NearHeights},
+    look::dash_m,
     segments::Piece,
 };
 pub use self::{
     lines::{BadRoad, GroundLine, PlanLine, TileLines},
     list::RoadList,
+    look::RoadLook,
     segments::{RoadSegment, RoadSegments},
     volumes::{RoadVolume, RoadVolumes},
 };

@@ -61,6 +61,7 @@ fn volumes_are_relative_sorted_by_class_and_never_lower_or_shallower_than_the_gr
         way_id: 1,
         class: class(number),
         own_width: OwnWidth::Unknown,
+        look: RoadLook::Plain,
         points_m: vec![from, [30.0, 20.0]],
         ground_range_m: vec![range_m],
     };
@@ -99,7 +100,14 @@ fn a_line_in_plan_crosses_the_border_where_it_passes_to_the_other_side() {
     let check = |points_m: Vec<[f64; 2]>, expected: &[(Side, [f64; 2])]| {
         let ground_range_m = vec![[1.0, 2.0]; points_m.len() - 1];
         let own_width = OwnWidth::Unknown;
-        let line = PlanLine { way_id: 1, class: class(4), own_width, points_m, ground_range_m };
+        let line = PlanLine {
+            way_id: 1,
+            class: class(4),
+            own_width,
+            look: RoadLook::Plain,
+            points_m,
+            ground_range_m,
+        };
         let ends = plan_ends(&[line], TILE, &PlanScale::default());
         let found: Vec<_> = ends.iter().map(|end| (end.side, end.at_m)).collect();
         assert_eq!(found, expected);

@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 
 use corniche_geom::{Bounds, TileId};
 
-use super::{LoadTileError, TileGeometry, TileSource};
+use super::{LoadTileError, MapExtent, TileGeometry, TileSource};
 use crate::lod::{GroundSummary, Node, Request, TileTree};
 
 /// The tiles loaded so far.
@@ -64,8 +64,19 @@ impl<'a> TileStore<'a> {
         if !self.exists(TileId::ROOT) {
             return Ok(None);
         }
-        self.load(&[Request { id: TileId::ROOT, priority_px: f64::INFINITY }])?;
+        self.load(&[Request { id: TileId::ROOT, coarseness: f64::INFINITY }])?;
         Ok(self.get(TileId::ROOT).and_then(|root| root.summary))
+    }
+
+    /// What a first view shows, told by the root tile, which it loads; `data` is the rectangle of the data. `None` without any
+    /// ground.
+    ///
+    /// # Errors
+    /// When the root cannot be read.
+    pub fn map_extent(&mut self, data: Bounds) -> Result<Option<MapExtent>, LoadTileError> {
+        let has_ground = self.coarsest_ground()?.is_some();
+        let root = self.get(TileId::ROOT).filter(|_| has_ground);
+        Ok(root.map(|root| root.map_extent(data)))
     }
 
     /// True height of the ground at a position, from the finest tile there; loads the tiles down to it.
@@ -76,7 +87,7 @@ impl<'a> TileStore<'a> {
         let mut found = None;
         let mut next = self.source.exists(TileId::ROOT).then_some(TileId::ROOT);
         while let Some(id) = next {
-            self.load(&[Request { id, priority_px: f64::INFINITY }])?;
+            self.load(&[Request { id, coarseness: f64::INFINITY }])?;
             found = self.get(id).and_then(|tile| tile.ground_height_m(at)).or(found);
             next = (id.z() < self.max_level())
                 .then(|| id.children().find(|child| holds(&self.plan_bounds(*child), at)))

@@ -28,7 +28,7 @@ use crate::{
 
 const SIZE: [u32; 2] = [640, 480];
 const BAND_PX: f64 = 0.05;
-const QUALITY: Quality = Quality { screen_space_error_px: 2.0, vertical_scale: 1.0 };
+const QUALITY: Quality = Quality::by_error(2.0, 1.0);
 
 /// A package and the GPU buffers of the tiles that were used so far.
 pub(crate) struct Atlas<'a> {

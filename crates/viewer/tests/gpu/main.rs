@@ -5,6 +5,7 @@
 
 mod relief;
 mod roads;
+mod shading;
 #[path = "../support/mod.rs"]
 mod support;
 mod terrain;

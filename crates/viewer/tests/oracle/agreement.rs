@@ -58,7 +58,7 @@ fn print_row(
 }
 
 /// Draws a scene from its cameras in both methods, prints the figures and holds both to their gates.
-fn check(named: &Named) {
+pub(crate) fn check(named: &Named) {
     let Some(gpu) = gpu() else { return };
     let Named { name, scene, cameras } = named;
     let is_plain = scene.style.roads.iter().all(|road| road.min_width_px == 0.0);
@@ -170,7 +170,7 @@ pub(crate) fn country_scene(
     style: Style,
 ) -> Scene {
     let mut store = TileStore::new(country);
-    let quality = Quality { screen_space_error_px: error_px, vertical_scale: 1.0 };
+    let quality = Quality::by_error(error_px, 1.0);
     let drawn = settle(&mut store, camera, quality, &|| false).unwrap();
     let tiles = drawn
         .iter()

@@ -4,7 +4,7 @@ use corniche_viewer::{RoadOptions, camera::Camera, for_tests::Owner};
 use glam::{DVec2, DVec3};
 
 use crate::{
-    reference::{distance, half_width},
+    reference::{Look, Tri, distance, half_width, shows},
     support::{Drawing, cast, scene::Scene},
 };
 
@@ -89,6 +89,7 @@ pub(crate) fn compare(
 ) -> (usize, usize) {
     let caster = Caster::new(scene, camera);
     let (mut compared, mut wrong) = (0, 0);
+    let look = Look { style: &scene.style, options, camera };
     let label = |at: DVec2| {
         let Some(hit) = caster.hit(at) else { return 0 };
         let distance_m = hit.at.distance(camera.eye_in_world());
@@ -96,8 +97,9 @@ pub(crate) fn compare(
             .segments
             .iter()
             .filter(|(class, ends, factor, own)| {
-                let (half_m, _) = half_width(&scene.style, options, (*class, *own), distance_m);
-                distance(hit.at.truncate(), *ends, options.caps) <= half_m * factor
+                let (half_m, _) = half_width(look, (*class, *own), *factor, distance_m);
+                shows(&scene.style, camera, *class, distance_m) == Tri::Yes
+                    && distance(hit.at.truncate(), *ends, options.caps) <= half_m
             })
             .map(|(class, ..)| *class)
             .min();

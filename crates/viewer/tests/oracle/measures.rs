@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     ground_rays::Caster,
-    reference::half_width,
+    reference::{Look, Tri, half_width, shows},
     support::{Drawing, scene::Scene},
 };
 
@@ -52,7 +52,8 @@ pub(crate) fn walk(
 ) -> CenterLines {
     let options = RoadOptions::of(RoadMethod::ShadowVolumes);
     let half_px = |road: (u8, OwnWidth), depth_m: f64| {
-        let (half_m, least_px) = half_width(&scene.style, options, road, depth_m);
+        let look = Look { style: &scene.style, options, camera };
+        let (half_m, least_px) = half_width(look, road, 1.0, depth_m);
         (half_m / (camera.pixel_at_unit_depth_m() * depth_m)).max(least_px)
     };
     let mut sum = CenterLines::default();
@@ -81,7 +82,9 @@ pub(crate) fn walk(
             let in_view = |at: DVec2| {
                 caster.hit(at).is_none_or(|hit| hit.depth_m >= depth_m * (1.0 - 1e-6) - 1e-3)
             };
-            if !in_view(at) {
+            let distance_m = depth_m * camera.ray_in_world(at).length();
+            let is_shown = shows(&scene.style, camera, line.0.0, distance_m) == Tri::Yes;
+            if !in_view(at) || !is_shown {
                 continue;
             }
             sum.seen_px += step_px;

@@ -30,7 +30,7 @@ fn scene_of(
     error_px: f64,
 ) -> Scene {
     let mut store = TileStore::new(source);
-    let quality = Quality { screen_space_error_px: error_px, vertical_scale: 1.0 };
+    let quality = Quality::by_error(error_px, 1.0);
     let drawn = settle(&mut store, camera, quality, &|| false).unwrap();
     let tiles = drawn
         .iter()

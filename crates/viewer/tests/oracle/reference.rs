@@ -2,7 +2,7 @@
 
 use corniche_roads::OwnWidth;
 use corniche_styles::{OwnWidths, Style};
-use corniche_viewer::{Caps, RoadOptions, camera::Camera, for_tests::Owner};
+use corniche_viewer::{Caps, RoadOptions, WidthGrowth, camera::Camera, for_tests::Owner};
 use glam::{DMat2, DVec2, DVec3};
 
 use crate::support::{
@@ -24,7 +24,7 @@ pub(crate) enum Verdict {
 
 /// A yes or no that may be uncertain within a band.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Tri {
+pub(crate) enum Tri {
     Yes,
     No,
     Perhaps,
@@ -121,7 +121,9 @@ impl PixelOracle<'_> {
     pub(crate) fn verdict(&self, index: usize, tile: &Tile) -> Verdict {
         let (ground, _) = self.ground(index).expect("the owner says there is ground");
         let segments = tile.segments_near(ground.truncate());
+        let distance_m = ground.distance(self.camera.eye_in_world());
         for class in 0..9_u8 {
+            let shown = shows(self.style, self.camera, class, distance_m);
             for is_center in [true, false] {
                 let center = self.style.roads[usize::from(class)].center;
                 let Some(share) = (if is_center {
@@ -138,7 +140,7 @@ impl PixelOracle<'_> {
                         break;
                     }
                 }
-                match covered {
+                match covered.and(shown) {
                     Tri::Yes => return Verdict::Label((9 - class) * 2 + u8::from(is_center)),
                     Tri::Perhaps => return Verdict::InBand,
                     Tri::No => {}
@@ -163,9 +165,9 @@ impl PixelOracle<'_> {
         let band_m = self.band_px * pixel_m;
         let caps = self.options.caps;
         let plan_m = distance(ground.truncate(), ends, caps);
-        let (half_m, least_px) =
-            half_width(self.style, self.options, (class, own), from_eye.length());
-        let wide = Tri::at_most(plan_m, share * half_m * factor, band_m);
+        let look = Look { style: self.style, options: self.options, camera: self.camera };
+        let (half_m, least_px) = half_width(look, (class, own), factor, from_eye.length());
+        let wide = Tri::at_most(plan_m, share * half_m, band_m);
         let stretch = (1.5 * from_eye.length() / from_eye.z.abs()).clamp(1.0, MAX_STRETCH);
         let near = Tri::at_most(plan_m, stretch * share * least_px * pixel_m, band_m);
         let thin = if near == Tri::No || wide == Tri::Yes {
@@ -260,23 +262,47 @@ fn near_end(at: DVec2, [a, b]: [DVec2; 2], band_m: f64) -> Tri {
     Tri::at_most(-along_m, 0.0, band_m).and(Tri::at_most(along_m, a.distance(b), band_m))
 }
 
-/// Half width of a road, by its class and what its tags say of its width, in metres at a distance from the eye, and the least one in pixels.
+/// Whether a class is shown at all at a distance from the eye: half a zoom step beyond its scale it is gone.
+pub(crate) fn shows(style: &Style, camera: &Camera, class: u8, distance_m: f64) -> Tri {
+    let Some(full) = style.roads[usize::from(class)].max_pixel_m else { return Tri::Yes };
+    let zoom_steps = (distance_m * camera.pixel_at_unit_depth_m() / f64::from(full)).log2();
+    Tri::at_most(zoom_steps, 0.5, 1e-5)
+}
+
+/// What decides how wide roads are drawn.
+#[derive(Clone, Copy)]
+pub(crate) struct Look<'a> {
+    pub(crate) style: &'a Style,
+    pub(crate) options: RoadOptions,
+    pub(crate) camera: &'a Camera,
+}
+
+/// Half width of a road, by its class and what its tags say of its width, in metres at a distance from the eye, and the least
+/// one in pixels. `factor` is working metres across the road for each true one.
 pub(crate) fn half_width(
-    style: &Style,
-    options: RoadOptions,
+    Look { style, options, camera }: Look<'_>,
     (class, own): (u8, OwnWidth),
+    factor: f64,
     distance_m: f64,
 ) -> (f64, f64) {
     let road = &style.roads[usize::from(class)];
-    let growth = options.width_scaling(style).factor(distance_m);
-    let width_m = match (style.own_widths, own) {
-        (Some(_), OwnWidth::Millimetres(mm)) => (f64::from(mm.get()) / 1000.0).min(60.0),
+    let scaling = options.width_scaling(style);
+    let tagged_m = match (style.own_widths, own) {
+        (Some(_), OwnWidth::Millimetres(mm)) => Some((f64::from(mm.get()) / 1000.0).min(60.0)),
         (Some(OwnWidths { lane_m: Some(lane_m) }), OwnWidth::Lanes(lanes)) => {
-            (f64::from(lanes.get()) * f64::from(lane_m)).min(60.0)
+            Some((f64::from(lanes.get()) * f64::from(lane_m)).min(60.0))
         }
-        _ => f64::from(road.width_m),
+        _ => None,
     };
-    (width_m / 2.0 * growth, f64::from(road.min_width_px) / 2.0)
+    let width_m = tagged_m.unwrap_or(f64::from(road.width_m)) * factor;
+    let near_m = width_m * f64::from(scaling.constant);
+    let mut drawn_m = width_m * scaling.factor(distance_m);
+    if let (Some(most_px), WidthGrowth::ByDistance) = (road.max_width_px, options.width_growth) {
+        // It grows up to so many pixels, and never shrinks for that.
+        let most_m = f64::from(most_px) * camera.pixel_at_unit_depth_m() * distance_m;
+        drawn_m = drawn_m.min(most_m.max(near_m));
+    }
+    (drawn_m / 2.0, f64::from(road.min_width_px) / 2.0)
 }
 
 /// Distance from a point to a segment; infinite beyond the ends of one without caps.

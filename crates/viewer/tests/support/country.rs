@@ -138,7 +138,7 @@ impl Country {
         let geo = roads_geo.iter().map(|road| road.way_id);
         let ways: BTreeSet<i64> = geo.chain(roads_sv.iter().map(|road| road.way_id)).collect();
         let attributes = ways.into_iter().map(record).collect();
-        TilePayload { id, terrain: Some(terrain), roads_geo, roads_sv, attributes }
+        TilePayload { id, terrain: Some(terrain), relief: None, roads_geo, roads_sv, attributes }
     }
 }
 

@@ -205,8 +205,16 @@ pub(crate) fn cast(eye: DVec3, ray: DVec3, ground: &[[DVec3; 3]]) -> Option<f64>
 
 /// Roads of one width for all classes, without any growth: `half_width_m` is all there is to know.
 pub(crate) fn plain_style(width_m: f32) -> Style {
-    let road =
-        RoadStyle { width_m, min_width_px: 0.0, color: [1.0; 3], outline: [0.0; 3], center: None };
+    let road = RoadStyle {
+        width_m,
+        min_width_px: 0.0,
+        color: [1.0; 3],
+        outline: [0.0; 3],
+        center: None,
+        max_pixel_m: None,
+        max_width_px: None,
+        thin: None,
+    };
     Style {
         roads: [road; 9],
         width_scaling: WidthScaling { threshold_m: 1e9, exponent: 0.0, constant: 1.0 },
@@ -311,6 +319,8 @@ pub(crate) fn draw_exaggerated(
         exaggeration,
         point_scale: 1.0,
         height_range_m: [0.0, 1000.0],
+        wall_m: 0.0,
+        latitude_deg: 47.0,
         wireframe: Wireframe::Hidden,
     };
     Renderer::new(gpu).draw(gpu, &view, &tiles, &targets);

@@ -12,7 +12,7 @@ use corniche_viewer::{
     camera::Camera,
     for_tests::{GroundLine, PlanLine, PlanScale},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
-    tiles::{TileGeometry, TileLines},
+    tiles::{RoadLook, TileGeometry, TileLines},
 };
 use glam::{DVec2, DVec3};
 
@@ -77,6 +77,7 @@ impl Tile {
                         way_id: *way_id,
                         class,
                         own_width: OwnWidth::Unknown,
+                        look: RoadLook::Plain,
                         points_m: vec![a.to_array(), b.to_array()],
                         // As low and high as the tile: never too narrow.
                         ground_range_m: vec![ground.height_range_m],
@@ -128,6 +129,7 @@ impl Tile {
                 way_id: road.way_id,
                 class: road.class,
                 own_width: own_width(payload, road.way_id),
+                look: look(payload, road.way_id),
                 points_m: corniche_drape::positions(&road.line, &surface)
                     .unwrap()
                     .into_iter()
@@ -149,6 +151,7 @@ impl Tile {
                 way_id: road.way_id,
                 class: road.class,
                 own_width: own_width(payload, road.way_id),
+                look: look(payload, road.way_id),
                 points_m: road.line.points.iter().map(|point| frame.position_m(*point)).collect(),
                 ground_range_m: road.line.ground_range_m.clone(),
             })
@@ -176,6 +179,14 @@ impl Tile {
         let mut lines = self.lines.clone();
         lines.ground.iter_mut().for_each(|line| line.own_width = of_way(line.way_id));
         lines.plan.iter_mut().for_each(|line| line.own_width = of_way(line.way_id));
+        self.with_lines(lines)
+    }
+
+    /// The same tile with its ways being what is said; its GEO and SV lines alike.
+    pub(crate) fn with_looks(&self, of_way: impl Fn(i64) -> RoadLook) -> Self {
+        let mut lines = self.lines.clone();
+        lines.ground.iter_mut().for_each(|line| line.look = of_way(line.way_id));
+        lines.plan.iter_mut().for_each(|line| line.look = of_way(line.way_id));
         self.with_lines(lines)
     }
 
@@ -247,6 +258,8 @@ impl Scene {
             exaggeration: 1.0,
             point_scale: 1.0,
             height_range_m: [0.0, 2000.0],
+            wall_m: 0.0,
+            latitude_deg: 47.0,
             wireframe: Wireframe::Hidden,
         }
     }
@@ -279,6 +292,12 @@ impl Scene {
 fn own_width(payload: &TilePayload, way_id: i64) -> OwnWidth {
     let found = payload.attributes.iter().find(|record| record.way_id == way_id);
     found.map_or(OwnWidth::Unknown, |record| record.attributes.own_width())
+}
+
+/// What the tags of a way say that it is, by the payload's list.
+fn look(payload: &TilePayload, way_id: i64) -> RoadLook {
+    let found = payload.attributes.iter().find(|record| record.way_id == way_id);
+    found.map_or(RoadLook::Plain, |record| RoadLook::of(&record.attributes))
 }
 
 /// The square of a grid that holds a position.

@@ -17,6 +17,7 @@ pub(crate) fn first_settings(request: &WindowRequest, is_software: bool) -> Sett
         photo: request.photo,
         exaggeration: request.exaggeration,
         screen_space_error_px: request.screen_space_error_px,
+        cell_px: request.cell_px,
         samples_per_side: request.samples_per_side.unwrap_or(usual_samples),
         is_wireframe: false,
         refinement: Refinement::Live,

@@ -1,7 +1,7 @@
 //! The view with which a window opens.
 
 use corniche_viewer::{
-    CameraRequest, GroundHeights, OffGround,
+    CameraRequest, OffGround, SightedGround,
     camera::{Camera, Orientation},
 };
 
@@ -23,14 +23,14 @@ pub(crate) fn first_view(
 ) -> Result<View, OffGround> {
     let panel_px = panel::width(size_px[0] as f32 / pixels_per_point) * pixels_per_point;
     let part_px = match camera {
-        // The whole package must be visible, so it is framed in the part beside the panel.
-        CameraRequest::FrameAll => [size_px[0].saturating_sub(panel_px as u32).max(1), size_px[1]],
+        // All of it must be visible, so it is framed in the part beside the panel.
+        CameraRequest::Overview => [size_px[0].saturating_sub(panel_px as u32).max(1), size_px[1]],
         CameraRequest::LookAt { .. } => size_px,
     };
     let orientation = camera.orientation();
     let camera = camera.camera(
         package.manifest(),
-        GroundHeights { range_m: package.height_range_m(), at_place_m: place_height_m },
+        SightedGround { extent: package.extent(), at_place_m: place_height_m },
         package.vertical_scale(exaggeration),
         part_px,
     )?;

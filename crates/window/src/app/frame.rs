@@ -5,7 +5,7 @@
 
 use corniche_styles::Rgb;
 use corniche_viewer::{
-    Wireframe,
+    LevelScales, Wireframe,
     camera::Camera,
     flight::{Pose, WorkingCrs},
     gpu::GpuError,
@@ -135,6 +135,13 @@ impl App {
         let ahead = self.camera.look_ahead(now_s, camera.size_px());
         let quality = Quality {
             screen_space_error_px: self.settings.screen_space_error_px,
+            cell_px: self.settings.cell_px,
+            scales: LevelScales::of_roads(
+                &self.package.manifest().levels,
+                self.styles.at(self.settings.style),
+                self.settings.roads,
+            ),
+            point_scale: self.package.manifest().point_scale,
             vertical_scale: self.vertical_scale(),
         };
         let changes = match self.settings.refinement {
@@ -206,6 +213,7 @@ impl App {
             exaggeration: settings.exaggeration,
             point_scale: self.package.manifest().point_scale,
             height_range_m: self.package.height_range_m(),
+            latitude_deg: self.package.manifest().wgs84_bounds.center()[1],
             wireframe: if settings.is_wireframe { Wireframe::Shown } else { Wireframe::Hidden },
             drawn: self.tiles.drawn().to_vec(),
             samples_per_side,

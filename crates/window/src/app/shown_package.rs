@@ -5,7 +5,7 @@ use corniche_tileset::Manifest;
 use corniche_viewer::{
     gpu::tile_bytes,
     range,
-    tiles::{MapPackage, TileCatalog, TileGeometry},
+    tiles::{MapExtent, MapPackage, TileCatalog, TileGeometry},
 };
 
 use super::camera_limits::MAX_PITCH_DEG;
@@ -27,6 +27,7 @@ pub(crate) fn check(request: &WindowRequest, catalog: &dyn TileCatalog) -> Resul
 pub(crate) struct ShownPackage {
     package: Arc<dyn MapPackage>,
     height_range_m: [f64; 2],
+    extent: MapExtent,
 }
 
 impl ShownPackage {
@@ -45,7 +46,8 @@ impl ShownPackage {
         if wanted_bytes > budget_bytes {
             return Err(WindowError::OverBudget { wanted_bytes, budget_bytes });
         }
-        Ok(Self { package, height_range_m: ground.height_range_m })
+        let extent = root.map_extent(package.manifest().data_bounds);
+        Ok(Self { package, height_range_m: ground.height_range_m, extent })
     }
 
     /// The package's table of contents.
@@ -63,6 +65,11 @@ impl ShownPackage {
         self.height_range_m
     }
 
+    /// What the first view shows.
+    pub(crate) fn extent(&self) -> MapExtent {
+        self.extent
+    }
+
     /// World height of one metre of true height.
     pub(crate) fn vertical_scale(&self, exaggeration: f64) -> f64 {
         exaggeration * self.manifest().point_scale
@@ -74,7 +81,7 @@ fn check_numbers(request: &WindowRequest) -> Result<(), WindowError> {
     if request.styles.is_empty() {
         return Err(WindowError::NoStyle);
     }
-    range::check_ground(request.screen_space_error_px, request.exaggeration)?;
+    range::check_ground(request.screen_space_error_px, request.cell_px, request.exaggeration)?;
     if let Some(samples) = request.samples_per_side {
         range::check_supersampling(samples)?;
     }

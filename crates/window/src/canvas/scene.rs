@@ -20,8 +20,10 @@ pub(crate) struct Scene {
     pub(crate) exaggeration: f64,
     /// Working metres to a true metre.
     pub(crate) point_scale: f64,
-    /// The true heights at the ends of the height tint.
+    /// All ground lies between these true heights.
     pub(crate) height_range_m: [f64; 2],
+    /// Latitude of the middle of the package.
+    pub(crate) latitude_deg: f64,
     /// Whether the edges of triangles are drawn.
     pub(crate) wireframe: Wireframe,
     /// The tiles to draw.

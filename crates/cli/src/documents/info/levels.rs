@@ -37,6 +37,8 @@ pub(crate) struct LevelDocument {
     vertices: u64,
     /// Stored bytes of their ground.
     terrain_bytes: u64,
+    /// Stored bytes of their relief; 0 without.
+    relief_bytes: u64,
     /// Full-resolution nodes with data that the level's TINs do not cover.
     uncovered_nodes: u64,
 }
@@ -58,6 +60,7 @@ impl From<&LevelRecord> for LevelDocument {
             triangles: level.triangles,
             vertices: level.vertices,
             terrain_bytes: level.terrain_bytes,
+            relief_bytes: level.relief_bytes,
             uncovered_nodes: level.uncovered_nodes,
         }
     }

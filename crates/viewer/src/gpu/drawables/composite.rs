@@ -1,5 +1,6 @@
 //! Ground, sky and roads into the samples of a picture.
 
+use glam::DVec4;
 use wgpu::{
     BindGroupLayout, BindGroupLayoutEntry, BindingResource, BufferUsages, ColorWrites,
     CommandEncoder, Device, RenderPass, RenderPipeline, ShaderStages,
@@ -13,7 +14,7 @@ use super::super::{
     pipeline::{PipelineRecipe, Shader, shader},
     shared_bindings::{SharedBindings, SharedLayouts},
     targets::{BLOCK_SIDE, Targets},
-    uniforms::color,
+    uniforms::{color, row},
 };
 use crate::{frame_view::FrameView, options::RoadMethod};
 
@@ -107,6 +108,16 @@ impl Composite {
     }
 }
 
+/// The plane that is seen where there is no ground, beneath all ground and its walls: the eye's place on it in plan, modulo
+/// the last value; the eye's height above it; the widest spacing of lines on it. World metres.
+fn void_plane(view: &FrameView<'_>) -> DVec4 {
+    let eye = view.camera.eye_in_world();
+    let lowest = (view.height_range_m[0] - view.wall_m) * view.vertical_scale();
+    // Spacings are powers of two, so that all of them divide this one. In f32, a place then has 2^-24 of it.
+    let widest = (4096.0 * view.camera.focus_m()).log2().round().exp2();
+    DVec4::new(eye.x.rem_euclid(widest), eye.y.rem_euclid(widest), eye.z - lowest, widest)
+}
+
 /// The block `struct PictureColors` of `shaders/composite.wgsl`.
 pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
     let style = view.style;
@@ -114,6 +125,7 @@ pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
         color(style.haze, (f64::from(style.haze_reach) * view.camera.focus_m()) as f32),
         color(style.sky, 0.0),
         color(style.void, 0.0),
+        row(void_plane(view)),
     ];
     let roads = &style.roads;
     rows.extend(roads.iter().map(|road| color(road.color, 1.0)));
@@ -122,5 +134,6 @@ pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
         let center = road.center.map_or(road.color, |center| center.color);
         color(center, 1.0)
     }));
+    rows.extend(roads.iter().map(|road| color(road.thin.unwrap_or(road.color), 1.0)));
     rows
 }

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     options::ClassSet,
     scene::{BorderTile, LevelConnector, level_connectors},
-    tiles::{NearHeights, RoadVolume},
+    tiles::{NearHeights, RoadVolume, dash_m},
 };
 
 /// The connectors of a frame, in order of the finer tile.
@@ -22,15 +22,17 @@ pub(crate) struct LevelConnectors {
 
 impl LevelConnectors {
     /// Finds the connectors between `tiles` and uploads their volumes, each relative to the reference point of its finer
-    /// tile. `reference_of` gives that point for an index of `tiles`.
+    /// tile. `reference_of` gives that point for an index of `tiles`; `shown` says which classes are shown on each of them.
     pub(crate) fn new(
         gpu: &Gpu,
         tiles: &[BorderTile<'_>],
         reference_of: impl Fn(usize) -> [f64; 3],
-        classes: ClassSet,
+        shown: &[ClassSet],
     ) -> Self {
         let mut list = level_connectors(tiles);
-        list.retain(|connector| classes.contains(connector.class));
+        list.retain(|connector| {
+            shown[connector.fine].or(shown[connector.coarse]).contains(connector.class)
+        });
         let volumes = list.iter().map(|connector| {
             let reference_m = reference_of(connector.fine);
             (volume(connector, reference_m), connector.coarse as u32 + 1)
@@ -78,5 +80,7 @@ fn volume(connector: &LevelConnector, reference_m: [f64; 3]) -> RoadVolume {
         width_factor: connector.width_factor,
         class: connector.class,
         own_width: connector.own_width,
+        look: connector.look,
+        dash_m: dash_m(connector.ends_m),
     }
 }

@@ -16,7 +16,7 @@
 //! A drawable may use
 //!
 //! - the leaf modules of `gpu`: `pipeline`, `bindings`, `shared_bindings`, `uniforms`, `passes`, `formats`, `targets`,
-//!   `picture`, `ground_buffers` and `road_instances`;
+//!   `picture`, `ground_buffers`, `tile_textures` and `road_instances`;
 //! - of the crate: `tiles`, `scene`, `options`, `frame_view` and `style`.
 //!
 //! It uses neither the renderer nor another drawable. There is one exception: [`level_connectors`] makes instances in the

@@ -85,11 +85,13 @@ fn uniform_blocks_are_as_long_as_shaders_declare_them() {
         exaggeration: 1.0,
         point_scale: 1.0,
         height_range_m: [0.0, 1.0],
+        wall_m: 0.0,
+        latitude_deg: 47.0,
         wireframe: crate::Wireframe::Hidden,
     };
     let blocks = [
         ("Frame", crate::gpu::uniforms::frame_rows(&view, 1), "common"),
-        ("GroundColors", terrain::rows(&view), "terrain"),
+        ("GroundColors", terrain::rows(&view), "ground_look"),
         ("PictureColors", composite::rows(&view), "composite"),
     ];
     for (block, rows, file) in blocks {

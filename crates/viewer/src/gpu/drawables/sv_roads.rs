@@ -14,9 +14,9 @@ use crate::tiles::{RoadVolume, RoadVolumes};
 
 pub(crate) const SHADER: Shader = shader!("volumes": "common", "coverage", "volumes");
 
-/// Bytes of an instance: two plan positions and two height ranges as two f32 each, rise and width factor as f32, class and
-/// other tile as u32, own width as f32.
-const INSTANCE_BYTES: u64 = 48;
+/// Bytes of an instance: two plan positions and two height ranges as two f32 each, rise and width factor as f32, class, look
+/// and other tile as u32, own width and place of dashes as f32.
+const INSTANCE_BYTES: u64 = 52;
 /// Corners of the strip of triangles around a box, as `shaders/volumes.wgsl` counts them.
 const CORNERS: Range<u32> = 0..14;
 
@@ -27,7 +27,7 @@ pub(crate) fn pipeline(device: &Device, layouts: &SharedLayouts) -> RoadPipeline
         instance_bytes: INSTANCE_BYTES,
         attributes: &vertex_attr_array![
             0 => Float32x2, 1 => Float32x2, 2 => Float32x2, 3 => Float32x2, 4 => Float32x2, 5 => Uint32,
-            6 => Float32
+            6 => Float32, 7 => Float32
         ],
         // Only the far faces are drawn: one fragment per pixel and box, also with the eye inside the box.
         cull: Some(wgpu::Face::Front),
@@ -58,8 +58,9 @@ pub(crate) fn instance_bytes(volumes: impl Iterator<Item = (RoadVolume, u32)>) -
         bytes.extend_from_slice(&volume.near.rise.to_ne_bytes());
         bytes.extend_from_slice(&volume.width_factor.to_ne_bytes());
         let class = u32::from(volume.class.number());
-        bytes.extend_from_slice(&(class | other << 4).to_ne_bytes());
+        bytes.extend_from_slice(&(class | volume.look.number() << 4 | other << 6).to_ne_bytes());
         bytes.extend_from_slice(&own_width_value(volume.own_width).to_ne_bytes());
+        bytes.extend_from_slice(&volume.dash_m.to_ne_bytes());
     }
     bytes
 }

@@ -1,4 +1,4 @@
-//! The ground of tiles: its triangles, its skirts and, if asked for, the edges of its triangles.
+//! The ground of tiles: its triangles, its skirts, the walls where it ends and, if asked for, the edges of its triangles.
 
 use glam::DVec3;
 use wgpu::{
@@ -11,32 +11,35 @@ use super::super::{
     bindings::{group, layout, uniform},
     formats::{COLOR, OWNER},
     ground_buffers::{GROUND_VERTICES, GroundBuffers},
-    photo_texture::PhotoBindings,
     pipeline::{ENTRIES, PipelineRecipe, Shader, depth_test, shader},
     shared_bindings::{SharedBindings, SharedLayouts},
+    tile_textures::{self, TileTextures},
     uniforms::{color, row},
 };
-use corniche_styles::Style;
+use corniche_styles::{Light, MOST_TINT_STOPS, Style};
 
 use crate::frame_view::{FrameView, Wireframe};
 
-pub(crate) const SHADER: Shader = shader!("terrain": "common", "photo", "terrain");
+pub(crate) const SHADER: Shader =
+    shader!("terrain": "common", "ground_look", "relief", "photo", "terrain");
+
+/// By how much the direction of the second light is turned, clockwise.
+const SECOND_LIGHT_DEG: f64 = -60.0;
 
 /// Draws the ground of tiles.
 pub(crate) struct Terrain {
     layout: BindGroupLayout,
     surface: RenderPipeline,
     skirts: RenderPipeline,
+    walls: RenderPipeline,
     wires: RenderPipeline,
-    photos: PhotoBindings,
 }
 
 impl Terrain {
     pub(crate) fn new(device: &Device, layouts: &SharedLayouts) -> Self {
         let layout = layout(device, "ground colors", &[uniform(0, None)]);
-        let photos = PhotoBindings::new(device);
-        let groups =
-            [Some(&layouts.frame), Some(&layouts.tile), Some(&layout), Some(&photos.layout)];
+        let textures = tile_textures::layout_of(device);
+        let groups = [Some(&layouts.frame), Some(&layouts.tile), Some(&layout), Some(&textures)];
         let ground = |constants| PipelineRecipe {
             shader: SHADER,
             entries: ENTRIES,
@@ -60,8 +63,10 @@ impl Terrain {
         };
         let surface = ground(&[("SKIRT", 0.0)]).build(device);
         let skirts = ground(&[("SKIRT", 1.0)]).build(device);
-        let wires = wires.build(device);
-        Self { layout, surface, skirts, wires, photos }
+        let walls =
+            PipelineRecipe { entries: ["vertex", "wall_fragment"], ..ground(&[("SKIRT", 2.0)]) };
+        let [walls, wires] = [walls, wires].map(|recipe| recipe.build(device));
+        Self { layout, surface, skirts, walls, wires }
     }
 
     /// Draws the ground of some tiles, each given with its index in the list of tiles of the frame, into the targets of the
@@ -71,7 +76,7 @@ impl Terrain {
         gpu: &Gpu,
         pass: &mut RenderPass<'_>,
         shared: &SharedBindings,
-        tiles: &[(usize, &GroundBuffers)],
+        tiles: &[(usize, &GroundBuffers, &TileTextures)],
         view: &FrameView<'_>,
     ) {
         let rows = rows(view);
@@ -79,47 +84,66 @@ impl Terrain {
             gpu.buffer("ground colors", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
         shared.set_frame(pass);
         pass.set_bind_group(2, &group(gpu, &self.layout, &[colors.as_entire_binding()]), &[]);
-        let photos: Vec<BindGroup> =
-            tiles.iter().map(|(_, ground)| self.photos.group(gpu, ground.photo())).collect();
-        let set_tile = |pass: &mut RenderPass<'_>, index: usize, photo: &BindGroup| {
-            shared.set_tile(pass, index);
-            pass.set_bind_group(3, photo, &[]);
-        };
         pass.set_pipeline(&self.surface);
-        for ((index, ground), photo) in tiles.iter().zip(&photos) {
-            set_tile(pass, *index, photo);
+        for (index, ground, textures) in tiles {
+            shared.set_tile(pass, *index);
+            textures.set(pass);
             ground.draw_surface(pass);
         }
         pass.set_pipeline(&self.skirts);
-        for ((index, ground), photo) in tiles.iter().zip(&photos) {
-            set_tile(pass, *index, photo);
+        for (index, ground, textures) in tiles {
+            shared.set_tile(pass, *index);
+            textures.set(pass);
             ground.draw_skirts(pass);
+        }
+        if view.wall_m > 0.0 {
+            pass.set_pipeline(&self.walls);
+            for (index, ground, textures) in tiles {
+                shared.set_tile(pass, *index);
+                textures.set(pass);
+                ground.draw_walls(pass);
+            }
         }
         if view.wireframe == Wireframe::Shown {
             pass.set_pipeline(&self.wires);
-            for ((index, ground), photo) in tiles.iter().zip(&photos) {
-                set_tile(pass, *index, photo);
+            for (index, ground, textures) in tiles {
+                shared.set_tile(pass, *index);
+                textures.set(pass);
                 ground.draw_edges(gpu, pass);
             }
         }
     }
 }
 
-/// The block `struct GroundColors` of `shaders/terrain.wgsl`.
+/// The block `struct GroundColors` of `shaders/ground_look.wgsl`.
 pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
-    let style = view.style;
+    let Style { light, haze, water, wall, tint, photo, .. } = view.style;
     let [lowest_m, highest_m] = view.height_range_m;
+    let stops = tint.stops_m(view.height_range_m, view.latitude_deg);
+    let last = stops.last().copied().unwrap_or_default();
     let mut rows = vec![
-        row(direction_to_light(style).extend(f64::from(style.hillshade))),
-        [lowest_m as f32, (1.0 / (highest_m - lowest_m).max(1.0)) as f32, style.photo, 0.0],
+        row(towards_light(light, 0.0).extend(f64::from(light.hillshade))),
+        row(towards_light(light, SECOND_LIGHT_DEG).extend(f64::from(light.sky))),
+        [
+            lowest_m as f32,
+            (1.0 / (highest_m - lowest_m).max(1.0)) as f32,
+            light.gentle,
+            stops.len() as f32,
+        ],
+        color(*haze, light.valley_haze),
+        color(light.shadow, (1.0 / view.camera.focus_m()) as f32),
+        color(light.sunlit, (view.wall_m * view.vertical_scale()) as f32),
+        color(*water, *photo),
+        color(*wall, 0.0),
     ];
-    rows.extend(style.tint.iter().map(|(share, rgb)| color(*rgb, *share)));
+    let stops = stops.into_iter().chain(std::iter::repeat(last)).take(MOST_TINT_STOPS);
+    rows.extend(stops.map(|(height_m, rgb)| color(rgb, height_m)));
     rows
 }
 
-/// Unit vector towards the light in world space.
-fn direction_to_light(style: &Style) -> DVec3 {
+/// Unit vector towards the light in world space, turned by an angle.
+fn towards_light(light: &Light, turned_deg: f64) -> DVec3 {
     let (azimuth, altitude) =
-        (style.light_azimuth_deg.to_radians(), style.light_altitude_deg.to_radians());
+        ((light.azimuth_deg + turned_deg).to_radians(), light.altitude_deg.to_radians());
     DVec3::new(azimuth.sin() * altitude.cos(), azimuth.cos() * altitude.cos(), altitude.sin())
 }

@@ -1,7 +1,7 @@
 use corniche_geom::Bounds;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
-use super::{super::PlanScale, GroundLine, PlanLine};
+use super::{super::PlanScale, GroundLine, PlanLine, RoadLook};
 
 /// A side of a tile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,6 +21,8 @@ pub(crate) struct RoadEnd {
     pub(crate) class: FunctionalRoadClass,
     /// What the road's tags say of its width.
     pub(crate) own_width: OwnWidth,
+    /// What it is.
+    pub(crate) look: RoadLook,
     /// The side of the tile.
     pub(crate) side: Side,
     /// The position, in the working CRS.
@@ -83,6 +85,7 @@ pub(crate) fn ground_ends(lines: &[GroundLine], tile: Bounds, scale: &PlanScale)
                     way_id: line.way_id,
                     class: line.class,
                     own_width: line.own_width,
+                    look: line.look,
                     side,
                     at_m: [x, y],
                     height_range_m: [height_m; 2],
@@ -104,6 +107,7 @@ pub(crate) fn plan_ends(lines: &[PlanLine], tile: Bounds, scale: &PlanScale) -> 
                     way_id: line.way_id,
                     class: line.class,
                     own_width: line.own_width,
+                    look: line.look,
                     side,
                     at_m,
                     height_range_m: *height_range_m,

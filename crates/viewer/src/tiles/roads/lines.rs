@@ -4,7 +4,7 @@ use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_tileset::TilePayload;
 use corniche_tin::Surface;
 
-use super::super::PlanScale;
+use super::{super::PlanScale, RoadLook};
 
 /// A road on the ground (GEO): its centre-line as it lies on the tile's TIN.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +15,8 @@ pub struct GroundLine {
     pub class: FunctionalRoadClass,
     /// What its tags say of its width.
     pub own_width: OwnWidth,
+    /// What it is.
+    pub look: RoadLook,
     /// x, y in the working CRS and true height of each vertex.
     pub points_m: Vec<[f64; 3]>,
     /// For each piece between two vertices, both ends in plan of the segment of the source line that it is a piece of.
@@ -28,7 +30,14 @@ impl GroundLine {
     pub fn of_source(way_id: i64, class: FunctionalRoadClass, points_m: Vec<[f64; 3]>) -> Self {
         let plan = |[x, y, _]: [f64; 3]| [x, y];
         let sources_m = points_m.windows(2).map(|pair| [plan(pair[0]), plan(pair[1])]).collect();
-        Self { way_id, class, own_width: OwnWidth::Unknown, points_m, sources_m }
+        Self {
+            way_id,
+            class,
+            own_width: OwnWidth::Unknown,
+            look: RoadLook::Plain,
+            points_m,
+            sources_m,
+        }
     }
 }
 
@@ -41,6 +50,8 @@ pub struct PlanLine {
     pub class: FunctionalRoadClass,
     /// What its tags say of its width.
     pub own_width: OwnWidth,
+    /// What it is.
+    pub look: RoadLook,
     /// x, y in the working CRS.
     pub points_m: Vec<[f64; 2]>,
     /// For each segment, the lowest and highest true height of the tile's ground within the width margin.
@@ -102,10 +113,12 @@ fn ground_lines(
     for road in &payload.roads_geo {
         let positions = corniche_drape::positions(&road.line, surface)
             .map_err(|source| BadRoad { way_id: road.way_id, part: road.part, source })?;
+        let (own_width, look) = tagged(payload, road.way_id);
         lines.push(GroundLine {
             way_id: road.way_id,
             class: road.class,
-            own_width: own_width(payload, road.way_id),
+            own_width,
+            look,
             points_m: positions.into_iter().map(place).collect(),
             sources_m: corniche_drape::source_segments(&road.line)
                 .into_iter()
@@ -116,20 +129,26 @@ fn ground_lines(
     Ok(lines)
 }
 
-/// What the tags of a way say of its width; nothing if the attributes were not read.
-fn own_width(payload: &TilePayload, way_id: i64) -> OwnWidth {
+/// What the tags of a way say of its width and of what it is; nothing if the attributes were not read.
+fn tagged(payload: &TilePayload, way_id: i64) -> (OwnWidth, RoadLook) {
     let found = payload.attributes.binary_search_by_key(&way_id, |record| record.way_id);
     let record = found.ok().and_then(|at| payload.attributes.get(at));
-    record.map(|record| record.attributes.own_width()).unwrap_or_default()
+    record
+        .map(|record| (record.attributes.own_width(), RoadLook::of(&record.attributes)))
+        .unwrap_or_default()
 }
 
 fn plan_lines(payload: &TilePayload, frame: &Frame) -> Vec<PlanLine> {
-    let place = |road: &corniche_tileset::SvRoad| PlanLine {
-        way_id: road.way_id,
-        class: road.class,
-        own_width: own_width(payload, road.way_id),
-        points_m: road.line.points.iter().map(|point| frame.position_m(*point)).collect(),
-        ground_range_m: road.line.ground_range_m.clone(),
+    let place = |road: &corniche_tileset::SvRoad| {
+        let (own_width, look) = tagged(payload, road.way_id);
+        PlanLine {
+            way_id: road.way_id,
+            class: road.class,
+            own_width,
+            look,
+            points_m: road.line.points.iter().map(|point| frame.position_m(*point)).collect(),
+            ground_range_m: road.line.ground_range_m.clone(),
+        }
     };
     payload.roads_sv.iter().map(place).collect()
 }

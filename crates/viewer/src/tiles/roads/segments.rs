@@ -3,7 +3,7 @@ use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use super::{
     super::{PlanScale, ground_mesh::relative},
-    Bed, GroundLine, RoadList,
+    Bed, GroundLine, RoadList, RoadLook, dash_m,
     ends::ground_ends,
 };
 
@@ -29,6 +29,10 @@ pub struct RoadSegment {
     pub class: FunctionalRoadClass,
     /// What the road's tags say of its width.
     pub own_width: OwnWidth,
+    /// What it is.
+    pub look: RoadLook,
+    /// Where the dashes of a tunnel are: how far the start of its source segment is along that segment, working metres.
+    pub(crate) dash_m: f32,
 }
 
 /// All segments of a tile.
@@ -110,6 +114,8 @@ impl RoadList<RoadSegment> {
                     bed: bed(&piece),
                     class: line.class,
                     own_width: line.own_width,
+                    look: line.look,
+                    dash_m: dash_m(piece.source_m),
                 }
             })
         });

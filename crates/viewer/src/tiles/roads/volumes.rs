@@ -3,7 +3,7 @@ use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use super::{
     super::{PlanScale, ground_mesh::relative},
-    NearHeights, PlanLine, RoadList,
+    NearHeights, PlanLine, RoadList, RoadLook, dash_m,
     ends::plan_ends,
 };
 
@@ -24,6 +24,10 @@ pub struct RoadVolume {
     pub class: FunctionalRoadClass,
     /// What the road's tags say of its width.
     pub own_width: OwnWidth,
+    /// What it is.
+    pub look: RoadLook,
+    /// Where the dashes of a tunnel are: how far its start is along it, working metres.
+    pub(crate) dash_m: f32,
 }
 
 /// All volumes of a tile.
@@ -65,6 +69,8 @@ impl RoadList<RoadVolume> {
                     width_factor: scale.across([pair[0], pair[1]]) as f32,
                     class: line.class,
                     own_width: line.own_width,
+                    look: line.look,
+                    dash_m: dash_m([pair[0], pair[1]]),
                 }
             })
         });

@@ -1,0 +1,73 @@
+//! Reliefs: beside the rasters of their levels, and beside each other.
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use corniche_geom::{HeightGrid, TILE_NODES, TileId};
+use corniche_tileset::Relief;
+
+use super::checks::{CheckId, Findings};
+
+/// Slopes are rounded to 256ths; this much more is allowed, because they were computed in two ways.
+const HALF_STEP: f64 = 0.5 / 256.0 + 1e-9;
+/// Steeper slopes are cut.
+const STEEPEST: f64 = 4095.0;
+
+/// A number for the slopes along each border: north, south, west, east. They are equal on both sides exactly if all slopes are,
+/// but for one case in 2^64.
+pub(crate) fn borders(relief: &Relief) -> [u64; 4] {
+    let last = TILE_NODES - 1;
+    let of = |node: &dyn Fn(usize) -> [usize; 2]| {
+        let mut hasher = DefaultHasher::new();
+        for [column, row] in (0..=last).map(node) {
+            relief.border_slope(column, row).map(|slope| slope.map(f64::to_bits)).hash(&mut hasher);
+        }
+        hasher.finish()
+    };
+    [of(&|k| [k, 0]), of(&|k| [k, last]), of(&|k| [0, k]), of(&|k| [last, k])]
+}
+
+/// Compares a relief with the raster of its level, which has one node of halo on every side; `slope_at` gives the slopes of the
+/// raster's ground.
+pub(crate) fn verify(
+    id: TileId,
+    relief: &Relief,
+    with_halo: &HeightGrid,
+    slope_at: impl Fn([usize; 2]) -> [f64; 2],
+    findings: &mut Findings,
+) {
+    for row in 0..TILE_NODES {
+        for column in 0..TILE_NODES {
+            let (wanted_m, found_m) =
+                (with_halo.height(column + 1, row + 1), relief.heights().height(column, row));
+            let holds = match (wanted_m, found_m) {
+                (Some(wanted_m), Some(found_m)) => {
+                    let (wanted_m, found_m) = (f64::from(wanted_m), f64::from(found_m));
+                    let rounding_m = wanted_m.abs() * f64::from(f32::EPSILON);
+                    (wanted_m - found_m).abs() <= relief.greatest_error_m() + rounding_m
+                }
+                (None, None) => true,
+                _ => false,
+            };
+            findings.look(CheckId::Relief, holds, || {
+                format!(
+                    "tile {id}: the relief has {found_m:?} at node {column}, {row}, the DEM {wanted_m:?}; it promises {} m",
+                    relief.greatest_error_m()
+                )
+            });
+            let Some(found) = relief.border_slope(column, row) else { continue };
+            let wanted = slope_at([column + 1, row + 1]);
+            let holds = (0..2).all(|axis| {
+                wanted[axis].abs() > STEEPEST || (found[axis] - wanted[axis]).abs() <= HALF_STEP
+            });
+            findings.look(CheckId::Relief, holds, || {
+                format!(
+                    "tile {id}: the relief has slopes {found:?} at node {column}, {row}, the DEM {wanted:?}"
+                )
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "relief_tests.rs"]
+mod tests;

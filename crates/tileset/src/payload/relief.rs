@@ -1,0 +1,193 @@
+//! The relief of a tile: the raster of its level, compressed for shading.
+//!
+//! ```text
+//!   heights ─► whole units ─► wavelet ─► quantised ─► range coder ─► bytes
+//!   slopes of the border nodes ─► whole 256ths ─► minus those of the decoded heights ─┘
+//! ```
+//!
+//! Shading shows slopes, so coefficients are quantised by how much they change slopes ([`steps`]). What this leaves wrong is
+//! another error in each tile, and along a border the eye would see it. So the slopes of border nodes are stored besides, and
+//! all tiles that have a node take its slopes from the same heights.
+
+mod border;
+mod coefficients;
+#[cfg(feature = "write")]
+mod fill;
+mod head;
+mod quantise;
+mod range_coder;
+#[cfg(feature = "write")]
+mod steps;
+mod wavelet;
+
+#[cfg(feature = "write")]
+use corniche_geom::Cell;
+use corniche_geom::HeightGrid;
+
+use crate::payload::damage::Damage;
+use crate::payload::number_codes::Cursor;
+use border::BORDER_NODES;
+use coefficients::{Numbers, code_band, code_mask, code_smooth};
+use head::Head;
+use range_coder::{Bits, Reader};
+use wavelet::{LEVELS, SIDE, SMOOTH, rough_bands};
+
+/// The relief of a tile: heights of all its nodes, exact enough to be shaded, and the slopes of the nodes on its border, which
+/// are the same in all tiles that have the node.
+#[derive(Debug, Clone)]
+pub struct Relief {
+    coded: Vec<u8>,
+    heights: HeightGrid,
+    greatest_error_m: f64,
+    /// By [`border::index`]; `None` where the node has no height.
+    border: Vec<Option<[i32; 2]>>,
+}
+
+// All else follows from the bytes.
+impl PartialEq for Relief {
+    fn eq(&self, other: &Self) -> bool {
+        self.coded == other.coded
+    }
+}
+
+impl Relief {
+    /// Heights of the tile's own 257 × 257 nodes, metres; row 0 in the north. Gaps are those of the level's raster.
+    #[must_use]
+    pub fn heights(&self) -> &HeightGrid {
+        &self.heights
+    }
+
+    /// No height is farther from the level's raster than this, but for the rounding of a 32-bit number.
+    #[must_use]
+    pub fn greatest_error_m(&self) -> f64 {
+        self.greatest_error_m
+    }
+
+    /// The rise in metres per metre east and per metre north at a node on the tile's border, in whole 256ths: the raster's,
+    /// rounded. `None` where the node has no height, and for nodes that are not on the border.
+    #[must_use]
+    pub fn border_slope(&self, column: usize, row: usize) -> Option<[f64; 2]> {
+        let steps = self.border[border::index(column, row)?]?;
+        Some(steps.map(|steps| f64::from(steps) / border::STEPS_PER_ONE))
+    }
+
+    /// Its bytes in a payload.
+    #[cfg(feature = "write")]
+    pub(crate) fn coded(&self) -> &[u8] {
+        &self.coded
+    }
+
+    /// Compresses the raster of a tile's level. `with_halo` has the tile's 257 × 257 nodes and one more on every side, `cell` is
+    /// the distance of its nodes, `quantum_m` the package's height step. All tiles of a level must have the same `cell` and
+    /// `quantum_m`. Equal heights make equal bytes, on every processor.
+    ///
+    /// # Errors
+    /// With what cannot be encoded: a tile without any height, or heights of 2^38 units and more (a unit is a 512th of the cell or a
+    /// 64th of the height step, whichever is larger).
+    ///
+    /// # Panics
+    /// When the grid has another size.
+    #[cfg(feature = "write")]
+    pub fn of_heights(
+        with_halo: &HeightGrid,
+        cell: Cell,
+        quantum_m: f64,
+    ) -> Result<Self, &'static str> {
+        assert_eq!([with_halo.columns(), with_halo.rows()], [SIDE + 2; 2], "a tile with its halo");
+        let exponent = steps::unit_exponent(cell, quantum_m);
+        let (mask, units) = fill::whole_units(with_halo, head::unit_m(exponent))?;
+        let steps = steps::of_cell(cell, head::unit_m(exponent));
+        let mut square = units.clone();
+        wavelet::forward(&mut square);
+        quantise::quantise(&mut square, &steps);
+        let mut found = square.clone();
+        let unencodable = |_| "heights that leave the range of the code";
+        quantise::reconstruct(&mut found, &steps).map_err(unencodable)?;
+        let errors = units.iter().zip(&found).zip(&mask).filter(|(_, there)| **there);
+        // Half a unit more for the rounding to whole units.
+        let error = errors.map(|((unit, found), _)| unit.abs_diff(*found)).max().unwrap_or(0) + 1;
+        let head = Head {
+            has_voids: mask.iter().any(|there| !there),
+            exponent,
+            slope_factors: steps::slope_factors(cell, head::unit_m(exponent)),
+            steps,
+            greatest_error: error,
+        };
+        let border = border::of_raster(with_halo, cell);
+        let mut parts = Parts { mask, square, border };
+        let mut writer = range_coder::Writer::new(head.to_bytes());
+        let units = parts.code(&mut writer, &head).map_err(unencodable)?;
+        Ok(Self::assemble(writer.finish(), &head, &units, parts))
+    }
+
+    /// Reads what [`Relief::coded`] gives. Memory and time do not depend on what the bytes say.
+    pub(crate) fn decode(bytes: &[u8]) -> Result<Self, Damage> {
+        let mut cursor = Cursor::new(bytes);
+        let head = Head::read(&mut cursor)?;
+        let mut reader = Reader::new(&bytes[bytes.len() - cursor.left()..]);
+        let mut parts = Parts {
+            mask: vec![true; SIDE * SIDE],
+            square: vec![0; SIDE * SIDE],
+            border: vec![None; BORDER_NODES],
+        };
+        let units = parts.code(&mut reader, &head)?;
+        if !reader.is_exact() {
+            return Err(Damage::Invalid { what: "the length of the relief" });
+        }
+        Ok(Self::assemble(bytes.to_vec(), &head, &units, parts))
+    }
+
+    fn assemble(coded: Vec<u8>, head: &Head, units: &[i64], parts: Parts) -> Self {
+        let unit_m = head::unit_m(head.exponent);
+        let heights_m = units
+            .iter()
+            .zip(&parts.mask)
+            .map(|(&units, &there)| if there { (units as f64 * unit_m) as f32 } else { f32::NAN })
+            .collect();
+        Self {
+            coded,
+            heights: HeightGrid::new(SIDE, SIDE, heights_m),
+            greatest_error_m: head.greatest_error as f64 * unit_m,
+            border: parts.border,
+        }
+    }
+}
+
+/// What is coded behind the head.
+struct Parts {
+    /// Which nodes have a height.
+    mask: Vec<bool>,
+    /// Quantised coefficients.
+    square: Vec<i64>,
+    border: Vec<Option<[i32; 2]>>,
+}
+
+impl Parts {
+    /// Codes all of it, in either direction, and gives the heights in units.
+    fn code<B: Bits>(&mut self, bits: &mut B, head: &Head) -> Result<Vec<i64>, Damage> {
+        if head.has_voids {
+            code_mask(bits, &mut self.mask);
+        }
+        code_smooth(bits, &mut self.square, SMOOTH);
+        // What is learned of coarse divisions is shared: they have few numbers each.
+        let mut numbers = vec![[const { Numbers::new() }; 3]; KINDS];
+        for level in (0..LEVELS).rev() {
+            for (k, band) in rough_bands(level).into_iter().enumerate() {
+                let parent = (level + 1 < LEVELS).then(|| rough_bands(level + 1)[k]);
+                let numbers = &mut numbers[level.min(KINDS - 1)][k];
+                code_band(bits, numbers, &mut self.square, band, parent);
+            }
+        }
+        let mut units = self.square.clone();
+        quantise::reconstruct(&mut units, &head.steps)?;
+        border::code(bits, &mut self.border, &units, &self.mask, head.slope_factors)?;
+        Ok(units)
+    }
+}
+
+/// Divisions that learn apart: the finest, the next, all others.
+const KINDS: usize = 3;
+
+#[cfg(all(test, feature = "write"))]
+#[path = "relief_tests.rs"]
+mod tests;

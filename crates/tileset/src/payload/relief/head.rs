@@ -1,0 +1,76 @@
+//! The fixed part of the section.
+
+use crate::payload::damage::Damage;
+use crate::payload::number_codes::{Cursor, unzigzag};
+#[cfg(feature = "write")]
+use crate::payload::number_codes::{put_varint, zigzag};
+
+/// Steps of the bands: the smooth band's, then three for each division, the coarsest first.
+pub(crate) const BANDS: usize = 1 + 3 * super::wavelet::LEVELS;
+/// Steps are at most this many units.
+pub(crate) const MOST_STEP: u64 = 1 << 16;
+/// Slope factors are at most this.
+pub(crate) const MOST_FACTOR: u64 = 1 << 16;
+/// Units are powers of two with exponents up to this, both ways.
+pub(crate) const MOST_EXPONENT: i32 = 64;
+/// No height has as many units, decoded ones included.
+pub(crate) const MOST_UNITS: u64 = 1 << 40;
+
+/// What the decoder must know before the first bit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Head {
+    /// Whether a mask follows: some nodes have no height.
+    pub(crate) has_voids: bool,
+    /// A unit is 2 to this power, metres.
+    pub(crate) exponent: i32,
+    /// 256ths of slope, east and north, for each unit that the nodes on both sides differ by; in 65 536ths.
+    pub(crate) slope_factors: [i64; 2],
+    /// Quantisation steps, units.
+    pub(crate) steps: [i64; BANDS],
+    /// Largest error of a height, units.
+    pub(crate) greatest_error: u64,
+}
+
+/// A unit in metres.
+pub(crate) fn unit_m(exponent: i32) -> f64 {
+    2_f64.powi(exponent)
+}
+
+impl Head {
+    #[cfg(feature = "write")]
+    pub(crate) fn to_bytes(&self) -> Vec<u8> {
+        let mut out = vec![u8::from(self.has_voids)];
+        put_varint(&mut out, zigzag(i64::from(self.exponent)));
+        for number in self.slope_factors.iter().chain(&self.steps) {
+            put_varint(&mut out, number.unsigned_abs());
+        }
+        put_varint(&mut out, self.greatest_error);
+        out
+    }
+
+    pub(crate) fn read(cursor: &mut Cursor<'_>) -> Result<Self, Damage> {
+        let has_voids = match cursor.byte()? {
+            0 => false,
+            1 => true,
+            _ => return Err(Damage::Invalid { what: "the flags of the relief" }),
+        };
+        let exponent = i32::try_from(unzigzag(cursor.varint()?)).ok();
+        let exponent = exponent
+            .filter(|exponent| (-MOST_EXPONENT..=MOST_EXPONENT).contains(exponent))
+            .ok_or(Damage::Invalid { what: "the unit of the relief" })?;
+        let mut number = |least: u64, most: u64, what| {
+            let value = cursor.varint()?;
+            if (least..=most).contains(&value) { Ok(value) } else { Err(Damage::Invalid { what }) }
+        };
+        let mut slope_factors = [0; 2];
+        for factor in &mut slope_factors {
+            *factor = number(0, MOST_FACTOR, "a slope factor of the relief")? as i64;
+        }
+        let mut steps = [0; BANDS];
+        for step in &mut steps {
+            *step = number(1, MOST_STEP, "a quantisation step of the relief")? as i64;
+        }
+        let greatest_error = number(0, MOST_UNITS, "the greatest error of the relief")?;
+        Ok(Self { has_voids, exponent, slope_factors, steps, greatest_error })
+    }
+}

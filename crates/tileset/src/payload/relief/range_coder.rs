@@ -1,0 +1,187 @@
+//! A binary arithmetic coder whose probabilities follow what was coded before.
+//!
+//! Source: Martin 1979, *Range encoding*, in the form that LZMA uses (32-bit range, carries through a byte that is held back);
+//! probabilities are the mean of two that adapt with different speed.
+
+/// What both directions of coding have in common: code that says which bit comes where is written once. A coder that writes
+/// takes `bit` and returns it; one that reads ignores it and returns what it read.
+pub(crate) trait Bits {
+    /// A bit with the probability of `model`, which learns from it.
+    fn bit(&mut self, model: &mut Model, bit: u32) -> u32;
+    /// A bit that is as often 0 as 1.
+    fn even(&mut self, bit: u32) -> u32;
+}
+
+/// How probable a 0 is, in 65 536ths: one estimate that learns fast, and one that learns slowly.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Model {
+    fast: u16,
+    slow: u16,
+}
+
+impl Default for Model {
+    fn default() -> Self {
+        Self::NEW
+    }
+}
+
+/// Neither bit is ever less probable than this, in 65 536ths.
+const LEAST: u32 = 48;
+
+impl Model {
+    /// Knows nothing yet.
+    pub(crate) const NEW: Self = Self { fast: 1 << 15, slow: 1 << 15 };
+
+    fn of_zero(self) -> u32 {
+        u32::midpoint(u32::from(self.fast), u32::from(self.slow)).clamp(LEAST, (1 << 16) - LEAST)
+    }
+
+    fn learn(&mut self, bit: u32) {
+        if bit == 0 {
+            self.fast += (u16::MAX - self.fast) >> 4;
+            self.slow += (u16::MAX - self.slow) >> 7;
+        } else {
+            self.fast -= self.fast >> 4;
+            self.slow -= self.slow >> 7;
+        }
+    }
+}
+
+/// Below this the range is widened by a byte.
+const LEAST_RANGE: u32 = 1 << 24;
+
+/// Writes bits.
+#[cfg(feature = "write")]
+#[derive(Debug)]
+pub(crate) struct Writer {
+    out: Vec<u8>,
+    low: u64,
+    range: u32,
+    /// The byte that a carry may still change, and how many bytes of 255 follow it.
+    held: u8,
+    after_held: u64,
+    is_first: bool,
+}
+
+#[cfg(feature = "write")]
+impl Writer {
+    /// Writes behind what is in `out`.
+    pub(crate) fn new(out: Vec<u8>) -> Self {
+        Self { out, low: 0, range: u32::MAX, held: 0, after_held: 0, is_first: true }
+    }
+
+    /// All bytes.
+    pub(crate) fn finish(mut self) -> Vec<u8> {
+        for _ in 0..5 {
+            self.shift();
+        }
+        self.out
+    }
+
+    fn shift(&mut self) {
+        let carry = (self.low >> 32) as u8;
+        if carry == 1 || self.low < 0xff00_0000 {
+            if !self.is_first {
+                self.out.push(self.held.wrapping_add(carry));
+            }
+            for _ in 0..self.after_held {
+                self.out.push(0xff_u8.wrapping_add(carry));
+            }
+            (self.is_first, self.after_held) = (false, 0);
+            self.held = (self.low >> 24) as u8;
+        } else {
+            self.after_held += 1;
+        }
+        self.low = (self.low & 0x00ff_ffff) << 8;
+    }
+
+    fn narrow(&mut self, bound: u32, bit: u32) {
+        if bit == 0 {
+            self.range = bound;
+        } else {
+            self.low += u64::from(bound);
+            self.range -= bound;
+        }
+        while self.range < LEAST_RANGE {
+            self.range <<= 8;
+            self.shift();
+        }
+    }
+}
+
+#[cfg(feature = "write")]
+impl Bits for Writer {
+    fn bit(&mut self, model: &mut Model, bit: u32) -> u32 {
+        self.narrow((self.range >> 16) * model.of_zero(), bit);
+        model.learn(bit);
+        bit
+    }
+
+    fn even(&mut self, bit: u32) -> u32 {
+        self.narrow(self.range >> 1, bit);
+        bit
+    }
+}
+
+/// Reads bits. Beyond the end it reads zeros, so that work is bounded by what is asked for; [`Reader::is_exact`] tells
+/// afterwards.
+#[derive(Debug)]
+pub(crate) struct Reader<'a> {
+    bytes: &'a [u8],
+    /// Bytes taken, those beyond the end included.
+    taken: usize,
+    code: u32,
+    range: u32,
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
+        let mut reader = Self { bytes, taken: 0, code: 0, range: u32::MAX };
+        for _ in 0..4 {
+            reader.widen();
+        }
+        reader
+    }
+
+    /// Whether exactly the bytes that are there were read.
+    pub(crate) fn is_exact(&self) -> bool {
+        self.taken == self.bytes.len()
+    }
+
+    fn widen(&mut self) {
+        let byte = self.bytes.get(self.taken).copied().unwrap_or_default();
+        self.taken += 1;
+        self.code = (self.code << 8) | u32::from(byte);
+    }
+
+    fn narrow(&mut self, bound: u32) -> u32 {
+        let bit = u32::from(self.code >= bound);
+        if bit == 0 {
+            self.range = bound;
+        } else {
+            self.code -= bound;
+            self.range -= bound;
+        }
+        while self.range < LEAST_RANGE {
+            self.range <<= 8;
+            self.widen();
+        }
+        bit
+    }
+}
+
+impl Bits for Reader<'_> {
+    fn bit(&mut self, model: &mut Model, _: u32) -> u32 {
+        let bit = self.narrow((self.range >> 16) * model.of_zero());
+        model.learn(bit);
+        bit
+    }
+
+    fn even(&mut self, _: u32) -> u32 {
+        self.narrow(self.range >> 1)
+    }
+}
+
+#[cfg(all(test, feature = "write"))]
+#[path = "range_coder_tests.rs"]
+mod tests;

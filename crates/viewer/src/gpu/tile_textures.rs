@@ -1,0 +1,106 @@
+//! The textures of a tile's ground on the graphics card, in one bind group.
+
+use wgpu::{
+    BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingResource, BindingType, BufferUsages,
+    Device, RenderPass, SamplerBindingType, ShaderStages, TextureFormat, TextureSampleType,
+    util::{DeviceExt as _, TextureDataOrder},
+};
+
+use super::{
+    Gpu,
+    bindings::{group, layout, texture, uniform},
+    photo_texture::{self, PhotoTexture},
+};
+use crate::tiles::{PhotoImage, ShadingSlopes, TileGeometry};
+
+/// The number of the bind group.
+const GROUP: u32 = 3;
+
+/// The textures of a tile's ground, as `shaders/relief.wgsl` and `shaders/photo.wgsl` declare them.
+pub(crate) struct TileTextures {
+    group: BindGroup,
+    bytes: u64,
+}
+
+/// The layout of the bind group: the block `struct TileTextures`, a sampler, the slopes; the photo, its sampler.
+pub(crate) fn layout_of(device: &Device) -> BindGroupLayout {
+    let sampler = |binding| BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::FRAGMENT,
+        ty: BindingType::Sampler(SamplerBindingType::Filtering),
+        count: None,
+    };
+    let [slopes, photo] =
+        [2, 3].map(|binding| texture(binding, TextureSampleType::Float { filterable: true }));
+    layout(device, "tile textures", &[uniform(0, None), sampler(1), slopes, photo, sampler(4)])
+}
+
+/// The block `struct TileTextures`.
+pub(crate) fn rows(tile: &TileGeometry) -> [[f32; 4]; 1] {
+    let [east, north] = tile.size_m.map(|side_m| (1.0 / side_m) as f32);
+    [[east, north, f32::from(u8::from(tile.shading.is_some())), 0.0]]
+}
+
+impl TileTextures {
+    /// Uploads the textures of a tile. Without slopes there is a texel that nothing reads.
+    pub(crate) fn new(gpu: &Gpu, tile: &TileGeometry) -> Self {
+        let (side, texels) = match &tile.shading {
+            Some(slopes) => (ShadingSlopes::SIDE as u32, bytemuck::cast_slice(slopes.texels())),
+            None => (1, &[0_u8; 4][..]),
+        };
+        let descriptor = wgpu::TextureDescriptor {
+            label: Some("slopes"),
+            size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: TextureFormat::Rg16Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        };
+        let slopes = gpu.device.create_texture_with_data(
+            &gpu.queue,
+            &descriptor,
+            TextureDataOrder::LayerMajor,
+            texels,
+        );
+        let view = slopes.create_view(&wgpu::TextureViewDescriptor::default());
+        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("tile textures"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        let block =
+            gpu.buffer("tile textures", bytemuck::cast_slice(&rows(tile)), BufferUsages::UNIFORM);
+        let photo = tile.photo.as_ref();
+        let photo =
+            photo.map_or_else(|| PhotoTexture::none(gpu), |photo| PhotoTexture::new(gpu, photo));
+        let photo_sampler = photo_texture::sampler(&gpu.device);
+        let resources = [
+            block.as_entire_binding(),
+            BindingResource::Sampler(&sampler),
+            BindingResource::TextureView(&view),
+            BindingResource::TextureView(photo.view()),
+            BindingResource::Sampler(&photo_sampler),
+        ];
+        Self { group: group(gpu, &layout_of(&gpu.device), &resources), bytes: Self::bytes_of(tile) }
+    }
+
+    /// Bytes of the textures that [`TileTextures::new`] makes.
+    pub(crate) fn bytes_of(tile: &TileGeometry) -> u64 {
+        let slopes = tile.shading.as_ref().map_or(4, |slopes| size_of_val(slopes.texels()));
+        let photo = tile.photo.as_ref().map_or(4, PhotoImage::bytes);
+        (slopes + size_of_val(&rows(tile))) as u64 + photo
+    }
+
+    /// Bytes on the graphics card.
+    pub(crate) fn gpu_bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Binds them.
+    pub(crate) fn set(&self, pass: &mut RenderPass<'_>) {
+        pass.set_bind_group(GROUP, &self.group, &[]);
+    }
+}

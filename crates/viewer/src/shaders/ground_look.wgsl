@@ -1,0 +1,92 @@
+// The look of the ground: its colour by height, and the light on it.
+//
+// The rules are those of Imhof, Cartographic Relief Presentation (1965; English edition 1982), chapters 9, 10 and 13; the
+// formulas are ours. Colours are mixed as they are stored, in sRGB: the picture is a map and not a photograph.
+
+const TINT_STOPS = 12u;
+
+// The same fields as in gpu/drawables/terrain.rs, in the same order.
+struct GroundColors {
+    // xyz: towards the light; w: strength of the hillshade.
+    light: vec4<f32>,
+    // xyz: towards the second light; w: how much darker steep slopes are.
+    second_light: vec4<f32>,
+    // x: lowest ground; y: 1 / height range; z: how much steeper the gentlest slopes are shaded; w: number of stops.
+    heights: vec4<f32>,
+    // rgb; w: how much of the haze's colour far valleys take.
+    haze: vec4<f32>,
+    // rgb; w: 1 / distance at which a valley has two thirds of its haze.
+    shadow: vec4<f32>,
+    // rgb; w: height of the wall along the edge of the data, world metres.
+    sunlit: vec4<f32>,
+    // rgb; w: how strongly photos are seen.
+    water: vec4<f32>,
+    wall: vec4<f32>,
+    // rgb; w: height, metres.
+    tint: array<vec4<f32>, TINT_STOPS>,
+}
+
+@group(2) @binding(0) var<uniform> colors: GroundColors;
+
+// Slopes gentler than this are shaded as if they were steeper; tangent of the angle.
+const GENTLE_SLOPE = 0.12;
+// Level ground: its normal leans by less than this; tangent of the angle.
+const LEVEL_SLOPE = 0.0015;
+
+// Colour of the ground at a true height.
+fn tint_at(height_m: f32) -> vec3<f32> {
+    var color = colors.tint[0].rgb;
+    for (var k = 1u; k < u32(colors.heights.w); k++) {
+        let low = colors.tint[k - 1u].w;
+        let t = clamp((height_m - low) / (colors.tint[k].w - low), 0.0, 1.0);
+        color = mix(color, colors.tint[k].rgb, t);
+    }
+    return color;
+}
+
+// Level ground at or below the sea is water.
+fn is_water(normal: vec3<f32>, height_m: f32) -> bool {
+    return height_m <= 0.0 && length(normal.xy) <= LEVEL_SLOPE * normal.z;
+}
+
+// How much light a slope gets from one direction: 1 on level ground, less on slopes turned away, below 0 beyond a right angle.
+fn light_from(towards: vec3<f32>, normal: vec3<f32>) -> f32 {
+    return dot(normal, towards) / max(towards.z, 0.17);
+}
+
+// The light on a slope: 1 on level ground.
+//
+// A slope that runs along the light is neither lit nor in shadow, and its form is lost. There the second light, from farther
+// left, takes over. (Mark, Multidirectional, oblique-weighted, shaded-relief image of the Island of Hawaii, 1992, weights
+// several lights by the aspect in the same way.)
+fn light_on(normal: vec3<f32>) -> f32 {
+    let across = cross(vec3(colors.light.xy, 0.0), vec3(normal.xy, 0.0)).z;
+    let along = length(colors.light.xy) * length(normal.xy);
+    let turned = select(0.0, across * across / max(along * along, 1e-12), along > 0.0);
+    let first = light_from(colors.light.xyz, normal);
+    return mix(first, light_from(colors.second_light.xyz, normal), 0.6 * turned);
+}
+
+// Shades a colour, more or less strongly. `normal` is the unit normal of the ground as it is drawn, exaggeration included.
+fn shaded(color: vec3<f32>, normal: vec3<f32>, strength: f32) -> vec3<f32> {
+    // Gentle ground is shaded as if it were steeper; steep ground as it is.
+    let slope = length(normal.xy) / max(normal.z, 1e-3);
+    let s2 = GENTLE_SLOPE * GENTLE_SLOPE;
+    let steeper = 1.0 + (colors.heights.z - 1.0) * s2 / (s2 + slope * slope);
+    let seen = normalize(vec3(normal.xy * steeper, normal.z));
+    let light = light_on(seen);
+    // Shadow grows ever more slowly and is never full, so that shadow sides keep their form.
+    let lacking = max(1.0 - light, 0.0);
+    let steep = strength * colors.second_light.w * (1.0 - seen.z);
+    let dark = strength * colors.light.w * (1.0 - exp(-1.15 * lacking));
+    let bright = strength * colors.light.w * 0.75 * (1.0 - exp(-1.6 * max(light - 1.0, 0.0)));
+    let in_shadow = mix(color, color * colors.shadow.rgb, dark) * (1.0 - steep);
+    return mix(in_shadow, colors.sunlit.rgb, bright * (1.0 - steep));
+}
+
+// Far valleys take the colour of the haze, so that the heights come forward.
+fn hazy(color: vec3<f32>, height_m: f32, distance_m: f32) -> vec3<f32> {
+    let share = clamp((height_m - colors.heights.x) * colors.heights.y, 0.0, 1.0);
+    let near = exp(-distance_m * colors.shadow.w);
+    return mix(color, colors.haze.rgb, colors.haze.w * exp(-4.0 * share) * (1.0 - near));
+}

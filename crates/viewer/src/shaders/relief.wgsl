@@ -1,0 +1,26 @@
+// The unit normal of the ground at a pixel: from the tile's relief, whatever its triangles, or from their vertices.
+// Texel (column, row) of the slopes is node (column, row) of the tile, row 0 in the north. So both sides of a border read the
+// same two nodes between the same texels, and shading goes on without a step.
+
+struct TileTextures {
+    // xy: 1 / the tile's sides east and north; z: 1 where there are slopes, else 0.
+    plan: vec4<f32>,
+}
+
+@group(3) @binding(0) var<uniform> tile_textures: TileTextures;
+@group(3) @binding(1) var tile_sampler: sampler;
+// Rise in metres per metre east and north.
+@group(3) @binding(2) var slopes: texture_2d<f32>;
+
+// `vertex_normal` is that of the stretched ground, of any length; `plan_in_tile` is in metres from the tile's middle.
+fn ground_normal(vertex_normal: vec3<f32>, plan_in_tile: vec2<f32>) -> vec3<f32> {
+    if tile_textures.plan.z == 0.0 {
+        return normalize(vertex_normal);
+    }
+    let share = vec2(0.5, 0.5) + vec2(1.0, -1.0) * plan_in_tile * tile_textures.plan.xy;
+    let nodes = vec2<f32>(textureDimensions(slopes));
+    // Node 0 is in the middle of the first texel, the last node in the middle of the last.
+    let at = (share * (nodes - 1.0) + 0.5) / nodes;
+    let rise = textureSampleLevel(slopes, tile_sampler, at, 0.0).xy * frame.scale.y;
+    return normalize(vec3(-rise, 1.0));
+}

@@ -1,0 +1,41 @@
+use super::*;
+
+const DATA: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 100_000.0, max_y: 50_000.0 };
+
+fn piece(at: [f64; 2], length_m: f64) -> ([f64; 2], f64) {
+    (at, length_m)
+}
+
+#[test]
+fn one_far_road_does_not_widen_the_map() {
+    let mut pieces: Vec<_> = (0..100).map(|k| piece([f64::from(k), 0.0], 10.0)).collect();
+    pieces.push(piece([9000.0, 0.0], 5.0));
+    let [west, east] = without_tails(&pieces, 0).unwrap();
+    assert!((west - 1.0).abs() < 1.5 && (east - 98.0).abs() < 1.5, "{west} {east}");
+    pieces.push(piece([9000.0, 0.0], 500.0));
+    assert_eq!(without_tails(&pieces, 0).unwrap()[1], 9000.0, "much road is no tail");
+}
+
+#[test]
+fn without_length_there_is_no_extent() {
+    assert_eq!(without_tails(&[], 0), None);
+    assert_eq!(without_tails(&[piece([1.0, 2.0], 0.0)], 0), None);
+}
+
+#[test]
+fn the_margin_stays_within_the_data() {
+    let roads = Bounds { min_x: 100.0, min_y: 10_000.0, max_x: 10_100.0, max_y: 12_000.0 };
+    let map = with_margin(roads, DATA);
+    assert_eq!(map, Bounds { min_x: 0.0, min_y: 9200.0, max_x: 10_900.0, max_y: 12_800.0 });
+    // A single point still gives a map, of a hundredth of the data.
+    let point = Bounds { min_x: 5e4, min_y: 2e4, max_x: 5e4, max_y: 2e4 };
+    assert_eq!(with_margin(point, DATA).width(), 1000.0);
+    let outside = Bounds { min_x: -9e4, min_y: 2e4, max_x: -8e4, max_y: 2e4 };
+    assert_eq!(with_margin(outside, DATA), DATA);
+}
+
+#[test]
+fn parts_of_segments_have_their_middle_and_length() {
+    let (at, length_m) = part_of([10.0, 0.0], [10.0, 100.0], 0.5, 1.0);
+    assert_eq!((at, length_m), ([10.0, 75.0], 50.0));
+}

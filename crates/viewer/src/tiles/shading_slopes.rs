@@ -1,0 +1,50 @@
+use corniche_geom::{Cell, TILE_NODES};
+use corniche_tileset::Relief;
+use half::f16;
+
+/// The slopes of the ground at all nodes of a tile, as texels: rise in metres per metre east and north, row 0 in the north.
+///
+/// Slopes and not normals, so that a stretched ground needs one product; both are mixed along a straight line between nodes. Half
+/// precision is exact to a 2048th of the slope.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ShadingSlopes {
+    /// Bits of half-precision numbers.
+    texels: Vec<[u16; 2]>,
+}
+
+/// Steeper slopes are cut: half precision ends at 65504.
+const STEEPEST: f64 = 32_768.0;
+
+impl ShadingSlopes {
+    /// Texels on a side.
+    pub(crate) const SIDE: usize = TILE_NODES;
+
+    /// From a relief whose nodes are a `cell` apart: on the border the slopes that it stores, inside those of its heights, by the rule
+    /// of vertex normals ([`corniche_tin::gradient`]). Nodes without height are level; no pixel of the ground reads them.
+    pub(crate) fn new(relief: &Relief, cell: Cell) -> Self {
+        let last = Self::SIDE - 1;
+        let mut texels = Vec::with_capacity(Self::SIDE * Self::SIDE);
+        for row in 0..=last {
+            for column in 0..=last {
+                let is_inside = (1..last).contains(&column) && (1..last).contains(&row);
+                let slopes = if is_inside {
+                    corniche_tin::gradient(relief.heights(), [column, row], cell)
+                } else {
+                    relief.border_slope(column, row).unwrap_or_default()
+                };
+                let half = |slope: f64| f16::from_f64(slope.clamp(-STEEPEST, STEEPEST)).to_bits();
+                texels.push(slopes.map(half));
+            }
+        }
+        Self { texels }
+    }
+
+    /// Row by row, as bits of half-precision numbers.
+    pub(crate) fn texels(&self) -> &[[u16; 2]] {
+        &self.texels
+    }
+}
+
+#[cfg(test)]
+#[path = "shading_slopes_tests.rs"]
+mod tests;

@@ -1,0 +1,177 @@
+//! Shading from reliefs: whatever the triangles, without a step between tiles, the same on every level.
+
+use corniche_geom::{HeightGrid, TileId};
+use corniche_styles::Style;
+use corniche_tileset::{Relief, TilePayload};
+use corniche_viewer::{
+    FrameView, RoadMethod, RoadOptions, Wireframe,
+    for_tests::PlanScale,
+    gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
+    tiles::TileGeometry,
+};
+
+use crate::{
+    camera,
+    support::{Drawing, QUANTUM_M, WIDTH_MARGIN_M, frame, gpu, terrain},
+};
+
+/// Smooth ground, with slopes up to a quarter.
+fn hills(x: f64, y: f64) -> f64 {
+    400.0 + 100.0 * (x / 520.0).sin() * (y / 610.0).cos()
+}
+
+/// A tile with a vertex every `step` nodes. Its relief has `beyond` in place of the heights beyond the tile's border.
+fn tile(
+    id: TileId,
+    step: u16,
+    height_m: &dyn Fn(f64, f64) -> f64,
+    beyond: Option<f64>,
+) -> TilePayload {
+    let window = frame().tile_window(id);
+    let (first, second) = (window.node(0, 0), window.node(1, 1));
+    let (di, dj) = (second.i - first.i, second.j - first.j);
+    let raster = HeightGrid::from_fn(259, 259, |column, row| {
+        let (i, j) = (column as i64 - 1, row as i64 - 1);
+        let inside = [i, j].iter().all(|at| (0..=256).contains(at));
+        let (x, y) = (frame().x_m(first.i + di * i), frame().y_m(first.j + dj * j));
+        beyond.filter(|_| !inside).unwrap_or_else(|| height_m(x, y)) as f32
+    });
+    let cell = frame().level_cell(id.z());
+    TilePayload {
+        id,
+        terrain: Some(terrain(id, step, height_m)),
+        relief: Some(Relief::of_heights(&raster, cell, QUANTUM_M).unwrap()),
+        roads_geo: vec![],
+        roads_sv: vec![],
+        attributes: vec![],
+    }
+}
+
+/// The four tiles of the finest level.
+fn finest(step: u16, height_m: &dyn Fn(f64, f64) -> f64) -> Vec<TilePayload> {
+    TileId::ROOT.children().map(|id| tile(id, step, height_m, None)).collect()
+}
+
+fn without_relief(tiles: Vec<TilePayload>) -> Vec<TilePayload> {
+    tiles.into_iter().map(|tile| TilePayload { relief: None, ..tile }).collect()
+}
+
+/// Draws tiles straight from above. All ground has one tint, so colours tell of slopes alone.
+fn draw(gpu: &Gpu, payloads: &[TilePayload], exaggeration: f64) -> Drawing {
+    let mut style = Style::road_atlas();
+    style.tint.iter_mut().for_each(|(_, rgb)| *rgb = [0.8; 3]);
+    let scale = PlanScale::uniform([1.0; 2]);
+    let buffers: Vec<TileBuffers> = payloads
+        .iter()
+        .map(|payload| {
+            let tile = TileGeometry::from_payload(
+                payload,
+                &frame(),
+                QUANTUM_M,
+                WIDTH_MARGIN_M,
+                scale.clone(),
+            );
+            TileBuffers::new(gpu, &tile.unwrap())
+        })
+        .collect();
+    let tiles: Vec<DrawTile<'_>> =
+        buffers.iter().map(|buffers| DrawTile { buffers, skirt_depth_m: 0.0 }).collect();
+    let camera = camera(400.0 * exaggeration, 5000.0, 0.0, 0.0);
+    let targets = Targets::new(gpu, camera.size_px(), 1).unwrap();
+    let view = FrameView {
+        camera: &camera,
+        style: &style,
+        roads: RoadOptions::of(RoadMethod::None),
+        exaggeration,
+        point_scale: 1.0,
+        height_range_m: [0.0, 1000.0],
+        wireframe: Wireframe::Hidden,
+    };
+    Renderer::new(gpu).draw(gpu, &view, &tiles, &targets);
+    Drawing::read(gpu, &targets)
+}
+
+/// The green of each pixel of the ground, 0 to 255; `None` beside it.
+fn greys(drawing: &Drawing) -> Vec<Option<i32>> {
+    let texels = drawing.ground.as_chunks::<4>().0;
+    texels.iter().map(|[_, green, _, alpha]| (*alpha == 255).then_some(i32::from(*green))).collect()
+}
+
+/// The largest difference of two drawings over the pixels that both have.
+fn largest_difference(one: &Drawing, other: &Drawing) -> i32 {
+    let (one, other) = (greys(one), greys(other));
+    let both =
+        one.iter().zip(&other).filter_map(|(one, other)| Some((((*one)?) - ((*other)?)).abs()));
+    assert!(both.clone().count() > 100_000, "the ground fills the picture");
+    both.max().unwrap()
+}
+
+/// By how much neighbouring pixels of two tiles differ more than the pixels beside them, at most, in grey levels.
+fn largest_step(drawing: &Drawing) -> i32 {
+    let greys = greys(drawing);
+    let width = drawing.size_px[0] as usize;
+    let mut largest = 0;
+    let mut crossings = 0;
+    for stride in [1, width] {
+        for at in 3 * stride..greys.len() - 3 * stride {
+            if drawing.owners[at] == drawing.owners[at + stride] {
+                continue;
+            }
+            let line = [at - stride, at, at + stride, at + 2 * stride].map(|at| greys[at]);
+            let [Some(a), Some(b), Some(c), Some(d)] = line else { continue };
+            crossings += 1;
+            largest = largest.max((c - b).abs() - (b - a).abs().max((d - c).abs()));
+        }
+    }
+    assert!(crossings > 800, "{crossings} pixels beside a border");
+    largest
+}
+
+#[test]
+fn shading_does_not_depend_on_the_triangles() {
+    let Some(gpu) = gpu() else { return };
+    let [fine, coarse] = [2, 64].map(|step| finest(step, &hills));
+    let difference = largest_difference(&draw(&gpu, &fine, 1.0), &draw(&gpu, &coarse, 1.0));
+    assert!(difference <= 2, "{difference} grey levels");
+    let without = without_relief(coarse);
+    let difference = largest_difference(&draw(&gpu, &fine, 1.0), &draw(&gpu, &without, 1.0));
+    assert!(difference > 8, "without a relief the triangles show, but differ by {difference} only");
+}
+
+#[test]
+fn there_is_no_step_between_tiles() {
+    let Some(gpu) = gpu() else { return };
+    let step = largest_step(&draw(&gpu, &finest(32, &hills), 1.0));
+    assert!(step <= 1, "{step} grey levels");
+    // Each tile for itself: what lies beyond its border is another height.
+    let children = TileId::ROOT.children();
+    let alone: Vec<TilePayload> = children.map(|id| tile(id, 32, &hills, Some(390.0))).collect();
+    let step = largest_step(&draw(&gpu, &alone, 1.0));
+    assert!(step > 4, "the measure sees a step of {step} grey levels only");
+}
+
+#[test]
+fn levels_differ_by_one_grey_level_at_most() {
+    let Some(gpu) = gpu() else { return };
+    let root = [tile(TileId::ROOT, 32, &hills, None)];
+    let difference =
+        largest_difference(&draw(&gpu, &root, 1.0), &draw(&gpu, &finest(64, &hills), 1.0));
+    assert!(difference <= 1, "{difference} grey levels");
+}
+
+#[test]
+fn stretched_ground_is_shaded_as_ground_of_that_height() {
+    let Some(gpu) = gpu() else { return };
+    let stretched = draw(&gpu, &finest(32, &hills), 2.0);
+    let high = draw(&gpu, &finest(32, &|x, y| 2.0 * hills(x, y)), 1.0);
+    // The eye is at another height over the second, so only what both show near the middle is compared.
+    let (one, other) = (greys(&stretched), greys(&high));
+    let [width, height] = stretched.size_px.map(|side| side as usize);
+    for row in height / 2 - 2..height / 2 + 2 {
+        for column in width / 2 - 2..width / 2 + 2 {
+            let at = row * width + column;
+            let (one, other) = (one[at].unwrap(), other[at].unwrap());
+            assert!((one - other).abs() <= 2, "{one} and {other}");
+        }
+    }
+}
