@@ -8,12 +8,12 @@ use std::{
 };
 
 use corniche_testing::ColourImage;
-use e2e::{Job, Ran, When, corniche, draw, json, manifest, real_data, sample, skipped, text};
+use e2e::{Job, Ran, When, corniche, draw, manifest, real_data, sample, skipped, text};
 
 /// A photo over the middle of the sample `pass`, in degrees; the sample is in UTM zone 32. Its colours change over some cells.
 fn photo(folder: &Path, west: f64, name: &str) -> PathBuf {
-    let info = json(&["info", "--json", text(&pass(folder))]);
-    let bounds = &info["wgs84_bounds"];
+    let plain = manifest(&pass(folder));
+    let bounds = &plain["wgs84_bounds"];
     let at = |key: &str| bounds[key].as_f64().unwrap();
     let (min_x, max_x, min_y, max_y) = (at("min_x"), at("max_x"), at("min_y"), at("max_y"));
     let (width, height) = (max_x - min_x, max_y - min_y);
@@ -140,7 +140,7 @@ fn a_package_with_photos_keeps_its_promises_and_is_the_same_however_it_is_made()
     succeed(corniche(words));
     assert!(fs::read(&from).unwrap() == whole, "terrain of a package makes another one");
     let ran = corniche([&words[..], &["-O", "--photo", text(&west)]].concat());
-    assert_eq!(ran.code, 1);
+    assert_eq!(ran.code, 2, "{}", ran.err);
     assert!(ran.err.contains("--photo cannot be laid on the terrain of"), "{}", ran.err);
 
     // A part of the data has photos in that part alone.
@@ -175,13 +175,15 @@ fn a_build_that_was_stopped_goes_on_to_the_same_bytes() {
     whole.succeed(&["--quiet"]);
     for signal in ["TERM", "KILL"] {
         let job = Job::new(&options);
-        job.stop(&[], signal, When::Worked);
+        let stopped = job.stop(&[], signal, When::Worked);
+        assert_ne!(stopped.code, 0, "{signal}: it ended by itself");
         job.succeed(&["--quiet", "--resume"]);
         assert!(job.result() == whole.result(), "{signal}");
     }
     // Another quality is another build.
     let job = Job::new(&options);
-    job.stop(&[], "TERM", When::Worked);
+    let stopped = job.stop(&[], "TERM", When::Worked);
+    assert_eq!(stopped.code, 4, "{}", stopped.err);
     let ran = job.run(&["--quiet", "--resume", "--photo-quality", "50"]);
     assert_eq!(ran.code, 1);
     assert!(ran.err.contains("--photo-quality is 50"), "{}", ran.err);
@@ -195,7 +197,7 @@ fn options_without_photos_and_photos_elsewhere_are_refused() {
     let refused = |options: &[&str]| {
         let words = ["build", "-q", "--dem", text(&dem), "-o", text(&package)];
         let ran = corniche([&words[..], options].concat());
-        assert_eq!(ran.code, 1, "{options:?}: {}", ran.err);
+        assert_eq!(ran.code, 2, "{options:?}: {}", ran.err);
         assert!(!package.exists());
         ran.err
     };
@@ -242,6 +244,65 @@ fn photos_are_drawn_as_strongly_as_is_asked() {
     assert!(difference(&half, &full) > 0.1 && difference(&half, &off) > 0.1);
     let ran = corniche(["render", text(&at("photo.pmtiles")), "-o", "x.png", "--photo", "2"]);
     assert!(ran.code != 0 && ran.err.contains("from 0 to 1"), "{}", ran.err);
+}
+
+/// Over tile borders, and from one level to the next, a smooth photo stays smooth: neighbouring pixels never jump. Without the border
+/// that tiles share, or with a shift of half a texel, they do.
+#[test]
+fn no_border_of_tiles_is_seen_in_a_smooth_photo() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let (west, east) =
+        (photo(folder.path(), 0.05, "west.tif"), photo(folder.path(), 0.45, "east.tif"));
+    build(&inputs(&[&west, &east]), &at("photo.pmtiles"), &["--photo-quality", "95"]);
+    let sheet = fs::read_to_string(e2e::root().join("crates/styles/sheets/photo.toml")).unwrap();
+    let flat = sheet
+        .replace("hillshade = 0.4", "hillshade = 0")
+        .replace("haze_reach = 6", "haze_reach = 1000");
+    assert_ne!(flat, sheet);
+    fs::write(at("flat.toml"), flat).unwrap();
+    let found = manifest(&at("photo.pmtiles"));
+    let middle = |low: &str, high: &str| {
+        let bounds = &found["wgs84_bounds"];
+        f64::midpoint(bounds[low].as_f64().unwrap(), bounds[high].as_f64().unwrap())
+    };
+    let place = format!("{},{}", middle("min_x", "max_x"), middle("min_y", "max_y"));
+    let style = at("flat.toml");
+    for distance in ["2500", "5000", "9000"] {
+        let options = [
+            "--size",
+            "500x400",
+            "--supersampling",
+            "1",
+            "--roads",
+            "none",
+            "--pitch",
+            "0",
+            "--look-at",
+            &place,
+            "--distance",
+            distance,
+            "--style",
+            text(&style),
+            "-O",
+        ];
+        if draw("render", &at("photo.pmtiles"), &at("smooth.png"), &options).is_none() {
+            return;
+        }
+        let picture = image::open(at("smooth.png")).unwrap().to_rgb8();
+        let mut worst = 0;
+        for y in 61..340 {
+            for x in 61..440 {
+                for [dx, dy] in [[1, 0], [0, 1]] {
+                    let [a, b, c] = [(x - dx, y - dy), (x, y), (x + dx, y + dy)]
+                        .map(|(x, y)| picture.get_pixel(x, y).0.map(i32::from));
+                    let bend = (0..3).map(|k| (a[k] - 2 * b[k] + c[k]).abs()).max().unwrap();
+                    worst = worst.max(bend);
+                }
+            }
+        }
+        assert!(worst <= 12, "{distance} m: a jump of {worst} grey levels");
+    }
 }
 
 /// Real photos: one far finer than its DEM, and one on the grid of a DEM that says `PixelIsPoint`.

@@ -16,7 +16,7 @@ use gdal::{
 
 /// A DEM of 10 m cells in UTM zone 32: one tile of 256 × 256 cells, its samples on whole cells.
 const WEST_M: f64 = 512_000.0;
-const NORTH_M: f64 = 5_220_480.0;
+const NORTH_M: f64 = 5_222_400.0;
 const CELL_M: f64 = 10.0;
 
 fn grid(folder: &Path) -> GridPlan {
@@ -46,7 +46,10 @@ fn refused(files: &[PathBuf]) -> String {
 }
 
 /// A photo with the DEM's cells, on its nodes' squares, in UTM.
-fn on_cells(value: &dyn Fn([f64; 2]) -> Vec<u8>, interpretations: &'static [C]) -> ColourImage<'_> {
+fn on_cells<'a>(
+    value: &'a dyn Fn([f64; 2]) -> Vec<u8>,
+    interpretations: &'a [C],
+) -> ColourImage<'a> {
     ColourImage {
         epsg: 32632,
         size: [256, 256],
