@@ -2,8 +2,12 @@
 
 use std::path::Path;
 
+use corniche_presets::class_labels;
 use corniche_styles::OwnWidths;
-use corniche_viewer::{RenderError, RenderRequest, render, tiles::PackageSource};
+use corniche_viewer::{
+    RenderError, RenderRequest, render,
+    tiles::{MapPackage as _, PackageSource},
+};
 
 use crate::{
     args::RenderArgs,
@@ -32,12 +36,15 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         exaggeration: args.ground.exaggeration,
         supersampling: args.supersampling,
         style,
+        legend: None,
     };
     let output = Output::create(&args.output, existing_of(args.overwrite), &used)?;
     Format::Picture.refuse_others(&args.output)?;
     request.check()?;
     let package =
         PackageSource::open(&args.package)?.for_look(request.roads.method, &request.style);
+    let legend = args.legend.then(|| class_labels(&package.manifest().settings.frc_table));
+    let request = RenderRequest { legend, ..request };
     let rendered = render(&request, &package, &interrupt::is_noted)?;
     output.write_whole(&png(&rendered.picture)?)?;
     let report = &rendered.report;

@@ -5,6 +5,7 @@
 
 mod bounds;
 mod class_cells;
+mod class_labels;
 mod classes;
 mod config;
 mod error;
@@ -17,6 +18,7 @@ mod values;
 
 pub use bounds::BoundsChoice;
 pub use class_cells::class_filter;
+pub use class_labels::class_labels;
 pub use classes::Classes;
 pub use config::{Config, ResourceOptions, RoadOptions, TerrainOptions};
 pub use error::PresetError;

@@ -18,7 +18,7 @@
 //! This crate never depends on `pipeline`, `dem` or `osm`: it learns everything from the package. It never
 //! writes a file.
 
-mod attribution;
+mod annotations;
 pub mod camera;
 mod class_scale;
 pub mod eye_height;
@@ -51,7 +51,7 @@ pub mod for_tests {
     };
 }
 
-pub use attribution::draw_attribution;
+pub use annotations::{Legend, LegendRoad, draw_attribution, draw_legend};
 pub use class_scale::LevelScales;
 pub use frame_view::{FrameView, Wireframe};
 pub use options::{CapTest, Caps, ClassSet, Outline, RoadMethod, RoadOptions, WidthGrowth};

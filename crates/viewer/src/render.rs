@@ -1,19 +1,20 @@
 use image::RgbaImage;
 
+use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
 
 use crate::{
-    attribution::draw_attribution,
+    annotations::{Legend, LegendRoad, draw_attribution, draw_legend},
     camera::Camera,
-    class_scale::LevelScales,
+    class_scale::{self, LevelScales},
     eye_height::{clearance_m, rounded_up_m},
     frame_view::{FrameView, Wireframe},
     gpu::{DrawTile, Gpu, GpuError, ReadBackError, Renderer, Targets, TileBuffers},
     lod::{Drawn, Quality},
-    options::RoadOptions,
+    options::{ClassSet, RoadMethod, RoadOptions},
     range::{self, OutOfRange},
     scene::{self, SettleError},
-    tiles::{BlockingPackage, LoadTileError, TileStore},
+    tiles::{BlockingPackage, LoadTileError, TileGeometry, TileStore},
     viewpoint::{CameraRequest, OffGround, SightedGround},
 };
 
@@ -38,6 +39,8 @@ pub struct RenderRequest {
     pub supersampling: u32,
     /// Colours and widths.
     pub style: Style,
+    /// What the classes of roads are called, 0 first, if the picture has a legend.
+    pub legend: Option<[String; FunctionalRoadClass::COUNT]>,
 }
 
 impl RenderRequest {
@@ -178,6 +181,10 @@ pub fn render(
     if is_stopped() {
         return Err(RenderError::Stopped);
     }
+    if let Some(labels) = &request.legend {
+        let classes = drawn_classes(scene::draw_list(&store, &drawn).map(|(tile, _)| tile), &view);
+        draw_legend(&mut picture, &legend(&view, labels, &classes));
+    }
     draw_attribution(&mut picture, &package.manifest().attribution);
 
     let eye = camera.eye_in_world();
@@ -227,6 +234,46 @@ fn camera(
         check_above_ground(&camera, store, vertical_scale, point_scale)?;
     }
     Ok(camera)
+}
+
+/// The classes of roads of which some tile of the view has a piece that is shown in the middle of the picture or nearer.
+fn drawn_classes<'a>(
+    tiles: impl Iterator<Item = &'a TileGeometry>,
+    view: &FrameView<'_>,
+) -> Vec<FunctionalRoadClass> {
+    let shown = class_scale::shown_classes(view, view.camera.focus_m());
+    let mut classes = ClassSet::NONE;
+    for tile in tiles {
+        let has = |class: FunctionalRoadClass| match view.roads.method {
+            RoadMethod::Geometry => !tile.roads.range_of(class).is_empty(),
+            RoadMethod::ShadowVolumes => !tile.volumes.range_of(class).is_empty(),
+            RoadMethod::None => false,
+        };
+        classes =
+            FunctionalRoadClass::all().filter(|class| has(*class)).fold(classes, ClassSet::with);
+    }
+    let classes = classes.and(shown);
+    FunctionalRoadClass::all().filter(|class| classes.contains(*class)).collect()
+}
+
+/// What the legend of a picture tells.
+fn legend(
+    view: &FrameView<'_>,
+    labels: &[String; FunctionalRoadClass::COUNT],
+    classes: &[FunctionalRoadClass],
+) -> Legend {
+    let axes = view.camera.world_from_view();
+    let road = |class: &FunctionalRoadClass| {
+        let style = view.style.road(*class);
+        let label = labels[usize::from(class.number())].clone();
+        LegendRoad { label, color: style.color, outline: style.outline }
+    };
+    Legend {
+        pixel_m: view.camera.pixel_at_unit_depth_m() * view.camera.focus_m() / view.point_scale,
+        // The right axis of the view is level, and points as far from the east as north is from the top of the picture.
+        north_deg: axes.x_axis.y.atan2(axes.x_axis.x).to_degrees(),
+        roads: classes.iter().map(road).collect(),
+    }
 }
 
 /// How many tiles are drawn on each level, coarse levels first.

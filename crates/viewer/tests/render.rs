@@ -26,6 +26,7 @@ fn request(package: &Path) -> RenderRequest {
         cell_px: f64::INFINITY,
         exaggeration: 1.0,
         supersampling: 2,
+        legend: None,
         style: Style::road_atlas(),
     }
 }

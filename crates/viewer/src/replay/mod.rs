@@ -29,7 +29,7 @@ use self::{
     timetable::Timetable,
 };
 use crate::{
-    attribution::draw_attribution,
+    annotations::draw_attribution,
     camera::Camera,
     class_scale::LevelScales,
     flight::{Flight, Pose},

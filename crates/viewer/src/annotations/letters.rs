@@ -1,60 +1,50 @@
+//! Text, boxes and lines on a picture in memory.
+
+use std::ops::{Range, RangeInclusive};
+
 use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
 use image::RgbaImage;
 
 /// Smallest and largest height of a line of text, pixels.
-const LINE_PX: std::ops::RangeInclusive<u32> = 14..=28;
+const LINE_PX: RangeInclusive<u32> = 14..=28;
 /// How many lines of text would fill the picture's height; their height stays within [`LINE_PX`].
 const LINES_PER_PICTURE: u32 = 52;
 /// Colour and opacity of the box behind the letters.
 const BOX: ([f32; 3], f32) = ([255.0, 255.0, 255.0], 0.78);
-const INK: [f32; 3] = [32.0, 36.0, 40.0];
+/// Colour of letters.
+pub(crate) const INK: [f32; 3] = [32.0, 36.0, 40.0];
 
-/// Writes credits into the lower right corner, on a light box. Without credits the picture stays as it is.
-///
-/// Lines that are too long for the picture are broken between words.
-pub fn draw_attribution(picture: &mut RgbaImage, credits: &[String]) {
-    let (width, height) = picture.dimensions();
-    let line_px = (height / LINES_PER_PICTURE).clamp(*LINE_PX.start(), *LINE_PX.end());
-    let pad_px = line_px / 2;
-    // The font is part of the program, so it can be parsed; otherwise nothing could be written.
-    let Ok(font) = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT) else { return };
-    let letters = Letters { font: &font, scale: PxScale::from(line_px as f32) };
-    let room_px = width.saturating_sub(2 * pad_px) as f32;
-    let lines: Vec<String> =
-        credits.iter().flat_map(|credit| letters.wrap(credit, room_px)).collect();
-    if lines.is_empty() {
-        return;
-    }
-    let widest_px =
-        lines.iter().fold(0.0, |widest: f32, line| widest.max(letters.width_px(line))).ceil()
-            as u32;
-    let left = width.saturating_sub(widest_px + 2 * pad_px);
-    let top = height.saturating_sub(lines.len() as u32 * line_px + pad_px);
-    for y in top..height {
-        for x in left..width {
-            blend(picture, x, y, BOX.0, BOX.1);
-        }
-    }
-    for (line, row) in lines.iter().zip(0_u32..) {
-        let x_px = width as f32 - pad_px as f32 - letters.width_px(line);
-        let y_px = (top + pad_px / 2 + row * line_px) as f32;
-        letters.draw(picture, line, x_px, y_px);
-    }
+/// Height of a line of text on a picture of this height, pixels.
+pub(crate) fn line_px(picture_height: u32) -> u32 {
+    (picture_height / LINES_PER_PICTURE).clamp(*LINE_PX.start(), *LINE_PX.end())
 }
 
-struct Letters<'a> {
-    font: &'a FontRef<'a>,
+/// Letters of one size.
+pub(crate) struct Letters {
+    font: FontRef<'static>,
     scale: PxScale,
 }
 
-impl Letters<'_> {
-    fn width_px(&self, text: &str) -> f32 {
+impl Letters {
+    /// Letters for lines of this height.
+    pub(crate) fn new(line_px: u32) -> Option<Self> {
+        // The font is part of the program, so it can be parsed; otherwise nothing could be written.
+        let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).ok()?;
+        Some(Self { font, scale: PxScale::from(line_px as f32) })
+    }
+
+    pub(crate) fn width_px(&self, text: &str) -> f32 {
         let scaled = self.font.as_scaled(self.scale);
         text.chars().map(|letter| scaled.h_advance(scaled.glyph_id(letter))).sum()
     }
 
+    /// The widest of some lines.
+    pub(crate) fn widest_px<'a>(&self, lines: impl Iterator<Item = &'a str>) -> u32 {
+        lines.map(|line| self.width_px(line)).fold(0.0, f32::max).ceil() as u32
+    }
+
     /// Breaks `text` between words so that each line fits into `room_px` if its words do.
-    fn wrap(&self, text: &str, room_px: f32) -> Vec<String> {
+    pub(crate) fn wrap(&self, text: &str, room_px: f32) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
         for word in text.split_whitespace() {
             match lines.last_mut() {
@@ -71,7 +61,7 @@ impl Letters<'_> {
         lines
     }
 
-    fn draw(&self, picture: &mut RgbaImage, text: &str, left_px: f32, top_px: f32) {
+    pub(crate) fn draw(&self, picture: &mut RgbaImage, text: &str, left_px: f32, top_px: f32) {
         let scaled = self.font.as_scaled(self.scale);
         let mut x_px = left_px;
         for letter in text.chars() {
@@ -91,14 +81,31 @@ impl Letters<'_> {
     }
 }
 
-fn blend(picture: &mut RgbaImage, x: u32, y: u32, color: [f32; 3], opacity: f32) {
+/// A light box, to write on.
+pub(crate) fn draw_box(picture: &mut RgbaImage, columns: Range<u32>, rows: Range<u32>) {
+    fill(picture, columns, rows, BOX.0, BOX.1);
+}
+
+/// A rectangle of one colour, 0 to 255.
+pub(crate) fn fill(
+    picture: &mut RgbaImage,
+    columns: Range<u32>,
+    rows: Range<u32>,
+    color: [f32; 3],
+    opacity: f32,
+) {
+    for y in rows {
+        for x in columns.clone() {
+            blend(picture, x, y, color, opacity);
+        }
+    }
+}
+
+/// Mixes a colour into a pixel; outside the picture, nothing.
+pub(crate) fn blend(picture: &mut RgbaImage, x: u32, y: u32, color: [f32; 3], opacity: f32) {
     let Some(pixel) = picture.get_pixel_mut_checked(x, y) else { return };
     for (channel, wanted) in pixel.0.iter_mut().zip(color) {
         let here = f32::from(*channel);
         *channel = (here + (wanted - here) * opacity.clamp(0.0, 1.0)).round() as u8;
     }
 }
-
-#[cfg(test)]
-#[path = "attribution_tests.rs"]
-mod tests;

@@ -1,3 +1,5 @@
+use ab_glyph::{Font as _, FontRef};
+
 use super::*;
 
 fn picture() -> RgbaImage {

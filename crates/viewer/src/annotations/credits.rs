@@ -1,0 +1,32 @@
+use image::RgbaImage;
+
+use super::letters::{Letters, draw_box, line_px};
+
+/// Writes credits into the lower right corner, on a light box. Without credits the picture stays as it is.
+///
+/// Lines that are too long for the picture are broken between words.
+pub fn draw_attribution(picture: &mut RgbaImage, credits: &[String]) {
+    let (width, height) = picture.dimensions();
+    let line_px = line_px(height);
+    let pad_px = line_px / 2;
+    let Some(letters) = Letters::new(line_px) else { return };
+    let room_px = width.saturating_sub(2 * pad_px) as f32;
+    let lines: Vec<String> =
+        credits.iter().flat_map(|credit| letters.wrap(credit, room_px)).collect();
+    if lines.is_empty() {
+        return;
+    }
+    let widest_px = letters.widest_px(lines.iter().map(String::as_str));
+    let left = width.saturating_sub(widest_px + 2 * pad_px);
+    let top = height.saturating_sub(lines.len() as u32 * line_px + pad_px);
+    draw_box(picture, left..width, top..height);
+    for (line, row) in lines.iter().zip(0_u32..) {
+        let x_px = width as f32 - pad_px as f32 - letters.width_px(line);
+        let y_px = (top + pad_px / 2 + row * line_px) as f32;
+        letters.draw(picture, line, x_px, y_px);
+    }
+}
+
+#[cfg(test)]
+#[path = "credits_tests.rs"]
+mod tests;

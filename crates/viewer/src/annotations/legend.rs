@@ -1,0 +1,108 @@
+use image::RgbaImage;
+
+use super::letters::{INK, Letters, blend, draw_box, fill, line_px};
+use corniche_styles::Rgb;
+
+/// What a legend tells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Legend {
+    /// How much true ground a pixel covers in the middle of the picture, metres.
+    pub pixel_m: f64,
+    /// Where north is: clockwise from the picture's upward direction.
+    pub north_deg: f64,
+    /// The roads of the picture, most important first.
+    pub roads: Vec<LegendRoad>,
+}
+
+/// A class of roads in a legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LegendRoad {
+    /// What people call it.
+    pub label: String,
+    /// Its colour.
+    pub color: Rgb,
+    /// The colour of its edge.
+    pub outline: Rgb,
+}
+
+/// The scale bar is about this part of the picture's width.
+const BAR_SHARE: f64 = 0.12;
+
+/// Draws a legend into the lower left corner, on a light box: a sample of each class of roads, an arrow to the north, and a bar
+/// with its length on the ground in the middle of the picture.
+pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend) {
+    let (width, height) = picture.dimensions();
+    let line_px = line_px(height);
+    let pad_px = line_px / 2;
+    let Some(letters) = Letters::new(line_px) else { return };
+    let (bar_m, bar_text) = bar(f64::from(width) * BAR_SHARE * legend.pixel_m);
+    let bar_px = (bar_m / legend.pixel_m).round() as u32;
+    let sample_px = 2 * line_px;
+    let labels_px = letters.widest_px(legend.roads.iter().map(|road| road.label.as_str()));
+    let bar_line_px = bar_px + pad_px + letters.widest_px([bar_text.as_str()].into_iter());
+    let roads_px = if legend.roads.is_empty() { 0 } else { sample_px + pad_px + labels_px };
+    let right = bar_line_px.max(roads_px) + 2 * pad_px + 2 * line_px;
+    let lines = legend.roads.len() as u32 + 1;
+    let top = height.saturating_sub(lines.max(2) * line_px + pad_px);
+    draw_box(picture, 0..right.min(width), top..height);
+
+    for (road, row) in legend.roads.iter().zip(0_u32..) {
+        let above = top + pad_px / 2 + row * line_px;
+        let [color, outline] = [road.color, road.outline].map(|rgb| rgb.map(|part| part * 255.0));
+        let thick = (line_px / 3).max(3);
+        let rows = above + (line_px - thick) / 2..above + (line_px + thick) / 2;
+        fill(picture, pad_px..pad_px + sample_px, rows.clone(), outline, 1.0);
+        fill(picture, pad_px..pad_px + sample_px, rows.start + 1..rows.end - 1, color, 1.0);
+        letters.draw(picture, &road.label, (2 * pad_px + sample_px) as f32, above as f32);
+    }
+
+    let above = height.saturating_sub(line_px + pad_px / 2);
+    let (base, tick) = (above + line_px * 3 / 4, line_px / 3);
+    fill(picture, pad_px..pad_px + bar_px, base - 2..base, INK, 1.0);
+    for end in [pad_px, pad_px + bar_px - 2] {
+        fill(picture, end..end + 2, base - tick..base, INK, 1.0);
+    }
+    letters.draw(picture, &bar_text, (2 * pad_px + bar_px) as f32, above as f32);
+
+    let middle = [f64::from(right - pad_px / 2 - line_px), f64::from(top + line_px + pad_px / 2)];
+    draw_arrow(picture, middle, f64::from(line_px) * 0.85, legend.north_deg);
+}
+
+/// The longest round length that is not longer than `most_m`, and how it is written.
+fn bar(most_m: f64) -> (f64, String) {
+    let power = 10_f64.powf(most_m.max(1e-3).log10().floor());
+    let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * power <= most_m).unwrap_or(1.0);
+    let bar_m = step * power;
+    let text =
+        if bar_m >= 1000.0 { format!("{} km", bar_m / 1000.0) } else { format!("{bar_m} m") };
+    (bar_m, text)
+}
+
+/// A slim triangle that points to the north, its right half light.
+fn draw_arrow(picture: &mut RgbaImage, [x, y]: [f64; 2], radius: f64, north_deg: f64) {
+    let (sine, cosine) = north_deg.to_radians().sin_cos();
+    let reach = radius.ceil() as i64;
+    for row in -reach..=reach {
+        for column in -reach..=reach {
+            // Turned back: `along` grows to the north, `across` to the east.
+            let (right, up) = (column as f64, -row as f64);
+            let (along, across) = (right * sine + up * cosine, right * cosine - up * sine);
+            let share = (along + radius) / (2.0 * radius);
+            let half = 0.55 * radius * (1.0 - share);
+            // Notched at its base.
+            let inside = (0.0..=1.0).contains(&share)
+                && across.abs() <= half
+                && along + radius >= 0.5 * (0.55 * radius - across.abs()).max(0.0);
+            let (column, row) = (x as i64 + column, y as i64 + row);
+            if let (true, Ok(column), Ok(row)) = (inside, column.try_into(), row.try_into()) {
+                let is_edge = across.abs() > half - 1.5;
+                let color = if across < 0.0 || is_edge { INK } else { [255.0; 3] };
+                blend(picture, column, row, color, 1.0);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "legend_tests.rs"]
+mod tests;

@@ -1,0 +1,10 @@
+//! What is written on a finished picture: credits, and a legend with scale and north arrow.
+
+mod credits;
+mod legend;
+mod letters;
+
+pub use self::{
+    credits::draw_attribution,
+    legend::{Legend, LegendRoad, draw_legend},
+};
