@@ -61,6 +61,8 @@ fn draw(gpu: &Gpu, payloads: &[TilePayload], exaggeration: f64) -> Drawing {
     let mut style = Style::road_atlas();
     style.tint.stops.iter_mut().for_each(|(_, rgb)| *rgb = [0.8; 3]);
     style.light.valley_haze = 0.0;
+    // Shaded as it is: gentle slopes not made steeper.
+    style.light.gentle = 1.0;
     let scale = PlanScale::uniform([1.0; 2]);
     let buffers: Vec<TileBuffers> = payloads
         .iter()
