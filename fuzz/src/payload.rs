@@ -3,7 +3,7 @@ use corniche_testing::{
     package::{QUANTUM_M, context},
     payload::{Section, payload as payload_of, with_right_checksums},
 };
-use corniche_tileset::{Sections, decode, encode};
+use corniche_tileset::{Sections, decode, decode_photo, encode};
 
 /// A tile of these bytes is decoded or refused; what is decoded encodes, and decodes to itself.
 ///
@@ -18,6 +18,9 @@ pub fn payload(data: &[u8]) {
     let context = context();
     let Some(id) = id() else { return };
     let read = |bytes: &[u8]| decode(bytes, id, &context.frame, QUANTUM_M, Sections::ALL);
+    if let Err(error) = decode_photo(&bytes, id) {
+        assert_eq!(error.tile, id, "the error names the tile: {error}");
+    }
     match read(&bytes) {
         Ok(tile) => {
             let encoded = match encode(&tile, &context) {

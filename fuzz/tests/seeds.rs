@@ -1,4 +1,4 @@
-//! The seeds of the fuzz target `package` (`corpus/package`) are made here and are what the target reads to its end.
+//! The seeds of the fuzz target `package` (`corpus/package`), and one of `payload`, are made here and are what the target reads to its end.
 //! `CORNICHE_WRITE_SEEDS=1` writes them anew. Those of `osm` are made by `crates/osm/tests/seeds.rs`.
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
@@ -10,7 +10,8 @@ use corniche_testing::{
     pmtiles::{Entry, directory, file, gzip},
 };
 use corniche_tileset::{
-    MemorySource, Package, Relief, Sections, TilePayload, decode, encode, pmtiles_order,
+    MemorySource, PHOTO_BORDER, Package, Photo, Relief, Sections, TilePayload, decode, encode,
+    encode_photo, pmtiles_order,
 };
 
 /// A root directory, a leaf directory and tiles, as the target takes them apart.
@@ -48,13 +49,23 @@ fn seeds() -> BTreeMap<&'static str, Vec<u8>> {
     ])
 }
 
-/// A payload with a relief alone, as the target `payload` takes it: hills and a void, on two thirds of which there are few bits.
+/// A photo of one colour with a hole, as the target `payload` takes it: a list of sections, of which it is the only one.
+fn photo() -> Vec<u8> {
+    let side = 256 + 2 * PHOTO_BORDER;
+    let texel = |at: usize| if at % side < 24 { [0; 4] } else { [90, 120, 60, 255] };
+    let rgba = (0..side * side).flat_map(texel).collect();
+    let section = encode_photo(TileId::ROOT, &Photo { levels: 0, rgba }, 5).unwrap().unwrap();
+    let length = (section.bytes().len() as u16).to_le_bytes();
+    [&[0, 7], &length[..], section.bytes()].concat()
+}
+
+/// A payload with a relief alone, as the target `payload` takes it: rough ground, a plane and a void.
 fn relief_seed() -> Vec<u8> {
     let heights = HeightGrid::from_fn(259, 259, |column, row| {
         if column > 200 && row > 180 {
             return f32::NAN;
         }
-        300.0 + if column < 80 { (column * row % 97) as f32 } else { row as f32 }
+        300.0 + if column < 40 { (column * row % 97) as f32 } else { row as f32 }
     });
     let context = context();
     let id = TileId::ROOT.children().nth(1).unwrap();
@@ -93,9 +104,14 @@ fn the_seed_with_a_relief_is_as_it_is_made_here_and_is_read() {
 }
 
 #[test]
-fn the_seeds_of_the_fuzz_target_are_as_they_are_made_here() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus/package");
-    for (name, bytes) in seeds() {
+fn the_seeds_of_the_fuzz_targets_are_as_they_are_made_here() {
+    let all = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus");
+    check(&all.join("package"), seeds());
+    check(&all.join("payload"), BTreeMap::from([("photo", photo())]));
+}
+
+fn check(folder: &Path, seeds: BTreeMap<&'static str, Vec<u8>>) {
+    for (name, bytes) in seeds {
         assert!(bytes.len() <= 4096, "{name}: {} bytes", bytes.len());
         let path = folder.join(name);
         if std::env::var_os("CORNICHE_WRITE_SEEDS").is_some() {

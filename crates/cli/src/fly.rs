@@ -45,7 +45,7 @@ const TILES_IN_FLIGHT: usize = 8;
 
 pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
     let outputs = Outputs::create(args)?;
-    let style = styles::style(&args.look.style)?;
+    let style = args.look.styled(styles::style(&args.look.style)?);
     let methods = args.look.roads(&args.drawing.roads)?;
     let package = PackageSource::open(&args.package)?;
     let flight = flight(args, &package)?;
@@ -198,7 +198,8 @@ impl Plan<'_> {
         roads: Roads,
     ) -> Result<MeasuredRun, Failure> {
         let options = options(self.args, self.flight, self.style, lod, roads)?;
-        let package = PackageSource::open(&self.args.package)?.for_method(options.roads.method);
+        let package =
+            PackageSource::open(&self.args.package)?.for_look(options.roads.method, &options.style);
         let is_stopped = || {
             let is_gone = watcher.is_some_and(|watcher| watcher.is_gone.load(Ordering::SeqCst));
             is_gone || interrupt::is_noted()

@@ -95,6 +95,9 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
         say(format!("attribution  {}", plain(credit)));
     }
     say(format!("\n{}", levels(manifest, digits).to_text()));
+    if !manifest.photos.is_empty() {
+        say(format!("Photos:\n{}", photos(manifest, digits).to_text()));
+    }
     say(format!("Errors of the tiles:\n{}", tile_errors(manifest).to_text()));
     text.push_str(&sample_errors(manifest, digits));
     text.push_str(&roads(manifest, digits));
@@ -110,6 +113,29 @@ fn narrow(text: &str) -> String {
         format!("{}\n", wrapped(line, "", &" ".repeat(below)))
     };
     text.lines().map(line).collect()
+}
+
+/// The photos of each level. A square kilometre is one of the tiles that have a photo, whether it covers them or not.
+fn photos(manifest: &Manifest, digits: Digits) -> Table {
+    let mut photos = Table::new(["level", "texel m", "tiles", "photo", "per tile", "per km²"]);
+    let finest = manifest.frame.max_level();
+    for level in &manifest.photos {
+        let cell = manifest.frame.level_cell(level.level);
+        let levels = manifest.settings.photo.map_or(0, |photo| photo.levels);
+        let finer = if level.level == finest { levels } else { levels.min(1) };
+        let scale = f64::from(1_u32 << finer);
+        let texel = Cell { east_m: cell.east_m / scale, north_m: cell.north_m / scale };
+        let tile_km2 = cell.east_m * cell.north_m * 65_536.0 / manifest.point_scale.powi(2) / 1e6;
+        photos.row([
+            level.level.to_string(),
+            sides(texel),
+            digits.count(level.tiles),
+            bytes(level.bytes),
+            bytes(level.bytes / level.tiles.max(1)),
+            bytes((level.bytes as f64 / (tile_km2 * level.tiles.max(1) as f64)).round() as u64),
+        ]);
+    }
+    photos
 }
 
 /// What each level holds.

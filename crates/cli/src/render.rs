@@ -20,7 +20,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         .into_iter()
         .flatten()
         .collect();
-    let style = styles::style(&args.look.style)?;
+    let style = args.look.styled(styles::style(&args.look.style)?);
     let roads = args.look.roads(&[args.roads])?[0];
     let request = RenderRequest {
         name: args.package.display().to_string(),
@@ -36,7 +36,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let output = Output::create(&args.output, existing_of(args.overwrite), &used)?;
     Format::Picture.refuse_others(&args.output)?;
     request.check()?;
-    let package = PackageSource::open(&args.package)?.for_method(request.roads.method);
+    let package =
+        PackageSource::open(&args.package)?.for_look(request.roads.method, &request.style);
     let rendered = render(&request, &package, &interrupt::is_noted)?;
     output.write_whole(&png(&rendered.picture)?)?;
     let report = &rendered.report;

@@ -44,6 +44,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         camera: args.camera.request(),
         roads: args.look.road_options(roads),
         styles,
+        photo: args.look.photo,
         reload: reload(chosen),
         screen_space_error_px: args.ground.screen_space_error,
         cell_px: args.ground.cell_px,

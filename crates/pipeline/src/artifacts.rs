@@ -21,6 +21,8 @@
 //! | `WaysShare` | share | counts of the share, which of its blobs have nodes | ways | nodes, roads |
 //! | `Places` | share, block | places of nodes that road ways name, by node | nodes | roads |
 //! | `NodesShare` | share | how many blocks of places there are | nodes | roads |
+//! | `PhotoTexture` | finest tile | its photo, encoded; empty where there is none | heights | tiles |
+//! | `PhotoRaster` | tile | texels of its photo, one for each cell; empty where there is none | heights, top | top, tiles |
 //!
 //! A tile is finished when its `Record` is there: it is put last. So is an area when its `Area` is there, and the roads when
 //! `RoadTotals` is, and a share of the extract when its `WaysShare` or `NodesShare` is. Heights, rasters and TINs of tiles without any are kept as well, empty: what is not there was not made, and is
@@ -56,11 +58,13 @@ pub(crate) enum Kind {
     WaysShare,
     Places,
     NodesShare,
+    PhotoTexture,
+    PhotoRaster,
 }
 
 impl Kind {
     /// All of them.
-    pub(crate) const ALL: [Self; 19] = [
+    pub(crate) const ALL: [Self; 21] = [
         Self::InputHash,
         Self::RoadPieces,
         Self::RoadLengths,
@@ -80,6 +84,8 @@ impl Kind {
         Self::WaysShare,
         Self::Places,
         Self::NodesShare,
+        Self::PhotoTexture,
+        Self::PhotoRaster,
     ];
 
     /// The key of what belongs to a tile.

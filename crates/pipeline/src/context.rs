@@ -3,6 +3,7 @@
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{CoordinateTable, Frame, LatticeArea, LatticeBounds, TileId};
 use corniche_store::Artifacts;
+use corniche_tileset::PhotoRecord;
 
 use crate::{
     Observer, PlanSettings, Resources,
@@ -10,6 +11,7 @@ use crate::{
     inputs::Inputs,
     levels::Levels,
     memory_shares::MemoryShares,
+    photos::opened::{OpenedPhotos, photo_record},
     plan::Opened,
     terrain::ground::GroundSource,
 };
@@ -25,6 +27,8 @@ pub(crate) struct Context<'a> {
     pub(crate) coordinates: &'a CoordinateTable,
     /// Tolerance of the finest level, given or derived from the cell.
     pub(crate) max_error_m: f64,
+    /// Photos of the ground.
+    pub(crate) photo: Option<&'a OpenedPhotos>,
     pub(crate) store: &'a dyn Artifacts,
     pub(crate) observer: &'a dyn Observer,
 }
@@ -38,7 +42,8 @@ impl<'a> Context<'a> {
         store: &'a dyn Artifacts,
         observer: &'a dyn Observer,
     ) -> Self {
-        let Opened { inputs, source, grid, levels, max_error_m, coordinates } = opened;
+        let Opened { inputs, source, grid, levels, max_error_m, coordinates, photo, relief: _ } =
+            opened;
         let max_error_m = *max_error_m;
         Self {
             settings,
@@ -49,9 +54,15 @@ impl<'a> Context<'a> {
             levels,
             coordinates,
             max_error_m,
+            photo: photo.as_ref(),
             store,
             observer,
         }
+    }
+
+    /// What the manifest says of how photos are made.
+    pub(crate) fn photo_record(&self) -> Option<PhotoRecord> {
+        photo_record(self.source, self.photo)
     }
 
     pub(crate) fn frame(&self) -> &Frame {

@@ -35,6 +35,12 @@ pub enum BuildError {
     #[error(transparent)]
     Dem(#[from] corniche_dem::DemError),
     #[error(transparent)]
+    Photo(#[from] corniche_photo::PhotoError),
+    #[error(
+        "--photo cannot be laid on the terrain of {path:?}: what photos it has are taken with its terrain; build from the elevation files with --dem"
+    )]
+    PhotoOnTerrain { path: PathBuf },
+    #[error(transparent)]
     Osm(#[from] corniche_osm::ReadOsmError),
     #[error("{dem:?} have no height at any node: every node is void, or outside --polygon")]
     NoHeights { dem: Vec<PathBuf> },
@@ -165,6 +171,8 @@ impl BuildError {
                 | Self::InputName { .. }
                 | Self::Input { .. }
                 | Self::Dem(_)
+                | Self::Photo(_)
+                | Self::PhotoOnTerrain { .. }
                 | Self::Osm(_)
                 | Self::NoHeights { .. }
                 | Self::NoCell { .. }

@@ -24,7 +24,7 @@ use sha2::{Digest, Sha256};
 
 pub use self::{
     planned_input::PlannedInput,
-    servers::{elevation_names, extract_names, input_name},
+    servers::{elevation_names, extract_names, input_name, photo_names},
 };
 use self::{servers::reach_servers, stamp::Stamp};
 use crate::{BuildError, Observer, Stage, hex::hex};
@@ -36,6 +36,10 @@ pub(crate) enum InputKind {
     Dem,
     /// A file that such a raster refers to, or that lies beside it and belongs to it.
     DemPart,
+    /// A photo that was named.
+    Photo,
+    /// A file that such a photo refers to, or that lies beside it and belongs to it.
+    PhotoPart,
     /// A package whose terrain is taken. It is no input of the package that is made: that has the files of this one.
     Terrain,
     /// The polygon that says which part is wanted.
@@ -46,13 +50,19 @@ pub(crate) enum InputKind {
 
 impl InputKind {
     /// Those that a manifest has.
-    pub(crate) const RECORDED: [Self; 4] = [Self::Dem, Self::DemPart, Self::Polygon, Self::Osm];
+    pub(crate) const RECORDED: [Self; 6] =
+        [Self::Dem, Self::DemPart, Self::Photo, Self::PhotoPart, Self::Polygon, Self::Osm];
+    /// Those that the ground is made from.
+    pub(crate) const OF_GROUND: [Self; 4] =
+        [Self::Dem, Self::DemPart, Self::Photo, Self::PhotoPart];
 
     /// The word for it in the manifest.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Dem => "dem",
             Self::DemPart => "dem-part",
+            Self::Photo => "photo",
+            Self::PhotoPart => "photo-part",
             Self::Terrain => "terrain",
             Self::Polygon => "polygon",
             Self::Osm => "osm",
@@ -112,24 +122,13 @@ fn setting(what: String) -> InputError {
 impl Inputs {
     /// Finds all files and notes what they are, before anything of them is read for use.
     pub(crate) fn find(dem: &[PathBuf], others: OtherInputs<'_>) -> Result<Self, InputError> {
-        let named = dem.iter().map(PathBuf::as_path).chain(others.polygon);
+        let rasters = dem.iter().chain(others.photo);
+        let named = rasters.map(PathBuf::as_path).chain(others.polygon);
         let named = named.chain(others.osm.iter().map(PathBuf::as_path));
         reach_servers(named).map_err(setting)?;
         let mut files: Vec<Input> = Vec::new();
-        for path in dem {
-            // The stamp is taken before GDAL reads the file for the names of its parts.
-            let input = Input::new(InputKind::Dem, path)?;
-            let parts = raster_files(path).map_err(InputError::Dem)?;
-            let is_own = |part: &PathBuf| match &input.content {
-                Content::File(own) | Content::Virtual(own) => part == own || part == path,
-                Content::Folder => part == path,
-            };
-            let parts: Vec<PathBuf> = parts.into_iter().filter(|part| !is_own(part)).collect();
-            files.push(input);
-            for part in parts {
-                files.push(Input::new(InputKind::DemPart, &part)?);
-            }
-        }
+        add_rasters(dem, [InputKind::Dem, InputKind::DemPart], &mut files)?;
+        add_rasters(others.photo, [InputKind::Photo, InputKind::PhotoPart], &mut files)?;
         others.add_to(&mut files)?;
         Ok(Self { files })
     }
@@ -154,7 +153,11 @@ impl Inputs {
             match input.kind {
                 InputKind::Dem => last = is_used.next().copied().unwrap_or(true),
                 InputKind::DemPart => {}
-                InputKind::Terrain | InputKind::Polygon | InputKind::Osm => continue,
+                InputKind::Photo
+                | InputKind::PhotoPart
+                | InputKind::Terrain
+                | InputKind::Polygon
+                | InputKind::Osm => continue,
             }
             input.is_used = last;
         }
@@ -213,7 +216,9 @@ impl Inputs {
 
     /// Sorts the parts of each raster, which GDAL lists in any order.
     pub(crate) fn in_order(records: &mut [InputRecord]) {
-        let is_part = |record: &InputRecord| InputKind::DemPart.is_of(record);
+        let is_part = |record: &InputRecord| {
+            InputKind::DemPart.is_of(record) || InputKind::PhotoPart.is_of(record)
+        };
         for parts in records.chunk_by_mut(|a, b| is_part(a) && is_part(b)) {
             parts.sort_by(|a, b| (&a.name, &a.sha256).cmp(&(&b.name, &b.sha256)));
         }
@@ -241,9 +246,33 @@ impl Inputs {
     }
 }
 
+/// Adds rasters and, after each, the files that it refers to or that belong to it.
+fn add_rasters(
+    paths: &[PathBuf],
+    [kind, part]: [InputKind; 2],
+    files: &mut Vec<Input>,
+) -> Result<(), InputError> {
+    for path in paths {
+        // The stamp is taken before GDAL reads the file for the names of its parts.
+        let input = Input::new(kind, path)?;
+        let parts = raster_files(path).map_err(InputError::Dem)?;
+        let is_own = |part: &PathBuf| match &input.content {
+            Content::File(own) | Content::Virtual(own) => part == own || part == path,
+            Content::Folder => part == path,
+        };
+        let parts: Vec<PathBuf> = parts.into_iter().filter(|part| !is_own(part)).collect();
+        files.push(input);
+        for found in parts {
+            files.push(Input::new(part, &found)?);
+        }
+    }
+    Ok(())
+}
+
 /// What is read beside the terrain.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct OtherInputs<'a> {
+    pub(crate) photo: &'a [PathBuf],
     pub(crate) polygon: Option<&'a Path>,
     pub(crate) osm: &'a [PathBuf],
 }

@@ -9,13 +9,15 @@ fn every_kind_of_input_of_a_manifest_is_listed_once() {
         let expected = match kind {
             InputKind::Dem => 0,
             InputKind::DemPart => 1,
-            InputKind::Polygon => 2,
-            InputKind::Osm => 3,
+            InputKind::Photo => 2,
+            InputKind::PhotoPart => 3,
+            InputKind::Polygon => 4,
+            InputKind::Osm => 5,
             InputKind::Terrain => panic!("a manifest has its files"),
         };
         assert_eq!(place, expected, "{kind:?}");
     }
-    assert_eq!(InputKind::RECORDED.len(), 4);
+    assert_eq!(InputKind::RECORDED.len(), 6);
 }
 
 /// Keeps what `begin` was told, and the steps.
@@ -45,11 +47,13 @@ fn hashing_counts_the_bytes_of_the_files() {
     let inside = PathBuf::from(format!("/vsisubfile/3_100,{}", file.display()));
     for (path, total, bytes) in [(&file, Some(BYTES), BYTES), (&inside, None, 100)] {
         let counted = Counted::default();
-        let records =
-            Inputs::find(&[], OtherInputs { osm: std::slice::from_ref(path), polygon: None })
-                .unwrap()
-                .hash(&counted)
-                .unwrap();
+        let records = Inputs::find(
+            &[],
+            OtherInputs { osm: std::slice::from_ref(path), polygon: None, photo: &[] },
+        )
+        .unwrap()
+        .hash(&counted)
+        .unwrap();
         assert_eq!(records[0].bytes, bytes);
         assert_eq!(*counted.0.lock().unwrap(), (total, bytes), "{}", path.display());
     }

@@ -18,6 +18,7 @@ mod memory_shares;
 mod objects;
 mod observer;
 mod parts;
+mod photos;
 mod plan;
 mod plan_error;
 mod roads;
@@ -39,7 +40,7 @@ pub use corniche_osm::{Defect as OsmDefect, Share};
 pub use defect::{Defect, Loss};
 pub use error::BuildError;
 pub use extract_bounds::extract_bounds;
-pub use inputs::{PlannedInput, elevation_names, extract_names, input_name};
+pub use inputs::{PlannedInput, elevation_names, extract_names, input_name, photo_names};
 pub use machine::{MIN_MEMORY_BYTES, default_memory_bytes, machine_memory_bytes};
 pub use objects::is_in_object_storage;
 pub use observer::{Observer, Silent, Stage, Unit};
@@ -52,7 +53,8 @@ pub use plan::{
 };
 pub use plan_error::PlanError;
 pub use settings::{
-    BuildSettings, Existing, Leftovers, PlanSettings, Resources, RoadSettings, TerrainSettings,
+    BuildSettings, Existing, Leftovers, PhotoSettings, PlanSettings, Resources, RoadSettings,
+    TerrainSettings,
 };
 pub use target::{TargetError, file_target};
 pub use terrain::recorded::TerrainRecord;

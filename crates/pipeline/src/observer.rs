@@ -24,6 +24,8 @@ pub enum Stage {
     Roads,
     /// Read the DEM, reproject it, fill its voids, make the level rasters.
     Heights,
+    /// Read photos.
+    Photos,
     /// Triangulate the tiles of all levels but the finest.
     CoarseTins,
     /// Measure every finest tile, and the coarser ones above it, against the full resolution.
@@ -42,10 +44,11 @@ pub enum Stage {
 
 impl Stage {
     /// All stages, in their order.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Hash,
         Self::Roads,
         Self::Heights,
+        Self::Photos,
         Self::CoarseTins,
         Self::Deviations,
         Self::Samples,
@@ -62,6 +65,7 @@ impl Stage {
             Self::Hash => "hashing inputs",
             Self::Roads => "reading roads",
             Self::Heights => "reading heights",
+            Self::Photos => "reading photos",
             Self::CoarseTins => "meshing coarse levels",
             Self::Deviations => "measuring errors",
             Self::Samples => "measuring at samples",
@@ -79,6 +83,7 @@ impl Stage {
             Self::Hash => "hash",
             Self::Roads => "roads",
             Self::Heights => "heights",
+            Self::Photos => "photos",
             Self::CoarseTins => "coarse-tins",
             Self::Deviations => "deviations",
             Self::Samples => "samples",
@@ -96,7 +101,8 @@ impl Stage {
             Self::Hash | Self::Roads => Unit::Bytes,
             Self::Samples => Unit::Blocks,
             Self::Heights => Unit::Areas,
-            Self::CoarseTins
+            Self::Photos
+            | Self::CoarseTins
             | Self::Deviations
             | Self::Tiles
             | Self::CoarseTiles

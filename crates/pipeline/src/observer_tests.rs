@@ -10,17 +10,18 @@ fn every_stage_is_listed_once_in_order() {
             Stage::Hash => 0,
             Stage::Roads => 1,
             Stage::Heights => 2,
-            Stage::CoarseTins => 3,
-            Stage::Deviations => 4,
-            Stage::Samples => 5,
-            Stage::Tiles => 6,
-            Stage::CoarseTiles => 7,
-            Stage::Package => 8,
-            Stage::Verify => 9,
+            Stage::Photos => 3,
+            Stage::CoarseTins => 4,
+            Stage::Deviations => 5,
+            Stage::Samples => 6,
+            Stage::Tiles => 7,
+            Stage::CoarseTiles => 8,
+            Stage::Package => 9,
+            Stage::Verify => 10,
         };
         assert_eq!(place, expected, "{stage:?}");
     }
-    assert_eq!(Stage::ALL.len(), 10);
+    assert_eq!(Stage::ALL.len(), 11);
 }
 
 #[test]

@@ -37,6 +37,8 @@ pub struct PlanSettings {
     pub terrain: TerrainSettings,
     /// How roads are made.
     pub roads: RoadSettings,
+    /// Photos of the ground, if any are wanted; not with `terrain_of`.
+    pub photo: Option<PhotoSettings>,
     /// Credits beside those that the inputs call for, such as a DEM's.
     pub attribution: Vec<String>,
     /// Program and version.
@@ -48,6 +50,17 @@ impl PlanSettings {
     pub(crate) fn terrain_files(&self) -> Vec<PathBuf> {
         self.dem.iter().chain(&self.terrain_of).cloned().collect()
     }
+}
+
+/// Photos of the ground.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PhotoSettings {
+    /// The files; where they overlap, the first lies on top.
+    pub files: Vec<PathBuf>,
+    /// How many levels of texels are finer than the finest cell; `None`: as many as the photos have detail for, at most three.
+    pub levels: Option<u8>,
+    /// JPEG's quality, from 1 to 100.
+    pub quality: u8,
 }
 
 /// What to do with a package that exists at the target.

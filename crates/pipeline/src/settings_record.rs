@@ -7,16 +7,18 @@
 
 use corniche_dem::{OpenOptions, PlanOptions, Polygon};
 use corniche_roads::{ClassFilter, FrcTable};
-use corniche_tileset::{PolygonRecord, SettingsRecord};
+use corniche_tileset::{PhotoRecord, PolygonRecord, SettingsRecord};
 use sha2::{Digest, Sha256};
 
 use crate::{RoadSettings, TerrainSettings, hex::hex};
 
-/// The record of a build. `max_error_m` is the tolerance of the finest level, given or derived from the cell.
+/// The record of a build. `max_error_m` is the tolerance of the finest level, given or derived from the cell; the levels of `photo`
+/// are given or derived from the photos.
 pub(crate) fn of(
     terrain: &TerrainSettings,
     roads: &RoadSettings,
     max_error_m: f64,
+    photo: Option<PhotoRecord>,
 ) -> SettingsRecord {
     // Every field is named, so that a new one cannot be forgotten here.
     let TerrainSettings { open, plan, height_range_m, allow_fine_cell: _, max_error_m: _, relief } =
@@ -46,6 +48,7 @@ pub(crate) fn of(
         classes: table.chosen_classes(),
         class_max_cell_m: filter.class_max_cell_m().to_vec(),
         simplify_cells: *simplify_cells,
+        photo,
     }
 }
 

@@ -26,7 +26,8 @@ fn table(name: &str) -> FrcTable {
 }
 
 fn record((terrain, roads): &Settings) -> SettingsRecord {
-    of(terrain, roads, terrain.max_error_m.unwrap_or(MAX_ERROR_M))
+    let photo = Some(PhotoRecord { levels: 2, quality: 80 });
+    of(terrain, roads, terrain.max_error_m.unwrap_or(MAX_ERROR_M), photo)
 }
 
 /// Every setting that determines bytes, and another value of it.

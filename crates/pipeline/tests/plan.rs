@@ -22,6 +22,7 @@ fn settings() -> PlanSettings {
             ..TerrainSettings::default()
         },
         roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25 },
+        photo: None,
         attribution: vec!["a credit".to_owned()],
         generator: "corniche 0.0.0".to_owned(),
     }

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::{Deserialize, Deserializer};
 
 use crate::{
-    BoundsChoice, Classes, PresetError, ReliefChoice,
+    BoundsChoice, Classes, PhotoOptions, PresetError, ReliefChoice,
     error::bounded,
     files::{InputFiles, OutputFiles},
     values::{parse_cell, parse_range},
@@ -25,6 +25,8 @@ pub struct Config {
     pub terrain: TerrainOptions,
     /// `[roads]`
     pub roads: RoadOptions,
+    /// `[photo]`
+    pub photo: PhotoOptions,
     /// `[resources]`
     pub resources: ResourceOptions,
 }

@@ -18,6 +18,9 @@ pub struct InputFiles {
     pub osm: Vec<PathBuf>,
     /// `--polygon`.
     pub polygon: Option<PathBuf>,
+    /// `--photo`: a list, or one alone.
+    #[serde(deserialize_with = "one_or_many")]
+    pub photo: Vec<PathBuf>,
 }
 
 impl InputFiles {
@@ -32,7 +35,8 @@ impl InputFiles {
         };
         let polygon = self.polygon.or(other.polygon);
         let osm = if self.osm.is_empty() { other.osm } else { self.osm };
-        Self { dem, terrain, osm, polygon }
+        let photo = if self.photo.is_empty() { other.photo } else { self.photo };
+        Self { dem, terrain, osm, polygon, photo }
     }
 }
 

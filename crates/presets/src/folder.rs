@@ -10,8 +10,9 @@ impl Config {
     #[must_use]
     pub fn in_folder(mut self, folder: &Path) -> Self {
         let Self { inputs, output, roads, resources, .. } = &mut self;
-        let InputFiles { dem, terrain, osm, polygon } = inputs;
+        let InputFiles { dem, terrain, osm, polygon, photo } = inputs;
         let files = dem.iter_mut().chain(terrain).chain(osm.iter_mut()).chain(polygon);
+        let files = files.chain(photo.iter_mut());
         let written =
             output.package.iter_mut().chain(&mut output.defects).chain(&mut resources.tmp);
         for path in files.chain(written) {

@@ -59,6 +59,7 @@ fn terrain_comes_from_one_place() {
         terrain: terrain.map(Into::into),
         polygon: None,
         osm: Vec::new(),
+        photo: Vec::new(),
     };
     let rasters = of(&["a.tif"], None);
     let package = of(&[], Some("old.pmtiles"));

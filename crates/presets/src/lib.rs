@@ -11,6 +11,7 @@ mod error;
 mod files;
 mod folder;
 mod frc;
+mod photo;
 mod relief;
 mod values;
 
@@ -21,5 +22,6 @@ pub use config::{Config, ResourceOptions, RoadOptions, TerrainOptions};
 pub use error::PresetError;
 pub use files::{InputFiles, OutputFiles};
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};
+pub use photo::PhotoOptions;
 pub use relief::ReliefChoice;
 pub use values::{check_cell, is_range, parse_bytes, parse_memory};

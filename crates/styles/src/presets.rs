@@ -1,8 +1,9 @@
 /// Styles that come with the program, the default one first.
-const PRESETS: [(&str, &str); 3] = [
+const PRESETS: [(&str, &str); 4] = [
     ("road-atlas", include_str!("../sheets/road-atlas.toml")),
     ("dark", include_str!("../sheets/dark.toml")),
     ("relief", include_str!("../sheets/relief.toml")),
+    ("photo", include_str!("../sheets/photo.toml")),
 ];
 
 /// Names of the styles that come with the program, the default one first.

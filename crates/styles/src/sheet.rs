@@ -27,6 +27,8 @@ pub(crate) struct StyleSheet {
     pub(crate) own_width: bool,
     /// Width of a lane, 1 to 10 m, for roads with `lanes` and without `width`.
     pub(crate) lane_width_m: Option<f64>,
+    /// How strongly photos are seen, 0 to 1.
+    pub(crate) photo: f64,
     /// How roads widen with distance.
     pub(crate) width_scaling: WidthScalingSheet,
     /// Light and shade.
@@ -123,6 +125,8 @@ struct StyleFile {
     #[serde(default)]
     own_width: bool,
     lane_width_m: Option<f64>,
+    #[serde(default = "photos_alone")]
+    photo: f64,
     width_scaling: WidthScalingSheet,
     light: LightSheet,
     background: BackgroundSheet,
@@ -130,6 +134,11 @@ struct StyleFile {
     tint_by_climate: bool,
     tint: Vec<TintSheet>,
     roads: BTreeMap<String, RoadSheet>,
+}
+
+/// Photos hide the height tint, where a style does not say how strongly they are seen.
+fn photos_alone() -> f64 {
+    1.0
 }
 
 /// Reads a style's text.
@@ -150,6 +159,7 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
         outline_px,
         own_width,
         lane_width_m,
+        photo,
         width_scaling,
         light,
         background,
@@ -164,6 +174,7 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
         outline_px,
         own_width,
         lane_width_m,
+        photo,
         width_scaling,
         light,
         background,
@@ -201,6 +212,7 @@ impl StyleSheet {
         if let Some(lane_width_m) = lane_width_m {
             within("lane_width_m", *lane_width_m, 1.0..=f64::from(OwnWidths::WIDEST_LANE_M))?;
         }
+        within("photo", self.photo, 0.0..=1.0)?;
         within("width_scaling.threshold_m", scaling.threshold_m, 1.0..=1e7)?;
         within("width_scaling.exponent", scaling.exponent, 0.0..=1.0)?;
         within("width_scaling.constant", scaling.constant, 0.1..=100.0)?;
@@ -277,6 +289,7 @@ impl From<&StyleSheet> for Style {
             outline_px: *outline_px,
             tint: tint.clone(),
             light: (*light).into(),
+            photo: sheet.photo as f32,
             haze: background.haze.into(),
             sky: background.sky.into(),
             void: background.void.into(),

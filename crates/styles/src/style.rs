@@ -105,6 +105,8 @@ pub struct Style {
     pub tint: Tint,
     /// The light on the ground.
     pub light: Light,
+    /// How strongly photos are seen where a package has some, 0 (not) to 1 (instead of the height tint).
+    pub photo: f32,
     /// Colour of far ground and of the sky at the horizon.
     pub haze: Rgb,
     /// Colour of the sky far above the horizon.
@@ -201,6 +203,7 @@ impl Style {
                 shadow: rgb(0x5A_62_86),
                 sunlit: rgb(0xFF_F8_DC),
             },
+            photo: 1.0,
             haze: rgb(0xDC_E6_EE),
             sky: rgb(0x9F_C1_E0),
             void: rgb(0xE2_E0_DB),

@@ -14,6 +14,8 @@
     reason = "this is test code: it may unwrap, and says what is skipped"
 )]
 
+#[cfg(feature = "rasters")]
+mod colour_image;
 mod data;
 #[cfg(feature = "disks")]
 pub mod disks;
@@ -29,6 +31,8 @@ mod random;
 #[cfg(feature = "rasters")]
 mod raster;
 
+#[cfg(feature = "rasters")]
+pub use colour_image::ColourImage;
 pub use data::{real_data, root, sample, srtm_heights};
 pub use projection::FlatProjection;
 pub use random::Random;

@@ -98,12 +98,14 @@ pub fn manifest_of(frame: Frame) -> Manifest {
             frc_table_sha256: String::new(),
             class_max_cell_m: vec![None; 9],
             simplify_cells: 0.5,
+            photo: None,
         },
         settings_sha256: String::new(),
         inputs: vec![],
         attribution: vec!["© OpenStreetMap contributors".to_owned()],
         counts: Counts { roads_in: 2, roads_kept: 2, ..Counts::default() },
         growth: vec![GrowthRow::default()],
+        photos: Vec::new(),
     }
 }
 

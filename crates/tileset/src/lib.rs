@@ -35,8 +35,8 @@ mod payload;
 
 pub use manifest::{
     ClipRecord, Counts, Distribution, GrowthRow, InputRecord, LeftOutRecord, LevelRecord, Manifest,
-    PolygonRecord, ReliefLevels, RoadLoss, SampleCounts, SampleErrorRecord, ScaleRecord,
-    SettingsRecord, VerticalRecord,
+    PhotoLevelRecord, PhotoRecord, PolygonRecord, ReliefLevels, RoadLoss, SampleCounts,
+    SampleErrorRecord, ScaleRecord, SettingsRecord, VerticalRecord,
 };
 pub use package::{
     ByteSource, FORMAT_VERSION, MemorySource, OpenError, Package, ReadError, SourceError,
@@ -47,8 +47,12 @@ pub use package::{FilePackage, FileSource};
 #[cfg(feature = "write")]
 pub use package::{WriteError, Writer};
 pub use payload::{
-    Damage, DecodeError, EncodeError, GeoRoad, PayloadSizes, Relief, RoadRecord, SectionSize,
-    Sections, SvRoad, Terrain, TilePayload, decode, payload_sizes,
+    Damage, DecodeError, EncodeError, GeoRoad, MAX_PHOTO_LEVELS, PHOTO_BORDER, PayloadSizes, Photo,
+    Relief, RoadRecord, SectionSize, Sections, SvRoad, Terrain, TilePayload, decode, decode_photo,
+    payload_sizes,
 };
 #[cfg(feature = "write")]
-pub use payload::{EncodedTile, PayloadContext, encode, encode_with_ground_of};
+pub use payload::{
+    EncodedTile, PayloadContext, PhotoSection, encode, encode_photo, encode_with_ground_of,
+    photo_section, with_photo,
+};

@@ -8,7 +8,8 @@ mod relief_levels;
 pub(crate) mod check;
 
 pub use contents::{
-    ClipRecord, InputRecord, Manifest, PolygonRecord, ScaleRecord, SettingsRecord, VerticalRecord,
+    ClipRecord, InputRecord, Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord,
+    SettingsRecord, VerticalRecord,
 };
 pub use counts::{Counts, GrowthRow, LeftOutRecord, RoadLoss, SampleCounts};
 pub use levels::{Distribution, LevelRecord, SampleErrorRecord};

@@ -36,6 +36,8 @@ pub struct WindowRequest {
     pub styles: Vec<NamedStyle>,
     /// Tells whether the first style has changed; `None` if it cannot change.
     pub reload: Option<Reload>,
+    /// How strongly photos are seen at first, 0 to 1; `None`: as the style says.
+    pub photo: Option<f32>,
     /// A tile is refined while its error looks larger than this, pixels.
     pub screen_space_error_px: f64,
     /// A tile is refined while one of its cells looks larger than this, pixels.

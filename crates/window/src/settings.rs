@@ -49,6 +49,8 @@ pub(crate) struct Settings {
     pub(crate) width_factors: [f32; FunctionalRoadClass::COUNT],
     /// Place of the style in the list of styles.
     pub(crate) style: usize,
+    /// How strongly photos are seen, 0 to 1; `None`: as the style says.
+    pub(crate) photo: Option<f32>,
     /// Factor on heights; 1 is true.
     pub(crate) exaggeration: f64,
     /// A tile is refined while its error looks larger than this.
@@ -74,13 +76,15 @@ pub(crate) mod range {
     pub(crate) const SAMPLES_PER_SIDE: RangeInclusive<u32> =
         1..=corniche_viewer::gpu::MAX_SAMPLES_PER_SIDE;
     pub(crate) const WIDTH_FACTOR: RangeInclusive<f32> = 0.25..=4.0;
+    pub(crate) const PHOTO: RangeInclusive<f32> = 0.0..=1.0;
     pub(crate) const DIVIDER_SHARE: RangeInclusive<f32> = 0.05..=0.95;
 }
 
 impl Settings {
-    /// A style with its widths multiplied by their factors.
+    /// A style with its widths multiplied by their factors, and photos as strong as is wanted.
     pub(crate) fn applied_to(&self, style: &Style) -> Style {
         let mut applied = style.clone();
+        applied.photo = self.photo.unwrap_or(style.photo);
         for (road, factor) in applied.roads.iter_mut().zip(self.width_factors) {
             road.width_m *= factor;
         }
@@ -96,6 +100,7 @@ pub(crate) fn usual() -> Settings {
         divider_share: 0.5,
         width_factors: [1.0; FunctionalRoadClass::COUNT],
         style: 0,
+        photo: None,
         exaggeration: 1.0,
         screen_space_error_px: 2.0,
         cell_px: f64::INFINITY,

@@ -37,6 +37,8 @@ pub(crate) struct WindowContent<'a> {
     pub(crate) mode: Mode,
     /// Names of the styles.
     pub(crate) style_names: &'a [String],
+    /// How strongly the style that is shown lets photos be seen; `None` in a package without photos.
+    pub(crate) photo: Option<f32>,
     /// Colours of the roads in the style that is shown, by class.
     pub(crate) road_colors: &'a [Rgb],
     /// Tiles that are drawn.

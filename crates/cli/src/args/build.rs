@@ -4,7 +4,7 @@ use std::{
 };
 
 use clap::Args;
-use corniche_presets::{ResourceOptions, RoadOptions, TerrainOptions};
+use corniche_presets::{PhotoOptions, ResourceOptions, RoadOptions, TerrainOptions};
 
 // What to make and with what: the same for `build` and `plan`.
 #[derive(Debug, Args)]
@@ -25,6 +25,10 @@ pub(crate) struct WorkArgs {
     /// less than a cell beyond them, roads end at them; the grid is that of the whole DEM. With --bounds, both hold
     #[arg(long, value_name = "FILE")]
     pub(crate) polygon: Option<PathBuf>,
+    /// Photos of the ground from above (orthophotos) to lay on it: 8-bit colours, grey or palette, any format and CRS that GDAL reads; where they
+    /// overlap, the first lies on top. Also folders, patterns, @LIST, archives and addresses, as for --dem
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    pub(crate) photo: Vec<PathBuf>,
     /// Credit to show wherever the package is shown, such as that of a DEM; may be given several times
     #[arg(long, value_name = "TEXT")]
     pub(crate) attribution: Vec<String>,
@@ -40,6 +44,8 @@ pub(crate) struct WorkArgs {
     #[command(flatten)]
     pub(crate) roads: RoadOptions,
     #[command(flatten)]
+    pub(crate) photos: PhotoOptions,
+    #[command(flatten)]
     pub(crate) resources: ResourceOptions,
 }
 
@@ -47,7 +53,7 @@ impl WorkArgs {
     /// All files that are read.
     pub(crate) fn files(&self) -> impl Iterator<Item = &Path> {
         let files = self.dem.iter().chain(&self.terrain_of).chain(&self.osm);
-        files.chain(&self.polygon).chain(&self.config).map(PathBuf::as_path)
+        files.chain(&self.polygon).chain(&self.photo).chain(&self.config).map(PathBuf::as_path)
     }
 }
 

@@ -1,6 +1,7 @@
 //! How roads are drawn and how everything looks, for all commands that draw.
 
 use clap::{Args, ValueEnum};
+use corniche_styles::Style;
 use corniche_viewer::{RoadMethod, RoadOptions};
 
 use crate::failure::Failure;
@@ -100,9 +101,12 @@ pub(crate) enum CapTest {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Look")]
 pub(crate) struct LookArgs {
-    /// Colours and widths: road-atlas, dark or a style file (TOML)
+    /// Colours and widths: road-atlas, dark, photo or a style file (TOML)
     #[arg(long, value_name = "NAME|FILE", default_value = "road-atlas")]
     pub(crate) style: String,
+    /// How strongly photos are seen, where the package has some: off, or 0 to 1 [default: as the style says]
+    #[arg(long, value_name = "off|SHARE", value_parser = parse_strength)]
+    pub(crate) photo: Option<f32>,
     /// How roads begin, bend and end
     #[arg(long, value_enum, default_value_t = Caps::Round)]
     caps: Caps,
@@ -117,7 +121,20 @@ pub(crate) struct LookArgs {
     cap_test: Option<CapTest>,
 }
 
+/// A share from 0 to 1; `off` is 0.
+fn parse_strength(text: &str) -> Result<f32, String> {
+    let share = if text == "off" { Some(0.0) } else { text.parse().ok() };
+    share
+        .filter(|share| (0.0..=1.0).contains(share))
+        .ok_or_else(|| "write off, or a number from 0 to 1".to_owned())
+}
+
 impl LookArgs {
+    /// A style, with photos as strong as `--photo` says.
+    pub(crate) fn styled(&self, style: Style) -> Style {
+        Style { photo: self.photo.unwrap_or(style.photo), ..style }
+    }
+
     /// What `--roads` says together with `--caps`.
     ///
     /// # Errors

@@ -6,7 +6,8 @@ mod levels;
 
 use corniche_geom::CoordinateTable;
 use corniche_tileset::{
-    InputRecord, Manifest, PolygonRecord, ScaleRecord, SettingsRecord, VerticalRecord,
+    InputRecord, Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord,
+    SettingsRecord, VerticalRecord,
 };
 use serde::Serialize;
 
@@ -79,6 +80,9 @@ pub(crate) struct ManifestDocument {
     counts: CountsDocument,
     /// What clipping costs, per level and class.
     growth: Vec<RowDocument>,
+    /// The photos of each level that has some, root first; left out without any.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    photos: Vec<PhotoLevelDocument>,
 }
 
 /// Working metres to a true metre, along x and along y.
@@ -156,6 +160,31 @@ struct SettingsDocument {
     class_max_cell_m: Vec<Option<f64>>,
     /// Simplification tolerance in cells of the level; 0 is off.
     simplify_cells: f64,
+    /// How photos were made; left out without any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    photo: Option<PhotoDocument>,
+}
+
+/// How the photos of a package were made.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct PhotoDocument {
+    /// A cell of the finest level has 2^levels texels along each side.
+    levels: u8,
+    /// JPEG's quality, from 1 to 100.
+    quality: u8,
+}
+
+/// The photos of a level.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct PhotoLevelDocument {
+    /// Level, 0 = root.
+    level: u8,
+    /// Tiles with a photo.
+    tiles: u64,
+    /// Stored bytes of their photos.
+    bytes: u64,
 }
 
 /// The polygon that the package was cut with.
@@ -172,7 +201,7 @@ struct PolygonDocument {
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct InputDocument {
-    /// "dem"; "dem-part", a file that the one before it refers to or that belongs to it; "polygon"; or "osm".
+    /// "dem"; "dem-part", a file that the one before it refers to or that belongs to it; "photo"; "photo-part", likewise; "polygon"; or "osm".
     kind: String,
     /// File name without folders.
     name: String,
@@ -213,7 +242,14 @@ impl From<&Manifest> for ManifestDocument {
             attribution: manifest.attribution,
             counts: manifest.counts.into(),
             growth: manifest.growth.iter().map(Into::into).collect(),
+            photos: manifest.photos.into_iter().map(Into::into).collect(),
         }
+    }
+}
+
+impl From<PhotoLevelRecord> for PhotoLevelDocument {
+    fn from(PhotoLevelRecord { level, tiles, bytes }: PhotoLevelRecord) -> Self {
+        Self { level, tiles, bytes }
     }
 }
 
@@ -246,6 +282,9 @@ impl From<SettingsRecord> for SettingsDocument {
             classes: settings.classes,
             class_max_cell_m: settings.class_max_cell_m,
             simplify_cells: settings.simplify_cells,
+            photo: settings
+                .photo
+                .map(|PhotoRecord { levels, quality }| PhotoDocument { levels, quality }),
         }
     }
 }

@@ -103,6 +103,8 @@ fn properties(manifest: &Manifest) -> [Property; 16] {
         classes: chosen,
         class_max_cell_m,
         simplify_cells,
+        // Photos change no road.
+        photo: _,
     } = &manifest.settings;
     [
         ("extract", inputs(manifest, &["osm"])),

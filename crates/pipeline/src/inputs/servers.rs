@@ -47,6 +47,14 @@ pub fn elevation_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, BuildError> {
     Ok(files)
 }
 
+/// The photos that names stand for, in the order in which they were named: the first lies on top. Names are as for elevation files.
+///
+/// # Errors
+/// As [`elevation_names`].
+pub fn photo_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, BuildError> {
+    elevation_names(names)
+}
+
 /// The extracts that names stand for, sorted by file name and then by path, each once: folders, patterns and `@LIST` included. What is made of
 /// them does not depend on the order in which they were named.
 ///

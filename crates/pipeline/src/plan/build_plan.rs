@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use corniche_dem::Polygon;
 use corniche_geom::{Bounds, Cell, Frame, NodeIndex, TileId};
 use corniche_roads::{FrcTable, FrcTableError};
-use corniche_tileset::SettingsRecord;
+use corniche_tileset::{PhotoRecord, SettingsRecord};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::Opened;
 use crate::{
-    BuildError, PlanSettings, PlannedInput,
+    BuildError, PhotoSettings, PlanSettings, PlannedInput,
     heights::data_tiles::DataTiles,
     hex::hex,
     levels::Levels,
@@ -129,7 +129,12 @@ impl BuildPlan {
             generator: generator.clone(),
             libraries: grid.libraries.clone(),
             inputs: opened.inputs.planned()?,
-            settings: settings_record::of(terrain, roads, opened.max_error_m),
+            settings: settings_record::of(
+                terrain,
+                roads,
+                opened.max_error_m,
+                opened.photo_record(),
+            ),
             frc_table: FrcTableRecord::of(&roads.table),
             attribution: attribution.clone(),
             grid: PlannedGrid {
@@ -182,7 +187,15 @@ impl BuildPlan {
         let mut terrain = settings_record::terrain(&self.settings);
         terrain.plan.polygon =
             paths("polygon").next().map(|path| Polygon::read(&path)).transpose()?;
+        let photos: Vec<PathBuf> = paths("photo").collect();
+        // A package whose terrain is taken may have photos without files.
+        let photo = self.settings.photo.filter(|_| !photos.is_empty());
         Ok(PlanSettings {
+            photo: photo.map(|PhotoRecord { levels, quality }| PhotoSettings {
+                files: photos,
+                levels: Some(levels),
+                quality,
+            }),
             dem: paths("dem").collect(),
             terrain_of: paths("terrain").next(),
             osm: paths("osm").collect(),

@@ -3,12 +3,16 @@
 use std::time::Duration;
 
 use corniche_dem::{Dem, FileBlocks};
-use corniche_tileset::{LevelRecord, Manifest};
+use corniche_geom::{Frame, TILE_CELLS};
+use corniche_tileset::{LevelRecord, Manifest, ReliefLevels};
 use corniche_tin::TinSpec;
 use serde::Serialize;
 
 use super::{Opened, covered_tiles::CoveredTiles, rates};
-use crate::{BuildError, Observer, Resources, machine::thread_time, terrain::ground::GroundSource};
+use crate::{
+    BuildError, Observer, Resources, machine::thread_time, photos::opened::OpenedPhotos,
+    terrain::ground::GroundSource,
+};
 
 /// From so many finest tiles on some are triangulated to see how the ground is. Less work is estimated well enough without.
 const LEAST_TILES_TO_SAMPLE: u64 = 256;
@@ -108,7 +112,8 @@ impl Estimate {
         let dem = match &opened.source {
             GroundSource::Dem(dem) => dem,
             GroundSource::Package(terrain) => {
-                return Ok(Self::of_recorded(terrain.manifest(), resources, extract_bytes));
+                let manifest = terrain.manifest();
+                return Ok(Self::of_recorded(manifest, resources, extract_bytes, opened.relief));
             }
         };
         let rectangles = dem.file_nodes(&opened.grid)?;
@@ -124,8 +129,12 @@ impl Estimate {
             side(south_west.i, north_east.i).saturating_mul(side(south_west.j, north_east.j))
         });
         let nodes = sides.fold(0, u64::saturating_add);
-        let memory =
-            MemoryEstimate::new(&dem.file_blocks()?, tiles.iter().sum(), resources.threads as u64);
+        let mut blocks = dem.file_blocks()?;
+        blocks.extend(opened.photo.iter().flat_map(|photo| photo.blocks.iter().cloned()));
+        let mut memory = MemoryEstimate::new(&blocks, tiles.iter().sum(), resources.threads as u64);
+        if let Some(photo) = &opened.photo {
+            memory.add_photos(photo.levels());
+        }
         let is_sampled = finest.count() >= LEAST_TILES_TO_SAMPLE
             && memory.block_bytes <= MOST_SAMPLED_BLOCK_BYTES
             && memory.least_bytes <= resources.memory_bytes;
@@ -138,11 +147,39 @@ impl Estimate {
         if !opened.grid.nodes_are_samples() {
             ground.core_seconds += rates::SECONDS_PER_RESAMPLED_NODE * nodes as f64;
         }
-        Ok(Self::put_together(nodes, tiles, memory, extract_bytes, &ground))
+        let estimate = Self::put_together(nodes, tiles, memory, extract_bytes, &ground);
+        let mut estimate = estimate.with_relief(opened.relief);
+        if let Some(photo) = &opened.photo {
+            estimate.add_photos(photo, &opened.grid.frame);
+        }
+        Ok(estimate)
+    }
+
+    /// Adds what photos take: of each finest tile that one may lie on, as if it were covered.
+    fn add_photos(&mut self, photos: &OpenedPhotos, frame: &Frame) {
+        let finest = self.tiles.last().copied().unwrap_or(0);
+        let all: u64 = self.tiles.iter().sum();
+        let cell = frame.cell();
+        let tile_m2 = cell.east_m * cell.north_m * (TILE_CELLS * TILE_CELLS) as f64;
+        let covered = photos.grid.area_m2() / tile_m2;
+        let texels = covered.min(finest as f64) * rates::photo_texels(photos.levels());
+        let package = texels * rates::ALL_PER_FINEST_PHOTO * rates::PHOTO_BYTES_PER_TEXEL;
+        self.package_bytes += package.ceil() as u64;
+        // Textures of finest tiles are kept beside their payloads.
+        let rasters = all * rates::PHOTO_RASTER_BYTES;
+        self.store_bytes += 2 * package.ceil() as u64 + rasters;
+        self.core_seconds += texels * rates::SECONDS_PER_PHOTO_TEXEL;
+        let cores = self.memory.threads.max(1) as f64 * rates::CORES_BUSY;
+        self.seconds = self.core_seconds / cores;
     }
 
     /// Of a build that takes the terrain of a package.
-    fn of_recorded(manifest: &Manifest, resources: Resources, extract_bytes: u64) -> Self {
+    fn of_recorded(
+        manifest: &Manifest,
+        resources: Resources,
+        extract_bytes: u64,
+        relief: ReliefLevels,
+    ) -> Self {
         let levels = &manifest.levels;
         let tiles: Vec<u64> = levels.iter().map(|level| level.tiles).collect();
         let all = tiles.iter().sum::<u64>();
@@ -150,8 +187,11 @@ impl Estimate {
         let of_levels = |count: fn(&LevelRecord) -> u64| levels.iter().map(count).sum::<u64>();
         let [triangles, terrain_bytes] =
             [of_levels(|level| level.triangles), of_levels(|level| level.terrain_bytes)];
+        let relief_bytes =
+            if relief == ReliefLevels::Off { 0 } else { of_levels(|level| level.relief_bytes) };
         let extract = extract_bytes as f64;
-        let package = terrain_bytes as f64 + rates::ROADS_PER_EXTRACT_BYTE * extract;
+        let package =
+            (terrain_bytes + relief_bytes) as f64 + rates::ROADS_PER_EXTRACT_BYTE * extract;
         let records = all * (rates::RECORD_BYTES + 3 * rates::ARTIFACT_BYTES);
         let pieces = rates::PIECES_PER_EXTRACT_BYTE * extract;
         let while_sorted = pieces + rates::SORTED_PER_EXTRACT_BYTE * extract;
@@ -168,6 +208,20 @@ impl Estimate {
             seconds: core_seconds / cores,
             rates: Rates::Recorded,
         }
+    }
+
+    /// The same with the reliefs of these levels.
+    fn with_relief(mut self, relief: ReliefLevels) -> Self {
+        let finest = self.tiles.len() as u8 - 1;
+        let has = |level: &u8| relief.has(*level, finest);
+        let tiles: u64 = (0..=finest).filter(has).map(|level| self.tiles[usize::from(level)]).sum();
+        let bytes = tiles * rates::RELIEF_BYTES;
+        self.package_bytes += bytes;
+        self.store_bytes += bytes;
+        let core_seconds = tiles as f64 * rates::SECONDS_PER_RELIEF;
+        self.seconds += core_seconds / (self.memory.threads.max(1) as f64 * rates::CORES_BUSY);
+        self.core_seconds += core_seconds;
+        self
     }
 
     fn put_together(
@@ -226,6 +280,16 @@ impl MemoryEstimate {
             block_row_bytes,
             least_bytes: rates::BASE_BYTES.saturating_add(tiles_bytes).saturating_add(of_threads),
         }
+    }
+}
+
+impl MemoryEstimate {
+    /// Adds what a thread needs to make a tile's photo.
+    fn add_photos(&mut self, levels: u8) {
+        let texels = rates::photo_texels(levels).ceil() as u64;
+        let photo_bytes = texels * rates::THREAD_BYTES_PER_PHOTO_TEXEL + rates::PHOTO_PIXELS_BYTES;
+        self.thread_bytes += photo_bytes;
+        self.least_bytes += self.threads * photo_bytes;
     }
 }
 

@@ -32,6 +32,8 @@ pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecor
         classes: ours.classes.clone(),
         class_max_cell_m: ours.class_max_cell_m.clone(),
         simplify_cells: ours.simplify_cells,
+        // Photos are taken with the terrain.
+        photo: ours.photo,
         ..package.clone()
     };
     // A polygon is the same under another name.
@@ -115,6 +117,7 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         classes: chosen_classes,
         class_max_cell_m,
         simplify_cells,
+        photo,
     } = record;
     let classes = class_max_cell_m.iter().enumerate().map(|(class, cell_m)| match cell_m {
         Some(cell_m) => format!("{class}: {cell_m}"),
@@ -151,5 +154,7 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         ),
         fact("class-max-cell (--all-classes)", &list(classes)),
         fact("--simplify", simplify_cells),
+        fact("--photo-levels", &given(photo.map(|photo| photo.levels).as_ref())),
+        fact("--photo-quality", &given(photo.map(|photo| photo.quality).as_ref())),
     ]
 }

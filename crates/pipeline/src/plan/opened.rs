@@ -2,12 +2,14 @@ use std::path::Path;
 
 use corniche_dem::{Dem, GridPlan, Polygon};
 use corniche_geom::CoordinateTable;
+use corniche_tileset::{PhotoRecord, ReliefLevels};
 
 use super::{coordinates::coordinates, facts::terrain_differences};
 use crate::{
     BuildError, PlanSettings, PlannedInput, TerrainSettings,
     inputs::{InputKind, Inputs, OtherInputs},
     levels::{Levels, most_scale},
+    photos::opened::{OpenedPhotos, photo_record},
     settings_record,
     terrain::{ground::GroundSource, recorded::RecordedTerrain},
 };
@@ -26,6 +28,10 @@ pub(crate) struct Opened {
     pub(crate) max_error_m: f64,
     /// Longitudes and latitudes over the data.
     pub(crate) coordinates: CoordinateTable,
+    /// Photos of the ground.
+    pub(crate) photo: Option<OpenedPhotos>,
+    /// Which levels have relief sections.
+    pub(crate) relief: ReliefLevels,
 }
 
 impl Opened {
@@ -36,8 +42,12 @@ impl Opened {
     pub(crate) fn new(settings: &PlanSettings) -> Result<Self, BuildError> {
         // The state of the files is noted before anything of them is read.
         let polygon = settings.terrain.plan.polygon.as_ref().map(Polygon::path);
-        let others = OtherInputs { polygon, osm: &settings.osm };
+        let photo = settings.photo.as_ref().map_or(&[][..], |photo| &photo.files);
+        let others = OtherInputs { photo, polygon, osm: &settings.osm };
         let mut inputs = match &settings.terrain_of {
+            Some(package) if settings.photo.is_some() => {
+                return Err(BuildError::PhotoOnTerrain { path: package.clone() });
+            }
             Some(package) => Inputs::find_with_package(package, others)?,
             None => Inputs::find(&settings.dem, others)?,
         };
@@ -50,7 +60,11 @@ impl Opened {
                 if let GroundSource::Dem(dem) = &source {
                     inputs.use_only(&dem.needed_files(&grid)?);
                 }
-                Ok(Self { inputs, source, grid, levels, max_error_m, coordinates })
+                let open = |settings| OpenedPhotos::open(settings, &grid);
+                let photo = settings.photo.as_ref().map(open).transpose();
+                let photo = photo.map_err(|error| inputs.changed_instead_of(error))?;
+                let relief = settings.terrain.relief;
+                Ok(Self { inputs, source, grid, levels, max_error_m, coordinates, photo, relief })
             }
             // A changed input may be the cause of any other error, so it is reported instead.
             Err(error) => Err(inputs.changed_instead_of(error)),
@@ -62,6 +76,11 @@ impl Opened {
         let planned = self.inputs.planned()?;
         let is_extract = |input: &&PlannedInput| input.kind == InputKind::Osm.name();
         Ok(planned.iter().filter(is_extract).map(|input| input.bytes).sum())
+    }
+
+    /// What the manifest says of how photos are made: those of a package whose terrain is taken stay as they are.
+    pub(crate) fn photo_record(&self) -> Option<PhotoRecord> {
+        photo_record(&self.source, self.photo.as_ref())
     }
 
     /// From elevation files.
@@ -86,7 +105,7 @@ impl Opened {
         let terrain = RecordedTerrain::open(package, &settings.generator)?;
         let manifest = terrain.manifest();
         let max_error_m = settings.terrain.max_error_m.unwrap_or(manifest.settings.max_error_m);
-        let ours = settings_record::of(&settings.terrain, &settings.roads, max_error_m);
+        let ours = settings_record::of(&settings.terrain, &settings.roads, max_error_m, None);
         let differences = terrain_differences(&ours, &manifest.settings);
         if !differences.is_empty() {
             let differences = differences.join("; ");

@@ -40,6 +40,11 @@ pub(crate) fn payload_bytes_per_triangle(triangles_per_node: f64) -> f64 {
     (1.25 * triangles_per_node.powf(-0.22)).min(2.0)
 }
 
+/// Bytes of a full tile's relief: 7 000 on smooth ground, 13 000 on rough.
+pub(crate) const RELIEF_BYTES: u64 = 11_000;
+/// Time to make a relief, on one core.
+pub(crate) const SECONDS_PER_RELIEF: f64 = 0.01;
+
 /// Pieces of roads of all levels, for each byte of the extract.
 pub(crate) const PIECES_PER_EXTRACT_BYTE: f64 = 1.5;
 /// The same while they are sorted into the order of tiles.
@@ -48,6 +53,23 @@ pub(crate) const SORTED_PER_EXTRACT_BYTE: f64 = 1.5;
 pub(crate) const ROADS_PER_EXTRACT_BYTE: f64 = 0.5;
 /// Time to read an extract and cut its roads, on one core.
 pub(crate) const SECONDS_PER_EXTRACT_BYTE: f64 = 0.5e-6;
+/// Texels of the photo of a tile, border included, whose cells have 2^levels texels along each side.
+pub(crate) fn photo_texels(levels: u8) -> f64 {
+    (f64::from(256_u32 << levels) + 16.0).powi(2)
+}
+/// Memory for each texel while a tile's photo is made: four bytes, the same of the part for the levels above, and three and the
+/// coded ones while it is encoded.
+pub(crate) const THREAD_BYTES_PER_PHOTO_TEXEL: u64 = 16;
+/// Pixels that are read for it at once.
+pub(crate) const PHOTO_PIXELS_BYTES: u64 = 16 << 20;
+/// A tile's raster of its photo.
+pub(crate) const PHOTO_RASTER_BYTES: u64 = 256 * 256 * 4;
+/// Bytes of a photo for each texel, at the usual quality.
+pub(crate) const PHOTO_BYTES_PER_TEXEL: f64 = 0.2;
+/// Texels of the photos of all levels, divided by those of the finest.
+pub(crate) const ALL_PER_FINEST_PHOTO: f64 = 1.4;
+/// Time for each texel of a photo, on one core.
+pub(crate) const SECONDS_PER_PHOTO_TEXEL: f64 = 0.3e-6;
 /// Time for each node of the finest level, on one core: to read it and to compare TINs with it.
 pub(crate) const SECONDS_PER_NODE: f64 = 0.18e-6;
 /// Time for each triangle of any level, on one core.

@@ -2,6 +2,7 @@
 
 use corniche_geom::TileId;
 
+use super::photos;
 use crate::{BuildError, artifacts::Kind, context::Context};
 
 /// Reads the heights beneath and at `scope` that are not there yet; none where the terrain comes from a package.
@@ -9,5 +10,6 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
     if let Some(pyramid) = context.pyramid() {
         pyramid.make(scope)?;
     }
+    photos::make(context, scope)?;
     Ok(context.store.put(Kind::Subtree.of_tile(scope), &[])?)
 }

@@ -2,7 +2,7 @@
 
 use corniche_tileset::{
     Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest,
-    SampleErrorRecord, ScaleRecord, VerticalRecord,
+    PhotoLevelRecord, SampleErrorRecord, ScaleRecord, VerticalRecord,
 };
 
 use super::sums::TileSums;
@@ -27,9 +27,18 @@ pub(crate) struct Outcome<'a> {
 pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
     let Context { settings, grid: plan, levels, .. } = *outcome.context;
     let frame = *levels.frame();
-    let record =
-        settings_record::of(&settings.terrain, &settings.roads, outcome.context.max_error_m);
+    let record = settings_record::of(
+        &settings.terrain,
+        &settings.roads,
+        outcome.context.max_error_m,
+        outcome.context.photo_record(),
+    );
     let mut attribution = settings.attribution.clone();
+    for credit in outcome.context.photo.into_iter().flat_map(|photo| &photo.credits) {
+        if !attribution.contains(credit) {
+            attribution.push(credit.clone());
+        }
+    }
     if outcome.roads.is_some() {
         attribution.push(corniche_osm::ATTRIBUTION.to_owned());
     }
@@ -67,6 +76,7 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
         attribution,
         counts: counts(outcome),
         growth: growth(outcome),
+        photos: photos(outcome),
     }
 }
 
@@ -131,6 +141,17 @@ fn counts(outcome: &Outcome<'_>) -> Counts {
         Some((totals, losses)) => road_counts(samples, totals, losses),
         None => Counts { samples, ..Counts::default() },
     }
+}
+
+fn photos(outcome: &Outcome<'_>) -> Vec<PhotoLevelRecord> {
+    let levels = outcome.tiles.levels.iter().filter(|(_, sums)| sums.photo_tiles > 0);
+    levels
+        .map(|(&level, sums)| PhotoLevelRecord {
+            level,
+            tiles: sums.photo_tiles,
+            bytes: sums.photo_bytes,
+        })
+        .collect()
 }
 
 fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {

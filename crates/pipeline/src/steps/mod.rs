@@ -10,6 +10,7 @@ pub(crate) mod hashes;
 pub(crate) mod heights;
 pub(crate) mod manifest;
 pub(crate) mod merge;
+pub(crate) mod photos;
 pub(crate) mod recorded_tiles;
 pub(crate) mod roads;
 pub(crate) mod shares;

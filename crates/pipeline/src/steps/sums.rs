@@ -31,6 +31,9 @@ pub(crate) struct LevelSums {
     pub(crate) triangles: u64,
     pub(crate) terrain_bytes: u64,
     pub(crate) relief_bytes: u64,
+    /// Tiles with a photo.
+    pub(crate) photo_tiles: u64,
+    pub(crate) photo_bytes: u64,
     /// Geometric errors of its tiles.
     pub(crate) geometric_errors_m: Vec<f64>,
     /// Geometric errors of its tiles over their deviations, where those can be measured.
@@ -68,6 +71,8 @@ impl TileSums {
         sums.triangles += ground.triangles;
         sums.terrain_bytes += ground.terrain_bytes;
         sums.relief_bytes += ground.relief_bytes;
+        sums.photo_tiles += u64::from(ground.photo_bytes > 0);
+        sums.photo_bytes += ground.photo_bytes;
         sums.geometric_errors_m.push(deviation.geometric_error_m);
         if deviation.deviation_m >= self.least_measured_m {
             sums.tightness.push(deviation.geometric_error_m / deviation.deviation_m);

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use corniche_geom::TileId;
 use corniche_tileset::{pmtiles_order, tile_of_order};
 
-use super::tins;
+use super::{photos, tins};
 use crate::{BuildError, artifacts::Kind, context::Context};
 
 /// Checks the heights of all subtrees, which must be there, and makes what lies above them.
@@ -20,6 +20,7 @@ pub(crate) fn make(context: &Context<'_>) -> Result<(), BuildError> {
         pyramid.make_rasters(TileId::ROOT)?;
         tins::make(context, above_subtrees(context))?;
     }
+    photos::make_rasters(context, TileId::ROOT)?;
     Ok(context.store.put(Kind::Top.item(0), &[])?)
 }
 

@@ -156,11 +156,11 @@ impl RecordedTerrain {
         })
     }
 
-    /// The elevation files of the package.
-    pub(crate) fn elevation_files(&self) -> impl Iterator<Item = &InputRecord> {
-        let is_dem =
-            |input: &&InputRecord| InputKind::Dem.is_of(input) || InputKind::DemPart.is_of(input);
-        self.manifest().inputs.iter().filter(is_dem)
+    /// The elevation files and the photos of the package.
+    pub(crate) fn ground_files(&self) -> impl Iterator<Item = &InputRecord> {
+        let is_ground =
+            |input: &&InputRecord| InputKind::OF_GROUND.iter().any(|kind| kind.is_of(input));
+        self.manifest().inputs.iter().filter(is_ground)
     }
 
     /// The error for content that contradicts itself.

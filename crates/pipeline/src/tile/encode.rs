@@ -17,6 +17,7 @@ use crate::{
     artifacts::Kind,
     context::Context,
     heights::{finest::TILE_NODES, rasters},
+    photos::textures,
     roads::{
         lay::{ClassSums, Laid, TileToLayOn, lost_pieces},
         pieces::TilePieces,
@@ -66,10 +67,28 @@ pub(crate) fn with_ground(
         None => corniche_tileset::encode(&payload, &encoding)?,
     };
     let classes = class_sums(laid_classes, &payload, &encoded);
-    context.store.put(Kind::Payload.of_tile(id), &encoded.bytes)?;
+    let photo = match earlier {
+        Some(earlier) => textures::of_payload(context, id, earlier)?,
+        None => textures::of_tile(context, id)?,
+    };
+    let photo_bytes = photo.as_ref().map_or(0, |photo| photo.bytes().len() as u64);
+    match photo {
+        Some(photo) => {
+            let bytes = corniche_tileset::with_photo(&encoded.bytes, id, &photo)?;
+            context.store.put(Kind::Payload.of_tile(id), &bytes)?;
+        }
+        None => context.store.put(Kind::Payload.of_tile(id), &encoded.bytes)?,
+    }
     let (terrain_bytes, relief_bytes) = (encoded.sizes.terrain.stored, encoded.sizes.relief.stored);
     Ok(TileRecord {
-        ground: Some(GroundRecord { vertices, triangles, terrain_bytes, relief_bytes, deviation }),
+        ground: Some(GroundRecord {
+            vertices,
+            triangles,
+            terrain_bytes,
+            relief_bytes,
+            photo_bytes,
+            deviation,
+        }),
         classes,
         fates,
         levels: Vec::new(),

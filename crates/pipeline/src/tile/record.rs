@@ -36,6 +36,8 @@ pub(crate) struct GroundRecord {
     pub(crate) triangles: u64,
     pub(crate) terrain_bytes: u64,
     pub(crate) relief_bytes: u64,
+    /// 0 without a photo.
+    pub(crate) photo_bytes: u64,
     pub(crate) deviation: TileDeviation,
 }
 

@@ -16,6 +16,7 @@ mod manifest_sums;
 mod one_tile;
 mod osm;
 mod osm_tile;
+mod photos;
 mod polygon;
 mod relief;
 mod report;
@@ -60,6 +61,7 @@ pub fn verify(
     }
     let mut given = vec![Needs::Package];
     let (mut report, mut findings) = tiles::verify(&package, settings.threads, observer)?;
+    photos::verify(&package, settings.threads, &mut findings, observer)?;
     manifest_sums::verify(package.manifest(), &mut findings);
     derived_records::verify(package.manifest(), &mut findings);
     header::verify(&package, &mut findings)?;

@@ -39,7 +39,7 @@ pub(crate) fn verify(
     findings: &mut Findings,
     observer: &dyn Observer,
 ) -> Result<(), VerifyError> {
-    let others = OtherInputs { osm: &osm.paths, polygon: None };
+    let others = OtherInputs { osm: &osm.paths, polygon: None, photo: &[] };
     let inputs = Inputs::find(&[], others)?;
     let compared = compare_all(package, osm, settings, &inputs, findings, observer);
     match &compared {

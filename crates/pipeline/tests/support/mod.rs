@@ -183,6 +183,7 @@ pub(crate) fn settings(
                 filter: ClassFilter::usual(),
                 simplify_cells: 0.25,
             },
+            photo: None,
             attribution: Vec::new(),
             generator: "tests".to_owned(),
         },

@@ -5,6 +5,7 @@
 
 use corniche_geom::{Bounds, Cell, MAX_LATTICE_STEPS, NodeIndex};
 
+use crate::MAX_PHOTO_LEVELS;
 use crate::manifest::contents::Manifest;
 use crate::manifest::counts::{Counts, GrowthRow};
 use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord};
@@ -90,7 +91,21 @@ impl Manifest {
             that(usize::from(row.class) < CLASSES, "growth.class", row.class)?;
         }
         check_sum("growth", self.growth.iter().flat_map(GrowthRow::counts))?;
+        self.check_photos()?;
         check_sum("inputs", self.inputs.iter().map(|input| input.bytes))
+    }
+
+    fn check_photos(&self) -> Result<(), String> {
+        if let Some(photo) = self.settings.photo {
+            that(photo.levels <= MAX_PHOTO_LEVELS, "settings.photo.levels", photo.levels)?;
+            that((1..=100).contains(&photo.quality), "settings.photo.quality", photo.quality)?;
+        }
+        let levels = self.photos.iter().map(|photos| photos.level);
+        let is_sorted = levels.clone().is_sorted_by(|a, b| a < b);
+        that(is_sorted, "photos.level", levels.clone().collect::<Vec<_>>())?;
+        let most = levels.max().unwrap_or_default();
+        that(most <= self.frame.max_level(), "photos.level", most)?;
+        check_sum("photos", self.photos.iter().flat_map(|photos| [photos.tiles, photos.bytes]))
     }
 
     fn check_settings(&self) -> Result<(), String> {

@@ -58,6 +58,9 @@ pub struct Manifest {
     pub counts: Counts,
     /// What clipping costs, per level and class.
     pub growth: Vec<GrowthRow>,
+    /// The photos of each level that has some, root first; left out without any.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub photos: Vec<PhotoLevelRecord>,
 }
 
 /// The part of the elevation files that a package is of.
@@ -171,6 +174,29 @@ pub struct SettingsRecord {
     pub class_max_cell_m: Vec<Option<f64>>,
     /// Simplification tolerance in cells of the level; 0 is off.
     pub simplify_cells: f64,
+    /// How photos were made (`--photo`); left out without any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub photo: Option<PhotoRecord>,
+}
+
+/// How the photos of a package were made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PhotoRecord {
+    /// A cell of the finest level has 2^levels texels along each side: `--photo-levels`, or what follows from the photos.
+    pub levels: u8,
+    /// `--photo-quality`: JPEG's, from 1 to 100.
+    pub quality: u8,
+}
+
+/// The photos of a level.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PhotoLevelRecord {
+    /// Level, 0 = root.
+    pub level: u8,
+    /// Tiles with a photo.
+    pub tiles: u64,
+    /// Stored bytes of their photo sections.
+    pub bytes: u64,
 }
 
 /// The polygon that a package was cut with.
@@ -185,7 +211,7 @@ pub struct PolygonRecord {
 /// An input file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct InputRecord {
-    /// "dem"; "dem-part", a file that the one before it refers to or that belongs to it; "polygon"; or "osm".
+    /// "dem"; "dem-part", a file that the one before it refers to or that belongs to it; "photo"; "photo-part", likewise; "polygon"; or "osm".
     pub kind: String,
     /// File name without folders.
     pub name: String,

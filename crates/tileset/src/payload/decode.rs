@@ -71,6 +71,8 @@ pub fn decode(
     if let Some(bytes) = read(Kind::RoadTags, Sections::ATTRIBUTES)? {
         road_tags::decode(&bytes, &mut records).map_err(inside(Kind::RoadTags))?;
     }
+    // The picture itself is decoded for those who ask for it.
+    let _checked = read(Kind::Photo, Sections::PHOTO)?;
     Ok(TilePayload {
         id,
         terrain: ground,

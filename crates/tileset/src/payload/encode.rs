@@ -128,6 +128,7 @@ fn encode_sections(
         attributes: size(Kind::Attributes),
         road_tags: size(Kind::RoadTags),
         relief: size(Kind::Relief),
+        photo: SectionSize::default(),
         geo_class_bytes,
         sv_class_bytes,
     };

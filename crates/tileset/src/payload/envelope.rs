@@ -35,6 +35,14 @@ pub(crate) struct StoredSection<'a> {
     bytes: &'a [u8],
 }
 
+#[cfg(feature = "write")]
+impl StoredSection<'_> {
+    /// Its kind, if this version knows it.
+    pub(crate) fn known_kind(&self) -> Option<Kind> {
+        Kind::ALL.iter().copied().find(|&kind| kind as u16 == self.kind)
+    }
+}
+
 /// Takes a payload apart. Sections are not looked into yet; they lie end to end up to the payload's last byte, so
 /// that each byte is covered by one checksum.
 pub(crate) fn open(bytes: &[u8], id: TileId) -> Result<Vec<StoredSection<'_>>, Damage> {
@@ -197,6 +205,8 @@ const COMPRESSION_LEVEL: i32 = 16;
 pub(crate) enum Content<'a> {
     /// Bytes before compression.
     Raw(Vec<u8>),
+    /// Bytes that do not become smaller by compression.
+    Packed(&'a [u8]),
     /// Bytes as another payload of the tile has them.
     Stored(StoredSection<'a>),
 }
@@ -225,15 +235,12 @@ pub(crate) fn seal(
             Content::Stored(stored) => {
                 (stored.compression, stored.bytes, stored.raw_length as usize, stored.checksum)
             }
+            Content::Packed(raw) => {
+                check_size(id, section, raw)?;
+                (STORED, *raw, raw.len(), crc32fast::hash(raw))
+            }
             Content::Raw(raw) => {
-                if raw.len() > MAX_SECTION_BYTES {
-                    return Err(EncodeError::TooLarge {
-                        tile: id,
-                        section,
-                        bytes: raw.len(),
-                        limit: MAX_SECTION_BYTES,
-                    });
-                }
+                check_size(id, section, raw)?;
                 compressed = zstd::bulk::compress(raw, COMPRESSION_LEVEL).map_err(|error| {
                     EncodeError::Compress { tile: id, section, reason: error.to_string() }
                 })?;
@@ -254,4 +261,18 @@ pub(crate) fn seal(
     table.extend(crc32fast::hash(&table).to_le_bytes());
     table.extend(body);
     Ok((table, sizes))
+}
+
+/// Fails if readers would refuse a section for its size.
+#[cfg(feature = "write")]
+fn check_size(
+    tile: TileId,
+    section: &'static str,
+    raw: &[u8],
+) -> Result<(), crate::payload::damage::EncodeError> {
+    if raw.len() > MAX_SECTION_BYTES {
+        let (bytes, limit) = (raw.len(), MAX_SECTION_BYTES);
+        return Err(crate::payload::damage::EncodeError::TooLarge { tile, section, bytes, limit });
+    }
+    Ok(())
 }

@@ -33,6 +33,7 @@ kinds! {
     Attributes = 4, "road attributes section";
     RoadTags = 5, "road tags section";
     Relief = 6, "relief section";
+    Photo = 7, "photo section";
 }
 
 /// Which sections of a payload to decode; combine them with `|`.
@@ -52,6 +53,8 @@ impl Sections {
     pub const ATTRIBUTES: Self = Self(Self::of(Kind::Attributes).0 | Self::of(Kind::RoadTags).0);
     /// The raster of the level, for shading.
     pub const RELIEF: Self = Self::of(Kind::Relief);
+    /// The photo. [`decode`](crate::decode) checks it; [`decode_photo`](crate::decode_photo) gives it.
+    pub const PHOTO: Self = Self::of(Kind::Photo);
     /// Everything, checksums of sections of unknown kinds included.
     pub const ALL: Self = Self::all();
 

@@ -24,6 +24,8 @@ pub struct PayloadSizes {
     pub road_tags: SectionSize,
     /// The relief section.
     pub relief: SectionSize,
+    /// The photo section.
+    pub photo: SectionSize,
     /// Bytes of each class in the GEO section before compression: they determine the class's share of the stored bytes.
     pub geo_class_bytes: [u64; FunctionalRoadClass::COUNT],
     /// The same for the SV section.
@@ -55,6 +57,7 @@ pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeErr
         attributes: size(Kind::Attributes),
         road_tags: size(Kind::RoadTags),
         relief: size(Kind::Relief),
+        photo: size(Kind::Photo),
         geo_class_bytes: of_classes(Kind::RoadsGeo)?,
         sv_class_bytes: of_classes(Kind::RoadsSv)?,
     })

@@ -5,7 +5,7 @@ use corniche_tin::Tin;
 
 use crate::payload::relief::Relief;
 
-/// All that a tile holds, decoded. A section that is absent from the bytes is empty or `None` here.
+/// All that a tile holds, decoded, but for its photo ([`decode_photo`](crate::decode_photo)). A section that is absent from the bytes is empty or `None` here.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TilePayload {
     /// The tile.

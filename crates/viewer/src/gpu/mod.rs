@@ -57,6 +57,7 @@ mod formats;
 mod ground_buffers;
 pub(crate) mod inspection;
 mod passes;
+mod photo_texture;
 mod picture;
 mod pipeline;
 mod read_back;

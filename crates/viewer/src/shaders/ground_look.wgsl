@@ -19,6 +19,7 @@ struct GroundColors {
     shadow: vec4<f32>,
     // rgb; w: height of the wall along the edge of the data, world metres.
     sunlit: vec4<f32>,
+    // rgb; w: how strongly photos are seen.
     water: vec4<f32>,
     wall: vec4<f32>,
     // rgb; w: height, metres.
@@ -29,8 +30,6 @@ struct GroundColors {
 
 // Slopes gentler than this are shaded as if they were steeper; tangent of the angle.
 const GENTLE_SLOPE = 0.12;
-// Level ground: its normal leans by less than this; tangent of the angle.
-const LEVEL_SLOPE = 0.0015;
 
 // Colour of the ground at a true height.
 fn tint_at(height_m: f32) -> vec3<f32> {
@@ -41,11 +40,6 @@ fn tint_at(height_m: f32) -> vec3<f32> {
         color = mix(color, colors.tint[k].rgb, t);
     }
     return color;
-}
-
-// Level ground at or below the sea is water.
-fn is_water(normal: vec3<f32>, height_m: f32) -> bool {
-    return height_m <= 0.0 && length(normal.xy) <= LEVEL_SLOPE * normal.z;
 }
 
 // How much light a slope gets from one direction: 1 on level ground, less on slopes turned away, below 0 beyond a right angle.
@@ -66,8 +60,8 @@ fn light_on(normal: vec3<f32>) -> f32 {
     return mix(first, light_from(colors.second_light.xyz, normal), 0.6 * turned);
 }
 
-// Shades a colour. `normal` is the unit normal of the ground as it is drawn, exaggeration included.
-fn shaded(color: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+// Shades a colour, more or less strongly. `normal` is the unit normal of the ground as it is drawn, exaggeration included.
+fn shaded(color: vec3<f32>, normal: vec3<f32>, strength: f32) -> vec3<f32> {
     // Gentle ground is shaded as if it were steeper; steep ground as it is.
     let slope = length(normal.xy) / max(normal.z, 1e-3);
     let s2 = GENTLE_SLOPE * GENTLE_SLOPE;
@@ -76,9 +70,9 @@ fn shaded(color: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let light = light_on(seen);
     // Shadow grows ever more slowly and is never full, so that shadow sides keep their form.
     let lacking = max(1.0 - light, 0.0);
-    let steep = colors.second_light.w * (1.0 - seen.z);
-    let dark = colors.light.w * (1.0 - exp(-1.15 * lacking)) ;
-    let bright = colors.light.w * 0.75 * (1.0 - exp(-1.6 * max(light - 1.0, 0.0)));
+    let steep = strength * colors.second_light.w * (1.0 - seen.z);
+    let dark = strength * colors.light.w * (1.0 - exp(-1.15 * lacking));
+    let bright = strength * colors.light.w * 0.75 * (1.0 - exp(-1.6 * max(light - 1.0, 0.0)));
     let in_shadow = mix(color, color * colors.shadow.rgb, dark) * (1.0 - steep);
     return mix(in_shadow, colors.sunlit.rgb, bright * (1.0 - steep));
 }

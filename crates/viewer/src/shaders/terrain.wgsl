@@ -68,9 +68,12 @@ fn owner_of_pixel() -> u32 {
 @fragment
 fn fragment(in: VertexOut) -> Pixel {
     let normal = ground_normal(in.normal, in.plan_in_tile);
-    var color = colors.water.rgb;
-    if !is_water(normal, in.height_m) {
-        color = shaded(tint_at(in.height_m), normal);
+    let photo = photo_at(in.plan_in_tile);
+    let photo_share = photo.a * colors.water.w;
+    var color = mix(colors.water.rgb, photo.rgb, photo_share);
+    if !is_water(in.plan_in_tile) {
+        // A photo has shadows of its own.
+        color = shaded(mix(tint_at(in.height_m), photo.rgb, photo_share), normal, 1.0 - 0.5 * photo_share);
     }
     color = hazy(color, in.height_m, length(in.position));
     return Pixel(vec4(color, select(1.0, 0.5, SKIRT == 1u)), owner_of_pixel());

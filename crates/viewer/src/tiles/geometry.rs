@@ -5,8 +5,8 @@ use corniche_tileset::{Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 
 use super::{
-    BadRoad, GroundMesh, PlanScale, RoadSegments, RoadVolumes, ShadingSlopes, TileLines,
-    relief::Relief,
+    BadRoad, GroundMesh, PhotoImage, PlanScale, RoadSegments, RoadVolumes, ShadingSlopes,
+    TileLines, relief::Relief,
 };
 use crate::lod::GroundSummary;
 
@@ -23,6 +23,8 @@ pub struct TileGeometry {
     pub(crate) ground: GroundMesh,
     /// Slopes at all nodes, for shading; `None` where the package has none.
     pub(crate) shading: Option<ShadingSlopes>,
+    /// The photo of the ground; `None` if there is none, or it was not read.
+    pub photo: Option<PhotoImage>,
     /// The roads on it as geometry (GEO); empty if that section was not read.
     pub roads: RoadSegments,
     /// The roads on it as volumes (SV); empty if that section was not read.
@@ -118,6 +120,7 @@ impl TileGeometry {
             summary,
             ground,
             shading: None,
+            photo: None,
             most_width_factor,
             roads: RoadSegments::of_lines(&lines.ground, bounds, reference_m, scale, |piece| {
                 relief.bed(piece, wide.as_ref())
@@ -154,13 +157,14 @@ impl TileGeometry {
         Ok(Self { shading, ..tile })
     }
 
-    /// The same tile without its roads and slopes: enough for rays and heights.
+    /// The same tile without its roads, slopes and photo: enough for rays and heights.
     #[must_use]
     pub fn without_roads(self) -> Self {
         Self {
             shading: None,
             roads: RoadSegments::default(),
             volumes: RoadVolumes::default(),
+            photo: None,
             ..self
         }
     }

@@ -11,6 +11,7 @@ mod map_extent;
 #[cfg(not(target_arch = "wasm32"))]
 mod on_disk;
 mod package;
+mod photo;
 pub(crate) mod plan_scale;
 mod relief;
 pub(crate) mod roads;
@@ -27,6 +28,7 @@ pub use self::{
     geometry::TileGeometry,
     map_extent::MapExtent,
     package::PackageTiles,
+    photo::PhotoImage,
     roads::{RoadList, RoadLook, RoadSegment, RoadSegments, RoadVolume, RoadVolumes, TileLines},
     source::{BlockingPackage, LoadTileError, MapPackage, TileCatalog, TileSource},
     store::TileStore,

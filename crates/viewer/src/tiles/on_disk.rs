@@ -1,6 +1,7 @@
 use std::path::Path;
 
 use corniche_geom::{Frame, TileId};
+use corniche_styles::Style;
 use corniche_tileset::{FilePackage, FileSource, Manifest, OpenError};
 
 use super::{LoadTileError, MapPackage, PackageTiles, TileCatalog, TileGeometry, TileSource};
@@ -28,6 +29,16 @@ impl PackageSource {
     #[must_use]
     pub fn for_method(self, method: RoadMethod) -> Self {
         Self(self.0.for_method(method))
+    }
+}
+
+impl PackageSource {
+    /// Reads only what a picture in this style shows, with roads by this method: as [`PackageTiles::for_method`], and no photos where
+    /// the style hides them.
+    #[must_use]
+    pub fn for_look(self, method: RoadMethod, style: &Style) -> Self {
+        let tiles = self.0.for_method(method);
+        Self(if style.photo > 0.0 { tiles } else { tiles.without_photos() })
     }
 }
 

@@ -1,9 +1,11 @@
 use std::collections::BTreeSet;
 
 use corniche_geom::{Frame, TileId};
-use corniche_tileset::{ByteSource, Manifest, OpenError, Package, Sections};
+use corniche_tileset::{ByteSource, Manifest, OpenError, Package, Sections, decode, decode_photo};
 
-use super::{LoadTileError, MapPackage, PlanScale, TileCatalog, TileGeometry, TileLines};
+use super::{
+    LoadTileError, MapPackage, PhotoImage, PlanScale, TileCatalog, TileGeometry, TileLines,
+};
 use crate::options::RoadMethod;
 
 /// What every picture needs of a tile.
@@ -17,6 +19,14 @@ pub struct PackageTiles<S> {
     /// Tiles of the package and all tiles above them.
     tiles: BTreeSet<TileId>,
     sections: Sections,
+    photos: Photos,
+}
+
+/// Whether the photos of tiles are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Photos {
+    Read,
+    LeftOut,
 }
 
 impl<S: ByteSource> PackageTiles<S> {
@@ -33,7 +43,7 @@ impl<S: ByteSource> PackageTiles<S> {
             }
         }
         let sections = GROUND | Sections::ROADS_GEO | Sections::ROADS_SV | Sections::ATTRIBUTES;
-        Ok(Self { package, tiles, sections })
+        Ok(Self { package, tiles, sections, photos: Photos::Read })
     }
 
     /// Reads, beside the ground, only the roads that one method needs, with their attributes; without this, the roads that both need.
@@ -47,6 +57,12 @@ impl<S: ByteSource> PackageTiles<S> {
         Self { sections: GROUND | roads, ..self }
     }
 
+    /// Reads no photos, which take most of the time and the memory where there are some.
+    #[must_use]
+    pub fn without_photos(self) -> Self {
+        Self { photos: Photos::LeftOut, ..self }
+    }
+
     /// Reads and decodes a tile that exists.
     ///
     /// # Errors
@@ -54,16 +70,24 @@ impl<S: ByteSource> PackageTiles<S> {
     pub async fn load(&self, id: TileId) -> Result<TileGeometry, LoadTileError> {
         let failed = |source| LoadTileError { id, source };
         let quantum_m = self.manifest().vertical.quantum_m;
-        let payload = self.package.payload(id, self.sections).await;
-        match payload.map_err(|error| failed(error.into()))? {
-            Some(payload) => {
+        let bytes = self.package.tile(id).await.map_err(|error| failed(error.into()))?;
+        match bytes {
+            Some(bytes) => {
+                let payload = decode(&bytes, id, self.frame(), quantum_m, self.sections)
+                    .map_err(|error| failed(error.into()))?;
                 // The manifest has a record for every level of the frame: the reader of manifests checks that.
                 let level = &self.manifest().levels[usize::from(id.z())];
                 let (frame, margin_m) = (self.frame(), level.width_margin_m);
                 let Manifest { coordinates, point_scale, .. } = self.manifest();
                 let scale = PlanScale::of_tile(coordinates, frame.tile_bounds(id), *point_scale);
-                TileGeometry::from_payload(&payload, frame, quantum_m, margin_m, scale)
-                    .map_err(|error| failed(error.into()))
+                let tile = TileGeometry::from_payload(&payload, frame, quantum_m, margin_m, scale)
+                    .map_err(|error| failed(error.into()))?;
+                let photo = match self.photos {
+                    Photos::Read => decode_photo(&bytes, id),
+                    Photos::LeftOut => Ok(None),
+                };
+                let photo = photo.map_err(|error| failed(error.into()))?;
+                Ok(TileGeometry { photo: photo.map(PhotoImage::new), ..tile })
             }
             // The tile itself is not stored, but a tile beneath it is.
             None => {

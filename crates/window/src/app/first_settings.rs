@@ -14,6 +14,7 @@ pub(crate) fn first_settings(request: &WindowRequest, is_software: bool) -> Sett
         divider_share: 0.5,
         width_factors: [1.0; FunctionalRoadClass::COUNT],
         style: 0,
+        photo: request.photo,
         exaggeration: request.exaggeration,
         screen_space_error_px: request.screen_space_error_px,
         cell_px: request.cell_px,

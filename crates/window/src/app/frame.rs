@@ -274,6 +274,7 @@ impl App {
             metres_per_point: self.probe.middle_pixel_m().map(|pixel_m| pixel_m * points),
             mode: self.camera.mode(),
             style_names: self.styles.names(),
+            photo: manifest.settings.photo.map(|_| self.styles.at(self.settings.style).photo),
             road_colors,
             tiles_drawn: self.tiles.drawn().len(),
             tiles_missing: self.tiles.missing(),

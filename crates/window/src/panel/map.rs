@@ -1,4 +1,4 @@
-use egui::{ComboBox, Ui};
+use egui::{ComboBox, Slider, Ui};
 
 use super::slide::slide;
 use crate::{
@@ -34,6 +34,13 @@ pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, content: &WindowContent
             ui.selectable_value(&mut settings.samples_per_side, samples, words);
         }
     });
+    if let Some(of_style) = content.photo {
+        let mut strength = settings.photo.unwrap_or(of_style);
+        let slider = Slider::new(&mut strength, range::PHOTO).max_decimals(2).text("photo");
+        if ui.add(slider).on_hover_text("How strongly the photo is seen").changed() {
+            settings.photo = Some(strength);
+        }
+    }
     ui.checkbox(&mut settings.is_wireframe, "Wireframe");
     let mut is_frozen = settings.refinement == Refinement::Frozen;
     ui.checkbox(&mut is_frozen, "Freeze tiles")

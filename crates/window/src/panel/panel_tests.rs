@@ -62,6 +62,7 @@ impl Told {
             metres_per_point: Some(3.7),
             mode: Mode::Map,
             style_names: &self.styles,
+            photo: None,
             road_colors: &[[0.8, 0.2, 0.1]; 9],
             tiles_drawn: 123,
             tiles_missing: 45,

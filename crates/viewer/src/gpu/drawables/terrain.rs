@@ -20,7 +20,8 @@ use corniche_styles::{Light, MOST_TINT_STOPS, Style};
 
 use crate::frame_view::{FrameView, Wireframe};
 
-pub(crate) const SHADER: Shader = shader!("terrain": "common", "ground_look", "relief", "terrain");
+pub(crate) const SHADER: Shader =
+    shader!("terrain": "common", "ground_look", "relief", "photo", "terrain");
 
 /// By how much the direction of the second light is turned, clockwise.
 const SECOND_LIGHT_DEG: f64 = -60.0;
@@ -116,7 +117,7 @@ impl Terrain {
 
 /// The block `struct GroundColors` of `shaders/ground_look.wgsl`.
 pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
-    let Style { light, haze, water, wall, tint, .. } = view.style;
+    let Style { light, haze, water, wall, tint, photo, .. } = view.style;
     let [lowest_m, highest_m] = view.height_range_m;
     let stops = tint.stops_m(view.height_range_m, view.latitude_deg);
     let last = stops.last().copied().unwrap_or_default();
@@ -132,7 +133,7 @@ pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
         color(*haze, light.valley_haze),
         color(light.shadow, (1.0 / view.camera.focus_m()) as f32),
         color(light.sunlit, (view.wall_m * view.vertical_scale()) as f32),
-        color(*water, 0.0),
+        color(*water, *photo),
         color(*wall, 0.0),
     ];
     let stops = stops.into_iter().chain(std::iter::repeat(last)).take(MOST_TINT_STOPS);

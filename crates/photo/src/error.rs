@@ -1,0 +1,72 @@
+use std::path::PathBuf;
+
+use corniche_dem::{DemError, LibraryError};
+
+/// Why photos could not be opened or read.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum PhotoError {
+    #[error("no photo is given")]
+    NoFiles,
+    #[error("cannot open photo {path:?}")]
+    Missing { path: PathBuf, source: std::io::Error },
+    #[error(
+        "the name of photo {path:?} is not UTF-8, and GDAL takes no other names here; rename the file (or its folder)"
+    )]
+    NotUtf8 { path: PathBuf },
+    #[error(
+        "photo {path:?} names no usable coordinate system; write it into the file with gdal_edit.py -a_srs EPSG:n"
+    )]
+    NoCrs { path: PathBuf },
+    #[error(
+        "photo {path:?} holds samples of type {kind}, and photos have 8 bits; scale them with gdal_translate -scale -ot Byte (gdalinfo -stats tells their range)"
+    )]
+    SampleType { path: PathBuf, kind: String },
+    #[error(
+        "photo {path:?} has {bands} bands of which none is a colour that can be shown ({interpretations}); give red, green and blue with gdal_translate -b"
+    )]
+    Bands { path: PathBuf, bands: usize, interpretations: String },
+    #[error(
+        "photo {path:?} has colours of a palette, and no palette; convert it with gdal_translate -expand rgb"
+    )]
+    NoPalette { path: PathBuf },
+    #[error(
+        "no photo lies on the ground that is built: the photos reach from {photos:.0?}, the ground from {ground:.0?} (west, south, east, north in metres of the grid); give photos of this region, or leave --photo out"
+    )]
+    NoOverlap { photos: [f64; 4], ground: [f64; 4] },
+    #[error(
+        "photo {path:?} has no position in the package's coordinate system; give photos of this region"
+    )]
+    Nowhere { path: PathBuf },
+    #[error("--photo-levels must be from 0 to {most}, not {levels}")]
+    Levels { levels: u8, most: u8 },
+    #[error(
+        "photo {path:?} has {pixels:.0} pixels along a texel, more than {most}; give a higher --photo-levels, or thin it with gdal_translate -outsize 10% 10% -r average"
+    )]
+    TooFine { path: PathBuf, pixels: f64, most: f64 },
+    #[error(
+        "cannot read {columns} × {rows} pixels at column {column}, row {row} of photo {path:?}; it is damaged or cut off, fetch it again"
+    )]
+    Read {
+        path: PathBuf,
+        column: usize,
+        row: usize,
+        columns: usize,
+        rows: usize,
+        source: Box<LibraryError>,
+    },
+    #[error(transparent)]
+    Raster(DemError),
+}
+
+impl From<DemError> for PhotoError {
+    fn from(error: DemError) -> Self {
+        match error {
+            DemError::Missing { path, source } => Self::Missing { path, source },
+            DemError::NotUtf8 { path } => Self::NotUtf8 { path },
+            DemError::NoCrs { path } | DemError::UnusableCrs { path, .. } => Self::NoCrs { path },
+            other => Self::Raster(other),
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! From pixels to one texel.
+
+use std::ops::Range;
+
+/// Pixels of a rectangle of a photo: red, green, blue, opacity.
+pub(crate) struct Pixels {
+    /// Column and row of the first, in the photo.
+    pub(crate) start: [i64; 2],
+    pub(crate) columns: usize,
+    pub(crate) rows: usize,
+    pub(crate) rgba: Vec<[u8; 4]>,
+}
+
+/// Colour times opacity, and opacity, of what one photo gives to a texel; all from 0 to 1.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Light {
+    pub(crate) rgb: [f64; 3],
+    pub(crate) opacity: f64,
+}
+
+/// Weights of the pixels along one axis: a tent as wide as two texels, or two pixels where these are larger. That is bilinear
+/// interpolation where the photo is coarser, and where it is finer an average over the texel that fades into its neighbours, so
+/// that detail finer than a texel does not alias.
+#[derive(Default)]
+pub(crate) struct Weights {
+    first: i64,
+    weights: Vec<f64>,
+    /// Of all pixels, those outside the photo included.
+    sum: f64,
+}
+
+impl Weights {
+    /// Around a position, in pixels; the centre of pixel k is at k + 0.5.
+    fn set(&mut self, position: f64, radius: f64, allowed: &Range<i64>) {
+        let first = (position - radius - 0.5).ceil() as i64;
+        let last = (position + radius - 0.5).floor() as i64;
+        self.first = first.max(allowed.start);
+        self.weights.clear();
+        self.sum = 0.0;
+        for pixel in first..=last {
+            let weight = 1.0 - (pixel as f64 + 0.5 - position).abs() / radius;
+            self.sum += weight;
+            if allowed.contains(&pixel) {
+                self.weights.push(weight);
+            }
+        }
+    }
+}
+
+/// Filters texels out of pixels; keeps its buffers.
+#[derive(Default)]
+pub(crate) struct Filter {
+    columns: Weights,
+    rows: Weights,
+}
+
+impl Filter {
+    /// What the pixels around a position give. Pixels outside the rectangle are transparent.
+    pub(crate) fn at(&mut self, pixels: &Pixels, position: [f64; 2], radius: [f64; 2]) -> Light {
+        if !(position[0].is_finite() && position[1].is_finite()) {
+            return Light::default();
+        }
+        let end = [pixels.columns, pixels.rows];
+        let allowed = [0, 1].map(|k| pixels.start[k]..pixels.start[k] + end[k] as i64);
+        self.columns.set(position[0], radius[0], &allowed[0]);
+        self.rows.set(position[1], radius[1], &allowed[1]);
+        if self.columns.weights.is_empty() || self.rows.weights.is_empty() {
+            return Light::default();
+        }
+        let mut sums = [0.0; 4];
+        for (row, row_weight) in self.rows.weights.iter().enumerate() {
+            let line = (self.rows.first - pixels.start[1]) as usize + row;
+            let from = line * pixels.columns + (self.columns.first - pixels.start[0]) as usize;
+            let line = &pixels.rgba[from..from + self.columns.weights.len()];
+            for (pixel, column_weight) in line.iter().zip(&self.columns.weights) {
+                let weight = row_weight * column_weight * f64::from(pixel[3]);
+                for k in 0..3 {
+                    sums[k] += weight * f64::from(pixel[k]);
+                }
+                sums[3] += weight;
+            }
+        }
+        let all = self.columns.sum * self.rows.sum * 255.0;
+        let [r, g, b, opacity] = sums;
+        Light { rgb: [r, g, b].map(|sum| sum / (all * 255.0)), opacity: opacity / all }
+    }
+}
+
+impl Light {
+    /// This over what lies beneath.
+    pub(crate) fn over(self, beneath: Self) -> Self {
+        let through = 1.0 - self.opacity;
+        Self {
+            rgb: [0, 1, 2].map(|k| self.rgb[k] + through * beneath.rgb[k]),
+            opacity: self.opacity + through * beneath.opacity,
+        }
+    }
+
+    /// As a texel: none where less than half of it is covered.
+    pub(crate) fn texel(self) -> [u8; 4] {
+        if self.opacity < 0.5 {
+            return crate::texels::NONE;
+        }
+        let value =
+            |share: f64| (share / self.opacity * 255.0 + 0.5).floor().clamp(0.0, 255.0) as u8;
+        let [r, g, b] = self.rgb.map(value);
+        [r, g, b, 255]
+    }
+}

@@ -1,0 +1,74 @@
+use std::path::Path;
+
+use corniche_dem::{DemError, GridPlan, PlacedRaster, RasterOnGrid};
+use corniche_geom::Bounds;
+use gdal::Metadata;
+
+use crate::PhotoError;
+use crate::bands::Bands;
+
+/// One photo, described but not held open.
+#[derive(Debug, Clone)]
+pub(crate) struct PhotoFile {
+    pub(crate) raster: PlacedRaster,
+    pub(crate) bands: Bands,
+    /// What its metadata say of its rights, as GeoTIFF's tag Copyright.
+    pub(crate) credit: Option<String>,
+}
+
+/// A photo on a package's grid.
+#[derive(Debug, Clone)]
+pub(crate) struct PlacedPhoto {
+    pub(crate) file: PhotoFile,
+    pub(crate) on_grid: RasterOnGrid,
+    /// Rectangle around its border, working metres.
+    pub(crate) bounds: Bounds,
+    /// Side of a pixel in the middle, working metres: of a square of the same area.
+    pub(crate) pixel_m: f64,
+}
+
+/// Points along each side of a photo by which its rectangle is found.
+const SIDE_POINTS: usize = 33;
+
+impl PhotoFile {
+    pub(crate) fn open(path: &Path) -> Result<Self, PhotoError> {
+        let (raster, dataset) = PlacedRaster::open(path)?;
+        if dataset.raster_count() == 0 {
+            return Err(PhotoError::Raster(DemError::NoBand { path: path.to_path_buf() }));
+        }
+        let bands = Bands::of(path, &dataset)?;
+        let credit = dataset.metadata_item("TIFFTAG_COPYRIGHT", "");
+        let credit = credit.map(|text| text.trim().to_owned()).filter(|text| !text.is_empty());
+        Ok(Self { raster, bands, credit })
+    }
+
+    pub(crate) fn on(&self, grid: &GridPlan) -> Result<PlacedPhoto, PhotoError> {
+        let on_grid = self.raster.on(grid);
+        let nowhere = || PhotoError::Nowhere { path: self.raster.path().to_path_buf() };
+        let [columns, rows] = self.raster.size().map(|pixels| pixels as f64);
+        let shares = (0..SIDE_POINTS).map(|k| k as f64 / (SIDE_POINTS - 1) as f64);
+        let mut border: Vec<[f64; 2]> = shares
+            .flat_map(|t| [[t, 0.0], [t, 1.0], [0.0, t], [1.0, t]])
+            .map(|[c, r]| [c * columns, r * rows])
+            .collect();
+        on_grid.working_from_pixels(&mut border)?;
+        let mut bounds = Bounds::EMPTY;
+        for point in border.into_iter().filter(|point| point[0].is_finite()) {
+            bounds.include(point);
+        }
+        if bounds.is_empty() {
+            return Err(nowhere());
+        }
+        let (c, r) = (columns / 2.0, rows / 2.0);
+        let mut corners = [[c, r], [c + 1.0, r], [c, r + 1.0]];
+        on_grid.working_from_pixels(&mut corners)?;
+        let [from, east, south] = corners;
+        let side = |to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
+        let (a, b) = (side(east), side(south));
+        let pixel_m = (a[0] * b[1] - a[1] * b[0]).abs().sqrt();
+        if !(pixel_m.is_finite() && pixel_m > 0.0) {
+            return Err(nowhere());
+        }
+        Ok(PlacedPhoto { file: self.clone(), on_grid, bounds, pixel_m })
+    }
+}

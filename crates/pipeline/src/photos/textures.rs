@@ -1,0 +1,98 @@
+//! The photo of a tile as its payload has it.
+
+use corniche_geom::TileId;
+use corniche_photo::{PhotoReader, Texels};
+use corniche_tileset::{PHOTO_BORDER, Photo, PhotoSection, encode_photo, photo_section};
+
+use super::{
+    opened::OpenedPhotos,
+    rasters::{self, SIDE},
+};
+use crate::{BuildError, artifacts::Kind, context::Context};
+
+/// How many levels the texels of a coarse tile are finer than its cells. Such a tile is drawn while its cells look like some pixels,
+/// so its texels are half a cell, unless the photos have no such detail.
+fn coarse_levels(photos: &OpenedPhotos) -> u8 {
+    photos.levels().min(1)
+}
+
+/// Reads the photo of a finest tile, and keeps its texture and its raster.
+pub(crate) fn make_finest(
+    context: &Context<'_>,
+    photos: &OpenedPhotos,
+    reader: &mut PhotoReader<'_>,
+    id: TileId,
+) -> Result<(), BuildError> {
+    let store = context.store;
+    let key = Kind::PhotoTexture.of_tile(id);
+    let none = || {
+        store.put(key, &[])?;
+        rasters::put(store, id, &Texels::empty(0, 0))
+    };
+    // A rectangle with the border: it is below 8 of 256 texels on each side.
+    let mut bounds = context.frame().tile_bounds(id);
+    let (east_m, north_m) = (bounds.width() / 32.0, bounds.height() / 32.0);
+    bounds.include([bounds.min_x - east_m, bounds.min_y - north_m]);
+    bounds.include([bounds.max_x + east_m, bounds.max_y + north_m]);
+    if !photos.grid.touches(&bounds) {
+        return none();
+    }
+    let texels = reader.window(photos.grid.texels().tile(id, PHOTO_BORDER))?;
+    let levels = photos.levels();
+    match encode(id, levels, &texels, photos.quality)? {
+        Some(section) => store.put(key, section.bytes())?,
+        None => return none(),
+    }
+    let mut raster = texels.part([PHOTO_BORDER; 2], [SIDE << levels; 2]);
+    drop(texels);
+    for _ in 0..levels {
+        raster = raster.halved();
+    }
+    // The raster says that the tile is done, so it comes last.
+    rasters::put(store, id, &raster)
+}
+
+/// The photo of a tile; `None` where there is none.
+pub(crate) fn of_tile(
+    context: &Context<'_>,
+    id: TileId,
+) -> Result<Option<PhotoSection>, BuildError> {
+    let Some(photos) = context.photo else { return Ok(None) };
+    let store = context.store;
+    if id.z() == context.frame().max_level() {
+        let missing =
+            || BuildError::Missing { what: format!("the photo of tile {id}"), step: "heights" };
+        let bytes = store.get(Kind::PhotoTexture.of_tile(id))?.ok_or_else(missing)?;
+        return Ok((!bytes.is_empty()).then(|| PhotoSection::from_bytes(bytes)));
+    }
+    let levels = coarse_levels(photos);
+    // Texels of children are half a cell.
+    let border = PHOTO_BORDER << (1 - levels);
+    let Some(texels) = rasters::of_children(store, &context.data(), id, border)? else {
+        return Ok(None);
+    };
+    let texels = if levels == 0 { texels.halved() } else { texels };
+    encode(id, levels, &texels, photos.quality)
+}
+
+/// The photo of a tile of the package whose terrain is taken.
+pub(crate) fn of_payload(
+    context: &Context<'_>,
+    id: TileId,
+    payload: &[u8],
+) -> Result<Option<PhotoSection>, BuildError> {
+    photo_section(payload, id).map_err(|source| BuildError::PackageTile {
+        path: context.settings.terrain_of.clone().unwrap_or_default(),
+        source: source.into(),
+    })
+}
+
+fn encode(
+    id: TileId,
+    levels: u8,
+    texels: &Texels,
+    quality: u8,
+) -> Result<Option<PhotoSection>, BuildError> {
+    let photo = Photo { levels, rgba: texels.rgba().to_vec() };
+    Ok(encode_photo(id, &photo, quality)?)
+}

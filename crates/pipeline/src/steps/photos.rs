@@ -1,0 +1,51 @@
+//! Part of the steps *heights* and *top*: photos, tile by tile, to textures of finest tiles and rasters of all tiles, within a
+//! subtree.
+
+use corniche_geom::TileId;
+
+use crate::{
+    BuildError, Stage,
+    artifacts::Kind,
+    context::Context,
+    photos::{rasters, textures},
+    workers,
+};
+
+/// Reads the photos beneath and at `scope` that are not there yet, and makes the rasters from there up to the scope's own.
+pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
+    let Some(photos) = context.photo else { return Ok(()) };
+    let store = context.store;
+    let mut ids = context.data().in_order_within(scope);
+    let all = ids.len();
+    ids.retain(|&id| !store.has(Kind::PhotoRaster.of_tile(id)));
+    workers::make_missing(
+        context.observer,
+        Stage::Photos,
+        context.threads(),
+        (&ids, all),
+        || Ok(photos.grid.reader()),
+        |reader, &id| textures::make_finest(context, photos, reader, id),
+    )?;
+    make_rasters(context, scope)
+}
+
+/// Makes the rasters that are missing beneath and at `scope`, from those that are there up.
+pub(crate) fn make_rasters(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
+    if context.photo.is_none() {
+        return Ok(());
+    }
+    let (store, data) = (context.store, context.data());
+    for level in (scope.z()..context.frame().max_level()).rev() {
+        let mut ids = data.above(level).within(scope);
+        ids.retain(|&id| !store.has(Kind::PhotoRaster.of_tile(id)));
+        workers::in_order_unless_cancelled(
+            context.observer,
+            context.threads(),
+            ids.len(),
+            || Ok(()),
+            |(), index| rasters::put_from_children(store, &data, ids[index]),
+            |_, ()| Ok::<_, BuildError>(()),
+        )?;
+    }
+    Ok(())
+}

@@ -1,0 +1,40 @@
+//! Which texels have a photo, as lengths of runs.
+
+use crate::payload::damage::Damage;
+use crate::payload::number_codes::Cursor;
+#[cfg(feature = "write")]
+use crate::payload::number_codes::put_varint;
+
+/// Writes the lengths of the runs of texels with and without a photo, in turn, the first with (which may be empty).
+#[cfg(feature = "write")]
+pub(crate) fn encode(has_photo: impl Iterator<Item = bool>, out: &mut Vec<u8>) {
+    let (mut is_run_of, mut length) = (true, 0_u64);
+    for has_photo in has_photo {
+        if has_photo != is_run_of {
+            put_varint(out, length);
+            (is_run_of, length) = (has_photo, 0);
+        }
+        length += 1;
+    }
+    put_varint(out, length);
+}
+
+/// Reads runs that come to `count` texels, and hands on each with its first texel and its length.
+pub(crate) fn decode(
+    cursor: &mut Cursor<'_>,
+    count: usize,
+    mut run: impl FnMut(bool, std::ops::Range<usize>),
+) -> Result<(), Damage> {
+    let (mut has_photo, mut at) = (true, 0);
+    while at < count {
+        let length = cursor.bounded(count - at, "a run of texels beyond the last")?;
+        // Only the first run may be empty, so that there are no more runs than texels.
+        if length == 0 && !(has_photo && at == 0) {
+            return Err(Damage::Invalid { what: "an empty run of texels" });
+        }
+        run(has_photo, at..at + length);
+        at += length;
+        has_photo = !has_photo;
+    }
+    Ok(())
+}

@@ -1,0 +1,62 @@
+use zune_core::bytestream::ZCursor;
+use zune_core::colorspace::ColorSpace;
+use zune_core::options::DecoderOptions;
+use zune_jpeg::JpegDecoder;
+
+use super::{MAX_PHOTO_LEVELS, Photo, coverage, side};
+use crate::payload::damage::Damage;
+use crate::payload::number_codes::Cursor;
+
+/// How the colours are coded: JPEG.
+pub(crate) const JPEG: u8 = 1;
+
+/// The photo of a section's bytes.
+pub(crate) fn decode(bytes: &[u8]) -> Result<Photo, Damage> {
+    let mut cursor = Cursor::new(bytes);
+    if cursor.byte()? != JPEG {
+        return Err(Damage::Invalid { what: "an unknown coding of colours" });
+    }
+    let levels = cursor.byte()?;
+    if levels > MAX_PHOTO_LEVELS {
+        return Err(Damage::TooLarge {
+            what: "levels of a photo",
+            length: u64::from(levels),
+            limit: u64::from(MAX_PHOTO_LEVELS),
+        });
+    }
+    let count = side(levels) * side(levels);
+    let mut without = Vec::new();
+    coverage::decode(&mut cursor, count, |has_photo, run| {
+        if !has_photo {
+            without.push(run);
+        }
+    })?;
+    let mut rgba = colours(cursor.take(cursor.left())?, side(levels))?;
+    for texel in without.into_iter().flatten() {
+        rgba[texel * 4 + 3] = 0;
+    }
+    Ok(Photo { levels, rgba })
+}
+
+/// Decodes a JPEG of three colours and known size.
+fn colours(jpeg: &[u8], side: usize) -> Result<Vec<u8>, Damage> {
+    const NOT_FITTING: Damage = Damage::Invalid { what: "a picture of another size or kind" };
+    let failed = |error: &dyn std::fmt::Display| Damage::Decompress { reason: error.to_string() };
+    let options = DecoderOptions::default()
+        .set_strict_mode(true)
+        .set_max_width(side)
+        .set_max_height(side)
+        .jpeg_set_out_colorspace(ColorSpace::RGBA);
+    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(jpeg), options);
+    decoder.decode_headers().map_err(|error| failed(&error))?;
+    let info = decoder.info().ok_or(NOT_FITTING)?;
+    let fits = usize::from(info.width) == side
+        && usize::from(info.height) == side
+        && info.components == 3
+        && decoder.output_buffer_size() == Some(side * side * 4);
+    if !fits {
+        return Err(NOT_FITTING);
+    }
+    let rgba = decoder.decode().map_err(|error| failed(&error))?;
+    if rgba.len() == side * side * 4 { Ok(rgba) } else { Err(NOT_FITTING) }
+}

@@ -1,0 +1,122 @@
+use super::*;
+use crate::payload::damage::Damage;
+use crate::payload::envelope::Content;
+use crate::payload::section_kind::Sections;
+
+fn id() -> TileId {
+    TileId::new(1, 1, 0).unwrap()
+}
+
+/// A photo with smooth colours, without any where `is_none`.
+fn photo(levels: u8, is_none: impl Fn(usize, usize) -> bool) -> Photo {
+    let side = side(levels);
+    let rgba = (0..side * side)
+        .flat_map(|at| {
+            let (column, row) = (at % side, at / side);
+            if is_none(column, row) {
+                [0; 4]
+            } else {
+                [(column / 4) as u8, (row / 4) as u8, 90, 255]
+            }
+        })
+        .collect();
+    Photo { levels, rgba }
+}
+
+/// A payload of one section.
+fn payload(section: &[u8]) -> Vec<u8> {
+    envelope::seal(id(), &[(Kind::Photo, Content::Packed(section))]).unwrap().0
+}
+
+fn section_of(photo: &Photo, quality: u8) -> PhotoSection {
+    encode_photo(id(), photo, quality).unwrap().unwrap()
+}
+
+fn damage(section: &[u8]) -> Damage {
+    decode_photo(&payload(section), id()).unwrap_err().damage
+}
+
+#[test]
+fn photos_come_back_within_their_loss_and_coverage_exactly() {
+    for levels in [0, 1] {
+        let written = photo(levels, |column, row| column < 40 && row >= 13 || row == 200);
+        let read = decode_photo(&payload(section_of(&written, 90).bytes()), id()).unwrap().unwrap();
+        assert_eq!(read.levels, levels);
+        let mut worst = 0;
+        for (a, b) in written.rgba.chunks_exact(4).zip(read.rgba.chunks_exact(4)) {
+            assert_eq!(a[3], b[3]);
+            if a[3] != 0 {
+                worst = worst.max((0..3).map(|k| a[k].abs_diff(b[k])).max().unwrap());
+            }
+        }
+        assert!(worst <= 12, "{worst}");
+    }
+}
+
+#[test]
+fn no_texel_no_section() {
+    assert_eq!(encode_photo(id(), &photo(0, |_, _| true), 80).unwrap(), None);
+    assert!(encode_photo(id(), &photo(0, |_, _| false), 0).is_err());
+    assert!(encode_photo(id(), &photo(0, |_, _| false), 101).is_err());
+    let cut = Photo { levels: 1, ..photo(0, |_, _| false) };
+    assert!(encode_photo(id(), &cut, 80).is_err());
+}
+
+#[test]
+fn a_payload_keeps_its_other_sections_and_takes_one_photo() {
+    let roads = envelope::seal(id(), &[(Kind::RoadsSv, Content::Raw(vec![7; 100]))]).unwrap().0;
+    let section = section_of(&photo(0, |_, _| false), 80);
+    let both = with_photo(&roads, id(), &section).unwrap();
+    assert_eq!(photo_section(&both, id()).unwrap(), Some(section.clone()));
+    assert_eq!(photo_section(&roads, id()).unwrap(), None);
+    let sections = envelope::open(&both, id()).unwrap();
+    assert_eq!(envelope::section(&sections, Kind::RoadsSv).unwrap(), Some(vec![7; 100]));
+    assert!(with_photo(&both, id(), &section).is_err());
+    assert!(with_photo(&both[1..], id(), &section).is_err());
+}
+
+#[test]
+fn hostile_sections_are_refused_within_limits() {
+    let good = section_of(&photo(0, |column, _| column < 8), 80).bytes().to_vec();
+    assert!(decode_photo(&payload(&good), id()).unwrap().is_some());
+    // Every cut, and a flipped byte at every place of the head.
+    for length in (0..good.len()).step_by(97).chain(0..8) {
+        assert!(decode_photo(&payload(&good[..length]), id()).is_err(), "{length} bytes");
+    }
+    assert_eq!(damage(&[2, 0]), Damage::Invalid { what: "an unknown coding of colours" });
+    assert!(matches!(damage(&[1, MAX_PHOTO_LEVELS + 1]), Damage::TooLarge { .. }));
+    let what = "an empty run of texels";
+    assert_eq!(damage(&[1, 0, 0, 0]), Damage::Invalid { what });
+    assert_eq!(damage(&[1, 0, 1, 0]), Damage::Invalid { what });
+    let what = "a run of texels beyond the last";
+    assert_eq!(damage(&[1, 0, 0xff, 0xff, 0x7f]), Damage::Invalid { what });
+    // The colours of a picture of another size.
+    let mut other = section_of(&photo(1, |_, _| false), 80).bytes().to_vec();
+    other[1] = 0;
+    assert!(decode_photo(&payload(&other), id()).is_err());
+    for at in (0..good.len()).step_by(11) {
+        let mut bent = good.clone();
+        bent[at] ^= 0x55;
+        // Any answer will do, but no panic.
+        let _answer = decode_photo(&payload(&bent), id());
+    }
+}
+
+#[test]
+fn a_flipped_byte_breaks_the_checksum() {
+    let mut bytes = payload(section_of(&photo(0, |_, _| false), 80).bytes());
+    let last = bytes.len() - 3;
+    bytes[last] ^= 1;
+    let error = decode_photo(&bytes, id()).unwrap_err();
+    assert_eq!((error.part, &error.damage), ("photo section", &Damage::Checksum));
+    // Reading everything sees it, too; reading the ground does not look.
+    let frame = corniche_geom::Frame::covering(
+        [0.0; 2],
+        corniche_geom::Cell::from([10.0; 2]),
+        corniche_geom::NodeIndex { i: 0, j: 0 },
+        corniche_geom::NodeIndex { i: 512, j: 512 },
+    );
+    let frame = frame.unwrap();
+    assert!(crate::decode(&bytes, id(), &frame, 0.25, Sections::ALL).is_err());
+    assert!(crate::decode(&bytes, id(), &frame, 0.25, Sections::TERRAIN).is_ok());
+}

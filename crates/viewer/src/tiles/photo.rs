@@ -1,0 +1,57 @@
+use corniche_tileset::Photo;
+
+/// The photo of a tile, ready to be uploaded: four sizes, each half as large as the one before.
+///
+/// More sizes are not needed: a tile whose texels are more than eight times too fine is replaced by a coarser one. And in more the
+/// border, of eight texels, would not reach around the tile any more.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PhotoImage {
+    /// Texels along a side, border included.
+    pub(crate) side: u32,
+    /// Red, green, blue and alpha of each texel, row by row from the north; the finest size first.
+    pub(crate) sizes: [Vec<u8>; Self::SIZES],
+}
+
+impl PhotoImage {
+    /// How many sizes there are.
+    pub(crate) const SIZES: usize = 4;
+
+    /// Makes the smaller sizes.
+    #[must_use]
+    pub fn new(photo: Photo) -> Self {
+        let side = photo.side();
+        let second = halved(&photo.rgba, side);
+        let third = halved(&second, side / 2);
+        let fourth = halved(&third, side / 4);
+        Self { side: side as u32, sizes: [photo.rgba, second, third, fourth] }
+    }
+
+    /// Bytes of all sizes.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.sizes.iter().map(|size| size.len() as u64).sum()
+    }
+}
+
+/// The same half as large: the mean of each square of four texels, alpha likewise. Texels without a photo have colours that go on from
+/// those beside them, so colours need no weights.
+fn halved(rgba: &[u8], side: usize) -> Vec<u8> {
+    let half = side / 2;
+    let row_bytes = side * 4;
+    let mut out = Vec::with_capacity(half * half * 4);
+    for row in 0..half {
+        let top = &rgba[2 * row * row_bytes..][..row_bytes];
+        let bottom = &rgba[(2 * row + 1) * row_bytes..][..row_bytes];
+        for (a, b) in top.chunks_exact(8).zip(bottom.chunks_exact(8)) {
+            for k in 0..4 {
+                let sum = [a[k], a[k + 4], b[k], b[k + 4]].map(u16::from).iter().sum::<u16>();
+                out.push(((sum + 2) / 4) as u8);
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+#[path = "photo_tests.rs"]
+mod tests;
