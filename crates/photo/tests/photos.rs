@@ -111,8 +111,8 @@ fn edges_land_within_a_tenth_of_a_texel() {
     let to_degrees = CoordTransform::new(&utm32, &wgs84).unwrap();
     let (mut xs, mut ys) = ([WEST_M - 100.0, WEST_M + 2760.0], [NORTH_M + 100.0, NORTH_M - 2760.0]);
     to_degrees.transform_coords(&mut xs, &mut ys, &mut []).unwrap();
-    let size = [1200, 1200];
-    let step = [(xs[1] - xs[0]) / 1200.0, (ys[1] - ys[0]) / 1200.0];
+    let size = [3600, 3600];
+    let step = [(xs[1] - xs[0]) / 3600.0, (ys[1] - ys[0]) / 3600.0];
     let other = ColourImage {
         epsg: 4326,
         size,
