@@ -59,13 +59,13 @@ fn photo() -> Vec<u8> {
     [&[0, 7], &length[..], section.bytes()].concat()
 }
 
-/// A payload with a relief alone, as the target `payload` takes it: hills and a void, on two thirds of which there are few bits.
+/// A payload with a relief alone, as the target `payload` takes it: rough ground, a plane and a void.
 fn relief_seed() -> Vec<u8> {
     let heights = HeightGrid::from_fn(259, 259, |column, row| {
         if column > 200 && row > 180 {
             return f32::NAN;
         }
-        300.0 + if column < 80 { (column * row % 97) as f32 } else { row as f32 }
+        300.0 + if column < 40 { (column * row % 97) as f32 } else { row as f32 }
     });
     let context = context();
     let id = TileId::ROOT.children().nth(1).unwrap();

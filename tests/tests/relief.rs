@@ -6,7 +6,7 @@ use e2e::{build_pass, corniche, json, sample, text};
 
 /// Stored bytes of reliefs, by level.
 fn relief_bytes(package: &Path) -> Vec<u64> {
-    let levels = json(&["info", text(package), "--json"])["levels"].clone();
+    let levels = json(&["info", text(package), "--json"])["manifest"]["levels"].clone();
     let levels = levels.as_array().unwrap().clone();
     levels.iter().map(|level| level["relief_bytes"].as_u64().unwrap()).collect()
 }

@@ -42,7 +42,8 @@ impl<'a> Context<'a> {
         store: &'a dyn Artifacts,
         observer: &'a dyn Observer,
     ) -> Self {
-        let Opened { inputs, source, grid, levels, max_error_m, coordinates, photo } = opened;
+        let Opened { inputs, source, grid, levels, max_error_m, coordinates, photo, relief: _ } =
+            opened;
         let max_error_m = *max_error_m;
         Self {
             settings,

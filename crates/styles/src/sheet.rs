@@ -103,6 +103,8 @@ pub(crate) struct RoadSheet {
     pub(crate) max_width_px: Option<f64>,
     /// The colour of a road too thin for an edge; left out: that of its surface.
     pub(crate) thin: Option<Rgb8>,
+    /// How much of the ground a road hides, 0.01 to 1; left out: 1.
+    pub(crate) opacity: Option<f64>,
 }
 
 /// The line along the middle of a road of two colours.
@@ -226,6 +228,9 @@ impl StyleSheet {
             if let Some(max_width_px) = road.max_width_px {
                 within(&entry("max_width_px"), max_width_px, 0.1..=500.0)?;
             }
+            if let Some(opacity) = road.opacity {
+                within(&entry("opacity"), opacity, 0.01..=1.0)?;
+            }
             if let Some(center) = road.center {
                 within(&entry("center.width_share"), center.width_share, 0.01..=0.99)?;
             }
@@ -309,6 +314,7 @@ impl From<RoadSheet> for RoadStyle {
             max_pixel_m: sheet.max_pixel_m.map(|max_pixel_m| max_pixel_m as f32),
             max_width_px: sheet.max_width_px.map(|max_width_px| max_width_px as f32),
             thin: sheet.thin.map(Rgb::from),
+            opacity: sheet.opacity.unwrap_or(1.0) as f32,
         }
     }
 }

@@ -89,6 +89,8 @@ fn numbers_out_of_their_range_are_named_with_it() {
     );
     refuses("max_pixel_m = 300", "max_pixel_m = 0", &["roads.2.max_pixel_m", "0.01 to 1000000"]);
     refuses("max_width_px = 5.5", "max_width_px = 0", &["roads.0.max_width_px", "0.1 to 500"]);
+    let see_through = "min_width_px = 3\nopacity = 1.5";
+    refuses("min_width_px = 3", see_through, &["roads.0.opacity", "0.01 to 1"]);
     refuses("threshold_m = 1500", "threshold_m = inf", &["threshold_m", "1 to 10000000"]);
     refuses("exponent = 0.75", "exponent = -0.1", &["width_scaling.exponent", "0 to 1"]);
     refuses("constant = 4", "constant = 0", &["width_scaling.constant", "0.1 to 100"]);

@@ -28,6 +28,8 @@ pub struct RoadStyle {
     pub max_width_px: Option<f32>,
     /// Colour where a road is too thin for an edge; [`RoadStyle::color`] where it is `None`.
     pub thin: Option<Rgb>,
+    /// How much of the ground a road hides, edge included: 1 hides it.
+    pub opacity: f32,
 }
 
 /// The line along the middle of a road of two colours.
@@ -151,6 +153,7 @@ impl Style {
                     max_pixel_m,
                     max_width_px: Some(max_width_px),
                     thin: None,
+                    opacity: 1.0,
                 }
             };
         let thin = |color, road| RoadStyle { thin: Some(rgb(color)), ..road };

@@ -20,6 +20,7 @@ fn levels(least_classes: &[Option<u8>]) -> Vec<LevelRecord> {
         triangles: 2,
         vertices: 4,
         terrain_bytes: 1,
+        relief_bytes: 0,
         uncovered_nodes: 0,
     };
     (0..).zip(least_classes).map(level).collect()

@@ -218,7 +218,8 @@ fn camera(
         None => None,
     };
     let no_ground = || RenderError::NoGround { name: request.name.clone() };
-    let extent = store.map_extent(package.manifest().data_bounds)?.ok_or_else(no_ground)?;
+    let extent = TileStore::new(package).map_extent(package.manifest().data_bounds)?;
+    let extent = extent.ok_or_else(no_ground)?;
     let ground = SightedGround { extent, at_place_m };
     let camera =
         request.camera.camera(package.manifest(), ground, vertical_scale, request.size_px)?;

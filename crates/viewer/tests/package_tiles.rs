@@ -21,6 +21,7 @@ use corniche_viewer::{
     stream::{StreamBudget, Streamer, TileFacts},
     tiles::{
         MapPackage as _, PackageSource, PackageTiles, TileCatalog, TileGeometry, TileSource as _,
+        TileStore,
     },
 };
 use support::package::package;
@@ -163,7 +164,7 @@ fn a_streamer_chooses_the_same_from_tiles_that_come_later() {
     let path = package(folder.path());
     let on_disk = PackageSource::open(&path).unwrap();
     let manifest = on_disk.manifest();
-    let extent = on_disk.load(TileId::ROOT).unwrap().map_extent(manifest.data_bounds);
+    let extent = TileStore::new(&on_disk).map_extent(manifest.data_bounds).unwrap().unwrap();
     let ground = SightedGround { extent, at_place_m: None };
     let camera = CameraRequest::Overview.camera(manifest, ground, 1.0, [640, 480]).unwrap();
     let expected =

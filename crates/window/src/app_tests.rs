@@ -10,7 +10,7 @@ use corniche_viewer::{
     CameraRequest, RoadMethod, RoadOptions,
     lod::Drawn,
     stream::StreamBudget,
-    tiles::{MapPackage, PackageSource, TileGeometry, TileSource as _},
+    tiles::{MapExtent, MapPackage, PackageSource, TileGeometry, TileSource as _},
 };
 
 use super::*;
@@ -58,7 +58,9 @@ fn drawn_at_rest(
 ) -> Vec<Drawn> {
     let request = request();
     check(&request, package.as_ref()).unwrap();
-    let shown = ShownPackage::of(&request, package, root).unwrap();
+    let data = package.manifest().data_bounds;
+    let extent = MapExtent::of_data(data, root.summary.unwrap().height_range_m);
+    let shown = ShownPackage::of(&request, package, root, extent).unwrap();
     let platform = AppPlatform { loader, files: Box::new(NoFiles) };
     let mut app = App::new(request, shown, None, canvas, platform, SIZE_PX, 1.0).unwrap();
     let ui = egui::Context::default();

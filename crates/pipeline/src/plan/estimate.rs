@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use corniche_dem::{Dem, FileBlocks};
 use corniche_geom::{Frame, TILE_CELLS};
-use corniche_tileset::{LevelRecord, Manifest};
+use corniche_tileset::{LevelRecord, Manifest, ReliefLevels};
 use corniche_tin::TinSpec;
 use serde::Serialize;
 
@@ -112,7 +112,8 @@ impl Estimate {
         let dem = match &opened.source {
             GroundSource::Dem(dem) => dem,
             GroundSource::Package(terrain) => {
-                return Ok(Self::of_recorded(terrain.manifest(), resources, extract_bytes));
+                let manifest = terrain.manifest();
+                return Ok(Self::of_recorded(manifest, resources, extract_bytes, opened.relief));
             }
         };
         let rectangles = dem.file_nodes(&opened.grid)?;
@@ -146,7 +147,8 @@ impl Estimate {
         if !opened.grid.nodes_are_samples() {
             ground.core_seconds += rates::SECONDS_PER_RESAMPLED_NODE * nodes as f64;
         }
-        let mut estimate = Self::put_together(nodes, tiles, memory, extract_bytes, &ground);
+        let estimate = Self::put_together(nodes, tiles, memory, extract_bytes, &ground);
+        let mut estimate = estimate.with_relief(opened.relief);
         if let Some(photo) = &opened.photo {
             estimate.add_photos(photo, &opened.grid.frame);
         }
@@ -172,7 +174,12 @@ impl Estimate {
     }
 
     /// Of a build that takes the terrain of a package.
-    fn of_recorded(manifest: &Manifest, resources: Resources, extract_bytes: u64) -> Self {
+    fn of_recorded(
+        manifest: &Manifest,
+        resources: Resources,
+        extract_bytes: u64,
+        relief: ReliefLevels,
+    ) -> Self {
         let levels = &manifest.levels;
         let tiles: Vec<u64> = levels.iter().map(|level| level.tiles).collect();
         let all = tiles.iter().sum::<u64>();
@@ -180,8 +187,11 @@ impl Estimate {
         let of_levels = |count: fn(&LevelRecord) -> u64| levels.iter().map(count).sum::<u64>();
         let [triangles, terrain_bytes] =
             [of_levels(|level| level.triangles), of_levels(|level| level.terrain_bytes)];
+        let relief_bytes =
+            if relief == ReliefLevels::Off { 0 } else { of_levels(|level| level.relief_bytes) };
         let extract = extract_bytes as f64;
-        let package = terrain_bytes as f64 + rates::ROADS_PER_EXTRACT_BYTE * extract;
+        let package =
+            (terrain_bytes + relief_bytes) as f64 + rates::ROADS_PER_EXTRACT_BYTE * extract;
         let records = all * (rates::RECORD_BYTES + 3 * rates::ARTIFACT_BYTES);
         let pieces = rates::PIECES_PER_EXTRACT_BYTE * extract;
         let while_sorted = pieces + rates::SORTED_PER_EXTRACT_BYTE * extract;
@@ -198,6 +208,20 @@ impl Estimate {
             seconds: core_seconds / cores,
             rates: Rates::Recorded,
         }
+    }
+
+    /// The same with the reliefs of these levels.
+    fn with_relief(mut self, relief: ReliefLevels) -> Self {
+        let finest = self.tiles.len() as u8 - 1;
+        let has = |level: &u8| relief.has(*level, finest);
+        let tiles: u64 = (0..=finest).filter(has).map(|level| self.tiles[usize::from(level)]).sum();
+        let bytes = tiles * rates::RELIEF_BYTES;
+        self.package_bytes += bytes;
+        self.store_bytes += bytes;
+        let core_seconds = tiles as f64 * rates::SECONDS_PER_RELIEF;
+        self.seconds += core_seconds / (self.memory.threads.max(1) as f64 * rates::CORES_BUSY);
+        self.core_seconds += core_seconds;
+        self
     }
 
     fn put_together(

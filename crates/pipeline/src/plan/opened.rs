@@ -2,7 +2,7 @@ use std::path::Path;
 
 use corniche_dem::{Dem, GridPlan, Polygon};
 use corniche_geom::CoordinateTable;
-use corniche_tileset::PhotoRecord;
+use corniche_tileset::{PhotoRecord, ReliefLevels};
 
 use super::{coordinates::coordinates, facts::terrain_differences};
 use crate::{
@@ -30,6 +30,8 @@ pub(crate) struct Opened {
     pub(crate) coordinates: CoordinateTable,
     /// Photos of the ground.
     pub(crate) photo: Option<OpenedPhotos>,
+    /// Which levels have relief sections.
+    pub(crate) relief: ReliefLevels,
 }
 
 impl Opened {
@@ -61,7 +63,8 @@ impl Opened {
                 let open = |settings| OpenedPhotos::open(settings, &grid);
                 let photo = settings.photo.as_ref().map(open).transpose();
                 let photo = photo.map_err(|error| inputs.changed_instead_of(error))?;
-                Ok(Self { inputs, source, grid, levels, max_error_m, coordinates, photo })
+                let relief = settings.terrain.relief;
+                Ok(Self { inputs, source, grid, levels, max_error_m, coordinates, photo, relief })
             }
             // A changed input may be the cause of any other error, so it is reported instead.
             Err(error) => Err(inputs.changed_instead_of(error)),

@@ -104,7 +104,7 @@ checks! {
     Ranges "heights.ranges" Dem "the height range of a tile reaches from the lowest to the highest node beneath the tile"
     Nodes "heights.nodes" Dem "the height of a TIN vertex is the DEM's at its node, rounded to the height quantum"
     Normals "heights.normals" Dem "the normal of a TIN vertex is that of the heights' gradient on its level"
-    Relief "heights.relief" Dem "no height of a relief is farther from its level's than the relief says, gaps are the same, and slopes on the border are those of the heights, to half a 256th"
+    Relief "heights.relief" Dem "no height of a relief is farther from its level's than the relief says, gaps and water are the same, and slopes on the border are those of the heights, to half a 256th"
     OsmInputs "osm.inputs" Osm "the extracts are as long as the manifest says, and the FRC table is the one it names"
     OsmGeo "osm.geo" Osm "the GEO roads are those of the extract, clipped and laid on the ground again; they are compared to the lattice step"
     OsmSv "osm.sv" Osm "the SV roads are those of the extract, clipped again; they are compared to the lattice step"

@@ -54,6 +54,11 @@ pub(crate) fn verify(
                     relief.greatest_error_m()
                 )
             });
+            let found = relief.water().is_some_and(|water| water[row * TILE_NODES + column]);
+            findings.look(CheckId::Relief, found == is_water(with_halo, [column, row]), || {
+                let found = if found { "water" } else { "land" };
+                format!("tile {id}: node {column}, {row} is {found} in the relief; the DEM says otherwise")
+            });
             let Some(found) = relief.border_slope(column, row) else { continue };
             let wanted = slope_at([column + 1, row + 1]);
             let holds = (0..2).all(|axis| {
@@ -66,6 +71,17 @@ pub(crate) fn verify(
             });
         }
     }
+}
+
+/// Whether a node of the tile is water by its heights: it lies at or below 0, and so do all nodes around it that have a height, at
+/// least three, at the same height.
+fn is_water(with_halo: &HeightGrid, [column, row]: [usize; 2]) -> bool {
+    let around: Vec<f32> =
+        (0..9).filter_map(|k| with_halo.height(column + k % 3, row + k / 3)).collect();
+    let own_m = with_halo.height(column + 1, row + 1);
+    own_m.is_some_and(|own_m| own_m <= 0.0)
+        && around.len() > 3
+        && around.iter().all(|height_m| Some(*height_m) == own_m)
 }
 
 #[cfg(test)]

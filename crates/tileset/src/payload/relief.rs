@@ -18,6 +18,8 @@ mod quantise;
 mod range_coder;
 #[cfg(feature = "write")]
 mod steps;
+#[cfg(feature = "write")]
+mod water;
 mod wavelet;
 
 #[cfg(feature = "write")]
@@ -41,6 +43,8 @@ pub struct Relief {
     greatest_error_m: f64,
     /// By [`border::index`]; `None` where the node has no height.
     border: Vec<Option<[i32; 2]>>,
+    /// By row; empty without water.
+    water: Vec<bool>,
 }
 
 // All else follows from the bytes.
@@ -55,6 +59,13 @@ impl Relief {
     #[must_use]
     pub fn heights(&self) -> &HeightGrid {
         &self.heights
+    }
+
+    /// Which of the tile's own nodes are water, row by row: those at or below 0 m whose neighbours have the same height. `None` if
+    /// none is.
+    #[must_use]
+    pub fn water(&self) -> Option<&[bool]> {
+        (!self.water.is_empty()).then_some(&self.water[..])
     }
 
     /// No height is farther from the level's raster than this, but for the rounding of a 32-bit number.
@@ -106,15 +117,17 @@ impl Relief {
         let errors = units.iter().zip(&found).zip(&mask).filter(|(_, there)| **there);
         // Half a unit more for the rounding to whole units.
         let error = errors.map(|((unit, found), _)| unit.abs_diff(*found)).max().unwrap_or(0) + 1;
+        let water = water::of_raster(with_halo);
         let head = Head {
             has_voids: mask.iter().any(|there| !there),
+            has_water: water.contains(&true),
             exponent,
             slope_factors: steps::slope_factors(cell, head::unit_m(exponent)),
             steps,
             greatest_error: error,
         };
         let border = border::of_raster(with_halo, cell);
-        let mut parts = Parts { mask, square, border };
+        let mut parts = Parts { mask, water, square, border };
         let mut writer = range_coder::Writer::new(head.to_bytes());
         let units = parts.code(&mut writer, &head).map_err(unencodable)?;
         Ok(Self::assemble(writer.finish(), &head, &units, parts))
@@ -127,6 +140,7 @@ impl Relief {
         let mut reader = Reader::new(&bytes[bytes.len() - cursor.left()..]);
         let mut parts = Parts {
             mask: vec![true; SIDE * SIDE],
+            water: vec![false; SIDE * SIDE],
             square: vec![0; SIDE * SIDE],
             border: vec![None; BORDER_NODES],
         };
@@ -149,6 +163,7 @@ impl Relief {
             heights: HeightGrid::new(SIDE, SIDE, heights_m),
             greatest_error_m: head.greatest_error as f64 * unit_m,
             border: parts.border,
+            water: if head.has_water { parts.water } else { Vec::new() },
         }
     }
 }
@@ -157,6 +172,8 @@ impl Relief {
 struct Parts {
     /// Which nodes have a height.
     mask: Vec<bool>,
+    /// Which nodes are water.
+    water: Vec<bool>,
     /// Quantised coefficients.
     square: Vec<i64>,
     border: Vec<Option<[i32; 2]>>,
@@ -167,6 +184,9 @@ impl Parts {
     fn code<B: Bits>(&mut self, bits: &mut B, head: &Head) -> Result<Vec<i64>, Damage> {
         if head.has_voids {
             code_mask(bits, &mut self.mask);
+        }
+        if head.has_water {
+            code_mask(bits, &mut self.water);
         }
         code_smooth(bits, &mut self.square, SMOOTH);
         // What is learned of coarse divisions is shared: they have few numbers each.

@@ -14,14 +14,13 @@ const ANISOTROPY: u16 = 16;
 /// The photo of a tile as a texture of four sizes.
 pub(crate) struct PhotoTexture {
     view: TextureView,
-    bytes: u64,
 }
 
 impl PhotoTexture {
     /// For tiles without a photo: one texel, transparent, because textures begin with zeros.
     pub(crate) fn none(gpu: &Gpu) -> Self {
         let texture = new_texture(&gpu.device, 1, 1);
-        Self { view: texture.create_view(&wgpu::TextureViewDescriptor::default()), bytes: 4 }
+        Self { view: texture.create_view(&wgpu::TextureViewDescriptor::default()) }
     }
 
     /// Uploads a photo.
@@ -45,20 +44,12 @@ impl PhotoTexture {
                 Extent3d { width: side, height: side, depth_or_array_layers: 1 },
             );
         }
-        Self {
-            view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
-            bytes: photo.bytes(),
-        }
+        Self { view: texture.create_view(&wgpu::TextureViewDescriptor::default()) }
     }
 
     /// What a bind group has of it.
     pub(crate) fn view(&self) -> &TextureView {
         &self.view
-    }
-
-    /// Bytes on the graphics card.
-    pub(crate) fn bytes(&self) -> u64 {
-        self.bytes
     }
 }
 

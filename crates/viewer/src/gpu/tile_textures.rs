@@ -3,6 +3,7 @@
 use wgpu::{
     BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingResource, BindingType, BufferUsages,
     Device, RenderPass, SamplerBindingType, ShaderStages, TextureFormat, TextureSampleType,
+    TextureView,
     util::{DeviceExt as _, TextureDataOrder},
 };
 
@@ -13,6 +14,9 @@ use super::{
 };
 use crate::tiles::{PhotoImage, ShadingSlopes, TileGeometry};
 
+/// The slopes: rise east and north.
+const FORMAT: TextureFormat = TextureFormat::Rg16Float;
+
 /// The number of the bind group.
 const GROUP: u32 = 3;
 
@@ -22,7 +26,7 @@ pub(crate) struct TileTextures {
     bytes: u64,
 }
 
-/// The layout of the bind group: the block `struct TileTextures`, a sampler, the slopes; the photo, its sampler.
+/// The layout of the bind group: the block `struct TileTextures`, a sampler, the slopes; the photo, its sampler; the water.
 pub(crate) fn layout_of(device: &Device) -> BindGroupLayout {
     let sampler = |binding| BindGroupLayoutEntry {
         binding,
@@ -30,9 +34,13 @@ pub(crate) fn layout_of(device: &Device) -> BindGroupLayout {
         ty: BindingType::Sampler(SamplerBindingType::Filtering),
         count: None,
     };
-    let [slopes, photo] =
-        [2, 3].map(|binding| texture(binding, TextureSampleType::Float { filterable: true }));
-    layout(device, "tile textures", &[uniform(0, None), sampler(1), slopes, photo, sampler(4)])
+    let [slopes, photo, water] =
+        [2, 3, 5].map(|binding| texture(binding, TextureSampleType::Float { filterable: true }));
+    layout(
+        device,
+        "tile textures",
+        &[uniform(0, None), sampler(1), slopes, photo, sampler(4), water],
+    )
 }
 
 /// The block `struct TileTextures`.
@@ -44,27 +52,15 @@ pub(crate) fn rows(tile: &TileGeometry) -> [[f32; 4]; 1] {
 impl TileTextures {
     /// Uploads the textures of a tile. Without slopes there is a texel that nothing reads.
     pub(crate) fn new(gpu: &Gpu, tile: &TileGeometry) -> Self {
-        let (side, texels) = match &tile.shading {
-            Some(slopes) => (ShadingSlopes::SIDE as u32, bytemuck::cast_slice(slopes.texels())),
-            None => (1, &[0_u8; 4][..]),
+        let side = ShadingSlopes::SIDE as u32;
+        let slopes = match &tile.shading {
+            Some(slopes) => square(gpu, FORMAT, side, bytemuck::cast_slice(slopes.texels())),
+            None => square(gpu, FORMAT, 1, &[0; 4]),
         };
-        let descriptor = wgpu::TextureDescriptor {
-            label: Some("slopes"),
-            size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: TextureFormat::Rg16Float,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
+        let water = match tile.shading.as_ref().map(ShadingSlopes::water) {
+            Some(water) if !water.is_empty() => square(gpu, TextureFormat::R8Unorm, side, water),
+            _ => square(gpu, TextureFormat::R8Unorm, 1, &[0]),
         };
-        let slopes = gpu.device.create_texture_with_data(
-            &gpu.queue,
-            &descriptor,
-            TextureDataOrder::LayerMajor,
-            texels,
-        );
-        let view = slopes.create_view(&wgpu::TextureViewDescriptor::default());
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("tile textures"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -80,16 +76,20 @@ impl TileTextures {
         let resources = [
             block.as_entire_binding(),
             BindingResource::Sampler(&sampler),
-            BindingResource::TextureView(&view),
+            BindingResource::TextureView(&slopes),
             BindingResource::TextureView(photo.view()),
             BindingResource::Sampler(&photo_sampler),
+            BindingResource::TextureView(&water),
         ];
         Self { group: group(gpu, &layout_of(&gpu.device), &resources), bytes: Self::bytes_of(tile) }
     }
 
     /// Bytes of the textures that [`TileTextures::new`] makes.
     pub(crate) fn bytes_of(tile: &TileGeometry) -> u64 {
-        let slopes = tile.shading.as_ref().map_or(4, |slopes| size_of_val(slopes.texels()));
+        let slopes = tile
+            .shading
+            .as_ref()
+            .map_or(4, |slopes| size_of_val(slopes.texels()) + slopes.water().len().max(1));
         let photo = tile.photo.as_ref().map_or(4, PhotoImage::bytes);
         (slopes + size_of_val(&rows(tile))) as u64 + photo
     }
@@ -103,4 +103,21 @@ impl TileTextures {
     pub(crate) fn set(&self, pass: &mut RenderPass<'_>) {
         pass.set_bind_group(GROUP, &self.group, &[]);
     }
+}
+
+/// A square texture with these texels.
+fn square(gpu: &Gpu, format: TextureFormat, side: u32, texels: &[u8]) -> TextureView {
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some("relief"),
+        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    };
+    let order = TextureDataOrder::LayerMajor;
+    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, texels);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }

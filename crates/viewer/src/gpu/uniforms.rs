@@ -79,7 +79,7 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
     }));
     rows.extend(style.roads.iter().map(|road| {
         let limit = class_scale::half_width_limit(road, view.roads.width_growth, view.camera);
-        [limit as f32, LINK_WIDTH_SHARE, 0.0, 0.0]
+        [limit as f32, LINK_WIDTH_SHARE, road.opacity, 0.0]
     }));
     rows
 }

@@ -26,7 +26,7 @@ struct Frame {
     // the centre line takes, -1 without one; w: distance from the eye up to which the class is shown in full.
     road_widths: array<vec4<f32>, CLASSES>,
     // x: half width, as a share of the distance from the eye, beyond which roads do not grow; y: width of a slip road as a share
-    // of that of its class.
+    // of that of its class; z: how much of the ground a road hides.
     road_limits: array<vec4<f32>, CLASSES>,
 }
 

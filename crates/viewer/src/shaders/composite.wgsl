@@ -149,6 +149,11 @@ fn sight_at(position: vec2<f32>) -> Sight {
     return sight;
 }
 
+// How much of the ground roads of a class hide at a distance from the eye.
+fn opacity_at(road_class: u32, distance_m: f32) -> f32 {
+    return frame.road_limits[road_class].z * shown_share(road_class, distance_m);
+}
+
 // What is left of the colours of a tunnel's surface and of its edge.
 const TUNNEL_FILL = 0.35;
 const TUNNEL_EDGE = 0.75;
@@ -209,7 +214,7 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
         let fill = mix(colors.road_thins[road_class].rgb, wide, smoothstep(1.4, 3.2, seen_px));
         // A road that is drawn wider than it is, because of its least width, is made paler.
         let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
-        let presence = clamp(seen_px / least_px, 0.5, 1.0) * shown_share(road_class, sight.distance_m)
+        let presence = clamp(seen_px / least_px, 0.5, 1.0) * opacity_at(road_class, sight.distance_m)
             * select(1.0, TUNNEL_FILL, is_tunnel(label));
         color = mix(color, mix(fill, colors.haze.rgb, 0.5 * sight.haze), presence);
     }
@@ -221,7 +226,7 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
         // Around a very thin road there is no edge, because it would hide the road; nor around one that is seen so flat that
         // the edge would break into dashes.
         let seen_px = width_px(road_class, sight.distance_m, sight.depth) * facing;
-        let presence = smoothstep(1.2, 4.0, seen_px) * shown_share(road_class, sight.distance_m)
+        let presence = smoothstep(1.2, 4.0, seen_px) * opacity_at(road_class, sight.distance_m)
             * select(1.0, TUNNEL_EDGE, is_tunnel(most));
         color = mix(color, mix(colors.road_outlines[road_class].rgb, colors.haze.rgb, 0.5 * sight.haze), presence);
     }

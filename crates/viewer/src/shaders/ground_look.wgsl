@@ -30,8 +30,6 @@ struct GroundColors {
 
 // Slopes gentler than this are shaded as if they were steeper; tangent of the angle.
 const GENTLE_SLOPE = 0.12;
-// Level ground: its normal leans by less than this; tangent of the angle.
-const LEVEL_SLOPE = 0.0015;
 
 // Colour of the ground at a true height.
 fn tint_at(height_m: f32) -> vec3<f32> {
@@ -42,11 +40,6 @@ fn tint_at(height_m: f32) -> vec3<f32> {
         color = mix(color, colors.tint[k].rgb, t);
     }
     return color;
-}
-
-// Level ground at or below the sea is water.
-fn is_water(normal: vec3<f32>, height_m: f32) -> bool {
-    return height_m <= 0.0 && length(normal.xy) <= LEVEL_SLOPE * normal.z;
 }
 
 // How much light a slope gets from one direction: 1 on level ground, less on slopes turned away, below 0 beyond a right angle.

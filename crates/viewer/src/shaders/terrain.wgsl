@@ -71,7 +71,7 @@ fn fragment(in: VertexOut) -> Pixel {
     let photo = photo_at(in.plan_in_tile);
     let photo_share = photo.a * colors.water.w;
     var color = mix(colors.water.rgb, photo.rgb, photo_share);
-    if !is_water(normal, in.height_m) {
+    if !is_water(in.plan_in_tile) {
         // A photo has shadows of its own.
         color = shaded(mix(tint_at(in.height_m), photo.rgb, photo_share), normal, 1.0 - 0.5 * photo_share);
     }

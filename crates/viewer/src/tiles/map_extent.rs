@@ -23,58 +23,67 @@ const MARGIN: f64 = 0.08;
 /// A map is at least so wide: a share of the longer side of the data.
 const LEAST_SHARE: f64 = 0.01;
 
-impl TileGeometry {
-    /// What a first view shows, if this is the root: the rectangle of its roads with a margin; without roads, all `data`.
+impl MapExtent {
+    /// The rectangle of the roads of some tiles, which are all of a level, with a margin, within the rectangle of the `data`.
+    /// `None` if there are no roads on them.
     ///
-    /// The root has the important roads alone, simplified. That is enough to tell where they are.
+    /// A coarse level has the important roads alone, simplified. That is enough to tell where they are.
     #[must_use]
-    pub fn map_extent(&self, data: Bounds) -> MapExtent {
-        let plan = self.roads_bounds().map_or(data, |roads| with_margin(roads, data));
-        MapExtent { plan, heights_m: self.heights_in(plan) }
+    pub fn of_roads(tiles: &[&TileGeometry], data: Bounds) -> Option<Self> {
+        let pieces: Vec<Piece> = tiles.iter().flat_map(|tile| pieces(tile)).collect();
+        let [min_x, max_x] = without_tails(&pieces, 0)?;
+        let [min_y, max_y] = without_tails(&pieces, 1)?;
+        let plan = with_margin(Bounds { min_x, min_y, max_x, max_y }, data);
+        Some(Self { plan, heights_m: heights_in(tiles, plan) })
     }
 
-    /// The rectangle that has nearly all of the roads' length.
-    fn roads_bounds(&self) -> Option<Bounds> {
-        let on_ground = self.roads.all().iter().map(|piece| {
-            let [from, to] = piece.shares;
-            part_of(piece.start_in_tile, piece.end_in_tile, from, to)
-        });
-        let in_plan = self
-            .volumes
-            .all()
-            .iter()
-            .map(|volume| part_of(volume.start_in_tile, volume.end_in_tile, 0.0, 1.0));
-        let pieces: Vec<([f64; 2], f64)> = on_ground.chain(in_plan).collect();
-        let [x, y, _] = self.reference_m;
-        let [min_x, max_x] = without_tails(&pieces, 0)?.map(|east_m| x + east_m);
-        let [min_y, max_y] = without_tails(&pieces, 1)?.map(|north_m| y + north_m);
-        Some(Bounds { min_x, min_y, max_x, max_y })
-    }
-
-    /// The heights of the ground in a rectangle, as far as this tile's vertices tell; of all its ground if none is there.
-    fn heights_in(&self, plan: Bounds) -> [f64; 2] {
-        let [x, y, height_m] = self.reference_m;
-        let inside = |position: &[f64; 3]| {
-            (plan.min_x..=plan.max_x).contains(&(x + position[0]))
-                && (plan.min_y..=plan.max_y).contains(&(y + position[1]))
-        };
-        let positions =
-            self.ground.vertices.iter().map(|vertex| vertex.position_in_tile.map(f64::from));
-        let [low_m, high_m] = positions
-            .filter(inside)
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [.., z]| {
-                [low.min(height_m + z), high.max(height_m + z)]
-            });
-        if low_m <= high_m {
-            [low_m, high_m]
-        } else {
-            self.summary.map_or([0.0; 2], |summary| summary.height_range_m)
-        }
+    /// All of the `data`, whose ground lies between these heights.
+    #[must_use]
+    pub fn of_data(data: Bounds, heights_m: [f64; 2]) -> Self {
+        Self { plan: data, heights_m }
     }
 }
 
+/// A piece of a road: its middle in the working CRS, and its length in metres.
+type Piece = ([f64; 2], f64);
+
+fn pieces(tile: &TileGeometry) -> impl Iterator<Item = Piece> {
+    let [x, y, _] = tile.reference_m;
+    let on_ground = tile.roads.all().iter().map(|piece| {
+        let [from, to] = piece.shares;
+        part_of(piece.start_in_tile, piece.end_in_tile, from, to)
+    });
+    let in_plan = tile
+        .volumes
+        .all()
+        .iter()
+        .map(|volume| part_of(volume.start_in_tile, volume.end_in_tile, 0.0, 1.0));
+    let pieces = on_ground.chain(in_plan);
+    pieces.map(move |([east, north], length_m)| ([x + east, y + north], length_m))
+}
+
+/// The heights of the ground in a rectangle, as far as the vertices of tiles tell; of all their ground if none is there.
+fn heights_in(tiles: &[&TileGeometry], plan: Bounds) -> [f64; 2] {
+    let heights = tiles.iter().flat_map(|tile| {
+        let [x, y, height_m] = tile.reference_m;
+        tile.ground.vertices.iter().filter_map(move |vertex| {
+            let [east, north, above] = vertex.position_in_tile.map(f64::from);
+            let inside = (plan.min_x..=plan.max_x).contains(&(x + east))
+                && (plan.min_y..=plan.max_y).contains(&(y + north));
+            inside.then_some([height_m + above; 2])
+        })
+    });
+    let all = tiles.iter().filter_map(|tile| tile.summary).map(|ground| ground.height_range_m);
+    span(heights).or_else(|| span(all)).unwrap_or_default()
+}
+
+/// What all these ranges lie in.
+fn span(ranges: impl Iterator<Item = [f64; 2]>) -> Option<[f64; 2]> {
+    ranges.reduce(|[low, high], [next_low, next_high]| [low.min(next_low), high.max(next_high)])
+}
+
 /// Middle and length of a part of a segment.
-fn part_of(start: [f32; 2], end: [f32; 2], from: f32, to: f32) -> ([f64; 2], f64) {
+fn part_of(start: [f32; 2], end: [f32; 2], from: f32, to: f32) -> Piece {
     let [start, end] = [start, end].map(|point| point.map(f64::from));
     let along = [end[0] - start[0], end[1] - start[1]];
     let middle = f64::midpoint(f64::from(from), f64::from(to));
@@ -83,7 +92,7 @@ fn part_of(start: [f32; 2], end: [f32; 2], from: f32, to: f32) -> ([f64; 2], f64
 }
 
 /// The range of one coordinate without the tails; `None` without any length.
-fn without_tails(pieces: &[([f64; 2], f64)], axis: usize) -> Option<[f64; 2]> {
+fn without_tails(pieces: &[Piece], axis: usize) -> Option<[f64; 2]> {
     let mut along: Vec<(f64, f64)> = pieces.iter().map(|(at, m)| (at[axis], *m)).collect();
     along.sort_by(|a, b| a.0.total_cmp(&b.0));
     let total_m: f64 = along.iter().map(|(_, length_m)| length_m).sum();

@@ -10,6 +10,8 @@ use half::f16;
 pub(crate) struct ShadingSlopes {
     /// Bits of half-precision numbers.
     texels: Vec<[u16; 2]>,
+    /// 255 where a node is water, else 0; empty without water.
+    water: Vec<u8>,
 }
 
 /// Steeper slopes are cut: half precision ends at 65504.
@@ -36,7 +38,16 @@ impl ShadingSlopes {
                 texels.push(slopes.map(half));
             }
         }
-        Self { texels }
+        let water = relief.water().unwrap_or_default();
+        Self {
+            texels,
+            water: water.iter().map(|&is_water| if is_water { 255 } else { 0 }).collect(),
+        }
+    }
+
+    /// Row by row, 255 where a node is water, else 0; empty without water.
+    pub(crate) fn water(&self) -> &[u8] {
+        &self.water
     }
 
     /// Row by row, as bits of half-precision numbers.

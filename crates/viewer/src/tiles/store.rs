@@ -5,6 +5,9 @@ use corniche_geom::{Bounds, TileId};
 use super::{LoadTileError, MapExtent, TileGeometry, TileSource};
 use crate::lod::{GroundSummary, Node, Request, TileTree};
 
+/// More tiles than these are not loaded to find out where roads are.
+const FEW_TILES: usize = 64;
+
 /// The tiles loaded so far.
 pub struct TileStore<'a> {
     source: &'a dyn TileSource,
@@ -68,15 +71,28 @@ impl<'a> TileStore<'a> {
         Ok(self.get(TileId::ROOT).and_then(|root| root.summary))
     }
 
-    /// What a first view shows, told by the root tile, which it loads; `data` is the rectangle of the data. `None` without any
-    /// ground.
+    /// What a first view shows: where the roads of the coarsest level with roads are, else all of the data, whose rectangle is
+    /// `data`. Loads the tiles down to that level, as long as they are few. `None` without any ground.
     ///
     /// # Errors
-    /// When the root cannot be read.
+    /// When a tile cannot be read.
     pub fn map_extent(&mut self, data: Bounds) -> Result<Option<MapExtent>, LoadTileError> {
-        let has_ground = self.coarsest_ground()?.is_some();
-        let root = self.get(TileId::ROOT).filter(|_| has_ground);
-        Ok(root.map(|root| root.map_extent(data)))
+        let Some(ground) = self.coarsest_ground()? else { return Ok(None) };
+        let mut level = vec![TileId::ROOT];
+        while !level.is_empty() && level.len() <= FEW_TILES {
+            let requests = level.iter().map(|&id| Request { id, coarseness: f64::INFINITY });
+            self.load(&requests.collect::<Vec<_>>())?;
+            let tiles: Vec<&TileGeometry> = level.iter().filter_map(|id| self.get(*id)).collect();
+            if let Some(extent) = MapExtent::of_roads(&tiles, data) {
+                return Ok(Some(extent));
+            }
+            if level[0].z() == self.max_level() {
+                break;
+            }
+            level = level.into_iter().flat_map(TileId::children).collect();
+            level.retain(|id| self.source.exists(*id));
+        }
+        Ok(Some(MapExtent::of_data(data, ground.height_range_m)))
     }
 
     /// True height of the ground at a position, from the finest tile there; loads the tiles down to it.

@@ -71,7 +71,7 @@ fn other_scales_and_caps_fail() {
 }
 
 /// On flat ground seen from straight above, the colour of a road's middle is the ground's and the road's by the share that
-/// the style gives.
+/// the style gives, opacity included.
 #[test]
 fn the_colour_of_a_fading_class_follows_its_closed_form() {
     let Some(gpu) = gpu() else { return };
@@ -80,6 +80,7 @@ fn the_colour_of_a_fading_class_follows_its_closed_form() {
     let road: Road = (5, vec![[-900.0, 0.0], [900.0, 0.0]]);
     let scale_m = 3.0_f32;
     style.roads[5].max_pixel_m = Some(scale_m);
+    style.roads[5].opacity = 0.8;
     let road_style = style.roads[5];
     let scene = one_tile(256, |_, _| 0.0, &[road], style);
     for method in METHODS {
@@ -94,7 +95,7 @@ fn the_colour_of_a_fading_class_follows_its_closed_form() {
             let middle = (view.size_px()[1] / 2 * view.size_px()[0] + view.size_px()[0] / 2) * 4;
             let [drawn, bare] = [drawn, bare].map(|rgba| f64::from(rgba[middle as usize + 1]));
             let share = 1.0 - drawn / bare;
-            let expected = road_style.shown_share(f64::from(scale_m) * zoom_steps.exp2());
+            let expected = 0.8 * road_style.shown_share(f64::from(scale_m) * zoom_steps.exp2());
             assert!((share - expected).abs() < 0.01, "{zoom_steps}: {share} for {expected}");
         }
     }

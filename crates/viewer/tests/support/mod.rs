@@ -214,6 +214,7 @@ pub(crate) fn plain_style(width_m: f32) -> Style {
         max_pixel_m: None,
         max_width_px: None,
         thin: None,
+        opacity: 1.0,
     };
     Style {
         roads: [road; 9],

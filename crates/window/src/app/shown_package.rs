@@ -31,7 +31,8 @@ pub(crate) struct ShownPackage {
 }
 
 impl ShownPackage {
-    /// The package for which [`check`] found nothing wrong, with its root tile, which the platform has loaded.
+    /// The package for which [`check`] found nothing wrong, with its root tile and what the first view shows, which the platform
+    /// has loaded.
     ///
     /// # Errors
     /// When the root has no ground or does not fit the graphics memory allowed.
@@ -39,6 +40,7 @@ impl ShownPackage {
         request: &WindowRequest,
         package: Arc<dyn MapPackage>,
         root: &TileGeometry,
+        extent: MapExtent,
     ) -> Result<Self, WindowError> {
         let ground = root.summary;
         let ground = ground.ok_or_else(|| WindowError::NoGround { name: request.name.clone() })?;
@@ -46,7 +48,6 @@ impl ShownPackage {
         if wanted_bytes > budget_bytes {
             return Err(WindowError::OverBudget { wanted_bytes, budget_bytes });
         }
-        let extent = root.map_extent(package.manifest().data_bounds);
         Ok(Self { package, height_range_m: ground.height_range_m, extent })
     }
 

@@ -31,8 +31,10 @@ impl OpenedPackage {
     ) -> Result<Self, WindowError> {
         app::check(request, tiles.as_ref())?;
         let root = tiles.load(TileId::ROOT)?;
+        let extent = TileStore::new(tiles.as_ref()).map_extent(tiles.manifest().data_bounds)?;
+        let extent = extent.ok_or_else(|| WindowError::NoGround { name: request.name.clone() })?;
         let package: Arc<dyn MapPackage> = Arc::<dyn BlockingPackage + Send + Sync>::clone(&tiles);
-        Ok(Self { shown: ShownPackage::of(request, package, &root)?, tiles })
+        Ok(Self { shown: ShownPackage::of(request, package, &root, extent)?, tiles })
     }
 
     /// True height of the ground at the place that the camera looks at first. `None` without ground there, and where it looks

@@ -125,7 +125,7 @@ pub(crate) fn code_smooth<B: Bits>(bits: &mut B, square: &mut [i64], band: Band)
     }
 }
 
-/// Codes which nodes have a height, by what is known of the four nodes before each.
+/// Codes for each node a yes or no (whether it has a height, whether it is water), by what is known of the four nodes before it.
 pub(crate) fn code_mask<B: Bits>(bits: &mut B, mask: &mut [bool]) {
     let mut models = [Model::default(); 16];
     for row in 0..SIDE {

@@ -21,6 +21,8 @@ pub(crate) const MOST_UNITS: u64 = 1 << 40;
 pub(crate) struct Head {
     /// Whether a mask follows: some nodes have no height.
     pub(crate) has_voids: bool,
+    /// Whether a second mask follows: some nodes are water.
+    pub(crate) has_water: bool,
     /// A unit is 2 to this power, metres.
     pub(crate) exponent: i32,
     /// 256ths of slope, east and north, for each unit that the nodes on both sides differ by; in 65 536ths.
@@ -39,7 +41,7 @@ pub(crate) fn unit_m(exponent: i32) -> f64 {
 impl Head {
     #[cfg(feature = "write")]
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
-        let mut out = vec![u8::from(self.has_voids)];
+        let mut out = vec![u8::from(self.has_voids) | u8::from(self.has_water) << 1];
         put_varint(&mut out, zigzag(i64::from(self.exponent)));
         for number in self.slope_factors.iter().chain(&self.steps) {
             put_varint(&mut out, number.unsigned_abs());
@@ -49,11 +51,11 @@ impl Head {
     }
 
     pub(crate) fn read(cursor: &mut Cursor<'_>) -> Result<Self, Damage> {
-        let has_voids = match cursor.byte()? {
-            0 => false,
-            1 => true,
-            _ => return Err(Damage::Invalid { what: "the flags of the relief" }),
-        };
+        let flags = cursor.byte()?;
+        if flags > 3 {
+            return Err(Damage::Invalid { what: "the flags of the relief" });
+        }
+        let [has_voids, has_water] = [flags & 1 == 1, flags & 2 == 2];
         let exponent = i32::try_from(unzigzag(cursor.varint()?)).ok();
         let exponent = exponent
             .filter(|exponent| (-MOST_EXPONENT..=MOST_EXPONENT).contains(exponent))
@@ -71,6 +73,6 @@ impl Head {
             *step = number(1, MOST_STEP, "a quantisation step of the relief")? as i64;
         }
         let greatest_error = number(0, MOST_UNITS, "the greatest error of the relief")?;
-        Ok(Self { has_voids, exponent, slope_factors, steps, greatest_error })
+        Ok(Self { has_voids, has_water, exponent, slope_factors, steps, greatest_error })
     }
 }

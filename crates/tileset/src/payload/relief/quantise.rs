@@ -17,12 +17,17 @@ fn each(square: &mut [i64], band: Band, mut change: impl FnMut(&mut i64)) {
     }
 }
 
-/// Coefficients to whole steps. Rough ones become 0 below 0.7 of a step: most of them are noise that shading does not miss.
+/// Coefficients to whole steps. Those of the finest division become 0 below 0.7 of a step, those of the next below 0.6: most of them
+/// are noise that shading does not miss.
 #[cfg(feature = "write")]
 pub(crate) fn quantise(square: &mut [i64], steps: &[i64; BANDS]) {
     for (number, band) in bands() {
         let step = steps[number];
-        let added = if number == 0 { step / 2 } else { step * 3 / 10 };
+        let added = match BANDS - number {
+            1..=3 => step * 3 / 10,
+            4..=6 => step * 4 / 10,
+            _ => step / 2,
+        };
         each(square, band, |value| *value = value.signum() * ((value.abs() + added) / step));
     }
 }

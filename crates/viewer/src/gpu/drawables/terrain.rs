@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use wgpu::{
-    BindGroup, BindGroupLayout, BufferUsages, ColorWrites, CompareFunction, Device,
-    PrimitiveTopology, RenderPass, RenderPipeline,
+    BindGroupLayout, BufferUsages, ColorWrites, CompareFunction, Device, PrimitiveTopology,
+    RenderPass, RenderPipeline,
 };
 
 use super::super::{
