@@ -90,7 +90,8 @@ impl Apart {
     fn change(&mut self, id: TileId, change: impl Fn(&mut Photo)) {
         let section = self.photo_mut(id).take().unwrap();
         let empty = &self.tiles[&pmtiles_order(id)].1;
-        let mut photo = decode_photo(&with_photo(empty, id, &section).unwrap(), id).unwrap().unwrap();
+        let mut photo =
+            decode_photo(&with_photo(empty, id, &section).unwrap(), id).unwrap().unwrap();
         change(&mut photo);
         let changed = encode_photo(id, &photo, 85).unwrap();
         self.record(id, section.bytes().len(), changed.as_ref().map_or(0, |c| c.bytes().len()));
