@@ -1,5 +1,7 @@
 //! Photos lie where they should, and come out as they are: closed forms, on files written by GDAL.
 
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
 use std::path::{Path, PathBuf};
 
 use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions};
@@ -175,7 +177,7 @@ fn alpha_nodata_and_masks_leave_texels_out() {
         mask.write((0, 0), (256, 256), &mut Buffer::new((256, 256), values)).unwrap();
     });
     for file in [alpha, nodata, masked] {
-        let texels = tile(&[file.clone()], &grid, 0);
+        let texels = tile(std::slice::from_ref(&file), &grid, 0);
         assert_eq!(texels.at(127, 9), [0; 4], "{file:?}");
         assert_eq!(texels.at(128, 9), [9, 8, 7, 255], "{file:?}");
     }
@@ -352,7 +354,8 @@ fn a_file_that_is_cut_off_is_named_when_it_is_read() {
     let grid = grid(folder.path());
     let photo = on_cells(&|_| vec![1, 2, 3], &RGB).write(folder.path(), "cut.tif", |_| {});
     let bytes = std::fs::read(&photo).unwrap();
-    let photos = Photos::open(&[photo.clone()]).unwrap().on(&grid, LevelChoice::Given(0)).unwrap();
+    let photos = Photos::open(std::slice::from_ref(&photo)).unwrap();
+    let photos = photos.on(&grid, LevelChoice::Given(0)).unwrap();
     std::fs::write(&photo, &bytes[..bytes.len() / 2]).unwrap();
     let read = photos.reader().window(photos.texels().tile(tile_id(&grid), 0));
     let text = read.unwrap_err().to_string();
