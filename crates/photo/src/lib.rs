@@ -11,6 +11,7 @@
 //! This crate never encodes, never triangulates, and never guesses where an image lies or what its values mean.
 
 mod error;
+mod photo_grid;
 mod photos;
 mod reader;
 
@@ -22,7 +23,8 @@ mod texel_grid;
 mod texels;
 
 pub use error::PhotoError;
-pub use photos::{LevelChoice, PhotoGrid, Photos};
+pub use photo_grid::PhotoGrid;
+pub use photos::{LevelChoice, Photos};
 pub use reader::PhotoReader;
 pub use texel_grid::{MAX_LEVELS, TexelGrid, TexelWindow};
 pub use texels::Texels;

@@ -3,8 +3,9 @@ use std::path::PathBuf;
 use corniche_dem::{FileBlocks, GridPlan};
 use corniche_geom::Bounds;
 
-use crate::photo_file::{PhotoFile, PlacedPhoto};
-use crate::{PhotoError, PhotoReader, TexelGrid};
+use crate::photo_file::PhotoFile;
+use crate::photo_grid::overlap;
+use crate::{PhotoError, PhotoGrid, TexelGrid};
 
 /// The most levels finer than the finest cell that are taken where nobody says how many: a finest tile then has 2048 texels a side.
 const USUAL_LEVELS: u8 = 3;
@@ -26,13 +27,6 @@ pub enum LevelChoice {
     OfPhotos,
     /// So many.
     Given(u8),
-}
-
-/// Photos on a package's grid. May be shared between threads.
-#[derive(Debug, Clone)]
-pub struct PhotoGrid {
-    pub(crate) photos: Vec<PlacedPhoto>,
-    texels: TexelGrid,
 }
 
 impl Photos {
@@ -111,34 +105,4 @@ impl Photos {
         }
         Ok(PhotoGrid { photos, texels })
     }
-}
-
-impl PhotoGrid {
-    /// The texels of the finest level.
-    #[must_use]
-    pub fn texels(&self) -> &TexelGrid {
-        &self.texels
-    }
-
-    /// Whether a photo may lie in a rectangle, working metres.
-    #[must_use]
-    pub fn touches(&self, bounds: &Bounds) -> bool {
-        self.photos.iter().any(|photo| overlap(&photo.bounds, bounds))
-    }
-
-    /// Area of the rectangles around the photos, square metres of the grid; where they overlap it counts twice.
-    #[must_use]
-    pub fn area_m2(&self) -> f64 {
-        self.photos.iter().map(|photo| photo.bounds.width() * photo.bounds.height()).sum()
-    }
-
-    /// Reads texels; each thread has a reader of its own.
-    #[must_use]
-    pub fn reader(&self) -> PhotoReader<'_> {
-        PhotoReader::new(self)
-    }
-}
-
-pub(crate) fn overlap(a: &Bounds, b: &Bounds) -> bool {
-    a.min_x < b.max_x && b.min_x < a.max_x && a.min_y < b.max_y && b.min_y < a.max_y
 }

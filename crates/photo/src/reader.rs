@@ -3,7 +3,7 @@ use gdal::Dataset;
 
 use crate::filter::{Filter, Light, Pixels};
 use crate::photo_file::PlacedPhoto;
-use crate::photos::overlap;
+use crate::photo_grid::overlap;
 use crate::positions::{MESH, MeshPositions};
 use crate::{PhotoError, PhotoGrid, TexelGrid, TexelWindow, Texels};
 
@@ -30,7 +30,9 @@ struct Block {
 }
 
 impl<'a> PhotoReader<'a> {
-    pub(crate) fn new(grid: &'a PhotoGrid) -> Self {
+    /// Reads the texels of these photos; each thread has a reader of its own.
+    #[must_use]
+    pub fn new(grid: &'a PhotoGrid) -> Self {
         Self { grid, open: Vec::new(), filter: Filter::default() }
     }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions};
 use corniche_geom::TileId;
-use corniche_photo::{LevelChoice, PhotoError, Photos, Texels};
+use corniche_photo::{LevelChoice, PhotoError, PhotoReader, Photos, Texels};
 use corniche_testing::{ColourImage, Raster};
 use gdal::{
     Metadata,
@@ -35,7 +35,7 @@ const RGBA: [C; 4] = [C::RedBand, C::GreenBand, C::BlueBand, C::AlphaBand];
 /// The texels of the one tile, without border.
 fn tile(files: &[PathBuf], grid: &GridPlan, levels: u8) -> Texels {
     let photos = Photos::open(files).unwrap().on(grid, LevelChoice::Given(levels)).unwrap();
-    photos.reader().window(photos.texels().tile(tile_id(grid), 0)).unwrap()
+    PhotoReader::new(&photos).window(photos.texels().tile(tile_id(grid), 0)).unwrap()
 }
 
 fn tile_id(grid: &GridPlan) -> TileId {
@@ -270,8 +270,8 @@ fn a_texel_is_the_same_in_every_window() {
     let photo = photo.write(folder.path(), "turned.tif", |_| {});
     let photos = Photos::open(&[photo]).unwrap().on(&grid, LevelChoice::Given(1)).unwrap();
     let window = photos.texels().tile(tile_id(&grid), 8);
-    let all = photos.reader().window(window).unwrap();
-    let mut reader = photos.reader();
+    let all = PhotoReader::new(&photos).window(window).unwrap();
+    let mut reader = PhotoReader::new(&photos);
     for [column, row, columns, rows] in [[0, 0, 40, 3], [61, 77, 100, 90], [300, 11, 1, 250]] {
         let part = corniche_photo::TexelWindow {
             u: window.u + column as i64,
@@ -357,7 +357,7 @@ fn a_file_that_is_cut_off_is_named_when_it_is_read() {
     let photos = Photos::open(std::slice::from_ref(&photo)).unwrap();
     let photos = photos.on(&grid, LevelChoice::Given(0)).unwrap();
     std::fs::write(&photo, &bytes[..bytes.len() / 2]).unwrap();
-    let read = photos.reader().window(photos.texels().tile(tile_id(&grid), 0));
+    let read = PhotoReader::new(&photos).window(photos.texels().tile(tile_id(&grid), 0));
     let text = read.unwrap_err().to_string();
     assert!(text.contains("cut.tif"), "{text}");
 }

@@ -11,8 +11,8 @@ use crate::{
     inputs::Inputs,
     levels::Levels,
     memory_shares::MemoryShares,
-    photos::opened::{OpenedPhotos, photo_record},
     plan::Opened,
+    plan::{OpenedPhotos, photo_record},
     terrain::ground::GroundSource,
 };
 

@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use crate::{
     Light, MOST_TINT_STOPS, StyleError, Tint, TintHeights,
-    sheet::{Rgb8, within},
+    sheet_values::{Rgb8, within},
 };
 
 /// Least difference between one share of the tint and the next. The shaders divide by it, in f32.

@@ -10,17 +10,20 @@
 //! This crate never opens a file, never draws and knows no graphics card, so that it also builds for WebAssembly.
 
 pub mod climate;
+mod color;
 mod error;
 mod ground;
 mod ground_sheet;
 mod presets;
 mod road_scale;
 mod sheet;
+mod sheet_values;
 mod style;
 
+pub use color::Rgb;
 pub use error::StyleError;
 pub use ground::{Light, MOST_TINT_STOPS, Tint, TintHeights, TintStop};
 pub use presets::{style_preset, style_preset_names};
 pub use road_scale::FADE_FACTOR;
 pub use sheet::parse_style;
-pub use style::{CenterLine, OwnWidths, Rgb, RoadStyle, Style, WidthScaling};
+pub use style::{CenterLine, OwnWidths, RoadStyle, Style, WidthScaling};

@@ -1,6 +1,6 @@
 //! The text of a style: TOML, checked entry by entry, and then turned into the values that are drawn with.
 
-use std::{collections::BTreeMap, ops::RangeInclusive};
+use std::collections::BTreeMap;
 
 use corniche_roads::FunctionalRoadClass;
 use serde::Deserialize;
@@ -8,15 +8,11 @@ use serde::Deserialize;
 use crate::{
     CenterLine, OwnWidths, Rgb, RoadStyle, Style, StyleError, Tint, WidthScaling,
     ground_sheet::{LightSheet, TintSheet, tint},
+    sheet_values::{Rgb8, within},
 };
 
 /// Longest text that is read. The longest preset has some 3 kB.
 const MAX_TEXT_BYTES: usize = 1 << 20;
-
-/// A colour as red, green, blue in sRGB.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(try_from = "String")]
-pub(crate) struct Rgb8(pub(crate) [u8; 3]);
 
 /// A style in the units and types of its text, checked. `sheets/road-atlas.toml` tells what each entry means.
 #[derive(Debug, Clone, PartialEq)]
@@ -239,40 +235,6 @@ impl StyleSheet {
     }
 }
 
-pub(crate) fn within(
-    entry: &str,
-    value: f64,
-    range: RangeInclusive<f64>,
-) -> Result<(), StyleError> {
-    // NaN is in no range.
-    if range.contains(&value) {
-        return Ok(());
-    }
-    Err(StyleError::Range {
-        entry: entry.to_owned(),
-        value,
-        least: *range.start(),
-        most: *range.end(),
-    })
-}
-
-impl TryFrom<String> for Rgb8 {
-    type Error = String;
-
-    /// Reads "#RRGGBB".
-    fn try_from(text: String) -> Result<Self, String> {
-        let digits = text
-            .strip_prefix('#')
-            // `from_str_radix` would accept a sign too.
-            .filter(|digits| digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit()))
-            .and_then(|digits| u32::from_str_radix(digits, 16).ok());
-        let [_, red, green, blue] = digits
-            .ok_or_else(|| format!("{text:?} is no colour; write it like \"#D93A2B\""))?
-            .to_be_bytes();
-        Ok(Self([red, green, blue]))
-    }
-}
-
 impl From<&StyleSheet> for Style {
     fn from(sheet: &StyleSheet) -> Self {
         let StyleSheet { outline_px, own_width, lane_width_m, width_scaling, .. } = sheet;
@@ -316,12 +278,6 @@ impl From<RoadSheet> for RoadStyle {
             thin: sheet.thin.map(Rgb::from),
             opacity: sheet.opacity.unwrap_or(1.0) as f32,
         }
-    }
-}
-
-impl From<Rgb8> for Rgb {
-    fn from(Rgb8(channels): Rgb8) -> Self {
-        channels.map(|channel| f32::from(channel) / 255.0)
     }
 }
 

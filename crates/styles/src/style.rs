@@ -2,10 +2,7 @@
 
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
-use crate::{Light, Tint, TintHeights};
-
-/// A colour as red, green, blue in sRGB, 0 to 1.
-pub type Rgb = [f32; 3];
+use crate::{Light, Rgb, Tint, TintHeights};
 
 /// How the roads of one class are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]

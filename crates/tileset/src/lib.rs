@@ -47,8 +47,8 @@ pub use package::{FilePackage, FileSource};
 #[cfg(feature = "write")]
 pub use package::{WriteError, Writer};
 pub use payload::{
-    Damage, DecodeError, EncodeError, GeoRoad, MAX_PHOTO_LEVELS, PHOTO_BORDER, PayloadSizes, Photo,
-    Relief, RoadRecord, SectionSize, Sections, SvRoad, Terrain, TilePayload, decode, decode_photo,
+    Damage, DecodeError, EncodeError, GeoRoad, PHOTO_BORDER, PayloadSizes, Photo, Relief,
+    RoadRecord, SectionSize, Sections, SvRoad, Terrain, TilePayload, decode, decode_photo,
     payload_sizes,
 };
 #[cfg(feature = "write")]

@@ -27,6 +27,8 @@ pub const MAX_PAYLOAD_BYTES: u32 = 4 * MAX_SECTION_BYTES as u32;
 
 /// No section is larger than this before compression, nor as stored.
 pub const MAX_SECTION_BYTES: usize = 64 << 20;
+/// The most levels of texels of a photo finer than the tile's cell: a texture then has 17 million texels.
+pub const MAX_PHOTO_LEVELS: u8 = 4;
 /// Vertices of a tile's TIN: one for each node.
 pub const MAX_VERTICES: usize = TILE_NODES * TILE_NODES;
 /// Triangles of a tile's TIN: two for each cell.

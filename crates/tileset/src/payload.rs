@@ -34,7 +34,7 @@ pub use decode::decode;
 #[cfg(feature = "write")]
 pub use encode::{EncodedTile, PayloadContext, encode, encode_with_ground_of};
 pub use envelope::SectionSize;
-pub use photo::{MAX_PHOTO_LEVELS, PHOTO_BORDER, Photo, decode_photo};
+pub use photo::{PHOTO_BORDER, Photo, decode_photo};
 #[cfg(feature = "write")]
 pub use photo::{PhotoSection, encode_photo, photo_section, with_photo};
 pub use relief::Relief;

@@ -6,6 +6,5 @@
 //!                                                       └─ with those of neighbours ─► textures of coarse tiles ─► payloads
 //! ```
 
-pub(crate) mod opened;
 pub(crate) mod rasters;
 pub(crate) mod textures;

@@ -4,11 +4,8 @@ use corniche_geom::TileId;
 use corniche_photo::{PhotoReader, Texels};
 use corniche_tileset::{PHOTO_BORDER, Photo, PhotoSection, encode_photo, photo_section};
 
-use super::{
-    opened::OpenedPhotos,
-    rasters::{self, SIDE},
-};
-use crate::{BuildError, artifacts::Kind, context::Context};
+use super::rasters::{self, SIDE};
+use crate::{BuildError, artifacts::Kind, context::Context, plan::OpenedPhotos};
 
 /// How many levels the texels of a coarse tile are finer than its cells. Such a tile is drawn while its cells look like some pixels,
 /// so its texels are half a cell, unless the photos have no such detail.

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::{Opened, covered_tiles::CoveredTiles, rates};
 use crate::{
-    BuildError, Observer, Resources, machine::thread_time, photos::opened::OpenedPhotos,
+    BuildError, Observer, Resources, machine::thread_time, plan::opened_photos::OpenedPhotos,
     terrain::ground::GroundSource,
 };
 

@@ -12,6 +12,7 @@ mod differences;
 mod estimate;
 mod facts;
 mod opened;
+mod opened_photos;
 pub(crate) mod rates;
 mod room;
 
@@ -21,6 +22,7 @@ pub use build_plan::{BuildPlan, FrcTableRecord, PlannedGrid, PlannedLevel};
 pub use estimate::{Estimate, MemoryEstimate, Rates};
 pub(crate) use facts::road_differences;
 pub(crate) use opened::Opened;
+pub(crate) use opened_photos::{OpenedPhotos, photo_record};
 
 use crate::{BuildError, Observer, PlanSettings, Resources, memory_shares::MemoryShares};
 

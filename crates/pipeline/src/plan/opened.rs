@@ -9,7 +9,7 @@ use crate::{
     BuildError, PlanSettings, PlannedInput, TerrainSettings,
     inputs::{InputKind, Inputs, OtherInputs},
     levels::{Levels, most_scale},
-    photos::opened::{OpenedPhotos, photo_record},
+    plan::opened_photos::{OpenedPhotos, photo_record},
     settings_record,
     terrain::{ground::GroundSource, recorded::RecordedTerrain},
 };

@@ -2,6 +2,7 @@
 //! subtree.
 
 use corniche_geom::TileId;
+use corniche_photo::PhotoReader;
 
 use crate::{
     BuildError, Stage,
@@ -23,7 +24,7 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
         Stage::Photos,
         context.threads(),
         (&ids, all),
-        || Ok(photos.grid.reader()),
+        || Ok(PhotoReader::new(&photos.grid)),
         |reader, &id| textures::make_finest(context, photos, reader, id),
     )?;
     make_rasters(context, scope)

@@ -5,7 +5,7 @@
 
 use corniche_geom::{Bounds, Cell, MAX_LATTICE_STEPS, NodeIndex};
 
-use crate::MAX_PHOTO_LEVELS;
+use crate::limits::MAX_PHOTO_LEVELS;
 use crate::manifest::contents::Manifest;
 use crate::manifest::counts::{Counts, GrowthRow};
 use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord};

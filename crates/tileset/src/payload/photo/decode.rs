@@ -3,7 +3,11 @@ use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
 use zune_jpeg::JpegDecoder;
 
-use super::{MAX_PHOTO_LEVELS, Photo, coverage, side};
+use super::{
+    coverage,
+    image::{Photo, side},
+};
+use crate::limits::MAX_PHOTO_LEVELS;
 use crate::payload::damage::Damage;
 use crate::payload::number_codes::Cursor;
 

@@ -1,7 +1,8 @@
 use corniche_geom::TileId;
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 
-use super::{MAX_PHOTO_LEVELS, Photo, coverage, decode::JPEG};
+use super::{coverage, decode::JPEG, image::Photo};
+use crate::limits::MAX_PHOTO_LEVELS;
 use crate::payload::damage::{DecodeError, EncodeError};
 use crate::payload::envelope::{self, Content};
 use crate::payload::section_kind::Kind;
