@@ -37,6 +37,7 @@ mod tile;
 mod verify;
 mod version;
 mod view;
+mod view_command;
 
 use std::{env, process};
 

@@ -56,15 +56,15 @@ impl StyleFile {
     /// The file behind `--style`; `None` for a style that comes with the program, which never changes.
     pub(crate) fn of(name_or_path: &str) -> Option<Self> {
         let path = file_of(name_or_path)?.to_owned();
-        let told = said(&path);
+        let told = Some(said(&path));
         Some(Self { path, told, doubted: None })
     }
 
     /// The new style if the file has changed since the caller was last told, or why it contains none. Such an error is
     /// returned once, and only if two looks in a row found the same, because an editor may have emptied the file and not yet
-    /// filled it. A file that is missing counts as unchanged: an editor may be replacing it.
+    /// filled it, or be replacing it.
     pub(crate) fn reload_if_changed(&mut self) -> Option<Result<Style, Failure>> {
-        let said = said(&self.path)?;
+        let said = said(&self.path);
         let doubted = self.doubted.take();
         if self.told.as_ref() == Some(&said) {
             return None;
@@ -82,12 +82,14 @@ impl StyleFile {
     }
 }
 
-/// The text of a file, or why it cannot be read; `None` if there is no file.
-fn said(path: &Path) -> Option<Result<String, String>> {
-    match read_text(path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-        said => Some(said.map_err(|error| error.to_string())),
-    }
+/// The text of a file, or why it cannot be read.
+fn said(path: &Path) -> Result<String, String> {
+    read_text(path).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => {
+            "the file is gone; it is read again as soon as there is one at this place".to_owned()
+        }
+        _ => error.to_string(),
+    })
 }
 
 #[cfg(test)]

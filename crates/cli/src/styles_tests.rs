@@ -69,3 +69,23 @@ fn what_is_no_style_is_told_once_and_not_while_it_may_still_be_written() {
     fs::write(&path, dark).unwrap();
     assert!(file.reload_if_changed().unwrap().is_ok(), "what was right before is right again");
 }
+
+#[test]
+fn a_style_whose_file_is_gone_is_told_once_and_read_again_when_it_is_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.toml");
+    let dark = style_preset("dark").unwrap();
+    fs::write(&path, dark).unwrap();
+    let mut file = StyleFile::of(path.to_str().unwrap()).unwrap();
+    fs::remove_file(&path).unwrap();
+    assert!(file.reload_if_changed().is_none(), "perhaps an editor is replacing it");
+    fs::write(&path, dark).unwrap();
+    assert!(file.reload_if_changed().is_none(), "an editor has replaced it by the same");
+    fs::remove_file(&path).unwrap();
+    assert!(file.reload_if_changed().is_none(), "the doubt begins anew");
+    let message = file.reload_if_changed().unwrap().unwrap_err().to_string();
+    assert!(message.contains("mine.toml") && message.contains("gone"), "{message}");
+    assert!(file.reload_if_changed().is_none(), "it is told once");
+    fs::write(&path, dark).unwrap();
+    assert_eq!(file.reload_if_changed().unwrap().unwrap(), style("dark").unwrap());
+}

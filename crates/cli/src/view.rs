@@ -2,20 +2,26 @@
 
 use std::{fs, io, path::Path, sync::Arc};
 
+use corniche_presets::class_labels;
 use corniche_styles::style_preset_names;
-use corniche_viewer::{stream::StreamBudget, tiles::PackageSource};
+use corniche_viewer::{
+    RoadMethod,
+    stream::StreamBudget,
+    tiles::{MapPackage as _, PackageSource},
+};
 use corniche_window::{
     BeginTrace, Closed, End, Inertia, NamedStyle, Reload, WindowError, WindowRequest,
     run as open_window,
 };
 
 use crate::{
-    args::{Motion, ViewArgs},
+    args::{Motion, Roads, ViewArgs},
     exit::ExitCode,
     failure::Failure,
     interrupt, messages,
     output::{Existing, Output},
     styles::{StyleFile, file_of, style},
+    view_command::command_of,
 };
 
 /// Tiles being decoded at once.
@@ -27,7 +33,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
     for name in style_preset_names().filter(|name| name != chosen) {
         styles.push(NamedStyle { name: name.to_owned(), style: style(name)? });
     }
-    let roads = args.look.roads(&[args.roads])?[0];
+    let roads = args.look.roads(&[args.roads.unwrap_or(Roads::DEFAULT)])?[0];
     let used: Vec<&Path> =
         [Some(args.package.as_path()), file_of(chosen)].into_iter().flatten().collect();
     let trace = args.trace.as_deref().map(|path| begin_trace(path, &used)).transpose()?;
@@ -43,6 +49,9 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         size_px: args.size,
         camera: args.camera.request(),
         roads: args.look.road_options(roads),
+        software_method: software_method(args),
+        class_labels: class_labels(&package.manifest().settings.frc_table),
+        command_of: command_of(&args.package),
         styles,
         photo: args.look.photo,
         reload: reload(chosen),
@@ -79,6 +88,13 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         End::Closed => Ok(code),
         End::Stopped => Err(Failure::interrupted()),
     }
+}
+
+/// How roads are drawn where the processor draws, unless the command line says how: shadow volumes take it several times as
+/// long as geometry. A test for caps is one of shadow volumes.
+fn software_method(args: &ViewArgs) -> Option<RoadMethod> {
+    let is_free = args.roads.is_none() && !args.look.tests_caps();
+    is_free.then_some(RoadMethod::Geometry)
 }
 
 /// Checks the place of the trace as for any other file. The file is created when the window exists, and directly at its

@@ -26,6 +26,7 @@ pub mod flight;
 mod frame_view;
 pub mod gpu;
 pub mod lod;
+mod lon_lat;
 mod options;
 pub mod pick;
 pub mod range;
@@ -54,6 +55,7 @@ pub mod for_tests {
 pub use annotations::{Legend, LegendRoad, draw_attribution, draw_legend};
 pub use class_scale::LevelScales;
 pub use frame_view::{FrameView, Wireframe};
+pub use lon_lat::{LonLatError, parse_lon_lat};
 pub use options::{CapTest, Caps, ClassSet, Outline, RoadMethod, RoadOptions, WidthGrowth};
 pub use range::OutOfRange;
 #[cfg(not(target_arch = "wasm32"))]

@@ -11,6 +11,7 @@ mod frame;
 mod frame_pace;
 mod ground_probe;
 mod shown_package;
+mod shown_view;
 mod style_list;
 
 pub(crate) use self::{
@@ -21,6 +22,7 @@ pub(crate) use self::{
 
 use std::path::PathBuf;
 
+use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::flight::{Pose, WorkingCrs};
 use egui::{Rect, pos2};
 use glam::DVec2;
@@ -28,10 +30,11 @@ use glam::DVec2;
 use self::{
     adapter::AdapterState, camera_control::CameraControl, camera_limits::limits,
     captures::Captures, first_settings::first_settings, first_view::first_view,
-    frame_pace::FramePace, ground_probe::GroundProbe, style_list::StyleList,
+    frame_pace::FramePace, ground_probe::GroundProbe, shown_view::place_in_world,
+    style_list::StyleList,
 };
 use crate::{
-    NotSaved, WindowError, WindowRequest,
+    CommandOf, NotSaved, WindowError, WindowRequest,
     canvas::Canvas,
     command::Command,
     controls::{Button, Input, Modifiers, Navigator},
@@ -47,6 +50,8 @@ use crate::{
 
 /// The beginning of the notice that a style's file cannot be used.
 const STYLE_STAYS: &str = "the style stays as it was: ";
+/// The beginning of the notice that the map cannot go where it was asked to.
+const NO_PLACE: &str = "go to: ";
 
 /// The window's state.
 pub(crate) struct App {
@@ -61,6 +66,10 @@ pub(crate) struct App {
     notices: Notices,
     trace: Option<Trace>,
     probe: GroundProbe,
+    class_labels: [String; FunctionalRoadClass::COUNT],
+    command_of: CommandOf,
+    /// What the next frame puts on the clipboard.
+    to_copy: Option<String>,
     /// Number of the frame, 1 first.
     frame: u64,
     cursor_px: Option<DVec2>,
@@ -102,7 +111,8 @@ impl App {
         )?;
         let limits = limits(package.manifest());
         let graphics = AdapterState::of(canvas);
-        let settings = first_settings(&request, graphics.is_software());
+        let width_points = size_px[0] as f32 / pixels_per_point;
+        let settings = first_settings(&request, graphics.is_software(), width_points);
         let trace = request
             .trace
             .map(|begin| begin().and_then(Trace::begin))
@@ -112,8 +122,13 @@ impl App {
         let quantum_m = package.manifest().vertical.quantum_m;
         let mut notices = Notices::default();
         if graphics.is_software() {
+            let roads = if settings.roads.method == request.roads.method {
+                ""
+            } else {
+                ", and roads as geometry (GEO), which takes less time"
+            };
             notices.warn(format!(
-                "no graphics card was found: the processor draws ({}), more coarsely while the camera moves",
+                "no graphics card was found: the processor draws ({}), more coarsely while the camera moves{roads}",
                 graphics.adapter()
             ));
         }
@@ -129,6 +144,9 @@ impl App {
             notices,
             trace,
             probe: GroundProbe::default(),
+            class_labels: request.class_labels,
+            command_of: request.command_of,
+            to_copy: None,
             frame: 0,
             cursor_px: None,
             occupied: Vec::new(),
@@ -168,6 +186,11 @@ impl App {
             Command::NorthUp => self.input(&Input::NorthUp, now_s),
             Command::Reset => self.input(&Input::Reset, now_s),
             Command::ToggleFly => self.input(&Input::ToggleFly, now_s),
+            Command::GoTo => self.go_to(now_s),
+            Command::CopyView => self.copy_view(now_s),
+            Command::TogglePanel => self.settings.is_panel_open = !self.settings.is_panel_open,
+            Command::ToggleHelp => self.settings.is_help_open = !self.settings.is_help_open,
+            Command::CloseHelp => self.settings.is_help_open = false,
             Command::Take(shot) => self.captures.want(shot),
             Command::ToggleRecording if self.captures.is_recording() => self.stop_recording(now_s),
             Command::ToggleRecording | Command::StartRecording => {
@@ -178,15 +201,36 @@ impl App {
         }
     }
 
+    /// Looks at the place that is typed in the panel, or says why it cannot.
+    fn go_to(&mut self, now_s: f64) {
+        self.notices.retract(NO_PLACE);
+        let ground = ground(&self.tiles, &self.settings, &self.package);
+        match place_in_world(&self.settings.place, self.package.manifest(), &ground) {
+            Ok(target_in_world) => self.input(&Input::GoTo { target_in_world }, now_s),
+            Err(why) => self.notices.warn(format!("{NO_PLACE}{why}")),
+        }
+    }
+
+    /// Puts a command that draws this view on the clipboard, and shows it.
+    fn copy_view(&mut self, now_s: f64) {
+        match self.shown_view() {
+            Some((view, left_out)) => {
+                let command = (self.command_of)(&view);
+                self.notices.tell(format!("copied: {command}{left_out}"), now_s);
+                self.to_copy = Some(command);
+            }
+            None => self.notices.tell(
+                "not copied: there is no ground in the middle of the map, and a command needs a place to look at"
+                    .to_owned(),
+                now_s,
+            ),
+        }
+    }
+
     fn stop_recording(&mut self, now_s: f64) {
         let crs = WorkingCrs::of(self.package.manifest());
         let lost = self.captures.stop_recording(now_s, crs).err();
         self.tell_lost(lost);
-    }
-
-    /// Shows the panel, or hides it.
-    pub(crate) fn toggle_panel(&mut self) {
-        self.settings.is_panel_open = !self.settings.is_panel_open;
     }
 
     /// The graphics device is lost and another one has taken its place: everything is loaded and drawn again.
@@ -246,9 +290,8 @@ impl App {
 
 /// The ground as the camera's controls see it.
 fn ground<'a>(tiles: &'a Tiles, settings: &Settings, package: &ShownPackage) -> ShownGround<'a> {
-    let [lowest_m, highest_m] = package.height_range_m();
     let vertical_scale = package.vertical_scale(settings.exaggeration);
-    tiles.ground(vertical_scale, f64::midpoint(lowest_m, highest_m))
+    tiles.ground(vertical_scale, package.height_range_m())
 }
 
 #[cfg(test)]

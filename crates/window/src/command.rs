@@ -18,6 +18,16 @@ pub(crate) enum Command {
     Reset,
     /// Change from map to fly mode, or back.
     ToggleFly,
+    /// Look at the place that is typed in the panel.
+    GoTo,
+    /// Put a command that draws this view on the clipboard.
+    CopyView,
+    /// Show the panel, or hide it.
+    TogglePanel,
+    /// Show the page of keys and mouse, or hide it.
+    ToggleHelp,
+    /// Hide the page of keys and mouse.
+    CloseHelp,
     /// Save a picture.
     Take(Shot),
     /// Begin to record a flight, or end the recording.

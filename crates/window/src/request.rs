@@ -1,7 +1,8 @@
 use std::{io, path::PathBuf};
 
+use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
-use corniche_viewer::{CameraRequest, RoadOptions, stream::StreamBudget};
+use corniche_viewer::{CameraRequest, RoadMethod, RoadOptions, stream::StreamBudget};
 
 use crate::Inertia;
 
@@ -13,6 +14,32 @@ pub struct NamedStyle {
     /// How the map looks.
     pub style: Style,
 }
+
+/// What a window shows, as far as a picture of the same view needs it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShownView {
+    /// Where it looks from; never the overview.
+    pub camera: CameraRequest,
+    /// Width and height of the map, pixels.
+    pub size_px: [u32; 2],
+    /// How roads are drawn.
+    pub roads: RoadOptions,
+    /// The name of the style.
+    pub style: String,
+    /// How strongly photos are seen, 0 to 1; `None`: as the style says.
+    pub photo: Option<f32>,
+    /// Factor on heights.
+    pub exaggeration: f64,
+    /// A tile is refined while its error looks larger than this, pixels.
+    pub screen_space_error_px: f64,
+    /// A tile is refined while one of its cells looks larger than this, pixels.
+    pub cell_px: f64,
+    /// Samples per pixel along each side.
+    pub samples_per_side: u32,
+}
+
+/// The command line that draws a view as a picture.
+pub type CommandOf = Box<dyn Fn(&ShownView) -> String>;
 
 /// Called about once a second: has the first style changed? `None` if not; else the new style, which is shown from then on,
 /// or in words why it cannot be used: these words are shown, and the old style stays.
@@ -32,6 +59,12 @@ pub struct WindowRequest {
     pub camera: CameraRequest,
     /// How roads are drawn at first.
     pub roads: RoadOptions,
+    /// By which method roads are drawn at first where the processor draws; `None`: by the same as elsewhere.
+    pub software_method: Option<RoadMethod>,
+    /// What people call the roads of each class, 0 first.
+    pub class_labels: [String; FunctionalRoadClass::COUNT],
+    /// Tells the command that draws a view, which a person can copy.
+    pub command_of: CommandOf,
     /// Styles to choose from, at least one; the first is shown at first.
     pub styles: Vec<NamedStyle>,
     /// Tells whether the first style has changed; `None` if it cannot change.

@@ -65,6 +65,10 @@ pub(crate) struct Settings {
     pub(crate) refinement: Refinement,
     /// Whether the panel is open.
     pub(crate) is_panel_open: bool,
+    /// Whether the page of keys and mouse is open.
+    pub(crate) is_help_open: bool,
+    /// What is typed as the place to go to.
+    pub(crate) place: String,
 }
 
 /// Ranges of the settings.
@@ -108,6 +112,8 @@ pub(crate) fn usual() -> Settings {
         is_wireframe: false,
         refinement: Refinement::Live,
         is_panel_open: true,
+        is_help_open: false,
+        place: String::new(),
     }
 }
 

@@ -175,8 +175,10 @@ impl Tiles {
     }
 
     /// The ground that is drawn; outside the view, the other ground that is on the graphics card.
-    pub(crate) fn ground(&self, vertical_scale: f64, base_height_m: f64) -> ShownGround<'_> {
-        ShownGround { tiles: self, vertical_scale, base_height_m }
+    ///
+    /// `height_range_m` are the true heights between which all of it lies.
+    pub(crate) fn ground(&self, vertical_scale: f64, height_range_m: [f64; 2]) -> ShownGround<'_> {
+        ShownGround { tiles: self, vertical_scale, height_range_m }
     }
 }
 
@@ -184,7 +186,7 @@ impl Tiles {
 pub(crate) struct ShownGround<'a> {
     tiles: &'a Tiles,
     vertical_scale: f64,
-    base_height_m: f64,
+    height_range_m: [f64; 2],
 }
 
 impl KnownGround for ShownGround<'_> {
@@ -210,7 +212,12 @@ impl KnownGround for ShownGround<'_> {
     }
 
     fn base_height(&self) -> f64 {
-        self.base_height_m * self.vertical_scale
+        let [lowest_m, highest_m] = self.height_range_m;
+        f64::midpoint(lowest_m, highest_m) * self.vertical_scale
+    }
+
+    fn lowest_height(&self) -> f64 {
+        self.height_range_m[0] * self.vertical_scale
     }
 }
 

@@ -101,7 +101,7 @@ fn heights_and_rays_find_the_ground_that_is_drawn() {
     assert!(settle(&mut tiles, 1e6).is_empty());
     assert_eq!(tiles.drawn().len(), 1);
     let eye = camera().eye_in_world();
-    let ground = tiles.ground(2.0, 105.0);
+    let ground = tiles.ground(2.0, [100.0, 110.0]);
     let near = |height: Option<f64>, expected: f64| {
         assert!((height.unwrap() - expected).abs() < 1e-3, "{height:?}");
     };
@@ -113,7 +113,7 @@ fn heights_and_rays_find_the_ground_that_is_drawn() {
 
     settle(&mut tiles, 0.01);
     assert_eq!(tiles.drawn().len(), 3, "one of the four is damaged");
-    let ground = tiles.ground(1.0, 105.0);
+    let ground = tiles.ground(1.0, [100.0, 110.0]);
     near(ground.height([1000.0, 4000.0]), 110.0);
     near(ground.hit(eye - DVec3::X * 500.0, DVec3::NEG_Z).map(|at| at.z), 110.0);
 }

@@ -1,5 +1,6 @@
 //! What a frame shows beside the map: values that go from the app to the panel and the overlay.
 
+use corniche_roads::FunctionalRoadClass;
 use corniche_viewer::{
     RoadMethod,
     flight::{Pose, WorkingCrs},
@@ -23,6 +24,8 @@ pub(crate) struct GroundPoint {
 pub(crate) struct WindowContent<'a> {
     /// Name of the graphics adapter.
     pub(crate) adapter: &'a str,
+    /// Whether the processor draws.
+    pub(crate) is_software: bool,
     /// The package's credits.
     pub(crate) attribution: &'a [String],
     /// The package's CRS and what makes working metres of its coordinates.
@@ -41,6 +44,8 @@ pub(crate) struct WindowContent<'a> {
     pub(crate) photo: Option<f32>,
     /// Colours of the roads in the style that is shown, by class.
     pub(crate) road_colors: &'a [Rgb],
+    /// What the roads of each class are called.
+    pub(crate) class_labels: &'a [String; FunctionalRoadClass::COUNT],
     /// Tiles that are drawn.
     pub(crate) tiles_drawn: usize,
     /// Tiles that the view needs and that are not on the graphics card.

@@ -135,6 +135,11 @@ impl LookArgs {
         Style { photo: self.photo.unwrap_or(style.photo), ..style }
     }
 
+    /// Whether `--cap-test` is given.
+    pub(crate) fn tests_caps(&self) -> bool {
+        self.cap_test.is_some()
+    }
+
     /// What `--roads` says together with `--caps`.
     ///
     /// # Errors

@@ -13,16 +13,7 @@ pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
 }
 
 pub(crate) fn parse_position(text: &str) -> Result<[f64; 2], String> {
-    let position = text
-        .split_once(',')
-        .and_then(|(lon, lat)| Some([lon.trim().parse().ok()?, lat.trim().parse().ok()?]));
-    match position {
-        Some([lon, lat]) if (-360.0..=360.0).contains(&lon) && (-90.0..=90.0).contains(&lat) => {
-            Ok([lon, lat])
-        }
-        Some(_) => Err("longitude must be within ±360 and latitude within ±90 degrees".to_owned()),
-        None => Err("write longitude,latitude like 9.52,47.14".to_owned()),
-    }
+    corniche_viewer::parse_lon_lat(text).map_err(|error| error.to_string())
 }
 
 #[cfg(test)]

@@ -25,9 +25,9 @@ pub(crate) enum Motion {
 pub(crate) struct ViewArgs {
     /// The package
     pub(crate) package: PathBuf,
-    /// How roads are drawn at first
-    #[arg(long, value_enum, default_value_t = Roads::DEFAULT)]
-    pub(crate) roads: Roads,
+    /// How roads are drawn at first [default: sv, and geo without a graphics card, where sv takes long]
+    #[arg(long, value_enum)]
+    pub(crate) roads: Option<Roads>,
     #[command(flatten)]
     pub(crate) look: LookArgs,
     /// Width and height of the window at first, in pixels. Less by default than for pictures, so that it fits on a screen

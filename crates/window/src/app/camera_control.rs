@@ -150,6 +150,11 @@ impl CameraControl {
         self.navigator.view()
     }
 
+    /// Width and height of the window in the last frame, pixels.
+    pub(crate) fn size_px(&self) -> [u32; 2] {
+        self.navigator.camera().size_px()
+    }
+
     /// The camera as flights have it: with its true height.
     pub(crate) fn pose(&self, vertical_scale: f64) -> Pose {
         let View { eye_in_world: eye, orientation, .. } = self.view();

@@ -22,6 +22,10 @@ impl KnownGround for Level {
     fn base_height(&self) -> f64 {
         0.0
     }
+
+    fn lowest_height(&self) -> f64 {
+        0.0
+    }
 }
 
 fn view_at(x: f64) -> View {

@@ -1,15 +1,23 @@
 use corniche_roads::FunctionalRoadClass;
+use corniche_viewer::RoadOptions;
 
 use crate::{
-    WindowRequest,
+    WindowRequest, panel,
     settings::{Compare, Refinement, Settings},
 };
 
-/// The settings with which a window opens. `is_software` says that the processor draws.
-pub(crate) fn first_settings(request: &WindowRequest, is_software: bool) -> Settings {
+/// The settings with which a window of this width in points opens. `is_software` says that the processor draws.
+pub(crate) fn first_settings(
+    request: &WindowRequest,
+    is_software: bool,
+    width_points: f32,
+) -> Settings {
     let usual_samples = if is_software { 1 } else { 2 };
     Settings {
-        roads: request.roads,
+        roads: RoadOptions {
+            method: request.software_method.filter(|_| is_software).unwrap_or(request.roads.method),
+            ..request.roads
+        },
         compare: Compare::Off,
         divider_share: 0.5,
         width_factors: [1.0; FunctionalRoadClass::COUNT],
@@ -21,6 +29,8 @@ pub(crate) fn first_settings(request: &WindowRequest, is_software: bool) -> Sett
         samples_per_side: request.samples_per_side.unwrap_or(usual_samples),
         is_wireframe: false,
         refinement: Refinement::Live,
-        is_panel_open: true,
+        is_panel_open: panel::first_width(width_points) > 0.0,
+        is_help_open: false,
+        place: String::new(),
     }
 }

@@ -21,7 +21,7 @@ pub(crate) fn first_view(
     size_px: [u32; 2],
     pixels_per_point: f32,
 ) -> Result<View, OffGround> {
-    let panel_px = panel::width(size_px[0] as f32 / pixels_per_point) * pixels_per_point;
+    let panel_px = panel::first_width(size_px[0] as f32 / pixels_per_point) * pixels_per_point;
     let part_px = match camera {
         // All of it must be visible, so it is framed in the part beside the panel.
         CameraRequest::Overview => [size_px[0].saturating_sub(panel_px as u32).max(1), size_px[1]],

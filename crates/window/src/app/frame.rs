@@ -82,6 +82,8 @@ impl App {
         self.follow_exaggeration(&before);
 
         let screen = ScreenDescriptor { size_in_pixels: size_px, pixels_per_point };
+        let to_copy = self.to_copy.take().map(egui::OutputCommand::CopyText);
+        output.platform_output.commands.extend(to_copy);
         let unused_textures = canvas.take_textures(std::mem::take(&mut output.textures_delta));
         let primitives = ui.tessellate(std::mem::take(&mut output.shapes), pixels_per_point);
         self.capture(canvas, &primitives, &screen)?;
@@ -267,6 +269,7 @@ impl App {
         let points = self.camera.pixels_per_point() / manifest.point_scale;
         WindowContent {
             adapter: self.graphics.adapter(),
+            is_software: self.graphics.is_software(),
             attribution: &manifest.attribution,
             crs: WorkingCrs::of(manifest),
             cursor: self.probe.cursor().filter(|_| is_over_map),
@@ -276,6 +279,7 @@ impl App {
             style_names: self.styles.names(),
             photo: manifest.settings.photo.map(|_| self.styles.at(self.settings.style).photo),
             road_colors,
+            class_labels: &self.class_labels,
             tiles_drawn: self.tiles.drawn().len(),
             tiles_missing: self.tiles.missing(),
             tiles_loading: self.tiles.loading(),

@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     options::Limits,
+    sight::sees_data,
     view::{KnownGround, View, half_turn},
 };
 
@@ -141,6 +142,22 @@ impl BoundedView {
         let pivot = self.middle(ground);
         self.view.eye_in_world.z += pivot.z * (factor - 1.0);
         self.home.eye_in_world.z += ground.base_height() * (factor - 1.0);
+    }
+
+    /// The same direction and distance, with another place in the middle of the picture.
+    pub(crate) fn looking_at(&self, target_in_world: DVec3, ground: &dyn KnownGround) -> View {
+        let distance_m = self.middle(ground).distance(self.view.eye_in_world);
+        let distance_m = distance_m.clamp(2.0 * self.limits.clearance_m, self.limits.far_m());
+        let Orientation { heading_deg, pitch_deg } = self.view.orientation;
+        let pitch_deg = pitch_deg.min(self.limits.max_pitch_deg);
+        let orientation = Orientation { heading_deg, pitch_deg };
+        let camera = Camera::look_at(target_in_world, distance_m, orientation, self.size_px);
+        View::of(&camera, orientation)
+    }
+
+    /// Whether some of the data would be seen in the view.
+    pub(crate) fn shows_data(&self, view: &View, ground: &dyn KnownGround) -> bool {
+        sees_data(view, self.size_px, self.limits.data, ground.lowest_height())
     }
 
     /// Brings the eye back over the data and above the ground, and adapts the focus.

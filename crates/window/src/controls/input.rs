@@ -1,4 +1,4 @@
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 /// A button of the mouse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -114,6 +114,11 @@ pub(crate) enum Input {
     NorthUp,
     /// Back to the view at the beginning.
     Reset,
+    /// Look at a place from the direction and the distance from which the middle of the picture is seen now.
+    GoTo {
+        /// A point of the ground, world metres.
+        target_in_world: DVec3,
+    },
     /// Change from map to fly mode, or back.
     ToggleFly,
 }

@@ -27,7 +27,8 @@ mod input;
 mod navigator;
 mod options;
 mod pending;
-mod return_home;
+mod sight;
+mod travel;
 mod view;
 
 pub use self::options::Inertia;

@@ -8,7 +8,7 @@ use super::{
     input::{Button, Input, Key, KeyState, Modifiers},
     options::{Inertia, Limits, Mode},
     pending::Pending,
-    return_home::ReturnHome,
+    travel::Travel,
     view::{KnownGround, View, half_turn},
 };
 
@@ -48,7 +48,9 @@ pub(crate) struct Navigator {
     trail: Trail,
     glide_m_per_s: DVec3,
     pending: Pending,
-    returning: Option<ReturnHome>,
+    travel: Option<Travel>,
+    /// The last view in map mode that showed some of the data; `None` where there is none to go back to.
+    sighted: Option<View>,
     flying: Flying,
     /// The time up to which the camera has moved.
     now_s: f64,
@@ -70,7 +72,8 @@ impl Navigator {
             trail: Trail::default(),
             glide_m_per_s: DVec3::ZERO,
             pending: Pending::default(),
-            returning: None,
+            travel: None,
+            sighted: None,
             flying: Flying::default(),
             now_s: 0.0,
             advanced_s: 0.0,
@@ -113,12 +116,16 @@ impl Navigator {
             held.z *= factor;
         }
         self.pending.pivot = None;
+        self.sighted = None;
+        if let Some(travel) = &mut self.travel {
+            travel.raise_end(ground.base_height() * (factor - 1.0));
+        }
     }
 
     /// Whether the camera goes on moving without any further input.
     #[must_use]
     pub(crate) fn is_moving(&self) -> bool {
-        self.returning.is_some()
+        self.travel.is_some()
             || self.flying.is_moving()
             || self.glide_m_per_s != DVec3::ZERO
             || self.pending.is_some()
@@ -162,15 +169,14 @@ impl Navigator {
                 self.stop();
                 self.pending.heading_deg = -half_turn(self.seen.view.orientation.heading_deg);
             }
-            Input::Reset => {
-                self.stop();
-                self.gesture = None;
-                self.mode = Mode::Map;
-                self.returning = Some(ReturnHome::begin(self.seen.view, now_s));
+            Input::Reset => self.travel_to(self.seen.home, now_s),
+            Input::GoTo { target_in_world } => {
+                self.travel_to(self.seen.looking_at(target_in_world, ground), now_s);
             }
             Input::ToggleFly => self.toggle_fly(),
         }
         self.seen.settle(ground);
+        self.keep_data_in_view(ground);
         // A camera that was moving already has yet to move for the time since the last step. A key that is held down
         // repeats itself, and its repetitions must not take that time away.
         if !was_moving {
@@ -183,11 +189,11 @@ impl Navigator {
         let dt_s = (now_s - self.now_s).clamp(0.0, MAX_STEP_S);
         self.now_s = now_s;
         self.advanced_s = now_s;
-        if let Some(way) = self.returning {
-            let (view, is_done) = way.view(self.seen.home, now_s, self.inertia);
+        if let Some(travel) = self.travel {
+            let (view, is_done) = travel.view(now_s, self.inertia);
             self.seen.view = view;
             if is_done {
-                self.returning = None;
+                self.travel = None;
             }
         }
         if self.flying.is_moving() {
@@ -208,6 +214,31 @@ impl Navigator {
             self.do_pending(share, ground);
         }
         self.seen.settle(ground);
+        self.keep_data_in_view(ground);
+    }
+
+    /// In map mode, undoes a movement after which none of the data would be seen. A flight and the way to another view may
+    /// leave the data; from where they end, the map moves freely until some of the data is seen again.
+    fn keep_data_in_view(&mut self, ground: &dyn KnownGround) {
+        if self.mode == Mode::Fly || self.travel.is_some() {
+            self.sighted = None;
+        } else if self.seen.shows_data(&self.seen.view, ground) {
+            self.sighted = Some(self.seen.view);
+        } else if let Some(last) = self.sighted
+            // It may have been seen in a window of another size.
+            && self.seen.shows_data(&last, ground)
+        {
+            self.seen.view = last;
+            self.glide_m_per_s = DVec3::ZERO;
+            self.pending = Pending::default();
+        }
+    }
+
+    fn travel_to(&mut self, view: View, now_s: f64) {
+        self.stop();
+        self.gesture = None;
+        self.mode = Mode::Map;
+        self.travel = Some(Travel::begin(self.seen.view, view, now_s));
     }
 
     fn toggle_fly(&mut self) {
@@ -276,7 +307,7 @@ impl Navigator {
 
     fn zoom(&mut self, levels: f64, at_px: DVec2, ground: &dyn KnownGround) {
         self.glide_m_per_s = DVec3::ZERO;
-        self.returning = None;
+        self.travel = None;
         self.pending.pivot = self.seen.ground_at(at_px, ground);
         self.pending.zoom_levels += levels;
     }
@@ -297,7 +328,7 @@ impl Navigator {
         };
         let levels = if modifiers.shift { 2.0 } else { 1.0 };
         self.glide_m_per_s = DVec3::ZERO;
-        self.returning = None;
+        self.travel = None;
         match key {
             Key::Left => turn(&mut self.pending, -1.0, 0.0),
             Key::Right => turn(&mut self.pending, 1.0, 0.0),
@@ -336,7 +367,7 @@ impl Navigator {
     fn stop(&mut self) {
         self.glide_m_per_s = DVec3::ZERO;
         self.pending = Pending::default();
-        self.returning = None;
+        self.travel = None;
     }
 }
 

@@ -13,6 +13,8 @@ pub(crate) trait KnownGround {
     /// A height in the middle of the range of heights, world metres. Where no ground is known, a plane at this height is
     /// taken for it.
     fn base_height(&self) -> f64;
+    /// No ground of the package lies below this height, world metres.
+    fn lowest_height(&self) -> f64;
 }
 
 /// Where the eye is and how it looks.

@@ -16,13 +16,13 @@ pub(crate) fn compass_place(rect: Rect) -> Rect {
     Rect::from_center_size(center, Vec2::splat(2.0 * RADIUS))
 }
 
-/// Lays out the compass. Returns how far other things may reach to the right.
+/// Lays out the compass. Returns how far other things may reach to the right, and its lower edge.
 pub(crate) fn compass(
     ui: &mut Ui,
     area: Rect,
     content: &WindowContent<'_>,
     answer: &mut OverlayAnswer,
-) -> f32 {
+) -> [f32; 2] {
     let (center, radius) = (area.center(), RADIUS);
     let response = ui
         .interact(area, ui.scope_id().with("compass"), Sense::click())
@@ -67,5 +67,5 @@ pub(crate) fn compass(
     let plate = plate.translate(vec2((area.right() - plate.right()).min(0.0), 0.0));
     painter.rect_filled(plate, CornerRadius::same(4), SLATE);
     painter.galley(plate.min + vec2(5.0, 2.0), galley, CHALK);
-    area.left().min(plate.left()) - MARGIN
+    [area.left().min(plate.left()) - MARGIN, plate.bottom()]
 }

@@ -1,5 +1,5 @@
-//! What lies on the map itself: compass, scale bar, credits, notices, the divider of a split screen and the legend of a
-//! difference.
+//! What lies on the map itself: compass, scale bar, credits, notices, the divider of a split screen, the legend of a
+//! difference, the page of keys and the button for the panel.
 //!
 //! Everything is painted at a fixed place in the part of the map that the panel leaves free. It does not use windows of the
 //! toolkit, so that nothing moves, fades or covers anything else.
@@ -8,9 +8,12 @@ mod answer;
 mod compass;
 mod credits;
 mod divider;
+mod help;
 mod legend;
+mod no_data;
 mod notice_list;
 mod palette;
+mod panel_button;
 mod scale_bar;
 
 use egui::{Rect, Ui};
@@ -20,9 +23,12 @@ use self::{
     compass::{compass, compass_place},
     credits::{credits, credits_place},
     divider::divider,
+    help::help,
     legend::legend,
+    no_data::no_data,
     notice_list::notices,
     palette::LABEL_HEIGHT,
+    panel_button::panel_button,
     scale_bar::scale_bar,
 };
 use crate::{
@@ -45,16 +51,23 @@ pub(crate) fn overlay(
     ui.set_clip_rect(rect);
     let mut room = rect;
     room.max.y = scale_bar(ui, rect, credits_place(ui, rect, content).as_ref(), content);
-    if room.width() > SMALL && room.height() > SMALL {
+    if settings.is_help_open {
+        help(ui, room, &mut answer);
+    } else if room.width() > SMALL && room.height() > SMALL {
         let place = compass_place(rect);
         if settings.compare == Compare::Split {
             divider(ui, rect, place, settings, &mut answer);
             room.min.y += LABEL_HEIGHT;
         }
-        room.max.x = compass(ui, place, content, &mut answer);
+        let [left, below] = compass(ui, place, content, &mut answer);
+        if !settings.is_panel_open {
+            panel_button(ui, room, below, &mut answer);
+        }
+        room.max.x = left;
         if settings.compare == Compare::Difference {
             room.min.y = legend(ui, room);
         }
+        room.min.y = no_data(ui, room, content);
         notices(ui, room, content, &mut answer);
     }
     // The credits are painted last, so that nothing covers them.

@@ -4,11 +4,9 @@ use egui::{Color32, CornerRadius, FontId, Galley, Rect, Sense, Stroke, Ui, Vec2,
 
 use super::{
     answer::OverlayAnswer,
-    palette::{CHALK, MARGIN, SLATE},
+    palette::{AMBER, CHALK, MARGIN, SLATE},
 };
 use crate::{command::Command, notices::Notice, window_content::WindowContent};
-
-const AMBER: Color32 = Color32::from_rgb(214, 160, 60);
 
 /// Lays out the notices: the newest of them, as many as there is room for.
 pub(crate) fn notices(

@@ -12,6 +12,8 @@ pub(crate) const LONGEST_BAR: f32 = 160.0;
 pub(crate) const PAPER: Color32 = Color32::from_rgba_premultiplied(214, 214, 214, 214);
 /// And this is the dark.
 pub(crate) const INK: Color32 = Color32::from_rgb(24, 28, 32);
+/// The edge of a warning.
+pub(crate) const AMBER: Color32 = Color32::from_rgb(214, 160, 60);
 /// All else is light on dark: this is the dark.
 pub(crate) const SLATE: Color32 = Color32::from_rgba_premultiplied(22, 24, 28, 225);
 /// And this is the light.

@@ -1,5 +1,7 @@
 //! The panel at the window's right side, and how it shares the window with the map.
 
+mod advanced;
+mod camera;
 mod map;
 mod performance;
 mod record;
@@ -19,6 +21,8 @@ use crate::{
 const WIDTH: f32 = 300.0;
 /// A window with less room than this beside the panel shows the map without the panel.
 const LEAST_MAP_WIDTH: f32 = 140.0;
+/// A window narrower than this opens with the panel hidden.
+const LEAST_WIDTH_WITH_PANEL: f32 = 600.0;
 
 /// What a person did in the panel and on the overlay in a frame.
 #[derive(Default)]
@@ -47,6 +51,12 @@ pub(crate) fn width(window_width: f32) -> f32 {
     if window_width >= WIDTH + LEAST_MAP_WIDTH { WIDTH } else { 0.0 }
 }
 
+/// Width of the panel with which a window of this width opens, both in points: 0 in a narrow window, where the map has the
+/// room until the panel is asked for.
+pub(crate) fn first_width(window_width: f32) -> f32 {
+    if window_width >= LEAST_WIDTH_WITH_PANEL { WIDTH } else { 0.0 }
+}
+
 /// Lays out the whole window: the map, the panel, the status line and the overlay.
 pub(crate) fn show(
     ui: &mut Ui,
@@ -65,8 +75,9 @@ pub(crate) fn show(
     let status = egui::Panel::bottom("status")
         .resizable(false)
         .show_separator_line(false)
+        .exact_size(status_line::HEIGHT)
         .frame(frame(ui).inner_margin(egui::Margin::symmetric(8, 3)))
-        .show(ui, |ui| status_line(ui, content, room));
+        .show(ui, |ui| status_line(ui, settings, content, room));
     answer.occupied.push(status.response.rect);
     if settings.is_panel_open && room == PanelRoom::Enough {
         let panel = egui::Panel::right("panel")
@@ -96,22 +107,32 @@ fn sections(
     ui.horizontal(|ui| {
         ui.heading("Corniche");
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.small("Tab hides this");
+            for (words, command) in
+                [("Hide (Tab)", Command::TogglePanel), ("Help (?)", Command::ToggleHelp)]
+            {
+                if ui.small_button(words).clicked() {
+                    commands.push(command);
+                }
+            }
         });
     });
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         section(ui, "Roads", |ui| roads::show(ui, settings));
         section(ui, "Classes", |ui| roads::classes(ui, settings, content));
         section(ui, "Map", |ui| map::show(ui, settings, content));
-        section(ui, "Camera", |ui| record::camera(ui, content, commands));
+        section(ui, "Camera", |ui| camera::show(ui, settings, content, commands));
         section(ui, "Record", |ui| record::show(ui, content, commands));
+        section(ui, "Advanced", |ui| advanced::show(ui, settings, content));
         section(ui, "Performance", |ui| performance::show(ui, content));
     });
 }
 
+/// Sections that few people need, and that are folded at first.
+const FOLDED: [&str; 2] = ["Advanced", "Performance"];
+
 fn section(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
     egui::CollapsingHeader::new(egui::RichText::new(title).strong())
-        .default_open(title != "Classes")
+        .default_open(!FOLDED.contains(&title))
         .show_unindented(ui, add);
 }
 

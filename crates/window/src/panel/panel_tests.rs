@@ -26,6 +26,7 @@ struct Told {
     styles: Vec<String>,
     notices: Vec<Notice>,
     passes: Vec<(RoadMethod, PassTimes)>,
+    class_labels: [String; FunctionalRoadClass::COUNT],
 }
 
 impl Told {
@@ -45,6 +46,9 @@ impl Told {
                 Notice { words: "a long notice ".repeat(12), until_s: None },
             ],
             passes: vec![(RoadMethod::Geometry, pass), (RoadMethod::ShadowVolumes, pass)],
+            class_labels: std::array::from_fn(|class| {
+                format!("unclassified, living street {class}")
+            }),
         }
     }
 
@@ -52,6 +56,7 @@ impl Told {
         let orientation = Orientation { heading_deg: 123.0, pitch_deg: 55.0 };
         WindowContent {
             adapter: "llvmpipe (LLVM 15.0.6, 256 bits) (vulkan)",
+            is_software: true,
             attribution: &self.attribution,
             crs: WorkingCrs { crs: "EPSG:32632", metres_per_unit: [1.0, 1.0] },
             cursor: Some(GroundPoint {
@@ -64,6 +69,7 @@ impl Told {
             style_names: &self.styles,
             photo: None,
             road_colors: &[[0.8, 0.2, 0.1]; 9],
+            class_labels: &self.class_labels,
             tiles_drawn: 123,
             tiles_missing: 45,
             tiles_loading: 8,
@@ -133,7 +139,8 @@ fn states() -> Vec<(&'static str, Settings)> {
         ("no roads", none),
         ("split", Settings { compare: Compare::Split, ..usual.clone() }),
         ("difference", Settings { compare: Compare::Difference, ..usual.clone() }),
-        ("hidden", Settings { is_panel_open: false, ..usual }),
+        ("hidden", Settings { is_panel_open: false, ..usual.clone() }),
+        ("help", Settings { is_panel_open: false, is_help_open: true, ..usual }),
     ]
 }
 
@@ -156,14 +163,14 @@ fn no_text_is_cut_off_or_lies_on_another() {
 #[test]
 fn the_panel_is_as_wide_as_it_says_with_everything_open() {
     let told = Told::new();
-    let size = [1280.0, 1200.0];
+    let size = [1280.0, 1600.0];
     let (texts, _) = lay_out(size, &mut usual(), &told.content(), &[&[], &[]]);
-    let (_, header, _) = texts.iter().find(|(text, ..)| text == "Classes").unwrap();
+    let (_, header, _) = texts.iter().find(|(text, ..)| text == "Advanced").unwrap();
     let [over, press, release] = click(header.center());
     let passes: [&[Event]; 6] = [&[], &over, &press, &release, &[], &[]];
     let (texts, answer) = lay_out(size, &mut usual(), &told.content(), &passes);
     let left = 1280.0 - WIDTH;
-    assert!(texts.iter().any(|(text, ..)| text == "FRC 8"), "the classes are shown");
+    assert!(texts.iter().any(|(text, ..)| text == "Wireframe"), "what few people need is shown");
     assert!(
         answer
             .occupied
@@ -199,8 +206,14 @@ fn in_small_windows_nothing_on_the_map_lies_on_anything_else() {
     let mut told = Told::new();
     told.attribution.pop();
     for (name, mut settings) in states() {
-        for size in [[640.0, 480.0], [500.0, 400.0], [450.0, 300.0], [300.0, 200.0], [230.0, 160.0]]
-        {
+        for size in [
+            [640.0, 480.0],
+            [480.0, 640.0],
+            [500.0, 400.0],
+            [450.0, 300.0],
+            [300.0, 200.0],
+            [230.0, 160.0],
+        ] {
             let (texts, answer) = lay_out(size, &mut settings, &told.content(), &[&[], &[]]);
             let seen: Vec<(&str, Rect)> = texts
                 .iter()
@@ -299,6 +312,10 @@ fn buttons_ask_for_what_they_say() {
         ("Map (P)", Command::Take(crate::command::Shot::Map)),
         ("Stop and save", Command::StopRecording),
         ("Fly (F)", Command::ToggleFly),
+        ("Go to", Command::GoTo),
+        ("Copy this view (V)", Command::CopyView),
+        ("Help (?)", Command::ToggleHelp),
+        ("Hide (Tab)", Command::TogglePanel),
     ] {
         let (texts, _) = lay_out(size, &mut usual(), &told.content(), &[&[], &[]]);
         let (_, rect, _) = texts.iter().find(|(text, ..)| text == words).unwrap();
@@ -349,4 +366,110 @@ fn what_nobody_moves_stays_as_it_was_given() {
         lay_out([1000.0, 1400.0], &mut settings, &told.content(), &[&[], &[]]);
         assert_eq!(settings, given);
     }
+}
+
+#[test]
+fn classes_have_their_names_and_the_colours_of_the_style() {
+    let mut told = Told::new();
+    told.class_labels = std::array::from_fn(|class| format!("name {class}"));
+    let (texts, _) = lay_out([1280.0, 1000.0], &mut usual(), &told.content(), &[&[], &[]]);
+    for class in 0..9 {
+        let name = format!("name {class}");
+        assert!(texts.iter().any(|(words, ..)| *words == name), "{name}: {texts:?}");
+    }
+    assert!(!texts.iter().any(|(words, ..)| words == "Wireframe"), "folded away");
+}
+
+/// The map keeps its place whatever there is to tell.
+#[test]
+fn the_status_line_is_as_high_in_every_window_whatever_it_tells() {
+    let told = Told::new();
+    let quiet = Told { passes: Vec::new(), ..Told::new() };
+    for size in [[1280.0, 800.0], [820.0, 640.0], [480.0, 640.0], [300.0, 200.0]] {
+        let mut idle = quiet.content();
+        (idle.cursor, idle.recording_s, idle.tiles_missing) = (None, None, 0);
+        let mut busy = told.content();
+        busy.mode = Mode::Fly;
+        for content in [idle, busy] {
+            let (texts, answer) = lay_out(size, &mut usual(), &content, &[&[], &[]]);
+            let status = answer.occupied[0];
+            assert!((status.height() - status_line::HEIGHT).abs() < 0.01, "{size:?}: {status:?}");
+            for (words, rect, _) in texts.iter().filter(|(_, rect, _)| rect.top() > status.top()) {
+                assert!(status.contains_rect(*rect), "{size:?}: {words:?} at {rect:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_status_says_how_roads_are_drawn_and_by_what() {
+    let told = Told::new();
+    let mut content = told.content();
+    let has = |content: &WindowContent<'_>, words: &str| {
+        let (texts, _) = lay_out([1280.0, 800.0], &mut usual(), content, &[&[], &[]]);
+        texts.iter().any(|(text, ..)| text == words)
+    };
+    assert!(has(&content, "roads SV, drawn by the processor"));
+    content.is_software = false;
+    assert!(has(&content, "roads SV"));
+}
+
+#[test]
+fn where_the_middle_has_no_ground_the_map_says_how_to_come_back() {
+    let told = Told::new();
+    let words = "no data here; R returns to the first view";
+    let has = |content: &WindowContent<'_>| {
+        let (texts, _) = lay_out([480.0, 640.0], &mut usual(), content, &[&[], &[]]);
+        texts.iter().any(|(text, ..)| text == words)
+    };
+    let mut content = told.content();
+    assert!(!has(&content));
+    content.metres_per_point = None;
+    assert!(has(&content));
+    content.mode = Mode::Fly;
+    assert!(!has(&content), "in flight one may look at the sky");
+    (content.mode, content.tiles_drawn) = (Mode::Map, 0);
+    assert!(!has(&content), "nothing is loaded yet");
+}
+
+#[test]
+fn a_closed_panel_leaves_a_button_that_opens_it() {
+    let told = Told::new();
+    let size = [480.0, 640.0];
+    let mut settings = Settings { is_panel_open: false, ..usual() };
+    let (_, answer) = lay_out(size, &mut settings, &told.content(), &[&[], &[]]);
+    let button = answer.occupied.iter().find(|rect| (rect.width() - 28.0).abs() < 0.1).unwrap();
+    let [over, press, release] = click(button.center());
+    let passes: [&[Event]; 4] = [&[], &over, &press, &release];
+    let (_, answer) = lay_out(size, &mut settings, &told.content(), &passes);
+    assert_eq!(answer.commands, [Command::TogglePanel]);
+}
+
+#[test]
+fn a_narrow_window_opens_without_the_panel() {
+    assert!(first_width(480.0).abs() < 0.1 && (first_width(640.0) - WIDTH).abs() < 0.1);
+    assert!((width(480.0) - WIDTH).abs() < 0.1, "it can be opened there");
+}
+
+#[test]
+fn a_place_is_typed_and_entered() {
+    let told = Told::new();
+    let size = [1280.0, 1000.0];
+    let mut settings = usual();
+    let (texts, _) = lay_out(size, &mut settings, &told.content(), &[&[], &[]]);
+    let (_, rect, _) = texts.iter().find(|(text, ..)| text == "lon, lat").unwrap();
+    let [over, press, release] = click(rect.center());
+    let typed = [Event::Text("9.52, 47.14".into())];
+    let key = |pressed| Event::Key {
+        key: egui::Key::Enter,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers: egui::Modifiers::NONE,
+    };
+    let entered = [key(true)];
+    let passes: [&[Event]; 6] = [&[], &over, &press, &release, &typed, &entered];
+    let (_, answer) = lay_out(size, &mut settings, &told.content(), &passes);
+    assert_eq!(settings.place, "9.52, 47.14");
+    assert_eq!(answer.commands, [Command::GoTo]);
 }

@@ -2,25 +2,8 @@ use egui::Ui;
 
 use crate::{
     command::{Command, Shot},
-    controls::Mode,
     window_content::WindowContent,
 };
-
-/// The section with buttons that move the camera.
-pub(crate) fn camera(ui: &mut Ui, content: &WindowContent<'_>, commands: &mut Vec<Command>) {
-    ui.horizontal(|ui| {
-        let fly = if content.mode == Mode::Fly { "Back to map (F)" } else { "Fly (F)" };
-        for (words, command) in [
-            ("North up (N)", Command::NorthUp),
-            ("Reset (R)", Command::Reset),
-            (fly, Command::ToggleFly),
-        ] {
-            if ui.button(words).clicked() {
-                commands.push(command);
-            }
-        }
-    });
-}
 
 /// The section that saves pictures and records flights.
 pub(crate) fn show(ui: &mut Ui, content: &WindowContent<'_>, commands: &mut Vec<Command>) {

@@ -1,14 +1,13 @@
 use corniche_roads::FunctionalRoadClass;
-use corniche_viewer::{CapTest, Caps, Outline, RoadMethod, WidthGrowth};
-use egui::{Color32, ComboBox, Grid, Ui, vec2};
+use corniche_viewer::RoadMethod;
+use egui::{Color32, Grid, Ui, vec2};
 
-use super::slide::slide;
 use crate::{
-    settings::{Compare, Settings, range},
+    settings::{Compare, Settings},
     window_content::WindowContent,
 };
 
-/// The section for the method, the comparison of both methods, and the options of roads.
+/// The section for the method and the comparison of both methods.
 pub(crate) fn show(ui: &mut Ui, settings: &mut Settings) {
     ui.horizontal(|ui| {
         ui.label("Compare");
@@ -30,53 +29,12 @@ pub(crate) fn show(ui: &mut Ui, settings: &mut Settings) {
             ui.selectable_value(&mut roads.method, RoadMethod::None, "none");
         });
     });
-    Grid::new("roads").num_columns(2).show(ui, |ui| {
-        choice(ui, "Caps", &mut roads.caps, &[(Caps::Round, "round"), (Caps::None, "none")]);
-        choice(
-            ui,
-            "Cap test (SV)",
-            &mut roads.cap_test,
-            &[(CapTest::Distance, "distance"), (CapTest::PaperQuadratic, "paper's quadratic")],
-        );
-        choice(
-            ui,
-            "Widths",
-            &mut roads.width_growth,
-            &[
-                (WidthGrowth::ByDistance, "grow with distance"),
-                (WidthGrowth::Constant, "times a constant"),
-                (WidthGrowth::None, "true"),
-            ],
-        );
-        choice(
-            ui,
-            "Outline",
-            &mut roads.outline,
-            &[
-                (Outline::OfStyle, "of the style"),
-                (Outline::None, "none"),
-                (Outline::Kernel3, "3 × 3"),
-                (Outline::Kernel5, "5 × 5"),
-            ],
-        );
-    });
 }
 
-fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, all: &[(T, &str)]) {
-    ui.label(name);
-    let chosen = all.iter().find(|(one, _)| one == value).map_or("", |(_, words)| words);
-    ComboBox::from_id_salt(name).width(150.0).selected_text(chosen).show_ui(ui, |ui| {
-        for (one, words) in all {
-            ui.selectable_value(value, *one, *words);
-        }
-    });
-    ui.end_row();
-}
-
-/// The section for the classes that are shown, and their widths.
+/// The section for the classes that are shown, which is also the legend of the map: colours and names.
 pub(crate) fn classes(ui: &mut Ui, settings: &mut Settings, content: &WindowContent<'_>) {
-    Grid::new("classes").num_columns(3).min_col_width(0.0).show(ui, |ui| {
-        for (class, factor) in FunctionalRoadClass::all().zip(&mut settings.width_factors) {
+    Grid::new("classes").num_columns(2).min_col_width(0.0).show(ui, |ui| {
+        for (class, label) in FunctionalRoadClass::all().zip(content.class_labels) {
             let color = content.road_colors.get(usize::from(class.number()));
             let [red, green, blue] =
                 color.copied().unwrap_or_default().map(|part| (part * 255.0).round() as u8);
@@ -84,14 +42,8 @@ pub(crate) fn classes(ui: &mut Ui, settings: &mut Settings, content: &WindowCont
             ui.painter().rect_filled(swatch, 2, Color32::from_rgb(red, green, blue));
             let shown = &mut settings.roads.classes;
             let mut is_shown = shown.contains(class);
-            ui.checkbox(&mut is_shown, class.to_string());
+            ui.checkbox(&mut is_shown, label).on_hover_text(class.to_string());
             *shown = if is_shown { shown.with(class) } else { shown.without(class) };
-            ui.add_enabled_ui(is_shown, |ui| {
-                slide(ui, factor, range::WIDTH_FACTOR, |slider| {
-                    slider.prefix("× ").max_decimals(2)
-                })
-                .on_hover_text("Factor on the style's width");
-            });
             ui.end_row();
         }
     });

@@ -1,9 +1,18 @@
-use egui::{Color32, Ui};
+use egui::{Color32, FontId, Label, RichText, Ui};
 
-use crate::{controls::Mode, formatting, window_content::WindowContent};
+use crate::{
+    controls::Mode,
+    formatting,
+    settings::{Compare, Settings},
+    window_content::WindowContent,
+};
 
-/// A narrower window leaves the milliseconds out of the status line, points.
-const PASSES_WIDTH: f32 = 600.0;
+/// Height of the line, points. It never changes, so that the map keeps its place.
+pub(crate) const HEIGHT: f32 = 24.0;
+/// Size of its letters, points.
+const LETTERS: f32 = 12.0;
+/// Room between two items, points.
+const GAP: f32 = 14.0;
 
 /// Whether there is room for the panel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,53 +23,122 @@ pub(crate) enum PanelRoom {
     TooLittle,
 }
 
-/// The line at the lower edge of the window: positions, and what is going on.
-pub(crate) fn status_line(ui: &mut Ui, content: &WindowContent<'_>, panel: PanelRoom) {
-    // A small window leaves out the times of the passes, to have more room for the map. The panel shows them too.
-    let has_room = ui.available_width() >= PASSES_WIDTH;
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 14.0;
-        let small = |text: String| egui::RichText::new(text).size(12.0);
-        // Lines are broken only between two items.
-        let mut tell = |text: egui::RichText| ui.add(egui::Label::new(text).extend());
-        match &content.cursor {
-            Some(point) => {
-                let [x, y, height_m] = point.at_m;
-                tell(small(formatting::position(point.lon_lat_deg)));
-                tell(small(formatting::coordinates(content.crs, [x, y])));
-                tell(small(format!("ground {height_m:.1} m")));
-            }
-            None => {
-                tell(small("no ground under the cursor".to_owned()));
-            }
+/// A part of the line.
+struct Item {
+    text: String,
+    color: Option<Color32>,
+    /// Where there is not room for all items, those with the highest rank are left out.
+    rank: u8,
+}
+
+impl Item {
+    fn new(rank: u8, text: impl Into<String>) -> Self {
+        Self { text: text.into(), color: None, rank }
+    }
+
+    fn width(&self, ui: &Ui) -> f32 {
+        let font = FontId::proportional(LETTERS);
+        ui.painter().layout_no_wrap(self.text.clone(), font, Color32::WHITE).size().x + GAP
+    }
+
+    fn show(self, ui: &mut Ui) {
+        let mut text = RichText::new(self.text).size(LETTERS);
+        if let Some(color) = self.color {
+            text = text.color(color);
         }
-        let orientation = content.pose.orientation;
-        tell(small(format!("eye {}", formatting::length(content.pose.eye_m[2]))));
-        tell(small(format!("heading {}", formatting::heading(orientation.heading_deg))));
-        tell(small(format!("pitch {:.0}°", orientation.pitch_deg)));
-        let passes = if has_room { content.passes } else { &[] };
-        for (method, times) in passes {
-            let [terrain_ms, roads_ms, composite_ms] =
-                [times.terrain_ms, times.roads_ms, times.composite_ms];
-            let method = formatting::method(*method);
-            tell(small(format!(
-                "{method}: terrain {terrain_ms:.1}, roads {roads_ms:.1}, composite {composite_ms:.1} ms"
-            )));
+        ui.add(Label::new(text).extend());
+    }
+}
+
+/// The line at the lower edge of the window: positions on the left, what is going on at the right. It has one row; what finds
+/// no room is left out, the least important first.
+pub(crate) fn status_line(
+    ui: &mut Ui,
+    settings: &Settings,
+    content: &WindowContent<'_>,
+    panel: PanelRoom,
+) {
+    let room = ui.available_width();
+    let mut items: Vec<Item> = happening(content, panel);
+    let count = items.len();
+    items.extend(positions(settings, content));
+    let mut places: Vec<usize> = (0..items.len()).collect();
+    places.sort_by_key(|place| items[*place].rank);
+    let mut taken = 0.0;
+    let mut is_shown = vec![false; items.len()];
+    for place in places {
+        let width = items[place].width(ui);
+        if taken + width <= room {
+            taken += width;
+            is_shown[place] = true;
         }
-        if let Some(recording_s) = content.recording_s {
-            let words = format!("recording for {recording_s:.0} s");
-            tell(small(words).color(Color32::from_rgb(255, 140, 120)));
-        }
-        if content.mode == Mode::Fly {
-            tell(small("fly mode: W A S D, Q E, Shift; F ends it".to_owned()).strong());
-        }
-        if content.is_full {
-            tell(small(format!("{} tiles find no room", content.tiles_missing)));
-        } else if content.tiles_missing > 0 {
-            tell(small(format!("loading {} tiles", content.tiles_missing)));
-        }
-        if panel == PanelRoom::TooLittle {
-            tell(small("a wider window shows the panel".to_owned()));
-        }
+    }
+    let mut shown =
+        items.into_iter().zip(is_shown).enumerate().filter(|(_, (_, is_shown))| *is_shown);
+    let (right, left): (Vec<_>, Vec<_>) = shown.by_ref().partition(|(place, _)| *place < count);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = GAP;
+        left.into_iter().for_each(|(_, (item, _))| item.show(ui));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            right.into_iter().for_each(|(_, (item, _))| item.show(ui));
+        });
     });
+}
+
+/// What is going on, the most important first.
+fn happening(content: &WindowContent<'_>, panel: PanelRoom) -> Vec<Item> {
+    let mut items = Vec::new();
+    if panel == PanelRoom::TooLittle {
+        items.push(Item::new(0, "a wider window shows the panel"));
+    }
+    if let Some(recording_s) = content.recording_s {
+        let color = Some(Color32::from_rgb(255, 140, 120));
+        items.push(Item { color, ..Item::new(0, format!("recording for {recording_s:.0} s")) });
+    }
+    if content.mode == Mode::Fly {
+        let color = Some(Color32::WHITE);
+        items.push(Item { color, ..Item::new(1, "fly mode: W A S D, Q E, Shift; F ends it") });
+    }
+    if content.is_full {
+        items.push(Item::new(2, format!("{} tiles find no room", content.tiles_missing)));
+    } else if content.tiles_missing > 0 {
+        items.push(Item::new(2, format!("loading {} tiles", content.tiles_missing)));
+    }
+    items
+}
+
+/// The ground under the cursor, the camera, how roads are drawn and how long it takes.
+fn positions(settings: &Settings, content: &WindowContent<'_>) -> Vec<Item> {
+    let mut items = Vec::new();
+    match &content.cursor {
+        Some(point) => {
+            let [x, y, height_m] = point.at_m;
+            items.push(Item::new(1, formatting::position(point.lon_lat_deg)));
+            items.push(Item::new(7, formatting::coordinates(content.crs, [x, y])));
+            items.push(Item::new(3, format!("ground {height_m:.1} m")));
+        }
+        None => items.push(Item::new(1, "no ground under the cursor")),
+    }
+    let orientation = content.pose.orientation;
+    items.push(Item::new(4, format!("eye {}", formatting::length(content.pose.eye_m[2]))));
+    items.push(Item::new(5, format!("heading {}", formatting::heading(orientation.heading_deg))));
+    items.push(Item::new(6, format!("pitch {:.0}°", orientation.pitch_deg)));
+    let roads = match settings.compare {
+        Compare::Off => format!("roads {}", formatting::method(settings.roads.method)),
+        Compare::Split | Compare::Difference => "roads GEO and SV".to_owned(),
+    };
+    let by = if content.is_software { ", drawn by the processor" } else { "" };
+    items.push(Item::new(3, format!("{roads}{by}")));
+    for (method, times) in content.passes {
+        let [terrain_ms, roads_ms, composite_ms] =
+            [times.terrain_ms, times.roads_ms, times.composite_ms];
+        let method = formatting::method(*method);
+        items.push(Item::new(
+            8,
+            format!(
+                "{method}: terrain {terrain_ms:.1}, roads {roads_ms:.1}, composite {composite_ms:.1} ms"
+            ),
+        ));
+    }
+    items
 }

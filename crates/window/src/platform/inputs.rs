@@ -183,10 +183,6 @@ impl Inputs {
         if state == KeyState::Released || event.repeat {
             return false;
         }
-        if event.logical_key == winit::keyboard::Key::Named(NamedKey::Tab) {
-            app.toggle_panel();
-            return true;
-        }
         let Some(command) = command(&event.logical_key, self.modifiers) else { return false };
         app.command(command, now_s);
         true
@@ -231,11 +227,15 @@ fn command(logical: &winit::keyboard::Key, modifiers: Modifiers) -> Option<Comma
     use winit::keyboard::Key as Logical;
     match logical {
         Logical::Named(NamedKey::Home) => Some(Command::Reset),
+        Logical::Named(NamedKey::Tab) => Some(Command::TogglePanel),
+        Logical::Named(NamedKey::Escape) => Some(Command::CloseHelp),
         Logical::Character(letter) => match letter.to_lowercase().as_str() {
             "n" => Some(Command::NorthUp),
             "r" => Some(Command::Reset),
             "f" => Some(Command::ToggleFly),
             "c" => Some(Command::ToggleRecording),
+            "v" => Some(Command::CopyView),
+            "?" => Some(Command::ToggleHelp),
             "p" if modifiers.shift => Some(Command::Take(Shot::Window)),
             "p" => Some(Command::Take(Shot::Map)),
             _ => None,

@@ -12,6 +12,17 @@ fn shift_makes_a_picture_of_the_window() {
 }
 
 #[test]
+fn a_question_mark_asks_for_help_wherever_it_is_on_the_keyboard() {
+    let mark = Logical::Character("?".into());
+    for shift in [false, true] {
+        let modifiers = Modifiers { shift, control: false };
+        assert_eq!(command(&mark, modifiers), Some(Command::ToggleHelp));
+    }
+    let escape = Logical::Named(NamedKey::Escape);
+    assert_eq!(command(&escape, Modifiers::default()), Some(Command::CloseHelp));
+}
+
+#[test]
 fn control_q_ends_the_program_unless_it_was_held_down_before() {
     let control = |is_control_down| EndKey { is_control_down, is_held_from_before: false };
     assert!(control(true).press(true, false));

@@ -1,0 +1,89 @@
+//! The command that draws what a window shows.
+
+use std::path::Path;
+
+use corniche_viewer::{
+    CameraRequest, CapTest, Caps, Outline, RoadMethod, RoadOptions, WidthGrowth,
+};
+use corniche_window::{CommandOf, ShownView};
+
+use crate::args::Roads;
+
+/// The file that the command names.
+const PICTURE: &str = "view.png";
+
+/// Tells the command that draws a view of this package, quoted for a POSIX shell.
+pub(crate) fn command_of(package: &Path) -> CommandOf {
+    let package = package.display().to_string();
+    Box::new(move |shown| {
+        let words = words(&package, shown);
+        // The character 0, which no argument of a program can hold, is the one that cannot be quoted.
+        shlex::Quoter::new()
+            .allow_nul(true)
+            .join(words.iter().map(String::as_str))
+            .unwrap_or_else(|_| words.join(" "))
+    })
+}
+
+fn words(package: &str, shown: &ShownView) -> Vec<String> {
+    let mut words = vec!["corniche".to_owned(), "render".to_owned(), package.to_owned()];
+    let mut option = |name: &str, value: String| words.extend([name.to_owned(), value]);
+    option("-o", PICTURE.to_owned());
+    option("--roads", method(shown.roads).word().to_owned());
+    option("--style", shown.style.clone());
+    let [width, height] = shown.size_px;
+    option("--size", format!("{width}x{height}"));
+    if let CameraRequest::LookAt { lon_deg, lat_deg, distance_m, orientation } = shown.camera {
+        // To a centimetre on the ground, and to a hundredth of a pixel in direction.
+        option("--look-at", format!("{lon_deg:.7},{lat_deg:.7}"));
+        option("--distance", format!("{distance_m:.2}"));
+        option("--heading", format!("{:.4}", orientation.heading_deg));
+        option("--pitch", format!("{:.4}", orientation.pitch_deg));
+    }
+    option("--exaggeration", shown.exaggeration.to_string());
+    option("--screen-space-error", shown.screen_space_error_px.to_string());
+    option("--cell-px", shown.cell_px.to_string());
+    option("--supersampling", shown.samples_per_side.to_string());
+    if let Some(photo) = shown.photo {
+        option("--photo", photo.to_string());
+    }
+    for (name, value) in look(shown.roads) {
+        option(name, value.to_owned());
+    }
+    words
+}
+
+fn method(roads: RoadOptions) -> Roads {
+    match (roads.method, roads.caps) {
+        (RoadMethod::Geometry, Caps::Round) => Roads::Geo,
+        (RoadMethod::Geometry, Caps::None) => Roads::GeoNoCaps,
+        (RoadMethod::ShadowVolumes, Caps::Round) => Roads::Sv,
+        (RoadMethod::ShadowVolumes, Caps::None) => Roads::SvNoCaps,
+        (RoadMethod::None, _) => Roads::None,
+    }
+}
+
+/// Options of roads that differ from what `render` does where nothing is said.
+fn look(roads: RoadOptions) -> Vec<(&'static str, &'static str)> {
+    let mut given = Vec::new();
+    match roads.width_growth {
+        WidthGrowth::None => given.push(("--width-growth", "none")),
+        WidthGrowth::Constant => given.push(("--width-growth", "constant")),
+        WidthGrowth::ByDistance => {}
+    }
+    match roads.outline {
+        Outline::None => given.push(("--outline", "none")),
+        Outline::Kernel3 => given.push(("--outline", "3")),
+        Outline::Kernel5 => given.push(("--outline", "5")),
+        Outline::OfStyle => {}
+    }
+    // The option is refused where no shadow volume has caps.
+    if roads.cap_test == CapTest::PaperQuadratic && method(roads) == Roads::Sv {
+        given.push(("--cap-test", "paper"));
+    }
+    given
+}
+
+#[cfg(test)]
+#[path = "view_command_tests.rs"]
+mod tests;

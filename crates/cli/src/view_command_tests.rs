@@ -1,0 +1,98 @@
+use clap::Parser as _;
+use corniche_viewer::{ClassSet, camera::Orientation};
+
+use super::*;
+use crate::args::{Arguments, Command, RenderArgs};
+
+fn shown(roads: RoadOptions) -> ShownView {
+    ShownView {
+        camera: CameraRequest::LookAt {
+            lon_deg: -9.521_234_567_89,
+            lat_deg: 47.140_123_456_78,
+            distance_m: 2345.678_9,
+            orientation: Orientation { heading_deg: -123.456_78, pitch_deg: 61.234_56 },
+        },
+        size_px: [1234, 567],
+        roads,
+        style: "my styles/night 'n day.toml".to_owned(),
+        photo: Some(0.25),
+        exaggeration: 1.5,
+        screen_space_error_px: 0.75,
+        cell_px: f64::INFINITY,
+        samples_per_side: 3,
+    }
+}
+
+/// The command as the program reads it, after a shell has split it into words.
+fn read(package: &str, shown: &ShownView) -> RenderArgs {
+    let command = command_of(Path::new(package))(shown);
+    let words = shlex::split(&command).expect("quotes that a shell understands");
+    match Arguments::try_parse_from(words)
+        .unwrap_or_else(|error| panic!("{command}: {error}"))
+        .command
+    {
+        Command::Render(args) => args,
+        other => panic!("{command}: {other:?}"),
+    }
+}
+
+#[test]
+fn the_command_draws_what_the_window_shows() {
+    let shown = shown(RoadOptions::of(RoadMethod::ShadowVolumes));
+    let args = read("my maps/$HOME.pmtiles", &shown);
+    assert_eq!(args.package, Path::new("my maps/$HOME.pmtiles"));
+    assert_eq!(args.look.style, shown.style);
+    assert_eq!(args.size, [1234, 567]);
+    assert_eq!(args.supersampling, 3);
+    let ground = args.ground;
+    let read = [ground.exaggeration, ground.screen_space_error, ground.cell_px];
+    assert_eq!(read.map(f64::to_bits), [1.5, 0.75, f64::INFINITY].map(f64::to_bits));
+    assert_eq!(args.look.photo.map(f32::to_bits), Some(0.25_f32.to_bits()));
+}
+
+/// A ten-millionth of a degree is at most 1.2 cm.
+#[test]
+fn the_command_looks_from_where_the_window_does() {
+    let shown = shown(RoadOptions::of(RoadMethod::Geometry));
+    let numbers = |camera| match camera {
+        CameraRequest::LookAt { lon_deg, lat_deg, distance_m, orientation } => {
+            [lon_deg, lat_deg, distance_m, orientation.heading_deg, orientation.pitch_deg]
+        }
+        CameraRequest::Overview => panic!("no place"),
+    };
+    let (asked, found) = (numbers(shown.camera), numbers(read("a", &shown).camera.request()));
+    for ((asked, found), most) in asked.iter().zip(found).zip([6e-8, 6e-8, 6e-3, 6e-5, 6e-5]) {
+        assert!((asked - found).abs() <= most, "{asked} became {found}");
+    }
+}
+
+#[test]
+fn every_look_of_roads_is_read_as_it_was() {
+    let mut count = 0;
+    for method in [RoadMethod::Geometry, RoadMethod::ShadowVolumes] {
+        for caps in [Caps::Round, Caps::None] {
+            for width_growth in [WidthGrowth::None, WidthGrowth::Constant, WidthGrowth::ByDistance]
+            {
+                for outline in [Outline::OfStyle, Outline::None, Outline::Kernel3, Outline::Kernel5]
+                {
+                    for cap_test in [CapTest::Distance, CapTest::PaperQuadratic] {
+                        let is_tested = method == RoadMethod::ShadowVolumes && caps == Caps::Round;
+                        if cap_test == CapTest::PaperQuadratic && !is_tested {
+                            continue;
+                        }
+                        let classes = ClassSet::ALL;
+                        let roads =
+                            RoadOptions { method, classes, caps, cap_test, width_growth, outline };
+                        let args = read("a", &shown(roads));
+                        let drawn = args.look.roads(&[args.roads]).unwrap()[0];
+                        assert_eq!(args.look.road_options(drawn), roads);
+                        count += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert_eq!(count, 60);
+    let none = shown(RoadOptions::of(RoadMethod::None));
+    assert_eq!(read("a", &none).roads, Roads::None);
+}

@@ -1,0 +1,91 @@
+//! The view as a request that `render` understands, and places that a person types.
+
+use corniche_tileset::Manifest;
+use corniche_viewer::{CameraRequest, ClassSet, parse_lon_lat};
+use glam::DVec3;
+
+use super::{App, ground};
+use crate::{
+    ShownView,
+    controls::{KnownGround, View},
+    settings::Compare,
+};
+
+impl App {
+    /// What is shown, and in words what no command can tell of it. `None` without ground in the middle of the map.
+    pub(crate) fn shown_view(&self) -> Option<(ShownView, String)> {
+        let ground = ground(&self.tiles, &self.settings, &self.package);
+        let (view, size_px) = (self.camera.view(), self.camera.size_px());
+        let ahead = -view.world_from_view().z_axis;
+        let target_in_world = ground.hit(view.eye_in_world, ahead)?;
+        let settings = &self.settings;
+        let shown = ShownView {
+            camera: camera_request(&view, target_in_world, self.package.manifest()),
+            size_px,
+            roads: settings.roads,
+            style: self.styles.names().get(settings.style)?.clone(),
+            photo: settings.photo,
+            exaggeration: settings.exaggeration,
+            screen_space_error_px: settings.screen_space_error_px,
+            cell_px: settings.cell_px,
+            samples_per_side: settings.samples_per_side,
+        };
+        let left_out: Vec<&str> = [
+            (settings.roads.classes != ClassSet::ALL, "hidden classes"),
+            (settings.width_factors.iter().any(|factor| *factor != 1.0), "factors on widths"),
+            (settings.compare != Compare::Off, "the comparison"),
+            (settings.is_wireframe, "the wireframe"),
+        ]
+        .into_iter()
+        .filter_map(|(is_set, what)| is_set.then_some(what))
+        .collect();
+        let words = if left_out.is_empty() {
+            String::new()
+        } else {
+            format!(" (without {})", left_out.join(", "))
+        };
+        Some((shown, words))
+    }
+}
+
+/// The camera of a view that looks at this ground in the middle of its picture. `target_in_world` is in world metres.
+///
+/// [`CameraRequest::camera`] makes the same camera of it, if the ground there has the same height.
+pub(crate) fn camera_request(
+    view: &View,
+    target_in_world: DVec3,
+    manifest: &Manifest,
+) -> CameraRequest {
+    let [lon_deg, lat_deg] =
+        manifest.coordinates.wgs84_from_working([target_in_world.x, target_in_world.y]);
+    let distance_m = view.eye_in_world.distance(target_in_world) / manifest.point_scale;
+    CameraRequest::LookAt { lon_deg, lat_deg, distance_m, orientation: view.orientation }
+}
+
+/// The ground at the place that a text tells, in world metres.
+///
+/// # Errors
+/// In words, when the text tells no place or there is no ground.
+pub(crate) fn place_in_world(
+    text: &str,
+    manifest: &Manifest,
+    ground: &dyn KnownGround,
+) -> Result<DVec3, String> {
+    let [lon_deg, lat_deg] = parse_lon_lat(text).map_err(|error| error.to_string())?;
+    let at = |lon_lat_deg| {
+        let [x, y] = manifest.coordinates.working_from_wgs84(lon_lat_deg)?;
+        Some(DVec3::new(x, y, ground.height([x, y])?))
+    };
+    at([lon_deg, lat_deg]).ok_or_else(|| {
+        let [west, south, east, north] = manifest.wgs84_bounds.to_array();
+        let hint = if at([lat_deg, lon_deg]).is_some() {
+            "; longitude comes first: are the two numbers the wrong way round?"
+        } else {
+            ""
+        };
+        format!(
+            "there is no ground at longitude {lon_deg}, latitude {lat_deg}; the package covers longitudes {west:.4} to \
+             {east:.4} and latitudes {south:.4} to {north:.4}{hint}"
+        )
+    })
+}
