@@ -86,7 +86,7 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     let attribution = given.into_iter().find(|credits| !credits.is_empty());
     let mut attribution = attribution.unwrap_or(base.attribution);
     attribution.extend(args.photos.attribution.clone());
-    let photo = photo_settings(&args.photo, args.photos)?;
+    let photo = photo_settings(&args.photo, &args.photos)?;
     let osm = corniche_pipeline::extract_names(&args.osm)?;
     let cut = Cut {
         bounds_deg: bounds_deg(terrain.bounds, &osm)?.or(base.terrain.plan.bounds_deg),
@@ -209,7 +209,7 @@ fn relief_levels(choice: ReliefChoice) -> ReliefLevels {
 /// How photos are made; `None` where there are none.
 fn photo_settings(
     names: &[PathBuf],
-    options: PhotoOptions,
+    options: &PhotoOptions,
 ) -> Result<Option<PhotoSettings>, Failure> {
     if names.is_empty() {
         return if options.is_empty() {

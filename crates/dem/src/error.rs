@@ -23,6 +23,10 @@ pub enum DemError {
         "the folder {path:?} holds no extract (names ending in .pbf); folders in it are not looked into, so name the files or the right folder"
     )]
     NoExtracts { path: PathBuf },
+    #[error(
+        "the folder {path:?} holds no photo (names ending in {endings}, or these in .gz or .zip); folders in it are not looked into, so name the files or the right folder"
+    )]
+    NoPhotos { path: PathBuf, endings: String },
     #[error("the pattern {pattern:?} names no file: {reason}")]
     Pattern { pattern: String, reason: String },
     #[error(

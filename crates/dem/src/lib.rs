@@ -35,7 +35,7 @@ pub use crs::recorded_heights::RecordedHeights;
 pub use dem::{Dem, limit_block_cache, set_unless_set};
 pub use error::DemError;
 pub use files::file_blocks::FileBlocks;
-pub use files::named_files::{expand_extract_name, expand_name, unpack_name};
+pub use files::named_files::{expand_extract_name, expand_name, expand_photo_name, unpack_name};
 pub use files::open_options::OpenOptions;
 pub use files::raster_files::raster_files;
 pub use files::vsi::VirtualFile;

@@ -19,6 +19,8 @@ pub enum PhotoError {
         "photo {path:?} names no usable coordinate system; write it into the file with gdal_edit.py -a_srs EPSG:n"
     )]
     NoCrs { path: PathBuf },
+    #[error("photo {path:?} has no raster band; give an image")]
+    NoBand { path: PathBuf },
     #[error(
         "photo {path:?} holds samples of type {kind}, and photos have 8 bits; scale them with gdal_translate -scale -ot Byte (gdalinfo -stats tells their range)"
     )]

@@ -24,7 +24,7 @@ pub(crate) struct Light {
 #[derive(Default)]
 pub(crate) struct Weights {
     first: i64,
-    weights: Vec<f64>,
+    of_pixels: Vec<f64>,
     /// Of all pixels, those outside the photo included.
     sum: f64,
 }
@@ -35,13 +35,13 @@ impl Weights {
         let first = (position - radius - 0.5).ceil() as i64;
         let last = (position + radius - 0.5).floor() as i64;
         self.first = first.max(allowed.start);
-        self.weights.clear();
+        self.of_pixels.clear();
         self.sum = 0.0;
         for pixel in first..=last {
             let weight = 1.0 - (pixel as f64 + 0.5 - position).abs() / radius;
             self.sum += weight;
             if allowed.contains(&pixel) {
-                self.weights.push(weight);
+                self.of_pixels.push(weight);
             }
         }
     }
@@ -64,15 +64,15 @@ impl Filter {
         let allowed = [0, 1].map(|k| pixels.start[k]..pixels.start[k] + end[k] as i64);
         self.columns.set(position[0], radius[0], &allowed[0]);
         self.rows.set(position[1], radius[1], &allowed[1]);
-        if self.columns.weights.is_empty() || self.rows.weights.is_empty() {
+        if self.columns.of_pixels.is_empty() || self.rows.of_pixels.is_empty() {
             return Light::default();
         }
         let mut sums = [0.0; 4];
-        for (row, row_weight) in self.rows.weights.iter().enumerate() {
+        for (row, row_weight) in self.rows.of_pixels.iter().enumerate() {
             let line = (self.rows.first - pixels.start[1]) as usize + row;
             let from = line * pixels.columns + (self.columns.first - pixels.start[0]) as usize;
-            let line = &pixels.rgba[from..from + self.columns.weights.len()];
-            for (pixel, column_weight) in line.iter().zip(&self.columns.weights) {
+            let line = &pixels.rgba[from..from + self.columns.of_pixels.len()];
+            for (pixel, column_weight) in line.iter().zip(&self.columns.of_pixels) {
                 let weight = row_weight * column_weight * f64::from(pixel[3]);
                 for k in 0..3 {
                     sums[k] += weight * f64::from(pixel[k]);

@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use corniche_dem::{DemError, GridPlan, PlacedRaster, RasterOnGrid};
+use corniche_dem::{GridPlan, PlacedRaster, RasterOnGrid};
 use corniche_geom::Bounds;
 use gdal::Metadata;
 
@@ -34,7 +34,7 @@ impl PhotoFile {
     pub(crate) fn open(path: &Path) -> Result<Self, PhotoError> {
         let (raster, dataset) = PlacedRaster::open(path)?;
         if dataset.raster_count() == 0 {
-            return Err(PhotoError::Raster(DemError::NoBand { path: path.to_path_buf() }));
+            return Err(PhotoError::NoBand { path: path.to_path_buf() });
         }
         let bands = Bands::of(path, &dataset)?;
         let credit = dataset.metadata_item("TIFFTAG_COPYRIGHT", "");

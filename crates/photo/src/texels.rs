@@ -106,7 +106,7 @@ impl Texels {
     /// When there is an odd number of columns or rows.
     #[must_use]
     pub fn halved(&self) -> Self {
-        assert!(self.columns % 2 == 0 && self.rows % 2 == 0, "squares of four texels");
+        assert!(self.columns.is_multiple_of(2) && self.rows.is_multiple_of(2), "four texels");
         let mut half = Self::empty(self.columns / 2, self.rows / 2);
         for row in 0..half.rows {
             for column in 0..half.columns {

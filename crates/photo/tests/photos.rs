@@ -1,5 +1,7 @@
 //! Photos lie where they should, and come out as they are: closed forms, on files written by GDAL.
 
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
 use std::path::{Path, PathBuf};
 
 use corniche_dem::{Dem, GridPlan, OpenOptions, PlanOptions};
@@ -111,8 +113,8 @@ fn edges_land_within_a_tenth_of_a_texel() {
     let to_degrees = CoordTransform::new(&utm32, &wgs84).unwrap();
     let (mut xs, mut ys) = ([WEST_M - 100.0, WEST_M + 2760.0], [NORTH_M + 100.0, NORTH_M - 2760.0]);
     to_degrees.transform_coords(&mut xs, &mut ys, &mut []).unwrap();
-    let size = [1200, 1200];
-    let step = [(xs[1] - xs[0]) / 1200.0, (ys[1] - ys[0]) / 1200.0];
+    let size = [3600, 3600];
+    let step = [(xs[1] - xs[0]) / 3600.0, (ys[1] - ys[0]) / 3600.0];
     let other = ColourImage {
         epsg: 4326,
         size,
@@ -175,7 +177,7 @@ fn alpha_nodata_and_masks_leave_texels_out() {
         mask.write((0, 0), (256, 256), &mut Buffer::new((256, 256), values)).unwrap();
     });
     for file in [alpha, nodata, masked] {
-        let texels = tile(&[file.clone()], &grid, 0);
+        let texels = tile(std::slice::from_ref(&file), &grid, 0);
         assert_eq!(texels.at(127, 9), [0; 4], "{file:?}");
         assert_eq!(texels.at(128, 9), [9, 8, 7, 255], "{file:?}");
     }
@@ -352,7 +354,8 @@ fn a_file_that_is_cut_off_is_named_when_it_is_read() {
     let grid = grid(folder.path());
     let photo = on_cells(&|_| vec![1, 2, 3], &RGB).write(folder.path(), "cut.tif", |_| {});
     let bytes = std::fs::read(&photo).unwrap();
-    let photos = Photos::open(&[photo.clone()]).unwrap().on(&grid, LevelChoice::Given(0)).unwrap();
+    let photos = Photos::open(std::slice::from_ref(&photo)).unwrap();
+    let photos = photos.on(&grid, LevelChoice::Given(0)).unwrap();
     std::fs::write(&photo, &bytes[..bytes.len() / 2]).unwrap();
     let read = photos.reader().window(photos.texels().tile(tile_id(&grid), 0));
     let text = read.unwrap_err().to_string();

@@ -83,10 +83,15 @@ fn run(path: &std::path::Path, files: &[PathBuf]) -> Result<(), Box<dyn Error>> 
         };
         let window = frame.tile_window(id);
         let NodeIndex { i, j } = window.corner;
-        let side = TILE_NODES + 2;
+        // The raster of a level has every so many nodes of the finest one.
+        let (side, stride) = (TILE_NODES + 2, window.stride as usize);
+        let all = (side - 1) * stride + 1;
         let corner = NodeIndex { i: i - window.stride, j: j + window.stride };
-        let wide = NodeWindow { corner, stride: window.stride, columns: side, rows: side };
-        let raster = reader.window(wide)?.heights;
+        let wide = NodeWindow { corner, stride: 1, columns: all, rows: all };
+        let finest = reader.window(wide)?.heights;
+        let raster = HeightGrid::from_fn(side, side, |column, row| {
+            finest.height(column * stride, row * stride).unwrap_or(f32::NAN)
+        });
         let cell = frame.level_cell(id.z());
         let slopes = |heights: &HeightGrid, halo: usize| -> Greys {
             nodes()

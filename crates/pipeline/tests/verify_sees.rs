@@ -27,7 +27,9 @@ fn no_check_is_broken_when_nothing_was_changed() {
     );
     let report = assert_broken(report_on(&path, Against::Dem), &[]);
     assert_eq!(report.tiles, parts.tiles.len() as u64);
-    assert!(report.checks.iter().all(|check| check.checked > 0), "{:#?}", report.checks);
+    // It has no photos; `verify_photos.rs` has some.
+    let mut checks = report.checks.iter().filter(|check| !check.id.id().starts_with("photo."));
+    assert!(checks.all(|check| check.checked > 0), "{:#?}", report.checks);
 }
 
 #[test]

@@ -17,11 +17,16 @@ const PACKED: [&str; 2] = ["gz", "zip"];
 /// Files of a folder with this ending are taken for extracts.
 const EXTRACT_ENDINGS: [&str; 1] = ["pbf"];
 
+/// Files of a folder with one of these endings are taken for photos.
+const PHOTO_ENDINGS: [&str; 10] =
+    ["tif", "tiff", "jp2", "jpg", "jpeg", "png", "webp", "img", "ecw", "sid"];
+
 /// Files of which a folder is searched.
 #[derive(Clone, Copy)]
 enum Sought {
     Elevation,
     Extracts,
+    Photos,
 }
 
 impl Sought {
@@ -30,6 +35,7 @@ impl Sought {
         match self {
             Self::Elevation => has_ending(path, &ENDINGS) || has_ending(path, &PACKED),
             Self::Extracts => has_ending(path, &EXTRACT_ENDINGS),
+            Self::Photos => has_ending(path, &PHOTO_ENDINGS) || has_ending(path, &PACKED),
         }
     }
 }
@@ -40,6 +46,14 @@ impl Sought {
 /// As [`expand_name`].
 pub fn expand_extract_name(name: &Path) -> Result<Vec<PathBuf>, DemError> {
     expand(name, Sought::Extracts)
+}
+
+/// The photos that a name stands for, as [`expand_name`] does it for elevation files; of a folder those that end as images do.
+///
+/// # Errors
+/// As [`expand_name`].
+pub fn expand_photo_name(name: &Path) -> Result<Vec<PathBuf>, DemError> {
+    expand(name, Sought::Photos)
 }
 
 /// The files that a name stands for, in the order in which they have precedence. A name of one file stands for itself, whether it is there or not.
@@ -104,7 +118,7 @@ fn expand_plain(name: &Path, text: &str, sought: Sought) -> Result<Vec<PathBuf>,
 
 fn expand_folder(folder: &Path, sought: Sought) -> Result<Vec<PathBuf>, DemError> {
     library_error::quiet();
-    if matches!(sought, Sought::Elevation) && Dataset::open(folder).is_ok() {
+    if !matches!(sought, Sought::Extracts) && Dataset::open(folder).is_ok() {
         return Ok(vec![folder.to_path_buf()]);
     }
     let unreadable = |source| DemError::List { path: folder.to_path_buf(), source };
@@ -121,6 +135,7 @@ fn expand_folder(folder: &Path, sought: Sought) -> Result<Vec<PathBuf>, DemError
         return Err(match sought {
             Sought::Elevation => DemError::EmptyFolder { path, endings: ENDINGS.join(", ") },
             Sought::Extracts => DemError::NoExtracts { path },
+            Sought::Photos => DemError::NoPhotos { path, endings: PHOTO_ENDINGS.join(", ") },
         });
     }
     Ok(files)

@@ -5,7 +5,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_dem::{expand_extract_name, expand_name, set_unless_set, unpack_name};
+use corniche_dem::{
+    DemError, expand_extract_name, expand_name, expand_photo_name, set_unless_set, unpack_name,
+};
 use corniche_objects::{ObjectAddress, StorageSettings};
 
 use crate::BuildError;
@@ -31,9 +33,17 @@ pub fn input_name(path: PathBuf) -> Result<PathBuf, corniche_objects::ObjectErro
 /// # Errors
 /// When a name stands for no file, or is no address.
 pub fn elevation_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, BuildError> {
+    raster_names(names, expand_name)
+}
+
+/// The rasters that names stand for, which `expand` turns into plain names.
+fn raster_names(
+    names: &[PathBuf],
+    expand: fn(&Path) -> Result<Vec<PathBuf>, DemError>,
+) -> Result<Vec<PathBuf>, BuildError> {
     let mut plain = Vec::new();
     for name in names {
-        for name in expand_name(name)? {
+        for name in expand(name)? {
             plain.push(input_name(name)?);
         }
     }
@@ -52,7 +62,7 @@ pub fn elevation_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, BuildError> {
 /// # Errors
 /// As [`elevation_names`].
 pub fn photo_names(names: &[PathBuf]) -> Result<Vec<PathBuf>, BuildError> {
-    elevation_names(names)
+    raster_names(names, expand_photo_name)
 }
 
 /// The extracts that names stand for, sorted by file name and then by path, each once: folders, patterns and `@LIST` included. What is made of

@@ -38,6 +38,7 @@ impl ReliefLevels {
     }
 
     /// Whether this is [`ReliefLevels::Off`], for serde.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
     pub(crate) fn is_off(&self) -> bool {
         *self == Self::Off
     }

@@ -68,6 +68,6 @@ pub fn decode_photo(bytes: &[u8], id: TileId) -> Result<Option<Photo>, DecodeErr
     section.map(|section| decode::decode(&section)).transpose().map_err(inside)
 }
 
-#[cfg(all(test, feature = "write"))]
+#[cfg(test)]
 #[path = "photo_tests.rs"]
 mod tests;

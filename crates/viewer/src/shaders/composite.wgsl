@@ -211,7 +211,7 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
         let seen_px = width_px(road_class, sight.distance_m, sight.depth);
         let wide = select(colors.road_fills[road_class].rgb, colors.road_centers[road_class].rgb,
             (label & 1u) == 1u && !is_tunnel(label));
-        let fill = mix(colors.road_thins[road_class].rgb, wide, smoothstep(1.4, 3.2, seen_px));
+        let fill = mix(colors.road_thins[road_class].rgb, wide, smoothstep(1.0, 2.2, seen_px));
         // A road that is drawn wider than it is, because of its least width, is made paler.
         let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
         let presence = clamp(seen_px / least_px, 0.5, 1.0) * opacity_at(road_class, sight.distance_m)

@@ -22,23 +22,25 @@ fn numbers_of_every_size_come_back() {
     assert!(reader.is_exact());
 }
 
+/// Codes a mask and all bands.
+fn all<B: Bits>(bits: &mut B, square: &mut [i64], mask: &mut [bool]) {
+    code_mask(bits, mask);
+    code_smooth(bits, square, SMOOTH);
+    let mut numbers = Numbers::new();
+    for level in (0..5).rev() {
+        for (k, band) in rough_bands(level).into_iter().enumerate() {
+            let parent = (level < 4).then(|| rough_bands(level + 1)[k]);
+            code_band(bits, &mut numbers, square, band, parent);
+        }
+    }
+}
+
 #[test]
 fn bands_and_masks_come_back() {
     let mut random = Random::new(4);
     let square: Vec<i64> =
         (0..SIDE * SIDE).map(|k| if k % 7 < 4 { 0 } else { random.around(20) }).collect();
     let mask: Vec<bool> = (0..SIDE * SIDE).map(|k| k % SIDE > k / SIDE || k % 1000 == 0).collect();
-    fn all<B: Bits>(bits: &mut B, square: &mut [i64], mask: &mut [bool]) {
-        code_mask(bits, mask);
-        code_smooth(bits, square, SMOOTH);
-        let mut numbers = Numbers::new();
-        for level in (0..5).rev() {
-            for (k, band) in rough_bands(level).into_iter().enumerate() {
-                let parent = (level < 4).then(|| rough_bands(level + 1)[k]);
-                code_band(bits, &mut numbers, square, band, parent);
-            }
-        }
-    }
     let mut writer = Writer::new(Vec::new());
     all(&mut writer, &mut square.clone(), &mut mask.clone());
     let bytes = writer.finish();

@@ -64,7 +64,7 @@ impl Terrain {
         let surface = ground(&[("SKIRT", 0.0)]).build(device);
         let skirts = ground(&[("SKIRT", 1.0)]).build(device);
         let walls =
-            PipelineRecipe { entries: ["vertex", "wall_fragment"], ..ground(&[("SKIRT", 2.0)]) };
+            PipelineRecipe { entries: ["vertex", "wall_fragment"], ..ground(&[("SKIRT", 2.0), ("PULL_PX", -4.0)]) };
         let [walls, wires] = [walls, wires].map(|recipe| recipe.build(device));
         Self { layout, surface, skirts, walls, wires }
     }
