@@ -15,7 +15,7 @@ fn every_option_of_the_look_shows_in_the_picture() {
     let folder = tempfile::tempdir().unwrap();
     let package = folder.path().join("pass.pmtiles");
     build_pass(&package, &["--quiet"]);
-    let looks: [&[&str]; 8] = [
+    let looks: [&[&str]; 9] = [
         &[],
         &["--style", "dark"],
         &["--caps", "none"],
@@ -24,6 +24,7 @@ fn every_option_of_the_look_shows_in_the_picture() {
         &["--outline", "none"],
         &["--outline", "5"],
         &["--supersampling", "1"],
+        &["--wireframe"],
     ];
     let mut pictures: Vec<Vec<u8>> = Vec::new();
     for look in looks {

@@ -35,6 +35,8 @@ pub(crate) struct Axis {
 pub(crate) enum Ticks {
     /// At round places, with finer lines between them.
     Round,
+    /// The same for what is counted: only whole numbers are written.
+    Counts,
     /// At so many whole numbers, with nothing between them.
     Whole(usize),
     /// The same, where each step doubles what is counted; at 0 it is `unit`, and that is what the numbers say.
@@ -93,66 +95,103 @@ const MARGIN_PX: i32 = 16;
 
 /// The curves as SVG, with their names at the right. A curve without points is in that list as well.
 pub(crate) fn draw(axes: &Axes, curves: &[Curve]) -> Result<String> {
+    draw_below_each_other(&[(axes, curves)])
+}
+
+/// Several drawings of one width, the first one on top. All show the same curves; their names stand beside the first.
+pub(crate) fn draw_below_each_other(drawings: &[(&Axes, &[Curve])]) -> Result<String> {
+    let width = drawings.iter().map(|(axes, _)| axes.size_px.0).max().unwrap_or(0);
+    let height = drawings.iter().map(|(axes, _)| axes.size_px.1).sum();
+    let names = drawings.iter().flat_map(|(_, curves)| *curves).map(|curve| &curve.name);
+    let longest = names.map(|name| name.chars().count()).max().unwrap_or(0);
+    let names_px = SAMPLE_PX + CHARACTER_PX * longest as i32 + 2 * MARGIN_PX;
     let mut svg = String::new();
     {
-        let area = SVGBackend::with_string(&mut svg, axes.size_px).into_drawing_area();
-        area.fill(&WHITE)?;
-        let longest = curves.iter().map(|curve| curve.name.chars().count()).max().unwrap_or(0);
-        let names_px = SAMPLE_PX + CHARACTER_PX * longest as i32 + 2 * MARGIN_PX;
-        let (width, _) = axes.size_px;
-        let (plot, names) = area.split_horizontally(width as i32 - names_px);
-        let mut chart = ChartBuilder::on(&plot)
-            .caption(&axes.caption, ("sans-serif", 20))
-            .margin(MARGIN_PX)
-            .x_label_area_size(44)
-            .y_label_area_size(80)
-            .build_cartesian_2d(axes.x.range.clone(), axes.y.range.clone())?;
-        let tick = |ticks: Ticks| {
-            move |number: &f64| match ticks {
-                Ticks::Doubled { unit, .. } => rounded(unit * number.exp2()),
-                Ticks::Round | Ticks::Whole(_) => format!("{number:.0}"),
+        let whole = SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area();
+        whole.fill(&WHITE)?;
+        let mut rest = whole.clone();
+        for (number, (axes, curves)) in drawings.iter().enumerate() {
+            let (area, below) = rest.split_vertically(axes.size_px.1);
+            let (plot, names) = area.split_horizontally(width as i32 - names_px);
+            draw_curves(&plot, axes, curves)?;
+            if number == 0 {
+                draw_names(&names, curves)?;
             }
-        };
-        let (tick_x, tick_y) = (tick(axes.x.ticks), tick(axes.y.ticks));
-        let mut mesh = chart.configure_mesh();
-        mesh.x_desc(axes.x.description)
-            .y_desc(axes.y.description)
-            .axis_desc_style(("sans-serif", 16))
-            .label_style(("sans-serif", 14))
-            .max_light_lines(2);
-        if let Ticks::Whole(count) | Ticks::Doubled { count, .. } = axes.x.ticks {
-            mesh.x_labels(count).x_label_formatter(&tick_x).x_max_light_lines(0);
+            rest = below;
         }
-        if let Ticks::Whole(count) | Ticks::Doubled { count, .. } = axes.y.ticks {
-            mesh.y_labels(count).y_label_formatter(&tick_y).y_max_light_lines(0);
-        }
-        mesh.draw()?;
-        // Wide lines lie below narrow ones, which they would hide.
-        let mut by_width: Vec<&Curve> = curves.iter().collect();
-        by_width.sort_by_key(|curve| std::cmp::Reverse(curve.line().2.stroke_width));
-        for curve in by_width {
-            let (dash, gap, style) = curve.line();
-            let points = curve.points.iter().copied();
-            if dash == 0 {
-                chart.draw_series([PathElement::new(points.collect::<Vec<_>>(), style)])?;
-            } else {
-                chart.draw_series([DashedPathElement::new(points, dash, gap, style)])?;
-            }
-        }
-        // Marks lie over all lines.
-        for curve in curves {
-            let Some((outline, fill)) = curve.mark() else { continue };
-            let closed: Vec<(i32, i32)> = outline.iter().chain(outline.first()).copied().collect();
-            chart.draw_series(curve.points.iter().map(|&point| {
-                EmptyElement::at(point)
-                    + Polygon::new(outline.to_vec(), fill)
-                    + PathElement::new(closed.clone(), curve.color.stroke_width(2))
-            }))?;
-        }
-        draw_names(&names, curves)?;
-        area.present()?;
+        whole.present()?;
     }
     Ok(svg)
+}
+
+/// The curves between their axes.
+fn draw_curves(
+    area: &DrawingArea<SVGBackend<'_>, Shift>,
+    axes: &Axes,
+    curves: &[Curve],
+) -> Result<()> {
+    let mut chart = ChartBuilder::on(area)
+        .caption(&axes.caption, ("sans-serif", 20))
+        .margin(MARGIN_PX)
+        .x_label_area_size(44)
+        .y_label_area_size(80)
+        .build_cartesian_2d(axes.x.range.clone(), axes.y.range.clone())?;
+    let tick = |ticks: Ticks| {
+        move |number: &f64| match ticks {
+            Ticks::Doubled { unit, .. } => rounded(unit * number.exp2()),
+            Ticks::Counts if number.fract() != 0.0 => String::new(),
+            Ticks::Round | Ticks::Counts | Ticks::Whole(_) => format!("{number:.0}"),
+        }
+    };
+    let (tick_x, tick_y) = (tick(axes.x.ticks), tick(axes.y.ticks));
+    let mut mesh = chart.configure_mesh();
+    mesh.x_desc(axes.x.description)
+        .y_desc(axes.y.description)
+        .axis_desc_style(("sans-serif", 16))
+        .label_style(("sans-serif", 14))
+        .max_light_lines(2);
+    match axes.x.ticks {
+        Ticks::Round => {}
+        Ticks::Counts => {
+            mesh.x_label_formatter(&tick_x);
+        }
+        Ticks::Whole(count) | Ticks::Doubled { count, .. } => {
+            mesh.x_labels(count).x_label_formatter(&tick_x).x_max_light_lines(0);
+        }
+    }
+    match axes.y.ticks {
+        Ticks::Round => {}
+        Ticks::Counts => {
+            mesh.y_label_formatter(&tick_y);
+        }
+        Ticks::Whole(count) | Ticks::Doubled { count, .. } => {
+            mesh.y_labels(count).y_label_formatter(&tick_y).y_max_light_lines(0);
+        }
+    }
+    mesh.draw()?;
+    // Wide lines lie below narrow ones, which they would hide.
+    let mut by_width: Vec<&Curve> = curves.iter().collect();
+    by_width.sort_by_key(|curve| std::cmp::Reverse(curve.line().2.stroke_width));
+    for curve in by_width {
+        let (dash, gap, style) = curve.line();
+        let points = curve.points.iter().copied();
+        if dash == 0 {
+            chart.draw_series([PathElement::new(points.collect::<Vec<_>>(), style)])?;
+        } else {
+            chart.draw_series([DashedPathElement::new(points, dash, gap, style)])?;
+        }
+    }
+    // Marks lie over all lines.
+    for curve in curves {
+        let Some((outline, fill)) = curve.mark() else { continue };
+        let closed: Vec<(i32, i32)> = outline.iter().chain(outline.first()).copied().collect();
+        chart.draw_series(curve.points.iter().map(|&point| {
+            EmptyElement::at(point)
+                + Polygon::new(outline.to_vec(), fill)
+                + PathElement::new(closed.clone(), curve.color.stroke_width(2))
+        }))?;
+    }
+    Ok(())
 }
 
 /// The list of names, with a piece of each line and its mark before it.

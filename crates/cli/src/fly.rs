@@ -54,8 +54,9 @@ pub(crate) fn run(args: &FlyArgs) -> Result<ExitCode, Failure> {
         if args.window { plan.fly_in_a_window()? } else { plan.fly(None)? };
 
     outputs.finish(&flight, WorkingCrs::of(package.manifest()), &runs, &adapter)?;
+    let point_scale = package.manifest().point_scale;
     let digits = Digits::on(&io::stdout());
-    io::stdout().lock().write_all(summary::to_text(&runs, digits).as_bytes())?;
+    io::stdout().lock().write_all(summary::to_text(&runs, point_scale, digits).as_bytes())?;
     Ok(ExitCode::Done)
 }
 

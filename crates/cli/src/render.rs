@@ -5,7 +5,7 @@ use std::path::Path;
 use corniche_presets::class_labels;
 use corniche_styles::OwnWidths;
 use corniche_viewer::{
-    RenderError, RenderRequest, render,
+    RenderError, RenderRequest, Wireframe, render,
     tiles::{MapPackage as _, PackageSource},
 };
 
@@ -37,6 +37,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         supersampling: args.supersampling,
         style,
         legend: None,
+        wireframe: if args.wireframe { Wireframe::Shown } else { Wireframe::Hidden },
     };
     let output = Output::create(&args.output, existing_of(args.overwrite), &used)?;
     Format::Picture.refuse_others(&args.output)?;

@@ -41,6 +41,8 @@ pub struct RenderRequest {
     pub style: Style,
     /// What the classes of roads are called, 0 first, if the picture has a legend.
     pub legend: Option<[String; FunctionalRoadClass::COUNT]>,
+    /// Whether the edges of the ground's triangles are drawn.
+    pub wireframe: Wireframe,
 }
 
 impl RenderRequest {
@@ -166,7 +168,7 @@ pub fn render(
         height_range_m,
         wall_m: FrameView::wall_beside_m(height_range_m),
         latitude_deg: package.manifest().wgs84_bounds.center()[1],
-        wireframe: Wireframe::Hidden,
+        wireframe: request.wireframe,
     };
     let uploaded: Vec<(TileBuffers, f64)> = scene::draw_list(&store, &drawn)
         .map(|(tile, skirt_depth_m)| (TileBuffers::new(&gpu, tile), skirt_depth_m))

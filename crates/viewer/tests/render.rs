@@ -7,7 +7,7 @@ use std::{cell::Cell, path::Path};
 
 use corniche_styles::Style;
 use corniche_viewer::{
-    CameraRequest, RenderError, RenderRequest, Rendered, RoadMethod, RoadOptions,
+    CameraRequest, RenderError, RenderRequest, Rendered, RoadMethod, RoadOptions, Wireframe,
     camera::Orientation, tiles::PackageSource,
 };
 use image::RgbaImage;
@@ -27,6 +27,7 @@ fn request(package: &Path) -> RenderRequest {
         exaggeration: 1.0,
         supersampling: 2,
         legend: None,
+        wireframe: Wireframe::Hidden,
         style: Style::road_atlas(),
     }
 }
@@ -84,6 +85,29 @@ fn a_package_becomes_a_picture_with_roads_and_credits() {
     keep("bare", &bare);
     assert_eq!(bare.report.road_segments, 0);
     assert_eq!(red_pixels(&bare.picture), 0);
+}
+
+/// Edges darken or lighten some of the ground and leave most of it; what is drawn stays the same.
+#[test]
+fn a_wireframe_shows_the_edges_of_triangles() {
+    if gpu().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let package = package(folder.path());
+    let plain = RenderRequest {
+        roads: RoadOptions::of(RoadMethod::None),
+        camera: look_at(ORIGIN_DEG[0] + 0.01, ORIGIN_DEG[1] + 0.01),
+        ..request(&package)
+    };
+    let wired = RenderRequest { wireframe: Wireframe::Shown, ..plain.clone() };
+    let [plain, wired] = [plain, wired].map(|request| render(&package, &request).unwrap());
+    keep("wireframe", &wired);
+    assert_eq!(plain.report, wired.report);
+    let pixels = plain.picture.pixels().zip(wired.picture.pixels());
+    let changed = pixels.filter(|(before, after)| before != after).count();
+    let all = plain.picture.pixels().len();
+    assert!(changed > all / 100 && changed < all * 9 / 10, "{changed} of {all}");
 }
 
 #[test]

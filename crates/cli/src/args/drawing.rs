@@ -40,6 +40,9 @@ pub(crate) struct RenderArgs {
     /// Draw a legend: classes of roads, an arrow to the north, and a scale for the middle of the picture
     #[arg(long)]
     pub(crate) legend: bool,
+    /// Draw the edges of the ground's triangles, beneath the roads
+    #[arg(long)]
+    pub(crate) wireframe: bool,
 }
 
 /// How much of the ground is drawn.
@@ -75,7 +78,7 @@ pub(crate) struct FlyArgs {
     /// Replace files that exist, once the new ones are complete
     #[arg(short = 'O', long)]
     pub(crate) overwrite: bool,
-    /// Also draw the frame times along the flight
+    /// Also draw a chart of frame times, road segments and tiles along the flight
     #[arg(long, value_name = "SVG")]
     pub(crate) svg: Option<PathBuf>,
     /// Also keep every frame as a picture in this new folder

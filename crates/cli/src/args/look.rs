@@ -44,6 +44,11 @@ impl Roads {
         }
     }
 
+    /// The same method drawn without caps.
+    pub(crate) fn without_caps(self) -> Self {
+        self.with_caps(Caps::None)
+    }
+
     /// The same method drawn with these caps.
     fn with_caps(self, caps: Caps) -> Self {
         match (self, caps) {

@@ -1,8 +1,10 @@
+use std::ops::Range;
+
 use corniche_viewer::FrameRecord;
 use plotters::prelude::RGBColor;
 
 use super::measured_run::{MeasuredRun, gpu_ms};
-use crate::chart::{Axes, Axis, Curve, Marks, Ticks, draw};
+use crate::chart::{Axes, Axis, Curve, Marks, Ticks, draw_below_each_other};
 
 /// People with red-green colour blindness can distinguish the first seven (Okabe & Ito 2008, *Color Universal Design*).
 const COLORS: [RGBColor; 9] = [
@@ -18,43 +20,71 @@ const COLORS: [RGBColor; 9] = [
 ];
 
 /// Milliseconds to draw each frame over the time in the flight, one curve a run: what Vaaraniemi, Treib & Westermann 2011
-/// show in Figures 13 and 14. By the graphics card's clock where there is one.
-pub(crate) fn frame_times(runs: &[MeasuredRun], adapter: &str) -> anyhow::Result<String> {
+/// show in Figures 13 and 14. By the graphics card's clock where there is one. Below it, the road segments and the tiles of
+/// the same frames, which explain the times.
+pub(crate) fn flights(runs: &[MeasuredRun], adapter: &str) -> anyhow::Result<String> {
     let times = |frame: &FrameRecord| frame.passes.as_ref().map(gpu_ms);
     let mut frames = runs.iter().flat_map(MeasuredRun::counted);
     let has_clock = frames.all(|frame| frame.passes.is_some());
-    let point = |frame: &FrameRecord| {
-        let frame_ms = times(frame).filter(|_| has_clock).unwrap_or(frame.draw_ms);
-        (frame.time_s, frame_ms)
+    let frame_ms =
+        |frame: &FrameRecord| times(frame).filter(|_| has_clock).unwrap_or(frame.draw_ms);
+    let part = |height_px, caption: String, y, ticks, of: &dyn Fn(&FrameRecord) -> f64| {
+        let y = Axis { description: y, range: range_of(runs, of), ticks };
+        (axes(runs, height_px, caption, y), curves(runs, of))
     };
-    let points =
-        |run: &MeasuredRun| -> Vec<(f64, f64)> { run.counted().iter().map(point).collect() };
-    let all: Vec<(f64, f64)> = runs.iter().flat_map(points).collect();
-    let begin_s = all.iter().map(|(time_s, _)| *time_s).fold(f64::INFINITY, f64::min);
-    let end_s = all.iter().map(|(time_s, _)| *time_s).fold(f64::NEG_INFINITY, f64::max);
-    let most_ms = all.iter().map(|(_, frame_ms)| *frame_ms).fold(0.0, f64::max);
-    let axes = Axes {
-        size_px: (1000, 560),
-        caption: format!("Time to draw a frame ({adapter})"),
+    let parts = [
+        part(
+            460,
+            format!("Time to draw a frame ({adapter})"),
+            if has_clock { "ms by the graphics card's clock" } else { "ms" },
+            Ticks::Round,
+            &frame_ms,
+        ),
+        part(280, "Road segments of a frame".to_owned(), "segments", Ticks::Counts, &|frame| {
+            frame.road_segments as f64
+        }),
+        part(280, "Tiles of a frame".to_owned(), "tiles", Ticks::Counts, &|frame| {
+            frame.tiles_drawn as f64
+        }),
+    ];
+    let parts: Vec<(&Axes, &[Curve])> =
+        parts.iter().map(|(axes, curves)| (axes, curves.as_slice())).collect();
+    draw_below_each_other(&parts)
+}
+
+/// From nothing to a little more than the most that `of` gives for the frames that count.
+fn range_of(runs: &[MeasuredRun], of: &dyn Fn(&FrameRecord) -> f64) -> Range<f64> {
+    let most = runs.iter().flat_map(MeasuredRun::counted).map(of).fold(0.0, f64::max);
+    // Where everything is nothing, the axis goes to 1.
+    0.0..if most > 0.0 { most * 1.05 } else { 1.0 }
+}
+
+/// Axes from the first frame that counts to the last one.
+fn axes(runs: &[MeasuredRun], height_px: u32, caption: String, y: Axis) -> Axes {
+    let counted = || runs.iter().flat_map(MeasuredRun::counted);
+    let begin_s = counted().map(|frame| frame.time_s).fold(f64::INFINITY, f64::min);
+    let end_s = counted().map(|frame| frame.time_s).fold(f64::NEG_INFINITY, f64::max);
+    Axes {
+        size_px: (1000, height_px),
+        caption,
         x: Axis {
             description: "time in the flight, s",
             range: if begin_s < end_s { begin_s..end_s } else { 0.0..1.0 },
             ticks: Ticks::Round,
         },
-        y: Axis {
-            description: if has_clock { "ms by the graphics card's clock" } else { "ms" },
-            range: 0.0..most_ms.max(0.001) * 1.1,
-            ticks: Ticks::Round,
-        },
-    };
+        y,
+    }
+}
+
+/// What `of` gives for the frames that count, one curve a run.
+fn curves(runs: &[MeasuredRun], of: &dyn Fn(&FrameRecord) -> f64) -> Vec<Curve> {
     let curve = |(number, run): (usize, &MeasuredRun)| Curve {
         name: run.name(),
         color: COLORS[number % COLORS.len()],
-        points: points(run),
+        points: run.counted().iter().map(|frame| (frame.time_s, of(frame))).collect(),
         marks: Marks::None(number),
     };
-    let curves: Vec<Curve> = runs.iter().enumerate().map(curve).collect();
-    draw(&axes, &curves)
+    runs.iter().enumerate().map(curve).collect()
 }
 
 #[cfg(test)]

@@ -6,13 +6,14 @@ use corniche_viewer::gpu::PassTimes;
 use super::*;
 use crate::{
     args::{Lod, Roads},
+    chart::draw,
     fly::measured_run::tests::frame,
 };
 
 #[test]
 fn a_chart_without_frames_is_a_chart() {
     let runs = [MeasuredRun { lod: Lod::Adaptive, roads: Roads::Geo, frames: Vec::new() }];
-    let svg = frame_times(&runs, "an adapter").unwrap();
+    let svg = flights(&runs, "an adapter").unwrap();
     assert!(svg.contains("<svg") && svg.contains("lod, roads geo") && !svg.contains("NaN"));
 }
 
@@ -20,13 +21,42 @@ fn a_chart_without_frames_is_a_chart() {
 fn a_chart_says_which_clock_its_times_are_of() {
     let run = |frames| [MeasuredRun { lod: Lod::Adaptive, roads: Roads::Geo, frames }];
     let mut timed = vec![frame(1.0), frame(3.0), frame(3.0)];
-    let svg = frame_times(&run(timed.clone()), "an adapter").unwrap();
+    let svg = flights(&run(timed.clone()), "an adapter").unwrap();
     assert!(svg.contains("clock"), "{svg}");
     // The first frame does not count, so neither does its clock.
     timed[0].passes = None;
-    assert!(frame_times(&run(timed.clone()), "an adapter").unwrap().contains("clock"));
+    assert!(flights(&run(timed.clone()), "an adapter").unwrap().contains("clock"));
     timed[2].passes = None;
-    assert!(!frame_times(&run(timed), "an adapter").unwrap().contains("clock"));
+    assert!(!flights(&run(timed), "an adapter").unwrap().contains("clock"));
+}
+
+/// Each part has its own axis, which ends a little above the most.
+#[test]
+fn segments_and_tiles_stand_below_the_times_and_axes_fit() {
+    let counts = [(2, 50_000), (12, 400), (31, 930)];
+    let frames: Vec<FrameRecord> = (0..)
+        .zip(counts)
+        .map(|(number, (tiles_drawn, road_segments))| FrameRecord {
+            time_s: f64::from(number),
+            tiles_drawn,
+            road_segments,
+            ..frame(2.0)
+        })
+        .collect();
+    let runs = [MeasuredRun { lod: Lod::Adaptive, roads: Roads::Geo, frames }];
+    let svg = flights(&runs, "an adapter").unwrap();
+    for caption in
+        ["Time to draw a frame (an adapter)", "Road segments of a frame", "Tiles of a frame"]
+    {
+        assert_eq!(svg.matches(caption).count(), 1, "{caption}");
+    }
+    assert_eq!(svg.matches("lod, roads geo").count(), 1, "names stand once");
+    // Without the first frame, which has 50 000 segments.
+    assert_eq!(range_of(&runs, &|frame| frame.road_segments as f64), 0.0..930.0 * 1.05);
+    let labels: Vec<&str> = svg.lines().map(str::trim).collect();
+    assert!(labels.contains(&"900") && labels.contains(&"30"), "{svg}");
+    assert!(!labels.contains(&"1000") && !labels.contains(&"900.0"), "{svg}");
+    assert_eq!(range_of(&runs[..0], &|_| 7.0), 0.0..1.0);
 }
 
 /// Runs out of a list that `fly` wrote.
@@ -46,6 +76,8 @@ fn runs_of(list: &str) -> Vec<MeasuredRun> {
         };
         let record = FrameRecord {
             time_s: number("time_s"),
+            tiles_drawn: number("tiles_drawn") as usize,
+            road_segments: number("road_segments") as u64,
             draw_ms: number("draw_ms"),
             passes: Some(passes),
             ..frame(0.0)
@@ -67,7 +99,7 @@ fn the_chart_in_the_docs_is_that_of_its_list() {
     let list = fs::read_to_string(docs.join("flight-liechtenstein.csv")).unwrap();
     let runs = runs_of(&list);
     assert_eq!(runs.iter().map(|run| run.frames.len()).collect::<Vec<_>>(), [60; 4]);
-    let drawn = frame_times(&runs, "llvmpipe (LLVM 15.0.6, 256 bits) (vulkan)").unwrap();
+    let drawn = flights(&runs, "llvmpipe (LLVM 15.0.6, 256 bits) (vulkan)").unwrap();
     let path = docs.join("flight-liechtenstein.svg");
     if std::env::var_os("CORNICHE_BLESS").is_some() {
         fs::write(&path, &drawn).unwrap();

@@ -62,7 +62,7 @@ impl Outputs {
         let Self { csv, svg, save_path, pictures } = self;
         let mut written = Vec::new();
         if let Some(svg) = svg {
-            let drawing = chart::frame_times(runs, adapter).map_err(failed)?;
+            let drawing = chart::flights(runs, adapter).map_err(failed)?;
             written.push(svg.fill(drawing.as_bytes())?);
         }
         if let Some(save_path) = save_path {
