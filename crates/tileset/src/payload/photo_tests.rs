@@ -1,4 +1,6 @@
+use super::image::side;
 use super::*;
+use crate::limits::MAX_PHOTO_LEVELS;
 use crate::payload::damage::Damage;
 use crate::payload::envelope::Content;
 use crate::payload::section_kind::Sections;
