@@ -5,6 +5,7 @@ use std::{fs, path::Path};
 use e2e::{build_pass, corniche, json, sample, text};
 
 /// Stored bytes of reliefs, by level.
+#[expect(clippy::unwrap_used, reason = "a helper of tests")]
 fn relief_bytes(package: &Path) -> Vec<u64> {
     let levels = json(&["info", text(package), "--json"])["manifest"]["levels"].clone();
     let levels = levels.as_array().unwrap().clone();

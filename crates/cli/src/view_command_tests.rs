@@ -9,7 +9,7 @@ fn shown(roads: RoadOptions) -> ShownView {
         camera: CameraRequest::LookAt {
             lon_deg: -9.521_234_567_89,
             lat_deg: 47.140_123_456_78,
-            distance_m: 2345.678_9,
+            distance_m: 2_345.678_9,
             orientation: Orientation { heading_deg: -123.456_78, pitch_deg: 61.234_56 },
         },
         size_px: [1234, 567],

@@ -28,22 +28,20 @@ const MOST_VALUES: usize = 2;
 #[must_use]
 pub fn class_labels(frc_table: &str) -> [String; FunctionalRoadClass::COUNT] {
     let table = frc_preset(frc_table).and_then(|text| parse_frc_table(text).ok());
-    let mut number = 0..;
-    [const { () }; FunctionalRoadClass::COUNT].map(|()| {
-        let number: u8 = number.next().unwrap_or(0);
-        let names = table.iter().flat_map(|table| names(table, number));
+    std::array::from_fn(|class| {
+        let names = table.iter().flat_map(|table| names(table, class));
         let names: Vec<String> = names.take(MOST_VALUES).collect();
-        if names.is_empty() { format!("class {number}") } else { names.join(", ") }
+        if names.is_empty() { format!("class {class}") } else { names.join(", ") }
     })
 }
 
 /// The known values of a class.
-fn names(table: &FrcTable, class: u8) -> impl Iterator<Item = String> {
+fn names(table: &FrcTable, class: usize) -> impl Iterator<Item = String> {
     KNOWN
         .into_iter()
         .filter(move |known| {
             table.values().any(|(value, found)| {
-                value == *known && found.is_some_and(|found| found.number() == class)
+                value == *known && found.is_some_and(|found| usize::from(found.number()) == class)
             })
         })
         .map(|known| known.replace('_', " "))

@@ -127,9 +127,8 @@ pub(crate) fn tint(entries: &[TintSheet], by_climate: bool) -> Result<Tint, Styl
     Ok(Tint { heights, stops: stops.collect() })
 }
 
-#[expect(clippy::float_cmp, reason = "the ends of the tint are given exactly or not at all")]
 fn check_shares(shares: &[f64]) -> Result<(), StyleError> {
-    let ends = [shares.first(), shares.last()].map(|end| end.copied());
+    let ends = [shares.first(), shares.last()].map(Option::<&f64>::copied);
     let ascend = shares.is_sorted_by(|a, b| a + LEAST_STEP <= *b);
     if ends == [Some(0.0), Some(1.0)] && ascend { Ok(()) } else { Err(StyleError::TintOrder) }
 }

@@ -130,7 +130,7 @@ fn with_tint(entries: &[&str], by_climate: bool) -> Result<Style, StyleError> {
         }
     }
     for entry in entries {
-        text += &format!("[[tint]]\n{entry}\ncolor = \"#808080\"\n");
+        text.extend(["[[tint]]\n", entry, "\ncolor = \"#808080\"\n"]);
     }
     parse_style(&format!("tint_by_climate = {by_climate}\n{text}"))
 }

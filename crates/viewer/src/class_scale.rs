@@ -86,5 +86,6 @@ impl LevelScales {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
 #[path = "class_scale_tests.rs"]
 mod tests;

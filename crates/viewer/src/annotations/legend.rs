@@ -50,7 +50,8 @@ pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend) {
         let above = top + pad_px / 2 + row * line_px;
         let [color, outline] = [road.color, road.outline].map(|rgb| rgb.map(|part| part * 255.0));
         let thick = (line_px / 3).max(3);
-        let rows = above + (line_px - thick) / 2..above + (line_px + thick) / 2;
+        let start = above + (line_px - thick) / 2;
+        let rows = start..start + thick;
         fill(picture, pad_px..pad_px + sample_px, rows.clone(), outline, 1.0);
         fill(picture, pad_px..pad_px + sample_px, rows.start + 1..rows.end - 1, color, 1.0);
         letters.draw(picture, &road.label, (2 * pad_px + sample_px) as f32, above as f32);

@@ -44,9 +44,14 @@ pub(crate) fn layout_of(device: &Device) -> BindGroupLayout {
 }
 
 /// The block `struct TileTextures`.
-pub(crate) fn rows(tile: &TileGeometry) -> [[f32; 4]; 1] {
+pub(crate) fn rows(tile: &TileGeometry) -> [[f32; 4]; 2] {
     let [east, north] = tile.size_m.map(|side_m| (1.0 / side_m) as f32);
-    [[east, north, f32::from(u8::from(tile.shading.is_some())), 0.0]]
+    let has = |part: bool| if part { 1.0 } else { 0.0 };
+    let has_water = tile.shading.as_ref().is_some_and(|slopes| !slopes.water().is_empty());
+    [
+        [east, north, has(tile.shading.is_some()), has(has_water)],
+        [has(tile.photo.is_some()), 0.0, 0.0, 0.0],
+    ]
 }
 
 impl TileTextures {

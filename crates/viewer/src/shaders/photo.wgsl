@@ -9,6 +9,11 @@ const PHOTO_BORDER = 8.0;
 // rgb: the photo's colour; a: 1 where there is a photo, 0 where there is none. `plan_in_tile` is in metres from the tile's
 // middle. For fragment stages, and not inside a branch.
 fn photo_at(plan_in_tile: vec2<f32>) -> vec4<f32> {
+    // The same for all pixels of a tile, so they may sample here. Without this, ground without photos took three times as long
+    // on the CPU: one anisotropic sample may read sixteen places.
+    if tile_textures.photo.x == 0.0 {
+        return vec4(0.0);
+    }
     let side = f32(textureDimensions(photo).x);
     let share = vec2(0.5, 0.5) + vec2(1.0, -1.0) * plan_in_tile * tile_textures.plan.xy;
     let texel = share * (side - 2.0 * PHOTO_BORDER) + PHOTO_BORDER;

@@ -3,8 +3,10 @@
 // same two nodes between the same texels, and shading goes on without a step.
 
 struct TileTextures {
-    // xy: 1 / the tile's sides east and north; z: 1 where there are slopes, else 0.
+    // xy: 1 / the tile's sides east and north; z: 1 where there are slopes, else 0; w: the same for water.
     plan: vec4<f32>,
+    // x: 1 where there is a photo, else 0.
+    photo: vec4<f32>,
 }
 
 @group(3) @binding(0) var<uniform> tile_textures: TileTextures;
@@ -23,6 +25,9 @@ fn place_among_nodes(plan_in_tile: vec2<f32>, nodes: vec2<f32>) -> vec2<f32> {
 // Whether a pixel is water. Water ends where its last node is: the nodes at the shore have neighbours that lie higher, so they
 // are none themselves.
 fn is_water(plan_in_tile: vec2<f32>) -> bool {
+    if tile_textures.plan.w == 0.0 {
+        return false;
+    }
     let at = place_among_nodes(plan_in_tile, vec2<f32>(textureDimensions(water)));
     return textureSampleLevel(water, tile_sampler, at, 0.0).x > 0.1;
 }

@@ -76,7 +76,7 @@ impl GroundMesh {
         let triangle_grid = TriangleGrid::new(corners_in_plan);
         let surface_indices = indices.len();
         let skirt_indices = surface_indices;
-        Self { surface_indices, skirt_indices, vertices, indices, triangle_grid }
+        Self { vertices, indices, surface_indices, skirt_indices, triangle_grid }
     }
 
     /// The grid that says which triangles of the ground are near a place.

@@ -126,5 +126,6 @@ fn with_margin(roads: Bounds, data: Bounds) -> Bounds {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
 #[path = "map_extent_tests.rs"]
 mod tests;

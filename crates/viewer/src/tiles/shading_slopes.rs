@@ -57,5 +57,6 @@ impl ShadingSlopes {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
 #[path = "shading_slopes_tests.rs"]
 mod tests;

@@ -67,13 +67,8 @@ fn draw(gpu: &Gpu, payloads: &[TilePayload], exaggeration: f64) -> Drawing {
     let buffers: Vec<TileBuffers> = payloads
         .iter()
         .map(|payload| {
-            let tile = TileGeometry::from_payload(
-                payload,
-                &frame(),
-                QUANTUM_M,
-                WIDTH_MARGIN_M,
-                scale.clone(),
-            );
+            let tile =
+                TileGeometry::from_payload(payload, &frame(), QUANTUM_M, WIDTH_MARGIN_M, scale);
             TileBuffers::new(gpu, &tile.unwrap())
         })
         .collect();

@@ -32,7 +32,10 @@ impl App {
         };
         let left_out: Vec<&str> = [
             (settings.roads.classes != ClassSet::ALL, "hidden classes"),
-            (settings.width_factors.iter().any(|factor| *factor != 1.0), "factors on widths"),
+            (
+                settings.width_factors.iter().any(|factor| (*factor - 1.0).abs() > 0.0),
+                "factors on widths",
+            ),
             (settings.compare != Compare::Off, "the comparison"),
             (settings.is_wireframe, "the wireframe"),
         ]

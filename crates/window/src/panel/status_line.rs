@@ -78,9 +78,13 @@ pub(crate) fn status_line(
     let (right, left): (Vec<_>, Vec<_>) = shown.by_ref().partition(|(place, _)| *place < count);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = GAP;
-        left.into_iter().for_each(|(_, (item, _))| item.show(ui));
+        for (_, (item, _)) in left {
+            item.show(ui);
+        }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            right.into_iter().for_each(|(_, (item, _))| item.show(ui));
+            for (_, (item, _)) in right {
+                item.show(ui);
+            }
         });
     });
 }
