@@ -37,6 +37,7 @@ fn commands_that_draw_have_the_same_defaults_or_say_why_not() {
         ("supersampling", "fly", "1", "compared with published figures"),
         // Decided when the window knows its adapter.
         ("supersampling", "view", "", "without a graphics card"),
+        ("roads", "view", "", "without a graphics card"),
     ];
     let program = Arguments::command();
     let mut shared: BTreeMap<String, Vec<(&str, String, String)>> = BTreeMap::new();
