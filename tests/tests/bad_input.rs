@@ -77,7 +77,12 @@ fn refuses_settings_that_make_no_sense() {
     refuses(folder.path(), &["--dem", dem, "--crs", "EPSG:4326"], 2, &["--crs"]);
     refuses(folder.path(), &["--dem", dem, "--crs", "nonsense"], 2, &["nonsense"]);
     refuses(folder.path(), &["--dem", dem, "--frc-table", "nonsense"], 2, &["nonsense"]);
-    refuses(folder.path(), &["--dem", dem, "--photo", dem], 2, &["--photo"]);
+    refuses(
+        folder.path(),
+        &["--dem", dem, "--photo", dem],
+        2,
+        &["Float32", "8 bits", "gdal_translate"],
+    );
 }
 
 #[test]

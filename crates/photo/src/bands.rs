@@ -48,7 +48,7 @@ impl Bands {
         for number in colour.bands().into_iter().chain(alpha) {
             let kind = found[number - 1].2;
             if kind != GdalDataType::UInt8 {
-                let kind = format!("{kind:?}");
+                let kind = kind.name();
                 return Err(PhotoError::SampleType { path: path.to_path_buf(), kind });
             }
         }

@@ -50,7 +50,9 @@ fn no_check_is_broken_when_nothing_was_changed() {
     let path = folder.path().join("same.pmtiles");
     SOUND.parts.write(&path).unwrap();
     let report = assert_broken(report_on(&path, Against::Osm), &[]);
-    assert!(report.checks.iter().all(|check| check.checked > 0), "{:#?}", report.checks);
+    // The package has no photos.
+    let mut others = report.checks.iter().filter(|check| !check.id.id().starts_with("photo."));
+    assert!(others.all(|check| check.checked > 0), "{:#?}", report.checks);
 }
 
 #[test]

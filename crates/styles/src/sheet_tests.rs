@@ -17,7 +17,7 @@ fn refuses(from: &str, to: &str, words: &[&str]) {
 
 #[test]
 fn the_styles_that_come_along_are_styles_of_ordered_roads() {
-    assert_eq!(style_preset_names().collect::<Vec<_>>(), ["road-atlas", "dark", "relief"]);
+    assert_eq!(style_preset_names().collect::<Vec<_>>(), ["road-atlas", "dark", "relief", "photo"]);
     for name in style_preset_names() {
         let style = parse_sheet(style_preset(name).unwrap()).unwrap();
         assert!(

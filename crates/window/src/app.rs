@@ -13,6 +13,7 @@ mod ground_probe;
 mod shown_package;
 mod shown_view;
 mod style_list;
+mod typed_place;
 
 pub(crate) use self::{
     frame::FrameInput,
@@ -30,8 +31,8 @@ use glam::DVec2;
 use self::{
     adapter::AdapterState, camera_control::CameraControl, camera_limits::limits,
     captures::Captures, first_settings::first_settings, first_view::first_view,
-    frame_pace::FramePace, ground_probe::GroundProbe, shown_view::place_in_world,
-    style_list::StyleList,
+    frame_pace::FramePace, ground_probe::GroundProbe, style_list::StyleList,
+    typed_place::place_in_world,
 };
 use crate::{
     CommandOf, NotSaved, WindowError, WindowRequest,

@@ -1,7 +1,7 @@
-//! The view as a request that `render` understands, and places that a person types.
+//! The view as a request that `render` understands.
 
 use corniche_tileset::Manifest;
-use corniche_viewer::{CameraRequest, ClassSet, parse_lon_lat};
+use corniche_viewer::{CameraRequest, ClassSet};
 use glam::DVec3;
 
 use super::{App, ground};
@@ -63,32 +63,4 @@ pub(crate) fn camera_request(
         manifest.coordinates.wgs84_from_working([target_in_world.x, target_in_world.y]);
     let distance_m = view.eye_in_world.distance(target_in_world) / manifest.point_scale;
     CameraRequest::LookAt { lon_deg, lat_deg, distance_m, orientation: view.orientation }
-}
-
-/// The ground at the place that a text tells, in world metres.
-///
-/// # Errors
-/// In words, when the text tells no place or there is no ground.
-pub(crate) fn place_in_world(
-    text: &str,
-    manifest: &Manifest,
-    ground: &dyn KnownGround,
-) -> Result<DVec3, String> {
-    let [lon_deg, lat_deg] = parse_lon_lat(text).map_err(|error| error.to_string())?;
-    let at = |lon_lat_deg| {
-        let [x, y] = manifest.coordinates.working_from_wgs84(lon_lat_deg)?;
-        Some(DVec3::new(x, y, ground.height([x, y])?))
-    };
-    at([lon_deg, lat_deg]).ok_or_else(|| {
-        let [west, south, east, north] = manifest.wgs84_bounds.to_array();
-        let hint = if at([lat_deg, lon_deg]).is_some() {
-            "; longitude comes first: are the two numbers the wrong way round?"
-        } else {
-            ""
-        };
-        format!(
-            "there is no ground at longitude {lon_deg}, latitude {lat_deg}; the package covers longitudes {west:.4} to \
-             {east:.4} and latitudes {south:.4} to {north:.4}{hint}"
-        )
-    })
 }

@@ -2,19 +2,20 @@
 
 use super::*;
 
-/// Whether the middle part of the picture shows some of the data, looked for pixel by pixel.
+/// Whether the middle part of the picture shows some of the data, or of a rim of 500 m around it, looked for pixel by pixel: a
+/// sliver of the data may lie between two pixels.
 fn finds_data(navigator: &Navigator) -> bool {
     let view = navigator.view();
     let camera = navigator.camera();
-    (0..40).any(|k| {
-        (0..40).any(|l| {
+    (0..80).any(|k| {
+        (0..80).any(|l| {
             let at_px = DVec2::new(
-                160.0 + 480.0 * f64::from(k) / 39.0,
-                120.0 + 360.0 * f64::from(l) / 39.0,
+                160.0 + 480.0 * f64::from(k) / 79.0,
+                120.0 + 360.0 * f64::from(l) / 79.0,
             );
             let at = view.on_plane(camera.ray_in_world(at_px), 400.0, 1e6);
             at.is_some_and(|at| {
-                (-1.0..=10_001.0).contains(&at.x) && (-1.0..=10_001.0).contains(&at.y)
+                (-500.0..=10_500.0).contains(&at.x) && (-500.0..=10_500.0).contains(&at.y)
             })
         })
     })

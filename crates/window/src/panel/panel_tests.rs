@@ -174,7 +174,9 @@ fn the_panel_is_as_wide_as_it_says_with_everything_open() {
     assert!(
         answer
             .occupied
-            .contains(&Rect::from_min_max(pos2(left, 0.0), pos2(1280.0, answer.occupied[0].top())))
+            .contains(&Rect::from_min_max(pos2(left, 0.0), pos2(1280.0, answer.occupied[0].top()))),
+        "{:?}",
+        answer.occupied
     );
     for (words, rect, clip) in &texts {
         assert!(clip.expand(1.0).contains_rect(*rect), "{words:?} is cut off");
