@@ -41,9 +41,8 @@ pub struct LevelRecord {
 }
 
 /// For serde: packages without relief say nothing of it.
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
-fn is_zero(count: &u64) -> bool {
-    *count == 0
+fn is_zero<N: Default + PartialEq>(count: &N) -> bool {
+    *count == N::default()
 }
 
 /// How far a level's TINs are from the DEM's own samples: those that nodes are made from, each once, after nodata, units
