@@ -38,6 +38,12 @@ impl Bounds {
         !(self.min_x <= self.max_x && self.min_y <= self.max_y)
     }
 
+    /// Whether a point lies inside or on the edge.
+    #[must_use]
+    pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
+        (self.min_x..=self.max_x).contains(&x) && (self.min_y..=self.max_y).contains(&y)
+    }
+
     /// Whether the two rectangles share a point, edges included.
     #[must_use]
     pub fn intersects(&self, other: &Self) -> bool {

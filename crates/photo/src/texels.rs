@@ -44,6 +44,12 @@ impl Texels {
         &self.rgba
     }
 
+    /// The same, without a copy.
+    #[must_use]
+    pub fn into_rgba(self) -> Vec<u8> {
+        self.rgba
+    }
+
     /// One texel.
     ///
     /// # Panics

@@ -11,8 +11,7 @@ use crate::{
     inputs::Inputs,
     levels::Levels,
     memory_shares::MemoryShares,
-    plan::Opened,
-    plan::{OpenedPhotos, photo_record},
+    plan::{Opened, OpenedPhotos, photo_record},
     terrain::ground::GroundSource,
 };
 

@@ -39,10 +39,8 @@ pub(crate) fn half_width_limit(road: &RoadStyle, growth: WidthGrowth, camera: &C
 /// The classes of which something is shown `nearest_m` world metres from the eye or farther away.
 pub(crate) fn shown_classes(view: &FrameView<'_>, nearest_m: f64) -> ClassSet {
     let pixel_m = view.camera.pixel_at_unit_depth_m() * nearest_m / view.point_scale;
-    FunctionalRoadClass::all()
-        .filter(|class| view.style.road(*class).last_pixel_m() > pixel_m)
-        .fold(ClassSet::NONE, ClassSet::with)
-        .and(view.roads.classes)
+    let classes = view.roads.classes.iter();
+    classes.filter(|class| view.style.road(*class).last_pixel_m() > pixel_m).collect()
 }
 
 /// For each level, how much ground a pixel covers where the level's tiles lack no road that is shown there.

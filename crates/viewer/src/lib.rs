@@ -52,7 +52,9 @@ pub mod for_tests {
     };
 }
 
-pub use annotations::{Legend, LegendRoad, draw_attribution, draw_legend};
+pub use annotations::{
+    Legend, LegendRoad, bar_length, bar_length_m, draw_attribution, draw_legend,
+};
 pub use class_scale::LevelScales;
 pub use frame_view::{FrameView, Wireframe};
 pub use lon_lat::{LonLatError, parse_lon_lat};

@@ -13,10 +13,13 @@
 use std::collections::BTreeMap;
 
 use corniche_geom::{Bounds, TILE_CELLS, TileId};
+use corniche_styles::Style;
+use corniche_tileset::Manifest;
 
 use crate::{
     camera::{Camera, WorldBox},
     class_scale::LevelScales,
+    options::RoadOptions,
 };
 
 /// What is known of a tile's ground.
@@ -65,7 +68,35 @@ pub struct Quality {
     pub vertical_scale: f64,
 }
 
+/// How fine a user wants the ground to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fineness {
+    /// A tile is refined while its error looks larger than this, pixels.
+    pub screen_space_error_px: f64,
+    /// A tile is refined while one of its cells looks larger than this, pixels; may be infinite.
+    pub cell_px: f64,
+}
+
 impl Quality {
+    /// For a package with this manifest, drawn with these roads and with heights multiplied by `exaggeration`.
+    #[must_use]
+    pub fn of_package(
+        manifest: &Manifest,
+        fineness: Fineness,
+        style: &Style,
+        roads: RoadOptions,
+        exaggeration: f64,
+    ) -> Self {
+        let Fineness { screen_space_error_px, cell_px } = fineness;
+        Self {
+            screen_space_error_px,
+            cell_px,
+            scales: LevelScales::of_roads(&manifest.levels, style, roads),
+            point_scale: manifest.point_scale,
+            vertical_scale: exaggeration * manifest.point_scale,
+        }
+    }
+
     /// Tiles are refined by their errors alone.
     #[must_use]
     pub const fn by_error(screen_space_error_px: f64, vertical_scale: f64) -> Self {

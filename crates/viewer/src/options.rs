@@ -62,6 +62,12 @@ pub enum Outline {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ClassSet(u16);
 
+impl FromIterator<FunctionalRoadClass> for ClassSet {
+    fn from_iter<I: IntoIterator<Item = FunctionalRoadClass>>(classes: I) -> Self {
+        classes.into_iter().fold(Self::NONE, Self::with)
+    }
+}
+
 impl ClassSet {
     /// All of them.
     pub const ALL: Self = Self((1 << FunctionalRoadClass::COUNT) - 1);
@@ -91,6 +97,11 @@ impl ClassSet {
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self(self.0 | other.0)
+    }
+
+    /// These classes, as a list, the most important first.
+    pub fn iter(self) -> impl Iterator<Item = FunctionalRoadClass> {
+        FunctionalRoadClass::all().filter(move |class| self.contains(*class))
     }
 
     /// These classes except one.

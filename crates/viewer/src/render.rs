@@ -6,15 +6,15 @@ use corniche_styles::Style;
 use crate::{
     annotations::{Legend, LegendRoad, draw_attribution, draw_legend},
     camera::Camera,
-    class_scale::{self, LevelScales},
+    class_scale,
     eye_height::{clearance_m, rounded_up_m},
     frame_view::{FrameView, Wireframe},
     gpu::{DrawTile, Gpu, GpuError, ReadBackError, Renderer, Targets, TileBuffers},
-    lod::{Drawn, Quality},
+    lod::{Drawn, Fineness, Quality},
     options::{ClassSet, RoadMethod, RoadOptions},
     range::{self, OutOfRange},
     scene::{self, SettleError},
-    tiles::{BlockingPackage, LoadTileError, TileGeometry, TileStore},
+    tiles::{BlockingPackage, LoadTileError, MapExtent, TileGeometry, TileStore},
     viewpoint::{CameraRequest, OffGround, SightedGround},
 };
 
@@ -143,18 +143,15 @@ pub fn render(
     request.check()?;
     let mut store = TileStore::new(package);
     let point_scale = package.manifest().point_scale;
-    let quality = Quality {
-        screen_space_error_px: request.screen_space_error_px,
-        cell_px: request.cell_px,
-        scales: LevelScales::of_roads(&package.manifest().levels, &request.style, request.roads),
-        point_scale,
-        vertical_scale: request.exaggeration * point_scale,
-    };
+    let fineness =
+        Fineness { screen_space_error_px: request.screen_space_error_px, cell_px: request.cell_px };
+    let RenderRequest { style, roads, exaggeration, .. } = request;
+    let quality = Quality::of_package(package.manifest(), fineness, style, *roads, *exaggeration);
     let height_range_m = store
         .coarsest_ground()?
         .ok_or_else(|| RenderError::NoGround { name: request.name.clone() })?
         .height_range_m;
-    let camera = camera(request, package, &mut store)?;
+    let camera = camera(request, package, &mut store, height_range_m)?;
     let drawn = scene::settle(&mut store, &camera, quality, is_stopped)?;
 
     let gpu = Gpu::new()?;
@@ -184,8 +181,8 @@ pub fn render(
         return Err(RenderError::Stopped);
     }
     if let Some(labels) = &request.legend {
-        let classes = drawn_classes(scene::draw_list(&store, &drawn).map(|(tile, _)| tile), &view);
-        draw_legend(&mut picture, &legend(&view, labels, &classes));
+        let tiles: Vec<_> = scene::draw_list(&store, &drawn).map(|(tile, _)| tile).collect();
+        draw_legend(&mut picture, &legend(&view, labels, drawn_classes(&tiles, &view)));
     }
     draw_attribution(&mut picture, &package.manifest().attribution);
 
@@ -217,6 +214,7 @@ fn camera(
     request: &RenderRequest,
     package: &dyn BlockingPackage,
     store: &mut TileStore<'_>,
+    height_range_m: [f64; 2],
 ) -> Result<Camera, RenderError> {
     let point_scale = package.manifest().point_scale;
     let vertical_scale = request.exaggeration * point_scale;
@@ -227,8 +225,13 @@ fn camera(
         None => None,
     };
     let no_ground = || RenderError::NoGround { name: request.name.clone() };
-    let extent = TileStore::new(package).map_extent(package.manifest().data_bounds)?;
-    let extent = extent.ok_or_else(no_ground)?;
+    let data = package.manifest().data_bounds;
+    let extent = match request.camera {
+        CameraRequest::Overview => {
+            TileStore::new(package).map_extent(data)?.ok_or_else(no_ground)?
+        }
+        CameraRequest::LookAt { .. } => MapExtent::of_data(data, height_range_m),
+    };
     let ground = SightedGround { extent, at_place_m };
     let camera =
         request.camera.camera(package.manifest(), ground, vertical_scale, request.size_px)?;
@@ -239,34 +242,25 @@ fn camera(
 }
 
 /// The classes of roads of which some tile of the view has a piece that is shown in the middle of the picture or nearer.
-fn drawn_classes<'a>(
-    tiles: impl Iterator<Item = &'a TileGeometry>,
-    view: &FrameView<'_>,
-) -> Vec<FunctionalRoadClass> {
+fn drawn_classes(tiles: &[&TileGeometry], view: &FrameView<'_>) -> ClassSet {
+    let has = |tile: &TileGeometry, class: FunctionalRoadClass| match view.roads.method {
+        RoadMethod::Geometry => !tile.roads.of_class(class).is_empty(),
+        RoadMethod::ShadowVolumes => !tile.volumes.of_class(class).is_empty(),
+        RoadMethod::None => false,
+    };
     let shown = class_scale::shown_classes(view, view.camera.focus_m());
-    let mut classes = ClassSet::NONE;
-    for tile in tiles {
-        let has = |class: FunctionalRoadClass| match view.roads.method {
-            RoadMethod::Geometry => !tile.roads.range_of(class).is_empty(),
-            RoadMethod::ShadowVolumes => !tile.volumes.range_of(class).is_empty(),
-            RoadMethod::None => false,
-        };
-        classes =
-            FunctionalRoadClass::all().filter(|class| has(*class)).fold(classes, ClassSet::with);
-    }
-    let classes = classes.and(shown);
-    FunctionalRoadClass::all().filter(|class| classes.contains(*class)).collect()
+    shown.iter().filter(|class| tiles.iter().any(|tile| has(tile, *class))).collect()
 }
 
 /// What the legend of a picture tells.
 fn legend(
     view: &FrameView<'_>,
     labels: &[String; FunctionalRoadClass::COUNT],
-    classes: &[FunctionalRoadClass],
+    classes: ClassSet,
 ) -> Legend {
     let axes = view.camera.world_from_view();
-    let road = |class: &FunctionalRoadClass| {
-        let style = view.style.road(*class);
+    let road = |class: FunctionalRoadClass| {
+        let style = view.style.road(class);
         let label = labels[usize::from(class.number())].clone();
         LegendRoad { label, color: style.color, outline: style.outline }
     };

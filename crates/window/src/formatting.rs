@@ -15,17 +15,6 @@ pub(crate) fn length(m: f64) -> String {
     }
 }
 
-/// A length of a scale bar, which has one digit: "20 m", "5 km", "10 cm".
-pub(crate) fn round_length(m: f64) -> String {
-    if m >= 1000.0 {
-        format!("{:.0} km", m / 1000.0)
-    } else if m >= 1.0 {
-        format!("{m:.0} m")
-    } else {
-        format!("{:.0} cm", m * 100.0)
-    }
-}
-
 /// The name of a method.
 pub(crate) fn method(method: RoadMethod) -> &'static str {
     match method {

@@ -106,7 +106,7 @@ pub(crate) enum CapTest {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Look")]
 pub(crate) struct LookArgs {
-    /// Colours and widths: road-atlas, dark, photo or a style file (TOML)
+    /// Colours and widths: road-atlas, dark, relief, photo or a style file (TOML)
     #[arg(long, value_name = "NAME|FILE", default_value = "road-atlas")]
     pub(crate) style: String,
     /// How strongly photos are seen, where the package has some: off, or 0 to 1 [default: as the style says]

@@ -35,6 +35,11 @@ impl DataTiles {
         }
     }
 
+    /// The level of these tiles: the finest one, but for those of [`DataTiles::above`].
+    pub(crate) fn level(&self) -> u8 {
+        self.level
+    }
+
     pub(crate) fn contains(&self, id: TileId) -> bool {
         id.z() == self.level
             && (self.columns[0]..=self.columns[1]).contains(&id.x())

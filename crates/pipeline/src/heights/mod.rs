@@ -6,3 +6,4 @@ pub(crate) mod finest;
 pub(crate) mod near;
 pub(crate) mod pyramid;
 pub(crate) mod rasters;
+pub(crate) mod upwards;

@@ -11,7 +11,7 @@ use super::{
     area::{AreaReader, AreaRecord, area_level, audit_blocks_of},
     data_tiles::DataTiles,
     near::is_near,
-    rasters,
+    rasters, upwards,
 };
 use crate::{BuildError, Observer, Stage, artifacts::Kind, workers};
 
@@ -73,19 +73,13 @@ impl Pyramid<'_> {
     /// Makes the rasters that are missing beneath and at `scope`, from those that are there up.
     pub(crate) fn make_rasters(&self, scope: TileId) -> Result<(), BuildError> {
         let (store, data) = (self.store, self.data());
-        for level in (scope.z()..self.grid.frame.max_level()).rev() {
-            let mut ids = data.above(level).within(scope);
-            ids.retain(|&id| !store.has(Kind::Raster.of_tile(id)));
-            workers::in_order_unless_cancelled(
-                self.observer,
-                self.threads,
-                ids.len(),
-                || Ok(()),
-                |(), index| rasters::put_from_children(store, &data, ids[index]),
-                |_, ()| Ok::<_, BuildError>(()),
-            )?;
-        }
-        Ok(())
+        upwards::make_missing(
+            (store, &data),
+            (self.observer, self.threads),
+            Kind::Raster,
+            scope,
+            |id| rasters::put_from_children(store, &data, id),
+        )
     }
 
     /// The heights of a tile with one node of halo on every side (259 × 259); `None` where the tile has no height.

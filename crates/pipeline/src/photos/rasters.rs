@@ -19,6 +19,11 @@ pub(crate) fn put(store: &dyn Artifacts, id: TileId, raster: &Texels) -> Result<
     Ok(store.put(Kind::PhotoRaster.of_tile(id), bytes)?)
 }
 
+/// The error for what was not made of a tile's photo.
+pub(crate) fn missing(id: TileId) -> BuildError {
+    BuildError::Missing { what: format!("the photo of tile {id}"), step: "heights" }
+}
+
 /// A tile's raster; `None` where it has no photo, and beside the data.
 pub(crate) fn get(
     store: &dyn Artifacts,
@@ -29,9 +34,7 @@ pub(crate) fn get(
         return Ok(None);
     }
     let key = Kind::PhotoRaster.of_tile(id);
-    let missing =
-        || BuildError::Missing { what: format!("the photo of tile {id}"), step: "heights" };
-    let bytes = store.get(key)?.ok_or_else(missing)?;
+    let bytes = store.get(key)?.ok_or_else(|| missing(id))?;
     if bytes.is_empty() {
         return Ok(None);
     }

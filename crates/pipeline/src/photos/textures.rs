@@ -7,12 +7,6 @@ use corniche_tileset::{PHOTO_BORDER, Photo, PhotoSection, encode_photo, photo_se
 use super::rasters::{self, SIDE};
 use crate::{BuildError, artifacts::Kind, context::Context, plan::OpenedPhotos};
 
-/// How many levels the texels of a coarse tile are finer than its cells. Such a tile is drawn while its cells look like some pixels,
-/// so its texels are half a cell, unless the photos have no such detail.
-fn coarse_levels(photos: &OpenedPhotos) -> u8 {
-    photos.levels().min(1)
-}
-
 /// Reads the photo of a finest tile, and keeps its texture and its raster.
 pub(crate) fn make_finest(
     context: &Context<'_>,
@@ -36,14 +30,13 @@ pub(crate) fn make_finest(
     }
     let texels = reader.window(photos.grid.texels().tile(id, PHOTO_BORDER))?;
     let levels = photos.levels();
-    match encode(id, levels, &texels, photos.quality)? {
-        Some(section) => store.put(key, section.bytes())?,
-        None => return none(),
-    }
     let mut raster = texels.part([PHOTO_BORDER; 2], [SIDE << levels; 2]);
-    drop(texels);
     for _ in 0..levels {
         raster = raster.halved();
+    }
+    match encode(id, levels, texels, photos.quality)? {
+        Some(section) => store.put(key, section.bytes())?,
+        None => return none(),
     }
     // The raster says that the tile is done, so it comes last.
     rasters::put(store, id, &raster)
@@ -57,19 +50,18 @@ pub(crate) fn of_tile(
     let Some(photos) = context.photo else { return Ok(None) };
     let store = context.store;
     if id.z() == context.frame().max_level() {
-        let missing =
-            || BuildError::Missing { what: format!("the photo of tile {id}"), step: "heights" };
-        let bytes = store.get(Kind::PhotoTexture.of_tile(id))?.ok_or_else(missing)?;
+        let bytes = store.get(Kind::PhotoTexture.of_tile(id))?;
+        let bytes = bytes.ok_or_else(|| rasters::missing(id))?;
         return Ok((!bytes.is_empty()).then(|| PhotoSection::from_bytes(bytes)));
     }
-    let levels = coarse_levels(photos);
+    let levels = photos.record().levels_on(id.z(), context.frame().max_level());
     // Texels of children are half a cell.
     let border = PHOTO_BORDER << (1 - levels);
     let Some(texels) = rasters::of_children(store, &context.data(), id, border)? else {
         return Ok(None);
     };
     let texels = if levels == 0 { texels.halved() } else { texels };
-    encode(id, levels, &texels, photos.quality)
+    encode(id, levels, texels, photos.quality)
 }
 
 /// The photo of a tile of the package whose terrain is taken.
@@ -87,9 +79,9 @@ pub(crate) fn of_payload(
 fn encode(
     id: TileId,
     levels: u8,
-    texels: &Texels,
+    texels: Texels,
     quality: u8,
 ) -> Result<Option<PhotoSection>, BuildError> {
-    let photo = Photo { levels, rgba: texels.rgba().to_vec() };
+    let photo = Photo { levels, rgba: texels.into_rgba() };
     Ok(encode_photo(id, &photo, quality)?)
 }

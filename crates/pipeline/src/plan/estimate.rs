@@ -8,11 +8,8 @@ use corniche_tileset::{LevelRecord, Manifest, ReliefLevels};
 use corniche_tin::TinSpec;
 use serde::Serialize;
 
-use super::{Opened, covered_tiles::CoveredTiles, rates};
-use crate::{
-    BuildError, Observer, Resources, machine::thread_time, plan::opened_photos::OpenedPhotos,
-    terrain::ground::GroundSource,
-};
+use super::{Opened, OpenedPhotos, covered_tiles::CoveredTiles, rates};
+use crate::{BuildError, Observer, Resources, machine::thread_time, terrain::ground::GroundSource};
 
 /// From so many finest tiles on some are triangulated to see how the ground is. Less work is estimated well enough without.
 const LEAST_TILES_TO_SAMPLE: u64 = 256;
@@ -168,9 +165,13 @@ impl Estimate {
         // Textures of finest tiles are kept beside their payloads.
         let rasters = all * rates::PHOTO_RASTER_BYTES;
         self.store_bytes += 2 * package.ceil() as u64 + rasters;
-        self.core_seconds += texels * rates::SECONDS_PER_PHOTO_TEXEL;
-        let cores = self.memory.threads.max(1) as f64 * rates::CORES_BUSY;
-        self.seconds = self.core_seconds / cores;
+        self.add_work(texels * rates::SECONDS_PER_PHOTO_TEXEL);
+    }
+
+    /// Adds work that all threads share.
+    fn add_work(&mut self, core_seconds: f64) {
+        self.core_seconds += core_seconds;
+        self.seconds += core_seconds / self.memory.cores();
     }
 
     /// Of a build that takes the terrain of a package.
@@ -197,15 +198,14 @@ impl Estimate {
         let while_sorted = pieces + rates::SORTED_PER_EXTRACT_BYTE * extract;
         let core_seconds = rates::SECONDS_PER_RECORDED_TRIANGLE * triangles as f64
             + rates::SECONDS_PER_EXTRACT_BYTE * extract;
-        let cores = memory.threads.max(1) as f64 * rates::CORES_BUSY;
         Self {
             nodes: manifest.counts.samples.nodes,
             tiles,
-            memory,
             store_bytes: (records as f64 + package + pieces).max(while_sorted).ceil() as u64,
             package_bytes: package.ceil() as u64,
             core_seconds,
-            seconds: core_seconds / cores,
+            seconds: core_seconds / memory.cores(),
+            memory,
             rates: Rates::Recorded,
         }
     }
@@ -218,9 +218,7 @@ impl Estimate {
         let bytes = tiles * rates::RELIEF_BYTES;
         self.package_bytes += bytes;
         self.store_bytes += bytes;
-        let core_seconds = tiles as f64 * rates::SECONDS_PER_RELIEF;
-        self.seconds += core_seconds / (self.memory.threads.max(1) as f64 * rates::CORES_BUSY);
-        self.core_seconds += core_seconds;
+        self.add_work(tiles as f64 * rates::SECONDS_PER_RELIEF);
         self
     }
 
@@ -248,15 +246,14 @@ impl Estimate {
         let while_sorted = pieces + rates::SORTED_PER_EXTRACT_BYTE * extract;
         let store = (fixed as f64 + coarse_tins + package + pieces).max(while_sorted);
         let core_seconds = ground.core_seconds + rates::SECONDS_PER_EXTRACT_BYTE * extract;
-        let cores = memory.threads.max(1) as f64 * rates::CORES_BUSY;
         Self {
             nodes,
             tiles,
-            memory,
             store_bytes: store.ceil() as u64,
             package_bytes: package.ceil() as u64,
             core_seconds,
-            seconds: core_seconds / cores,
+            seconds: core_seconds / memory.cores(),
+            memory,
             rates: ground.rates,
         }
     }
@@ -281,9 +278,12 @@ impl MemoryEstimate {
             least_bytes: rates::BASE_BYTES.saturating_add(tiles_bytes).saturating_add(of_threads),
         }
     }
-}
 
-impl MemoryEstimate {
+    /// How many cores the threads keep busy.
+    fn cores(&self) -> f64 {
+        self.threads.max(1) as f64 * rates::CORES_BUSY
+    }
+
     /// Adds what a thread needs to make a tile's photo.
     fn add_photos(&mut self, levels: u8) {
         let texels = rates::photo_texels(levels).ceil() as u64;

@@ -4,12 +4,15 @@ use corniche_dem::{Dem, GridPlan, Polygon};
 use corniche_geom::CoordinateTable;
 use corniche_tileset::{PhotoRecord, ReliefLevels};
 
-use super::{coordinates::coordinates, facts::terrain_differences};
+use super::{
+    coordinates::coordinates,
+    facts::terrain_differences,
+    opened_photos::{OpenedPhotos, photo_record},
+};
 use crate::{
     BuildError, PlanSettings, PlannedInput, TerrainSettings,
     inputs::{InputKind, Inputs, OtherInputs},
     levels::{Levels, most_scale},
-    plan::opened_photos::{OpenedPhotos, photo_record},
     settings_record,
     terrain::{ground::GroundSource, recorded::RecordedTerrain},
 };

@@ -26,6 +26,11 @@ impl OpenedPhotos {
         })
     }
 
+    /// What the manifest says of how they are made.
+    pub(crate) fn record(&self) -> PhotoRecord {
+        PhotoRecord { levels: self.levels(), quality: self.quality }
+    }
+
     /// How many levels of texels are finer than the finest cell.
     pub(crate) fn levels(&self) -> u8 {
         self.grid.texels().levels()
@@ -39,8 +44,6 @@ pub(crate) fn photo_record(
 ) -> Option<PhotoRecord> {
     match source {
         GroundSource::Package(terrain) => terrain.manifest().settings.photo,
-        GroundSource::Dem(_) => {
-            photo.map(|photo| PhotoRecord { levels: photo.levels(), quality: photo.quality })
-        }
+        GroundSource::Dem(_) => photo.map(OpenedPhotos::record),
     }
 }

@@ -1,6 +1,9 @@
 //! What a build costs per tile, thread and byte, as measured. All constants of the estimates are here;
 //! `docs/build-costs.md` says how they were measured.
 
+use corniche_geom::TILE_CELLS;
+use corniche_tileset::PHOTO_BORDER;
+
 /// Program, libraries, the tables of PROJ and GDAL, buffers of the store: whatever does not depend on input or threads.
 pub(crate) const BASE_BYTES: u64 = 80 << 20;
 /// Heights of an area, its TIN while it grows, a tile while it is encoded.
@@ -53,9 +56,10 @@ pub(crate) const SORTED_PER_EXTRACT_BYTE: f64 = 1.5;
 pub(crate) const ROADS_PER_EXTRACT_BYTE: f64 = 0.5;
 /// Time to read an extract and cut its roads, on one core.
 pub(crate) const SECONDS_PER_EXTRACT_BYTE: f64 = 0.5e-6;
+
 /// Texels of the photo of a tile, border included, whose cells have 2^levels texels along each side.
 pub(crate) fn photo_texels(levels: u8) -> f64 {
-    (f64::from(256_u32 << levels) + 16.0).powi(2)
+    (((TILE_CELLS as usize) << levels) + 2 * PHOTO_BORDER).pow(2) as f64
 }
 /// Memory for each texel while a tile's photo is made: four bytes, the same of the part for the levels above, and three and the
 /// coded ones while it is encoded.
@@ -63,13 +67,14 @@ pub(crate) const THREAD_BYTES_PER_PHOTO_TEXEL: u64 = 16;
 /// Pixels that are read for it at once.
 pub(crate) const PHOTO_PIXELS_BYTES: u64 = 16 << 20;
 /// A tile's raster of its photo.
-pub(crate) const PHOTO_RASTER_BYTES: u64 = 256 * 256 * 4;
+pub(crate) const PHOTO_RASTER_BYTES: u64 = 4 * (TILE_CELLS * TILE_CELLS) as u64;
 /// Bytes of a photo for each texel, at the usual quality.
 pub(crate) const PHOTO_BYTES_PER_TEXEL: f64 = 0.2;
 /// Texels of the photos of all levels, divided by those of the finest.
 pub(crate) const ALL_PER_FINEST_PHOTO: f64 = 1.4;
 /// Time for each texel of a photo, on one core.
 pub(crate) const SECONDS_PER_PHOTO_TEXEL: f64 = 0.3e-6;
+
 /// Time for each node of the finest level, on one core: to read it and to compare TINs with it.
 pub(crate) const SECONDS_PER_NODE: f64 = 0.18e-6;
 /// Time for each triangle of any level, on one core.

@@ -43,14 +43,17 @@ pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildErro
             let empty = || damaged(Kind::Tin.of_tile(id), &"it has no ground");
             let meshed = Meshed::get(store, id)?.ok_or_else(empty)?;
             let deviation = deviations.get(&id).copied().unwrap_or_default();
-            let relief = if context.has_relief(id) {
-                let heights = rasters::with_halo(store, &data, id)?.ok_or_else(empty)?;
-                relief::of_tile(context, id, &heights)?
+            let heights = || rasters::with_halo(store, &data, id);
+            // A tile without relief needs them only where it has roads.
+            let (read, relief) = if context.has_relief(id) {
+                let heights = heights()?.ok_or_else(empty)?;
+                let relief = relief::of_tile(context, id, &heights)?;
+                (Some(heights), relief)
             } else {
-                None
+                (None, None)
             };
             let owned = || {
-                let heights = rasters::with_halo(store, &data, id)?;
+                let heights = if read.is_some() { read } else { heights()? };
                 encode::owned_by_heights(context, id, heights.as_ref())
             };
             let tile = (meshed, relief);

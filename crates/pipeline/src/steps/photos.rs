@@ -8,6 +8,7 @@ use crate::{
     BuildError, Stage,
     artifacts::Kind,
     context::Context,
+    heights::upwards,
     photos::{rasters, textures},
     workers,
 };
@@ -36,17 +37,11 @@ pub(crate) fn make_rasters(context: &Context<'_>, scope: TileId) -> Result<(), B
         return Ok(());
     }
     let (store, data) = (context.store, context.data());
-    for level in (scope.z()..context.frame().max_level()).rev() {
-        let mut ids = data.above(level).within(scope);
-        ids.retain(|&id| !store.has(Kind::PhotoRaster.of_tile(id)));
-        workers::in_order_unless_cancelled(
-            context.observer,
-            context.threads(),
-            ids.len(),
-            || Ok(()),
-            |(), index| rasters::put_from_children(store, &data, ids[index]),
-            |_, ()| Ok::<_, BuildError>(()),
-        )?;
-    }
-    Ok(())
+    upwards::make_missing(
+        (store, &data),
+        (context.observer, context.threads()),
+        Kind::PhotoRaster,
+        scope,
+        |id| rasters::put_from_children(store, &data, id),
+    )
 }

@@ -100,8 +100,7 @@ fn look_at(
         }
     };
     drop(payload);
-    let finest = package.manifest().frame.max_level();
-    let levels = if id.z() == finest { record.levels } else { record.levels.min(1) };
+    let levels = record.levels_on(id.z(), package.manifest().frame.max_level());
     findings.look(CheckId::PhotoWhole, photo.levels == levels, || {
         format!("the photo of tile {id} has {} levels, {levels} are recorded", photo.levels)
     });

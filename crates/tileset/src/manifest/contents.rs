@@ -188,6 +188,15 @@ pub struct PhotoRecord {
     pub quality: u8,
 }
 
+impl PhotoRecord {
+    /// A cell of a level has 2 to this power texels along each side. A coarse tile is drawn while its cells look like some pixels, so
+    /// its texels are half a cell, unless the photos have no such detail.
+    #[must_use]
+    pub fn levels_on(self, level: u8, finest_level: u8) -> u8 {
+        if level == finest_level { self.levels } else { self.levels.min(1) }
+    }
+}
+
 /// The photos of a level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PhotoLevelRecord {

@@ -35,7 +35,8 @@ pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend) {
     let line_px = line_px(height);
     let pad_px = line_px / 2;
     let Some(letters) = Letters::new(line_px) else { return };
-    let (bar_m, bar_text) = bar(f64::from(width) * BAR_SHARE * legend.pixel_m);
+    let Some(bar_m) = bar_length_m(f64::from(width) * BAR_SHARE * legend.pixel_m) else { return };
+    let bar_text = bar_length(bar_m);
     let bar_px = (bar_m / legend.pixel_m).round() as u32;
     let sample_px = 2 * line_px;
     let labels_px = letters.widest_px(legend.roads.iter().map(|road| road.label.as_str()));
@@ -69,14 +70,29 @@ pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend) {
     draw_arrow(picture, middle, f64::from(line_px) * 0.85, legend.north_deg);
 }
 
-/// The longest round length that is not longer than `most_m`, and how it is written.
-fn bar(most_m: f64) -> (f64, String) {
-    let power = 10_f64.powf(most_m.max(1e-3).log10().floor());
+/// The longest length for a scale bar that is not longer than `most_m`: 1, 2 or 5 times a power of ten, metres. `None` where
+/// `most_m` is no positive number.
+#[must_use]
+pub fn bar_length_m(most_m: f64) -> Option<f64> {
+    // This form also refuses NaN.
+    if !(most_m > 0.0 && most_m.is_finite()) {
+        return None;
+    }
+    let power = 10_f64.powf(most_m.log10().floor());
     let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * power <= most_m).unwrap_or(1.0);
-    let bar_m = step * power;
-    let text =
-        if bar_m >= 1000.0 { format!("{} km", bar_m / 1000.0) } else { format!("{bar_m} m") };
-    (bar_m, text)
+    Some(step * power)
+}
+
+/// Such a length in words: "20 m", "5 km", "10 cm".
+#[must_use]
+pub fn bar_length(m: f64) -> String {
+    if m >= 1000.0 {
+        format!("{:.0} km", m / 1000.0)
+    } else if m >= 1.0 {
+        format!("{m:.0} m")
+    } else {
+        format!("{:.0} cm", m * 100.0)
+    }
 }
 
 /// A slim triangle that points to the north, its right half light.

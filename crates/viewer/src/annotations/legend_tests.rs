@@ -27,10 +27,23 @@ fn bars_have_round_lengths() {
         (1.5, 1.0, "1 m"),
         (2300.0, 2000.0, "2 km"),
         (150_000.0, 100_000.0, "100 km"),
-        (0.0, 0.001, "0.001 m"),
+        (0.5, 0.5, "50 cm"),
     ] {
-        let (found_m, found) = bar(most_m);
+        let found_m = bar_length_m(most_m).unwrap();
+        let found = bar_length(found_m);
         assert!((found_m - bar_m).abs() < 1e-9 && found == text, "{most_m}: {found_m} {found}");
+    }
+}
+
+#[test]
+fn lengths_of_bars_have_their_usual_unit() {
+    assert_eq!([bar_length(0.2), bar_length(50.0), bar_length(2000.0)], ["20 cm", "50 m", "2 km"]);
+}
+
+#[test]
+fn without_a_length_there_is_no_bar() {
+    for most_m in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(bar_length_m(most_m), None, "{most_m}");
     }
 }
 

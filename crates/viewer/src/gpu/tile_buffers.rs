@@ -1,4 +1,4 @@
-use corniche_geom::{Bounds, TileId};
+use corniche_geom::TileId;
 
 use super::{
     Gpu,
@@ -14,7 +14,7 @@ use crate::{
     frame_view::FrameView,
     options::{ClassSet, RoadMethod},
     scene::BorderTile,
-    tiles::TileGeometry,
+    tiles::{TileGeometry, plan_around},
 };
 
 /// A tile on the graphics card.
@@ -122,11 +122,9 @@ impl DrawTile<'_> {
 
     /// No ground that its roads paint is nearer to the eye, world metres.
     fn nearest_m(&self, view: &FrameView<'_>) -> f64 {
-        let TileBuffers { reference_m: [x, y, _], size_m, width_margin_m, .. } = *self.buffers;
+        let TileBuffers { reference_m, size_m, width_margin_m, .. } = *self.buffers;
         let Some(height_range_m) = self.buffers.height_range_m else { return 0.0 };
-        let [east_m, north_m] = size_m.map(|side_m| side_m / 2.0);
-        let plan =
-            Bounds { min_x: x - east_m, min_y: y - north_m, max_x: x + east_m, max_y: y + north_m };
+        let plan = plan_around(reference_m, size_m);
         let ground =
             WorldBox::new(plan, height_range_m.map(|height_m| height_m * view.vertical_scale()));
         // GEO also paints the neighbours' ground, within the margin. Twice the margin allows for slopes of 60 degrees there.

@@ -1,5 +1,6 @@
 //! The textures of a tile's ground on the graphics card, in one bind group.
 
+use corniche_tileset::PHOTO_BORDER;
 use wgpu::{
     BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingResource, BindingType, BufferUsages,
     Device, RenderPass, SamplerBindingType, ShaderStages, TextureFormat, TextureSampleType,
@@ -10,12 +11,14 @@ use wgpu::{
 use super::{
     Gpu,
     bindings::{group, layout, texture, uniform},
-    photo_texture::{self, PhotoTexture},
+    photo_texture,
 };
 use crate::tiles::{PhotoImage, ShadingSlopes, TileGeometry};
 
 /// The slopes: rise east and north.
-const FORMAT: TextureFormat = TextureFormat::Rg16Float;
+const SLOPES: TextureFormat = TextureFormat::Rg16Float;
+/// Whether a node is water.
+const WATER: TextureFormat = TextureFormat::R8Unorm;
 
 /// The number of the bind group.
 const GROUP: u32 = 3;
@@ -50,21 +53,26 @@ pub(crate) fn rows(tile: &TileGeometry) -> [[f32; 4]; 2] {
     let has_water = tile.shading.as_ref().is_some_and(|slopes| !slopes.water().is_empty());
     [
         [east, north, has(tile.shading.is_some()), has(has_water)],
-        [has(tile.photo.is_some()), 0.0, 0.0, 0.0],
+        [has(tile.photo.is_some()), PHOTO_BORDER as f32, 0.0, 0.0],
     ]
 }
 
 impl TileTextures {
-    /// Uploads the textures of a tile. Without slopes there is a texel that nothing reads.
+    /// Uploads the textures of a tile. What it does not have is one texel that nothing reads.
     pub(crate) fn new(gpu: &Gpu, tile: &TileGeometry) -> Self {
+        let none = |format| square(gpu, format, 1, &[0; 4]);
         let side = ShadingSlopes::SIDE as u32;
         let slopes = match &tile.shading {
-            Some(slopes) => square(gpu, FORMAT, side, bytemuck::cast_slice(slopes.texels())),
-            None => square(gpu, FORMAT, 1, &[0; 4]),
+            Some(slopes) => square(gpu, SLOPES, side, bytemuck::cast_slice(slopes.texels())),
+            None => none(SLOPES),
         };
         let water = match tile.shading.as_ref().map(ShadingSlopes::water) {
-            Some(water) if !water.is_empty() => square(gpu, TextureFormat::R8Unorm, side, water),
-            _ => square(gpu, TextureFormat::R8Unorm, 1, &[0]),
+            Some(water) if !water.is_empty() => square(gpu, WATER, side, water),
+            _ => none(WATER),
+        };
+        let photo = match &tile.photo {
+            Some(photo) => photo_texture::upload(gpu, photo),
+            None => none(photo_texture::FORMAT),
         };
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("tile textures"),
@@ -72,17 +80,14 @@ impl TileTextures {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
+        let photo_sampler = photo_texture::sampler(&gpu.device);
         let block =
             gpu.buffer("tile textures", bytemuck::cast_slice(&rows(tile)), BufferUsages::UNIFORM);
-        let photo = tile.photo.as_ref();
-        let photo =
-            photo.map_or_else(|| PhotoTexture::none(gpu), |photo| PhotoTexture::new(gpu, photo));
-        let photo_sampler = photo_texture::sampler(&gpu.device);
         let resources = [
             block.as_entire_binding(),
             BindingResource::Sampler(&sampler),
             BindingResource::TextureView(&slopes),
-            BindingResource::TextureView(photo.view()),
+            BindingResource::TextureView(&photo),
             BindingResource::Sampler(&photo_sampler),
             BindingResource::TextureView(&water),
         ];

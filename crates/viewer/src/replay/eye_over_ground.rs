@@ -11,7 +11,8 @@ use crate::{
 /// At most about this many tiles are kept while heights are looked up.
 const LOOK_UP_TILES: usize = 256;
 
-/// The flight that is drawn when the user gives none: over the roads, or over the whole package if it has none. `is_stopped` is called often; once it returns true,
+/// The flight that is drawn when the user gives none: over the roads, or over the whole package if it has none. `is_stopped` is
+/// called often; once it returns true,
 /// the result is [`ReplayError::Stopped`].
 ///
 /// # Errors

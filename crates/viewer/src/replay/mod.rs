@@ -31,11 +31,10 @@ use self::{
 use crate::{
     annotations::draw_attribution,
     camera::Camera,
-    class_scale::LevelScales,
     flight::{Flight, Pose},
     frame_view::{FrameView, Wireframe},
     gpu::{DrawTile, Gpu, PassTimer, PassTimes, Renderer, Targets, TileBuffers},
-    lod::Quality,
+    lod::{Fineness, Quality},
     tiles::{BlockingPackage, TileStore},
 };
 
@@ -253,17 +252,13 @@ impl<'a> Replay<'a> {
         });
         match &mut self.tiles {
             TileSupply::Streamed(streamed) => {
-                let quality = Quality {
+                let ReplayOptions { style, roads, exaggeration, .. } = &self.options;
+                let fineness = Fineness {
                     screen_space_error_px: self.options.screen_space_error_px,
                     cell_px: self.options.cell_px,
-                    scales: LevelScales::of_roads(
-                        &self.package.manifest().levels,
-                        &self.options.style,
-                        self.options.roads,
-                    ),
-                    point_scale: self.package.manifest().point_scale,
-                    vertical_scale,
                 };
+                let manifest = self.package.manifest();
+                let quality = Quality::of_package(manifest, fineness, style, *roads, *exaggeration);
                 // The first frame waits until nothing is missing; the others do not wait.
                 let patience = if frame == 0 { Patience::UntilSettled } else { Patience::None };
                 streamed.advance(camera, ahead.as_ref(), quality, patience, self.is_stopped)

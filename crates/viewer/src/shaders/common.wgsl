@@ -96,7 +96,7 @@ fn shown_share(class_number: u32, distance_m: f32) -> f32 {
 // Labels of tunnels are below those of all other roads: what is on the ground hides what is beneath it.
 const TUNNEL_LABELS = 20u;
 
-// Side of a pixel of the final picture at a distance from the eye, metres.
+// Side of a pixel of the final picture at a distance from the eye or at a depth, metres.
 fn pixel_m_at(distance_m: f32) -> f32 {
     return frame.scale.x * frame.road_scale.w * distance_m;
 }

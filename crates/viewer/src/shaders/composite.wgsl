@@ -85,7 +85,7 @@ fn void_at(ray: vec3<f32>) -> vec3<f32> {
     let distance = max(plane.z, 0.0) / down;
     let place = plane.xy + distance * ray.xy;
     // As long as it is on the plane in the direction of view.
-    let footprint = frame.scale.x * frame.road_scale.w * distance * inverseSqrt(down) + 1e-9;
+    let footprint = pixel_m_at(distance) * inverseSqrt(down) + 1e-9;
     let octave = log2(HATCH_PX * footprint);
     let spacing = exp2(ceil(octave));
     let along = place.x + place.y;
@@ -117,7 +117,7 @@ fn width_px(road_class: u32, distance_m: f32, depth: f32) -> f32 {
     // The tile, the direction of the road and its own width are not known here. So its width factor is that of the whole
     // package, and its width that of its class.
     let road = road_with(road_class, PLAIN, 0.0, frame.road_options.z);
-    return 2.0 * scaled_half_width_m(road, distance_m) / (frame.scale.x * depth * frame.road_scale.w);
+    return 2.0 * scaled_half_width_m(road, distance_m) / pixel_m_at(depth);
 }
 
 // The ground or the sky at a pixel.

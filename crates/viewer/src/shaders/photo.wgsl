@@ -1,10 +1,8 @@
-// The photo of a tile: a square of texels from the north-west, with PHOTO_BORDER more on every side, which are those of the
+// The photo of a tile: a square of texels from the north-west, with a border on every side, which are those of the
 // neighbours. So neighbours show the same colour along their border, in each of the texture's sizes.
 
 @group(3) @binding(3) var photo: texture_2d<f32>;
 @group(3) @binding(4) var photo_sampler: sampler;
-
-const PHOTO_BORDER = 8.0;
 
 // rgb: the photo's colour; a: 1 where there is a photo, 0 where there is none. `plan_in_tile` is in metres from the tile's
 // middle. For fragment stages, and not inside a branch.
@@ -16,6 +14,7 @@ fn photo_at(plan_in_tile: vec2<f32>) -> vec4<f32> {
     }
     let side = f32(textureDimensions(photo).x);
     let share = vec2(0.5, 0.5) + vec2(1.0, -1.0) * plan_in_tile * tile_textures.plan.xy;
-    let texel = share * (side - 2.0 * PHOTO_BORDER) + PHOTO_BORDER;
+    let border = tile_textures.photo.y;
+    let texel = share * (side - 2.0 * border) + border;
     return textureSample(photo, photo_sampler, texel / side);
 }

@@ -5,7 +5,7 @@
 struct TileTextures {
     // xy: 1 / the tile's sides east and north; z: 1 where there are slopes, else 0; w: the same for water.
     plan: vec4<f32>,
-    // x: 1 where there is a photo, else 0.
+    // x: 1 where there is a photo, else 0; y: texels of its border on each side.
     photo: vec4<f32>,
 }
 

@@ -172,9 +172,7 @@ impl TileGeometry {
     /// The rectangle that it covers in the working CRS.
     #[must_use]
     pub(crate) fn plan_bounds(&self) -> Bounds {
-        let ([x, y, _], [east_m, north_m]) =
-            (self.reference_m, self.size_m.map(|side_m| side_m / 2.0));
-        Bounds { min_x: x - east_m, min_y: y - north_m, max_x: x + east_m, max_y: y + north_m }
+        plan_around(self.reference_m, self.size_m)
     }
 
     /// True height of the ground at a position in the working CRS; `None` where this tile has no ground.
@@ -190,6 +188,12 @@ impl TileGeometry {
             })
         })
     }
+}
+
+/// The rectangle of a tile in the working CRS: its reference point lies in its middle.
+pub(crate) fn plan_around([x, y, _]: [f64; 3], size_m: [f64; 2]) -> Bounds {
+    let [east_m, north_m] = size_m.map(|side_m| side_m / 2.0);
+    Bounds { min_x: x - east_m, min_y: y - north_m, max_x: x + east_m, max_y: y + north_m }
 }
 
 /// The ground of a tile on the lattice, as roads need it.

@@ -68,9 +68,7 @@ fn heights_in(tiles: &[&TileGeometry], plan: Bounds) -> [f64; 2] {
         let [x, y, height_m] = tile.reference_m;
         tile.ground.vertices.iter().filter_map(move |vertex| {
             let [east, north, above] = vertex.position_in_tile.map(f64::from);
-            let inside = (plan.min_x..=plan.max_x).contains(&(x + east))
-                && (plan.min_y..=plan.max_y).contains(&(y + north));
-            inside.then_some([height_m + above; 2])
+            plan.contains([x + east, y + north]).then_some([height_m + above; 2])
         })
     });
     let all = tiles.iter().filter_map(|tile| tile.summary).map(|ground| ground.height_range_m);

@@ -34,7 +34,7 @@ pub use self::{
     store::TileStore,
 };
 pub(crate) use self::{
-    geometry::WideWay,
+    geometry::{WideWay, plan_around},
     ground_mesh::{GroundMesh, GroundVertex},
     plan_scale::PlanScale,
     roads::{BadRoad, Bed, GroundLine, NearHeights, RoadEnd, dash_m},

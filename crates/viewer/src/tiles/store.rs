@@ -106,7 +106,7 @@ impl<'a> TileStore<'a> {
             self.load(&[Request { id, coarseness: f64::INFINITY }])?;
             found = self.get(id).and_then(|tile| tile.ground_height_m(at)).or(found);
             next = (id.z() < self.max_level())
-                .then(|| id.children().find(|child| holds(&self.plan_bounds(*child), at)))
+                .then(|| id.children().find(|child| self.plan_bounds(*child).contains(at)))
                 .flatten()
                 .filter(|child| self.source.exists(*child));
         }
@@ -130,8 +130,4 @@ impl TileTree for TileStore<'_> {
     fn max_level(&self) -> u8 {
         self.source.frame().max_level()
     }
-}
-
-fn holds(bounds: &Bounds, [x, y]: [f64; 2]) -> bool {
-    (bounds.min_x..=bounds.max_x).contains(&x) && (bounds.min_y..=bounds.max_y).contains(&y)
 }

@@ -5,11 +5,11 @@
 
 use corniche_styles::Rgb;
 use corniche_viewer::{
-    LevelScales, Wireframe,
+    Wireframe,
     camera::Camera,
     flight::{Pose, WorkingCrs},
     gpu::GpuError,
-    lod::Quality,
+    lod::{Fineness, Quality},
 };
 use egui_wgpu::ScreenDescriptor;
 
@@ -135,17 +135,14 @@ impl App {
     /// Chooses tiles and brings them to the graphics card; tells whether the next frame may have more of this to do.
     fn change_tiles(&mut self, canvas: &mut Canvas, camera: &Camera, now_s: f64) -> bool {
         let ahead = self.camera.look_ahead(now_s, camera.size_px());
-        let quality = Quality {
-            screen_space_error_px: self.settings.screen_space_error_px,
-            cell_px: self.settings.cell_px,
-            scales: LevelScales::of_roads(
-                &self.package.manifest().levels,
-                self.styles.at(self.settings.style),
-                self.settings.roads,
-            ),
-            point_scale: self.package.manifest().point_scale,
-            vertical_scale: self.vertical_scale(),
+        let settings = &self.settings;
+        let fineness = Fineness {
+            screen_space_error_px: settings.screen_space_error_px,
+            cell_px: settings.cell_px,
         };
+        let (manifest, style) = (self.package.manifest(), self.styles.at(settings.style));
+        let quality =
+            Quality::of_package(manifest, fineness, style, settings.roads, settings.exaggeration);
         let changes = match self.settings.refinement {
             Refinement::Live => self.tiles.choose(camera, ahead.as_ref(), quality),
             Refinement::Frozen => Changes::default(),

@@ -1,7 +1,8 @@
+use corniche_viewer::{bar_length, bar_length_m};
 use egui::{CornerRadius, FontId, Rect, Stroke, Ui, pos2, vec2};
 
 use super::palette::{INK, LONGEST_BAR, MARGIN, PAPER};
-use crate::{formatting, window_content::WindowContent};
+use crate::window_content::WindowContent;
 
 /// From this tilt on, the scale at the edges of the picture differs from that in the middle, and the bar says so.
 const TILTED_DEG: f64 = 5.0;
@@ -18,14 +19,7 @@ pub(crate) struct ScaleBar {
 impl ScaleBar {
     /// The longest bar of no more than `most` points; `None` where `metres_per_point` is no positive number.
     pub(crate) fn new(metres_per_point: f64, most: f32) -> Option<Self> {
-        let most_m = metres_per_point * f64::from(most);
-        // This form also refuses NaN.
-        if !(most_m > 0.0 && most_m.is_finite()) {
-            return None;
-        }
-        let power = 10_f64.powf(most_m.log10().floor());
-        let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * power <= most_m).unwrap_or(1.0);
-        let length_m = step * power;
+        let length_m = bar_length_m(metres_per_point * f64::from(most))?;
         Some(Self { length_m, points: (length_m / metres_per_point) as f32 })
     }
 }
@@ -43,7 +37,7 @@ pub(crate) fn scale_bar(
     let Some(bar) = content.metres_per_point.and_then(|scale| ScaleBar::new(scale, most)) else {
         return credits_top;
     };
-    let mut words = formatting::round_length(bar.length_m);
+    let mut words = bar_length(bar.length_m);
     if content.pose.orientation.pitch_deg > TILTED_DEG {
         words.push_str(" in the middle");
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use corniche_geom::TileId;
 use corniche_viewer::{
     CameraRequest,
-    tiles::{BlockingPackage, MapPackage, TileStore},
+    tiles::{BlockingPackage, MapExtent, MapPackage, TileStore},
 };
 
 use crate::{
@@ -30,11 +30,18 @@ impl OpenedPackage {
         tiles: Arc<dyn BlockingPackage + Send + Sync>,
     ) -> Result<Self, WindowError> {
         app::check(request, tiles.as_ref())?;
-        let root = tiles.load(TileId::ROOT)?;
-        let extent = TileStore::new(tiles.as_ref()).map_extent(tiles.manifest().data_bounds)?;
-        let extent = extent.ok_or_else(|| WindowError::NoGround { name: request.name.clone() })?;
+        let no_ground = || WindowError::NoGround { name: request.name.clone() };
+        let mut store = TileStore::new(tiles.as_ref());
+        let ground = store.coarsest_ground()?.ok_or_else(no_ground)?;
+        let data = tiles.manifest().data_bounds;
+        let extent = match request.camera {
+            CameraRequest::Overview => store.map_extent(data)?.ok_or_else(no_ground)?,
+            CameraRequest::LookAt { .. } => MapExtent::of_data(data, ground.height_range_m),
+        };
+        let root = store.get(TileId::ROOT).ok_or_else(no_ground)?;
         let package: Arc<dyn MapPackage> = Arc::<dyn BlockingPackage + Send + Sync>::clone(&tiles);
-        Ok(Self { shown: ShownPackage::of(request, package, &root, extent)?, tiles })
+        let shown = ShownPackage::of(request, package, root, extent)?;
+        Ok(Self { shown, tiles })
     }
 
     /// True height of the ground at the place that the camera looks at first. `None` without ground there, and where it looks

@@ -86,33 +86,21 @@ impl Terrain {
             gpu.buffer("ground colors", bytemuck::cast_slice(&rows), BufferUsages::UNIFORM);
         shared.set_frame(pass);
         pass.set_bind_group(2, &group(gpu, &self.layout, &[colors.as_entire_binding()]), &[]);
-        pass.set_pipeline(&self.surface);
-        for (index, ground, textures) in tiles {
-            shared.set_tile(pass, *index);
-            textures.set(pass);
-            ground.draw_surface(pass);
-        }
-        pass.set_pipeline(&self.skirts);
-        for (index, ground, textures) in tiles {
-            shared.set_tile(pass, *index);
-            textures.set(pass);
-            ground.draw_skirts(pass);
-        }
-        if view.wall_m > 0.0 {
-            pass.set_pipeline(&self.walls);
+        let mut draw = |pipeline: &RenderPipeline, draw: &dyn Fn(&GroundBuffers, &mut _)| {
+            pass.set_pipeline(pipeline);
             for (index, ground, textures) in tiles {
                 shared.set_tile(pass, *index);
                 textures.set(pass);
-                ground.draw_walls(pass);
+                draw(ground, pass);
             }
+        };
+        draw(&self.surface, &GroundBuffers::draw_surface);
+        draw(&self.skirts, &GroundBuffers::draw_skirts);
+        if view.wall_m > 0.0 {
+            draw(&self.walls, &GroundBuffers::draw_walls);
         }
         if view.wireframe == Wireframe::Shown {
-            pass.set_pipeline(&self.wires);
-            for (index, ground, textures) in tiles {
-                shared.set_tile(pass, *index);
-                textures.set(pass);
-                ground.draw_edges(gpu, pass);
-            }
+            draw(&self.wires, &|ground, pass| ground.draw_edges(gpu, pass));
         }
     }
 }
