@@ -5,7 +5,7 @@ use std::fs;
 use corniche_tidy::{Graph, crates_of, read_crate, root, uses};
 
 /// Which crates of the workspace each crate may use, beyond what those use (`ARCHITECTURE.md`, "The crates").
-const MAY_USE: [(&str, &[&str]); 17] = [
+const MAY_USE: [(&str, &[&str]); 18] = [
     ("cli", &["window", "viewer", "pipeline", "presets", "export"]),
     ("window", &["viewer"]),
     ("viewer", &["tileset", "styles"]),
@@ -18,6 +18,7 @@ const MAY_USE: [(&str, &[&str]); 17] = [
     ("presets", &["roads"]),
     ("styles", &["roads"]),
     ("drape", &["tin", "geom"]),
+    ("areas", &["geom"]),
     ("roads", &["geom"]),
     ("tin", &["geom"]),
     ("geom", &[]),

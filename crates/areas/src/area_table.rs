@@ -1,0 +1,109 @@
+use std::{collections::BTreeMap, fmt::Write as _};
+
+use crate::AreaClass;
+
+/// Which tags make which class of area. A table is checked when it is made.
+///
+/// The first tag of an object that the table lists decides; tags are looked at in the order of the table's keys, so that the
+/// order in a file does not matter. The sea is in no table: it is made of coastlines.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AreaTable {
+    name: String,
+    /// By the order in which keys were named first: key, then value → class.
+    keys: Vec<(String, BTreeMap<String, AreaClass>)>,
+}
+
+/// Why entries do not make an [`AreaTable`].
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum AreaTableError {
+    #[error(
+        "an area table needs a name of 1 to 64 characters out of a-z, A-Z, 0-9, '.', '-' and '_', got {name:?}"
+    )]
+    Name { name: String },
+    #[error("area table {name:?} lists no tags")]
+    NoTags { name: String },
+    #[error("area table {name:?} lists {tag:?}, which is not of the form key=value")]
+    Tag { name: String, tag: String },
+    #[error("area table {name:?} lists {tag} twice; keep one of the entries")]
+    Twice { name: String, tag: String },
+    #[error("area table {name:?} gives tags to the class sea, which is made of coastlines")]
+    Sea { name: String },
+}
+
+impl AreaTable {
+    /// Takes the table `name`: tags as `key=value`, each with its class. Tags whose keys come first decide first.
+    ///
+    /// # Errors
+    /// When the name cannot stand in a package's metadata, a tag is none or is listed twice, or there is none.
+    pub fn new(
+        name: impl Into<String>,
+        tags: Vec<(String, AreaClass)>,
+    ) -> Result<Self, AreaTableError> {
+        let name = name.into();
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
+        if name.is_empty() || name.len() > 64 || !name.chars().all(is_plain) {
+            return Err(AreaTableError::Name { name });
+        }
+        if tags.is_empty() {
+            return Err(AreaTableError::NoTags { name });
+        }
+        let mut keys: Vec<(String, BTreeMap<String, AreaClass>)> = Vec::new();
+        for (tag, class) in tags {
+            if class == AreaClass::Sea {
+                return Err(AreaTableError::Sea { name });
+            }
+            let is_text = |part: &str| {
+                !part.is_empty() && !part.chars().any(|c| c.is_whitespace() || c.is_control())
+            };
+            let parts = tag.split_once('=').filter(|(key, value)| is_text(key) && is_text(value));
+            let Some((key, value)) = parts else { return Err(AreaTableError::Tag { name, tag }) };
+            let known = keys.iter().position(|(known, _)| known == key);
+            let place = known.unwrap_or_else(|| {
+                keys.push((key.to_owned(), BTreeMap::new()));
+                keys.len() - 1
+            });
+            if keys[place].1.insert(value.to_owned(), class).is_some() {
+                return Err(AreaTableError::Twice { name, tag });
+            }
+        }
+        Ok(Self { name, keys })
+    }
+
+    /// Its name, as packages record it.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What an object with these `(key, value)` tags is, or `None`. Of a key that occurs twice the first counts.
+    #[must_use]
+    pub fn classify(&self, tags: &[(&str, &str)]) -> Option<AreaClass> {
+        let value_of = |key: &str| tags.iter().find(|(k, _)| *k == key).map(|&(_, value)| value);
+        self.keys.iter().find_map(|(key, values)| values.get(value_of(key)?).copied())
+    }
+
+    /// All tags with their class: keys in the order in which they decide, values in alphabetical order.
+    pub fn tags(&self) -> impl Iterator<Item = (&str, &str, AreaClass)> {
+        self.keys.iter().flat_map(|(key, values)| {
+            values.iter().map(move |(value, &class)| (key.as_str(), value.as_str(), class))
+        })
+    }
+
+    /// The whole table as text, one tag a line: equal tables give the same text, whatever their files look like, so this text
+    /// is what is hashed.
+    #[must_use]
+    pub fn canonical_text(&self) -> String {
+        let mut text = format!("name={}\n", self.name);
+        for (key, value, class) in self.tags() {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{key}={value}: {class}");
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+#[path = "area_table_tests.rs"]
+mod tests;

@@ -1,0 +1,232 @@
+use std::collections::BTreeSet;
+
+use geo::{Coord, LineString, Validation as _};
+use proptest::prelude::*;
+
+use super::*;
+
+fn points(list: &[[i64; 2]]) -> Vec<LatticePoint> {
+    list.iter().map(|&[u, v]| LatticePoint::new(u, v)).collect()
+}
+
+fn try_assembling(ways: &[Vec<LatticePoint>]) -> Result<Assembled, OutlineError> {
+    let ways: Vec<OutlineWay<'_>> = ways.iter().map(|points| OutlineWay { points }).collect();
+    assemble(&ways)
+}
+
+fn of(ways: &[&[[i64; 2]]]) -> Result<Assembled, OutlineError> {
+    try_assembling(&ways.iter().map(|way| points(way)).collect::<Vec<_>>())
+}
+
+fn square(west: i64, south: i64, side: i64) -> [[i64; 2]; 5] {
+    let (east, north) = (west + side, south + side);
+    [[west, south], [east, south], [east, north], [west, north], [west, south]]
+}
+
+/// Doubled area and number of holes of each polygon.
+fn figures(assembled: &Assembled) -> Vec<(i128, usize)> {
+    assembled
+        .polygons
+        .iter()
+        .map(|polygon| (polygon.doubled_area(), polygon.holes().len()))
+        .collect()
+}
+
+#[test]
+fn a_closed_way_is_a_polygon_counter_clockwise() {
+    let mut outline = square(2, 3, 10);
+    outline.reverse();
+    let assembled = of(&[&outline]).unwrap();
+    assert_eq!(assembled.polygons[0].outer().points(), points(&square(2, 3, 10)[..4]));
+    assert_eq!(figures(&assembled), [(200, 0)]);
+}
+
+#[test]
+fn holes_and_islands_nest_to_any_depth() {
+    let rings = [square(0, 0, 100), square(10, 10, 80), square(20, 20, 60), square(30, 30, 40)];
+    let assembled = of(&rings.each_ref().map(|ring| &ring[..])).unwrap();
+    let doubled = |outer: i128, hole: i128| 2 * (outer * outer - hole * hole);
+    assert_eq!(figures(&assembled), [(doubled(100, 80), 1), (doubled(60, 40), 1)]);
+}
+
+#[test]
+fn rings_that_touch_at_a_point_are_told_apart() {
+    // Two squares corner to corner are two polygons; a hole that touches its outer ring stays a hole.
+    assert_eq!(figures(&of(&[&square(0, 0, 2), &square(2, 2, 2)]).unwrap()), [(8, 0), (8, 0)]);
+    let hole = [[0, 0], [3, 1], [1, 3], [0, 0]];
+    let assembled = of(&[&square(0, 0, 10), &hole]).unwrap();
+    assert_eq!(figures(&assembled), [(200 - 8, 1)]);
+    // Two holes that touch each other, too.
+    let assembled = of(&[&square(0, 0, 10), &square(2, 2, 2), &square(4, 4, 2)]).unwrap();
+    assert_eq!(figures(&assembled), [(200 - 16, 2)]);
+}
+
+#[test]
+fn one_way_that_touches_itself_is_divided() {
+    // A ring that runs through (0, 0) twice, around two triangles.
+    let eight = [[0, 0], [4, 1], [4, -1], [0, 0], [-4, 1], [-4, -1], [0, 0]];
+    assert_eq!(figures(&of(&[&eight]).unwrap()), [(8, 0), (8, 0)]);
+}
+
+#[test]
+fn a_shared_border_counts_as_none() {
+    let assembled = of(&[&square(0, 0, 2), &square(2, 0, 2)]).unwrap();
+    assert_eq!(figures(&assembled), [(16, 0)]);
+    assert_eq!(assembled.repeated_segments, 1);
+}
+
+#[test]
+fn a_point_in_the_middle_of_a_segment_divides_it() {
+    // The right square leans on the longer side of the left one.
+    let assembled = of(&[&square(0, 0, 6), &square(6, 2, 2)]).unwrap();
+    assert_eq!(figures(&assembled), [(72 + 8, 0)]);
+    assert_eq!((assembled.divided_segments, assembled.repeated_segments), (2, 1));
+}
+
+#[test]
+fn open_and_crossing_outlines_are_refused() {
+    let open = of(&[&square(0, 0, 4)[..4]]).unwrap_err();
+    assert_eq!(open, OutlineError::Open { ends: 2, first: LatticePoint::new(0, 0) });
+    let crossing = of(&[&[[0, 0], [4, 4], [4, 0], [0, 4], [0, 0]]]).unwrap_err();
+    assert!(matches!(crossing, OutlineError::Crossing { .. }), "{crossing}");
+    let overlapping = of(&[&square(0, 0, 4), &square(2, 2, 4)]).unwrap_err();
+    assert!(matches!(overlapping, OutlineError::Crossing { .. }), "{overlapping}");
+}
+
+#[test]
+fn nothing_is_left_of_points_and_of_lines_there_and_back() {
+    for way in [&[[1, 1]][..], &[[1, 1], [1, 1]], &[[0, 0], [5, 5], [0, 0]], &[]] {
+        assert_eq!(of(&[way]).unwrap_err(), OutlineError::Nothing);
+    }
+}
+
+#[test]
+fn far_coordinates_do_not_overflow() {
+    let [west, east] = [-1_800_000_000, 1_800_000_000];
+    let ring =
+        [[west, -900_000_000], [east, -900_000_001], [east, 900_000_000], [west, -900_000_000]];
+    let hole = square(1_000_000_000, 1, 1_000);
+    let assembled = of(&[&ring, &hole]).unwrap();
+    let doubled = 3_600_000_000_i128 * 1_800_000_001 - 2_000_000;
+    assert_eq!(figures(&assembled), [(doubled, 1)]);
+}
+
+/// Cells of a chessboard that are inside.
+fn cells() -> impl Strategy<Value = BTreeSet<(i64, i64)>> {
+    prop::collection::btree_set((0_i64..9, 0_i64..9), 1..60)
+}
+
+/// The borders between cells inside and outside as ways, cut and turned by chance: bit by bit `seed` decides.
+fn ways_around(cells: &BTreeSet<(i64, i64)>, mut seed: u64) -> Vec<Vec<LatticePoint>> {
+    let mut edges: Vec<[(i64, i64); 2]> = Vec::new();
+    for &(x, y) in cells {
+        for (beside, edge) in [
+            ((x, y - 1), [(x, y), (x + 1, y)]),
+            ((x, y + 1), [(x, y + 1), (x + 1, y + 1)]),
+            ((x - 1, y), [(x, y), (x, y + 1)]),
+            ((x + 1, y), [(x + 1, y), (x + 1, y + 1)]),
+        ] {
+            if !cells.contains(&beside) {
+                edges.push(edge);
+            }
+        }
+    }
+    let mut random = move |below: usize| {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        (seed % below as u64) as usize
+    };
+    let mut ways = Vec::new();
+    while !edges.is_empty() {
+        let [mut from, to] = edges.swap_remove(random(edges.len()));
+        if random(2) == 0 {
+            ways.push(vec![from, to]);
+            continue;
+        }
+        let mut way = vec![from, to];
+        from = to;
+        while let Some(next) = edges.iter().position(|edge| edge.contains(&from)) {
+            if random(5) == 0 {
+                break;
+            }
+            let edge = edges.swap_remove(next);
+            from = if edge[0] == from { edge[1] } else { edge[0] };
+            way.push(from);
+        }
+        ways.push(way);
+    }
+    ways.into_iter().map(|way| way.into_iter().map(placed).collect()).collect()
+}
+
+/// Corners of cells in a place where no side is level or upright.
+fn placed((x, y): (i64, i64)) -> LatticePoint {
+    LatticePoint::new(7 * x - 2 * y, 3 * x + 11 * y)
+}
+
+/// Doubled area of a cell there.
+const DOUBLED_CELL: i128 = 2 * (7 * 11 + 2 * 3);
+
+/// How many groups of cells are connected by their sides.
+fn groups(cells: &BTreeSet<(i64, i64)>) -> usize {
+    let mut left = cells.clone();
+    let mut groups = 0;
+    while let Some(first) = left.pop_first() {
+        groups += 1;
+        let mut waiting = vec![first];
+        while let Some((x, y)) = waiting.pop() {
+            let beside = [(x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)];
+            waiting.extend(beside.into_iter().filter(|cell| left.remove(cell)));
+        }
+    }
+    groups
+}
+
+fn to_geo(polygon: &Polygon) -> geo::Polygon<f64> {
+    let line = |ring: &Ring| {
+        let coords =
+            ring.points().iter().map(|point| Coord { x: point.u as f64, y: point.v as f64 });
+        LineString::from(coords.collect::<Vec<_>>())
+    };
+    geo::Polygon::new(line(polygon.outer()), polygon.holes().iter().map(line).collect())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(if cfg!(miri) { 4 } else { 400 }))]
+
+    /// Whatever ways surround some cells, the polygons are these cells: one for each group that hangs together by sides, with
+    /// their area, each valid by the rules of Simple Features.
+    #[test]
+    fn polygons_are_the_cells_that_were_surrounded(cells in cells(), seed in 1_u64..) {
+        let assembled = try_assembling(&ways_around(&cells, seed)).unwrap();
+        let area: i128 = assembled.polygons.iter().map(Polygon::doubled_area).sum();
+        prop_assert_eq!(area, DOUBLED_CELL * cells.len() as i128);
+        prop_assert_eq!(assembled.polygons.len(), groups(&cells));
+        for polygon in &assembled.polygons {
+            let of_geo = to_geo(polygon);
+            prop_assert!(of_geo.is_valid(), "{:?}", of_geo.validation_errors());
+            prop_assert!(polygon.outer().doubled_area() > 0);
+            prop_assert!(polygon.holes().iter().all(|hole| hole.doubled_area() < 0));
+        }
+    }
+
+    /// The order and the direction of ways do not matter, and neither does where they are cut.
+    #[test]
+    fn polygons_do_not_depend_on_the_ways(cells in cells(), seeds in [1_u64.., 1_u64..]) {
+        let [one, other] = seeds.map(|seed| try_assembling(&ways_around(&cells, seed)).unwrap());
+        prop_assert_eq!(one, other);
+    }
+
+    /// An outline from which one segment is missing is open at its two ends.
+    #[test]
+    fn a_missing_segment_leaves_two_open_ends(cells in cells(), seed in 1_u64..) {
+        let mut ways = ways_around(&cells, seed);
+        ways[0].pop();
+        if ways[0].is_empty() {
+            ways.remove(0);
+        }
+        let error = try_assembling(&ways).unwrap_err();
+        let is_open = matches!(error, OutlineError::Open { ends: 2, .. });
+        prop_assert!(is_open || error == OutlineError::Nothing, "{}", error);
+    }
+}

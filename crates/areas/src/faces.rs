@@ -1,0 +1,222 @@
+//! The faces of a planar graph, and which of them are inside.
+//!
+//! A *walk* goes once around a face along its left side. A face has one walk for each connected part of the graph that it
+//! meets: one around it and one around each island in it. Walks on both sides of a segment belong to different faces, one
+//! inside and one outside, because no segment is there an even number of times. So it is enough to know, for each connected
+//! part, in which face it lies: the face that is seen from its westernmost point towards the west.
+
+use std::cmp::Ordering;
+
+use corniche_geom::{LatticePoint, Side, side};
+
+use crate::{planar_graph::PlanarGraph, segments::Segment, stabbing::Stabbing};
+
+/// The face west of everything.
+const OUTERMOST: usize = usize::MAX;
+
+/// The walks of all faces that are inside.
+pub(crate) struct InnerFaces {
+    /// For each face the half-edges of its walks, from any start.
+    pub(crate) faces: Vec<Vec<Vec<usize>>>,
+}
+
+/// Finds the faces inside.
+pub(crate) fn inner_faces(graph: &PlanarGraph) -> InnerFaces {
+    let walks = Walks::new(graph);
+    let parts = parts_of(graph, &walks);
+    let stabbing =
+        Stabbing::new(graph.segments().iter().map(|[a, b]| [a.v.min(b.v), a.v.max(b.v)]));
+    let mut face_of: Vec<Option<Face>> = vec![None; walks.starts.len()];
+    for part in parts {
+        let around = match west_of(graph, &stabbing, part.westernmost) {
+            // The part that is seen there begins farther west, so it came before.
+            Some(half) => face_of[walks.of[half]].unwrap_or(Face::OUTSIDE),
+            None => Face::OUTSIDE,
+        };
+        spread(graph, &walks, &mut face_of, part.outer_walk, around);
+    }
+    collect(graph, &walks, &face_of)
+}
+
+/// A face: the walk that names it, and whether it is inside.
+#[derive(Debug, Clone, Copy)]
+struct Face {
+    name: usize,
+    is_inside: bool,
+}
+
+impl Face {
+    const OUTSIDE: Self = Self { name: OUTERMOST, is_inside: false };
+}
+
+struct Walks {
+    /// For each half-edge its walk.
+    of: Vec<usize>,
+    /// For each walk one of its half-edges.
+    starts: Vec<usize>,
+}
+
+impl Walks {
+    fn new(graph: &PlanarGraph) -> Self {
+        const NONE: usize = usize::MAX;
+        let mut of = vec![NONE; graph.half_edges()];
+        let mut starts = Vec::new();
+        for start in 0..graph.half_edges() {
+            let mut half = start;
+            if of[half] == NONE {
+                while of[half] == NONE {
+                    of[half] = starts.len();
+                    half = graph.next(half);
+                }
+                starts.push(start);
+            }
+        }
+        Self { of, starts }
+    }
+}
+
+/// A connected part of the graph.
+struct ConnectedPart {
+    westernmost: LatticePoint,
+    /// The walk around all of it.
+    outer_walk: usize,
+}
+
+/// The connected parts, from west to east.
+fn parts_of(graph: &PlanarGraph, walks: &Walks) -> Vec<ConnectedPart> {
+    let mut is_seen = vec![false; walks.starts.len()];
+    let mut parts = Vec::new();
+    // Half-edges with even numbers begin at the smaller point, and segments are in order of it: the first half-edge of a part
+    // that is met begins at the part's westernmost point.
+    for half in (0..graph.half_edges()).step_by(2) {
+        if is_seen[walks.of[half]] {
+            continue;
+        }
+        let westernmost = graph.origin(half);
+        // All segments from that point lead east (or straight north). Left of the last one, counter-clockwise, is the west.
+        let last = (half..graph.half_edges())
+            .step_by(2)
+            .take_while(|&other| graph.origin(other) == westernmost)
+            .max_by(|&a, &b| match side(westernmost, graph.target(a), graph.target(b)) {
+                Side::Left => Ordering::Less,
+                Side::On => Ordering::Equal,
+                Side::Right => Ordering::Greater,
+            })
+            .unwrap_or(half);
+        let outer_walk = walks.of[last];
+        parts.push(ConnectedPart { westernmost, outer_walk });
+        let mut waiting = vec![outer_walk];
+        is_seen[outer_walk] = true;
+        while let Some(walk) = waiting.pop() {
+            for_each_half_edge(graph, walks.starts[walk], |half| {
+                let beside = walks.of[half ^ 1];
+                if !is_seen[beside] {
+                    is_seen[beside] = true;
+                    waiting.push(beside);
+                }
+            });
+        }
+    }
+    parts
+}
+
+/// Gives the walks of a connected part their faces: `around` to its outer walk, then in turn from both sides of segments.
+fn spread(
+    graph: &PlanarGraph,
+    walks: &Walks,
+    face_of: &mut [Option<Face>],
+    outer_walk: usize,
+    around: Face,
+) {
+    face_of[outer_walk] = Some(around);
+    let mut waiting = vec![(outer_walk, around.is_inside)];
+    while let Some((walk, is_inside)) = waiting.pop() {
+        for_each_half_edge(graph, walks.starts[walk], |half| {
+            let beside = walks.of[half ^ 1];
+            if face_of[beside].is_none() {
+                face_of[beside] = Some(Face { name: beside, is_inside: !is_inside });
+                waiting.push((beside, !is_inside));
+            }
+        });
+    }
+}
+
+fn collect(graph: &PlanarGraph, walks: &Walks, face_of: &[Option<Face>]) -> InnerFaces {
+    let mut by_name: Vec<(usize, usize)> = face_of
+        .iter()
+        .enumerate()
+        .filter_map(|(walk, face)| face.filter(|face| face.is_inside).map(|face| (face.name, walk)))
+        .collect();
+    by_name.sort_unstable();
+    let half_edges = |walk: usize| {
+        let mut all = Vec::new();
+        for_each_half_edge(graph, walks.starts[walk], |half| all.push(half));
+        all
+    };
+    let faces = by_name
+        .chunk_by(|a, b| a.0 == b.0)
+        .map(|face| face.iter().map(|&(_, walk)| half_edges(walk)).collect())
+        .collect();
+    InnerFaces { faces }
+}
+
+fn for_each_half_edge(graph: &PlanarGraph, start: usize, mut take: impl FnMut(usize)) {
+    let mut half = start;
+    loop {
+        take(half);
+        half = graph.next(half);
+        if half == start {
+            return;
+        }
+    }
+}
+
+/// The half-edge that is seen first from a point towards the west, with the point on its left side.
+///
+/// The look goes a little above the point, so that ends of segments at the same height are no special case: a segment counts
+/// from its lower end, without its upper one.
+fn west_of(graph: &PlanarGraph, stabbing: &Stabbing, point: LatticePoint) -> Option<usize> {
+    let mut nearest: Option<(Upward, usize)> = None;
+    stabbing.at(point.v, &mut |number| {
+        let upward = Upward::new(graph.segments()[number]);
+        if side(upward.low, upward.high, point) != Side::Right {
+            return;
+        }
+        if nearest.is_none_or(|(other, _)| other.at(point.v, upward) == Ordering::Less) {
+            nearest = Some((upward, number));
+        }
+    });
+    // Seen from the east, the half-edge that leads down has the point on its left.
+    nearest.map(|(upward, number)| 2 * number + usize::from(upward.is_forward))
+}
+
+/// A segment that is not level, from its lower to its upper end.
+#[derive(Clone, Copy)]
+struct Upward {
+    low: LatticePoint,
+    high: LatticePoint,
+    /// Whether the lower end is the first of the segment.
+    is_forward: bool,
+}
+
+impl Upward {
+    fn new([a, b]: Segment) -> Self {
+        let is_forward = a.v < b.v;
+        let (low, high) = if is_forward { (a, b) } else { (b, a) };
+        Self { low, high, is_forward }
+    }
+
+    /// Whether this one is west (`Less`) or east of another at a height, or a little above it. The two do not cross.
+    fn at(self, height: i64, other: Self) -> Ordering {
+        let rise = |segment: Self| i128::from(segment.high.v - segment.low.v);
+        let run = |segment: Self| i128::from(segment.high.u - segment.low.u);
+        let (own_rise, other_rise) = (rise(self), rise(other));
+        // Both places times their rise: exact, at most 2^70 for coordinates of 2^34.
+        let place = |segment: Self| {
+            i128::from(segment.low.u) * rise(segment)
+                + run(segment) * i128::from(height - segment.low.v)
+        };
+        let here = (place(self) * other_rise).cmp(&(place(other) * own_rise));
+        here.then_with(|| (run(self) * other_rise).cmp(&(run(other) * own_rise)))
+    }
+}
