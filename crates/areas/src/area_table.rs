@@ -84,6 +84,11 @@ impl AreaTable {
         self.keys.iter().find_map(|(key, values)| values.get(value_of(key)?).copied())
     }
 
+    /// The keys, in the order in which they decide.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        self.keys.iter().map(|(key, _)| key.as_str())
+    }
+
     /// All tags with their class: keys in the order in which they decide, values in alphabetical order.
     pub fn tags(&self) -> impl Iterator<Item = (&str, &str, AreaClass)> {
         self.keys.iter().flat_map(|(key, values)| {

@@ -11,6 +11,7 @@
 //!
 //! This crate never sees terrain, a tile or a file, and never moves a point.
 
+mod area;
 mod area_class;
 mod area_table;
 mod assemble;
@@ -21,6 +22,7 @@ mod planar_graph;
 mod segments;
 mod stabbing;
 
+pub use area::{Area, AreaObject};
 pub use area_class::AreaClass;
 pub use area_table::{AreaTable, AreaTableError};
 pub use assemble::{Assembled, OutlineError, OutlineWay, assemble};

@@ -74,3 +74,29 @@ impl Polygon {
         self.rings().map(Ring::doubled_area).sum()
     }
 }
+
+impl Polygon {
+    /// The same polygon with each point where `place` puts it: the same rings, about the same directions. `None` where a point
+    /// has no place, or so many fall together that a ring is none any more.
+    #[must_use]
+    pub fn placed(
+        &self,
+        mut place: impl FnMut(LatticePoint) -> Option<LatticePoint>,
+    ) -> Option<Self> {
+        let mut ring = |ring: &Ring| {
+            let points: Option<Vec<_>> = ring.points.iter().map(|&point| place(point)).collect();
+            let mut points = points?;
+            points.dedup();
+            while points.len() > 1 && points.first() == points.last() {
+                points.pop();
+            }
+            Some(points)
+        };
+        let is_ring = |points: &Vec<LatticePoint>| points.len() >= 3;
+        let outer = Some(ring(&self.outer)?).filter(is_ring).map(Ring::new)?;
+        let holes: Option<Vec<_>> = self.holes.iter().map(ring).collect();
+        // A hole that has shrunk to a line is gone.
+        let holes = holes?.into_iter().filter(is_ring).map(Ring::new).collect();
+        Some(Self::new(outer, holes))
+    }
+}

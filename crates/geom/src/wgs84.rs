@@ -1,4 +1,4 @@
-//! Lengths on the WGS84 ellipsoid, and on others.
+//! Lengths and areas on the WGS84 ellipsoid, and lengths on others.
 
 /// Semi-major axis.
 pub const SEMI_MAJOR_M: f64 = 6_378_137.0;
@@ -35,6 +35,37 @@ pub fn short_distance_m(from_deg: [f64; 2], to_deg: [f64; 2]) -> f64 {
     let east = ((turns - turns.round()) * 360.0).to_radians();
     let north = (to_deg[1] - from_deg[1]).to_radians();
     (parallel_m * east).hypot(meridian_m * north)
+}
+
+/// Area inside a closed line, square metres, on the ellipsoid; negative for a clockwise one. The first position is not repeated at
+/// the end. Positions are [longitude, latitude] in degrees, and between neighbours the line goes the shorter way around the earth.
+///
+/// Exact for lines that are straight in the cylindrical equal-area projection. Where they are straight in degrees or geodesics the
+/// difference is a part of (side / earth's radius)² or so. No line may go around a pole.
+///
+/// Source: Snyder 1987, *Map Projections: A Working Manual*, equation 3-12 (q, which makes areas of latitude equal).
+#[must_use]
+pub fn area_m2(ring_deg: &[[f64; 2]]) -> f64 {
+    let next = ring_deg.iter().cycle().skip(1);
+    let doubled: f64 = ring_deg
+        .iter()
+        .zip(next)
+        .map(|(from, to)| {
+            let turns = (to[0] - from[0]) / 360.0;
+            let east = ((turns - turns.round()) * 360.0).to_radians();
+            east * (equal_area_latitude(from[1]) + equal_area_latitude(to[1]))
+        })
+        .sum();
+    // Going east, what lies between the line and the equator counts as outside.
+    -doubled / 2.0 * SEMI_MAJOR_M * SEMI_MAJOR_M / 2.0
+}
+
+/// Snyder's q: areas between two latitudes are proportional to its difference.
+fn equal_area_latitude(latitude_deg: f64) -> f64 {
+    let sin = latitude_deg.to_radians().sin();
+    let e = ECCENTRICITY_2.sqrt();
+    (1.0 - ECCENTRICITY_2)
+        * (sin / (1.0 - ECCENTRICITY_2 * sin * sin) + (e * sin).atanh() / e)
 }
 
 #[cfg(test)]

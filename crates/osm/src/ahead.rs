@@ -28,4 +28,9 @@ impl<T, I: Iterator<Item = io::Result<T>>> Ahead<I> {
     pub(crate) fn take(&mut self) {
         self.next = None;
     }
+
+    /// The record that was seen; `None` if none was.
+    pub(crate) fn take_next(&mut self) -> Option<T> {
+        self.next.take().and_then(Result::ok)
+    }
 }

@@ -17,6 +17,9 @@ const TEXT_BYTES: u64 = 64;
 /// What is kept of a field that is not in the format: an entry of a map, with a list.
 const UNKNOWN_BYTES: u64 = 256;
 
+/// Nodes are 0, ways 1, relations 2.
+const LAST_MEMBER_KIND: u64 = 2;
+
 /// Far more tags than any object has.
 const MAX_TAGS: u64 = 1 << 16;
 
@@ -94,7 +97,8 @@ impl Audit {
                     self.dense(field.value.bytes()?)?;
                 }
                 3 => self.way(field.value.bytes()?)?,
-                4 | 5 => self.other(field.value.bytes()?)?,
+                4 => self.relation(field.value.bytes()?)?,
+                5 => self.other(field.value.bytes()?)?,
                 _ => self.spend(UNKNOWN_BYTES)?,
             }
         }
@@ -183,8 +187,8 @@ impl Audit {
             let field = field?;
             match field.number {
                 1 => id = field.value.varint()?.cast_signed(),
-                2 => keys += self.text_numbers(id, field.value)?,
-                3 => values += self.text_numbers(id, field.value)?,
+                2 => keys += self.text_numbers("way", id, field.value)?,
+                3 => values += self.text_numbers("way", id, field.value)?,
                 4 => self.message(field.value.bytes()?)?,
                 8 => self.add_up(field.value, &mut nodes, "the ids of a way's nodes")?,
                 9 | 10 => {
@@ -209,7 +213,50 @@ impl Audit {
         }
     }
 
-    /// Relations and changesets are not used, but the decoder reads them.
+    fn relation(&mut self, relation: &[u8]) -> Result<(), String> {
+        let (mut id, mut keys, mut values) = (0, 0, 0);
+        let (mut roles, mut kinds) = (0, 0);
+        let mut members = Sum::default();
+        for field in wire::fields(relation) {
+            let field = field?;
+            match field.number {
+                1 => id = field.value.varint()?.cast_signed(),
+                2 => keys += self.text_numbers("relation", id, field.value)?,
+                3 => values += self.text_numbers("relation", id, field.value)?,
+                4 => self.message(field.value.bytes()?)?,
+                8 => {
+                    roles += field.value.numbers()?.count();
+                    self.count(field.value)?;
+                }
+                9 => self.add_up(field.value, &mut members, "the ids of a relation's members")?,
+                10 => {
+                    for kind in field.value.numbers()? {
+                        let kind = kind?;
+                        kinds += 1;
+                        if kind > LAST_MEMBER_KIND {
+                            return Err(format!("a member of relation {id} is of kind {kind}"));
+                        }
+                    }
+                    self.spend_on_numbers(field.value)?;
+                }
+                _ => self.spend(UNKNOWN_BYTES)?,
+            }
+        }
+        let ids = members.count;
+        if keys != values {
+            Err(format!("relation {id} has {keys} keys and {values} values"))
+        } else if keys > MAX_TAGS {
+            Err(format!("relation {id} has {keys} tags"))
+        } else if [roles as u64, kinds] != [ids; 2] {
+            Err(format!(
+                "relation {id} has {ids} members, {roles} roles and {kinds} kinds of members"
+            ))
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Changesets are not used, but the decoder reads them.
     fn other(&mut self, object: &[u8]) -> Result<(), String> {
         for field in wire::fields(object) {
             let field = field?;
@@ -258,16 +305,14 @@ impl Audit {
     }
 
     /// Checks that the table holds the texts with these numbers; says how many there are.
-    fn text_numbers(&mut self, way_id: i64, value: Value<'_>) -> Result<u64, String> {
+    fn text_numbers(&mut self, of: &str, id: i64, value: Value<'_>) -> Result<u64, String> {
         let mut count = 0;
         for number in value.numbers()? {
             let number = number?;
             count += 1;
             if number >= self.texts {
                 let texts = self.texts;
-                return Err(format!(
-                    "a tag of way {way_id} is string {number} of a table of {texts}"
-                ));
+                return Err(format!("a tag of {of} {id} is string {number} of a table of {texts}"));
             }
         }
         self.spend_on_numbers(value)?;

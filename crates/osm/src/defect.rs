@@ -1,5 +1,7 @@
 use serde::{Deserialize, Serialize};
 
+use crate::areas::AreaLoss;
+
 /// Bad input in an extract that was survived: reported with the object's id, and the rest goes on.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -105,6 +107,32 @@ pub enum Defect {
         /// The way.
         way_id: i64,
     },
+    /// Nothing is left of an area.
+    LostArea {
+        /// Whether it is a relation; else it is a way.
+        is_relation: bool,
+        /// The object.
+        id: i64,
+        /// Why.
+        loss: AreaLoss,
+    },
+    /// Ways of an area's relation are not in the file; what the others surround stays.
+    MissingWays {
+        /// The relation.
+        relation_id: i64,
+        /// How many.
+        ways: u32,
+    },
+    /// An area's outline has segments twice, or points in the middle of segments; these are divided, and of segments that are there
+    /// an even number of times nothing is left.
+    MendedOutline {
+        /// Whether it is a relation; else it is a way.
+        is_relation: bool,
+        /// The object.
+        id: i64,
+        /// How many segments.
+        segments: u32,
+    },
     /// A node has several different places; the first stays, or of several extracts that of the newest version.
     ConflictingNode {
         /// The node.
@@ -134,10 +162,13 @@ impl Defect {
             Self::SelfCrossing { .. } => "self-crossing",
             Self::ConflictingWay { .. } => "conflicting way",
             Self::ConflictingNode { .. } => "conflicting node",
+            Self::LostArea { loss, .. } => loss.reason(),
+            Self::MissingWays { .. } => "missing ways of an area",
+            Self::MendedOutline { .. } => "mended outline of an area",
         }
     }
 
-    /// What it is about: `"way"` or `"node"`, and its id.
+    /// What it is about: `"way"`, `"node"` or `"relation"`, and its id.
     #[must_use]
     pub const fn object(&self) -> (&'static str, i64) {
         match *self {
@@ -158,6 +189,11 @@ impl Defect {
             | Self::ConflictingWay { way_id }
             | Self::SelfCrossing { way_id, .. } => ("way", way_id),
             Self::ConflictingNode { node_id } => ("node", node_id),
+            Self::MissingWays { relation_id, .. } => ("relation", relation_id),
+            Self::LostArea { is_relation, id, .. }
+            | Self::MendedOutline { is_relation, id, .. } => {
+                (if is_relation { "relation" } else { "way" }, id)
+            }
         }
     }
 
@@ -172,7 +208,9 @@ impl Defect {
             | Self::Split { roads: count, .. }
             | Self::StrayPoints { points: count, .. }
             | Self::DuplicatePoints { points: count, .. }
-            | Self::SelfCrossing { crossings: count, .. } => Some(count),
+            | Self::SelfCrossing { crossings: count, .. }
+            | Self::MissingWays { ways: count, .. }
+            | Self::MendedOutline { segments: count, .. } => Some(count),
             Self::UnknownHighway { .. }
             | Self::TagTakenOtherwise { .. }
             | Self::Area { .. }
@@ -181,7 +219,8 @@ impl Defect {
             | Self::LongText { .. }
             | Self::NoLine { .. }
             | Self::ConflictingWay { .. }
-            | Self::ConflictingNode { .. } => None,
+            | Self::ConflictingNode { .. }
+            | Self::LostArea { .. } => None,
         }
     }
 

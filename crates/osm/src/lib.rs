@@ -21,6 +21,7 @@
 //!
 //! This crate never judges which road matters at which level, never guesses a class, and starts no threads.
 
+mod areas;
 mod header_bounds;
 mod read_request;
 mod read_roads;
@@ -55,6 +56,7 @@ mod ahead;
 mod counts;
 mod records;
 mod spool;
+mod text;
 mod way_bytes;
 mod way_facts;
 
@@ -63,6 +65,7 @@ mod error;
 mod kept_error;
 mod summary;
 
+pub use areas::{AreaLoss, AreaSummary, KeptAreas, read_areas};
 pub use defect::Defect;
 pub use error::ReadOsmError;
 pub use header_bounds::header_bounds_deg;

@@ -62,6 +62,13 @@ pub(crate) fn left_out_bytes(node_ids: &[i64], reason: LeftOutReason, highway: &
     bytes.into()
 }
 
+/// Writes the nodes of a way of which nothing else is asked.
+pub(crate) fn node_bytes(node_ids: &[i64]) -> Box<[u8]> {
+    let mut bytes = Vec::with_capacity(2 * node_ids.len() + 16);
+    push_node_ids(&mut bytes, node_ids);
+    bytes.into()
+}
+
 fn push_node_ids(bytes: &mut Vec<u8>, node_ids: &[i64]) {
     push_varint(bytes, node_ids.len() as u64);
     let mut last = 0_i64;

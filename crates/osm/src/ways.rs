@@ -12,6 +12,7 @@ use crate::{
     Defect, ExtractSummary, HighwayCount, LeftOutReason,
     location::{Location, location_from_nano},
     records::WayRecord,
+    text::Text,
     versions::known_version,
     way_bytes::{left_out_bytes, way_bytes},
     way_facts::WayFacts,
@@ -43,9 +44,6 @@ pub(crate) struct Ways {
 
 /// What counts for each way, besides its nodes and texts.
 const WAY_BYTES: usize = 240;
-
-/// OSM allows 255 characters (OSM wiki, *API v0.6*), each of at most four bytes.
-const MAX_TEXT_CHARS: usize = 255;
 
 impl Ways {
     /// Finds the roads of a block; `None` if they take more than `most_bytes`.
@@ -227,38 +225,6 @@ pub(crate) fn add_summary(own: &mut ExtractSummary, later: ExtractSummary) {
     add_counts(&mut own.tags_taken_otherwise, later.tags_taken_otherwise);
     for (value, count) in later.highways {
         own.highways.entry(value).and_modify(|own| own.ways += count.ways).or_insert(count);
-    }
-}
-
-/// A tag's key or value.
-struct Text<'a> {
-    text: Cow<'a, str>,
-    is_cut: bool,
-}
-
-impl<'a> Text<'a> {
-    /// Only the beginning is looked at, however long the text is: it may be that of a million ways.
-    fn new(bytes: &'a [u8]) -> Self {
-        const MAX_BYTES: usize = 4 * MAX_TEXT_CHARS;
-        let start = &bytes[..bytes.len().min(MAX_BYTES)];
-        let text = match str::from_utf8(start) {
-            // The cut may have gone through a character.
-            Err(error) if error.error_len().is_none() && start.len() < bytes.len() => {
-                String::from_utf8_lossy(&start[..error.valid_up_to()])
-            }
-            _ => String::from_utf8_lossy(start),
-        };
-        let end = text.char_indices().nth(MAX_TEXT_CHARS).map(|(at, _)| at);
-        let is_cut = end.is_some() || start.len() < bytes.len();
-        let text = match (end, text) {
-            (Some(end), Cow::Borrowed(text)) => Cow::Borrowed(&text[..end]),
-            (Some(end), Cow::Owned(mut text)) => {
-                text.truncate(end);
-                Cow::Owned(text)
-            }
-            (None, text) => text,
-        };
-        Self { text, is_cut }
     }
 }
 

@@ -1,6 +1,7 @@
+use corniche_areas::{AreaClass, AreaTableError};
 use corniche_roads::{ClassFilterError, FrcTableError};
 
-/// Why a text is no settings file or FRC table. The caller knows which file the text came from.
+/// Why a text is no settings file, FRC table or area table. The caller knows which file the text came from.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
@@ -11,10 +12,20 @@ pub enum PresetError {
     Toml(#[from] toml::de::Error),
     #[error(transparent)]
     FrcTable(#[from] FrcTableError),
+    #[error(transparent)]
+    AreaTable(#[from] AreaTableError),
+    #[error("area table: {class:?} is no class of areas; classes are {}", class_names())]
+    AreaClass { class: String },
     #[error("class-max-cell: {text:?} is no class; classes are 0 to 8")]
     Class { text: String },
     #[error("class-max-cell: {0}")]
     ClassFilter(#[from] ClassFilterError),
+}
+
+/// The classes to which tables can give tags.
+fn class_names() -> String {
+    let names = AreaClass::ALL.into_iter().filter(|&class| class != AreaClass::Sea);
+    names.map(AreaClass::name).collect::<Vec<_>>().join(", ")
 }
 
 /// Longest text that is read. The longest preset has some 3 kB.

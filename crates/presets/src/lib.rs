@@ -1,8 +1,9 @@
-//! Options of a build (on the command line and in settings files) and FRC tables, read from text and checked; and the FRC
+//! Options of a build (on the command line and in settings files) and tables of road and area classes, read from text and checked; and the
 //! tables that come with the program.
 //!
 //! This crate never opens a file, never decides what a setting that is left out means, and never draws.
 
+mod areas;
 mod bounds;
 mod class_cells;
 mod class_labels;
@@ -16,6 +17,7 @@ mod photo;
 mod relief;
 mod values;
 
+pub use areas::{area_preset, area_preset_names, parse_area_table};
 pub use bounds::BoundsChoice;
 pub use class_cells::class_filter;
 pub use class_labels::class_labels;

@@ -215,6 +215,22 @@ impl Block {
         self.groups.push(field(3, &message));
     }
 
+    /// A relation of ways without roles, in a group of its own.
+    pub fn relation(&mut self, id: i64, tags: &[(&str, &str)], way_ids: &[i64]) {
+        let keys: Vec<u64> = tags.iter().map(|(key, _)| self.text(key.as_bytes())).collect();
+        let values: Vec<u64> = tags.iter().map(|(_, value)| self.text(value.as_bytes())).collect();
+        let of_each = |value: u64| packed(&vec![value; way_ids.len()]);
+        let message = [
+            number(1, id),
+            field(2, &packed(&keys)),
+            field(3, &packed(&values)),
+            field(8, &of_each(0)),
+            field(9, &deltas(way_ids)),
+            field(10, &of_each(1)),
+        ];
+        self.groups.push(field(4, &message.concat()));
+    }
+
     /// A way with the tag `highway=track`.
     pub fn track(&mut self, id: i64, node_ids: &[i64]) {
         self.way(id, &[("highway", "track")], node_ids);

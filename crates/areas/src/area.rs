@@ -1,0 +1,45 @@
+use std::fmt;
+
+use crate::{AreaClass, Polygon};
+
+/// What an area was in OSM.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum AreaObject {
+    /// A closed way.
+    Way(i64),
+    /// A relation of the type `multipolygon` or `boundary`.
+    Relation(i64),
+}
+
+/// An area of the map: one object of OSM.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Area {
+    /// Where it comes from.
+    pub object: AreaObject,
+    /// What it is.
+    pub class: AreaClass,
+    /// Its name, if it has one.
+    pub name: Option<String>,
+    /// Its parts; at least one.
+    pub polygons: Vec<Polygon>,
+    /// Its true area on the ellipsoid, square metres.
+    pub area_m2: f64,
+}
+
+impl AreaObject {
+    /// `"way"` or `"relation"`, and its id.
+    #[must_use]
+    pub const fn parts(self) -> (&'static str, i64) {
+        match self {
+            Self::Way(id) => ("way", id),
+            Self::Relation(id) => ("relation", id),
+        }
+    }
+}
+
+impl fmt::Display for AreaObject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (kind, id) = self.parts();
+        write!(f, "{kind} {id}")
+    }
+}

@@ -1,0 +1,70 @@
+//! Gives each object the ways of its outline, with their places.
+
+use corniche_store::{Sorted, Sorter};
+
+use super::records::{MemberRecord, PartLine, PartRecord};
+use crate::{
+    ReadOsmError,
+    reading::Reading,
+    records::Stop,
+    spool::{SpoolReader, damaged},
+    wire::{varint, zigzag},
+};
+
+/// Ways in order of their ids, each with the places of its nodes.
+pub(crate) struct LocatedWays<'a> {
+    pub(crate) ways: SpoolReader<'a>,
+    pub(crate) stops: Sorted<'a, Stop>,
+}
+
+/// Members and ways come in order of way ids. A member whose way is not in the file gets a part that says so.
+pub(crate) fn hand_parts<'a>(
+    reading: &Reading<'a>,
+    mut members: SpoolReader<'a>,
+    mut located: LocatedWays<'a>,
+) -> Result<Sorter<'a, PartRecord>, ReadOsmError> {
+    let failed = |error| reading.scratch_failed(error);
+    let mut parts = Sorter::new(reading.request.scratch, reading.shares().ways);
+    let mut way: Option<(i64, Vec<[i32; 2]>)> = None;
+    let mut count = 0;
+    let take_member = |bytes: &mut &[u8]| {
+        let way_id = zigzag(varint(bytes).ok()?);
+        Some(MemberRecord { way_id, object_number: varint(bytes).ok()? })
+    };
+    while let Some(member) = members.next(take_member).map_err(failed)? {
+        let MemberRecord { way_id, object_number } = member;
+        reading.check_stop_at(count)?;
+        count += 1;
+        while way.as_ref().is_none_or(|(own, _)| *own < way_id) {
+            way = located.next(reading)?;
+            if way.is_none() {
+                break;
+            }
+        }
+        let line = match &way {
+            Some((own, places)) if *own == way_id => PartLine::of(places.clone()),
+            _ => PartLine::NoWay,
+        };
+        parts.push(PartRecord { object_number, way_id, line }).map_err(failed)?;
+    }
+    Ok(parts)
+}
+
+impl LocatedWays<'_> {
+    fn next(
+        &mut self,
+        reading: &Reading<'_>,
+    ) -> Result<Option<(i64, Vec<[i32; 2]>)>, ReadOsmError> {
+        let failed = |error| reading.scratch_failed(error);
+        let take_way = |bytes: &mut &[u8]| Some((zigzag(varint(bytes).ok()?), varint(bytes).ok()?));
+        let Some((way_id, nodes)) = self.ways.next(take_way).map_err(failed)? else {
+            return Ok(None);
+        };
+        let mut places = Vec::new();
+        for _ in 0..nodes {
+            let stop = self.stops.next().ok_or_else(damaged).map_err(failed)?;
+            places.push(stop.map_err(failed)?.location);
+        }
+        Ok(Some((way_id, places)))
+    }
+}

@@ -1,0 +1,174 @@
+//! Makes areas from objects and the ways of their outlines.
+
+use corniche_areas::{Area, AreaObject, OutlineError, OutlineWay, Polygon, assemble};
+use corniche_geom::{LatticePoint, wgs84};
+use corniche_store::Sorted;
+use rayon::prelude::*;
+
+use super::{
+    records::{Known, PartLine, PartRecord, degrees_of, to_point},
+    summary::{AreaLoss, AreaSummary},
+};
+use crate::{
+    Defect, ReadOsmError,
+    ahead::Ahead,
+    read_request::Place,
+    reading::{Reading, Step},
+    spool::SpoolReader,
+};
+
+/// Objects that are made side by side, for each thread, …
+const OBJECTS_PER_THREAD: usize = 512;
+/// … if they have no more points than this.
+const POINTS_PER_THREAD: usize = 1 << 16;
+
+/// Hands out areas in the order of their objects.
+pub(crate) fn make_areas(
+    reading: &Reading<'_>,
+    mut known: SpoolReader<'_>,
+    objects_count: u64,
+    parts: Sorted<'_, PartRecord>,
+    summary: &mut AreaSummary,
+    sink: &mut dyn FnMut(Area),
+    on_defect: &mut dyn FnMut(Defect),
+) -> Result<(), ReadOsmError> {
+    let pool = reading.request.pool;
+    let threads = pool.current_num_threads();
+    let mut parts = Ahead::new(parts);
+    let mut number = 0;
+    loop {
+        reading.check_stop()?;
+        let mut batch = Vec::new();
+        let mut points = 0;
+        while batch.len() < threads * OBJECTS_PER_THREAD && points < threads * POINTS_PER_THREAD {
+            let next = known.next(Known::decode).map_err(|error| reading.scratch_failed(error))?;
+            let Some(known) = next else { break };
+            let lines = lines_of(reading, &mut parts, number)?;
+            points += lines.iter().map(points_of).sum::<usize>();
+            batch.push((known, lines));
+            number += 1;
+        }
+        if batch.is_empty() {
+            reading.tell(Step::Roads, 1, 1);
+            return Ok(());
+        }
+        let place = reading.request.place;
+        let made: Vec<Made> = pool.install(|| {
+            batch.into_par_iter().map(|(known, lines)| make(known, &lines, place)).collect()
+        });
+        for made in made {
+            made.defects.into_iter().for_each(&mut *on_defect);
+            match made.area {
+                Ok(area) => {
+                    count(summary, &area);
+                    sink(area);
+                }
+                Err(loss) => *summary.lost.entry(loss).or_default() += 1,
+            }
+        }
+        reading.tell(Step::Roads, number, objects_count);
+    }
+}
+
+fn points_of(line: &PartLine) -> usize {
+    if let PartLine::Points(points) = line { points.len() } else { 0 }
+}
+
+fn lines_of(
+    reading: &Reading<'_>,
+    parts: &mut Ahead<Sorted<'_, PartRecord>>,
+    number: u64,
+) -> Result<Vec<PartLine>, ReadOsmError> {
+    let failed = |error| reading.scratch_failed(error);
+    let mut lines = Vec::new();
+    while parts.peek().map_err(failed)?.is_some_and(|part| part.object_number == number) {
+        lines.extend(parts.take_next().map(|part| part.line));
+    }
+    Ok(lines)
+}
+
+fn count(summary: &mut AreaSummary, area: &Area) {
+    let kept = summary.kept.entry(area.class).or_default();
+    kept.areas += 1;
+    kept.polygons += area.polygons.len() as u64;
+    let rings = area.polygons.iter().flat_map(Polygon::rings);
+    kept.points += rings.map(|ring| ring.points().len() as u64).sum::<u64>();
+    kept.area_m2 += area.area_m2;
+}
+
+/// What becomes of an object.
+struct Made {
+    area: Result<Area, AreaLoss>,
+    defects: Vec<Defect>,
+}
+
+fn make(known: Known, lines: &[PartLine], place: &Place<'_>) -> Made {
+    let (kind, id) = known.object.parts();
+    let is_relation = kind == "relation";
+    let mut defects = Vec::new();
+    let area = try_making(known, lines, place, &mut defects);
+    if let Err(loss) = area {
+        defects.push(Defect::LostArea { is_relation, id, loss });
+    }
+    Made { area, defects }
+}
+
+fn try_making(
+    known: Known,
+    lines: &[PartLine],
+    place: &Place<'_>,
+    defects: &mut Vec<Defect>,
+) -> Result<Area, AreaLoss> {
+    let Known { object, class, name } = known;
+    let (kind, id) = object.parts();
+    let mut missing = 0;
+    let mut ways: Vec<Vec<LatticePoint>> = Vec::new();
+    for line in lines {
+        match line {
+            PartLine::Points(points) => ways.push(points.iter().copied().map(to_point).collect()),
+            PartLine::NoWay => missing += 1,
+            PartLine::NoNodes => return Err(AreaLoss::MissingNodes),
+            PartLine::OutOfRange => return Err(AreaLoss::OutOfRange),
+        }
+    }
+    let outline: Vec<OutlineWay<'_>> = ways.iter().map(|points| OutlineWay { points }).collect();
+    let assembled = assemble(&outline).map_err(|error| match error {
+        OutlineError::Open { .. } | OutlineError::Nothing if missing > 0 => AreaLoss::MissingWays,
+        OutlineError::Open { .. } => AreaLoss::OpenOutline,
+        OutlineError::Nothing => AreaLoss::NoOutline,
+        OutlineError::Crossing { .. } => AreaLoss::CrossingOutline,
+        _ => AreaLoss::TooIntricate,
+    })?;
+    let area_m2 = assembled.polygons.iter().map(area_m2).sum();
+    let polygons: Option<Vec<Polygon>> =
+        assembled.polygons.iter().map(|polygon| placed(polygon, place)).collect();
+    let polygons = polygons.ok_or(AreaLoss::OutsideProjection)?;
+    if let (AreaObject::Relation(relation_id), true) = (object, missing > 0) {
+        defects.push(Defect::MissingWays { relation_id, ways: missing });
+    }
+    let mended = assembled.repeated_segments + assembled.divided_segments;
+    if mended > 0 {
+        let segments = u32::try_from(mended).unwrap_or(u32::MAX);
+        defects.push(Defect::MendedOutline { is_relation: kind == "relation", id, segments });
+    }
+    let name = (!name.is_empty()).then(|| name.into());
+    Ok(Area { object, class, name, polygons, area_m2 })
+}
+
+/// The true area of a polygon whose points are in 1e-7 degrees.
+fn area_m2(polygon: &Polygon) -> f64 {
+    let of_ring = |points: &[LatticePoint]| {
+        let ring_deg: Vec<[f64; 2]> = points.iter().copied().map(degrees_of).collect();
+        wgs84::area_m2(&ring_deg)
+    };
+    polygon.rings().map(|ring| of_ring(ring.points())).sum()
+}
+
+/// The same polygon on the package's lattice.
+fn placed(polygon: &Polygon, place: &Place<'_>) -> Option<Polygon> {
+    let points = polygon.rings().flat_map(|ring| ring.points());
+    let positions_deg: Vec<[f64; 2]> = points.copied().map(degrees_of).collect();
+    let mut placed = place(&positions_deg).into_iter();
+    // Rings are gone through in the same order.
+    polygon.placed(|_| placed.next().flatten())
+}

@@ -1,0 +1,24 @@
+//! Areas of extracts: closed ways and relations with tags of the table.
+//!
+//! ```text
+//!  blobs ──► find_objects ──► ObjectRecord by id ──► number ──► MemberRecord by way id ──┐
+//!                                  │                                                     ▼
+//!                                  │            blobs with ways ──► find_outlines ──► WayRecord
+//!                                  │                                                     │
+//!                                  │      blobs with nodes ──► number_nodes, locate_nodes (as for roads)
+//!                                  ▼                                                     ▼
+//!  Area, ways first, by id ◄── make_areas ◄──────────── PartRecord by object ◄────── hand_parts
+//! ```
+//!
+//! Everything is sorted and joined within the memory that the caller allows, as for roads.
+
+mod find_objects;
+mod find_outlines;
+mod hand_parts;
+mod make_areas;
+mod read_areas;
+mod records;
+mod summary;
+
+pub use read_areas::read_areas;
+pub use summary::{AreaLoss, AreaSummary, KeptAreas};

@@ -1,0 +1,83 @@
+use std::io::{Read, Seek};
+
+use corniche_areas::{Area, AreaTable};
+
+use super::{
+    find_objects::find_objects,
+    find_outlines::{find_outlines, number_objects},
+    hand_parts::{LocatedWays, hand_parts},
+    make_areas::make_areas,
+    summary::{AreaLoss, AreaSummary},
+};
+use crate::{
+    Defect, ExtractSummary, ReadOsmError,
+    extracts::Extracts,
+    locate_nodes::{FileNodes, NodeQuestions, locate_nodes},
+    number_nodes::{NumberedNodes, number_nodes},
+    read_request::ReadRequest,
+    reading::Reading,
+};
+
+/// Reads the areas of an extract and hands them to `sink`: first those of ways, then those of relations, in ascending order of
+/// id.
+///
+/// - An area is a closed way, or a relation of the type `multipolygon` or `boundary`, with a tag of `table`. A way with
+///   `area=no` is none. Which ways of a relation are outer rings and which are holes is decided by where they lie, not by their
+///   roles; relations in relations are not followed.
+/// - What is wrong with the data goes to `on_defect`, in an order that depends on the file alone, as the areas do. Each object
+///   with a tag of the table becomes an area, or has one [`Defect::LostArea`].
+/// - Coastlines are no areas: the sea is not read here.
+///
+/// Memory, limits, several extracts and what the file may be are as for [`crate::read_roads`]; `request.table` is not used. The
+/// file is read three times: for objects, for the ways of their outlines (more often where these do not fit in memory), for
+/// nodes.
+///
+/// # Errors
+/// As for [`crate::read_roads`].
+pub fn read_areas(
+    request: &ReadRequest<'_>,
+    table: &AreaTable,
+    sink: &mut dyn FnMut(Area),
+    on_defect: &mut dyn FnMut(Defect),
+    should_stop: &(dyn Fn() -> bool + Sync),
+) -> Result<AreaSummary, ReadOsmError> {
+    let mut file = Extracts::open(request)?;
+    let reading = Reading { request, should_stop, len_bytes: file.len_bytes() };
+    read_all(&reading, &mut file, table, sink, on_defect)
+}
+
+fn read_all<R: Read + Seek>(
+    reading: &Reading<'_>,
+    file: &mut Extracts<R>,
+    table: &AreaTable,
+    sink: &mut dyn FnMut(Area),
+    on_defect: &mut dyn FnMut(Defect),
+) -> Result<AreaSummary, ReadOsmError> {
+    let failed = |error| reading.scratch_failed(error);
+    let mut summary = AreaSummary::default();
+    let found = find_objects(reading, file, table, on_defect)?;
+    let mut held_bytes = found.held_bytes;
+    if found.open_ways > 0 {
+        summary.objects += found.open_ways;
+        summary.lost.insert(AreaLoss::OpenWay, found.open_ways);
+    }
+    let objects = number_objects(reading, found.objects, &mut summary, on_defect)?;
+    let outlines =
+        find_outlines(reading, file, &found.way_blobs, objects.members, &mut held_bytes)?;
+    // What these count is of roads.
+    let mut of_roads = ExtractSummary::default();
+    let ways = outlines.ways.finish().map_err(failed)?;
+    let numbered = number_nodes(reading, ways, &mut of_roads, on_defect)?;
+    let NumberedNodes { ways, mentions, mentions_count, .. } = numbered;
+    let mentions = mentions.finish().map_err(failed)?;
+    let located = outlines.located.finish().map_err(failed)?;
+    let questions = NodeQuestions { mentions, mentions_count, located };
+    let mut nodes = FileNodes { file, node_blobs: &found.node_blobs };
+    let nodes = locate_nodes(reading, &mut nodes, questions, on_defect)?;
+    let stops = nodes.stops.finish().map_err(failed)?;
+    let parts =
+        hand_parts(reading, outlines.members.read(), LocatedWays { ways: ways.read(), stops })?;
+    let parts = parts.finish().map_err(failed)?;
+    make_areas(reading, objects.known.read(), objects.count, parts, &mut summary, sink, on_defect)?;
+    Ok(summary)
+}

@@ -1,0 +1,223 @@
+//! What is sorted on the way from objects to areas.
+
+use corniche_areas::{AreaClass, AreaObject};
+use corniche_geom::LatticePoint;
+use corniche_store::SortRecord;
+
+use crate::{
+    location::{self, Location},
+    wire::{push_varint, to_zigzag, varint, zigzag},
+};
+
+/// A way or relation with the tags of an area. Ways come first, each kind by id.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct ObjectRecord {
+    pub(crate) object: AreaObject,
+    /// Where an object may be in several extracts: [`crate::records::age`]. Else 0.
+    pub(crate) age: u32,
+    /// How many of these come before it in the extracts.
+    pub(crate) order: u64,
+    /// 0 if it is not known.
+    pub(crate) version: i32,
+    /// Which extract it is from.
+    pub(crate) file: u32,
+    pub(crate) class: AreaClass,
+    /// Empty for none.
+    pub(crate) name: Box<str>,
+    /// The ways of its outline; a way names itself.
+    pub(crate) way_ids: Box<[i64]>,
+}
+
+/// What is taken on from an object to its area.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Known {
+    pub(crate) object: AreaObject,
+    pub(crate) class: AreaClass,
+    pub(crate) name: Box<str>,
+}
+
+/// A way that an object needs. Objects are numbered in the order of their records.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct MemberRecord {
+    pub(crate) way_id: i64,
+    pub(crate) object_number: u64,
+}
+
+/// A way of an object's outline with its places.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct PartRecord {
+    pub(crate) object_number: u64,
+    pub(crate) way_id: i64,
+    pub(crate) line: PartLine,
+}
+
+/// What is known of a way of an outline.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum PartLine {
+    /// The way is not in the file.
+    NoWay,
+    /// Some of its nodes are not.
+    NoNodes,
+    /// Some of its nodes are not on Earth.
+    OutOfRange,
+    /// Places in whole 1e-7 degrees.
+    Points(Box<[Location]>),
+}
+
+impl PartLine {
+    pub(crate) fn of(locations: Vec<Location>) -> Self {
+        if locations.contains(&location::MISSING) {
+            Self::NoNodes
+        } else if locations.contains(&location::OUT_OF_RANGE) {
+            Self::OutOfRange
+        } else {
+            Self::Points(locations.into())
+        }
+    }
+}
+
+/// A place as a point of the lattice of 1e-7 degrees, and back.
+pub(crate) fn to_point([lon, lat]: Location) -> LatticePoint {
+    LatticePoint::new(lon.into(), lat.into())
+}
+
+/// The place of a point of the lattice of 1e-7 degrees.
+pub(crate) fn degrees_of(point: LatticePoint) -> [f64; 2] {
+    [point.u as f64 / 1e7, point.v as f64 / 1e7]
+}
+
+impl ObjectRecord {
+    /// Splits off what makes the area; what is left are the ways.
+    pub(crate) fn into_known(self) -> (Known, Box<[i64]>) {
+        let Self { object, class, name, way_ids, .. } = self;
+        (Known { object, class, name }, way_ids)
+    }
+}
+
+impl Known {
+    pub(crate) fn encode(&self, bytes: &mut Vec<u8>) {
+        let (is_relation, id) = match self.object {
+            AreaObject::Way(id) => (0, id),
+            AreaObject::Relation(id) => (1, id),
+        };
+        bytes.extend([is_relation, self.class.number()]);
+        push_varint(bytes, to_zigzag(id));
+        push_varint(bytes, self.name.len() as u64);
+        bytes.extend(self.name.as_bytes());
+    }
+
+    pub(crate) fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        let (&[is_relation, class], rest) = bytes.split_first_chunk::<2>()?;
+        *bytes = rest;
+        let id = zigzag(varint(bytes).ok()?);
+        let length = varint(bytes).ok()?.try_into().ok()?;
+        let (name, rest) = bytes.split_at_checked(length)?;
+        *bytes = rest;
+        Some(Self {
+            object: if is_relation == 1 { AreaObject::Relation(id) } else { AreaObject::Way(id) },
+            class: AreaClass::from_number(class)?,
+            name: str::from_utf8(name).ok()?.into(),
+        })
+    }
+}
+
+impl SortRecord for ObjectRecord {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        let Self { object, age, order, version, file, class, name, way_ids } = self;
+        Known { object: *object, class: *class, name: name.clone() }.encode(bytes);
+        push_varint(bytes, (*age).into());
+        push_varint(bytes, *order);
+        push_varint(bytes, to_zigzag((*version).into()));
+        push_varint(bytes, (*file).into());
+        push_varint(bytes, way_ids.len() as u64);
+        for &way_id in way_ids {
+            push_varint(bytes, to_zigzag(way_id));
+        }
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        let Known { object, class, name } = Known::decode(bytes)?;
+        let age = varint(bytes).ok()?.try_into().ok()?;
+        let order = varint(bytes).ok()?;
+        let version = zigzag(varint(bytes).ok()?).try_into().ok()?;
+        let file = varint(bytes).ok()?.try_into().ok()?;
+        let count = varint(bytes).ok()?;
+        let way_ids: Option<_> = (0..count).map(|_| varint(bytes).ok().map(zigzag)).collect();
+        Some(Self { object, age, order, version, file, class, name, way_ids: way_ids? })
+    }
+
+    fn extra_bytes(&self) -> usize {
+        self.name.len() + size_of_val(&*self.way_ids) + 32
+    }
+}
+
+impl SortRecord for MemberRecord {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        push_varint(bytes, to_zigzag(self.way_id));
+        push_varint(bytes, self.object_number);
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        let way_id = zigzag(varint(bytes).ok()?);
+        Some(Self { way_id, object_number: varint(bytes).ok()? })
+    }
+}
+
+impl SortRecord for PartRecord {
+    fn encode(&self, bytes: &mut Vec<u8>) {
+        push_varint(bytes, self.object_number);
+        push_varint(bytes, to_zigzag(self.way_id));
+        let points: &[Location] = match &self.line {
+            PartLine::NoWay => return bytes.push(0),
+            PartLine::NoNodes => return bytes.push(1),
+            PartLine::OutOfRange => return bytes.push(2),
+            PartLine::Points(points) => points,
+        };
+        bytes.push(3);
+        push_varint(bytes, points.len() as u64);
+        let mut last = [0_i32; 2];
+        for point in points {
+            for (part, last) in point.iter().zip(&mut last) {
+                push_varint(bytes, to_zigzag(i64::from(*part) - i64::from(*last)));
+                *last = *part;
+            }
+        }
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        let object_number = varint(bytes).ok()?;
+        let way_id = zigzag(varint(bytes).ok()?);
+        let (&kind, rest) = bytes.split_first()?;
+        *bytes = rest;
+        let line = match kind {
+            0 => PartLine::NoWay,
+            1 => PartLine::NoNodes,
+            2 => PartLine::OutOfRange,
+            _ => {
+                let count = varint(bytes).ok()?;
+                let mut last = [0_i32; 2];
+                let mut next = || -> Option<Location> {
+                    for last in &mut last {
+                        let step = zigzag(varint(bytes).ok()?);
+                        *last = i64::from(*last).checked_add(step)?.try_into().ok()?;
+                    }
+                    Some(last)
+                };
+                let points: Option<_> = (0..count).map(|_| next()).collect();
+                PartLine::Points(points?)
+            }
+        };
+        Some(Self { object_number, way_id, line })
+    }
+
+    fn extra_bytes(&self) -> usize {
+        match &self.line {
+            PartLine::Points(points) => size_of_val(&**points) + 16,
+            PartLine::NoWay | PartLine::NoNodes | PartLine::OutOfRange => 0,
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "records_tests.rs"]
+mod tests;

@@ -1,0 +1,44 @@
+use std::fmt::Debug;
+
+use super::*;
+
+fn comes_back<T: SortRecord + PartialEq + Debug>(record: &T) {
+    let mut bytes = Vec::new();
+    record.encode(&mut bytes);
+    let mut rest = &*bytes;
+    assert_eq!(T::decode(&mut rest).as_ref(), Some(record));
+    assert!(rest.is_empty());
+    for length in 0..bytes.len() {
+        assert_eq!(T::decode(&mut &bytes[..length]), None, "{length} of {} bytes", bytes.len());
+    }
+}
+
+#[test]
+fn records_come_back() {
+    for object in [AreaObject::Way(-7), AreaObject::Relation(i64::MAX)] {
+        comes_back(&ObjectRecord {
+            object,
+            age: 3,
+            order: 1 << 40,
+            version: -1,
+            file: 2,
+            class: AreaClass::Rock,
+            name: "Füssen".into(),
+            way_ids: Box::new([1, -2, i64::MIN]),
+        });
+    }
+    comes_back(&MemberRecord { way_id: -5, object_number: 300 });
+    let points = Box::new([[i32::MIN + 1, i32::MAX - 1], [0, 0], [1_800_000_000, -900_000_000]]);
+    for line in [PartLine::NoWay, PartLine::NoNodes, PartLine::OutOfRange, PartLine::Points(points)]
+    {
+        comes_back(&PartRecord { object_number: 9, way_id: 10, line });
+    }
+}
+
+#[test]
+fn lines_with_unknown_places_say_so() {
+    let [near, missing, far] = [[1, 2], location::MISSING, location::OUT_OF_RANGE];
+    assert_eq!(PartLine::of(vec![near, missing, far]), PartLine::NoNodes);
+    assert_eq!(PartLine::of(vec![near, far]), PartLine::OutOfRange);
+    assert_eq!(PartLine::of(vec![near, near]), PartLine::Points(Box::new([near, near])));
+}

@@ -1,0 +1,38 @@
+//! Texts of tags.
+
+use std::borrow::Cow;
+
+/// OSM allows 255 characters (OSM wiki, *API v0.6*), each of at most four bytes.
+const MAX_TEXT_CHARS: usize = 255;
+
+/// A tag's key or value.
+pub(crate) struct Text<'a> {
+    pub(crate) text: Cow<'a, str>,
+    pub(crate) is_cut: bool,
+}
+
+impl<'a> Text<'a> {
+    /// Only the beginning is looked at, however long the text is: it may be that of a million ways.
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
+        const MAX_BYTES: usize = 4 * MAX_TEXT_CHARS;
+        let start = &bytes[..bytes.len().min(MAX_BYTES)];
+        let text = match str::from_utf8(start) {
+            // The cut may have gone through a character.
+            Err(error) if error.error_len().is_none() && start.len() < bytes.len() => {
+                String::from_utf8_lossy(&start[..error.valid_up_to()])
+            }
+            _ => String::from_utf8_lossy(start),
+        };
+        let end = text.char_indices().nth(MAX_TEXT_CHARS).map(|(at, _)| at);
+        let is_cut = end.is_some() || start.len() < bytes.len();
+        let text = match (end, text) {
+            (Some(end), Cow::Borrowed(text)) => Cow::Borrowed(&text[..end]),
+            (Some(end), Cow::Owned(mut text)) => {
+                text.truncate(end);
+                Cow::Owned(text)
+            }
+            (None, text) => text,
+        };
+        Self { text, is_cut }
+    }
+}
