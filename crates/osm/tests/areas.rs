@@ -64,7 +64,10 @@ fn made(ways: &[(i64, Tags<'_>, &[i64])], relations: &[(i64, Tags<'_>, &[i64])])
         block.way(*id, tags, node_ids);
     }
     for (id, tags, way_ids) in relations {
-        block.relation(*id, tags, way_ids);
+        // Ways with numbers above 1000 are holes.
+        let role = |id: i64| if id > 1000 { "inner" } else { "outer" };
+        let members: Vec<(i64, &str)> = way_ids.iter().map(|&id| (id, role(id))).collect();
+        block.relation(*id, tags, &members);
     }
     file(&block)
 }
@@ -117,6 +120,7 @@ fn each_object_is_an_area_or_lost_for_a_reason() {
             (5, LAKE, &[1, 2, 1, 1]),
             (6, &[("natural", "water"), ("area", "no")], &[1, 2, 12, 11, 1]),
             (7, PLAIN, &[1, 2, 12]),
+            (1001, PLAIN, &[34, 35, 45, 44, 34]),
             (8, &[("highway", "service"), ("area", "yes")], &[1, 2, 12, 11, 1]),
         ],
         &[
@@ -124,7 +128,9 @@ fn each_object_is_an_area_or_lost_for_a_reason() {
             (11, FOREST, &[7, 70]),
             (12, FOREST, &[]),
             // The way is there, and a hole is not.
-            (13, FOREST, &[2, 71]),
+            (13, FOREST, &[2, 1071]),
+            // A hole is there, and the way around it is not.
+            (15, FOREST, &[71, 1001]),
             (14, &[("type", "route"), ("landuse", "forest")], &[2]),
         ],
     );
@@ -144,11 +150,12 @@ fn each_object_is_an_area_or_lost_for_a_reason() {
             relation(11, AreaLoss::MissingWays),
             relation(12, AreaLoss::NoOutline),
             Defect::MissingWays { relation_id: 13, ways: 1 },
+            relation(15, AreaLoss::MissingWays),
         ]
     );
     let kept: Vec<AreaObject> = found.areas.iter().map(|area| area.object).collect();
     assert_eq!(kept, [AreaObject::Way(2), AreaObject::Relation(13)]);
-    assert_eq!(found.summary.objects, 10);
+    assert_eq!(found.summary.objects, 11);
 }
 
 /// With memory for a few ways at a time, everything comes out as with memory for all.

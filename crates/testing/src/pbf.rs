@@ -215,18 +215,19 @@ impl Block {
         self.groups.push(field(3, &message));
     }
 
-    /// A relation of ways without roles, in a group of its own.
-    pub fn relation(&mut self, id: i64, tags: &[(&str, &str)], way_ids: &[i64]) {
+    /// A relation of ways with these roles, in a group of its own.
+    pub fn relation(&mut self, id: i64, tags: &[(&str, &str)], members: &[(i64, &str)]) {
         let keys: Vec<u64> = tags.iter().map(|(key, _)| self.text(key.as_bytes())).collect();
         let values: Vec<u64> = tags.iter().map(|(_, value)| self.text(value.as_bytes())).collect();
-        let of_each = |value: u64| packed(&vec![value; way_ids.len()]);
+        let roles: Vec<u64> = members.iter().map(|(_, role)| self.text(role.as_bytes())).collect();
+        let way_ids: Vec<i64> = members.iter().map(|&(id, _)| id).collect();
         let message = [
             number(1, id),
             field(2, &packed(&keys)),
             field(3, &packed(&values)),
-            field(8, &of_each(0)),
-            field(9, &deltas(way_ids)),
-            field(10, &of_each(1)),
+            field(8, &packed(&roles)),
+            field(9, &deltas(&way_ids)),
+            field(10, &packed(&vec![1; members.len()])),
         ];
         self.groups.push(field(4, &message.concat()));
     }

@@ -6,7 +6,10 @@ use corniche_areas::{AreaClass, AreaObject, AreaTable};
 use corniche_store::Sorter;
 use osmpbf::{PrimitiveBlock, RelMemberType, Relation, Way};
 
-use super::{records::ObjectRecord, summary::AreaLoss};
+use super::{
+    records::{Member, ObjectRecord},
+    summary::AreaLoss,
+};
 use crate::{
     Defect, ReadOsmError,
     blobs::Decoding,
@@ -134,7 +137,13 @@ impl Objects {
             return;
         }
         let version = way.info().version();
-        self.push(AreaObject::Way(way.id()), version, class, &tags, Box::new([way.id()]));
+        self.push(
+            AreaObject::Way(way.id()),
+            version,
+            class,
+            &tags,
+            Box::new([Member { way_id: way.id(), is_inner: false }]),
+        );
     }
 
     fn take_relation(&mut self, relation: &Relation<'_>, table: &AreaTable) {
@@ -145,12 +154,18 @@ impl Objects {
         }
         let Some(class) = tags.class else { return };
         let ways = relation.members().filter(|member| member.member_type == RelMemberType::Way);
-        let mut way_ids: Vec<i64> = ways.map(|member| member.member_id).collect();
+        let is_inner = |role: i32| {
+            let role = usize::try_from(role).ok().and_then(|role| strings.get(role));
+            role.is_some_and(|role| role == b"inner")
+        };
+        let mut ways: Vec<Member> = ways
+            .map(|way| Member { way_id: way.member_id, is_inner: is_inner(way.role_sid) })
+            .collect();
         // A way that is named twice counts once, as in libosmium.
-        way_ids.sort_unstable();
-        way_ids.dedup();
+        ways.sort_unstable();
+        ways.dedup_by_key(|way| way.way_id);
         let version = relation.info().version();
-        self.push(AreaObject::Relation(relation.id()), version, class, &tags, way_ids.into());
+        self.push(AreaObject::Relation(relation.id()), version, class, &tags, ways.into());
     }
 
     fn push(
@@ -159,11 +174,11 @@ impl Objects {
         version: Option<i32>,
         class: AreaClass,
         tags: &Tags<'_>,
-        way_ids: Box<[i64]>,
+        ways: Box<[Member]>,
     ) {
         let name: Box<str> = tags.value("name").unwrap_or_default().into();
         // Each way is sorted twice more.
-        self.held_bytes += (OBJECT_BYTES + name.len() + 64 * way_ids.len()) as u64;
+        self.held_bytes += (OBJECT_BYTES + name.len() + 80 * ways.len()) as u64;
         let version = version.and_then(known_version).unwrap_or_default();
         self.objects.push(ObjectRecord {
             object,
@@ -173,7 +188,7 @@ impl Objects {
             file: 0,
             class,
             name,
-            way_ids,
+            ways,
         });
     }
 }

@@ -2,7 +2,7 @@
 
 use std::io::{Read, Seek};
 
-use corniche_store::{Sorted, Sorter};
+use corniche_store::{SortRecord as _, Sorted, Sorter};
 use osmpbf::PrimitiveBlock;
 
 use super::{
@@ -22,7 +22,6 @@ use crate::{
     versions::{known_version, two_versions},
     way_bytes::node_bytes,
     way_facts::WayFacts,
-    wire::{push_varint, to_zigzag},
 };
 
 /// Objects in the order of their numbers, and the ways that they need.
@@ -75,11 +74,11 @@ pub(crate) fn number_objects<'a>(
             continue;
         }
         last = Some((object.object, object.file, version));
-        let (known, way_ids) = object.into_known();
+        let (known, ways) = object.into_known();
         numbered.known.push(|bytes| known.encode(bytes)).map_err(failed)?;
-        for &way_id in &way_ids {
-            let member = MemberRecord { way_id, object_number: numbered.count };
-            numbered.members.push(member).map_err(failed)?;
+        for &member in &ways {
+            let record = MemberRecord { member, object_number: numbered.count };
+            numbered.members.push(record).map_err(failed)?;
         }
         numbered.count += 1;
     }
@@ -170,17 +169,14 @@ fn next_ids<'a>(
     let mut ids = Vec::new();
     let mut count = 0;
     while let Some(&member) = members.peek().map_err(failed)? {
-        if ids.last() != Some(&member.way_id) {
+        let way_id = member.member.way_id;
+        if ids.last() != Some(&way_id) {
             if ids.len() == most {
                 break;
             }
-            ids.push(member.way_id);
+            ids.push(way_id);
         }
-        let write = |bytes: &mut Vec<u8>| {
-            push_varint(bytes, to_zigzag(member.way_id));
-            push_varint(bytes, member.object_number);
-        };
-        spool.push(write).map_err(failed)?;
+        spool.push(|bytes| member.encode(bytes)).map_err(failed)?;
         members.take();
         reading.check_stop_at(count)?;
         count += 1;

@@ -1,6 +1,6 @@
 //! Gives each object the ways of its outline, with their places.
 
-use corniche_store::{Sorted, Sorter};
+use corniche_store::{SortRecord as _, Sorted, Sorter};
 
 use super::records::{MemberRecord, PartLine, PartRecord};
 use crate::{
@@ -27,12 +27,9 @@ pub(crate) fn hand_parts<'a>(
     let mut parts = Sorter::new(reading.request.scratch, reading.shares().ways);
     let mut way: Option<(i64, Vec<[i32; 2]>)> = None;
     let mut count = 0;
-    let take_member = |bytes: &mut &[u8]| {
-        let way_id = zigzag(varint(bytes).ok()?);
-        Some(MemberRecord { way_id, object_number: varint(bytes).ok()? })
-    };
-    while let Some(member) = members.next(take_member).map_err(failed)? {
-        let MemberRecord { way_id, object_number } = member;
+    while let Some(record) = members.next(MemberRecord::decode).map_err(failed)? {
+        let MemberRecord { member, object_number } = record;
+        let way_id = member.way_id;
         reading.check_stop_at(count)?;
         count += 1;
         while way.as_ref().is_none_or(|(own, _)| *own < way_id) {
@@ -45,7 +42,7 @@ pub(crate) fn hand_parts<'a>(
             Some((own, places)) if *own == way_id => PartLine::of(places.clone()),
             _ => PartLine::NoWay,
         };
-        parts.push(PartRecord { object_number, way_id, line }).map_err(failed)?;
+        parts.push(PartRecord { object_number, member, line }).map_err(failed)?;
     }
     Ok(parts)
 }

@@ -1,6 +1,8 @@
 //! Makes areas from objects and the ways of their outlines.
 
-use corniche_areas::{Area, AreaObject, OutlineError, OutlineWay, Polygon, assemble};
+use std::collections::HashSet;
+
+use corniche_areas::{Area, AreaObject, Assembled, OutlineError, OutlineWay, Polygon, assemble};
 use corniche_geom::{LatticePoint, wgs84};
 use corniche_store::Sorted;
 use rayon::prelude::*;
@@ -34,7 +36,7 @@ pub(crate) fn make_areas(
 ) -> Result<(), ReadOsmError> {
     let pool = reading.request.pool;
     let threads = pool.current_num_threads();
-    let mut parts = Ahead::new(parts);
+    let mut all_parts = Ahead::new(parts);
     let mut number = 0;
     loop {
         reading.check_stop()?;
@@ -43,9 +45,9 @@ pub(crate) fn make_areas(
         while batch.len() < threads * OBJECTS_PER_THREAD && points < threads * POINTS_PER_THREAD {
             let next = known.next(Known::decode).map_err(|error| reading.scratch_failed(error))?;
             let Some(known) = next else { break };
-            let lines = lines_of(reading, &mut parts, number)?;
-            points += lines.iter().map(points_of).sum::<usize>();
-            batch.push((known, lines));
+            let parts = parts_of(reading, &mut all_parts, number)?;
+            points += parts.iter().map(points_of).sum::<usize>();
+            batch.push((known, parts));
             number += 1;
         }
         if batch.is_empty() {
@@ -54,7 +56,7 @@ pub(crate) fn make_areas(
         }
         let place = reading.request.place;
         let made: Vec<Made> = pool.install(|| {
-            batch.into_par_iter().map(|(known, lines)| make(known, &lines, place)).collect()
+            batch.into_par_iter().map(|(known, parts)| make(known, &parts, place)).collect()
         });
         for made in made {
             made.defects.into_iter().for_each(&mut *on_defect);
@@ -70,21 +72,21 @@ pub(crate) fn make_areas(
     }
 }
 
-fn points_of(line: &PartLine) -> usize {
-    if let PartLine::Points(points) = line { points.len() } else { 0 }
+fn points_of(part: &PartRecord) -> usize {
+    if let PartLine::Points(points) = &part.line { points.len() } else { 0 }
 }
 
-fn lines_of(
+fn parts_of(
     reading: &Reading<'_>,
     parts: &mut Ahead<Sorted<'_, PartRecord>>,
     number: u64,
-) -> Result<Vec<PartLine>, ReadOsmError> {
+) -> Result<Vec<PartRecord>, ReadOsmError> {
     let failed = |error| reading.scratch_failed(error);
-    let mut lines = Vec::new();
+    let mut own = Vec::new();
     while parts.peek().map_err(failed)?.is_some_and(|part| part.object_number == number) {
-        lines.extend(parts.take_next().map(|part| part.line));
+        own.extend(parts.take_next());
     }
-    Ok(lines)
+    Ok(own)
 }
 
 fn count(summary: &mut AreaSummary, area: &Area) {
@@ -102,11 +104,11 @@ struct Made {
     defects: Vec<Defect>,
 }
 
-fn make(known: Known, lines: &[PartLine], place: &Place<'_>) -> Made {
+fn make(known: Known, parts: &[PartRecord], place: &Place<'_>) -> Made {
     let (kind, id) = known.object.parts();
     let is_relation = kind == "relation";
     let mut defects = Vec::new();
-    let area = try_making(known, lines, place, &mut defects);
+    let area = try_making(known, parts, place, &mut defects);
     if let Err(loss) = area {
         defects.push(Defect::LostArea { is_relation, id, loss });
     }
@@ -115,30 +117,43 @@ fn make(known: Known, lines: &[PartLine], place: &Place<'_>) -> Made {
 
 fn try_making(
     known: Known,
-    lines: &[PartLine],
+    parts: &[PartRecord],
     place: &Place<'_>,
     defects: &mut Vec<Defect>,
 ) -> Result<Area, AreaLoss> {
     let Known { object, class, name } = known;
     let (kind, id) = object.parts();
     let mut missing = 0;
-    let mut ways: Vec<Vec<LatticePoint>> = Vec::new();
-    for line in lines {
-        match line {
-            PartLine::Points(points) => ways.push(points.iter().copied().map(to_point).collect()),
+    let mut ways: Vec<Line> = Vec::new();
+    for part in parts {
+        let is_inner = part.member.is_inner;
+        match &part.line {
+            PartLine::Points(points) => {
+                ways.push(Line {
+                    points: points.iter().copied().map(to_point).collect(),
+                    is_inner,
+                });
+            }
             PartLine::NoWay => missing += 1,
             PartLine::NoNodes => return Err(AreaLoss::MissingNodes),
             PartLine::OutOfRange => return Err(AreaLoss::OutOfRange),
         }
     }
-    let outline: Vec<OutlineWay<'_>> = ways.iter().map(|points| OutlineWay { points }).collect();
-    let assembled = assemble(&outline).map_err(|error| match error {
+    let outline: Vec<OutlineWay<'_>> =
+        ways.iter().map(|way| OutlineWay { points: &way.points }).collect();
+    let mut assembled = assemble(&outline).map_err(|error| match error {
         OutlineError::Open { .. } | OutlineError::Nothing if missing > 0 => AreaLoss::MissingWays,
         OutlineError::Open { .. } => AreaLoss::OpenOutline,
         OutlineError::Nothing => AreaLoss::NoOutline,
         OutlineError::Crossing { .. } => AreaLoss::CrossingOutline,
         _ => AreaLoss::TooIntricate,
     })?;
+    if missing > 0 {
+        leave_out_holes(&mut assembled, &ways);
+        if assembled.polygons.is_empty() {
+            return Err(AreaLoss::MissingWays);
+        }
+    }
     let area_m2 = assembled.polygons.iter().map(area_m2).sum();
     let polygons: Option<Vec<Polygon>> =
         assembled.polygons.iter().map(|polygon| placed(polygon, place)).collect();
@@ -153,6 +168,26 @@ fn try_making(
     }
     let name = (!name.is_empty()).then(|| name.into());
     Ok(Area { object, class, name, polygons, area_m2 })
+}
+
+/// A way of an outline that the file has.
+struct Line {
+    points: Vec<LatticePoint>,
+    is_inner: bool,
+}
+
+/// Leaves out polygons around which there is no way but those of holes: where the way around such a hole is missing, it would be
+/// taken for an area. Only here roles are asked for.
+fn leave_out_holes(assembled: &mut Assembled, ways: &[Line]) {
+    let in_order = |[a, b]: [LatticePoint; 2]| [a.min(b), a.max(b)];
+    let outer: HashSet<[LatticePoint; 2]> = ways
+        .iter()
+        .filter(|way| !way.is_inner)
+        .flat_map(|way| way.points.array_windows().copied().map(in_order))
+        .collect();
+    assembled.polygons.retain(|polygon| {
+        polygon.outer().segments().map(in_order).any(|segment| outer.contains(&segment))
+    });
 }
 
 /// The true area of a polygon whose points are in 1e-7 degrees.

@@ -25,7 +25,15 @@ pub(crate) struct ObjectRecord {
     /// Empty for none.
     pub(crate) name: Box<str>,
     /// The ways of its outline; a way names itself.
-    pub(crate) way_ids: Box<[i64]>,
+    pub(crate) ways: Box<[Member]>,
+}
+
+/// A way of an outline.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Member {
+    pub(crate) way_id: i64,
+    /// Whether the relation gives it the role `inner`. This is only asked where other ways are missing.
+    pub(crate) is_inner: bool,
 }
 
 /// What is taken on from an object to its area.
@@ -39,7 +47,7 @@ pub(crate) struct Known {
 /// A way that an object needs. Objects are numbered in the order of their records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct MemberRecord {
-    pub(crate) way_id: i64,
+    pub(crate) member: Member,
     pub(crate) object_number: u64,
 }
 
@@ -47,7 +55,7 @@ pub(crate) struct MemberRecord {
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct PartRecord {
     pub(crate) object_number: u64,
-    pub(crate) way_id: i64,
+    pub(crate) member: Member,
     pub(crate) line: PartLine,
 }
 
@@ -88,9 +96,22 @@ pub(crate) fn degrees_of(point: LatticePoint) -> [f64; 2] {
 
 impl ObjectRecord {
     /// Splits off what makes the area; what is left are the ways.
-    pub(crate) fn into_known(self) -> (Known, Box<[i64]>) {
-        let Self { object, class, name, way_ids, .. } = self;
-        (Known { object, class, name }, way_ids)
+    pub(crate) fn into_known(self) -> (Known, Box<[Member]>) {
+        let Self { object, class, name, ways, .. } = self;
+        (Known { object, class, name }, ways)
+    }
+}
+
+impl Member {
+    fn encode(self, bytes: &mut Vec<u8>) {
+        bytes.push(u8::from(self.is_inner));
+        push_varint(bytes, to_zigzag(self.way_id));
+    }
+
+    fn decode(bytes: &mut &[u8]) -> Option<Self> {
+        let (&is_inner, rest) = bytes.split_first()?;
+        *bytes = rest;
+        Some(Self { way_id: zigzag(varint(bytes).ok()?), is_inner: is_inner == 1 })
     }
 }
 
@@ -123,16 +144,14 @@ impl Known {
 
 impl SortRecord for ObjectRecord {
     fn encode(&self, bytes: &mut Vec<u8>) {
-        let Self { object, age, order, version, file, class, name, way_ids } = self;
+        let Self { object, age, order, version, file, class, name, ways } = self;
         Known { object: *object, class: *class, name: name.clone() }.encode(bytes);
         push_varint(bytes, (*age).into());
         push_varint(bytes, *order);
         push_varint(bytes, to_zigzag((*version).into()));
         push_varint(bytes, (*file).into());
-        push_varint(bytes, way_ids.len() as u64);
-        for &way_id in way_ids {
-            push_varint(bytes, to_zigzag(way_id));
-        }
+        push_varint(bytes, ways.len() as u64);
+        ways.iter().for_each(|way| way.encode(bytes));
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
@@ -142,31 +161,31 @@ impl SortRecord for ObjectRecord {
         let version = zigzag(varint(bytes).ok()?).try_into().ok()?;
         let file = varint(bytes).ok()?.try_into().ok()?;
         let count = varint(bytes).ok()?;
-        let way_ids: Option<_> = (0..count).map(|_| varint(bytes).ok().map(zigzag)).collect();
-        Some(Self { object, age, order, version, file, class, name, way_ids: way_ids? })
+        let ways: Option<_> = (0..count).map(|_| Member::decode(bytes)).collect();
+        Some(Self { object, age, order, version, file, class, name, ways: ways? })
     }
 
     fn extra_bytes(&self) -> usize {
-        self.name.len() + size_of_val(&*self.way_ids) + 32
+        self.name.len() + size_of_val(&*self.ways) + 32
     }
 }
 
 impl SortRecord for MemberRecord {
     fn encode(&self, bytes: &mut Vec<u8>) {
-        push_varint(bytes, to_zigzag(self.way_id));
+        self.member.encode(bytes);
         push_varint(bytes, self.object_number);
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let way_id = zigzag(varint(bytes).ok()?);
-        Some(Self { way_id, object_number: varint(bytes).ok()? })
+        let member = Member::decode(bytes)?;
+        Some(Self { member, object_number: varint(bytes).ok()? })
     }
 }
 
 impl SortRecord for PartRecord {
     fn encode(&self, bytes: &mut Vec<u8>) {
         push_varint(bytes, self.object_number);
-        push_varint(bytes, to_zigzag(self.way_id));
+        self.member.encode(bytes);
         let points: &[Location] = match &self.line {
             PartLine::NoWay => return bytes.push(0),
             PartLine::NoNodes => return bytes.push(1),
@@ -186,7 +205,7 @@ impl SortRecord for PartRecord {
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
         let object_number = varint(bytes).ok()?;
-        let way_id = zigzag(varint(bytes).ok()?);
+        let member = Member::decode(bytes)?;
         let (&kind, rest) = bytes.split_first()?;
         *bytes = rest;
         let line = match kind {
@@ -207,7 +226,7 @@ impl SortRecord for PartRecord {
                 PartLine::Points(points?)
             }
         };
-        Some(Self { object_number, way_id, line })
+        Some(Self { object_number, member, line })
     }
 
     fn extra_bytes(&self) -> usize {

@@ -13,6 +13,10 @@ fn comes_back<T: SortRecord + PartialEq + Debug>(record: &T) {
     }
 }
 
+fn member(way_id: i64) -> Member {
+    Member { way_id, is_inner: way_id < 0 }
+}
+
 #[test]
 fn records_come_back() {
     for object in [AreaObject::Way(-7), AreaObject::Relation(i64::MAX)] {
@@ -24,14 +28,14 @@ fn records_come_back() {
             file: 2,
             class: AreaClass::Rock,
             name: "Füssen".into(),
-            way_ids: Box::new([1, -2, i64::MIN]),
+            ways: Box::new([1, -2, i64::MIN].map(member)),
         });
     }
-    comes_back(&MemberRecord { way_id: -5, object_number: 300 });
+    comes_back(&MemberRecord { member: member(-5), object_number: 300 });
     let points = Box::new([[i32::MIN + 1, i32::MAX - 1], [0, 0], [1_800_000_000, -900_000_000]]);
     for line in [PartLine::NoWay, PartLine::NoNodes, PartLine::OutOfRange, PartLine::Points(points)]
     {
-        comes_back(&PartRecord { object_number: 9, way_id: 10, line });
+        comes_back(&PartRecord { object_number: 9, member: member(10), line });
     }
 }
 
