@@ -6,7 +6,7 @@ use crate::{
     faces::inner_faces,
     planar_graph::{OddEnds, PlanarGraph},
     polygon::{Polygon, Ring},
-    segments::segments_of,
+    segments::{Segment, segments_of},
 };
 
 /// A way of an outline: neighbouring points are joined. Its direction does not matter.
@@ -67,6 +67,16 @@ pub fn assemble(ways: &[OutlineWay<'_>]) -> Result<Assembled, OutlineError> {
     let mut polygons: Vec<Polygon> = faces.iter().map(|walks| polygon_of(&graph, walks)).collect();
     polygons.sort_unstable();
     Ok(Assembled { polygons, repeated_segments: found.cancelled, divided_segments: found.divided })
+}
+
+/// The polygons that segments surround which meet at their ends only, in order of their outer rings.
+pub(crate) fn polygons_of(segments: Vec<Segment>) -> Result<Vec<Polygon>, OutlineError> {
+    let graph = PlanarGraph::new(segments)
+        .map_err(|OddEnds { count, first }| OutlineError::Open { ends: count, first })?;
+    let faces = inner_faces(&graph).faces;
+    let mut polygons: Vec<Polygon> = faces.iter().map(|walks| polygon_of(&graph, walks)).collect();
+    polygons.sort_unstable();
+    Ok(polygons)
 }
 
 /// The polygon of a face. A walk that comes to a point again is divided there, so that no ring touches itself.

@@ -1,9 +1,8 @@
-use std::collections::BTreeSet;
-
-use geo::{Coord, LineString, Validation as _};
+use geo::Validation as _;
 use proptest::prelude::*;
 
 use super::*;
+use crate::chessboard::{DOUBLED_CELL, cells, groups, to_geo, ways_around};
 
 fn points(list: &[[i64; 2]]) -> Vec<LatticePoint> {
     list.iter().map(|&[u, v]| LatticePoint::new(u, v)).collect()
@@ -109,86 +108,6 @@ fn far_coordinates_do_not_overflow() {
     let assembled = of(&[&ring, &hole]).unwrap();
     let doubled = 3_600_000_000_i128 * 1_800_000_001 - 2_000_000;
     assert_eq!(figures(&assembled), [(doubled, 1)]);
-}
-
-/// Cells of a chessboard that are inside.
-fn cells() -> impl Strategy<Value = BTreeSet<(i64, i64)>> {
-    prop::collection::btree_set((0_i64..9, 0_i64..9), 1..60)
-}
-
-/// The borders between cells inside and outside as ways, cut and turned by chance: bit by bit `seed` decides.
-fn ways_around(cells: &BTreeSet<(i64, i64)>, mut seed: u64) -> Vec<Vec<LatticePoint>> {
-    let mut edges: Vec<[(i64, i64); 2]> = Vec::new();
-    for &(x, y) in cells {
-        for (beside, edge) in [
-            ((x, y - 1), [(x, y), (x + 1, y)]),
-            ((x, y + 1), [(x, y + 1), (x + 1, y + 1)]),
-            ((x - 1, y), [(x, y), (x, y + 1)]),
-            ((x + 1, y), [(x + 1, y), (x + 1, y + 1)]),
-        ] {
-            if !cells.contains(&beside) {
-                edges.push(edge);
-            }
-        }
-    }
-    let mut random = move |below: usize| {
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        (seed % below as u64) as usize
-    };
-    let mut ways = Vec::new();
-    while !edges.is_empty() {
-        let [mut from, to] = edges.swap_remove(random(edges.len()));
-        if random(2) == 0 {
-            ways.push(vec![from, to]);
-            continue;
-        }
-        let mut way = vec![from, to];
-        from = to;
-        while let Some(next) = edges.iter().position(|edge| edge.contains(&from)) {
-            if random(5) == 0 {
-                break;
-            }
-            let edge = edges.swap_remove(next);
-            from = if edge[0] == from { edge[1] } else { edge[0] };
-            way.push(from);
-        }
-        ways.push(way);
-    }
-    ways.into_iter().map(|way| way.into_iter().map(placed).collect()).collect()
-}
-
-/// Corners of cells in a place where no side is level or upright.
-fn placed((x, y): (i64, i64)) -> LatticePoint {
-    LatticePoint::new(7 * x - 2 * y, 3 * x + 11 * y)
-}
-
-/// Doubled area of a cell there.
-const DOUBLED_CELL: i128 = 2 * (7 * 11 + 2 * 3);
-
-/// How many groups of cells are connected by their sides.
-fn groups(cells: &BTreeSet<(i64, i64)>) -> usize {
-    let mut left = cells.clone();
-    let mut groups = 0;
-    while let Some(first) = left.pop_first() {
-        groups += 1;
-        let mut waiting = vec![first];
-        while let Some((x, y)) = waiting.pop() {
-            let beside = [(x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)];
-            waiting.extend(beside.into_iter().filter(|cell| left.remove(cell)));
-        }
-    }
-    groups
-}
-
-fn to_geo(polygon: &Polygon) -> geo::Polygon<f64> {
-    let line = |ring: &Ring| {
-        let coords =
-            ring.points().iter().map(|point| Coord { x: point.u as f64, y: point.v as f64 });
-        LineString::from(coords.collect::<Vec<_>>())
-    };
-    geo::Polygon::new(line(polygon.outer()), polygon.holes().iter().map(line).collect())
 }
 
 proptest! {

@@ -5,16 +5,20 @@
 //!  ways ──► segments ──► planar graph ──► faces ──► polygons: an outer ring, holes
 //!           (doubled ones   (half-edges,    (inside by the
 //!            cancel out)     sorted by angle)  even-odd rule)
+//!  Polygon ──► coarsen: for a level ──► divide: by lines between tiles ──► polygons
 //! ```
 //!
-//! All of it is exact: points lie on an integer lattice, and no point is computed.
+//! Assembling is exact: points lie on an integer lattice, and no point is computed. Coarsening and dividing round new points to the
+//! lattice, by rules that look at one segment or one point, so that neighbours agree.
 //!
-//! This crate never sees terrain, a tile or a file, and never moves a point.
+//! This crate never sees terrain or a file.
 
 mod area;
 mod area_class;
 mod area_table;
 mod assemble;
+mod coarsen;
+mod divide;
 mod polygon;
 
 mod faces;
@@ -22,8 +26,13 @@ mod planar_graph;
 mod segments;
 mod stabbing;
 
+#[cfg(test)]
+mod chessboard;
+
 pub use area::{Area, AreaObject};
 pub use area_class::AreaClass;
 pub use area_table::{AreaTable, AreaTableError};
 pub use assemble::{Assembled, OutlineError, OutlineWay, assemble};
+pub use coarsen::coarsen;
+pub use divide::{Axis, divide};
 pub use polygon::{Polygon, Ring};

@@ -1,6 +1,6 @@
 //! The segments of an outline: each once, none crossing another, none with a point of another in its middle.
 
-use corniche_geom::{LatticePoint, Side, side};
+use corniche_geom::{LatticePoint, Side, cross, side};
 
 use crate::assemble::{OutlineError, OutlineWay};
 
@@ -20,22 +20,54 @@ pub(crate) struct Separated {
 /// Pairs of segments that are compared at most. Real outlines of a million points need a tenth; more would take minutes.
 const MOST_COMPARISONS: u64 = 1 << 30;
 
-/// Takes the ways of an outline apart.
+/// Takes the ways of an outline apart. Fails where segments cross.
 pub(crate) fn segments_of(ways: &[OutlineWay<'_>]) -> Result<Separated, OutlineError> {
-    let mut all = Vec::new();
-    for way in ways {
-        let pairs = way.points.array_windows();
-        all.extend(pairs.filter(|[from, to]| from != to).map(|&[a, b]| [a.min(b), a.max(b)]));
-    }
+    let mut all = all_segments(ways);
     let mut cancelled = cancel_pairs(&mut all);
-    let touches = touches_of(&all)?;
-    let divided = touches.len() as u64;
+    let Meetings { inner_points, crossings } = meetings_of(&all)?;
+    if let Some(&[one, _]) = crossings.first() {
+        return Err(OutlineError::Crossing { at: all[one][0] });
+    }
+    let divided = inner_points.len() as u64;
     if divided > 0 {
-        all = divide(&all, touches);
+        all = divide(&all, inner_points);
         // A part of a segment may lie on another one.
         cancelled += cancel_pairs(&mut all);
     }
     Ok(Separated { segments: all, cancelled, divided })
+}
+
+/// How often segments are divided at most; each time brings what crosses together, and a few times are enough.
+const MOST_ROUNDS: usize = 32;
+
+/// Takes the ways of an outline apart; where segments cross, both are led through the lattice point that is nearest to the
+/// crossing.
+///
+/// Moved segments may cross others, so this is done until none do. A point moves by half a step at most each time.
+///
+/// Source: Halperin & Packer 2002, *Iterated Snap Rounding*, Computational Geometry 23; with points that are only as near to the
+/// crossing as the lattice allows, and without pulling segments to points that they pass by.
+pub(crate) fn uncrossed_segments_of(ways: &[OutlineWay<'_>]) -> Result<Vec<Segment>, OutlineError> {
+    let mut all = all_segments(ways);
+    for _ in 0..MOST_ROUNDS {
+        cancel_pairs(&mut all);
+        let Meetings { mut inner_points, crossings } = meetings_of(&all)?;
+        for [one, other] in crossings {
+            let at = crossing_of(all[one], all[other]);
+            let is_new = |&number: &usize| !all[number].contains(&at);
+            inner_points.extend([one, other].into_iter().filter(is_new).map(|number| (number, at)));
+        }
+        if inner_points.is_empty() {
+            return Ok(all);
+        }
+        all = divide(&all, inner_points);
+    }
+    Err(OutlineError::TooIntricate)
+}
+
+fn all_segments(ways: &[OutlineWay<'_>]) -> Vec<Segment> {
+    let pairs = ways.iter().flat_map(|way| way.points.array_windows());
+    pairs.filter(|[from, to]| from != to).map(|&[a, b]| [a.min(b), a.max(b)]).collect()
 }
 
 /// Sorts segments and leaves one of each that is there an odd number of times. Returns how many others there were.
@@ -55,9 +87,16 @@ fn cancel_pairs(segments: &mut Vec<Segment>) -> u64 {
     cancelled
 }
 
-/// The points in the middle of segments, with the number of the segment; fails at the first pair that crosses.
-fn touches_of(segments: &[Segment]) -> Result<Vec<(usize, LatticePoint)>, OutlineError> {
-    let mut touches = Vec::new();
+/// Where segments meet beside their ends.
+struct Meetings {
+    /// Points in the middle of segments, with the number of the segment.
+    inner_points: Vec<(usize, LatticePoint)>,
+    /// Segments that cross.
+    crossings: Vec<[usize; 2]>,
+}
+
+fn meetings_of(segments: &[Segment]) -> Result<Meetings, OutlineError> {
+    let mut meetings = Meetings { inner_points: Vec::new(), crossings: Vec::new() };
     let mut comparisons = 0;
     for (number, &one) in segments.iter().enumerate() {
         // Segments begin at their western end and are sorted by it, so those that begin east of this one are past it.
@@ -67,23 +106,25 @@ fn touches_of(segments: &[Segment]) -> Result<Vec<(usize, LatticePoint)>, Outlin
             if comparisons > MOST_COMPARISONS {
                 return Err(OutlineError::TooIntricate);
             }
+            let other_number = number + 1 + ahead;
             match meeting(one, other) {
                 Meeting::Apart => {}
-                Meeting::Crossing => return Err(OutlineError::Crossing { at: one[0] }),
+                Meeting::Crossing => meetings.crossings.push([number, other_number]),
                 Meeting::Touching => {
-                    let other_number = number + 1 + ahead;
                     let inner = |segment: Segment, ends: Segment| {
                         ends.into_iter().filter(move |&end| is_inside(segment, end))
                     };
-                    touches.extend(inner(one, other).map(|point| (number, point)));
-                    touches.extend(inner(other, one).map(|point| (other_number, point)));
+                    let points = &mut meetings.inner_points;
+                    points.extend(inner(one, other).map(|point| (number, point)));
+                    points.extend(inner(other, one).map(|point| (other_number, point)));
                 }
             }
         }
     }
-    touches.sort_unstable();
-    touches.dedup();
-    Ok(touches)
+    // Two segments may end at the same point in the middle of a third.
+    meetings.inner_points.sort_unstable();
+    meetings.inner_points.dedup();
+    Ok(meetings)
 }
 
 enum Meeting {
@@ -118,17 +159,44 @@ fn is_inside([a, b]: Segment, point: LatticePoint) -> bool {
     a < point && point < b && side(a, b, point) == Side::On
 }
 
-/// Divides segments at points in their middle, which come in the order of segments and then of points.
-fn divide(segments: &[Segment], touches: Vec<(usize, LatticePoint)>) -> Vec<Segment> {
-    let mut divided = Vec::with_capacity(segments.len() + touches.len());
-    let mut touches = touches.into_iter().peekable();
+/// The lattice point nearest to where two segments cross.
+fn crossing_of([a, b]: Segment, [c, d]: Segment) -> LatticePoint {
+    // From a to b it is at the share `from_a / both` of the way: the distances of a and b from the line c d.
+    let from_a = cross(c, d, a);
+    let both = from_a - cross(c, d, b);
+    let along = |a: i64, b: i64| a + round_div(i128::from(b - a) * from_a, both);
+    LatticePoint::new(along(a.u, b.u), along(a.v, b.v))
+}
+
+/// The whole number nearest to a quotient, halves upwards. Coordinates below 2^40 do not overflow.
+fn round_div(dividend: i128, divisor: i128) -> i64 {
+    let (dividend, divisor) = (dividend * divisor.signum(), divisor.abs());
+    (2 * dividend + divisor).div_euclid(2 * divisor) as i64
+}
+
+/// Divides segments at points, which lie on them or near to them, and come in any order.
+fn divide(segments: &[Segment], mut points: Vec<(usize, LatticePoint)>) -> Vec<Segment> {
+    let along = |&(number, point): &(usize, LatticePoint)| {
+        let [a, b] = segments[number];
+        let [east, north] = [b.u - a.u, b.v - a.v].map(i128::from);
+        i128::from(point.u - a.u) * east + i128::from(point.v - a.v) * north
+    };
+    points.sort_unstable_by_key(|own| (own.0, along(own), own.1));
+    points.dedup();
+    let mut divided = Vec::with_capacity(segments.len() + points.len());
+    let mut points = points.into_iter().peekable();
     for (number, &[a, b]) in segments.iter().enumerate() {
         let mut from = a;
-        while let Some((_, point)) = touches.next_if(|(of, _)| *of == number) {
-            divided.push([from, point]);
-            from = point;
+        let mut lead_to = |to: LatticePoint| {
+            if from != to {
+                divided.push([from.min(to), from.max(to)]);
+            }
+            from = to;
+        };
+        while let Some((_, point)) = points.next_if(|(of, _)| *of == number) {
+            lead_to(point);
         }
-        divided.push([from, b]);
+        lead_to(b);
     }
     divided
 }

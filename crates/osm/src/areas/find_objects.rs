@@ -63,7 +63,7 @@ pub(crate) fn find_objects<'a, R: Read + Seek>(
         &all,
         &decoding,
         |block| (Versions::scan(block), IdRange::scan(block)),
-        |block, most_bytes| Objects::scan(block, table, most_bytes),
+        |block, most_bytes| OfBlock::scan(block, table, most_bytes),
         |[file, number], (versions_of_block, ids), of_block| {
             let file = file as u32;
             append_versions(reading, &mut versions, versions_of_block.of_file(file))?;
@@ -93,7 +93,7 @@ pub(crate) fn find_objects<'a, R: Read + Seek>(
 
 /// The objects of a block, in its order.
 #[derive(Default)]
-struct Objects {
+struct OfBlock {
     objects: Vec<ObjectRecord>,
     open_ways: Vec<i64>,
     has_ways: bool,
@@ -106,7 +106,7 @@ const OBJECT_BYTES: usize = 200;
 /// A ring has three different points, and the first again.
 const LEAST_REFS: usize = 4;
 
-impl Objects {
+impl OfBlock {
     /// Finds the objects of a block; `None` if they take more than `most_bytes`.
     fn scan(block: &PrimitiveBlock, table: &AreaTable, most_bytes: u64) -> Option<Self> {
         let mut found = Self::default();

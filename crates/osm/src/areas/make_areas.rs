@@ -2,7 +2,9 @@
 
 use std::collections::HashSet;
 
-use corniche_areas::{Area, AreaObject, Assembled, OutlineError, OutlineWay, Polygon, assemble};
+use corniche_areas::{
+    Area, AreaObject, Assembled, OutlineError, OutlineWay, Polygon, Ring, assemble,
+};
 use corniche_geom::{LatticePoint, wgs84};
 use corniche_store::Sorted;
 use rayon::prelude::*;
@@ -201,7 +203,7 @@ fn area_m2(polygon: &Polygon) -> f64 {
 
 /// The same polygon on the package's lattice.
 fn placed(polygon: &Polygon, place: &Place<'_>) -> Option<Polygon> {
-    let points = polygon.rings().flat_map(|ring| ring.points());
+    let points = polygon.rings().flat_map(Ring::points);
     let positions_deg: Vec<[f64; 2]> = points.copied().map(degrees_of).collect();
     let mut placed = place(&positions_deg).into_iter();
     // Rings are gone through in the same order.

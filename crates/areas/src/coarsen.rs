@@ -1,0 +1,35 @@
+use corniche_geom::LatticePoint;
+
+use crate::{
+    OutlineError, OutlineWay, Polygon, assemble::polygons_of, segments::uncrossed_segments_of,
+};
+
+/// A polygon with its points on a coarser lattice: whole multiples of `step`.
+///
+/// Each point goes to the nearest point of the coarse lattice, whatever its neighbours are. So two areas that share a part of their
+/// borders share it afterwards, too, and what is narrower than a step falls together. Where segments cross then, both are led
+/// through the coarse point nearest to the crossing. No point moves farther than half a step along each axis, but for such points.
+///
+/// Empty where nothing is left. `step` must be above 0.
+///
+/// # Errors
+/// [`OutlineError::TooIntricate`], for polygons far beyond what is real.
+pub fn coarsen(polygon: &Polygon, step: i64) -> Result<Vec<Polygon>, OutlineError> {
+    let to_coarse = |part: i64| (2 * part + step).div_euclid(2 * step);
+    let coarse = |point: &LatticePoint| LatticePoint::new(to_coarse(point.u), to_coarse(point.v));
+    let rings: Vec<Vec<LatticePoint>> = polygon
+        .rings()
+        .map(|ring| {
+            let points = ring.points();
+            points.iter().chain(points.first()).map(coarse).collect()
+        })
+        .collect();
+    let ways: Vec<OutlineWay<'_>> = rings.iter().map(|points| OutlineWay { points }).collect();
+    let polygons = polygons_of(uncrossed_segments_of(&ways)?)?;
+    let fine = |point: LatticePoint| Some(LatticePoint::new(point.u * step, point.v * step));
+    Ok(polygons.iter().filter_map(|polygon| polygon.placed(fine)).collect())
+}
+
+#[cfg(test)]
+#[path = "coarsen_tests.rs"]
+mod tests;

@@ -1,0 +1,117 @@
+use corniche_geom::LatticePoint;
+
+use crate::{
+    OutlineError, OutlineWay, Polygon, Ring, assemble::polygons_of, segments::uncrossed_segments_of,
+};
+
+/// Along which axis a polygon is divided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axis {
+    /// By an upright line, into a western and an eastern part.
+    East,
+    /// By a level line, into a southern and a northern part.
+    North,
+}
+
+/// The parts of a polygon on both sides of a line: that with smaller coordinates first. Both have the same points on the line.
+///
+/// ```text
+///        │                       each ring is cut at the line; what that adds along the line is there
+///    ╭───┼──╮                    twice where it joins separate parts:
+///    │   │  ╰──╮     ──►     ╭───┐      ┌──╮        ┌──╮
+///    │   │  ╭──╯             │   │      │  ╰──╮  =  │  ╰──╮     (the even-odd rule drops it)
+///    ╰───┼──╯                ╰───┘      └─────╯     └─────╯
+///        │
+/// ```
+///
+/// A segment is cut at the lattice point on the line that is nearest to the crossing. If tiles are cut out of an area by dividing it
+/// like a quadtree, neighbours have the same points on their border, because that line has divided both at once.
+///
+/// Source: Sutherland & Hodgman 1974, *Reentrant Polygon Clipping*, Communications of the ACM 17; then polygons are assembled
+/// anew, because that method joins separate parts by segments along the line.
+///
+/// # Errors
+/// [`OutlineError::TooIntricate`], for polygons far beyond what is real.
+pub fn divide(polygon: &Polygon, axis: Axis, at: i64) -> Result<[Vec<Polygon>; 2], OutlineError> {
+    let line = Line { axis, at };
+    let own = || vec![polygon.clone()];
+    let points = polygon.outer().points();
+    if points.iter().all(|&point| line.along(point) <= at) {
+        Ok([own(), Vec::new()])
+    } else if points.iter().all(|&point| line.along(point) >= at) {
+        Ok([Vec::new(), own()])
+    } else {
+        Ok([line.part(polygon, Part::Smaller)?, line.part(polygon, Part::Larger)?])
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    axis: Axis,
+    at: i64,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Part {
+    Smaller,
+    Larger,
+}
+
+impl Line {
+    fn along(self, point: LatticePoint) -> i64 {
+        match self.axis {
+            Axis::East => point.u,
+            Axis::North => point.v,
+        }
+    }
+
+    fn across(self, point: LatticePoint) -> i64 {
+        match self.axis {
+            Axis::East => point.v,
+            Axis::North => point.u,
+        }
+    }
+
+    fn part(self, polygon: &Polygon, part: Part) -> Result<Vec<Polygon>, OutlineError> {
+        let rings: Vec<Vec<LatticePoint>> =
+            polygon.rings().map(|ring| self.part_of_ring(ring, part)).collect();
+        let ways: Vec<OutlineWay<'_>> = rings.iter().map(|points| OutlineWay { points }).collect();
+        polygons_of(uncrossed_segments_of(&ways)?)
+    }
+
+    /// The points of a ring on one side of the line, the first once more at the end. Points on the line are on both sides.
+    fn part_of_ring(self, ring: &Ring, part: Part) -> Vec<LatticePoint> {
+        let is_kept = |point: LatticePoint| match part {
+            Part::Smaller => self.along(point) <= self.at,
+            Part::Larger => self.along(point) >= self.at,
+        };
+        let mut kept = Vec::with_capacity(ring.points().len() + 8);
+        for [from, to] in ring.segments() {
+            if is_kept(from) {
+                kept.push(from);
+            }
+            if is_kept(from) != is_kept(to) {
+                kept.push(self.crossing(from, to));
+            }
+        }
+        kept.extend(kept.first().copied());
+        kept
+    }
+
+    /// Where a segment crosses the line. Its direction does not matter.
+    fn crossing(self, from: LatticePoint, to: LatticePoint) -> LatticePoint {
+        let [a, b] = if self.along(from) < self.along(to) { [from, to] } else { [to, from] };
+        let length = i128::from(self.along(b) - self.along(a));
+        let run = i128::from(self.across(b) - self.across(a)) * i128::from(self.at - self.along(a));
+        // Rounded to the nearest, halves upwards.
+        let place = self.across(a) + (2 * run + length).div_euclid(2 * length) as i64;
+        match self.axis {
+            Axis::East => LatticePoint::new(self.at, place),
+            Axis::North => LatticePoint::new(place, self.at),
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "divide_tests.rs"]
+mod tests;

@@ -1,0 +1,87 @@
+use geo::Validation as _;
+use proptest::prelude::*;
+
+use super::*;
+use crate::chessboard::{cells, polygons_around, to_geo};
+
+fn doubled_area(polygons: &[Polygon]) -> i128 {
+    polygons.iter().map(Polygon::doubled_area).sum()
+}
+
+/// Where the border of some polygons runs along the line: pieces that do not touch, in order.
+fn along_line(polygons: &[Polygon], line: Line) -> Vec<[i64; 2]> {
+    let segments = polygons.iter().flat_map(Polygon::rings).flat_map(Ring::segments);
+    let on_line = segments.filter(|ends| ends.iter().all(|&end| line.along(end) == line.at));
+    let mut pieces: Vec<[i64; 2]> = on_line
+        .map(|ends| {
+            let [a, b] = ends.map(|end| line.across(end));
+            [a.min(b), a.max(b)]
+        })
+        .collect();
+    pieces.sort_unstable();
+    pieces.dedup_by(|later, piece| {
+        let touches = later[0] <= piece[1];
+        piece[1] = piece[1].max(if touches { later[1] } else { piece[1] });
+        touches
+    });
+    pieces
+}
+
+#[test]
+fn a_comb_falls_into_its_teeth() {
+    // Three teeth to the east, joined in the west.
+    let outline: Vec<LatticePoint> = [
+        [0, 0],
+        [10, 0],
+        [10, 2],
+        [4, 2],
+        [4, 4],
+        [10, 4],
+        [10, 6],
+        [4, 6],
+        [4, 8],
+        [10, 8],
+        [10, 10],
+        [0, 10],
+        [0, 0],
+    ]
+    .map(|[u, v]| LatticePoint::new(u, v))
+    .to_vec();
+    let comb = crate::assemble(&[OutlineWay { points: &outline }]).unwrap().polygons.swap_remove(0);
+    let [back, teeth] = divide(&comb, Axis::East, 6).unwrap();
+    assert_eq!((back.len(), teeth.len()), (1, 3));
+    assert!(teeth.iter().all(|tooth| tooth.doubled_area() == 16));
+    // Exactly where the teeth begin: no point of the line belongs to both but the teeth's own.
+    let [back, teeth] = divide(&comb, Axis::East, 4).unwrap();
+    assert_eq!((doubled_area(&back), teeth.len()), (80, 3));
+    // Beside it.
+    assert_eq!(divide(&comb, Axis::North, 10).unwrap(), [vec![comb.clone()], vec![]]);
+    assert_eq!(divide(&comb, Axis::North, -3).unwrap(), [vec![], vec![comb]]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(if cfg!(miri) { 4 } else { 300 }))]
+
+    /// Nothing is lost and nothing is there twice, but for rounding on the line, along which both parts have the same border. Both
+    /// are valid.
+    #[test]
+    fn parts_add_up(cells in cells(), is_east: bool, at in -25_i64..130) {
+        let axis = if is_east { Axis::East } else { Axis::North };
+        let line = Line { axis, at };
+        for polygon in polygons_around(&cells) {
+            let [smaller, larger] = divide(&polygon, axis, at).unwrap();
+            prop_assert!(smaller.iter().flat_map(Polygon::rings).flat_map(Ring::points).all(|&p| line.along(p) <= at));
+            prop_assert!(larger.iter().flat_map(Polygon::rings).flat_map(Ring::points).all(|&p| line.along(p) >= at));
+            if !smaller.is_empty() && !larger.is_empty() {
+                prop_assert_eq!(along_line(&smaller, line), along_line(&larger, line));
+            }
+            // A cut moves by half a step at most, and what it moves is a triangle no longer than a side of a cell.
+            let cuts = 2 + 2 * along_line(&smaller, line).len() as i128;
+            let off = doubled_area(&smaller) + doubled_area(&larger) - polygon.doubled_area();
+            prop_assert!(off.abs() <= 12 * cuts, "{off}");
+            for part in smaller.iter().chain(&larger) {
+                prop_assert!(to_geo(part).is_valid());
+            }
+        }
+    }
+}
