@@ -4,17 +4,11 @@ use corniche_geom::LatticePoint;
 
 use crate::{
     faces::inner_faces,
+    outline::{OutlineError, OutlineWay},
     planar_graph::{OddEnds, PlanarGraph},
     polygon::{Polygon, Ring},
     segments::{Segment, segments_of},
 };
-
-/// A way of an outline: neighbouring points are joined. Its direction does not matter.
-#[derive(Debug, Clone, Copy)]
-pub struct OutlineWay<'a> {
-    /// Its points in order.
-    pub points: &'a [LatticePoint],
-}
 
 /// The polygons that an outline surrounds.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -25,21 +19,6 @@ pub struct Assembled {
     pub repeated_segments: u64,
     /// How often a point of the outline lay in the middle of one of its segments, which was divided there.
     pub divided_segments: u64,
-}
-
-/// Why an outline surrounds nothing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[expect(missing_docs, reason = "each message documents its variant")]
-#[non_exhaustive]
-pub enum OutlineError {
-    #[error("the outline is not closed: {ends} ends are open")]
-    Open { ends: u64, first: LatticePoint },
-    #[error("the outline crosses itself between its points")]
-    Crossing { at: LatticePoint },
-    #[error("nothing is left of the outline: it has no segments, or each of them twice")]
-    Nothing,
-    #[error("the outline has too many long segments side by side to be searched for crossings")]
-    TooIntricate,
 }
 
 /// Makes polygons of the ways of an outline, in any order and direction.

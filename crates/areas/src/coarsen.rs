@@ -1,7 +1,10 @@
 use corniche_geom::LatticePoint;
 
 use crate::{
-    OutlineError, OutlineWay, Polygon, assemble::polygons_of, segments::uncrossed_segments_of,
+    Polygon,
+    assemble::polygons_of,
+    outline::{OutlineError, OutlineWay},
+    segments::uncrossed_segments_of,
 };
 
 /// A polygon with its points on a coarser lattice: whole multiples of `step`.

@@ -1,7 +1,10 @@
 use corniche_geom::LatticePoint;
 
 use crate::{
-    OutlineError, OutlineWay, Polygon, Ring, assemble::polygons_of, segments::uncrossed_segments_of,
+    Polygon, Ring,
+    assemble::polygons_of,
+    outline::{OutlineError, OutlineWay},
+    segments::uncrossed_segments_of,
 };
 
 /// Along which axis a polygon is divided.

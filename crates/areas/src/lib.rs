@@ -19,6 +19,7 @@ mod area_table;
 mod assemble;
 mod coarsen;
 mod divide;
+mod outline;
 mod polygon;
 
 mod faces;
@@ -32,7 +33,8 @@ mod chessboard;
 pub use area::{Area, AreaObject};
 pub use area_class::AreaClass;
 pub use area_table::{AreaTable, AreaTableError};
-pub use assemble::{Assembled, OutlineError, OutlineWay, assemble};
+pub use assemble::{Assembled, assemble};
 pub use coarsen::coarsen;
 pub use divide::{Axis, divide};
+pub use outline::{OutlineError, OutlineWay};
 pub use polygon::{Polygon, Ring};

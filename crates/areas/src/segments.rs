@@ -2,7 +2,7 @@
 
 use corniche_geom::{LatticePoint, Side, cross, side};
 
-use crate::assemble::{OutlineError, OutlineWay};
+use crate::outline::{OutlineError, OutlineWay};
 
 /// Two different points, the smaller first.
 pub(crate) type Segment = [LatticePoint; 2];

@@ -64,8 +64,7 @@ pub fn area_m2(ring_deg: &[[f64; 2]]) -> f64 {
 fn equal_area_latitude(latitude_deg: f64) -> f64 {
     let sin = latitude_deg.to_radians().sin();
     let e = ECCENTRICITY_2.sqrt();
-    (1.0 - ECCENTRICITY_2)
-        * (sin / (1.0 - ECCENTRICITY_2 * sin * sin) + (e * sin).atanh() / e)
+    (1.0 - ECCENTRICITY_2) * (sin / (1.0 - ECCENTRICITY_2 * sin * sin) + (e * sin).atanh() / e)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::areas::AreaLoss;
+use crate::area_loss::AreaLoss;
 
 /// Bad input in an extract that was survived: reported with the object's id, and the rest goes on.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

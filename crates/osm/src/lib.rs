@@ -60,12 +60,14 @@ mod text;
 mod way_bytes;
 mod way_facts;
 
+mod area_loss;
 mod defect;
 mod error;
 mod kept_error;
 mod summary;
 
-pub use areas::{AreaLoss, AreaSummary, KeptAreas, read_areas};
+pub use area_loss::AreaLoss;
+pub use areas::{AreaSummary, KeptAreas, read_areas};
 pub use defect::Defect;
 pub use error::ReadOsmError;
 pub use header_bounds::header_bounds_deg;

@@ -11,7 +11,7 @@ use corniche_areas::{Area, AreaClass, AreaObject, AreaTable};
 use corniche_osm::{AreaLoss, AreaSummary, Defect, ReadOsmError, ReadRequest, read_areas};
 use corniche_presets::{area_preset, parse_area_table};
 use corniche_store::MemoryScratch;
-use corniche_testing::pbf::{Block, file};
+use corniche_testing::pbf::{Block, deltas, field, file, number};
 
 struct Found {
     areas: Vec<Area>,
@@ -181,5 +181,26 @@ fn little_memory_gives_the_same() {
         assert_eq!(found.areas, all.areas);
         assert_eq!(found.defects, all.defects);
         assert_eq!(found.summary, all.summary);
+    }
+}
+
+/// A relation that contradicts itself makes the file a damaged one, as ways do.
+#[test]
+fn damaged_relations_are_refused() {
+    let relation = |fields: &[Vec<u8>]| {
+        let mut block = Block::with_row_of_nodes(3);
+        block.groups.push(field(4, &[number(1, 9), fields.concat()].concat()));
+        read_within(&file(&block), 1 << 24).map(|found| found.areas).unwrap_err().to_string()
+    };
+    let [roles, ids] = [field(8, &[0]), field(9, &deltas(&[1]))];
+    for (fields, reason) in [
+        (vec![roles.clone(), ids.clone(), field(10, &[3])], "a member of relation 9 is of kind 3"),
+        (vec![roles.clone(), ids, field(10, &[1, 1])], "1 members, 1 roles and 2 kinds"),
+        (vec![roles, field(9, &deltas(&[i64::MAX, 1, i64::MIN])), field(10, &[1; 3])], "overflow"),
+        (vec![field(2, &[0])], "relation 9 has 1 keys and 0 values"),
+        (vec![field(2, &[0]), field(3, &[100])], "a tag of relation 9 is string 100"),
+    ] {
+        let message = relation(&fields);
+        assert!(message.contains(reason), "{message}");
     }
 }

@@ -6,12 +6,9 @@ use corniche_areas::{AreaClass, AreaObject, AreaTable};
 use corniche_store::Sorter;
 use osmpbf::{PrimitiveBlock, RelMemberType, Relation, Way};
 
-use super::{
-    records::{Member, ObjectRecord},
-    summary::AreaLoss,
-};
+use super::records::{Member, ObjectRecord};
 use crate::{
-    Defect, ReadOsmError,
+    AreaLoss, Defect, ReadOsmError,
     blobs::Decoding,
     extracts::Extracts,
     find_ways::{NodeBlob, append_versions, check_held},

@@ -7,10 +7,10 @@ use osmpbf::PrimitiveBlock;
 
 use super::{
     records::{MemberRecord, ObjectRecord},
-    summary::{AreaLoss, AreaSummary},
+    summary::AreaSummary,
 };
 use crate::{
-    Defect, ExtractSummary, ReadOsmError,
+    AreaLoss, Defect, ExtractSummary, ReadOsmError,
     ahead::Ahead,
     blobs::Decoding,
     extracts::Extracts,

@@ -11,10 +11,10 @@ use rayon::prelude::*;
 
 use super::{
     records::{Known, PartLine, PartRecord, degrees_of, to_point},
-    summary::{AreaLoss, AreaSummary},
+    summary::AreaSummary,
 };
 use crate::{
-    Defect, ReadOsmError,
+    AreaLoss, Defect, ReadOsmError,
     ahead::Ahead,
     read_request::Place,
     reading::{Reading, Step},

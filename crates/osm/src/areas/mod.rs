@@ -21,4 +21,4 @@ mod records;
 mod summary;
 
 pub use read_areas::read_areas;
-pub use summary::{AreaLoss, AreaSummary, KeptAreas};
+pub use summary::{AreaSummary, KeptAreas};

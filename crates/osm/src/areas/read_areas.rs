@@ -7,10 +7,10 @@ use super::{
     find_outlines::{find_outlines, number_objects},
     hand_parts::{LocatedWays, hand_parts},
     make_areas::make_areas,
-    summary::{AreaLoss, AreaSummary},
+    summary::AreaSummary,
 };
 use crate::{
-    Defect, ExtractSummary, ReadOsmError,
+    AreaLoss, Defect, ExtractSummary, ReadOsmError,
     extracts::Extracts,
     locate_nodes::{FileNodes, NodeQuestions, locate_nodes},
     number_nodes::{NumberedNodes, number_nodes},
