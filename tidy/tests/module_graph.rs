@@ -11,7 +11,7 @@ const MAY_USE: [(&str, &[&str]); 18] = [
     ("viewer", &["tileset", "styles"]),
     ("pipeline", &["tileset", "osm", "photo", "store", "objects"]),
     ("export", &["tileset", "dem", "store"]),
-    ("tileset", &["drape", "tin", "roads"]),
+    ("tileset", &["drape", "tin", "roads", "areas"]),
     ("osm", &["roads", "areas", "store", "objects"]),
     ("photo", &["dem"]),
     ("dem", &["geom"]),

@@ -47,12 +47,12 @@ pub use package::{FilePackage, FileSource};
 #[cfg(feature = "write")]
 pub use package::{WriteError, Writer};
 pub use payload::{
-    Damage, DecodeError, EncodeError, GeoRoad, PHOTO_BORDER, PayloadSizes, Photo, Relief,
-    RoadRecord, SectionSize, Sections, SvRoad, Terrain, TilePayload, decode, decode_photo,
-    payload_sizes,
+    AreaRecord, AreaRings, Damage, DecodeError, EncodeError, GeoRoad, PHOTO_BORDER, PayloadSizes,
+    Photo, Relief, RoadRecord, SectionSize, Sections, SvRoad, Terrain, TilePayload, decode,
+    decode_areas, decode_photo, payload_sizes,
 };
 #[cfg(feature = "write")]
 pub use payload::{
-    EncodedTile, PayloadContext, PhotoSection, encode, encode_photo, encode_with_ground_of,
-    photo_section, with_photo,
+    AreasSection, EncodedTile, PayloadContext, PhotoSection, encode, encode_areas, encode_photo,
+    encode_with_ground_of, photo_section, with_areas, with_photo,
 };

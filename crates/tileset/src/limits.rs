@@ -39,9 +39,13 @@ pub const MAX_LINES: usize = 1 << 20;
 pub const MAX_POINTS: usize = 1 << 22;
 /// Vertices of all lines of the GEO section, crossings included: 128 MiB in memory.
 pub const MAX_LINE_VERTICES: usize = 1 << 22;
+/// Areas in one tile.
+pub const MAX_AREAS: usize = 1 << 18;
+/// Rings of all areas of a tile, and so polygons.
+pub const MAX_AREA_RINGS: usize = 1 << 19;
 /// Ways with attributes in one tile.
 pub const MAX_WAYS: usize = 1 << 20;
-/// Bytes of all texts of a tile's ways after each way got its own: as much as the section that they come from.
+/// Bytes of all names of a tile's areas, and of all texts of its ways after each way got its own: as much as the section that they come from.
 pub const MAX_TEXT_BYTES: usize = MAX_SECTION_BYTES;
 
 /// Steps that the walk over the triangles may take: looking at a vertex, a row of vertices or an edge is one.

@@ -11,6 +11,7 @@ mod sizes;
 mod context;
 mod envelope;
 
+mod areas;
 mod attributes;
 mod photo;
 mod relief;
@@ -29,6 +30,9 @@ mod work_limit;
 
 mod damage;
 
+pub use areas::{AreaRecord, AreaRings, decode_areas};
+#[cfg(feature = "write")]
+pub use areas::{AreasSection, encode_areas, with_areas};
 pub use damage::{Damage, DecodeError, EncodeError};
 pub use decode::decode;
 #[cfg(feature = "write")]

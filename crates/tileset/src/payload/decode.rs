@@ -6,7 +6,7 @@ use crate::payload::damage::{Damage, DecodeError};
 use crate::payload::relief::Relief;
 use crate::payload::section_kind::{Kind, Sections};
 use crate::payload::tile_payload::{GeoRoad, Terrain, TilePayload};
-use crate::payload::{attributes, envelope, road_tags, roads_geo, roads_sv, terrain};
+use crate::payload::{areas, attributes, envelope, road_tags, roads_geo, roads_sv, terrain};
 
 /// Reads the wanted sections of a payload; sections that are absent or not wanted are empty or `None`.
 ///
@@ -73,6 +73,10 @@ pub fn decode(
     }
     // The picture itself is decoded for those who ask for it.
     let _checked = read(Kind::Photo, Sections::PHOTO)?;
+    let _checked = read(Kind::Areas, Sections::AREAS)?
+        .map(|bytes| areas::decode(&bytes, frame.tile_lattice_bounds(id)))
+        .transpose()
+        .map_err(inside(Kind::Areas))?;
     Ok(TilePayload {
         id,
         terrain: ground,

@@ -129,6 +129,7 @@ fn encode_sections(
         road_tags: size(Kind::RoadTags),
         relief: size(Kind::Relief),
         photo: SectionSize::default(),
+        areas: SectionSize::default(),
         geo_class_bytes,
         sv_class_bytes,
     };

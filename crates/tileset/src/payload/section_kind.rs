@@ -34,6 +34,7 @@ kinds! {
     RoadTags = 5, "road tags section";
     Relief = 6, "relief section";
     Photo = 7, "photo section";
+    Areas = 8, "areas section";
 }
 
 /// Which sections of a payload to decode; combine them with `|`.
@@ -55,6 +56,8 @@ impl Sections {
     pub const RELIEF: Self = Self::of(Kind::Relief);
     /// The photo. [`decode`](crate::decode) checks it; [`decode_photo`](crate::decode_photo) gives it.
     pub const PHOTO: Self = Self::of(Kind::Photo);
+    /// Areas. [`decode`](crate::decode) checks them; [`decode_areas`](crate::decode_areas) gives them.
+    pub const AREAS: Self = Self::of(Kind::Areas);
     /// Everything, checksums of sections of unknown kinds included.
     pub const ALL: Self = Self::all();
 

@@ -26,6 +26,8 @@ pub struct PayloadSizes {
     pub relief: SectionSize,
     /// The photo section.
     pub photo: SectionSize,
+    /// The areas section.
+    pub areas: SectionSize,
     /// Bytes of each class in the GEO section before compression: they determine the class's share of the stored bytes.
     pub geo_class_bytes: [u64; FunctionalRoadClass::COUNT],
     /// The same for the SV section.
@@ -58,6 +60,7 @@ pub fn payload_sizes(bytes: &[u8], id: TileId) -> Result<PayloadSizes, DecodeErr
         road_tags: size(Kind::RoadTags),
         relief: size(Kind::Relief),
         photo: size(Kind::Photo),
+        areas: size(Kind::Areas),
         geo_class_bytes: of_classes(Kind::RoadsGeo)?,
         sv_class_bytes: of_classes(Kind::RoadsSv)?,
     })

@@ -1,0 +1,163 @@
+use corniche_areas::AreaObject;
+use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId};
+
+use super::record::AreaRecord;
+use crate::limits::{MAX_AREA_RINGS, MAX_AREAS, MAX_POINTS, MAX_TEXT_BYTES};
+use crate::payload::damage::EncodeError;
+use crate::payload::envelope::{self, Content, SectionSize};
+use crate::payload::number_codes::{put_planes, put_varint, zigzag};
+use crate::payload::section_kind::Kind;
+
+/// A tile's areas as the section of a payload.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AreasSection {
+    bytes: Vec<u8>,
+}
+
+/// Encodes the areas of a tile; `None` if there are none. Equal areas make equal bytes.
+///
+/// `step` is the spacing of the coarse lattice on which points of the tile's level lie, in steps of the package's; points on the tile's
+/// border may lie beside it. It decides only how short the bytes are.
+///
+/// # Errors
+/// When a point lies outside the tile, a polygon has no rings or a ring too few points, or there is more than a reader accepts.
+pub fn encode_areas(
+    tile: TileId,
+    frame: &Frame,
+    step: i64,
+    areas: &[AreaRecord],
+) -> Result<Option<AreasSection>, EncodeError> {
+    if areas.is_empty() {
+        return Ok(None);
+    }
+    let bounds = frame.tile_lattice_bounds(tile);
+    let refused = |what| EncodeError::Unencodable { tile, section: Kind::Areas.name(), what };
+    check(areas, &bounds, step).map_err(refused)?;
+    let mut columns = Columns::default();
+    for area in areas {
+        columns.push_area(area);
+    }
+    let mut bytes = Vec::new();
+    put_varint(&mut bytes, step.cast_unsigned());
+    put_varint(&mut bytes, areas.len() as u64);
+    for column in [&columns.classes, &columns.objects, &columns.name_bytes, &columns.polygons] {
+        put_planes(&mut bytes, column);
+    }
+    bytes.extend(&columns.names);
+    put_planes(&mut bytes, &columns.rings);
+    put_planes(&mut bytes, &columns.points);
+    let places = columns.places(&bounds, step);
+    for column in &places {
+        put_planes(&mut bytes, column);
+    }
+    Ok(Some(AreasSection { bytes }))
+}
+
+fn check(areas: &[AreaRecord], bounds: &LatticeBounds, step: i64) -> Result<(), &'static str> {
+    let rings = || areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings);
+    let polygons = areas.iter().flat_map(|area| &area.polygons);
+    if step < 1 {
+        return Err("a lattice without spacing");
+    }
+    if areas.iter().any(|area| area.polygons.is_empty())
+        || polygons.clone().any(|part| part.rings.is_empty())
+    {
+        return Err("an area without rings");
+    }
+    if rings().any(|ring| ring.len() < 3) {
+        return Err("a ring of less than three points");
+    }
+    if rings().flatten().any(|&point| !bounds.contains(point)) {
+        return Err("a point outside the tile");
+    }
+    let points: usize = rings().map(Vec::len).sum();
+    let texts: usize = areas.iter().map(|area| area.name.len()).sum();
+    if areas.len() > MAX_AREAS
+        || rings().count() > MAX_AREA_RINGS
+        || points > MAX_POINTS
+        || texts > MAX_TEXT_BYTES
+    {
+        return Err("more areas than readers accept");
+    }
+    Ok(())
+}
+
+#[derive(Default)]
+struct Columns {
+    classes: Vec<u64>,
+    /// Twice the id in zigzag code, plus 1 for relations; after the first the difference to the one before.
+    objects: Vec<u64>,
+    name_bytes: Vec<u64>,
+    names: Vec<u8>,
+    polygons: Vec<u64>,
+    /// Of each polygon, without the outer one.
+    rings: Vec<u64>,
+    /// Of each ring, less three.
+    points: Vec<u64>,
+    all_points: Vec<LatticePoint>,
+    last_id: i64,
+}
+
+impl Columns {
+    fn push_area(&mut self, area: &AreaRecord) {
+        let (is_relation, id) = match area.object {
+            AreaObject::Way(id) => (0, id),
+            AreaObject::Relation(id) => (1, id),
+        };
+        self.classes.push(u64::from(area.class.number()) << 1 | is_relation);
+        self.objects.push(zigzag(id.wrapping_sub(self.last_id)));
+        self.last_id = id;
+        self.name_bytes.push(area.name.len() as u64);
+        self.names.extend(area.name.as_bytes());
+        self.polygons.push(area.polygons.len() as u64 - 1);
+        for part in &area.polygons {
+            self.rings.push(part.rings.len() as u64 - 1);
+            for ring in &part.rings {
+                self.points.push(ring.len() as u64 - 3);
+                self.all_points.extend(ring);
+            }
+        }
+    }
+
+    /// East and north in steps of the coarse lattice, each as difference from the point before, the first from the tile's south-western
+    /// corner; then what is left of each, which is 0 but on borders.
+    fn places(&self, bounds: &LatticeBounds, step: i64) -> [Vec<u64>; 4] {
+        let mut columns = [const { Vec::new() }; 4];
+        let mut last = [bounds.min.u, bounds.min.v].map(|part| part.div_euclid(step));
+        for point in &self.all_points {
+            for (axis, part) in [point.u, point.v].into_iter().enumerate() {
+                let steps = part.div_euclid(step);
+                columns[axis].push(zigzag(steps - last[axis]));
+                columns[2 + axis].push(part.rem_euclid(step).cast_unsigned());
+                last[axis] = steps;
+            }
+        }
+        columns
+    }
+}
+
+/// A payload with areas more; all its other sections stay as they are. Returns the size of the new section, too.
+///
+/// # Errors
+/// When the bytes are no payload of the tile, or it has areas already.
+pub fn with_areas(
+    payload: &[u8],
+    tile: TileId,
+    areas: AreasSection,
+) -> Result<(Vec<u8>, SectionSize), EncodeError> {
+    let refused = |what| EncodeError::Unencodable { tile, section: Kind::Areas.name(), what };
+    let sections =
+        envelope::open(payload, tile).map_err(|_| refused("beside a damaged payload"))?;
+    let mut contents = Vec::with_capacity(sections.len() + 1);
+    for stored in sections {
+        let kind =
+            stored.known_kind().ok_or_else(|| refused("beside a section of unknown kind"))?;
+        if kind == Kind::Areas {
+            return Err(refused("beside other areas"));
+        }
+        contents.push((kind, Content::Stored(stored)));
+    }
+    contents.push((Kind::Areas, Content::Raw(areas.bytes)));
+    let (bytes, sizes) = envelope::seal(tile, &contents)?;
+    Ok((bytes, sizes.last().copied().unwrap_or_default()))
+}

@@ -1,0 +1,190 @@
+use corniche_areas::{AreaClass, AreaObject};
+use corniche_geom::{LatticeBounds, LatticePoint, NodeIndex};
+use proptest::prelude::*;
+
+use super::*;
+use crate::payload::damage::Damage;
+use crate::payload::envelope::Content;
+use crate::payload::section_kind::Sections;
+
+fn id() -> TileId {
+    TileId::new(1, 1, 0).unwrap()
+}
+
+fn frame() -> Frame {
+    Frame::new([0.5, 0.25], 10.0, NodeIndex { i: -512, j: 1024 }, 2).unwrap()
+}
+
+fn bounds() -> LatticeBounds {
+    frame().tile_lattice_bounds(id())
+}
+
+/// A triangle from a place in the tile, given in steps from its south-western corner.
+fn triangle(u: i64, v: i64, side: i64) -> Vec<LatticePoint> {
+    let corner = bounds().min;
+    [[0, 0], [side, 0], [0, side]]
+        .map(|[east, north]| LatticePoint::new(corner.u + u + east, corner.v + v + north))
+        .into()
+}
+
+fn lake() -> AreaRecord {
+    AreaRecord {
+        object: AreaObject::Relation(-7),
+        class: AreaClass::Water,
+        name: "Füssener See".to_owned(),
+        polygons: vec![
+            AreaRings { rings: vec![triangle(0, 0, 4096), triangle(64, 64, 128)] },
+            AreaRings { rings: vec![triangle(8000, 8000, 77)] },
+        ],
+    }
+}
+
+fn forest() -> AreaRecord {
+    let polygons = vec![AreaRings { rings: vec![triangle(640, 1280, 64)] }];
+    AreaRecord {
+        object: AreaObject::Way(1 << 40),
+        class: AreaClass::Forest,
+        name: String::new(),
+        polygons,
+    }
+}
+
+/// A payload with nothing but this section.
+fn payload(section: &[u8]) -> Vec<u8> {
+    envelope::seal(id(), &[(Kind::Areas, Content::Raw(section.to_vec()))]).unwrap().0
+}
+
+fn encoded(areas: &[AreaRecord], step: i64) -> Vec<u8> {
+    let section = encode_areas(id(), &frame(), step, areas).unwrap().unwrap();
+    let empty = envelope::seal(id(), &[]).unwrap().0;
+    let (bytes, size) = with_areas(&empty, id(), section).unwrap();
+    assert!(size.raw > 0 && size.stored > 0);
+    bytes
+}
+
+fn raw(areas: &[AreaRecord], step: i64) -> Vec<u8> {
+    let bytes = encoded(areas, step);
+    envelope::section(&envelope::open(&bytes, id()).unwrap(), Kind::Areas).unwrap().unwrap()
+}
+
+#[test]
+fn areas_come_back_whatever_the_spacing() {
+    for step in [1, 2, 64, 100, 1 << 30] {
+        let areas = [lake(), forest()];
+        assert_eq!(decode_areas(&encoded(&areas, step), id(), &frame()).unwrap(), areas, "{step}");
+    }
+    assert_eq!(encode_areas(id(), &frame(), 1, &[]).unwrap(), None);
+    let empty = envelope::seal(id(), &[]).unwrap().0;
+    assert_eq!(decode_areas(&empty, id(), &frame()).unwrap(), []);
+}
+
+#[test]
+fn points_on_the_coarse_lattice_take_less() {
+    let corner = bounds().min;
+    let at = |u, v| {
+        LatticePoint::new(
+            (corner.u.div_euclid(1024) + 1 + u) * 1024,
+            (corner.v.div_euclid(1024) + 1 + v) * 1024,
+        )
+    };
+    let ring: Vec<LatticePoint> =
+        (0..60).map(|n| at(n, 0)).chain((0..60).rev().map(|n| at(n, 1 + n % 7))).collect();
+    let mut area = forest();
+    area.polygons[0].rings[0] = ring;
+    let areas = [area];
+    assert!(3 * raw(&areas, 1024).len() < 2 * raw(&areas, 1).len());
+}
+
+#[test]
+fn what_no_reader_takes_is_not_written() {
+    let refused = |change: &dyn Fn(&mut AreaRecord)| {
+        let mut area = lake();
+        change(&mut area);
+        encode_areas(id(), &frame(), 1, &[area]).is_err()
+    };
+    assert!(!refused(&|_| {}));
+    assert!(refused(&|area| area.polygons.clear()));
+    assert!(refused(&|area| area.polygons[0].rings.clear()));
+    assert!(refused(&|area| area.polygons[1].rings[0].truncate(2)));
+    assert!(refused(&|area| area.polygons[1].rings[0][0].u = bounds().max.u + 1));
+    assert!(encode_areas(id(), &frame(), 0, &[lake()]).is_err());
+    let bytes = encoded(&[lake()], 1);
+    let again = encode_areas(id(), &frame(), 1, &[lake()]).unwrap().unwrap();
+    assert!(with_areas(&bytes, id(), again).is_err(), "twice");
+}
+
+#[test]
+fn every_shorter_section_is_refused() {
+    let raw = raw(&[lake(), forest()], 64);
+    for length in 0..raw.len() {
+        assert!(decode_areas(&payload(&raw[..length]), id(), &frame()).is_err(), "{length}");
+    }
+    assert!(decode_areas(&payload(&[&raw[..], &[0]].concat()), id(), &frame()).is_err());
+}
+
+#[test]
+fn hostile_numbers_are_refused_before_memory_is_taken_for_them() {
+    let damage =
+        |section: &[u8]| decode_areas(&payload(section), id(), &frame()).unwrap_err().damage;
+    // A lattice of no spacing; more areas than are allowed.
+    assert_eq!(damage(&[0, 0]), Damage::Invalid { what: "the spacing of the areas' lattice" });
+    assert_eq!(damage(&[1, 255, 255, 255, 127]), Damage::Invalid { what: "number of areas" });
+    // One area of 2^56 polygons; one ring of 2^56 points.
+    let planes = |number: u64| [&[8_u8][..], &number.to_le_bytes()].concat();
+    let head =
+        |polygons: u64| [vec![1, 1], planes(2), planes(0), planes(0), planes(polygons)].concat();
+    assert!(matches!(damage(&head(1 << 56)), Damage::TooLarge { what: "number of polygons", .. }));
+    let ring = |points: u64| [head(0), planes(0), planes(points)].concat();
+    assert!(matches!(damage(&ring(1 << 56)), Damage::TooLarge { what: "number of points", .. }));
+    // Another class; a point outside.
+    let class = [
+        vec![1, 1],
+        planes(99 << 1),
+        planes(0),
+        planes(0),
+        planes(0),
+        planes(0),
+        planes(0),
+        vec![0; 4],
+    ]
+    .concat();
+    assert_eq!(damage(&class), Damage::Invalid { what: "a class of areas" });
+    let far = |steps: u64| {
+        // Three numbers in planes: the first has all the bytes.
+        let mut columns = vec![8];
+        for byte in steps.to_le_bytes() {
+            columns.extend([byte, 0, 0]);
+        }
+        [ring(0), columns, vec![0; 3]].concat()
+    };
+    for steps in [u64::MAX, u64::MAX - 1, 1, 1 << 62] {
+        assert_eq!(
+            damage(&far(steps)),
+            Damage::Invalid { what: "a point outside the tile" },
+            "{steps}"
+        );
+    }
+}
+
+#[test]
+fn decoding_everything_checks_areas() {
+    let bytes = payload(&[0]);
+    let decode = |wanted| crate::decode(&bytes, id(), &frame(), 0.25, wanted);
+    assert_eq!(decode(Sections::ALL).unwrap_err().part, "areas section");
+    assert!(decode(Sections::TERRAIN).is_ok());
+}
+
+proptest! {
+    /// Any bytes give areas in the tile or an error.
+    #[test]
+    fn any_bytes_are_areas_or_an_error(bytes in prop::collection::vec(any::<u8>(), 0..200), cut in 0_usize..100, by in any::<u8>()) {
+        let _either = decode_areas(&payload(&bytes), id(), &frame());
+        let mut real = raw(&[lake(), forest()], 64);
+        let at = cut % real.len();
+        real[at] = by;
+        for area in decode_areas(&payload(&real), id(), &frame()).unwrap_or_default() {
+            let points = area.polygons.iter().flat_map(|part| &part.rings).flatten();
+            prop_assert!(points.into_iter().all(|&point| bounds().contains(point)));
+        }
+    }
+}
