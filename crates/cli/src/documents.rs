@@ -3,6 +3,7 @@
 //! Programs rely on these: fields may be added, but not changed. Positions, rectangles and ranges are lists of numbers; everything else
 //! that belongs together is an object.
 
+pub(crate) mod areas;
 pub(crate) mod growth;
 pub(crate) mod info;
 pub(crate) mod plan;

@@ -6,8 +6,9 @@ use std::{
     io::{self, Write as _},
 };
 
+use corniche_areas::AreaClass;
 use corniche_geom::Cell;
-use corniche_tileset::{FilePackage, Manifest, SampleErrorRecord, ScaleRecord};
+use corniche_tileset::{AreasRecord, FilePackage, Manifest, SampleErrorRecord, ScaleRecord};
 
 use crate::{
     args::InfoArgs,
@@ -98,10 +99,46 @@ pub(crate) fn to_text(manifest: &Manifest, package_bytes: u64, digits: Digits) -
     if !manifest.photos.is_empty() {
         say(format!("Photos:\n{}", photos(manifest, digits).to_text()));
     }
+    if let Some(areas) = &manifest.areas {
+        say(area_texts(areas, digits));
+    }
     say(format!("Errors of the tiles:\n{}", tile_errors(manifest).to_text()));
     text.push_str(&sample_errors(manifest, digits));
     text.push_str(&roads(manifest, digits));
     narrow(&text)
+}
+
+/// What became of areas, and what they take on each level.
+fn area_texts(areas: &AreasRecord, digits: Digits) -> String {
+    let AreasRecord { counts, levels } = areas;
+    let mut classes = Table::new(["areas", "number", "km²"]);
+    for kept in &counts.kept {
+        let name = AreaClass::from_number(kept.class).map_or("?", AreaClass::name);
+        let area_km2 = format!("{:.3}", kept.area_km2);
+        classes.row([name.to_owned(), digits.count(kept.areas), area_km2]);
+    }
+    let mut table = Table::new(["level", "tiles", "areas", "points", "bytes", "per tile"]);
+    for level in levels {
+        table.row([
+            level.level.to_string(),
+            digits.count(level.tiles),
+            digits.count(level.areas),
+            digits.count(level.points),
+            bytes(level.bytes),
+            bytes(level.bytes / level.tiles.max(1)),
+        ]);
+    }
+    let kept: u64 = counts.kept.iter().map(|kept| kept.areas).sum();
+    let mut text = format!(
+        "Areas: {} objects of the extract, of which {} became areas, wherever they lie:\n{}",
+        digits.count(counts.objects),
+        digits.count(kept),
+        classes.to_text()
+    );
+    for (reason, objects) in &counts.lost {
+        text.push_str(&format!("  lost {} objects: {}\n", digits.count(*objects), plain(reason)));
+    }
+    format!("{text}\n{}", table.to_text())
 }
 
 /// Lines that are too wide are texts: they go on below the place where they began, beside their name.

@@ -6,7 +6,11 @@ use std::{
     path::Path,
 };
 
-use corniche_presets::{Config, frc_preset, frc_preset_names, parse_frc_table};
+use corniche_areas::AreaTable;
+use corniche_presets::{
+    Config, area_preset, area_preset_names, frc_preset, frc_preset_names, parse_area_table,
+    parse_frc_table,
+};
 use corniche_roads::FrcTable;
 
 use crate::failure::Failure;
@@ -27,6 +31,21 @@ pub(crate) fn frc_table(name_or_path: &str) -> Result<FrcTable, Failure> {
         ))
     })?;
     parse_frc_table(&text).map_err(|error| refuse(&what, &error))
+}
+
+/// A preset by its name, else a file by its path.
+pub(crate) fn area_table(name_or_path: &str) -> Result<AreaTable, Failure> {
+    let what = format!("area table {name_or_path:?}");
+    if let Some(text) = area_preset(name_or_path) {
+        return parse_area_table(text).map_err(|error| refuse(&what, &error));
+    }
+    let text = read_text(Path::new(name_or_path)).map_err(|error| {
+        let names = area_preset_names().collect::<Vec<_>>().join(", ");
+        Failure::unusable(format!(
+            "--areas {name_or_path:?} is neither off nor a preset ({names}) nor a readable file: {error}"
+        ))
+    })?;
+    parse_area_table(&text).map_err(|error| refuse(&what, &error))
 }
 
 /// Reads a settings file.

@@ -7,14 +7,15 @@ use std::{
     thread,
 };
 
+use corniche_areas::AreaTable;
 use corniche_geom::Cell;
 use corniche_pipeline::{
     OpenOptions, PhotoSettings, PlanOptions, PlanSettings, Polygon, Resources, RoadSettings,
     TerrainRecord, TerrainSettings,
 };
 use corniche_presets::{
-    BoundsChoice, InputFiles, OutputFiles, PhotoOptions, ReliefChoice, RoadOptions, TerrainOptions,
-    check_cell, class_filter, is_range, parse_memory,
+    AreaOptions, BoundsChoice, InputFiles, OutputFiles, PhotoOptions, ReliefChoice, RoadOptions,
+    TerrainOptions, check_cell, class_filter, is_range, parse_memory,
 };
 use corniche_roads::ClassFilter;
 use corniche_tileset::ReliefLevels;
@@ -69,6 +70,7 @@ pub(crate) fn complete(args: &mut WorkArgs) -> Result<OutputFiles, Failure> {
     args.photos = mem::take(&mut args.photos).or(config.photo);
     args.terrain = mem::take(&mut args.terrain).or(config.terrain);
     args.roads = mem::take(&mut args.roads).or(config.roads);
+    args.areas = mem::take(&mut args.areas).or(config.areas);
     args.resources = mem::take(&mut args.resources).or(config.resources);
     Ok(config.output)
 }
@@ -88,6 +90,7 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     attribution.extend(args.photos.attribution.clone());
     let photo = photo_settings(&args.photo, &args.photos)?;
     let osm = corniche_pipeline::extract_names(&args.osm)?;
+    let areas = area_table(&args.areas, &osm)?;
     let cut = Cut {
         bounds_deg: bounds_deg(terrain.bounds, &osm)?.or(base.terrain.plan.bounds_deg),
         polygon: args.polygon.map(polygon).transpose()?,
@@ -96,6 +99,7 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
         dem: corniche_pipeline::elevation_names(&args.dem)?,
         terrain_of: args.terrain_of,
         osm,
+        areas,
         photo,
         attribution,
         terrain: terrain_settings(terrain, base.terrain, cut, args.force)?,
@@ -228,6 +232,17 @@ fn photo_settings(
     }
     let files = corniche_pipeline::photo_names(names)?;
     Ok(Some(PhotoSettings { files, levels: options.levels, quality }))
+}
+
+/// The table of areas; `None` without.
+fn area_table(options: &AreaOptions, osm: &[PathBuf]) -> Result<Option<AreaTable>, Failure> {
+    match options.table.as_deref() {
+        None | Some("off") => Ok(None),
+        Some(_) if osm.is_empty() => {
+            Err(Failure::unusable("--areas takes areas from an extract; give one with --osm"))
+        }
+        Some(table) => presets::area_table(table).map(Some),
+    }
 }
 
 fn road_settings(options: RoadOptions) -> Result<RoadSettings, Failure> {

@@ -3,13 +3,16 @@
 use std::io::{self, BufWriter, Write as _};
 
 use corniche_geom::{Bounds, LatticePoint, TileId};
-use corniche_tileset::{FilePackage, Manifest, Sections, Terrain, TilePayload};
+use corniche_tileset::{
+    AreaRecord, FilePackage, Manifest, Sections, Terrain, TilePayload, decode_areas,
+};
 use corniche_tin::{Placement, Surface};
 
 use crate::{
     args::{Coordinates, TileArgs},
-    documents::tile::{
-        GeoRoadDocument, SvRoadDocument, TileDocument, TinDocument, WayDocument, normal,
+    documents::{
+        areas::TileAreaDocument,
+        tile::{GeoRoadDocument, SvRoadDocument, TileDocument, TinDocument, WayDocument, normal},
     },
     exit::ExitCode,
     failure::Failure,
@@ -25,13 +28,14 @@ pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
         // The command line has one of them.
         (None, None) => return Err(Failure::unusable("name a tile: Z/X/Y, or --at LON,LAT")),
     };
+    let areas = areas(&package, payload.id)?;
     let mut out = BufWriter::new(io::stdout().lock());
     if args.json {
-        let document = document(package.manifest(), &payload, args.coordinates)?;
+        let document = document(package.manifest(), &payload, areas, args.coordinates)?;
         serde_json::to_writer(&mut out, &document).map_err(io::Error::from)?;
         writeln!(out)?;
     } else {
-        out.write_all(to_text(&payload, Digits::on(&io::stdout())).as_bytes())?;
+        out.write_all(to_text(&payload, &areas, Digits::on(&io::stdout())).as_bytes())?;
     }
     out.flush()?;
     Ok(ExitCode::Done)
@@ -39,6 +43,12 @@ pub(crate) fn run(args: &TileArgs) -> Result<ExitCode, Failure> {
 
 fn payload(package: &FilePackage, id: TileId) -> Result<Option<TilePayload>, Failure> {
     package.payload(id, Sections::ALL).map_err(|error| Failure::new(ExitCode::Unusable, error))
+}
+
+fn areas(package: &FilePackage, id: TileId) -> Result<Vec<AreaRecord>, Failure> {
+    let unusable = |error: &dyn std::error::Error| Failure::unusable(error.to_string());
+    let bytes = package.tile(id).map_err(|error| unusable(&error))?.unwrap_or_default();
+    decode_areas(&bytes, id, &package.manifest().frame).map_err(|error| unusable(&error))
 }
 
 fn no_tile(args: &TileArgs, id: TileId) -> Failure {
@@ -130,7 +140,7 @@ fn tile_at(
     })
 }
 
-fn to_text(payload: &TilePayload, digits: Digits) -> String {
+fn to_text(payload: &TilePayload, areas: &[AreaRecord], digits: Digits) -> String {
     let mut table = Table::new(["tile", &payload.id.to_string()]);
     let count = |number: usize| digits.count(number as u64);
     if let Some(terrain) = &payload.terrain {
@@ -145,6 +155,9 @@ fn to_text(payload: &TilePayload, digits: Digits) -> String {
     table.row(["GEO vertices".into(), count(vertices)]);
     table.row(["SV lines".into(), count(payload.roads_sv.len())]);
     table.row(["ways".into(), count(payload.attributes.len())]);
+    if !areas.is_empty() {
+        table.row(["areas".into(), count(areas.len())]);
+    }
     table.to_text()
 }
 
@@ -168,6 +181,7 @@ impl Places {
 fn document(
     manifest: &Manifest,
     payload: &TilePayload,
+    areas: Vec<AreaRecord>,
     coordinates: Coordinates,
 ) -> Result<TileDocument, Failure> {
     let frame = &manifest.frame;
@@ -202,6 +216,10 @@ fn document(
         roads_geo,
         roads_sv: roads_sv(manifest, payload, &places),
         attributes: payload.attributes.iter().map(WayDocument::from).collect(),
+        areas: areas
+            .into_iter()
+            .map(|area| TileAreaDocument::of(area, frame, &|position| places.of(position)))
+            .collect(),
     })
 }
 

@@ -23,6 +23,8 @@
 //! | `NodesShare` | share | how many blocks of places there are | nodes | roads |
 //! | `PhotoTexture` | finest tile | its photo, encoded; empty where there is none | heights | tiles |
 //! | `PhotoRaster` | tile | texels of its photo, one for each cell; empty where there is none | heights, top | top, tiles |
+//! | `AreaSection` | tile | its areas section, encoded, with counts; nothing where it has none | roads | tiles |
+//! | `AreaTotals` | 0 | counts of the extract's areas, after all their sections | roads | tiles, merge |
 //!
 //! A tile is finished when its `Record` is there: it is put last. So is an area when its `Area` is there, and the roads when
 //! `RoadTotals` is, and a share of the extract when its `WaysShare` or `NodesShare` is. Heights, rasters and TINs of tiles without any are kept as well, empty: what is not there was not made, and is
@@ -60,11 +62,13 @@ pub(crate) enum Kind {
     NodesShare,
     PhotoTexture,
     PhotoRaster,
+    AreaSection,
+    AreaTotals,
 }
 
 impl Kind {
     /// All of them.
-    pub(crate) const ALL: [Self; 21] = [
+    pub(crate) const ALL: [Self; 23] = [
         Self::InputHash,
         Self::RoadPieces,
         Self::RoadLengths,
@@ -86,6 +90,8 @@ impl Kind {
         Self::NodesShare,
         Self::PhotoTexture,
         Self::PhotoRaster,
+        Self::AreaSection,
+        Self::AreaTotals,
     ];
 
     /// The key of what belongs to a tile.

@@ -120,7 +120,7 @@ fn warn_of_other_roads(context: &Context<'_>) {
     if osm.is_empty() || !manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input)) {
         return;
     }
-    let ours = settings_record::of(of_terrain, roads, context.max_error_m, None);
+    let ours = settings_record::of(of_terrain, roads, context.max_error_m, None, None);
     let differences = road_differences(&ours, &manifest.settings);
     if !differences.is_empty() {
         context.observer.warning(&format!(

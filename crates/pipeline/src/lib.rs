@@ -2,6 +2,7 @@
 //!
 //! This crate never parses arguments and never prints. It is the only one that spawns threads.
 
+mod areas;
 mod artifacts;
 mod build;
 mod context;

@@ -20,6 +20,8 @@ pub enum Unit {
 pub enum Stage {
     /// Hash the input files.
     Hash,
+    /// Read areas from the extract.
+    MapAreas,
     /// Read roads from the extract.
     Roads,
     /// Read the DEM, reproject it, fill its voids, make the level rasters.
@@ -44,8 +46,9 @@ pub enum Stage {
 
 impl Stage {
     /// All stages, in their order.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Hash,
+        Self::MapAreas,
         Self::Roads,
         Self::Heights,
         Self::Photos,
@@ -63,6 +66,7 @@ impl Stage {
     pub fn title(self) -> &'static str {
         match self {
             Self::Hash => "hashing inputs",
+            Self::MapAreas => "reading areas",
             Self::Roads => "reading roads",
             Self::Heights => "reading heights",
             Self::Photos => "reading photos",
@@ -81,6 +85,7 @@ impl Stage {
     pub fn id(self) -> &'static str {
         match self {
             Self::Hash => "hash",
+            Self::MapAreas => "areas",
             Self::Roads => "roads",
             Self::Heights => "heights",
             Self::Photos => "photos",
@@ -98,7 +103,7 @@ impl Stage {
     #[must_use]
     pub fn unit(self) -> Unit {
         match self {
-            Self::Hash | Self::Roads => Unit::Bytes,
+            Self::Hash | Self::MapAreas | Self::Roads => Unit::Bytes,
             Self::Samples => Unit::Blocks,
             Self::Heights => Unit::Areas,
             Self::Photos

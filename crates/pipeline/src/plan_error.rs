@@ -20,6 +20,10 @@ pub enum PlanError {
         "the plan says on which levels classes of roads are shown, and this makes no sense; make the plan again"
     )]
     Filter,
+    #[error("the plan's table of areas makes no sense; make the plan again")]
+    AreaTable(#[from] corniche_areas::AreaTableError),
+    #[error("the plan's table of areas names a class that does not exist; make the plan again")]
+    AreaClass,
     #[error(transparent)]
     Polygon(#[from] corniche_dem::PolygonError),
     #[error(

@@ -1,5 +1,6 @@
 use std::path::PathBuf;
 
+use corniche_areas::AreaTable;
 use corniche_dem::{OpenOptions, PlanOptions};
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_tileset::ReliefLevels;
@@ -37,6 +38,8 @@ pub struct PlanSettings {
     pub terrain: TerrainSettings,
     /// How roads are made.
     pub roads: RoadSettings,
+    /// Which objects of the extracts are areas, if any are wanted.
+    pub areas: Option<AreaTable>,
     /// Photos of the ground, if any are wanted; not with `terrain_of`.
     pub photo: Option<PhotoSettings>,
     /// Credits beside those that the inputs call for, such as a DEM's.

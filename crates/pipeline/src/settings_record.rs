@@ -5,9 +5,10 @@
 //! The build records them with [`of`]; `verify` takes them back with [`terrain`] and [`roads`] to open the elevation files
 //! and the extract as the build did.
 
+use corniche_areas::AreaTable;
 use corniche_dem::{OpenOptions, PlanOptions, Polygon};
 use corniche_roads::{ClassFilter, FrcTable};
-use corniche_tileset::{PhotoRecord, PolygonRecord, SettingsRecord};
+use corniche_tileset::{AreaTableRecord, PhotoRecord, PolygonRecord, SettingsRecord};
 use sha2::{Digest, Sha256};
 
 use crate::{RoadSettings, TerrainSettings, hex::hex};
@@ -19,6 +20,7 @@ pub(crate) fn of(
     roads: &RoadSettings,
     max_error_m: f64,
     photo: Option<PhotoRecord>,
+    areas: Option<&AreaTable>,
 ) -> SettingsRecord {
     // Every field is named, so that a new one cannot be forgotten here.
     let TerrainSettings { open, plan, height_range_m, allow_fine_cell: _, max_error_m: _, relief } =
@@ -49,7 +51,14 @@ pub(crate) fn of(
         class_max_cell_m: filter.class_max_cell_m().to_vec(),
         simplify_cells: *simplify_cells,
         photo,
+        areas: areas.map(area_table_record),
     }
+}
+
+/// What is recorded of a table of areas.
+fn area_table_record(table: &AreaTable) -> AreaTableRecord {
+    let sha256 = hex(&Sha256::digest(table.canonical_text()));
+    AreaTableRecord { table: table.name().to_owned(), sha256 }
 }
 
 /// What is recorded of a polygon: the name of its file, and the hash of what it encloses.

@@ -23,6 +23,7 @@ fn settings() -> PlanSettings {
         },
         roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25 },
         photo: None,
+        areas: None,
         attribution: vec!["a credit".to_owned()],
         generator: "corniche 0.0.0".to_owned(),
     }

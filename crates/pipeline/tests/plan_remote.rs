@@ -67,6 +67,7 @@ fn a_file_on_a_server_is_known_by_its_size_and_etag() {
         terrain: TerrainSettings::default(),
         roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25 },
         photo: None,
+        areas: None,
         attribution: Vec::new(),
         generator: "tests".to_owned(),
     };

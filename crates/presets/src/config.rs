@@ -25,6 +25,8 @@ pub struct Config {
     pub terrain: TerrainOptions,
     /// `[roads]`
     pub roads: RoadOptions,
+    /// `[areas]`
+    pub areas: AreaOptions,
     /// `[photo]`
     pub photo: PhotoOptions,
     /// `[resources]`
@@ -126,6 +128,26 @@ pub struct RoadOptions {
     /// Coarsest cell, metres, at which each class is shown; a class left out is shown on every level.
     #[arg(skip)]
     pub class_max_cell: Option<BTreeMap<String, f64>>,
+}
+
+// Which areas are shown: the section `[areas]`.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Args, Deserialize)]
+#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+#[command(next_help_heading = "Areas")]
+#[expect(missing_docs, reason = "clap would take it for the description of the command")]
+pub struct AreaOptions {
+    /// Areas of the extract, such as water and forest, stored as polygons: the table of their classes, a preset (default) or a TOML file;
+    /// off leaves them out [default: off]
+    #[arg(id = "areas", long = "areas", value_name = "off|default|FILE")]
+    pub table: Option<String>,
+}
+
+impl AreaOptions {
+    /// These options; those that are not given are taken from `other`.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self { table: self.table.or(other.table) }
+    }
 }
 
 // What a build may use of the machine: the section `[resources]`.

@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::{config::Config, files::InputFiles, frc::frc_preset};
+use crate::{areas::area_preset, config::Config, files::InputFiles, frc::frc_preset};
 
 impl Config {
     /// The same settings, with paths that begin at `folder`, which the settings file is in, instead of the working folder. Absolute
     /// paths, addresses (`s3://…`) and names with a driver of GDAL (`GPKG:…`) stay, and so do names of presets.
     #[must_use]
     pub fn in_folder(mut self, folder: &Path) -> Self {
-        let Self { inputs, output, roads, resources, .. } = &mut self;
+        let Self { inputs, output, roads, areas, resources, .. } = &mut self;
         let InputFiles { dem, terrain, osm, polygon, photo } = inputs;
         let files = dem.iter_mut().chain(terrain).chain(osm.iter_mut()).chain(polygon);
         let files = files.chain(photo.iter_mut());
@@ -19,6 +19,12 @@ impl Config {
             *path = within(folder, path);
         }
         if let Some(table) = roads.frc_table.as_mut().filter(|table| frc_preset(table).is_none())
+            && let Some(path) = within(folder, Path::new(table)).to_str()
+        {
+            path.clone_into(table);
+        }
+        let is_name = |table: &&mut String| *table == "off" || area_preset(table).is_some();
+        if let Some(table) = areas.table.as_mut().filter(|table| !is_name(table))
             && let Some(path) = within(folder, Path::new(table)).to_str()
         {
             path.clone_into(table);

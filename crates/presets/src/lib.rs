@@ -22,7 +22,7 @@ pub use bounds::BoundsChoice;
 pub use class_cells::class_filter;
 pub use class_labels::class_labels;
 pub use classes::Classes;
-pub use config::{Config, ResourceOptions, RoadOptions, TerrainOptions};
+pub use config::{AreaOptions, Config, ResourceOptions, RoadOptions, TerrainOptions};
 pub use error::PresetError;
 pub use files::{InputFiles, OutputFiles};
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};

@@ -99,6 +99,7 @@ pub fn manifest_of(frame: Frame) -> Manifest {
             class_max_cell_m: vec![None; 9],
             simplify_cells: 0.5,
             photo: None,
+            areas: None,
         },
         settings_sha256: String::new(),
         inputs: vec![],
@@ -106,6 +107,7 @@ pub fn manifest_of(frame: Frame) -> Manifest {
         counts: Counts { roads_in: 2, roads_kept: 2, ..Counts::default() },
         growth: vec![GrowthRow::default()],
         photos: Vec::new(),
+        areas: None,
     }
 }
 

@@ -8,7 +8,8 @@ mod relief_levels;
 pub(crate) mod check;
 
 pub use contents::{
-    ClipRecord, InputRecord, Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord,
+    AreaClassRecord, AreaCounts, AreaLevelRecord, AreaTableRecord, AreasRecord, ClipRecord,
+    InputRecord, Manifest, PhotoLevelRecord, PhotoRecord, PolygonRecord, ScaleRecord,
     SettingsRecord, VerticalRecord,
 };
 pub use counts::{Counts, GrowthRow, LeftOutRecord, RoadLoss, SampleCounts};

@@ -4,7 +4,7 @@ use std::{
 };
 
 use clap::Args;
-use corniche_presets::{PhotoOptions, ResourceOptions, RoadOptions, TerrainOptions};
+use corniche_presets::{AreaOptions, PhotoOptions, ResourceOptions, RoadOptions, TerrainOptions};
 
 // What to make and with what: the same for `build` and `plan`.
 #[derive(Debug, Args)]
@@ -43,6 +43,8 @@ pub(crate) struct WorkArgs {
     pub(crate) terrain: TerrainOptions,
     #[command(flatten)]
     pub(crate) roads: RoadOptions,
+    #[command(flatten)]
+    pub(crate) areas: AreaOptions,
     #[command(flatten)]
     pub(crate) photos: PhotoOptions,
     #[command(flatten)]

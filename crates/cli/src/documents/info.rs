@@ -83,6 +83,9 @@ pub(crate) struct ManifestDocument {
     /// The photos of each level that has some, root first; left out without any.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     photos: Vec<PhotoLevelDocument>,
+    /// The areas; left out in packages made without.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    areas: Option<AreasDocument>,
 }
 
 /// Working metres to a true metre, along x and along y.
@@ -163,6 +166,9 @@ struct SettingsDocument {
     /// How photos were made; left out without any.
     #[serde(skip_serializing_if = "Option::is_none")]
     photo: Option<PhotoDocument>,
+    /// Which objects are areas; left out without any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    areas: Option<AreaTableDocument>,
 }
 
 /// How the photos of a package were made.
@@ -243,6 +249,7 @@ impl From<&Manifest> for ManifestDocument {
             counts: manifest.counts.into(),
             growth: manifest.growth.iter().map(Into::into).collect(),
             photos: manifest.photos.into_iter().map(Into::into).collect(),
+            areas: manifest.areas.map(Into::into),
         }
     }
 }
@@ -285,6 +292,7 @@ impl From<SettingsRecord> for SettingsDocument {
             photo: settings
                 .photo
                 .map(|PhotoRecord { levels, quality }| PhotoDocument { levels, quality }),
+            areas: settings.areas.map(Into::into),
         }
     }
 }

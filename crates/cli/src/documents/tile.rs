@@ -35,6 +35,9 @@ pub(crate) struct TileDocument {
     pub(crate) roads_sv: Vec<SvRoadDocument>,
     /// What is known of each way that occurs in the tile, sorted by way id.
     pub(crate) attributes: Vec<WayDocument>,
+    /// Parts of areas that lie in the tile; left out without any.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) areas: Vec<TileAreaDocument>,
 }
 
 /// Triangles of the ground.

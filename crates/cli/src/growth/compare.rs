@@ -105,6 +105,7 @@ fn properties(manifest: &Manifest) -> [Property; 16] {
         simplify_cells,
         // Photos change no road.
         photo: _,
+        areas: _,
     } = &manifest.settings;
     [
         ("extract", inputs(manifest, &["osm"])),

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use corniche_areas::{AreaTable, AreaTableError};
 use corniche_dem::Polygon;
 use corniche_geom::{Bounds, Cell, Frame, NodeIndex, TileId};
 use corniche_roads::{FrcTable, FrcTableError};
@@ -39,12 +40,25 @@ pub struct BuildPlan {
     pub settings: SettingsRecord,
     /// The FRC table, whole.
     pub frc_table: FrcTableRecord,
+    /// The table of areas, whole; left out without areas.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area_table: Option<AreaTableText>,
     /// Credits that were given, without those that the inputs call for.
     pub attribution: Vec<String>,
     /// What follows for the grid.
     pub grid: PlannedGrid,
     /// What follows for each level, root first.
     pub levels: Vec<PlannedLevel>,
+}
+
+/// A table of areas as it is written down.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AreaTableText {
+    /// Its name.
+    pub name: String,
+    /// Each tag, `key=value`, in the order in which they decide, with the number of its class.
+    pub tags: Vec<(String, u8)>,
 }
 
 /// An FRC table as it is written down.
@@ -123,7 +137,7 @@ impl BuildPlan {
     /// The plan for what was opened.
     pub(crate) fn of(settings: &PlanSettings, opened: &Opened) -> Result<Self, BuildError> {
         let grid = &opened.grid;
-        let PlanSettings { terrain, roads, attribution, generator, .. } = settings;
+        let PlanSettings { terrain, roads, areas, attribution, generator, .. } = settings;
         Ok(Self {
             plan_version: PLAN_VERSION,
             generator: generator.clone(),
@@ -134,8 +148,10 @@ impl BuildPlan {
                 roads,
                 opened.max_error_m,
                 opened.photo_record(),
+                areas.as_ref(),
             ),
             frc_table: FrcTableRecord::of(&roads.table),
+            area_table: areas.as_ref().map(AreaTableText::of),
             attribution: attribution.clone(),
             grid: PlannedGrid {
                 frame: grid.frame,
@@ -200,6 +216,7 @@ impl BuildPlan {
             terrain_of: paths("terrain").next(),
             osm: paths("osm").collect(),
             terrain,
+            areas: self.area_table.as_ref().map(AreaTableText::table).transpose()?,
             roads: settings_record::roads(&self.settings, table).ok_or(PlanError::Filter)?,
             attribution: self.attribution.clone(),
             generator: self.generator.clone(),
@@ -254,6 +271,25 @@ impl BuildPlan {
     #[must_use]
     pub fn hash(&self) -> String {
         hex(&self.digest())
+    }
+}
+
+impl AreaTableText {
+    fn of(table: &AreaTable) -> Self {
+        let tag = |(key, value, class): (&str, &str, corniche_areas::AreaClass)| {
+            (format!("{key}={value}"), class.number())
+        };
+        Self { name: table.name().to_owned(), tags: table.tags().map(tag).collect() }
+    }
+
+    fn table(&self) -> Result<AreaTable, PlanError> {
+        let tag = |(tag, class): &(String, u8)| {
+            let class = corniche_areas::AreaClass::from_number(*class);
+            Ok((tag.clone(), class.ok_or(PlanError::AreaClass)?))
+        };
+        let tags = self.tags.iter().map(tag).collect::<Result<_, PlanError>>()?;
+        let table: Result<AreaTable, AreaTableError> = AreaTable::new(self.name.clone(), tags);
+        Ok(table?)
     }
 }
 

@@ -18,6 +18,8 @@ impl BuildPlan {
             inputs: _,
             settings,
             frc_table,
+            // Its hash is among the settings.
+            area_table: _,
             attribution,
             grid: _,
             levels: _,

@@ -97,6 +97,7 @@ fn some_tiles_tell_how_the_ground_is() {
         },
         roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25 },
         photo: None,
+        areas: None,
         attribution: Vec::new(),
         generator: "tests".to_owned(),
     };

@@ -1,6 +1,6 @@
 //! What is compared of two plans, as pairs of a name that users know and a value in words.
 
-use corniche_tileset::{PolygonRecord, ReliefLevels, SettingsRecord};
+use corniche_tileset::{AreaTableRecord, PolygonRecord, ReliefLevels, SettingsRecord};
 
 /// A setting's name, and its value in words.
 pub(crate) type Fact = (String, String);
@@ -34,6 +34,7 @@ pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecor
         simplify_cells: ours.simplify_cells,
         // Photos are taken with the terrain.
         photo: ours.photo,
+        areas: ours.areas.clone(),
         ..package.clone()
     };
     // A polygon is the same under another name.
@@ -74,6 +75,12 @@ fn differences_from(ours: &SettingsRecord, theirs: &SettingsRecord) -> Vec<Strin
 fn polygon_text(polygon: &PolygonRecord) -> String {
     let digits = polygon.sha256.get(..12).unwrap_or(&polygon.sha256);
     format!("{} ({digits}…)", polygon.name)
+}
+
+/// A table by its name and the beginning of its hash, which tells it from others.
+fn area_table_text(areas: &AreaTableRecord) -> String {
+    let digits = areas.sha256.get(..12).unwrap_or(&areas.sha256);
+    format!("{} ({digits}…)", areas.table)
 }
 
 pub(crate) fn list<T: AsRef<str>>(texts: impl IntoIterator<Item = T>) -> String {
@@ -118,6 +125,7 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         class_max_cell_m,
         simplify_cells,
         photo,
+        areas,
     } = record;
     let classes = class_max_cell_m.iter().enumerate().map(|(class, cell_m)| match cell_m {
         Some(cell_m) => format!("{class}: {cell_m}"),
@@ -156,5 +164,6 @@ pub(crate) fn setting_facts(record: &SettingsRecord) -> Vec<Fact> {
         fact("--simplify", simplify_cells),
         fact("--photo-levels", &given(photo.map(|photo| photo.levels).as_ref())),
         fact("--photo-quality", &given(photo.map(|photo| photo.quality).as_ref())),
+        fact("--areas", &given(areas.as_ref().map(area_table_text).as_ref())),
     ]
 }

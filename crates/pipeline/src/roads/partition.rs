@@ -13,10 +13,11 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
+use corniche_areas::AreaTable;
 use corniche_geom::{
     Frame, LatticeArea, LatticeBounds, LatticePoint, ProjectError, Projection, TileId,
 };
-use corniche_osm::{ExtractSummary, ReadRequest, read_kept_roads, read_roads};
+use corniche_osm::{ExtractSummary, ReadOsmError, ReadRequest, read_kept_roads, read_roads};
 use corniche_roads::{FunctionalRoadClass, Road};
 use corniche_store::{Artifacts, Scratch, SortRecord, Sorter};
 use corniche_tileset::pmtiles_order;
@@ -32,8 +33,9 @@ use super::{
     totals::{ExtractCounts, LengthsWriter, RoadTotals},
 };
 use crate::{
-    BuildError, Defect, Observer, RoadSettings, Stage,
+    BuildError, Defect, Observer, RoadSettings, Stage, areas,
     artifacts::{self, Kind},
+    heights::data_tiles::DataTiles,
     levels::Levels,
 };
 
@@ -49,6 +51,8 @@ pub(crate) struct RoadInput<'a> {
     /// Never empty.
     pub(crate) osm: &'a [PathBuf],
     pub(crate) settings: &'a RoadSettings,
+    /// Which objects are areas and on which tiles, if any are wanted.
+    pub(crate) areas: Option<AreaInput<'a>>,
     pub(crate) projection: &'a (dyn Projection + Sync),
     pub(crate) levels: &'a Levels,
     pub(crate) lengths: &'a TrueLengths<'a>,
@@ -63,6 +67,14 @@ pub(crate) struct RoadInput<'a> {
     pub(crate) memory_bytes: u64,
 }
 
+/// What areas need beside the extract.
+#[derive(Clone, Copy)]
+pub(crate) struct AreaInput<'a> {
+    pub(crate) table: &'a AreaTable,
+    /// The tiles on which data can lie.
+    pub(crate) data: DataTiles,
+}
+
 /// Keeps the pieces of all tiles, the lengths of all roads, the defects of the extract, and last the totals. If the totals are
 /// in the store, all is, and nothing is read. The observer is told of the same defects in the same order either way.
 pub(crate) fn partition(
@@ -75,9 +87,10 @@ pub(crate) fn partition(
         replay_defects(store, observer)?;
         return Ok(totals);
     }
+    let mut defects = DefectsWriter::new(store, observer);
+    read_areas(input, (store, scratch), &mut defects, observer)?;
     observer.begin(Stage::Roads, None);
     let mut gathered = Gathered::new(input, store, scratch);
-    let mut defects = DefectsWriter::new(store, observer);
     let extract = read(input, (store, scratch), &mut gathered, &mut defects, observer)?;
     gathered.split_batch();
     if let Some(error) = gathered.failed {
@@ -95,6 +108,24 @@ pub(crate) fn partition(
     Ok(totals)
 }
 
+/// Makes the areas of the extract, if they are wanted. What is wrong with them comes before what is wrong with roads.
+fn read_areas(
+    input: &RoadInput<'_>,
+    (store, scratch): (&dyn Artifacts, &dyn Scratch),
+    defects: &mut DefectsWriter<'_>,
+    observer: &dyn Observer,
+) -> Result<(), BuildError> {
+    let Some(AreaInput { table, data }) = input.areas else { return Ok(()) };
+    observer.begin(Stage::MapAreas, None);
+    let splitting = areas::split::Splitting { frame: input.levels.frame(), data };
+    on_extract(input, (scratch, Stage::MapAreas), observer, |request| {
+        let mut on_defect = |defect| defects.push(defect);
+        areas::partition::partition(request, table, &splitting, store, observer, &mut on_defect)
+    })?;
+    observer.end(Stage::MapAreas);
+    Ok(())
+}
+
 /// Hands all roads of the extract to `gathered` and its defects to `defects`; returns what it held.
 fn read(
     input: &RoadInput<'_>,
@@ -103,6 +134,30 @@ fn read(
     defects: &mut DefectsWriter<'_>,
     observer: &dyn Observer,
 ) -> Result<ExtractSummary, BuildError> {
+    let mut sink = |road| gathered.add(road);
+    let mut on_defect = |defect| defects.push(Defect::from(defect));
+    let should_stop = || observer.is_cancelled();
+    let kept = kept_in(store);
+    let extract = on_extract(input, (scratch, Stage::Roads), observer, |request| {
+        Ok(if let Some(of) = kept.complete() {
+            read_kept_roads(request, of, kept, &mut sink, &mut on_defect, &should_stop)
+        } else {
+            if kept.has_any() {
+                observer.warning(SOME_SHARES);
+            }
+            read_roads(request, &mut sink, &mut on_defect, &should_stop)
+        })
+    })?;
+    Ok(extract.unwrap_or_default())
+}
+
+/// What `read` makes of the extract; `None` without one. Points that cannot be projected make it fail.
+fn on_extract<T>(
+    input: &RoadInput<'_>,
+    (scratch, stage): (&dyn Scratch, Stage),
+    observer: &dyn Observer,
+    read: impl FnOnce(&ReadRequest<'_>) -> Result<Result<T, ReadOsmError>, BuildError>,
+) -> Result<Option<T>, BuildError> {
     let unprojected = Mutex::new(None);
     let place = |positions_deg: &[[f64; 2]]| {
         place(positions_deg, input.levels.frame(), input.projection).unwrap_or_else(|error| {
@@ -111,10 +166,8 @@ fn read(
             vec![None; positions_deg.len()]
         })
     };
-    let Some((path, others)) = input.osm.split_first() else {
-        return Ok(ExtractSummary::default());
-    };
-    let request = ReadRequest {
+    let Some((path, others)) = input.osm.split_first() else { return Ok(None) };
+    let done = read(&ReadRequest {
         path,
         others,
         table: &input.settings.table,
@@ -122,28 +175,16 @@ fn read(
         pool: input.pool,
         memory_bytes: input.memory_bytes,
         scratch,
-        on_progress: Some(&|done, total| observer.reached(Stage::Roads, done, total)),
-    };
-    let mut sink = |road| gathered.add(road);
-    let mut on_defect = |defect| defects.push(Defect::from(defect));
-    let should_stop = || observer.is_cancelled();
-    let kept = kept_in(store);
-    let summary = if let Some(of) = kept.complete() {
-        read_kept_roads(&request, of, kept, &mut sink, &mut on_defect, &should_stop)
-    } else {
-        if kept.has_any() {
-            observer.warning(SOME_SHARES);
-        }
-        read_roads(&request, &mut sink, &mut on_defect, &should_stop)
-    };
+        on_progress: Some(&|done, total| observer.reached(stage, done, total)),
+    });
     if observer.is_cancelled() {
         return Err(BuildError::Interrupted);
     }
-    let summary = summary.map_err(not_read)?;
+    let done = done?.map_err(not_read)?;
     if let Some(error) = unprojected.into_inner().unwrap_or_else(PoisonError::into_inner) {
         return Err(BuildError::Project(error));
     }
-    Ok(summary)
+    Ok(Some(done))
 }
 
 fn place(

@@ -99,6 +99,7 @@ impl World {
         let input = RoadInput {
             osm: &[osm.to_path_buf()],
             settings: &self.settings,
+            areas: None,
             projection: &self.projection,
             levels: &self.levels,
             lengths: &TrueLengths::new(frame, &self.table, &self.projection),

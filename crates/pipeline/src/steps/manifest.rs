@@ -1,12 +1,13 @@
 //! The manifest: the package's table of contents, from the context and the sums over all tiles.
 
 use corniche_tileset::{
-    Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord, LevelRecord, Manifest,
-    PhotoLevelRecord, SampleErrorRecord, ScaleRecord, VerticalRecord,
+    AreaLevelRecord, AreasRecord, Counts, Distribution, FORMAT_VERSION, GrowthRow, InputRecord,
+    LevelRecord, Manifest, PhotoLevelRecord, SampleErrorRecord, ScaleRecord, VerticalRecord,
 };
 
-use super::sums::TileSums;
+use super::sums::{LevelSums, TileSums};
 use crate::{
+    areas::totals::AreaTotals,
     context::Context,
     heights::pyramid::HeightSums,
     manifest_texts,
@@ -20,6 +21,7 @@ pub(crate) struct Outcome<'a> {
     pub(crate) inputs: Vec<InputRecord>,
     pub(crate) heights: HeightSums,
     pub(crate) roads: Option<(&'a RoadTotals, &'a losses::Sums)>,
+    pub(crate) areas: Option<AreaTotals>,
     pub(crate) tiles: &'a TileSums,
 }
 
@@ -32,6 +34,7 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
         &settings.roads,
         outcome.context.max_error_m,
         outcome.context.photo_record(),
+        settings.areas.as_ref(),
     );
     let mut attribution = settings.attribution.clone();
     for credit in outcome.context.photo.into_iter().flat_map(|photo| &photo.credits) {
@@ -77,6 +80,7 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
         counts: counts(outcome),
         growth: growth(outcome),
         photos: photos(outcome),
+        areas: areas(outcome),
     }
 }
 
@@ -152,6 +156,19 @@ fn photos(outcome: &Outcome<'_>) -> Vec<PhotoLevelRecord> {
             bytes: sums.photo_bytes,
         })
         .collect()
+}
+
+fn areas(outcome: &Outcome<'_>) -> Option<AreasRecord> {
+    let counts = outcome.areas.as_ref()?.counts();
+    let levels = outcome.tiles.levels.iter().filter(|(_, sums)| sums.areas.tiles > 0);
+    let level = |(&level, sums): (&u8, &LevelSums)| AreaLevelRecord {
+        level,
+        tiles: sums.areas.tiles,
+        areas: sums.areas.areas,
+        points: sums.areas.points,
+        bytes: sums.areas.bytes,
+    };
+    Some(AreasRecord { counts, levels: levels.map(level).collect() })
 }
 
 fn growth(outcome: &Outcome<'_>) -> Vec<GrowthRow> {

@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{
     BuildError, Stage,
+    areas::totals::AreaTotals,
     artifacts::{self, Kind},
     context::Context,
     heights::pyramid::{HeightSums, all_there},
@@ -84,6 +85,7 @@ pub(crate) fn make(
         inputs: hashes::records(context)?,
         heights,
         roads: roads.as_ref().zip(losses.as_ref()),
+        areas: AreaTotals::get(context.store)?,
         tiles: &tiles,
     });
     if let Some(terrain) = context.source.package() {

@@ -9,7 +9,7 @@ use crate::{
     roads::{
         lengths::TrueLengths,
         overlap::check_overlap,
-        partition::{RoadInput, partition},
+        partition::{AreaInput, RoadInput, partition},
         totals::RoadTotals,
     },
 };
@@ -53,6 +53,11 @@ pub(crate) fn make(context: &Context<'_>, scratch: &dyn Scratch) -> Result<(), B
     let input = RoadInput {
         osm,
         settings: &context.settings.roads,
+        areas: context
+            .settings
+            .areas
+            .as_ref()
+            .map(|table| AreaInput { table, data: context.data() }),
         projection: &projection,
         levels: context.levels,
         lengths: &TrueLengths::new(frame, context.coordinates, &projection),

@@ -8,7 +8,7 @@ use crate::{
     context::Context,
     roads::lay::ClassSums,
     sample_deviation::SampleSums,
-    tile::record::{LevelShare, TileRecord},
+    tile::record::{AreasOfTile, LevelShare, TileRecord},
 };
 
 /// Sums over all tiles.
@@ -34,12 +34,31 @@ pub(crate) struct LevelSums {
     /// Tiles with a photo.
     pub(crate) photo_tiles: u64,
     pub(crate) photo_bytes: u64,
+    pub(crate) areas: AreaSums,
     /// Geometric errors of its tiles.
     pub(crate) geometric_errors_m: Vec<f64>,
     /// Geometric errors of its tiles over their deviations, where those can be measured.
     pub(crate) tightness: Vec<f64>,
     /// Nodes with data that its tiles do not cover, or that have no tile above them.
     pub(crate) uncovered_nodes: u64,
+}
+
+/// Sums over the areas sections of a level.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct AreaSums {
+    pub(crate) tiles: u64,
+    pub(crate) areas: u64,
+    pub(crate) points: u64,
+    pub(crate) bytes: u64,
+}
+
+impl AreaSums {
+    fn add(&mut self, of_tile: AreasOfTile) {
+        self.tiles += u64::from(of_tile.areas > 0);
+        self.areas += of_tile.areas;
+        self.points += of_tile.points;
+        self.bytes += of_tile.bytes;
+    }
 }
 
 impl TileSums {
@@ -73,6 +92,7 @@ impl TileSums {
         sums.relief_bytes += ground.relief_bytes;
         sums.photo_tiles += u64::from(ground.photo_bytes > 0);
         sums.photo_bytes += ground.photo_bytes;
+        sums.areas.add(ground.areas);
         sums.geometric_errors_m.push(deviation.geometric_error_m);
         if deviation.deviation_m >= self.least_measured_m {
             sums.tightness.push(deviation.geometric_error_m / deviation.deviation_m);

@@ -10,10 +10,11 @@ use corniche_tin::{Placement, Surface};
 
 use super::{
     mesh::Meshed,
-    record::{GroundRecord, TileDeviation, TileRecord},
+    record::{AreasOfTile, GroundRecord, TileDeviation, TileRecord},
 };
 use crate::{
     BuildError,
+    areas::sections::TileAreas,
     artifacts::Kind,
     context::Context,
     heights::{finest::TILE_NODES, rasters},
@@ -72,13 +73,18 @@ pub(crate) fn with_ground(
         None => textures::of_tile(context, id)?,
     };
     let photo_bytes = photo.as_ref().map_or(0, |photo| photo.bytes().len() as u64);
-    match photo {
-        Some(photo) => {
-            let bytes = corniche_tileset::with_photo(&encoded.bytes, id, &photo)?;
-            context.store.put(Kind::Payload.of_tile(id), &bytes)?;
-        }
-        None => context.store.put(Kind::Payload.of_tile(id), &encoded.bytes)?,
+    let mut bytes = encoded.bytes;
+    if let Some(photo) = photo {
+        bytes = corniche_tileset::with_photo(&bytes, id, &photo)?;
     }
+    let mut areas = AreasOfTile::default();
+    if let Some(own) = TileAreas::get(context.store, id)? {
+        (areas.areas, areas.points) = (own.areas, own.points);
+        let size;
+        (bytes, size) = corniche_tileset::with_areas(&bytes, id, own.into_section())?;
+        areas.bytes = size.stored;
+    }
+    context.store.put(Kind::Payload.of_tile(id), &bytes)?;
     let (terrain_bytes, relief_bytes) = (encoded.sizes.terrain.stored, encoded.sizes.relief.stored);
     Ok(TileRecord {
         ground: Some(GroundRecord {
@@ -87,6 +93,7 @@ pub(crate) fn with_ground(
             terrain_bytes,
             relief_bytes,
             photo_bytes,
+            areas,
             deviation,
         }),
         classes,

@@ -38,7 +38,18 @@ pub(crate) struct GroundRecord {
     pub(crate) relief_bytes: u64,
     /// 0 without a photo.
     pub(crate) photo_bytes: u64,
+    pub(crate) areas: AreasOfTile,
     pub(crate) deviation: TileDeviation,
+}
+
+/// The areas section of a tile; all 0 without one.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct AreasOfTile {
+    pub(crate) areas: u64,
+    /// Of all rings.
+    pub(crate) points: u64,
+    /// Stored.
+    pub(crate) bytes: u64,
 }
 
 /// How far the TIN of one tile is from the nodes.

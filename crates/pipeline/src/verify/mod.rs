@@ -1,5 +1,6 @@
 //! Checks whether a package keeps its promises, by looking at every tile.
 
+mod areas;
 mod attributes;
 mod checks;
 mod dem;
@@ -62,6 +63,7 @@ pub fn verify(
     let mut given = vec![Needs::Package];
     let (mut report, mut findings) = tiles::verify(&package, settings.threads, observer)?;
     photos::verify(&package, settings.threads, &mut findings, observer)?;
+    areas::verify(&package, settings.threads, &mut findings, observer)?;
     manifest_sums::verify(package.manifest(), &mut findings);
     derived_records::verify(package.manifest(), &mut findings);
     header::verify(&package, &mut findings)?;

@@ -85,6 +85,7 @@ fn compare_all(
     let input = RoadInput {
         osm: &paths,
         settings: &settings,
+        areas: None,
         projection: &projection,
         levels: &levels,
         lengths: &lengths,

@@ -184,6 +184,7 @@ pub(crate) fn settings(
                 simplify_cells: 0.25,
             },
             photo: None,
+            areas: None,
             attribution: Vec::new(),
             generator: "tests".to_owned(),
         },

@@ -3,10 +3,11 @@
 //! The numbers in a package can be anything: a count of 2^64 − 1 would overflow the first sum, a coordinate of 1e308
 //! the first product, and comparisons with NaN would give wrong answers.
 
+use corniche_areas::AreaClass;
 use corniche_geom::{Bounds, Cell, MAX_LATTICE_STEPS, NodeIndex};
 
 use crate::limits::MAX_PHOTO_LEVELS;
-use crate::manifest::contents::Manifest;
+use crate::manifest::contents::{AreaLevelRecord, AreasRecord, Manifest};
 use crate::manifest::counts::{Counts, GrowthRow};
 use crate::manifest::levels::{Distribution, LevelRecord, SampleErrorRecord};
 
@@ -92,6 +93,7 @@ impl Manifest {
         }
         check_sum("growth", self.growth.iter().flat_map(GrowthRow::counts))?;
         self.check_photos()?;
+        self.check_areas()?;
         check_sum("inputs", self.inputs.iter().map(|input| input.bytes))
     }
 
@@ -106,6 +108,27 @@ impl Manifest {
         let most = levels.max().unwrap_or_default();
         that(most <= self.frame.max_level(), "photos.level", most)?;
         check_sum("photos", self.photos.iter().flat_map(|photos| [photos.tiles, photos.bytes]))
+    }
+
+    fn check_areas(&self) -> Result<(), String> {
+        let Some(AreasRecord { counts, levels }) = &self.areas else { return Ok(()) };
+        let numbers = levels.iter().map(|areas| areas.level);
+        let is_sorted = numbers.clone().is_sorted_by(|a, b| a < b);
+        that(is_sorted, "areas.levels.level", numbers.clone().collect::<Vec<_>>())?;
+        let most = numbers.max().unwrap_or_default();
+        that(most <= self.frame.max_level(), "areas.levels.level", most)?;
+        let of_level =
+            |areas: &AreaLevelRecord| [areas.tiles, areas.areas, areas.points, areas.bytes];
+        check_sum("areas.levels", levels.iter().flat_map(of_level))?;
+        let classes = counts.kept.iter().map(|kept| kept.class);
+        let is_sorted = classes.clone().is_sorted_by(|a, b| a < b);
+        that(is_sorted, "areas.counts.kept.class", classes.clone().collect::<Vec<_>>())?;
+        let known = |class: u8| AreaClass::from_number(class).is_some();
+        that(classes.clone().all(known), "areas.counts.kept.class", classes.collect::<Vec<_>>())?;
+        let areas_km2: Vec<f64> = counts.kept.iter().map(|kept| kept.area_km2).collect();
+        all_measures("areas.counts.kept.area_km2", &areas_km2)?;
+        let kept = counts.kept.iter().map(|kept| kept.areas);
+        check_sum("areas.counts", kept.chain(counts.lost.iter().map(|lost| lost.1)))
     }
 
     fn check_settings(&self) -> Result<(), String> {

@@ -61,6 +61,9 @@ pub struct Manifest {
     /// The photos of each level that has some, root first; left out without any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub photos: Vec<PhotoLevelRecord>,
+    /// The areas; left out in packages made without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub areas: Option<AreasRecord>,
 }
 
 /// The part of the elevation files that a package is of.
@@ -177,6 +180,64 @@ pub struct SettingsRecord {
     /// How photos were made (`--photo`); left out without any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub photo: Option<PhotoRecord>,
+    /// Which objects are areas (`--areas`); left out without any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub areas: Option<AreaTableRecord>,
+}
+
+/// The table of classes of areas.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct AreaTableRecord {
+    /// Its name.
+    pub table: String,
+    /// SHA-256 of its text.
+    pub sha256: String,
+}
+
+/// The areas of a package.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AreasRecord {
+    /// What became of the extract's.
+    pub counts: AreaCounts,
+    /// For each level that has some, root first.
+    pub levels: Vec<AreaLevelRecord>,
+}
+
+/// Objects of the extract with the tags of an area: `objects` = those of `kept` + those of `lost`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AreaCounts {
+    /// How many there are.
+    pub objects: u64,
+    /// Those that became areas, by class, wherever they lie.
+    pub kept: Vec<AreaClassRecord>,
+    /// Those that became none: reason, how many.
+    pub lost: Vec<(String, u64)>,
+}
+
+/// Areas of one class.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AreaClassRecord {
+    /// The class's number.
+    pub class: u8,
+    /// How many.
+    pub areas: u64,
+    /// Their true area, square kilometres, wherever they lie; where areas overlap, each counts.
+    pub area_km2: f64,
+}
+
+/// The areas of a level.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct AreaLevelRecord {
+    /// Level, 0 = root.
+    pub level: u8,
+    /// Tiles with areas.
+    pub tiles: u64,
+    /// Areas of these tiles; one that lies in several tiles counts in each.
+    pub areas: u64,
+    /// Points of all rings.
+    pub points: u64,
+    /// Stored bytes of their areas sections.
+    pub bytes: u64,
 }
 
 /// How the photos of a package were made.

@@ -14,6 +14,20 @@ pub struct AreasSection {
     bytes: Vec<u8>,
 }
 
+impl AreasSection {
+    /// Its bytes.
+    #[must_use]
+    pub fn into_bytes(self) -> Vec<u8> {
+        self.bytes
+    }
+
+    /// The section with these bytes, which [`AreasSection::into_bytes`] gave.
+    #[must_use]
+    pub fn from_bytes(bytes: Vec<u8>) -> Self {
+        Self { bytes }
+    }
+}
+
 /// Encodes the areas of a tile; `None` if there are none. Equal areas make equal bytes.
 ///
 /// `step` is the spacing of the coarse lattice on which points of the tile's level lie, in steps of the package's; points on the tile's

@@ -1,0 +1,138 @@
+//! Areas, in documents of several commands.
+
+use corniche_areas::AreaClass;
+use corniche_geom::Frame;
+use corniche_tileset::{AreaLevelRecord, AreaRecord, AreaTableRecord, AreasRecord};
+use serde::Serialize;
+
+/// The table of classes of areas.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct AreaTableDocument {
+    /// Its name.
+    table: String,
+    /// SHA-256 of its text.
+    sha256: String,
+}
+
+/// The areas of a package.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct AreasDocument {
+    /// Objects of the extract with the tags of an area: those kept and those lost.
+    objects: u64,
+    /// Those that became areas, by class, wherever they lie.
+    kept: Vec<AreaClassDocument>,
+    /// Those that became none, by reason.
+    lost: Vec<AreaLossDocument>,
+    /// For each level that has some, root first.
+    levels: Vec<AreaLevelDocument>,
+}
+
+/// Areas of one class.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct AreaClassDocument {
+    /// The class: "water", "forest" and so on.
+    class: &'static str,
+    /// How many.
+    areas: u64,
+    /// Their true area, square kilometres; where areas overlap, each counts.
+    area_km2: f64,
+}
+
+/// Objects that became no areas for one reason.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct AreaLossDocument {
+    /// Why.
+    reason: String,
+    /// How many.
+    objects: u64,
+}
+
+/// The areas of a level.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct AreaLevelDocument {
+    /// Level, 0 = root.
+    level: u8,
+    /// Tiles with areas.
+    tiles: u64,
+    /// Areas of these tiles; one that lies in several tiles counts in each.
+    areas: u64,
+    /// Points of all rings.
+    points: u64,
+    /// Stored bytes of their sections.
+    bytes: u64,
+}
+
+/// The part of an area that lies in a tile.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct TileAreaDocument {
+    /// What it was in OSM: "way" or "relation".
+    object: &'static str,
+    /// OSM's id of it.
+    id: i64,
+    /// The class: "water", "forest" and so on.
+    class: &'static str,
+    /// `name`; null without.
+    name: Option<String>,
+    /// Polygons of rings of positions, x and y: the outer ring counter-clockwise in working metres, then holes, clockwise. The first
+    /// position is not repeated.
+    polygons: Vec<Vec<Vec<[f64; 2]>>>,
+}
+
+impl TileAreaDocument {
+    /// `place` makes coordinates from working metres.
+    pub(crate) fn of(
+        area: AreaRecord,
+        frame: &Frame,
+        place: &impl Fn([f64; 2]) -> [f64; 2],
+    ) -> Self {
+        let (object, id) = area.object.parts();
+        let ring =
+            |ring: Vec<_>| ring.into_iter().map(|point| place(frame.position_m(point))).collect();
+        let polygons = area.polygons.into_iter();
+        Self {
+            object,
+            id,
+            class: area.class.name(),
+            name: (!area.name.is_empty()).then_some(area.name),
+            polygons: polygons
+                .map(|polygon| polygon.rings.into_iter().map(ring).collect())
+                .collect(),
+        }
+    }
+}
+
+impl From<AreaTableRecord> for AreaTableDocument {
+    fn from(AreaTableRecord { table, sha256 }: AreaTableRecord) -> Self {
+        Self { table, sha256 }
+    }
+}
+
+impl From<AreasRecord> for AreasDocument {
+    fn from(AreasRecord { counts, levels }: AreasRecord) -> Self {
+        let class = |kept: corniche_tileset::AreaClassRecord| AreaClassDocument {
+            class: AreaClass::from_number(kept.class).map_or("", AreaClass::name),
+            areas: kept.areas,
+            area_km2: kept.area_km2,
+        };
+        let level = |level: AreaLevelRecord| {
+            let AreaLevelRecord { level, tiles, areas, points, bytes } = level;
+            AreaLevelDocument { level, tiles, areas, points, bytes }
+        };
+        Self {
+            objects: counts.objects,
+            kept: counts.kept.into_iter().map(class).collect(),
+            lost: counts
+                .lost
+                .into_iter()
+                .map(|(reason, objects)| AreaLossDocument { reason, objects })
+                .collect(),
+            levels: levels.into_iter().map(level).collect(),
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! One area to its parts in the tiles of each level.
+
+use corniche_areas::{Area, Axis, OutlineError, Polygon, coarsen, divide};
+use corniche_geom::{Frame, LatticeBounds, TileId};
+use corniche_tileset::{AreaRecord, AreaRings};
+
+use crate::heights::data_tiles::DataTiles;
+
+/// On the finest level, points lie on a lattice of at most this spacing, metres: what is drawn there can be looked at from near.
+const FINEST_STEP_M: f64 = 0.1;
+/// On other levels, so many steps of the lattice make a cell, at least. Tiles are drawn while their cells look like two pixels at
+/// most, so a point moves by a sixteenth of a pixel.
+const STEPS_PER_CELL: f64 = 16.0;
+
+/// How areas are split.
+pub(crate) struct Splitting<'a> {
+    pub(crate) frame: &'a Frame,
+    pub(crate) data: DataTiles,
+}
+
+impl Splitting<'_> {
+    /// The spacing of the lattice on which points of a level lie, in steps of the package's: a power of two.
+    pub(crate) fn step(&self, level: u8) -> i64 {
+        let frame = self.frame;
+        let widest_m = if level == frame.max_level() {
+            FINEST_STEP_M
+        } else {
+            frame.level_cell(level).shorter_m() / STEPS_PER_CELL
+        };
+        let steps = (widest_m / frame.lattice_step_m()).max(1.0);
+        1 << (steps.log2().floor() as u32).min(40)
+    }
+
+    /// The parts of an area by tile. On coarse levels, polygons smaller than a cell are left out.
+    pub(crate) fn split(&self, area: &Area) -> Result<Vec<(TileId, AreaRecord)>, OutlineError> {
+        let mut parts = Vec::new();
+        for level in 0..=self.frame.max_level() {
+            let step = self.step(level);
+            let mut coarse = Vec::new();
+            for polygon in &area.polygons {
+                coarse.extend(coarsen(polygon, step)?);
+            }
+            if level < self.frame.max_level() {
+                let [east, north] = self.frame.node_steps(level).map(i128::from);
+                coarse.retain(|polygon| polygon.doubled_area() >= 2 * east * north);
+            }
+            let coarse = within(coarse, &self.frame.tile_lattice_bounds(TileId::ROOT))?;
+            let mut tiles = Vec::new();
+            let wanted = Wanted { frame: self.frame, data: self.data.above(level), level };
+            wanted.divide(TileId::ROOT, coarse, &mut tiles)?;
+            parts.extend(tiles.into_iter().map(|(id, polygons)| (id, record(area, &polygons))));
+        }
+        Ok(parts)
+    }
+}
+
+/// The tiles of a level on which data can lie.
+struct Wanted<'a> {
+    frame: &'a Frame,
+    data: DataTiles,
+    level: u8,
+}
+
+impl Wanted<'_> {
+    /// Divides polygons that lie in a tile, or beside it, by the lines between the tiles beneath it, down to the level.
+    ///
+    /// All tiles are made by the same lines in the same order, those of an area between two tiles by the line between them: so both have
+    /// the same points on it.
+    fn divide(
+        &self,
+        id: TileId,
+        polygons: Vec<Polygon>,
+        tiles: &mut Vec<(TileId, Vec<Polygon>)>,
+    ) -> Result<(), OutlineError> {
+        let bounds = self.frame.tile_lattice_bounds(id);
+        let polygons: Vec<Polygon> =
+            polygons.into_iter().filter(|polygon| meets(polygon, &bounds)).collect();
+        if polygons.is_empty() {
+            return Ok(());
+        }
+        if id.z() == self.level {
+            if self.data.contains(id) {
+                tiles.push((id, polygons));
+            }
+            return Ok(());
+        }
+        // The four children meet in the south-eastern corner of the first, which is north-western.
+        let Some(first) = id.children().next() else { return Ok(()) };
+        let first = self.frame.tile_lattice_bounds(first);
+        let [west, east] = divide_all(&polygons, Axis::East, first.max.u)?;
+        let [south_west, north_west] = divide_all(&west, Axis::North, first.min.v)?;
+        let [south_east, north_east] = divide_all(&east, Axis::North, first.min.v)?;
+        let quarters = [north_west, north_east, south_west, south_east];
+        for (child, quarter) in id.children().zip(quarters) {
+            self.divide(child, quarter, tiles)?;
+        }
+        Ok(())
+    }
+}
+
+fn meets(polygon: &Polygon, bounds: &LatticeBounds) -> bool {
+    LatticeBounds::of(polygon.outer().points()).is_some_and(|own| own.intersects(bounds))
+}
+
+/// The parts inside a rectangle.
+fn within(polygons: Vec<Polygon>, bounds: &LatticeBounds) -> Result<Vec<Polygon>, OutlineError> {
+    let [_, east] = divide_all(&polygons, Axis::East, bounds.min.u)?;
+    let [inside, _] = divide_all(&east, Axis::East, bounds.max.u)?;
+    let [_, north] = divide_all(&inside, Axis::North, bounds.min.v)?;
+    let [inside, _] = divide_all(&north, Axis::North, bounds.max.v)?;
+    Ok(inside)
+}
+
+fn divide_all(
+    polygons: &[Polygon],
+    axis: Axis,
+    at: i64,
+) -> Result<[Vec<Polygon>; 2], OutlineError> {
+    let mut all = [Vec::new(), Vec::new()];
+    for polygon in polygons {
+        for (all, parts) in all.iter_mut().zip(divide(polygon, axis, at)?) {
+            all.extend(parts);
+        }
+    }
+    Ok(all)
+}
+
+fn record(area: &Area, polygons: &[Polygon]) -> AreaRecord {
+    let rings = |polygon: &Polygon| AreaRings {
+        rings: polygon.rings().map(|ring| ring.points().to_vec()).collect(),
+    };
+    AreaRecord {
+        object: area.object,
+        class: area.class,
+        name: area.name.clone().unwrap_or_default(),
+        polygons: polygons.iter().map(rings).collect(),
+    }
+}
+
+#[cfg(test)]
+#[path = "split_tests.rs"]
+mod tests;
