@@ -16,7 +16,10 @@ use self::{
     frame::{BoundsDocument, ClipDocument, FrameDocument},
     levels::LevelDocument,
 };
-use super::growth::RowDocument;
+use super::{
+    areas::{AreaTableDocument, AreasDocument},
+    growth::RowDocument,
+};
 
 /// What a package holds.
 #[derive(Debug, Serialize)]

@@ -3,6 +3,8 @@
 use corniche_tileset::RoadRecord;
 use serde::Serialize;
 
+use super::areas::TileAreaDocument;
+
 /// A tile, decoded.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
