@@ -8,20 +8,21 @@ fn every_stage_is_listed_once_in_order() {
     for (place, stage) in Stage::ALL.into_iter().enumerate() {
         let expected = match stage {
             Stage::Hash => 0,
-            Stage::Roads => 1,
-            Stage::Heights => 2,
-            Stage::Photos => 3,
-            Stage::CoarseTins => 4,
-            Stage::Deviations => 5,
-            Stage::Samples => 6,
-            Stage::Tiles => 7,
-            Stage::CoarseTiles => 8,
-            Stage::Package => 9,
-            Stage::Verify => 10,
+            Stage::MapAreas => 1,
+            Stage::Roads => 2,
+            Stage::Heights => 3,
+            Stage::Photos => 4,
+            Stage::CoarseTins => 5,
+            Stage::Deviations => 6,
+            Stage::Samples => 7,
+            Stage::Tiles => 8,
+            Stage::CoarseTiles => 9,
+            Stage::Package => 10,
+            Stage::Verify => 11,
         };
         assert_eq!(place, expected, "{stage:?}");
     }
-    assert_eq!(Stage::ALL.len(), 11);
+    assert_eq!(Stage::ALL.len(), 12);
 }
 
 #[test]

@@ -139,6 +139,7 @@ pub struct AreaOptions {
     /// Areas of the extract, such as water and forest, stored as polygons: the table of their classes, a preset (default) or a TOML file;
     /// off leaves them out [default: off]
     #[arg(id = "areas", long = "areas", value_name = "off|default|FILE")]
+    #[serde(rename = "areas")]
     pub table: Option<String>,
 }
 

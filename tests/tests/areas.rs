@@ -1,0 +1,231 @@
+//! `corniche build --areas`: areas through the whole binary, however the package is made; losses; refusals.
+
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use corniche_testing::pbf::{Block, file};
+use e2e::{Job, Ran, When, corniche, json, manifest, sample, text};
+use serde_json::Value;
+
+/// Nodes in a lattice over the sample `pass`, whose roads lie there too: number 100 + 20 y + x at (x, y), 0.005 and 0.004 degrees apart.
+fn extract(folder: &Path) -> PathBuf {
+    let mut block = Block::new();
+    let place =
+        |x: i64, y: i64| (100 + 20 * y + x, 468_700_000 + 40_000 * y, 95_000_000 + 50_000 * x);
+    block.dense(&(0..400).map(|n| place(n % 20, n / 20)).collect::<Vec<_>>());
+    let node = |x: i64, y: i64| place(x, y).0;
+    let square = |x: i64, y: i64, side: i64| {
+        let (east, north) = (x + side, y + side);
+        [node(x, y), node(east, y), node(east, north), node(x, north), node(x, y)]
+    };
+    block.way(1, &[("highway", "primary")], &[node(1, 1), node(9, 9)]);
+    block.way(2, &[("natural", "water"), ("name", "Lake")], &square(2, 2, 3));
+    block.way(3, &[], &square(6, 3, 6));
+    block.way(4, &[], &square(8, 5, 2));
+    // Not closed; crossing itself.
+    block.way(5, &[("landuse", "meadow")], &square(1, 8, 2)[..4]);
+    block.way(
+        6,
+        &[("natural", "scree")],
+        &[node(1, 10), node(3, 12), node(3, 10), node(1, 12), node(1, 10)],
+    );
+    block.relation(
+        7,
+        &[("type", "multipolygon"), ("natural", "wood")],
+        &[(3, "outer"), (4, "inner")],
+    );
+    let path = folder.join("areas.osm.pbf");
+    fs::write(&path, file(&block)).unwrap();
+    path
+}
+
+fn succeed(ran: Ran) -> Ran {
+    assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
+    ran
+}
+
+/// Area of a polygon with its holes, square metres in plan.
+fn area_m2(rings: &Value) -> f64 {
+    let of_ring = |ring: &Value| -> f64 {
+        let points: Vec<[f64; 2]> = serde_json::from_value(ring.clone()).unwrap();
+        let next = points.iter().cycle().skip(1);
+        points.iter().zip(next).map(|(a, b)| (a[0] * b[1] - a[1] * b[0]) / 2.0).sum()
+    };
+    rings.as_array().unwrap().iter().map(of_ring).sum()
+}
+
+/// Areas of all tiles of each level by object, square metres; and the classes of the objects.
+fn areas_of(package: &Path) -> BTreeMap<(u64, String), f64> {
+    let found = json(&["info", text(package), "--json"]);
+    let mut areas: BTreeMap<(u64, String), f64> = BTreeMap::new();
+    for tile in found["tiles"].as_array().unwrap() {
+        let id =
+            tile.as_str().map_or_else(|| tile["id"].as_str().unwrap().to_owned(), str::to_owned);
+        let level: u64 = id.split('/').next().unwrap().parse().unwrap();
+        let tile = json(&["tile", text(package), &id, "--json"]);
+        for area in tile["areas"].as_array().into_iter().flatten() {
+            let name = format!(
+                "{} {} {}",
+                area["object"].as_str().unwrap(),
+                area["id"],
+                area["class"].as_str().unwrap()
+            );
+            let parts = area["polygons"].as_array().unwrap();
+            *areas.entry((level, name)).or_default() += parts.iter().map(area_m2).sum::<f64>();
+        }
+    }
+    areas
+}
+
+#[test]
+fn areas_are_the_same_however_the_package_is_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let (dem, osm) = (sample("pass/pass-dem.tif"), extract(folder.path()));
+    let whole = at("whole.pmtiles");
+    let inputs =
+        ["--dem", text(&dem), "--osm", text(&osm), "--max-error", "10", "--areas", "default"];
+    let build = |package: &Path, inputs: &[&str], more: &[&str]| {
+        succeed(corniche([&["build", "-q", "-o", text(package)], inputs, more].concat()));
+        fs::read(package).unwrap()
+    };
+    let bytes = build(&whole, &inputs, &["--threads", "1", "--defects", text(&at("defects.csv"))]);
+    succeed(corniche(["verify", text(&whole), "--dem", text(&dem), "--osm", text(&osm)]));
+
+    // What came in is what is kept and what is lost, with their ids.
+    let counts = &manifest(&whole)["areas"]["counts"];
+    assert_eq!(counts["objects"], 4);
+    let lost: Vec<&str> = counts["lost"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|lost| lost["reason"].as_str().unwrap())
+        .collect();
+    assert_eq!(lost, ["area way is not closed", "outline of an area crosses itself"]);
+    let defects = fs::read_to_string(at("defects.csv")).unwrap();
+    assert!(
+        defects.contains("area way is not closed")
+            && defects.contains("outline of an area crosses itself"),
+        "{defects}"
+    );
+    let ran = succeed(corniche(["info", text(&whole)]));
+    assert!(
+        ran.out.contains("Areas: 4 objects of the extract, of which 2 became areas"),
+        "{}",
+        ran.out
+    );
+
+    // Each level has the whole of both areas; the sides of a cell of the lattice are 382 by 445 metres there.
+    let cell_m2 = 382.0 * 444.7;
+    let areas = areas_of(&whole);
+    let finest = areas.keys().map(|(level, _)| *level).max().unwrap();
+    assert!(finest >= 2, "{areas:?}");
+    for level in 0..=finest {
+        for (name, cells) in [("way 2 water", 9.0), ("relation 7 forest", 32.0)] {
+            let ratio = areas[&(level, name.to_owned())] / (cells * cell_m2);
+            assert!((ratio - 1.0).abs() < 0.02, "{name} on level {level}: {ratio}");
+        }
+    }
+
+    // Other threads and memory; onto recorded terrain; in parts.
+    assert!(
+        build(&at("again.pmtiles"), &inputs, &["--threads", "3", "--memory", "600M"]) == bytes,
+        "threads"
+    );
+    let plain = at("plain.pmtiles");
+    build(&plain, &inputs[..6], &[]);
+    assert!(manifest(&plain).get("areas").is_none());
+    let onto = ["--terrain", text(&plain), "--osm", text(&osm), "--areas", "default"];
+    assert!(build(&at("onto.pmtiles"), &onto, &[]) == bytes, "onto recorded terrain");
+    let without = ["--terrain", text(&whole), "--osm", text(&osm)];
+    assert!(
+        build(&at("without.pmtiles"), &without, &[]) == fs::read(&plain).unwrap(),
+        "areas are left out"
+    );
+    let (plan, store, merged) = (at("plan.json"), at("store"), at("merged.pmtiles"));
+    succeed(corniche([&["plan", "-o", text(&plan)], &inputs[..]].concat()));
+    for step in ["hashes", "roads", "heights", "top", "tiles"] {
+        let subtree: &[&str] =
+            if matches!(step, "heights" | "tiles") { &["--subtree", "0/0/0"] } else { &[] };
+        let words = ["part", text(&plan), "-q", "--step", step, "--store", text(&store)];
+        succeed(corniche([&words[..5], subtree, &words[5..]].concat()));
+    }
+    succeed(corniche(["merge", text(&plan), "-q", "-o", text(&merged), "--store", text(&store)]));
+    assert!(fs::read(&merged).unwrap() == bytes, "in parts");
+}
+
+#[test]
+fn a_build_with_areas_that_was_stopped_goes_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let inputs = || [sample("pass/pass-dem.tif"), extract(folder.path())];
+    let options = ["--max-error", "0.25", "--areas", "default"];
+    let whole = Job::new(&options).of(inputs());
+    whole.succeed(&["--quiet"]);
+    for signal in ["TERM", "KILL"] {
+        let job = Job::new(&options).of(inputs());
+        let stopped = job.stop(&[], signal, When::Worked);
+        assert_ne!(stopped.code, 0, "{signal}: it ended by itself");
+        job.succeed(&["--quiet", "--resume"]);
+        assert!(job.result() == whole.result(), "{signal}");
+    }
+}
+
+#[test]
+fn tables_that_are_none_and_areas_without_an_extract_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let (package, table) = (folder.path().join("out.pmtiles"), folder.path().join("table.toml"));
+    let (dem, osm) = (sample("pass/pass-dem.tif"), extract(folder.path()));
+    let refused = |options: &[&str]| {
+        let ran = corniche(
+            [&["build", "-q", "--dem", text(&dem), "-o", text(&package)], options].concat(),
+        );
+        assert_eq!(ran.code, 2, "{}", ran.err);
+        assert!(!package.exists());
+        ran.err
+    };
+    assert!(
+        refused(&["--areas", "default"])
+            .contains("--areas takes areas from an extract; give one with --osm")
+    );
+    let no_table = refused(&["--osm", text(&osm), "--areas", "nothing"]);
+    assert!(
+        no_table.contains("neither off nor a preset (default) nor a readable file"),
+        "{no_table}"
+    );
+    fs::write(&table, "name = 'own'\n[[area]]\nclass = 'pond'\ntags = ['natural=water']\n")
+        .unwrap();
+    let no_class = refused(&["--osm", text(&osm), "--areas", text(&table)]);
+    assert!(
+        no_class.contains("\"pond\" is no class of areas; classes are water, glacier"),
+        "{no_class}"
+    );
+
+    // A table of one's own, named in a settings file beside it.
+    fs::write(&table, "name = 'own'\n[[area]]\nclass = 'rock'\ntags = ['natural=water']\n")
+        .unwrap();
+    let settings = folder.path().join("settings.toml");
+    fs::write(&settings, "[areas]\nareas = 'table.toml'\n").unwrap();
+    let ran = corniche([
+        "build",
+        "-q",
+        "--dem",
+        text(&dem),
+        "--osm",
+        text(&osm),
+        "-o",
+        text(&package),
+        "--max-error",
+        "10",
+        "--config",
+        text(&settings),
+    ]);
+    succeed(ran);
+    let found = manifest(&package);
+    assert_eq!(found["settings"]["areas"]["table"], "own");
+    assert_eq!(found["areas"]["counts"]["kept"][0]["class"], "rock");
+}
