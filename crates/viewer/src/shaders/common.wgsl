@@ -4,6 +4,8 @@
 // Depth is reversed with an infinite far plane: depth_buffer = near / view_depth, 0 where nothing was drawn.
 
 const CLASSES = 9u;
+// The most bands of a road.
+const BANDS = 16u;
 
 struct Frame {
     clip_from_relative: mat4x4<f32>,
@@ -22,12 +24,14 @@ struct Frame {
     // x: 1 with caps, 0 without; y: 1 for the paper's test in the fragment shader of volumes; z: world metres to a true
     // metre, one value for the whole package; w: roads are not drawn by their own width beyond this one, true metres.
     road_options: vec4<f32>,
-    // x: half width in true metres near the eye; y: least half width in pixels of this target; z: share of the width that
-    // the centre line takes, -1 without one; w: distance from the eye up to which the class is shown in full.
+    // x: half width in true metres near the eye; y: least half width in pixels of this target; z: number of its bands;
+    // w: distance from the eye up to which the class is shown in full.
     road_widths: array<vec4<f32>, CLASSES>,
     // x: half width, as a share of the distance from the eye, beyond which roads do not grow; y: width of a slip road as a share
-    // of that of its class; z: how much of the ground a road hides.
+    // of that of its class; z: how much of the ground a road hides; w: number of the bands of a slip road.
     road_limits: array<vec4<f32>, CLASSES>,
+    // The widths of the bands of each class as shares of the road's width, four in each row.
+    road_bands: array<vec4<f32>, BANDS / 4u * CLASSES>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -93,8 +97,13 @@ fn shown_share(class_number: u32, distance_m: f32) -> f32 {
     return clamp(1.0 - steps, 0.0, 1.0);
 }
 
-// Labels of tunnels are below those of all other roads: what is on the ground hides what is beneath it.
-const TUNNEL_LABELS = 20u;
+// Share of the width of a road that one of its bands takes. Band 0 is the whole road.
+fn band_share(class_number: u32, band: u32) -> f32 {
+    return frame.road_bands[class_number * (BANDS / 4u) + band / 4u][band % 4u];
+}
+
+// Labels below this one are those of tunnels: what is on the ground hides what is beneath it. gpu/labels.rs draws them.
+const TUNNEL_LABELS = 2u * BANDS;
 
 // Side of a pixel of the final picture at a distance from the eye or at a depth, metres.
 fn pixel_m_at(distance_m: f32) -> f32 {

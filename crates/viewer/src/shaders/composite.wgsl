@@ -20,9 +20,10 @@ struct PictureColors {
     // Where there is no ground, a plane beneath all ground is seen: xy: the eye's place on it, modulo w; z: the eye's height
     // above it; w: the widest spacing of its lines. World metres.
     void_plane: vec4<f32>,
-    road_fills: array<vec4<f32>, CLASSES>,
+    road_bands: array<vec4<f32>, BANDS * CLASSES>,
     road_outlines: array<vec4<f32>, CLASSES>,
-    road_centers: array<vec4<f32>, CLASSES>,
+    // Tunnels.
+    road_mains: array<vec4<f32>, CLASSES>,
     // Roads that are too thin for an edge.
     road_thins: array<vec4<f32>, CLASSES>,
 }
@@ -45,7 +46,12 @@ fn is_tunnel(label: u32) -> bool {
 }
 
 fn class_of(label: u32) -> u32 {
-    return CLASSES - select(label - TUNNEL_LABELS, label, is_tunnel(label)) / 2u;
+    return select(CLASSES + 1u - label / BANDS, CLASSES - label / 2u, is_tunnel(label));
+}
+
+// Of two roads that meet, the one of the higher rank has the edge. 0 is no road.
+fn rank_of(label: u32) -> u32 {
+    return select(CLASSES - 1u + label / BANDS, label / 2u, is_tunnel(label));
 }
 
 // The largest label around a pixel, of roads on ground of at least this depth in the buffer.
@@ -209,8 +215,8 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
     if label != 0u {
         let road_class = class_of(label);
         let seen_px = width_px(road_class, sight.distance_m, sight.depth);
-        let wide = select(colors.road_fills[road_class].rgb, colors.road_centers[road_class].rgb,
-            (label & 1u) == 1u && !is_tunnel(label));
+        let wide = select(colors.road_bands[road_class * BANDS + label % BANDS].rgb, colors.road_mains[road_class].rgb,
+            is_tunnel(label));
         let fill = mix(colors.road_thins[road_class].rgb, wide, smoothstep(1.0, 2.2, seen_px));
         // A road that is drawn wider than it is, because of its least width, is made paler.
         let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
@@ -221,7 +227,7 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
 
     let most = label_of(largest_around(pixel, own, sight.depth_buffer / FARTHER));
     // The edge of a tunnel is dashed.
-    if most / 2u > label / 2u && (!is_tunnel(most) || (most & 1u) == 1u) {
+    if rank_of(most) > rank_of(label) && (!is_tunnel(most) || (most & 1u) == 1u) {
         let road_class = class_of(most);
         // Around a very thin road there is no edge, because it would hide the road; nor around one that is seen so flat that
         // the edge would break into dashes.

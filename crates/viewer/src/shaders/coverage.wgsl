@@ -58,10 +58,12 @@ fn stretch_of(distance_m: f32, height_m: f32) -> f32 {
     return clamp(1.5 * distance_m / max(abs(height_m), 1e-3), 1.0, MAX_STRETCH);
 }
 
-// Share of the width that the centre line takes; negative without one, so that no distance is below it. Slip roads and
-// tunnels have none.
-fn center_share(road: Road) -> f32 {
-    return select(-1.0, frame.road_widths[road.class_number].z, road.look == PLAIN);
+// How many bands a road has. Slip roads lack the narrow ones, and tunnels have one colour.
+fn band_count(road: Road) -> u32 {
+    if road.look == TUNNEL {
+        return 1u;
+    }
+    return u32(select(frame.road_widths[road.class_number].z, frame.road_limits[road.class_number].w, road.look == LINK));
 }
 
 fn has_caps() -> bool {
@@ -146,26 +148,31 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, start: vec2<
     if plan_m > widest_m {
         return NOTHING;
     }
-    // The centre line is treated as a road of its own, of which every width is smaller.
-    let share = center_share(road);
+    // Each band is treated as a road of its own, of which every width is smaller. So what is within one is within all before.
+    let bands = band_count(road);
     let half_m = scaled_half_width_m(road, distance_m);
-    if share > 0.0 && plan_m <= share * half_m {
-        return center_label(road.class_number);
-    }
     let looks_m = stretch_of(distance_m, position.z)
         * least_half_width_m(road, view_depth_of(depth_buffer));
-    let is_within = plan_m <= half_m;
-    if plan_m > looks_m * select(1.0, share, is_within) {
-        return select(NOTHING, fill_label(road.class_number), is_within);
+    // How many bands are known to be there.
+    var within = 0u;
+    while within < bands && plan_m <= band_share(road.class_number, within) * half_m {
+        within++;
+    }
+    if within == bands || plan_m > band_share(road.class_number, within) * looks_m {
+        return band_label(road.class_number, within);
     }
     let right = plan_step(pixel, vec2(1, 0), depth_buffer, position.xy, start, start_to_end);
     let down = plan_step(pixel, vec2(0, 1), depth_buffer, position.xy, start, start_to_end);
     let seen = seen_px(right, down, position.xy - start, start_to_end);
     let least_px = frame.road_widths[road.class_number].y;
-    if plan_m <= share * looks_m && seen <= share * least_px {
-        return center_label(road.class_number);
+    while within < bands {
+        let share = band_share(road.class_number, within);
+        if plan_m > share * looks_m || seen > share * least_px {
+            break;
+        }
+        within++;
     }
-    return select(NOTHING, fill_label(road.class_number), is_within || seen <= least_px);
+    return band_label(road.class_number, within);
 }
 
 // An upper bound of the half width of a road, no part of which is farther away than `far_m`, or nearer to the eye's height
@@ -177,13 +184,10 @@ fn bounding_radius_m(road: Road, far_m: f32, near_height_m: f32) -> f32 {
     return max(scaled_half_width_m(road, reach_m), stretch * least_half_width_m(road, reach_m));
 }
 
-// More important classes have larger labels; the centre line of a class lies above its fill.
-fn fill_label(road_class: u32) -> u32 {
-    return TUNNEL_LABELS + (CLASSES - road_class) * 2u;
-}
-
-fn center_label(road_class: u32) -> u32 {
-    return fill_label(road_class) + 1u;
+// The label of the innermost of so many bands of a road. More important classes have larger labels, and each band of a class
+// has a larger one than the band that it lies on.
+fn band_label(road_class: u32, within: u32) -> u32 {
+    return select(NOTHING, (CLASSES + 1u - road_class) * BANDS + within - 1u, within > 0u);
 }
 
 // The smallest number of pixels that a dash and the gap after it may have together. They have fewer than twice as many.

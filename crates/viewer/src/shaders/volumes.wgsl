@@ -160,12 +160,13 @@ fn label_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, st
     if !is_shown(road.class_number, length(position_at(center, depth_buffer))) {
         return NOTHING;
     }
-    let share = center_share(road);
-    if share > 0.0 && is_road_by_the_paper(center, depth_buffer, start, start_to_end, road, share) {
-        return center_label(road.class_number);
+    let bands = band_count(road);
+    var within = 0u;
+    while within < bands && is_road_by_the_paper(center, depth_buffer, start, start_to_end, road,
+        band_share(road.class_number, within)) {
+        within++;
     }
-    let is_road = is_road_by_the_paper(center, depth_buffer, start, start_to_end, road, 1.0);
-    return select(NOTHING, fill_label(road.class_number), is_road);
+    return band_label(road.class_number, within);
 }
 
 @fragment

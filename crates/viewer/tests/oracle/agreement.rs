@@ -62,15 +62,15 @@ pub(crate) fn check(named: &Named) {
     let Some(gpu) = gpu() else { return };
     let Named { name, scene, cameras } = named;
     let is_plain = scene.style.roads.iter().all(|road| road.min_width_px == 0.0);
-    let has_centers = scene.style.roads.iter().any(|road| road.center.is_some());
+    let has_bands = scene.style.roads.iter().any(|road| road.bands.all().len() > 1);
     for method in METHODS {
         let options = RoadOptions::of(method);
         for camera in cameras {
             let drawing = scene.draw(&gpu, camera, options);
             let found =
                 DepthOracle { scene, camera, options, drawing: &drawing, band_px: 0.05 }.compare();
-            // The second reference knows neither least widths nor centre lines.
-            let rays = (is_plain && !has_centers)
+            // The second reference knows neither least widths nor bands.
+            let rays = (is_plain && !has_bands)
                 .then(|| ground_rays::compare(scene, camera, options, &drawing));
             let lines = measures::center_lines(scene, camera, &drawing);
             print_row(name, method, &found, rays, lines);
@@ -150,6 +150,11 @@ fn volumes_agree_with_both_references_across_tiles() {
 #[test]
 fn volumes_agree_with_the_reference_at_junctions() {
     check_named(&["junction of 4 classes", "junction, atlas style, far"]);
+}
+
+#[test]
+fn both_methods_agree_with_the_reference_on_roads_of_many_bands() {
+    check_named(&["junction of many bands"]);
 }
 
 #[test]

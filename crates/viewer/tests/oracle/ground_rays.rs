@@ -1,6 +1,10 @@
 //! O2: the label of each pixel from rays at the triangles that were drawn.
 
-use corniche_viewer::{RoadOptions, camera::Camera, for_tests::Owner};
+use corniche_viewer::{
+    RoadOptions,
+    camera::Camera,
+    for_tests::{Owner, road_label},
+};
 use glam::{DVec2, DVec3};
 
 use crate::{
@@ -96,14 +100,14 @@ pub(crate) fn compare(
         let class = scene.tiles[hit.tile]
             .segments
             .iter()
-            .filter(|(class, ends, factor, own)| {
-                let (half_m, _) = half_width(look, (*class, *own), *factor, distance_m);
-                shows(&scene.style, camera, *class, distance_m) == Tri::Yes
-                    && distance(hit.at.truncate(), *ends, options.caps) <= half_m
+            .filter(|road| {
+                let (half_m, _) = half_width(look, (road.class, road.own), road.factor, distance_m);
+                shows(&scene.style, camera, road.class, distance_m) == Tri::Yes
+                    && distance(hit.at.truncate(), road.ends, options.caps) <= half_m
             })
-            .map(|(class, ..)| *class)
+            .map(|road| road.class)
             .min();
-        class.map_or(0, |class| (9 - class) * 2)
+        class.map_or(0, |class| road_label(class, 0))
     };
     for (index, at) in drawing.pixels() {
         if matches!(drawing.owners[index], Owner::Skirt(_)) {

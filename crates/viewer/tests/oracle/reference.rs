@@ -2,7 +2,12 @@
 
 use corniche_roads::OwnWidth;
 use corniche_styles::{OwnWidths, Style};
-use corniche_viewer::{Caps, RoadOptions, WidthGrowth, camera::Camera, for_tests::Owner};
+use corniche_viewer::{
+    Caps, RoadOptions, WidthGrowth,
+    camera::Camera,
+    for_tests::{Owner, road_label, tunnel_label},
+    tiles::RoadLook,
+};
 use glam::{DMat2, DVec2, DVec3};
 
 use crate::support::{
@@ -122,26 +127,33 @@ impl PixelOracle<'_> {
         let (ground, _) = self.ground(index).expect("the owner says there is ground");
         let segments = tile.segments_near(ground.truncate());
         let distance_m = ground.distance(self.camera.eye_in_world());
-        for class in 0..9_u8 {
+        // What is on the ground hides what is beneath it.
+        for (is_tunnel, class) in
+            [false, true].into_iter().flat_map(|is| (0..9).map(move |k| (is, k)))
+        {
+            let roads: Vec<&PlanSegment> = segments
+                .iter()
+                .filter(|road| road.class == class && (road.look == RoadLook::Tunnel) == is_tunnel)
+                .collect();
+            if roads.is_empty() {
+                continue;
+            }
             let shown = shows(self.style, self.camera, class, distance_m);
-            for is_center in [true, false] {
-                let center = self.style.roads[usize::from(class)].center;
-                let Some(share) = (if is_center {
-                    center.map(|center| f64::from(center.width_share))
-                } else {
-                    Some(1.0)
-                }) else {
-                    continue;
-                };
+            let bands = self.style.roads[usize::from(class)].bands.all();
+            // The innermost band first, because it lies on the others.
+            for (number, band) in bands.iter().enumerate().rev() {
+                let number = number as u8;
+                let share = f64::from(band.width_share);
                 let mut covered = Tri::No;
-                for segment in segments.iter().filter(|(number, ..)| *number == class) {
-                    covered = covered.or(self.is_road(index, share, segment, tile));
+                for road in roads.iter().filter(|road| has_band(road.look, number, share)) {
+                    covered = covered.or(self.is_road(index, share, road, tile));
                     if covered == Tri::Yes {
                         break;
                     }
                 }
                 match covered.and(shown) {
-                    Tri::Yes => return Verdict::Label((9 - class) * 2 + u8::from(is_center)),
+                    Tri::Yes if is_tunnel => return Verdict::Label(tunnel_label(class, false)),
+                    Tri::Yes => return Verdict::Label(road_label(class, number)),
                     Tri::Perhaps => return Verdict::InBand,
                     Tri::No => {}
                 }
@@ -154,7 +166,7 @@ impl PixelOracle<'_> {
         &self,
         index: usize,
         share: f64,
-        &(class, ends, factor, own): &PlanSegment,
+        &PlanSegment { class, ends, factor, own, look: kind }: &PlanSegment,
         tile: &Tile,
     ) -> Tri {
         let widest_m = tile.geometry.width_margin_m;
@@ -166,7 +178,8 @@ impl PixelOracle<'_> {
         let caps = self.options.caps;
         let plan_m = distance(ground.truncate(), ends, caps);
         let look = Look { style: self.style, options: self.options, camera: self.camera };
-        let (half_m, least_px) = half_width(look, (class, own), factor, from_eye.length());
+        let (half_m, least_px) =
+            half_width(look, (class, own), factor * narrowing(kind), from_eye.length());
         let wide = Tri::at_most(plan_m, share * half_m, band_m);
         let stretch = (1.5 * from_eye.length() / from_eye.z.abs()).clamp(1.0, MAX_STRETCH);
         let near = Tri::at_most(plan_m, stretch * share * least_px * pixel_m, band_m);
@@ -260,6 +273,20 @@ impl PixelOracle<'_> {
 fn near_end(at: DVec2, [a, b]: [DVec2; 2], band_m: f64) -> Tri {
     let along_m = (at - a).dot((b - a).normalize_or_zero());
     Tri::at_most(-along_m, 0.0, band_m).and(Tri::at_most(along_m, a.distance(b), band_m))
+}
+
+/// Slip roads are narrower than their class.
+fn narrowing(look: RoadLook) -> f64 {
+    if look == RoadLook::Link { 0.6 } else { 1.0 }
+}
+
+/// Whether a road has a band of this number and share: slip roads have no narrow ones, tunnels have one colour.
+fn has_band(look: RoadLook, number: u8, share: f64) -> bool {
+    match look {
+        RoadLook::Plain => true,
+        RoadLook::Link => share >= 0.5,
+        RoadLook::Tunnel => number == 0,
+    }
 }
 
 /// Whether a class is shown at all at a distance from the eye: half a zoom step beyond its scale it is gone.

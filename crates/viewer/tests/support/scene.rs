@@ -19,8 +19,17 @@ use glam::{DVec2, DVec3};
 use super::Drawing;
 use crate::support;
 
-/// A segment of a road in plan: class, ends, working metres across it for each true metre, what its tags say of its width.
-pub(crate) type PlanSegment = (u8, [DVec2; 2], f64, OwnWidth);
+/// A segment of a road in plan.
+#[derive(Clone, Copy)]
+pub(crate) struct PlanSegment {
+    pub(crate) class: u8,
+    pub(crate) ends: [DVec2; 2],
+    /// Working metres across it for each true metre.
+    pub(crate) factor: f64,
+    /// What its tags say of its width.
+    pub(crate) own: OwnWidth,
+    pub(crate) look: RoadLook,
+}
 
 /// A tile of a scene.
 #[derive(Clone)]
@@ -209,20 +218,18 @@ impl Tile {
             .plan
             .iter()
             .flat_map(|line| {
-                line.points_m.windows(2).map(|pair| {
-                    let ends = [pair[0], pair[1]].map(DVec2::from_array);
-                    (
-                        line.class.number(),
-                        ends,
-                        lines.scale.across([pair[0], pair[1]]),
-                        line.own_width,
-                    )
+                line.points_m.windows(2).map(|pair| PlanSegment {
+                    class: line.class.number(),
+                    ends: [pair[0], pair[1]].map(DVec2::from_array),
+                    factor: lines.scale.across([pair[0], pair[1]]),
+                    own: line.own_width,
+                    look: line.look,
                 })
             })
             .collect();
         let mut near: HashMap<_, Vec<PlanSegment>> = HashMap::new();
         for segment in &segments {
-            let [a, b] = segment.1;
+            let [a, b] = segment.ends;
             let [low, high] = [a.min(b), a.max(b)].map(|at| square(at, lines.width_margin_m));
             for column in low[0] - 1..=high[0] + 1 {
                 for row in low[1] - 1..=high[1] + 1 {

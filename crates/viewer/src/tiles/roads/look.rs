@@ -10,7 +10,7 @@ pub enum RoadLook {
     /// As its class is.
     #[default]
     Plain,
-    /// A slip road: narrower, without a centre line.
+    /// A slip road: narrower, without the bands that take less than half of the width.
     Link,
     /// Under the ground: pale, with a dashed edge, and hidden by every road that is not.
     Tunnel,
