@@ -55,8 +55,8 @@ impl RoadBands {
         let Some(first) = bands.first().filter(|_| bands.len() <= Self::MOST) else {
             return Err(StyleError::BandCount { count: bands.len(), most: Self::MOST });
         };
-        // This form and the next also refuse NaN.
-        if !((first.width_share - 1.0).abs() <= f32::EPSILON) {
+        // Both questions also refuse NaN.
+        if !(1.0..=1.0).contains(&first.width_share) {
             return Err(StyleError::FirstBand { width: first.width_share });
         }
         for (number, pair) in (2..).zip(bands.windows(2)) {

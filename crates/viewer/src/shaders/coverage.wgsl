@@ -35,7 +35,7 @@ struct RoadFragment {
     @location(2) @interpolate(flat) class_and_other: u32,
     // Half the road's width near the eye, world metres.
     @location(3) @interpolate(flat) half_width_m: f32,
-    // Where the dashes of a tunnel are: how far the segment's start is from a fixed place, along the segment, world metres.
+    // Where the dashes of a tunnel are: how far along the road the segment's start is, world metres.
     @location(4) @interpolate(flat) dash_m: f32,
 }
 

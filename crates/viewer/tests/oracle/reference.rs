@@ -144,15 +144,21 @@ impl PixelOracle<'_> {
             for (number, band) in bands.iter().enumerate().rev() {
                 let number = number as u8;
                 let share = f64::from(band.width_share);
-                let mut covered = Tri::No;
+                let (mut covered, mut dashed) = (Tri::No, Tri::No);
                 for road in roads.iter().filter(|road| has_band(road.look, number, share)) {
-                    covered = covered.or(self.is_road(index, share, road, tile));
-                    if covered == Tri::Yes {
+                    let this = self.is_road(index, share, road, tile);
+                    covered = covered.or(this);
+                    if is_tunnel {
+                        dashed = dashed.or(this.and(self.is_dash(index, road)));
+                    } else if covered == Tri::Yes {
                         break;
                     }
                 }
                 match covered.and(shown) {
-                    Tri::Yes if is_tunnel => return Verdict::Label(tunnel_label(class, false)),
+                    Tri::Yes if is_tunnel && dashed == Tri::Perhaps => return Verdict::InBand,
+                    Tri::Yes if is_tunnel => {
+                        return Verdict::Label(tunnel_label(class, dashed == Tri::Yes));
+                    }
                     Tri::Yes => return Verdict::Label(road_label(class, number)),
                     Tri::Perhaps => return Verdict::InBand,
                     Tri::No => {}
@@ -166,7 +172,7 @@ impl PixelOracle<'_> {
         &self,
         index: usize,
         share: f64,
-        &PlanSegment { class, ends, factor, own, look: kind }: &PlanSegment,
+        &PlanSegment { class, ends, factor, own, look: kind, .. }: &PlanSegment,
         tile: &Tile,
     ) -> Tri {
         let widest_m = tile.geometry.width_margin_m;
@@ -192,6 +198,31 @@ impl PixelOracle<'_> {
         let end =
             if caps == Caps::None { near_end(ground.truncate(), ends, band_m) } else { Tri::Yes };
         wide.or(thin).and(end).and(Tri::at_most(plan_m, widest_m, band_m))
+    }
+
+    /// Whether a place on a tunnel is on a dash: dashes and gaps are as long as each other, both together a power of two of
+    /// metres, the smallest that is at least twelve pixels.
+    fn is_dash(&self, index: usize, road: &PlanSegment) -> Tri {
+        let (ground, depth_m) = self.ground(index).expect("the owner says there is ground");
+        let unit_m = self.camera.pixel_at_unit_depth_m();
+        let octave = (12.0 * unit_m * ground.distance(self.camera.eye_in_world())).log2();
+        if (octave - octave.round()).abs() < 1e-5 {
+            return Tri::Perhaps;
+        }
+        let period_m = octave.ceil().exp2();
+        let [a, b] = road.ends;
+        let along_m = road.start_m + (ground.truncate() - a).dot((b - a).normalize_or_zero());
+        let within_m = along_m.rem_euclid(period_m);
+        let off_m = [0.0, 0.5, 1.0].map(|share| (within_m - share * period_m).abs());
+        // Lengths are f32 of up to 65 km.
+        let band_m = self.band_px * unit_m * depth_m + 0.02;
+        if off_m.into_iter().any(|off_m| off_m <= band_m) {
+            Tri::Perhaps
+        } else if within_m < 0.5 * period_m {
+            Tri::Yes
+        } else {
+            Tri::No
+        }
     }
 
     /// Whether a segment's image is at most `least_px` from a pixel's centre.

@@ -29,6 +29,8 @@ pub(crate) struct PlanSegment {
     /// What its tags say of its width.
     pub(crate) own: OwnWidth,
     pub(crate) look: RoadLook,
+    /// How far along its road its start is, for dashes.
+    pub(crate) start_m: f64,
 }
 
 /// A tile of a scene.
@@ -81,21 +83,41 @@ impl Tile {
         for (way_id, number, points) in roads {
             let class = support::class(*number);
             for pair in points.windows(2) {
+                // Where the road goes on, so does the line.
                 if let Some([a, b]) = clip([pair[0], pair[1]], grown(bounds, margin_m)) {
-                    lines.plan.push(PlanLine {
-                        way_id: *way_id,
-                        class,
-                        own_width: OwnWidth::Unknown,
-                        look: RoadLook::Plain,
-                        points_m: vec![a.to_array(), b.to_array()],
-                        // As low and high as the tile: never too narrow.
-                        ground_range_m: vec![ground.height_range_m],
+                    let before = lines.plan.last_mut().filter(|line| {
+                        line.way_id == *way_id && line.points_m.last() == Some(&a.to_array())
                     });
+                    // As low and high as the tile: never too narrow.
+                    let range_m = ground.height_range_m;
+                    match before {
+                        Some(line) => {
+                            line.points_m.push(b.to_array());
+                            line.ground_range_m.push(range_m);
+                        }
+                        None => lines.plan.push(PlanLine {
+                            way_id: *way_id,
+                            class,
+                            own_width: OwnWidth::Unknown,
+                            look: RoadLook::Plain,
+                            points_m: vec![a.to_array(), b.to_array()],
+                            ground_range_m: vec![range_m],
+                        }),
+                    }
                 }
                 if let Some([a, b]) = clip([pair[0], pair[1]], bounds) {
                     let points_m = support::lay(a, b, &triangles);
                     let line = support::ground_line(*number, points_m);
-                    lines.ground.push(GroundLine { way_id: *way_id, ..line });
+                    let before = lines.ground.last_mut().filter(|before| {
+                        before.way_id == *way_id && before.points_m.last() == line.points_m.first()
+                    });
+                    match before {
+                        Some(before) => {
+                            before.points_m.extend_from_slice(&line.points_m[1..]);
+                            before.sources_m.extend_from_slice(&line.sources_m);
+                        }
+                        None => lines.ground.push(GroundLine { way_id: *way_id, ..line }),
+                    }
                 }
             }
         }
@@ -218,7 +240,8 @@ impl Tile {
             .plan
             .iter()
             .flat_map(|line| {
-                line.points_m.windows(2).map(|pair| PlanSegment {
+                line.points_m.windows(2).enumerate().map(|(number, pair)| PlanSegment {
+                    start_m: start_m(&line.points_m, number, frame.tile_bounds(id)),
                     class: line.class.number(),
                     ends: [pair[0], pair[1]].map(DVec2::from_array),
                     factor: lines.scale.across([pair[0], pair[1]]),
@@ -293,6 +316,20 @@ impl Scene {
         Renderer::new(gpu).draw(gpu, view, &tiles, &targets);
         targets
     }
+}
+
+/// How far along a line a segment begins: from the first of the vertices before it that are in the tile without a break; for one
+/// that enters the tile, from its end; for one with neither end in it, from the zero of the CRS along it.
+fn start_m(points_m: &[[f64; 2]], segment: usize, tile: Bounds) -> f64 {
+    let at = |k: usize| DVec2::from_array(points_m[k]);
+    let [low, high] = [DVec2::new(tile.min_x, tile.min_y), DVec2::new(tile.max_x, tile.max_y)];
+    let is_inside = |k: usize| at(k).cmpge(low - 1e-6).all() && at(k).cmple(high + 1e-6).all();
+    if is_inside(segment) {
+        let run = (0..=segment).rev().take_while(|k| is_inside(*k));
+        return run.skip(1).map(|k| at(k).distance(at(k + 1))).sum();
+    }
+    let [a, b] = [at(segment), at(segment + 1)];
+    if is_inside(segment + 1) { -a.distance(b) } else { a.dot((b - a).normalize_or_zero()) }
 }
 
 /// What the tags of a way say of its width, by the payload's list.

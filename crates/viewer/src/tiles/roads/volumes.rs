@@ -3,7 +3,8 @@ use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use super::{
     super::{PlanScale, ground_mesh::relative},
-    NearHeights, PlanLine, RoadList, RoadLook, dash_m,
+    NearHeights, PlanLine, RoadList, RoadLook,
+    dashes::dash_starts_m,
     ends::plan_ends,
 };
 
@@ -26,7 +27,7 @@ pub struct RoadVolume {
     pub own_width: OwnWidth,
     /// What it is.
     pub look: RoadLook,
-    /// Where the dashes of a tunnel are: how far its start is along it, working metres.
+    /// Where the dashes of a tunnel are: how far along the road its start is, working metres.
     pub(crate) dash_m: f32,
 }
 
@@ -54,7 +55,9 @@ impl RoadList<RoadVolume> {
             [x, y]
         };
         let volumes = lines.iter().flat_map(|line| {
-            line.points_m.windows(2).zip(&line.ground_range_m).map(|(pair, range_m)| {
+            let dashes_m = dash_starts_m(&line.points_m, tile);
+            let segments = line.points_m.windows(2).zip(&line.ground_range_m).zip(dashes_m);
+            segments.map(|((pair, range_m), dash_m)| {
                 // Without ground near, the box is almost flat.
                 let (near_m, rise) = near([pair[0], pair[1]])
                     .unwrap_or(([f64::midpoint(range_m[0], range_m[1]); 2], 0.0));
@@ -70,7 +73,7 @@ impl RoadList<RoadVolume> {
                     class: line.class,
                     own_width: line.own_width,
                     look: line.look,
-                    dash_m: dash_m([pair[0], pair[1]]),
+                    dash_m,
                 }
             })
         });
