@@ -45,7 +45,7 @@ pub mod for_tests {
     pub use crate::{
         gpu::{
             inspection::Owner,
-            labels::{class_of, is_tunnel, road_label, tunnel_label},
+            labels::{class_of, is_service, is_tunnel, road_label, service_label, tunnel_label},
         },
         scene::{SettleError, capped_ways, draw_list, may_be_clamped, settle},
         tiles::{

@@ -14,7 +14,7 @@ use crate::{
     tiles::NearHeights,
 };
 
-/// Width of a slip road as a share of that of its class.
+/// Width of slip roads and service roads as a share of that of their class.
 const LINK_WIDTH_SHARE: f32 = 0.6;
 
 /// Bytes of a tile's block.

@@ -58,9 +58,9 @@ fn stretch_of(distance_m: f32, height_m: f32) -> f32 {
     return clamp(1.5 * distance_m / max(abs(height_m), 1e-3), 1.0, MAX_STRETCH);
 }
 
-// How many bands a road has. Slip roads lack the narrow ones, and tunnels have one colour.
+// How many bands a road has. Slip roads lack the narrow ones; tunnels and service roads have one colour.
 fn band_count(road: Road) -> u32 {
-    if road.look == TUNNEL {
+    if road.look == TUNNEL || road.look == SERVICE {
         return 1u;
     }
     return u32(select(frame.road_widths[road.class_number].z, frame.road_limits[road.class_number].w, road.look == LINK));
@@ -141,7 +141,7 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, start: vec2<
     road: Road, widest_m: f32) -> u32 {
     let position = position_at(center, depth_buffer);
     let distance_m = length(position);
-    if !is_shown(road.class_number, distance_m) {
+    if !is_shown(road, distance_m) {
         return NOTHING;
     }
     let plan_m = length(from_segment(position.xy - start, start_to_end));
@@ -159,7 +159,7 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, start: vec2<
         within++;
     }
     if within == bands || plan_m > band_share(road.class_number, within) * looks_m {
-        return band_label(road.class_number, within);
+        return band_label(road, within);
     }
     let right = plan_step(pixel, vec2(1, 0), depth_buffer, position.xy, start, start_to_end);
     let down = plan_step(pixel, vec2(0, 1), depth_buffer, position.xy, start, start_to_end);
@@ -172,7 +172,7 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, start: vec2<
         }
         within++;
     }
-    return band_label(road.class_number, within);
+    return band_label(road, within);
 }
 
 // An upper bound of the half width of a road, no part of which is farther away than `far_m`, or nearer to the eye's height
@@ -186,8 +186,14 @@ fn bounding_radius_m(road: Road, far_m: f32, near_height_m: f32) -> f32 {
 
 // The label of the innermost of so many bands of a road. More important classes have larger labels, and each band of a class
 // has a larger one than the band that it lies on.
-fn band_label(road_class: u32, within: u32) -> u32 {
-    return select(NOTHING, (CLASSES + 1u - road_class) * BANDS + within - 1u, within > 0u);
+fn band_label(road: Road, within: u32) -> u32 {
+    if within == 0u {
+        return NOTHING;
+    }
+    if road.look == SERVICE {
+        return SERVICE_LABELS + CLASSES - road.class_number;
+    }
+    return (CLASSES + 1u - road.class_number) * BANDS + within - 1u;
 }
 
 // The smallest number of pixels that a dash and the gap after it may have together. They have fewer than twice as many.

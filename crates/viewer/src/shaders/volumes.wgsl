@@ -157,7 +157,7 @@ fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, 
 
 fn label_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
     road: Road) -> u32 {
-    if !is_shown(road.class_number, length(position_at(center, depth_buffer))) {
+    if !is_shown(road, length(position_at(center, depth_buffer))) {
         return NOTHING;
     }
     let bands = band_count(road);
@@ -166,7 +166,7 @@ fn label_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, st
         band_share(road.class_number, within)) {
         within++;
     }
-    return band_label(road.class_number, within);
+    return band_label(road, within);
 }
 
 @fragment

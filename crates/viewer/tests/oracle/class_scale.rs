@@ -4,7 +4,7 @@ use corniche_styles::{RoadBands, RoadStyle, Style, WidthScaling};
 use corniche_viewer::{
     RoadOptions,
     camera::Camera,
-    for_tests::{road_label, tunnel_label},
+    for_tests::{road_label, service_label, tunnel_label},
     gpu::{DrawTile, TileBuffers},
     tiles::RoadLook,
 };
@@ -172,6 +172,37 @@ fn dashes_go_on_at_bends_in_both_methods() {
         scene: Scene { tiles, ..scene },
         cameras: vec![camera(400.0, 1100.0, 15.0, 20.0), camera(400.0, 1700.0, 250.0, 55.0)],
     });
+}
+
+/// Service roads are narrower than the rest of their class, of one colour, under all other roads, and come one zoom step later.
+#[test]
+fn service_roads_come_later_and_lie_under_all_other_roads() {
+    let roads: Vec<Road> = vec![
+        (7, vec![[-600.0, -40.0], [-50.0, 10.0], [600.0, 60.0]]),
+        (8, vec![[0.0, -500.0], [150.0, 500.0]]),
+        (7, vec![[-300.0, 450.0], [-300.0, -450.0]]),
+        (5, vec![[250.0, 450.0], [300.0, -450.0]]),
+    ];
+    let view = camera(400.0, 1300.0, 30.0, 55.0);
+    let mut style = style(20.0);
+    for road in &mut style.roads {
+        road.min_width_px = 2.0;
+    }
+    style.roads[7].bands = bands(&[1.0, 0.6, 0.3]);
+    // In the picture are both the place where service roads end and the place where the others do.
+    style.roads[7].max_pixel_m = Some(pixel_m(&view, 1750.0));
+    let looks = [RoadLook::Service, RoadLook::Plain, RoadLook::Plain, RoadLook::Plain];
+    let scene = one_tile(16, hills, &roads, style);
+    let of_way = |way_id: i64| looks[way_id as usize - 1];
+    let tiles = scene.tiles.iter().map(|tile| tile.with_looks(of_way)).collect();
+    let scene = Scene { tiles, ..scene };
+    check(&Named { name: "service roads", scene: scene.clone(), cameras: vec![view.clone()] });
+    let Some(gpu) = gpu() else { return };
+    for method in METHODS {
+        let drawing = scene.draw(&gpu, &view, RoadOptions::of(method));
+        let count = |label| drawing.labels.iter().filter(|found| **found == label).count();
+        assert!(count(service_label(7)) > 300 && count(road_label(7, 2)) > 300);
+    }
 }
 
 #[test]

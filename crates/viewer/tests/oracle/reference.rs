@@ -5,7 +5,7 @@ use corniche_styles::{OwnWidths, Style};
 use corniche_viewer::{
     Caps, RoadOptions, WidthGrowth,
     camera::Camera,
-    for_tests::{Owner, road_label, tunnel_label},
+    for_tests::{Owner, road_label, service_label, tunnel_label},
     tiles::RoadLook,
 };
 use glam::{DMat2, DVec2, DVec3};
@@ -127,18 +127,22 @@ impl PixelOracle<'_> {
         let (ground, _) = self.ground(index).expect("the owner says there is ground");
         let segments = tile.segments_near(ground.truncate());
         let distance_m = ground.distance(self.camera.eye_in_world());
-        // What is on the ground hides what is beneath it.
-        for (is_tunnel, class) in
-            [false, true].into_iter().flat_map(|is| (0..9).map(move |k| (is, k)))
-        {
-            let roads: Vec<&PlanSegment> = segments
-                .iter()
-                .filter(|road| road.class == class && (road.look == RoadLook::Tunnel) == is_tunnel)
-                .collect();
+        // What is on the ground hides what is beneath it, and service roads are hidden by all others.
+        let layers: [fn(RoadLook) -> bool; 3] = [
+            |look| matches!(look, RoadLook::Plain | RoadLook::Link),
+            |look| look == RoadLook::Service,
+            |look| look == RoadLook::Tunnel,
+        ];
+        for (layer, class) in layers.into_iter().flat_map(|layer| (0..9).map(move |k| (layer, k))) {
+            let roads: Vec<&PlanSegment> =
+                segments.iter().filter(|road| road.class == class && layer(road.look)).collect();
+            let (is_service, is_tunnel) = (layer(RoadLook::Service), layer(RoadLook::Tunnel));
             if roads.is_empty() {
                 continue;
             }
-            let shown = shows(self.style, self.camera, class, distance_m);
+            let seen_from_m =
+                if is_service { lateness(RoadLook::Service) * distance_m } else { distance_m };
+            let shown = shows(self.style, self.camera, class, seen_from_m);
             let bands = self.style.roads[usize::from(class)].bands.all();
             // The innermost band first, because it lies on the others.
             for (number, band) in bands.iter().enumerate().rev() {
@@ -159,6 +163,7 @@ impl PixelOracle<'_> {
                     Tri::Yes if is_tunnel => {
                         return Verdict::Label(tunnel_label(class, dashed == Tri::Yes));
                     }
+                    Tri::Yes if is_service => return Verdict::Label(service_label(class)),
                     Tri::Yes => return Verdict::Label(road_label(class, number)),
                     Tri::Perhaps => return Verdict::InBand,
                     Tri::No => {}
@@ -306,17 +311,22 @@ fn near_end(at: DVec2, [a, b]: [DVec2; 2], band_m: f64) -> Tri {
     Tri::at_most(-along_m, 0.0, band_m).and(Tri::at_most(along_m, a.distance(b), band_m))
 }
 
-/// Slip roads are narrower than their class.
-fn narrowing(look: RoadLook) -> f64 {
-    if look == RoadLook::Link { 0.6 } else { 1.0 }
+/// Slip roads and service roads are narrower than their class.
+pub(crate) fn narrowing(look: RoadLook) -> f64 {
+    if matches!(look, RoadLook::Link | RoadLook::Service) { 0.6 } else { 1.0 }
 }
 
-/// Whether a road has a band of this number and share: slip roads have no narrow ones, tunnels have one colour.
+/// How many times nearer than the rest of its class a road must be to be shown: service roads come one zoom step later.
+pub(crate) fn lateness(look: RoadLook) -> f64 {
+    if look == RoadLook::Service { 2.0 } else { 1.0 }
+}
+
+/// Whether a road has a band of this number and share: slip roads have no narrow ones, tunnels and service roads have one colour.
 fn has_band(look: RoadLook, number: u8, share: f64) -> bool {
     match look {
         RoadLook::Plain => true,
         RoadLook::Link => share >= 0.5,
-        RoadLook::Tunnel => number == 0,
+        RoadLook::Tunnel | RoadLook::Service => number == 0,
     }
 }
 

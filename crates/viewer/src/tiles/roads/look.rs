@@ -10,6 +10,9 @@ pub enum RoadLook {
     Link,
     /// Under the ground: pale, with a dashed edge, and hidden by every road that is not.
     Tunnel,
+    /// A service road: driveways, parking aisles, ways to yards and barns. Narrower, of one colour, shown one zoom step later than
+    /// the rest of its class, and hidden by every other road on the ground.
+    Service,
 }
 
 impl RoadLook {
@@ -20,17 +23,20 @@ impl RoadLook {
             Self::Tunnel
         } else if attributes.form == Form::Link {
             Self::Link
+        } else if attributes.highway == "service" {
+            Self::Service
         } else {
             Self::Plain
         }
     }
 
-    /// Its number in shaders: `PLAIN`, `LINK`, `TUNNEL` in `shaders/common.wgsl`.
+    /// Its number in shaders: `PLAIN`, `LINK`, `TUNNEL`, `SERVICE` in `shaders/common.wgsl`.
     pub(crate) fn number(self) -> u32 {
         match self {
             Self::Plain => 0,
             Self::Link => 1,
             Self::Tunnel => 2,
+            Self::Service => 3,
         }
     }
 }

@@ -14,3 +14,23 @@ fn tunnels_count_before_slip_roads() {
         assert_eq!(RoadLook::of(&attributes(form, structure)), look, "{form:?} {structure:?}");
     }
 }
+
+#[test]
+fn service_roads_are_known_by_their_highway_value() {
+    let tagged = |highway: &str, structure| RoadAttributes {
+        highway: highway.to_owned(),
+        structure,
+        ..RoadAttributes::default()
+    };
+    for (highway, structure, look) in [
+        ("service", Structure::Ground, RoadLook::Service),
+        ("service", Structure::Bridge, RoadLook::Service),
+        ("service", Structure::Tunnel, RoadLook::Tunnel),
+        ("services", Structure::Ground, RoadLook::Plain),
+        ("track", Structure::Ground, RoadLook::Plain),
+        // Packages of the first programs do not have the value.
+        ("", Structure::Ground, RoadLook::Plain),
+    ] {
+        assert_eq!(RoadLook::of(&tagged(highway, structure)), look, "{highway} {structure:?}");
+    }
+}
