@@ -2,6 +2,7 @@
 
 mod dashes;
 pub(crate) mod ends;
+mod flat_ends;
 mod ground_beside;
 mod lines;
 mod list;

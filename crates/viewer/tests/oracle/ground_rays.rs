@@ -8,7 +8,7 @@ use corniche_viewer::{
 use glam::{DVec2, DVec3};
 
 use crate::{
-    reference::{Look, Tri, distance, half_width, shows},
+    reference::{Look, Tri, distance, half_width, near_end, shows, without_caps},
     support::{Drawing, cast, scene::Scene},
 };
 
@@ -101,9 +101,11 @@ pub(crate) fn compare(
             .segments
             .iter()
             .filter(|road| {
+                let (at, without_cap) = (hit.at.truncate(), without_caps(options.caps, road.flat));
                 let (half_m, _) = half_width(look, (road.class, road.own), road.factor, distance_m);
                 shows(&scene.style, camera, road.class, distance_m) == Tri::Yes
-                    && distance(hit.at.truncate(), road.ends, options.caps) <= half_m
+                    && distance(at, road.ends, without_cap) <= half_m
+                    && near_end(at, road.ends, without_cap, 0.0) == Tri::Yes
             })
             .map(|road| road.class)
             .min();

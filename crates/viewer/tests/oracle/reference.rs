@@ -177,7 +177,7 @@ impl PixelOracle<'_> {
         &self,
         index: usize,
         share: f64,
-        &PlanSegment { class, ends, factor, own, look: kind, .. }: &PlanSegment,
+        &PlanSegment { class, ends, factor, own, look: kind, flat, .. }: &PlanSegment,
         tile: &Tile,
     ) -> Tri {
         let widest_m = tile.geometry.width_margin_m;
@@ -186,8 +186,8 @@ impl PixelOracle<'_> {
         let pixel_m = self.camera.pixel_at_unit_depth_m() * depth_m;
         // A step of a pixel on the screen moves the plan position by at least this much.
         let band_m = self.band_px * pixel_m;
-        let caps = self.options.caps;
-        let plan_m = distance(ground.truncate(), ends, caps);
+        let without_cap = without_caps(self.options.caps, flat);
+        let plan_m = distance(ground.truncate(), ends, without_cap);
         let look = Look { style: self.style, options: self.options, camera: self.camera };
         let (half_m, least_px) =
             half_width(look, (class, own), factor * narrowing(kind), from_eye.length());
@@ -197,11 +197,15 @@ impl PixelOracle<'_> {
         let thin = if near == Tri::No || wide == Tri::Yes {
             Tri::No
         } else {
-            near.and(self.looks_near(index, ground.truncate(), ends, share * least_px))
+            near.and(self.looks_near(
+                index,
+                ground.truncate(),
+                (ends, without_cap),
+                share * least_px,
+            ))
         };
         // Without caps a road ends abruptly: a step along it may do what one across does.
-        let end =
-            if caps == Caps::None { near_end(ground.truncate(), ends, band_m) } else { Tri::Yes };
+        let end = near_end(ground.truncate(), ends, without_cap, band_m);
         wide.or(thin).and(end).and(Tri::at_most(plan_m, widest_m, band_m))
     }
 
@@ -231,17 +235,23 @@ impl PixelOracle<'_> {
     }
 
     /// Whether a segment's image is at most `least_px` from a pixel's centre.
-    fn looks_near(&self, index: usize, at: DVec2, ends: [DVec2; 2], least_px: f64) -> Tri {
+    fn looks_near(
+        &self,
+        index: usize,
+        at: DVec2,
+        (ends, without_cap): ([DVec2; 2], [bool; 2]),
+        least_px: f64,
+    ) -> Tri {
         let mut verdict = None;
-        for right in self.steps(index, [1, 0], at, ends) {
-            for down in self.steps(index, [0, 1], at, ends) {
+        for right in self.steps(index, [1, 0], at, (ends, without_cap)) {
+            for down in self.steps(index, [0, 1], at, (ends, without_cap)) {
                 let plan_from_px = DMat2::from_cols(right, down);
                 let seen_px = if plan_from_px.determinant() == 0.0 {
                     f64::INFINITY
                 } else {
                     let px_from_plan = plan_from_px.inverse();
                     let ends_px = ends.map(|end| px_from_plan * (end - at));
-                    distance(DVec2::ZERO, ends_px, self.options.caps)
+                    distance(DVec2::ZERO, ends_px, without_cap)
                 };
                 let this = Tri::at_most(seen_px, least_px, self.band_px);
                 verdict = Some(
@@ -254,7 +264,13 @@ impl PixelOracle<'_> {
 
     /// How far in plan the ground moves with a step of a pixel, towards the segment; both ways where it is a
     /// matter of rounding which is nearer.
-    fn steps(&self, index: usize, [dx, dy]: [i64; 2], at: DVec2, ends: [DVec2; 2]) -> Vec<DVec2> {
+    fn steps(
+        &self,
+        index: usize,
+        [dx, dy]: [i64; 2],
+        at: DVec2,
+        (ends, without_cap): ([DVec2; 2], [bool; 2]),
+    ) -> Vec<DVec2> {
         let depth = self.drawing.depth[index];
         let look = |sign: i64| {
             let width = i64::from(self.drawing.size_px[0]);
@@ -264,7 +280,7 @@ impl PixelOracle<'_> {
             let other = (y * width + x) as usize;
             let ground = inside.then(|| self.ground(other)).flatten()?.0.truncate();
             let change = f64::from((self.drawing.depth[other] - depth).abs());
-            Some((ground, change, distance(ground, ends, self.options.caps)))
+            Some((ground, change, distance(ground, ends, without_cap)))
         };
         let step = |(ground, ..): (DVec2, f64, f64), sign: f64| (ground - at) * sign;
         match (look(1), look(-1)) {
@@ -305,10 +321,17 @@ impl PixelOracle<'_> {
     }
 }
 
-/// Whether a point is beside a segment without caps, not beyond its ends.
-fn near_end(at: DVec2, [a, b]: [DVec2; 2], band_m: f64) -> Tri {
+/// Which ends of a segment have no cap: flat ones, and all of roads without caps.
+pub(crate) fn without_caps(caps: Caps, flat: [bool; 2]) -> [bool; 2] {
+    flat.map(|is_flat| is_flat || caps == Caps::None)
+}
+
+/// Whether a point is beside a segment, not beyond an end without a cap.
+pub(crate) fn near_end(at: DVec2, [a, b]: [DVec2; 2], without_cap: [bool; 2], band_m: f64) -> Tri {
     let along_m = (at - a).dot((b - a).normalize_or_zero());
-    Tri::at_most(-along_m, 0.0, band_m).and(Tri::at_most(along_m, a.distance(b), band_m))
+    let ends = [Tri::at_most(-along_m, 0.0, band_m), Tri::at_most(along_m, a.distance(b), band_m)];
+    let ends = [0, 1].map(|k| if without_cap[k] { ends[k] } else { Tri::Yes });
+    ends[0].and(ends[1])
 }
 
 /// Slip roads and service roads are narrower than their class.
@@ -373,16 +396,16 @@ pub(crate) fn half_width(
     (drawn_m / 2.0, f64::from(road.min_width_px) / 2.0)
 }
 
-/// Distance from a point to a segment; infinite beyond the ends of one without caps.
-pub(crate) fn distance(at: DVec2, [a, b]: [DVec2; 2], caps: Caps) -> f64 {
+/// Distance from a point to a segment; infinite far beyond an end without a cap. How near such an end is asked for with a band of
+/// its own.
+pub(crate) fn distance(at: DVec2, [a, b]: [DVec2; 2], without_cap: [bool; 2]) -> f64 {
     let d = b - a;
-    let along = if d == DVec2::ZERO { 0.0 } else { (at - a).dot(d) / d.length_squared() };
-    if caps == Caps::None && !(d != DVec2::ZERO && (-0.5..=1.5).contains(&along)) {
-        return f64::INFINITY;
+    if d == DVec2::ZERO {
+        return if without_cap == [true; 2] { f64::INFINITY } else { at.distance(a) };
     }
-    match caps {
-        Caps::Round => at.distance(a + d * along.clamp(0.0, 1.0)),
-        // How near the ends is asked for with a band of its own.
-        Caps::None => at.distance(a + d * along),
-    }
+    let along = (at - a).dot(d) / d.length_squared();
+    let is_far = (without_cap[0] && along < -0.5) || (without_cap[1] && along > 1.5);
+    let least = if without_cap[0] { along.min(0.0) } else { 0.0 };
+    let most = if without_cap[1] { along.max(1.0) } else { 1.0 };
+    if is_far { f64::INFINITY } else { at.distance(a + d * along.clamp(least, most)) }
 }

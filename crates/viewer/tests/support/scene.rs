@@ -31,6 +31,8 @@ pub(crate) struct PlanSegment {
     pub(crate) look: RoadLook,
     /// How far along its road its start is, for dashes.
     pub(crate) start_m: f64,
+    /// Whether it ends flat at its start and at its end, because another road goes on there.
+    pub(crate) flat: [bool; 2],
 }
 
 /// A tile of a scene.
@@ -242,6 +244,12 @@ impl Tile {
             .flat_map(|line| {
                 line.points_m.windows(2).enumerate().map(|(number, pair)| PlanSegment {
                     start_m: start_m(&line.points_m, number, frame.tile_bounds(id)),
+                    flat: [
+                        number == 0
+                            && is_flat(&lines.plan, line, End::First, frame.tile_bounds(id)),
+                        number + 2 == line.points_m.len()
+                            && is_flat(&lines.plan, line, End::Last, frame.tile_bounds(id)),
+                    ],
                     class: line.class.number(),
                     ends: [pair[0], pair[1]].map(DVec2::from_array),
                     factor: lines.scale.across([pair[0], pair[1]]),
@@ -330,6 +338,52 @@ fn start_m(points_m: &[[f64; 2]], segment: usize, tile: Bounds) -> f64 {
     }
     let [a, b] = [at(segment), at(segment + 1)];
     if is_inside(segment + 1) { -a.distance(b) } else { a.dot((b - a).normalize_or_zero()) }
+}
+
+/// An end of a line.
+#[derive(Clone, Copy, PartialEq)]
+enum End {
+    First,
+    Last,
+}
+
+/// Where a line ends, and in which direction it would go on.
+fn end_of(line: &PlanLine, end: End) -> (DVec2, DVec2) {
+    let mut points: Vec<DVec2> = line.points_m.iter().copied().map(DVec2::from_array).collect();
+    if end == End::First {
+        points.reverse();
+    }
+    let [before, last] = [points[points.len() - 2], points[points.len() - 1]];
+    (last, (last - before).normalize_or_zero())
+}
+
+/// Whether a line ends flat: another line that it is drawn above begins there and turns by 30° at most, and all that end there
+/// are drawn below it.
+fn is_flat(lines: &[PlanLine], line: &PlanLine, end: End, tile: Bounds) -> bool {
+    let above = |line: &PlanLine| {
+        let layer = ["Tunnel", "Service", "Ground"].len()
+            - match line.look {
+                RoadLook::Tunnel => 3,
+                RoadLook::Service => 2,
+                RoadLook::Plain | RoadLook::Link => 1,
+            };
+        (layer, 9 - line.class.number(), line.look != RoadLook::Link)
+    };
+    let (at, outward) = end_of(line, end);
+    let inside = at.x > tile.min_x && at.x < tile.max_x && at.y > tile.min_y && at.y < tile.max_y;
+    let others: Vec<(&PlanLine, DVec2)> = lines
+        .iter()
+        .flat_map(|other| [End::First, End::Last].map(|which| (other, which)))
+        .filter(|(other, which)| !(std::ptr::eq(*other, line) && *which == end))
+        .filter_map(|(other, which)| {
+            let (there, direction) = end_of(other, which);
+            (there == at && direction != DVec2::ZERO).then_some((other, direction))
+        })
+        .collect();
+    inside
+        && outward != DVec2::ZERO
+        && others.iter().all(|(other, _)| above(other) < above(line))
+        && others.iter().any(|(_, direction)| outward.dot(-*direction) >= 0.866)
 }
 
 /// What the tags of a way say of its width, by the payload's list.

@@ -82,5 +82,6 @@ fn volume(connector: &LevelConnector, reference_m: [f64; 3]) -> RoadVolume {
         own_width: connector.own_width,
         look: connector.look,
         dash_m: dash_of_segment_m(connector.ends_m) as f32,
+        flat_ends: [false; 2],
     }
 }

@@ -6,6 +6,7 @@ use super::{
     Bed, GroundLine, RoadList, RoadLook,
     dashes::dash_starts_m,
     ends::ground_ends,
+    flat_ends::{LineEnds, flat_ends},
 };
 
 /// A straight piece of a road's centre-line on the ground.
@@ -34,6 +35,8 @@ pub struct RoadSegment {
     pub look: RoadLook,
     /// Where the dashes of a tunnel are: how far along the road the start of its source segment is, working metres.
     pub(crate) dash_m: f32,
+    /// Whether its source segment ends flat at its start and at its end, also where roads have caps.
+    pub(crate) flat_ends: [bool; 2],
 }
 
 /// All segments of a tile.
@@ -91,6 +94,20 @@ impl Piece {
     }
 }
 
+/// The ends of a line, where it was not cut at the border or beside a void.
+fn line_ends(line: &GroundLine) -> LineEnds {
+    // Positions of the same point by two formulas.
+    let is_at = |[x, y, _]: [f64; 3], [to_x, to_y]: [f64; 2]| (to_x - x).hypot(to_y - y) < 1e-6;
+    let first = line.sources_m.first().zip(line.points_m.first());
+    let last = line.sources_m.last().zip(line.points_m.last());
+    LineEnds {
+        class: line.class,
+        look: line.look,
+        first: first.filter(|([a, _], point)| is_at(**point, *a)).map(|([a, b], _)| [*b, *a]),
+        last: last.filter(|([_, b], point)| is_at(**point, *b)).map(|(source, _)| *source),
+    }
+}
+
 /// The vertices of the source line, from the start of the first segment that has a piece to the end of the last one.
 fn source_vertices(line: &GroundLine) -> Vec<[f64; 2]> {
     let mut sources_m = line.sources_m.clone();
@@ -114,7 +131,9 @@ impl RoadList<RoadSegment> {
             [x, y]
         };
         let (place, bed) = (&place, &bed);
-        let segments = lines.iter().flat_map(|line| {
+        let ends: Vec<LineEnds> = lines.iter().map(line_ends).collect();
+        let flat = flat_ends(&ends, tile);
+        let segments = lines.iter().zip(flat).flat_map(|(line, [first_flat, last_flat])| {
             let dashes_m = dash_starts_m(&source_vertices(line), tile);
             Piece::all_of(line).map(move |piece| {
                 let [start_in_tile, end_in_tile] = piece.source_m.map(place);
@@ -130,6 +149,10 @@ impl RoadList<RoadSegment> {
                     own_width: line.own_width,
                     look: line.look,
                     dash_m: dashes_m[piece.source_number],
+                    flat_ends: [
+                        piece.source_number == 0 && first_flat,
+                        piece.source_number + 1 == dashes_m.len() && last_flat,
+                    ],
                 }
             })
         });
