@@ -25,6 +25,18 @@ pub enum StyleError {
     TintClimate,
     #[error("the heights of [[tint]] must ascend, by 1 m or more")]
     TintHeightOrder,
+    #[error("[roads.{class}] needs either color, with or without center, or bands")]
+    RoadColor { class: usize },
+    #[error("[roads.{class}]: {source}")]
+    Bands { class: usize, source: Box<StyleError> },
+    #[error("a road has 1 to {most} bands, not {count}")]
+    BandCount { count: usize, most: usize },
+    #[error("the first band has a width of {width}; it is the whole road, and has 1")]
+    FirstBand { width: f32 },
+    #[error(
+        "band {number} has a width of {width} after one of {before}; widths must fall, down to 0.01 at least"
+    )]
+    BandOrder { number: usize, width: f32, before: f32 },
     #[error("lane_width_m has no effect without own_width = true")]
     LaneWidth,
     #[error("the shares of [[tint]] must ascend from 0 to 1, both included, by 0.001 or more")]

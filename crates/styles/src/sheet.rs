@@ -6,8 +6,9 @@ use corniche_roads::FunctionalRoadClass;
 use serde::Deserialize;
 
 use crate::{
-    CenterLine, OwnWidths, Rgb, RoadStyle, Style, StyleError, Tint, WidthScaling,
+    OwnWidths, RoadStyle, Style, StyleError, Tint, WidthScaling,
     ground_sheet::{LightSheet, TintSheet, tint},
+    road_sheet::RoadSheet,
     sheet_values::{Rgb8, within},
 };
 
@@ -34,7 +35,7 @@ pub(crate) struct StyleSheet {
     /// Height tint.
     pub(crate) tint: Tint,
     /// By class, 0 first.
-    pub(crate) roads: [RoadSheet; FunctionalRoadClass::COUNT],
+    pub(crate) roads: [RoadStyle; FunctionalRoadClass::COUNT],
 }
 
 /// How roads widen with distance.
@@ -77,40 +78,6 @@ impl BackgroundSheet {
     fn wall() -> Rgb8 {
         Rgb8([0x8E, 0x84, 0x78])
     }
-}
-
-/// How the roads of one class are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct RoadSheet {
-    /// Width on the ground, 0.1 to 500 m.
-    pub(crate) width_m: f64,
-    /// Roads are never drawn thinner than this, 0.1 to 50 pixels.
-    pub(crate) min_width_px: f64,
-    /// Colour of the surface.
-    pub(crate) color: Rgb8,
-    /// Colour of the edge.
-    pub(crate) outline: Rgb8,
-    /// A line along the middle.
-    pub(crate) center: Option<CenterSheet>,
-    /// Drawn in full up to this many metres of ground in a pixel, 0.01 to 1e6; left out: always.
-    pub(crate) max_pixel_m: Option<f64>,
-    /// Roads grow no wider with distance than this, 0.1 to 500 pixels; left out: without end.
-    pub(crate) max_width_px: Option<f64>,
-    /// The colour of a road too thin for an edge; left out: that of its surface.
-    pub(crate) thin: Option<Rgb8>,
-    /// How much of the ground a road hides, 0.01 to 1; left out: 1.
-    pub(crate) opacity: Option<f64>,
-}
-
-/// The line along the middle of a road of two colours.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct CenterSheet {
-    /// Share of the road's width, 0.01 to 0.99.
-    pub(crate) width_share: f64,
-    /// Its colour.
-    pub(crate) color: Rgb8,
 }
 
 /// A style as it stands in the text, not yet checked: lists and tables of any length.
@@ -181,28 +148,29 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
     Ok(sheet)
 }
 
-/// The roads by class, if there are all of them and no others.
+/// The roads by class, if there are all of them and no others, and each is right.
 fn all_classes(
     roads: &BTreeMap<String, RoadSheet>,
-) -> Result<[RoadSheet; FunctionalRoadClass::COUNT], StyleError> {
+) -> Result<[RoadStyle; FunctionalRoadClass::COUNT], StyleError> {
     let names: [String; FunctionalRoadClass::COUNT] =
         std::array::from_fn(|class| class.to_string());
     if let Some(text) = roads.keys().find(|text| !names.contains(text)) {
         return Err(StyleError::Class { text: text.clone() });
     }
-    // The keys have one digit each, so that their alphabetical order is that of their numbers.
-    let known: Vec<RoadSheet> = roads.values().copied().collect();
-    known.try_into().map_err(|_| {
-        let missing = names.into_iter().find(|name| !roads.contains_key(name)).unwrap_or_default();
-        StyleError::MissingClass { class: missing }
-    })
+    // Each of them is replaced.
+    let mut styles = Style::road_atlas().roads;
+    for (number, (class, style)) in names.into_iter().zip(&mut styles).enumerate() {
+        let Some(road) = roads.get(&class) else { return Err(StyleError::MissingClass { class }) };
+        *style = road.checked(number)?;
+    }
+    Ok(styles)
 }
 
 impl StyleSheet {
     /// Checks every number against its range.
     fn check(&self) -> Result<(), StyleError> {
         let Self { outline_px, lane_width_m, width_scaling: scaling, .. } = self;
-        let Self { light, background, roads, .. } = self;
+        let Self { light, background, .. } = self;
         // The kernel looks at (2 r + 1)² places for every pixel.
         within("outline_px", f64::from(*outline_px), 0.0..=4.0)?;
         if let Some(lane_width_m) = lane_width_m {
@@ -214,23 +182,6 @@ impl StyleSheet {
         within("width_scaling.constant", scaling.constant, 0.1..=100.0)?;
         light.check()?;
         within("background.haze_reach", background.haze_reach, 0.1..=1000.0)?;
-        for (class, road) in roads.iter().enumerate() {
-            let entry = |name| format!("roads.{class}.{name}");
-            within(&entry("width_m"), road.width_m, 0.1..=500.0)?;
-            within(&entry("min_width_px"), road.min_width_px, 0.1..=50.0)?;
-            if let Some(max_pixel_m) = road.max_pixel_m {
-                within(&entry("max_pixel_m"), max_pixel_m, 0.01..=1e6)?;
-            }
-            if let Some(max_width_px) = road.max_width_px {
-                within(&entry("max_width_px"), max_width_px, 0.1..=500.0)?;
-            }
-            if let Some(opacity) = road.opacity {
-                within(&entry("opacity"), opacity, 0.01..=1.0)?;
-            }
-            if let Some(center) = road.center {
-                within(&entry("center.width_share"), center.width_share, 0.01..=0.99)?;
-            }
-        }
         Ok(())
     }
 }
@@ -241,7 +192,7 @@ impl From<&StyleSheet> for Style {
         let StyleSheet { light, background, tint, roads, .. } = sheet;
         let lane_m = lane_width_m.map(|lane_m| lane_m as f32);
         Self {
-            roads: roads.map(RoadStyle::from),
+            roads: *roads,
             own_widths: own_width.then_some(OwnWidths { lane_m }),
             width_scaling: WidthScaling {
                 threshold_m: width_scaling.threshold_m as f32,
@@ -258,25 +209,6 @@ impl From<&StyleSheet> for Style {
             water: background.water.into(),
             wall: background.wall.into(),
             haze_reach: background.haze_reach as f32,
-        }
-    }
-}
-
-impl From<RoadSheet> for RoadStyle {
-    fn from(sheet: RoadSheet) -> Self {
-        Self {
-            width_m: sheet.width_m as f32,
-            min_width_px: sheet.min_width_px as f32,
-            color: sheet.color.into(),
-            outline: sheet.outline.into(),
-            center: sheet.center.map(|CenterSheet { width_share, color }| CenterLine {
-                width_share: width_share as f32,
-                color: color.into(),
-            }),
-            max_pixel_m: sheet.max_pixel_m.map(|max_pixel_m| max_pixel_m as f32),
-            max_width_px: sheet.max_width_px.map(|max_width_px| max_width_px as f32),
-            thin: sheet.thin.map(Rgb::from),
-            opacity: sheet.opacity.unwrap_or(1.0) as f32,
         }
     }
 }

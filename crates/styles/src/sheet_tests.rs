@@ -1,5 +1,5 @@
 use super::*;
-use crate::{TintHeights, style_preset, style_preset_names};
+use crate::{Rgb, TintHeights, style_preset, style_preset_names};
 
 fn atlas() -> &'static str {
     style_preset("road-atlas").expect("the default style is there")
@@ -26,7 +26,7 @@ fn the_styles_that_come_along_are_styles_of_ordered_roads() {
                 .is_sorted_by(|a, b| a.width_m > b.width_m && a.min_width_px >= b.min_width_px),
             "{name}: more important roads are wider"
         );
-        assert!(style.roads[8].center.is_none(), "{name}");
+        assert_eq!(style.roads[8].bands.all().len(), 1, "{name}");
     }
     assert!(style_preset("road atlas").is_none());
 }
@@ -53,9 +53,9 @@ fn dark_roads_glow_and_their_edges_are_darker_than_any_ground() {
     for (class, road) in style.roads.iter().enumerate() {
         for (height_m, tint) in ground {
             let least = if class <= 4 { 4.5 } else { 1.7 };
-            let reached = contrast(road.color, *tint);
+            let reached = contrast(road.bands.main_color(), *tint);
             assert!(reached >= least, "class {class} at {height_m} m: {reached:.2}");
-            assert!(luminance(road.color) > luminance(*tint), "class {class} glows");
+            assert!(luminance(road.bands.main_color()) > luminance(*tint), "class {class} glows");
             assert!(luminance(road.outline) < luminance(*tint), "class {class} has an edge");
         }
     }
@@ -114,6 +114,44 @@ fn what_is_unknown_or_left_out_is_named() {
     let error = parse_style(without).unwrap_err().to_string();
     assert!(error.contains("roads.8") && error.contains("missing"), "{error}");
     assert!(matches!(parse_style(&"#".repeat(2 << 20)), Err(StyleError::TooLong { .. })));
+}
+
+/// `color` and `center` are the short form of two bands.
+#[test]
+fn bands_may_be_written_instead_of_a_colour_and_a_centre_line() {
+    let short = "color = \"#D93A2B\"\noutline = \"#5E1410\"\ncenter = { width_share = 0.3, color = \"#FFE88A\" }";
+    let with = |bands: &str| {
+        let text = atlas().replacen(short, &format!("outline = \"#5E1410\"\n{bands}"), 1);
+        assert_ne!(text, atlas());
+        parse_style(&text).map(|style| style.roads[0].bands)
+    };
+    let long = "bands = [{ width = 1, color = \"#D93A2B\" }, { width = 0.3, color = \"#FFE88A\" }]";
+    assert_eq!(with(long).unwrap(), Style::road_atlas().roads[0].bands);
+    let band = |width: f64| format!("{{ width = {width}, color = \"#102030\" }}");
+    let bands = |widths: &[f64]| {
+        let all: Vec<String> = widths.iter().map(|width| band(*width)).collect();
+        format!("bands = [{}]", all.join(", "))
+    };
+    assert_eq!(with(&bands(&[1.0, 0.8, 0.6, 0.4, 0.3, 0.2, 0.1])).unwrap().all().len(), 7);
+    for (text, words) in [
+        (String::new(), &["[roads.0]", "either color"][..]),
+        (format!("color = \"#102030\"\n{long}"), &["[roads.0]", "either color"]),
+        (
+            format!("center = {{ width_share = 0.3, color = \"#102030\" }}\n{long}"),
+            &["either color"],
+        ),
+        (bands(&[]), &["[roads.0]", "1 to 16 bands, not 0"]),
+        (bands(&[1.0; 17]), &["1 to 16 bands, not 17"]),
+        (bands(&[0.8, 0.5]), &["[roads.0]", "first band", "0.8"]),
+        (bands(&[1.0, 0.5, 0.5]), &["band 3", "must fall"]),
+        (bands(&[1.0, 0.001]), &["band 2", "0.01 at least"]),
+        (bands(&[1.0, f64::NAN]), &["band 2"]),
+    ] {
+        let error = with(&text.replace("NaN", "nan")).unwrap_err().to_string();
+        for word in words {
+            assert!(error.contains(word), "{text}: no {word:?} in {error}");
+        }
+    }
 }
 
 /// The atlas with this tint in place of its own.

@@ -2,7 +2,7 @@
 
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
-use crate::{Light, Rgb, Tint, TintHeights};
+use crate::{Light, Rgb, RoadBand, RoadBands, Tint, TintHeights};
 
 /// How the roads of one class are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,31 +11,19 @@ pub struct RoadStyle {
     pub width_m: f32,
     /// Roads are never drawn thinner than this.
     pub min_width_px: f32,
-    /// Colour of the surface.
-    pub color: Rgb,
+    /// Colours of the surface, from the edges to the middle.
+    pub bands: RoadBands,
     /// Colour of the edge.
     pub outline: Rgb,
-    /// A line along the middle, for roads of two colours; drawn as a second, narrower road of the same class
-    /// (the paper, section 6.2).
-    pub center: Option<CenterLine>,
     /// The most true metres of ground in a pixel at which roads are drawn in full; see [`RoadStyle::shown_share`]. `None`:
     /// they always are.
     pub max_pixel_m: Option<f32>,
     /// Where widths grow with distance, roads grow no wider than this; `None`: without end. What is wider near the eye stays so.
     pub max_width_px: Option<f32>,
-    /// Colour where a road is too thin for an edge; [`RoadStyle::color`] where it is `None`.
+    /// Colour where a road is too thin for an edge; [`RoadBands::main_color`] where it is `None`.
     pub thin: Option<Rgb>,
     /// How much of the ground a road hides, edge included: 1 hides it.
     pub opacity: f32,
-}
-
-/// The line along the middle of a road of two colours.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CenterLine {
-    /// Share of the road's width.
-    pub width_share: f32,
-    /// Its colour.
-    pub color: Rgb,
 }
 
 /// How much roads widen with distance (the paper, section 6.2 and Fig. 10).
@@ -144,9 +132,8 @@ impl Style {
                 RoadStyle {
                     width_m,
                     min_width_px,
-                    color: rgb(color),
+                    bands: RoadBands::one(rgb(color)),
                     outline: rgb(outline),
-                    center: None,
                     max_pixel_m,
                     max_width_px: Some(max_width_px),
                     thin: None,
@@ -154,17 +141,13 @@ impl Style {
                 }
             };
         let thin = |color, road| RoadStyle { thin: Some(rgb(color)), ..road };
-        let yellow = CenterLine { width_share: 0.3, color: rgb(0xFF_E8_8A) };
+        let yellow = RoadBand { width_share: 0.3, color: rgb(0xFF_E8_8A) };
+        let two_colours =
+            |road: RoadStyle| RoadStyle { bands: road.bands.with_center(yellow), ..road };
         Self {
             roads: [
-                RoadStyle {
-                    center: Some(yellow),
-                    ..road(24.0, [3.0, 5.5], 0xD9_3A_2B, 0x5E_14_10, None)
-                },
-                RoadStyle {
-                    center: Some(yellow),
-                    ..road(20.0, [2.6, 5.0], 0xE8_6A_33, 0x6B_2A_0F, Some(600.0))
-                },
+                two_colours(road(24.0, [3.0, 5.5], 0xD9_3A_2B, 0x5E_14_10, None)),
+                two_colours(road(20.0, [2.6, 5.0], 0xE8_6A_33, 0x6B_2A_0F, Some(600.0))),
                 road(17.0, [2.2, 4.5], 0xF4_9B_36, 0x77_42_0C, Some(300.0)),
                 road(14.0, [1.9, 4.0], 0xFB_D3_4C, 0x7A_5C_12, Some(140.0)),
                 thin(0xE3_C6_5A, road(11.0, [1.5, 3.4], 0xFF_F0_9C, 0x7D_6C_33, Some(60.0))),

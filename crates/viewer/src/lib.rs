@@ -43,7 +43,10 @@ mod viewpoint;
 #[doc(hidden)]
 pub mod for_tests {
     pub use crate::{
-        gpu::inspection::{Owner, TUNNEL_BIT},
+        gpu::{
+            inspection::Owner,
+            labels::{class_of, is_service, is_tunnel, road_label, service_label, tunnel_label},
+        },
         scene::{SettleError, capped_ways, draw_list, may_be_clamped, settle},
         tiles::{
             plan_scale::PlanScale,

@@ -262,7 +262,7 @@ fn legend(
     let road = |class: FunctionalRoadClass| {
         let style = view.style.road(class);
         let label = labels[usize::from(class.number())].clone();
-        LegendRoad { label, color: style.color, outline: style.outline }
+        LegendRoad { label, bands: style.bands, outline: style.outline }
     };
     Legend {
         pixel_m: view.camera.pixel_at_unit_depth_m() * view.camera.focus_m() / view.point_scale,

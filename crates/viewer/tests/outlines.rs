@@ -10,6 +10,7 @@ use corniche_styles::{RoadStyle, Style};
 use corniche_viewer::{
     FrameView, Outline, RoadMethod, RoadOptions, Wireframe,
     camera::{Camera, Orientation},
+    for_tests::{class_of, is_service, is_tunnel},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
     tiles::{TileGeometry, TileLines},
 };
@@ -124,9 +125,20 @@ fn plain_filter(labels: &[u8], depth: &[f32], width: usize, radius: i64) -> Vec<
                 .map(|k| labels[k])
                 .max()
                 .unwrap_or(0);
-            depth[index] > 0.0 && most / 2 > labels[index] / 2
+            depth[index] > 0.0 && importance(most) > importance(labels[index])
         })
         .collect()
+}
+
+/// Roads above the ground count more than those beneath it, service roads least of them; all bands of a class count the same.
+fn importance(label: u8) -> u8 {
+    let class = class_of(label).map_or(0, |class| 9 - class);
+    match label {
+        0 => class,
+        _ if is_tunnel(label) => class,
+        _ if is_service(label) => class + 10,
+        _ => class + 20,
+    }
 }
 
 /// A dot so far from all others that no edge but its own can be drawn by mistake where its edge must be: beyond three

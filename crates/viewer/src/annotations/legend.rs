@@ -1,7 +1,7 @@
 use image::RgbaImage;
 
 use super::letters::{INK, Letters, blend, draw_box, fill, line_px};
-use corniche_styles::Rgb;
+use corniche_styles::{Rgb, RoadBands};
 
 /// What a legend tells.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,8 +19,8 @@ pub struct Legend {
 pub struct LegendRoad {
     /// What people call it.
     pub label: String,
-    /// Its colour.
-    pub color: Rgb,
+    /// The colours of its surface.
+    pub bands: RoadBands,
     /// The colour of its edge.
     pub outline: Rgb,
 }
@@ -49,12 +49,20 @@ pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend) {
 
     for (road, row) in legend.roads.iter().zip(0_u32..) {
         let above = top + pad_px / 2 + row * line_px;
-        let [color, outline] = [road.color, road.outline].map(|rgb| rgb.map(|part| part * 255.0));
-        let thick = (line_px / 3).max(3);
+        let of_255 = |rgb: Rgb| rgb.map(|part| part * 255.0);
+        // With more bands a sample is thicker, so that each of them is seen, as far as a line has room.
+        let bands = road.bands.all();
+        let thick = (line_px / 3).max(2 * bands.len() as u32 + 1).min(line_px - 2);
         let start = above + (line_px - thick) / 2;
         let rows = start..start + thick;
-        fill(picture, pad_px..pad_px + sample_px, rows.clone(), outline, 1.0);
-        fill(picture, pad_px..pad_px + sample_px, rows.start + 1..rows.end - 1, color, 1.0);
+        let columns = pad_px..pad_px + sample_px;
+        fill(picture, columns.clone(), rows, of_255(road.outline), 1.0);
+        for band in bands {
+            let beside =
+                (0.5 * f64::from(thick - 2) * f64::from(1.0 - band.width_share)) as u32 + 1;
+            let rows = start + beside..start + thick - beside;
+            fill(picture, columns.clone(), rows, of_255(band.color), 1.0);
+        }
         letters.draw(picture, &road.label, (2 * pad_px + sample_px) as f32, above as f32);
     }
 

@@ -7,7 +7,7 @@ fn picture() -> RgbaImage {
 fn legend(north_deg: f64) -> Legend {
     let road = |label: &str, color| LegendRoad {
         label: label.to_owned(),
-        color,
+        bands: RoadBands::one(color),
         outline: [0.0, 0.0, 1.0],
     };
     Legend {

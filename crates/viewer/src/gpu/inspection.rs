@@ -6,11 +6,6 @@ use super::{Gpu, ReadBackError, targets::Targets};
 /// This bit of the owner of a sample is set if the sample shows a skirt.
 const SKIRT_BIT: u32 = 1 << 31;
 
-/// Labels that are stored as smaller numbers are tunnels: as in `shaders/common.wgsl`.
-const TUNNEL_LABELS: u8 = 20;
-/// This bit of a label that is read is set on tunnels.
-pub const TUNNEL_BIT: u8 = 1 << 7;
-
 /// Which tile a sample of the terrain pass shows. Tiles are numbered by their place in the list that was drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Owner {
@@ -71,17 +66,11 @@ impl Targets {
             .collect())
     }
 
-    /// The road label of each sample: 0 without a road, else `2 · (9 − class)`, plus 1 on a centre line or on a dash of a
-    /// tunnel, and [`TUNNEL_BIT`] on tunnels.
+    /// The road label of each sample, as `gpu::labels` draws them; 0 without a road.
     ///
     /// # Errors
     /// When the device is lost or could not draw.
     pub fn read_labels(&self, gpu: &Gpu) -> Result<Vec<u8>, ReadBackError> {
-        let label = |stored: u8| match stored {
-            0 => 0,
-            1..TUNNEL_LABELS => stored | TUNNEL_BIT,
-            TUNNEL_LABELS.. => stored - TUNNEL_LABELS,
-        };
-        Ok(self.labels.read(gpu)?.into_iter().map(label).collect())
+        self.labels.read(gpu)
     }
 }

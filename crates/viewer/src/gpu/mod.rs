@@ -10,10 +10,10 @@
 //!
 //! # Labels
 //!
-//! The label of a sample says which class of road it shows: 0 without a road, else `20 + 2 · (9 − class)`, plus 1 on a centre
-//! line. More important roads have larger labels. A tunnel has `2 · (9 − class)`, plus 1 on a dash of its edge: every road
-//! above the ground hides it. There are labels instead of colours for two reasons. The composite pass
-//! can find the edges between classes, and tests can compare the class of every sample with a reference.
+//! The label of a sample says which class of road it shows, and which of its bands (`labels.rs`). More important roads have larger
+//! labels, and so have inner bands. Those of tunnels are below all others: every road above the ground hides them. There are
+//! labels instead of colours for two reasons. The composite pass can find the edges between classes, and tests can compare
+//! the class of every sample with a reference.
 //!
 //! The paper draws roads without blending, one class after another over all tiles, the least important class first. Here
 //! the target keeps the largest label, by blending with *max*. A label is a whole number of steps of the 8-bit format, so
@@ -56,6 +56,7 @@ mod error;
 mod formats;
 mod ground_buffers;
 pub(crate) mod inspection;
+pub(crate) mod labels;
 mod passes;
 mod photo_texture;
 mod picture;

@@ -5,7 +5,7 @@
 
 use glam::{DVec3, DVec4};
 
-use corniche_styles::OwnWidths;
+use corniche_styles::{OwnWidths, RoadBands};
 
 use crate::{
     class_scale,
@@ -14,7 +14,7 @@ use crate::{
     tiles::NearHeights,
 };
 
-/// Width of a slip road as a share of that of its class.
+/// Width of slip roads and service roads as a share of that of their class.
 const LINK_WIDTH_SHARE: f32 = 0.6;
 
 /// Bytes of a tile's block.
@@ -71,15 +71,22 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
         OwnWidths::WIDEST_M,
     ]);
     rows.extend(style.roads.iter().map(|road| {
-        let center_share = road.center.map_or(-1.0, |center| center.width_share);
+        let bands = road.bands.all().len() as f32;
         let half_width_m = road.width_m / 2.0 * scaling.constant;
         // In pixels of the picture: how many samples a pixel has changes nothing.
         let full_m = class_scale::full_distance_m(road, view.camera, view.point_scale) as f32;
-        [half_width_m, road.min_width_px / 2.0 * samples, center_share, full_m]
+        [half_width_m, road.min_width_px / 2.0 * samples, bands, full_m]
     }));
     rows.extend(style.roads.iter().map(|road| {
         let limit = class_scale::half_width_limit(road, view.roads.width_growth, view.camera);
-        [limit as f32, LINK_WIDTH_SHARE, road.opacity, 0.0]
+        [limit as f32, LINK_WIDTH_SHARE, road.opacity, road.bands.of_slip_roads() as f32]
+    }));
+    rows.extend(style.roads.iter().flat_map(|road| {
+        let mut shares = [0.0; RoadBands::MOST];
+        for (share, band) in shares.iter_mut().zip(road.bands.all()) {
+            *share = band.width_share;
+        }
+        bytemuck::cast::<_, [[f32; 4]; RoadBands::MOST / 4]>(shares)
     }));
     rows
 }

@@ -4,6 +4,8 @@
 // Depth is reversed with an infinite far plane: depth_buffer = near / view_depth, 0 where nothing was drawn.
 
 const CLASSES = 9u;
+// The most bands of a road.
+const BANDS = 16u;
 
 struct Frame {
     clip_from_relative: mat4x4<f32>,
@@ -22,12 +24,14 @@ struct Frame {
     // x: 1 with caps, 0 without; y: 1 for the paper's test in the fragment shader of volumes; z: world metres to a true
     // metre, one value for the whole package; w: roads are not drawn by their own width beyond this one, true metres.
     road_options: vec4<f32>,
-    // x: half width in true metres near the eye; y: least half width in pixels of this target; z: share of the width that
-    // the centre line takes, -1 without one; w: distance from the eye up to which the class is shown in full.
+    // x: half width in true metres near the eye; y: least half width in pixels of this target; z: number of its bands;
+    // w: distance from the eye up to which the class is shown in full.
     road_widths: array<vec4<f32>, CLASSES>,
-    // x: half width, as a share of the distance from the eye, beyond which roads do not grow; y: width of a slip road as a share
-    // of that of its class; z: how much of the ground a road hides.
+    // x: half width, as a share of the distance from the eye, beyond which roads do not grow; y: width of slip roads and service roads as a
+    // share of that of their class; z: how much of the ground a road hides; w: number of the bands of a slip road.
     road_limits: array<vec4<f32>, CLASSES>,
+    // The widths of the bands of each class as shares of the road's width, four in each row.
+    road_bands: array<vec4<f32>, BANDS / 4u * CLASSES>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -43,7 +47,7 @@ fn view_depth_of(depth_buffer: f32) -> f32 {
     return frame.forward.w / depth_buffer;
 }
 
-// How a road is drawn: its class, what it is (PLAIN, LINK or TUNNEL), and half its width near the eye, world metres.
+// How a road is drawn: its class, what it is (PLAIN, LINK, TUNNEL or SERVICE), and half its width near the eye, world metres.
 struct Road {
     class_number: u32,
     look: u32,
@@ -53,6 +57,7 @@ struct Road {
 const PLAIN = 0u;
 const LINK = 1u;
 const TUNNEL = 2u;
+const SERVICE = 3u;
 
 // `own_width` is metres above 0, lanes below it, 0 for neither; `width_factor` is world metres across the road for each true one.
 fn road_with(class_number: u32, look: u32, own_width: f32, width_factor: f32) -> Road {
@@ -61,7 +66,7 @@ fn road_with(class_number: u32, look: u32, own_width: f32, width_factor: f32) ->
     if own_m > 0.0 && frame.scale.z > 0.0 {
         half_width_m = min(own_m, frame.road_options.w) * frame.scale.z;
     }
-    if look == LINK {
+    if look == LINK || look == SERVICE {
         half_width_m *= frame.road_limits[class_number].y;
     }
     return Road(class_number, look, half_width_m * width_factor);
@@ -82,19 +87,34 @@ fn least_half_width_m(road: Road, view_depth: f32) -> f32 {
 // A class has faded away at this many times the distance up to which it is shown in full: half a zoom step.
 const FADE_FACTOR = 1.41421356;
 
-// Whether anything of a class is shown at a distance from the eye. Both methods and the connectors of levels ask this.
-fn is_shown(class_number: u32, distance_m: f32) -> bool {
-    return distance_m < frame.road_widths[class_number].w * FADE_FACTOR;
+// Service roads come one zoom step later than the rest of their class.
+const SERVICE_SHARE = 0.5;
+
+// The distance from the eye up to which a road is shown in full.
+fn full_distance_m(class_number: u32, look: u32) -> f32 {
+    return frame.road_widths[class_number].w * select(1.0, SERVICE_SHARE, look == SERVICE);
+}
+
+// Whether anything of a road is shown at a distance from the eye. Both methods and the connectors of levels ask this.
+fn is_shown(road: Road, distance_m: f32) -> bool {
+    return distance_m < full_distance_m(road.class_number, road.look) * FADE_FACTOR;
 }
 
 // Share of a road's colour that is shown at a distance from the eye: linear in the zoom.
-fn shown_share(class_number: u32, distance_m: f32) -> f32 {
-    let steps = log2(max(distance_m, 1e-3) / frame.road_widths[class_number].w) / log2(FADE_FACTOR);
+fn shown_share(class_number: u32, look: u32, distance_m: f32) -> f32 {
+    let steps = log2(max(distance_m, 1e-3) / full_distance_m(class_number, look)) / log2(FADE_FACTOR);
     return clamp(1.0 - steps, 0.0, 1.0);
 }
 
-// Labels of tunnels are below those of all other roads: what is on the ground hides what is beneath it.
-const TUNNEL_LABELS = 20u;
+// Share of the width of a road that one of its bands takes. Band 0 is the whole road.
+fn band_share(class_number: u32, band: u32) -> f32 {
+    return frame.road_bands[class_number * (BANDS / 4u) + band / 4u][band % 4u];
+}
+
+// Labels below these are those of tunnels, and of tunnels and service roads. gpu/labels.rs draws them. What is on the ground
+// hides what is beneath it, and service roads are hidden by every other road on the ground.
+const SERVICE_LABELS = 20u;
+const ROAD_LABELS = 2u * BANDS;
 
 // Side of a pixel of the final picture at a distance from the eye or at a depth, metres.
 fn pixel_m_at(distance_m: f32) -> f32 {

@@ -20,9 +20,10 @@ struct PictureColors {
     // Where there is no ground, a plane beneath all ground is seen: xy: the eye's place on it, modulo w; z: the eye's height
     // above it; w: the widest spacing of its lines. World metres.
     void_plane: vec4<f32>,
-    road_fills: array<vec4<f32>, CLASSES>,
+    road_bands: array<vec4<f32>, BANDS * CLASSES>,
     road_outlines: array<vec4<f32>, CLASSES>,
-    road_centers: array<vec4<f32>, CLASSES>,
+    // Tunnels and service roads.
+    road_mains: array<vec4<f32>, CLASSES>,
     // Roads that are too thin for an edge.
     road_thins: array<vec4<f32>, CLASSES>,
 }
@@ -41,11 +42,25 @@ fn label_of(stored: f32) -> u32 {
 }
 
 fn is_tunnel(label: u32) -> bool {
-    return label < TUNNEL_LABELS;
+    return label < SERVICE_LABELS;
+}
+
+fn look_of(label: u32) -> u32 {
+    return select(select(PLAIN, SERVICE, label < ROAD_LABELS), TUNNEL, is_tunnel(label));
+}
+
+// Of two roads that meet, the one of the higher rank has the edge: tunnels have 1 to 9, service roads 10 to 18, other roads 19
+// to 27. 0 is no road.
+fn rank_of(label: u32) -> u32 {
+    switch look_of(label) {
+        case TUNNEL: { return label / 2u; }
+        case SERVICE: { return label - SERVICE_LABELS + CLASSES; }
+        default: { return label / BANDS - 1u + 2u * CLASSES; }
+    }
 }
 
 fn class_of(label: u32) -> u32 {
-    return CLASSES - select(label - TUNNEL_LABELS, label, is_tunnel(label)) / 2u;
+    return (3u * CLASSES - rank_of(label)) % CLASSES;
 }
 
 // The largest label around a pixel, of roads on ground of at least this depth in the buffer.
@@ -113,10 +128,10 @@ fn background_at(ray: vec3<f32>, position: vec2<f32>) -> vec3<f32> {
 }
 
 // Width of a road at a place in pixels of the final picture, before the least width is applied.
-fn width_px(road_class: u32, distance_m: f32, depth: f32) -> f32 {
+fn width_px(road_class: u32, look: u32, distance_m: f32, depth: f32) -> f32 {
     // The tile, the direction of the road and its own width are not known here. So its width factor is that of the whole
     // package, and its width that of its class.
-    let road = road_with(road_class, PLAIN, 0.0, frame.road_options.z);
+    let road = road_with(road_class, look, 0.0, frame.road_options.z);
     return 2.0 * scaled_half_width_m(road, distance_m) / pixel_m_at(depth);
 }
 
@@ -150,8 +165,8 @@ fn sight_at(position: vec2<f32>) -> Sight {
 }
 
 // How much of the ground roads of a class hide at a distance from the eye.
-fn opacity_at(road_class: u32, distance_m: f32) -> f32 {
-    return frame.road_limits[road_class].z * shown_share(road_class, distance_m);
+fn opacity_at(road_class: u32, look: u32, distance_m: f32) -> f32 {
+    return frame.road_limits[road_class].z * shown_share(road_class, look, distance_m);
 }
 
 // What is left of the colours of a tunnel's surface and of its edge.
@@ -208,25 +223,27 @@ fn road_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f3
     let label = label_of(own);
     if label != 0u {
         let road_class = class_of(label);
-        let seen_px = width_px(road_class, sight.distance_m, sight.depth);
-        let wide = select(colors.road_fills[road_class].rgb, colors.road_centers[road_class].rgb,
-            (label & 1u) == 1u && !is_tunnel(label));
+        let look = look_of(label);
+        let seen_px = width_px(road_class, look, sight.distance_m, sight.depth);
+        let wide = select(colors.road_mains[road_class].rgb, colors.road_bands[road_class * BANDS + label % BANDS].rgb,
+            look == PLAIN);
         let fill = mix(colors.road_thins[road_class].rgb, wide, smoothstep(1.0, 2.2, seen_px));
         // A road that is drawn wider than it is, because of its least width, is made paler.
         let least_px = 2.0 * frame.road_widths[road_class].y / frame.road_scale.w;
-        let presence = clamp(seen_px / least_px, 0.5, 1.0) * opacity_at(road_class, sight.distance_m)
+        let presence = clamp(seen_px / least_px, 0.5, 1.0) * opacity_at(road_class, look, sight.distance_m)
             * select(1.0, TUNNEL_FILL, is_tunnel(label));
         color = mix(color, mix(fill, colors.haze.rgb, 0.5 * sight.haze), presence);
     }
 
     let most = label_of(largest_around(pixel, own, sight.depth_buffer / FARTHER));
     // The edge of a tunnel is dashed.
-    if most / 2u > label / 2u && (!is_tunnel(most) || (most & 1u) == 1u) {
+    if rank_of(most) > rank_of(label) && (!is_tunnel(most) || (most & 1u) == 1u) {
         let road_class = class_of(most);
         // Around a very thin road there is no edge, because it would hide the road; nor around one that is seen so flat that
         // the edge would break into dashes.
-        let seen_px = width_px(road_class, sight.distance_m, sight.depth) * facing;
-        let presence = smoothstep(1.2, 4.0, seen_px) * opacity_at(road_class, sight.distance_m)
+        let look = look_of(most);
+        let seen_px = width_px(road_class, look, sight.distance_m, sight.depth) * facing;
+        let presence = smoothstep(1.2, 4.0, seen_px) * opacity_at(road_class, look, sight.distance_m)
             * select(1.0, TUNNEL_EDGE, is_tunnel(most));
         color = mix(color, mix(colors.road_outlines[road_class].rgb, colors.haze.rgb, 0.5 * sight.haze), presence);
     }

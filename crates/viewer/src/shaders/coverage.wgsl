@@ -31,16 +31,30 @@ struct RoadFragment {
     @builtin(position) clip: vec4<f32>,
     @location(0) @interpolate(flat) start: vec2<f32>,
     @location(1) @interpolate(flat) start_to_end: vec2<f32>,
-    // Lowest four bits: class; two bits: look. Above, for a connector, the number of the other tile it belongs to, else 0.
+    // Lowest four bits: class; two bits: look; one bit each if the segment ends flat at its start and at its end. Above, for a
+    // connector, the number of the other tile it belongs to, else 0.
     @location(2) @interpolate(flat) class_and_other: u32,
     // Half the road's width near the eye, world metres.
     @location(3) @interpolate(flat) half_width_m: f32,
-    // Where the dashes of a tunnel are: how far the segment's start is from a fixed place, along the segment, world metres.
+    // Where the dashes of a tunnel are: how far along the road the segment's start is, world metres.
     @location(4) @interpolate(flat) dash_m: f32,
 }
 
 fn road_of(in: RoadFragment) -> Road {
     return Road(in.class_and_other & 15u, (in.class_and_other >> 4u) & 3u, in.half_width_m);
+}
+
+// A segment of a road in plan, relative to the eye; or in the picture.
+struct Segment {
+    start: vec2<f32>,
+    start_to_end: vec2<f32>,
+    // Whether it ends flat, at its start and at its end: there the road goes on as another one.
+    flat_start: bool,
+    flat_end: bool,
+}
+
+fn segment_of(in: RoadFragment) -> Segment {
+    return Segment(in.start, in.start_to_end, (in.class_and_other & 64u) != 0u, (in.class_and_other & 128u) != 0u);
 }
 
 const MAX_STRETCH = 8.0;
@@ -58,25 +72,29 @@ fn stretch_of(distance_m: f32, height_m: f32) -> f32 {
     return clamp(1.5 * distance_m / max(abs(height_m), 1e-3), 1.0, MAX_STRETCH);
 }
 
-// Share of the width that the centre line takes; negative without one, so that no distance is below it. Slip roads and
-// tunnels have none.
-fn center_share(road: Road) -> f32 {
-    return select(-1.0, frame.road_widths[road.class_number].z, road.look == PLAIN);
+// How many bands a road has. Slip roads lack the narrow ones; tunnels and service roads have one colour.
+fn band_count(road: Road) -> u32 {
+    if road.look == TUNNEL || road.look == SERVICE {
+        return 1u;
+    }
+    return u32(select(frame.road_widths[road.class_number].z, frame.road_limits[road.class_number].w, road.look == LINK));
 }
 
 fn has_caps() -> bool {
     return frame.road_options.x > 0.5;
 }
 
-// Vector in plan from the nearest point of a segment. Beyond the ends of a road without caps its length is `NEVER`.
-fn from_segment(from_start: vec2<f32>, start_to_end: vec2<f32>) -> vec2<f32> {
-    let length_squared = dot(start_to_end, start_to_end);
-    let along = dot(from_start, start_to_end) / max(length_squared, 1e-12);
+// Vector from the nearest point of a segment. Beyond a flat end, and beyond any end of a road without caps, its length is `NEVER`.
+fn from_segment(at: vec2<f32>, segment: Segment) -> vec2<f32> {
+    let from_start = at - segment.start;
+    let length_squared = dot(segment.start_to_end, segment.start_to_end);
+    let along = dot(from_start, segment.start_to_end) / max(length_squared, 1e-12);
     let share = clamp(along, 0.0, 1.0);
-    if !has_caps() && (share != along || length_squared == 0.0) {
+    let is_beyond = (along < 0.0 && segment.flat_start) || (along > 1.0 && segment.flat_end);
+    if is_beyond || (!has_caps() && (share != along || length_squared == 0.0)) {
         return vec2(NEVER, 0.0);
     }
-    return from_start - share * start_to_end;
+    return from_start - share * segment.start_to_end;
 }
 
 // The pixel that is `step` away from another, and the ground that it shows.
@@ -87,7 +105,7 @@ struct Neighbour {
     to_segment_m: f32,
 }
 
-fn neighbour(pixel: vec2<i32>, step: vec2<i32>, start: vec2<f32>, start_to_end: vec2<f32>) -> Neighbour {
+fn neighbour(pixel: vec2<i32>, step: vec2<i32>, segment: Segment) -> Neighbour {
     let last = vec2<i32>(i32(frame.right.w), i32(frame.up.w)) - 1;
     let at = pixel + step;
     var out: Neighbour;
@@ -97,7 +115,7 @@ fn neighbour(pixel: vec2<i32>, step: vec2<i32>, start: vec2<f32>, start_to_end: 
     out.depth_buffer = textureLoad(terrain_depth, at, 0).r;
     if out.depth_buffer > 0.0 {
         out.position = position_at(vec2<f32>(at) + 0.5, out.depth_buffer).xy;
-        out.to_segment_m = length(from_segment(out.position - start, start_to_end));
+        out.to_segment_m = length(from_segment(out.position, segment));
     }
     return out;
 }
@@ -105,10 +123,9 @@ fn neighbour(pixel: vec2<i32>, step: vec2<i32>, start: vec2<f32>, start_to_end: 
 // How far the position of the ground changes in plan from this pixel to the next one, on the side where the segment is
 // nearer. If that side has no ground or a silhouette, the other side is used: within one triangle the depth buffer is linear,
 // so both sides have the same change.
-fn plan_step(pixel: vec2<i32>, step: vec2<i32>, depth_buffer: f32, position: vec2<f32>, start: vec2<f32>,
-    start_to_end: vec2<f32>) -> vec2<f32> {
-    let ahead = neighbour(pixel, step, start, start_to_end);
-    let behind = neighbour(pixel, -step, start, start_to_end);
+fn plan_step(pixel: vec2<i32>, step: vec2<i32>, depth_buffer: f32, position: vec2<f32>, segment: Segment) -> vec2<f32> {
+    let ahead = neighbour(pixel, step, segment);
+    let behind = neighbour(pixel, -step, segment);
     let change_ahead = abs(ahead.depth_buffer - depth_buffer);
     let change_behind = abs(behind.depth_buffer - depth_buffer);
     var is_ahead = ahead.to_segment_m <= behind.to_segment_m;
@@ -125,47 +142,52 @@ fn plan_step(pixel: vec2<i32>, step: vec2<i32>, depth_buffer: f32, position: vec
 
 // Distance in pixels from the middle of this pixel to the image of a segment. `right` and `down` map pixels to plan; their
 // inverse maps the segment to pixels. (Its nearest point in the picture is not its nearest in plan.)
-fn seen_px(right: vec2<f32>, down: vec2<f32>, from_start: vec2<f32>, start_to_end: vec2<f32>) -> f32 {
+fn seen_px(right: vec2<f32>, down: vec2<f32>, at: vec2<f32>, segment: Segment) -> f32 {
     let area = right.x * down.y - right.y * down.x;
     if area == 0.0 {
         return NEVER;
     }
     let px_from_m = mat2x2(vec2(down.y, -right.y) / area, vec2(-down.x, right.x) / area);
-    return length(from_segment(px_from_m * from_start, px_from_m * start_to_end));
+    let seen = Segment(px_from_m * (segment.start - at), px_from_m * segment.start_to_end, segment.flat_start, segment.flat_end);
+    return length(from_segment(vec2(0.0), seen));
 }
 
 // The label that a segment gives the ground at a pixel: 0 if that ground is not on the road.
-fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
-    road: Road, widest_m: f32) -> u32 {
+fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Segment, road: Road, widest_m: f32) -> u32 {
     let position = position_at(center, depth_buffer);
     let distance_m = length(position);
-    if !is_shown(road.class_number, distance_m) {
+    if !is_shown(road, distance_m) {
         return NOTHING;
     }
-    let plan_m = length(from_segment(position.xy - start, start_to_end));
+    let plan_m = length(from_segment(position.xy, segment));
     if plan_m > widest_m {
         return NOTHING;
     }
-    // The centre line is treated as a road of its own, of which every width is smaller.
-    let share = center_share(road);
+    // Each band is treated as a road of its own, of which every width is smaller. So what is within one is within all before.
+    let bands = band_count(road);
     let half_m = scaled_half_width_m(road, distance_m);
-    if share > 0.0 && plan_m <= share * half_m {
-        return center_label(road.class_number);
-    }
     let looks_m = stretch_of(distance_m, position.z)
         * least_half_width_m(road, view_depth_of(depth_buffer));
-    let is_within = plan_m <= half_m;
-    if plan_m > looks_m * select(1.0, share, is_within) {
-        return select(NOTHING, fill_label(road.class_number), is_within);
+    // How many bands are known to be there.
+    var within = 0u;
+    while within < bands && plan_m <= band_share(road.class_number, within) * half_m {
+        within++;
     }
-    let right = plan_step(pixel, vec2(1, 0), depth_buffer, position.xy, start, start_to_end);
-    let down = plan_step(pixel, vec2(0, 1), depth_buffer, position.xy, start, start_to_end);
-    let seen = seen_px(right, down, position.xy - start, start_to_end);
+    if within == bands || plan_m > band_share(road.class_number, within) * looks_m {
+        return band_label(road, within);
+    }
+    let right = plan_step(pixel, vec2(1, 0), depth_buffer, position.xy, segment);
+    let down = plan_step(pixel, vec2(0, 1), depth_buffer, position.xy, segment);
+    let seen = seen_px(right, down, position.xy, segment);
     let least_px = frame.road_widths[road.class_number].y;
-    if plan_m <= share * looks_m && seen <= share * least_px {
-        return center_label(road.class_number);
+    while within < bands {
+        let share = band_share(road.class_number, within);
+        if plan_m > share * looks_m || seen > share * least_px {
+            break;
+        }
+        within++;
     }
-    return select(NOTHING, fill_label(road.class_number), is_within || seen <= least_px);
+    return band_label(road, within);
 }
 
 // An upper bound of the half width of a road, no part of which is farther away than `far_m`, or nearer to the eye's height
@@ -177,13 +199,16 @@ fn bounding_radius_m(road: Road, far_m: f32, near_height_m: f32) -> f32 {
     return max(scaled_half_width_m(road, reach_m), stretch * least_half_width_m(road, reach_m));
 }
 
-// More important classes have larger labels; the centre line of a class lies above its fill.
-fn fill_label(road_class: u32) -> u32 {
-    return TUNNEL_LABELS + (CLASSES - road_class) * 2u;
-}
-
-fn center_label(road_class: u32) -> u32 {
-    return fill_label(road_class) + 1u;
+// The label of the innermost of so many bands of a road. More important classes have larger labels, and each band of a class
+// has a larger one than the band that it lies on.
+fn band_label(road: Road, within: u32) -> u32 {
+    if within == 0u {
+        return NOTHING;
+    }
+    if road.look == SERVICE {
+        return SERVICE_LABELS + CLASSES - road.class_number;
+    }
+    return (CLASSES + 1u - road.class_number) * BANDS + within - 1u;
 }
 
 // The smallest number of pixels that a dash and the gap after it may have together. They have fewer than twice as many.

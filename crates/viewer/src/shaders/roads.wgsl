@@ -29,7 +29,8 @@ struct SegmentIn {
     // Height of the piece's start; world metres across the road for each true metre.
     @location(2) height_width_factor: vec2<f32>,
     // Lowest four bits: class. Then one bit for a cap at the start, one for a cap at the end, and one for each of the three
-    // reaches, if ground of other tiles may be within it. Then two bits for the look.
+    // reaches, if ground of other tiles may be within it. Then two bits for the look, and two if the segment ends flat at its start
+    // and at its end.
     @location(3) class_and_flags: u32,
     // At most how far the ground lies below and above the plane. xy: for each metre of distance, within the first reach;
     // zw: anywhere within the first reach.
@@ -207,7 +208,8 @@ fn vertex(in: SegmentIn) -> RoadFragment {
     out.clip = frame.clip_from_relative * vec4(position * AWAY, 1.0);
     out.start = start;
     out.start_to_end = start_to_end;
-    out.class_and_other = road.class_number | (look << 4u);
+    // Look and flat ends.
+    out.class_and_other = road.class_number | (((in.class_and_flags >> LOOK_SHIFT) & 15u) << 4u);
     out.half_width_m = road.half_width_m;
     out.dash_m = in.dash_m;
     return out;
@@ -224,7 +226,7 @@ fn fragment(in: RoadFragment) -> @location(0) f32 {
     }
     let depth_buffer = textureLoad(terrain_depth, pixel, 0).r;
     let road = road_of(in);
-    let label = label_at(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, road, tile.base.y);
+    let label = label_at(pixel, in.clip.xy, depth_buffer, segment_of(in), road, tile.base.y);
     if label == NOTHING {
         discard;
     }

@@ -27,7 +27,7 @@ struct VolumeIn {
     // x: how much lower or higher the ground may be for each metre away from the segment, up to `tile.base.w` away;
     // y: world metres across the road for each true metre.
     @location(4) near_rise_width_factor: vec2<f32>,
-    // Lowest four bits: class; two bits: look. Above, for a connector, the number of the other tile it belongs to, else 0.
+    // As in RoadFragment.
     @location(5) class_and_other: u32,
     // The road's own width, as `road_with` takes it.
     @location(6) own_width: f32,
@@ -73,7 +73,7 @@ fn vertex(in: VolumeIn) -> RoadFragment {
     let vertical_scale = frame.scale.y;
     let look = (in.class_and_other >> 4u) & 3u;
     let road = road_with(in.class_and_other & 15u, look, in.own_width, in.near_rise_width_factor.y);
-    let is_connector = in.class_and_other > 63u;
+    let is_connector = in.class_and_other > 255u;
     let a = tile.offset.xy + in.start_in_tile;
     let ab = in.end_in_tile - in.start_in_tile;
     let length_m = length(ab);
@@ -157,15 +157,16 @@ fn is_road_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, 
 
 fn label_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, start_to_end: vec2<f32>,
     road: Road) -> u32 {
-    if !is_shown(road.class_number, length(position_at(center, depth_buffer))) {
+    if !is_shown(road, length(position_at(center, depth_buffer))) {
         return NOTHING;
     }
-    let share = center_share(road);
-    if share > 0.0 && is_road_by_the_paper(center, depth_buffer, start, start_to_end, road, share) {
-        return center_label(road.class_number);
+    let bands = band_count(road);
+    var within = 0u;
+    while within < bands && is_road_by_the_paper(center, depth_buffer, start, start_to_end, road,
+        band_share(road.class_number, within)) {
+        within++;
     }
-    let is_road = is_road_by_the_paper(center, depth_buffer, start, start_to_end, road, 1.0);
-    return select(NOTHING, fill_label(road.class_number), is_road);
+    return band_label(road, within);
 }
 
 @fragment
@@ -173,7 +174,7 @@ fn fragment(in: RoadFragment) -> @location(0) f32 {
     let pixel = vec2<i32>(in.clip.xy);
     let owner = textureLoad(owners, pixel, 0).r;
     let own = u32(tile.base.z);
-    let other = in.class_and_other >> 6u;
+    let other = in.class_and_other >> 8u;
     let is_mine = owner == own;
     let is_connected = other != 0u && ((owner & ~SKIRT) == own || (owner & ~SKIRT) == other);
     if !is_mine && !is_connected {
@@ -185,7 +186,7 @@ fn fragment(in: RoadFragment) -> @location(0) f32 {
     if frame.road_options.y > 0.5 {
         label = label_by_the_paper(in.clip.xy, depth_buffer, in.start, in.start_to_end, road);
     } else {
-        label = label_at(pixel, in.clip.xy, depth_buffer, in.start, in.start_to_end, road, tile.base.y);
+        label = label_at(pixel, in.clip.xy, depth_buffer, segment_of(in), road, tile.base.y);
     }
     if label == NOTHING {
         discard;

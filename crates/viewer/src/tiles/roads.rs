@@ -1,6 +1,8 @@
 //! The roads of a tile: lines as the package has them, cut into the pieces that are uploaded.
 
+mod dashes;
 pub(crate) mod ends;
+mod flat_ends;
 mod ground_beside;
 mod lines;
 mod list;
@@ -9,9 +11,9 @@ mod segments;
 mod volumes;
 
 pub(crate) use self::{
+    dashes::dash_of_segment_m,
     ends::RoadEnd,
     ground_beside::{Bed, NearHeights},
-    look::dash_m,
     segments::Piece,
 };
 pub use self::{

@@ -9,7 +9,7 @@ use corniche_viewer::{
     RoadMethod, RoadOptions,
     camera::Camera,
     eye_height::clearance_m,
-    for_tests::{Owner, TUNNEL_BIT, settle},
+    for_tests::{Owner, is_tunnel, settle},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
     lod::Quality,
     tiles::{PackageSource, TileStore},
@@ -156,5 +156,5 @@ impl<'a> Atlas<'a> {
 /// What a label says of the road. Where the dashes of a tunnel begin and end is a matter of rounding to f32, about which the
 /// reference knows nothing.
 fn road_of(label: u8) -> u8 {
-    if label & TUNNEL_BIT == 0 { label } else { label | 1 }
+    if is_tunnel(label) { label | 1 } else { label }
 }

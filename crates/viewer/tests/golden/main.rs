@@ -8,7 +8,7 @@
 #[path = "../support/mod.rs"]
 mod support;
 
-use corniche_styles::Style;
+use corniche_styles::{RoadBands, Style};
 use corniche_testing::pictures::{Golden, is_blessing};
 use corniche_viewer::{
     FrameView, RoadMethod, RoadOptions, Wireframe,
@@ -136,7 +136,8 @@ fn a_colour_three_percent_off_is_no_match() {
     }
     let Some(gpu) = software() else { return };
     let mut style = near_style();
-    style.roads[4].color[2] += 0.03;
+    let [red, green, blue] = style.roads[4].bands.main_color();
+    style.roads[4].bands = RoadBands::one([red, green, blue + 0.03]);
     let picture = image(&gpu, near(&gpu, &style, RoadMethod::ShadowVolumes).picture());
     let found = golden().mismatch("junction-sv", &picture).unwrap();
     println!("must fail, one colour 3 % off: {found}");

@@ -1,12 +1,15 @@
 //! Roads on flat and evenly sloping ground: place, width, order and centre lines.
 
 use corniche_geom::TileId;
-use corniche_viewer::camera::{Camera, Orientation};
+use corniche_viewer::{
+    camera::{Camera, Orientation},
+    for_tests::road_label,
+};
 use glam::DVec2;
 
 use crate::{
     SIZE, camera, center, compare, hidden_centerline_points, scene,
-    support::{draw, frame, gpu, ground_line, lay, plain_style, terrain, triangles},
+    support::{bands, draw, frame, gpu, ground_line, lay, plain_style, terrain, triangles},
 };
 
 #[test]
@@ -19,7 +22,7 @@ fn a_road_is_where_the_camera_says() {
         let point = center() + DVec2::new(-400.0 + 900.0 * share, -200.0 + 500.0 * share);
         let (at, _) = camera.project(point.extend(300.0)).unwrap();
         let index = at.y as usize * SIZE[0] as usize + at.x as usize;
-        assert_eq!(drawing.labels[index] / 2, 7, "no road at {at}");
+        assert_eq!(drawing.labels[index], road_label(2, 0), "no road at {at}");
     }
     let beside = center() + DVec2::new(-100.0, 200.0);
     let (at, _) = camera.project(beside.extend(300.0)).unwrap();
@@ -164,7 +167,7 @@ fn more_important_roads_lie_above_across_tiles() {
         let center = 240 * SIZE[0] as usize + 320;
         for offset in [-10_isize, -1, 0, 10] {
             let label = drawing.labels[center.saturating_add_signed(offset)];
-            assert_eq!(label / 2, 9 - 1, "label {label} at {offset} px from the junction");
+            assert_eq!(label, road_label(1, 0), "label {label} at {offset} px from the junction");
         }
     }
 }
@@ -182,8 +185,7 @@ fn the_center_line_of_a_road_goes_through_its_joints() {
         ],
     );
     let mut style = plain_style(50.0);
-    style.roads[0].center =
-        Some(corniche_styles::CenterLine { width_share: 0.3, color: [1.0, 1.0, 0.0] });
+    style.roads[0].bands = bands(&[1.0, 0.3]);
     let camera = camera(50.0, 900.0, 0.0, 0.0);
     let drawing = draw(&gpu, &camera, &style, &[tile]);
     for share in [0.2, 0.6, 1.0] {
@@ -191,7 +193,7 @@ fn the_center_line_of_a_road_goes_through_its_joints() {
             let point = center() + DVec2::from_array(end) * (1.0 - share);
             let (at, _) = camera.project(point.extend(50.0)).unwrap();
             let label = drawing.labels[at.y as usize * SIZE[0] as usize + at.x as usize];
-            assert_eq!(label, 19, "class 0 and its centre line at {at}");
+            assert_eq!(label, road_label(0, 1), "class 0 and its centre line at {at}");
         }
     }
 }

@@ -5,11 +5,11 @@ use corniche_styles::{Style, WidthScaling};
 use corniche_viewer::{
     CapTest, Caps, RoadMethod, RoadOptions, WidthGrowth,
     camera::{Camera, Orientation},
-    for_tests::{may_be_clamped, settle},
+    for_tests::{class_of, may_be_clamped, settle},
     lod::Quality,
     tiles::TileStore,
 };
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::{
     ground_rays,
@@ -62,15 +62,15 @@ pub(crate) fn check(named: &Named) {
     let Some(gpu) = gpu() else { return };
     let Named { name, scene, cameras } = named;
     let is_plain = scene.style.roads.iter().all(|road| road.min_width_px == 0.0);
-    let has_centers = scene.style.roads.iter().any(|road| road.center.is_some());
+    let has_bands = scene.style.roads.iter().any(|road| road.bands.all().len() > 1);
     for method in METHODS {
         let options = RoadOptions::of(method);
         for camera in cameras {
             let drawing = scene.draw(&gpu, camera, options);
             let found =
                 DepthOracle { scene, camera, options, drawing: &drawing, band_px: 0.05 }.compare();
-            // The second reference knows neither least widths nor centre lines.
-            let rays = (is_plain && !has_centers)
+            // The second reference knows neither least widths nor bands.
+            let rays = (is_plain && !has_bands)
                 .then(|| ground_rays::compare(scene, camera, options, &drawing));
             let lines = measures::center_lines(scene, camera, &drawing);
             print_row(name, method, &found, rays, lines);
@@ -150,6 +150,35 @@ fn volumes_agree_with_both_references_across_tiles() {
 #[test]
 fn volumes_agree_with_the_reference_at_junctions() {
     check_named(&["junction of 4 classes", "junction, atlas style, far"]);
+}
+
+#[test]
+fn both_methods_agree_with_both_references_where_roads_end_flat() {
+    check_named(&["roads that go on as others"]);
+}
+
+/// Beyond the end of the more important of two roads in line, within the radius of its cap, there is the other road.
+#[test]
+fn no_cap_lies_on_a_road_that_goes_on() {
+    let Some(gpu) = gpu() else { return };
+    let camera = scenes::camera(0.0, 600.0, 0.0, 0.0);
+    let on = |other: [f64; 2]| {
+        let roads = [(1, vec![[-300.0, 0.0], [0.0, 0.0]]), (4, vec![[0.0, 0.0], other])];
+        let scene = one_tile(256, |_, _| 0.0, &roads, style(60.0));
+        METHODS.map(|method| {
+            let drawing = scene.draw(&gpu, &camera, RoadOptions::of(method));
+            let at = scenes::center() + DVec2::new(15.0, 0.0);
+            let (at, _) = camera.project(at.extend(0.0)).unwrap();
+            class_of(drawing.labels[at.y as usize * scenes::SIZE[0] as usize + at.x as usize])
+        })
+    };
+    assert_eq!(on([300.0, 20.0]), [Some(4); 2]);
+    assert_eq!(on([100.0, 300.0]), [Some(1); 2], "where the road turns, the cap stays");
+}
+
+#[test]
+fn both_methods_agree_with_the_reference_on_roads_of_many_bands() {
+    check_named(&["junction of many bands"]);
 }
 
 #[test]

@@ -1,20 +1,19 @@
 //! Classes by scale: which are drawn, how they fade, which are submitted; slip roads and tunnels.
 
-use corniche_styles::{CenterLine, RoadStyle, Style, WidthScaling};
+use corniche_styles::{RoadBands, RoadStyle, Style, WidthScaling};
 use corniche_viewer::{
     RoadOptions,
     camera::Camera,
-    for_tests::TUNNEL_BIT,
+    for_tests::{road_label, service_label, tunnel_label},
     gpu::{DrawTile, TileBuffers},
     tiles::RoadLook,
 };
-use glam::DVec2;
 
 use crate::{
     agreement::{METHODS, check, name_of},
     reference::DepthOracle,
     support::{
-        Drawing, gpu,
+        Drawing, bands, gpu,
         scene::Scene,
         scenes::{Named, Road, camera, hills, junction, one_tile, style},
     },
@@ -75,7 +74,7 @@ fn other_scales_and_caps_fail() {
 #[test]
 fn the_colour_of_a_fading_class_follows_its_closed_form() {
     let Some(gpu) = gpu() else { return };
-    let black = RoadStyle { color: [0.0; 3], ..style(60.0).roads[5] };
+    let black = RoadStyle { bands: RoadBands::one([0.0; 3]), ..style(60.0).roads[5] };
     let mut style = Style { roads: [black; 9], outline_px: 0, haze_reach: 1000.0, ..style(60.0) };
     let road: Road = (5, vec![[-900.0, 0.0], [900.0, 0.0]]);
     let scale_m = 3.0_f32;
@@ -130,7 +129,7 @@ fn what_has_faded_away_is_not_submitted() {
 /// A scene of one straight road of class 1 with a centre line, on flat ground, that is this.
 fn one_road(look: RoadLook) -> Scene {
     let mut style = style(60.0);
-    style.roads[1].center = Some(CenterLine { width_share: 0.4, color: [1.0, 0.0, 0.0] });
+    style.roads[1].bands = bands(&[1.0, 0.7, 0.4]);
     let roads: Vec<Road> =
         vec![(1, vec![[-900.0, 0.0], [900.0, 0.0]]), (6, vec![[0.0, -900.0], [0.0, 900.0]])];
     let scene = one_tile(256, |_, _| 0.0, &roads, style);
@@ -147,8 +146,67 @@ fn labels(drawing: &Drawing, column_of: Option<usize>) -> Vec<u8> {
     }
 }
 
+/// Tunnels with bends, one over the other, and slip roads: both methods have the dashes where the reference says, and the length
+/// goes on at bends.
 #[test]
-fn slip_roads_are_narrower_and_of_one_colour() {
+fn dashes_go_on_at_bends_in_both_methods() {
+    let bent =
+        vec![[-500.0, -200.0], [-180.0, -90.0], [-150.0, 60.0], [90.0, 130.0], [420.0, -60.0]];
+    let roads: Vec<Road> = vec![
+        (1, bent),
+        (4, vec![[-300.0, 250.0], [-20.0, -15.0], [200.0, -260.0]]),
+        (4, vec![[-450.0, 100.0], [300.0, 300.0]]),
+        (6, vec![[60.0, -300.0], [-60.0, 320.0]]),
+    ];
+    let mut style = style(30.0);
+    for road in &mut style.roads {
+        road.min_width_px = 3.0;
+    }
+    style.roads[4].bands = bands(&[1.0, 0.6, 0.3]);
+    let scene = one_tile(16, hills, &roads, style);
+    let looks = [RoadLook::Tunnel, RoadLook::Tunnel, RoadLook::Link, RoadLook::Plain];
+    let of_way = |way_id: i64| looks[way_id as usize - 1];
+    let tiles = scene.tiles.iter().map(|tile| tile.with_looks(of_way)).collect();
+    check(&Named {
+        name: "tunnels with bends, slip roads",
+        scene: Scene { tiles, ..scene },
+        cameras: vec![camera(400.0, 1100.0, 15.0, 20.0), camera(400.0, 1700.0, 250.0, 55.0)],
+    });
+}
+
+/// Service roads are narrower than the rest of their class, of one colour, under all other roads, and come one zoom step later.
+#[test]
+fn service_roads_come_later_and_lie_under_all_other_roads() {
+    let roads: Vec<Road> = vec![
+        (7, vec![[-600.0, -40.0], [-50.0, 10.0], [600.0, 60.0]]),
+        (8, vec![[0.0, -500.0], [150.0, 500.0]]),
+        (7, vec![[-300.0, 450.0], [-300.0, -450.0]]),
+        (5, vec![[250.0, 450.0], [300.0, -450.0]]),
+    ];
+    let view = camera(400.0, 1300.0, 30.0, 55.0);
+    let mut style = style(20.0);
+    for road in &mut style.roads {
+        road.min_width_px = 2.0;
+    }
+    style.roads[7].bands = bands(&[1.0, 0.6, 0.3]);
+    // In the picture are both the place where service roads end and the place where the others do.
+    style.roads[7].max_pixel_m = Some(pixel_m(&view, 1750.0));
+    let looks = [RoadLook::Service, RoadLook::Plain, RoadLook::Plain, RoadLook::Plain];
+    let scene = one_tile(16, hills, &roads, style);
+    let of_way = |way_id: i64| looks[way_id as usize - 1];
+    let tiles = scene.tiles.iter().map(|tile| tile.with_looks(of_way)).collect();
+    let scene = Scene { tiles, ..scene };
+    check(&Named { name: "service roads", scene: scene.clone(), cameras: vec![view.clone()] });
+    let Some(gpu) = gpu() else { return };
+    for method in METHODS {
+        let drawing = scene.draw(&gpu, &view, RoadOptions::of(method));
+        let count = |label| drawing.labels.iter().filter(|found| **found == label).count();
+        assert!(count(service_label(7)) > 300 && count(road_label(7, 2)) > 300);
+    }
+}
+
+#[test]
+fn slip_roads_are_narrower_and_lack_narrow_bands() {
     let Some(gpu) = gpu() else { return };
     let view = camera(0.0, 500.0, 0.0, 0.0);
     let true_px = 60.0 / f64::from(pixel_m(&view, 500.0));
@@ -159,9 +217,23 @@ fn slip_roads_are_narrower_and_of_one_colour() {
             labels.iter().map(|found| usize::from(*found == label)).sum::<usize>()
         };
         let (plain, link) = (column(RoadLook::Plain), column(RoadLook::Link));
-        assert!((count(&plain, 17) as f64 - 0.4 * true_px).abs() <= 1.0);
-        assert!((count(&link, 16) as f64 - 0.6 * true_px).abs() <= 1.0, "{}", name_of(method));
-        assert_eq!(count(&link, 17), 0);
+        let [outer, middle, inner] = [0, 1, 2].map(|band| road_label(1, band));
+        for (labels, label, share) in [
+            (&plain, outer, 0.3),
+            (&plain, middle, 0.3),
+            (&plain, inner, 0.4),
+            (&link, outer, 0.6 * 0.3),
+            (&link, middle, 0.6 * 0.7),
+        ] {
+            let found = count(labels, label) as f64;
+            // A band of which both sides are seen has two edges that fall between pixels.
+            assert!(
+                (found - share * true_px).abs() <= 2.0,
+                "{}: {found} of {share}",
+                name_of(method)
+            );
+        }
+        assert_eq!(count(&link, inner), 0, "a slip road has no line along its middle");
     }
 }
 
@@ -177,10 +249,12 @@ fn tunnels_have_dashes_and_lie_under_every_road() {
     });
     assert_eq!(rows[0], rows[1]);
     let row = &rows[0];
-    let crossing = row.iter().map(|label| u32::from(*label == 6)).sum::<u32>();
+    let minor = road_label(6, 0);
+    let crossing = row.iter().map(|label| u32::from(*label == minor)).sum::<u32>();
     let crossing = f64::from(crossing);
     assert!((crossing * f64::from(pixel_m(&view, 1000.0)) - 60.0).abs() < 3.0, "{crossing} px");
-    assert!(row.iter().all(|label| [6, 0x10 | TUNNEL_BIT, 0x11 | TUNNEL_BIT].contains(label)));
+    let possible = [minor, tunnel_label(1, false), tunnel_label(1, true)];
+    assert!(row.iter().all(|label| possible.contains(label)));
     // Beside the crossing, where a dash begins and where it ends.
     let beside = &row[row.len() / 2 + 40..];
     let changes: Vec<usize> =
@@ -190,14 +264,13 @@ fn tunnels_have_dashes_and_lie_under_every_road() {
     for pair in changes.windows(2) {
         assert!(((pair[1] - pair[0]) as f64 - half_px).abs() <= 1.0, "{changes:?}, {half_px}");
     }
-    // A dash begins at a whole number of periods from the zero of the working metres.
-    let middle = crate::support::scenes::center();
+    // A dash begins at a whole number of periods from the road's beginning.
     let x_m = |pixel: usize| {
         let px = (row.len() / 2 + 40 + pixel) as f64 - row.len() as f64 / 2.0;
-        middle.x + px * f64::from(pixel_m(&view, 1000.0))
+        900.0 + px * f64::from(pixel_m(&view, 1000.0))
     };
     let start = changes.iter().find(|at| beside[**at] & 1 == 1).copied().unwrap();
     let off = (x_m(start) / period_m).rem_euclid(1.0);
     let off_px = off.min(1.0 - off) * 2.0 * half_px;
-    assert!(off_px <= 1.0, "{off_px} px from {}", DVec2::new(x_m(start), period_m));
+    assert!(off_px <= 1.0, "{off_px} px from {} with {period_m}", x_m(start));
 }

@@ -1,10 +1,14 @@
 //! O2: the label of each pixel from rays at the triangles that were drawn.
 
-use corniche_viewer::{RoadOptions, camera::Camera, for_tests::Owner};
+use corniche_viewer::{
+    RoadOptions,
+    camera::Camera,
+    for_tests::{Owner, road_label},
+};
 use glam::{DVec2, DVec3};
 
 use crate::{
-    reference::{Look, Tri, distance, half_width, shows},
+    reference::{Look, Tri, distance, half_width, near_end, shows, without_caps},
     support::{Drawing, cast, scene::Scene},
 };
 
@@ -96,14 +100,16 @@ pub(crate) fn compare(
         let class = scene.tiles[hit.tile]
             .segments
             .iter()
-            .filter(|(class, ends, factor, own)| {
-                let (half_m, _) = half_width(look, (*class, *own), *factor, distance_m);
-                shows(&scene.style, camera, *class, distance_m) == Tri::Yes
-                    && distance(hit.at.truncate(), *ends, options.caps) <= half_m
+            .filter(|road| {
+                let (at, without_cap) = (hit.at.truncate(), without_caps(options.caps, road.flat));
+                let (half_m, _) = half_width(look, (road.class, road.own), road.factor, distance_m);
+                shows(&scene.style, camera, road.class, distance_m) == Tri::Yes
+                    && distance(at, road.ends, without_cap) <= half_m
+                    && near_end(at, road.ends, without_cap, 0.0) == Tri::Yes
             })
-            .map(|(class, ..)| *class)
+            .map(|road| road.class)
             .min();
-        class.map_or(0, |class| (9 - class) * 2)
+        class.map_or(0, |class| road_label(class, 0))
     };
     for (index, at) in drawing.pixels() {
         if matches!(drawing.owners[index], Owner::Skirt(_)) {

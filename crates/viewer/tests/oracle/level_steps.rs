@@ -6,6 +6,7 @@ use corniche_styles::Style;
 use corniche_viewer::{
     RoadOptions,
     camera::{Camera, Orientation},
+    tiles::RoadLook,
 };
 use glam::DVec3;
 
@@ -41,7 +42,7 @@ fn steps(scene: &Scene) -> Vec<Line> {
     for (k, a) in ends.iter().enumerate() {
         for b in &ends[k + 1..] {
             if a.0 != b.0 && a.1 == b.1 && a.2.truncate().distance(b.2.truncate()) < 0.01 {
-                steps.push(((a.3, OwnWidth::Unknown), vec![a.2, b.2]));
+                steps.push(((a.3, OwnWidth::Unknown, RoadLook::Plain), vec![a.2, b.2]));
             }
         }
     }
@@ -72,7 +73,7 @@ fn connectors_close_the_step_between_levels_and_without_them_it_gapes() {
         *tile = tile.with_ways_renumbered(k * 1000);
     }
     let steps = steps(&with);
-    for ((class, _), step) in &steps {
+    for ((class, ..), step) in &steps {
         println!("a step of {:.1} m under a road of class {class}", step[0].distance(step[1]));
     }
     let mut sums = [[CenterLines::default(); 2]; 2];

@@ -1,20 +1,20 @@
 //! Figures about a drawing: how much of the centre-lines is missing.
 
 use corniche_roads::OwnWidth;
-use corniche_viewer::{RoadMethod, RoadOptions, camera::Camera};
+use corniche_viewer::{RoadMethod, RoadOptions, camera::Camera, tiles::RoadLook};
 use glam::{DVec2, DVec3};
 
 use crate::{
     ground_rays::Caster,
-    reference::{Look, Tri, half_width, shows},
+    reference::{Look, Tri, half_width, lateness, narrowing, shows},
     support::{Drawing, scene::Scene},
 };
 
 /// Length of the steps along a centre-line.
 const STEP_PX: f64 = 0.25;
 
-/// Class, what the tags say of the width, and points of a centre-line.
-pub(crate) type Line = ((u8, OwnWidth), Vec<DVec3>);
+/// Class, what the tags say of the width and of the kind of road, and points of a centre-line.
+pub(crate) type Line = ((u8, OwnWidth, RoadLook), Vec<DVec3>);
 
 /// Lengths in the picture.
 #[derive(Debug, Clone, Copy, Default)]
@@ -36,7 +36,7 @@ pub(crate) fn center_lines(scene: &Scene, camera: &Camera, drawing: &Drawing) ->
         .flat_map(|tile| &tile.centers)
         .map(|line| {
             let points = line.points_m.iter().map(|point| DVec3::from_array(*point)).collect();
-            ((line.class.number(), line.own_width), points)
+            ((line.class.number(), line.own_width, line.look), points)
         })
         .collect();
     walk(&lines, scene, &Caster::new(scene, camera), camera, drawing)
@@ -51,9 +51,9 @@ pub(crate) fn walk(
     drawing: &Drawing,
 ) -> CenterLines {
     let options = RoadOptions::of(RoadMethod::ShadowVolumes);
-    let half_px = |road: (u8, OwnWidth), depth_m: f64| {
+    let half_px = |(class, own, kind): (u8, OwnWidth, RoadLook), depth_m: f64| {
         let look = Look { style: &scene.style, options, camera };
-        let (half_m, least_px) = half_width(look, road, 1.0, depth_m);
+        let (half_m, least_px) = half_width(look, (class, own), narrowing(kind), depth_m);
         (half_m / (camera.pixel_at_unit_depth_m() * depth_m)).max(least_px)
     };
     let mut sum = CenterLines::default();
@@ -83,7 +83,9 @@ pub(crate) fn walk(
                 caster.hit(at).is_none_or(|hit| hit.depth_m >= depth_m * (1.0 - 1e-6) - 1e-3)
             };
             let distance_m = depth_m * camera.ray_in_world(at).length();
-            let is_shown = shows(&scene.style, camera, line.0.0, distance_m) == Tri::Yes;
+            let (class, _, kind) = line.0;
+            let seen_from_m = lateness(kind) * distance_m;
+            let is_shown = shows(&scene.style, camera, class, seen_from_m) == Tri::Yes;
             if !in_view(at) || !is_shown {
                 continue;
             }

@@ -2,7 +2,12 @@
 
 use corniche_roads::OwnWidth;
 use corniche_styles::{OwnWidths, Style};
-use corniche_viewer::{Caps, RoadOptions, WidthGrowth, camera::Camera, for_tests::Owner};
+use corniche_viewer::{
+    Caps, RoadOptions, WidthGrowth,
+    camera::Camera,
+    for_tests::{Owner, road_label, service_label, tunnel_label},
+    tiles::RoadLook,
+};
 use glam::{DMat2, DVec2, DVec3};
 
 use crate::support::{
@@ -122,26 +127,44 @@ impl PixelOracle<'_> {
         let (ground, _) = self.ground(index).expect("the owner says there is ground");
         let segments = tile.segments_near(ground.truncate());
         let distance_m = ground.distance(self.camera.eye_in_world());
-        for class in 0..9_u8 {
-            let shown = shows(self.style, self.camera, class, distance_m);
-            for is_center in [true, false] {
-                let center = self.style.roads[usize::from(class)].center;
-                let Some(share) = (if is_center {
-                    center.map(|center| f64::from(center.width_share))
-                } else {
-                    Some(1.0)
-                }) else {
-                    continue;
-                };
-                let mut covered = Tri::No;
-                for segment in segments.iter().filter(|(number, ..)| *number == class) {
-                    covered = covered.or(self.is_road(index, share, segment, tile));
-                    if covered == Tri::Yes {
+        // What is on the ground hides what is beneath it, and service roads are hidden by all others.
+        let layers: [fn(RoadLook) -> bool; 3] = [
+            |look| matches!(look, RoadLook::Plain | RoadLook::Link),
+            |look| look == RoadLook::Service,
+            |look| look == RoadLook::Tunnel,
+        ];
+        for (layer, class) in layers.into_iter().flat_map(|layer| (0..9).map(move |k| (layer, k))) {
+            let roads: Vec<&PlanSegment> =
+                segments.iter().filter(|road| road.class == class && layer(road.look)).collect();
+            let (is_service, is_tunnel) = (layer(RoadLook::Service), layer(RoadLook::Tunnel));
+            if roads.is_empty() {
+                continue;
+            }
+            let seen_from_m =
+                if is_service { lateness(RoadLook::Service) * distance_m } else { distance_m };
+            let shown = shows(self.style, self.camera, class, seen_from_m);
+            let bands = self.style.roads[usize::from(class)].bands.all();
+            // The innermost band first, because it lies on the others.
+            for (number, band) in bands.iter().enumerate().rev() {
+                let number = number as u8;
+                let share = f64::from(band.width_share);
+                let (mut covered, mut dashed) = (Tri::No, Tri::No);
+                for road in roads.iter().filter(|road| has_band(road.look, number, share)) {
+                    let this = self.is_road(index, share, road, tile);
+                    covered = covered.or(this);
+                    if is_tunnel {
+                        dashed = dashed.or(this.and(self.is_dash(index, road)));
+                    } else if covered == Tri::Yes {
                         break;
                     }
                 }
                 match covered.and(shown) {
-                    Tri::Yes => return Verdict::Label((9 - class) * 2 + u8::from(is_center)),
+                    Tri::Yes if is_tunnel && dashed == Tri::Perhaps => return Verdict::InBand,
+                    Tri::Yes if is_tunnel => {
+                        return Verdict::Label(tunnel_label(class, dashed == Tri::Yes));
+                    }
+                    Tri::Yes if is_service => return Verdict::Label(service_label(class)),
+                    Tri::Yes => return Verdict::Label(road_label(class, number)),
                     Tri::Perhaps => return Verdict::InBand,
                     Tri::No => {}
                 }
@@ -154,7 +177,7 @@ impl PixelOracle<'_> {
         &self,
         index: usize,
         share: f64,
-        &(class, ends, factor, own): &PlanSegment,
+        &PlanSegment { class, ends, factor, own, look: kind, flat, .. }: &PlanSegment,
         tile: &Tile,
     ) -> Tri {
         let widest_m = tile.geometry.width_margin_m;
@@ -163,36 +186,72 @@ impl PixelOracle<'_> {
         let pixel_m = self.camera.pixel_at_unit_depth_m() * depth_m;
         // A step of a pixel on the screen moves the plan position by at least this much.
         let band_m = self.band_px * pixel_m;
-        let caps = self.options.caps;
-        let plan_m = distance(ground.truncate(), ends, caps);
+        let without_cap = without_caps(self.options.caps, flat);
+        let plan_m = distance(ground.truncate(), ends, without_cap);
         let look = Look { style: self.style, options: self.options, camera: self.camera };
-        let (half_m, least_px) = half_width(look, (class, own), factor, from_eye.length());
+        let (half_m, least_px) =
+            half_width(look, (class, own), factor * narrowing(kind), from_eye.length());
         let wide = Tri::at_most(plan_m, share * half_m, band_m);
         let stretch = (1.5 * from_eye.length() / from_eye.z.abs()).clamp(1.0, MAX_STRETCH);
         let near = Tri::at_most(plan_m, stretch * share * least_px * pixel_m, band_m);
         let thin = if near == Tri::No || wide == Tri::Yes {
             Tri::No
         } else {
-            near.and(self.looks_near(index, ground.truncate(), ends, share * least_px))
+            near.and(self.looks_near(
+                index,
+                ground.truncate(),
+                (ends, without_cap),
+                share * least_px,
+            ))
         };
         // Without caps a road ends abruptly: a step along it may do what one across does.
-        let end =
-            if caps == Caps::None { near_end(ground.truncate(), ends, band_m) } else { Tri::Yes };
+        let end = near_end(ground.truncate(), ends, without_cap, band_m);
         wide.or(thin).and(end).and(Tri::at_most(plan_m, widest_m, band_m))
     }
 
+    /// Whether a place on a tunnel is on a dash: dashes and gaps are as long as each other, both together a power of two of
+    /// metres, the smallest that is at least twelve pixels.
+    fn is_dash(&self, index: usize, road: &PlanSegment) -> Tri {
+        let (ground, depth_m) = self.ground(index).expect("the owner says there is ground");
+        let unit_m = self.camera.pixel_at_unit_depth_m();
+        let octave = (12.0 * unit_m * ground.distance(self.camera.eye_in_world())).log2();
+        if (octave - octave.round()).abs() < 1e-5 {
+            return Tri::Perhaps;
+        }
+        let period_m = octave.ceil().exp2();
+        let [a, b] = road.ends;
+        let along_m = road.start_m + (ground.truncate() - a).dot((b - a).normalize_or_zero());
+        let within_m = along_m.rem_euclid(period_m);
+        let off_m = [0.0, 0.5, 1.0].map(|share| (within_m - share * period_m).abs());
+        // Lengths are f32 of up to 65 km.
+        let band_m = self.band_px * unit_m * depth_m + 0.02;
+        if off_m.into_iter().any(|off_m| off_m <= band_m) {
+            Tri::Perhaps
+        } else if within_m < 0.5 * period_m {
+            Tri::Yes
+        } else {
+            Tri::No
+        }
+    }
+
     /// Whether a segment's image is at most `least_px` from a pixel's centre.
-    fn looks_near(&self, index: usize, at: DVec2, ends: [DVec2; 2], least_px: f64) -> Tri {
+    fn looks_near(
+        &self,
+        index: usize,
+        at: DVec2,
+        (ends, without_cap): ([DVec2; 2], [bool; 2]),
+        least_px: f64,
+    ) -> Tri {
         let mut verdict = None;
-        for right in self.steps(index, [1, 0], at, ends) {
-            for down in self.steps(index, [0, 1], at, ends) {
+        for right in self.steps(index, [1, 0], at, (ends, without_cap)) {
+            for down in self.steps(index, [0, 1], at, (ends, without_cap)) {
                 let plan_from_px = DMat2::from_cols(right, down);
                 let seen_px = if plan_from_px.determinant() == 0.0 {
                     f64::INFINITY
                 } else {
                     let px_from_plan = plan_from_px.inverse();
                     let ends_px = ends.map(|end| px_from_plan * (end - at));
-                    distance(DVec2::ZERO, ends_px, self.options.caps)
+                    distance(DVec2::ZERO, ends_px, without_cap)
                 };
                 let this = Tri::at_most(seen_px, least_px, self.band_px);
                 verdict = Some(
@@ -205,7 +264,13 @@ impl PixelOracle<'_> {
 
     /// How far in plan the ground moves with a step of a pixel, towards the segment; both ways where it is a
     /// matter of rounding which is nearer.
-    fn steps(&self, index: usize, [dx, dy]: [i64; 2], at: DVec2, ends: [DVec2; 2]) -> Vec<DVec2> {
+    fn steps(
+        &self,
+        index: usize,
+        [dx, dy]: [i64; 2],
+        at: DVec2,
+        (ends, without_cap): ([DVec2; 2], [bool; 2]),
+    ) -> Vec<DVec2> {
         let depth = self.drawing.depth[index];
         let look = |sign: i64| {
             let width = i64::from(self.drawing.size_px[0]);
@@ -215,7 +280,7 @@ impl PixelOracle<'_> {
             let other = (y * width + x) as usize;
             let ground = inside.then(|| self.ground(other)).flatten()?.0.truncate();
             let change = f64::from((self.drawing.depth[other] - depth).abs());
-            Some((ground, change, distance(ground, ends, self.options.caps)))
+            Some((ground, change, distance(ground, ends, without_cap)))
         };
         let step = |(ground, ..): (DVec2, f64, f64), sign: f64| (ground - at) * sign;
         match (look(1), look(-1)) {
@@ -256,10 +321,36 @@ impl PixelOracle<'_> {
     }
 }
 
-/// Whether a point is beside a segment without caps, not beyond its ends.
-fn near_end(at: DVec2, [a, b]: [DVec2; 2], band_m: f64) -> Tri {
+/// Which ends of a segment have no cap: flat ones, and all of roads without caps.
+pub(crate) fn without_caps(caps: Caps, flat: [bool; 2]) -> [bool; 2] {
+    flat.map(|is_flat| is_flat || caps == Caps::None)
+}
+
+/// Whether a point is beside a segment, not beyond an end without a cap.
+pub(crate) fn near_end(at: DVec2, [a, b]: [DVec2; 2], without_cap: [bool; 2], band_m: f64) -> Tri {
     let along_m = (at - a).dot((b - a).normalize_or_zero());
-    Tri::at_most(-along_m, 0.0, band_m).and(Tri::at_most(along_m, a.distance(b), band_m))
+    let ends = [Tri::at_most(-along_m, 0.0, band_m), Tri::at_most(along_m, a.distance(b), band_m)];
+    let ends = [0, 1].map(|k| if without_cap[k] { ends[k] } else { Tri::Yes });
+    ends[0].and(ends[1])
+}
+
+/// Slip roads and service roads are narrower than their class.
+pub(crate) fn narrowing(look: RoadLook) -> f64 {
+    if matches!(look, RoadLook::Link | RoadLook::Service) { 0.6 } else { 1.0 }
+}
+
+/// How many times nearer than the rest of its class a road must be to be shown: service roads come one zoom step later.
+pub(crate) fn lateness(look: RoadLook) -> f64 {
+    if look == RoadLook::Service { 2.0 } else { 1.0 }
+}
+
+/// Whether a road has a band of this number and share: slip roads have no narrow ones, tunnels and service roads have one colour.
+fn has_band(look: RoadLook, number: u8, share: f64) -> bool {
+    match look {
+        RoadLook::Plain => true,
+        RoadLook::Link => share >= 0.5,
+        RoadLook::Tunnel | RoadLook::Service => number == 0,
+    }
 }
 
 /// Whether a class is shown at all at a distance from the eye: half a zoom step beyond its scale it is gone.
@@ -305,16 +396,16 @@ pub(crate) fn half_width(
     (drawn_m / 2.0, f64::from(road.min_width_px) / 2.0)
 }
 
-/// Distance from a point to a segment; infinite beyond the ends of one without caps.
-pub(crate) fn distance(at: DVec2, [a, b]: [DVec2; 2], caps: Caps) -> f64 {
+/// Distance from a point to a segment; infinite far beyond an end without a cap. How near such an end is asked for with a band of
+/// its own.
+pub(crate) fn distance(at: DVec2, [a, b]: [DVec2; 2], without_cap: [bool; 2]) -> f64 {
     let d = b - a;
-    let along = if d == DVec2::ZERO { 0.0 } else { (at - a).dot(d) / d.length_squared() };
-    if caps == Caps::None && !(d != DVec2::ZERO && (-0.5..=1.5).contains(&along)) {
-        return f64::INFINITY;
+    if d == DVec2::ZERO {
+        return if without_cap == [true; 2] { f64::INFINITY } else { at.distance(a) };
     }
-    match caps {
-        Caps::Round => at.distance(a + d * along.clamp(0.0, 1.0)),
-        // How near the ends is asked for with a band of its own.
-        Caps::None => at.distance(a + d * along),
-    }
+    let along = (at - a).dot(d) / d.length_squared();
+    let is_far = (without_cap[0] && along < -0.5) || (without_cap[1] && along > 1.5);
+    let least = if without_cap[0] { along.min(0.0) } else { 0.0 };
+    let most = if without_cap[1] { along.max(1.0) } else { 1.0 };
+    if is_far { f64::INFINITY } else { at.distance(a + d * along.clamp(least, most)) }
 }

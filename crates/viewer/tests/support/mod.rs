@@ -13,13 +13,13 @@ pub(crate) mod scenes;
 
 use corniche_geom::{Cell, Frame, NodeIndex, TILE_CELLS, TileId};
 use corniche_roads::FunctionalRoadClass;
-use corniche_styles::{RoadStyle, Style, WidthScaling};
+use corniche_styles::{RoadBand, RoadBands, RoadStyle, Style, WidthScaling};
 use corniche_tileset::Terrain;
 use corniche_tin::{Tin, TinVertex};
 use corniche_viewer::{
     FrameView, RoadMethod, RoadOptions, Wireframe,
     camera::Camera,
-    for_tests::{GroundLine, Owner},
+    for_tests::{GroundLine, Owner, class_of},
     gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
     tiles::{TileGeometry, TileLines},
 };
@@ -208,9 +208,8 @@ pub(crate) fn plain_style(width_m: f32) -> Style {
     let road = RoadStyle {
         width_m,
         min_width_px: 0.0,
-        color: [1.0; 3],
+        bands: RoadBands::one([1.0; 3]),
         outline: [0.0; 3],
-        center: None,
         max_pixel_m: None,
         max_width_px: None,
         thin: None,
@@ -221,6 +220,16 @@ pub(crate) fn plain_style(width_m: f32) -> Style {
         width_scaling: WidthScaling { threshold_m: 1e9, exponent: 0.0, constant: 1.0 },
         ..Style::road_atlas()
     }
+}
+
+/// Bands of these shares of a road's width, in shades of their own.
+pub(crate) fn bands(shares: &[f32]) -> RoadBands {
+    let shade = |k: usize| (k as f32 + 1.0) / (shares.len() as f32 + 1.0);
+    let bands = shares.iter().enumerate().map(|(k, width_share)| RoadBand {
+        width_share: *width_share,
+        color: [shade(k), 1.0 - shade(k), 0.0],
+    });
+    RoadBands::new(&bands.collect::<Vec<_>>()).unwrap()
 }
 
 /// What came back from the device.
@@ -257,9 +266,8 @@ impl Drawing {
 
     /// Centres of the pixels with a label of this class.
     pub(crate) fn pixels_of(&self, number: u8) -> Vec<DVec2> {
-        let label = (9 - number) * 2;
         self.pixels()
-            .filter(|(index, _)| self.labels[*index] / 2 * 2 == label)
+            .filter(|(index, _)| class_of(self.labels[*index]) == Some(number))
             .map(|(_, at)| at)
             .collect()
     }

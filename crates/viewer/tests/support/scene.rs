@@ -19,8 +19,21 @@ use glam::{DVec2, DVec3};
 use super::Drawing;
 use crate::support;
 
-/// A segment of a road in plan: class, ends, working metres across it for each true metre, what its tags say of its width.
-pub(crate) type PlanSegment = (u8, [DVec2; 2], f64, OwnWidth);
+/// A segment of a road in plan.
+#[derive(Clone, Copy)]
+pub(crate) struct PlanSegment {
+    pub(crate) class: u8,
+    pub(crate) ends: [DVec2; 2],
+    /// Working metres across it for each true metre.
+    pub(crate) factor: f64,
+    /// What its tags say of its width.
+    pub(crate) own: OwnWidth,
+    pub(crate) look: RoadLook,
+    /// How far along its road its start is, for dashes.
+    pub(crate) start_m: f64,
+    /// Whether it ends flat at its start and at its end, because another road goes on there.
+    pub(crate) flat: [bool; 2],
+}
 
 /// A tile of a scene.
 #[derive(Clone)]
@@ -72,21 +85,41 @@ impl Tile {
         for (way_id, number, points) in roads {
             let class = support::class(*number);
             for pair in points.windows(2) {
+                // Where the road goes on, so does the line.
                 if let Some([a, b]) = clip([pair[0], pair[1]], grown(bounds, margin_m)) {
-                    lines.plan.push(PlanLine {
-                        way_id: *way_id,
-                        class,
-                        own_width: OwnWidth::Unknown,
-                        look: RoadLook::Plain,
-                        points_m: vec![a.to_array(), b.to_array()],
-                        // As low and high as the tile: never too narrow.
-                        ground_range_m: vec![ground.height_range_m],
+                    let before = lines.plan.last_mut().filter(|line| {
+                        line.way_id == *way_id && line.points_m.last() == Some(&a.to_array())
                     });
+                    // As low and high as the tile: never too narrow.
+                    let range_m = ground.height_range_m;
+                    match before {
+                        Some(line) => {
+                            line.points_m.push(b.to_array());
+                            line.ground_range_m.push(range_m);
+                        }
+                        None => lines.plan.push(PlanLine {
+                            way_id: *way_id,
+                            class,
+                            own_width: OwnWidth::Unknown,
+                            look: RoadLook::Plain,
+                            points_m: vec![a.to_array(), b.to_array()],
+                            ground_range_m: vec![range_m],
+                        }),
+                    }
                 }
                 if let Some([a, b]) = clip([pair[0], pair[1]], bounds) {
                     let points_m = support::lay(a, b, &triangles);
                     let line = support::ground_line(*number, points_m);
-                    lines.ground.push(GroundLine { way_id: *way_id, ..line });
+                    let before = lines.ground.last_mut().filter(|before| {
+                        before.way_id == *way_id && before.points_m.last() == line.points_m.first()
+                    });
+                    match before {
+                        Some(before) => {
+                            before.points_m.extend_from_slice(&line.points_m[1..]);
+                            before.sources_m.extend_from_slice(&line.sources_m);
+                        }
+                        None => lines.ground.push(GroundLine { way_id: *way_id, ..line }),
+                    }
                 }
             }
         }
@@ -209,20 +242,25 @@ impl Tile {
             .plan
             .iter()
             .flat_map(|line| {
-                line.points_m.windows(2).map(|pair| {
-                    let ends = [pair[0], pair[1]].map(DVec2::from_array);
-                    (
-                        line.class.number(),
-                        ends,
-                        lines.scale.across([pair[0], pair[1]]),
-                        line.own_width,
-                    )
+                line.points_m.windows(2).enumerate().map(|(number, pair)| PlanSegment {
+                    start_m: start_m(&line.points_m, number, frame.tile_bounds(id)),
+                    flat: [
+                        number == 0
+                            && is_flat(&lines.plan, line, End::First, frame.tile_bounds(id)),
+                        number + 2 == line.points_m.len()
+                            && is_flat(&lines.plan, line, End::Last, frame.tile_bounds(id)),
+                    ],
+                    class: line.class.number(),
+                    ends: [pair[0], pair[1]].map(DVec2::from_array),
+                    factor: lines.scale.across([pair[0], pair[1]]),
+                    own: line.own_width,
+                    look: line.look,
                 })
             })
             .collect();
         let mut near: HashMap<_, Vec<PlanSegment>> = HashMap::new();
         for segment in &segments {
-            let [a, b] = segment.1;
+            let [a, b] = segment.ends;
             let [low, high] = [a.min(b), a.max(b)].map(|at| square(at, lines.width_margin_m));
             for column in low[0] - 1..=high[0] + 1 {
                 for row in low[1] - 1..=high[1] + 1 {
@@ -286,6 +324,66 @@ impl Scene {
         Renderer::new(gpu).draw(gpu, view, &tiles, &targets);
         targets
     }
+}
+
+/// How far along a line a segment begins: from the first of the vertices before it that are in the tile without a break; for one
+/// that enters the tile, from its end; for one with neither end in it, from the zero of the CRS along it.
+fn start_m(points_m: &[[f64; 2]], segment: usize, tile: Bounds) -> f64 {
+    let at = |k: usize| DVec2::from_array(points_m[k]);
+    let [low, high] = [DVec2::new(tile.min_x, tile.min_y), DVec2::new(tile.max_x, tile.max_y)];
+    let is_inside = |k: usize| at(k).cmpge(low - 1e-6).all() && at(k).cmple(high + 1e-6).all();
+    if is_inside(segment) {
+        let run = (0..=segment).rev().take_while(|k| is_inside(*k));
+        return run.skip(1).map(|k| at(k).distance(at(k + 1))).sum();
+    }
+    let [a, b] = [at(segment), at(segment + 1)];
+    if is_inside(segment + 1) { -a.distance(b) } else { a.dot((b - a).normalize_or_zero()) }
+}
+
+/// An end of a line.
+#[derive(Clone, Copy, PartialEq)]
+enum End {
+    First,
+    Last,
+}
+
+/// Where a line ends, and in which direction it would go on.
+fn end_of(line: &PlanLine, end: End) -> (DVec2, DVec2) {
+    let mut points: Vec<DVec2> = line.points_m.iter().copied().map(DVec2::from_array).collect();
+    if end == End::First {
+        points.reverse();
+    }
+    let [before, last] = [points[points.len() - 2], points[points.len() - 1]];
+    (last, (last - before).normalize_or_zero())
+}
+
+/// Whether a line ends flat: another line that it is drawn above begins there and turns by 30° at most, and all that end there
+/// are drawn below it.
+fn is_flat(lines: &[PlanLine], line: &PlanLine, end: End, tile: Bounds) -> bool {
+    let above = |line: &PlanLine| {
+        let layer = ["Tunnel", "Service", "Ground"].len()
+            - match line.look {
+                RoadLook::Tunnel => 3,
+                RoadLook::Service => 2,
+                RoadLook::Plain | RoadLook::Link => 1,
+            };
+        (layer, 9 - line.class.number(), line.look != RoadLook::Link)
+    };
+    let (at, outward) = end_of(line, end);
+    let inside = at.x > tile.min_x && at.x < tile.max_x && at.y > tile.min_y && at.y < tile.max_y;
+    let others: Vec<(&PlanLine, DVec2)> = lines
+        .iter()
+        .flat_map(|other| [End::First, End::Last].map(|which| (other, which)))
+        .filter(|(other, which)| !(std::ptr::eq(*other, line) && *which == end))
+        .filter_map(|(other, which)| {
+            let (there, direction) = end_of(other, which);
+            (there == at && direction != DVec2::ZERO).then_some((other, direction))
+        })
+        .collect();
+    inside
+        && outward != DVec2::ZERO
+        && others.iter().all(|(other, _)| above(other) < above(line))
+        && others.iter().any(|(_, direction)| outward.dot(-*direction) >= 0.866)
 }
 
 /// What the tags of a way say of its width, by the payload's list.

@@ -4,12 +4,12 @@ use std::num::{NonZeroU8, NonZeroU32};
 
 use corniche_geom::TileId;
 use corniche_roads::OwnWidth;
-use corniche_styles::{CenterLine, OwnWidths, Style, WidthScaling};
+use corniche_styles::{OwnWidths, Style, WidthScaling};
 use corniche_viewer::camera::{Camera, Orientation};
 use glam::DVec2;
 
 use super::{
-    frame, plain_style,
+    bands, frame, plain_style,
     scene::{Scene, Tile},
     terrain,
 };
@@ -166,7 +166,19 @@ fn of_own_widths() -> Vec<Named> {
 pub(crate) fn all() -> Vec<Named> {
     let two_colours = {
         let mut style = style(26.0);
-        style.roads[0].center = Some(CenterLine { width_share: 0.3, color: [1.0, 1.0, 0.0] });
+        style.roads[0].bands = bands(&[1.0, 0.3]);
+        style
+    };
+    // Least widths too, so that thin roads have bands by the second rule; classes that cross have different ones.
+    let many_bands = {
+        let mut style = far_atlas();
+        style.roads[0].bands = bands(&[1.0, 0.85, 0.7, 0.5, 0.3, 0.1]);
+        let most: Vec<f32> = (0..16_u8).map(|k| 1.0 - f32::from(k) / 17.0).collect();
+        style.roads[2].bands = bands(&most);
+        style.roads[4].bands = bands(&[1.0, 0.9, 0.4]);
+        for (road, width_px) in style.roads.iter_mut().zip([60.0, 40.0, 50.0, 30.0, 24.0]) {
+            (road.min_width_px, road.max_width_px) = (width_px, Some(2.0 * width_px));
+        }
         style
     };
     let ridge = |_: f64, y: f64| (400.0 - y.abs() * 0.5).max(0.0);
@@ -221,6 +233,28 @@ pub(crate) fn all() -> Vec<Named> {
             name: "junction, atlas style, far",
             scene: one_tile(16, hills, &junction(), far_atlas()),
             cameras: vec![camera(400.0, 6000.0, 0.0, 35.0), camera(400.0, 9000.0, 60.0, 78.0)],
+        },
+        Named {
+            name: "junction of many bands",
+            scene: one_tile(16, hills, &junction(), many_bands),
+            cameras: vec![camera(400.0, 1500.0, 0.0, 35.0), camera(400.0, 9000.0, 60.0, 78.0)],
+        },
+        Named {
+            name: "roads that go on as others",
+            scene: one_tile(
+                16,
+                hills,
+                &[
+                    (1, vec![[-500.0, -100.0], [-150.0, 0.0], [20.0, 30.0]]),
+                    (4, vec![[420.0, 20.0], [20.0, 30.0]]),
+                    (2, vec![[420.0, 20.0], [600.0, -50.0]]),
+                    (3, vec![[-100.0, 420.0], [-120.0, 200.0]]),
+                    (6, vec![[-120.0, 200.0], [-230.0, -350.0]]),
+                    (5, vec![[-100.0, 420.0], [200.0, 400.0]]),
+                ],
+                style(44.0),
+            ),
+            cameras: vec![camera(400.0, 1000.0, 0.0, 10.0), camera(400.0, 1700.0, 70.0, 60.0)],
         },
         Named {
             name: "hairpin and points",

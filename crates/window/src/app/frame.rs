@@ -237,7 +237,8 @@ impl App {
         let mut answer = Answer::default();
         let mut settings = self.settings.clone();
         let style = self.styles.at(self.settings.style);
-        let road_colors: Vec<Rgb> = style.roads.iter().map(|road| road.color).collect();
+        let road_colors: Vec<Rgb> =
+            style.roads.iter().map(|road| road.bands.main_color()).collect();
         let content = self.content(canvas, ui, &road_colors, now_s);
         let output = ui.run_ui(raw, |ui| {
             let shown = panel::show(ui, &mut settings, &content, drew.pictures);

@@ -1,5 +1,6 @@
 //! Ground, sky and roads into the samples of a picture.
 
+use corniche_styles::{RoadBands, RoadStyle};
 use glam::DVec4;
 use wgpu::{
     BindGroupLayout, BindGroupLayoutEntry, BindingResource, BufferUsages, ColorWrites,
@@ -128,12 +129,16 @@ pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
         row(void_plane(view)),
     ];
     let roads = &style.roads;
-    rows.extend(roads.iter().map(|road| color(road.color, 1.0)));
+    for road in roads {
+        let mut bands = [[0.0; 4]; RoadBands::MOST];
+        for (row, band) in bands.iter_mut().zip(road.bands.all()) {
+            *row = color(band.color, 1.0);
+        }
+        rows.extend(bands);
+    }
     rows.extend(roads.iter().map(|road| color(road.outline, 1.0)));
-    rows.extend(roads.iter().map(|road| {
-        let center = road.center.map_or(road.color, |center| center.color);
-        color(center, 1.0)
-    }));
-    rows.extend(roads.iter().map(|road| color(road.thin.unwrap_or(road.color), 1.0)));
+    rows.extend(roads.iter().map(|road| color(road.bands.main_color(), 1.0)));
+    let thin = |road: &RoadStyle| road.thin.unwrap_or(road.bands.main_color());
+    rows.extend(roads.iter().map(|road| color(thin(road), 1.0)));
     rows
 }

@@ -58,7 +58,8 @@ fn instance_bytes(segments: &[RoadSegment]) -> Vec<u8> {
         let [at_start, at_end] = segment.has_caps;
         let flags = [at_start, at_end].into_iter().chain(leaves_tile);
         let flags = flags.zip(4..).fold(0, |flags, (flag, bit)| flags | u32::from(flag) << bit);
-        let flags = flags | segment.look.number() << 9;
+        let [start, end] = segment.flat_ends.map(u32::from);
+        let flags = flags | segment.look.number() << 9 | start << 11 | end << 12;
         bytes.extend_from_slice(&(u32::from(segment.class.number()) | flags).to_ne_bytes());
         for bound in [rises].iter().chain(&most_m).flatten() {
             bytes.extend_from_slice(&f16_above(*bound).to_ne_bytes());

@@ -14,8 +14,8 @@ use crate::tiles::{RoadVolume, RoadVolumes};
 
 pub(crate) const SHADER: Shader = shader!("volumes": "common", "coverage", "volumes");
 
-/// Bytes of an instance: two plan positions and two height ranges as two f32 each, rise and width factor as f32, class, look
-/// and other tile as u32, own width and place of dashes as f32.
+/// Bytes of an instance: two plan positions and two height ranges as two f32 each, rise and width factor as f32, class, look,
+/// flat ends and other tile as u32, own width and place of dashes as f32.
 const INSTANCE_BYTES: u64 = 52;
 /// Corners of the strip of triangles around a box, as `shaders/volumes.wgsl` counts them.
 const CORNERS: Range<u32> = 0..14;
@@ -58,7 +58,9 @@ pub(crate) fn instance_bytes(volumes: impl Iterator<Item = (RoadVolume, u32)>) -
         bytes.extend_from_slice(&volume.near.rise.to_ne_bytes());
         bytes.extend_from_slice(&volume.width_factor.to_ne_bytes());
         let class = u32::from(volume.class.number());
-        bytes.extend_from_slice(&(class | volume.look.number() << 4 | other << 6).to_ne_bytes());
+        let [start, end] = volume.flat_ends.map(u32::from);
+        let flags = volume.look.number() << 4 | start << 6 | end << 7;
+        bytes.extend_from_slice(&(class | flags | other << 8).to_ne_bytes());
         bytes.extend_from_slice(&own_width_value(volume.own_width).to_ne_bytes());
         bytes.extend_from_slice(&volume.dash_m.to_ne_bytes());
     }

@@ -15,14 +15,22 @@ fn tunnels_count_before_slip_roads() {
     }
 }
 
-/// A straight line that is cut anywhere has its dashes at the same places.
 #[test]
-fn dashes_go_on_where_a_line_is_cut() {
-    let [start, cut, end] =
-        [[530_003.0, 5_210_004.0], [530_006.0, 5_210_008.0], [530_012.0, 5_210_016.0]];
-    let [whole, first, second] = [[start, end], [start, cut], [cut, end]].map(dash_m);
-    assert!((first - whole).abs() < 1e-2);
-    assert!((second - first - 5.0).abs() < 2e-2, "{first} {second}");
-    assert!((0.0..65_536.0).contains(&dash_m([[-5.0, 0.0], [-4.0, 0.0]])));
-    assert!(dash_m([start, start]).abs() < 1e-9);
+fn service_roads_are_known_by_their_highway_value() {
+    let tagged = |highway: &str, structure| RoadAttributes {
+        highway: highway.to_owned(),
+        structure,
+        ..RoadAttributes::default()
+    };
+    for (highway, structure, look) in [
+        ("service", Structure::Ground, RoadLook::Service),
+        ("service", Structure::Bridge, RoadLook::Service),
+        ("service", Structure::Tunnel, RoadLook::Tunnel),
+        ("services", Structure::Ground, RoadLook::Plain),
+        ("track", Structure::Ground, RoadLook::Plain),
+        // Packages of the first programs do not have the value.
+        ("", Structure::Ground, RoadLook::Plain),
+    ] {
+        assert_eq!(RoadLook::of(&tagged(highway, structure)), look, "{highway} {structure:?}");
+    }
 }

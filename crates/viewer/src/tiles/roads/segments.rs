@@ -3,8 +3,10 @@ use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use super::{
     super::{PlanScale, ground_mesh::relative},
-    Bed, GroundLine, RoadList, RoadLook, dash_m,
+    Bed, GroundLine, RoadList, RoadLook,
+    dashes::dash_starts_m,
     ends::ground_ends,
+    flat_ends::{LineEnds, flat_ends},
 };
 
 /// A straight piece of a road's centre-line on the ground.
@@ -31,8 +33,10 @@ pub struct RoadSegment {
     pub own_width: OwnWidth,
     /// What it is.
     pub look: RoadLook,
-    /// Where the dashes of a tunnel are: how far the start of its source segment is along that segment, working metres.
+    /// Where the dashes of a tunnel are: how far along the road the start of its source segment is, working metres.
     pub(crate) dash_m: f32,
+    /// Whether its source segment ends flat at its start and at its end, also where roads have caps.
+    pub(crate) flat_ends: [bool; 2],
 }
 
 /// All segments of a tile.
@@ -46,20 +50,23 @@ pub(crate) struct Piece {
     /// The ends of its source segment in plan.
     pub(crate) source_m: [[f64; 2]; 2],
     pub(crate) has_caps: [bool; 2],
+    /// How many source segments of its line come before its own.
+    source_number: usize,
 }
 
 impl Piece {
     fn all_of(line: &GroundLine) -> impl Iterator<Item = Self> {
         let sources_m = &line.sources_m;
+        let mut source_number = 0;
         line.points_m.windows(2).zip(sources_m).enumerate().map(move |(k, (pair, source_m))| {
             let goes_on = |other: Option<&[[f64; 2]; 2]>| other == Some(source_m);
+            let before = k.checked_sub(1).and_then(|k| sources_m.get(k));
+            source_number += usize::from(before.is_some() && !goes_on(before));
             Self {
                 ends_m: [pair[0], pair[1]],
                 source_m: *source_m,
-                has_caps: [
-                    !goes_on(k.checked_sub(1).and_then(|k| sources_m.get(k))),
-                    !goes_on(sources_m.get(k + 1)),
-                ],
+                has_caps: [!goes_on(before), !goes_on(sources_m.get(k + 1))],
+                source_number,
             }
         })
     }
@@ -87,6 +94,28 @@ impl Piece {
     }
 }
 
+/// The ends of a line, where it was not cut at the border or beside a void.
+fn line_ends(line: &GroundLine) -> LineEnds {
+    // Positions of the same point by two formulas.
+    let is_at = |[x, y, _]: [f64; 3], [to_x, to_y]: [f64; 2]| (to_x - x).hypot(to_y - y) < 1e-6;
+    let first = line.sources_m.first().zip(line.points_m.first());
+    let last = line.sources_m.last().zip(line.points_m.last());
+    LineEnds {
+        class: line.class,
+        look: line.look,
+        first: first.filter(|([a, _], point)| is_at(**point, *a)).map(|([a, b], _)| [*b, *a]),
+        last: last.filter(|([_, b], point)| is_at(**point, *b)).map(|(source, _)| *source),
+    }
+}
+
+/// The vertices of the source line, from the start of the first segment that has a piece to the end of the last one.
+fn source_vertices(line: &GroundLine) -> Vec<[f64; 2]> {
+    let mut sources_m = line.sources_m.clone();
+    sources_m.dedup();
+    let first = sources_m.first().map(|source_m| source_m[0]);
+    first.into_iter().chain(sources_m.iter().map(|source_m| source_m[1])).collect()
+}
+
 impl RoadList<RoadSegment> {
     /// Cuts lines of the tile with these bounds into segments. `bed` gives the ground beside a piece.
     #[must_use]
@@ -101,8 +130,12 @@ impl RoadList<RoadSegment> {
             let [x, y, _] = relative([x, y, 0.0], reference_m);
             [x, y]
         };
-        let segments = lines.iter().flat_map(|line| {
-            Piece::all_of(line).map(|piece| {
+        let (place, bed) = (&place, &bed);
+        let ends: Vec<LineEnds> = lines.iter().map(line_ends).collect();
+        let flat = flat_ends(&ends, tile);
+        let segments = lines.iter().zip(flat).flat_map(|(line, [first_flat, last_flat])| {
+            let dashes_m = dash_starts_m(&source_vertices(line), tile);
+            Piece::all_of(line).map(move |piece| {
                 let [start_in_tile, end_in_tile] = piece.source_m.map(place);
                 RoadSegment {
                     start_in_tile,
@@ -115,7 +148,11 @@ impl RoadList<RoadSegment> {
                     class: line.class,
                     own_width: line.own_width,
                     look: line.look,
-                    dash_m: dash_m(piece.source_m),
+                    dash_m: dashes_m[piece.source_number],
+                    flat_ends: [
+                        piece.source_number == 0 && first_flat,
+                        piece.source_number + 1 == dashes_m.len() && last_flat,
+                    ],
                 }
             })
         });

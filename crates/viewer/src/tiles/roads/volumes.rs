@@ -3,8 +3,10 @@ use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
 use super::{
     super::{PlanScale, ground_mesh::relative},
-    NearHeights, PlanLine, RoadList, RoadLook, dash_m,
+    NearHeights, PlanLine, RoadList, RoadLook,
+    dashes::dash_starts_m,
     ends::plan_ends,
+    flat_ends::{LineEnds, flat_ends},
 };
 
 /// A straight piece of a road in plan with the heights that its volume spans.
@@ -26,12 +28,26 @@ pub struct RoadVolume {
     pub own_width: OwnWidth,
     /// What it is.
     pub look: RoadLook,
-    /// Where the dashes of a tunnel are: how far its start is along it, working metres.
+    /// Where the dashes of a tunnel are: how far along the road its start is, working metres.
     pub(crate) dash_m: f32,
+    /// Whether it ends flat at its start and at its end, also where roads have caps.
+    pub(crate) flat_ends: [bool; 2],
 }
 
 /// All volumes of a tile.
 pub type RoadVolumes = RoadList<RoadVolume>;
+
+/// The ends of a line. Where it was cut, at the margin, that is outside the tile.
+fn line_ends(line: &PlanLine) -> LineEnds {
+    let pair =
+        |ends: Option<&[[f64; 2]]>| ends.and_then(|ends| Some([*ends.first()?, *ends.get(1)?]));
+    LineEnds {
+        class: line.class,
+        look: line.look,
+        first: pair(line.points_m.get(..2)).map(|[a, b]| [b, a]),
+        last: pair(line.points_m.get(line.points_m.len().saturating_sub(2)..)),
+    }
+}
 
 impl RoadList<RoadVolume> {
     /// Cuts lines of the tile with these bounds into volumes.
@@ -53,8 +69,14 @@ impl RoadList<RoadVolume> {
             let [x, y, _] = relative([x, y, 0.0], reference_m);
             [x, y]
         };
-        let volumes = lines.iter().flat_map(|line| {
-            line.points_m.windows(2).zip(&line.ground_range_m).map(|(pair, range_m)| {
+        let ends: Vec<LineEnds> = lines.iter().map(line_ends).collect();
+        let flat = flat_ends(&ends, tile);
+        let (place, near) = (&place, &near);
+        let volumes = lines.iter().zip(flat).flat_map(|(line, [first_flat, last_flat])| {
+            let last = line.points_m.len().saturating_sub(2);
+            let dashes_m = dash_starts_m(&line.points_m, tile);
+            let segments = line.points_m.windows(2).zip(&line.ground_range_m).zip(dashes_m);
+            segments.enumerate().map(move |(number, ((pair, range_m), dash_m))| {
                 // Without ground near, the box is almost flat.
                 let (near_m, rise) = near([pair[0], pair[1]])
                     .unwrap_or(([f64::midpoint(range_m[0], range_m[1]); 2], 0.0));
@@ -70,7 +92,8 @@ impl RoadList<RoadVolume> {
                     class: line.class,
                     own_width: line.own_width,
                     look: line.look,
-                    dash_m: dash_m([pair[0], pair[1]]),
+                    dash_m,
+                    flat_ends: [number == 0 && first_flat, number == last && last_flat],
                 }
             })
         });

@@ -1,0 +1,104 @@
+//! The part of a style's text that is about the roads of one class.
+
+use serde::Deserialize;
+
+use crate::{
+    Rgb, RoadBand, RoadBands, RoadStyle, StyleError,
+    sheet_values::{Rgb8, within},
+};
+
+/// How the roads of one class are drawn.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RoadSheet {
+    /// Width on the ground, 0.1 to 500 m.
+    pub(crate) width_m: f64,
+    /// Roads are never drawn thinner than this, 0.1 to 50 pixels.
+    pub(crate) min_width_px: f64,
+    /// Colour of the surface, for roads of one or two colours.
+    pub(crate) color: Option<Rgb8>,
+    /// Colour of the edge.
+    pub(crate) outline: Rgb8,
+    /// A line along the middle.
+    pub(crate) center: Option<CenterSheet>,
+    /// Colours of the surface from the edges to the middle, instead of `color` and `center`.
+    pub(crate) bands: Option<Vec<BandSheet>>,
+    /// Drawn in full up to this many metres of ground in a pixel, 0.01 to 1e6; left out: always.
+    pub(crate) max_pixel_m: Option<f64>,
+    /// Roads grow no wider with distance than this, 0.1 to 500 pixels; left out: without end.
+    pub(crate) max_width_px: Option<f64>,
+    /// The colour of a road too thin for an edge; left out: that of which most is seen.
+    pub(crate) thin: Option<Rgb8>,
+    /// How much of the ground a road hides, 0.01 to 1; left out: 1.
+    pub(crate) opacity: Option<f64>,
+}
+
+/// The line along the middle of a road of two colours.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CenterSheet {
+    /// Share of the road's width, 0.01 to 0.99.
+    pub(crate) width_share: f64,
+    /// Its colour.
+    pub(crate) color: Rgb8,
+}
+
+/// One of the bands of a road.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct BandSheet {
+    /// Share of the road's width.
+    pub(crate) width: f64,
+    /// Its colour.
+    pub(crate) color: Rgb8,
+}
+
+impl RoadSheet {
+    /// How roads of this class are drawn, if every number is in its range.
+    pub(crate) fn checked(&self, class: usize) -> Result<RoadStyle, StyleError> {
+        let entry = |name| format!("roads.{class}.{name}");
+        within(&entry("width_m"), self.width_m, 0.1..=500.0)?;
+        within(&entry("min_width_px"), self.min_width_px, 0.1..=50.0)?;
+        if let Some(max_pixel_m) = self.max_pixel_m {
+            within(&entry("max_pixel_m"), max_pixel_m, 0.01..=1e6)?;
+        }
+        if let Some(max_width_px) = self.max_width_px {
+            within(&entry("max_width_px"), max_width_px, 0.1..=500.0)?;
+        }
+        if let Some(opacity) = self.opacity {
+            within(&entry("opacity"), opacity, 0.01..=1.0)?;
+        }
+        if let Some(center) = self.center {
+            within(&entry("center.width_share"), center.width_share, 0.01..=0.99)?;
+        }
+        Ok(RoadStyle {
+            width_m: self.width_m as f32,
+            min_width_px: self.min_width_px as f32,
+            bands: self.bands(class)?,
+            outline: self.outline.into(),
+            max_pixel_m: self.max_pixel_m.map(|max_pixel_m| max_pixel_m as f32),
+            max_width_px: self.max_width_px.map(|max_width_px| max_width_px as f32),
+            thin: self.thin.map(Rgb::from),
+            opacity: self.opacity.unwrap_or(1.0) as f32,
+        })
+    }
+
+    fn bands(&self, class: usize) -> Result<RoadBands, StyleError> {
+        let band =
+            |width: f64, color: Rgb8| RoadBand { width_share: width as f32, color: color.into() };
+        match (self.color, self.center, &self.bands) {
+            (Some(color), center, None) => {
+                let one = RoadBands::one(color.into());
+                Ok(center
+                    .map_or(one, |center| one.with_center(band(center.width_share, center.color))))
+            }
+            (None, None, Some(bands)) => {
+                let bands: Vec<RoadBand> =
+                    bands.iter().map(|part| band(part.width, part.color)).collect();
+                RoadBands::new(&bands)
+                    .map_err(|source| StyleError::Bands { class, source: Box::new(source) })
+            }
+            _ => Err(StyleError::RoadColor { class }),
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! The labels of roads as samples of a picture have them: what stands for which road.
+//!
+//! ```text
+//!   0                nothing
+//!   2 … 19           tunnels        2 · (9 − class), plus 1 on a dash of the edge
+//!  21 … 29           service roads  20 + (9 − class)
+//!  32 … 175          other roads    ┌──── 4 bits ────┬─ 4 bits ─┐
+//!                                   │   10 − class   │   band   │
+//!                                   └────────────────┴──────────┘
+//! ```
+//!
+//! Of two labels the larger one stays. So a road above the ground hides every tunnel, every other road hides a service
+//! road, a more important class hides a less important one, and where two roads of a class meet, the inner bands of each lie on the outer ones of both.
+
+use corniche_styles::RoadBands;
+
+/// Smaller labels are those of tunnels.
+const SERVICE_LABELS: u8 = 20;
+
+/// The label of a band of a road on the ground; band 0 is the whole road.
+#[must_use]
+pub fn road_label(class: u8, band: u8) -> u8 {
+    (10 - class) * RoadBands::MOST as u8 + band
+}
+
+/// The label of a tunnel, on a dash of its edge or between two.
+#[must_use]
+pub fn tunnel_label(class: u8, is_dash: bool) -> u8 {
+    (9 - class) * 2 + u8::from(is_dash)
+}
+
+/// The label of a service road.
+#[must_use]
+pub fn service_label(class: u8) -> u8 {
+    SERVICE_LABELS + 9 - class
+}
+
+/// Whether a label is that of a tunnel.
+#[must_use]
+pub fn is_tunnel(label: u8) -> bool {
+    label != 0 && label < SERVICE_LABELS
+}
+
+/// Whether a label is that of a service road.
+#[must_use]
+pub fn is_service(label: u8) -> bool {
+    (SERVICE_LABELS..2 * RoadBands::MOST as u8).contains(&label)
+}
+
+/// The class of a road with this label; `None` without a road.
+#[must_use]
+pub fn class_of(label: u8) -> Option<u8> {
+    match label {
+        0 => None,
+        _ if is_tunnel(label) => Some(9 - label / 2),
+        _ if is_service(label) => Some(9 - (label - SERVICE_LABELS)),
+        _ => Some(10 - label / RoadBands::MOST as u8),
+    }
+}

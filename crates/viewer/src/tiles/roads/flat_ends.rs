@@ -1,0 +1,104 @@
+//! Which ends of roads have no round cap, because the road goes on as another one.
+
+use std::collections::BTreeMap;
+
+use corniche_geom::Bounds;
+use corniche_roads::FunctionalRoadClass;
+
+use super::RoadLook;
+
+/// A road goes on in a line that turns no more than 30° from it.
+const LEAST_COSINE: f64 = 0.866;
+
+/// The first and the last segment of a line, each towards the line's end; `None` where the line was cut.
+///
+/// ```text
+///      first[1] ◄── first[0] ─── … ─── last[0] ──► last[1]
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LineEnds {
+    pub(crate) class: FunctionalRoadClass,
+    pub(crate) look: RoadLook,
+    pub(crate) first: Option<[[f64; 2]; 2]>,
+    pub(crate) last: Option<[[f64; 2]; 2]>,
+}
+
+/// For each line, whether it is flat at its first and at its last point.
+///
+/// ```text
+///       round                    flat
+///   ━━━━━━━━━━━╮             ━━━━━━━━━━━┓            Where two classes of one road meet, the cap of the more important
+///    primary   ├────────      primary   ┃───────     one would lie on the other. So it ends flat. The cap of the less
+///   ━━━━━━━━━━━╯             ━━━━━━━━━━━┛            important one stays: it fills the gap that a bend leaves.
+/// ```
+///
+/// An end is flat if a line that is drawn below it begins there and goes on in nearly the same direction, and nothing else ends
+/// there that is drawn as high. Only ends inside the tile count: there, both methods know all lines.
+pub(crate) fn flat_ends(lines: &[LineEnds], tile: Bounds) -> Vec<[bool; 2]> {
+    let mut at_point: BTreeMap<[u64; 2], Vec<End>> = BTreeMap::new();
+    let ends = lines.iter().enumerate().flat_map(|(number, line)| {
+        let height = height(line.class, line.look);
+        [line.first, line.last].into_iter().enumerate().filter_map(move |(which, segment_m)| {
+            let [from, to] = segment_m?;
+            let inside = tile.min_x < to[0]
+                && to[0] < tile.max_x
+                && tile.min_y < to[1]
+                && to[1] < tile.max_y;
+            let outward = direction([from, to])?;
+            inside.then_some((to.map(f64::to_bits), End { number, which, height, outward }))
+        })
+    });
+    for (point, end) in ends {
+        at_point.entry(point).or_default().push(end);
+    }
+    let mut flat = vec![[false; 2]; lines.len()];
+    for ends in at_point.values() {
+        for end in ends {
+            let others = || {
+                ends.iter().filter(|other| (other.number, other.which) != (end.number, end.which))
+            };
+            let is_highest = others().all(|other| other.height < end.height);
+            flat[end.number][end.which] = is_highest && others().any(|other| end.goes_on_in(other));
+        }
+    }
+    flat
+}
+
+/// The end of a line at a point.
+struct End {
+    /// Of which line, and which of its ends.
+    number: usize,
+    which: usize,
+    height: [u8; 3],
+    /// The direction beyond the end.
+    outward: [f64; 2],
+}
+
+impl End {
+    fn goes_on_in(&self, other: &Self) -> bool {
+        let [[x, y], [other_x, other_y]] = [self.outward, other.outward];
+        -(x * other_x + y * other_y) >= LEAST_COSINE
+    }
+}
+
+/// What is larger is drawn above: as the labels are (`gpu/labels.rs`); and slip roads, which are narrower, below the rest of their
+/// class.
+fn height(class: FunctionalRoadClass, look: RoadLook) -> [u8; 3] {
+    let layer = match look {
+        RoadLook::Tunnel => 0,
+        RoadLook::Service => 1,
+        RoadLook::Plain | RoadLook::Link => 2,
+    };
+    [layer, FunctionalRoadClass::COUNT as u8 - class.number(), u8::from(look != RoadLook::Link)]
+}
+
+/// The direction of a segment, of length 1; `None` if it has no length.
+fn direction([[x, y], [to_x, to_y]]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
+    let (dx, dy) = (to_x - x, to_y - y);
+    let length_m = dx.hypot(dy);
+    (length_m > 0.0).then_some([dx / length_m, dy / length_m])
+}
+
+#[cfg(test)]
+#[path = "flat_ends_tests.rs"]
+mod tests;

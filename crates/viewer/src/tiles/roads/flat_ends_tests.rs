@@ -1,0 +1,50 @@
+use super::*;
+
+const TILE: Bounds = Bounds { min_x: 0.0, min_y: 0.0, max_x: 100.0, max_y: 100.0 };
+
+/// A line by class, look and its points, whole.
+fn line((class, look, points_m): &(u8, RoadLook, Vec<[f64; 2]>)) -> LineEnds {
+    let end = |a: Option<&[f64; 2]>, b: Option<&[f64; 2]>| Some([*a?, *b?]);
+    LineEnds {
+        class: FunctionalRoadClass::new(*class).unwrap(),
+        look: *look,
+        first: end(points_m.get(1), points_m.first()),
+        last: end(points_m.iter().rev().nth(1), points_m.last()),
+    }
+}
+
+fn check(lines: &[(u8, RoadLook, Vec<[f64; 2]>)], expected: &[[bool; 2]]) {
+    let ends: Vec<LineEnds> = lines.iter().map(line).collect();
+    assert_eq!(flat_ends(&ends, TILE), expected);
+}
+
+const PLAIN: RoadLook = RoadLook::Plain;
+
+#[test]
+fn the_more_important_of_two_roads_in_line_ends_flat() {
+    let [a, b, c] = [[10.0, 50.0], [50.0, 50.0], [90.0, 60.0]];
+    let neither = [false; 2];
+    check(&[(2, PLAIN, vec![a, b]), (3, PLAIN, vec![b, c])], &[[false, true], neither]);
+    check(&[(3, PLAIN, vec![c, b]), (2, PLAIN, vec![b, a])], &[neither, [true, false]]);
+    check(&[(2, PLAIN, vec![a, b]), (2, PLAIN, vec![b, c])], &[neither, neither]);
+    for lower in [RoadLook::Link, RoadLook::Service, RoadLook::Tunnel] {
+        check(&[(2, PLAIN, vec![a, b]), (2, lower, vec![b, c])], &[[false, true], neither]);
+    }
+    check(&[(6, PLAIN, vec![a, b]), (0, RoadLook::Tunnel, vec![b, c])], &[[false, true], neither]);
+}
+
+#[test]
+fn ends_stay_round_where_the_road_turns_forks_or_leaves_the_tile() {
+    let [a, b] = [[10.0, 50.0], [50.0, 50.0]];
+    let neither = [false; 2];
+    check(&[(2, PLAIN, vec![a, b]), (3, PLAIN, vec![b, [60.0, 90.0]])], &[neither, neither]);
+    let fork = [
+        (2, PLAIN, vec![a, b]),
+        (3, PLAIN, vec![b, [90.0, 50.0]]),
+        (2, PLAIN, vec![b, [60.0, 90.0]]),
+    ];
+    check(&fork, &[neither, neither, neither]);
+    let border = [100.0, 50.0];
+    check(&[(2, PLAIN, vec![a, border]), (3, PLAIN, vec![border, [150.0, 50.0]])], &[neither; 2]);
+    check(&[(2, PLAIN, vec![a, b]), (3, PLAIN, vec![b, b])], &[neither, neither]);
+}
