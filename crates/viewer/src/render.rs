@@ -1,3 +1,6 @@
+use std::collections::BTreeMap;
+
+use corniche_geom::TileId;
 use image::RgbaImage;
 
 use corniche_roads::FunctionalRoadClass;
@@ -9,7 +12,7 @@ use crate::{
     class_scale,
     eye_height::{clearance_m, rounded_up_m},
     frame_view::{FrameView, Wireframe},
-    gpu::{DrawTile, Gpu, GpuError, ReadBackError, Renderer, Targets, TileBuffers},
+    gpu::{DrawTile, Gpu, GpuError, ReadBackError, Renderer, SlopeChain, Targets, TileBuffers},
     lod::{Drawn, Fineness, Quality},
     options::{ClassSet, RoadMethod, RoadOptions},
     range::{self, OutOfRange},
@@ -164,11 +167,16 @@ pub fn render(
         point_scale,
         height_range_m,
         wall_m: FrameView::wall_beside_m(height_range_m),
+        cell_px: request.cell_px,
         latitude_deg: package.manifest().wgs84_bounds.center()[1],
         wireframe: request.wireframe,
     };
+    let mut slopes = BTreeMap::new();
     let uploaded: Vec<(TileBuffers, f64)> = scene::draw_list(&store, &drawn)
-        .map(|(tile, skirt_depth_m)| (TileBuffers::new(&gpu, tile), skirt_depth_m))
+        .map(|(tile, skirt_depth_m)| {
+            let above = slopes_above(&gpu, &store, tile.id, &mut slopes);
+            (TileBuffers::new(&gpu, tile, above.as_ref()), skirt_depth_m)
+        })
         .collect();
     let tiles: Vec<DrawTile<'_>> = uploaded
         .iter()
@@ -204,6 +212,24 @@ pub fn render(
         eye_m: [eye.x, eye.y, eye.z / quality.vertical_scale],
     };
     Ok(Rendered { picture, report })
+}
+
+/// The slopes of the parent of a tile and of those above it, which were all read before the tile was; `uploaded` has those that are on
+/// the graphics card already.
+fn slopes_above(
+    gpu: &Gpu,
+    store: &TileStore<'_>,
+    id: TileId,
+    uploaded: &mut BTreeMap<TileId, SlopeChain>,
+) -> Option<SlopeChain> {
+    let parent = store.get(id.parent()?)?;
+    if let Some(known) = uploaded.get(&parent.id) {
+        return Some(known.clone());
+    }
+    let above = slopes_above(gpu, store, parent.id, uploaded);
+    let slopes = SlopeChain::new(gpu, parent, above.as_ref());
+    uploaded.insert(parent.id, slopes.clone());
+    Some(slopes)
 }
 
 /// The camera that the request asks for.

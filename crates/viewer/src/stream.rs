@@ -17,6 +17,8 @@
 //! place, nor the siblings of any of these: children are drawn only together, so if one were evicted it would be loaded
 //! again in the next frame, and with a budget that is too small this would never end.
 //!
+//! No tile is resident without its parent: tiles are shaded by the slopes of those above them, too.
+//!
 //! Source: Cozzi & Ring, *3D Engine Design for Virtual Globes* (2011), ch. 12: the least recently used tiles are evicted
 //! first, and the requests of the present view come before those of the coming one.
 
@@ -176,6 +178,17 @@ impl Streamer {
         }
     }
 
+    /// Tiles above one that is used are used, so that they are not evicted before it.
+    fn touch_above(&mut self, id: TileId) {
+        let mut next = id.parent();
+        while let Some(id) = next {
+            if let Some(tile) = self.resident.get_mut(&id) {
+                tile.last_used_frame = self.frame;
+            }
+            next = id.parent();
+        }
+    }
+
     fn upload(
         &mut self,
         requests: &[Request],
@@ -185,6 +198,10 @@ impl Streamer {
     ) {
         for Request { id, .. } in requests {
             let Some(&facts) = self.waiting.get(id) else { continue };
+            // A tile of the coming view, whose parent had to make room for the present one.
+            if id.parent().is_some_and(|parent| !self.resident.contains_key(&parent)) {
+                continue;
+            }
             let fits = facts.gpu_bytes <= *left_bytes || plan.upload.is_empty();
             if !fits || !self.make_room(facts.gpu_bytes, kept, plan) {
                 return;
@@ -193,6 +210,7 @@ impl Streamer {
             self.waiting.remove(id);
             self.resident_bytes += facts.gpu_bytes;
             self.resident.insert(*id, Resident { facts, last_used_frame: self.frame });
+            self.touch_above(*id);
             plan.upload.push(*id);
         }
     }

@@ -103,6 +103,11 @@ impl Driver {
         }
         for id in &plan.upload {
             assert!(self.arrived.remove(id), "{id} is uploaded, but did not arrive");
+            let above = id.parent();
+            assert!(
+                above.is_none_or(|id| self.on_card.contains(&id)),
+                "{id} is there before its parent"
+            );
             assert!(self.on_card.insert(*id), "{id} is there already");
         }
         for id in &plan.cancel {
@@ -128,6 +133,9 @@ impl Driver {
         assert!(resident_bytes <= self.budget.gpu_bytes);
         let uploaded_bytes = bytes(&mut plan.upload.iter());
         assert!(uploaded_bytes <= self.budget.upload_bytes_per_frame || plan.upload.len() == 1);
+        let has_parent =
+            |id: &TileId| id.parent().is_none_or(|parent| self.on_card.contains(&parent));
+        assert!(self.on_card.iter().all(has_parent), "no tile stays longer than its parent");
         let drawn: BTreeSet<TileId> = plan.drawn.iter().map(|drawn| drawn.id).collect();
         assert!(drawn.is_subset(&self.on_card), "what is drawn is there");
         for id in &drawn {

@@ -27,7 +27,7 @@ fn a_tile_takes_as_many_bytes_as_told_before() {
     for id in [TileId::ROOT, TileId::new(2, 1, 2).unwrap(), TileId::new(4, 8, 8).unwrap()] {
         let tile = country.load(id).unwrap();
         assert!(!tile.roads.all().is_empty() && !tile.volumes.all().is_empty(), "{id} has roads");
-        assert_eq!(tile_bytes(&tile), TileBuffers::new(&gpu, &tile).gpu_bytes(), "{id}");
+        assert_eq!(tile_bytes(&tile), TileBuffers::new(&gpu, &tile, None).gpu_bytes(), "{id}");
     }
 }
 
@@ -39,7 +39,7 @@ fn passes_take_some_time_and_no_more_than_the_frame() {
         return;
     };
     let country = Country::new();
-    let buffers = TileBuffers::new(&gpu, &country.load(TileId::ROOT).unwrap());
+    let buffers = TileBuffers::new(&gpu, &country.load(TileId::ROOT).unwrap(), None);
     let tiles = [DrawTile { buffers: &buffers, skirt_depth_m: 0.0 }];
     let [x, y] = country.frame.tile_bounds(TileId::ROOT).center();
     let orientation = Orientation { heading_deg: 0.0, pitch_deg: 30.0 };
@@ -57,6 +57,7 @@ fn passes_take_some_time_and_no_more_than_the_frame() {
             point_scale: 1.0,
             height_range_m: [90.0, 1910.0],
             wall_m: 0.0,
+            cell_px: f64::INFINITY,
             latitude_deg: 47.0,
             wireframe: Wireframe::Hidden,
         };

@@ -61,7 +61,7 @@ impl<'a> Edges<'a> {
     }
 
     fn picture(&self, tile: &TileGeometry, outline: Outline) -> Vec<u8> {
-        let buffers = TileBuffers::new(self.gpu, tile);
+        let buffers = TileBuffers::new(self.gpu, tile, None);
         let view = FrameView {
             camera: self.camera,
             style: &self.style,
@@ -70,6 +70,7 @@ impl<'a> Edges<'a> {
             point_scale: 1.0,
             height_range_m: [0.0, 1000.0],
             wall_m: 0.0,
+            cell_px: f64::INFINITY,
             latitude_deg: 47.0,
             wireframe: Wireframe::Hidden,
         };

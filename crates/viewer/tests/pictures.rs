@@ -65,13 +65,14 @@ fn view<'a>(camera: &'a Camera, style: &'a Style) -> FrameView<'a> {
         point_scale: 1.0,
         height_range_m: [200.0, 400.0],
         wall_m: 0.0,
+        cell_px: f64::INFINITY,
         latitude_deg: 47.0,
         wireframe: Wireframe::Hidden,
     }
 }
 
 fn draw(gpu: &Gpu, tile: &TileGeometry, view: &FrameView<'_>, samples_per_side: u32) -> Targets {
-    let buffers = TileBuffers::new(gpu, tile);
+    let buffers = TileBuffers::new(gpu, tile, None);
     let targets = Targets::new(gpu, view.camera.size_px(), samples_per_side).unwrap();
     let tiles = [DrawTile { buffers: &buffers, skirt_depth_m: 0.0 }];
     Renderer::new(gpu).draw(gpu, view, &tiles, &targets);
@@ -212,7 +213,7 @@ fn times_of_frames_come_without_waiting() {
         return;
     };
     let tile = geometry([-500.0, -300.0], [600.0, 400.0]);
-    let buffers = TileBuffers::new(&gpu, &tile);
+    let buffers = TileBuffers::new(&gpu, &tile, None);
     let tiles = [DrawTile { buffers: &buffers, skirt_depth_m: 0.0 }];
     let targets = Targets::new(&gpu, SIZE, 2).unwrap();
     let (camera, style) = (camera(), plain_style(40.0));

@@ -43,7 +43,7 @@ fn picture(
         levels[usize::from(tile.id.z())] += 1;
     }
     let buffers: Vec<_> = for_tests::draw_list(&store, &drawn)
-        .map(|(tile, depth)| (TileBuffers::new(&gpu, tile), depth))
+        .map(|(tile, depth)| (TileBuffers::new(&gpu, tile, None), depth))
         .collect();
     let tiles: Vec<_> = buffers
         .iter()
@@ -58,6 +58,7 @@ fn picture(
         point_scale: 1.0,
         height_range_m: [90.0, 1910.0],
         wall_m: 0.0,
+        cell_px: f64::INFINITY,
         latitude_deg: 47.0,
         wireframe: Wireframe::Hidden,
     };

@@ -78,7 +78,10 @@ impl Canvas {
             self.tiles.remove(id);
         }
         for tile in upload {
-            self.tiles.insert(tile.id, TileBuffers::new(&self.gpu, tile));
+            let above = tile.id.parent().and_then(|parent| self.tiles.get(&parent));
+            let above = above.map(TileBuffers::slopes);
+            let buffers = TileBuffers::new(&self.gpu, tile, above);
+            self.tiles.insert(tile.id, buffers);
         }
     }
 
@@ -143,6 +146,7 @@ impl Canvas {
             point_scale: scene.point_scale,
             height_range_m: scene.height_range_m,
             wall_m: FrameView::wall_beside_m(scene.height_range_m),
+            cell_px: scene.cell_px,
             latitude_deg: scene.latitude_deg,
             wireframe: scene.wireframe,
         };

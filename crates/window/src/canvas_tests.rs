@@ -41,6 +41,7 @@ pub(crate) fn scene_of_size(compare: Compare, size_px: [u32; 2]) -> Scene {
         exaggeration: 1.0,
         point_scale: 1.0,
         height_range_m: [0.0, 100.0],
+        cell_px: f64::INFINITY,
         latitude_deg: 47.0,
         wireframe: Wireframe::Hidden,
         drawn: Vec::new(),

@@ -65,6 +65,7 @@ mod read_back;
 mod renderer;
 mod road_instances;
 mod shared_bindings;
+mod slope_chain;
 mod target_texture;
 mod targets;
 mod tile_buffers;
@@ -79,6 +80,7 @@ pub use self::{
     picture::{MAX_SAMPLES_PER_SIDE, Picture},
     read_back::ReadBack,
     renderer::Renderer,
+    slope_chain::SlopeChain,
     targets::Targets,
     tile_buffers::{DrawTile, TileBuffers, tile_bytes},
     timings::{PassTimer, PassTimes},

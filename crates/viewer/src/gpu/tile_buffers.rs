@@ -5,6 +5,7 @@ use super::{
     drawables::{geo_roads, sv_roads},
     ground_buffers::GroundBuffers,
     road_instances::RoadBuffers,
+    slope_chain::SlopeChain,
     tile_textures::TileTextures,
     uniforms::TileUniforms,
 };
@@ -52,21 +53,28 @@ pub fn tile_bytes(tile: &TileGeometry) -> u64 {
 }
 
 impl TileBuffers {
-    /// Uploads a tile.
+    /// Uploads a tile. `above` has the slopes of its parent, which the tile shows where the eye is far; `None` if it has no
+    /// parent, or is to be shaded by its own slopes alone.
     #[must_use]
-    pub fn new(gpu: &Gpu, tile: &TileGeometry) -> Self {
+    pub fn new(gpu: &Gpu, tile: &TileGeometry, above: Option<&SlopeChain>) -> Self {
         Self {
             id: tile.id,
             reference_m: tile.reference_m,
             size_m: tile.size_m,
             ground: GroundBuffers::new(gpu, &tile.ground),
-            textures: TileTextures::new(gpu, tile),
+            textures: TileTextures::new(gpu, tile, above),
             segments: geo_roads::upload(gpu, &tile.roads),
             volumes: sv_roads::upload(gpu, &tile.volumes),
             width_margin_m: tile.width_margin_m,
             height_range_m: tile.summary.map(|ground| ground.height_range_m),
             triangles: (tile.ground.surface_indices / 3) as u64,
         }
+    }
+
+    /// Its slopes and those of the tiles above it, for the tiles beneath it.
+    #[must_use]
+    pub fn slopes(&self) -> &SlopeChain {
+        self.textures.slopes()
     }
 
     /// Triangles of its ground, without those of its skirts.

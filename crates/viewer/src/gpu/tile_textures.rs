@@ -12,11 +12,10 @@ use super::{
     Gpu,
     bindings::{group, layout, texture, uniform},
     photo_texture,
+    slope_chain::SlopeChain,
 };
 use crate::tiles::{PhotoImage, ShadingSlopes, TileGeometry};
 
-/// The slopes: rise east and north.
-const SLOPES: TextureFormat = TextureFormat::Rg16Float;
 /// Whether a node is water.
 const WATER: TextureFormat = TextureFormat::R8Unorm;
 
@@ -26,10 +25,12 @@ const GROUP: u32 = 3;
 /// The textures of a tile's ground, as `shaders/relief.wgsl` and `shaders/photo.wgsl` declare them.
 pub(crate) struct TileTextures {
     group: BindGroup,
+    slopes: SlopeChain,
     bytes: u64,
 }
 
-/// The layout of the bind group: the block `struct TileTextures`, a sampler, the slopes; the photo, its sampler; the water.
+/// The layout of the bind group: the block `struct TileTextures`, a sampler, the tile's slopes; the photo, its sampler; the water;
+/// the slopes of coarser levels.
 pub(crate) fn layout_of(device: &Device) -> BindGroupLayout {
     let sampler = |binding| BindGroupLayoutEntry {
         binding,
@@ -37,43 +38,41 @@ pub(crate) fn layout_of(device: &Device) -> BindGroupLayout {
         ty: BindingType::Sampler(SamplerBindingType::Filtering),
         count: None,
     };
-    let [slopes, photo, water] =
-        [2, 3, 5].map(|binding| texture(binding, TextureSampleType::Float { filterable: true }));
-    layout(
-        device,
-        "tile textures",
-        &[uniform(0, None), sampler(1), slopes, photo, sampler(4), water],
-    )
+    let filtered = |binding| texture(binding, TextureSampleType::Float { filterable: true });
+    let [slopes, photo, water] = [2, 3, 5].map(filtered);
+    let mut entries = vec![uniform(0, None), sampler(1), slopes, photo, sampler(4), water];
+    entries.extend((6..).map(filtered).take(SlopeChain::LEVELS - 1));
+    layout(device, "tile textures", &entries)
 }
 
+/// Rows of the block `struct TileTextures`.
+pub(crate) const ROWS: usize = 3;
+
 /// The block `struct TileTextures`.
-pub(crate) fn rows(tile: &TileGeometry) -> [[f32; 4]; 2] {
+fn rows(tile: &TileGeometry, slopes: &SlopeChain) -> [[f32; 4]; ROWS] {
     let [east, north] = tile.size_m.map(|side_m| (1.0 / side_m) as f32);
     let has = |part: bool| if part { 1.0 } else { 0.0 };
     let has_water = tile.shading.as_ref().is_some_and(|slopes| !slopes.water().is_empty());
     [
         [east, north, has(tile.shading.is_some()), has(has_water)],
         [has(tile.photo.is_some()), PHOTO_BORDER as f32, 0.0, 0.0],
+        slopes.row(tile.id, tile.size_m),
     ]
 }
 
 impl TileTextures {
-    /// Uploads the textures of a tile. What it does not have is one texel that nothing reads.
-    pub(crate) fn new(gpu: &Gpu, tile: &TileGeometry) -> Self {
-        let none = |format| square(gpu, format, 1, &[0; 4]);
-        let side = ShadingSlopes::SIDE as u32;
-        let slopes = match &tile.shading {
-            Some(slopes) => square(gpu, SLOPES, side, bytemuck::cast_slice(slopes.texels())),
-            None => none(SLOPES),
-        };
+    /// Uploads the textures of a tile, `above` which there are these slopes. What it does not have is one texel that nothing reads.
+    pub(crate) fn new(gpu: &Gpu, tile: &TileGeometry, above: Option<&SlopeChain>) -> Self {
+        let none = square(gpu, photo_texture::FORMAT, 1, &[0; 4]);
+        let slopes = SlopeChain::new(gpu, tile, above);
         let water = match tile.shading.as_ref().map(ShadingSlopes::water) {
-            Some(water) if !water.is_empty() => square(gpu, WATER, side, water),
-            _ => none(WATER),
+            Some(water) if !water.is_empty() => {
+                square(gpu, WATER, ShadingSlopes::SIDE as u32, water)
+            }
+            _ => none.clone(),
         };
-        let photo = match &tile.photo {
-            Some(photo) => photo_texture::upload(gpu, photo),
-            None => none(photo_texture::FORMAT),
-        };
+        let photo =
+            tile.photo.as_ref().map_or(none.clone(), |photo| photo_texture::upload(gpu, photo));
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("tile textures"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -81,27 +80,36 @@ impl TileTextures {
             ..Default::default()
         });
         let photo_sampler = photo_texture::sampler(&gpu.device);
-        let block =
-            gpu.buffer("tile textures", bytemuck::cast_slice(&rows(tile)), BufferUsages::UNIFORM);
-        let resources = [
+        let block = gpu.buffer(
+            "tile textures",
+            bytemuck::cast_slice(&rows(tile, &slopes)),
+            BufferUsages::UNIFORM,
+        );
+        let [own, coarser @ ..] = slopes.views(&none);
+        let mut resources = vec![
             block.as_entire_binding(),
             BindingResource::Sampler(&sampler),
-            BindingResource::TextureView(&slopes),
+            BindingResource::TextureView(own),
             BindingResource::TextureView(&photo),
             BindingResource::Sampler(&photo_sampler),
             BindingResource::TextureView(&water),
         ];
-        Self { group: group(gpu, &layout_of(&gpu.device), &resources), bytes: Self::bytes_of(tile) }
+        resources.extend(coarser.map(BindingResource::TextureView));
+        let group = group(gpu, &layout_of(&gpu.device), &resources);
+        Self { group, slopes, bytes: Self::bytes_of(tile) }
     }
 
     /// Bytes of the textures that [`TileTextures::new`] makes.
     pub(crate) fn bytes_of(tile: &TileGeometry) -> u64 {
-        let slopes = tile
-            .shading
-            .as_ref()
-            .map_or(4, |slopes| size_of_val(slopes.texels()) + slopes.water().len().max(1));
-        let photo = tile.photo.as_ref().map_or(4, PhotoImage::bytes);
-        (slopes + size_of_val(&rows(tile))) as u64 + photo
+        let water = tile.shading.as_ref().map_or(0, |slopes| slopes.water().len());
+        let photo = tile.photo.as_ref().map_or(0, PhotoImage::bytes);
+        // With one texel for what is not there.
+        SlopeChain::bytes_of(tile) + (4 + water + ROWS * size_of::<[f32; 4]>()) as u64 + photo
+    }
+
+    /// The slopes of the tile and of those above it.
+    pub(crate) fn slopes(&self) -> &SlopeChain {
+        &self.slopes
     }
 
     /// Bytes on the graphics card.
@@ -116,7 +124,7 @@ impl TileTextures {
 }
 
 /// A square texture with these texels.
-fn square(gpu: &Gpu, format: TextureFormat, side: u32, texels: &[u8]) -> TextureView {
+pub(crate) fn square(gpu: &Gpu, format: TextureFormat, side: u32, texels: &[u8]) -> TextureView {
     let descriptor = wgpu::TextureDescriptor {
         label: Some("relief"),
         size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },

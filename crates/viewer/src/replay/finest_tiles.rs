@@ -5,7 +5,7 @@ use corniche_geom::TileId;
 use super::{ReplayError, elapsed::ms_since, frame_tiles::FrameTiles};
 use crate::{
     camera::{Camera, WorldBox},
-    gpu::{Gpu, TileBuffers, tile_bytes},
+    gpu::{Gpu, SlopeChain, TileBuffers, tile_bytes},
     lod::Drawn,
     tiles::BlockingPackage,
 };
@@ -15,6 +15,8 @@ pub(crate) struct FinestTiles {
     buffers: BTreeMap<TileId, TileBuffers>,
     /// The lowest and highest true height of their ground; tiles without ground are left out.
     height_ranges_m: BTreeMap<TileId, [f64; 2]>,
+    /// Bytes of the slopes of all tiles above them, by which they are shaded where the eye is far.
+    above_bytes: u64,
 }
 
 impl FinestTiles {
@@ -24,22 +26,21 @@ impl FinestTiles {
         budget_bytes: u64,
         is_stopped: &dyn Fn() -> bool,
     ) -> Result<Self, ReplayError> {
-        let mut finest = Self { buffers: BTreeMap::new(), height_ranges_m: BTreeMap::new() };
-        let mut next = vec![TileId::ROOT];
+        let mut finest =
+            Self { buffers: BTreeMap::new(), height_ranges_m: BTreeMap::new(), above_bytes: 0 };
+        let mut next = vec![(TileId::ROOT, SlopeChain::default())];
         let mut gpu_bytes = 0;
-        while let Some(id) = next.pop() {
+        while let Some((id, above)) = next.pop() {
             if is_stopped() {
                 return Err(ReplayError::Stopped);
             }
-            let beneath = next.len();
-            if id.z() < package.frame().max_level() {
-                next.extend(id.children().filter(|child| package.exists(*child)));
-            }
-            if next.len() > beneath {
-                continue;
-            }
             let tile = package.load(id)?;
-            gpu_bytes += tile_bytes(&tile);
+            let mut children = Vec::new();
+            if id.z() < package.frame().max_level() {
+                children.extend(id.children().filter(|child| package.exists(*child)));
+            }
+            let is_finest = children.is_empty();
+            gpu_bytes += if is_finest { tile_bytes(&tile) } else { SlopeChain::bytes_of(&tile) };
             if gpu_bytes > budget_bytes {
                 return Err(ReplayError::OverBudget {
                     wanted_bytes: gpu_bytes,
@@ -47,10 +48,22 @@ impl FinestTiles {
                     or_less: ", or draw by level of detail",
                 });
             }
-            finest.buffers.insert(id, TileBuffers::new(gpu, &tile));
-            finest.height_ranges_m.extend(tile.summary.map(|ground| (id, ground.height_range_m)));
+            if is_finest {
+                finest.buffers.insert(id, TileBuffers::new(gpu, &tile, Some(&above)));
+                let range_m = tile.summary.map(|ground| (id, ground.height_range_m));
+                finest.height_ranges_m.extend(range_m);
+            } else {
+                finest.above_bytes += SlopeChain::bytes_of(&tile);
+                let slopes = SlopeChain::new(gpu, &tile, Some(&above));
+                next.extend(children.into_iter().map(|child| (child, slopes.clone())));
+            }
         }
         Ok(finest)
+    }
+
+    /// Bytes of the slopes of all tiles above them.
+    pub(crate) fn above_bytes(&self) -> u64 {
+        self.above_bytes
     }
 
     pub(crate) fn buffers(&self) -> &BTreeMap<TileId, TileBuffers> {

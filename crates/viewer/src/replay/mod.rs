@@ -76,6 +76,15 @@ impl TileSupply<'_> {
             Self::Streamed(streamed) => streamed.buffers(),
         }
     }
+
+    /// Bytes on the graphics card.
+    fn gpu_bytes(&self) -> u64 {
+        let above_bytes = match self {
+            Self::Finest(finest) => finest.above_bytes(),
+            Self::Streamed(_) => 0,
+        };
+        above_bytes + self.buffers().values().map(TileBuffers::gpu_bytes).sum::<u64>()
+    }
 }
 
 /// What was drawn in one frame, and how long it took.
@@ -162,7 +171,7 @@ impl<'a> Replay<'a> {
             tiles_missing: prepared.missing,
             triangles: drawn.triangles,
             road_segments: drawn.road_segments,
-            gpu_bytes: self.tiles.buffers().values().map(TileBuffers::gpu_bytes).sum(),
+            gpu_bytes: self.tiles.gpu_bytes(),
             select_ms: prepared.select_ms,
             decode_ms: prepared.decode_ms,
             upload_ms: prepared.upload_ms,
@@ -192,6 +201,7 @@ impl<'a> Replay<'a> {
             point_scale: self.package.manifest().point_scale,
             height_range_m: self.height_range_m,
             wall_m: FrameView::wall_beside_m(self.height_range_m),
+            cell_px: self.options.cell_px,
             latitude_deg: self.package.manifest().wgs84_bounds.center()[1],
             wireframe: Wireframe::Hidden,
         };

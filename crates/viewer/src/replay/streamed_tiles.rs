@@ -97,7 +97,10 @@ impl<'a> StreamedTiles<'a> {
         }
         for id in &plan.upload {
             if let Some(tile) = self.decoded.remove(id) {
-                self.buffers.insert(*id, TileBuffers::new(self.gpu, &tile));
+                let above = id.parent().and_then(|parent| self.buffers.get(&parent));
+                let above = above.map(TileBuffers::slopes);
+                let buffers = TileBuffers::new(self.gpu, &tile, above);
+                self.buffers.insert(*id, buffers);
             }
         }
         frame.upload_ms += ms_since(started);

@@ -21,6 +21,7 @@ struct GroundColors {
     sunlit: vec4<f32>,
     // rgb; w: how strongly photos are seen.
     water: vec4<f32>,
+    // rgb; w: how many pixels large a cell of the relief may look.
     wall: vec4<f32>,
     // rgb; w: height, metres.
     tint: array<vec4<f32>, TINT_STOPS>,

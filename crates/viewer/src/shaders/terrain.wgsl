@@ -67,7 +67,8 @@ fn owner_of_pixel() -> u32 {
 
 @fragment
 fn fragment(in: VertexOut) -> Pixel {
-    let normal = ground_normal(in.normal, in.plan_in_tile);
+    let distance_m = length(in.position);
+    let normal = ground_normal(in.normal, in.plan_in_tile, distance_m);
     let photo = photo_at(in.plan_in_tile);
     let photo_share = photo.a * colors.water.w;
     var color = mix(colors.water.rgb, photo.rgb, photo_share);
@@ -75,7 +76,7 @@ fn fragment(in: VertexOut) -> Pixel {
         // A photo has shadows of its own.
         color = shaded(mix(tint_at(in.height_m), photo.rgb, photo_share), normal, 1.0 - 0.5 * photo_share);
     }
-    color = hazy(color, in.height_m, length(in.position));
+    color = hazy(color, in.height_m, distance_m);
     return Pixel(vec4(color, select(1.0, 0.5, SKIRT == 1u)), owner_of_pixel());
 }
 

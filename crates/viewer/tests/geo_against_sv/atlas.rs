@@ -98,7 +98,7 @@ impl<'a> Atlas<'a> {
     pub(crate) fn compare_with(&mut self, camera: &Camera, options: RoadOptions) -> Seen {
         let drawn = settle(&mut self.store, camera, QUALITY, &|| false).unwrap();
         for drawn in &drawn {
-            let upload = || TileBuffers::new(self.gpu, self.store.get(drawn.id).unwrap());
+            let upload = || TileBuffers::new(self.gpu, self.store.get(drawn.id).unwrap(), None);
             self.buffers.entry(drawn.id).or_insert_with(upload);
         }
         let style = by_own_widths(&Style::road_atlas());

@@ -6,7 +6,7 @@ use corniche_tileset::{Relief, TilePayload};
 use corniche_viewer::{
     FrameView, RoadMethod, RoadOptions, Wireframe,
     for_tests::PlanScale,
-    gpu::{DrawTile, Gpu, Renderer, Targets, TileBuffers},
+    gpu::{DrawTile, Gpu, Renderer, SlopeChain, Targets, TileBuffers},
     tiles::TileGeometry,
 };
 
@@ -56,34 +56,66 @@ fn without_relief(tiles: Vec<TilePayload>) -> Vec<TilePayload> {
     tiles.into_iter().map(|tile| TilePayload { relief: None, ..tile }).collect()
 }
 
+/// How tiles are drawn.
+#[derive(Clone, Copy)]
+struct Look {
+    exaggeration: f64,
+    /// As in styles.
+    gentle: f32,
+    /// How large a cell may look, pixels.
+    cell_px: f64,
+    /// From the eye to the middle of the ground.
+    distance_m: f64,
+}
+
+/// Shaded as it is: gentle slopes not made steeper, levels not blended.
+const PLAIN: Look =
+    Look { exaggeration: 1.0, gentle: 1.0, cell_px: UNBLENDED_PX, distance_m: 5000.0 };
+
+/// Cells that look so small there are none, so each tile is shaded by its own slopes.
+const UNBLENDED_PX: f64 = 1e-9;
+
+/// From where the cells of the root look smaller than two pixels.
+const ROOT_CHOSEN_M: f64 = 6500.0;
+
 /// Draws tiles straight from above. All ground has one tint, so colours tell of slopes alone.
-fn draw(gpu: &Gpu, payloads: &[TilePayload], exaggeration: f64) -> Drawing {
+fn draw(gpu: &Gpu, payloads: &[TilePayload], look: Look) -> Drawing {
+    draw_beneath(gpu, None, payloads, look)
+}
+
+/// As [`draw`], of the children of a tile.
+fn draw_beneath(
+    gpu: &Gpu,
+    parent: Option<&TilePayload>,
+    payloads: &[TilePayload],
+    look: Look,
+) -> Drawing {
     let mut style = Style::road_atlas();
     style.tint.stops.iter_mut().for_each(|(_, rgb)| *rgb = [0.8; 3]);
     style.light.valley_haze = 0.0;
-    // Shaded as it is: gentle slopes not made steeper.
-    style.light.gentle = 1.0;
+    style.light.gentle = look.gentle;
     let scale = PlanScale::uniform([1.0; 2]);
+    let geometry = |payload: &TilePayload| {
+        TileGeometry::from_payload(payload, &frame(), QUANTUM_M, WIDTH_MARGIN_M, scale).unwrap()
+    };
+    let above = parent.map(|parent| SlopeChain::new(gpu, &geometry(parent), None));
     let buffers: Vec<TileBuffers> = payloads
         .iter()
-        .map(|payload| {
-            let tile =
-                TileGeometry::from_payload(payload, &frame(), QUANTUM_M, WIDTH_MARGIN_M, scale);
-            TileBuffers::new(gpu, &tile.unwrap())
-        })
+        .map(|payload| TileBuffers::new(gpu, &geometry(payload), above.as_ref()))
         .collect();
     let tiles: Vec<DrawTile<'_>> =
         buffers.iter().map(|buffers| DrawTile { buffers, skirt_depth_m: 0.0 }).collect();
-    let camera = camera(400.0 * exaggeration, 5000.0, 0.0, 0.0);
+    let camera = camera(400.0 * look.exaggeration, look.distance_m, 0.0, 0.0);
     let targets = Targets::new(gpu, camera.size_px(), 1).unwrap();
     let view = FrameView {
         camera: &camera,
         style: &style,
         roads: RoadOptions::of(RoadMethod::None),
-        exaggeration,
+        exaggeration: look.exaggeration,
         point_scale: 1.0,
         height_range_m: [0.0, 1000.0],
         wall_m: 0.0,
+        cell_px: look.cell_px,
         latitude_deg: 47.0,
         wireframe: Wireframe::Hidden,
     };
@@ -139,7 +171,7 @@ fn shading_does_not_depend_on_the_triangles() {
     let [fine, coarse] = [2, 64].map(|step| finest(step, &steep));
     let difference = |one: &[TilePayload], other: &[TilePayload]| {
         // Near the middle, where the eye sees the same plan position of ground that is some metres higher.
-        *differences(&draw(&gpu, one, 1.0), &draw(&gpu, other, 1.0), 60.0).last().unwrap()
+        *differences(&draw(&gpu, one, PLAIN), &draw(&gpu, other, PLAIN), 60.0).last().unwrap()
     };
     let with = difference(&fine, &coarse);
     assert!(with <= 3, "{with} grey levels");
@@ -154,37 +186,87 @@ fn shading_does_not_depend_on_the_triangles() {
 #[test]
 fn there_is_no_step_between_tiles() {
     let Some(gpu) = gpu() else { return };
-    let step = largest_step(&draw(&gpu, &finest(32, &hills), 1.0));
+    let step = largest_step(&draw(&gpu, &finest(32, &hills), PLAIN));
     assert!(step <= 1, "{step} grey levels");
     // Each tile for itself: what lies beyond its border is another height.
     let children = TileId::ROOT.children();
     let alone: Vec<TilePayload> = children.map(|id| tile(id, 32, &hills, Some(390.0))).collect();
-    let step = largest_step(&draw(&gpu, &alone, 1.0));
+    let step = largest_step(&draw(&gpu, &alone, PLAIN));
     assert!(step > 4, "the measure sees a step of {step} grey levels only");
 }
 
-/// Where two levels meet, shading goes on without a step that the eye sees: the same smooth ground, from the relief of one level and of the
-/// next, differs by no more than a grey level, but for one pixel in two hundred, where it is two.
+/// Differences between the root and its children, drawn from where the root may be drawn: where two levels meet, this is the step.
+/// The smallest first.
+fn level_steps(gpu: &Gpu, height_m: &dyn Fn(f64, f64) -> f64, cell_px: f64) -> Vec<i32> {
+    let look = Look { gentle: Style::road_atlas().light.gentle, cell_px, ..PLAIN };
+    let look = Look { distance_m: ROOT_CHOSEN_M, ..look };
+    let root = tile(TileId::ROOT, 32, height_m, None);
+    let children = draw_beneath(gpu, Some(&root), &finest(64, height_m), look);
+    differences(&draw(gpu, &[root], look), &children, 300.0)
+}
+
+/// Where two levels meet, shading goes on without a step: where the parent may be drawn, a tile looks as its parent does. With the usual
+/// style, which shades gentle slopes as if they were steeper. Without blending the same ground has steps.
 #[test]
-fn levels_differ_by_a_grey_level_on_smooth_ground() {
+fn levels_meet_within_a_grey_level() {
+    let Some(gpu) = gpu() else { return };
+    // Waves of five cells of the root, ten of the children.
+    let rough = |x: f64, y: f64| hills(x, y) + 6.0 * (x / 16.0).sin() * (y / 17.0).cos();
+    for (name, height_m, unblended) in
+        [("smooth", &hills as &dyn Fn(f64, f64) -> f64, 4), ("rough", &rough, 15)]
+    {
+        let [blended, own] =
+            [2.0, UNBLENDED_PX].map(|cell_px| level_steps(&gpu, height_m, cell_px));
+        let figures = |all: &[i32]| (all[all.len() * 199 / 200], all[all.len() - 1]);
+        println!(
+            "{name}: 99.5 % and most, grey levels: {:?}; not blended {:?}",
+            figures(&blended),
+            figures(&own)
+        );
+        assert!(figures(&blended).1 <= 1, "{name}: {:?}", figures(&blended));
+        assert!(figures(&own).1 >= unblended, "{name}: the measure sees nothing");
+    }
+}
+
+/// Beneath a tile without a relief, and where the eye is near, a tile is shaded by its own slopes alone.
+#[test]
+fn near_the_eye_tiles_have_their_own_slopes() {
+    let Some(gpu) = gpu() else { return };
+    let rough = |x: f64, y: f64| hills(x, y) + 6.0 * (x / 16.0).sin() * (y / 17.0).cos();
+    let root = tile(TileId::ROOT, 32, &rough, None);
+    let bare = TilePayload { relief: None, ..root.clone() };
+    let children = finest(64, &rough);
+    let own = |look| draw(&gpu, &children, look).ground;
+    // The children's cells look two pixels large.
+    let near = Look { cell_px: 2.0, distance_m: 2200.0, ..PLAIN };
+    assert!(draw_beneath(&gpu, Some(&root), &children, near).ground == own(near));
+    let far = Look { cell_px: 2.0, distance_m: ROOT_CHOSEN_M, ..PLAIN };
+    assert!(draw_beneath(&gpu, Some(&root), &children, far).ground != own(far));
+    assert!(draw_beneath(&gpu, Some(&bare), &children, far).ground == own(far));
+}
+
+/// Two levels alone differ by no more than a grey level on smooth ground, but for one pixel in two hundred, where it is two.
+#[test]
+fn levels_by_themselves_differ_by_a_grey_level_on_smooth_ground() {
     let Some(gpu) = gpu() else { return };
     let root = [tile(TileId::ROOT, 32, &hills, None)];
-    let all = differences(&draw(&gpu, &root, 1.0), &draw(&gpu, &finest(64, &hills), 1.0), 440.0);
+    let all =
+        differences(&draw(&gpu, &root, PLAIN), &draw(&gpu, &finest(64, &hills), PLAIN), 440.0);
     let most_of = all[all.len() * 199 / 200];
     println!("levels differ by {most_of} and {} grey levels at most", all[all.len() - 1]);
     assert!(most_of <= 1 && all[all.len() - 1] <= 2, "{most_of}, {}", all[all.len() - 1]);
     // Without reliefs they differ by what their triangles leave out.
     let [root, finest] = [vec![tile(TileId::ROOT, 32, &hills, None)], finest(128, &hills)];
     let bare = [root, finest].map(without_relief);
-    let all = differences(&draw(&gpu, &bare[0], 1.0), &draw(&gpu, &bare[1], 1.0), 440.0);
+    let all = differences(&draw(&gpu, &bare[0], PLAIN), &draw(&gpu, &bare[1], PLAIN), 440.0);
     assert!(all[all.len() - 1] > 2, "the measure sees nothing");
 }
 
 #[test]
 fn stretched_ground_is_shaded_as_ground_of_that_height() {
     let Some(gpu) = gpu() else { return };
-    let stretched = draw(&gpu, &finest(32, &hills), 2.0);
-    let high = draw(&gpu, &finest(32, &|x, y| 2.0 * hills(x, y)), 1.0);
+    let stretched = draw(&gpu, &finest(32, &hills), Look { exaggeration: 2.0, ..PLAIN });
+    let high = draw(&gpu, &finest(32, &|x, y| 2.0 * hills(x, y)), PLAIN);
     // The eye is at another height over the second, so only what both show near the middle is compared.
     let (one, other) = (greys(&stretched), greys(&high));
     let [width, height] = stretched.size_px.map(|side| side as usize);

@@ -109,7 +109,7 @@ fn what_has_faded_away_is_not_submitted() {
     let roads: Vec<Road> =
         vec![(1, vec![[-900.0, 50.0], [900.0, 50.0]]), (5, vec![[-900.0, 0.0], [900.0, 0.0]])];
     let scene = one_tile(256, |_, _| 0.0, &roads, style);
-    let buffers = TileBuffers::new(&gpu, &scene.tiles[0].geometry);
+    let buffers = TileBuffers::new(&gpu, &scene.tiles[0].geometry, None);
     for method in METHODS {
         let segments = |distance_m| {
             let camera = camera(0.0, distance_m, 0.0, 0.0);

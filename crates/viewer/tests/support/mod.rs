@@ -313,7 +313,7 @@ pub(crate) fn draw_exaggerated(
                 ..TileLines::default()
             };
             let tile = TileGeometry::assemble(*id, Some(terrain), &lines, &frame(), QUANTUM_M);
-            (TileBuffers::new(gpu, &tile), *skirt_depth_m)
+            (TileBuffers::new(gpu, &tile, None), *skirt_depth_m)
         })
         .collect();
     let tiles: Vec<DrawTile<'_>> = buffers
@@ -329,6 +329,7 @@ pub(crate) fn draw_exaggerated(
         point_scale: 1.0,
         height_range_m: [0.0, 1000.0],
         wall_m: 0.0,
+        cell_px: f64::INFINITY,
         latitude_deg: 47.0,
         wireframe: Wireframe::Hidden,
     };

@@ -297,6 +297,7 @@ impl Scene {
             point_scale: 1.0,
             height_range_m: [0.0, 2000.0],
             wall_m: 0.0,
+            cell_px: f64::INFINITY,
             latitude_deg: 47.0,
             wireframe: Wireframe::Hidden,
         }
@@ -314,7 +315,7 @@ impl Scene {
         samples_per_side: u32,
     ) -> Targets {
         let buffers: Vec<TileBuffers> =
-            self.tiles.iter().map(|tile| TileBuffers::new(gpu, &tile.geometry)).collect();
+            self.tiles.iter().map(|tile| TileBuffers::new(gpu, &tile.geometry, None)).collect();
         let tiles: Vec<DrawTile<'_>> = buffers
             .iter()
             .zip(&self.tiles)

@@ -212,6 +212,7 @@ impl App {
             exaggeration: settings.exaggeration,
             point_scale: self.package.manifest().point_scale,
             height_range_m: self.package.height_range_m(),
+            cell_px: settings.cell_px,
             latitude_deg: self.package.manifest().wgs84_bounds.center()[1],
             wireframe: if settings.is_wireframe { Wireframe::Shown } else { Wireframe::Hidden },
             drawn: self.tiles.drawn().to_vec(),

@@ -22,6 +22,8 @@ pub(crate) struct Scene {
     pub(crate) point_scale: f64,
     /// All ground lies between these true heights.
     pub(crate) height_range_m: [f64; 2],
+    /// How large a cell of a tile may look, pixels; may be infinite.
+    pub(crate) cell_px: f64,
     /// Latitude of the middle of the package.
     pub(crate) latitude_deg: f64,
     /// Whether the edges of triangles are drawn.

@@ -86,6 +86,7 @@ fn uniform_blocks_are_as_long_as_shaders_declare_them() {
         point_scale: 1.0,
         height_range_m: [0.0, 1.0],
         wall_m: 0.0,
+        cell_px: f64::INFINITY,
         latitude_deg: 47.0,
         wireframe: crate::Wireframe::Hidden,
     };

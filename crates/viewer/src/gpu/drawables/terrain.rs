@@ -124,7 +124,7 @@ pub(crate) fn rows(view: &FrameView<'_>) -> Vec<[f32; 4]> {
         color(light.shadow, (1.0 / view.camera.focus_m()) as f32),
         color(light.sunlit, (view.wall_m * view.vertical_scale()) as f32),
         color(*water, *photo),
-        color(*wall, 0.0),
+        color(*wall, view.blend_px() as f32),
     ];
     let stops = stops.into_iter().chain(std::iter::repeat(last)).take(MOST_TINT_STOPS);
     rows.extend(stops.map(|(height_m, rgb)| color(rgb, height_m)));
