@@ -96,5 +96,6 @@ impl RoadBands {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
 #[path = "road_bands_tests.rs"]
 mod tests;

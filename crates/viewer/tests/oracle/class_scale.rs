@@ -196,11 +196,12 @@ fn service_roads_come_later_and_lie_under_all_other_roads() {
     let of_way = |way_id: i64| looks[way_id as usize - 1];
     let tiles = scene.tiles.iter().map(|tile| tile.with_looks(of_way)).collect();
     let scene = Scene { tiles, ..scene };
-    check(&Named { name: "service roads", scene: scene.clone(), cameras: vec![view.clone()] });
+    check(&Named { name: "service roads", scene: scene.clone(), cameras: vec![view] });
     let Some(gpu) = gpu() else { return };
     for method in METHODS {
         let drawing = scene.draw(&gpu, &view, RoadOptions::of(method));
-        let count = |label| drawing.labels.iter().filter(|found| **found == label).count();
+        let count =
+            |label| drawing.pixels().filter(|(index, _)| drawing.labels[*index] == label).count();
         assert!(count(service_label(7)) > 300 && count(road_label(7, 2)) > 300);
     }
 }

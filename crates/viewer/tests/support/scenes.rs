@@ -162,13 +162,8 @@ fn of_own_widths() -> Vec<Named> {
     ]
 }
 
-/// All scenes but those with several levels.
-pub(crate) fn all() -> Vec<Named> {
-    let two_colours = {
-        let mut style = style(26.0);
-        style.roads[0].bands = bands(&[1.0, 0.3]);
-        style
-    };
+/// Scenes of roads of many bands, and of roads that go on as other ones.
+fn of_bands_and_flat_ends() -> Vec<Named> {
     // Least widths too, so that thin roads have bands by the second rule; classes that cross have different ones.
     let many_bands = {
         let mut style = far_atlas();
@@ -181,11 +176,45 @@ pub(crate) fn all() -> Vec<Named> {
         }
         style
     };
+    vec![
+        Named {
+            name: "junction of many bands",
+            scene: one_tile(16, hills, &junction(), many_bands),
+            cameras: vec![camera(400.0, 1500.0, 0.0, 35.0), camera(400.0, 9000.0, 60.0, 78.0)],
+        },
+        Named {
+            name: "roads that go on as others",
+            scene: one_tile(
+                16,
+                hills,
+                &[
+                    (1, vec![[-500.0, -100.0], [-150.0, 0.0], [20.0, 30.0]]),
+                    (4, vec![[420.0, 20.0], [20.0, 30.0]]),
+                    (2, vec![[420.0, 20.0], [600.0, -50.0]]),
+                    (3, vec![[-100.0, 420.0], [-120.0, 200.0]]),
+                    (6, vec![[-120.0, 200.0], [-230.0, -350.0]]),
+                    (5, vec![[-100.0, 420.0], [200.0, 400.0]]),
+                ],
+                style(44.0),
+            ),
+            cameras: vec![camera(400.0, 1000.0, 0.0, 10.0), camera(400.0, 1700.0, 70.0, 60.0)],
+        },
+    ]
+}
+
+/// All scenes but those with several levels.
+pub(crate) fn all() -> Vec<Named> {
+    let two_colours = {
+        let mut style = style(26.0);
+        style.roads[0].bands = bands(&[1.0, 0.3]);
+        style
+    };
     let ridge = |_: f64, y: f64| (400.0 - y.abs() * 0.5).max(0.0);
     let cliff = |x: f64, y: f64| 200.0 + 40.0 * ((x + 0.3 * y) / 120.0).floor();
     let straight = vec![(3, vec![[-700.0, -310.0], [650.0, 420.0]])];
     let mut all = of_own_widths();
-    all.extend([
+    all.extend(of_bands_and_flat_ends());
+    all.extend(vec![
         Named {
             name: "plane",
             scene: one_tile(256, |_, _| 512.0, &straight, style(40.0)),
@@ -233,28 +262,6 @@ pub(crate) fn all() -> Vec<Named> {
             name: "junction, atlas style, far",
             scene: one_tile(16, hills, &junction(), far_atlas()),
             cameras: vec![camera(400.0, 6000.0, 0.0, 35.0), camera(400.0, 9000.0, 60.0, 78.0)],
-        },
-        Named {
-            name: "junction of many bands",
-            scene: one_tile(16, hills, &junction(), many_bands),
-            cameras: vec![camera(400.0, 1500.0, 0.0, 35.0), camera(400.0, 9000.0, 60.0, 78.0)],
-        },
-        Named {
-            name: "roads that go on as others",
-            scene: one_tile(
-                16,
-                hills,
-                &[
-                    (1, vec![[-500.0, -100.0], [-150.0, 0.0], [20.0, 30.0]]),
-                    (4, vec![[420.0, 20.0], [20.0, 30.0]]),
-                    (2, vec![[420.0, 20.0], [600.0, -50.0]]),
-                    (3, vec![[-100.0, 420.0], [-120.0, 200.0]]),
-                    (6, vec![[-120.0, 200.0], [-230.0, -350.0]]),
-                    (5, vec![[-100.0, 420.0], [200.0, 400.0]]),
-                ],
-                style(44.0),
-            ),
-            cameras: vec![camera(400.0, 1000.0, 0.0, 10.0), camera(400.0, 1700.0, 70.0, 60.0)],
         },
         Named {
             name: "hairpin and points",
