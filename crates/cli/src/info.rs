@@ -129,16 +129,17 @@ fn area_texts(areas: &AreasRecord, digits: Digits) -> String {
         ]);
     }
     let kept: u64 = counts.kept.iter().map(|kept| kept.areas).sum();
-    let mut text = format!(
-        "Areas: {} objects of the extract, of which {} became areas, wherever they lie:\n{}",
+    let lost = counts.lost.iter().map(|(reason, objects)| {
+        format!("  lost {} objects: {}\n", digits.count(*objects), plain(reason))
+    });
+    format!(
+        "Areas: {} objects of the extract, of which {} became areas, wherever they lie:\n{}{}\n{}",
         digits.count(counts.objects),
         digits.count(kept),
-        classes.to_text()
-    );
-    for (reason, objects) in &counts.lost {
-        text.push_str(&format!("  lost {} objects: {}\n", digits.count(*objects), plain(reason)));
-    }
-    format!("{text}\n{}", table.to_text())
+        classes.to_text(),
+        lost.collect::<String>(),
+        table.to_text()
+    )
 }
 
 /// Lines that are too wide are texts: they go on below the place where they began, beside their name.

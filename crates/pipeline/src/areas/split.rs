@@ -44,7 +44,7 @@ impl Splitting<'_> {
                 let [east, north] = self.frame.node_steps(level).map(i128::from);
                 coarse.retain(|polygon| polygon.doubled_area() >= 2 * east * north);
             }
-            let coarse = within(coarse, &self.frame.tile_lattice_bounds(TileId::ROOT))?;
+            let coarse = within(&coarse, &self.frame.tile_lattice_bounds(TileId::ROOT))?;
             let mut tiles = Vec::new();
             let wanted = Wanted { frame: self.frame, data: self.data.above(level), level };
             wanted.divide(TileId::ROOT, coarse, &mut tiles)?;
@@ -103,8 +103,8 @@ fn meets(polygon: &Polygon, bounds: &LatticeBounds) -> bool {
 }
 
 /// The parts inside a rectangle.
-fn within(polygons: Vec<Polygon>, bounds: &LatticeBounds) -> Result<Vec<Polygon>, OutlineError> {
-    let [_, east] = divide_all(&polygons, Axis::East, bounds.min.u)?;
+fn within(polygons: &[Polygon], bounds: &LatticeBounds) -> Result<Vec<Polygon>, OutlineError> {
+    let [_, east] = divide_all(polygons, Axis::East, bounds.min.u)?;
     let [inside, _] = divide_all(&east, Axis::East, bounds.max.u)?;
     let [_, north] = divide_all(&inside, Axis::North, bounds.min.v)?;
     let [inside, _] = divide_all(&north, Axis::North, bounds.max.v)?;
