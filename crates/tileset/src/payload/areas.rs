@@ -36,6 +36,6 @@ pub fn decode_areas(
     Ok(areas.map_err(inside)?.unwrap_or_default())
 }
 
-#[cfg(all(test, feature = "write"))]
+#[cfg(test)]
 #[path = "areas_tests.rs"]
 mod tests;
