@@ -7,7 +7,7 @@ fn the_command_line_is_consistent() {
 
 #[test]
 fn options_that_are_not_there_are_rejected() {
-    let line = "corniche build --dem a.tif -o b --areas x.tif";
+    let line = "corniche build --dem a.tif -o b --lakes x.tif";
     assert!(Arguments::try_parse_from(line.split(' ')).is_err(), "{line}");
 }
 
