@@ -27,6 +27,20 @@ pub enum AreaLoss {
 }
 
 impl AreaLoss {
+    /// All of them.
+    pub const ALL: [Self; 10] = [
+        Self::OpenWay,
+        Self::OpenOutline,
+        Self::MissingWays,
+        Self::MissingNodes,
+        Self::OutOfRange,
+        Self::CrossingOutline,
+        Self::NoOutline,
+        Self::TooIntricate,
+        Self::OutsideProjection,
+        Self::Duplicate,
+    ];
+
     /// In words: the name to count it under.
     #[must_use]
     pub const fn reason(self) -> &'static str {

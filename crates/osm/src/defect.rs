@@ -140,6 +140,10 @@ pub enum Defect {
     },
 }
 
+/// See [`Defect::reason`].
+const MISSING_WAYS: &str = "missing ways of an area";
+const MENDED_OUTLINE: &str = "mended outline of an area";
+
 impl Defect {
     /// What kind of defect it is, in words: the name to count it under.
     #[must_use]
@@ -163,9 +167,16 @@ impl Defect {
             Self::ConflictingWay { .. } => "conflicting way",
             Self::ConflictingNode { .. } => "conflicting node",
             Self::LostArea { loss, .. } => loss.reason(),
-            Self::MissingWays { .. } => "missing ways of an area",
-            Self::MendedOutline { .. } => "mended outline of an area",
+            Self::MissingWays { .. } => MISSING_WAYS,
+            Self::MendedOutline { .. } => MENDED_OUTLINE,
         }
+    }
+
+    /// Whether defects of this kind are those of areas: only who reads areas finds them.
+    #[must_use]
+    pub fn is_of_areas(reason: &str) -> bool {
+        [MISSING_WAYS, MENDED_OUTLINE].contains(&reason)
+            || AreaLoss::ALL.iter().any(|loss| loss.reason() == reason)
     }
 
     /// What it is about: `"way"`, `"node"` or `"relation"`, and its id.

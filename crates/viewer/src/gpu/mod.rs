@@ -66,6 +66,7 @@ mod renderer;
 mod road_instances;
 mod shared_bindings;
 mod slope_chain;
+mod square_texture;
 mod target_texture;
 mod targets;
 mod tile_buffers;

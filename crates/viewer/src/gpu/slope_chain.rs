@@ -1,7 +1,7 @@
 use corniche_geom::{TILE_CELLS, TileId};
 use wgpu::{TextureFormat, TextureView};
 
-use super::{Gpu, tile_textures::square};
+use super::{Gpu, square_texture::square};
 use crate::tiles::{ShadingSlopes, TileGeometry};
 
 /// The slopes: rise east and north.

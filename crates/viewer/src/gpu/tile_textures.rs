@@ -5,7 +5,6 @@ use wgpu::{
     BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingResource, BindingType, BufferUsages,
     Device, RenderPass, SamplerBindingType, ShaderStages, TextureFormat, TextureSampleType,
     TextureView,
-    util::{DeviceExt as _, TextureDataOrder},
 };
 
 use super::{
@@ -13,6 +12,7 @@ use super::{
     bindings::{group, layout, texture, uniform},
     photo_texture,
     slope_chain::SlopeChain,
+    square_texture::square,
 };
 use crate::tiles::{PhotoImage, ShadingSlopes, TileGeometry};
 
@@ -121,21 +121,4 @@ impl TileTextures {
     pub(crate) fn set(&self, pass: &mut RenderPass<'_>) {
         pass.set_bind_group(GROUP, &self.group, &[]);
     }
-}
-
-/// A square texture with these texels.
-pub(crate) fn square(gpu: &Gpu, format: TextureFormat, side: u32, texels: &[u8]) -> TextureView {
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some("relief"),
-        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    };
-    let order = TextureDataOrder::LayerMajor;
-    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, texels);
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
