@@ -20,6 +20,8 @@ const MAX_TEXT_BYTES: usize = 1 << 20;
 pub(crate) struct StyleSheet {
     /// Width of the edge of roads, 0 to 4 pixels.
     pub(crate) outline_px: u32,
+    /// Roads that stand alone are drawn where they are at least so long, 0 to 1000 pixels.
+    pub(crate) shortest_part_px: f64,
     /// Whether roads are drawn by their own `width` where it is tagged.
     pub(crate) own_width: bool,
     /// Width of a lane, 1 to 10 m, for roads with `lanes` and without `width`.
@@ -86,6 +88,8 @@ impl BackgroundSheet {
 struct StyleFile {
     outline_px: u32,
     #[serde(default)]
+    shortest_part_px: f64,
+    #[serde(default)]
     own_width: bool,
     lane_width_m: Option<f64>,
     #[serde(default = "photos_alone")]
@@ -120,6 +124,7 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
     let file: StyleFile = toml::from_str(text)?;
     let StyleFile {
         outline_px,
+        shortest_part_px,
         own_width,
         lane_width_m,
         photo,
@@ -135,6 +140,7 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
     }
     let sheet = StyleSheet {
         outline_px,
+        shortest_part_px,
         own_width,
         lane_width_m,
         photo,
@@ -173,6 +179,7 @@ impl StyleSheet {
         let Self { light, background, .. } = self;
         // The kernel looks at (2 r + 1)² places for every pixel.
         within("outline_px", f64::from(*outline_px), 0.0..=4.0)?;
+        within("shortest_part_px", self.shortest_part_px, 0.0..=1000.0)?;
         if let Some(lane_width_m) = lane_width_m {
             within("lane_width_m", *lane_width_m, 1.0..=f64::from(OwnWidths::WIDEST_LANE_M))?;
         }
@@ -200,6 +207,7 @@ impl From<&StyleSheet> for Style {
                 constant: width_scaling.constant as f32,
             },
             outline_px: *outline_px,
+            shortest_part_px: sheet.shortest_part_px as f32,
             tint: tint.clone(),
             light: (*light).into(),
             photo: sheet.photo as f32,

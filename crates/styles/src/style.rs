@@ -86,6 +86,9 @@ pub struct Style {
     pub width_scaling: WidthScaling,
     /// Width of the edge of roads; the kernel has this radius.
     pub outline_px: u32,
+    /// Roads that stand alone, with no more of their class and above around them, are drawn where together they are at least so long.
+    /// 0: everywhere.
+    pub shortest_part_px: f32,
     /// Colours of the ground by its height.
     pub tint: Tint,
     /// The light on the ground.
@@ -159,6 +162,7 @@ impl Style {
             own_widths: None,
             width_scaling: WidthScaling { threshold_m: 1500.0, exponent: 0.75, constant: 4.0 },
             outline_px: 1,
+            shortest_part_px: 40.0,
             tint: Tint {
                 heights: TintHeights::MetresByClimate,
                 stops: vec![

@@ -26,6 +26,15 @@ pub(crate) fn full_distance_m(road: &RoadStyle, camera: &Camera, point_scale: f6
     })
 }
 
+/// The distance from the eye, world metres, up to which roads of a short part of the network are shown in full, for each metre of
+/// the part's length.
+pub(crate) fn part_distance_m(style: &Style, camera: &Camera) -> f64 {
+    // Times the length of a part that is not short, it still is an f32.
+    const ALL_M: f64 = 1e15;
+    let shortest = f64::from(style.shortest_part_px) * camera.pixel_at_unit_depth_m();
+    if shortest > 0.0 { (1.0 / shortest).min(ALL_M) } else { ALL_M }
+}
+
 /// The half width, as a share of the distance from the eye, beyond which roads do not grow with distance.
 pub(crate) fn half_width_limit(road: &RoadStyle, growth: WidthGrowth, camera: &Camera) -> f64 {
     match (road.max_width_px, growth) {

@@ -24,6 +24,8 @@ struct Frame {
     // x: 1 with caps, 0 without; y: 1 for the paper's test in the fragment shader of volumes; z: world metres to a true
     // metre, one value for the whole package; w: roads are not drawn by their own width beyond this one, true metres.
     road_options: vec4<f32>,
+    // x: distance from the eye up to which roads of a part of the network are shown in full, for each metre of that part.
+    network: vec4<f32>,
     // x: half width in true metres near the eye; y: least half width in pixels of this target; z: number of its bands;
     // w: distance from the eye up to which the class is shown in full.
     road_widths: array<vec4<f32>, CLASSES>,
@@ -47,13 +49,17 @@ fn view_depth_of(depth_buffer: f32) -> f32 {
     return frame.forward.w / depth_buffer;
 }
 
-// How a road is drawn: its class, what it is (PLAIN, LINK, TUNNEL or SERVICE), and half its width near the eye, world metres.
+// How a road is drawn: its class, what it is (PLAIN, LINK, TUNNEL or SERVICE), half its width near the eye, and the length of its
+// part of the network, both world metres.
 struct Road {
     class_number: u32,
     look: u32,
     half_width_m: f32,
+    part_m: f32,
 }
 
+// The length of a part of the network that is not short.
+const OPEN_M = 1e15;
 const PLAIN = 0u;
 const LINK = 1u;
 const TUNNEL = 2u;
@@ -69,7 +75,7 @@ fn road_with(class_number: u32, look: u32, own_width: f32, width_factor: f32) ->
     if look == LINK || look == SERVICE {
         half_width_m *= frame.road_limits[class_number].y;
     }
-    return Road(class_number, look, half_width_m * width_factor);
+    return Road(class_number, look, half_width_m * width_factor, OPEN_M);
 }
 
 // Half width of a road in world metres, before the least width in pixels is applied.
@@ -95,9 +101,17 @@ fn full_distance_m(class_number: u32, look: u32) -> f32 {
     return frame.road_widths[class_number].w * select(1.0, SERVICE_SHARE, look == SERVICE);
 }
 
+// Share of a road's width that is drawn at a distance from the eye: 1, except of roads in short parts of the network. These grow
+// thin over half a zoom step.
+fn part_share(road: Road, distance_m: f32) -> f32 {
+    let full_m = road.part_m * frame.network.x;
+    return clamp(1.0 - log2(max(distance_m, 1e-3) / full_m) / log2(FADE_FACTOR), 0.0, 1.0);
+}
+
 // Whether anything of a road is shown at a distance from the eye. Both methods and the connectors of levels ask this.
 fn is_shown(road: Road, distance_m: f32) -> bool {
-    return distance_m < full_distance_m(road.class_number, road.look) * FADE_FACTOR;
+    return distance_m < road.part_m * frame.network.x * FADE_FACTOR
+        && distance_m < full_distance_m(road.class_number, road.look) * FADE_FACTOR;
 }
 
 // Share of a road's colour that is shown at a distance from the eye: linear in the zoom.

@@ -38,10 +38,12 @@ struct RoadFragment {
     @location(3) @interpolate(flat) half_width_m: f32,
     // Where the dashes of a tunnel are: how far along the road the segment's start is, world metres.
     @location(4) @interpolate(flat) dash_m: f32,
+    // How long the part of the network is that the road belongs to, world metres.
+    @location(5) @interpolate(flat) part_m: f32,
 }
 
 fn road_of(in: RoadFragment) -> Road {
-    return Road(in.class_and_other & 15u, (in.class_and_other >> 4u) & 3u, in.half_width_m);
+    return Road(in.class_and_other & 15u, (in.class_and_other >> 4u) & 3u, in.half_width_m, in.part_m);
 }
 
 // A segment of a road in plan, relative to the eye; or in the picture.
@@ -165,8 +167,9 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Seg
     }
     // Each band is treated as a road of its own, of which every width is smaller. So what is within one is within all before.
     let bands = band_count(road);
-    let half_m = scaled_half_width_m(road, distance_m);
-    let looks_m = stretch_of(distance_m, position.z)
+    let part = part_share(road, distance_m);
+    let half_m = part * scaled_half_width_m(road, distance_m);
+    let looks_m = part * stretch_of(distance_m, position.z)
         * least_half_width_m(road, view_depth_of(depth_buffer));
     // How many bands are known to be there.
     var within = 0u;
@@ -179,7 +182,7 @@ fn label_at(pixel: vec2<i32>, center: vec2<f32>, depth_buffer: f32, segment: Seg
     let right = plan_step(pixel, vec2(1, 0), depth_buffer, position.xy, segment);
     let down = plan_step(pixel, vec2(0, 1), depth_buffer, position.xy, segment);
     let seen = seen_px(right, down, position.xy, segment);
-    let least_px = frame.road_widths[road.class_number].y;
+    let least_px = part * frame.road_widths[road.class_number].y;
     while within < bands {
         let share = band_share(road.class_number, within);
         if plan_m > share * looks_m || seen > share * least_px {

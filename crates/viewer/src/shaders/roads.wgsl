@@ -41,6 +41,8 @@ struct SegmentIn {
     @location(6) own_width: f32,
     // As in RoadFragment.
     @location(7) dash_m: f32,
+    // As in RoadFragment.
+    @location(8) part_m: f32,
 }
 
 const AT_START = 0x10u;
@@ -212,6 +214,7 @@ fn vertex(in: SegmentIn) -> RoadFragment {
     out.class_and_other = road.class_number | (((in.class_and_flags >> LOOK_SHIFT) & 15u) << 4u);
     out.half_width_m = road.half_width_m;
     out.dash_m = in.dash_m;
+    out.part_m = in.part_m;
     return out;
 }
 

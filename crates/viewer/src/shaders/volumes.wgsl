@@ -33,6 +33,8 @@ struct VolumeIn {
     @location(6) own_width: f32,
     // As in RoadFragment.
     @location(7) dash_m: f32,
+    // As in RoadFragment.
+    @location(8) part_m: f32,
 }
 
 // The corners of a box as one strip of twelve triangles, all counter-clockwise seen from outside:
@@ -104,6 +106,7 @@ fn vertex(in: VolumeIn) -> RoadFragment {
     out.class_and_other = in.class_and_other;
     out.half_width_m = road.half_width_m;
     out.dash_m = in.dash_m;
+    out.part_m = in.part_m;
     return out;
 }
 
@@ -160,10 +163,11 @@ fn label_by_the_paper(center: vec2<f32>, depth_buffer: f32, start: vec2<f32>, st
     if !is_shown(road, length(position_at(center, depth_buffer))) {
         return NOTHING;
     }
+    let part = part_share(road, length(position_at(center, depth_buffer)));
     let bands = band_count(road);
     var within = 0u;
     while within < bands && is_road_by_the_paper(center, depth_buffer, start, start_to_end, road,
-        band_share(road.class_number, within)) {
+        part * band_share(road.class_number, within)) {
         within++;
     }
     return band_label(road, within);

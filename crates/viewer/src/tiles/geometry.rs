@@ -125,9 +125,13 @@ impl TileGeometry {
             roads: RoadSegments::of_lines(&lines.ground, bounds, reference_m, scale, |piece| {
                 relief.bed(piece, wide.as_ref())
             }),
-            volumes: RoadVolumes::new(&lines.plan, bounds, reference_m, scale, |ends_m| {
-                relief.near(ends_m)
-            }),
+            volumes: RoadVolumes::new(
+                &lines.plan,
+                (bounds, lines.width_margin_m),
+                reference_m,
+                scale,
+                |ends_m| relief.near(ends_m),
+            ),
             width_margin_m: lines.width_margin_m,
             size_m: [bounds.width(), bounds.height()],
             wide_ways: wide_ways(lines),

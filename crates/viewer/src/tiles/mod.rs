@@ -37,5 +37,5 @@ pub(crate) use self::{
     geometry::{WideWay, plan_around},
     ground_mesh::{GroundMesh, GroundVertex},
     plan_scale::PlanScale,
-    roads::{BadRoad, Bed, GroundLine, NearHeights, RoadEnd, dash_of_segment_m},
+    roads::{BadRoad, Bed, GroundLine, NearHeights, OPEN_M, RoadEnd, dash_of_segment_m},
 };

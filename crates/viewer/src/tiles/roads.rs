@@ -7,6 +7,7 @@ mod ground_beside;
 mod lines;
 mod list;
 mod look;
+mod parts;
 mod segments;
 mod volumes;
 
@@ -14,6 +15,7 @@ pub(crate) use self::{
     dashes::dash_of_segment_m,
     ends::RoadEnd,
     ground_beside::{Bed, NearHeights},
+    parts::OPEN_M,
     segments::Piece,
 };
 pub use self::{

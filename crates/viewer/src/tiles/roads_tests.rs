@@ -67,7 +67,8 @@ fn volumes_are_relative_sorted_by_class_and_never_lower_or_shallower_than_the_gr
     };
     let lines = [line(5, [10.0, 20.0], [7.1, 9.3]), line(2, [20.0, 20.0], [1.0, 2.0])];
     let near = |[start, _]: [[f64; 2]; 2]| (start == [10.0, 20.0]).then_some(([8.1, 8.3], 0.7));
-    let roads = RoadVolumes::new(&lines, TILE, [10.0, 20.0, 1.0], &PlanScale::default(), near);
+    let roads =
+        RoadVolumes::new(&lines, (TILE, 8.0), [10.0, 20.0, 1.0], &PlanScale::default(), near);
     assert_eq!((roads.range_of(class(2)), roads.range_of(class(5))), (0..1, 1..2));
     assert_eq!(roads.all()[0].start_in_tile, [10.0, 0.0]);
     let [low, high] = roads.all()[1].height_range_in_tile.map(f64::from);

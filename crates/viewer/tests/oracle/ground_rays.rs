@@ -8,7 +8,7 @@ use corniche_viewer::{
 use glam::{DVec2, DVec3};
 
 use crate::{
-    reference::{Look, Tri, distance, half_width, near_end, shows, without_caps},
+    reference::{Look, Tri, distance, half_width, near_end, part_share, shows, without_caps},
     support::{Drawing, cast, scene::Scene},
 };
 
@@ -102,9 +102,12 @@ pub(crate) fn compare(
             .iter()
             .filter(|road| {
                 let (at, without_cap) = (hit.at.truncate(), without_caps(options.caps, road.flat));
+                let part = road.part_m.map(|part_m| part_share(look, part_m, distance_m));
+                assert_eq!(part[0], part[1], "scenes for this reference have clear parts");
                 let (half_m, _) = half_width(look, (road.class, road.own), road.factor, distance_m);
                 shows(&scene.style, camera, road.class, distance_m) == Tri::Yes
-                    && distance(at, road.ends, without_cap) <= half_m
+                    && distance(at, road.ends, without_cap) <= part[0] * half_m
+                    && part[0] > 0.0
                     && near_end(at, road.ends, without_cap, 0.0) == Tri::Yes
             })
             .map(|road| road.class)

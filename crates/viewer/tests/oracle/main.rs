@@ -24,3 +24,4 @@ mod must_fail;
 mod package;
 mod reference;
 mod road_widths;
+mod short_parts;

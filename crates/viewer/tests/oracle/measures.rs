@@ -1,13 +1,18 @@
 //! Figures about a drawing: how much of the centre-lines is missing.
 
 use corniche_roads::OwnWidth;
-use corniche_viewer::{RoadMethod, RoadOptions, camera::Camera, tiles::RoadLook};
+use corniche_viewer::{
+    RoadMethod, RoadOptions, camera::Camera, for_tests::GroundLine, tiles::RoadLook,
+};
 use glam::{DVec2, DVec3};
 
 use crate::{
     ground_rays::Caster,
-    reference::{Look, Tri, half_width, lateness, narrowing, shows},
-    support::{Drawing, scene::Scene},
+    reference::{Look, Tri, distance, half_width, lateness, narrowing, shows},
+    support::{
+        Drawing,
+        scene::{Scene, Tile},
+    },
 };
 
 /// Length of the steps along a centre-line.
@@ -28,18 +33,29 @@ pub(crate) struct CenterLines {
     pub(crate) missing_at_jumps_px: f64,
 }
 
-/// Walks all centre-lines of a scene.
+/// Walks all centre-lines of a scene, except those of short parts of the network, which are not drawn everywhere.
 pub(crate) fn center_lines(scene: &Scene, camera: &Camera, drawing: &Drawing) -> CenterLines {
     let lines: Vec<Line> = scene
         .tiles
         .iter()
-        .flat_map(|tile| &tile.centers)
+        .flat_map(|tile| tile.centers.iter().map(move |line| (tile, line)))
+        .filter(|(tile, line)| scene.style.shortest_part_px == 0.0 || goes_on(tile, line))
+        .map(|(_, line)| line)
         .map(|line| {
             let points = line.points_m.iter().map(|point| DVec3::from_array(*point)).collect();
             ((line.class.number(), line.own_width, line.look), points)
         })
         .collect();
     walk(&lines, scene, &Caster::new(scene, camera), camera, drawing)
+}
+
+/// Whether a line belongs to a part of the network that leaves the tile.
+fn goes_on(tile: &Tile, line: &GroundLine) -> bool {
+    let at = DVec3::from_array(line.points_m[0]).truncate();
+    let mut here = tile.segments_near(at).iter().filter(|segment| {
+        segment.class == line.class.number() && distance(at, segment.ends, [false; 2]) < 1e-3
+    });
+    here.all(|segment| segment.part_m[0].is_infinite())
 }
 
 /// Walks lines in quarter pixels; what is behind ground does not count.

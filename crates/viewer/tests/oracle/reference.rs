@@ -177,7 +177,7 @@ impl PixelOracle<'_> {
         &self,
         index: usize,
         share: f64,
-        &PlanSegment { class, ends, factor, own, look: kind, flat, .. }: &PlanSegment,
+        &PlanSegment { class, ends, factor, own, look: kind, flat, part_m, .. }: &PlanSegment,
         tile: &Tile,
     ) -> Tri {
         let widest_m = tile.geometry.width_margin_m;
@@ -186,9 +186,14 @@ impl PixelOracle<'_> {
         let pixel_m = self.camera.pixel_at_unit_depth_m() * depth_m;
         // A step of a pixel on the screen moves the plan position by at least this much.
         let band_m = self.band_px * pixel_m;
+        let look = Look { style: self.style, options: self.options, camera: self.camera };
+        let parts = part_m.map(|m| part_share(look, m, from_eye.length()));
+        if parts[1] == 0.0 {
+            return Tri::No;
+        }
+        let share = share * parts[1];
         let without_cap = without_caps(self.options.caps, flat);
         let plan_m = distance(ground.truncate(), ends, without_cap);
-        let look = Look { style: self.style, options: self.options, camera: self.camera };
         let (half_m, least_px) =
             half_width(look, (class, own), factor * narrowing(kind), from_eye.length());
         let wide = Tri::at_most(plan_m, share * half_m, band_m);
@@ -206,7 +211,8 @@ impl PixelOracle<'_> {
         };
         // Without caps a road ends abruptly: a step along it may do what one across does.
         let end = near_end(ground.truncate(), ends, without_cap, band_m);
-        wide.or(thin).and(end).and(Tri::at_most(plan_m, widest_m, band_m))
+        let part = if parts[0] == parts[1] { Tri::Yes } else { Tri::Perhaps };
+        wide.or(thin).and(end).and(Tri::at_most(plan_m, widest_m, band_m)).and(part)
     }
 
     /// Whether a place on a tunnel is on a dash: dashes and gaps are as long as each other, both together a power of two of
@@ -358,6 +364,18 @@ pub(crate) fn shows(style: &Style, camera: &Camera, class: u8, distance_m: f64) 
     let Some(full) = style.roads[usize::from(class)].max_pixel_m else { return Tri::Yes };
     let zoom_steps = (distance_m * camera.pixel_at_unit_depth_m() / f64::from(full)).log2();
     Tri::at_most(zoom_steps, 0.5, 1e-5)
+}
+
+/// How much of its width a road in a part of the network of this length has at a distance from the eye: all of it up to where the part
+/// is `shortest_part_px` long, nothing half a zoom step farther away.
+pub(crate) fn part_share(
+    Look { style, camera, .. }: Look<'_>,
+    part_m: f64,
+    distance_m: f64,
+) -> f64 {
+    let pixels = part_m / (distance_m * camera.pixel_at_unit_depth_m());
+    let zoom_steps = (f64::from(style.shortest_part_px) / pixels).log2();
+    (1.0 - 2.0 * zoom_steps).clamp(0.0, 1.0)
 }
 
 /// What decides how wide roads are drawn.

@@ -7,6 +7,7 @@
 )]
 
 pub(crate) mod country;
+pub(crate) mod network;
 pub(crate) mod package;
 pub(crate) mod scene;
 pub(crate) mod scenes;
@@ -217,6 +218,7 @@ pub(crate) fn plain_style(width_m: f32) -> Style {
     };
     Style {
         roads: [road; 9],
+        shortest_part_px: 0.0,
         width_scaling: WidthScaling { threshold_m: 1e9, exponent: 0.0, constant: 1.0 },
         ..Style::road_atlas()
     }

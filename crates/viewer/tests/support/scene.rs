@@ -16,7 +16,7 @@ use corniche_viewer::{
 };
 use glam::{DVec2, DVec3};
 
-use super::Drawing;
+use super::{Drawing, network::part_lengths_m};
 use crate::support;
 
 /// A segment of a road in plan.
@@ -33,6 +33,8 @@ pub(crate) struct PlanSegment {
     pub(crate) start_m: f64,
     /// Whether it ends flat at its start and at its end, because another road goes on there.
     pub(crate) flat: [bool; 2],
+    /// The least and the most that the length of its part of the network may be, metres.
+    pub(crate) part_m: [f64; 2],
 }
 
 /// A tile of a scene.
@@ -238,10 +240,12 @@ impl Tile {
         triangles: Vec<[DVec3; 3]>,
         skirt_depth_m: f64,
     ) -> Self {
+        let parts_m = part_lengths_m(&lines.plan, frame.tile_bounds(id), lines.width_margin_m);
         let segments: Vec<PlanSegment> = lines
             .plan
             .iter()
-            .flat_map(|line| {
+            .zip(&parts_m)
+            .flat_map(|(line, part_m)| {
                 line.points_m.windows(2).enumerate().map(|(number, pair)| PlanSegment {
                     start_m: start_m(&line.points_m, number, frame.tile_bounds(id)),
                     flat: [
@@ -250,6 +254,7 @@ impl Tile {
                         number + 2 == line.points_m.len()
                             && is_flat(&lines.plan, line, End::Last, frame.tile_bounds(id)),
                     ],
+                    part_m: *part_m,
                     class: line.class.number(),
                     ends: [pair[0], pair[1]].map(DVec2::from_array),
                     factor: lines.scale.across([pair[0], pair[1]]),

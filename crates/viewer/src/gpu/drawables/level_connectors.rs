@@ -11,7 +11,7 @@ use super::{
 use crate::{
     options::ClassSet,
     scene::{BorderTile, LevelConnector, level_connectors},
-    tiles::{NearHeights, RoadVolume, dash_of_segment_m},
+    tiles::{NearHeights, OPEN_M, RoadVolume, dash_of_segment_m},
 };
 
 /// The connectors of a frame, in order of the finer tile.
@@ -81,6 +81,8 @@ fn volume(connector: &LevelConnector, reference_m: [f64; 3]) -> RoadVolume {
         class: connector.class,
         own_width: connector.own_width,
         look: connector.look,
+        // It goes on in two tiles.
+        part_m: OPEN_M,
         dash_m: dash_of_segment_m(connector.ends_m) as f32,
         flat_ends: [false; 2],
     }

@@ -7,6 +7,7 @@ use super::{
     dashes::dash_starts_m,
     ends::ground_ends,
     flat_ends::{LineEnds, flat_ends},
+    parts::{KnownNet, NetLine, part_lengths_m},
 };
 
 /// A straight piece of a road's centre-line on the ground.
@@ -33,6 +34,8 @@ pub struct RoadSegment {
     pub own_width: OwnWidth,
     /// What it is.
     pub look: RoadLook,
+    /// How long the part of the network is that it belongs to, working metres.
+    pub(crate) part_m: f32,
     /// Where the dashes of a tunnel are: how far along the road the start of its source segment is, working metres.
     pub(crate) dash_m: f32,
     /// Whether its source segment ends flat at its start and at its end, also where roads have caps.
@@ -116,6 +119,10 @@ fn source_vertices(line: &GroundLine) -> Vec<[f64; 2]> {
     first.into_iter().chain(sources_m.iter().map(|source_m| source_m[1])).collect()
 }
 
+fn net_line(line: &GroundLine) -> NetLine {
+    NetLine { class: line.class, look: line.look, vertices_m: source_vertices(line) }
+}
+
 impl RoadList<RoadSegment> {
     /// Cuts lines of the tile with these bounds into segments. `bed` gives the ground beside a piece.
     #[must_use]
@@ -133,29 +140,34 @@ impl RoadList<RoadSegment> {
         let (place, bed) = (&place, &bed);
         let ends: Vec<LineEnds> = lines.iter().map(line_ends).collect();
         let flat = flat_ends(&ends, tile);
-        let segments = lines.iter().zip(flat).flat_map(|(line, [first_flat, last_flat])| {
-            let dashes_m = dash_starts_m(&source_vertices(line), tile);
-            Piece::all_of(line).map(move |piece| {
-                let [start_in_tile, end_in_tile] = piece.source_m.map(place);
-                RoadSegment {
-                    start_in_tile,
-                    end_in_tile,
-                    shares: piece.ends_m.map(|end| piece.share(end)),
-                    height_in_tile: relative(piece.ends_m[0], reference_m)[2],
-                    has_caps: piece.has_caps,
-                    width_factor: scale.across(piece.source_m) as f32,
-                    bed: bed(&piece),
-                    class: line.class,
-                    own_width: line.own_width,
-                    look: line.look,
-                    dash_m: dashes_m[piece.source_number],
-                    flat_ends: [
-                        piece.source_number == 0 && first_flat,
-                        piece.source_number + 1 == dashes_m.len() && last_flat,
-                    ],
-                }
-            })
-        });
+        let net: Vec<NetLine> = lines.iter().map(net_line).collect();
+        let parts_m = part_lengths_m(&net, KnownNet::within(tile));
+        let lines_parts = lines.iter().zip(parts_m);
+        let segments =
+            lines_parts.zip(flat).flat_map(|((line, part_m), [first_flat, last_flat])| {
+                let dashes_m = dash_starts_m(&source_vertices(line), tile);
+                Piece::all_of(line).map(move |piece| {
+                    let [start_in_tile, end_in_tile] = piece.source_m.map(place);
+                    RoadSegment {
+                        start_in_tile,
+                        end_in_tile,
+                        shares: piece.ends_m.map(|end| piece.share(end)),
+                        height_in_tile: relative(piece.ends_m[0], reference_m)[2],
+                        has_caps: piece.has_caps,
+                        width_factor: scale.across(piece.source_m) as f32,
+                        bed: bed(&piece),
+                        class: line.class,
+                        own_width: line.own_width,
+                        look: line.look,
+                        part_m,
+                        dash_m: dashes_m[piece.source_number],
+                        flat_ends: [
+                            piece.source_number == 0 && first_flat,
+                            piece.source_number + 1 == dashes_m.len() && last_flat,
+                        ],
+                    }
+                })
+            });
         Self::sorted(segments.collect(), |segment| segment.class, ground_ends(lines, tile, scale))
     }
 }

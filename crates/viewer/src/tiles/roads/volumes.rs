@@ -7,6 +7,7 @@ use super::{
     dashes::dash_starts_m,
     ends::plan_ends,
     flat_ends::{LineEnds, flat_ends},
+    parts::{KnownNet, NetLine, part_lengths_m},
 };
 
 /// A straight piece of a road in plan with the heights that its volume spans.
@@ -28,6 +29,8 @@ pub struct RoadVolume {
     pub own_width: OwnWidth,
     /// What it is.
     pub look: RoadLook,
+    /// How long the part of the network is that it belongs to, working metres.
+    pub(crate) part_m: f32,
     /// Where the dashes of a tunnel are: how far along the road its start is, working metres.
     pub(crate) dash_m: f32,
     /// Whether it ends flat at its start and at its end, also where roads have caps.
@@ -49,14 +52,18 @@ fn line_ends(line: &PlanLine) -> LineEnds {
     }
 }
 
+fn net_line(line: &PlanLine) -> NetLine {
+    NetLine { class: line.class, look: line.look, vertices_m: line.points_m.clone() }
+}
+
 impl RoadList<RoadVolume> {
-    /// Cuts lines of the tile with these bounds into volumes.
+    /// Cuts lines of the tile with these bounds, and of a margin around it, into volumes.
     ///
     /// `near` gives, for the ends of a segment in the working CRS, the range of true heights of the ground beneath it and
     /// how many metres that range grows per metre away from it; `None` if no ground is within [`NearHeights::reach_m`].
     pub(crate) fn new(
         lines: &[PlanLine],
-        tile: Bounds,
+        (tile, margin_m): (Bounds, f64),
         reference_m: [f64; 3],
         scale: &PlanScale,
         near: impl Fn([[f64; 2]; 2]) -> Option<([f64; 2], f64)>,
@@ -71,32 +78,37 @@ impl RoadList<RoadVolume> {
         };
         let ends: Vec<LineEnds> = lines.iter().map(line_ends).collect();
         let flat = flat_ends(&ends, tile);
+        let net: Vec<NetLine> = lines.iter().map(net_line).collect();
+        let parts_m = part_lengths_m(&net, KnownNet { margin_m, ..KnownNet::within(tile) });
         let (place, near) = (&place, &near);
-        let volumes = lines.iter().zip(flat).flat_map(|(line, [first_flat, last_flat])| {
-            let last = line.points_m.len().saturating_sub(2);
-            let dashes_m = dash_starts_m(&line.points_m, tile);
-            let segments = line.points_m.windows(2).zip(&line.ground_range_m).zip(dashes_m);
-            segments.enumerate().map(move |(number, ((pair, range_m), dash_m))| {
-                // Without ground near, the box is almost flat.
-                let (near_m, rise) = near([pair[0], pair[1]])
-                    .unwrap_or(([f64::midpoint(range_m[0], range_m[1]); 2], 0.0));
-                RoadVolume {
-                    start_in_tile: place(pair[0]),
-                    end_in_tile: place(pair[1]),
-                    height_range_in_tile: above(*range_m),
-                    near: NearHeights {
-                        range_in_tile: above(near_m),
-                        rise: (rise as f32).next_up(),
-                    },
-                    width_factor: scale.across([pair[0], pair[1]]) as f32,
-                    class: line.class,
-                    own_width: line.own_width,
-                    look: line.look,
-                    dash_m,
-                    flat_ends: [number == 0 && first_flat, number == last && last_flat],
-                }
-            })
-        });
+        let lines_parts = lines.iter().zip(parts_m);
+        let volumes =
+            lines_parts.zip(flat).flat_map(|((line, part_m), [first_flat, last_flat])| {
+                let last = line.points_m.len().saturating_sub(2);
+                let dashes_m = dash_starts_m(&line.points_m, tile);
+                let segments = line.points_m.windows(2).zip(&line.ground_range_m).zip(dashes_m);
+                segments.enumerate().map(move |(number, ((pair, range_m), dash_m))| {
+                    // Without ground near, the box is almost flat.
+                    let (near_m, rise) = near([pair[0], pair[1]])
+                        .unwrap_or(([f64::midpoint(range_m[0], range_m[1]); 2], 0.0));
+                    RoadVolume {
+                        start_in_tile: place(pair[0]),
+                        end_in_tile: place(pair[1]),
+                        height_range_in_tile: above(*range_m),
+                        near: NearHeights {
+                            range_in_tile: above(near_m),
+                            rise: (rise as f32).next_up(),
+                        },
+                        width_factor: scale.across([pair[0], pair[1]]) as f32,
+                        class: line.class,
+                        own_width: line.own_width,
+                        look: line.look,
+                        part_m,
+                        dash_m,
+                        flat_ends: [number == 0 && first_flat, number == last && last_flat],
+                    }
+                })
+            });
         Self::sorted(volumes.collect(), |volume| volume.class, plan_ends(lines, tile, scale))
     }
 }

@@ -1,0 +1,174 @@
+//! How long the part of the road network is that a road belongs to, so that short parts that stand alone can be left out.
+
+use std::collections::BTreeMap;
+
+use corniche_geom::Bounds;
+use corniche_roads::FunctionalRoadClass;
+
+use super::{NearHeights, RoadLook};
+
+/// The length of a part of which not all is known, working metres; larger than any other.
+pub(crate) const OPEN_M: f32 = 1e15;
+
+/// A line of the road network.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct NetLine {
+    pub(crate) class: FunctionalRoadClass,
+    pub(crate) look: RoadLook,
+    /// Its vertices in plan.
+    pub(crate) vertices_m: Vec<[f64; 2]>,
+}
+
+/// What a tile knows of the network: its own rectangle and that of its lines, and how near lines are that belong together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct KnownNet {
+    pub(crate) tile: Bounds,
+    /// How far beyond the tile lines are known.
+    pub(crate) margin_m: f64,
+    /// Lines that come this near belong together. On coarse levels each line is simplified by itself, so that roads which meet
+    /// need not have a common point; a cell is more than that moves them.
+    pub(crate) near_m: f64,
+}
+
+/// For each line, the length of the part of the network to which it belongs among lines of its class and more important
+/// ones, working metres. [`OPEN_M`] if that part may go on where this tile knows no lines.
+///
+/// ```text
+///    ┌──────────────────────┐    a is drawn long before b. While b is not shown, a stands alone, and its part of the
+///    │    ━━━a━━━┄┄┄┄b┄┄┄┄┄┄│┄   network is as long as a. The part of b is a and b; it leaves the tile, so it is open.
+///    │                      │
+///    └──────────────────────┘
+/// ```
+///
+/// A part is open if it meets the tile's border, in both methods. So all tiles that have some of a part decide alike, but a short part
+/// across a border counts as open.
+pub(crate) fn part_lengths_m(lines: &[NetLine], known: KnownNet) -> Vec<f32> {
+    let mut order: Vec<usize> = (0..lines.len()).collect();
+    order.sort_by_key(|number| (rank(&lines[*number]), *number));
+    let mut net = Net { parts: Vec::new(), at: BTreeMap::new(), near_m: known.near_m };
+    let mut lengths_m = vec![OPEN_M; lines.len()];
+    for run in order.chunk_by(|a, b| rank(&lines[*a]) == rank(&lines[*b])) {
+        let parts: Vec<usize> = run.iter().map(|&n| net.add(&lines[n], known)).collect();
+        for (&number, part) in run.iter().zip(parts) {
+            let part = net.root(part);
+            lengths_m[number] = net.parts[part].length_m as f32;
+        }
+    }
+    lengths_m
+}
+
+/// Lines of a lower rank are shown from farther away.
+fn rank(line: &NetLine) -> (u8, bool) {
+    (line.class.number(), line.look == RoadLook::Service)
+}
+
+impl KnownNet {
+    /// What is known from the lines inside a tile: no neighbour's.
+    pub(crate) fn within(tile: Bounds) -> Self {
+        let near_m = NearHeights::reach_m([tile.width(), tile.height()]);
+        Self { tile, margin_m: 0.0, near_m }
+    }
+
+    /// Whether all of a line is known, and its neighbourhood: it lies inside the tile, or between the tile and the end of its
+    /// margin.
+    fn holds(&self, vertices_m: &[[f64; 2]]) -> bool {
+        let Self { tile, margin_m, near_m } = *self;
+        let inside = |grown_m: f64| {
+            move |[x, y]: &[f64; 2]| {
+                tile.min_x - grown_m < *x
+                    && *x < tile.max_x + grown_m
+                    && tile.min_y - grown_m < *y
+                    && *y < tile.max_y + grown_m
+            }
+        };
+        let beyond_one_side = vertices_m.iter().all(|at| at[0] < tile.min_x)
+            || vertices_m.iter().all(|at| at[0] > tile.max_x)
+            || vertices_m.iter().all(|at| at[1] < tile.min_y)
+            || vertices_m.iter().all(|at| at[1] > tile.max_y);
+        vertices_m.iter().all(inside(0.0))
+            || beyond_one_side && vertices_m.iter().all(inside(margin_m - near_m))
+    }
+}
+
+/// Parts of the network, as a forest of lines that belong together.
+struct Net {
+    parts: Vec<Part>,
+    /// A line that comes through a square.
+    at: BTreeMap<[i64; 2], usize>,
+    near_m: f64,
+}
+
+struct Part {
+    /// Another line of the same part, itself at the root.
+    parent: usize,
+    /// Of all lines; known at the root.
+    length_m: f64,
+}
+
+impl Net {
+    /// Adds a line and returns its number.
+    fn add(&mut self, line: &NetLine, known: KnownNet) -> usize {
+        let vertices_m = &line.vertices_m;
+        let length_m = vertices_m.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
+        let length_m = if known.holds(vertices_m) { length_m } else { f64::from(OPEN_M) };
+        let number = self.parts.len();
+        self.parts.push(Part { parent: number, length_m });
+        for square in self.squares(vertices_m) {
+            for [dx, dy] in [-1, 0, 1].into_iter().flat_map(|dx| [-1, 0, 1].map(|dy| [dx, dy])) {
+                if let Some(&other) = self.at.get(&[square[0] + dx, square[1] + dy]) {
+                    self.join(number, other);
+                }
+            }
+            self.at.insert(square, number);
+        }
+        number
+    }
+
+    /// The squares of points along a line, no farther from each other than a square is wide. Where two lines cross, they have points
+    /// in the same square or in squares side by side.
+    fn squares(&self, vertices_m: &[[f64; 2]]) -> Vec<[i64; 2]> {
+        let mut squares = Vec::new();
+        let mut push = |[x, y]: [f64; 2]| {
+            let square = [x, y].map(|value| (value / self.near_m).floor() as i64);
+            if squares.last() != Some(&square) {
+                squares.push(square);
+            }
+        };
+        for pair in vertices_m.windows(2) {
+            let steps = (distance(pair[0], pair[1]) / self.near_m).ceil().max(1.0);
+            for step in 0..steps as u32 {
+                let share = f64::from(step) / steps;
+                push([0, 1].map(|k| pair[0][k] + share * (pair[1][k] - pair[0][k])));
+            }
+        }
+        vertices_m.last().into_iter().for_each(|last| push(*last));
+        squares
+    }
+
+    fn root(&mut self, mut number: usize) -> usize {
+        while self.parts[number].parent != number {
+            let above = self.parts[number].parent;
+            self.parts[number].parent = self.parts[above].parent;
+            number = above;
+        }
+        number
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        if a != b {
+            let (child, root) = (a.max(b), a.min(b));
+            self.parts[child].parent = root;
+            let sum_m = self.parts[a].length_m + self.parts[b].length_m;
+            self.parts[root].length_m = sum_m.min(f64::from(OPEN_M));
+        }
+    }
+}
+
+fn distance([x, y]: [f64; 2], [to_x, to_y]: [f64; 2]) -> f64 {
+    (to_x - x).hypot(to_y - y)
+}
+
+#[cfg(test)]
+#[path = "parts_tests.rs"]
+mod tests;

@@ -1,0 +1,103 @@
+//! How long the part of the road network is that a line of a tile belongs to: by distances between all pairs of lines.
+
+use corniche_geom::Bounds;
+use corniche_viewer::{for_tests::PlanLine, tiles::RoadLook};
+use glam::DVec2;
+
+/// The least and the most that the length of each line's part may be, metres; infinite where it goes on beyond what the tile knows.
+/// They differ where lines are so far apart that it is a matter of rounding whether they belong together.
+pub(crate) fn part_lengths_m(lines: &[PlanLine], tile: Bounds, margin_m: f64) -> Vec<[f64; 2]> {
+    let cell_m = tile.width().min(tile.height()) / 256.0;
+    let near: Vec<(usize, usize, f64)> = pairs(lines)
+        .filter(|(a, b)| may_be_near(&lines[*a], &lines[*b], 3.0 * cell_m))
+        .map(|(a, b)| (a, b, apart_m(&lines[a], &lines[b])))
+        .collect();
+    (0..lines.len())
+        .map(|line| {
+            // Lines belong together where they cross, or come through squares side by side.
+            [1e-6 * cell_m, 2.0 * 2.0_f64.sqrt() * cell_m].map(|most_m| {
+                let part = part_of(lines, line, |a, b| {
+                    near.iter().any(|(c, d, m)| [*c, *d] == [a.min(b), a.max(b)] && *m <= most_m)
+                });
+                part.into_iter().map(|k| known_m(&lines[k], tile, margin_m, cell_m)).sum()
+            })
+        })
+        .collect()
+}
+
+fn pairs(lines: &[PlanLine]) -> impl Iterator<Item = (usize, usize)> {
+    let count = lines.len();
+    (0..count).flat_map(move |a| (a + 1..count).map(move |b| (a, b)))
+}
+
+/// The lines that one is connected with through lines that are shown as early as it.
+fn part_of(lines: &[PlanLine], line: usize, is_near: impl Fn(usize, usize) -> bool) -> Vec<usize> {
+    let rank = |k: usize| (lines[k].class.number(), lines[k].look == RoadLook::Service);
+    let mut part = vec![line];
+    let mut next = 0;
+    while let Some(&from) = part.get(next) {
+        next += 1;
+        for to in 0..lines.len() {
+            if rank(to) <= rank(line) && !part.contains(&to) && is_near(from, to) {
+                part.push(to);
+            }
+        }
+    }
+    part
+}
+
+/// The length of a line; infinite if it is not known whole.
+fn known_m(line: &PlanLine, tile: Bounds, margin_m: f64, cell_m: f64) -> f64 {
+    let points: Vec<DVec2> = line.points_m.iter().map(|at| DVec2::from_array(*at)).collect();
+    let middle = DVec2::from_array(tile.center());
+    let half = DVec2::new(tile.width(), tile.height()) / 2.0;
+    // How far beyond the tile's sides a point is: negative inside.
+    let beyond: Vec<DVec2> = points.iter().map(|at| (*at - middle).abs() - half).collect();
+    let inside = beyond.iter().all(|by| by.max_element() < 0.0);
+    let whole = beyond.iter().all(|by| by.max_element() < margin_m - cell_m);
+    let beside = [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y]
+        .into_iter()
+        .any(|side| points.iter().all(|at| (*at - middle).dot(side) > half.dot(side.abs())));
+    if inside || (whole && beside) {
+        points.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
+    } else {
+        f64::INFINITY
+    }
+}
+
+fn may_be_near(a: &PlanLine, b: &PlanLine, most_m: f64) -> bool {
+    let range = |line: &PlanLine| {
+        line.points_m
+            .iter()
+            .map(|at| DVec2::from_array(*at))
+            .fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], at| {
+                [low.min(at), high.max(at)]
+            })
+    };
+    let ([low, high], [other_low, other_high]) = (range(a), range(b));
+    (other_low - high).max(low - other_high).max_element() <= most_m
+}
+
+/// The distance between two lines.
+fn apart_m(a: &PlanLine, b: &PlanLine) -> f64 {
+    let mut least = f64::INFINITY;
+    for first in a.points_m.windows(2) {
+        for second in b.points_m.windows(2) {
+            let [p, q] = [0, 1].map(|k| DVec2::from_array(first[k]));
+            let [r, s] = [0, 1].map(|k| DVec2::from_array(second[k]));
+            let sides = |from: DVec2, to: DVec2, at: DVec2| (to - from).perp_dot(at - from);
+            let crosses =
+                sides(p, q, r) * sides(p, q, s) < 0.0 && sides(r, s, p) * sides(r, s, q) < 0.0;
+            let ends = [to_segment_m(p, [r, s]), to_segment_m(q, [r, s])]
+                .into_iter()
+                .chain([to_segment_m(r, [p, q]), to_segment_m(s, [p, q])]);
+            least = ends.fold(if crosses { 0.0 } else { least }, f64::min);
+        }
+    }
+    least
+}
+
+fn to_segment_m(at: DVec2, [a, b]: [DVec2; 2]) -> f64 {
+    let along = if a == b { 0.0 } else { (at - a).dot(b - a) / a.distance_squared(b) };
+    at.distance(a + (b - a) * along.clamp(0.0, 1.0))
+}
