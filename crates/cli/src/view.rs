@@ -93,7 +93,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
 /// How roads are drawn where the processor draws, unless the command line says how: shadow volumes take it several times as
 /// long as geometry. A test for caps is one of shadow volumes.
 fn software_method(args: &ViewArgs) -> Option<RoadMethod> {
-    let is_free = args.roads.is_none() && !args.look.tests_caps();
+    let is_free = args.roads.is_none() && !args.look.needs_method();
     is_free.then_some(RoadMethod::Geometry)
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use corniche_viewer::{
-    CameraRequest, CapTest, Caps, Outline, RoadMethod, RoadOptions, WidthGrowth,
+    CameraRequest, CapTest, Caps, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth,
 };
 use corniche_window::{CommandOf, ShownView};
 
@@ -80,6 +80,9 @@ fn look(roads: RoadOptions) -> Vec<(&'static str, &'static str)> {
     // The option is refused where no shadow volume has caps.
     if roads.cap_test == CapTest::PaperQuadratic && method(roads) == Roads::Sv {
         given.push(("--cap-test", "paper"));
+    }
+    if roads.quads == Quads::Level && roads.method == RoadMethod::Geometry {
+        given.push(("--geo-quads", "level"));
     }
     given
 }

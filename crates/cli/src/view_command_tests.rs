@@ -1,5 +1,5 @@
 use clap::Parser as _;
-use corniche_viewer::{ClassSet, camera::Orientation};
+use corniche_viewer::camera::Orientation;
 
 use super::*;
 use crate::args::{Arguments, Command, RenderArgs};
@@ -80,19 +80,30 @@ fn every_look_of_roads_is_read_as_it_was() {
                         if cap_test == CapTest::PaperQuadratic && !is_tested {
                             continue;
                         }
-                        let classes = ClassSet::ALL;
-                        let roads =
-                            RoadOptions { method, classes, caps, cap_test, width_growth, outline };
-                        let args = read("a", &shown(roads));
-                        let drawn = args.look.roads(&[args.roads]).unwrap()[0];
-                        assert_eq!(args.look.road_options(drawn), roads);
-                        count += 1;
+                        for quads in [Quads::Beds, Quads::Level] {
+                            if quads == Quads::Level && method != RoadMethod::Geometry {
+                                continue;
+                            }
+                            let usual = RoadOptions::of(method);
+                            let roads = RoadOptions {
+                                caps,
+                                cap_test,
+                                quads,
+                                width_growth,
+                                outline,
+                                ..usual
+                            };
+                            let args = read("a", &shown(roads));
+                            let drawn = args.look.roads(&[args.roads]).unwrap()[0];
+                            assert_eq!(args.look.road_options(drawn), roads);
+                            count += 1;
+                        }
                     }
                 }
             }
         }
     }
-    assert_eq!(count, 60);
+    assert_eq!(count, 84);
     let none = shown(RoadOptions::of(RoadMethod::None));
     assert_eq!(read("a", &none).roads, Roads::None);
 }

@@ -61,7 +61,7 @@ pub use annotations::{
 pub use class_scale::LevelScales;
 pub use frame_view::{FrameView, Wireframe};
 pub use lon_lat::{LonLatError, parse_lon_lat};
-pub use options::{CapTest, Caps, ClassSet, Outline, RoadMethod, RoadOptions, WidthGrowth};
+pub use options::{CapTest, Caps, ClassSet, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth};
 pub use range::OutOfRange;
 #[cfg(not(target_arch = "wasm32"))]
 pub use render::{RenderError, RenderReport, RenderRequest, Rendered, render};

@@ -34,6 +34,16 @@ pub enum CapTest {
     PaperQuadratic,
 }
 
+/// What the quad of a piece of road covers (GEO).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quads {
+    /// All ground beside the piece, within the road's width.
+    Beds,
+    /// What lies as high as the piece: the quad is level across the road, as in the paper (section 4.2), so a road on a slope is too
+    /// narrow (its Fig. 15). Kept for comparison. Only for geometry.
+    Level,
+}
+
 /// How widths depend on the distance from the eye (the paper, Fig. 10).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WidthGrowth {
@@ -122,6 +132,8 @@ pub struct RoadOptions {
     pub caps: Caps,
     /// The test in the fragment shader of volumes.
     pub cap_test: CapTest,
+    /// What the quads of geometry cover.
+    pub quads: Quads,
     /// How widths depend on distance.
     pub width_growth: WidthGrowth,
     /// The edge around roads.
@@ -137,6 +149,7 @@ impl RoadOptions {
             classes: ClassSet::ALL,
             caps: Caps::Round,
             cap_test: CapTest::Distance,
+            quads: Quads::Beds,
             width_growth: WidthGrowth::ByDistance,
             outline: Outline::OfStyle,
         }

@@ -103,6 +103,15 @@ pub(crate) enum CapTest {
     Paper,
 }
 
+/// What the quad of a piece of road covers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Quads {
+    /// All ground beside the piece, within the road's width
+    Beds,
+    /// What lies as high as the piece, as in the paper, for comparison: roads on slopes are too narrow
+    Level,
+}
+
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Look")]
 pub(crate) struct LookArgs {
@@ -124,6 +133,9 @@ pub(crate) struct LookArgs {
     /// How shadow volumes find their round ends [default: distance]
     #[arg(long, value_enum)]
     cap_test: Option<CapTest>,
+    /// What the quads of roads as geometry cover [default: beds]
+    #[arg(long, value_enum)]
+    geo_quads: Option<Quads>,
 }
 
 /// A share from 0 to 1; `off` is 0.
@@ -140,20 +152,27 @@ impl LookArgs {
         Style { photo: self.photo.unwrap_or(style.photo), ..style }
     }
 
-    /// Whether `--cap-test` is given.
-    pub(crate) fn tests_caps(&self) -> bool {
-        self.cap_test.is_some()
+    /// Whether an option is given that only some methods have.
+    pub(crate) fn needs_method(&self) -> bool {
+        self.cap_test.is_some() || self.geo_quads.is_some()
     }
 
     /// What `--roads` says together with `--caps`.
     ///
     /// # Errors
-    /// When `--cap-test` is given and nothing is drawn that could be tested.
+    /// When `--cap-test` or `--geo-quads` is given and nothing is drawn that it could change.
     pub(crate) fn roads(&self, given: &[Roads]) -> Result<Vec<Roads>, Failure> {
         let roads: Vec<Roads> = given.iter().map(|roads| roads.with_caps(self.caps)).collect();
         if self.cap_test.is_some() && !roads.contains(&Roads::Sv) {
             return Err(Failure::unusable(
                 "--cap-test has an effect only on shadow volumes with round caps; give it together with --roads sv",
+            ));
+        }
+        if self.geo_quads.is_some()
+            && !roads.iter().any(|roads| roads.method() == RoadMethod::Geometry)
+        {
+            return Err(Failure::unusable(
+                "--geo-quads has an effect only on roads as geometry; give it together with --roads geo",
             ));
         }
         Ok(roads)
@@ -171,6 +190,10 @@ impl LookArgs {
             cap_test: match self.cap_test {
                 Some(CapTest::Paper) => corniche_viewer::CapTest::PaperQuadratic,
                 Some(CapTest::Distance) | None => corniche_viewer::CapTest::Distance,
+            },
+            quads: match self.geo_quads {
+                Some(Quads::Level) => corniche_viewer::Quads::Level,
+                Some(Quads::Beds) | None => corniche_viewer::Quads::Beds,
             },
             width_growth: match self.width_growth {
                 WidthGrowth::None => corniche_viewer::WidthGrowth::None,

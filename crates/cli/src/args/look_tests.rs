@@ -32,6 +32,7 @@ fn every_option_reaches_the_drawing() {
         classes: corniche_viewer::ClassSet::ALL,
         caps: corniche_viewer::Caps::Round,
         cap_test: corniche_viewer::CapTest::PaperQuadratic,
+        quads: corniche_viewer::Quads::Beds,
         width_growth: corniche_viewer::WidthGrowth::Constant,
         outline: corniche_viewer::Outline::Kernel5,
     };
@@ -43,6 +44,17 @@ fn every_option_reaches_the_drawing() {
     assert_eq!(options.outline, corniche_viewer::Outline::None);
     assert_eq!(options.caps, corniche_viewer::Caps::None);
     assert_eq!(options.method, RoadMethod::Geometry);
+    let Line { roads, look } = line("--roads sv,geo --geo-quads level");
+    let drawn = look.roads(&roads).unwrap();
+    assert_eq!(look.road_options(drawn[1]).quads, corniche_viewer::Quads::Level);
+    for without in ["sv", "none"] {
+        let Line { roads, look } = line(&format!("--roads {without} --geo-quads level"));
+        let refused = look.roads(&roads).unwrap_err().to_string();
+        assert!(
+            refused.contains("--geo-quads has an effect only on roads as geometry"),
+            "{refused}"
+        );
+    }
 }
 
 #[test]

@@ -225,7 +225,7 @@ fn check_counts(manifest: &Manifest, roads: &RoadTotals, losses: &Sums, findings
     same("roads_kept", &said.roads_kept, &wanted.roads_kept);
     // Only roads were read again.
     let mut of_roads = said.defects.clone();
-    of_roads.retain(|reason, _| !Defect::is_of_areas(reason));
+    of_roads.retain(|(reason, _)| !Defect::is_of_areas(reason));
     same("defects", &of_roads, &wanted.defects);
     same("unknown_highways", &said.unknown_highways, &wanted.unknown_highways);
     same("blobs_passed_over", &said.blobs_passed_over, &wanted.blobs_passed_over);

@@ -4,7 +4,6 @@ use corniche_tileset::PHOTO_BORDER;
 use wgpu::{
     BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingResource, BindingType, BufferUsages,
     Device, RenderPass, SamplerBindingType, ShaderStages, TextureFormat, TextureSampleType,
-    TextureView,
 };
 
 use super::{

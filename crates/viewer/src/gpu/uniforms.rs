@@ -10,7 +10,7 @@ use corniche_styles::{OwnWidths, RoadBands};
 use crate::{
     class_scale,
     frame_view::FrameView,
-    options::{CapTest, Caps, RoadMethod},
+    options::{CapTest, Caps, Quads, RoadMethod},
     tiles::NearHeights,
 };
 
@@ -70,7 +70,9 @@ pub(crate) fn frame_rows(view: &FrameView<'_>, samples_per_side: u32) -> Vec<[f3
         view.point_scale as f32,
         OwnWidths::WIDEST_M,
     ]);
-    rows.push([class_scale::part_distance_m(style, view.camera) as f32, 0.0, 0.0, 0.0]);
+    let is_level = view.roads.quads == Quads::Level;
+    let part_distance_m = class_scale::part_distance_m(style, view.camera) as f32;
+    rows.push([part_distance_m, if is_level { 1.0 } else { 0.0 }, 0.0, 0.0]);
     rows.extend(style.roads.iter().map(|road| {
         let bands = road.bands.all().len() as f32;
         let half_width_m = road.width_m / 2.0 * scaling.constant;

@@ -24,7 +24,8 @@ struct Frame {
     // x: 1 with caps, 0 without; y: 1 for the paper's test in the fragment shader of volumes; z: world metres to a true
     // metre, one value for the whole package; w: roads are not drawn by their own width beyond this one, true metres.
     road_options: vec4<f32>,
-    // x: distance from the eye up to which roads of a part of the network are shown in full, for each metre of that part.
+    // x: distance from the eye up to which roads of a part of the network are shown in full, for each metre of that part;
+    // y: 1 for the paper's level quads of geometry.
     network: vec4<f32>,
     // x: half width in true metres near the eye; y: least half width in pixels of this target; z: number of its bands;
     // w: distance from the eye up to which the class is shown in full.

@@ -205,6 +205,11 @@ fn vertex(in: SegmentIn) -> RoadFragment {
         let everywhere = 1.01 * (2.0 * side - 1.0);
         position = frame.forward.xyz + everywhere.x * frame.right.xyz + everywhere.y * frame.up.xyz;
     }
+    // The paper's quad: as high as the piece all across the road.
+    if frame.network.y > 0.5 {
+        let across = mix(bed.y.x, bed.y.y, side.y);
+        position = bed.start + bed.along * mix(bed.x.x, bed.x.y, side.x) + vec3(left * across, 0.0);
+    }
 
     var out: RoadFragment;
     out.clip = frame.clip_from_relative * vec4(position * AWAY, 1.0);

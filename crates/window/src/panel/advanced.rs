@@ -1,5 +1,5 @@
 use corniche_roads::FunctionalRoadClass;
-use corniche_viewer::{CapTest, Caps, Outline, WidthGrowth};
+use corniche_viewer::{CapTest, Caps, Outline, Quads, WidthGrowth};
 use egui::{ComboBox, Grid, Ui};
 
 use super::slide::slide;
@@ -40,6 +40,12 @@ fn road_choices(ui: &mut Ui, settings: &mut Settings) {
             "Cap test (SV)",
             &mut roads.cap_test,
             &[(CapTest::Distance, "distance"), (CapTest::PaperQuadratic, "paper's quadratic")],
+        );
+        choice(
+            ui,
+            "Quads (GEO)",
+            &mut roads.quads,
+            &[(Quads::Beds, "beds"), (Quads::Level, "level, the paper's")],
         );
         choice(
             ui,
