@@ -98,7 +98,7 @@ fn areas_are_the_same_however_the_package_is_made() {
     succeed(corniche(["verify", text(&whole), "--dem", text(&dem), "--osm", text(&osm)]));
 
     // What came in is what is kept and what is lost, with their ids.
-    let counts = &manifest(&whole)["areas"]["counts"];
+    let counts = &manifest(&whole)["areas"];
     assert_eq!(counts["objects"], 4);
     let lost: Vec<&str> = counts["lost"]
         .as_array()
@@ -227,5 +227,5 @@ fn tables_that_are_none_and_areas_without_an_extract_are_refused() {
     succeed(ran);
     let found = manifest(&package);
     assert_eq!(found["settings"]["areas"]["table"], "own");
-    assert_eq!(found["areas"]["counts"]["kept"][0]["class"], "rock");
+    assert_eq!(found["areas"]["kept"][0]["class"], "rock");
 }
