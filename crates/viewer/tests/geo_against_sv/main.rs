@@ -13,7 +13,7 @@
 //! `CORNICHE_GEO_QUADS=level` looks at the paper's level quads instead of ours (its Fig. 15), and fails on nothing.
 //! Without packages a made-up country is used. `CORNICHE_TEST_PACKAGES` names packages (as in `PATH`),
 //! `CORNICHE_GEO_VIEWS` the number of views for each (10 without it). With `CORNICHE_GEO_REPORT` views above the
-//! gate are listed and the test does not fail on them: `scripts/geo-against-sv` does so for six packages.
+//! gate are listed and the test does not fail on them: `scripts/geo-against-sv` does so for eight packages.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "this is test code, helpers included")]
 
 #[path = "../oracle/reference.rs"]
