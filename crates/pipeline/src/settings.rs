@@ -37,7 +37,7 @@ pub struct PlanSettings {
     pub terrain: TerrainSettings,
     /// How roads are made.
     pub roads: RoadSettings,
-    /// Photos of the ground, if any are wanted; not with `terrain_of`.
+    /// Photos of the ground, if any are wanted. Those of `terrain_of` are not taken.
     pub photo: Option<PhotoSettings>,
     /// Credits beside those that the inputs call for, such as a DEM's.
     pub attribution: Vec<String>,

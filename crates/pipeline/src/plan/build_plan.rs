@@ -9,7 +9,7 @@ use corniche_tileset::{PhotoRecord, SettingsRecord};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::Opened;
+use super::{Opened, OpenedPhotos};
 use crate::{
     BuildError, PhotoSettings, PlanSettings, PlannedInput,
     heights::data_tiles::DataTiles,
@@ -133,7 +133,7 @@ impl BuildPlan {
                 terrain,
                 roads,
                 opened.max_error_m,
-                opened.photo_record(),
+                opened.photo.as_ref().map(OpenedPhotos::record),
             ),
             frc_table: FrcTableRecord::of(&roads.table),
             attribution: attribution.clone(),
@@ -188,10 +188,8 @@ impl BuildPlan {
         terrain.plan.polygon =
             paths("polygon").next().map(|path| Polygon::read(&path)).transpose()?;
         let photos: Vec<PathBuf> = paths("photo").collect();
-        // A package whose terrain is taken may have photos without files.
-        let photo = self.settings.photo.filter(|_| !photos.is_empty());
         Ok(PlanSettings {
-            photo: photo.map(|PhotoRecord { levels, quality }| PhotoSettings {
+            photo: self.settings.photo.map(|PhotoRecord { levels, quality }| PhotoSettings {
                 files: photos,
                 levels: Some(levels),
                 quality,
