@@ -291,7 +291,7 @@ fn a_package_of_every_seventh_sample_keeps_its_promises() {
     settings.plan.terrain.plan.cell_every = Some(7);
     build(&settings, &Silent).unwrap();
     let settings =
-        VerifySettings { package: output, dem: vec![dem], osm: None, threads: 2, polygon: None };
+        VerifySettings { package: output, dem: vec![dem], photo: Vec::new(), osm: None, threads: 2, polygon: None };
     assert_broken(verify(&settings, &Silent).unwrap(), &[]);
 }
 
