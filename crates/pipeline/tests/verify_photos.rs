@@ -23,6 +23,7 @@ use support::{
     parts::{Against, assert_broken, report_on},
     settings,
 };
+use sha2::{Digest as _, Sha256};
 use tempfile::TempDir;
 
 /// A package with photos, taken apart.
@@ -96,6 +97,14 @@ impl Apart {
             threads: 2,
         };
         verify(&settings, &Silent)
+    }
+
+    /// Corrects the hash of the settings.
+    fn rehash(&mut self) {
+        let json = serde_json::to_string(&self.manifest.settings).unwrap();
+        let digest = Sha256::digest(json);
+        self.manifest.settings_sha256 =
+            digest.iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat();
     }
 
     fn put_together(&self) -> PathBuf {
@@ -318,4 +327,42 @@ fn photos_beside_a_package_without_any_are_refused() {
     apart.manifest.settings.photo = None;
     let error = apart.against(apart.folder.path().join("photo.tif")).unwrap_err();
     assert!(matches!(error, VerifyError::NoPhotos), "{error}");
+}
+
+/// The manifest's rows of `docs/fields.md` that are about photos.
+#[test]
+fn fields_of_photos_in_the_manifest() {
+    type Change = fn(&mut Manifest);
+    let counts: [Change; 3] = [
+        |manifest| manifest.photos[1].level = 5,
+        |manifest| manifest.photos[1].tiles += 1,
+        |manifest| manifest.settings.photo = None,
+    ];
+    for change in counts {
+        let mut apart = Apart::sound();
+        change(&mut apart.manifest);
+        apart.rehash();
+        apart.assert_breaks(&[CheckId::PhotoSums]);
+    }
+    let mut apart = Apart::sound();
+    apart.manifest.settings.photo.as_mut().unwrap().levels = 2;
+    apart.rehash();
+    apart.assert_breaks(&[CheckId::PhotoWhole]);
+    // Coded better than it says is no broken promise; worse is.
+    for (quality, expected) in [(70, &[][..]), (97, &[CheckId::PhotoColours])] {
+        let mut apart = Apart::sound();
+        apart.manifest.settings.photo.as_mut().unwrap().quality = quality;
+        apart.rehash();
+        apart.assert_breaks_against_photo(expected);
+    }
+    let photo = |manifest: &Manifest| {
+        manifest.inputs.iter().position(|input| input.kind == "photo").unwrap()
+    };
+    let mut apart = Apart::sound();
+    let at = photo(&apart.manifest);
+    apart.manifest.inputs[at].bytes += 1;
+    apart.assert_breaks_against_photo(&[CheckId::PhotoInputs]);
+    apart.manifest.inputs[at].sha256 = "0".repeat(64);
+    let error = apart.against(apart.folder.path().join("photo.tif")).unwrap_err();
+    assert!(matches!(error, VerifyError::OtherPhotos { .. }), "{error}");
 }
