@@ -349,7 +349,7 @@ fn fields_of_photos_in_the_manifest() {
     apart.rehash();
     apart.assert_breaks(&[CheckId::PhotoWhole]);
     // Coded better than it says is no broken promise; worse is.
-    for (quality, expected) in [(70, &[][..]), (97, &[CheckId::PhotoColours])] {
+    for (quality, expected) in [(70, &[][..]), (97, &[CheckId::PhotoColours][..])] {
         let mut apart = Apart::sound();
         apart.manifest.settings.photo.as_mut().unwrap().quality = quality;
         apart.rehash();
