@@ -18,6 +18,8 @@ const JOURNAL_HEADER_BYTES: u64 = 48;
 /// A build of the sample `pass`, with a list of its defects.
 pub struct Job {
     folder: TempDir,
+    /// `--dem` or `--terrain`.
+    ground: &'static str,
     inputs: [PathBuf; 2],
     options: Vec<String>,
 }
@@ -34,13 +36,21 @@ impl Job {
             Err(error) => panic!("no folder: {error}"),
         };
         let inputs = [sample("pass/pass-dem.tif"), sample("pass/pass.osm.pbf")];
-        Self { folder, inputs, options: options.iter().map(ToString::to_string).collect() }
+        let options = options.iter().map(ToString::to_string).collect();
+        Self { folder, ground: "--dem", inputs, options }
     }
 
     /// The same build from other files.
     #[must_use]
     pub fn of(self, inputs: [PathBuf; 2]) -> Self {
         Self { inputs, ..self }
+    }
+
+    /// The same build on the terrain of a package.
+    #[must_use]
+    pub fn on_terrain(self, package: &Path) -> Self {
+        let [_, osm] = self.inputs;
+        Self { ground: "--terrain", inputs: [package.to_path_buf(), osm], ..self }
     }
 
     /// Where the package, the list of defects and the store are.
@@ -69,8 +79,8 @@ impl Job {
 
     fn command(&self, more: &[&str]) -> Command {
         let mut command = Command::new(binary());
-        let [dem, osm] = &self.inputs;
-        command.args(["build", "--dem", text(dem), "--osm", text(osm)]);
+        let [ground, osm] = &self.inputs;
+        command.args(["build", self.ground, text(ground), "--osm", text(osm)]);
         command.args(["-o", text(&self.package()), "--defects", text(&self.defects())]);
         command.args(&self.options).args(more);
         command

@@ -4,6 +4,7 @@
 mod display;
 mod job;
 mod object_storage;
+pub mod photo;
 
 use std::{
     fs,

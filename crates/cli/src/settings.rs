@@ -87,7 +87,9 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     let given = [args.attribution, terrain.attribution.clone()];
     let attribution = given.into_iter().find(|credits| !credits.is_empty());
     let mut attribution = attribution.unwrap_or(base.attribution);
-    attribution.extend(args.photos.attribution.clone());
+    // The package whose terrain is taken may have the same photos.
+    let credit = args.photos.attribution.clone().filter(|credit| !attribution.contains(credit));
+    attribution.extend(credit);
     let photo = photo_settings(&args.photo, &args.photos)?;
     let osm = corniche_pipeline::extract_names(&args.osm)?;
     let areas = area_table(&args.areas, &osm)?;

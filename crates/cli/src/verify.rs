@@ -25,11 +25,12 @@ use crate::{
 };
 
 pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
-    let VerifyFiles { package, dem, osm } = args.files()?;
+    let VerifyFiles { package, dem, photo, osm } = args.files()?;
     let osm = extract(args, &osm, &package)?;
     let settings = VerifySettings {
         package,
         dem: corniche_pipeline::elevation_names(&dem)?,
+        photo: corniche_pipeline::photo_names(&photo)?,
         osm,
         polygon: args.polygon.clone().map(polygon).transpose()?,
         threads: threads(args.threads),
@@ -38,12 +39,12 @@ pub(crate) fn run(args: &VerifyArgs) -> Result<ExitCode, Failure> {
     let text = if args.json {
         format!("{}\n", to_line(&VerifyDocument::from(&report)))
     } else {
-        let missing = Missing::of(&report, has_extract(&settings.package));
+        let missing = Missing::of(&report, Holds::of_file(&settings.package));
         let digits = Digits::on(&io::stdout());
         if messages::voice().is_quiet {
-            to_short_text(&report, missing, digits)
+            to_short_text(&report, &missing, digits)
         } else {
-            to_text(&report, missing, digits)
+            to_text(&report, &missing, digits)
         }
     };
     let written = io::stdout().lock().write_all(text.as_bytes());
@@ -94,46 +95,58 @@ fn names_extract(manifest: &Manifest) -> bool {
     manifest.inputs.iter().any(|input| input.kind == "osm")
 }
 
-/// The same of a package that was opened before; one that cannot be opened any more has none.
-fn has_extract(package: &Path) -> bool {
-    FilePackage::open(package).is_ok_and(|package| names_extract(package.manifest()))
+/// What a package can be checked against beside elevation files.
+#[derive(Debug, Clone, Copy, Default)]
+struct Holds {
+    photos: bool,
+    extract: bool,
+}
+
+impl Holds {
+    /// Of a package that was opened before; one that cannot be opened any more has nothing.
+    fn of_file(package: &Path) -> Self {
+        let holds = |package: FilePackage| {
+            let manifest = package.manifest();
+            Self { photos: manifest.settings.photo.is_some(), extract: names_extract(manifest) }
+        };
+        FilePackage::open(package).map(holds).unwrap_or_default()
+    }
 }
 
 /// Inputs that were not given, though checks of the package need them.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 struct Missing {
-    dem: bool,
-    osm: bool,
+    inputs: Vec<Needs>,
 }
 
 impl Missing {
-    /// What is missing for the checks that a report does not have. A package without an extract has no checks of one.
-    fn of(report: &VerifyReport, has_extract: bool) -> Self {
+    /// What is missing for the checks that a report does not have. A package without photos or an extract has no checks of them.
+    fn of(report: &VerifyReport, holds: Holds) -> Self {
         let is_given = |needs| report.checks.iter().any(|check| check.id.needs() == needs);
-        Self { dem: !is_given(Needs::Dem), osm: has_extract && !is_given(Needs::Osm) }
+        let needed =
+            [(Needs::Dem, true), (Needs::Photo, holds.photos), (Needs::Osm, holds.extract)];
+        let missing = needed.into_iter().filter(|&(needs, holds)| holds && !is_given(needs));
+        Self { inputs: missing.map(|(needs, _)| needs).collect() }
     }
 
     /// How many more checks they allow, and their options: "20 more need --dem and --osm".
-    fn text(self) -> Option<String> {
-        let Self { dem, osm } = self;
-        let options = match (dem, osm) {
-            (true, true) => "--dem and --osm",
-            (true, false) => "--dem",
-            (false, true) => "--osm",
-            (false, false) => return None,
+    fn text(&self) -> Option<String> {
+        let options: Vec<&str> =
+            self.inputs.iter().map(|needs| needs.text().trim_matches('`')).collect();
+        let options = match *options {
+            [] => return None,
+            [ref first @ .., last] if !first.is_empty() => {
+                format!("{} and {last}", first.join(", "))
+            }
+            ref only => only.concat(),
         };
-        let is_missing = |id: &&CheckId| match id.needs() {
-            Needs::Package => false,
-            Needs::Dem => dem,
-            Needs::Osm => osm,
-        };
-        let more = CheckId::ALL.iter().filter(is_missing).count();
+        let more = CheckId::ALL.iter().filter(|id| self.inputs.contains(&id.needs())).count();
         Some(format!("{more} more need {options}"))
     }
 }
 
 /// The report in one line: whether the checks hold, and which were not made.
-fn verdict(report: &VerifyReport, missing: Missing) -> String {
+fn verdict(report: &VerifyReport, missing: &Missing) -> String {
     let number = |verdict| report.checks.iter().filter(|check| check.verdict() == verdict).count();
     let (broken, not_made) = (number(Some(false)), number(None));
     let made = report.checks.len() - not_made;
@@ -171,14 +184,14 @@ fn check_text(check: &Check, digits: Digits) -> String {
 }
 
 /// What is broken, and the verdict.
-fn to_short_text(report: &VerifyReport, missing: Missing, digits: Digits) -> String {
+fn to_short_text(report: &VerifyReport, missing: &Missing, digits: Digits) -> String {
     let broken = report.checks.iter().filter(|check| !check.holds());
     let broken: String = broken.map(|check| check_text(check, digits)).collect();
     format!("{broken}{}\n", verdict(report, missing))
 }
 
 /// Every check, the figures, and the verdict.
-fn to_text(report: &VerifyReport, missing: Missing, digits: Digits) -> String {
+fn to_text(report: &VerifyReport, missing: &Missing, digits: Digits) -> String {
     let checks = report.checks.iter().map(|check| check_text(check, digits));
     let mut text: String = checks.collect();
     let largest_m = report.gaps.iter().map(|gap| gap.largest_m).fold(0.0, f64::max);

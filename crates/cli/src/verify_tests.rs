@@ -24,7 +24,7 @@ fn a_check_of_an_input_that_looked_at_nothing_is_not_made() {
         check(CheckId::DemPlan, 1, 0),
         check(CheckId::Bound, 0, 0),
     ]);
-    let text = to_text(&report, Missing::default(), Digits::Plain);
+    let text = to_text(&report, &Missing::default(), Digits::Plain);
     let verdict = |id: &str| text.lines().find(|line| line.contains(id)).map(|line| &line[..8]);
     assert_eq!(verdict(" P3:"), Some("holds   "));
     assert_eq!(verdict(" dem.plan:"), Some("holds   "));
@@ -40,27 +40,36 @@ fn the_last_line_is_the_verdict() {
     let number = |needs| CheckId::ALL.iter().filter(|id| id.needs() == needs).count();
     let (of_dem, of_osm) = (number(Needs::Dem), number(Needs::Osm));
     let both = of_dem + of_osm;
+    let all_three = both + number(Needs::Photo);
+    let none = Holds { photos: false, extract: false };
+    let roads = Holds { extract: true, ..none };
+    let photos = Holds { photos: true, ..roads };
     let [seams, order] = [CheckId::Seams, CheckId::Order];
     let (plan, bound) = (CheckId::DemPlan, CheckId::Bound);
     let package = vec![check(seams, 1, 0), check(order, 1, 0)];
     let dem = vec![check(seams, 1, 1), check(plan, 1, 0), check(bound, 0, 0)];
     let all = vec![check(seams, 1, 1), check(plan, 1, 1), check(CheckId::OsmGeo, 1, 0)];
-    for (checks, has_extract, expected) in [
-        (package.clone(), true, format!("all 2 checks hold; {both} more need --dem and --osm")),
-        (package, false, format!("all 2 checks hold; {of_dem} more need --dem")),
+    for (checks, holds, expected) in [
+        (
+            package.clone(),
+            photos,
+            format!("all 2 checks hold; {all_three} more need --dem, --photo and --osm"),
+        ),
+        (package.clone(), roads, format!("all 2 checks hold; {both} more need --dem and --osm")),
+        (package, none, format!("all 2 checks hold; {of_dem} more need --dem")),
         (
             dem.clone(),
-            true,
+            roads,
             format!("1 of 2 checks is broken; 1 could not be made; {of_osm} more need --osm"),
         ),
-        (dem, false, "1 of 2 checks is broken; 1 could not be made".to_owned()),
-        (all, true, "2 of 3 checks are broken".to_owned()),
+        (dem, none, "1 of 2 checks is broken; 1 could not be made".to_owned()),
+        (all, roads, "2 of 3 checks are broken".to_owned()),
     ] {
         let report = report(checks);
-        let missing = Missing::of(&report, has_extract);
-        let text = to_text(&report, missing, Digits::Plain);
+        let missing = Missing::of(&report, holds);
+        let text = to_text(&report, &missing, Digits::Plain);
         assert_eq!(text.lines().last(), Some(&*expected), "{text}");
-        let short = to_short_text(&report, missing, Digits::Plain);
+        let short = to_short_text(&report, &missing, Digits::Plain);
         let broken = report.checks.iter().filter(|check| !check.holds()).count();
         assert_eq!(short.lines().count(), broken + 1, "{short}");
         assert!(short.lines().take(broken).all(|line| line.starts_with("BROKEN ")), "{short}");

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use corniche_viewer::{
-    CameraRequest, CapTest, Caps, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth,
+    CameraRequest, CapTest, Caps, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth, Wireframe,
 };
 use corniche_window::{CommandOf, ShownView};
 
@@ -33,9 +33,14 @@ fn words(package: &str, shown: &ShownView) -> Vec<String> {
     option("--style", shown.style.clone());
     let [width, height] = shown.size_px;
     option("--size", format!("{width}x{height}"));
-    if let CameraRequest::LookAt { lon_deg, lat_deg, distance_m, orientation } = shown.camera {
+    if let CameraRequest::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation } =
+        shown.camera
+    {
         // To a centimetre on the ground, and to a hundredth of a pixel in direction.
         option("--look-at", format!("{lon_deg:.7},{lat_deg:.7}"));
+        if let Some(height_m) = height_m {
+            option("--height", format!("{height_m:.2}"));
+        }
         option("--distance", format!("{distance_m:.2}"));
         option("--heading", format!("{:.4}", orientation.heading_deg));
         option("--pitch", format!("{:.4}", orientation.pitch_deg));
@@ -49,6 +54,9 @@ fn words(package: &str, shown: &ShownView) -> Vec<String> {
     }
     for (name, value) in look(shown.roads) {
         option(name, value.to_owned());
+    }
+    if shown.wireframe == Wireframe::Shown {
+        words.push("--wireframe".to_owned());
     }
     words
 }

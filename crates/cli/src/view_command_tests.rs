@@ -9,6 +9,7 @@ fn shown(roads: RoadOptions) -> ShownView {
         camera: CameraRequest::LookAt {
             lon_deg: -9.521_234_567_89,
             lat_deg: 47.140_123_456_78,
+            height_m: Some(-3.456_78),
             distance_m: 2_345.678_9,
             orientation: Orientation { heading_deg: -123.456_78, pitch_deg: 61.234_56 },
         },
@@ -20,6 +21,7 @@ fn shown(roads: RoadOptions) -> ShownView {
         screen_space_error_px: 0.75,
         cell_px: f64::INFINITY,
         samples_per_side: 3,
+        wireframe: Wireframe::Hidden,
     }
 }
 
@@ -45,9 +47,11 @@ fn the_command_draws_what_the_window_shows() {
     assert_eq!(args.size, [1234, 567]);
     assert_eq!(args.supersampling, 3);
     let ground = args.ground;
-    let read = [ground.exaggeration, ground.screen_space_error, ground.cell_px];
-    assert_eq!(read.map(f64::to_bits), [1.5, 0.75, f64::INFINITY].map(f64::to_bits));
+    let numbers = [ground.exaggeration, ground.screen_space_error, ground.cell_px];
+    assert_eq!(numbers.map(f64::to_bits), [1.5, 0.75, f64::INFINITY].map(f64::to_bits));
     assert_eq!(args.look.photo.map(f32::to_bits), Some(0.25_f32.to_bits()));
+    assert!(!args.wireframe);
+    assert!(read("a", &ShownView { wireframe: Wireframe::Shown, ..shown }).wireframe);
 }
 
 /// A ten-millionth of a degree is at most 1.2 cm.
@@ -55,13 +59,15 @@ fn the_command_draws_what_the_window_shows() {
 fn the_command_looks_from_where_the_window_does() {
     let shown = shown(RoadOptions::of(RoadMethod::Geometry));
     let numbers = |camera| match camera {
-        CameraRequest::LookAt { lon_deg, lat_deg, distance_m, orientation } => {
-            [lon_deg, lat_deg, distance_m, orientation.heading_deg, orientation.pitch_deg]
+        CameraRequest::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation } => {
+            let Orientation { heading_deg, pitch_deg } = orientation;
+            [lon_deg, lat_deg, height_m.unwrap_or(f64::NAN), distance_m, heading_deg, pitch_deg]
         }
         CameraRequest::Overview => panic!("no place"),
     };
     let (asked, found) = (numbers(shown.camera), numbers(read("a", &shown).camera.request()));
-    for ((asked, found), most) in asked.iter().zip(found).zip([6e-8, 6e-8, 6e-3, 6e-5, 6e-5]) {
+    for ((asked, found), most) in asked.iter().zip(found).zip([6e-8, 6e-8, 6e-3, 6e-3, 6e-5, 6e-5])
+    {
         assert!((asked - found).abs() <= most, "{asked} became {found}");
     }
 }

@@ -11,7 +11,7 @@ use crate::{
     inputs::Inputs,
     levels::Levels,
     memory_shares::MemoryShares,
-    plan::{Opened, OpenedPhotos, photo_record},
+    plan::{Opened, OpenedPhotos},
     terrain::ground::GroundSource,
 };
 
@@ -61,7 +61,7 @@ impl<'a> Context<'a> {
 
     /// What the manifest says of how photos are made.
     pub(crate) fn photo_record(&self) -> Option<PhotoRecord> {
-        photo_record(self.source, self.photo)
+        self.photo.map(OpenedPhotos::record)
     }
 
     pub(crate) fn frame(&self) -> &Frame {

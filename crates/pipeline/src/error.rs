@@ -36,10 +36,6 @@ pub enum BuildError {
     Dem(#[from] corniche_dem::DemError),
     #[error(transparent)]
     Photo(#[from] corniche_photo::PhotoError),
-    #[error(
-        "--photo cannot be laid on the terrain of {path:?}: what photos it has are taken with its terrain; build from the elevation files with --dem"
-    )]
-    PhotoOnTerrain { path: PathBuf },
     #[error(transparent)]
     Osm(#[from] corniche_osm::ReadOsmError),
     #[error("{dem:?} have no height at any node: every node is void, or outside --polygon")]
@@ -172,7 +168,6 @@ impl BuildError {
                 | Self::Input { .. }
                 | Self::Dem(_)
                 | Self::Photo(_)
-                | Self::PhotoOnTerrain { .. }
                 | Self::Osm(_)
                 | Self::NoHeights { .. }
                 | Self::NoCell { .. }

@@ -52,9 +52,8 @@ impl InputKind {
     /// Those that a manifest has.
     pub(crate) const RECORDED: [Self; 6] =
         [Self::Dem, Self::DemPart, Self::Photo, Self::PhotoPart, Self::Polygon, Self::Osm];
-    /// Those that the ground is made from.
-    pub(crate) const OF_GROUND: [Self; 4] =
-        [Self::Dem, Self::DemPart, Self::Photo, Self::PhotoPart];
+    /// Those that the terrain is made from.
+    pub(crate) const OF_TERRAIN: [Self; 2] = [Self::Dem, Self::DemPart];
 
     /// The word for it in the manifest.
     pub(crate) const fn name(self) -> &'static str {
@@ -122,13 +121,10 @@ fn setting(what: String) -> InputError {
 impl Inputs {
     /// Finds all files and notes what they are, before anything of them is read for use.
     pub(crate) fn find(dem: &[PathBuf], others: OtherInputs<'_>) -> Result<Self, InputError> {
-        let rasters = dem.iter().chain(others.photo);
-        let named = rasters.map(PathBuf::as_path).chain(others.polygon);
-        let named = named.chain(others.osm.iter().map(PathBuf::as_path));
+        let named = dem.iter().map(PathBuf::as_path).chain(others.named());
         reach_servers(named).map_err(setting)?;
         let mut files: Vec<Input> = Vec::new();
         add_rasters(dem, [InputKind::Dem, InputKind::DemPart], &mut files)?;
-        add_rasters(others.photo, [InputKind::Photo, InputKind::PhotoPart], &mut files)?;
         others.add_to(&mut files)?;
         Ok(Self { files })
     }
@@ -138,8 +134,7 @@ impl Inputs {
         package: &Path,
         others: OtherInputs<'_>,
     ) -> Result<Self, InputError> {
-        let named = others.polygon.into_iter().chain(others.osm.iter().map(PathBuf::as_path));
-        reach_servers(named).map_err(setting)?;
+        reach_servers(others.named()).map_err(setting)?;
         let mut files = vec![Input::new(InputKind::Terrain, package)?];
         others.add_to(&mut files)?;
         Ok(Self { files })
@@ -277,8 +272,14 @@ pub(crate) struct OtherInputs<'a> {
     pub(crate) osm: &'a [PathBuf],
 }
 
-impl OtherInputs<'_> {
+impl<'a> OtherInputs<'a> {
+    fn named(self) -> impl Iterator<Item = &'a Path> {
+        let photos = self.photo.iter().map(PathBuf::as_path);
+        photos.chain(self.polygon).chain(self.osm.iter().map(PathBuf::as_path))
+    }
+
     fn add_to(self, files: &mut Vec<Input>) -> Result<(), InputError> {
+        add_rasters(self.photo, [InputKind::Photo, InputKind::PhotoPart], files)?;
         if let Some(path) = self.polygon {
             files.push(Input::new(InputKind::Polygon, path)?);
         }

@@ -40,7 +40,7 @@ pub struct PlanSettings {
     pub roads: RoadSettings,
     /// Which objects of the extracts are areas, if any are wanted.
     pub areas: Option<AreaTable>,
-    /// Photos of the ground, if any are wanted; not with `terrain_of`.
+    /// Photos of the ground, if any are wanted. Those of `terrain_of` are not taken.
     pub photo: Option<PhotoSettings>,
     /// Credits beside those that the inputs call for, such as a DEM's.
     pub attribution: Vec<String>,

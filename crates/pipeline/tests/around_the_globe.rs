@@ -31,6 +31,7 @@ fn checked(dem: &Path, options: Options) -> Manifest {
     let asked = VerifySettings {
         package: package.clone(),
         dem: vec![dem.to_path_buf()],
+        photo: Vec::new(),
         osm: None,
         threads: 2,
         polygon: None,

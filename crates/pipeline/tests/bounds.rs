@@ -166,6 +166,7 @@ fn check_verify(files: &Files, package: PathBuf) {
     let settings = VerifySettings {
         package,
         dem: vec![files.at("dem.tif")],
+        photo: Vec::new(),
         osm: Some(osm),
         threads: 2,
         polygon: None,
@@ -287,6 +288,7 @@ fn verify_sees_every_change_of_what_a_package_says_of_its_part() {
         let request = VerifySettings {
             package: path,
             dem: vec![files.at("dem.tif")],
+            photo: Vec::new(),
             osm: None,
             threads: 2,
             polygon: None,
@@ -328,7 +330,14 @@ fn files_outside_the_bounds_are_not_read() {
     );
     let checked = |dem: Vec<PathBuf>| {
         verify(
-            &VerifySettings { package: part.clone(), dem, osm: None, threads: 2, polygon: None },
+            &VerifySettings {
+                package: part.clone(),
+                dem,
+                photo: Vec::new(),
+                osm: None,
+                threads: 2,
+                polygon: None,
+            },
             &Silent,
         )
     };

@@ -162,6 +162,7 @@ fn a_raster_exchanged_while_it_is_verified_is_told() {
     let request = VerifySettings {
         package: output,
         dem: vec![dem.clone()],
+        photo: Vec::new(),
         osm: None,
         threads: 2,
         polygon: None,

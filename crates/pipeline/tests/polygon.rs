@@ -101,6 +101,7 @@ impl Files {
         let settings = VerifySettings {
             package: package.to_path_buf(),
             dem: vec![self.at("dem.tif")],
+            photo: Vec::new(),
             osm: Some(osm),
             threads: 2,
             polygon: polygon.cloned(),

@@ -39,6 +39,7 @@ fn report(package: &std::path::Path, dem: &std::path::Path) -> VerifyReport {
     let settings = VerifySettings {
         package: package.to_path_buf(),
         dem: vec![dem.to_path_buf()],
+        photo: Vec::new(),
         osm: None,
         threads: 2,
         polygon: None,

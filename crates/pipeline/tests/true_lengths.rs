@@ -61,7 +61,14 @@ fn built(epsg: u32, first: [f64; 2], spacing: f64) -> Built {
     let built = build_files(&dem, Some(&osm), Options::plain(8.0)).unwrap();
     let package = folder.path().join("again.pmtiles");
     std::fs::write(&package, &built.bytes).unwrap();
-    let settings = VerifySettings { package, dem: vec![dem], osm: None, threads: 2, polygon: None };
+    let settings = VerifySettings {
+        package,
+        dem: vec![dem],
+        photo: Vec::new(),
+        osm: None,
+        threads: 2,
+        polygon: None,
+    };
     let report = verify(&settings, &Silent).unwrap();
     let broken: Vec<_> = report.checks.iter().filter(|check| !check.holds()).collect();
     assert!(broken.is_empty(), "EPSG:{epsg}: {broken:?}");

@@ -4,15 +4,21 @@
 
 mod support;
 
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
 use corniche_geom::TileId;
-use corniche_pipeline::{CheckId, PhotoSettings, Silent, build};
+use corniche_pipeline::{
+    CheckId, Needs, PhotoSettings, Silent, VerifyError, VerifyReport, VerifySettings, build, verify,
+};
 use corniche_testing::ColourImage;
 use corniche_tileset::{
     FilePackage, Manifest, Photo, PhotoSection, Sections, TilePayload, Writer, decode_photo,
     encode_photo, photo_section, pmtiles_order, with_photo,
 };
+use sha2::{Digest as _, Sha256};
 use support::{
     EPSG, Options, Raster,
     parts::{Against, assert_broken, report_on},
@@ -69,6 +75,41 @@ impl Apart {
 
     /// Puts it together and asserts that exactly these checks are broken.
     fn assert_breaks(&self, expected: &[CheckId]) {
+        assert_broken(report_on(&self.put_together(), Against::Itself), expected);
+    }
+
+    /// The same with the photo that it was made from, and whatever is broken without it.
+    fn assert_breaks_against_photo(&self, expected: &[CheckId]) {
+        let report = self.against(self.folder.path().join("photo.tif")).unwrap();
+        let broken = report.checks.iter().filter(|check| !check.holds());
+        let broken: Vec<_> = broken.filter(|check| check.id.needs() == Needs::Photo).collect();
+        assert!(broken.iter().map(|check| &check.id).eq(expected), "{expected:?}: {broken:#?}");
+        assert!(
+            !broken.is_empty() || report.checks.iter().all(|check| check.verdict() == Some(true))
+        );
+    }
+
+    fn against(&self, photo: PathBuf) -> Result<VerifyReport, VerifyError> {
+        let settings = VerifySettings {
+            package: self.put_together(),
+            dem: Vec::new(),
+            photo: vec![photo],
+            osm: None,
+            polygon: None,
+            threads: 2,
+        };
+        verify(&settings, &Silent)
+    }
+
+    /// Corrects the hash of the settings.
+    fn rehash(&mut self) {
+        let json = serde_json::to_string(&self.manifest.settings).unwrap();
+        let digest = Sha256::digest(json);
+        self.manifest.settings_sha256 =
+            digest.iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat();
+    }
+
+    fn put_together(&self) -> PathBuf {
         let path = self.folder.path().join("changed.pmtiles");
         let mut writer = Writer::create(&path, &self.manifest).unwrap();
         for (id, payload, photo) in self.tiles.values() {
@@ -79,7 +120,7 @@ impl Apart {
             writer.add(*id, &bytes).unwrap();
         }
         writer.finish().unwrap();
-        assert_broken(report_on(&path, Against::Itself), expected);
+        path
     }
 
     fn photo_mut(&mut self, id: TileId) -> &mut Option<PhotoSection> {
@@ -200,4 +241,130 @@ fn a_photo_of_another_size_than_the_level_has() {
         photo.rgba.chunks_exact_mut(4).for_each(|texel| texel[3] = 255);
     });
     apart.assert_breaks(&[CheckId::PhotoWhole, CheckId::PhotoLevels]);
+}
+
+#[test]
+fn the_photo_that_a_package_was_made_from_agrees_with_it() {
+    Apart::sound().assert_breaks_against_photo(&[]);
+}
+
+/// All tiles, so that neighbours and levels agree with each other: nothing but the file tells.
+fn move_all(apart: &mut Apart, [east, south]: [usize; 2]) {
+    for id in apart.tiles.values().map(|(id, ..)| *id).collect::<Vec<_>>() {
+        apart.change(id, |photo| {
+            let row_bytes = photo.side() * 4;
+            for row in photo.rgba.chunks_exact_mut(row_bytes) {
+                row.rotate_right(east * 4);
+            }
+            photo.rgba.rotate_right(south * row_bytes);
+        });
+    }
+}
+
+#[test]
+fn photos_that_lie_one_texel_beside_their_place() {
+    for by in [[1, 0], [0, 1], [1, 1]] {
+        let mut apart = Apart::sound();
+        move_all(&mut apart, by);
+        apart.assert_breaks_against_photo(&[
+            CheckId::PhotoCover,
+            CheckId::PhotoPlace,
+            CheckId::PhotoColours,
+        ]);
+    }
+}
+
+#[test]
+fn a_single_photo_that_lies_one_texel_beside_its_place() {
+    // Inside the photo all texels are covered before and after.
+    let mut apart = Apart::sound();
+    apart.change(TileId::ROOT, |photo| {
+        let covered: Vec<u8> = photo.rgba.iter().skip(3).step_by(4).copied().collect();
+        let row_bytes = photo.side() * 4;
+        photo.rgba.rotate_left(row_bytes);
+        for (texel, alpha) in photo.rgba.chunks_exact_mut(4).zip(covered) {
+            texel[3] = alpha;
+        }
+    });
+    apart.assert_breaks_against_photo(&[CheckId::PhotoPlace, CheckId::PhotoColours]);
+}
+
+#[test]
+fn the_photo_of_another_place_and_another_photo() {
+    let mut apart = Apart::sound();
+    for id in apart.tiles.values().map(|(id, ..)| *id).collect::<Vec<_>>() {
+        // As from another flight: a little brighter, in one colour.
+        apart.change(id, |photo| {
+            for texel in photo.rgba.chunks_exact_mut(4).filter(|texel| texel[3] != 0) {
+                texel[1] = texel[1].saturating_add(4);
+            }
+        });
+    }
+    apart.assert_breaks_against_photo(&[CheckId::PhotoColours]);
+    // A file with other content is not compared.
+    let other = apart.folder.path().join("other.tif");
+    let mut bytes = std::fs::read(apart.folder.path().join("photo.tif")).unwrap();
+    *bytes.last_mut().unwrap() ^= 1;
+    std::fs::write(&other, bytes).unwrap();
+    let error = apart.against(other).unwrap_err();
+    assert!(matches!(error, VerifyError::OtherPhotos { .. }), "{error}");
+}
+
+#[test]
+fn a_tile_without_its_photo_and_a_hole_in_one() {
+    let mut apart = Apart::sound();
+    *apart.photo_mut(child(2)) = None;
+    apart.assert_breaks_against_photo(&[CheckId::PhotoCover]);
+    let mut apart = Apart::sound();
+    apart.change(child(0), |photo| {
+        let at = (300 * photo.side() + 300) * 4;
+        photo.rgba[at..at + 4].fill(0);
+    });
+    apart.assert_breaks_against_photo(&[CheckId::PhotoCover]);
+}
+
+#[test]
+fn photos_beside_a_package_without_any_are_refused() {
+    let mut apart = Apart::sound();
+    apart.manifest.settings.photo = None;
+    let error = apart.against(apart.folder.path().join("photo.tif")).unwrap_err();
+    assert!(matches!(error, VerifyError::NoPhotos), "{error}");
+}
+
+/// The manifest's rows of `docs/fields.md` that are about photos.
+#[test]
+fn fields_of_photos_in_the_manifest() {
+    type Change = fn(&mut Manifest);
+    let counts: [Change; 3] = [
+        |manifest| manifest.photos[1].level = 5,
+        |manifest| manifest.photos[1].tiles += 1,
+        |manifest| manifest.settings.photo = None,
+    ];
+    for change in counts {
+        let mut apart = Apart::sound();
+        change(&mut apart.manifest);
+        apart.rehash();
+        apart.assert_breaks(&[CheckId::PhotoSums]);
+    }
+    let mut apart = Apart::sound();
+    apart.manifest.settings.photo.as_mut().unwrap().levels = 2;
+    apart.rehash();
+    apart.assert_breaks(&[CheckId::PhotoWhole]);
+    // Coded better than it says is no broken promise; worse is.
+    for (quality, expected) in [(70, &[][..]), (97, &[CheckId::PhotoColours][..])] {
+        let mut apart = Apart::sound();
+        apart.manifest.settings.photo.as_mut().unwrap().quality = quality;
+        apart.rehash();
+        apart.assert_breaks_against_photo(expected);
+    }
+    let photo = |manifest: &Manifest| {
+        manifest.inputs.iter().position(|input| input.kind == "photo").unwrap()
+    };
+    let mut apart = Apart::sound();
+    let at = photo(&apart.manifest);
+    apart.manifest.inputs[at].bytes += 1;
+    apart.assert_breaks_against_photo(&[CheckId::PhotoInputs]);
+    apart.manifest.inputs[at].sha256 = "0".repeat(64);
+    let error = apart.against(apart.folder.path().join("photo.tif")).unwrap_err();
+    assert!(matches!(error, VerifyError::OtherPhotos { .. }), "{error}");
 }

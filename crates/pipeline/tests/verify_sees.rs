@@ -293,8 +293,14 @@ fn a_package_of_every_seventh_sample_keeps_its_promises() {
     let mut settings = settings(dem.clone(), None, output.clone(), Options::plain(MAX_ERROR_M));
     settings.plan.terrain.plan.cell_every = Some(7);
     build(&settings, &Silent).unwrap();
-    let settings =
-        VerifySettings { package: output, dem: vec![dem], osm: None, threads: 2, polygon: None };
+    let settings = VerifySettings {
+        package: output,
+        dem: vec![dem],
+        photo: Vec::new(),
+        osm: None,
+        threads: 2,
+        polygon: None,
+    };
     assert_broken(verify(&settings, &Silent).unwrap(), &[]);
 }
 

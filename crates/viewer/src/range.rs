@@ -59,7 +59,10 @@ pub fn check_supersampling(samples_per_side: u32) -> Result<(), OutOfRange> {
 /// # Errors
 /// When one of the numbers is out of range.
 pub fn check_camera(camera: CameraRequest) -> Result<(), OutOfRange> {
-    let CameraRequest::LookAt { distance_m, orientation, .. } = camera else { return Ok(()) };
+    let CameraRequest::LookAt { height_m, distance_m, orientation, .. } = camera else {
+        return Ok(());
+    };
+    within("a height", height_m.unwrap_or_default(), -1e8..=1e8, "at most 100 000 km")?;
     let Orientation { heading_deg, pitch_deg } = orientation;
     within("a distance", distance_m, 1.0..=1e8, "1 m to 100 000 km")?;
     within("a heading", heading_deg, f64::MIN..=f64::MAX, "an angle in degrees")?;

@@ -19,6 +19,8 @@ pub enum CameraRequest {
         lon_deg: f64,
         /// Latitude of the place, WGS84.
         lat_deg: f64,
+        /// True height of the place, metres; `None`: that of the ground there, which must have some.
+        height_m: Option<f64>,
         /// Distance from the eye to the place, true metres.
         distance_m: f64,
         /// Direction of view.
@@ -46,7 +48,8 @@ pub struct OffGround {
 pub struct SightedGround {
     /// What [`CameraRequest::Overview`] shows.
     pub extent: MapExtent,
-    /// True height of the ground at [`CameraRequest::place`]; `None` if there is no ground or no place.
+    /// True height of the ground at [`CameraRequest::place`]; `None` if there is no ground or no place. It does not count where a height
+    /// is given.
     pub at_place_m: Option<f64>,
 }
 
@@ -74,7 +77,7 @@ impl CameraRequest {
     /// The camera for a package with this manifest and this ground. World heights are `vertical_scale` times true ones.
     ///
     /// # Errors
-    /// When the place has no ground.
+    /// When the place has no ground, and no height is given.
     pub fn camera(
         self,
         manifest: &Manifest,
@@ -89,9 +92,9 @@ impl CameraRequest {
                     WorldBox::new(plan, heights_m.map(|height_m| height_m * vertical_scale));
                 Ok(Camera::framing(subject, self.orientation(), size_px))
             }
-            Self::LookAt { lon_deg, lat_deg, distance_m, orientation } => {
-                let (Some([x, y]), Some(height_m)) = (self.place(manifest)?, ground.at_place_m)
-                else {
+            Self::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation } => {
+                let height_m = height_m.or(ground.at_place_m);
+                let (Some([x, y]), Some(height_m)) = (self.place(manifest)?, height_m) else {
                     return Err(off_ground(lon_deg, lat_deg, manifest));
                 };
                 let target = DVec3::new(x, y, height_m * vertical_scale);

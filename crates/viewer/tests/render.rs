@@ -34,7 +34,7 @@ fn request(package: &Path) -> RenderRequest {
 
 fn look_at(lon_deg: f64, lat_deg: f64) -> CameraRequest {
     let orientation = Orientation { heading_deg: 0.0, pitch_deg: 30.0 };
-    CameraRequest::LookAt { lon_deg, lat_deg, distance_m: 12_000.0, orientation }
+    CameraRequest::LookAt { lon_deg, lat_deg, height_m: None, distance_m: 12_000.0, orientation }
 }
 
 fn render(package: &Path, request: &RenderRequest) -> Result<Rendered, RenderError> {

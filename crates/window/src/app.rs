@@ -220,11 +220,7 @@ impl App {
                 self.notices.tell(format!("copied: {command}{left_out}"), now_s);
                 self.to_copy = Some(command);
             }
-            None => self.notices.tell(
-                "not copied: there is no ground in the middle of the map, and a command needs a place to look at"
-                    .to_owned(),
-                now_s,
-            ),
+            None => self.notices.tell("not copied: the style has no name".to_owned(), now_s),
         }
     }
 

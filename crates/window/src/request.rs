@@ -2,7 +2,7 @@ use std::{io, path::PathBuf};
 
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
-use corniche_viewer::{CameraRequest, RoadMethod, RoadOptions, stream::StreamBudget};
+use corniche_viewer::{CameraRequest, RoadMethod, RoadOptions, Wireframe, stream::StreamBudget};
 
 use crate::Inertia;
 
@@ -36,6 +36,8 @@ pub struct ShownView {
     pub cell_px: f64,
     /// Samples per pixel along each side.
     pub samples_per_side: u32,
+    /// Whether edges of triangles are drawn.
+    pub wireframe: Wireframe,
 }
 
 /// The command line that draws a view as a picture.

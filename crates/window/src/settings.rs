@@ -2,7 +2,7 @@
 
 use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
-use corniche_viewer::{RoadMethod, RoadOptions};
+use corniche_viewer::{RoadMethod, RoadOptions, Wireframe};
 
 /// Whether one method is shown, or two are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,6 +93,11 @@ impl Settings {
             road.width_m *= factor;
         }
         applied
+    }
+
+    /// Whether the edges of triangles are drawn, in the viewer's words.
+    pub(crate) fn wireframe(&self) -> Wireframe {
+        if self.is_wireframe { Wireframe::Shown } else { Wireframe::Hidden }
     }
 }
 

@@ -10,6 +10,9 @@ pub(crate) struct CameraArgs {
     /// Look at this longitude and latitude (degrees, WGS84) instead of where the roads are
     #[arg(long, value_name = "LON,LAT", value_parser = parse_position, allow_hyphen_values = true)]
     look_at: Option<[f64; 2]>,
+    /// With --look-at: height of the point looked at, in metres, also where there is no ground [default: the ground's]
+    #[arg(long, value_name = "METRES", requires = "look_at", allow_hyphen_values = true)]
+    height: Option<f64>,
     /// With --look-at: distance from the eye to the point looked at, in metres
     #[arg(long, value_name = "METRES", default_value_t = 5000.0, requires = "look_at")]
     distance: f64,
@@ -34,6 +37,7 @@ impl CameraArgs {
         CameraRequest::LookAt {
             lon_deg,
             lat_deg,
+            height_m: self.height,
             distance_m: self.distance,
             orientation: Orientation { heading_deg: self.heading, pitch_deg: self.pitch },
         }

@@ -17,6 +17,7 @@ fn a_place_is_looked_at_from_where_the_options_say() {
     let place = |distance_m, heading_deg, pitch_deg| CameraRequest::LookAt {
         lon_deg: -9.5,
         lat_deg: 47.0,
+        height_m: None,
         distance_m,
         orientation: Orientation { heading_deg, pitch_deg },
     };
@@ -25,4 +26,13 @@ fn a_place_is_looked_at_from_where_the_options_say() {
     let all = "corniche --look-at -9.5,47 --distance 20 --heading -30 --pitch 5";
     check(all, Some(place(20.0, -30.0, 5.0)));
     check("corniche --distance 20", None);
+    check("corniche --height 20", None);
+    let high = match place(5000.0, 0.0, 60.0) {
+        CameraRequest::LookAt { lon_deg, lat_deg, distance_m, orientation, .. } => {
+            let height_m = Some(-12.5);
+            CameraRequest::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation }
+        }
+        CameraRequest::Overview => panic!("no place"),
+    };
+    check("corniche --look-at -9.5,47 --height -12.5", Some(high));
 }

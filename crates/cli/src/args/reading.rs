@@ -35,11 +35,14 @@ pub(crate) struct InfoArgs {
 #[command(after_long_help = checks(), override_usage = "corniche verify [OPTIONS] <PACKAGE>")]
 pub(crate) struct VerifyArgs {
     /// The package
-    #[arg(required_unless_present_any = ["dem", "osm"])]
+    #[arg(required_unless_present_any = ["dem", "photo", "osm"])]
     package: Option<PathBuf>,
     /// The elevation rasters it was made from, in the same order: checks stored errors against true ones
     #[arg(long, value_name = "FILE", num_args = 1..)]
     dem: Vec<PathBuf>,
+    /// The photos it was made from, in the same order: reads them again and checks the photo of every tile against them
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    photo: Vec<PathBuf>,
     /// The extracts it was made from: reads them again and checks roads, attributes and counts against them
     #[arg(long, value_name = "FILE", num_args = 1..)]
     osm: Vec<PathBuf>,
@@ -60,23 +63,24 @@ pub(crate) struct VerifyArgs {
 }
 
 impl VerifyArgs {
-    /// The package, its elevation rasters and its extracts. `--dem` and `--osm` take all that follows them, also a package, which is told from
-    /// other files by its name.
+    /// The package, its elevation rasters, its photos and its extracts. `--dem`, `--photo` and `--osm` take all that follows them, also a package,
+    /// which is told from other files by its name.
     ///
     /// # Errors
     /// When no package is named, or several may be meant.
     pub(crate) fn files(&self) -> Result<VerifyFiles, Failure> {
         if let Some(package) = &self.package {
-            let (package, dem, osm) = (package.clone(), self.dem.clone(), self.osm.clone());
-            return Ok(VerifyFiles { package, dem, osm });
+            let [dem, photo, osm] = [&self.dem, &self.photo, &self.osm].map(Clone::clone);
+            return Ok(VerifyFiles { package: package.clone(), dem, photo, osm });
         }
         let split = |files: &[PathBuf]| -> (Vec<PathBuf>, Vec<PathBuf>) {
             files.iter().cloned().partition(|file| is_package_name(file))
         };
-        let ((mut packages, dem), (of_osm, osm)) = (split(&self.dem), split(&self.osm));
-        packages.extend(of_osm);
+        let [(mut packages, dem), (of_photo, photo), (of_osm, osm)] =
+            [split(&self.dem), split(&self.photo), split(&self.osm)];
+        packages.extend(of_photo.into_iter().chain(of_osm));
         match (packages.pop(), packages.is_empty()) {
-            (Some(package), true) => Ok(VerifyFiles { package, dem, osm }),
+            (Some(package), true) => Ok(VerifyFiles { package, dem, photo, osm }),
             (Some(_), false) => Err(Failure::unusable(
                 "several files end in .pmtiles; write the package first: corniche verify PACKAGE --dem FILE...",
             )),
@@ -92,6 +96,7 @@ impl VerifyArgs {
 pub(crate) struct VerifyFiles {
     pub(crate) package: PathBuf,
     pub(crate) dem: Vec<PathBuf>,
+    pub(crate) photo: Vec<PathBuf>,
     pub(crate) osm: Vec<PathBuf>,
 }
 

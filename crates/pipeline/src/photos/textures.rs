@@ -2,7 +2,7 @@
 
 use corniche_geom::TileId;
 use corniche_photo::{PhotoReader, Texels};
-use corniche_tileset::{PHOTO_BORDER, Photo, PhotoSection, encode_photo, photo_section};
+use corniche_tileset::{PHOTO_BORDER, Photo, PhotoSection, encode_photo};
 
 use super::rasters::{self, SIDE};
 use crate::{BuildError, artifacts::Kind, context::Context, plan::OpenedPhotos};
@@ -62,18 +62,6 @@ pub(crate) fn of_tile(
     };
     let texels = if levels == 0 { texels.halved() } else { texels };
     encode(id, levels, texels, photos.quality)
-}
-
-/// The photo of a tile of the package whose terrain is taken.
-pub(crate) fn of_payload(
-    context: &Context<'_>,
-    id: TileId,
-    payload: &[u8],
-) -> Result<Option<PhotoSection>, BuildError> {
-    photo_section(payload, id).map_err(|source| BuildError::PackageTile {
-        path: context.settings.terrain_of.clone().unwrap_or_default(),
-        source: source.into(),
-    })
 }
 
 fn encode(

@@ -10,7 +10,7 @@ use corniche_tileset::{PhotoRecord, SettingsRecord};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::Opened;
+use super::{Opened, OpenedPhotos};
 use crate::{
     BuildError, PhotoSettings, PlanSettings, PlannedInput,
     heights::data_tiles::DataTiles,
@@ -147,7 +147,7 @@ impl BuildPlan {
                 terrain,
                 roads,
                 opened.max_error_m,
-                opened.photo_record(),
+                opened.photo.as_ref().map(OpenedPhotos::record),
                 areas.as_ref(),
             ),
             frc_table: FrcTableRecord::of(&roads.table),
@@ -204,10 +204,8 @@ impl BuildPlan {
         terrain.plan.polygon =
             paths("polygon").next().map(|path| Polygon::read(&path)).transpose()?;
         let photos: Vec<PathBuf> = paths("photo").collect();
-        // A package whose terrain is taken may have photos without files.
-        let photo = self.settings.photo.filter(|_| !photos.is_empty());
         Ok(PlanSettings {
-            photo: photo.map(|PhotoRecord { levels, quality }| PhotoSettings {
+            photo: self.settings.photo.map(|PhotoRecord { levels, quality }| PhotoSettings {
                 files: photos,
                 levels: Some(levels),
                 quality,

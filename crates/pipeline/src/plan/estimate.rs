@@ -3,12 +3,12 @@
 use std::time::Duration;
 
 use corniche_dem::{Dem, FileBlocks};
-use corniche_geom::{Frame, TILE_CELLS};
+use corniche_geom::TILE_CELLS;
 use corniche_tileset::{LevelRecord, Manifest, ReliefLevels};
 use corniche_tin::TinSpec;
 use serde::Serialize;
 
-use super::{Opened, OpenedPhotos, covered_tiles::CoveredTiles, rates};
+use super::{Opened, covered_tiles::CoveredTiles, rates};
 use crate::{BuildError, Observer, Resources, machine::thread_time, terrain::ground::GroundSource};
 
 /// From so many finest tiles on some are triangulated to see how the ground is. Less work is estimated well enough without.
@@ -110,7 +110,10 @@ impl Estimate {
             GroundSource::Dem(dem) => dem,
             GroundSource::Package(terrain) => {
                 let manifest = terrain.manifest();
-                return Ok(Self::of_recorded(manifest, resources, extract_bytes, opened.relief));
+                let tiles = manifest.levels.iter().map(|level| level.tiles).sum();
+                let memory = MemoryEstimate::of(Vec::new(), opened, tiles, resources);
+                let estimate = Self::of_recorded(manifest, memory, extract_bytes, opened.relief);
+                return Ok(estimate.with_photos(opened));
             }
         };
         let rectangles = dem.file_nodes(&opened.grid)?;
@@ -126,12 +129,7 @@ impl Estimate {
             side(south_west.i, north_east.i).saturating_mul(side(south_west.j, north_east.j))
         });
         let nodes = sides.fold(0, u64::saturating_add);
-        let mut blocks = dem.file_blocks()?;
-        blocks.extend(opened.photo.iter().flat_map(|photo| photo.blocks.iter().cloned()));
-        let mut memory = MemoryEstimate::new(&blocks, tiles.iter().sum(), resources.threads as u64);
-        if let Some(photo) = &opened.photo {
-            memory.add_photos(photo.levels());
-        }
+        let memory = MemoryEstimate::of(dem.file_blocks()?, opened, tiles.iter().sum(), resources);
         let is_sampled = finest.count() >= LEAST_TILES_TO_SAMPLE
             && memory.block_bytes <= MOST_SAMPLED_BLOCK_BYTES
             && memory.least_bytes <= resources.memory_bytes;
@@ -145,18 +143,15 @@ impl Estimate {
             ground.core_seconds += rates::SECONDS_PER_RESAMPLED_NODE * nodes as f64;
         }
         let estimate = Self::put_together(nodes, tiles, memory, extract_bytes, &ground);
-        let mut estimate = estimate.with_relief(opened.relief);
-        if let Some(photo) = &opened.photo {
-            estimate.add_photos(photo, &opened.grid.frame);
-        }
-        Ok(estimate)
+        Ok(estimate.with_relief(opened.relief).with_photos(opened))
     }
 
-    /// Adds what photos take: of each finest tile that one may lie on, as if it were covered.
-    fn add_photos(&mut self, photos: &OpenedPhotos, frame: &Frame) {
+    /// The same with photos: of each finest tile that one may lie on, as if it were covered.
+    fn with_photos(mut self, opened: &Opened) -> Self {
+        let Some(photos) = &opened.photo else { return self };
         let finest = self.tiles.last().copied().unwrap_or(0);
         let all: u64 = self.tiles.iter().sum();
-        let cell = frame.cell();
+        let cell = opened.grid.frame.cell();
         let tile_m2 = cell.east_m * cell.north_m * (TILE_CELLS * TILE_CELLS) as f64;
         let covered = photos.grid.area_m2() / tile_m2;
         let texels = covered.min(finest as f64) * rates::photo_texels(photos.levels());
@@ -166,6 +161,7 @@ impl Estimate {
         let rasters = all * rates::PHOTO_RASTER_BYTES;
         self.store_bytes += 2 * package.ceil() as u64 + rasters;
         self.add_work(texels * rates::SECONDS_PER_PHOTO_TEXEL);
+        self
     }
 
     /// Adds work that all threads share.
@@ -177,14 +173,13 @@ impl Estimate {
     /// Of a build that takes the terrain of a package.
     fn of_recorded(
         manifest: &Manifest,
-        resources: Resources,
+        memory: MemoryEstimate,
         extract_bytes: u64,
         relief: ReliefLevels,
     ) -> Self {
         let levels = &manifest.levels;
         let tiles: Vec<u64> = levels.iter().map(|level| level.tiles).collect();
         let all = tiles.iter().sum::<u64>();
-        let memory = MemoryEstimate::new(&[], all, resources.threads as u64);
         let of_levels = |count: fn(&LevelRecord) -> u64| levels.iter().map(count).sum::<u64>();
         let [triangles, terrain_bytes] =
             [of_levels(|level| level.triangles), of_levels(|level| level.terrain_bytes)];
@@ -260,6 +255,16 @@ impl Estimate {
 }
 
 impl MemoryEstimate {
+    /// Of the elevation files with these blocks, and of the photos.
+    fn of(mut blocks: Vec<FileBlocks>, opened: &Opened, tiles: u64, resources: Resources) -> Self {
+        blocks.extend(opened.photo.iter().flat_map(|photo| photo.blocks.iter().cloned()));
+        let mut memory = Self::new(&blocks, tiles, resources.threads as u64);
+        if let Some(photo) = &opened.photo {
+            memory.add_photos(photo.levels());
+        }
+        memory
+    }
+
     pub(crate) fn new(files: &[FileBlocks], tiles: u64, threads: u64) -> Self {
         let largest = files.iter().max_by_key(|file| file.block_bytes());
         let block_bytes = largest.map_or(0, FileBlocks::block_bytes);

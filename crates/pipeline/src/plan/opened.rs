@@ -2,13 +2,9 @@ use std::path::Path;
 
 use corniche_dem::{Dem, GridPlan, Polygon};
 use corniche_geom::CoordinateTable;
-use corniche_tileset::{PhotoRecord, ReliefLevels};
+use corniche_tileset::ReliefLevels;
 
-use super::{
-    coordinates::coordinates,
-    facts::terrain_differences,
-    opened_photos::{OpenedPhotos, photo_record},
-};
+use super::{coordinates::coordinates, facts::terrain_differences, opened_photos::OpenedPhotos};
 use crate::{
     BuildError, PlanSettings, PlannedInput, TerrainSettings,
     inputs::{InputKind, Inputs, OtherInputs},
@@ -48,9 +44,6 @@ impl Opened {
         let photo = settings.photo.as_ref().map_or(&[][..], |photo| &photo.files);
         let others = OtherInputs { photo, polygon, osm: &settings.osm };
         let mut inputs = match &settings.terrain_of {
-            Some(package) if settings.photo.is_some() => {
-                return Err(BuildError::PhotoOnTerrain { path: package.clone() });
-            }
             Some(package) => Inputs::find_with_package(package, others)?,
             None => Inputs::find(&settings.dem, others)?,
         };
@@ -79,11 +72,6 @@ impl Opened {
         let planned = self.inputs.planned()?;
         let is_extract = |input: &&PlannedInput| input.kind == InputKind::Osm.name();
         Ok(planned.iter().filter(is_extract).map(|input| input.bytes).sum())
-    }
-
-    /// What the manifest says of how photos are made: those of a package whose terrain is taken stay as they are.
-    pub(crate) fn photo_record(&self) -> Option<PhotoRecord> {
-        photo_record(&self.source, self.photo.as_ref())
     }
 
     /// From elevation files.

@@ -2,7 +2,7 @@ use corniche_dem::{FileBlocks, GridPlan};
 use corniche_photo::{LevelChoice, PhotoGrid, Photos};
 use corniche_tileset::PhotoRecord;
 
-use crate::{BuildError, PhotoSettings, terrain::ground::GroundSource};
+use crate::{BuildError, PhotoSettings};
 
 /// Photos, opened and put on the grid.
 pub(crate) struct OpenedPhotos {
@@ -34,16 +34,5 @@ impl OpenedPhotos {
     /// How many levels of texels are finer than the finest cell.
     pub(crate) fn levels(&self) -> u8 {
         self.grid.texels().levels()
-    }
-}
-
-/// What the manifest says of how photos are made: those of a package whose terrain is taken stay as they are.
-pub(crate) fn photo_record(
-    source: &GroundSource,
-    photo: Option<&OpenedPhotos>,
-) -> Option<PhotoRecord> {
-    match source {
-        GroundSource::Package(terrain) => terrain.manifest().settings.photo,
-        GroundSource::Dem(_) => photo.map(OpenedPhotos::record),
     }
 }

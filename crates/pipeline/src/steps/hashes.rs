@@ -34,7 +34,7 @@ pub(crate) fn records(context: &Context<'_>) -> Result<Vec<InputRecord>, BuildEr
     if let Some(terrain) = context.source.package() {
         // The terrain was made from the package's elevation files, not from the package.
         records.retain(|record| !InputKind::Terrain.is_of(record));
-        records.splice(0..0, terrain.ground_files().cloned());
+        records.splice(0..0, terrain.elevation_files().cloned());
     }
     Ok(records)
 }

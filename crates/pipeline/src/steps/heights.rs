@@ -5,7 +5,7 @@ use corniche_geom::TileId;
 use super::photos;
 use crate::{BuildError, artifacts::Kind, context::Context};
 
-/// Reads the heights beneath and at `scope` that are not there yet; none where the terrain comes from a package.
+/// Reads the heights and photos beneath and at `scope` that are not there yet. Where the terrain comes from a package, there are only photos.
 pub(crate) fn make(context: &Context<'_>, scope: TileId) -> Result<(), BuildError> {
     if let Some(pyramid) = context.pyramid() {
         pyramid.make(scope)?;

@@ -12,3 +12,4 @@ pub(crate) mod border_cells;
 pub(crate) mod data_nodes;
 pub(crate) mod ground;
 pub(crate) mod recorded;
+pub(crate) mod recorded_grid;

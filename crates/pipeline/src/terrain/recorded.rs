@@ -2,14 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use corniche_dem::{Clip, DemError, DemProjection, GridPlan, PlanScale, RecordedCrs, RecordedGrid};
-use corniche_geom::{Frame, TILE_CELLS, TileId};
+use corniche_dem::{DemError, DemProjection, GridPlan, RecordedCrs};
+use corniche_geom::TileId;
 use corniche_tileset::{
     FilePackage, InputRecord, Manifest, ReadError, Relief, Sections, Terrain, decode,
-    limits::MAX_TILES,
 };
 
-use super::data_nodes::data_nodes;
+use super::recorded_grid;
 use crate::{BuildError, TerrainSettings, inputs::InputKind, settings_record};
 
 /// What a package records of how its terrain was made: defaults for a build that takes its terrain.
@@ -74,7 +73,7 @@ impl RecordedTerrain {
         if crs.label() != manifest.crs {
             return Err(damaged("its CRS has another name than its WKT"));
         }
-        check_grid(manifest).map_err(damaged)?;
+        recorded_grid::check(manifest).map_err(damaged)?;
         if settings_record::sha256(&manifest.settings) != manifest.settings_sha256 {
             return Err(damaged("its settings do not match their hash"));
         }
@@ -98,29 +97,7 @@ impl RecordedTerrain {
 
     /// The grid; no height can be read with it.
     pub(crate) fn grid(&self) -> GridPlan {
-        let manifest = self.manifest();
-        let [south_west, north_east] = data_nodes(manifest);
-        let scale = &manifest.scale;
-        self.crs.plan(RecordedGrid {
-            frame: manifest.frame,
-            south_west,
-            north_east,
-            crs: manifest.crs.clone(),
-            crs_wkt: manifest.crs_wkt.clone(),
-            point_scale: manifest.point_scale,
-            scale: PlanScale { center: scale.center, least: scale.least, largest: scale.largest },
-            wgs84_bounds: manifest.wgs84_bounds,
-            clip: manifest.clip.as_ref().map(|clip| Clip {
-                nodes: clip.nodes,
-                whole_data_bounds: clip.whole_data_bounds,
-                whole_wgs84_bounds: clip.whole_wgs84_bounds,
-            }),
-            nodes_are_samples: manifest.nodes_are_samples,
-            resampling_text: manifest.resampling.clone(),
-            vertical_datum: Some(manifest.vertical.datum.clone()),
-            vertical: manifest.vertical.treatment.clone(),
-            fill_voids: manifest.settings.fill_voids,
-        })
+        recorded_grid::plan(&self.crs, self.manifest())
     }
 
     /// WGS84 ⇄ working CRS.
@@ -156,11 +133,11 @@ impl RecordedTerrain {
         })
     }
 
-    /// The elevation files and the photos of the package.
-    pub(crate) fn ground_files(&self) -> impl Iterator<Item = &InputRecord> {
-        let is_ground =
-            |input: &&InputRecord| InputKind::OF_GROUND.iter().any(|kind| kind.is_of(input));
-        self.manifest().inputs.iter().filter(is_ground)
+    /// The elevation files of the package.
+    pub(crate) fn elevation_files(&self) -> impl Iterator<Item = &InputRecord> {
+        let is_elevation =
+            |input: &&InputRecord| InputKind::OF_TERRAIN.iter().any(|kind| kind.is_of(input));
+        self.manifest().inputs.iter().filter(is_elevation)
     }
 
     /// The error for content that contradicts itself.
@@ -171,30 +148,4 @@ impl RecordedTerrain {
 
 fn damaged(path: &Path, what: &str) -> BuildError {
     BuildError::DamagedPackage { path: PathBuf::from(path), what: what.to_owned() }
-}
-
-/// The grid decides how much work there is, so it must be one that a build makes.
-fn check_grid(manifest: &Manifest) -> Result<(), &'static str> {
-    let frame = &manifest.frame;
-    let [south_west, north_east] = data_nodes(manifest);
-    let corners = [
-        frame.x_m(south_west.i),
-        frame.y_m(south_west.j),
-        frame.x_m(north_east.i),
-        frame.y_m(north_east.j),
-    ];
-    if corners.map(f64::to_bits) != manifest.data_bounds.to_array().map(f64::to_bits) {
-        return Err("the corners of the data's rectangle are no nodes");
-    }
-    let smallest = Frame::covering(frame.origin_m(), frame.cell(), south_west, north_east);
-    if smallest.as_ref() != Ok(frame) {
-        return Err("its grid is not the smallest over its data");
-    }
-    let tiles = |low: i64, high: i64| ((high - low) / TILE_CELLS + 2).unsigned_abs();
-    let tiles = tiles(south_west.i, north_east.i).saturating_mul(tiles(south_west.j, north_east.j));
-    // At the borders there can be a row and a column more than there are tiles with ground.
-    if tiles > 2 * MAX_TILES as u64 {
-        return Err("its data's rectangle has more tiles than a package can have");
-    }
-    Ok(())
 }

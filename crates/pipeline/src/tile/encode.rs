@@ -68,10 +68,7 @@ pub(crate) fn with_ground(
         None => corniche_tileset::encode(&payload, &encoding)?,
     };
     let classes = class_sums(laid_classes, &payload, &encoded);
-    let photo = match earlier {
-        Some(earlier) => textures::of_payload(context, id, earlier)?,
-        None => textures::of_tile(context, id)?,
-    };
+    let photo = textures::of_tile(context, id)?;
     let photo_bytes = photo.as_ref().map_or(0, |photo| photo.bytes().len() as u64);
     let mut bytes = encoded.bytes;
     if let Some(photo) = photo {

@@ -7,6 +7,8 @@ pub enum Needs {
     Package,
     /// The elevation files (`--dem`).
     Dem,
+    /// The photos (`--photo`).
+    Photo,
     /// The extract (`--osm`).
     Osm,
 }
@@ -18,6 +20,7 @@ impl Needs {
         match self {
             Self::Package => "the package",
             Self::Dem => "`--dem`",
+            Self::Photo => "`--photo`",
             Self::Osm => "`--osm`",
         }
     }
@@ -108,6 +111,10 @@ checks! {
     Nodes "heights.nodes" Dem "the height of a TIN vertex is the DEM's at its node, rounded to the height quantum"
     Normals "heights.normals" Dem "the normal of a TIN vertex is that of the heights' gradient on its level"
     Relief "heights.relief" Dem "no height of a relief is farther from its level's than the relief says, gaps and water are the same, and slopes on the border are those of the heights, to half a 256th"
+    PhotoInputs "photo.inputs" Photo "the photos are as long as the manifest says"
+    PhotoCover "photo.cover" Photo "the texels that have a photo are those that the photos cover"
+    PhotoPlace "photo.place" Photo "no photo of a tile fits the photos better when it is moved by one texel"
+    PhotoColours "photo.colours" Photo "colours are off the photos' by no more than coding them again loses, over a tile and over each of its blocks of 16 × 16 texels"
     OsmInputs "osm.inputs" Osm "the extracts are as long as the manifest says, and the FRC table is the one it names"
     OsmGeo "osm.geo" Osm "the GEO roads are those of the extract, clipped and laid on the ground again; they are compared to the lattice step"
     OsmSv "osm.sv" Osm "the SV roads are those of the extract, clipped again; they are compared to the lattice step"

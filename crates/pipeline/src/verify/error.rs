@@ -46,6 +46,14 @@ pub enum VerifyError {
     OtherPolygon { path: PathBuf, expected: String },
     #[error("the package was made without a polygon; leave --polygon out")]
     NoPolygon,
+    #[error(
+        "{paths:?} are not the photos that the package was made from; give {expected:?}, the same files in the same order"
+    )]
+    OtherPhotos { paths: Vec<PathBuf>, expected: Vec<String> },
+    #[error("the package was made without photos; leave --photo out")]
+    NoPhotos,
+    #[error(transparent)]
+    Photo(#[from] corniche_photo::PhotoError),
     #[error("the package was made without an extract; leave --osm out")]
     NoExtract,
     #[error(
@@ -80,6 +88,7 @@ impl From<BuildError> for VerifyError {
             BuildError::Changed { path } => Self::Changed { path },
             BuildError::Interrupted => Self::Interrupted,
             BuildError::Dem(error) => Self::Dem(error),
+            BuildError::Photo(error) => Self::Photo(error),
             BuildError::Storage(source) => Self::Work(source),
             other => Self::Roads(other),
         }

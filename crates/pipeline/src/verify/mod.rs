@@ -17,6 +17,8 @@ mod manifest_sums;
 mod one_tile;
 mod osm;
 mod osm_tile;
+mod photo_against_files;
+mod photo_files;
 mod photos;
 mod polygon;
 mod relief;
@@ -45,11 +47,11 @@ pub use self::{
     request::{VerifyOsm, VerifySettings},
 };
 
-/// Verifies a package. Without other inputs it checks what the package says about itself; with the elevation files or the
-/// extract it also checks what the package says about them. [`CheckId`] lists the checks.
+/// Verifies a package. Without other inputs it checks what the package says about itself; with the elevation files, the photos or
+/// the extract it also checks what the package says about them. [`CheckId`] lists the checks.
 ///
 /// # Errors
-/// When the package, the DEM or the extract cannot be read at all, or is not the one of the build. A broken promise is a
+/// When the package, the DEM, a photo or the extract cannot be read at all, or is not the one of the build. A broken promise is a
 /// finding, not an error.
 pub fn verify(
     settings: &VerifySettings,
@@ -72,6 +74,10 @@ pub fn verify(
     if !settings.dem.is_empty() {
         given.push(Needs::Dem);
         dem::verify(&package, settings, &mut report, observer)?;
+    }
+    if !settings.photo.is_empty() {
+        given.push(Needs::Photo);
+        photo_files::verify(&package, settings, &mut findings, observer)?;
     }
     if let Some(osm) = &settings.osm {
         given.push(Needs::Osm);

@@ -12,6 +12,8 @@ pub struct VerifySettings {
     pub package: PathBuf,
     /// The elevation files it was made from, to check errors against; empty leaves that out.
     pub dem: Vec<PathBuf>,
+    /// The photos it was made from, to check the photos of tiles against; empty leaves that out.
+    pub photo: Vec<PathBuf>,
     /// The extract it was made from, to check roads against; `None` leaves that out.
     pub osm: Option<VerifyOsm>,
     /// The polygon that it was cut with, if it was: needed with elevation files and with an extract.

@@ -111,7 +111,14 @@ pub(crate) fn verify_against(path: &Path, against: Against) -> Result<VerifyRepo
         }),
     };
     verify(
-        &VerifySettings { package: path.to_path_buf(), dem, osm, threads: 2, polygon: None },
+        &VerifySettings {
+            package: path.to_path_buf(),
+            dem,
+            photo: Vec::new(),
+            osm,
+            threads: 2,
+            polygon: None,
+        },
         &Silent,
     )
 }

@@ -47,6 +47,7 @@ pub(crate) fn check(path: &Path, seen: Seen) -> Result<(), String> {
     let needed = |check: CheckId| match check.needs() {
         Needs::Package => Against::Itself,
         Needs::Dem => Against::Dem,
+        Needs::Photo => unreachable!("packages of these tests have no photos"),
         Needs::Osm => Against::Osm,
     };
     let found = match seen {

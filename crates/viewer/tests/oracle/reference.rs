@@ -211,7 +211,7 @@ impl PixelOracle<'_> {
         };
         // Without caps a road ends abruptly: a step along it may do what one across does.
         let end = near_end(ground.truncate(), ends, without_cap, band_m);
-        let part = if parts[0] == parts[1] { Tri::Yes } else { Tri::Perhaps };
+        let part = if (parts[1] - parts[0]).abs() < 1e-9 { Tri::Yes } else { Tri::Perhaps };
         wide.or(thin).and(end).and(Tri::at_most(plan_m, widest_m, band_m)).and(part)
     }
 

@@ -5,7 +5,6 @@
 
 use corniche_styles::Rgb;
 use corniche_viewer::{
-    Wireframe,
     camera::Camera,
     flight::{Pose, WorkingCrs},
     gpu::GpuError,
@@ -214,7 +213,7 @@ impl App {
             height_range_m: self.package.height_range_m(),
             cell_px: settings.cell_px,
             latitude_deg: self.package.manifest().wgs84_bounds.center()[1],
-            wireframe: if settings.is_wireframe { Wireframe::Shown } else { Wireframe::Hidden },
+            wireframe: settings.wireframe(),
             drawn: self.tiles.drawn().to_vec(),
             samples_per_side,
         }

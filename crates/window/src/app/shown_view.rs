@@ -12,15 +12,23 @@ use crate::{
 };
 
 impl App {
-    /// What is shown, and in words what no command can tell of it. `None` without ground in the middle of the map.
+    /// What is shown, and in words what no command can tell of it. `None` where the style has no name.
+    ///
+    /// Without ground in the middle of the map, the point looked at hangs in the air at the distance that drags and turns go by.
     pub(crate) fn shown_view(&self) -> Option<(ShownView, String)> {
         let ground = ground(&self.tiles, &self.settings, &self.package);
         let (view, size_px) = (self.camera.view(), self.camera.size_px());
         let ahead = -view.world_from_view().z_axis;
-        let target_in_world = ground.hit(view.eye_in_world, ahead)?;
+        let in_air = || view.eye_in_world + ahead * view.focus_m;
+        let target_in_world = ground.hit(view.eye_in_world, ahead).unwrap_or_else(in_air);
         let settings = &self.settings;
         let shown = ShownView {
-            camera: camera_request(&view, target_in_world, self.package.manifest()),
+            camera: camera_request(
+                &view,
+                target_in_world,
+                self.package.vertical_scale(settings.exaggeration),
+                self.package.manifest(),
+            ),
             size_px,
             roads: settings.roads,
             style: self.styles.names().get(settings.style)?.clone(),
@@ -29,6 +37,7 @@ impl App {
             screen_space_error_px: settings.screen_space_error_px,
             cell_px: settings.cell_px,
             samples_per_side: settings.samples_per_side,
+            wireframe: settings.wireframe(),
         };
         let left_out: Vec<&str> = [
             (settings.roads.classes != ClassSet::ALL, "hidden classes"),
@@ -37,7 +46,6 @@ impl App {
                 "factors on widths",
             ),
             (settings.compare != Compare::Off, "the comparison"),
-            (settings.is_wireframe, "the wireframe"),
         ]
         .into_iter()
         .filter_map(|(is_set, what)| is_set.then_some(what))
@@ -51,16 +59,19 @@ impl App {
     }
 }
 
-/// The camera of a view that looks at this ground in the middle of its picture. `target_in_world` is in world metres.
+/// The camera of a view that looks at this point in the middle of its picture. `target_in_world` is in world metres, whose heights are
+/// `vertical_scale` times true ones.
 ///
-/// [`CameraRequest::camera`] makes the same camera of it, if the ground there has the same height.
+/// [`CameraRequest::camera`] makes the same camera of it, whatever the ground there.
 pub(crate) fn camera_request(
     view: &View,
     target_in_world: DVec3,
+    vertical_scale: f64,
     manifest: &Manifest,
 ) -> CameraRequest {
     let [lon_deg, lat_deg] =
         manifest.coordinates.wgs84_from_working([target_in_world.x, target_in_world.y]);
     let distance_m = view.eye_in_world.distance(target_in_world) / manifest.point_scale;
-    CameraRequest::LookAt { lon_deg, lat_deg, distance_m, orientation: view.orientation }
+    let height_m = Some(target_in_world.z / vertical_scale);
+    CameraRequest::LookAt { lon_deg, lat_deg, height_m, distance_m, orientation: view.orientation }
 }

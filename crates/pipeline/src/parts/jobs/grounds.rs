@@ -14,7 +14,7 @@ use crate::{
 
 /// Costs of tiles on all levels, microseconds of one core.
 pub(crate) struct Grounds {
-    /// Of the step *heights*; `None` where the terrain comes from a package.
+    /// Of the step *heights*; `None` where the terrain comes from a package and there are no photos.
     pub(crate) heights: Option<Vec<(TileId, u64)>>,
     /// Of the step *tiles*, without roads.
     pub(crate) tiles: Vec<(TileId, u64)>,
@@ -44,7 +44,7 @@ impl Grounds {
         let heights =
             finest(rates::HEIGHT_SECONDS_PER_NODE).chain(coarse(rates::RASTER_SECONDS_PER_NODE));
         Self {
-            heights: Some(heights.collect()),
+            heights: Some(heights.chain(photos(opened)).collect()),
             tiles: finest(tile_seconds_per_node).chain(coarse(tile_seconds_per_node)).collect(),
         }
     }
@@ -62,8 +62,22 @@ impl Grounds {
         let all = DataTiles::of(&opened.grid).within(TileId::ROOT);
         let all = all.into_iter().map(|id| (id, void_us));
         let grounds = with_ground.iter().map(|id| (*id, ground_us(id).unwrap_or_default()));
-        Ok(Self { heights: None, tiles: all.chain(grounds).collect() })
+        let heights = opened.photo.is_some().then(|| photos(opened).collect());
+        Ok(Self { heights, tiles: all.chain(grounds).collect() })
     }
+}
+
+/// What the photos of finest tiles cost; those of the levels above are little beside them.
+fn photos(opened: &Opened) -> impl Iterator<Item = (TileId, u64)> {
+    opened.photo.iter().flat_map(move |photos| {
+        let seconds = rates::photo_texels(photos.levels()) * rates::SECONDS_PER_PHOTO_TEXEL;
+        let seconds_of = move |id: TileId| {
+            let is_covered = photos.grid.touches(&opened.grid.frame.tile_bounds(id));
+            rates::VOID_TILE_SECONDS + if is_covered { seconds } else { 0.0 }
+        };
+        let finest = DataTiles::of(&opened.grid).in_order_within(TileId::ROOT);
+        finest.into_iter().map(move |id| (id, micros(seconds_of(id))))
+    })
 }
 
 /// For each tile above some finest ones the nodes of its own level that lie in the data.

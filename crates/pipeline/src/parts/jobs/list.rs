@@ -38,7 +38,7 @@ pub(crate) struct Costs {
     pub(crate) hashes_us: u64,
     /// `None` without an extract.
     pub(crate) extract: Option<ExtractCosts>,
-    /// `None` where the terrain comes from a package.
+    /// `None` where the terrain comes from a package and there are no photos.
     pub(crate) heights: Option<TileCosts>,
     pub(crate) tiles: TileCosts,
     /// Adding up and copying of all tiles.

@@ -1,7 +1,11 @@
 use corniche_geom::TileId;
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 
-use super::{coverage, decode::JPEG, image::Photo};
+use super::{
+    coverage,
+    decode::{self, JPEG},
+    image::Photo,
+};
 use crate::limits::MAX_PHOTO_LEVELS;
 use crate::payload::damage::{DecodeError, EncodeError};
 use crate::payload::envelope::{self, Content};
@@ -21,6 +25,15 @@ impl PhotoSection {
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
+    }
+
+    /// What readers will see of it.
+    ///
+    /// # Errors
+    /// When the bytes are damaged.
+    pub fn decode(&self, tile: TileId) -> Result<Photo, DecodeError> {
+        let part = Kind::Photo.name();
+        decode::decode(&self.bytes).map_err(|damage| DecodeError { tile, part, damage })
     }
 
     /// The section with these bytes, which [`PhotoSection::bytes`] gave.
