@@ -1,5 +1,6 @@
 //! Harness of the scenarios: runs the real binary on real and made-up inputs.
 
+mod area_extract;
 #[cfg(target_os = "linux")]
 mod display;
 mod job;
@@ -15,6 +16,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+pub use area_extract::extract_with_areas;
 pub use corniche_testing::{real_data, root, sample};
 #[cfg(target_os = "linux")]
 pub use display::{Display, without_display};

@@ -2,47 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may unwrap")]
 
-use std::{
-    collections::BTreeMap,
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{collections::BTreeMap, fs, path::Path};
 
-use corniche_testing::pbf::{Block, file};
-use e2e::{Job, Ran, When, corniche, json, manifest, sample, text};
+use e2e::{Job, Ran, When, corniche, extract_with_areas, json, manifest, sample, text};
 use serde_json::Value;
-
-/// Nodes in a lattice over the sample `pass`, whose roads lie there too: number 100 + 20 y + x at (x, y), 0.005 and 0.004 degrees apart.
-fn extract(folder: &Path) -> PathBuf {
-    let mut block = Block::new();
-    let place =
-        |x: i64, y: i64| (100 + 20 * y + x, 468_700_000 + 40_000 * y, 95_000_000 + 50_000 * x);
-    block.dense(&(0..400).map(|n| place(n % 20, n / 20)).collect::<Vec<_>>());
-    let node = |x: i64, y: i64| place(x, y).0;
-    let square = |x: i64, y: i64, side: i64| {
-        let (east, north) = (x + side, y + side);
-        [node(x, y), node(east, y), node(east, north), node(x, north), node(x, y)]
-    };
-    block.way(1, &[("highway", "primary")], &[node(1, 1), node(9, 9)]);
-    block.way(2, &[("natural", "water"), ("name", "Lake")], &square(2, 2, 3));
-    block.way(3, &[], &square(6, 3, 6));
-    block.way(4, &[], &square(8, 5, 2));
-    // Not closed; crossing itself.
-    block.way(5, &[("landuse", "meadow")], &square(1, 8, 2)[..4]);
-    block.way(
-        6,
-        &[("natural", "scree")],
-        &[node(1, 10), node(3, 12), node(3, 10), node(1, 12), node(1, 10)],
-    );
-    block.relation(
-        7,
-        &[("type", "multipolygon"), ("natural", "wood")],
-        &[(3, "outer"), (4, "inner")],
-    );
-    let path = folder.join("areas.osm.pbf");
-    fs::write(&path, file(&block)).unwrap();
-    path
-}
 
 fn succeed(ran: Ran) -> Ran {
     assert_eq!(ran.code, 0, "{}{}", ran.out, ran.err);
@@ -86,7 +49,7 @@ fn areas_of(package: &Path) -> BTreeMap<(u64, String), f64> {
 fn areas_are_the_same_however_the_package_is_made() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    let (dem, osm) = (sample("pass/pass-dem.tif"), extract(folder.path()));
+    let (dem, osm) = (sample("pass/pass-dem.tif"), extract_with_areas(folder.path()));
     let whole = at("whole.pmtiles");
     let inputs =
         ["--dem", text(&dem), "--osm", text(&osm), "--max-error", "10", "--areas", "default"];
@@ -162,7 +125,7 @@ fn areas_are_the_same_however_the_package_is_made() {
 #[test]
 fn a_build_with_areas_that_was_stopped_goes_on_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
-    let inputs = || [sample("pass/pass-dem.tif"), extract(folder.path())];
+    let inputs = || [sample("pass/pass-dem.tif"), extract_with_areas(folder.path())];
     let options = ["--max-error", "0.25", "--areas", "default"];
     let whole = Job::new(&options).of(inputs());
     whole.succeed(&["--quiet"]);
@@ -179,7 +142,7 @@ fn a_build_with_areas_that_was_stopped_goes_on_to_the_same_bytes() {
 fn tables_that_are_none_and_areas_without_an_extract_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let (package, table) = (folder.path().join("out.pmtiles"), folder.path().join("table.toml"));
-    let (dem, osm) = (sample("pass/pass-dem.tif"), extract(folder.path()));
+    let (dem, osm) = (sample("pass/pass-dem.tif"), extract_with_areas(folder.path()));
     let refused = |options: &[&str]| {
         let ran = corniche(
             [&["build", "-q", "--dem", text(&dem), "-o", text(&package)], options].concat(),

@@ -2,15 +2,16 @@
 
 use std::{cell::RefCell, io::stderr, path::Path};
 
+use corniche_areas::AreaClass;
 use corniche_export::{
-    Coordinates, ExportError, ExportSummary, Observer, RoadsRequest, Stage, VectorFormat,
-    export_roads,
+    AreasRequest, AreasSummary, Coordinates, ExportError, ExportSummary, Observer, RoadsRequest,
+    Stage, VectorFormat, export_areas, export_roads,
 };
 use corniche_tileset::{FilePackage, Manifest};
 use indicatif::ProgressBar;
 
 use crate::{
-    args::{Export, ExportArgs, ExportCrs, ExportRoadsArgs},
+    args::{Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportRoadsArgs, Format},
     exit::ExitCode,
     failure::Failure,
     interrupt, messages,
@@ -26,11 +27,12 @@ pub(crate) const MEMORY_BYTES: u64 = 128 << 20;
 pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
     match &args.what {
         Export::Roads(args) => roads(args),
+        Export::Areas(args) => areas(args),
     }
 }
 
 fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
-    let format = format(args)?;
+    let format = format(args.format, &args.output)?;
     let coordinates = match (args.crs, args.heights) {
         (ExportCrs::Package, None) => Coordinates::Package,
         (ExportCrs::Wgs84, None) => Coordinates::Wgs84,
@@ -63,6 +65,66 @@ fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::Done)
 }
 
+fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
+    let format = format(args.format, &args.output)?;
+    let package = FilePackage::open(&args.package)?;
+    let request = AreasRequest {
+        format,
+        level: args.level,
+        classes: if args.classes.is_empty() {
+            AreaClass::ALL.to_vec()
+        } else {
+            args.classes.clone()
+        },
+        coordinates: match args.crs {
+            ExportCrs::Package => Coordinates::Package,
+            ExportCrs::Wgs84 => Coordinates::Wgs84WithPackageHeights,
+        },
+        memory_bytes: MEMORY_BYTES,
+    };
+    let name = format!("areas.{}", format.ending());
+    let existing = existing_of(args.overwrite);
+    let output = NamedOutput::create(&args.output, existing, name, &[&args.package])?;
+    let bars = Bars::default();
+    let exported = export_areas(&package, &request, &output.path(), &bars);
+    bars.end();
+    let summary = exported.map_err(|error| named(error, &args.output))?;
+    let size = output.place()?;
+    if summary.unjoined > 0 {
+        messages::warning(&format!(
+            "{} areas could not be joined over borders of tiles; each of their parts is a polygon",
+            summary.unjoined
+        ));
+    }
+    messages::note(&areas_to_text(args, &summary, package.manifest(), size));
+    Ok(ExitCode::Done)
+}
+
+fn areas_to_text(
+    args: &ExportAreasArgs,
+    summary: &AreasSummary,
+    manifest: &Manifest,
+    size: u64,
+) -> String {
+    let count = |number| Digits::on(&stderr()).count(number);
+    let coordinates = match args.crs {
+        ExportCrs::Package => &manifest.crs,
+        ExportCrs::Wgs84 => "EPSG:4326",
+    };
+    format!(
+        "{}: {} areas of level {}, {:.3} km², {} polygons, {} points, {}\ncoordinates: {}\nto be shown with it: {}",
+        args.output.display(),
+        count(summary.areas),
+        summary.level,
+        summary.area_m2 / 1e6,
+        count(summary.polygons),
+        count(summary.points),
+        bytes(size),
+        coordinates,
+        manifest.attribution.join("; "),
+    )
+}
+
 /// What could not be written is known to people by the name of the target, not of the file that becomes it.
 fn named(error: ExportError, target: &Path) -> Failure {
     let is_unwritten = !error.is_unusable_input();
@@ -71,13 +133,13 @@ fn named(error: ExportError, target: &Path) -> Failure {
 }
 
 /// The format that is named, or that of the ending.
-fn format(args: &ExportRoadsArgs) -> Result<VectorFormat, Failure> {
-    let named = args.format.map(VectorFormat::from);
-    named.or_else(|| VectorFormat::of_path(&args.output)).ok_or_else(|| {
+fn format(named: Option<Format>, output: &Path) -> Result<VectorFormat, Failure> {
+    let named = named.map(VectorFormat::from);
+    named.or_else(|| VectorFormat::of_path(output)).ok_or_else(|| {
         let endings = VectorFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
         Failure::unusable(format!(
             "the ending of {} says no format; use one of {endings}, or name it with --format",
-            args.output.display()
+            output.display()
         ))
     })
 }
@@ -132,7 +194,7 @@ impl Observer for Bars {
             self.end();
             let title = match stage {
                 Stage::Tiles => "reading tiles",
-                Stage::Pieces => "writing roads",
+                Stage::Pieces => "writing features",
             };
             self.running.replace(Some((stage, progress::bar(title, Some(total)))));
         }

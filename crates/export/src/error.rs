@@ -1,11 +1,12 @@
 use std::{io, path::PathBuf};
 
+use corniche_areas::AreaObject;
 use corniche_dem::{DemError, LibraryError};
 use corniche_drape::BadLine;
 use corniche_geom::{ProjectError, TileId};
 use corniche_tileset::{OpenError, ReadError};
 
-/// Why roads could not be exported.
+/// Why roads or areas could not be exported.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each message documents its variant")]
 #[non_exhaustive]
@@ -20,6 +21,22 @@ pub enum ExportError {
     NoAttributes { tile: TileId, way_id: i64 },
     #[error("way {way_id} is not the same in all tiles; corniche verify says more")]
     Differs { way_id: i64 },
+    #[error("the areas of a tile are damaged; corniche verify says more")]
+    Areas { source: Box<corniche_tileset::DecodeError> },
+    #[error("{object} is not the same in all tiles; corniche verify says more")]
+    AreaDiffers { object: AreaObject },
+    #[error("a position of {object} has no longitude and latitude in WGS84")]
+    NoAreaPosition { object: AreaObject },
+    #[error(
+        "{object} lies across 180 degrees of longitude, where a polygon in degrees would go around the earth; export it in the package's CRS"
+    )]
+    AcrossAntimeridian { object: AreaObject },
+    #[error("{package:?} has no areas: it was built without --areas")]
+    NoAreas { package: PathBuf },
+    #[error(
+        "GeoJSON has longitudes and latitudes of WGS84 (RFC 7946); give --crs EPSG:4326, or choose another format"
+    )]
+    GeoJsonPlanCrs,
     #[error("{package:?} has no roads: it was built without --osm")]
     NoRoads { package: PathBuf },
     #[error("{package:?} has no level {level}; its finest is {finest}")]

@@ -1,4 +1,4 @@
-//! Roads of a package as features for other programs: GeoPackage, FlatGeobuf, GeoJSON, CSV.
+//! Roads and areas of a package as features for other programs: GeoPackage, FlatGeobuf, GeoJSON, CSV.
 //!
 //! ```text
 //!   tiles of a level ──► pieces ──► cut at the bounds ──► sorted by way, on disk
@@ -13,11 +13,15 @@
 //!
 //! The same pieces, of all levels, tell what laying each way on the terrain costs ([`growth_by_way`]).
 //!
+//! Areas go the same way, sorted by object; what tiles hold of one is joined where both sides of a border have the same segments.
+//!
 //! Vertices are those of the package: nothing is simplified, smoothed or rounded, except in GeoJSON (nine decimals).
 //!
 //! This crate never reads an extract or an elevation file, never decides which road matters, and writes no file but the one
 //! it is asked for.
 
+mod area_piece;
+mod areas;
 mod bounds;
 mod cut;
 mod error;
@@ -35,11 +39,12 @@ mod scratch;
 mod vector;
 mod ways;
 
+pub use areas::{AreasSummary, area_fields, export_areas};
 pub use bounds::DegreeBounds;
 pub use error::ExportError;
 pub use feature::road_fields;
 pub use growth::{WayGrowth, growth_by_way};
 pub use observer::{Observer, Silent, Stage};
-pub use request::{Coordinates, RoadsRequest};
+pub use request::{AreasRequest, Coordinates, RoadsRequest};
 pub use roads::{ExportSummary, export_roads};
 pub use vector::{Field, FieldKind, VectorFormat};

@@ -116,7 +116,7 @@ impl SortRecord for SortedPiece {
     }
 }
 
-fn array<const N: usize>(bytes: &mut &[u8]) -> Option<[u8; N]> {
+pub(crate) fn array<const N: usize>(bytes: &mut &[u8]) -> Option<[u8; N]> {
     let (head, rest) = bytes.split_first_chunk()?;
     *bytes = rest;
     Some(*head)
@@ -126,7 +126,7 @@ fn number(bytes: &mut &[u8]) -> Option<f64> {
     array(bytes).map(f64::from_le_bytes)
 }
 
-fn text(bytes: &mut &[u8]) -> Option<String> {
+pub(crate) fn text(bytes: &mut &[u8]) -> Option<String> {
     let length = usize::try_from(u64::from_le_bytes(array(bytes)?)).ok()?;
     let (text, rest) = bytes.split_at_checked(length)?;
     *bytes = rest;

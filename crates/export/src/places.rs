@@ -1,7 +1,8 @@
 //! Where vertices are, in the coordinates that were asked for.
 
+use corniche_areas::AreaObject;
 use corniche_dem::{DemError, DemProjection, RecordedCrs, RecordedHeights};
-use corniche_geom::{Projection as _, wgs84};
+use corniche_geom::{LatticePoint, Projection as _, wgs84};
 use corniche_tileset::Manifest;
 
 use crate::{cut::cut_at_antimeridian, error::ExportError, piece::Vertex, request::Coordinates};
@@ -89,6 +90,34 @@ impl<'a> Places<'a> {
     /// True distance in plan of two places on the lattice, as the build measures roads.
     pub(crate) fn distance_m(&self, from: [f64; 2], to: [f64; 2]) -> f64 {
         wgs84::short_distance_m(self.wgs84(from), self.wgs84(to))
+    }
+
+    /// A ring of an area in the features' coordinates.
+    pub(crate) fn carry_ring(
+        &self,
+        object: AreaObject,
+        points: &[LatticePoint],
+    ) -> Result<Vec<[f64; 2]>, ExportError> {
+        let frame = &self.manifest.frame;
+        let mut plan: Vec<[f64; 2]> = points.iter().map(|point| frame.position_m(*point)).collect();
+        match &self.target {
+            Target::Package => {
+                let [unit_x, unit_y] = self.manifest.metres_per_unit;
+                for [x, y] in &mut plan {
+                    (*x, *y) = (*x / unit_x, *y / unit_y);
+                }
+            }
+            Target::Wgs84 { projection, .. } => {
+                projection.wgs84_from_working(&mut plan)?;
+                if plan.iter().flatten().any(|degrees| !degrees.is_finite()) {
+                    return Err(ExportError::NoAreaPosition { object });
+                }
+                if plan.windows(2).any(|pair| (pair[1][0] - pair[0][0]).abs() > 180.0) {
+                    return Err(ExportError::AcrossAntimeridian { object });
+                }
+            }
+        }
+        Ok(plan)
     }
 
     /// A line of a way in the features' coordinates: one line, or several where it crosses the antimeridian in degrees.

@@ -1,3 +1,4 @@
+use corniche_areas::AreaClass;
 use corniche_roads::FunctionalRoadClass;
 
 use crate::{bounds::DegreeBounds, vector::VectorFormat};
@@ -11,6 +12,21 @@ pub enum Coordinates {
     Wgs84,
     /// Longitude and latitude of WGS84, with the package's heights as they are.
     Wgs84WithPackageHeights,
+}
+
+/// Which areas of a package are exported, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AreasRequest {
+    /// The format of the file.
+    pub format: VectorFormat,
+    /// The level whose areas are taken; `None` is the finest.
+    pub level: Option<u8>,
+    /// The classes that are taken.
+    pub classes: Vec<AreaClass>,
+    /// The coordinates of features; areas have no heights.
+    pub coordinates: Coordinates,
+    /// Memory for sorting, bytes.
+    pub memory_bytes: u64,
 }
 
 /// Which roads of a package are exported, and how.

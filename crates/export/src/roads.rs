@@ -17,7 +17,7 @@ use crate::{
     read,
     request::{Coordinates, RoadsRequest},
     scratch::FileScratch,
-    vector::{Layer, Record, VectorFile, VectorFormat},
+    vector::{Layer, Record, Shape, ShapeKind, VectorFile, VectorFormat},
     ways::Ways,
 };
 
@@ -106,6 +106,7 @@ fn layer(package: &FilePackage, level: u8, request: &RoadsRequest, places: &Plac
     Layer {
         name: "roads",
         fields: road_fields(request.pieces),
+        shapes: ShapeKind::Lines,
         crs: places.crs().to_owned(),
         description: format!(
             "{what} laid on terrain with cells of {east_m:.1} × {north_m:.1} m. Heights: {}.",
@@ -170,6 +171,6 @@ impl Writing<'_> {
         for line in lines {
             carried.extend(self.places.carry(key.way_id, &line.vertices)?);
         }
-        self.file.push(Record { values: road_values(&road), lines: carried })
+        self.file.push(Record { values: road_values(&road), shape: Shape::Lines(carried) })
     }
 }

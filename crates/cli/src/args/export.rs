@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
+use corniche_areas::AreaClass;
 use corniche_export::{DegreeBounds, VectorFormat};
 use corniche_presets::{BoundsChoice, Classes};
 
@@ -16,6 +17,8 @@ pub(crate) struct ExportArgs {
 pub(crate) enum Export {
     /// Write the roads of a package, on its terrain, as lines with lengths and grades for GIS programs
     Roads(Box<ExportRoadsArgs>),
+    /// Write the areas of a package (water, forest and so on) as polygons for GIS programs
+    Areas(Box<ExportAreasArgs>),
 }
 
 #[derive(Debug, Args)]
@@ -52,6 +55,30 @@ pub(crate) struct ExportRoadsArgs {
     pub(crate) heights: Option<Heights>,
 }
 
+#[derive(Debug, Args)]
+pub(crate) struct ExportAreasArgs {
+    /// The package
+    pub(crate) package: PathBuf,
+    /// The file to write; its ending is its format: .gpkg, .fgb, .geojson or .csv
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// Replace the file if it exists, once the new one is complete; if it is a link, replace the file it leads to
+    #[arg(short = 'O', long)]
+    pub(crate) overwrite: bool,
+    /// The format of a file with another ending
+    #[arg(short, long, value_enum, value_name = "FORMAT")]
+    pub(crate) format: Option<Format>,
+    /// The level whose areas are taken [default: the finest]
+    #[arg(long, value_name = "Z")]
+    pub(crate) level: Option<u8>,
+    /// Classes that are taken, such as water,forest [default: all]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse_area_class)]
+    pub(crate) classes: Vec<AreaClass>,
+    /// The coordinates: "package" (its CRS) or "EPSG:4326" (longitude and latitude of WGS84)
+    #[arg(long, value_name = "CRS", default_value = "package", value_parser = parse_plan_crs)]
+    pub(crate) crs: ExportCrs,
+}
+
 /// Formats by the endings of their files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
@@ -59,9 +86,9 @@ pub(crate) enum Format {
     Gpkg,
     /// FlatGeobuf
     Fgb,
-    /// GeoJSON (RFC 7946; with --crs EPSG:4979)
+    /// GeoJSON (RFC 7946; with --crs EPSG:4979, areas with EPSG:4326)
     Geojson,
-    /// Comma-separated values, lines as WKT
+    /// Comma-separated values, geometries as WKT
     Csv,
 }
 
@@ -81,7 +108,7 @@ impl From<Format> for VectorFormat {
 pub(crate) enum ExportCrs {
     /// The package's own.
     Package,
-    /// WGS84 in three dimensions.
+    /// WGS84: roads in three dimensions, areas in two.
     Wgs84,
 }
 
@@ -103,6 +130,24 @@ fn parse_bounds(text: &str) -> Result<DegreeBounds, String> {
             DegreeBounds::new(degrees).ok_or_else(|| advice.to_owned())
         }
         BoundsChoice::Osm => Err(format!("a package does not know the extract's box; {advice}")),
+    }
+}
+
+fn parse_area_class(text: &str) -> Result<AreaClass, String> {
+    AreaClass::from_name(text).ok_or_else(|| {
+        let names = AreaClass::ALL.map(AreaClass::name).join(", ");
+        format!("classes of areas are {names}")
+    })
+}
+
+fn parse_plan_crs(text: &str) -> Result<ExportCrs, String> {
+    if text == "package" {
+        Ok(ExportCrs::Package)
+    } else if text.eq_ignore_ascii_case("EPSG:4326") {
+        Ok(ExportCrs::Wgs84)
+    } else {
+        Err("give \"package\" or EPSG:4326; for other systems use ogr2ogr -t_srs on the result"
+            .to_owned())
     }
 }
 

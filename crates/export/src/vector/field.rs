@@ -47,9 +47,37 @@ pub(crate) enum Value {
     Null,
 }
 
-/// One feature: a value for each field, and lines of x, y and height.
+/// One feature: a value for each field, and its geometry.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Record {
     pub(crate) values: Vec<Value>,
-    pub(crate) lines: Vec<Vec<[f64; 3]>>,
+    pub(crate) shape: Shape,
+}
+
+/// The geometries that a layer holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ShapeKind {
+    /// [`Shape::Lines`]
+    Lines,
+    /// [`Shape::Polygons`]
+    Polygons,
+}
+
+/// The geometry of a feature.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Shape {
+    /// Lines of x, y and height.
+    Lines(Vec<Vec<[f64; 3]>>),
+    /// Polygons in plan: an outer ring, then rings around holes. The first point of a ring is not repeated at its end.
+    Polygons(Vec<Vec<Vec<[f64; 2]>>>),
+}
+
+impl Shape {
+    /// Vertices in a file, where the last point of a ring is its first one again.
+    pub(crate) fn vertices(&self) -> usize {
+        match self {
+            Self::Lines(lines) => lines.iter().map(Vec::len).sum(),
+            Self::Polygons(polygons) => polygons.iter().flatten().map(|ring| ring.len() + 1).sum(),
+        }
+    }
 }

@@ -14,7 +14,7 @@ use gdal::{
 use crate::{
     error::ExportError,
     vector::{
-        field::{Field, FieldKind, Record, Value},
+        field::{Field, FieldKind, Record, Shape, ShapeKind, Value},
         format::VectorFormat,
         whole::{self, Contents},
     },
@@ -32,6 +32,7 @@ const SETTINGS: [(&str, &str); 2] =
 pub(crate) struct Layer {
     pub(crate) name: &'static str,
     pub(crate) fields: Vec<Field>,
+    pub(crate) shapes: ShapeKind,
     /// WKT2, or a code such as "EPSG:4979".
     pub(crate) crs: String,
     /// For people.
@@ -81,7 +82,7 @@ impl VectorFile {
 
     /// Adds a feature.
     pub(crate) fn push(&mut self, record: Record) -> Result<(), ExportError> {
-        self.waiting_vertices += record.lines.iter().map(Vec::len).sum::<usize>();
+        self.waiting_vertices += record.shape.vertices();
         self.waiting.push(record);
         if self.waiting_vertices >= VERTICES_AT_ONCE { self.write() } else { Ok(()) }
     }
@@ -141,7 +142,10 @@ fn create(
         name: layer.name,
         // RFC 7946 has one CRS and no place to name it.
         srs: (format != VectorFormat::GeoJson).then_some(&crs),
-        ty: OGRwkbGeometryType::wkbMultiLineString25D,
+        ty: match layer.shapes {
+            ShapeKind::Lines => OGRwkbGeometryType::wkbMultiLineString25D,
+            ShapeKind::Polygons => OGRwkbGeometryType::wkbMultiPolygon,
+        },
         options: Some(&options),
     })?;
     for field in &layer.fields {
@@ -195,13 +199,38 @@ fn write_all(layer: &GdalLayer<'_>, fields: &[Field], records: &[Record]) -> Res
                 Value::Text(text) => feature.set_field_string(index, text)?,
             }
         }
-        feature.set_geometry(geometry(&record.lines)?)?;
+        feature.set_geometry(geometry(&record.shape)?)?;
         feature.create(layer)?;
     }
     Ok(())
 }
 
-fn geometry(lines: &[Vec<[f64; 3]>]) -> Result<Geometry, GdalError> {
+fn geometry(shape: &Shape) -> Result<Geometry, GdalError> {
+    match shape {
+        Shape::Lines(lines) => multi_line(lines),
+        Shape::Polygons(polygons) => multi_polygon(polygons),
+    }
+}
+
+fn multi_polygon(polygons: &[Vec<Vec<[f64; 2]>>]) -> Result<Geometry, GdalError> {
+    let mut all = Geometry::empty(OGRwkbGeometryType::wkbMultiPolygon)?;
+    for rings in polygons {
+        let mut polygon = Geometry::empty(OGRwkbGeometryType::wkbPolygon)?;
+        for ring in rings {
+            let mut closed = Geometry::empty(OGRwkbGeometryType::wkbLinearRing)?;
+            // From the end, so that GDAL takes memory for all vertices at once.
+            let first = ring.first().map(|first| (ring.len(), first));
+            for (index, &[x, y]) in first.into_iter().chain(ring.iter().enumerate().rev()) {
+                closed.set_point_2d(index, (x, y));
+            }
+            polygon.add_geometry(closed)?;
+        }
+        all.add_geometry(polygon)?;
+    }
+    Ok(all)
+}
+
+fn multi_line(lines: &[Vec<[f64; 3]>]) -> Result<Geometry, GdalError> {
     let mut all = Geometry::empty(OGRwkbGeometryType::wkbMultiLineString25D)?;
     for line in lines {
         let mut part = Geometry::empty(OGRwkbGeometryType::wkbLineString25D)?;

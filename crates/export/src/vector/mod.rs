@@ -1,4 +1,4 @@
-//! Files of features through GDAL's vector drivers. Nothing here knows a road.
+//! Files of features through GDAL's vector drivers. Nothing here knows a road or an area.
 
 mod field;
 mod file;
@@ -6,6 +6,6 @@ mod format;
 mod whole;
 
 pub use field::{Field, FieldKind};
-pub(crate) use field::{Record, Value};
+pub(crate) use field::{Record, Shape, ShapeKind, Value};
 pub(crate) use file::{Layer, VectorFile};
 pub use format::VectorFormat;

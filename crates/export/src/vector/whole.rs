@@ -9,7 +9,7 @@ use std::{
 use gdal::{
     Dataset, DatasetOptions, GdalOpenFlags,
     errors::GdalError,
-    vector::{LayerAccess as _, sql::Dialect},
+    vector::{Geometry, LayerAccess as _, sql::Dialect},
 };
 
 use crate::{error::ExportError, vector::format::VectorFormat};
@@ -21,7 +21,7 @@ const FEATURE: &[u8] = b"{ \"type\": \"Feature\"";
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Contents {
     pub(crate) features: u64,
-    /// Of the lines of all features.
+    /// Of all features.
     pub(crate) vertices: u64,
 }
 
@@ -69,12 +69,16 @@ fn read_all(path: &Path, format: VectorFormat) -> Result<Contents, GdalError> {
     let mut layer = dataset.layer(0)?;
     for feature in layer.features() {
         contents.features += 1;
-        let Some(lines) = feature.geometry() else { continue };
-        for line in 0..lines.geometry_count() {
-            contents.vertices += lines.get_geometry(line).point_count() as u64;
-        }
+        contents.vertices += feature.geometry().map_or(0, vertices);
     }
     Ok(contents)
+}
+
+/// Vertices of a geometry and of all its parts.
+fn vertices(geometry: &Geometry) -> u64 {
+    let parts = (0..geometry.geometry_count()).map(|part| vertices(&geometry.get_geometry(part)));
+    let own = if geometry.geometry_count() == 0 { geometry.point_count() as u64 } else { 0 };
+    own + parts.sum::<u64>()
 }
 
 /// What `SQLite` finds in its pages and indices, the spatial one included.

@@ -1,5 +1,7 @@
 //! How long the part of the road network is that a line of a tile belongs to: by distances between all pairs of lines.
 
+use std::collections::BTreeSet;
+
 use corniche_geom::Bounds;
 use corniche_viewer::{for_tests::PlanLine, tiles::RoadLook};
 use glam::DVec2;
@@ -8,21 +10,23 @@ use glam::DVec2;
 /// They differ where lines are so far apart that it is a matter of rounding whether they belong together.
 pub(crate) fn part_lengths_m(lines: &[PlanLine], tile: Bounds, margin_m: f64) -> Vec<[f64; 2]> {
     let cell_m = tile.width().min(tile.height()) / 256.0;
+    let ranges: Vec<[DVec2; 2]> = lines.iter().map(range).collect();
     let near: Vec<(usize, usize, f64)> = pairs(lines)
-        .filter(|(a, b)| may_be_near(&lines[*a], &lines[*b], 3.0 * cell_m))
+        .filter(|(a, b)| may_be_near(ranges[*a], ranges[*b], 3.0 * cell_m))
         .map(|(a, b)| (a, b, apart_m(&lines[a], &lines[b])))
         .collect();
-    (0..lines.len())
-        .map(|line| {
-            // Lines belong together where they cross, or come through squares side by side.
-            [1e-6 * cell_m, 2.0 * 2.0_f64.sqrt() * cell_m].map(|most_m| {
-                let part = part_of(lines, line, |a, b| {
-                    near.iter().any(|(c, d, m)| [*c, *d] == [a.min(b), a.max(b)] && *m <= most_m)
-                });
-                part.into_iter().map(|k| known_m(&lines[k], tile, margin_m, cell_m)).sum()
-            })
-        })
-        .collect()
+    let known_m: Vec<f64> =
+        lines.iter().map(|line| known_m(line, tile, margin_m, cell_m)).collect();
+    // Lines belong together where they cross, or come through squares side by side.
+    let [least, most] = [1e-6 * cell_m, 2.0 * 2.0_f64.sqrt() * cell_m].map(|most_m| {
+        let mut beside = vec![Vec::new(); lines.len()];
+        for &(a, b, _) in near.iter().filter(|(.., apart_m)| *apart_m <= most_m) {
+            beside[a].push(b);
+            beside[b].push(a);
+        }
+        lengths_m(lines, &known_m, &beside)
+    });
+    least.into_iter().zip(most).map(<[f64; 2]>::from).collect()
 }
 
 fn pairs(lines: &[PlanLine]) -> impl Iterator<Item = (usize, usize)> {
@@ -30,20 +34,36 @@ fn pairs(lines: &[PlanLine]) -> impl Iterator<Item = (usize, usize)> {
     (0..count).flat_map(move |a| (a + 1..count).map(move |b| (a, b)))
 }
 
-/// The lines that one is connected with through lines that are shown as early as it.
-fn part_of(lines: &[PlanLine], line: usize, is_near: impl Fn(usize, usize) -> bool) -> Vec<usize> {
-    let rank = |k: usize| (lines[k].class.number(), lines[k].look == RoadLook::Service);
-    let mut part = vec![line];
-    let mut next = 0;
-    while let Some(&from) = part.get(next) {
-        next += 1;
-        for to in 0..lines.len() {
-            if rank(to) <= rank(line) && !part.contains(&to) && is_near(from, to) {
-                part.push(to);
+/// For each line the length of its part, if these lines lie beside each line: for each rank anew, through all lines that are shown as
+/// early.
+fn lengths_m(lines: &[PlanLine], known_m: &[f64], beside: &[Vec<usize>]) -> Vec<f64> {
+    let rank = |line: &PlanLine| (line.class.number(), line.look == RoadLook::Service);
+    let ranks: BTreeSet<(u8, bool)> = lines.iter().map(rank).collect();
+    let mut lengths_m = vec![0.0; lines.len()];
+    for most in ranks {
+        let mut is_seen: Vec<bool> = lines.iter().map(|line| rank(line) > most).collect();
+        for first in 0..lines.len() {
+            if is_seen[first] {
+                continue;
+            }
+            is_seen[first] = true;
+            let mut part = vec![first];
+            let mut next = 0;
+            while let Some(&from) = part.get(next) {
+                next += 1;
+                for &to in &beside[from] {
+                    if !std::mem::replace(&mut is_seen[to], true) {
+                        part.push(to);
+                    }
+                }
+            }
+            let length_m: f64 = part.iter().map(|line| known_m[*line]).sum();
+            for line in part.into_iter().filter(|line| rank(&lines[*line]) == most) {
+                lengths_m[line] = length_m;
             }
         }
     }
-    part
+    lengths_m
 }
 
 /// The length of a line; infinite if it is not known whole.
@@ -65,16 +85,14 @@ fn known_m(line: &PlanLine, tile: Bounds, margin_m: f64, cell_m: f64) -> f64 {
     }
 }
 
-fn may_be_near(a: &PlanLine, b: &PlanLine, most_m: f64) -> bool {
-    let range = |line: &PlanLine| {
-        line.points_m
-            .iter()
-            .map(|at| DVec2::from_array(*at))
-            .fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], at| {
-                [low.min(at), high.max(at)]
-            })
-    };
-    let ([low, high], [other_low, other_high]) = (range(a), range(b));
+/// The lowest and the highest coordinates of a line.
+fn range(line: &PlanLine) -> [DVec2; 2] {
+    let points = line.points_m.iter().map(|at| DVec2::from_array(*at));
+    points
+        .fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
+}
+
+fn may_be_near([low, high]: [DVec2; 2], [other_low, other_high]: [DVec2; 2], most_m: f64) -> bool {
     (other_low - high).max(low - other_high).max_element() <= most_m
 }
 

@@ -1,0 +1,266 @@
+//! The whole way of areas out of a package.
+
+use std::path::Path;
+
+use corniche_areas::{AreaClass, OutlineWay, Polygon, assemble};
+use corniche_geom::{LatticePoint, TileId, wgs84};
+use corniche_store::{Sorted, Sorter};
+use corniche_tileset::{FilePackage, decode_areas, pmtiles_order};
+
+use crate::{
+    area_piece::AreaPiece,
+    error::ExportError,
+    observer::{Observer, Stage, stop_if_asked},
+    places::Places,
+    request::{AreasRequest, Coordinates},
+    scratch::FileScratch,
+    vector::{Field, FieldKind, Layer, Record, Shape, ShapeKind, Value, VectorFile, VectorFormat},
+};
+
+/// What was exported.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AreasSummary {
+    /// The level whose areas were taken.
+    pub level: u8,
+    /// Features written: objects of OSM.
+    pub areas: u64,
+    /// Polygons of all features.
+    pub polygons: u64,
+    /// Points of their rings.
+    pub points: u64,
+    /// True area on the ellipsoid, square metres.
+    pub area_m2: f64,
+    /// Areas whose parts in tiles could not be joined; each part is a polygon.
+    pub unjoined: u64,
+}
+
+const FIELDS: &[Field] = &[
+    Field {
+        name: "object",
+        kind: FieldKind::Text,
+        unit: "",
+        meaning: "`way` or `relation` of OpenStreetMap",
+    },
+    Field { name: "id", kind: FieldKind::Integer64, unit: "", meaning: "its id" },
+    Field {
+        name: "class",
+        kind: FieldKind::Text,
+        unit: "",
+        meaning: "class of the area, such as `water`",
+    },
+    Field { name: "name", kind: FieldKind::Text, unit: "", meaning: "OSM's `name`; null without" },
+    Field {
+        name: "area_m2",
+        kind: FieldKind::Real,
+        unit: "m²",
+        meaning: "true area on the ellipsoid of WGS84, of what the package has of it",
+    },
+    Field { name: "polygons", kind: FieldKind::Integer, unit: "", meaning: "number of polygons" },
+    Field {
+        name: "points",
+        kind: FieldKind::Integer,
+        unit: "",
+        meaning: "points of all rings, the closing ones not counted",
+    },
+];
+
+/// The fields of exported areas.
+#[must_use]
+pub fn area_fields() -> &'static [Field] {
+    FIELDS
+}
+
+/// Writes the areas of a package to a new file at `path`: a feature for each object, joined again over borders of tiles. Beside
+/// the file, in the same folder, are unnamed files for sorting. After an error the file at `path` is of no use.
+///
+/// # Errors
+/// When the package has no areas or no such level, the request cannot be met, the package is damaged, or something cannot be
+/// written.
+pub fn export_areas(
+    package: &FilePackage,
+    request: &AreasRequest,
+    path: &Path,
+    observer: &dyn Observer,
+) -> Result<AreasSummary, ExportError> {
+    let manifest = package.manifest();
+    if manifest.areas.is_none() {
+        return Err(ExportError::NoAreas { package: package.path().to_path_buf() });
+    }
+    let finest = manifest.frame.max_level();
+    let level = request.level.unwrap_or(finest);
+    if level > finest {
+        let package = package.path().to_path_buf();
+        return Err(ExportError::NoLevel { package, level, finest });
+    }
+    if request.format == VectorFormat::GeoJson && request.coordinates == Coordinates::Package {
+        return Err(ExportError::GeoJsonPlanCrs);
+    }
+    let places = Places::new(manifest, request.coordinates)?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
+    let sort = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
+    let scratch = FileScratch::create(folder).map_err(sort)?;
+    let mut sorter = Sorter::new(&scratch, request.memory_bytes);
+    let mut ids = package.tile_ids()?;
+    ids.retain(|id| id.z() == level);
+    let mut count = 0;
+    for (done, &id) in ids.iter().enumerate() {
+        stop_if_asked(observer)?;
+        observer.done(Stage::Tiles, done as u64, ids.len() as u64);
+        for piece in pieces(package, id, &request.classes)? {
+            count += 1;
+            sorter.push(piece).map_err(sort)?;
+        }
+    }
+    let mut sorted = sorter.finish().map_err(sort)?;
+    let mut file = VectorFile::create(path, request.format, layer(package, level, &places))?;
+    let mut summary =
+        AreasSummary { level, areas: 0, polygons: 0, points: 0, area_m2: 0.0, unjoined: 0 };
+    let (mut next, mut done) = (None, 0);
+    while let Some(pieces) = next_area(&mut sorted, &mut next).map_err(sort)? {
+        stop_if_asked(observer)?;
+        observer.done(Stage::Pieces, done, count);
+        done += pieces.len() as u64;
+        file.push(feature(&pieces, &places, &mut summary)?)?;
+    }
+    file.finish()?;
+    observer.done(Stage::Pieces, count, count);
+    Ok(summary)
+}
+
+/// What a tile has of areas of these classes.
+fn pieces(
+    package: &FilePackage,
+    id: TileId,
+    classes: &[AreaClass],
+) -> Result<Vec<AreaPiece>, ExportError> {
+    let Some(bytes) = package.tile(id)? else { return Ok(Vec::new()) };
+    let areas = decode_areas(&bytes, id, &package.manifest().frame)
+        .map_err(|source| ExportError::Areas { source: Box::new(source) })?;
+    let wanted = areas.into_iter().filter(|area| classes.contains(&area.class));
+    Ok(wanted
+        .map(|area| AreaPiece {
+            object: area.object,
+            tile: pmtiles_order(id),
+            class: area.class.number(),
+            name: area.name,
+            rings: area.polygons.into_iter().flat_map(|polygon| polygon.rings).collect(),
+        })
+        .collect())
+}
+
+/// All pieces of the next object; `None` after the last.
+fn next_area(
+    sorted: &mut Sorted<'_, AreaPiece>,
+    next: &mut Option<AreaPiece>,
+) -> std::io::Result<Option<Vec<AreaPiece>>> {
+    let first = match next.take() {
+        Some(first) => first,
+        None => match sorted.next().transpose()? {
+            Some(first) => first,
+            None => return Ok(None),
+        },
+    };
+    let object = first.object;
+    let mut pieces = vec![first];
+    while let Some(piece) = sorted.next().transpose()? {
+        if piece.object != object {
+            *next = Some(piece);
+            break;
+        }
+        pieces.push(piece);
+    }
+    Ok(Some(pieces))
+}
+
+fn feature(
+    pieces: &[AreaPiece],
+    places: &Places<'_>,
+    summary: &mut AreasSummary,
+) -> Result<Record, ExportError> {
+    let first = &pieces[0];
+    let object = first.object;
+    if pieces.iter().any(|piece| (piece.class, &piece.name) != (first.class, &first.name)) {
+        return Err(ExportError::AreaDiffers { object });
+    }
+    let class = first.class().ok_or(ExportError::AreaDiffers { object })?;
+    let (polygons, is_joined) = joined(pieces);
+    let (mut shape, mut area_m2, mut points) = (Vec::new(), 0.0, 0);
+    for polygon in &polygons {
+        let mut rings = Vec::new();
+        for ring in polygon.rings() {
+            points += ring.points().len();
+            area_m2 += area_of(ring.points(), places);
+            rings.push(places.carry_ring(object, ring.points())?);
+        }
+        shape.push(rings);
+    }
+    summary.areas += 1;
+    summary.polygons += polygons.len() as u64;
+    summary.points += points as u64;
+    summary.area_m2 += area_m2;
+    summary.unjoined += u64::from(!is_joined);
+    let (kind, id) = object.parts();
+    let name = first.name.clone();
+    let values = vec![
+        Value::Text(kind.to_owned()),
+        Value::Integer(id),
+        Value::Text(class.name().to_owned()),
+        if name.is_empty() { Value::Null } else { Value::Text(name) },
+        Value::Real((area_m2 * 1e3).round() / 1e3),
+        Value::Integer(polygons.len() as i64),
+        Value::Integer(points as i64),
+    ];
+    Ok(Record { values, shape: Shape::Polygons(shape) })
+}
+
+/// The polygons of an object, joined over borders of tiles: there both tiles have the same segments, and what is there twice
+/// cancels out. Where that is no outline any more (a damaged package), the parts as the tiles have them, and `false`.
+fn joined(pieces: &[AreaPiece]) -> (Vec<Polygon>, bool) {
+    let all: Vec<&[LatticePoint]> =
+        pieces.iter().flat_map(|piece| piece.rings.iter().map(Vec::as_slice)).collect();
+    if let Some(polygons) = polygons_of(&all) {
+        return (polygons, true);
+    }
+    let parts = pieces.iter().filter_map(|piece| {
+        let rings: Vec<&[LatticePoint]> = piece.rings.iter().map(Vec::as_slice).collect();
+        polygons_of(&rings)
+    });
+    (parts.flatten().collect(), false)
+}
+
+fn polygons_of(rings: &[&[LatticePoint]]) -> Option<Vec<Polygon>> {
+    let closed: Vec<Vec<LatticePoint>> =
+        rings.iter().map(|ring| ring.iter().chain(ring.first()).copied().collect()).collect();
+    let ways: Vec<OutlineWay<'_>> = closed.iter().map(|points| OutlineWay { points }).collect();
+    assemble(&ways).ok().map(|assembled| assembled.polygons)
+}
+
+/// True area inside a ring, square metres; negative for a clockwise one.
+fn area_of(points: &[LatticePoint], places: &Places<'_>) -> f64 {
+    let at = |point: &LatticePoint| places.wgs84([point.u as f64, point.v as f64]);
+    wgs84::area_m2(&points.iter().map(at).collect::<Vec<_>>())
+}
+
+/// What the file says of itself.
+fn layer(package: &FilePackage, level: u8, places: &Places<'_>) -> Layer {
+    let manifest = package.manifest();
+    let [east_m, north_m] = manifest.frame.level_cell(level).to_array();
+    let name = package.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Layer {
+        name: "areas",
+        fields: FIELDS.to_vec(),
+        shapes: ShapeKind::Polygons,
+        crs: places.crs().to_owned(),
+        description: format!(
+            "Areas, as they are stored for cells of {east_m:.1} × {north_m:.1} m."
+        ),
+        attribution: manifest.attribution.join("; "),
+        metadata: vec![
+            ("GENERATOR", manifest.generator.clone()),
+            ("PACKAGE", name),
+            ("PACKAGE_SETTINGS_SHA256", manifest.settings_sha256.clone()),
+            ("LEVEL", level.to_string()),
+        ],
+    }
+}
