@@ -106,7 +106,7 @@ fn levels_and_classes_can_be_chosen_and_areas_that_are_not_there_are_told() {
         assert_eq!(ran.code, 2, "{}", ran.err);
         assert!(ran.err.contains(why), "{}", ran.err);
     };
-    refused(export(&package, &["--classes", "pond"]), "classes of areas are water, glacier");
+    refused(export(&package, &["--classes", "pond"]), "classes of areas are sea, water, glacier");
     refused(export(&package, &["--level", "9"]), "has no level 9");
     refused(export(&build(folder.path(), "off"), &[]), "it was built without --areas");
     let words = ["export", "areas", text(&package), "-O", "-o", text(&file)];
