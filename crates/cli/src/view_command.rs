@@ -47,6 +47,9 @@ fn words(package: &str, shown: &ShownView) -> Vec<String> {
     if let Some(photo) = shown.photo {
         option("--photo", photo.to_string());
     }
+    if !shown.has_areas {
+        option("--areas", "off".to_owned());
+    }
     for (name, value) in look(shown.roads) {
         option(name, value.to_owned());
     }

@@ -28,6 +28,8 @@ pub struct ShownView {
     pub style: String,
     /// How strongly photos are seen, 0 to 1; `None`: as the style says.
     pub photo: Option<f32>,
+    /// Whether areas are drawn as the style says, or not at all.
+    pub has_areas: bool,
     /// Factor on heights.
     pub exaggeration: f64,
     /// A tile is refined while its error looks larger than this, pixels.
@@ -71,6 +73,8 @@ pub struct WindowRequest {
     pub reload: Option<Reload>,
     /// How strongly photos are seen at first, 0 to 1; `None`: as the style says.
     pub photo: Option<f32>,
+    /// Whether areas are drawn at first, as the style says, or not at all.
+    pub has_areas: bool,
     /// A tile is refined while its error looks larger than this, pixels.
     pub screen_space_error_px: f64,
     /// A tile is refined while one of its cells looks larger than this, pixels.
