@@ -15,7 +15,7 @@ use corniche_window::{
 };
 
 use crate::{
-    args::{Areas, Motion, Roads, ViewArgs},
+    args::{Motion, Roads, ViewArgs},
     exit::ExitCode,
     failure::Failure,
     interrupt, messages,
@@ -54,7 +54,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         command_of: command_of(&args.package),
         styles,
         photo: args.look.photo,
-        has_areas: args.look.areas == Areas::On,
+        areas: args.look.areas.in_window(),
         reload: reload(chosen),
         screen_space_error_px: args.ground.screen_space_error,
         cell_px: args.ground.cell_px,

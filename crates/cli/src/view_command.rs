@@ -5,7 +5,7 @@ use std::path::Path;
 use corniche_viewer::{
     CameraRequest, CapTest, Caps, Outline, RoadMethod, RoadOptions, WidthGrowth,
 };
-use corniche_window::{CommandOf, ShownView};
+use corniche_window::{Areas, CommandOf, ShownView};
 
 use crate::args::Roads;
 
@@ -47,7 +47,7 @@ fn words(package: &str, shown: &ShownView) -> Vec<String> {
     if let Some(photo) = shown.photo {
         option("--photo", photo.to_string());
     }
-    if !shown.has_areas {
+    if shown.areas == Areas::Hidden {
         option("--areas", "off".to_owned());
     }
     for (name, value) in look(shown.roads) {

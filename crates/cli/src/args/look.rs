@@ -103,6 +103,16 @@ pub(crate) enum Areas {
     Off,
 }
 
+impl Areas {
+    /// The same for a window.
+    pub(crate) fn in_window(self) -> corniche_window::Areas {
+        match self {
+            Self::On => corniche_window::Areas::Shown,
+            Self::Off => corniche_window::Areas::Hidden,
+        }
+    }
+}
+
 /// How a fragment of a shadow volume finds out whether the ground it sees is road.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum CapTest {

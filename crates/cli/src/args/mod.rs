@@ -25,7 +25,7 @@ pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
 pub(crate) use export::{Export, ExportArgs, ExportCrs, ExportRoadsArgs};
 pub(crate) use growth::GrowthArgs;
-pub(crate) use look::{Areas, Roads};
+pub(crate) use look::Roads;
 pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
 pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFiles};
 pub(crate) use shell::{CompletionsArgs, ManArgs};

@@ -52,14 +52,14 @@ pub(crate) struct AreaBuffers {
     triangles: Buffer,
     boxes: Buffer,
     classes: Vec<ClassVolumes>,
-    /// Around all of them, as [`AreaVolumes::box_in_tile`].
+    /// Around all of them, as in [`AreaVolumes`].
     box_in_tile: [[f32; 3]; 2],
 }
 
 impl AreaBuffers {
     /// Uploads the areas of a tile; `None` if it has none.
     pub(crate) fn new(gpu: &Gpu, areas: &AreaVolumes) -> Option<Self> {
-        let box_in_tile = areas.box_in_tile()?;
+        let box_in_tile = areas.box_in_tile?;
         let vertices = |name, bytes: &[u8]| gpu.buffer(name, bytes, BufferUsages::VERTEX);
         Some(Self {
             walls: vertices("area walls", &wall_bytes(areas)),
@@ -91,14 +91,14 @@ impl AreaBuffers {
             .sum()
     }
 
-    /// The box around all volumes, as [`AreaVolumes::box_in_tile`].
+    /// The box around all volumes, as in [`AreaVolumes`].
     pub(crate) fn box_in_tile(&self) -> [[f32; 3]; 2] {
         self.box_in_tile
     }
 
-    /// Which classes it has.
-    pub(crate) fn classes(&self) -> impl Iterator<Item = AreaClass> {
-        self.classes.iter().map(|volumes| volumes.class)
+    /// The classes that it has.
+    pub(crate) fn classes(&self) -> &[ClassVolumes] {
+        &self.classes
     }
 
     /// Draws the walls of a class. Pipeline and bind groups are set.

@@ -152,7 +152,9 @@ impl Renderer {
             .iter()
             .enumerate()
             .filter_map(|(index, tile)| tile.areas(index, view))
-            .filter(|(_, areas, _)| areas.classes().any(|class| view.style.area(class).is_drawn()))
+            .filter(|(_, areas, _)| {
+                areas.classes().iter().any(|of| view.style.area(of.class).is_drawn())
+            })
             .collect();
         if tiles.is_empty() {
             return;

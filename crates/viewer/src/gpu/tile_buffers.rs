@@ -20,7 +20,7 @@ use crate::{
     frame_view::FrameView,
     options::{ClassSet, RoadMethod},
     scene::BorderTile,
-    tiles::{TileGeometry, plan_around},
+    tiles::{ClassVolumes, TileGeometry, plan_around},
 };
 
 /// A tile on the graphics card.
@@ -101,6 +101,12 @@ impl TileBuffers {
             + self.textures.gpu_bytes()
             + self.segments.gpu_bytes()
             + self.volumes.gpu_bytes()
+    }
+
+    /// The volumes of its areas, class by class.
+    #[must_use]
+    pub fn area_classes(&self) -> &[ClassVolumes] {
+        self.areas.as_ref().map_or(&[], AreaBuffers::classes)
     }
 
     /// Its roads as a method draws them.

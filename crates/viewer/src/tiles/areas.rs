@@ -37,11 +37,11 @@ const STRIP_CELLS: f64 = 0.25;
 /// An area that cannot be drawn.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the outline of {object} ({class}) crosses itself")]
-pub(crate) struct BadArea {
+pub struct BadArea {
     /// The object of OSM.
-    pub(crate) object: AreaObject,
+    pub object: AreaObject,
     /// What it is.
-    pub(crate) class: AreaClass,
+    pub class: AreaClass,
 }
 
 /// A wall of a volume: upright over a segment of the outline, with the inside on the left.
@@ -90,6 +90,8 @@ pub struct AreaVolumes {
     pub triangles: Vec<u32>,
     /// The classes that the tile has, in order of their numbers.
     pub classes: Vec<ClassVolumes>,
+    /// The box around all of them, as [`ClassVolumes::box_in_tile`]; `None` without any.
+    pub box_in_tile: Option<[[f32; 3]; 2]>,
 }
 
 impl AreaVolumes {
@@ -126,6 +128,8 @@ impl AreaVolumes {
                 });
             }
         }
+        let boxes = volumes.classes.iter().map(|class| class.box_in_tile);
+        volumes.box_in_tile = boxes.reduce(united);
         Ok(volumes)
     }
 
@@ -156,18 +160,14 @@ impl AreaVolumes {
             *high = [high[0].max(*x), high[1].max(*y), high[2].max(*top)];
         }
     }
+}
 
-    /// The box around all of them, as [`ClassVolumes::box_in_tile`]; `None` without any.
-    #[must_use]
-    pub fn box_in_tile(&self) -> Option<[[f32; 3]; 2]> {
-        let boxes = self.classes.iter().map(|class| class.box_in_tile);
-        boxes.reduce(|[low, high], [other_low, other_high]| {
-            [
-                [0, 1, 2].map(|axis: usize| low[axis].min(other_low[axis])),
-                [0, 1, 2].map(|axis: usize| high[axis].max(other_high[axis])),
-            ]
-        })
-    }
+/// The box around two boxes.
+fn united([low, high]: [[f32; 3]; 2], [other_low, other_high]: [[f32; 3]; 2]) -> [[f32; 3]; 2] {
+    [
+        [0, 1, 2].map(|axis: usize| low[axis].min(other_low[axis])),
+        [0, 1, 2].map(|axis: usize| high[axis].max(other_high[axis])),
+    ]
 }
 
 /// Where the areas of a tile are placed.
@@ -219,5 +219,6 @@ impl<'a> Site<'a> {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
 #[path = "areas_tests.rs"]
 mod tests;

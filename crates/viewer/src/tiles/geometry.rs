@@ -5,8 +5,8 @@ use corniche_tileset::{AreaRecord, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 
 use super::{
-    AreaVolumes, BadRoad, GroundMesh, PhotoImage, PlanScale, RoadSegments, RoadVolumes,
-    ShadingSlopes, TileLines, areas::BadArea, relief::Relief,
+    AreaVolumes, BadArea, BadRoad, GroundMesh, PhotoImage, PlanScale, RoadSegments, RoadVolumes,
+    ShadingSlopes, TileLines, relief::Relief,
 };
 use crate::lod::GroundSummary;
 
@@ -164,7 +164,7 @@ impl TileGeometry {
     ///
     /// # Errors
     /// When an outline crosses itself.
-    pub(crate) fn with_areas(self, areas: &[AreaRecord], frame: &Frame) -> Result<Self, BadArea> {
+    pub fn with_areas(self, areas: &[AreaRecord], frame: &Frame) -> Result<Self, BadArea> {
         let areas = AreaVolumes::new(areas, self.id, frame, &self.ground, self.reference_m)?;
         Ok(Self { areas, ..self })
     }

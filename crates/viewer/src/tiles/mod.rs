@@ -26,7 +26,7 @@ mod triangle_grid;
 pub use self::on_disk::PackageSource;
 pub(crate) use self::shading_slopes::ShadingSlopes;
 pub use self::{
-    areas::{AreaCorner, AreaVolumes, AreaWall, ClassVolumes},
+    areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, ClassVolumes},
     geometry::TileGeometry,
     map_extent::MapExtent,
     package::PackageTiles,

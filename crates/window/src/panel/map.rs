@@ -2,6 +2,7 @@ use egui::{ComboBox, Slider, Ui};
 
 use super::slide::slide;
 use crate::{
+    Areas,
     settings::{Settings, range},
     window_content::WindowContent,
 };
@@ -24,8 +25,10 @@ pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, content: &WindowContent
         slider.prefix("× ").max_decimals(2).text("heights")
     });
     if content.has_areas {
-        ui.checkbox(&mut settings.has_areas, "Areas")
+        let mut are_shown = settings.areas == Areas::Shown;
+        ui.checkbox(&mut are_shown, "Areas")
             .on_hover_text("Water, forest … as the style draws them");
+        settings.areas = if are_shown { Areas::Shown } else { Areas::Hidden };
     }
     if let Some(of_style) = content.photo {
         let mut strength = settings.photo.unwrap_or(of_style);

@@ -125,7 +125,8 @@ impl StencilAreas {
         for (counting, counters) in
             [(Counting::InFront, &self.in_front), (Counting::Behind, &self.behind)]
         {
-            let has_class = |tile: &&AreaTile<'_>| tile.1.classes().any(|other| other == class);
+            let has_class =
+                |tile: &&AreaTile<'_>| tile.1.classes().iter().any(|of| of.class == class);
             let tiles: Vec<_> =
                 tiles.iter().filter(|tile| tile.2 == counting).filter(has_class).collect();
             let mut draw = |pipeline: &RenderPipeline, draw: &dyn Fn(&AreaBuffers, &mut _)| {

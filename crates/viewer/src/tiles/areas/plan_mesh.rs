@@ -69,7 +69,7 @@ fn faces_inside(triangulation: &ConstrainedDelaunayTriangulation<Point2<f64>>) -
     let outer = triangulation.outer_face().fix().index();
     is_inside[outer] = Some(false);
     let mut next = Vec::new();
-    for edge in triangulation.directed_edges().filter(|edge| edge.is_outer_edge()) {
+    for edge in triangulation.directed_edges().filter(|edge| edge.face().is_outer()) {
         next.push((edge.rev(), false));
     }
     // Each entry is an edge of a face that may be new, and whether the face beyond it is inside.
