@@ -89,6 +89,9 @@ fn times(runs: &[MeasuredRun]) -> String {
         "roads",
         "composite",
     ]);
+    // Without areas there is no such pass, and nothing to tell of it.
+    let mut passes = runs.iter().flat_map(|run| run.counted()).filter_map(|frame| frame.passes);
+    let has_areas = passes.any(|passes| passes.areas_ms >= 0.005);
     for run in runs {
         let draw_ms: Vec<f64> = run.counted().iter().map(|frame| frame.draw_ms).collect();
         let pass = |of: &dyn Fn(&PassTimes) -> f64| {
@@ -106,12 +109,12 @@ fn times(runs: &[MeasuredRun]) -> String {
             average_ms.map_or_else(dash, |ms| format!("{:.1}", 1000.0 / ms)),
             pass(&PassTimes::total_ms),
             pass(&|passes| passes.terrain_ms),
-            pass(&|passes| passes.areas_ms),
+            if has_areas { pass(&|passes| passes.areas_ms) } else { String::new() },
             pass(&|passes| passes.roads_ms),
             pass(&|passes| passes.composite_ms),
         ]);
     }
-    table.to_text()
+    table.without_empty_columns().to_text()
 }
 
 /// Loss of frame rate by roads, where the same flight was taken without.

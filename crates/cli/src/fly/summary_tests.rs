@@ -81,6 +81,19 @@ fn without_a_clock_on_the_card_there_are_no_times_of_it() {
 }
 
 #[test]
+fn areas_have_a_column_where_there_are_some() {
+    let mut runs = [run(Lod::Adaptive, Roads::Sv, [8.0, 10.0])];
+    assert!(!to_text(&runs).contains("areas  "));
+    for frame in &mut runs[0].frames {
+        frame.passes =
+            Some(PassTimes { terrain_ms: 1.0, areas_ms: 0.25, roads_ms: 2.0, composite_ms: 0.5 });
+    }
+    let text = to_text(&runs);
+    let found = cells(&text, "milliseconds", "lod, roads sv");
+    assert_eq!(found[5..], ["3.75", "1.00", "0.25", "2.00", "0.50"], "{text}");
+}
+
+#[test]
 fn percentiles_are_values_that_were_measured() {
     let values: Vec<f64> = (1..=20).rev().map(f64::from).collect();
     for (percent, expected) in [(0, 1.0), (5, 1.0), (50, 10.0), (95, 19.0), (96, 20.0), (100, 20.0)]
