@@ -16,7 +16,7 @@ const MAY_USE: [(&str, &[&str]); 18] = [
     ("photo", &["dem"]),
     ("dem", &["geom"]),
     ("presets", &["roads", "areas"]),
-    ("styles", &["roads"]),
+    ("styles", &["roads", "areas"]),
     ("drape", &["tin", "geom"]),
     ("areas", &["geom"]),
     ("roads", &["geom"]),

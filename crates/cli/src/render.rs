@@ -49,8 +49,12 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let rendered = render(&request, &package, &interrupt::is_noted)?;
     output.write_whole(&png(&rendered.picture)?)?;
     let report = &rendered.report;
+    let areas = match report.area_polygons {
+        0 => String::new(),
+        polygons => format!(" {polygons} polygons of areas with {} points,", report.area_points),
+    };
     messages::note(&format!(
-        "{}: {} tiles, {} triangles, {} road segments, drawn by {}",
+        "{}: {} tiles, {} triangles, {} road segments,{areas} drawn by {}",
         args.output.display(),
         report.tiles,
         report.triangles,

@@ -54,6 +54,7 @@ pub(crate) fn run(args: &ViewArgs) -> Result<ExitCode, Failure> {
         command_of: command_of(&args.package),
         styles,
         photo: args.look.photo,
+        areas: args.look.areas.in_window(),
         reload: reload(chosen),
         screen_space_error_px: args.ground.screen_space_error,
         cell_px: args.ground.cell_px,

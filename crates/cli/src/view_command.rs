@@ -5,7 +5,7 @@ use std::path::Path;
 use corniche_viewer::{
     CameraRequest, CapTest, Caps, Outline, Quads, RoadMethod, RoadOptions, WidthGrowth, Wireframe,
 };
-use corniche_window::{CommandOf, ShownView};
+use corniche_window::{Areas, CommandOf, ShownView};
 
 use crate::args::Roads;
 
@@ -51,6 +51,9 @@ fn words(package: &str, shown: &ShownView) -> Vec<String> {
     option("--supersampling", shown.samples_per_side.to_string());
     if let Some(photo) = shown.photo {
         option("--photo", photo.to_string());
+    }
+    if shown.areas == Areas::Hidden {
+        option("--areas", "off".to_owned());
     }
     for (name, value) in look(shown.roads) {
         option(name, value.to_owned());

@@ -17,6 +17,7 @@ fn shown(roads: RoadOptions) -> ShownView {
         roads,
         style: "my styles/night 'n day.toml".to_owned(),
         photo: Some(0.25),
+        areas: Areas::Shown,
         exaggeration: 1.5,
         screen_space_error_px: 0.75,
         cell_px: f64::INFINITY,
@@ -112,4 +113,8 @@ fn every_look_of_roads_is_read_as_it_was() {
     assert_eq!(count, 84);
     let none = shown(RoadOptions::of(RoadMethod::None));
     assert_eq!(read("a", &none).roads, Roads::None);
+    for areas in [Areas::Shown, Areas::Hidden] {
+        let shown = ShownView { areas, ..none.clone() };
+        assert_eq!(read("a", &shown).look.areas.in_window(), areas);
+    }
 }

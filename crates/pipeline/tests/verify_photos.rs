@@ -335,10 +335,8 @@ fn photos_beside_a_package_without_any_are_refused() {
 #[test]
 fn fields_of_photos_in_the_manifest() {
     type Change = fn(&mut Manifest);
-    let counts: [Change; 2] = [
-        |manifest| manifest.photos[1].tiles += 1,
-        |manifest| manifest.settings.photo = None,
-    ];
+    let counts: [Change; 2] =
+        [|manifest| manifest.photos[1].tiles += 1, |manifest| manifest.settings.photo = None];
     // Levels that the package does not have, or in another order, are refused by readers.
     let mut apart = Apart::sound();
     apart.manifest.photos[1].level = 5;

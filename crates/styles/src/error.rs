@@ -13,6 +13,10 @@ pub enum StyleError {
     Class { text: String },
     #[error("[roads.{class}] is missing; a style says of every class, 0 to 8, how it looks")]
     MissingClass { class: String },
+    #[error(
+        "areas.{text:?} is no class of areas; these are sea, water, glacier, forest, meadow, settlement, park, rock"
+    )]
+    AreaClass { text: String },
     #[error("a style has 2 to {most} [[tint]] entries, not {count}")]
     TintCount { count: usize, most: usize },
     #[error(

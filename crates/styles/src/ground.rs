@@ -44,6 +44,21 @@ impl Tint {
     }
 }
 
+impl Tint {
+    /// The colour at a height, for a package with this range of heights at this latitude: linear between stops.
+    #[must_use]
+    pub fn color_at(&self, height_m: f64, range_m: [f64; 2], latitude_deg: f64) -> Rgb {
+        let stops = self.stops_m(range_m, latitude_deg);
+        let mut color = stops.first().map_or([0.0; 3], |stop| stop.1);
+        for pair in stops.windows(2) {
+            let [(low_m, _), (high_m, above)] = [pair[0], pair[1]];
+            let share = ((height_m as f32 - low_m) / (high_m - low_m)).clamp(0.0, 1.0);
+            color = [0, 1, 2].map(|k: usize| color[k] + (above[k] - color[k]) * share);
+        }
+        color
+    }
+}
+
 /// The light on the ground.
 ///
 /// Shading follows the rules of Imhof, *Cartographic Relief Presentation* (1965; English edition 1982), chapters 9 and 10:

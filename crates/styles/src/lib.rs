@@ -9,6 +9,8 @@
 //!
 //! This crate never opens a file, never draws and knows no graphics card, so that it also builds for WebAssembly.
 
+mod area_sheet;
+mod area_style;
 pub mod climate;
 mod color;
 mod error;
@@ -22,6 +24,7 @@ mod sheet;
 mod sheet_values;
 mod style;
 
+pub use area_style::AreaStyle;
 pub use color::Rgb;
 pub use error::StyleError;
 pub use ground::{Light, MOST_TINT_STOPS, Tint, TintHeights, TintStop};

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use corniche_areas::AreaClass;
 use corniche_roads::FunctionalRoadClass;
 use serde::Deserialize;
 
 use crate::{
-    OwnWidths, RoadStyle, Style, StyleError, Tint, WidthScaling,
+    AreaStyle, OwnWidths, RoadStyle, Style, StyleError, Tint, WidthScaling,
+    area_sheet::{AreaSheet, areas},
     ground_sheet::{LightSheet, TintSheet, tint},
     road_sheet::RoadSheet,
     sheet_values::{Rgb8, within},
@@ -38,6 +40,8 @@ pub(crate) struct StyleSheet {
     pub(crate) tint: Tint,
     /// By class, 0 first.
     pub(crate) roads: [RoadStyle; FunctionalRoadClass::COUNT],
+    /// By class, in order of their numbers.
+    pub(crate) areas: [AreaStyle; AreaClass::COUNT],
 }
 
 /// How roads widen with distance.
@@ -100,6 +104,8 @@ struct StyleFile {
     #[serde(default)]
     tint_by_climate: bool,
     tint: Vec<TintSheet>,
+    #[serde(default)]
+    areas: BTreeMap<String, AreaSheet>,
     roads: BTreeMap<String, RoadSheet>,
 }
 
@@ -133,6 +139,7 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
         background,
         tint_by_climate,
         tint: stops,
+        areas: area_sheets,
         roads,
     } = file;
     if lane_width_m.is_some() && !own_width {
@@ -149,6 +156,7 @@ fn parse_sheet(text: &str) -> Result<StyleSheet, StyleError> {
         background,
         tint: tint(&stops, tint_by_climate)?,
         roads: all_classes(&roads)?,
+        areas: areas(&area_sheets, Style::road_atlas().areas)?,
     };
     sheet.check()?;
     Ok(sheet)
@@ -200,6 +208,7 @@ impl From<&StyleSheet> for Style {
         let lane_m = lane_width_m.map(|lane_m| lane_m as f32);
         Self {
             roads: *roads,
+            areas: sheet.areas,
             own_widths: own_width.then_some(OwnWidths { lane_m }),
             width_scaling: WidthScaling {
                 threshold_m: width_scaling.threshold_m as f32,

@@ -91,6 +91,7 @@ fn numbers_out_of_their_range_are_named_with_it() {
     refuses("max_width_px = 5.5", "max_width_px = 0", &["roads.0.max_width_px", "0.1 to 500"]);
     let see_through = "min_width_px = 3\nopacity = 1.5";
     refuses("min_width_px = 3", see_through, &["roads.0.opacity", "0.01 to 1"]);
+    refuses("opacity = 1", "opacity = 1.1", &["areas.sea.opacity", "0 to 1"]);
     refuses("threshold_m = 1500", "threshold_m = inf", &["threshold_m", "1 to 10000000"]);
     refuses("exponent = 0.75", "exponent = -0.1", &["width_scaling.exponent", "0 to 1"]);
     refuses("constant = 4", "constant = 0", &["width_scaling.constant", "0.1 to 100"]);
@@ -102,6 +103,21 @@ fn numbers_out_of_their_range_are_named_with_it() {
     refuses("valley_haze = 0.2", "valley_haze = nan", &["light.valley_haze", "0 to 1"]);
     refuses("hillshade = 0.75", "hillshade = 1.1", &["light.hillshade", "0 to 1"]);
     refuses("haze_reach = 6", "haze_reach = 0", &["background.haze_reach", "0.1 to 1000"]);
+}
+
+#[test]
+fn areas_that_are_left_out_look_as_in_the_atlas() {
+    let style = |text: &str| parse_style(text).unwrap();
+    let without = atlas().replacen("[areas.forest]\ncolor = \"#", "[areas.rock_]\ncolor = \"#", 1);
+    assert!(matches!(parse_style(&without), Err(StyleError::AreaClass { .. })));
+    let start = atlas().find("[areas.sea]").unwrap();
+    let end = atlas().find("[roads.0]").unwrap();
+    let bare = format!("{}{}", &atlas()[..start], &atlas()[end..]);
+    assert_eq!(style(&bare), Style::road_atlas());
+    let one = format!("{bare}\n[areas.forest]\ncolor = \"#102030\"\nopacity = 0\n");
+    let forest = style(&one).areas[usize::from(AreaClass::Forest.number())];
+    assert_eq!((forest.opacity, forest.is_drawn()), (0.0, false));
+    assert_eq!(style(&one).areas[1], Style::road_atlas().areas[1]);
 }
 
 #[test]

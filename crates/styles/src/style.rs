@@ -1,8 +1,9 @@
 //! How the map looks: plain values, no GPU.
 
+use corniche_areas::AreaClass;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 
-use crate::{Light, Rgb, RoadBand, RoadBands, Tint, TintHeights};
+use crate::{AreaStyle, Light, Rgb, RoadBand, RoadBands, Tint, TintHeights};
 
 /// How the roads of one class are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,6 +81,8 @@ impl OwnWidths {
 pub struct Style {
     /// By class, 0 first.
     pub roads: [RoadStyle; FunctionalRoadClass::COUNT],
+    /// By class, in order of their numbers. Which lies above which is said by [`AreaStyle::TOP_FIRST`].
+    pub areas: [AreaStyle; AreaClass::COUNT],
     /// Whether roads are drawn by their own tags; `None`: all roads of a class are equally wide.
     pub own_widths: Option<OwnWidths>,
     /// How roads widen with distance.
@@ -110,6 +113,25 @@ pub struct Style {
 }
 
 impl Style {
+    /// The same without any areas.
+    #[must_use]
+    pub fn without_areas(self) -> Self {
+        let areas = self.areas.map(|area| AreaStyle { opacity: 0.0, ..area });
+        Self { areas, ..self }
+    }
+
+    /// Whether areas of some class are drawn.
+    #[must_use]
+    pub fn has_areas(&self) -> bool {
+        self.areas.iter().any(AreaStyle::is_drawn)
+    }
+
+    /// How areas of a class are drawn.
+    #[must_use]
+    pub fn area(&self, class: AreaClass) -> &AreaStyle {
+        &self.areas[usize::from(class.number())]
+    }
+
     /// Width on the ground near the eye of a road of this class whose tags say `own`.
     #[must_use]
     pub fn width_m(&self, class: FunctionalRoadClass, own: OwnWidth) -> f32 {
@@ -159,6 +181,16 @@ impl Style {
                 thin(0x95_82_5F, road(5.0, [1.0, 2.0], 0xCB_B6_8C, 0x8C_85_79, Some(6.0))),
                 thin(0x86_5F_3E, road(3.5, [1.0, 1.5], 0xC9_AE_8C, 0x97_8D_7F, Some(4.0))),
             ],
+            areas: [
+                area(0xA9_C9_DD, 1.0),
+                area(0xA9_C9_DD, 1.0),
+                area(0xE6_F1_F8, 0.7),
+                area(0x7F_AE_78, 0.42),
+                area(0xD6_E4_A8, 0.3),
+                area(0xD8_C2_B4, 0.45),
+                area(0xA2_CD_8B, 0.5),
+                area(0xBC_B4_AA, 0.3),
+            ],
             own_widths: None,
             width_scaling: WidthScaling { threshold_m: 1500.0, exponent: 0.75, constant: 4.0 },
             outline_px: 1,
@@ -196,6 +228,11 @@ impl Style {
             haze_reach: 6.0,
         }
     }
+}
+
+/// Areas of this colour that hide so much of the ground.
+fn area(color: u32, opacity: f32) -> AreaStyle {
+    AreaStyle { color: rgb(color), opacity }
 }
 
 /// `0xRR_GG_BB` as shares.

@@ -49,6 +49,35 @@ fn tags_decide_the_width_where_the_style_looks_at_them() {
     assert_eq!(style.width_m(class, OwnWidth::Unknown), 200.0);
 }
 
+#[test]
+fn colours_of_a_tint_are_linear_between_stops() {
+    let stops = vec![(0.0, [0.0; 3]), (100.0, [1.0; 3]), (200.0, [0.5; 3])];
+    let tint = Tint { heights: TintHeights::Metres, stops };
+    for (height_m, grey) in [(-5.0, 0.0), (25.0, 0.25), (100.0, 1.0), (150.0, 0.75), (900.0, 0.5)] {
+        assert_eq!(tint.color_at(height_m, [0.0, 1.0], 47.0), [grey; 3], "{height_m}");
+    }
+}
+
+/// Every class has a place in the order, and the order is the documented one.
+#[test]
+fn water_lies_above_forest_and_forest_above_settlements() {
+    let mut classes = AreaStyle::TOP_FIRST;
+    let place = |class| classes.iter().position(|other| *other == class);
+    let [water, forest, settlement] =
+        [AreaClass::Water, AreaClass::Forest, AreaClass::Settlement].map(place);
+    assert!(water < forest && forest < settlement);
+    classes.sort_unstable();
+    assert_eq!(classes, AreaClass::ALL);
+}
+
+#[test]
+fn a_style_without_areas_keeps_all_else() {
+    let style = Style::road_atlas();
+    let without = style.clone().without_areas();
+    assert!(style.has_areas() && !without.has_areas());
+    assert_eq!(Style { areas: style.areas, ..without }, style);
+}
+
 /// A share is a place in the package's range; metres are metres; by climate, they move with the snow line, but not at sea.
 #[test]
 fn heights_of_a_tint_are_what_its_unit_says() {

@@ -167,6 +167,11 @@ impl Camera {
         self.focus_m
     }
 
+    /// The point that the camera looks at.
+    pub(crate) fn target_in_world(&self) -> DVec3 {
+        self.eye_in_world - self.world_from_view.z_axis * self.focus_m
+    }
+
     /// Depth of the near plane.
     #[must_use]
     pub fn near_m(&self) -> f64 {

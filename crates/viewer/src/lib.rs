@@ -56,7 +56,7 @@ pub mod for_tests {
 }
 
 pub use annotations::{
-    Legend, LegendRoad, bar_length, bar_length_m, draw_attribution, draw_legend,
+    Legend, LegendArea, LegendRoad, bar_length, bar_length_m, draw_attribution, draw_legend,
 };
 pub use class_scale::LevelScales;
 pub use frame_view::{FrameView, Wireframe};

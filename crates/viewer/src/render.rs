@@ -4,10 +4,10 @@ use corniche_geom::TileId;
 use image::RgbaImage;
 
 use corniche_roads::FunctionalRoadClass;
-use corniche_styles::Style;
+use corniche_styles::{AreaStyle, Style};
 
 use crate::{
-    annotations::{Legend, LegendRoad, draw_attribution, draw_legend},
+    annotations::{Legend, LegendArea, LegendRoad, draw_attribution, draw_legend},
     camera::Camera,
     class_scale,
     eye_height::{clearance_m, rounded_up_m},
@@ -17,7 +17,7 @@ use crate::{
     options::{ClassSet, RoadMethod, RoadOptions},
     range::{self, OutOfRange},
     scene::{self, SettleError},
-    tiles::{BlockingPackage, LoadTileError, MapExtent, TileGeometry, TileStore},
+    tiles::{BlockingPackage, ClassVolumes, LoadTileError, MapExtent, TileGeometry, TileStore},
     viewpoint::{CameraRequest, OffGround, SightedGround},
 };
 
@@ -81,6 +81,10 @@ pub struct RenderReport {
     pub triangles: u64,
     /// Road segments drawn.
     pub road_segments: u64,
+    /// Polygons of areas drawn; one that lies in several tiles counts in each.
+    pub area_polygons: u64,
+    /// Points of their outlines.
+    pub area_points: u64,
     /// Tiles in which some road may have been drawn narrower than its style says, because half its width is more than
     /// the level's width margin.
     pub clamped_tiles: u64,
@@ -190,7 +194,7 @@ pub fn render(
     }
     if let Some(labels) = &request.legend {
         let tiles: Vec<_> = scene::draw_list(&store, &drawn).map(|(tile, _)| tile).collect();
-        draw_legend(&mut picture, &legend(&view, labels, drawn_classes(&tiles, &view)));
+        draw_legend(&mut picture, &legend(&view, labels, &tiles));
     }
     draw_attribution(&mut picture, &package.manifest().attribution);
 
@@ -200,6 +204,8 @@ pub fn render(
         tiles: drawn.len() as u64,
         triangles: uploaded.iter().map(|(buffers, _)| buffers.triangles()).sum(),
         road_segments: tiles.iter().map(|tile| tile.road_segments(&view)).sum(),
+        area_polygons: sum_of_areas(&tiles, &view, |volumes| u64::from(volumes.polygons)),
+        area_points: sum_of_areas(&tiles, &view, |volumes| volumes.walls.len() as u64),
         clamped_tiles: scene::draw_list(&store, &drawn)
             .filter(|(tile, _)| scene::may_be_clamped(tile, &view))
             .count() as u64,
@@ -212,6 +218,16 @@ pub fn render(
         eye_m: [eye.x, eye.y, eye.z / quality.vertical_scale],
     };
     Ok(Rendered { picture, report })
+}
+
+/// The sum of something over the volumes of all classes of areas that are drawn.
+fn sum_of_areas(
+    tiles: &[DrawTile<'_>],
+    view: &FrameView<'_>,
+    count: impl Fn(&ClassVolumes) -> u64,
+) -> u64 {
+    let drawn = |volumes: &&ClassVolumes| view.style.area(volumes.class).is_drawn();
+    tiles.iter().flat_map(|tile| tile.buffers.area_classes()).filter(drawn).map(count).sum()
 }
 
 /// The slopes of the parent of a tile and of those above it, which were all read before the tile was; `uploaded` has those that are on
@@ -282,7 +298,7 @@ fn drawn_classes(tiles: &[&TileGeometry], view: &FrameView<'_>) -> ClassSet {
 fn legend(
     view: &FrameView<'_>,
     labels: &[String; FunctionalRoadClass::COUNT],
-    classes: ClassSet,
+    tiles: &[&TileGeometry],
 ) -> Legend {
     let axes = view.camera.world_from_view();
     let road = |class: FunctionalRoadClass| {
@@ -294,8 +310,28 @@ fn legend(
         pixel_m: view.camera.pixel_at_unit_depth_m() * view.camera.focus_m() / view.point_scale,
         // The right axis of the view is level, and points as far from the east as north is from the top of the picture.
         north_deg: axes.x_axis.y.atan2(axes.x_axis.x).to_degrees(),
-        roads: classes.iter().map(road).collect(),
+        roads: drawn_classes(tiles, view).iter().map(road).collect(),
+        areas: legend_areas(view, tiles),
     }
+}
+
+/// The classes of areas of which some tile of the view has one, in their colours over the ground in the middle of the picture.
+fn legend_areas(view: &FrameView<'_>, tiles: &[&TileGeometry]) -> Vec<LegendArea> {
+    let ground = view.style.tint.color_at(
+        view.camera.target_in_world().z / view.vertical_scale(),
+        view.height_range_m,
+        view.latitude_deg,
+    );
+    let is_there = |class| {
+        let has = |tile: &&TileGeometry| tile.areas.classes.iter().any(|of| of.class == class);
+        view.style.area(class).is_drawn() && tiles.iter().any(has)
+    };
+    let area = |class| {
+        let AreaStyle { color, opacity } = *view.style.area(class);
+        let mixed = |k: usize| ground[k] + (color[k] - ground[k]) * opacity;
+        LegendArea { label: class.to_string(), color: [0, 1, 2].map(mixed) }
+    };
+    AreaStyle::TOP_FIRST.into_iter().filter(|class| is_there(*class)).map(area).collect()
 }
 
 /// How many tiles are drawn on each level, coarse levels first.

@@ -36,6 +36,7 @@ fn request() -> WindowRequest {
         styles: vec![NamedStyle { name: "atlas".to_owned(), style: Style::road_atlas() }],
         reload: None,
         photo: None,
+        areas: crate::Areas::Shown,
         screen_space_error_px: 0.01,
         cell_px: f64::INFINITY,
         exaggeration: 1.0,

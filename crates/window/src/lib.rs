@@ -43,4 +43,4 @@ pub use controls::Inertia;
 pub use error::{NotSaved, WindowError};
 pub use outcome::{Closed, End};
 pub use platform::{Watched, run, watch};
-pub use request::{BeginTrace, CommandOf, NamedStyle, Reload, ShownView, WindowRequest};
+pub use request::{Areas, BeginTrace, CommandOf, NamedStyle, Reload, ShownView, WindowRequest};

@@ -15,6 +15,15 @@ pub struct NamedStyle {
     pub style: Style,
 }
 
+/// Whether areas are drawn, where the package has some.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Areas {
+    /// Those that the style draws.
+    Shown,
+    /// None.
+    Hidden,
+}
+
 /// What a window shows, as far as a picture of the same view needs it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShownView {
@@ -28,6 +37,8 @@ pub struct ShownView {
     pub style: String,
     /// How strongly photos are seen, 0 to 1; `None`: as the style says.
     pub photo: Option<f32>,
+    /// Whether areas are drawn as the style says, or not at all.
+    pub areas: Areas,
     /// Factor on heights.
     pub exaggeration: f64,
     /// A tile is refined while its error looks larger than this, pixels.
@@ -73,6 +84,8 @@ pub struct WindowRequest {
     pub reload: Option<Reload>,
     /// How strongly photos are seen at first, 0 to 1; `None`: as the style says.
     pub photo: Option<f32>,
+    /// Whether areas are drawn at first, as the style says, or not at all.
+    pub areas: Areas,
     /// A tile is refined while its error looks larger than this, pixels.
     pub screen_space_error_px: f64,
     /// A tile is refined while one of its cells looks larger than this, pixels.

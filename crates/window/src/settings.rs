@@ -4,6 +4,8 @@ use corniche_roads::FunctionalRoadClass;
 use corniche_styles::Style;
 use corniche_viewer::{RoadMethod, RoadOptions, Wireframe};
 
+use crate::Areas;
+
 /// Whether one method is shown, or two are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Compare {
@@ -51,6 +53,8 @@ pub(crate) struct Settings {
     pub(crate) style: usize,
     /// How strongly photos are seen, 0 to 1; `None`: as the style says.
     pub(crate) photo: Option<f32>,
+    /// Whether areas are drawn as the style says, or not at all.
+    pub(crate) areas: Areas,
     /// Factor on heights; 1 is true.
     pub(crate) exaggeration: f64,
     /// A tile is refined while its error looks larger than this.
@@ -85,10 +89,13 @@ pub(crate) mod range {
 }
 
 impl Settings {
-    /// A style with its widths multiplied by their factors, and photos as strong as is wanted.
+    /// A style with its widths multiplied by their factors, photos as strong as is wanted, and without areas if they are not.
     pub(crate) fn applied_to(&self, style: &Style) -> Style {
-        let mut applied = style.clone();
-        applied.photo = self.photo.unwrap_or(style.photo);
+        let mut applied = match self.areas {
+            Areas::Shown => style.clone(),
+            Areas::Hidden => style.clone().without_areas(),
+        };
+        applied.photo = self.photo.unwrap_or(applied.photo);
         for (road, factor) in applied.roads.iter_mut().zip(self.width_factors) {
             road.width_m *= factor;
         }
@@ -110,6 +117,7 @@ pub(crate) fn usual() -> Settings {
         width_factors: [1.0; FunctionalRoadClass::COUNT],
         style: 0,
         photo: None,
+        areas: Areas::Shown,
         exaggeration: 1.0,
         screen_space_error_px: 2.0,
         cell_px: f64::INFINITY,

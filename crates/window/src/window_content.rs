@@ -42,6 +42,8 @@ pub(crate) struct WindowContent<'a> {
     pub(crate) style_names: &'a [String],
     /// How strongly the style that is shown lets photos be seen; `None` in a package without photos.
     pub(crate) photo: Option<f32>,
+    /// Whether the package has areas.
+    pub(crate) has_areas: bool,
     /// Colours of the roads in the style that is shown, by class.
     pub(crate) road_colors: &'a [Rgb],
     /// What the roads of each class are called.

@@ -94,6 +94,25 @@ pub(crate) enum Outline {
     Kernel5,
 }
 
+/// Whether areas are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Areas {
+    /// Those that the style draws
+    On,
+    /// None
+    Off,
+}
+
+impl Areas {
+    /// The same for a window.
+    pub(crate) fn in_window(self) -> corniche_window::Areas {
+        match self {
+            Self::On => corniche_window::Areas::Shown,
+            Self::Off => corniche_window::Areas::Hidden,
+        }
+    }
+}
+
 /// How a fragment of a shadow volume finds out whether the ground it sees is road.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum CapTest {
@@ -121,6 +140,9 @@ pub(crate) struct LookArgs {
     /// How strongly photos are seen, where the package has some: off, or 0 to 1 [default: as the style says]
     #[arg(long, value_name = "off|SHARE", value_parser = parse_strength)]
     pub(crate) photo: Option<f32>,
+    /// Areas (water, forest …), where the package has some: as the style draws them, or none
+    #[arg(long, value_enum, default_value_t = Areas::On)]
+    pub(crate) areas: Areas,
     /// How roads begin, bend and end
     #[arg(long, value_enum, default_value_t = Caps::Round)]
     caps: Caps,
@@ -147,8 +169,12 @@ fn parse_strength(text: &str) -> Result<f32, String> {
 }
 
 impl LookArgs {
-    /// A style, with photos as strong as `--photo` says.
+    /// A style, with photos as strong as `--photo` says, and with areas unless `--areas` says otherwise.
     pub(crate) fn styled(&self, style: Style) -> Style {
+        let style = match self.areas {
+            Areas::On => style,
+            Areas::Off => style.without_areas(),
+        };
         Style { photo: self.photo.unwrap_or(style.photo), ..style }
     }
 

@@ -1,9 +1,9 @@
 use std::ops::Range;
 
-use corniche_viewer::FrameRecord;
+use corniche_viewer::{FrameRecord, gpu::PassTimes};
 use plotters::prelude::RGBColor;
 
-use super::measured_run::{MeasuredRun, gpu_ms};
+use super::measured_run::MeasuredRun;
 use crate::chart::{Axes, Axis, Curve, Marks, Ticks, draw_below_each_other};
 
 /// People with red-green colour blindness can distinguish the first seven (Okabe & Ito 2008, *Color Universal Design*).
@@ -23,7 +23,7 @@ const COLORS: [RGBColor; 9] = [
 /// show in Figures 13 and 14. By the graphics card's clock where there is one. Below it, the road segments and the tiles of
 /// the same frames, which explain the times.
 pub(crate) fn flights(runs: &[MeasuredRun], adapter: &str) -> anyhow::Result<String> {
-    let times = |frame: &FrameRecord| frame.passes.as_ref().map(gpu_ms);
+    let times = |frame: &FrameRecord| frame.passes.as_ref().map(PassTimes::total_ms);
     let mut frames = runs.iter().flat_map(MeasuredRun::counted);
     let has_clock = frames.all(|frame| frame.passes.is_some());
     let frame_ms =

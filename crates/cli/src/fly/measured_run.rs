@@ -1,6 +1,6 @@
 //! One flight, frame by frame.
 
-use corniche_viewer::{FrameRecord, gpu::PassTimes};
+use corniche_viewer::FrameRecord;
 
 use crate::args::{Lod, Roads};
 
@@ -38,11 +38,6 @@ impl MeasuredRun {
     pub(crate) fn counted(&self) -> &[FrameRecord] {
         self.frames.get(1..).unwrap_or_default()
     }
-}
-
-/// What drawing a frame took the graphics card, by its own clock.
-pub(crate) fn gpu_ms(passes: &PassTimes) -> f64 {
-    passes.terrain_ms + passes.roads_ms + passes.composite_ms
 }
 
 #[cfg(test)]

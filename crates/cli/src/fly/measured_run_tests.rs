@@ -1,4 +1,4 @@
-use corniche_viewer::{camera::Orientation, flight::Pose};
+use corniche_viewer::{camera::Orientation, flight::Pose, gpu::PassTimes};
 
 use super::*;
 
@@ -23,7 +23,12 @@ pub(crate) fn frame(draw_ms: f64) -> FrameRecord {
         decode_ms: 0.0,
         upload_ms: 0.0,
         draw_ms,
-        passes: Some(PassTimes { terrain_ms: 1.0, roads_ms: 2.0, composite_ms: 0.5 }),
+        passes: Some(PassTimes {
+            terrain_ms: 1.0,
+            areas_ms: 0.0,
+            roads_ms: 2.0,
+            composite_ms: 0.5,
+        }),
     }
 }
 

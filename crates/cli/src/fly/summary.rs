@@ -1,9 +1,9 @@
 //! What the flights cost, side by side: the ablation of Agrawal et al. 2006, Table 1, the loss by roads, which Vaaraniemi,
 //! Treib & Westermann 2011, section 7, give, and what caps cost.
 
-use corniche_viewer::FrameRecord;
+use corniche_viewer::{FrameRecord, gpu::PassTimes};
 
-use super::measured_run::{MeasuredRun, gpu_ms};
+use super::measured_run::MeasuredRun;
 use crate::{
     args::Roads,
     table::{Digits, Table, bytes},
@@ -85,12 +85,16 @@ fn times(runs: &[MeasuredRun]) -> String {
         "per s",
         "card",
         "terrain",
+        "areas",
         "roads",
         "composite",
     ]);
+    // Without areas there is no such pass, and nothing to tell of it.
+    let mut passes = runs.iter().flat_map(MeasuredRun::counted).filter_map(|frame| frame.passes);
+    let has_areas = passes.any(|passes| passes.areas_ms >= 0.005);
     for run in runs {
         let draw_ms: Vec<f64> = run.counted().iter().map(|frame| frame.draw_ms).collect();
-        let pass = |of: &dyn Fn(&corniche_viewer::gpu::PassTimes) -> f64| {
+        let pass = |of: &dyn Fn(&PassTimes) -> f64| {
             let each: Option<Vec<f64>> =
                 run.counted().iter().map(|frame| frame.passes.as_ref().map(of)).collect();
             two(each.and_then(|each| mean(each.into_iter())))
@@ -103,13 +107,14 @@ fn times(runs: &[MeasuredRun]) -> String {
             two(percentile(&draw_ms, 95)),
             two(percentile(&draw_ms, 100)),
             average_ms.map_or_else(dash, |ms| format!("{:.1}", 1000.0 / ms)),
-            pass(&gpu_ms),
+            pass(&PassTimes::total_ms),
             pass(&|passes| passes.terrain_ms),
+            if has_areas { pass(&|passes| passes.areas_ms) } else { String::new() },
             pass(&|passes| passes.roads_ms),
             pass(&|passes| passes.composite_ms),
         ]);
     }
-    table.to_text()
+    table.without_empty_columns().to_text()
 }
 
 /// Loss of frame rate by roads, where the same flight was taken without.
@@ -135,7 +140,7 @@ fn losses(runs: &[MeasuredRun]) -> Option<String> {
         };
         let [draw, draw_mean, draw_most] = cells(loss(run, bare, |frame| Some(frame.draw_ms)));
         let [card, card_mean, card_most] =
-            cells(loss(run, bare, |frame| frame.passes.as_ref().map(gpu_ms)));
+            cells(loss(run, bare, |frame| frame.passes.as_ref().map(PassTimes::total_ms)));
         let [paper, paper_most] = of_paper(run.roads)
             .map_or_else(|| [dash(), dash()], |percent| percent.map(|p| p.to_string()));
         table.row([
@@ -151,8 +156,8 @@ fn losses(runs: &[MeasuredRun]) -> Option<String> {
         ]);
         is_empty = false;
     }
-    let explained = "draw: from the first command until all is drawn; card: by the graphics card's clock, terrain, roads and \
-                     composite\n\
+    let explained = "draw: from the first command until all is drawn; card: by the graphics card's clock, terrain, areas, roads \
+                     and composite\n\
                      total: 1 - (time of all frames without roads) / (time with roads), the loss of frames per second over the \
                      whole flight\n\
                      mean of frames: the mean of each frame's own loss, where a quick frame counts as much as a slow one; most: of \

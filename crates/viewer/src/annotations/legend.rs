@@ -12,6 +12,17 @@ pub struct Legend {
     pub north_deg: f64,
     /// The roads of the picture, most important first.
     pub roads: Vec<LegendRoad>,
+    /// The areas of the picture, the topmost first.
+    pub areas: Vec<LegendArea>,
+}
+
+/// A class of areas in a legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LegendArea {
+    /// What people call it.
+    pub label: String,
+    /// Its colour on the ground.
+    pub color: Rgb,
 }
 
 /// A class of roads in a legend.
@@ -28,7 +39,7 @@ pub struct LegendRoad {
 /// The scale bar is about this part of the picture's width.
 const BAR_SHARE: f64 = 0.12;
 
-/// Draws a legend into the lower left corner, on a light box: a sample of each class of roads, an arrow to the north, and a bar
+/// Draws a legend into the lower left corner, on a light box: a sample of each class of roads and of areas, an arrow to the north, and a bar
 /// with its length on the ground in the middle of the picture.
 pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend) {
     let (width, height) = picture.dimensions();
@@ -39,17 +50,21 @@ pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend) {
     let bar_text = bar_length(bar_m);
     let bar_px = (bar_m / legend.pixel_m).round() as u32;
     let sample_px = 2 * line_px;
-    let labels_px = letters.widest_px(legend.roads.iter().map(|road| road.label.as_str()));
+    let labels = legend.roads.iter().map(|road| road.label.as_str());
+    let labels = labels.chain(legend.areas.iter().map(|area| area.label.as_str()));
+    let labels_px = letters.widest_px(labels);
     let bar_line_px = bar_px + pad_px + letters.widest_px([bar_text.as_str()].into_iter());
-    let roads_px = if legend.roads.is_empty() { 0 } else { sample_px + pad_px + labels_px };
-    let right = bar_line_px.max(roads_px) + 2 * pad_px + 2 * line_px;
-    let lines = legend.roads.len() as u32 + 1;
+    let classes = (legend.roads.len() + legend.areas.len()) as u32;
+    let classes_px = if classes == 0 { 0 } else { sample_px + pad_px + labels_px };
+    let right = bar_line_px.max(classes_px) + 2 * pad_px + 2 * line_px;
+    let lines = classes + 1;
     let top = height.saturating_sub(lines.max(2) * line_px + pad_px);
     draw_box(picture, 0..right.min(width), top..height);
 
+    let above_row = |row: u32| top + pad_px / 2 + row * line_px;
+    let of_255 = |rgb: Rgb| rgb.map(|part| part * 255.0);
     for (road, row) in legend.roads.iter().zip(0_u32..) {
-        let above = top + pad_px / 2 + row * line_px;
-        let of_255 = |rgb: Rgb| rgb.map(|part| part * 255.0);
+        let above = above_row(row);
         // With more bands a sample is thicker, so that each of them is seen, as far as a line has room.
         let bands = road.bands.all();
         let thick = (line_px / 3).max(2 * bands.len() as u32 + 1).min(line_px - 2);
@@ -64,6 +79,13 @@ pub fn draw_legend(picture: &mut RgbaImage, legend: &Legend) {
             fill(picture, columns.clone(), rows, of_255(band.color), 1.0);
         }
         letters.draw(picture, &road.label, (2 * pad_px + sample_px) as f32, above as f32);
+    }
+
+    for (area, row) in legend.areas.iter().zip(legend.roads.len() as u32..) {
+        let above = above_row(row);
+        let rows = above + line_px / 8..above + line_px - line_px / 8;
+        fill(picture, pad_px..pad_px + sample_px, rows, of_255(area.color), 1.0);
+        letters.draw(picture, &area.label, (2 * pad_px + sample_px) as f32, above as f32);
     }
 
     let above = height.saturating_sub(line_px + pad_px / 2);

@@ -14,6 +14,7 @@ fn legend(north_deg: f64) -> Legend {
         pixel_m: 10.0,
         north_deg,
         roads: vec![road("motorway", [1.0, 0.0, 0.0]), road("track", [1.0, 1.0, 0.0])],
+        areas: vec![LegendArea { label: "water".to_owned(), color: [0.0, 1.0, 1.0] }],
     }
 }
 
@@ -69,7 +70,7 @@ fn the_bar_is_as_long_as_it_says() {
 fn each_class_has_its_colours() {
     let mut picture = picture();
     draw_legend(&mut picture, &legend(0.0));
-    for color in [[255, 0, 0], [255, 255, 0], [0, 0, 255]] {
+    for color in [[255, 0, 0], [255, 255, 0], [0, 0, 255], [0, 255, 255]] {
         let count = picture.pixels().filter(|pixel| pixel.0[..3] == color).count();
         assert!(count > 40, "{color:?}: {count}");
     }

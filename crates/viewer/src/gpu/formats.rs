@@ -8,5 +8,7 @@ pub(crate) const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
 pub(crate) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 /// Road labels, as the documentation of `gpu` says.
 pub(crate) const LABEL: TextureFormat = TextureFormat::R8Unorm;
-/// Numbers of tiles, from 1; the highest bit is set for skirts.
+/// Counts of volumes of areas, as `drawables/areas.rs` says.
+pub(crate) const STENCIL: TextureFormat = TextureFormat::Stencil8;
+/// Numbers of tiles, from 1; the highest bit is set for skirts, the two highest for walls.
 pub(crate) const OWNER: TextureFormat = TextureFormat::R32Uint;

@@ -3,8 +3,11 @@
 
 use super::{Gpu, ReadBackError, targets::Targets};
 
-/// This bit of the owner of a sample is set if the sample shows a skirt.
+/// This bit of the owner of a sample is set if the sample shows a skirt or a wall.
 const SKIRT_BIT: u32 = 1 << 31;
+
+/// This bit is set on walls alone.
+const WALL_BIT: u32 = 1 << 30;
 
 /// Which tile a sample of the terrain pass shows. Tiles are numbered by their place in the list that was drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,12 +18,15 @@ pub enum Owner {
     Ground(usize),
     /// A tile's skirt.
     Skirt(usize),
+    /// The wall along the edge of the data, of a tile.
+    Wall(usize),
 }
 
 impl Owner {
     fn of(pixel: u32) -> Self {
-        match (pixel & !SKIRT_BIT).checked_sub(1) {
+        match (pixel & !(SKIRT_BIT | WALL_BIT)).checked_sub(1) {
             None => Self::Nobody,
+            Some(tile) if pixel & WALL_BIT != 0 => Self::Wall(tile as usize),
             Some(tile) if pixel & SKIRT_BIT == 0 => Self::Ground(tile as usize),
             Some(tile) => Self::Skirt(tile as usize),
         }

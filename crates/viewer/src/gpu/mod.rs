@@ -49,6 +49,7 @@
 //! How a new kind of thing is drawn is described in `drawables/mod.rs`.
 
 mod adapter;
+mod area_buffers;
 mod bindings;
 mod device;
 mod drawables;

@@ -10,9 +10,40 @@ pub(crate) fn begin<'e>(
     load: LoadOp<()>,
 ) -> wgpu::RenderPass<'e> {
     let is_cleared = matches!(load, LoadOp::Clear(()));
+    let load_depth = if is_cleared { LoadOp::Clear(0.0) } else { LoadOp::Load };
+    let depth = depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(Operations { load: load_depth, store: StoreOp::Store }),
+        stencil_ops: None,
+    });
+    begin_with(encoder, label, colors, depth, load)
+}
+
+/// Begins a pass that draws over `color`, with a stencil that is all 0 and is forgotten at its end.
+pub(crate) fn begin_with_stencil<'e>(
+    encoder: &'e mut CommandEncoder,
+    label: &str,
+    color: &TextureView,
+    stencil: &TextureView,
+) -> wgpu::RenderPass<'e> {
+    let stencil = wgpu::RenderPassDepthStencilAttachment {
+        view: stencil,
+        depth_ops: None,
+        stencil_ops: Some(Operations { load: LoadOp::Clear(0), store: StoreOp::Discard }),
+    };
+    begin_with(encoder, label, &[color], Some(stencil), LoadOp::Load)
+}
+
+fn begin_with<'e>(
+    encoder: &'e mut CommandEncoder,
+    label: &str,
+    colors: &[&TextureView],
+    depth_stencil: Option<wgpu::RenderPassDepthStencilAttachment<'_>>,
+    load: LoadOp<()>,
+) -> wgpu::RenderPass<'e> {
+    let is_cleared = matches!(load, LoadOp::Clear(()));
     let load_color =
         if is_cleared { LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { LoadOp::Load };
-    let load_depth = if is_cleared { LoadOp::Clear(0.0) } else { LoadOp::Load };
     let attach = |view| {
         Some(wgpu::RenderPassColorAttachment {
             view,
@@ -25,11 +56,7 @@ pub(crate) fn begin<'e>(
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(label),
         color_attachments: &attachments,
-        depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
-            view,
-            depth_ops: Some(Operations { load: load_depth, store: StoreOp::Store }),
-            stencil_ops: None,
-        }),
+        depth_stencil_attachment: depth_stencil,
         timestamp_writes: None,
         occlusion_query_set: None,
         multiview_mask: None,

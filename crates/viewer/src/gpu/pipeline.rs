@@ -1,6 +1,6 @@
 use wgpu::{
     BindGroupLayout, BlendState, ColorWrites, CompareFunction, DepthStencilState, Device,
-    PrimitiveTopology, RenderPipeline, VertexBufferLayout,
+    FrontFace, PrimitiveTopology, RenderPipeline, VertexBufferLayout,
 };
 
 use super::formats::{COLOR, DEPTH};
@@ -40,6 +40,8 @@ pub(crate) struct PipelineRecipe<'a> {
     pub(crate) groups: &'a [Option<&'a BindGroupLayout>],
     pub(crate) buffer: Option<VertexBufferLayout<'a>>,
     pub(crate) topology: PrimitiveTopology,
+    /// Which way round the corners of a front face go.
+    pub(crate) front_face: FrontFace,
     pub(crate) cull: Option<wgpu::Face>,
     pub(crate) depth: Option<DepthStencilState>,
     pub(crate) targets: &'a [(wgpu::TextureFormat, ColorWrites)],
@@ -60,6 +62,7 @@ impl<'a> PipelineRecipe<'a> {
             groups,
             buffer: None,
             topology: PrimitiveTopology::TriangleList,
+            front_face: FrontFace::Ccw,
             cull: None,
             depth: None,
             targets: &[(COLOR, ColorWrites::ALL)],
@@ -105,6 +108,7 @@ impl<'a> PipelineRecipe<'a> {
             },
             primitive: wgpu::PrimitiveState {
                 topology: self.topology,
+                front_face: self.front_face,
                 cull_mode: self.cull,
                 ..Default::default()
             },

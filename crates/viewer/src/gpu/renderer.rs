@@ -3,10 +3,10 @@ use wgpu::{CommandEncoder, LoadOp};
 use super::{
     Gpu, GpuError,
     drawables::{
-        average::Average, composite::Composite, difference::Difference, geo_roads,
-        level_connectors::LevelConnectors, sv_roads, terrain::Terrain,
+        areas::StencilAreas, average::Average, composite::Composite, difference::Difference,
+        geo_roads, level_connectors::LevelConnectors, sv_roads, terrain::Terrain,
     },
-    passes::begin,
+    passes::{begin, begin_with_stencil},
     picture::Picture,
     road_instances::RoadPipeline,
     shared_bindings::{SharedBindings, SharedLayouts},
@@ -23,6 +23,7 @@ use crate::{
 pub struct Renderer {
     layouts: SharedLayouts,
     terrain: Terrain,
+    areas: StencilAreas,
     geo_roads: RoadPipeline,
     sv_roads: RoadPipeline,
     composite: Composite,
@@ -38,6 +39,7 @@ impl Renderer {
         let layouts = SharedLayouts::new(device);
         Self {
             terrain: Terrain::new(device, &layouts),
+            areas: StencilAreas::new(device, &layouts),
             geo_roads: geo_roads::pipeline(device, &layouts),
             sv_roads: sv_roads::pipeline(device, &layouts),
             composite: Composite::new(device, &layouts),
@@ -47,7 +49,7 @@ impl Renderer {
         }
     }
 
-    /// Draws terrain, roads and composite into `targets`.
+    /// Draws terrain, areas, roads and composite into `targets`.
     pub fn draw(&self, gpu: &Gpu, view: &FrameView<'_>, tiles: &[DrawTile<'_>], targets: &Targets) {
         self.draw_timed(gpu, view, tiles, targets, None);
     }
@@ -77,11 +79,13 @@ impl Renderer {
         mark(&mut encoder, 0);
         self.terrain_pass(gpu, &mut encoder, &shared, tiles, view, targets);
         mark(&mut encoder, 1);
-        self.roads_pass(&mut encoder, &shared, (tiles, &shown), &connectors, view, targets);
+        self.areas_pass(gpu, &mut encoder, &shared, tiles, view, targets);
         mark(&mut encoder, 2);
+        self.roads_pass(&mut encoder, &shared, (tiles, &shown), &connectors, view, targets);
+        mark(&mut encoder, 3);
         self.composite_pass(gpu, &mut encoder, &shared, view, targets);
         self.average.draw(gpu, &mut encoder, targets.picture());
-        mark(&mut encoder, 3);
+        mark(&mut encoder, 4);
         gpu.queue.submit([encoder.finish()]);
     }
 
@@ -132,6 +136,32 @@ impl Renderer {
             })
             .collect();
         self.terrain.draw(gpu, &mut pass, shared, &grounds, view);
+    }
+
+    /// Areas, over the colours of the ground. Without areas there is no such pass.
+    fn areas_pass(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut CommandEncoder,
+        shared: &SharedBindings,
+        tiles: &[DrawTile<'_>],
+        view: &FrameView<'_>,
+        targets: &Targets,
+    ) {
+        let tiles: Vec<_> = tiles
+            .iter()
+            .enumerate()
+            .filter_map(|(index, tile)| tile.areas(index, view))
+            .filter(|(_, areas, _)| {
+                areas.classes().iter().any(|of| view.style.area(of.class).is_drawn())
+            })
+            .collect();
+        if tiles.is_empty() {
+            return;
+        }
+        let stencil = &targets.stencil(gpu).view;
+        let mut pass = begin_with_stencil(encoder, "areas", &targets.ground.view, stencil);
+        self.areas.draw(gpu, &mut pass, shared, &tiles, view);
     }
 
     /// Labels of roads: of each tile those of the classes that are shown there.

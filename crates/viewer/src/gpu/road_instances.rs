@@ -6,8 +6,8 @@ use std::ops::Range;
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use wgpu::{
     BlendComponent, BlendFactor, BlendOperation, BlendState, Buffer, BufferUsages, ColorWrites,
-    Device, PrimitiveTopology, RenderPass, RenderPipeline, VertexAttribute, VertexBufferLayout,
-    VertexStepMode,
+    Device, FrontFace, PrimitiveTopology, RenderPass, RenderPipeline, VertexAttribute,
+    VertexBufferLayout, VertexStepMode,
 };
 
 use super::{
@@ -66,6 +66,7 @@ impl RoadPipeline {
                 attributes: recipe.attributes,
             }),
             topology: PrimitiveTopology::TriangleStrip,
+            front_face: FrontFace::Ccw,
             cull: recipe.cull,
             depth: None,
             targets: &[(LABEL, ColorWrites::ALL)],

@@ -1,6 +1,8 @@
+use std::sync::OnceLock;
+
 use super::{
     Gpu, GpuError,
-    formats::{COLOR, DEPTH, LABEL, OWNER},
+    formats::{COLOR, DEPTH, LABEL, OWNER, STENCIL},
     picture::Picture,
     target_texture::TargetTexture,
 };
@@ -17,12 +19,15 @@ pub struct Targets {
     pub(crate) labels: TargetTexture,
     /// The largest label in or near each block of samples; see [`BLOCK_SIDE`].
     pub(crate) road_blocks: TargetTexture,
+    /// Made when areas are first drawn.
+    stencil: OnceLock<TargetTexture>,
     picture: Picture,
 }
 
 impl Targets {
     /// Targets for a picture of this size, with so many samples on each side of a pixel; 1 takes the pixel's centre
-    /// alone. Besides the picture they take 17 bytes for each sample, and one byte for each block of 16 × 16 samples.
+    /// alone. Besides the picture they take 17 bytes for each sample, 18 once areas
+    /// have been drawn, and one byte for each block of 16 × 16 samples.
     ///
     /// # Errors
     /// When the size has a 0, when its samples are more than the adapter can draw, or when there are no samples or too many
@@ -38,6 +43,7 @@ impl Targets {
             owners: texture("owners", OWNER),
             labels: texture("road labels", LABEL),
             road_blocks: TargetTexture::new(gpu, "road blocks", LABEL, blocks),
+            stencil: OnceLock::new(),
             picture,
         })
     }
@@ -58,6 +64,13 @@ impl Targets {
     #[must_use]
     pub fn samples_per_side(&self) -> u32 {
         self.picture.samples_per_side()
+    }
+
+    /// The stencil in which volumes of areas are counted. It is a texture of its own, because a pass cannot write the stencil of a texture
+    /// whose depth it reads.
+    pub(crate) fn stencil(&self, gpu: &Gpu) -> &TargetTexture {
+        let sampled_px = self.picture.sampled_px();
+        self.stencil.get_or_init(|| TargetTexture::new(gpu, "area counts", STENCIL, sampled_px))
     }
 
     /// How many blocks its samples are divided into. Blocks on the right and at the bottom may reach beyond the samples.

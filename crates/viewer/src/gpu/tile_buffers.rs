@@ -1,8 +1,13 @@
 use corniche_geom::TileId;
+use glam::DVec3;
 
 use super::{
     Gpu,
-    drawables::{geo_roads, sv_roads},
+    area_buffers::AreaBuffers,
+    drawables::{
+        areas::{AreaTile, Counting},
+        geo_roads, sv_roads,
+    },
     ground_buffers::GroundBuffers,
     road_instances::RoadBuffers,
     slope_chain::SlopeChain,
@@ -15,7 +20,7 @@ use crate::{
     frame_view::FrameView,
     options::{ClassSet, RoadMethod},
     scene::BorderTile,
-    tiles::{TileGeometry, plan_around},
+    tiles::{ClassVolumes, TileGeometry, plan_around},
 };
 
 /// A tile on the graphics card.
@@ -26,6 +31,8 @@ pub struct TileBuffers {
     /// `None` without ground.
     pub(crate) ground: Option<GroundBuffers>,
     pub(crate) textures: TileTextures,
+    /// `None` without areas.
+    areas: Option<AreaBuffers>,
     segments: RoadBuffers,
     volumes: RoadBuffers,
     width_margin_m: f64,
@@ -48,6 +55,7 @@ pub struct DrawTile<'a> {
 pub fn tile_bytes(tile: &TileGeometry) -> u64 {
     GroundBuffers::bytes_of(&tile.ground)
         + TileTextures::bytes_of(tile)
+        + AreaBuffers::bytes_of(&tile.areas)
         + geo_roads::bytes_of(&tile.roads)
         + sv_roads::bytes_of(&tile.volumes)
 }
@@ -63,6 +71,7 @@ impl TileBuffers {
             size_m: tile.size_m,
             ground: GroundBuffers::new(gpu, &tile.ground),
             textures: TileTextures::new(gpu, tile, above),
+            areas: AreaBuffers::new(gpu, &tile.areas),
             segments: geo_roads::upload(gpu, &tile.roads),
             volumes: sv_roads::upload(gpu, &tile.volumes),
             width_margin_m: tile.width_margin_m,
@@ -88,9 +97,16 @@ impl TileBuffers {
     pub fn gpu_bytes(&self) -> u64 {
         let ground_bytes = self.ground.as_ref().map_or(0, GroundBuffers::gpu_bytes);
         ground_bytes
+            + self.areas.as_ref().map_or(0, AreaBuffers::gpu_bytes)
             + self.textures.gpu_bytes()
             + self.segments.gpu_bytes()
             + self.volumes.gpu_bytes()
+    }
+
+    /// The volumes of its areas, class by class.
+    #[must_use]
+    pub fn area_classes(&self) -> &[ClassVolumes] {
+        self.areas.as_ref().map_or(&[], AreaBuffers::classes)
     }
 
     /// Its roads as a method draws them.
@@ -138,6 +154,24 @@ impl DrawTile<'_> {
         // GEO also paints the neighbours' ground, within the margin. Twice the margin allows for slopes of 60 degrees there.
         let around_m = 2.0 * width_margin_m + self.skirt_depth_m * view.vertical_scale();
         (ground.distance_m(view.camera.eye_in_world()) - around_m).max(0.0)
+    }
+
+    /// Its areas with its index in the list of tiles of the frame, and how they are counted; `None` without areas.
+    pub(crate) fn areas(&self, index: usize, view: &FrameView<'_>) -> Option<AreaTile<'_>> {
+        let areas = self.buffers.areas.as_ref()?;
+        let [low, high] =
+            areas.box_in_tile().map(|corner| DVec3::from_array(corner.map(f64::from)));
+        let reference = DVec3::from_array(self.buffers.reference_m);
+        let scale = DVec3::new(1.0, 1.0, view.vertical_scale());
+        let skirt = DVec3::Z * self.skirt_depth_m;
+        let volumes =
+            WorldBox { min: (reference + low - skirt) * scale, max: (reference + high) * scale };
+        // The corners of the near plane are farther from the eye than its middle. The rest is for rounding.
+        let reach_m = 1.01
+            * view.camera.near_m()
+            * view.camera.half_extent_at_unit_depth().extend(1.0).length();
+        let is_near = volumes.distance_m(view.camera.eye_in_world()) <= reach_m;
+        Some((index, areas, if is_near { Counting::Behind } else { Counting::InFront }))
     }
 
     /// What shaders are told of it.

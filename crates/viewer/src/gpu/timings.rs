@@ -8,8 +8,8 @@ use wgpu::{
 
 use super::{Gpu, ReadBackError, device::TIMESTAMPS};
 
-/// Timestamps of a frame: one before each of its three parts and one after the last.
-const MARKS: u32 = 4;
+/// Timestamps of a frame: one before each of its four parts and one after the last.
+const MARKS: u32 = 5;
 /// Bytes of all marks of a frame; each is a u64.
 const MARK_BYTES: u64 = 8 * MARKS as u64;
 /// The times of so many frames may be waited for at once. A graphics card is two or three frames behind the processor.
@@ -20,6 +20,8 @@ const FRAMES: usize = 4;
 pub struct PassTimes {
     /// Terrain.
     pub terrain_ms: f64,
+    /// Areas.
+    pub areas_ms: f64,
     /// Roads.
     pub roads_ms: f64,
     /// Composite, with the pass before it that finds blocks with roads, and the averaging of samples.
@@ -48,6 +50,14 @@ pub struct PassTimer {
 
 /// Which readable buffer was to be mapped, and whether it was.
 type Mapped = (usize, Result<(), wgpu::BufferAsyncError>);
+
+impl PassTimes {
+    /// Of all passes together.
+    #[must_use]
+    pub fn total_ms(&self) -> f64 {
+        self.terrain_ms + self.areas_ms + self.roads_ms + self.composite_ms
+    }
+}
 
 impl PassTimer {
     /// `None` when the adapter cannot write timestamps.
@@ -141,6 +151,6 @@ impl PassTimer {
         let marks: Vec<u64> = words.iter().map(|word| u64::from_le_bytes(*word)).collect();
         // If the clock was set back in between, the time counts as 0.
         let ms = |k: usize| marks[k + 1].saturating_sub(marks[k]) as f64 * self.period_ns / 1e6;
-        Ok(PassTimes { terrain_ms: ms(0), roads_ms: ms(1), composite_ms: ms(2) })
+        Ok(PassTimes { terrain_ms: ms(0), areas_ms: ms(1), roads_ms: ms(2), composite_ms: ms(3) })
     }
 }

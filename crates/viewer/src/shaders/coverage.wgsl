@@ -14,18 +14,6 @@
 // ground may be at most `stretch` times the least half width away. Otherwise a road on a crest would be painted on the
 // valley behind it.
 
-struct Tile {
-    // xyz: the tile's reference point minus the eye; w: depth of the skirt, world metres.
-    offset: vec4<f32>,
-    // x: true height of the reference point; y: widest half width that may be drawn, world metres; z: the tile's
-    // number in this frame, from 1; w: within how many world metres near heights hold.
-    base: vec4<f32>,
-}
-
-@group(1) @binding(0) var<uniform> tile: Tile;
-@group(2) @binding(0) var terrain_depth: texture_2d<f32>;
-@group(2) @binding(1) var owners: texture_2d<u32>;
-
 // What the vertex stage of a road gives its fragment stage, by either method.
 struct RoadFragment {
     @builtin(position) clip: vec4<f32>,
@@ -60,13 +48,8 @@ fn segment_of(in: RoadFragment) -> Segment {
 }
 
 const MAX_STRETCH = 8.0;
-const SKIRT = 0x80000000u;
 const NEVER = 1e30;
 const NOTHING = 0u;
-
-fn position_at(pixel: vec2<f32>, depth_buffer: f32) -> vec3<f32> {
-    return ray_at(pixel) * view_depth_of(depth_buffer);
-}
 
 // How many times wider a level road must be in plan to look as wide as one seen from above.
 fn stretch_of(distance_m: f32, height_m: f32) -> f32 {

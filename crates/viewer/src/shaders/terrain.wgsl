@@ -1,7 +1,7 @@
 // Draws the terrain: from vertices relative to the tile to colour, depth and owner.
 //
 // The owner says which tile the pixel shows: 0 for none, else the number of the tile in this frame, with the highest bit
-// set on skirts. Roads read it: skirts do not count as ground, and a volume paints its own tile only. Skirts are drawn by
+// set on skirts, and the highest two on walls. Roads read it: skirts do not count as ground, and a volume paints its own tile only. Skirts are drawn by
 // a pipeline of their own, so that not even their upper edge counts as ground.
 // Alpha says the same in the colour target: 1 ground, 0.5 skirt, 0 nothing.
 
@@ -62,7 +62,8 @@ fn vertex(in: VertexIn) -> VertexOut {
 }
 
 fn owner_of_pixel() -> u32 {
-    return u32(tile.base.z) | (min(SKIRT, 1u) << 31u);
+    // The bits as shaders/drawn_ground.wgsl has them.
+    return u32(tile.base.z) | (min(SKIRT, 1u) << 31u) | (select(0u, 1u, SKIRT == 2u) << 30u);
 }
 
 @fragment

@@ -180,7 +180,8 @@ fn fragment(in: RoadFragment) -> @location(0) f32 {
     let own = u32(tile.base.z);
     let other = in.class_and_other >> 8u;
     let is_mine = owner == own;
-    let is_connected = other != 0u && ((owner & ~SKIRT) == own || (owner & ~SKIRT) == other);
+    let number = owner & ~(SKIRT | WALL);
+    let is_connected = other != 0u && (number == own || number == other);
     if !is_mine && !is_connected {
         discard;
     }

@@ -1,12 +1,12 @@
 use corniche_geom::{Bounds, Frame, TileId, barycentric};
 use corniche_roads::{FunctionalRoadClass, OwnWidth};
 use corniche_styles::OwnWidths;
-use corniche_tileset::{Terrain, TilePayload};
+use corniche_tileset::{AreaRecord, Terrain, TilePayload};
 use corniche_tin::{Placement, Surface};
 
 use super::{
-    BadRoad, GroundMesh, PhotoImage, PlanScale, RoadSegments, RoadVolumes, ShadingSlopes,
-    TileLines, relief::Relief,
+    AreaVolumes, BadArea, BadRoad, GroundMesh, PhotoImage, PlanScale, RoadSegments, RoadVolumes,
+    ShadingSlopes, TileLines, relief::Relief,
 };
 use crate::lod::GroundSummary;
 
@@ -29,6 +29,8 @@ pub struct TileGeometry {
     pub roads: RoadSegments,
     /// The roads on it as volumes (SV); empty if that section was not read.
     pub volumes: RoadVolumes,
+    /// The areas on it as volumes; empty if that section was not read.
+    pub areas: AreaVolumes,
     /// Roads are not drawn beyond this half width, working metres.
     pub width_margin_m: f64,
     /// The largest width factor of its roads: working metres across a road for each true metre across it.
@@ -121,6 +123,7 @@ impl TileGeometry {
             ground,
             shading: None,
             photo: None,
+            areas: AreaVolumes::default(),
             most_width_factor,
             roads: RoadSegments::of_lines(&lines.ground, bounds, reference_m, scale, |piece| {
                 relief.bed(piece, wide.as_ref())
@@ -161,13 +164,23 @@ impl TileGeometry {
         Ok(Self { shading, ..tile })
     }
 
-    /// The same tile without its roads, slopes and photo: enough for rays and heights.
+    /// The same tile with these areas of it.
+    ///
+    /// # Errors
+    /// When an outline crosses itself.
+    pub fn with_areas(self, areas: &[AreaRecord], frame: &Frame) -> Result<Self, BadArea> {
+        let areas = AreaVolumes::new(areas, self.id, frame, &self.ground, self.reference_m)?;
+        Ok(Self { areas, ..self })
+    }
+
+    /// The same tile without its roads, areas, slopes and photo: enough for rays and heights.
     #[must_use]
     pub fn without_roads(self) -> Self {
         Self {
             shading: None,
             roads: RoadSegments::default(),
             volumes: RoadVolumes::default(),
+            areas: AreaVolumes::default(),
             photo: None,
             ..self
         }

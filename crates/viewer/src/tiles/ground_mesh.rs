@@ -93,6 +93,26 @@ impl GroundMesh {
         })
     }
 
+    /// Lowest and highest height of the triangles whose bounding boxes meet a box in plan, all relative to the tile's reference point;
+    /// `None` if there is none.
+    pub(crate) fn height_range_within(&self, low: [f64; 2], high: [f64; 2]) -> Option<[f64; 2]> {
+        let mut range: Option<[f64; 2]> = None;
+        for triangle in self.triangle_grid.within(low, high) {
+            let corners = self.corners(triangle);
+            let meets = [0, 1].into_iter().all(|axis: usize| {
+                let along = corners.map(|corner| corner[axis]);
+                along.iter().any(|at| *at <= high[axis]) && along.iter().any(|at| *at >= low[axis])
+            });
+            if meets {
+                let heights = corners.map(|corner| corner[2]).into_iter();
+                let [lowest, highest] = range.unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
+                range =
+                    Some([heights.clone().fold(lowest, f64::min), heights.fold(highest, f64::max)]);
+            }
+        }
+        range
+    }
+
     fn add_skirts(&mut self, tin: &Tin) {
         for corners in tin.triangles() {
             for k in 0..3 {

@@ -5,6 +5,7 @@
 //! [`BlockingPackage`] tiles that can be waited for. [`TileSource::load`] is a pure function of the tile id and `&self`, so
 //! that a worker thread may call it; [`TileStore`] holds what is loaded and answers what is known.
 
+pub(crate) mod areas;
 mod geometry;
 mod ground_mesh;
 mod map_extent;
@@ -25,6 +26,7 @@ mod triangle_grid;
 pub use self::on_disk::PackageSource;
 pub(crate) use self::shading_slopes::ShadingSlopes;
 pub use self::{
+    areas::{AreaCorner, AreaVolumes, AreaWall, BadArea, ClassVolumes},
     geometry::TileGeometry,
     map_extent::MapExtent,
     package::PackageTiles,

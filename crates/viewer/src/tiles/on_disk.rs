@@ -33,12 +33,13 @@ impl PackageSource {
 }
 
 impl PackageSource {
-    /// Reads only what a picture in this style shows, with roads by this method: as [`PackageTiles::for_method`], and no photos where
-    /// the style hides them.
+    /// Reads only what a picture in this style shows, with roads by this method: as [`PackageTiles::for_method`], and no photos or areas
+    /// where the style hides them.
     #[must_use]
     pub fn for_look(self, method: RoadMethod, style: &Style) -> Self {
         let tiles = self.0.for_method(method);
-        Self(if style.photo > 0.0 { tiles } else { tiles.without_photos() })
+        let tiles = if style.photo > 0.0 { tiles } else { tiles.without_photos() };
+        Self(if style.has_areas() { tiles } else { tiles.without_areas() })
     }
 }
 

@@ -1,7 +1,9 @@
 use std::collections::BTreeSet;
 
 use corniche_geom::{Frame, TileId};
-use corniche_tileset::{ByteSource, Manifest, OpenError, Package, Sections, decode, decode_photo};
+use corniche_tileset::{
+    ByteSource, Manifest, OpenError, Package, Sections, decode, decode_areas, decode_photo,
+};
 
 use super::{
     LoadTileError, MapPackage, PhotoImage, PlanScale, TileCatalog, TileGeometry, TileLines,
@@ -20,11 +22,19 @@ pub struct PackageTiles<S> {
     tiles: BTreeSet<TileId>,
     sections: Sections,
     photos: Photos,
+    areas: AreasOfTiles,
 }
 
 /// Whether the photos of tiles are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Photos {
+    Read,
+    LeftOut,
+}
+
+/// Whether the areas of tiles are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum AreasOfTiles {
     Read,
     LeftOut,
 }
@@ -43,7 +53,7 @@ impl<S: ByteSource> PackageTiles<S> {
             }
         }
         let sections = GROUND | Sections::ROADS_GEO | Sections::ROADS_SV | Sections::ATTRIBUTES;
-        Ok(Self { package, tiles, sections, photos: Photos::Read })
+        Ok(Self { package, tiles, sections, photos: Photos::Read, areas: AreasOfTiles::Read })
     }
 
     /// Reads, beside the ground, only the roads that one method needs, with their attributes; without this, the roads that both need.
@@ -61,6 +71,12 @@ impl<S: ByteSource> PackageTiles<S> {
     #[must_use]
     pub fn without_photos(self) -> Self {
         Self { photos: Photos::LeftOut, ..self }
+    }
+
+    /// Reads no areas.
+    #[must_use]
+    pub fn without_areas(self) -> Self {
+        Self { areas: AreasOfTiles::LeftOut, ..self }
     }
 
     /// Reads and decodes a tile that exists.
@@ -82,6 +98,12 @@ impl<S: ByteSource> PackageTiles<S> {
                 let scale = PlanScale::of_tile(coordinates, frame.tile_bounds(id), *point_scale);
                 let tile = TileGeometry::from_payload(&payload, frame, quantum_m, margin_m, scale)
                     .map_err(|error| failed(error.into()))?;
+                let areas = match self.areas {
+                    AreasOfTiles::Read => decode_areas(&bytes, id, frame),
+                    AreasOfTiles::LeftOut => Ok(Vec::new()),
+                };
+                let areas = areas.map_err(|error| failed(error.into()))?;
+                let tile = tile.with_areas(&areas, frame).map_err(|error| failed(error.into()))?;
                 let photo = match self.photos {
                     Photos::Read => decode_photo(&bytes, id),
                     Photos::LeftOut => Ok(None),

@@ -92,6 +92,17 @@ impl TriangleGrid {
         })
     }
 
+    /// The triangles that may meet a box; some may come several times.
+    pub(crate) fn within(&self, low: [f64; 2], high: [f64; 2]) -> impl Iterator<Item = u32> {
+        let ranges = (!self.triangles.is_empty()).then(|| self.ranges(low, high));
+        ranges.into_iter().flat_map(move |[columns, rows]| {
+            rows.flat_map(move |row| {
+                let places = columns.clone().map(move |column| row * SIDE + column);
+                places.flat_map(|place| self.triangles.of(place).iter().copied())
+            })
+        })
+    }
+
     /// Columns and rows of all that lies within the slack of a box.
     fn ranges(&self, low: [f64; 2], high: [f64; 2]) -> [RangeInclusive<usize>; 2] {
         [0, 1].map(|axis| {

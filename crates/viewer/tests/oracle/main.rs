@@ -15,6 +15,7 @@
 mod support;
 
 mod agreement;
+mod areas;
 mod class_scale;
 mod ground_rays;
 mod level_steps;

@@ -6,6 +6,7 @@
     reason = "this is test code, though no test itself"
 )]
 
+pub(crate) mod areas;
 pub(crate) mod country;
 pub(crate) mod network;
 pub(crate) mod package;

@@ -23,6 +23,7 @@ pub(crate) fn first_settings(
         width_factors: [1.0; FunctionalRoadClass::COUNT],
         style: 0,
         photo: request.photo,
+        areas: request.areas,
         exaggeration: request.exaggeration,
         screen_space_error_px: request.screen_space_error_px,
         cell_px: request.cell_px,

@@ -275,6 +275,7 @@ impl App {
             metres_per_point: self.probe.middle_pixel_m().map(|pixel_m| pixel_m * points),
             mode: self.camera.mode(),
             style_names: self.styles.names(),
+            has_areas: manifest.areas.is_some(),
             photo: manifest.settings.photo.map(|_| self.styles.at(self.settings.style).photo),
             road_colors,
             class_labels: &self.class_labels,

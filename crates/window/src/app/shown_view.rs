@@ -33,6 +33,7 @@ impl App {
             roads: settings.roads,
             style: self.styles.names().get(settings.style)?.clone(),
             photo: settings.photo,
+            areas: settings.areas,
             exaggeration: settings.exaggeration,
             screen_space_error_px: settings.screen_space_error_px,
             cell_px: settings.cell_px,

@@ -2,11 +2,12 @@ use egui::{ComboBox, Slider, Ui};
 
 use super::slide::slide;
 use crate::{
+    Areas,
     settings::{Settings, range},
     window_content::WindowContent,
 };
 
-/// The section for style, heights and photos.
+/// The section for style, heights, areas and photos.
 pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, content: &WindowContent<'_>) {
     ui.horizontal(|ui| {
         ui.label("Style");
@@ -23,6 +24,12 @@ pub(crate) fn show(ui: &mut Ui, settings: &mut Settings, content: &WindowContent
     slide(ui, &mut settings.exaggeration, range::EXAGGERATION, |slider| {
         slider.prefix("× ").max_decimals(2).text("heights")
     });
+    if content.has_areas {
+        let mut are_shown = settings.areas == Areas::Shown;
+        ui.checkbox(&mut are_shown, "Areas")
+            .on_hover_text("Water, forest … as the style draws them");
+        settings.areas = if are_shown { Areas::Shown } else { Areas::Hidden };
+    }
     if let Some(of_style) = content.photo {
         let mut strength = settings.photo.unwrap_or(of_style);
         let slider = Slider::new(&mut strength, range::PHOTO).max_decimals(2).text("photo");

@@ -26,6 +26,7 @@ struct Told {
     styles: Vec<String>,
     notices: Vec<Notice>,
     passes: Vec<(RoadMethod, PassTimes)>,
+    has_areas: bool,
     class_labels: [String; FunctionalRoadClass::COUNT],
 }
 
@@ -33,7 +34,8 @@ impl Told {
     fn new() -> Self {
         let mut times = FrameTimes::default();
         (0..100).for_each(|k| times.push(10.0 + f64::from(k % 7)));
-        let pass = PassTimes { terrain_ms: 1111.25, roads_ms: 3370.5, composite_ms: 99.75 };
+        let pass =
+            PassTimes { terrain_ms: 1111.25, areas_ms: 0.0, roads_ms: 3370.5, composite_ms: 99.75 };
         Self {
             times,
             attribution: vec![
@@ -45,6 +47,7 @@ impl Told {
                 Notice { words: "saved somewhere/corniche-001.png".into(), until_s: Some(1.0) },
                 Notice { words: "a long notice ".repeat(12), until_s: None },
             ],
+            has_areas: false,
             passes: vec![(RoadMethod::Geometry, pass), (RoadMethod::ShadowVolumes, pass)],
             class_labels: std::array::from_fn(|class| {
                 format!("unclassified, living street {class}")
@@ -68,6 +71,7 @@ impl Told {
             mode: Mode::Map,
             style_names: &self.styles,
             photo: None,
+            has_areas: self.has_areas,
             road_colors: &[[0.8, 0.2, 0.1]; 9],
             class_labels: &self.class_labels,
             tiles_drawn: 123,
@@ -363,6 +367,18 @@ fn what_nobody_moves_stays_as_it_was_given() {
         let mut settings = given.clone();
         lay_out([1000.0, 1400.0], &mut settings, &told.content(), &[&[], &[]]);
         assert_eq!(settings, given);
+    }
+}
+
+#[test]
+fn areas_can_be_left_out_where_the_package_has_some() {
+    let mut told = Told::new();
+    for has_areas in [true, false] {
+        told.has_areas = has_areas;
+        let (texts, _) = lay_out([1280.0, 1000.0], &mut usual(), &told.content(), &[&[], &[]]);
+        assert_eq!(texts.iter().any(|(words, ..)| words == "Areas"), has_areas);
+        let timed = texts.iter().any(|(words, ..)| words.contains(" areas 0.0,"));
+        assert_eq!(timed, has_areas, "{texts:?}");
     }
 }
 

@@ -1,3 +1,4 @@
+use corniche_viewer::gpu::PassTimes;
 use egui::{Color32, Grid, Pos2, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::{formatting, frame_times::FrameTimes, window_content::WindowContent};
@@ -46,15 +47,15 @@ pub(crate) fn show(ui: &mut Ui, content: &WindowContent<'_>) {
 }
 
 fn passes(ui: &mut Ui, content: &WindowContent<'_>) {
-    Grid::new("passes").num_columns(5).min_col_width(34.0).spacing(vec2(8.0, 2.0)).show(ui, |ui| {
-        for heading in ["GPU ms", "terrain", "roads", "composite", "sum"] {
+    Grid::new("passes").num_columns(6).min_col_width(34.0).spacing(vec2(8.0, 2.0)).show(ui, |ui| {
+        for heading in ["GPU ms", "terrain", "areas", "roads", "composite", "sum"] {
             ui.small(heading);
         }
         ui.end_row();
         for (method, times) in content.passes {
             ui.label(formatting::method(*method));
-            let parts = [times.terrain_ms, times.roads_ms, times.composite_ms];
-            for ms in parts.into_iter().chain([parts.iter().sum()]) {
+            let PassTimes { terrain_ms, areas_ms, roads_ms, composite_ms } = *times;
+            for ms in [terrain_ms, areas_ms, roads_ms, composite_ms, times.total_ms()] {
                 let digits = if ms < 100.0 { 2 } else { 0 };
                 ui.monospace(format!("{ms:.digits$}"));
             }

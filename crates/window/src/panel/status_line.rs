@@ -1,3 +1,4 @@
+use corniche_viewer::gpu::PassTimes;
 use egui::{Color32, FontId, Label, RichText, Ui};
 
 use crate::{
@@ -134,13 +135,14 @@ fn positions(settings: &Settings, content: &WindowContent<'_>) -> Vec<Item> {
     let by = if content.is_software { ", drawn by the processor" } else { "" };
     items.push(Item::new(3, format!("{roads}{by}")));
     for (method, times) in content.passes {
-        let [terrain_ms, roads_ms, composite_ms] =
-            [times.terrain_ms, times.roads_ms, times.composite_ms];
+        let PassTimes { terrain_ms, areas_ms, roads_ms, composite_ms } = *times;
+        let areas =
+            if content.has_areas { format!(" areas {areas_ms:.1},") } else { String::new() };
         let method = formatting::method(*method);
         items.push(Item::new(
             8,
             format!(
-                "{method}: terrain {terrain_ms:.1}, roads {roads_ms:.1}, composite {composite_ms:.1} ms"
+                "{method}: terrain {terrain_ms:.1},{areas} roads {roads_ms:.1}, composite {composite_ms:.1} ms"
             ),
         ));
     }

@@ -12,7 +12,7 @@ use super::super::{
 };
 use crate::tiles::{Bed, RoadSegment, RoadSegments};
 
-pub(crate) const SHADER: Shader = shader!("roads": "common", "coverage", "roads");
+pub(crate) const SHADER: Shader = shader!("roads": "common", "drawn_ground", "coverage", "roads");
 
 /// Bytes of an instance: two plan positions as two f32 each, two shares, two slopes, a height and a width factor as f32,
 /// class, flags and look as u32, eight bounds as f16, own width, place of dashes and length of the

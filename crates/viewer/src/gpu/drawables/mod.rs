@@ -36,6 +36,7 @@
 //! 6. If users choose it or how it looks: add that to `RoadOptions` or to a struct beside it, and to `Style`; from there to
 //!    the drawable's `rows`, or to `uniforms` if other drawables need it too.
 
+pub(crate) mod areas;
 pub(crate) mod average;
 pub(crate) mod composite;
 pub(crate) mod difference;

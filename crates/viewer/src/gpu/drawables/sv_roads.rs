@@ -12,7 +12,8 @@ use super::super::{
 };
 use crate::tiles::{RoadVolume, RoadVolumes};
 
-pub(crate) const SHADER: Shader = shader!("volumes": "common", "coverage", "volumes");
+pub(crate) const SHADER: Shader =
+    shader!("volumes": "common", "drawn_ground", "coverage", "volumes");
 
 /// Bytes of an instance: two plan positions and two height ranges as two f32 each, rise and width factor as f32, class, look,
 /// flat ends and other tile as u32, own width, place of dashes and length of the network's part as f32.

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use wgpu::{
-    BindGroupLayout, BufferUsages, ColorWrites, CompareFunction, Device, PrimitiveTopology,
-    RenderPass, RenderPipeline,
+    BindGroupLayout, BufferUsages, ColorWrites, CompareFunction, Device, FrontFace,
+    PrimitiveTopology, RenderPass, RenderPipeline,
 };
 
 use super::super::{
@@ -46,6 +46,7 @@ impl Terrain {
             groups: &groups,
             buffer: Some(GROUND_VERTICES),
             topology: PrimitiveTopology::TriangleList,
+            front_face: FrontFace::Ccw,
             // From below the ground its underside is seen.
             cull: None,
             depth: Some(depth_test(CompareFunction::Greater, true)),

@@ -1,0 +1,38 @@
+//! The part of a style's text that is about areas.
+
+use std::collections::BTreeMap;
+
+use corniche_areas::AreaClass;
+use serde::Deserialize;
+
+use crate::{
+    AreaStyle, StyleError,
+    sheet_values::{Rgb8, within},
+};
+
+/// How the areas of one class are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct AreaSheet {
+    /// Colour.
+    color: Rgb8,
+    /// How much of the ground it hides, 0 to 1; 0 does not draw the class.
+    opacity: f64,
+}
+
+/// The areas by class: those that are named, and `others` for the rest.
+pub(crate) fn areas(
+    sheets: &BTreeMap<String, AreaSheet>,
+    others: [AreaStyle; AreaClass::COUNT],
+) -> Result<[AreaStyle; AreaClass::COUNT], StyleError> {
+    let mut styles = others;
+    for (name, sheet) in sheets {
+        let Some(class) = AreaClass::from_name(name) else {
+            return Err(StyleError::AreaClass { text: name.clone() });
+        };
+        within(&format!("areas.{name}.opacity"), sheet.opacity, 0.0..=1.0)?;
+        styles[usize::from(class.number())] =
+            AreaStyle { color: sheet.color.into(), opacity: sheet.opacity as f32 };
+    }
+    Ok(styles)
+}

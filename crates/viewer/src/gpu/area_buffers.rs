@@ -1,0 +1,162 @@
+//! The areas of a tile on the graphics card.
+
+use corniche_areas::AreaClass;
+use wgpu::{
+    Buffer, BufferUsages, IndexFormat, RenderPass, VertexAttribute, VertexBufferLayout,
+    VertexStepMode, vertex_attr_array,
+};
+
+use super::Gpu;
+use crate::tiles::{AreaVolumes, ClassVolumes};
+
+/// Bytes of a wall: two plan positions, bottom and top as f32.
+const WALL_BYTES: u64 = 24;
+/// Bytes of a corner of caps: a plan position, bottom and top as f32.
+const CORNER_BYTES: u64 = 16;
+/// Bytes of the box around a class: two positions as f32, its number as u32.
+const BOX_BYTES: u64 = 28;
+
+const WALL_ATTRIBUTES: [VertexAttribute; 3] =
+    vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Float32x2];
+const CORNER_ATTRIBUTES: [VertexAttribute; 2] = vertex_attr_array![0 => Float32x2, 1 => Float32x2];
+const BOX_ATTRIBUTES: [VertexAttribute; 3] =
+    vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32];
+
+/// An instance for each wall.
+pub(crate) const WALLS: VertexBufferLayout<'static> = VertexBufferLayout {
+    array_stride: WALL_BYTES,
+    step_mode: VertexStepMode::Instance,
+    attributes: &WALL_ATTRIBUTES,
+};
+/// A vertex for each corner of caps.
+pub(crate) const CORNERS: VertexBufferLayout<'static> = VertexBufferLayout {
+    array_stride: CORNER_BYTES,
+    step_mode: VertexStepMode::Vertex,
+    attributes: &CORNER_ATTRIBUTES,
+};
+/// An instance for the box around each class.
+pub(crate) const BOXES: VertexBufferLayout<'static> = VertexBufferLayout {
+    array_stride: BOX_BYTES,
+    step_mode: VertexStepMode::Instance,
+    attributes: &BOX_ATTRIBUTES,
+};
+
+/// Corners of the strip of triangles of a wall and of a box, as `shaders/areas.wgsl` counts them.
+const WALL_CORNERS: u32 = 4;
+const BOX_CORNERS: u32 = 14;
+
+/// The areas of a tile on the graphics card.
+pub(crate) struct AreaBuffers {
+    walls: Buffer,
+    corners: Buffer,
+    triangles: Buffer,
+    boxes: Buffer,
+    classes: Vec<ClassVolumes>,
+    /// Around all of them, as in [`AreaVolumes`].
+    box_in_tile: [[f32; 3]; 2],
+}
+
+impl AreaBuffers {
+    /// Uploads the areas of a tile; `None` if it has none.
+    pub(crate) fn new(gpu: &Gpu, areas: &AreaVolumes) -> Option<Self> {
+        let box_in_tile = areas.box_in_tile?;
+        let vertices = |name, bytes: &[u8]| gpu.buffer(name, bytes, BufferUsages::VERTEX);
+        Some(Self {
+            walls: vertices("area walls", &wall_bytes(areas)),
+            corners: vertices("area corners", &corner_bytes(areas)),
+            triangles: gpu.buffer(
+                "area triangles",
+                bytemuck::cast_slice(&areas.triangles),
+                BufferUsages::INDEX,
+            ),
+            boxes: vertices("area boxes", &box_bytes(areas)),
+            classes: areas.classes.clone(),
+            box_in_tile,
+        })
+    }
+
+    /// Bytes of the buffers that [`AreaBuffers::new`] makes.
+    pub(crate) fn bytes_of(areas: &AreaVolumes) -> u64 {
+        areas.walls.len() as u64 * WALL_BYTES
+            + areas.corners.len() as u64 * CORNER_BYTES
+            + size_of_val(&areas.triangles[..]) as u64
+            + areas.classes.len() as u64 * BOX_BYTES
+    }
+
+    /// Bytes of its buffers.
+    pub(crate) fn gpu_bytes(&self) -> u64 {
+        [&self.walls, &self.corners, &self.triangles, &self.boxes]
+            .into_iter()
+            .map(Buffer::size)
+            .sum()
+    }
+
+    /// The box around all volumes, as in [`AreaVolumes`].
+    pub(crate) fn box_in_tile(&self) -> [[f32; 3]; 2] {
+        self.box_in_tile
+    }
+
+    /// The classes that it has.
+    pub(crate) fn classes(&self) -> &[ClassVolumes] {
+        &self.classes
+    }
+
+    /// Draws the walls of a class. Pipeline and bind groups are set.
+    pub(crate) fn draw_walls(&self, pass: &mut RenderPass<'_>, class: AreaClass) {
+        if let Some(volumes) = self.of_class(class) {
+            pass.set_vertex_buffer(0, self.walls.slice(..));
+            pass.draw(0..WALL_CORNERS, volumes.walls.clone());
+        }
+    }
+
+    /// Draws the upper or the lower caps of a class: the pipeline says which. Pipeline and bind groups are set.
+    pub(crate) fn draw_caps(&self, pass: &mut RenderPass<'_>, class: AreaClass) {
+        if let Some(volumes) = self.of_class(class) {
+            pass.set_vertex_buffer(0, self.corners.slice(..));
+            pass.set_index_buffer(self.triangles.slice(..), IndexFormat::Uint32);
+            pass.draw_indexed(volumes.triangles.clone(), 0, 0..1);
+        }
+    }
+
+    /// Draws the box around a class. Pipeline and bind groups are set.
+    pub(crate) fn draw_box(&self, pass: &mut RenderPass<'_>, class: AreaClass) {
+        let place = self.classes.iter().position(|volumes| volumes.class == class);
+        if let Some(place) = place.map(|place| place as u32) {
+            pass.set_vertex_buffer(0, self.boxes.slice(..));
+            pass.draw(0..BOX_CORNERS, place..place + 1);
+        }
+    }
+
+    fn of_class(&self, class: AreaClass) -> Option<&ClassVolumes> {
+        self.classes.iter().find(|volumes| volumes.class == class)
+    }
+}
+
+fn wall_bytes(areas: &AreaVolumes) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(areas.walls.len() * WALL_BYTES as usize);
+    for wall in &areas.walls {
+        for part in [wall.start_in_tile, wall.end_in_tile, wall.heights_in_tile] {
+            bytes.extend_from_slice(bytemuck::cast_slice(&part));
+        }
+    }
+    bytes
+}
+
+fn corner_bytes(areas: &AreaVolumes) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(areas.corners.len() * CORNER_BYTES as usize);
+    for corner in &areas.corners {
+        for part in [corner.place_in_tile, corner.heights_in_tile] {
+            bytes.extend_from_slice(bytemuck::cast_slice(&part));
+        }
+    }
+    bytes
+}
+
+fn box_bytes(areas: &AreaVolumes) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(areas.classes.len() * BOX_BYTES as usize);
+    for volumes in &areas.classes {
+        bytes.extend_from_slice(bytemuck::cast_slice(&volumes.box_in_tile));
+        bytes.extend_from_slice(&u32::from(volumes.class.number()).to_ne_bytes());
+    }
+    bytes
+}

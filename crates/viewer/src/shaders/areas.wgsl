@@ -1,0 +1,140 @@
+// Areas as stencil shadow volumes: a closed prism over each polygon, from below all ground in it to above it.
+//
+// Source: Schneider & Klein 2007, Efficient and Accurate Rendering of Vector Data on Virtual Landscapes, Journal of WSCG 15.
+//
+//      eye                              A face between the eye and the ground counts +1 if it is seen from outside and −1 if from
+//         ╲      ┌──top──┐              inside (z-pass). Ground outside all prisms then has the count 0. Or the faces behind the ground
+//          ╲+1   │       │              count, with the other signs (z-fail): this also holds with the eye inside, or where the near
+//       ────╲────┼──→────┼──── ground   plane cuts a face off.
+//            ╲   │   −1  │
+//                └─bottom┘
+//
+// What we changed: no depths are compared. A depth between two far vertices is interpolated with an error that is large beside
+// the smallest depths, and on the ground that error is some metres. Instead the place of the ground is computed from its depth,
+// and a face is in front of it if the eye and that place are on different sides of the face. For walls this is the test in plan
+// that roads have (coverage.wgsl), so an edge is as exact as the ground's place. Faces only say which pixels ask.
+
+struct Face {
+    // Faces of a volume must meet without a gap, whichever pipeline draws them.
+    @invariant @builtin(position) clip: vec4<f32>,
+    // Walls: both ends in plan, relative to the eye. Caps: xy is 0, z the height above the eye.
+    @location(0) @interpolate(flat) ends: vec4<f32>,
+}
+
+// 1 draws upper caps, 0 lower ones.
+override IS_TOP: u32 = 0u;
+// 1 counts faces behind the ground, 0 those in front of it.
+override IS_FAIL: u32 = 0u;
+
+// `heights` are bottom and top above the tile's reference point, true metres.
+fn height_of(heights: vec2<f32>, is_top: bool) -> f32 {
+    let height = tile.offset.z + select(heights.x, heights.y, is_top) * frame.scale.y;
+    // Skirts are painted as the ground they hang from.
+    return height - select(tile.offset.w, 0.0, is_top);
+}
+
+@vertex
+fn wall_vertex(@builtin(vertex_index) corner: u32, @location(0) start: vec2<f32>, @location(1) end: vec2<f32>,
+    @location(2) heights: vec2<f32>) -> Face {
+    //  2 ── 3     seen from outside: the inside is on the left of the way from start to end
+    //  │  ╲ │
+    //  0 ── 1
+    let plan = tile.offset.xy + select(start, end, (corner & 1u) == 1u);
+    var out: Face;
+    out.clip = frame.clip_from_relative * vec4(plan, height_of(heights, corner > 1u), 1.0);
+    out.ends = vec4(tile.offset.xy + start, tile.offset.xy + end);
+    return out;
+}
+
+@vertex
+fn cap_vertex(@location(0) place: vec2<f32>, @location(1) heights: vec2<f32>) -> Face {
+    let plan = tile.offset.xy + place;
+    let height = height_of(heights, IS_TOP == 1u);
+    var out: Face;
+    out.clip = frame.clip_from_relative * vec4(plan, height, 1.0);
+    out.ends = vec4(0.0, 0.0, height, 0.0);
+    return out;
+}
+
+// On which side of the line through a and b a place is. Both tiles and both areas of a common edge ask with the same line.
+fn is_left(a: vec2<f32>, b: vec2<f32>, at: vec2<f32>) -> bool {
+    return (b.x - a.x) * (at.y - a.y) - (b.y - a.y) * (at.x - a.x) > 0.0;
+}
+
+// Whether a ray from the eye to a place on the ground passes the wall over a–b, which it is known to meet somewhere.
+fn is_beyond_wall(a: vec2<f32>, b: vec2<f32>, at: vec2<f32>, ray: vec2<f32>) -> bool {
+    // Along the ray the wall is nowhere but between its ends. This decides where the wall is seen edge-on: then its line is the ray.
+    let along = vec2(dot(a, ray), dot(b, ray));
+    let ground_along = dot(at, ray);
+    if ground_along > max(along.x, along.y) {
+        return true;
+    }
+    if ground_along < min(along.x, along.y) {
+        return false;
+    }
+    let is_turned = a.x > b.x || (a.x == b.x && a.y > b.y);
+    let first = select(a, b, is_turned);
+    let last = select(b, a, is_turned);
+    return is_left(first, last, vec2(0.0)) != is_left(first, last, at);
+}
+
+// Where the tile's own ground or skirt is at a pixel; w is 0 if the pixel shows something else.
+fn own_ground(center: vec2<f32>) -> vec4<f32> {
+    let pixel = vec2<i32>(center);
+    if (textureLoad(owners, pixel, 0).r & ~SKIRT) != u32(tile.base.z) {
+        return vec4(0.0);
+    }
+    return vec4(position_at(center, textureLoad(terrain_depth, pixel, 0).r), 1.0);
+}
+
+// The stencil operation counts whatever is not discarded.
+@fragment
+fn wall_fragment(in: Face) {
+    let ground = own_ground(in.clip.xy);
+    let is_beyond = is_beyond_wall(in.ends.xy, in.ends.zw, ground.xy, ray_at(in.clip.xy).xy);
+    if ground.w == 0.0 || is_beyond == (IS_FAIL == 1u) {
+        discard;
+    }
+}
+
+@fragment
+fn cap_fragment(in: Face) {
+    let ground = own_ground(in.clip.xy);
+    let height = in.ends.z;
+    let is_beyond = (height < 0.0) != (height < ground.z);
+    if ground.w == 0.0 || is_beyond == (IS_FAIL == 1u) {
+        discard;
+    }
+}
+
+// Colours and opacities of the classes, by their numbers.
+@group(3) @binding(0) var<uniform> colors: array<vec4<f32>, 8>;
+
+// The corners of a box as one strip of twelve triangles, all counter-clockwise seen from outside:
+// bit 0: east, bit 1: north, bit 2: top.
+const STRIP = array<u32, 14>(0u, 1u, 4u, 5u, 7u, 1u, 3u, 0u, 2u, 4u, 6u, 7u, 2u, 3u);
+
+struct Covered {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) @interpolate(flat) color: vec4<f32>,
+}
+
+// The box around the volumes of a class. Only its far faces are drawn: one fragment for each pixel that sees the box, also with the
+// eye inside. The stencil says which of them are painted.
+@vertex
+fn box_vertex(@builtin(vertex_index) index: u32, @location(0) low: vec3<f32>, @location(1) high: vec3<f32>,
+    @location(2) area_class: u32) -> Covered {
+    let corner = STRIP[index];
+    let plan = tile.offset.xy
+        + vec2(select(low.x, high.x, (corner & 1u) != 0u), select(low.y, high.y, (corner & 2u) != 0u));
+    let height = height_of(vec2(low.z, high.z), (corner & 4u) != 0u);
+    var out: Covered;
+    out.clip = frame.clip_from_relative * vec4(plan, height, 1.0);
+    out.color = colors[area_class];
+    return out;
+}
+
+@fragment
+fn box_fragment(in: Covered) -> @location(0) vec4<f32> {
+    return in.color;
+}

@@ -1,0 +1,224 @@
+//! The areas of a tile as volumes: a closed prism over each polygon, from below all ground in it to above it.
+//!
+//! ```text
+//!  rings ──► border strips ──► plan mesh ──► walls (edges with inside on one side alone)
+//!                                   │
+//!                                   └──────► caps  (triangles inside, once at the bottom, once at the top)
+//! ```
+//!
+//! Walls and caps come from one mesh, so each edge of a prism belongs to exactly two of its faces, with the same ends. Then a ray
+//! enters the prism as often as it leaves it, also in the graphics card's arithmetic.
+//!
+//! Source: Schneider & Klein 2007, *Efficient and Accurate Rendering of Vector Data on Virtual Landscapes*, Journal of WSCG 15.
+
+mod border_strips;
+mod plan_mesh;
+
+use std::ops::Range;
+
+use corniche_areas::{AreaClass, AreaObject};
+use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId};
+use corniche_tileset::{AreaRecord, AreaRings};
+
+use self::{
+    border_strips::{Strip, with_strips},
+    plan_mesh::PlanMesh,
+};
+use super::{GroundMesh, ground_mesh::relative};
+
+/// How far volumes reach beyond the ground in them, below and above, as a share of a cell of the tile's level. The ground's heights
+/// are rounded when they are drawn; this is far more.
+const PAD_CELLS: f64 = 0.125;
+
+/// How wide strips along the tile's border are, as a share of a cell of the tile's level. Positions on the border are rounded when they
+/// are drawn; this is far more.
+const STRIP_CELLS: f64 = 0.25;
+
+/// An area that cannot be drawn.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the outline of {object} ({class}) crosses itself")]
+pub struct BadArea {
+    /// The object of OSM.
+    pub object: AreaObject,
+    /// What it is.
+    pub class: AreaClass,
+}
+
+/// A wall of a volume: upright over a segment of the outline, with the inside on the left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AreaWall {
+    /// Metres from the tile's reference point, east and north.
+    pub start_in_tile: [f32; 2],
+    /// The other end.
+    pub end_in_tile: [f32; 2],
+    /// Bottom, without the skirt, and top: true metres above the reference point.
+    pub heights_in_tile: [f32; 2],
+}
+
+/// A corner of the caps of a volume, at the bottom and at the top.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AreaCorner {
+    /// Metres from the tile's reference point, east and north.
+    pub place_in_tile: [f32; 2],
+    /// As in [`AreaWall`].
+    pub heights_in_tile: [f32; 2],
+}
+
+/// The volumes of one class.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClassVolumes {
+    /// The class.
+    pub class: AreaClass,
+    /// Which walls are theirs.
+    pub walls: Range<u32>,
+    /// Which indices of [`AreaVolumes::triangles`] are theirs.
+    pub triangles: Range<u32>,
+    /// West, south and bottom, then east, north and top of all of them, in metres from the reference point.
+    pub box_in_tile: [[f32; 3]; 2],
+    /// How many there are.
+    pub polygons: u32,
+}
+
+/// All volumes of a tile, by class.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct AreaVolumes {
+    /// Walls.
+    pub walls: Vec<AreaWall>,
+    /// Corners of caps.
+    pub corners: Vec<AreaCorner>,
+    /// Indices of `corners`, three for each triangle of a cap, counter-clockwise seen from above.
+    pub triangles: Vec<u32>,
+    /// The classes that the tile has, in order of their numbers.
+    pub classes: Vec<ClassVolumes>,
+    /// The box around all of them, as [`ClassVolumes::box_in_tile`]; `None` without any.
+    pub box_in_tile: Option<[[f32; 3]; 2]>,
+}
+
+impl AreaVolumes {
+    /// The volumes of some areas of a tile over its ground; none without ground.
+    pub(crate) fn new(
+        areas: &[AreaRecord],
+        id: TileId,
+        frame: &Frame,
+        ground: &GroundMesh,
+        reference_m: [f64; 3],
+    ) -> Result<Self, BadArea> {
+        let mut volumes = Self::default();
+        let site = Site::new(id, frame, ground, reference_m);
+        for class in AreaClass::ALL {
+            let (first_wall, first_index) = (volumes.walls.len(), volumes.triangles.len());
+            let mut around = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+            let mut polygons = 0;
+            for area in areas.iter().filter(|area| area.class == class) {
+                for rings in &area.polygons {
+                    let bad = || BadArea { object: area.object, class };
+                    let mesh = site.mesh(rings).ok_or_else(bad)?;
+                    let Some(heights) = site.heights_in_tile(&mesh.points) else { continue };
+                    volumes.add(&site, &mesh, heights, &mut around);
+                    polygons += 1;
+                }
+            }
+            if polygons > 0 {
+                volumes.classes.push(ClassVolumes {
+                    class,
+                    walls: first_wall as u32..volumes.walls.len() as u32,
+                    triangles: first_index as u32..volumes.triangles.len() as u32,
+                    box_in_tile: around,
+                    polygons,
+                });
+            }
+        }
+        let boxes = volumes.classes.iter().map(|class| class.box_in_tile);
+        volumes.box_in_tile = boxes.reduce(united);
+        Ok(volumes)
+    }
+
+    /// Adds the prism over a mesh; `around` grows by it.
+    fn add(
+        &mut self,
+        site: &Site<'_>,
+        mesh: &PlanMesh,
+        heights_in_tile: [f32; 2],
+        around: &mut [[f32; 3]; 2],
+    ) {
+        let first = self.corners.len() as u32;
+        self.corners.extend(mesh.points.iter().map(|point| AreaCorner {
+            place_in_tile: site.place_in_tile(*point),
+            heights_in_tile,
+        }));
+        let corners = &self.corners[first as usize..];
+        let place = |index: u32| corners[index as usize].place_in_tile;
+        self.walls.extend(mesh.edges.iter().map(|[start, end]| AreaWall {
+            start_in_tile: place(*start),
+            end_in_tile: place(*end),
+            heights_in_tile,
+        }));
+        self.triangles.extend(mesh.triangles.iter().flatten().map(|index| first + index));
+        let [low, high] = around;
+        for AreaCorner { place_in_tile: [x, y], heights_in_tile: [bottom, top] } in corners {
+            *low = [low[0].min(*x), low[1].min(*y), low[2].min(*bottom)];
+            *high = [high[0].max(*x), high[1].max(*y), high[2].max(*top)];
+        }
+    }
+}
+
+/// The box around two boxes.
+fn united([low, high]: [[f32; 3]; 2], [other_low, other_high]: [[f32; 3]; 2]) -> [[f32; 3]; 2] {
+    [
+        [0, 1, 2].map(|axis: usize| low[axis].min(other_low[axis])),
+        [0, 1, 2].map(|axis: usize| high[axis].max(other_high[axis])),
+    ]
+}
+
+/// Where the areas of a tile are placed.
+struct Site<'a> {
+    frame: &'a Frame,
+    tile: LatticeBounds,
+    ground: &'a GroundMesh,
+    reference_m: [f64; 3],
+    strip: Strip,
+    pad_m: f64,
+}
+
+impl<'a> Site<'a> {
+    fn new(id: TileId, frame: &'a Frame, ground: &'a GroundMesh, reference_m: [f64; 3]) -> Self {
+        let tile = frame.tile_lattice_bounds(id);
+        let wide = frame.node_steps(id.z()).map(|steps| (steps as f64 * STRIP_CELLS) as i64);
+        Self {
+            frame,
+            tile,
+            ground,
+            reference_m,
+            strip: Strip { tile, wide },
+            pad_m: frame.level_cell(id.z()).shorter_m() * PAD_CELLS,
+        }
+    }
+
+    /// What is inside the rings; `None` if they cross.
+    fn mesh(&self, AreaRings { rings }: &AreaRings) -> Option<PlanMesh> {
+        let rings: Vec<_> = rings.iter().map(|ring| with_strips(ring, self.strip)).collect();
+        PlanMesh::inside(&rings, self.tile.min)
+    }
+
+    fn place_in_tile(&self, point: LatticePoint) -> [f32; 2] {
+        let [x, y] = self.frame.position_m(point);
+        let [x, y, _] = relative([x, y, 0.0], self.reference_m);
+        [x, y]
+    }
+
+    /// Bottom and top of a volume over these points; `None` without ground near them.
+    fn heights_in_tile(&self, points: &[LatticePoint]) -> Option<[f32; 2]> {
+        let places = points.iter().map(|point| self.place_in_tile(*point).map(f64::from));
+        let [low, high] = places.fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |box_m, at| {
+            let [low, high] = box_m;
+            [[low[0].min(at[0]), low[1].min(at[1])], [high[0].max(at[0]), high[1].max(at[1])]]
+        });
+        let [lowest_m, highest_m] = self.ground.height_range_within(low, high)?;
+        Some([(lowest_m - self.pad_m) as f32, (highest_m + self.pad_m) as f32])
+    }
+}
+
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "these numbers are exact")]
+#[path = "areas_tests.rs"]
+mod tests;

@@ -1,0 +1,63 @@
+use corniche_geom::{LatticeBounds, LatticePoint};
+
+/// The strip around a tile into which its areas are continued.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Strip {
+    /// The tile.
+    pub(crate) tile: LatticeBounds,
+    /// Its width east and north, lattice steps.
+    pub(crate) wide: [i64; 2],
+}
+
+/// A ring with the parts of it that lie along the border of the tile moved outwards.
+///
+/// ```text
+///        inside the tile  │  strip
+///                         │
+///          A ──────────── B₁ ── B₁'
+///                         │     │        what was the segment B₁ B₂
+///          C ──────────── B₂ ── B₂'
+///                         │
+/// ```
+///
+/// Ground on the border, and the skirt that hangs from it, is then well inside, however its position is rounded. A volume paints its
+/// own tile's ground alone, so what lies in the strip is never seen.
+pub(crate) fn with_strips(ring: &[LatticePoint], strip: Strip) -> Vec<LatticePoint> {
+    let mut moved = Vec::with_capacity(ring.len() + 4);
+    for (index, &point) in ring.iter().enumerate() {
+        let before = ring[(index + ring.len() - 1) % ring.len()];
+        let after = ring[(index + 1) % ring.len()];
+        match [strip.outwards(before, point), strip.outwards(point, after)] {
+            [None, None] => moved.push(point),
+            [None, Some(by)] => moved.extend([point, shifted(point, by)]),
+            [Some(by), None] => moved.extend([shifted(point, by), point]),
+            [Some(by), Some(same)] if by == same => moved.push(shifted(point, by)),
+            // A corner of the tile.
+            [Some(by), Some(other)] => moved.push(shifted(shifted(point, by), other)),
+        }
+    }
+    moved
+}
+
+impl Strip {
+    /// By how much a segment is moved that lies along the border; `None` for all others.
+    fn outwards(self, from: LatticePoint, to: LatticePoint) -> Option<[i64; 2]> {
+        let LatticeBounds { min, max } = self.tile;
+        let [east, north] = self.wide;
+        if from.u == to.u && from.u == min.u {
+            Some([-east, 0])
+        } else if from.u == to.u && from.u == max.u {
+            Some([east, 0])
+        } else if from.v == to.v && from.v == min.v {
+            Some([0, -north])
+        } else if from.v == to.v && from.v == max.v {
+            Some([0, north])
+        } else {
+            None
+        }
+    }
+}
+
+fn shifted(point: LatticePoint, [u, v]: [i64; 2]) -> LatticePoint {
+    LatticePoint::new(point.u + u, point.v + v)
+}

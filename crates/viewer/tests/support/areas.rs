@@ -1,0 +1,101 @@
+//! Areas on scenes: what is drawn is divided by tile as a build does it, what the references ask are whole outlines in f64.
+
+use corniche_areas::{AreaClass, AreaObject, Axis, OutlineWay, Polygon, assemble, divide};
+use corniche_geom::{Frame, LatticePoint, TileId};
+use corniche_styles::{AreaStyle, Style};
+use corniche_tileset::{AreaRecord, AreaRings};
+use glam::DVec2;
+
+use super::scene::Scene;
+
+/// An area: a class and rings, in the working CRS.
+#[derive(Debug, Clone)]
+pub(crate) struct PlanArea {
+    pub(crate) class: AreaClass,
+    pub(crate) rings: Vec<Vec<DVec2>>,
+}
+
+impl PlanArea {
+    /// Rings relative to a place.
+    pub(crate) fn new(class: AreaClass, around: DVec2, rings: &[Vec<[f64; 2]>]) -> Self {
+        let place = |point: &[f64; 2]| around + DVec2::from_array(*point);
+        let rings = rings.iter().map(|ring| ring.iter().map(place).collect()).collect();
+        Self { class, rings }
+    }
+
+    /// Its part in a tile.
+    fn record(&self, frame: &Frame, id: TileId) -> Option<AreaRecord> {
+        let on_lattice = |ring: &Vec<DVec2>| -> Vec<LatticePoint> {
+            ring.iter().chain(ring.first()).map(|at| frame.snap(at.to_array()).unwrap()).collect()
+        };
+        let rings: Vec<Vec<LatticePoint>> = self.rings.iter().map(on_lattice).collect();
+        let ways: Vec<OutlineWay<'_>> = rings.iter().map(|points| OutlineWay { points }).collect();
+        let tile = frame.tile_lattice_bounds(id);
+        let parts = assemble(&ways).unwrap().polygons.into_iter().flat_map(|whole| {
+            let cuts = [
+                (Axis::East, tile.min.u, 1),
+                (Axis::East, tile.max.u, 0),
+                (Axis::North, tile.min.v, 1),
+                (Axis::North, tile.max.v, 0),
+            ];
+            cuts.into_iter().fold(vec![whole], |parts, (axis, at, side)| {
+                let part = |part: &Polygon| divide(part, axis, at).unwrap()[side].clone();
+                parts.iter().flat_map(part).collect()
+            })
+        });
+        let polygons: Vec<AreaRings> = parts
+            .map(|part| AreaRings {
+                rings: part.rings().map(|ring| ring.points().to_vec()).collect(),
+            })
+            .collect();
+        (!polygons.is_empty()).then(|| AreaRecord {
+            object: AreaObject::Way(1),
+            class: self.class,
+            name: String::new(),
+            polygons,
+        })
+    }
+}
+
+/// The same scene with areas, which are drawn in the colours of [`flat_color`].
+pub(crate) fn with_areas(scene: &Scene, frame: &Frame, areas: &[PlanArea]) -> Scene {
+    let mut scene = Scene { style: flat_style(&scene.style), ..scene.clone() };
+    for tile in &mut scene.tiles {
+        let id = tile.geometry.id;
+        let records: Vec<_> = areas.iter().filter_map(|area| area.record(frame, id)).collect();
+        tile.geometry = tile.geometry.clone().with_areas(&records, frame).unwrap();
+    }
+    scene
+}
+
+/// A colour of each class that no ground has, because ground has no blue in it.
+fn flat_color(class: AreaClass) -> [u8; 3] {
+    [20 * class.number(), 100, 255]
+}
+
+/// The same style with areas of flat colours, and ground without blue.
+pub(crate) fn flat_style(style: &Style) -> Style {
+    let mut style = style.clone();
+    for class in AreaClass::ALL {
+        style.areas[usize::from(class.number())] = AreaStyle {
+            color: flat_color(class).map(|part| f32::from(part) / 255.0),
+            opacity: 1.0,
+        };
+    }
+    style.tint.stops.iter_mut().for_each(|(_, color)| color[2] = 0.0);
+    style.haze[2] = 0.0;
+    style.light.shadow[2] = 0.0;
+    style.light.sunlit[2] = 0.0;
+    style.wall[2] = 0.0;
+    style
+}
+
+/// The class that a sample of the ground shows; `None` where it shows ground. Any other colour fails.
+pub(crate) fn class_of(ground: &[u8]) -> Option<AreaClass> {
+    if ground[2] == 0 {
+        return None;
+    }
+    let class = AreaClass::ALL.into_iter().find(|class| ground[..3] == flat_color(*class));
+    assert!(class.is_some(), "a mixed colour: {ground:?}");
+    class
+}
