@@ -11,7 +11,7 @@ use corniche_tileset::{FilePackage, Manifest};
 use indicatif::ProgressBar;
 
 use crate::{
-    args::{Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportRoadsArgs, Format},
+    args::{Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportRoadsArgs, ExportTarget},
     exit::ExitCode,
     failure::Failure,
     interrupt, messages,
@@ -32,7 +32,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
 }
 
 fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
-    let format = format(args.format, &args.output)?;
+    let format = format(&args.target)?;
     let coordinates = match (args.crs, args.heights) {
         (ExportCrs::Package, None) => Coordinates::Package,
         (ExportCrs::Wgs84, None) => Coordinates::Wgs84,
@@ -43,7 +43,7 @@ fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
             ));
         }
     };
-    let package = FilePackage::open(&args.package)?;
+    let package = FilePackage::open(&args.target.package)?;
     let request = RoadsRequest {
         format,
         level: args.level,
@@ -54,20 +54,20 @@ fn roads(args: &ExportRoadsArgs) -> Result<ExitCode, Failure> {
         memory_bytes: MEMORY_BYTES,
     };
     let name = format!("roads.{}", format.ending());
-    let existing = existing_of(args.overwrite);
-    let output = NamedOutput::create(&args.output, existing, name, &[&args.package])?;
+    let existing = existing_of(args.target.overwrite);
+    let output = NamedOutput::create(&args.target.output, existing, name, &[&args.target.package])?;
     let bars = Bars::default();
     let exported = export_roads(&package, &request, &output.path(), &bars);
     bars.end();
-    let summary = exported.map_err(|error| named(error, &args.output))?;
+    let summary = exported.map_err(|error| named(error, &args.target.output))?;
     let size = output.place()?;
     messages::note(&to_text(args, &summary, package.manifest(), size));
     Ok(ExitCode::Done)
 }
 
 fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
-    let format = format(args.format, &args.output)?;
-    let package = FilePackage::open(&args.package)?;
+    let format = format(&args.target)?;
+    let package = FilePackage::open(&args.target.package)?;
     let request = AreasRequest {
         format,
         level: args.level,
@@ -83,12 +83,12 @@ fn areas(args: &ExportAreasArgs) -> Result<ExitCode, Failure> {
         memory_bytes: MEMORY_BYTES,
     };
     let name = format!("areas.{}", format.ending());
-    let existing = existing_of(args.overwrite);
-    let output = NamedOutput::create(&args.output, existing, name, &[&args.package])?;
+    let existing = existing_of(args.target.overwrite);
+    let output = NamedOutput::create(&args.target.output, existing, name, &[&args.target.package])?;
     let bars = Bars::default();
     let exported = export_areas(&package, &request, &output.path(), &bars);
     bars.end();
-    let summary = exported.map_err(|error| named(error, &args.output))?;
+    let summary = exported.map_err(|error| named(error, &args.target.output))?;
     let size = output.place()?;
     if summary.unjoined > 0 {
         messages::warning(&format!(
@@ -113,7 +113,7 @@ fn areas_to_text(
     };
     format!(
         "{}: {} areas of level {}, {:.3} km², {} polygons, {} points, {}\ncoordinates: {}\nto be shown with it: {}",
-        args.output.display(),
+        args.target.output.display(),
         count(summary.areas),
         summary.level,
         summary.area_m2 / 1e6,
@@ -133,8 +133,9 @@ fn named(error: ExportError, target: &Path) -> Failure {
 }
 
 /// The format that is named, or that of the ending.
-fn format(named: Option<Format>, output: &Path) -> Result<VectorFormat, Failure> {
-    let named = named.map(VectorFormat::from);
+fn format(target: &ExportTarget) -> Result<VectorFormat, Failure> {
+    let ExportTarget { format, output, .. } = target;
+    let named = format.map(VectorFormat::from);
     named.or_else(|| VectorFormat::of_path(output)).ok_or_else(|| {
         let endings = VectorFormat::ALL.map(|format| format!(".{}", format.ending())).join(", ");
         Failure::unusable(format!(
@@ -163,7 +164,7 @@ fn to_text(
     };
     format!(
         "{}: {what} of level {}, {}, {} vertices, {}\ncoordinates: {}\nheights: {}\nto be shown with it: {}",
-        args.output.display(),
+        args.target.output.display(),
         summary.level,
         length((summary.length_2d_m * 1e6).round() as u64),
         count(summary.vertices),

@@ -12,8 +12,9 @@ use crate::{
     error::ExportError,
     observer::{Observer, Stage, stop_if_asked},
     places::Places,
+    read,
     request::{AreasRequest, Coordinates},
-    scratch::FileScratch,
+    scratch::{self, FileScratch},
     vector::{Field, FieldKind, Layer, Record, Shape, ShapeKind, Value, VectorFile, VectorFormat},
 };
 
@@ -86,18 +87,12 @@ pub fn export_areas(
     if manifest.areas.is_none() {
         return Err(ExportError::NoAreas { package: package.path().to_path_buf() });
     }
-    let finest = manifest.frame.max_level();
-    let level = request.level.unwrap_or(finest);
-    if level > finest {
-        let package = package.path().to_path_buf();
-        return Err(ExportError::NoLevel { package, level, finest });
-    }
+    let level = read::level(package, request.level)?;
     if request.format == VectorFormat::GeoJson && request.coordinates == Coordinates::Package {
         return Err(ExportError::GeoJsonPlanCrs);
     }
     let places = Places::new(manifest, request.coordinates)?;
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let folder = folder.unwrap_or(Path::new("."));
+    let folder = scratch::folder_of(path);
     let sort = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
     let scratch = FileScratch::create(folder).map_err(sort)?;
     let mut sorter = Sorter::new(&scratch, request.memory_bytes);

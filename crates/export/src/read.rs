@@ -15,6 +15,17 @@ use crate::{
 /// Positions along each side of a tile that tell where it is: enough for tiles that the CRS bends.
 const SIDE: usize = 9;
 
+/// The level that is asked for, if the package has it; else the finest.
+pub(crate) fn level(package: &FilePackage, wanted: Option<u8>) -> Result<u8, ExportError> {
+    let finest = package.manifest().frame.max_level();
+    let level = wanted.unwrap_or(finest);
+    if level > finest {
+        let package = package.path().to_path_buf();
+        return Err(ExportError::NoLevel { package, level, finest });
+    }
+    Ok(level)
+}
+
 /// The tiles of a level that may hold roads of the bounds, in the package's order.
 pub(crate) fn tiles(
     package: &FilePackage,

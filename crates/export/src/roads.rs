@@ -16,7 +16,7 @@ use crate::{
     places::Places,
     read,
     request::{Coordinates, RoadsRequest},
-    scratch::FileScratch,
+    scratch::{self, FileScratch},
     vector::{Layer, Record, Shape, ShapeKind, VectorFile, VectorFormat},
     ways::Ways,
 };
@@ -54,18 +54,12 @@ pub fn export_roads(
     if manifest.inputs.iter().all(|input| input.kind != "osm") {
         return Err(ExportError::NoRoads { package: package.path().to_path_buf() });
     }
-    let finest = manifest.frame.max_level();
-    let level = request.level.unwrap_or(finest);
-    if level > finest {
-        let package = package.path().to_path_buf();
-        return Err(ExportError::NoLevel { package, level, finest });
-    }
+    let level = read::level(package, request.level)?;
     if request.format == VectorFormat::GeoJson && request.coordinates == Coordinates::Package {
         return Err(ExportError::GeoJsonCrs);
     }
     let places = Places::new(manifest, request.coordinates)?;
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let folder = folder.unwrap_or(Path::new("."));
+    let folder = scratch::folder_of(path);
     let sort = |source| ExportError::Sort { folder: folder.to_path_buf(), source };
     let scratch = FileScratch::create(folder).map_err(sort)?;
     let tiles = read::tiles(package, level, request.bounds.as_ref())?;

@@ -21,8 +21,9 @@ pub(crate) enum Export {
     Areas(Box<ExportAreasArgs>),
 }
 
+// What is read, and the file that is written.
 #[derive(Debug, Args)]
-pub(crate) struct ExportRoadsArgs {
+pub(crate) struct ExportTarget {
     /// The package
     pub(crate) package: PathBuf,
     /// The file to write; its ending is its format: .gpkg, .fgb, .geojson or .csv
@@ -34,6 +35,12 @@ pub(crate) struct ExportRoadsArgs {
     /// The format of a file with another ending
     #[arg(short, long, value_enum, value_name = "FORMAT")]
     pub(crate) format: Option<Format>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportRoadsArgs {
+    #[command(flatten)]
+    pub(crate) target: ExportTarget,
     /// The level whose roads are taken [default: the finest]
     #[arg(long, value_name = "Z")]
     pub(crate) level: Option<u8>,
@@ -57,17 +64,8 @@ pub(crate) struct ExportRoadsArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ExportAreasArgs {
-    /// The package
-    pub(crate) package: PathBuf,
-    /// The file to write; its ending is its format: .gpkg, .fgb, .geojson or .csv
-    #[arg(short, long, value_name = "FILE")]
-    pub(crate) output: PathBuf,
-    /// Replace the file if it exists, once the new one is complete; if it is a link, replace the file it leads to
-    #[arg(short = 'O', long)]
-    pub(crate) overwrite: bool,
-    /// The format of a file with another ending
-    #[arg(short, long, value_enum, value_name = "FORMAT")]
-    pub(crate) format: Option<Format>,
+    #[command(flatten)]
+    pub(crate) target: ExportTarget,
     /// The level whose areas are taken [default: the finest]
     #[arg(long, value_name = "Z")]
     pub(crate) level: Option<u8>,

@@ -23,7 +23,9 @@ use clap::{
 
 pub(crate) use build::{BuildArgs, PlanArgs, ReportArgs, WorkArgs};
 pub(crate) use drawing::{FlyArgs, Lod, RenderArgs};
-pub(crate) use export::{Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportRoadsArgs, Format};
+pub(crate) use export::{
+    Export, ExportAreasArgs, ExportArgs, ExportCrs, ExportRoadsArgs, ExportTarget,
+};
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::Roads;
 pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
