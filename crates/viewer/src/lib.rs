@@ -1,7 +1,7 @@
 //! Package to pixels.
 //!
 //! ```text
-//!  package ──► tiles ──► lod::select ──► scene ──► gpu: terrain, roads, composite ──► picture
+//!  package ──► tiles ──► lod::select ──► scene ──► gpu: terrain, areas, roads, composite ──► picture
 //!                 ▲            │
 //!                 └─ requests ─┘
 //! ```

@@ -67,9 +67,10 @@ fn passes_take_some_time_and_no_more_than_the_frame() {
         let frame_ms = started.elapsed().as_secs_f64() * 1e3;
         let passes = timer.read(&gpu).unwrap();
         println!("{method:?}: {passes:?} of {frame_ms:.2} ms");
-        let sum_ms = passes.terrain_ms + passes.roads_ms + passes.composite_ms;
+        let sum_ms = passes.total_ms();
         assert!(sum_ms <= frame_ms, "{passes:?} in {frame_ms} ms");
         assert!(passes.terrain_ms > 0.0 && passes.composite_ms > 0.0, "{passes:?}");
+        assert!(passes.areas_ms.abs() < f64::EPSILON, "no areas, no time: {passes:?}");
         passes
     };
     // The timer can be used for many frames; the smallest of several times is the least disturbed by other programs.

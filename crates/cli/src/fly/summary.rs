@@ -91,7 +91,7 @@ fn times(runs: &[MeasuredRun]) -> String {
     ]);
     // Without areas there is no such pass, and nothing to tell of it.
     let mut passes = runs.iter().flat_map(MeasuredRun::counted).filter_map(|frame| frame.passes);
-    let has_areas = passes.any(|passes| passes.areas_ms >= 0.005);
+    let has_areas = passes.any(|passes| passes.areas_ms > 0.0);
     for run in runs {
         let draw_ms: Vec<f64> = run.counted().iter().map(|frame| frame.draw_ms).collect();
         let pass = |of: &dyn Fn(&PassTimes) -> f64| {

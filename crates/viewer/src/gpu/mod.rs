@@ -8,6 +8,9 @@
 //!                                                    road blocks ─────┘
 //! ```
 //!
+//! Between the terrain and the roads, an areas pass paints areas over the ground's colour, if there are some; depth and owner
+//! say where, and a stencil counts.
+//!
 //! # Labels
 //!
 //! The label of a sample says which class of road it shows, and which of its bands (`labels.rs`). More important roads have larger

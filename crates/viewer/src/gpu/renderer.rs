@@ -3,8 +3,14 @@ use wgpu::{CommandEncoder, LoadOp};
 use super::{
     Gpu, GpuError,
     drawables::{
-        areas::StencilAreas, average::Average, composite::Composite, difference::Difference,
-        geo_roads, level_connectors::LevelConnectors, sv_roads, terrain::Terrain,
+        areas::{AreaTile, StencilAreas},
+        average::Average,
+        composite::Composite,
+        difference::Difference,
+        geo_roads,
+        level_connectors::LevelConnectors,
+        sv_roads,
+        terrain::Terrain,
     },
     passes::{begin, begin_with_stencil},
     picture::Picture,
@@ -71,6 +77,10 @@ impl Renderer {
         let connectors = LevelConnectors::new(gpu, &borders, reference_of, &shown);
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
+        let areas = areas_of(tiles, view);
+        if let Some(timer) = &mut timer {
+            timer.begin(!areas.is_empty());
+        }
         let mut mark = |encoder: &mut CommandEncoder, number| {
             if let Some(timer) = &mut timer {
                 timer.mark(encoder, number);
@@ -79,7 +89,7 @@ impl Renderer {
         mark(&mut encoder, 0);
         self.terrain_pass(gpu, &mut encoder, &shared, tiles, view, targets);
         mark(&mut encoder, 1);
-        self.areas_pass(gpu, &mut encoder, &shared, tiles, view, targets);
+        self.areas_pass(gpu, &mut encoder, &shared, &areas, view, targets);
         mark(&mut encoder, 2);
         self.roads_pass(&mut encoder, &shared, (tiles, &shown), &connectors, view, targets);
         mark(&mut encoder, 3);
@@ -144,24 +154,16 @@ impl Renderer {
         gpu: &Gpu,
         encoder: &mut CommandEncoder,
         shared: &SharedBindings,
-        tiles: &[DrawTile<'_>],
+        areas: &[AreaTile<'_>],
         view: &FrameView<'_>,
         targets: &Targets,
     ) {
-        let tiles: Vec<_> = tiles
-            .iter()
-            .enumerate()
-            .filter_map(|(index, tile)| tile.areas(index, view))
-            .filter(|(_, areas, _)| {
-                areas.classes().iter().any(|of| view.style.area(of.class).is_drawn())
-            })
-            .collect();
-        if tiles.is_empty() {
+        if areas.is_empty() {
             return;
         }
         let stencil = &targets.stencil(gpu).view;
         let mut pass = begin_with_stencil(encoder, "areas", &targets.ground.view, stencil);
-        self.areas.draw(gpu, &mut pass, shared, &tiles, view);
+        self.areas.draw(gpu, &mut pass, shared, areas, view);
     }
 
     /// Labels of roads: of each tile those of the classes that are shown there.
@@ -202,4 +204,13 @@ impl Renderer {
         let mut pass = begin(encoder, "composite", &into, None, LoadOp::Clear(()));
         self.composite.draw(gpu, &mut pass, shared, view, targets);
     }
+}
+
+/// The tiles that have areas of a class that is drawn.
+fn areas_of<'a>(tiles: &'a [DrawTile<'_>], view: &FrameView<'_>) -> Vec<AreaTile<'a>> {
+    let has_drawn = |(_, areas, _): &AreaTile<'_>| {
+        areas.classes().iter().any(|of| view.style.area(of.class).is_drawn())
+    };
+    let tiles = tiles.iter().enumerate();
+    tiles.filter_map(|(index, tile)| tile.areas(index, view)).filter(has_drawn).collect()
 }

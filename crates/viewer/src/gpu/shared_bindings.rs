@@ -6,7 +6,8 @@
 //! | 1 | a tile's uniform block | with each tile, by an offset |
 //! | 2 | depth and owner of each sample of the ground | with each frame |
 //!
-//! The terrain has others: 2 for its colours, 3 for a tile's textures ([`tile_textures`](super::tile_textures)).
+//! The terrain has others: 2 for its colours, 3 for a tile's textures ([`tile_textures`](super::tile_textures)). Areas have 3
+//! for their colours.
 
 use std::num::NonZeroU64;
 

@@ -20,7 +20,7 @@ const FRAMES: usize = 4;
 pub struct PassTimes {
     /// Terrain.
     pub terrain_ms: f64,
-    /// Areas.
+    /// Areas; 0 where none were drawn.
     pub areas_ms: f64,
     /// Roads.
     pub roads_ms: f64,
@@ -43,6 +43,8 @@ pub struct PassTimer {
     free: Vec<usize>,
     /// The readable buffer of the frame that is being recorded.
     current: Option<usize>,
+    /// For each readable buffer whether its frame has areas.
+    has_areas: [bool; FRAMES],
     sender: Sender<Mapped>,
     receiver: Receiver<Mapped>,
     period_ns: f64,
@@ -86,17 +88,23 @@ impl PassTimer {
             readable: std::array::from_fn(|_| readable()),
             free: (0..FRAMES).collect(),
             current: None,
+            has_areas: [false; FRAMES],
             sender,
             receiver,
             period_ns: f64::from(gpu.queue.get_timestamp_period()),
         })
     }
 
+    /// Begins a frame. Without areas it has no areas pass, though some time passes between the marks around it.
+    pub(crate) fn begin(&mut self, has_areas: bool) {
+        self.current = self.free.pop();
+        if let Some(slot) = self.current {
+            self.has_areas[slot] = has_areas;
+        }
+    }
+
     /// Notes that the part with this number begins, 0 first; with [`MARKS`] − 1, that the last part has ended.
     pub(crate) fn mark(&mut self, encoder: &mut CommandEncoder, number: u32) {
-        if number == 0 {
-            self.current = self.free.pop();
-        }
         let Some(slot) = self.current else { return };
         encoder.write_timestamp(&self.marks, number);
         if number == MARKS - 1 {
@@ -138,19 +146,25 @@ impl PassTimer {
         while let Ok((slot, result)) = self.receiver.try_recv() {
             self.free.push(slot);
             result.map_err(|source| ReadBackError::Map { source })?;
-            newest = Some(self.times(&self.readable[slot])?);
+            newest = Some(self.times(slot)?);
             self.readable[slot].unmap();
         }
         Ok(newest)
     }
 
-    fn times(&self, readable: &Buffer) -> Result<PassTimes, ReadBackError> {
-        let mapped =
-            readable.get_mapped_range(..).map_err(|source| ReadBackError::Range { source })?;
+    fn times(&self, slot: usize) -> Result<PassTimes, ReadBackError> {
+        let mapped = self.readable[slot]
+            .get_mapped_range(..)
+            .map_err(|source| ReadBackError::Range { source })?;
         let (words, _) = mapped.as_chunks::<8>();
         let marks: Vec<u64> = words.iter().map(|word| u64::from_le_bytes(*word)).collect();
         // If the clock was set back in between, the time counts as 0.
         let ms = |k: usize| marks[k + 1].saturating_sub(marks[k]) as f64 * self.period_ns / 1e6;
-        Ok(PassTimes { terrain_ms: ms(0), areas_ms: ms(1), roads_ms: ms(2), composite_ms: ms(3) })
+        Ok(PassTimes {
+            terrain_ms: ms(0),
+            areas_ms: if self.has_areas[slot] { ms(1) } else { 0.0 },
+            roads_ms: ms(2),
+            composite_ms: ms(3),
+        })
     }
 }

@@ -375,7 +375,8 @@ fn areas_can_be_left_out_where_the_package_has_some() {
     let mut told = Told::new();
     for has_areas in [true, false] {
         told.has_areas = has_areas;
-        let (texts, _) = lay_out([1280.0, 1000.0], &mut usual(), &told.content(), &[&[], &[]]);
+        // So wide that the status line has room for everything.
+        let (texts, _) = lay_out([4000.0, 1000.0], &mut usual(), &told.content(), &[&[], &[]]);
         assert_eq!(texts.iter().any(|(words, ..)| words == "Areas"), has_areas);
         let timed = texts.iter().any(|(words, ..)| words.contains(" areas 0.0,"));
         assert_eq!(timed, has_areas, "{texts:?}");

@@ -16,7 +16,7 @@
 //! A drawable may use
 //!
 //! - the leaf modules of `gpu`: `pipeline`, `bindings`, `shared_bindings`, `uniforms`, `passes`, `formats`, `targets`,
-//!   `picture`, `ground_buffers`, `tile_textures` and `road_instances`;
+//!   `picture`, `ground_buffers`, `area_buffers`, `tile_textures` and `road_instances`;
 //! - of the crate: `tiles`, `scene`, `options`, `frame_view` and `style`.
 //!
 //! It uses neither the renderer nor another drawable. There is one exception: [`level_connectors`] makes instances in the
@@ -32,7 +32,7 @@
 //! 4. If it draws into a texture of its own: add that to `Targets`, and its format to `formats`.
 //! 5. Add it to `Renderer`: a field, a line in `Renderer::new`, and a call in the pass in which it is drawn. Things over the
 //!    map are drawn after the composite. `passes::begin` begins a pass, with cleared targets or with what is in them. A new
-//!    pass is counted to one of the three times that `timings` measures.
+//!    pass is counted to one of the four times that `timings` measures.
 //! 6. If users choose it or how it looks: add that to `RoadOptions` or to a struct beside it, and to `Style`; from there to
 //!    the drawable's `rows`, or to `uniforms` if other drawables need it too.
 
