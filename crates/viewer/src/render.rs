@@ -83,7 +83,7 @@ pub struct RenderReport {
     pub road_segments: u64,
     /// Polygons of areas drawn; one that lies in several tiles counts in each.
     pub area_polygons: u64,
-    /// Points of their outlines.
+    /// Points of their outlines, with those on borders of tiles.
     pub area_points: u64,
     /// Tiles in which some road may have been drawn narrower than its style says, because half its width is more than
     /// the level's width margin.
