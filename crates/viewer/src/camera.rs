@@ -168,7 +168,8 @@ impl Camera {
     }
 
     /// The point that the camera looks at.
-    pub(crate) fn target_in_world(&self) -> DVec3 {
+    #[must_use]
+    pub fn target_in_world(&self) -> DVec3 {
         self.eye_in_world - self.world_from_view.z_axis * self.focus_m
     }
 
