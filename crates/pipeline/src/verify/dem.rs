@@ -20,11 +20,7 @@ pub(crate) fn verify(
 ) -> Result<(), VerifyError> {
     let inputs = Inputs::find(&settings.dem, OtherInputs::default())?;
     let compared = compare_all(package, settings, &inputs, report, observer);
-    match &compared {
-        Err(VerifyError::Interrupted) => compared,
-        // A changed input may be the cause of any other error, so it is reported instead.
-        _ => inputs.check_unchanged().map_err(VerifyError::from).and(compared),
-    }
+    VerifyError::unless_changed(&inputs, compared)
 }
 
 fn compare_all(

@@ -4,7 +4,11 @@ use std::path::PathBuf;
 
 use corniche_tileset::OpenError;
 
-use crate::{BuildError, inputs::InputError, workers::Interrupted};
+use crate::{
+    BuildError,
+    inputs::{InputError, Inputs},
+    workers::Interrupted,
+};
 
 /// Why a package could not be verified.
 #[derive(Debug, thiserror::Error)]
@@ -98,5 +102,15 @@ impl From<BuildError> for VerifyError {
 impl From<InputError> for VerifyError {
     fn from(error: InputError) -> Self {
         BuildError::from(error).into()
+    }
+}
+
+impl VerifyError {
+    /// What came of a comparison with these files. A changed file may be the cause of any other error, so it is reported instead.
+    pub(super) fn unless_changed(inputs: &Inputs, compared: Result<(), Self>) -> Result<(), Self> {
+        match &compared {
+            Err(Self::Interrupted) => compared,
+            _ => inputs.check_unchanged().map_err(Self::from).and(compared),
+        }
     }
 }

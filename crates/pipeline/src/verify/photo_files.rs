@@ -39,11 +39,7 @@ pub(crate) fn verify(
     let others = OtherInputs { photo: &settings.photo, osm: &[], polygon: None };
     let inputs = Inputs::find(&[], others)?;
     let compared = compare_all(package, settings, &inputs, findings, observer);
-    match &compared {
-        Err(VerifyError::Interrupted) => compared,
-        // A changed input may be the cause of any other error, so it is reported instead.
-        _ => inputs.check_unchanged().map_err(VerifyError::from).and(compared),
-    }
+    VerifyError::unless_changed(&inputs, compared)
 }
 
 fn compare_all(

@@ -211,6 +211,31 @@ pub(crate) enum Content<'a> {
     Stored(StoredSection<'a>),
 }
 
+/// The payload of a tile with one more section, and the sizes of all; `already` says in an error that it has one of this kind.
+#[cfg(feature = "write")]
+pub(crate) fn with_section(
+    payload: &[u8],
+    tile: TileId,
+    (kind, content): (Kind, Content<'_>),
+    already: &'static str,
+) -> Result<(Vec<u8>, Vec<SectionSize>), crate::payload::damage::EncodeError> {
+    use crate::payload::damage::EncodeError;
+
+    let refused = |what| EncodeError::Unencodable { tile, section: kind.name(), what };
+    let sections = open(payload, tile).map_err(|_| refused("beside a damaged payload"))?;
+    let mut contents = Vec::with_capacity(sections.len() + 1);
+    for stored in sections {
+        let known =
+            stored.known_kind().ok_or_else(|| refused("beside a section of unknown kind"))?;
+        if known == kind {
+            return Err(refused(already));
+        }
+        contents.push((known, Content::Stored(stored)));
+    }
+    contents.push((kind, content));
+    seal(tile, &contents)
+}
+
 /// Puts header, table and sections together; compresses each section where that makes it smaller.
 #[cfg(feature = "write")]
 pub(crate) fn seal(

@@ -159,19 +159,7 @@ pub fn with_areas(
     tile: TileId,
     areas: AreasSection,
 ) -> Result<(Vec<u8>, SectionSize), EncodeError> {
-    let refused = |what| EncodeError::Unencodable { tile, section: Kind::Areas.name(), what };
-    let sections =
-        envelope::open(payload, tile).map_err(|_| refused("beside a damaged payload"))?;
-    let mut contents = Vec::with_capacity(sections.len() + 1);
-    for stored in sections {
-        let kind =
-            stored.known_kind().ok_or_else(|| refused("beside a section of unknown kind"))?;
-        if kind == Kind::Areas {
-            return Err(refused("beside other areas"));
-        }
-        contents.push((kind, Content::Stored(stored)));
-    }
-    contents.push((Kind::Areas, Content::Raw(areas.bytes)));
-    let (bytes, sizes) = envelope::seal(tile, &contents)?;
+    let section = (Kind::Areas, Content::Raw(areas.bytes));
+    let (bytes, sizes) = envelope::with_section(payload, tile, section, "beside other areas")?;
     Ok((bytes, sizes.last().copied().unwrap_or_default()))
 }

@@ -129,20 +129,8 @@ pub fn with_photo(
     tile: TileId,
     photo: &PhotoSection,
 ) -> Result<Vec<u8>, EncodeError> {
-    let refused = |what| EncodeError::Unencodable { tile, section: Kind::Photo.name(), what };
-    let sections =
-        envelope::open(payload, tile).map_err(|_| refused("beside a damaged payload"))?;
-    let mut contents = Vec::with_capacity(sections.len() + 1);
-    for stored in sections {
-        let kind =
-            stored.known_kind().ok_or_else(|| refused("beside a section of unknown kind"))?;
-        if kind == Kind::Photo {
-            return Err(refused("beside another photo"));
-        }
-        contents.push((kind, Content::Stored(stored)));
-    }
-    contents.push((Kind::Photo, Content::Packed(&photo.bytes)));
-    Ok(envelope::seal(tile, &contents)?.0)
+    let section = (Kind::Photo, Content::Packed(&photo.bytes));
+    Ok(envelope::with_section(payload, tile, section, "beside another photo")?.0)
 }
 
 /// The photo of a payload as it is stored there; `None` if it has none.
