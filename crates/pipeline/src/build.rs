@@ -109,18 +109,6 @@ pub(crate) fn warn(context: &Context<'_>) {
     warn_of_other_grids(context.grid, context.observer);
     warn_of_unused_latitude(&context.settings.terrain, context.grid, context.observer);
     warn_of_other_roads(context);
-    warn_of_dropped_photos(context);
-}
-
-/// Warns if the package that gives the terrain has photos, and none are given: its terrain is taken, and not its photos.
-fn warn_of_dropped_photos(context: &Context<'_>) {
-    let GroundSource::Package(terrain) = context.source else { return };
-    if context.photo.is_none() && terrain.manifest().settings.photo.is_some() {
-        context.observer.warning(&format!(
-            "{} has photos, which are not taken with its terrain; to have photos, give the files with --photo",
-            terrain.path().display(),
-        ));
-    }
 }
 
 /// Warns if the package that gives the terrain has roads that were made with other settings: who brings new roads onto it each week

@@ -11,7 +11,8 @@ use std::{
 
 use corniche_geom::TileId;
 use corniche_pipeline::{
-    CheckId, Needs, PhotoSettings, Silent, VerifyError, VerifyReport, VerifySettings, build, verify,
+    CheckId, Needs, PhotoChoice, PhotoSettings, Silent, VerifyError, VerifyReport, VerifySettings,
+    build, verify,
 };
 use corniche_testing::ColourImage;
 use corniche_tileset::{
@@ -56,8 +57,8 @@ impl Apart {
         let photo = photo.write(folder.path(), "photo.tif", |_| {});
         let path = at("sound.pmtiles");
         let mut settings = settings(at("dem.tif"), None, path.clone(), Options::plain(2.0));
-        settings.plan.photo =
-            Some(PhotoSettings { files: vec![photo], levels: Some(1), quality: 85 });
+        let photos = PhotoSettings { files: vec![photo], levels: Some(1), quality: 85 };
+        settings.plan.photo = PhotoChoice::Files(photos);
         build(&settings, &Silent).unwrap();
         Self::of(folder, &path)
     }
@@ -335,10 +336,8 @@ fn photos_beside_a_package_without_any_are_refused() {
 #[test]
 fn fields_of_photos_in_the_manifest() {
     type Change = fn(&mut Manifest);
-    let counts: [Change; 2] = [
-        |manifest| manifest.photos[1].tiles += 1,
-        |manifest| manifest.settings.photo = None,
-    ];
+    let counts: [Change; 2] =
+        [|manifest| manifest.photos[1].tiles += 1, |manifest| manifest.settings.photo = None];
     // Levels that the package does not have, or in another order, are refused by readers.
     let mut apart = Apart::sound();
     apart.manifest.photos[1].level = 5;

@@ -141,7 +141,7 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         Command::Merge(args) => args.planned.files().unwrap(),
         Command::Verify(args) => {
             let files = args.files().unwrap();
-            (files.package, [files.dem, files.osm].concat())
+            (files.package, [files.dem, files.photo, files.osm].concat())
         }
         _ => panic!("{arguments:?} has no files to tell apart"),
     };
@@ -152,6 +152,7 @@ fn options_with_several_values_leave_positional_arguments_alone() {
         ("part --store", "p.json", "--step top"),
         ("verify --dem", "p.pmtiles", "--threads 1"),
         ("verify --osm", "p.pmtiles", "--threads 1"),
+        ("verify --photo", "p.pmtiles", "--threads 1"),
     ];
     let names: Vec<&str> = known.iter().map(|(name, _, _)| *name).collect();
     assert_eq!(found, names, "a new option with several values needs a line here");

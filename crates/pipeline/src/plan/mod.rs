@@ -22,7 +22,7 @@ pub use build_plan::{BuildPlan, FrcTableRecord, PlannedGrid, PlannedLevel};
 pub use estimate::{Estimate, MemoryEstimate, Rates};
 pub(crate) use facts::road_differences;
 pub(crate) use opened::Opened;
-pub(crate) use opened_photos::OpenedPhotos;
+pub(crate) use opened_photos::{OpenedPhotos, PhotoSource};
 
 use crate::{BuildError, Observer, PlanSettings, Resources, memory_shares::MemoryShares};
 
