@@ -1,6 +1,5 @@
 //! Harness of the scenarios: runs the real binary on real and made-up inputs.
 
-mod area_extract;
 #[cfg(target_os = "linux")]
 mod display;
 mod job;
@@ -16,8 +15,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-pub use area_extract::extract_with_areas;
-pub use corniche_testing::{real_data, root, sample};
+pub use corniche_testing::{extract_with_areas, real_data, root, sample};
 #[cfg(target_os = "linux")]
 pub use display::{Display, without_display};
 pub use job::{Job, When};

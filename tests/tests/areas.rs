@@ -192,3 +192,24 @@ fn tables_that_are_none_and_areas_without_an_extract_are_refused() {
     assert_eq!(found["settings"]["areas"]["table"], "own");
     assert_eq!(found["areas"]["kept"][0]["class"], "rock");
 }
+
+/// Who brings new roads onto the terrain each week may have forgotten `--areas`.
+#[test]
+fn areas_that_are_not_asked_for_again_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let (dem, osm) = (sample("pass/pass-dem.tif"), extract_with_areas(folder.path()));
+    let old = at("old.pmtiles");
+    let words = ["--dem", text(&dem), "--osm", text(&osm), "--max-error", "10"];
+    let words = [&["build", "-q", "-o", text(&old)], &words[..], &["--areas", "default"]].concat();
+    succeed(corniche(words));
+    let again = |more: &[&str]| {
+        let new = at("new.pmtiles");
+        let words = ["build", "-q", "--terrain", text(&old), "--osm", text(&osm), "-O", "-o"];
+        succeed(corniche([&words[..], &[text(&new)], more].concat())).err
+    };
+    let said = again(&[]);
+    assert!(said.contains("--areas is not given, it was made with default"), "{said}");
+    let said = again(&["--areas", "default"]);
+    assert!(!said.contains("other settings"), "{said}");
+}

@@ -4,7 +4,7 @@
 
 use std::{fs, path::PathBuf, time::Duration};
 
-use corniche_testing::Raster;
+use corniche_testing::{ColourImage, Raster};
 use e2e::{Job, real_data, text};
 
 /// A DEM of `side` × `side` samples, in tiles: hills, a plain, and a lake without heights. Around the roads of the sample `pass`.
@@ -66,6 +66,29 @@ fn a_build_stays_within_its_memory() {
     let job = Job::new(&options).of([dem, e2e::sample("pass/pass.osm.pbf")]);
     let peak = peak_bytes(&job, &[]);
     assert!((20 << 20..=256 << 20).contains(&peak), "{} MiB", peak >> 20);
+}
+
+/// So it is with photos: 36 million pixels of three bands, which take 108 MB.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_build_with_photos_stays_within_its_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = large_dem(folder.path(), 3600);
+    let colour = |[x, y]: [f64; 2]| vec![(x / 90.0) as u8, (y / 70.0) as u8, ((x + y) / 50.0) as u8];
+    let photo = ColourImage {
+        epsg: 32632,
+        size: [6000; 2],
+        transform: [521_000.0, 5.5, 0.0, 5_214_000.0, 0.0, -5.5],
+        value: &colour,
+        interpretations: &ColourImage::RGB,
+    };
+    let photo = photo.write(folder.path(), "photo.tif", |_| {});
+    let options = ["--max-error", "20", "--threads", "4", "--memory", "256M"];
+    let job = Job::new(&options).of([dem, e2e::sample("pass/pass.osm.pbf")]);
+    let peak = peak_bytes(&job, &["--photo", text(&photo), "--photo-levels", "1"]);
+    assert!((20 << 20..=256 << 20).contains(&peak), "{} MiB", peak >> 20);
+    let photos = e2e::manifest(&job.package())["photos"].as_array().unwrap().len();
+    assert!(photos > 2, "{photos} levels with photos");
 }
 
 /// A real extract with all its buildings: what is no road takes no memory either.

@@ -45,26 +45,41 @@ fn photos_on_terrain_make_the_package_of_a_whole_build() {
     assert!(build(&ground, &at("on-bare.pmtiles"), &[]) == part, "bounds");
 }
 
-/// The terrain is taken, and not the photos: they come from the command line. Credits stay, as of elevation files.
+/// Who brings new roads onto the terrain each week need not have the photos any more. `--photo off` leaves them out; credits stay, as of elevation
+/// files.
 #[test]
-fn photos_that_are_not_given_again_are_left_out_with_a_warning() {
+fn photos_of_the_terrain_stay_unless_they_are_off() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let west = photo(folder.path(), 0.05, "west.tif");
-    let _ = build(&inputs(&[&west]), &at("photo.pmtiles"), &[]);
+    let package = at("photo.pmtiles");
+    let whole = build(&inputs(&[&west]), &package, &["--photo-quality", "60"]);
+    fs::remove_file(&west).unwrap();
     let osm = sample("pass/pass.osm.pbf");
-    let (package, made) = (at("photo.pmtiles"), at("made.pmtiles"));
-    let words = ["build", "--terrain", text(&package), "--osm", text(&osm), "-o", text(&made)];
-    let ran = succeed(corniche(words));
-    assert!(ran.err.contains("photo.pmtiles has photos, which are not taken"), "{}", ran.err);
-    let dem = sample("pass/pass-dem.tif");
-    let words = ["build", "-q", "--dem", text(&dem), "--osm", text(&osm), "--max-error", "10"];
-    let credited = at("credited.pmtiles");
-    let more = ["--attribution", "Photos: nobody", "-o", text(&credited)];
-    let ran = succeed(corniche([&words[..], &more].concat()));
-    assert!(!ran.err.contains("photos"), "{}", ran.err);
-    assert!(fs::read(&made).unwrap() == fs::read(&credited).unwrap());
+    let ground = ["--terrain", text(&package), "--osm", text(&osm)].map(str::to_owned);
+    let made = at("made.pmtiles");
+    assert!(build(&ground, &made, &[]) == whole, "photos changed");
     succeed(corniche(["verify", text(&made)]));
+    let plan = at("plan.json");
+    let words = ["plan", "-o", text(&plan)].into_iter().map(str::to_owned);
+    succeed(corniche(words.chain(ground.clone())));
+    let (merged, steps) = in_parts(folder.path(), &plan);
+    assert!(merged == whole, "photos changed in parts");
+    assert!(!steps.contains(&"heights".to_owned()), "nothing is read: {steps:?}");
+    // How photos are coded cannot be changed without the files.
+    let quality = ["--photo-quality", "80", "-O", "-o", text(&made)].map(str::to_owned);
+    let words = ["build".to_owned()].into_iter().chain(ground.clone()).chain(quality);
+    let ran = corniche(words);
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(ran.err.contains("give them together with --photo FILE"), "{}", ran.err);
+
+    let dem = sample("pass/pass-dem.tif");
+    let bare = ["--dem", text(&dem), "--osm", text(&osm), "--max-error", "10"].map(str::to_owned);
+    let bare = build(&bare, &at("bare.pmtiles"), &["--attribution", "Photos: nobody"]);
+    assert!(build(&ground, &made, &["-O", "--photo", "off"]) == bare, "--photo off");
+    let config = at("settings.toml");
+    fs::write(&config, "[inputs]\nphoto = \"off\"\n[photo]\nquality = 60\n").unwrap();
+    assert!(build(&ground, &made, &["-O", "--config", text(&config)]) == bare, "settings file");
 }
 
 #[test]
@@ -77,32 +92,43 @@ fn photos_on_terrain_are_the_same_in_parts_and_after_a_stop() {
     let plan = at("plan.json");
     let words = ["plan", "-o", text(&plan)].into_iter().map(str::to_owned);
     succeed(corniche(words.chain(of_ground(&["--terrain", text(&plain)], &[&west]))));
-    let stores = [at("one"), at("two")];
-    let jobs = succeed(corniche(["jobs", text(&plan), "--slots", "2", "--least-work", "0.05"]));
+    let (merged, steps) = in_parts(folder.path(), &plan);
+    // Photos are read in parts, as heights are.
+    assert!(steps.iter().filter(|&step| step == "heights").count() > 1, "{steps:?}");
+    assert!(merged == whole, "parts make another package");
+    stop_and_go_on(&plain, &west);
+}
+
+/// Makes the parts of a plan in two stores, and the package of both; also the steps of the parts.
+fn in_parts(folder: &Path, plan: &Path) -> (Vec<u8>, Vec<String>) {
+    let jobs = succeed(corniche(["jobs", text(plan), "--slots", "2", "--least-work", "0.05"]));
     let jobs: Vec<serde_json::Value> =
         jobs.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-    let number = |step: &str| jobs.iter().filter(|job| job["step"] == step).count();
-    // Photos are read in parts, as heights are, and before the tiles are made.
-    assert!(number("heights") > 1, "{jobs:?}");
-    let top = jobs.iter().find(|job| job["step"] == "top").unwrap();
-    assert!(top["after"].as_array().unwrap().contains(&"heights".into()), "{top}");
     let (merge, parts) = jobs.split_last().unwrap();
     assert_eq!(merge["step"], "merge");
+    let steps: Vec<String> =
+        parts.iter().map(|job| job["step"].as_str().unwrap().to_owned()).collect();
+    // What is read comes before the tiles are made.
+    if let Some(top) = parts.iter().find(|job| job["step"] == "top") {
+        let after = top["after"].as_array().unwrap();
+        assert!(!steps.contains(&"heights".to_owned()) || after.contains(&"heights".into()));
+    }
+    let stores = ["one", "two"].map(|name| folder.join(name));
     for (index, job) in parts.iter().enumerate() {
         let args = job["args"].as_array().unwrap().iter().map(|word| word.as_str().unwrap());
         let [own, other] = [&stores[index % 2], &stores[(index + 1) % 2]];
-        let mut words = vec!["part", text(&plan), "-q"];
+        let mut words = vec!["part", text(plan), "-q"];
         words.extend(args);
         words.extend(["--store", text(own)]);
         words.extend(other.exists().then(|| text(other)));
         succeed(corniche(words));
     }
-    let merged = at("merged.pmtiles");
-    let [one, two] = stores.each_ref().map(|store| text(store));
-    let words = ["merge", text(&plan), "-q", "-o", text(&merged), "--store", one, two];
+    let merged = folder.join("merged.pmtiles");
+    let stores = stores.iter().filter(|store| store.exists()).map(|store| text(store));
+    let mut words = vec!["merge", text(plan), "-q", "-o", text(&merged), "--store"];
+    words.extend(stores);
     succeed(corniche(words));
-    assert!(fs::read(&merged).unwrap() == whole, "parts make another package");
-    stop_and_go_on(&plain, &west);
+    (fs::read(&merged).unwrap(), steps)
 }
 
 fn stop_and_go_on(plain: &Path, photo: &Path) {

@@ -10,12 +10,12 @@ use std::{
 use corniche_areas::AreaTable;
 use corniche_geom::Cell;
 use corniche_pipeline::{
-    OpenOptions, PhotoSettings, PlanOptions, PlanSettings, Polygon, Resources, RoadSettings,
-    TerrainRecord, TerrainSettings,
+    OpenOptions, PhotoChoice, PhotoSettings, PlanOptions, PlanSettings, Polygon, Resources,
+    RoadSettings, TerrainRecord, TerrainSettings,
 };
 use corniche_presets::{
     AreaOptions, BoundsChoice, InputFiles, OutputFiles, PhotoOptions, ReliefChoice, RoadOptions,
-    TerrainOptions, check_cell, class_filter, is_range, parse_memory,
+    TerrainOptions, check_cell, class_filter, is_photo_off, is_range, parse_memory,
 };
 use corniche_roads::ClassFilter;
 use corniche_tileset::ReliefLevels;
@@ -87,10 +87,12 @@ pub(crate) fn of(args: WorkArgs) -> Result<Work, Failure> {
     let given = [args.attribution, terrain.attribution.clone()];
     let attribution = given.into_iter().find(|credits| !credits.is_empty());
     let mut attribution = attribution.unwrap_or(base.attribution);
-    // The package whose terrain is taken may have the same photos.
-    let credit = args.photos.attribution.clone().filter(|credit| !attribution.contains(credit));
-    attribution.extend(credit);
-    let photo = photo_settings(&args.photo, &args.photos)?;
+    let photo = photo_choice(&args.photo, &args.photos)?;
+    if let PhotoChoice::Files(_) = photo {
+        // The package whose terrain is taken may have the same photos.
+        let credit = args.photos.attribution.filter(|credit| !attribution.contains(credit));
+        attribution.extend(credit);
+    }
     let osm = corniche_pipeline::extract_names(&args.osm)?;
     let areas = area_table(&args.areas, &osm)?;
     let cut = Cut {
@@ -212,17 +214,18 @@ fn relief_levels(choice: ReliefChoice) -> ReliefLevels {
     }
 }
 
-/// How photos are made; `None` where there are none.
-fn photo_settings(
-    names: &[PathBuf],
-    options: &PhotoOptions,
-) -> Result<Option<PhotoSettings>, Failure> {
+/// Which photos the package gets, and how they are made.
+fn photo_choice(names: &[PathBuf], options: &PhotoOptions) -> Result<PhotoChoice, Failure> {
+    // A settings file may say how photos are made that the command line does not want.
+    if is_photo_off(names) {
+        return Ok(PhotoChoice::Off);
+    }
     if names.is_empty() {
         return if options.is_empty() {
-            Ok(None)
+            Ok(PhotoChoice::OfTerrain)
         } else {
             Err(Failure::unusable(
-                "--photo-levels, --photo-quality and --photo-attribution have an effect only with photos; give them together with --photo FILE",
+                "--photo-levels, --photo-quality and --photo-attribution have an effect only with photos that are read; give them together with --photo FILE",
             ))
         };
     }
@@ -233,7 +236,7 @@ fn photo_settings(
         )));
     }
     let files = corniche_pipeline::photo_names(names)?;
-    Ok(Some(PhotoSettings { files, levels: options.levels, quality }))
+    Ok(PhotoChoice::Files(PhotoSettings { files, levels: options.levels, quality }))
 }
 
 /// The table of areas; `None` without.

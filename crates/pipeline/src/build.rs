@@ -26,7 +26,7 @@ use crate::{
     context::Context,
     inputs::InputKind,
     memory_shares::MemoryShares,
-    plan::{Opened, check_room, road_differences},
+    plan::{Opened, check_room, network_differences},
     settings_record,
     steps::{hashes, heights, merge, roads, tiles, top},
     terrain::ground::GroundSource,
@@ -108,35 +108,23 @@ pub fn build_on(
 pub(crate) fn warn(context: &Context<'_>) {
     warn_of_other_grids(context.grid, context.observer);
     warn_of_unused_latitude(&context.settings.terrain, context.grid, context.observer);
-    warn_of_other_roads(context);
-    warn_of_dropped_photos(context);
+    warn_of_other_network(context);
 }
 
-/// Warns if the package that gives the terrain has photos, and none are given: its terrain is taken, and not its photos.
-fn warn_of_dropped_photos(context: &Context<'_>) {
+/// Warns if the package that gives the terrain has roads or areas that were made with other settings: who brings new ones onto it each
+/// week may have forgotten an option.
+fn warn_of_other_network(context: &Context<'_>) {
     let GroundSource::Package(terrain) = context.source else { return };
-    if context.photo.is_none() && terrain.manifest().settings.photo.is_some() {
-        context.observer.warning(&format!(
-            "{} has photos, which are not taken with its terrain; to have photos, give the files with --photo",
-            terrain.path().display(),
-        ));
-    }
-}
-
-/// Warns if the package that gives the terrain has roads that were made with other settings: who brings new roads onto it each week
-/// may have forgotten an option.
-fn warn_of_other_roads(context: &Context<'_>) {
-    let GroundSource::Package(terrain) = context.source else { return };
-    let PlanSettings { terrain: of_terrain, roads, osm, .. } = context.settings;
+    let PlanSettings { terrain: of_terrain, roads, areas, osm, .. } = context.settings;
     let manifest = terrain.manifest();
     if osm.is_empty() || !manifest.inputs.iter().any(|input| InputKind::Osm.is_of(input)) {
         return;
     }
-    let ours = settings_record::of(of_terrain, roads, context.max_error_m, None, None);
-    let differences = road_differences(&ours, &manifest.settings);
+    let ours = settings_record::of(of_terrain, roads, context.max_error_m, None, areas.as_ref());
+    let differences = network_differences(&ours, &manifest.settings);
     if !differences.is_empty() {
         context.observer.warning(&format!(
-            "roads are made with other settings than those of {}: {}",
+            "roads and areas are made with other settings than those of {}: {}",
             terrain.path().display(),
             differences.join("; ")
         ));

@@ -3,7 +3,6 @@
 use corniche_dem::{Dem, GridPlan};
 use corniche_geom::{CoordinateTable, Frame, LatticeArea, LatticeBounds, TileId};
 use corniche_store::Artifacts;
-use corniche_tileset::PhotoRecord;
 
 use crate::{
     Observer, PlanSettings, Resources,
@@ -11,7 +10,7 @@ use crate::{
     inputs::Inputs,
     levels::Levels,
     memory_shares::MemoryShares,
-    plan::{Opened, OpenedPhotos},
+    plan::{Opened, PhotoSource},
     terrain::ground::GroundSource,
 };
 
@@ -27,7 +26,7 @@ pub(crate) struct Context<'a> {
     /// Tolerance of the finest level, given or derived from the cell.
     pub(crate) max_error_m: f64,
     /// Photos of the ground.
-    pub(crate) photo: Option<&'a OpenedPhotos>,
+    pub(crate) photo: &'a PhotoSource,
     pub(crate) store: &'a dyn Artifacts,
     pub(crate) observer: &'a dyn Observer,
 }
@@ -53,15 +52,10 @@ impl<'a> Context<'a> {
             levels,
             coordinates,
             max_error_m,
-            photo: photo.as_ref(),
+            photo,
             store,
             observer,
         }
-    }
-
-    /// What the manifest says of how photos are made.
-    pub(crate) fn photo_record(&self) -> Option<PhotoRecord> {
-        self.photo.map(OpenedPhotos::record)
     }
 
     pub(crate) fn frame(&self) -> &Frame {

@@ -54,6 +54,8 @@ impl InputKind {
         [Self::Dem, Self::DemPart, Self::Photo, Self::PhotoPart, Self::Polygon, Self::Osm];
     /// Those that the terrain is made from.
     pub(crate) const OF_TERRAIN: [Self; 2] = [Self::Dem, Self::DemPart];
+    /// Those that photos are made from.
+    pub(crate) const OF_PHOTOS: [Self; 2] = [Self::Photo, Self::PhotoPart];
 
     /// The word for it in the manifest.
     pub(crate) const fn name(self) -> &'static str {

@@ -54,8 +54,8 @@ pub use plan::{
 };
 pub use plan_error::PlanError;
 pub use settings::{
-    BuildSettings, Existing, Leftovers, PhotoSettings, PlanSettings, Resources, RoadSettings,
-    TerrainSettings,
+    BuildSettings, Existing, Leftovers, PhotoChoice, PhotoSettings, PlanSettings, Resources,
+    RoadSettings, TerrainSettings,
 };
 pub use target::{TargetError, file_target};
 pub use terrain::recorded::TerrainRecord;

@@ -40,8 +40,8 @@ pub struct PlanSettings {
     pub roads: RoadSettings,
     /// Which objects of the extracts are areas, if any are wanted.
     pub areas: Option<AreaTable>,
-    /// Photos of the ground, if any are wanted. Those of `terrain_of` are not taken.
-    pub photo: Option<PhotoSettings>,
+    /// Photos of the ground.
+    pub photo: PhotoChoice,
     /// Credits beside those that the inputs call for, such as a DEM's.
     pub attribution: Vec<String>,
     /// Program and version.
@@ -55,7 +55,28 @@ impl PlanSettings {
     }
 }
 
-/// Photos of the ground.
+/// Which photos of the ground a package gets.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum PhotoChoice {
+    /// None.
+    Off,
+    /// Those of the package whose terrain is taken, as they are there; none if it has none, or if no package gives the terrain.
+    OfTerrain,
+    /// Those of files.
+    Files(PhotoSettings),
+}
+
+impl PhotoChoice {
+    /// The files to read.
+    pub(crate) fn files(&self) -> &[PathBuf] {
+        match self {
+            Self::Off | Self::OfTerrain => &[],
+            Self::Files(photos) => &photos.files,
+        }
+    }
+}
+
+/// How photos are read from files and coded.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PhotoSettings {
     /// The files; where they overlap, the first lies on top.

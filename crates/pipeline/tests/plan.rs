@@ -4,7 +4,9 @@
 
 use std::fs;
 
-use corniche_pipeline::{BuildPlan, PlanOptions, PlanSettings, RoadSettings, TerrainSettings};
+use corniche_pipeline::{
+    BuildPlan, PhotoChoice, PlanOptions, PlanSettings, RoadSettings, TerrainSettings,
+};
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_testing::sample;
 use serde_json::{Value, json};
@@ -22,7 +24,7 @@ fn settings() -> PlanSettings {
             ..TerrainSettings::default()
         },
         roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25 },
-        photo: None,
+        photo: PhotoChoice::Off,
         areas: None,
         attribution: vec!["a credit".to_owned()],
         generator: "corniche 0.0.0".to_owned(),

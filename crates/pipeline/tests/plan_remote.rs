@@ -7,7 +7,7 @@ use std::{
     thread,
 };
 
-use corniche_pipeline::{BuildPlan, PlanSettings, RoadSettings, TerrainSettings};
+use corniche_pipeline::{BuildPlan, PhotoChoice, PlanSettings, RoadSettings, TerrainSettings};
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_testing::sample;
 
@@ -66,7 +66,7 @@ fn a_file_on_a_server_is_known_by_its_size_and_etag() {
         osm: Vec::new(),
         terrain: TerrainSettings::default(),
         roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25 },
-        photo: None,
+        photo: PhotoChoice::Off,
         areas: None,
         attribution: Vec::new(),
         generator: "tests".to_owned(),

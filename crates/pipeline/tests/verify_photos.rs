@@ -11,7 +11,8 @@ use std::{
 
 use corniche_geom::TileId;
 use corniche_pipeline::{
-    CheckId, Needs, PhotoSettings, Silent, VerifyError, VerifyReport, VerifySettings, build, verify,
+    CheckId, Needs, PhotoChoice, PhotoSettings, Silent, VerifyError, VerifyReport, VerifySettings,
+    build, verify,
 };
 use corniche_testing::ColourImage;
 use corniche_tileset::{
@@ -56,8 +57,8 @@ impl Apart {
         let photo = photo.write(folder.path(), "photo.tif", |_| {});
         let path = at("sound.pmtiles");
         let mut settings = settings(at("dem.tif"), None, path.clone(), Options::plain(2.0));
-        settings.plan.photo =
-            Some(PhotoSettings { files: vec![photo], levels: Some(1), quality: 85 });
+        let photos = PhotoSettings { files: vec![photo], levels: Some(1), quality: 85 };
+        settings.plan.photo = PhotoChoice::Files(photos);
         build(&settings, &Silent).unwrap();
         Self::of(folder, &path)
     }

@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::{areas::area_preset, config::Config, files::InputFiles, frc::frc_preset};
+use crate::{
+    areas::area_preset, config::Config, files::InputFiles, frc::frc_preset, photo::is_photo_off,
+};
 
 impl Config {
     /// The same settings, with paths that begin at `folder`, which the settings file is in, instead of the working folder. Absolute
@@ -12,7 +14,8 @@ impl Config {
         let Self { inputs, output, roads, areas, resources, .. } = &mut self;
         let InputFiles { dem, terrain, osm, polygon, photo } = inputs;
         let files = dem.iter_mut().chain(terrain).chain(osm.iter_mut()).chain(polygon);
-        let files = files.chain(photo.iter_mut());
+        let photo = if is_photo_off(photo) { &mut [] } else { &mut photo[..] };
+        let files = files.chain(photo);
         let written =
             output.package.iter_mut().chain(&mut output.defects).chain(&mut resources.tmp);
         for path in files.chain(written) {

@@ -39,6 +39,17 @@ fn paths_begin_at_the_settings_file() {
 }
 
 #[test]
+fn photos_that_are_off_are_no_file() {
+    let photo = |text: &str| {
+        let config = Config::parse(&format!("[inputs]\nphoto = {text}\n")).unwrap();
+        config.in_folder(Path::new("/maps")).inputs.photo
+    };
+    assert_eq!(photo("\"off\""), paths(&["off"]));
+    assert_eq!(photo("\"./off\""), paths(&["/maps/./off"]));
+    assert_eq!(photo("[\"off\", \"a.tif\"]"), paths(&["/maps/off", "/maps/a.tif"]));
+}
+
+#[test]
 fn lists_stay_lists_and_names_of_drivers_stay_as_they_are() {
     let text = "[inputs]\ndem = [\"@list.txt\", \"@/all/list.txt\", \"GTIFF_DIR:1:a.tif\", \"/vsizip/a.zip/b.tif\", \"c:d.tif\"]\n";
     let config = Config::parse(text).unwrap().in_folder(Path::new("/maps"));

@@ -26,6 +26,6 @@ pub use config::{AreaOptions, Config, ResourceOptions, RoadOptions, TerrainOptio
 pub use error::PresetError;
 pub use files::{InputFiles, OutputFiles};
 pub use frc::{frc_preset, frc_preset_names, parse_frc_table};
-pub use photo::PhotoOptions;
+pub use photo::{PhotoOptions, is_photo_off};
 pub use relief::ReliefChoice;
 pub use values::{check_cell, is_range, parse_bytes, parse_memory};

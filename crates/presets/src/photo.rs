@@ -1,7 +1,15 @@
 //! Options for photos of the ground.
 
+use std::path::{Path, PathBuf};
+
 use clap::Args;
 use serde::Deserialize;
+
+/// Whether these names of photos are the one word that says that no photos are wanted. A file of this name is `./off`.
+#[must_use]
+pub fn is_photo_off(names: &[PathBuf]) -> bool {
+    names == [Path::new("off")]
+}
 
 // How photos are made: the section `[photo]`.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Args, Deserialize)]

@@ -14,6 +14,7 @@
     reason = "this is test code: it may unwrap, and says what is skipped"
 )]
 
+mod area_extract;
 #[cfg(feature = "rasters")]
 mod colour_image;
 mod data;
@@ -31,6 +32,7 @@ mod random;
 #[cfg(feature = "rasters")]
 mod raster;
 
+pub use area_extract::extract_with_areas;
 #[cfg(feature = "rasters")]
 pub use colour_image::ColourImage;
 pub use data::{real_data, root, sample, srtm_heights};

@@ -4,7 +4,9 @@ use std::{
 };
 
 use clap::Args;
-use corniche_presets::{AreaOptions, PhotoOptions, ResourceOptions, RoadOptions, TerrainOptions};
+use corniche_presets::{
+    AreaOptions, PhotoOptions, ResourceOptions, RoadOptions, TerrainOptions, is_photo_off,
+};
 
 // What to make and with what: the same for `build` and `plan`.
 #[derive(Debug, Args)]
@@ -26,7 +28,8 @@ pub(crate) struct WorkArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) polygon: Option<PathBuf>,
     /// Photos of the ground from above (orthophotos) to lay on it: 8-bit colours, grey or palette, any format and CRS that GDAL reads; where they
-    /// overlap, the first lies on top. Also folders, patterns, @LIST, archives and addresses, as for --dem
+    /// overlap, the first lies on top. Also folders, patterns, @LIST, archives and addresses, as for --dem. off: none [default: those of
+    /// --terrain, else none]
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub(crate) photo: Vec<PathBuf>,
     /// Credit to show wherever the package is shown, such as that of a DEM; may be given several times
@@ -55,7 +58,8 @@ impl WorkArgs {
     /// All files that are read.
     pub(crate) fn files(&self) -> impl Iterator<Item = &Path> {
         let files = self.dem.iter().chain(&self.terrain_of).chain(&self.osm);
-        files.chain(&self.polygon).chain(&self.photo).chain(&self.config).map(PathBuf::as_path)
+        let photo = if is_photo_off(&self.photo) { &[] } else { &self.photo[..] };
+        files.chain(&self.polygon).chain(photo).chain(&self.config).map(PathBuf::as_path)
     }
 }
 

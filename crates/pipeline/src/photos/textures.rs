@@ -2,10 +2,15 @@
 
 use corniche_geom::TileId;
 use corniche_photo::{PhotoReader, Texels};
-use corniche_tileset::{PHOTO_BORDER, Photo, PhotoSection, encode_photo};
+use corniche_tileset::{PHOTO_BORDER, Photo, PhotoSection, encode_photo, photo_section};
 
 use super::rasters::{self, SIDE};
-use crate::{BuildError, artifacts::Kind, context::Context, plan::OpenedPhotos};
+use crate::{
+    BuildError,
+    artifacts::Kind,
+    context::Context,
+    plan::{OpenedPhotos, PhotoSource},
+};
 
 /// Reads the photo of a finest tile, and keeps its texture and its raster.
 pub(crate) fn make_finest(
@@ -42,12 +47,31 @@ pub(crate) fn make_finest(
     rasters::put(store, id, &raster)
 }
 
-/// The photo of a tile; `None` where there is none.
+/// The photo of a tile; `None` where there is none. `earlier` is its payload in the package that gives the terrain.
 pub(crate) fn of_tile(
     context: &Context<'_>,
     id: TileId,
+    earlier: Option<&[u8]>,
 ) -> Result<Option<PhotoSection>, BuildError> {
-    let Some(photos) = context.photo else { return Ok(None) };
+    match context.photo {
+        PhotoSource::Nothing => Ok(None),
+        PhotoSource::Files(photos) => of_files(context, photos, id),
+        PhotoSource::Package(_) => {
+            let section = earlier.map(|payload| photo_section(payload, id)).transpose();
+            let section = section.map_err(|source| BuildError::PackageTile {
+                path: context.settings.terrain_of.clone().unwrap_or_default(),
+                source: source.into(),
+            })?;
+            Ok(section.flatten())
+        }
+    }
+}
+
+fn of_files(
+    context: &Context<'_>,
+    photos: &OpenedPhotos,
+    id: TileId,
+) -> Result<Option<PhotoSection>, BuildError> {
     let store = context.store;
     if id.z() == context.frame().max_level() {
         let bytes = store.get(Kind::PhotoTexture.of_tile(id))?;

@@ -10,9 +10,9 @@ use corniche_tileset::{PhotoRecord, SettingsRecord};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::{Opened, OpenedPhotos};
+use super::Opened;
 use crate::{
-    BuildError, PhotoSettings, PlanSettings, PlannedInput,
+    BuildError, PhotoChoice, PhotoSettings, PlanSettings, PlannedInput,
     heights::data_tiles::DataTiles,
     hex::hex,
     levels::Levels,
@@ -147,7 +147,7 @@ impl BuildPlan {
                 terrain,
                 roads,
                 opened.max_error_m,
-                opened.photo.as_ref().map(OpenedPhotos::record),
+                opened.photo.record(),
                 areas.as_ref(),
             ),
             frc_table: FrcTableRecord::of(&roads.table),
@@ -205,11 +205,14 @@ impl BuildPlan {
             paths("polygon").next().map(|path| Polygon::read(&path)).transpose()?;
         let photos: Vec<PathBuf> = paths("photo").collect();
         Ok(PlanSettings {
-            photo: self.settings.photo.map(|PhotoRecord { levels, quality }| PhotoSettings {
-                files: photos,
-                levels: Some(levels),
-                quality,
-            }),
+            photo: match self.settings.photo {
+                None => PhotoChoice::Off,
+                Some(_) if photos.is_empty() => PhotoChoice::OfTerrain,
+                Some(PhotoRecord { levels, quality }) => {
+                    let levels = Some(levels);
+                    PhotoChoice::Files(PhotoSettings { files: photos, levels, quality })
+                }
+            },
             dem: paths("dem").collect(),
             terrain_of: paths("terrain").next(),
             osm: paths("osm").collect(),

@@ -8,7 +8,7 @@ use corniche_tileset::{LevelRecord, Manifest, ReliefLevels};
 use corniche_tin::TinSpec;
 use serde::Serialize;
 
-use super::{Opened, covered_tiles::CoveredTiles, rates};
+use super::{Opened, PhotoSource, covered_tiles::CoveredTiles, rates};
 use crate::{BuildError, Observer, Resources, machine::thread_time, terrain::ground::GroundSource};
 
 /// From so many finest tiles on some are triangulated to see how the ground is. Less work is estimated well enough without.
@@ -146,9 +146,19 @@ impl Estimate {
         Ok(estimate.with_relief(opened.relief).with_photos(opened))
     }
 
-    /// The same with photos: of each finest tile that one may lie on, as if it were covered.
+    /// The same with photos: of each finest tile that one may lie on, as if it were covered. Those of a package are as large as there.
     fn with_photos(mut self, opened: &Opened) -> Self {
-        let Some(photos) = &opened.photo else { return self };
+        let photos = match &opened.photo {
+            PhotoSource::Nothing => return self,
+            PhotoSource::Files(photos) => photos,
+            PhotoSource::Package(_) => {
+                let recorded = opened.source.package().map(|package| &package.manifest().photos);
+                let bytes: u64 = recorded.into_iter().flatten().map(|level| level.bytes).sum();
+                self.package_bytes += bytes;
+                self.store_bytes += bytes;
+                return self;
+            }
+        };
         let finest = self.tiles.last().copied().unwrap_or(0);
         let all: u64 = self.tiles.iter().sum();
         let cell = opened.grid.frame.cell();
@@ -257,9 +267,11 @@ impl Estimate {
 impl MemoryEstimate {
     /// Of the elevation files with these blocks, and of the photos.
     fn of(mut blocks: Vec<FileBlocks>, opened: &Opened, tiles: u64, resources: Resources) -> Self {
-        blocks.extend(opened.photo.iter().flat_map(|photo| photo.blocks.iter().cloned()));
+        blocks.extend(
+            opened.photo.files().into_iter().flat_map(|photo| photo.blocks.iter().cloned()),
+        );
         let mut memory = Self::new(&blocks, tiles, resources.threads as u64);
-        if let Some(photo) = &opened.photo {
+        if let Some(photo) = opened.photo.files() {
             memory.add_photos(photo.levels());
         }
         memory

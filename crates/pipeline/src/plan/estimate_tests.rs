@@ -4,7 +4,7 @@ use corniche_dem::PlanOptions;
 use corniche_roads::{ClassFilter, FrcTable};
 
 use super::*;
-use crate::{PlanSettings, RoadSettings, Silent, TerrainSettings};
+use crate::{PhotoChoice, PlanSettings, RoadSettings, Silent, TerrainSettings};
 
 /// A file of one band with so many columns and rows, in blocks.
 pub(crate) fn file(size: [u64; 2], block: [u64; 2], file_bytes: u64) -> FileBlocks {
@@ -96,7 +96,7 @@ fn some_tiles_tell_how_the_ground_is() {
             ..TerrainSettings::default()
         },
         roads: RoadSettings { table, filter: ClassFilter::usual(), simplify_cells: 0.25 },
-        photo: None,
+        photo: PhotoChoice::Off,
         areas: None,
         attribution: Vec::new(),
         generator: "tests".to_owned(),

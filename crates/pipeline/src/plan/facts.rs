@@ -50,13 +50,14 @@ pub(crate) fn terrain_differences(ours: &SettingsRecord, package: &SettingsRecor
     differences_from(ours, &theirs)
 }
 
-/// In what the settings for roads differ from those that a package records, in words; those for the ground do not count.
-pub(crate) fn road_differences(ours: &SettingsRecord, package: &SettingsRecord) -> Vec<String> {
+/// In what the settings for roads and areas differ from those that a package records, in words; those for the ground do not count.
+pub(crate) fn network_differences(ours: &SettingsRecord, package: &SettingsRecord) -> Vec<String> {
     let theirs = SettingsRecord {
         frc_table: package.frc_table.clone(),
         classes: package.classes.clone(),
         class_max_cell_m: package.class_max_cell_m.clone(),
         simplify_cells: package.simplify_cells,
+        areas: package.areas.clone(),
         ..ours.clone()
     };
     differences_from(ours, &theirs)

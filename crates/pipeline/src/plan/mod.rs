@@ -20,9 +20,9 @@ use std::path::Path;
 
 pub use build_plan::{BuildPlan, FrcTableRecord, PlannedGrid, PlannedLevel};
 pub use estimate::{Estimate, MemoryEstimate, Rates};
-pub(crate) use facts::road_differences;
+pub(crate) use facts::network_differences;
 pub(crate) use opened::Opened;
-pub(crate) use opened_photos::OpenedPhotos;
+pub(crate) use opened_photos::{OpenedPhotos, PhotoSource};
 
 use crate::{BuildError, Observer, PlanSettings, Resources, memory_shares::MemoryShares};
 

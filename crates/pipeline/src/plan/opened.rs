@@ -4,7 +4,7 @@ use corniche_dem::{Dem, GridPlan, Polygon};
 use corniche_geom::CoordinateTable;
 use corniche_tileset::ReliefLevels;
 
-use super::{coordinates::coordinates, facts::terrain_differences, opened_photos::OpenedPhotos};
+use super::{coordinates::coordinates, facts::terrain_differences, opened_photos::PhotoSource};
 use crate::{
     BuildError, PlanSettings, PlannedInput, TerrainSettings,
     inputs::{InputKind, Inputs, OtherInputs},
@@ -28,7 +28,7 @@ pub(crate) struct Opened {
     /// Longitudes and latitudes over the data.
     pub(crate) coordinates: CoordinateTable,
     /// Photos of the ground.
-    pub(crate) photo: Option<OpenedPhotos>,
+    pub(crate) photo: PhotoSource,
     /// Which levels have relief sections.
     pub(crate) relief: ReliefLevels,
 }
@@ -41,8 +41,7 @@ impl Opened {
     pub(crate) fn new(settings: &PlanSettings) -> Result<Self, BuildError> {
         // The state of the files is noted before anything of them is read.
         let polygon = settings.terrain.plan.polygon.as_ref().map(Polygon::path);
-        let photo = settings.photo.as_ref().map_or(&[][..], |photo| &photo.files);
-        let others = OtherInputs { photo, polygon, osm: &settings.osm };
+        let others = OtherInputs { photo: settings.photo.files(), polygon, osm: &settings.osm };
         let mut inputs = match &settings.terrain_of {
             Some(package) => Inputs::find_with_package(package, others)?,
             None => Inputs::find(&settings.dem, others)?,
@@ -56,8 +55,7 @@ impl Opened {
                 if let GroundSource::Dem(dem) = &source {
                     inputs.use_only(&dem.needed_files(&grid)?);
                 }
-                let open = |settings| OpenedPhotos::open(settings, &grid);
-                let photo = settings.photo.as_ref().map(open).transpose();
+                let photo = PhotoSource::open(&settings.photo, &source, &grid);
                 let photo = photo.map_err(|error| inputs.changed_instead_of(error))?;
                 let relief = settings.terrain.relief;
                 Ok(Self { inputs, source, grid, levels, max_error_m, coordinates, photo, relief })

@@ -2,7 +2,53 @@ use corniche_dem::{FileBlocks, GridPlan};
 use corniche_photo::{LevelChoice, PhotoGrid, Photos};
 use corniche_tileset::PhotoRecord;
 
-use crate::{BuildError, PhotoSettings};
+use crate::{BuildError, PhotoChoice, PhotoSettings, terrain::ground::GroundSource};
+
+/// Where the photos of a build come from.
+pub(crate) enum PhotoSource {
+    /// There are none.
+    Nothing,
+    Files(Box<OpenedPhotos>),
+    /// From the package that gives the terrain, as they are there. It says how they were made.
+    Package(PhotoRecord),
+}
+
+impl PhotoSource {
+    pub(crate) fn open(
+        choice: &PhotoChoice,
+        source: &GroundSource,
+        grid: &GridPlan,
+    ) -> Result<Self, BuildError> {
+        match choice {
+            PhotoChoice::Off => Ok(Self::Nothing),
+            PhotoChoice::OfTerrain => {
+                let recorded =
+                    source.package().and_then(|package| package.manifest().settings.photo);
+                Ok(recorded.map_or(Self::Nothing, Self::Package))
+            }
+            PhotoChoice::Files(settings) => {
+                Ok(Self::Files(Box::new(OpenedPhotos::open(settings, grid)?)))
+            }
+        }
+    }
+
+    /// The photos that are read from files.
+    pub(crate) fn files(&self) -> Option<&OpenedPhotos> {
+        match self {
+            Self::Nothing | Self::Package(_) => None,
+            Self::Files(photos) => Some(photos),
+        }
+    }
+
+    /// What the manifest says of how photos are made; `None` without photos.
+    pub(crate) fn record(&self) -> Option<PhotoRecord> {
+        match self {
+            Self::Nothing => None,
+            Self::Files(photos) => Some(photos.record()),
+            Self::Package(record) => Some(*record),
+        }
+    }
+}
 
 /// Photos, opened and put on the grid.
 pub(crate) struct OpenedPhotos {
@@ -15,7 +61,7 @@ pub(crate) struct OpenedPhotos {
 }
 
 impl OpenedPhotos {
-    pub(crate) fn open(settings: &PhotoSettings, grid: &GridPlan) -> Result<Self, BuildError> {
+    fn open(settings: &PhotoSettings, grid: &GridPlan) -> Result<Self, BuildError> {
         let photos = Photos::open(&settings.files)?;
         let levels = settings.levels.map_or(LevelChoice::OfPhotos, LevelChoice::Given);
         Ok(Self {

@@ -7,6 +7,7 @@ use crate::{
     artifacts::{self, Kind},
     context::Context,
     inputs::{InputKind, Inputs},
+    plan::PhotoSource,
 };
 
 /// Hashes the inputs that are not hashed yet.
@@ -32,9 +33,14 @@ pub(crate) fn records(context: &Context<'_>) -> Result<Vec<InputRecord>, BuildEr
     }
     Inputs::in_order(&mut records);
     if let Some(terrain) = context.source.package() {
-        // The terrain was made from the package's elevation files, not from the package.
+        // The terrain was made from the package's elevation files, not from the package. So were photos that are taken from it from files.
         records.retain(|record| !InputKind::Terrain.is_of(record));
-        records.splice(0..0, terrain.elevation_files().cloned());
+        let photos: &[InputKind] = match context.photo {
+            PhotoSource::Package(_) => &InputKind::OF_PHOTOS,
+            PhotoSource::Nothing | PhotoSource::Files(_) => &[],
+        };
+        let taken = [&InputKind::OF_TERRAIN, photos].concat();
+        records.splice(0..0, terrain.files(&taken).cloned());
     }
     Ok(records)
 }

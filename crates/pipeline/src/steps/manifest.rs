@@ -33,11 +33,11 @@ pub(crate) fn of(outcome: &Outcome<'_>) -> Manifest {
         &settings.terrain,
         &settings.roads,
         outcome.context.max_error_m,
-        outcome.context.photo_record(),
+        outcome.context.photo.record(),
         settings.areas.as_ref(),
     );
     let mut attribution = settings.attribution.clone();
-    for credit in outcome.context.photo.into_iter().flat_map(|photo| &photo.credits) {
+    for credit in outcome.context.photo.files().into_iter().flat_map(|photo| &photo.credits) {
         if !attribution.contains(credit) {
             attribution.push(credit.clone());
         }

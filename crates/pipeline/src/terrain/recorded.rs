@@ -133,11 +133,10 @@ impl RecordedTerrain {
         })
     }
 
-    /// The elevation files of the package.
-    pub(crate) fn elevation_files(&self) -> impl Iterator<Item = &InputRecord> {
-        let is_elevation =
-            |input: &&InputRecord| InputKind::OF_TERRAIN.iter().any(|kind| kind.is_of(input));
-        self.manifest().inputs.iter().filter(is_elevation)
+    /// The files of some kinds that the package was made from.
+    pub(crate) fn files(&self, kinds: &[InputKind]) -> impl Iterator<Item = &InputRecord> {
+        let is_asked = move |input: &&InputRecord| kinds.iter().any(|kind| kind.is_of(input));
+        self.manifest().inputs.iter().filter(is_asked)
     }
 
     /// The error for content that contradicts itself.

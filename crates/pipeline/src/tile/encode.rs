@@ -68,7 +68,7 @@ pub(crate) fn with_ground(
         None => corniche_tileset::encode(&payload, &encoding)?,
     };
     let classes = class_sums(laid_classes, &payload, &encoded);
-    let photo = textures::of_tile(context, id)?;
+    let photo = textures::of_tile(context, id, earlier)?;
     let photo_bytes = photo.as_ref().map_or(0, |photo| photo.bytes().len() as u64);
     let mut bytes = encoded.bytes;
     if let Some(photo) = photo {

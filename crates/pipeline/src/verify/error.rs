@@ -107,7 +107,7 @@ impl From<InputError> for VerifyError {
 
 impl VerifyError {
     /// What came of a comparison with these files. A changed file may be the cause of any other error, so it is reported instead.
-    pub(super) fn unless_changed(inputs: &Inputs, compared: Result<(), Self>) -> Result<(), Self> {
+    pub(crate) fn unless_changed(inputs: &Inputs, compared: Result<(), Self>) -> Result<(), Self> {
         match &compared {
             Err(Self::Interrupted) => compared,
             _ => inputs.check_unchanged().map_err(Self::from).and(compared),

@@ -20,8 +20,8 @@ use std::{
 use corniche_dem::PlanOptions;
 use corniche_geom::{Frame, NodeIndex, TileId};
 use corniche_pipeline::{
-    BuildError, BuildSettings, Existing, Leftovers, PlanSettings, Resources, RoadSettings, Silent,
-    TerrainSettings, build,
+    BuildError, BuildSettings, Existing, Leftovers, PhotoChoice, PlanSettings, Resources,
+    RoadSettings, Silent, TerrainSettings, build,
 };
 use corniche_roads::{ClassFilter, FrcTable};
 use corniche_tileset::{FilePackage, Manifest, ReliefLevels, Sections, Terrain, TilePayload};
@@ -183,7 +183,7 @@ pub(crate) fn settings(
                 filter: ClassFilter::usual(),
                 simplify_cells: 0.25,
             },
-            photo: None,
+            photo: PhotoChoice::Off,
             areas: None,
             attribution: Vec::new(),
             generator: "tests".to_owned(),

@@ -62,14 +62,14 @@ impl Grounds {
         let all = DataTiles::of(&opened.grid).within(TileId::ROOT);
         let all = all.into_iter().map(|id| (id, void_us));
         let grounds = with_ground.iter().map(|id| (*id, ground_us(id).unwrap_or_default()));
-        let heights = opened.photo.is_some().then(|| photos(opened).collect());
+        let heights = opened.photo.files().is_some().then(|| photos(opened).collect());
         Ok(Self { heights, tiles: all.chain(grounds).collect() })
     }
 }
 
 /// What the photos of finest tiles cost; those of the levels above are little beside them.
 fn photos(opened: &Opened) -> impl Iterator<Item = (TileId, u64)> {
-    opened.photo.iter().flat_map(move |photos| {
+    opened.photo.files().into_iter().flat_map(move |photos| {
         let seconds = rates::photo_texels(photos.levels()) * rates::SECONDS_PER_PHOTO_TEXEL;
         let seconds_of = move |id: TileId| {
             let is_covered = photos.grid.touches(&opened.grid.frame.tile_bounds(id));

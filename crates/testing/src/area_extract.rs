@@ -3,7 +3,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use corniche_testing::pbf::{Block, file};
+use crate::pbf::{Block, file};
 
 /// An extract with a road, a lake (way 2), a wood with a clearing (relation 7), and two outlines of which nothing comes.
 ///

@@ -1,0 +1,243 @@
+//! `verify` sees each kind of wrong area: a sound package is taken apart, one thing is made wrong, and it is put together again. Then exactly
+//! the expected checks are broken.
+#![allow(clippy::unwrap_used, reason = "a test may unwrap")]
+
+mod support;
+
+use std::{collections::BTreeMap, path::PathBuf};
+
+use corniche_areas::{AreaClass, AreaTable};
+use corniche_geom::{Frame, LatticePoint, TileId};
+use corniche_pipeline::{CheckId, Silent, build};
+use corniche_tileset::{
+    AreaRecord, FilePackage, Manifest, Sections, Writer, decode_areas, encode_areas, payload_sizes,
+    pmtiles_order, with_areas,
+};
+use sha2::{Digest as _, Sha256};
+use support::{
+    Options,
+    parts::{Against, MAX_ERROR_M, assert_broken, encode_in, report_on, sample},
+    settings,
+};
+use tempfile::TempDir;
+
+/// A package with areas, taken apart.
+struct Apart {
+    folder: TempDir,
+    manifest: Manifest,
+    tiles: BTreeMap<u64, Tile>,
+}
+
+struct Tile {
+    id: TileId,
+    /// As it was stored.
+    whole: Vec<u8>,
+    without_areas: Vec<u8>,
+    areas: Vec<AreaRecord>,
+    is_changed: bool,
+}
+
+impl Apart {
+    /// The sample with a lake, and a wood with a clearing, which lie on several tiles.
+    fn sound() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("sound.pmtiles");
+        let osm = corniche_testing::extract_with_areas(folder.path());
+        let options = Options::plain(MAX_ERROR_M);
+        let mut settings = settings(sample("pass-dem.tif"), Some(osm), path.clone(), options);
+        let tags = [("natural=water", AreaClass::Water), ("natural=wood", AreaClass::Forest)];
+        let tags = tags.map(|(tag, class)| (tag.to_owned(), class)).to_vec();
+        settings.plan.areas = Some(AreaTable::new("test", tags).unwrap());
+        build(&settings, &Silent).unwrap();
+        let package = FilePackage::open(&path).unwrap();
+        let manifest = package.manifest().clone();
+        let mut tiles = BTreeMap::new();
+        for id in package.tile_ids().unwrap() {
+            let whole = package.tile(id).unwrap().unwrap();
+            let payload = package.payload(id, Sections::ALL).unwrap().unwrap();
+            let areas = decode_areas(&whole, id, &manifest.frame).unwrap();
+            let without_areas = encode_in(&manifest, &payload).unwrap();
+            let tile = Tile { id, whole, without_areas, areas, is_changed: false };
+            tiles.insert(pmtiles_order(id), tile);
+        }
+        Self { folder, manifest, tiles }
+    }
+
+    /// Changes the areas of a tile, and corrects the sums that the manifest records of them.
+    fn change(&mut self, id: TileId, change: impl FnOnce(&mut Vec<AreaRecord>)) {
+        let tile = self.tiles.get_mut(&pmtiles_order(id)).unwrap();
+        let before = counts(&tile.areas, stored_bytes(&tile.whole, id));
+        change(&mut tile.areas);
+        tile.is_changed = true;
+        let after = counts(&tile.areas, stored_bytes(&tile.bytes(&self.manifest.frame), id));
+        let levels = &mut self.manifest.areas.as_mut().unwrap().levels;
+        let level = levels.iter_mut().find(|level| level.level == id.z()).unwrap();
+        let sums = [&mut level.tiles, &mut level.areas, &mut level.points, &mut level.bytes];
+        for (sum, (before, after)) in sums.into_iter().zip(before.into_iter().zip(after)) {
+            *sum = *sum - before + after;
+        }
+    }
+
+    fn put_together(&self) -> PathBuf {
+        let path = self.folder.path().join("changed.pmtiles");
+        let mut writer = Writer::create(&path, &self.manifest).unwrap();
+        for tile in self.tiles.values() {
+            writer.add(tile.id, &tile.bytes(&self.manifest.frame)).unwrap();
+        }
+        writer.finish().unwrap();
+        path
+    }
+
+    /// Puts it together and asserts that exactly these checks are broken.
+    fn assert_breaks(&self, expected: &[CheckId]) {
+        assert_broken(report_on(&self.put_together(), Against::Itself), expected);
+    }
+
+    /// Corrects the hash of the settings.
+    fn rehash(&mut self) {
+        let json = serde_json::to_string(&self.manifest.settings).unwrap();
+        let digest = Sha256::digest(json);
+        self.manifest.settings_sha256 =
+            digest.iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat();
+    }
+
+    /// A finest tile, an area on its eastern border, and the points of its first ring on that border.
+    fn on_a_border(&self) -> (TileId, usize, Vec<usize>) {
+        let frame = &self.manifest.frame;
+        let finest = self.tiles.values().filter(|tile| tile.id.z() == frame.max_level());
+        finest
+            .filter(|tile| {
+                let beside = tile.id.neighbour(1, 0);
+                beside.is_some_and(|id| self.tiles.contains_key(&pmtiles_order(id)))
+            })
+            .find_map(|tile| {
+                let east = frame.tile_lattice_bounds(tile.id).max.u;
+                tile.areas.iter().enumerate().find_map(|(number, area)| {
+                    let ring = &area.polygons[0].rings[0];
+                    let at: Vec<usize> = (0..ring.len()).filter(|&n| ring[n].u == east).collect();
+                    (at.len() >= 2).then_some((tile.id, number, at))
+                })
+            })
+            .unwrap()
+    }
+
+    /// A tile with an area.
+    fn with_an_area(&self) -> TileId {
+        self.tiles.values().find(|tile| !tile.areas.is_empty()).unwrap().id
+    }
+}
+
+impl Tile {
+    fn bytes(&self, frame: &Frame) -> Vec<u8> {
+        if !self.is_changed {
+            return self.whole.clone();
+        }
+        match encode_areas(self.id, frame, 1, &self.areas).unwrap() {
+            Some(section) => with_areas(&self.without_areas, self.id, section).unwrap().0,
+            None => self.without_areas.clone(),
+        }
+    }
+}
+
+fn stored_bytes(payload: &[u8], id: TileId) -> u64 {
+    payload_sizes(payload, id).unwrap().areas.stored
+}
+
+/// Tiles, areas, points, bytes.
+fn counts(areas: &[AreaRecord], bytes: u64) -> [u64; 4] {
+    let rings = areas.iter().flat_map(|area| &area.polygons).flat_map(|part| &part.rings);
+    let points = rings.map(|ring| ring.len() as u64).sum();
+    [u64::from(!areas.is_empty()), areas.len() as u64, points, bytes]
+}
+
+#[test]
+fn nothing_is_broken_when_nothing_was_changed() {
+    let mut sound = Apart::sound();
+    let tiles: Vec<TileId> = sound.tiles.values().map(|tile| tile.id).collect();
+    assert!(tiles.iter().filter(|id| id.z() == sound.manifest.frame.max_level()).count() > 1);
+    sound.assert_breaks(&[]);
+    // Nor when everything was encoded again.
+    for id in tiles {
+        if !sound.tiles[&pmtiles_order(id)].areas.is_empty() {
+            sound.change(id, |_| {});
+        }
+    }
+    sound.assert_breaks(&[]);
+}
+
+#[test]
+fn a_ring_that_runs_the_other_way() {
+    let mut apart = Apart::sound();
+    let id = apart.with_an_area();
+    apart.change(id, |areas| areas[0].polygons[0].rings[0].reverse());
+    apart.assert_breaks(&[CheckId::AreaRings]);
+}
+
+#[test]
+fn a_ring_with_the_same_point_twice() {
+    let mut apart = Apart::sound();
+    let id = apart.with_an_area();
+    apart.change(id, |areas| {
+        let ring = &mut areas[0].polygons[0].rings[0];
+        ring.push(ring[1]);
+    });
+    apart.assert_breaks(&[CheckId::AreaRings]);
+}
+
+#[test]
+fn an_area_that_a_tile_lacks() {
+    let mut apart = Apart::sound();
+    let (id, area, _) = apart.on_a_border();
+    apart.change(id, |areas| {
+        areas.remove(area);
+    });
+    apart.assert_breaks(&[CheckId::AreaSeams]);
+}
+
+#[test]
+fn a_point_that_moves_along_a_border() {
+    let mut apart = Apart::sound();
+    let (id, area, at) = apart.on_a_border();
+    apart.change(id, |areas| {
+        let ring = &mut areas[area].polygons[0].rings[0];
+        let middle = i64::midpoint(ring[at[0]].v, ring[at[1]].v);
+        let LatticePoint { v, .. } = &mut ring[at[0]];
+        *v += (middle - *v).signum();
+    });
+    apart.assert_breaks(&[CheckId::AreaSeams]);
+}
+
+/// The manifest's rows of `docs/fields.md` that are about areas.
+#[test]
+fn fields_of_areas_in_the_manifest() {
+    type Change = fn(&mut Manifest);
+    let changes: [Change; 10] = [
+        |manifest| manifest.areas = None,
+        |manifest| manifest.settings.areas = None,
+        |manifest| manifest.areas.as_mut().unwrap().counts.objects += 1,
+        |manifest| manifest.areas.as_mut().unwrap().counts.kept[0].areas += 1,
+        |manifest| manifest.areas.as_mut().unwrap().counts.lost.push(("open".to_owned(), 1)),
+        |manifest| manifest.areas.as_mut().unwrap().levels[0].tiles += 1,
+        |manifest| manifest.areas.as_mut().unwrap().levels[0].areas += 1,
+        |manifest| manifest.areas.as_mut().unwrap().levels[0].points += 1,
+        |manifest| manifest.areas.as_mut().unwrap().levels[0].bytes += 1,
+        |manifest| drop(manifest.areas.as_mut().unwrap().levels.pop()),
+    ];
+    for change in changes {
+        let mut apart = Apart::sound();
+        change(&mut apart.manifest);
+        apart.rehash();
+        apart.assert_breaks(&[CheckId::AreaSums]);
+    }
+    // Levels in another order are refused by readers, as are classes that there are not.
+    let refused: [Change; 2] = [
+        |manifest| manifest.areas.as_mut().unwrap().levels.reverse(),
+        |manifest| manifest.areas.as_mut().unwrap().counts.kept[0].class = 99,
+    ];
+    for change in refused {
+        let mut apart = Apart::sound();
+        change(&mut apart.manifest);
+        let path = apart.folder.path().join("refused.pmtiles");
+        assert!(Writer::create(&path, &apart.manifest).is_err());
+    }
+}
