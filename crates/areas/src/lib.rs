@@ -5,6 +5,7 @@
 //!  ways ──► segments ──► planar graph ──► faces ──► polygons: an outer ring, holes
 //!           (doubled ones   (half-edges,    (inside by the
 //!            cancel out)     sorted by angle)  even-odd rule)
+//!  coastlines ──► chains, cut by a rectangle ──► closed along its edge ──► polygons of the sea
 //!  Polygon ──► coarsen: for a level ──► divide: by lines between tiles ──► polygons
 //! ```
 //!
@@ -21,9 +22,12 @@ mod coarsen;
 mod divide;
 mod outline;
 mod polygon;
+mod sea;
 
+mod coastlines;
 mod faces;
 mod planar_graph;
+mod rectangle_edge;
 mod segments;
 mod stabbing;
 
@@ -35,6 +39,8 @@ pub use area_class::AreaClass;
 pub use area_table::{AreaTable, AreaTableError};
 pub use assemble::{Assembled, assemble};
 pub use coarsen::coarsen;
+pub use coastlines::Coastline;
 pub use divide::{Axis, divide};
 pub use outline::{OutlineError, OutlineWay};
 pub use polygon::{Polygon, Ring};
+pub use sea::{Sea, close_sea};

@@ -1,0 +1,62 @@
+use super::*;
+
+fn coast(way_id: i64, points: &[(i64, i64)]) -> Coastline {
+    Coastline { way_id, points: points.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect() }
+}
+
+fn bounds() -> LatticeBounds {
+    LatticeBounds { min: LatticePoint::new(0, 0), max: LatticePoint::new(100, 60) }
+}
+
+fn points(chain: &Chain) -> Vec<(i64, i64)> {
+    chain.points.iter().map(|point| (point.u, point.v)).collect()
+}
+
+#[test]
+fn ways_in_any_order_make_chains_and_rings() {
+    let chains = join(vec![
+        coast(7, &[(3, 3), (4, 4)]),
+        coast(5, &[(1, 1), (2, 2)]),
+        coast(6, &[(2, 2), (3, 3)]),
+        coast(9, &[(50, 10), (60, 10), (55, 20)]),
+        coast(8, &[(55, 20), (50, 10)]),
+        coast(4, &[(9, 9)]),
+    ]);
+    assert_eq!(chains.len(), 2);
+    assert_eq!(points(&chains[0]), [(1, 1), (2, 2), (3, 3), (4, 4)]);
+    assert_eq!(chains[0].ways, [5, 7]);
+    assert!(!chains[0].is_ring() && chains[1].is_ring());
+    assert_eq!(points(&chains[1]), [(55, 20), (50, 10), (60, 10), (55, 20)]);
+}
+
+#[test]
+fn a_chain_is_cut_where_it_crosses_the_edge() {
+    let chain = |points: &[(i64, i64)]| join(vec![coast(1, points)]).remove(0);
+    let cut_points = |points_of: &[(i64, i64)]| {
+        cut(&chain(points_of), &bounds()).iter().map(points).collect::<Vec<_>>()
+    };
+    // Through two sides, with a vertex inside.
+    assert_eq!(cut_points(&[(-20, 10), (20, 30), (20, 90)]), [[(0, 20), (20, 30), (20, 60)]]);
+    // Past a corner, and beside it.
+    assert_eq!(cut_points(&[(-10, 10), (10, -10)]), [[(0, 0); 0]; 0]);
+    assert_eq!(cut_points(&[(-5, 10), (15, -10)]), [[(0, 5), (5, 0)]]);
+    assert!(cut_points(&[(-10, 5), (5, -11)]).is_empty());
+    // Out and in again; a touch from inside does not part it.
+    assert_eq!(
+        cut_points(&[(50, 30), (50, 60), (60, 30), (60, 90), (70, 90), (70, 30)]),
+        [vec![(50, 30), (50, 60), (60, 30), (60, 60)], vec![(70, 60), (70, 30)]]
+    );
+    // A ring that begins inside and leaves once is one part.
+    assert_eq!(
+        cut_points(&[(90, 10), (110, 10), (110, 20), (90, 20), (90, 10)]),
+        [[(100, 20), (90, 20), (90, 10), (100, 10)]]
+    );
+}
+
+#[test]
+fn ends_on_the_edge_are_rounded_to_it() {
+    assert_eq!(between([0, 0], [3, 1], 1), 0);
+    assert_eq!(between([0, 0], [3, 1], 2), 1);
+    assert_eq!(between([3, 1], [0, 0], 2), 1);
+    assert_eq!(between([-7, i64::MIN / 4], [9, i64::MAX / 4], 1), 0);
+}

@@ -1,0 +1,155 @@
+use std::collections::BTreeSet;
+
+use proptest::prelude::*;
+
+use super::*;
+
+fn coast(way_id: i64, points: &[(i64, i64)]) -> Coastline {
+    Coastline { way_id, points: points.iter().map(|&(u, v)| LatticePoint::new(u, v)).collect() }
+}
+
+/// 100 east, 60 north.
+fn bounds() -> LatticeBounds {
+    LatticeBounds { min: LatticePoint::new(0, 0), max: LatticePoint::new(100, 60) }
+}
+
+fn area(sea: &Sea) -> i128 {
+    sea.polygons.iter().map(Polygon::doubled_area).sum::<i128>() / 2
+}
+
+fn sea_of(coastlines: Vec<Coastline>) -> Sea {
+    close_sea(coastlines, &bounds()).unwrap()
+}
+
+#[test]
+fn sea_lies_on_the_right() {
+    let northward = sea_of(vec![coast(1, &[(30, -5), (30, 70)])]);
+    assert_eq!((area(&northward), northward.polygons.len()), (70 * 60, 1));
+    let southward = sea_of(vec![coast(1, &[(30, 70), (30, -5)])]);
+    assert_eq!(area(&southward), 30 * 60);
+    assert!(southward.bridged.is_empty() && southward.left_out.is_empty());
+}
+
+#[test]
+fn islands_and_inner_seas() {
+    let island: &[(i64, i64)] = &[(10, 10), (20, 10), (20, 20), (10, 20), (10, 10)];
+    let pond: Vec<(i64, i64)> = island.iter().rev().copied().collect();
+    assert_eq!(area(&sea_of(vec![coast(1, island)])), 6000 - 100);
+    assert_eq!(area(&sea_of(vec![coast(1, &pond)])), 100);
+    // An island beside a coast, and one whose outline leaves the rectangle.
+    let both = vec![coast(1, &[(30, 70), (30, -5)]), coast(2, island)];
+    assert_eq!(area(&sea_of(both)), 30 * 60 - 100);
+    let half = coast(3, &[(-10, 10), (10, 10), (10, 30), (-10, 30), (-10, 10)]);
+    assert_eq!(area(&sea_of(vec![half])), 6000 - 200);
+    // Nothing is known without coasts.
+    assert_eq!(sea_of(vec![]), Sea::default());
+    assert_eq!(sea_of(vec![coast(1, &[(300, 0), (300, 50)])]), Sea::default());
+}
+
+#[test]
+fn a_strait_between_two_coasts() {
+    let coasts = vec![coast(1, &[(30, -5), (30, 70)]), coast(2, &[(60, 70), (60, -5)])];
+    assert_eq!(area(&sea_of(coasts.clone())), 30 * 60);
+    let land_between: Vec<Coastline> = coasts
+        .into_iter()
+        .map(|mut coast| {
+            coast.points.reverse();
+            coast
+        })
+        .collect();
+    assert_eq!(area(&sea_of(land_between)), 70 * 60);
+}
+
+#[test]
+fn open_ends_are_bridged_and_told() {
+    // A gap of five steps; the edge is farther away.
+    let gap = vec![coast(1, &[(50, -5), (50, 28)]), coast(2, &[(50, 33), (50, 70)])];
+    let sea = sea_of(gap);
+    assert_eq!((area(&sea), &sea.bridged[..]), (50 * 60, &[1, 2][..]));
+    // An end with nothing near it goes on to the edge.
+    let sea = sea_of(vec![coast(8, &[(50, -5), (50, 50)])]);
+    assert_eq!((area(&sea), &sea.bridged[..]), (50 * 60, &[8][..]));
+    // A ring with a gap.
+    let sea = sea_of(vec![coast(3, &[(40, 30), (50, 30), (50, 38), (40, 38), (40, 31)])]);
+    assert_eq!((area(&sea), &sea.bridged[..]), (6000 - 80, &[3][..]));
+}
+
+#[test]
+fn coasts_that_contradict_each_other_are_left_out_and_told() {
+    // Both go north: between them the first says sea, the second land.
+    let coasts = vec![coast(1, &[(30, -5), (30, 70)]), coast(2, &[(60, -500), (60, -5), (60, 70)])];
+    let sea = sea_of(coasts);
+    assert_eq!(sea.left_out.len(), 1);
+    assert!([40 * 60, 70 * 60].contains(&area(&sea)), "{sea:?}");
+    let crossing = vec![coast(1, &[(30, -5), (60, 70)]), coast(2, &[(60, -5), (31, 70)])];
+    let crossing = close_sea(crossing, &bounds());
+    assert!(crossing.is_err() || !crossing.unwrap().left_out.is_empty());
+}
+
+/// Steps along a cell of the random sea.
+const CELL: i64 = 10;
+
+/// Coasts around cells of land, which lie anywhere: of a field of 9 × 9 cells around a rectangle that ends within cells.
+fn coasts_around(land: &BTreeSet<(i64, i64)>, mut seed: u64) -> Vec<Coastline> {
+    let mut edges = Vec::new();
+    for &(x, y) in land {
+        let corner = |dx: i64, dy: i64| LatticePoint::new((x + dx) * CELL, (y + dy) * CELL);
+        // Counter-clockwise around the cell: land on the left.
+        for (beside, edge) in [
+            ((x, y - 1), [corner(0, 0), corner(1, 0)]),
+            ((x + 1, y), [corner(1, 0), corner(1, 1)]),
+            ((x, y + 1), [corner(1, 1), corner(0, 1)]),
+            ((x - 1, y), [corner(0, 1), corner(0, 0)]),
+        ] {
+            if !land.contains(&beside) {
+                edges.push(edge);
+            }
+        }
+    }
+    let mut random = move |below: usize| {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        (seed % below as u64) as usize
+    };
+    let mut coasts = Vec::new();
+    while !edges.is_empty() {
+        let [from, to] = edges.swap_remove(random(edges.len()));
+        let mut points = vec![from, to];
+        while random(4) != 0
+            && let Some(next) = edges.iter().position(|edge| Some(&edge[0]) == points.last())
+        {
+            points.push(edges.swap_remove(next)[1]);
+        }
+        coasts.push(Coastline { way_id: coasts.len() as i64, points });
+    }
+    coasts
+}
+
+proptest! {
+    #[test]
+    fn the_sea_is_what_is_no_land(
+        land in prop::collection::btree_set((0_i64..9, 0_i64..9), 1..60),
+        seed in 1_u64..,
+    ) {
+        let bounds = LatticeBounds { min: LatticePoint::new(13, 14), max: LatticePoint::new(77, 76) };
+        let sea = close_sea(coasts_around(&land, seed), &bounds).unwrap();
+        prop_assert!(sea.bridged.is_empty() && sea.left_out.is_empty());
+        let mut expected = 0;
+        let (mut has_land, mut has_coast) = (false, false);
+        for u in 13..77 {
+            for v in 14..76 {
+                let is_land = land.contains(&(u / CELL, v / CELL));
+                expected += i128::from(!is_land);
+                has_land |= is_land;
+                has_coast |= !is_land;
+            }
+        }
+        // Without a coast in the rectangle nothing is known.
+        if has_land && has_coast {
+            prop_assert_eq!(area(&sea), expected);
+        } else {
+            prop_assert_eq!(area(&sea), 0);
+        }
+    }
+}
