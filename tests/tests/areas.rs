@@ -4,7 +4,9 @@
 
 use std::{collections::BTreeMap, fs, path::Path};
 
-use e2e::{Job, Ran, When, corniche, extract_with_areas, json, manifest, sample, text};
+use e2e::{
+    Job, Ran, When, corniche, extract_with_areas, extract_with_coast, json, manifest, sample, text,
+};
 use serde_json::Value;
 
 fn succeed(ran: Ran) -> Ran {
@@ -212,4 +214,33 @@ fn areas_that_are_not_asked_for_again_are_told() {
     assert!(said.contains("--areas is not given, it was made with default"), "{said}");
     let said = again(&["--areas", "default"]);
     assert!(!said.contains("other settings"), "{said}");
+}
+
+/// Sea in the south of a coast, with an island, within bounds; and the same coast without one of its ways.
+#[test]
+fn the_sea_is_closed_along_the_edge_and_ends_at_the_bounds() {
+    let folder = tempfile::tempdir().unwrap();
+    let dem = sample("pass/pass-dem.tif");
+    // The sides of 0.005 by 0.004 degrees are 382 by 445 metres there.
+    let expected_m2 = (12.0 * 10.0 - 4.0 * 2.5) * 382.0 * 444.7;
+    for (is_whole, open_ends) in [(true, 0), (false, 2)] {
+        let osm = extract_with_coast(folder.path(), is_whole);
+        let package = folder.path().join("coast.pmtiles");
+        let words = ["build", "-q", "-O", "--dem", text(&dem), "--osm", text(&osm), "-o"];
+        let more = ["--areas", "default", "--bounds", "9.5,46.86,9.56,46.92", "--max-error", "10"];
+        succeed(corniche([&words[..], &[text(&package)], &more].concat()));
+        let areas = areas_of(&package);
+        let finest = areas.keys().map(|(level, _)| *level).max().unwrap();
+        for level in 0..=finest {
+            let ratio = areas[&(level, "way 0 sea".to_owned())] / expected_m2;
+            assert!((ratio - 1.0).abs() < 0.02, "level {level}: {ratio}");
+        }
+        let manifest = manifest(&package);
+        let sea = &manifest["areas"]["kept"][0];
+        assert_eq!((&sea["class"], &sea["areas"]), (&"sea".into(), &1.into()));
+        let said = manifest["counts"]["defects"].to_string();
+        let told = format!(r#"{{"count":{open_ends},"name":"open end of a coastline"}}"#);
+        assert_eq!(said.contains(&told), open_ends > 0, "{said}");
+        succeed(corniche(["verify", text(&package), "--osm", text(&osm), "-q"]));
+    }
 }

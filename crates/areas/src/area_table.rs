@@ -5,12 +5,14 @@ use crate::AreaClass;
 /// Which tags make which class of area. A table is checked when it is made.
 ///
 /// The first tag of an object that the table lists decides; tags are looked at in the order of the table's keys, so that the
-/// order in a file does not matter. The sea is in no table: it is made of coastlines.
+/// order in a file does not matter. The sea has no tags: it is made of coastlines, if the
+/// table wants it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AreaTable {
     name: String,
     /// By the order in which keys were named first: key, then value → class.
     keys: Vec<(String, BTreeMap<String, AreaClass>)>,
+    has_sea: bool,
 }
 
 /// Why entries do not make an [`AreaTable`].
@@ -68,7 +70,19 @@ impl AreaTable {
                 return Err(AreaTableError::Twice { name, tag });
             }
         }
-        Ok(Self { name, keys })
+        Ok(Self { name, keys, has_sea: false })
+    }
+
+    /// The same table with the sea, which is made of coastlines.
+    #[must_use]
+    pub fn with_sea(self) -> Self {
+        Self { has_sea: true, ..self }
+    }
+
+    /// Whether the sea is wanted.
+    #[must_use]
+    pub const fn has_sea(&self) -> bool {
+        self.has_sea
     }
 
     /// Its name, as packages record it.
@@ -101,6 +115,9 @@ impl AreaTable {
     #[must_use]
     pub fn canonical_text(&self) -> String {
         let mut text = format!("name={}\n", self.name);
+        if self.has_sea {
+            text.push_str("sea\n");
+        }
         for (key, value, class) in self.tags() {
             // Writing to a String cannot fail.
             let _ = writeln!(text, "{key}={value}: {class}");

@@ -39,9 +39,9 @@ pub fn close_sea(coastlines: Vec<Coastline>, bounds: &LatticeBounds) -> Result<S
     for chain in &chains {
         for part in cut(chain, bounds) {
             if part.is_ring() {
-                rings.push(part)
+                rings.push(part);
             } else {
-                parts.push(to_edge(part, bounds, &mut sea.bridged))
+                parts.push(to_edge(part, bounds, &mut sea.bridged));
             }
         }
     }
@@ -115,14 +115,12 @@ fn follow(chains: Vec<Chain>, next: &[Option<usize>], has_before: &[bool]) -> Ve
         let Some(mut chain) = left[index].take() else { continue };
         let mut at = index;
         while let Some(following) = next[at] {
-            match left[following].take() {
-                Some(following_chain) => chain.append(following_chain),
-                None => {
-                    // Round again.
-                    chain.points.extend(chain.first());
-                    break;
-                }
-            }
+            let Some(following_chain) = left[following].take() else {
+                // Round again.
+                chain.points.extend(chain.first());
+                break;
+            };
+            chain.append(following_chain);
             at = following;
         }
         joined.push(chain);

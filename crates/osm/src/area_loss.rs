@@ -24,11 +24,13 @@ pub enum AreaLoss {
     OutsideProjection,
     /// Several objects of the file have this id; the first stays.
     Duplicate,
+    /// A coastline that says that there is sea where another one says that there is land, or that crosses one.
+    ContradictingCoastline,
 }
 
 impl AreaLoss {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::OpenWay,
         Self::OpenOutline,
         Self::MissingWays,
@@ -39,6 +41,7 @@ impl AreaLoss {
         Self::TooIntricate,
         Self::OutsideProjection,
         Self::Duplicate,
+        Self::ContradictingCoastline,
     ];
 
     /// In words: the name to count it under.
@@ -55,6 +58,7 @@ impl AreaLoss {
             Self::TooIntricate => "outline of an area is too intricate",
             Self::OutsideProjection => "area is outside the projection",
             Self::Duplicate => "duplicate area",
+            Self::ContradictingCoastline => "coastline contradicts others",
         }
     }
 }

@@ -133,6 +133,11 @@ pub enum Defect {
         /// How many segments.
         segments: u32,
     },
+    /// A coastline ends inside the data where no other begins. A straight line closes the sea there.
+    OpenCoastline {
+        /// The way.
+        way_id: i64,
+    },
     /// A node has several different places; the first stays, or of several extracts that of the newest version.
     ConflictingNode {
         /// The node.
@@ -143,6 +148,7 @@ pub enum Defect {
 /// See [`Defect::reason`].
 const MISSING_WAYS: &str = "missing ways of an area";
 const MENDED_OUTLINE: &str = "mended outline of an area";
+const OPEN_COASTLINE: &str = "open end of a coastline";
 
 impl Defect {
     /// What kind of defect it is, in words: the name to count it under.
@@ -169,13 +175,14 @@ impl Defect {
             Self::LostArea { loss, .. } => loss.reason(),
             Self::MissingWays { .. } => MISSING_WAYS,
             Self::MendedOutline { .. } => MENDED_OUTLINE,
+            Self::OpenCoastline { .. } => OPEN_COASTLINE,
         }
     }
 
     /// Whether defects of this kind are those of areas: only who reads areas finds them.
     #[must_use]
     pub fn is_of_areas(reason: &str) -> bool {
-        [MISSING_WAYS, MENDED_OUTLINE].contains(&reason)
+        [MISSING_WAYS, MENDED_OUTLINE, OPEN_COASTLINE].contains(&reason)
             || AreaLoss::ALL.iter().any(|loss| loss.reason() == reason)
     }
 
@@ -198,6 +205,7 @@ impl Defect {
             | Self::NoLine { way_id }
             | Self::DuplicatePoints { way_id, .. }
             | Self::ConflictingWay { way_id }
+            | Self::OpenCoastline { way_id }
             | Self::SelfCrossing { way_id, .. } => ("way", way_id),
             Self::ConflictingNode { node_id } => ("node", node_id),
             Self::MissingWays { relation_id, .. } => ("relation", relation_id),
@@ -231,6 +239,7 @@ impl Defect {
             | Self::NoLine { .. }
             | Self::ConflictingWay { .. }
             | Self::ConflictingNode { .. }
+            | Self::OpenCoastline { .. }
             | Self::LostArea { .. } => None,
         }
     }

@@ -204,3 +204,37 @@ fn damaged_relations_are_refused() {
         assert!(message.contains(reason), "{message}");
     }
 }
+
+const COAST: Tags<'_> = &[("natural", "coastline")];
+
+#[test]
+fn coastlines_are_handed_on_in_order_of_their_points() {
+    let found = read(
+        &[
+            (1, COAST, &[1, 2, 12]),
+            // An island that is a wood.
+            (2, &[("natural", "coastline"), ("landuse", "forest")], &[34, 35, 45, 44, 34]),
+            // One with a tag of areas that is not closed.
+            (3, &[("natural", "coastline"), ("landuse", "forest")], &[12, 13]),
+            (4, COAST, &[13, 111]),
+            (5, LAKE, &[1, 2, 12, 11, 1]),
+        ],
+        &[],
+    );
+    let coasts = &found.summary.coastlines;
+    let ways: Vec<(i64, usize)> =
+        coasts.iter().map(|coast| (coast.way_id, coast.points.len())).collect();
+    assert_eq!(ways, [(1, 3), (2, 5), (3, 2)]);
+    let lattice = |node: i64| {
+        let n = node - 1;
+        to_lattice(&[[9.5 + 0.001 * (n % 10) as f64, 47.0 + 0.001 * (n / 10) as f64]])[0].unwrap()
+    };
+    assert_eq!(coasts[0].points, [1, 2, 12].map(lattice));
+    let objects: Vec<AreaObject> = found.areas.iter().map(|area| area.object).collect();
+    assert_eq!(objects, [AreaObject::Way(2), AreaObject::Way(5)]);
+    // Coastlines that are no areas do not count as objects, unless they are lost.
+    assert_eq!(found.summary.objects, 4);
+    let way = |id, loss| Defect::LostArea { is_relation: false, id, loss };
+    let expected = [way(3, AreaLoss::OpenWay), way(4, AreaLoss::MissingNodes)];
+    assert_eq!(found.defects, expected);
+}

@@ -26,7 +26,7 @@ pub fn extract_bounds(extracts: &[PathBuf]) -> Result<[f64; 4], BuildError> {
 }
 
 /// The rectangle around all of them; across ±180° the east is larger than 180.
-fn around(boxes: &[[f64; 4]]) -> [f64; 4] {
+pub(crate) fn around(boxes: &[[f64; 4]]) -> [f64; 4] {
     let mut all: Option<[f64; 4]> = None;
     for &[west, south, east, north] in boxes {
         let mut own = [west, south, if west > east { east + 360.0 } else { east }, north];

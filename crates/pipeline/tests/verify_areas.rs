@@ -101,30 +101,49 @@ impl Apart {
             digest.iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat();
     }
 
-    /// A finest tile, an area on its eastern border, and the points of its first ring on that border.
-    fn on_a_border(&self) -> (TileId, usize, Vec<usize>) {
+    /// A finest tile beside another one, an area on the border between both, and the numbers of polygon, ring and two points there.
+    fn on_a_border(&self) -> OnBorder {
         let frame = &self.manifest.frame;
-        let finest = self.tiles.values().filter(|tile| tile.id.z() == frame.max_level());
-        finest
-            .filter(|tile| {
-                let beside = tile.id.neighbour(1, 0);
-                beside.is_some_and(|id| self.tiles.contains_key(&pmtiles_order(id)))
-            })
-            .find_map(|tile| {
-                let east = frame.tile_lattice_bounds(tile.id).max.u;
-                tile.areas.iter().enumerate().find_map(|(number, area)| {
-                    let ring = &area.polygons[0].rings[0];
-                    let at: Vec<usize> = (0..ring.len()).filter(|&n| ring[n].u == east).collect();
-                    (at.len() >= 2).then_some((tile.id, number, at))
-                })
-            })
-            .unwrap()
+        for tile in self.tiles.values().filter(|tile| tile.id.z() == frame.max_level()) {
+            let bounds = frame.tile_lattice_bounds(tile.id);
+            for (side, beside) in [(bounds.max.u, (1, 0)), (bounds.min.v, (0, 1))] {
+                let is_upright = beside.0 == 1;
+                let is_there = |id: TileId| self.tiles.contains_key(&pmtiles_order(id));
+                if !tile.id.neighbour(beside.0, beside.1).is_some_and(is_there) {
+                    continue;
+                }
+                let is_on =
+                    |point: &LatticePoint| side == if is_upright { point.u } else { point.v };
+                for (area, record) in tile.areas.iter().enumerate() {
+                    for (polygon, part) in record.polygons.iter().enumerate() {
+                        let ring = &part.rings[0];
+                        let at: Vec<usize> =
+                            (0..ring.len()).filter(|&number| is_on(&ring[number])).collect();
+                        if let [first, second, ..] = at[..] {
+                            let points = [first, second];
+                            return OnBorder { id: tile.id, area, polygon, points, is_upright };
+                        }
+                    }
+                }
+            }
+        }
+        panic!("no area lies on two tiles");
     }
 
     /// A tile with an area.
     fn with_an_area(&self) -> TileId {
         self.tiles.values().find(|tile| !tile.areas.is_empty()).unwrap().id
     }
+}
+
+/// See [`Apart::on_a_border`].
+struct OnBorder {
+    id: TileId,
+    area: usize,
+    polygon: usize,
+    /// Of the polygon's outer ring.
+    points: [usize; 2],
+    is_upright: bool,
 }
 
 impl Tile {
@@ -187,7 +206,7 @@ fn a_ring_with_the_same_point_twice() {
 #[test]
 fn an_area_that_a_tile_lacks() {
     let mut apart = Apart::sound();
-    let (id, area, _) = apart.on_a_border();
+    let OnBorder { id, area, .. } = apart.on_a_border();
     apart.change(id, |areas| {
         areas.remove(area);
     });
@@ -197,12 +216,17 @@ fn an_area_that_a_tile_lacks() {
 #[test]
 fn a_point_that_moves_along_a_border() {
     let mut apart = Apart::sound();
-    let (id, area, at) = apart.on_a_border();
+    let OnBorder { id, area, polygon, points: [first, second], is_upright } = apart.on_a_border();
     apart.change(id, |areas| {
-        let ring = &mut areas[area].polygons[0].rings[0];
-        let middle = i64::midpoint(ring[at[0]].v, ring[at[1]].v);
-        let LatticePoint { v, .. } = &mut ring[at[0]];
-        *v += (middle - *v).signum();
+        let ring = &mut areas[area].polygons[polygon].rings[0];
+        let other = ring[second];
+        let LatticePoint { u, v } = &mut ring[first];
+        // Towards the other one.
+        if is_upright {
+            *v += (other.v - *v).signum();
+        } else {
+            *u += (other.u - *u).signum();
+        }
     });
     apart.assert_breaks(&[CheckId::AreaSeams]);
 }
@@ -221,7 +245,7 @@ fn fields_of_areas_in_the_manifest() {
         |manifest| manifest.areas.as_mut().unwrap().levels[0].areas += 1,
         |manifest| manifest.areas.as_mut().unwrap().levels[0].points += 1,
         |manifest| manifest.areas.as_mut().unwrap().levels[0].bytes += 1,
-        |manifest| drop(manifest.areas.as_mut().unwrap().levels.pop()),
+        |manifest| manifest.areas.as_mut().unwrap().levels.truncate(1),
     ];
     for change in changes {
         let mut apart = Apart::sound();

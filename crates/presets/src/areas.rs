@@ -11,6 +11,8 @@ const PRESETS: [(&str, &str); 1] = [("default", include_str!("../areas/default.t
 #[serde(deny_unknown_fields)]
 struct AreaFile {
     name: String,
+    #[serde(default)]
+    sea: bool,
     area: Vec<AreaEntry>,
 }
 
@@ -45,5 +47,6 @@ pub fn parse_area_table(text: &str) -> Result<AreaTable, PresetError> {
         };
         tags.extend(of_class.into_iter().map(|tag| (tag, class)));
     }
-    Ok(AreaTable::new(file.name, tags)?)
+    let table = AreaTable::new(file.name, tags)?;
+    Ok(if file.sea { table.with_sea() } else { table })
 }

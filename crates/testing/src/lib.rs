@@ -15,6 +15,7 @@
 )]
 
 mod area_extract;
+mod coast_extract;
 #[cfg(feature = "rasters")]
 mod colour_image;
 mod data;
@@ -33,6 +34,7 @@ mod random;
 mod raster;
 
 pub use area_extract::extract_with_areas;
+pub use coast_extract::extract_with_coast;
 #[cfg(feature = "rasters")]
 pub use colour_image::ColourImage;
 pub use data::{real_data, root, sample, srtm_heights};

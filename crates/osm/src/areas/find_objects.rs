@@ -1,4 +1,4 @@
-//! Pass 1: ways and relations with the tags of an area.
+//! Pass 1: ways and relations with the tags of an area, and coastlines.
 
 use std::io::{Read, Seek};
 
@@ -126,18 +126,23 @@ impl OfBlock {
         let strings = way.raw_stringtable();
         let Some(tags) = Tags::of(strings, way.raw_tags(), table) else { return };
         // Closed ways may be lines, such as hedges around a field; the tags of the table are those of areas.
-        let Some(class) = tags.class.filter(|_| !tags.is("area", "no")) else { return };
+        let mut class = tags.class.filter(|_| !tags.is("area", "no"));
         let first = way.refs().next();
-        if way.raw_refs().len() < LEAST_REFS || way.refs().last() != first {
+        let is_open = way.raw_refs().len() < LEAST_REFS || way.refs().last() != first;
+        if class.is_some() && is_open {
             self.open_ways.push(way.id());
             self.held_bytes += 16;
+            class = None;
+        }
+        let is_coastline = table.has_sea() && tags.is("natural", "coastline");
+        if class.is_none() && !is_coastline {
             return;
         }
         let version = way.info().version();
         self.push(
             AreaObject::Way(way.id()),
             version,
-            class,
+            (class, is_coastline),
             &tags,
             Box::new([Member { way_id: way.id(), is_inner: false }]),
         );
@@ -150,6 +155,7 @@ impl OfBlock {
             return;
         }
         let Some(class) = tags.class else { return };
+        let class = (Some(class), false);
         let ways = relation.members().filter(|member| member.member_type == RelMemberType::Way);
         let is_inner = |role: i32| {
             let role = usize::try_from(role).ok().and_then(|role| strings.get(role));
@@ -169,7 +175,7 @@ impl OfBlock {
         &mut self,
         object: AreaObject,
         version: Option<i32>,
-        class: AreaClass,
+        (class, is_coastline): (Option<AreaClass>, bool),
         tags: &Tags<'_>,
         ways: Box<[Member]>,
     ) {
@@ -184,6 +190,7 @@ impl OfBlock {
             version,
             file: 0,
             class,
+            is_coastline,
             name,
             ways,
         });
@@ -204,8 +211,11 @@ impl<'a> Tags<'a> {
         table: &AreaTable,
     ) -> Option<Self> {
         let bytes = |number: u32| strings.get(number as usize).map_or(&[][..], Vec::as_slice);
-        let is_known =
-            |(key, _): (u32, u32)| table.keys().any(|known| known.as_bytes() == bytes(key));
+        let is_key = |key: &[u8]| {
+            table.keys().any(|known| known.as_bytes() == key)
+                || table.has_sea() && key == b"natural"
+        };
+        let is_known = |(key, _): (u32, u32)| is_key(bytes(key));
         if !raw.clone().any(is_known) {
             return None;
         }

@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 
 use corniche_areas::{
-    Area, AreaObject, Assembled, OutlineError, OutlineWay, Polygon, Ring, assemble,
+    Area, AreaClass, AreaObject, Assembled, Coastline, OutlineError, OutlineWay, Polygon, Ring,
+    assemble,
 };
 use corniche_geom::{LatticePoint, wgs84};
 use corniche_store::Sorted;
@@ -16,6 +17,7 @@ use super::{
 use crate::{
     AreaLoss, Defect, ReadOsmError,
     ahead::Ahead,
+    find_ways::check_held,
     read_request::Place,
     reading::{Reading, Step},
     spool::SpoolReader,
@@ -29,9 +31,9 @@ const POINTS_PER_THREAD: usize = 1 << 16;
 /// Hands out areas in the order of their objects.
 pub(crate) fn make_areas(
     reading: &Reading<'_>,
-    mut known: SpoolReader<'_>,
-    objects_count: u64,
+    (mut known, objects_count): (SpoolReader<'_>, u64),
     parts: Sorted<'_, PartRecord>,
+    mut held_bytes: u64,
     summary: &mut AreaSummary,
     sink: &mut dyn FnMut(Area),
     on_defect: &mut dyn FnMut(Defect),
@@ -62,11 +64,18 @@ pub(crate) fn make_areas(
         });
         for made in made {
             made.defects.into_iter().for_each(&mut *on_defect);
+            for coastline in made.coastlines {
+                held_bytes += (size_of_val(&*coastline.points) + size_of::<Coastline>()) as u64;
+                check_held(reading, held_bytes)?;
+                summary.coastlines.push(coastline);
+            }
             match made.area {
-                Ok(area) => {
+                Ok(Some(area)) => {
                     count(summary, &area);
                     sink(area);
                 }
+                // A coastline alone is no area.
+                Ok(None) => summary.objects -= 1,
                 Err(loss) => *summary.lost.entry(loss).or_default() += 1,
             }
         }
@@ -102,7 +111,8 @@ fn count(summary: &mut AreaSummary, area: &Area) {
 
 /// What becomes of an object.
 struct Made {
-    area: Result<Area, AreaLoss>,
+    area: Result<Option<Area>, AreaLoss>,
+    coastlines: Vec<Coastline>,
     defects: Vec<Defect>,
 }
 
@@ -110,20 +120,53 @@ fn make(known: Known, parts: &[PartRecord], place: &Place<'_>) -> Made {
     let (kind, id) = known.object.parts();
     let is_relation = kind == "relation";
     let mut defects = Vec::new();
-    let area = try_making(known, parts, place, &mut defects);
+    let lines = if known.is_coastline { coastlines(id, parts, place) } else { Ok(Vec::new()) };
+    let (coastlines, failed) = match lines {
+        Ok(lines) => (lines, None),
+        Err(loss) => (Vec::new(), Some(loss)),
+    };
+    let area = match (known.class, failed) {
+        (Some(class), _) => try_making((known, class), parts, place, &mut defects).map(Some),
+        (None, Some(loss)) => Err(loss),
+        (None, None) => Ok(None),
+    };
     if let Err(loss) = area {
         defects.push(Defect::LostArea { is_relation, id, loss });
     }
-    Made { area, defects }
+    Made { area, coastlines, defects }
+}
+
+/// The lines of a way on the package's lattice: several where points between them cannot be placed.
+fn coastlines(
+    way_id: i64,
+    parts: &[PartRecord],
+    place: &Place<'_>,
+) -> Result<Vec<Coastline>, AreaLoss> {
+    let mut lines = Vec::new();
+    for part in parts {
+        let points = match &part.line {
+            PartLine::Points(points) => points,
+            PartLine::NoWay => return Err(AreaLoss::MissingWays),
+            PartLine::NoNodes => return Err(AreaLoss::MissingNodes),
+            PartLine::OutOfRange => return Err(AreaLoss::OutOfRange),
+        };
+        let positions_deg: Vec<[f64; 2]> =
+            points.iter().copied().map(to_point).map(degrees_of).collect();
+        let placed = place(&positions_deg);
+        let runs = placed.split(Option::is_none).map(|run| run.iter().flatten().copied());
+        let runs = runs.map(|points| Coastline { way_id, points: points.collect() });
+        lines.extend(runs.filter(|line| line.points.len() >= 2));
+    }
+    if lines.is_empty() { Err(AreaLoss::OutsideProjection) } else { Ok(lines) }
 }
 
 fn try_making(
-    known: Known,
+    (known, class): (Known, AreaClass),
     parts: &[PartRecord],
     place: &Place<'_>,
     defects: &mut Vec<Defect>,
 ) -> Result<Area, AreaLoss> {
-    let Known { object, class, name } = known;
+    let Known { object, name, .. } = known;
     let (kind, id) = object.parts();
     let mut missing = 0;
     let mut ways: Vec<Line> = Vec::new();

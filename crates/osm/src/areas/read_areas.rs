@@ -26,7 +26,8 @@ use crate::{
 ///   roles; relations in relations are not followed.
 /// - What is wrong with the data goes to `on_defect`, in an order that depends on the file alone, as the areas do. Each object
 ///   with a tag of the table becomes an area, or has one [`Defect::LostArea`].
-/// - Coastlines are no areas: the sea is not read here.
+/// - Coastlines (`natural=coastline`) are no areas. If the table wants the sea, they are in the summary, to be closed by
+///   [`corniche_areas::close_sea`]; they are kept in memory, 16 bytes a point.
 ///
 /// Memory, limits, several extracts and what the file may be are as for [`crate::read_roads`]; `request.table` is not used. The
 /// file is read three times: for objects, for the ways of their outlines (more often where these do not fit in memory), for
@@ -78,6 +79,7 @@ fn read_all<R: Read + Seek>(
     let parts =
         hand_parts(reading, outlines.members.read(), LocatedWays { ways: ways.read(), stops })?;
     let parts = parts.finish().map_err(failed)?;
-    make_areas(reading, objects.known.read(), objects.count, parts, &mut summary, sink, on_defect)?;
+    let objects = (objects.known.read(), objects.count);
+    make_areas(reading, objects, parts, held_bytes, &mut summary, sink, on_defect)?;
     Ok(summary)
 }

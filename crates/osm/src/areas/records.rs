@@ -9,7 +9,7 @@ use crate::{
     wire::{push_varint, to_zigzag, varint, zigzag},
 };
 
-/// A way or relation with the tags of an area. Ways come first, each kind by id.
+/// A way or relation with the tags of an area, or a coastline. Ways come first, each kind by id.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct ObjectRecord {
     pub(crate) object: AreaObject,
@@ -21,7 +21,9 @@ pub(crate) struct ObjectRecord {
     pub(crate) version: i32,
     /// Which extract it is from.
     pub(crate) file: u32,
-    pub(crate) class: AreaClass,
+    /// `None` of a coastline that is no area.
+    pub(crate) class: Option<AreaClass>,
+    pub(crate) is_coastline: bool,
     /// Empty for none.
     pub(crate) name: Box<str>,
     /// The ways of its outline; a way names itself.
@@ -40,7 +42,8 @@ pub(crate) struct Member {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Known {
     pub(crate) object: AreaObject,
-    pub(crate) class: AreaClass,
+    pub(crate) class: Option<AreaClass>,
+    pub(crate) is_coastline: bool,
     pub(crate) name: Box<str>,
 }
 
@@ -97,8 +100,8 @@ pub(crate) fn degrees_of(point: LatticePoint) -> [f64; 2] {
 impl ObjectRecord {
     /// Splits off what makes the area; what is left are the ways.
     pub(crate) fn into_known(self) -> (Known, Box<[Member]>) {
-        let Self { object, class, name, ways, .. } = self;
-        (Known { object, class, name }, ways)
+        let Self { object, class, is_coastline, name, ways, .. } = self;
+        (Known { object, class, is_coastline, name }, ways)
     }
 }
 
@@ -115,20 +118,24 @@ impl Member {
     }
 }
 
+const NO_CLASS: u8 = 255;
+
 impl Known {
     pub(crate) fn encode(&self, bytes: &mut Vec<u8>) {
         let (is_relation, id) = match self.object {
             AreaObject::Way(id) => (0, id),
             AreaObject::Relation(id) => (1, id),
         };
-        bytes.extend([is_relation, self.class.number()]);
+        // Classes are few.
+        let class = self.class.map_or(NO_CLASS, AreaClass::number);
+        bytes.extend([is_relation, u8::from(self.is_coastline), class]);
         push_varint(bytes, to_zigzag(id));
         push_varint(bytes, self.name.len() as u64);
         bytes.extend(self.name.as_bytes());
     }
 
     pub(crate) fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let (&[is_relation, class], rest) = bytes.split_first_chunk::<2>()?;
+        let (&[is_relation, is_coastline, class], rest) = bytes.split_first_chunk::<3>()?;
         *bytes = rest;
         let id = zigzag(varint(bytes).ok()?);
         let length = varint(bytes).ok()?.try_into().ok()?;
@@ -136,7 +143,8 @@ impl Known {
         *bytes = rest;
         Some(Self {
             object: if is_relation == 1 { AreaObject::Relation(id) } else { AreaObject::Way(id) },
-            class: AreaClass::from_number(class)?,
+            class: if class == NO_CLASS { None } else { Some(AreaClass::from_number(class)?) },
+            is_coastline: is_coastline == 1,
             name: str::from_utf8(name).ok()?.into(),
         })
     }
@@ -144,8 +152,9 @@ impl Known {
 
 impl SortRecord for ObjectRecord {
     fn encode(&self, bytes: &mut Vec<u8>) {
-        let Self { object, age, order, version, file, class, name, ways } = self;
-        Known { object: *object, class: *class, name: name.clone() }.encode(bytes);
+        let Self { object, age, order, version, file, class, is_coastline, name, ways } = self;
+        let (class, is_coastline) = (*class, *is_coastline);
+        Known { object: *object, class, is_coastline, name: name.clone() }.encode(bytes);
         push_varint(bytes, (*age).into());
         push_varint(bytes, *order);
         push_varint(bytes, to_zigzag((*version).into()));
@@ -155,14 +164,15 @@ impl SortRecord for ObjectRecord {
     }
 
     fn decode(bytes: &mut &[u8]) -> Option<Self> {
-        let Known { object, class, name } = Known::decode(bytes)?;
+        let Known { object, class, is_coastline, name } = Known::decode(bytes)?;
         let age = varint(bytes).ok()?.try_into().ok()?;
         let order = varint(bytes).ok()?;
         let version = zigzag(varint(bytes).ok()?).try_into().ok()?;
         let file = varint(bytes).ok()?.try_into().ok()?;
         let count = varint(bytes).ok()?;
         let ways: Option<_> = (0..count).map(|_| Member::decode(bytes)).collect();
-        Some(Self { object, age, order, version, file, class, name, ways: ways? })
+        let ways = ways?;
+        Some(Self { object, age, order, version, file, class, is_coastline, name, ways })
     }
 
     fn extra_bytes(&self) -> usize {

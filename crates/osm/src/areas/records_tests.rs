@@ -19,14 +19,17 @@ fn member(way_id: i64) -> Member {
 
 #[test]
 fn records_come_back() {
-    for object in [AreaObject::Way(-7), AreaObject::Relation(i64::MAX)] {
+    let classes = [(Some(AreaClass::Rock), false), (None, true)];
+    let objects = [AreaObject::Way(-7), AreaObject::Relation(i64::MAX)];
+    for (object, (class, is_coastline)) in objects.into_iter().zip(classes) {
         comes_back(&ObjectRecord {
             object,
             age: 3,
             order: 1 << 40,
             version: -1,
             file: 2,
-            class: AreaClass::Rock,
+            class,
+            is_coastline,
             name: "Füssen".into(),
             ways: Box::new([1, -2, i64::MIN].map(member)),
         });

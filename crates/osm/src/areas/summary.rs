@@ -1,6 +1,6 @@
 use std::collections::BTreeMap;
 
-use corniche_areas::AreaClass;
+use corniche_areas::{AreaClass, Coastline};
 
 use crate::AreaLoss;
 
@@ -13,6 +13,8 @@ pub struct AreaSummary {
     pub kept: BTreeMap<AreaClass, KeptAreas>,
     /// Objects that became none.
     pub lost: BTreeMap<AreaLoss, u64>,
+    /// Coastlines on the package's lattice, if the table wants the sea. They do not count as objects.
+    pub coastlines: Vec<Coastline>,
 }
 
 /// Areas of one class.

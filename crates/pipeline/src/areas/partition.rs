@@ -12,7 +12,7 @@ use corniche_tileset::{AreaRecord, AreaRings, encode_areas, pmtiles_order};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{sections::TileAreas, split::Splitting, totals::AreaTotals};
+use super::{sea::SeaPlace, sections::TileAreas, split::Splitting, totals::AreaTotals};
 use crate::{
     BuildError, Defect, Observer,
     artifacts::{Kind, damaged, tile_of},
@@ -27,7 +27,7 @@ const BATCH_POINTS: usize = 1 << 16;
 pub(crate) fn partition(
     request: &ReadRequest<'_>,
     table: &AreaTable,
-    splitting: &Splitting<'_>,
+    (splitting, sea): (&Splitting<'_>, &SeaPlace<'_>),
     store: &dyn Artifacts,
     observer: &dyn Observer,
     on_defect: &mut dyn FnMut(Defect),
@@ -56,6 +56,9 @@ pub(crate) fn partition(
         Ok(summary) => summary,
         Err(error) => return Ok(Err(error)),
     };
+    if let Some(sea) = sea.close(&mut summary, &mut |defect| on_defect(Defect::from(defect))) {
+        gathered.add(sea);
+    }
     gathered.split_batch();
     if let Some(error) = gathered.failed {
         return Err(error);

@@ -16,6 +16,8 @@ const STEPS_PER_CELL: f64 = 16.0;
 pub(crate) struct Splitting<'a> {
     pub(crate) frame: &'a Frame,
     pub(crate) data: DataTiles,
+    /// The bounds that were asked for.
+    pub(crate) clip: Option<LatticeBounds>,
 }
 
 impl Splitting<'_> {
@@ -44,7 +46,10 @@ impl Splitting<'_> {
                 let [east, north] = self.frame.node_steps(level).map(i128::from);
                 coarse.retain(|polygon| polygon.doubled_area() >= 2 * east * north);
             }
-            let coarse = within(&coarse, &self.frame.tile_lattice_bounds(TileId::ROOT))?;
+            let mut coarse = within(&coarse, &self.frame.tile_lattice_bounds(TileId::ROOT))?;
+            if let Some(clip) = &self.clip {
+                coarse = within(&coarse, clip)?;
+            }
             let mut tiles = Vec::new();
             let wanted = Wanted { frame: self.frame, data: self.data.above(level), level };
             wanted.divide(TileId::ROOT, coarse, &mut tiles)?;

@@ -13,7 +13,7 @@ fn frame() -> Frame {
 
 fn splitting(frame: &Frame) -> Splitting<'_> {
     let [south_west, north_east] = [[-512, -512], [511, 511]].map(|[i, j]| NodeIndex { i, j });
-    Splitting { frame, data: DataTiles::between(frame, south_west, north_east) }
+    Splitting { frame, data: DataTiles::between(frame, south_west, north_east), clip: None }
 }
 
 /// A star around a place, with a hole.

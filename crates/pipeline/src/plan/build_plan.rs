@@ -57,6 +57,8 @@ pub struct BuildPlan {
 pub struct AreaTableText {
     /// Its name.
     pub name: String,
+    /// Whether the sea is made.
+    pub sea: bool,
     /// Each tag, `key=value`, in the order in which they decide, with the number of its class.
     pub tags: Vec<(String, u8)>,
 }
@@ -280,7 +282,11 @@ impl AreaTableText {
         let tag = |(key, value, class): (&str, &str, corniche_areas::AreaClass)| {
             (format!("{key}={value}"), class.number())
         };
-        Self { name: table.name().to_owned(), tags: table.tags().map(tag).collect() }
+        Self {
+            name: table.name().to_owned(),
+            sea: table.has_sea(),
+            tags: table.tags().map(tag).collect(),
+        }
     }
 
     fn table(&self) -> Result<AreaTable, PlanError> {
@@ -290,7 +296,8 @@ impl AreaTableText {
         };
         let tags = self.tags.iter().map(tag).collect::<Result<_, PlanError>>()?;
         let table: Result<AreaTable, AreaTableError> = AreaTable::new(self.name.clone(), tags);
-        Ok(table?)
+        let table = table?;
+        Ok(if self.sea { table.with_sea() } else { table })
     }
 }
 

@@ -33,7 +33,8 @@ use super::{
     totals::{ExtractCounts, LengthsWriter, RoadTotals},
 };
 use crate::{
-    BuildError, Defect, Observer, RoadSettings, Stage, areas,
+    BuildError, Defect, Observer, RoadSettings, Stage,
+    areas::{self, sea::SeaPlace},
     artifacts::{self, Kind},
     heights::data_tiles::DataTiles,
     levels::Levels,
@@ -117,10 +118,19 @@ fn read_areas(
 ) -> Result<(), BuildError> {
     let Some(AreaInput { table, data }) = input.areas else { return Ok(()) };
     observer.begin(Stage::MapAreas, None);
-    let splitting = areas::split::Splitting { frame: input.levels.frame(), data };
+    let frame = input.levels.frame();
+    let splitting = areas::split::Splitting { frame, data, clip: input.clip };
+    let sea = SeaPlace::new(input.osm, input.data_bounds, frame, input.projection)?;
     on_extract(input, (scratch, Stage::MapAreas), observer, |request| {
         let mut on_defect = |defect| defects.push(defect);
-        areas::partition::partition(request, table, &splitting, store, observer, &mut on_defect)
+        areas::partition::partition(
+            request,
+            table,
+            (&splitting, &sea),
+            store,
+            observer,
+            &mut on_defect,
+        )
     })?;
     observer.end(Stage::MapAreas);
     Ok(())
