@@ -17,11 +17,16 @@ pub struct Coastline {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Chain {
     pub(crate) points: Vec<LatticePoint>,
-    /// The ways at its beginning and its end.
-    pub(crate) ways: [i64; 2],
+    /// The way of each segment.
+    pub(crate) ways: Vec<i64>,
 }
 
 impl Chain {
+    fn of(coastline: Coastline) -> Self {
+        let ways = vec![coastline.way_id; coastline.points.len().saturating_sub(1)];
+        Self { points: coastline.points, ways }
+    }
+
     pub(crate) fn is_ring(&self) -> bool {
         self.points.len() > 2 && self.points.first() == self.points.last()
     }
@@ -36,9 +41,19 @@ impl Chain {
 
     /// Goes on along `next`.
     pub(crate) fn append(&mut self, next: Self) {
-        let same = usize::from(self.last() == next.first());
-        self.points.extend(next.points.into_iter().skip(same));
-        self.ways[1] = next.ways[1];
+        if self.last() == next.first() {
+            self.points.pop();
+        } else {
+            self.ways.extend(self.ways.last().copied());
+        }
+        self.points.extend(next.points);
+        self.ways.extend(next.ways);
+    }
+
+    /// Goes on straight to a point.
+    pub(crate) fn push(&mut self, point: LatticePoint) {
+        self.points.push(point);
+        self.ways.extend(self.ways.last().copied());
     }
 }
 
@@ -60,12 +75,12 @@ pub(crate) fn join(mut coastlines: Vec<Coastline>) -> Vec<Chain> {
     let mut chains = Vec::new();
     for index in open.into_iter().chain(rings) {
         let Some(first) = left[index].take() else { continue };
-        let mut chain = Chain { points: first.points, ways: [first.way_id; 2] };
+        let mut chain = Chain::of(first);
         while !chain.is_ring()
             && let Some(at) = chain.last()
             && let Some(next) = take_next(&mut beginning, at, &mut left)
         {
-            chain.append(Chain { points: next.points, ways: [next.way_id; 2] });
+            chain.append(Chain::of(next));
         }
         chains.push(chain);
     }
@@ -91,15 +106,18 @@ fn take_next(
 pub(crate) fn cut(chain: &Chain, bounds: &LatticeBounds) -> Vec<Chain> {
     let mut parts: Vec<Chain> = Vec::new();
     let mut open = false;
-    for pair in chain.points.windows(2) {
-        let &[from, to] = pair else { continue };
+    for (pair, &way_id) in chain.points.array_windows::<2>().zip(&chain.ways) {
+        let &[from, to] = pair;
         let Some([inner_from, inner_to]) = clip([from, to], bounds) else {
             open = false;
             continue;
         };
         match parts.last_mut() {
-            Some(part) if open && inner_from == from => part.points.push(inner_to),
-            _ => parts.push(Chain { points: vec![inner_from, inner_to], ways: chain.ways }),
+            Some(part) if open && inner_from == from => {
+                part.points.push(inner_to);
+                part.ways.push(way_id);
+            }
+            _ => parts.push(Chain { points: vec![inner_from, inner_to], ways: vec![way_id] }),
         }
         open = inner_to == to;
     }
@@ -113,10 +131,8 @@ pub(crate) fn cut(chain: &Chain, bounds: &LatticeBounds) -> Vec<Chain> {
         last.append(parts[0].clone());
         parts[0] = last;
     }
-    for part in &mut parts {
-        part.points.dedup();
-    }
-    parts.retain(|part| part.points.len() >= 2);
+    // A touch from outside is a point.
+    parts.retain(|part| part.points.iter().any(|&point| Some(point) != part.first()));
     parts
 }
 

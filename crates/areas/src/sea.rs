@@ -99,7 +99,8 @@ fn bridge(chains: Vec<Chain>, bounds: &LatticeBounds, bridged: &mut Vec<i64>) ->
         if next[tail].is_none() && !has_before[head] {
             next[tail] = Some(head);
             has_before[head] = true;
-            bridged.extend([chains[tail].ways[1], chains[head].ways[0]]);
+            bridged.extend(chains[tail].ways.last());
+            bridged.extend(chains[head].ways.first());
         }
     }
     follow(chains, &next, &has_before)
@@ -117,7 +118,7 @@ fn follow(chains: Vec<Chain>, next: &[Option<usize>], has_before: &[bool]) -> Ve
         while let Some(following) = next[at] {
             let Some(following_chain) = left[following].take() else {
                 // Round again.
-                chain.points.extend(chain.first());
+                chain.first().into_iter().for_each(|first| chain.push(first));
                 break;
             };
             chain.append(following_chain);
@@ -131,12 +132,14 @@ fn follow(chains: Vec<Chain>, next: &[Option<usize>], has_before: &[bool]) -> Ve
 /// The same part with ends that lie inside brought to the edge by the shortest way.
 fn to_edge(mut part: Chain, bounds: &LatticeBounds, bridged: &mut Vec<i64>) -> Chain {
     if let Some(last) = part.last().filter(|&last| edge_distance(last, bounds) > 0) {
-        part.points.push(nearest_on_edge(last, bounds));
-        bridged.push(part.ways[1]);
+        bridged.extend(part.ways.last());
+        part.push(nearest_on_edge(last, bounds));
     }
     if let Some(first) = part.first().filter(|&first| edge_distance(first, bounds) > 0) {
+        bridged.extend(part.ways.first());
         part.points.insert(0, nearest_on_edge(first, bounds));
-        bridged.push(part.ways[0]);
+        part.ways.extend_from_within(..1);
+        part.ways.rotate_right(1);
     }
     part
 }
@@ -180,7 +183,7 @@ fn agreeing(
         let [first, second] = [length(&pair[0]), length(&pair[1])];
         let (_, shorter) = if first.0 <= second.0 { first } else { second };
         is_out[shorter] = true;
-        left_out.extend(parts[shorter].ways);
+        left_out.extend(&parts[shorter].ways);
         crossings.retain(|crossing| crossing.part != shorter);
     }
     // A part that is left out is no line of the outline, either.
