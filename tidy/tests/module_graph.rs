@@ -5,12 +5,13 @@ use std::fs;
 use corniche_tidy::{Graph, crates_of, read_crate, root, uses};
 
 /// Which crates of the workspace each crate may use, beyond what those use (`ARCHITECTURE.md`, "The crates").
-const MAY_USE: [(&str, &[&str]); 18] = [
-    ("cli", &["window", "viewer", "pipeline", "presets", "export"]),
+const MAY_USE: [(&str, &[&str]); 19] = [
+    ("cli", &["window", "viewer", "pipeline", "presets", "export", "matching"]),
     ("window", &["viewer"]),
     ("viewer", &["tileset", "styles"]),
     ("pipeline", &["tileset", "osm", "photo", "store", "objects"]),
     ("export", &["tileset", "dem", "store"]),
+    ("matching", &["tileset", "photo"]),
     ("tileset", &["drape", "tin", "roads", "areas"]),
     ("osm", &["roads", "areas", "store", "objects"]),
     ("photo", &["dem"]),

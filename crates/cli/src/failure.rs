@@ -1,6 +1,7 @@
 use std::{fmt, io};
 
 use corniche_export::ExportError;
+use corniche_matching::MatchError;
 use corniche_pipeline::{BuildError, VerifyError};
 use corniche_tileset::OpenError;
 use corniche_viewer::gpu::GpuError;
@@ -83,6 +84,16 @@ impl From<VerifyError> for Failure {
             VerifyError::Interrupted => ExitCode::Interrupted,
             VerifyError::Changed { .. } | VerifyError::Work(_) => ExitCode::Failed,
             VerifyError::Roads(error) if !error.is_unusable_input() => ExitCode::Failed,
+            _ => ExitCode::Unusable,
+        };
+        Self::new(code, error)
+    }
+}
+
+impl From<MatchError> for Failure {
+    fn from(error: MatchError) -> Self {
+        let code = match &error {
+            MatchError::Interrupted => ExitCode::Interrupted,
             _ => ExitCode::Unusable,
         };
         Self::new(code, error)

@@ -18,6 +18,7 @@ mod info;
 mod interrupt;
 mod jobs;
 mod man;
+mod matching;
 mod merge;
 mod messages;
 mod named_output;
@@ -112,6 +113,7 @@ fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
         Command::Merge(args) => merge::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Growth(args) => growth::run(&args),
+        Command::Match(args) => matching::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Tile(args) => tile::run(&args),
         Command::Export(args) => export::run(&args),

@@ -6,10 +6,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use corniche_areas::AreaTable;
 use corniche_pipeline::{
     Check, CheckId, ErrorFigures, Needs, VerifyError, VerifyOsm, VerifyReport, VerifySettings,
 };
-use corniche_presets::frc_preset;
+use corniche_presets::{area_preset, frc_preset};
 use corniche_tileset::{FilePackage, Manifest};
 
 use crate::{
@@ -70,14 +71,14 @@ fn extract(
         return Ok(None);
     }
     let paths = corniche_pipeline::extract_names(osm)?;
+    let opened = FilePackage::open(package).map_err(VerifyError::from)?;
+    let manifest = opened.manifest();
+    if !names_extract(manifest) {
+        return Err(VerifyError::NoExtract.into());
+    }
     let table = if let Some(table) = &args.frc_table {
         presets::frc_table(table)?
     } else {
-        let opened = FilePackage::open(package).map_err(VerifyError::from)?;
-        let manifest = opened.manifest();
-        if !names_extract(manifest) {
-            return Err(VerifyError::NoExtract.into());
-        }
         let name = &manifest.settings.frc_table;
         if frc_preset(name).is_none() {
             return Err(Failure::unusable(format!(
@@ -87,7 +88,30 @@ fn extract(
         }
         presets::frc_table(name)?
     };
-    Ok(Some(VerifyOsm { paths, table, memory_bytes: MEMORY_BYTES }))
+    let areas = areas(args, manifest, package)?;
+    Ok(Some(VerifyOsm { paths, table, areas, memory_bytes: MEMORY_BYTES }))
+}
+
+/// The table of areas that the package names: given, or the preset of that name; `None` if the package has no areas.
+fn areas(
+    args: &VerifyArgs,
+    manifest: &Manifest,
+    package: &Path,
+) -> Result<Option<AreaTable>, Failure> {
+    match (&args.areas, &manifest.settings.areas) {
+        (Some(table), _) => presets::area_table(table).map(Some),
+        (None, None) => Ok(None),
+        (None, Some(recorded)) => {
+            let name = &recorded.table;
+            if area_preset(name).is_none() {
+                return Err(Failure::unusable(format!(
+                    "{} was made with the table of areas {name:?}, which is no preset; give its file with --areas",
+                    package.display()
+                )));
+            }
+            presets::area_table(name).map(Some)
+        }
+    }
 }
 
 /// Whether a package was made with an extract.

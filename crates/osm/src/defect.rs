@@ -179,13 +179,6 @@ impl Defect {
         }
     }
 
-    /// Whether defects of this kind are those of areas: only who reads areas finds them.
-    #[must_use]
-    pub fn is_of_areas(reason: &str) -> bool {
-        [MISSING_WAYS, MENDED_OUTLINE, OPEN_COASTLINE].contains(&reason)
-            || AreaLoss::ALL.iter().any(|loss| loss.reason() == reason)
-    }
-
     /// What it is about: `"way"`, `"node"` or `"relation"`, and its id.
     #[must_use]
     pub const fn object(&self) -> (&'static str, i64) {

@@ -9,6 +9,8 @@ use crate::{PhotoError, PhotoGrid, TexelGrid};
 
 /// The most levels finer than the finest cell that are taken where nobody says how many: a finest tile then has 2048 texels a side.
 const USUAL_LEVELS: u8 = 3;
+/// The most levels at all.
+const MOST_LEVELS: u8 = 16;
 /// Texels may be so many pixels large where the number of levels is chosen.
 const PIXELS_PER_TEXEL: f64 = 1.5;
 /// The most pixels along a texel: what one texel is made of must fit into memory.
@@ -21,12 +23,15 @@ pub struct Photos {
 }
 
 /// How many levels of texels finer than the finest cell there are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LevelChoice {
     /// As many as the finest photo has detail for, at most three.
     OfPhotos,
     /// So many.
     Given(u8),
+    /// As many as the finest photo has detail for, or as make texels of so many metres if that is coarser; to be read by windows, not by
+    /// whole tiles.
+    NotCoarserThan(f64),
 }
 
 impl Photos {
@@ -71,7 +76,7 @@ impl Photos {
     /// # Errors
     /// When none of them lies on the data of the grid, one has no place in the grid's CRS or far more detail than the texels, or
     /// there are too many levels.
-    pub fn on(&self, grid: &GridPlan, levels: LevelChoice) -> Result<PhotoGrid, PhotoError> {
+    pub fn on(&self, grid: &GridPlan, choice: LevelChoice) -> Result<PhotoGrid, PhotoError> {
         let mut photos = Vec::with_capacity(self.files.len());
         let mut all = Bounds::EMPTY;
         for file in &self.files {
@@ -88,13 +93,21 @@ impl Photos {
             return Err(PhotoError::NoOverlap { photos, ground });
         };
         let texel_m = |levels: u8| cell.shorter_m() / f64::from(1_u32 << levels);
-        let levels = match levels {
+        let levels = match choice {
             LevelChoice::Given(levels) => levels,
+            LevelChoice::NotCoarserThan(wanted_m) => {
+                let finest_m = finest_m.max(wanted_m);
+                let levels = (0..MOST_LEVELS).find(|&levels| texel_m(levels) <= finest_m);
+                levels.unwrap_or(MOST_LEVELS)
+            }
             LevelChoice::OfPhotos => (0..USUAL_LEVELS)
                 .find(|&levels| texel_m(levels) <= PIXELS_PER_TEXEL * finest_m)
                 .unwrap_or(USUAL_LEVELS),
         };
-        let texels = TexelGrid::new(grid.frame, levels)?;
+        let texels = match choice {
+            LevelChoice::NotCoarserThan(_) => TexelGrid::of_any(grid.frame, levels),
+            LevelChoice::Given(_) | LevelChoice::OfPhotos => TexelGrid::new(grid.frame, levels)?,
+        };
         let most = MOST_PIXELS_PER_TEXEL;
         for photo in &photos {
             let pixels = texel_m(levels) / photo.pixel_m;

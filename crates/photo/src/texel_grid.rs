@@ -40,6 +40,11 @@ impl TexelGrid {
         Ok(Self { frame, levels })
     }
 
+    /// With any number of levels, to be read by windows.
+    pub(crate) fn of_any(frame: Frame, levels: u8) -> Self {
+        Self { frame, levels }
+    }
+
     /// How many levels of texels are finer than the finest cell.
     #[must_use]
     pub fn levels(&self) -> u8 {

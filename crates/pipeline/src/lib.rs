@@ -59,6 +59,7 @@ pub use settings::{
 };
 pub use target::{TargetError, file_target};
 pub use terrain::recorded::TerrainRecord;
+pub use terrain::recorded_grid::grid_of;
 pub use unfinished::{folder_of, place_finished, unfinished_file};
 pub use verify::{
     Check, CheckId, ErrorFigures, GapFigures, Needs, VerifyError, VerifyOsm, VerifyReport,

@@ -56,7 +56,7 @@ pub(crate) fn of(
 }
 
 /// What is recorded of a table of areas.
-fn area_table_record(table: &AreaTable) -> AreaTableRecord {
+pub(crate) fn area_table_record(table: &AreaTable) -> AreaTableRecord {
     let sha256 = hex(&Sha256::digest(table.canonical_text()));
     AreaTableRecord { table: table.name().to_owned(), sha256 }
 }

@@ -161,6 +161,7 @@ fn check_verify(files: &Files, package: PathBuf) {
     let osm = VerifyOsm {
         paths: vec![files.at("roads.osm.pbf")],
         table: table(),
+        areas: None,
         memory_bytes: 64 << 20,
     };
     let settings = VerifySettings {

@@ -8,7 +8,9 @@ use std::{collections::BTreeMap, path::PathBuf};
 
 use corniche_areas::{AreaClass, AreaTable};
 use corniche_geom::{Frame, LatticePoint, TileId};
-use corniche_pipeline::{CheckId, Silent, build};
+use corniche_pipeline::{
+    CheckId, Needs, Silent, VerifyError, VerifyOsm, VerifyReport, VerifySettings, build, verify,
+};
 use corniche_tileset::{
     AreaRecord, FilePackage, Manifest, Sections, Writer, decode_areas, encode_areas, payload_sizes,
     pmtiles_order, with_areas,
@@ -20,6 +22,11 @@ use support::{
     settings,
 };
 use tempfile::TempDir;
+
+fn table() -> AreaTable {
+    let tags = [("natural=water", AreaClass::Water), ("natural=wood", AreaClass::Forest)];
+    AreaTable::new("test", tags.map(|(tag, class)| (tag.to_owned(), class)).to_vec()).unwrap()
+}
 
 /// A package with areas, taken apart.
 struct Apart {
@@ -45,9 +52,7 @@ impl Apart {
         let osm = corniche_testing::extract_with_areas(folder.path());
         let options = Options::plain(MAX_ERROR_M);
         let mut settings = settings(sample("pass-dem.tif"), Some(osm), path.clone(), options);
-        let tags = [("natural=water", AreaClass::Water), ("natural=wood", AreaClass::Forest)];
-        let tags = tags.map(|(tag, class)| (tag.to_owned(), class)).to_vec();
-        settings.plan.areas = Some(AreaTable::new("test", tags).unwrap());
+        settings.plan.areas = Some(table());
         build(&settings, &Silent).unwrap();
         let package = FilePackage::open(&path).unwrap();
         let manifest = package.manifest().clone();
@@ -91,6 +96,32 @@ impl Apart {
     /// Puts it together and asserts that exactly these checks are broken.
     fn assert_breaks(&self, expected: &[CheckId]) {
         assert_broken(report_on(&self.put_together(), Against::Itself), expected);
+    }
+
+    /// The same with the extract that it was made from, of whose checks exactly these are broken.
+    fn assert_breaks_against_extract(&self, expected: &[CheckId]) {
+        let report = self.against_extract(Some(table())).unwrap();
+        let broken = report.checks.iter().filter(|check| !check.holds());
+        let broken: Vec<_> = broken.filter(|check| check.id.needs() == Needs::Osm).collect();
+        assert!(broken.iter().map(|check| &check.id).eq(expected), "{expected:?}: {broken:#?}");
+    }
+
+    fn against_extract(&self, areas: Option<AreaTable>) -> Result<VerifyReport, VerifyError> {
+        let osm = VerifyOsm {
+            paths: vec![self.folder.path().join("areas.osm.pbf")],
+            table: support::table(),
+            areas,
+            memory_bytes: 64 << 20,
+        };
+        let settings = VerifySettings {
+            package: self.put_together(),
+            dem: Vec::new(),
+            photo: Vec::new(),
+            osm: Some(osm),
+            polygon: None,
+            threads: 2,
+        };
+        verify(&settings, &Silent)
     }
 
     /// Corrects the hash of the settings.
@@ -263,5 +294,61 @@ fn fields_of_areas_in_the_manifest() {
         change(&mut apart.manifest);
         let path = apart.folder.path().join("refused.pmtiles");
         assert!(Writer::create(&path, &apart.manifest).is_err());
+    }
+}
+
+#[test]
+fn the_extract_agrees_with_the_package_that_was_made_from_it() {
+    let sound = Apart::sound();
+    sound.assert_breaks_against_extract(&[]);
+    let report = sound.against_extract(Some(table())).unwrap();
+    let of = |id| report.checks.iter().find(|check| check.id == id).unwrap().checked;
+    assert!(of(CheckId::OsmAreas) > 4 && of(CheckId::OsmAreaCounts) == 1, "{report:?}");
+}
+
+#[test]
+fn areas_that_are_not_those_of_the_extract() {
+    type Change = fn(&mut AreaRecord);
+    let changes: [Change; 3] = [
+        |area| area.class = AreaClass::Rock,
+        |area| area.name.push('e'),
+        // By one step of the lattice, inside.
+        |area| {
+            let ring = &mut area.polygons[0].rings[0];
+            let inner = ring[ring.len() / 2];
+            ring[0].u += (inner.u - ring[0].u).signum();
+        },
+    ];
+    for change in changes {
+        let mut apart = Apart::sound();
+        let id = apart.with_an_area();
+        apart.change(id, |areas| change(&mut areas[0]));
+        apart.assert_breaks_against_extract(&[CheckId::OsmAreas]);
+    }
+    let counts: [fn(&mut Manifest); 2] = [
+        |manifest| manifest.areas.as_mut().unwrap().counts.kept[0].area_km2 *= 1.000_1,
+        |manifest| {
+            let counts = &mut manifest.areas.as_mut().unwrap().counts;
+            counts.objects += 1;
+            counts.lost.push(("open".to_owned(), 1));
+        },
+    ];
+    for change in counts {
+        let mut apart = Apart::sound();
+        change(&mut apart.manifest);
+        apart.assert_breaks(&[]);
+        apart.assert_breaks_against_extract(&[CheckId::OsmAreaCounts]);
+    }
+}
+
+#[test]
+fn another_table_of_areas_is_refused() {
+    let sound = Apart::sound();
+    for (other, expected) in [
+        (None, "the package has areas; give their table, \"test\", with --areas"),
+        (Some(table().with_sea()), "another table of areas that is called \"test\", too"),
+    ] {
+        let error = sound.against_extract(other).unwrap_err();
+        assert!(error.to_string().contains(expected), "{error}");
     }
 }

@@ -117,7 +117,7 @@ pub(crate) enum Heights {
     AsIs,
 }
 
-fn parse_classes(text: &str) -> Result<Classes, String> {
+pub(crate) fn parse_classes(text: &str) -> Result<Classes, String> {
     Classes::parse(text).map_err(|_| "write classes from 0 to 8 like 0-4,7".to_owned())
 }
 

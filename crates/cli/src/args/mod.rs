@@ -7,6 +7,7 @@ mod export;
 mod ground;
 mod growth;
 mod look;
+mod matching;
 mod part;
 mod reading;
 mod shell;
@@ -28,6 +29,7 @@ pub(crate) use export::{
 };
 pub(crate) use growth::GrowthArgs;
 pub(crate) use look::Roads;
+pub(crate) use matching::MatchArgs;
 pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
 pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFiles};
 pub(crate) use shell::{CompletionsArgs, ManArgs};
@@ -111,6 +113,8 @@ pub(crate) enum Command {
     Info(InfoArgs),
     /// Tell what laying roads on the terrain costs, per level and class
     Growth(GrowthArgs),
+    /// Tell how far roads lie beside what a photo or the slope of the ground shows of them
+    Match(MatchArgs),
     /// Check every promise a package makes; exits with 1 when one is broken
     Verify(VerifyArgs),
     /// Dump one decoded tile
@@ -140,6 +144,7 @@ impl Command {
             Self::Merge(_) => "merge",
             Self::Info(_) => "info",
             Self::Growth(_) => "growth",
+            Self::Match(_) => "match",
             Self::Verify(_) => "verify",
             Self::Tile(_) => "tile",
             Self::Export(_) => "export",

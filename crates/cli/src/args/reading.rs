@@ -52,6 +52,9 @@ pub(crate) struct VerifyArgs {
     /// With --osm: the FRC table it was made with [default: the preset of the recorded name]
     #[arg(long, value_name = "NAME|FILE", requires = "osm")]
     pub(crate) frc_table: Option<String>,
+    /// With --osm: the table of areas it was made with [default: the preset of the recorded name]
+    #[arg(long, value_name = "NAME|FILE", requires = "osm")]
+    pub(crate) areas: Option<String>,
     /// Worker threads [default: one per processor]
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,

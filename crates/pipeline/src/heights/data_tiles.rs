@@ -35,6 +35,11 @@ impl DataTiles {
         }
     }
 
+    /// The finest tiles from a north-western to a south-eastern one.
+    pub(crate) fn spanning(first: TileId, last: TileId) -> Self {
+        Self { level: first.z(), columns: [first.x(), last.x()], rows: [first.y(), last.y()] }
+    }
+
     /// The level of these tiles: the finest one, but for those of [`DataTiles::above`].
     pub(crate) fn level(&self) -> u8 {
         self.level

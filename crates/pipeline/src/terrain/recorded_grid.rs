@@ -1,6 +1,6 @@
 //! The grid of a package, from its manifest.
 
-use corniche_dem::{Clip, GridPlan, PlanScale, RecordedCrs, RecordedGrid};
+use corniche_dem::{Clip, DemError, GridPlan, PlanScale, RecordedCrs, RecordedGrid};
 use corniche_geom::{Frame, TILE_CELLS};
 use corniche_tileset::{Manifest, limits::MAX_TILES};
 
@@ -56,4 +56,14 @@ pub(crate) fn check(manifest: &Manifest) -> Result<(), &'static str> {
         return Err("its data's rectangle has more tiles than a package can have");
     }
     Ok(())
+}
+
+/// The grid of a package, on which other rasters can be brought.
+///
+/// # Errors
+/// When PROJ does not know its CRS.
+pub fn grid_of(manifest: &Manifest) -> Result<GridPlan, DemError> {
+    let bounds = manifest.whole_data_bounds();
+    let crs = RecordedCrs::new(&manifest.crs_wkt, manifest.metres_per_unit, bounds)?;
+    Ok(plan(&crs, manifest))
 }

@@ -121,6 +121,8 @@ checks! {
     OsmAttributes "osm.attributes" Osm "classes and attributes of ways are those of the extract"
     OsmCounts "osm.counts" Osm "counts and lengths of roads are those of the extract"
     OsmGrowth "osm.growth" Osm "source and simplified points of the growth table are those of the extract"
+    OsmAreas "osm.areas" Osm "the areas of each tile are those of the extract, split again; their points are compared to the lattice step"
+    OsmAreaCounts "osm.areas.counts" Osm "areas by class, their square kilometres and the objects lost are those of the extract"
 }
 
 /// One check, how often it was made, and where it failed.

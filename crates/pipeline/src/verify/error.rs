@@ -40,6 +40,8 @@ pub enum VerifyError {
         "the FRC table {given:?} is not the one that the package was made with; give {expected:?} with --frc-table"
     )]
     OtherTable { given: String, expected: String },
+    #[error("{}", other_area_table(given.as_deref(), expected))]
+    OtherAreaTable { given: Option<String>, expected: String },
     #[error(
         "the package was cut with the polygon {expected:?}; give the same polygon with --polygon"
     )]
@@ -102,6 +104,19 @@ impl From<BuildError> for VerifyError {
 impl From<InputError> for VerifyError {
     fn from(error: InputError) -> Self {
         BuildError::from(error).into()
+    }
+}
+
+/// A name may be that of two tables.
+fn other_area_table(given: Option<&str>, expected: &str) -> String {
+    match given {
+        Some(given) if given == expected => format!(
+            "the package was made with another table of areas that is called {expected:?}, too, read from a file; give that file with --areas"
+        ),
+        Some(given) => format!(
+            "the table of areas {given:?} is not the one that the package was made with; give {expected:?} with --areas"
+        ),
+        None => format!("the package has areas; give their table, {expected:?}, with --areas"),
     }
 }
 

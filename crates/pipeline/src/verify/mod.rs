@@ -16,6 +16,7 @@ mod header;
 mod manifest_sums;
 mod one_tile;
 mod osm;
+mod osm_areas;
 mod osm_tile;
 mod photo_against_files;
 mod photo_files;

@@ -4,7 +4,6 @@
 use std::{collections::BTreeMap, path::PathBuf};
 
 use corniche_geom::TileId;
-use corniche_osm::Defect;
 use corniche_roads::FrcTable;
 use corniche_store::Artifacts;
 use corniche_tileset::{FilePackage, InputRecord, Manifest, pmtiles_order};
@@ -12,13 +11,14 @@ use corniche_tileset::{FilePackage, InputRecord, Manifest, pmtiles_order};
 use super::{
     checks::{CheckId, Findings},
     error::VerifyError,
-    georeference, grid,
+    georeference, grid, osm_areas,
     osm_tile::{Found, Laying, SoupCache, look_at},
     request::{VerifyOsm, VerifySettings},
     temporary_store::TemporaryStore,
 };
 use crate::{
     BuildError, Observer, Silent, Stage,
+    heights::data_tiles::DataTiles,
     inputs::{InputKind, Inputs, OtherInputs},
     levels::{Levels, most_scale},
     roads::{
@@ -26,7 +26,7 @@ use crate::{
         lay::ClassSums,
         lengths::TrueLengths,
         losses::{LossFold, Sums},
-        partition::{RoadInput, partition},
+        partition::{AreaInput, RoadInput, partition},
         pieces::TilePieces,
         totals::RoadTotals,
     },
@@ -56,6 +56,7 @@ fn compare_all(
 ) -> Result<(), VerifyError> {
     let manifest = package.manifest();
     let paths = check_inputs(manifest, osm, inputs, findings, observer)?;
+    let area_table = osm_areas::table(osm.areas.as_ref(), manifest)?;
     // If one of them is missing, the check `levels.derived` or `manifest.crs` is broken, and roads cannot be laid.
     let (Some(settings), Some([first, last])) = (
         settings_record::roads(&manifest.settings, chosen(&osm.table, manifest)),
@@ -82,7 +83,7 @@ fn compare_all(
     let input = RoadInput {
         osm: &paths,
         settings: &settings,
-        areas: None,
+        areas: area_table.map(|table| AreaInput { table, data: DataTiles::spanning(first, last) }),
         projection: &projection,
         levels: &levels,
         lengths: &lengths,
@@ -98,6 +99,9 @@ fn compare_all(
     let classes = lay(&laying, store, &mut fates, request.threads, findings, observer)?;
     let losses = fates.finish(&roads, store, &Silent)?;
     check_counts(manifest, &roads, &losses, findings);
+    if area_table.is_some() {
+        osm_areas::compare(package, store, request.threads, findings, observer)?;
+    }
     check_growth(manifest, &classes, findings);
     Ok(())
 }
@@ -219,10 +223,7 @@ fn check_counts(manifest: &Manifest, roads: &RoadTotals, losses: &Sums, findings
     };
     same("roads_in", &said.roads_in, &wanted.roads_in);
     same("roads_kept", &said.roads_kept, &wanted.roads_kept);
-    // Only roads were read again.
-    let mut of_roads = said.defects.clone();
-    of_roads.retain(|(reason, _)| !Defect::is_of_areas(reason));
-    same("defects", &of_roads, &wanted.defects);
+    same("defects", &said.defects, &wanted.defects);
     same("unknown_highways", &said.unknown_highways, &wanted.unknown_highways);
     same("blobs_passed_over", &said.blobs_passed_over, &wanted.blobs_passed_over);
     same("tags_taken_otherwise", &said.tags_taken_otherwise, &wanted.tags_taken_otherwise);

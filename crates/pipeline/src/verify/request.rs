@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use corniche_areas::AreaTable;
 use corniche_dem::Polygon;
 use corniche_roads::FrcTable;
 
@@ -29,6 +30,8 @@ pub struct VerifyOsm {
     pub paths: Vec<PathBuf>,
     /// The FRC table that the manifest names.
     pub table: FrcTable,
-    /// Memory for sorting roads by tile, bytes.
+    /// The table of areas that the manifest names; not asked for if the package has none.
+    pub areas: Option<AreaTable>,
+    /// Memory for sorting roads and areas by tile, bytes.
     pub memory_bytes: u64,
 }

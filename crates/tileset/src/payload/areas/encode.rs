@@ -1,9 +1,10 @@
 use corniche_areas::AreaObject;
 use corniche_geom::{Frame, LatticeBounds, LatticePoint, TileId};
 
+use super::decode;
 use super::record::AreaRecord;
 use crate::limits::{MAX_AREA_RINGS, MAX_AREAS, MAX_POINTS, MAX_TEXT_BYTES};
-use crate::payload::damage::EncodeError;
+use crate::payload::damage::{DecodeError, EncodeError};
 use crate::payload::envelope::{self, Content, SectionSize};
 use crate::payload::number_codes::{put_planes, put_varint, zigzag};
 use crate::payload::section_kind::Kind;
@@ -19,6 +20,15 @@ impl AreasSection {
     #[must_use]
     pub fn into_bytes(self) -> Vec<u8> {
         self.bytes
+    }
+
+    /// The areas that it holds.
+    ///
+    /// # Errors
+    /// When the bytes are damaged.
+    pub fn decode(&self, tile: TileId, frame: &Frame) -> Result<Vec<AreaRecord>, DecodeError> {
+        let failed = |damage| DecodeError { tile, part: Kind::Areas.name(), damage };
+        decode::decode(&self.bytes, frame.tile_lattice_bounds(tile)).map_err(failed)
     }
 
     /// The section with these bytes, which [`AreasSection::into_bytes`] gave.

@@ -1,0 +1,45 @@
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Args};
+use corniche_presets::Classes;
+
+#[derive(Debug, Args)]
+#[command(
+    group = ArgGroup::new("target").args(["photo", "slope"]).required(true),
+    group = ArgGroup::new("written").args(["csv", "svg"]).multiple(true),
+)]
+pub(crate) struct MatchArgs {
+    /// The package
+    pub(crate) package: PathBuf,
+    /// Photos of the ground that roads are compared with, as for build --photo: any format and CRS that GDAL reads; the first lies on top
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    pub(crate) photo: Vec<PathBuf>,
+    /// Compare with the slope of the ground, in which roads are flat across; for lidar of some metres, of a package with relief
+    #[arg(long)]
+    pub(crate) slope: bool,
+    /// How far beside roads to look, metres
+    #[arg(long, value_name = "METRES", default_value_t = 30.0, value_parser = parse_metres)]
+    pub(crate) radius: f64,
+    /// The side of the squares for which offsets are told, metres
+    #[arg(long, value_name = "METRES", default_value_t = 2000.0, value_parser = parse_metres)]
+    pub(crate) region: f64,
+    /// Functional road classes that are compared, such as 0-4,7
+    #[arg(long, value_name = "LIST", default_value = "0-8", value_parser = super::export::parse_classes)]
+    pub(crate) classes: Classes,
+    /// Also write a line for each way (CSV)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) csv: Option<PathBuf>,
+    /// Also draw a map of the offsets (SVG)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) svg: Option<PathBuf>,
+    /// Replace files that exist, once the new ones are complete
+    #[arg(short = 'O', long, requires = "written")]
+    pub(crate) overwrite: bool,
+}
+
+fn parse_metres(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|metres| (1.0..=1e6).contains(metres))
+        .ok_or_else(|| "write metres from 1 to 1000000".to_owned())
+}

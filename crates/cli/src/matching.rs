@@ -1,0 +1,121 @@
+//! `corniche match`: how far roads lie beside what a photo or the slope of the ground shows of them.
+
+mod csv;
+mod map;
+mod text;
+
+use std::{
+    cell::RefCell,
+    io::{self, Write as _},
+    path::Path,
+};
+
+use corniche_matching::{
+    MatchError, MatchObserver, MatchRequest, MatchedRoad, Offset, Target, match_roads,
+};
+use corniche_photo::Photos;
+use corniche_tileset::FilePackage;
+use indicatif::ProgressBar;
+
+use crate::{
+    args::MatchArgs,
+    exit::ExitCode,
+    failure::Failure,
+    interrupt,
+    names::Format,
+    output::{Output, existing_of},
+    progress,
+    table::Digits,
+};
+
+/// Below this, or with fewer places, a best shift is one that chance may give.
+const LEAST_CONFIDENCE: f64 = 6.0;
+const LEAST_PLACES: u64 = 200;
+/// The same for a single road.
+const LEAST_PLACES_OF_A_ROAD: u64 = 24;
+
+/// Whether an offset is one that the image shows.
+fn is_sure(offset: &Offset, places: u64) -> bool {
+    offset.confidence >= LEAST_CONFIDENCE && places >= LEAST_PLACES && !offset.is_at_edge
+}
+
+/// The offset across a road in metres, if the image shows it.
+fn sure_across(road: &MatchedRoad) -> Option<f64> {
+    let sure = road.across_offset.filter(|across| {
+        across.confidence >= LEAST_CONFIDENCE
+            && road.samples >= LEAST_PLACES_OF_A_ROAD
+            && !across.is_at_edge
+    });
+    sure.map(|across| across.metres)
+}
+
+pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
+    let package = FilePackage::open(&args.package)?;
+    let manifest = package.manifest();
+    let photos = corniche_pipeline::photo_names(&args.photo)?;
+    let existing = existing_of(args.overwrite);
+    let others = |own: &Path| -> Vec<&Path> {
+        let targets = args.svg.iter().chain(&args.csv).filter(|&target| *target != *own);
+        let inputs = photos.iter().chain([&args.package]);
+        inputs.chain(targets).map(AsRef::as_ref).collect()
+    };
+    if args.svg.is_some() && args.svg == args.csv {
+        return Err(Failure::unusable("--svg and --csv name one file; give each its own"));
+    }
+    args.svg.as_deref().map_or(Ok(()), |path| Format::Chart.refuse_others(path))?;
+    // Both places are looked at before any work is done.
+    let begin = |path: &Path| Output::create(path, existing, &others(path));
+    let svg = args.svg.as_deref().map(begin).transpose()?;
+    let list = args.csv.as_deref().map(begin).transpose()?;
+    let request = MatchRequest {
+        classes: args.classes.classes(),
+        radius_m: args.radius,
+        region_m: args.region,
+    };
+    let bar = Bar::default();
+    let report = if args.slope {
+        match_roads(&package, &Target::Slope, &request, &bar)
+    } else {
+        let opened = Photos::open(&photos).map_err(MatchError::from)?;
+        let grid = corniche_pipeline::grid_of(manifest)
+            .map_err(|error| Failure::new(ExitCode::Unusable, error))?;
+        match_roads(&package, &Target::Photos(&opened, &grid), &request, &bar)
+    };
+    bar.end();
+    let report = report?;
+    if let Some(output) = list {
+        output.write_whole(csv::to_csv(&report).as_bytes())?;
+    }
+    if let Some(output) = svg {
+        output.write_whole(map::to_svg(&report, manifest).as_bytes())?;
+    }
+    let text = text::to_text(&report, manifest, Digits::on(&io::stdout()));
+    io::stdout().lock().write_all(text.as_bytes())?;
+    Ok(ExitCode::Done)
+}
+
+/// A progress bar for the tiles.
+#[derive(Default)]
+struct Bar {
+    running: RefCell<Option<ProgressBar>>,
+}
+
+impl Bar {
+    fn end(&self) {
+        if let Some(bar) = self.running.take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl MatchObserver for Bar {
+    fn done(&self, tiles: u64, total: u64) {
+        let mut running = self.running.borrow_mut();
+        let bar = running.get_or_insert_with(|| progress::bar("comparing tiles", Some(total)));
+        bar.set_position(tiles);
+    }
+
+    fn should_stop(&self) -> bool {
+        interrupt::is_noted()
+    }
+}

@@ -1,0 +1,27 @@
+use corniche_drape::BadLine;
+use corniche_geom::TileId;
+use corniche_photo::PhotoError;
+use corniche_tileset::{OpenError, ReadError};
+
+/// Why roads could not be compared with an image.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "each message documents its variant")]
+#[non_exhaustive]
+pub enum MatchError {
+    #[error(transparent)]
+    Package(#[from] OpenError),
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    #[error(transparent)]
+    Photo(#[from] PhotoError),
+    #[error("a road of tile {tile} does not lie on its ground; see what corniche verify says")]
+    Line { tile: TileId, source: BadLine },
+    #[error("the package has no roads: it was built without --osm")]
+    NoRoads,
+    #[error(
+        "the package has no relief, from which slopes are taken; build it without --relief off, or compare with --photo"
+    )]
+    NoRelief,
+    #[error("interrupted")]
+    Interrupted,
+}

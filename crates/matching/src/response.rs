@@ -1,0 +1,73 @@
+//! Whether an image shows a line at a place.
+
+use crate::{grey::Grey, samples::Sample, votes::Search};
+
+/// From working metres to texels: eastwards and southwards.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TexelScale {
+    /// Where texel (0, 0) begins.
+    pub(crate) origin_m: [f64; 2],
+    /// East and north.
+    pub(crate) texel_m: [f64; 2],
+}
+
+impl TexelScale {
+    pub(crate) fn texel_of(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [(x - self.origin_m[0]) / self.texel_m[0], (self.origin_m[1] - y) / self.texel_m[1]]
+    }
+}
+
+/// Half the width of a road, and how far beside its edges the ground is looked at, metres.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Profile {
+    pub(crate) half_width_m: f64,
+    pub(crate) beside_m: f64,
+}
+
+impl Profile {
+    /// How far from its middle it looks.
+    pub(crate) fn reach_m(&self) -> f64 {
+        self.half_width_m + 2.0 * self.beside_m
+    }
+}
+
+/// By how much the middle is brighter than both sides at each shift, in the order of [`Search::shifts`]; negative where it is darker, 0
+/// where it lies between both sides: there is an edge and no line. `None` if a value is missing.
+pub(crate) fn responses(
+    grey: &Grey,
+    scale: &TexelScale,
+    sample: &Sample,
+    profile: Profile,
+    search: &Search,
+) -> Option<Vec<f32>> {
+    let [nx, ny] = sample.normal;
+    let mut found = Vec::with_capacity(search.count());
+    for [east, north] in search.shifts() {
+        let value = |aside_m: f64| {
+            let place = [sample.at[0] + east + nx * aside_m, sample.at[1] + north + ny * aside_m];
+            grey.at(scale.texel_of(place))
+        };
+        let half = profile.half_width_m / 2.0;
+        let middle = (value(-half) + value(0.0) + value(half)) / 3.0;
+        let side = |sign: f64| {
+            let near = profile.half_width_m + profile.beside_m;
+            let far = profile.reach_m();
+            f32::midpoint(value(sign * near), value(sign * far))
+        };
+        let [left, right] = [middle - side(1.0), middle - side(-1.0)];
+        if left.is_nan() || right.is_nan() {
+            return None;
+        }
+        let is_line = (left > 0.0) == (right > 0.0);
+        let least = if left.abs() < right.abs() { left } else { right };
+        found.push(if is_line { least.clamp(-MOST, MOST) } else { 0.0 });
+    }
+    Some(found)
+}
+
+/// A single bright roof must not outvote a road.
+const MOST: f32 = 40.0;
+
+#[cfg(test)]
+#[path = "response_tests.rs"]
+mod tests;

@@ -1,0 +1,37 @@
+use super::*;
+
+const SCALE: TexelScale = TexelScale { origin_m: [0.0, 100.0], texel_m: [1.0, 1.0] };
+const PROFILE: Profile = Profile { half_width_m: 2.0, beside_m: 1.5 };
+
+/// A hundred texels square, by place in working metres.
+fn image(value: impl Fn([f64; 2]) -> f32) -> Grey {
+    let at = |n: usize| value([(n % 100) as f64 + 0.5, 99.5 - (n / 100) as f64]);
+    Grey { first: [0, 0], columns: 100, values: (0..10_000).map(at).collect() }
+}
+
+fn found(grey: &Grey, at: [f64; 2]) -> Option<Vec<f32>> {
+    let search = Search::new(4.0, 1.0);
+    responses(grey, &SCALE, &Sample { at, normal: [-1.0, 0.0] }, PROFILE, &search)
+}
+
+#[test]
+fn a_line_answers_where_it_lies_and_an_edge_does_not() {
+    // Four metres wide, three metres east of the sample.
+    let line = image(|[x, _]| if (x - 53.0).abs() < 2.0 { 30.0 } else { 100.0 });
+    let answers = found(&line, [50.0, 50.0]).unwrap();
+    let best = answers.iter().copied().reduce(f32::min).unwrap();
+    let search = Search::new(4.0, 1.0);
+    for ([east, _], answer) in search.shifts().zip(&answers) {
+        assert_eq!(*answer <= best + 1.0, (east - 3.0).abs() < 1.1, "{east}: {answer}");
+    }
+    let edge = image(|[x, _]| if x < 51.0 { 30.0 } else { 100.0 });
+    assert!(found(&edge, [50.0, 50.0]).unwrap().iter().all(|answer| answer.abs() < 1e-3));
+}
+
+#[test]
+fn places_without_image_give_no_answer() {
+    let grey = image(|[x, _]| if x > 80.0 { f32::NAN } else { 1.0 });
+    assert!(found(&grey, [50.0, 50.0]).is_some());
+    assert!(found(&grey, [74.0, 50.0]).is_none());
+    assert!(found(&grey, [3.0, 50.0]).is_none(), "beyond the image");
+}
