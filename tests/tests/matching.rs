@@ -32,7 +32,7 @@ fn roads(folder: &Path) -> Vec<Segment> {
         .as_array()
         .unwrap()
         .iter()
-        .map(|tile| tile.as_str().map_or_else(|| tile["id"].as_str().unwrap(), |id| id).to_owned())
+        .map(|tile| tile.as_str().unwrap_or_else(|| tile["id"].as_str().unwrap()).to_owned())
         .collect();
     let finest = ids.iter().map(|id| id.split('/').next().unwrap().parse::<u8>().unwrap()).max();
     let mut segments = Vec::new();

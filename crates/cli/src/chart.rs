@@ -197,7 +197,8 @@ fn draw_curves(
 /// The list of names, with a piece of each line and its mark before it.
 fn draw_names(area: &DrawingArea<SVGBackend<'_>, Shift>, curves: &[Curve]) -> Result<()> {
     let font = TextStyle::from(("sans-serif", 15)).color(&BLACK);
-    for (row, curve) in (0..).zip(curves) {
+    // Parts of a curve after the first have no name.
+    for (row, curve) in (0..).zip(curves.iter().filter(|curve| !curve.name.is_empty())) {
         let y = 3 * MARGIN_PX + ROW_PX * row;
         let (dash, gap, style) = curve.line();
         let ends = [(0, y), (SAMPLE_PX, y)];

@@ -29,6 +29,7 @@ mod parent;
 mod part;
 mod plan;
 mod presets;
+mod profile;
 mod progress;
 mod render;
 mod settings;
@@ -113,6 +114,7 @@ fn run(arguments: Arguments) -> Result<ExitCode, Failure> {
         Command::Merge(args) => merge::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Growth(args) => growth::run(&args),
+        Command::Profile(args) => profile::run(&args),
         Command::Match(args) => matching::run(&args),
         Command::Verify(args) => verify::run(&args),
         Command::Tile(args) => tile::run(&args),

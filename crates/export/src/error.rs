@@ -39,6 +39,10 @@ pub enum ExportError {
     GeoJsonPlanCrs,
     #[error("{package:?} has no roads: it was built without --osm")]
     NoRoads { package: PathBuf },
+    #[error(
+        "{package:?} has no way {way_id} on level {level}; corniche export roads lists the ways that it has"
+    )]
+    NoWay { package: PathBuf, way_id: i64, level: u8 },
     #[error("{package:?} has no level {level}; its finest is {finest}")]
     NoLevel { package: PathBuf, level: u8, finest: u8 },
     #[error(

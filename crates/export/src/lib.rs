@@ -13,6 +13,8 @@
 //!
 //! The same pieces, of all levels, tell what laying each way on the terrain costs ([`growth_by_way`]).
 //!
+//! [`profile`] follows some ways and tells height and grade along them.
+//!
 //! Areas go the same way, sorted by object; what tiles hold of one is joined where both sides of a border have the same segments.
 //!
 //! Vertices are those of the package: nothing is simplified, smoothed or rounded, except in GeoJSON (nine decimals).
@@ -32,6 +34,7 @@ mod measures;
 mod observer;
 mod piece;
 mod places;
+mod profile;
 mod read;
 mod request;
 mod roads;
@@ -45,6 +48,7 @@ pub use error::ExportError;
 pub use feature::road_fields;
 pub use growth::{WayGrowth, growth_by_way};
 pub use observer::{Observer, Silent, Stage};
+pub use profile::{Profile, ProfilePart, ProfilePoint, profile};
 pub use request::{AreasRequest, Coordinates, RoadsRequest};
 pub use roads::{ExportSummary, export_roads};
 pub use vector::{Field, FieldKind, VectorFormat};

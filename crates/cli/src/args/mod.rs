@@ -9,6 +9,7 @@ mod growth;
 mod look;
 mod matching;
 mod part;
+mod profile;
 mod reading;
 mod shell;
 mod values;
@@ -31,6 +32,7 @@ pub(crate) use growth::GrowthArgs;
 pub(crate) use look::Roads;
 pub(crate) use matching::MatchArgs;
 pub(crate) use part::{JobsArgs, MergeArgs, PartArgs};
+pub(crate) use profile::ProfileArgs;
 pub(crate) use reading::{Coordinates, InfoArgs, TileArgs, VerifyArgs, VerifyFiles};
 pub(crate) use shell::{CompletionsArgs, ManArgs};
 pub(crate) use view::{Motion, ViewArgs};
@@ -113,6 +115,8 @@ pub(crate) enum Command {
     Info(InfoArgs),
     /// Tell what laying roads on the terrain costs, per level and class
     Growth(GrowthArgs),
+    /// Tell height and grade along roads
+    Profile(ProfileArgs),
     /// Tell how far roads lie beside what a photo or the slope of the ground shows of them
     Match(MatchArgs),
     /// Check every promise a package makes; exits with 1 when one is broken
@@ -144,6 +148,7 @@ impl Command {
             Self::Merge(_) => "merge",
             Self::Info(_) => "info",
             Self::Growth(_) => "growth",
+            Self::Profile(_) => "profile",
             Self::Match(_) => "match",
             Self::Verify(_) => "verify",
             Self::Tile(_) => "tile",

@@ -1,0 +1,25 @@
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Args};
+
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("drawn").args(["csv", "svg"]).multiple(true))]
+pub(crate) struct ProfileArgs {
+    /// The package
+    pub(crate) package: PathBuf,
+    /// The ways to follow, by their ids in OSM, in this order; each is turned so that it goes on where the one before it ends
+    #[arg(long, value_name = "ID", required = true, value_delimiter = ',', num_args = 1.., allow_negative_numbers = true)]
+    pub(crate) way: Vec<i64>,
+    /// The level on whose ground they lie [default: the finest]
+    #[arg(long, value_name = "Z")]
+    pub(crate) level: Option<u8>,
+    /// Also write a line for each vertex (CSV)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) csv: Option<PathBuf>,
+    /// Also draw height and grade over distance (SVG)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) svg: Option<PathBuf>,
+    /// Replace files that exist, once the new ones are complete
+    #[arg(short = 'O', long, requires = "drawn")]
+    pub(crate) overwrite: bool,
+}

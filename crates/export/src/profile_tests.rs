@@ -1,0 +1,48 @@
+use super::*;
+
+fn line(points: &[[f64; 2]]) -> Line {
+    let vertices = points.iter().map(|&at| Vertex { at, z_m: 0.0, is_source: true }).collect();
+    Line { vertices, joins: Vec::new() }
+}
+
+fn places(parts: &[Part]) -> Vec<Vec<f64>> {
+    parts.iter().map(|part| part.iter().map(|(_, vertex)| vertex.at[0]).collect()).collect()
+}
+
+#[test]
+fn ways_are_turned_so_that_they_go_on() {
+    let at = |x: f64| [x, 0.0];
+    let first = vec![line(&[at(3.0), at(2.0), at(1.0)])];
+    let second = vec![line(&[at(3.0), at(4.0)])];
+    let third = vec![line(&[at(9.0), at(6.0), at(4.0)])];
+    let parts = in_a_row(&[1, 2, 3], vec![first.clone(), second, third]);
+    assert_eq!(places(&parts), [[1.0, 2.0, 3.0, 4.0, 6.0, 9.0]]);
+    let ids: Vec<i64> = parts[0].iter().map(|(way_id, _)| *way_id).collect();
+    assert_eq!(ids, [1, 1, 1, 2, 3, 3]);
+    // Alone, a way keeps its direction; ways that do not meet are parts.
+    assert_eq!(places(&in_a_row(&[1], vec![first.clone()])), [[3.0, 2.0, 1.0]]);
+    let apart = in_a_row(&[1, 2], vec![first, vec![line(&[at(7.0), at(8.0)])]]);
+    assert_eq!(places(&apart), [vec![3.0, 2.0, 1.0], vec![7.0, 8.0]]);
+    // A way with a gap is turned as a whole.
+    let gap = vec![line(&[at(5.0), at(4.0)]), line(&[at(2.0), at(1.0)])];
+    let parts = in_a_row(&[1, 2], vec![vec![line(&[at(0.0), at(1.0)])], gap]);
+    assert_eq!(places(&parts), [vec![0.0, 1.0, 2.0], vec![4.0, 5.0]]);
+}
+
+#[test]
+fn grades_are_those_of_twenty_metres() {
+    // Level, then one in ten, then level again.
+    let profile = [[0.0, 5.0], [100.0, 5.0], [150.0, 10.0], [250.0, 10.0]];
+    let found = grades(&profile);
+    for (found, expected) in found.iter().zip([0.0, 0.05, 0.05, 0.0]) {
+        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    }
+    // At an end, the twenty metres lie inside.
+    let ends = grades(&[[0.0, 0.0], [10.0, 4.0], [20.0, 4.0], [40.0, 4.0]]);
+    assert!((ends[0] - 0.2).abs() < 1e-12, "{ends:?}");
+    // A short line has one grade.
+    for grade in grades(&[[0.0, 0.0], [4.0, 1.0]]) {
+        assert!((grade - 0.25).abs() < 1e-12, "{grade}");
+    }
+    assert_eq!(grades(&[[0.0, 0.0], [0.0, 0.0]]).len(), 2);
+}
