@@ -9,8 +9,9 @@ use crate::heights::data_tiles::DataTiles;
 /// On the finest level, points lie on a lattice of at most this spacing, metres: what is drawn there can be looked at from near.
 const FINEST_STEP_M: f64 = 0.1;
 /// On other levels, so many steps of the lattice make a cell, at least. Tiles are drawn while their cells look like two pixels at
-/// most, so a point moves by a sixteenth of a pixel.
-const STEPS_PER_CELL: f64 = 16.0;
+/// most, so a point moves by a quarter of a pixel along each axis. With 16 steps, level 0 of Liechtenstein had 3.4 times the points, and no
+/// picture differed from those with 4 by more than two pixels.
+const STEPS_PER_CELL: f64 = 4.0;
 
 /// How areas are split.
 pub(crate) struct Splitting<'a> {

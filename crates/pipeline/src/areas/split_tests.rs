@@ -67,7 +67,7 @@ fn steps_are_powers_of_two_that_double_from_level_to_level() {
     let steps: Vec<i64> = (0..=2).map(|level| splitting(&frame).step(level)).collect();
     let metres: Vec<f64> = steps.iter().map(|&step| step as f64 * frame.lattice_step_m()).collect();
     assert!(metres[2] <= 0.1 && metres[2] > 0.05, "{metres:?}");
-    assert!(metres[1] <= 20.0 / 16.0 && metres[1] > 20.0 / 32.0, "{metres:?}");
+    assert!(metres[1] <= 20.0 / 4.0 && metres[1] > 20.0 / 8.0, "{metres:?}");
     assert_eq!(steps[0], 2 * steps[1]);
 }
 
