@@ -2,6 +2,7 @@
 
 mod csv;
 mod map;
+mod sure;
 mod text;
 
 use std::{
@@ -10,9 +11,7 @@ use std::{
     path::Path,
 };
 
-use corniche_matching::{
-    MatchError, MatchObserver, MatchRequest, MatchedRoad, Offset, Target, match_roads,
-};
+use corniche_matching::{MatchError, MatchObserver, MatchRequest, Target, match_roads};
 use corniche_photo::Photos;
 use corniche_tileset::FilePackage;
 use indicatif::ProgressBar;
@@ -27,27 +26,6 @@ use crate::{
     progress,
     table::Digits,
 };
-
-/// Below this, or with fewer places, a best shift is one that chance may give.
-const LEAST_CONFIDENCE: f64 = 6.0;
-const LEAST_PLACES: u64 = 200;
-/// The same for a single road.
-const LEAST_PLACES_OF_A_ROAD: u64 = 24;
-
-/// Whether an offset is one that the image shows.
-fn is_sure(offset: &Offset, places: u64) -> bool {
-    offset.confidence >= LEAST_CONFIDENCE && places >= LEAST_PLACES && !offset.is_at_edge
-}
-
-/// The offset across a road in metres, if the image shows it.
-fn sure_across(road: &MatchedRoad) -> Option<f64> {
-    let sure = road.across_offset.filter(|across| {
-        across.confidence >= LEAST_CONFIDENCE
-            && road.samples >= LEAST_PLACES_OF_A_ROAD
-            && !across.is_at_edge
-    });
-    sure.map(|across| across.metres)
-}
 
 pub(crate) fn run(args: &MatchArgs) -> Result<ExitCode, Failure> {
     let package = FilePackage::open(&args.package)?;

@@ -16,7 +16,7 @@ pub enum MatchError {
     Photo(#[from] PhotoError),
     #[error("a road of tile {tile} does not lie on its ground; see what corniche verify says")]
     Line { tile: TileId, source: BadLine },
-    #[error("the package has no roads: it was built without --osm")]
+    #[error("the package has no roads of these classes, or was built without --osm")]
     NoRoads,
     #[error(
         "the package has no relief, from which slopes are taken; build it without --relief off, or compare with --photo"

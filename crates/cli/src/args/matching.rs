@@ -17,8 +17,8 @@ pub(crate) struct MatchArgs {
     /// Compare with the slope of the ground, in which roads are flat across; for lidar of some metres, of a package with relief
     #[arg(long)]
     pub(crate) slope: bool,
-    /// How far beside roads to look, metres
-    #[arg(long, value_name = "METRES", default_value_t = 30.0, value_parser = parse_metres)]
+    /// How far beside roads to look, metres, 1 to 500
+    #[arg(long, value_name = "METRES", default_value_t = 30.0, value_parser = parse_radius)]
     pub(crate) radius: f64,
     /// The side of the squares for which offsets are told, metres
     #[arg(long, value_name = "METRES", default_value_t = 2000.0, value_parser = parse_metres)]
@@ -35,6 +35,13 @@ pub(crate) struct MatchArgs {
     /// Replace files that exist, once the new ones are complete
     #[arg(short = 'O', long, requires = "written")]
     pub(crate) overwrite: bool,
+}
+
+fn parse_radius(text: &str) -> Result<f64, String> {
+    parse_metres(text)
+        .ok()
+        .filter(|metres| *metres <= 500.0)
+        .ok_or_else(|| "write metres from 1 to 500".to_owned())
 }
 
 fn parse_metres(text: &str) -> Result<f64, String> {

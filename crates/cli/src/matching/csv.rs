@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use corniche_matching::MatchReport;
 
-use super::sure_across;
+use super::sure::sure_across;
 
 const HEADINGS: &str = "way_id,class,name,ref,length_m,samples,east_m,north_m,confidence,across_m,across_confidence,bends,sure\n";
 

@@ -6,7 +6,7 @@ use corniche_geom::Bounds;
 use corniche_matching::{MatchReport, MatchedRoad};
 use corniche_tileset::Manifest;
 
-use super::{is_sure, sure_across};
+use super::sure::{is_sure, sure_across};
 
 /// Longer side of the map, pixels; beside it is the legend.
 const SIDE_PX: f64 = 900.0;

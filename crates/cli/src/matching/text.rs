@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use corniche_matching::{MatchReport, Offset};
 use corniche_tileset::Manifest;
 
-use super::{LEAST_CONFIDENCE, LEAST_PLACES, is_sure, sure_across};
+use super::sure::{LEAST_CONFIDENCE, LEAST_PLACES, is_sure, sure_across};
 use crate::table::{Digits, Table};
 
 pub(crate) fn to_text(report: &MatchReport, manifest: &Manifest, digits: Digits) -> String {
